@@ -1,0 +1,16 @@
+# Flags of every target of ours. -frounding-math and -ffp-contract=off keep CGAL's interval arithmetic and
+# our own error bounds true.
+add_library(exactff_flags INTERFACE)
+target_compile_options(exactff_flags INTERFACE -frounding-math -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
+                                               -Wconversion -Wno-sign-conversion)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(exactff_flags INTERFACE -Wno-restrict)  # GCC 12 warns of every "text" + std::string
+endif()
+if(EXACTFF_WERROR)
+  target_compile_options(exactff_flags INTERFACE -Werror)
+endif()
+if(EXACTFF_SANITIZE)
+  target_compile_options(exactff_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
+                                                 -fno-omit-frame-pointer)
+  target_link_options(exactff_flags INTERFACE -fsanitize=address,undefined)
+endif()
