@@ -1,0 +1,27 @@
+// Plain value types that every public header shares. Coordinates are IEEE doubles; on the exact path
+// each stands for exactly the rational number it is.
+#pragma once
+
+#include <algorithm>
+
+namespace exactff {
+
+struct Vec3 {
+  double x = 0.0;
+  double y = 0.0;
+  double z = 0.0;
+
+  friend bool operator==(const Vec3&, const Vec3&) = default;
+};
+
+// One value per colour channel: a reflectance (pure number) or a radiosity (not a radiance: no pi).
+struct Rgb {
+  double r = 0.0;
+  double g = 0.0;
+  double b = 0.0;
+
+  [[nodiscard]] double largest() const { return std::max({r, g, b}); }
+  friend bool operator==(const Rgb&, const Rgb&) = default;
+};
+
+}  // namespace exactff

@@ -1,0 +1,181 @@
+#include "kernel/ball.h"
+
+#include <mpfr.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "exactff/enclosure.h"
+
+namespace exactff {
+
+namespace kernel {
+
+Ball to_ball(const Integer& value, long bits) {
+  fmpz_t copy;
+  fmpz_init(copy);
+  fmpz_set_mpz(copy, value.get_mpz_t());
+  Ball result;
+  arb_set_round_fmpz(result.get(), copy, bits);
+  fmpz_clear(copy);
+  return result;
+}
+
+Ball to_ball(const Rational& value, long bits) {
+  Ball result = to_ball(value.get_num(), bits + 2);
+  const Ball denominator = to_ball(value.get_den(), bits + 2);
+  arb_div(result.get(), result.get(), denominator.get(), bits + 2);
+  return result;
+}
+
+double nearest_to_midpoint(const Ball& ball) { return arf_get_d(arb_midref(ball.get()), ARF_RND_NEAR); }
+
+}  // namespace kernel
+
+namespace {
+
+// Owns an Arb floating-point number: one end of a ball.
+class End {
+ public:
+  End() { arf_init(x_); }
+  End(const End&) = delete;
+  End& operator=(const End&) = delete;
+  ~End() { arf_clear(x_); }
+  arf_ptr get() { return x_; }
+  [[nodiscard]] arf_srcptr get() const { return x_; }
+
+ private:
+  arf_t x_;
+};
+
+// The two ends, rounded outward to more bits than the midpoint has: rounding them again loses nothing that
+// matters.
+void get_ends(const Ball& ball, End& lower, End& upper) {
+  constexpr long kSpareBits = 128;
+  const long bits = std::max(arb_bits(ball.get()), 0L) + kSpareBits;
+  arb_get_lbound_arf(lower.get(), ball.get(), bits);
+  arb_get_ubound_arf(upper.get(), ball.get(), bits);
+}
+
+// Significant decimals and the power of ten: the number is 0.DDD * 10^exponent.
+struct Decimals {
+  bool negative = false;
+  std::string digits;
+  long exponent = 0;
+
+  friend bool operator==(const Decimals&, const Decimals&) = default;
+};
+
+// `count` significant decimals of one end, correctly rounded.
+Decimals decimals_of(const End& end, int count) {
+  mpfr_t x;
+  mpfr_init2(x, std::max(2L, arf_bits(end.get())));
+  arf_get_mpfr(x, end.get(), MPFR_RNDN);  // exact: x has as many bits
+  mpfr_exp_t exponent = 0;
+  char* text = mpfr_get_str(nullptr, &exponent, 10, static_cast<std::size_t>(count), x, MPFR_RNDN);
+  Decimals result{text[0] == '-', text[0] == '-' ? text + 1 : text, exponent};
+  mpfr_free_str(text);
+  mpfr_clear(x);
+  return result;
+}
+
+// 0.00123 rather than 1.23e-3 as long as that stays short.
+std::string format(const Decimals& number) {
+  constexpr long kMostLeadingZeros = 5;
+  const std::string minus = number.negative ? "-" : "";
+  const std::string& digits = number.digits;
+  if (digits.find_first_not_of('0') == std::string::npos) return "0";
+  if (number.exponent <= 0 && number.exponent >= -kMostLeadingZeros) {
+    return minus + "0." + std::string(static_cast<std::size_t>(-number.exponent), '0') + digits;
+  }
+  std::string result = minus + digits.substr(0, 1);
+  if (digits.size() > 1) result += "." + digits.substr(1);
+  return number.exponent == 1 ? result : result + "e" + std::to_string(number.exponent - 1);
+}
+
+}  // namespace
+
+Enclosure::Enclosure() : ball_(std::make_unique<Ball>()) {}
+Enclosure::Enclosure(const Ball& ball) : ball_(std::make_unique<Ball>(ball)) {}
+Enclosure::Enclosure(const Enclosure& other) : ball_(std::make_unique<Ball>(*other.ball_)) {}
+Enclosure& Enclosure::operator=(const Enclosure& other) {
+  if (this != &other) ball_ = std::make_unique<Ball>(*other.ball_);
+  return *this;
+}
+Enclosure::Enclosure(Enclosure&&) noexcept = default;
+Enclosure& Enclosure::operator=(Enclosure&&) noexcept = default;
+Enclosure::~Enclosure() = default;
+
+Enclosure& Enclosure::operator+=(const Enclosure& other) {
+  arb_add(ball_->get(), ball_->get(), other.ball_->get(), ARF_PREC_EXACT);
+  return *this;
+}
+
+double Enclosure::lower() const {
+  End lower_end;
+  End upper_end;
+  get_ends(*ball_, lower_end, upper_end);
+  return arf_get_d(lower_end.get(), ARF_RND_FLOOR);
+}
+
+double Enclosure::upper() const {
+  End lower_end;
+  End upper_end;
+  get_ends(*ball_, lower_end, upper_end);
+  return arf_get_d(upper_end.get(), ARF_RND_CEIL);
+}
+
+std::optional<double> Enclosure::nearest() const {
+  End lower_end;
+  End upper_end;
+  get_ends(*ball_, lower_end, upper_end);
+  const double low = arf_get_d(lower_end.get(), ARF_RND_NEAR);
+  const double high = arf_get_d(upper_end.get(), ARF_RND_NEAR);
+  if (low != high) return std::nullopt;  // NaN included
+  return high == 0.0 ? 0.0 : high;       // never -0
+}
+
+std::optional<std::string> Enclosure::decimals(int digits) const {
+  End lower_end;
+  End upper_end;
+  get_ends(*ball_, lower_end, upper_end);
+  const Decimals low = decimals_of(lower_end, digits);
+  if (low != decimals_of(upper_end, digits)) return std::nullopt;
+  return format(low);
+}
+
+bool Enclosure::contains(const Enclosure& other) const { return arb_contains(ball_->get(), other.ball_->get()) != 0; }
+bool Enclosure::overlaps(const Enclosure& other) const { return arb_overlaps(ball_->get(), other.ball_->get()) != 0; }
+
+bool Enclosure::contains(double value) const {
+  End number;
+  arf_set_d(number.get(), value);
+  return arb_contains_arf(ball_->get(), number.get()) != 0;
+}
+
+namespace {
+
+// Arb prints "[midpoint +/- radius]", or the number alone where the radius is 0; the printed ball holds the ball.
+struct PrintedBall {
+  std::string midpoint;
+  std::string radius;
+};
+
+PrintedBall print(const Ball& ball) {
+  constexpr double kDecimalsPerBit = 0.30103;
+  const auto digits = static_cast<slong>(static_cast<double>(arb_bits(ball.get())) * kDecimalsPerBit) + 5;
+  char* raw = arb_get_str(ball.get(), digits, ARB_STR_MORE);
+  const std::string text(raw);
+  flint_free(raw);
+  const std::size_t separator = text.find(" +/- ");
+  if (separator == std::string::npos) return {text, "0"};
+  return {text.substr(1, separator - 1), text.substr(separator + 5, text.size() - separator - 6)};
+}
+
+}  // namespace
+
+std::string Enclosure::midpoint() const { return print(*ball_).midpoint; }
+std::string Enclosure::radius() const { return print(*ball_).radius; }
+
+}  // namespace exactff

@@ -1,0 +1,39 @@
+// Exact directions from the receiving point, each with its floating-point approximation.
+//
+// A direction stands for the ray x + t v, t > 0; a positive factor means nothing. A plane through x is given by its
+// normal, also a Direction.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "kernel/filter.h"
+
+namespace exactff::kernel {
+
+struct Direction {
+  ExactVec3 exact;
+  Approx3 approx;
+};
+
+inline Direction make_direction(ExactVec3 exact) {
+  const Approx3 rounded = approx(exact);
+  return {std::move(exact), rounded};
+}
+
+// Sign of normal . t: filter first, the exact product last.
+inline int side(const Direction& normal, const Direction& t) {
+  const int filtered = sign_of_dot(normal.approx, t.approx);
+  return filtered != kUncertain ? filtered : sign(dot(normal.exact, t.exact));
+}
+
+// Sign of det(a, b, c).
+inline int orientation(const Direction& a, const Direction& b, const Direction& c) {
+  return sign(dot(cross(a.exact, b.exact), c.exact));
+}
+
+// A convex polygon seen from x. Unless said otherwise its corners run counter-clockwise as x sees them, that is
+// det(a, b, c) < 0 for three corners in order.
+using Ring = std::vector<Direction>;
+
+}  // namespace exactff::kernel

@@ -1,0 +1,46 @@
+// Exact vectors with a common binary exponent: the vector is (x, y, z) * 2^exponent.
+//
+// Everything on the exact path that is a direction or a sign needs only the integers; the exponent keeps
+// integers short where coordinates are of one magnitude, whatever that magnitude is.
+#pragma once
+
+#include "exactff/geometry.h"
+#include "kernel/numbers.h"
+
+namespace exactff::kernel {
+
+struct ExactVec3 {
+  Integer x;
+  Integer y;
+  Integer z;
+
+  const Integer& operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
+};
+
+struct ScaledVec3 {
+  ExactVec3 v;
+  long exponent = 0;
+};
+
+Integer dot(const ExactVec3& a, const ExactVec3& b);
+ExactVec3 cross(const ExactVec3& a, const ExactVec3& b);
+ExactVec3 operator-(const ExactVec3& a, const ExactVec3& b);
+ExactVec3 operator+(const ExactVec3& a, const ExactVec3& b);
+ExactVec3 operator*(const ExactVec3& a, const Integer& s);
+bool is_zero(const ExactVec3& a);
+void negate(ExactVec3& a);
+
+// Divides by the greatest common divisor; the direction stays.
+void make_primitive(ExactVec3& a);
+
+// p - q, exactly.
+ScaledVec3 exact_difference(const Vec3& p, const Vec3& q);
+ScaledVec3 exact_vector(const Vec3& p);
+
+// The same vector with a smaller exponent.
+void lower_exponent(ScaledVec3& a, long exponent);
+
+// Sign of det(b - a, c - a, d - a), exactly.
+int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
+}  // namespace exactff::kernel

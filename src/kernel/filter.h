@@ -1,0 +1,57 @@
+// Floating-point filters with a proved bound: a sign they give is the exact sign, or they decline.
+//
+// Notation: u = 2^-53. An Approx3 holds, for each component of an exact vector (up to one positive factor for
+// the whole vector), a double within relative error 2u, and 0 exactly where the component is 0; or NaN, which
+// makes every filter decline.
+//
+// sign_of_dot: products of two components carry (1 + 2u)^2 (1 + u), two additions at most 2u of the sum m of
+// magnitudes; the total is below 8u m, m itself is computed to within 8u, so |s| > 16u m = 2^-49 m decides. A
+// product that underflows errs by at most 2^-1075, nothing beside 2^-49 * 2^-900, the least threshold admitted.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "exactff/geometry.h"
+#include "kernel/exact_vec.h"
+
+namespace exactff::kernel {
+
+struct Approx3 {
+  double x = 0.0;
+  double y = 0.0;
+  double z = 0.0;
+};
+
+inline constexpr int kUncertain = 2;
+inline constexpr double kLeastMagnitude = 0x1p-900;
+inline constexpr double kLargestMagnitude = 0x1p900;
+
+// p - q by one correctly rounded subtraction a component (relative error u, also for denormals; overflow gives an
+// infinity and the filters decline).
+inline Approx3 approx_difference(const Vec3& p, const Vec3& q) { return {p.x - q.x, p.y - q.y, p.z - q.z}; }
+
+// Components scaled so that the largest is in [1/2, 1); NaN where a component would leave the normal range.
+Approx3 approx(const ExactVec3& exact);
+
+// Sign of sum given the sum s and the sum m of the magnitudes of its terms, or kUncertain.
+inline int certified_sign(double s, double m) {
+  if (!(m >= kLeastMagnitude && m <= kLargestMagnitude)) return kUncertain;
+  const double bound = 0x1p-49 * m;
+  return s > bound ? 1 : s < -bound ? -1 : kUncertain;
+}
+
+inline int sign_of_dot(const Approx3& a, const Approx3& b) {
+  const double px = a.x * b.x;
+  const double py = a.y * b.y;
+  const double pz = a.z * b.z;
+  const double m = std::abs(px) + std::abs(py) + std::abs(pz);
+  // m == 0 could be an underflow; it proves nothing unless one factor of every product is zero.
+  if (m == 0.0) {
+    const bool zero = (a.x == 0.0 || b.x == 0.0) && (a.y == 0.0 || b.y == 0.0) && (a.z == 0.0 || b.z == 0.0);
+    return zero ? 0 : kUncertain;
+  }
+  return certified_sign(px + py + pz, m);
+}
+
+}  // namespace exactff::kernel

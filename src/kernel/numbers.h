@@ -1,0 +1,37 @@
+// Exact numbers. Every double is converted without rounding; the only rounding back is nearest_double.
+#pragma once
+
+#include <gmpxx.h>
+
+#include <string>
+
+namespace exactff::kernel {
+
+#ifdef __FAST_MATH__
+#error "exactff needs IEEE arithmetic: do not compile with -ffast-math"
+#endif
+
+using Integer = mpz_class;
+using Rational = mpq_class;
+
+// -1, 0 or +1.
+inline int sign(const Integer& a) { return sgn(a); }
+inline int sign(const Rational& a) { return sgn(a); }
+
+// Requires a finite value; exact, denormals included.
+inline Rational to_rational(double value) { return Rational(value); }
+
+// Correctly rounded, ties to even, gradual underflow; overflow gives an infinity.
+double nearest_double(const Rational& value);
+
+// "p/q" in lowest terms, or "p".
+std::string to_string(const Rational& value);
+
+// A finite double as mantissa * 2^exponent with an integer mantissa below 2^53; zero has exponent 0.
+struct BinaryDouble {
+  long mantissa = 0;
+  int exponent = 0;
+};
+BinaryDouble decompose(double value);
+
+}  // namespace exactff::kernel
