@@ -1,0 +1,174 @@
+// Ear clipping by the lowest index, exactly.
+//
+// The ring is a linked list; `valid_` holds the tips of all valid ears in the order in which they are to be
+// clipped. Clipping a tip changes the ears of its two neighbours. Any other ear can only become valid, and only
+// where the vertex that was found to block it goes; each blocked ear therefore waits in the list of its blocker.
+// Only vertices that are not strictly convex need to be looked at as blockers: of the vertices in an ear, the one
+// farthest from its base is reflex or straight, or else touches the ear's side from outside the polygon, where it
+// does no harm. This keeps nearly convex polygons with thousands of vertices fast.
+// Source: G. H. Meisters, "Polygons have ears" (1975); H. ElGindy, H. Everett and G. Toussaint (1993).
+#include "scene/ear_clipping.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+#include <tuple>
+#include <utility>
+
+namespace exactff {
+
+namespace {
+
+class EarClipper {
+ public:
+  EarClipper(const PlanePoints& plane, std::span<const std::uint32_t> index);
+  std::optional<std::vector<TriangleIndices>> run();
+
+ private:
+  using Order = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::size_t>;
+
+  Order order_of(std::size_t tip) const;
+  bool is_blocked_by(std::size_t tip, std::size_t vertex) const;
+  void examine(std::size_t tip);
+  void refresh(std::size_t vertex);
+  void stop_blocking(std::size_t vertex);
+  void remove(std::size_t vertex);
+  std::size_t settle(std::size_t vertex);
+  TriangleIndices clip(std::size_t tip);
+
+  bool same_position(std::size_t a, std::size_t b) const { return plane_.compare(a, b) == 0; }
+  bool is_convex(std::size_t v) const { return plane_.orientation(previous_[v], v, next_[v]) > 0; }
+
+  const PlanePoints& plane_;
+  std::span<const std::uint32_t> index_;
+  std::vector<std::size_t> next_;
+  std::vector<std::size_t> previous_;
+  std::vector<bool> present_;
+  std::size_t count_ = 0;
+  std::set<Order> valid_;
+  std::set<std::size_t> blockers_;                 // vertices that are not strictly convex
+  std::vector<std::vector<std::size_t>> waiting_;  // tips blocked by each vertex
+};
+
+EarClipper::EarClipper(const PlanePoints& plane, std::span<const std::uint32_t> index)
+    : plane_(plane), index_(index), present_(index.size(), true), count_(index.size()), waiting_(index.size()) {
+  const std::size_t n = index.size();
+  for (std::size_t v = 0; v < n; ++v) {
+    next_.push_back((v + 1) % n);
+    previous_.push_back((v + n - 1) % n);
+  }
+  for (std::size_t v = 0; v < n; ++v) {
+    if (!is_convex(v)) blockers_.insert(v);
+  }
+  for (std::size_t v = 0; v < n; ++v) examine(v);
+}
+
+// A vertex that the ring visits twice is told apart by its neighbours, so that the start does not matter.
+EarClipper::Order EarClipper::order_of(std::size_t tip) const {
+  const auto [low, high] = std::minmax(index_[previous_[tip]], index_[next_[tip]]);
+  return {index_[tip], low, high, tip};
+}
+
+bool EarClipper::is_blocked_by(std::size_t tip, std::size_t vertex) const {
+  const std::size_t a = previous_[tip], c = next_[tip];
+  if (vertex == a || vertex == tip || vertex == c) return false;
+  return plane_.orientation(a, tip, vertex) >= 0 && plane_.orientation(tip, c, vertex) >= 0 &&
+         plane_.orientation(c, a, vertex) >= 0 && !same_position(vertex, a) && !same_position(vertex, tip) &&
+         !same_position(vertex, c);
+}
+
+void EarClipper::examine(std::size_t tip) {
+  if (!is_convex(tip)) return;
+  const auto blocker =
+      std::find_if(blockers_.begin(), blockers_.end(), [&](std::size_t v) { return is_blocked_by(tip, v); });
+  if (blocker == blockers_.end()) {
+    valid_.insert(order_of(tip));
+  } else {
+    waiting_[*blocker].push_back(tip);
+  }
+}
+
+// To be called once a vertex has new neighbours.
+void EarClipper::refresh(std::size_t vertex) {
+  if (is_convex(vertex)) {
+    stop_blocking(vertex);
+  } else {
+    blockers_.insert(vertex);
+  }
+  if (!valid_.contains(order_of(vertex))) examine(vertex);
+}
+
+void EarClipper::stop_blocking(std::size_t vertex) {
+  if (blockers_.erase(vertex) == 0) return;
+  for (const std::size_t tip : std::exchange(waiting_[vertex], {})) {
+    if (present_[tip] && !valid_.contains(order_of(tip))) examine(tip);
+  }
+}
+
+// Leaves the two neighbours to be refreshed.
+void EarClipper::remove(std::size_t vertex) {
+  const std::size_t a = previous_[vertex], c = next_[vertex];
+  for (const std::size_t v : {a, vertex, c}) valid_.erase(order_of(v));
+  present_[vertex] = false;
+  --count_;
+  next_[a] = c;
+  previous_[c] = a;
+  stop_blocking(vertex);
+}
+
+// Where a ring touches itself at a vertex, using up one of its lobes leaves two sides that coincide: drops the
+// corner between them and one of the two equal vertices then left side by side, until the sides differ. Returns
+// the vertex that is left in their place.
+std::size_t EarClipper::settle(std::size_t vertex) {
+  while (count_ > 2 && same_position(previous_[vertex], next_[vertex])) {
+    const std::size_t a = previous_[vertex], c = next_[vertex];
+    remove(vertex);
+    vertex = index_[a] <= index_[c] ? a : c;
+    remove(vertex == a ? c : a);
+  }
+  return vertex;
+}
+
+TriangleIndices EarClipper::clip(std::size_t tip) {
+  const TriangleIndices triangle = {previous_[tip], tip, next_[tip]};
+  remove(tip);
+  for (const std::size_t end : {triangle[0], triangle[2]}) {
+    if (!present_[end]) continue;
+    const std::size_t left = settle(end);
+    refresh(left);
+    if (left == end) continue;
+    refresh(previous_[left]);
+    refresh(next_[left]);
+  }
+  return triangle;
+}
+
+std::optional<std::vector<TriangleIndices>> EarClipper::run() {
+  std::vector<TriangleIndices> triangles;
+  while (count_ > 2) {
+    if (valid_.empty()) return std::nullopt;
+    triangles.push_back(clip(std::get<3>(*valid_.begin())));
+  }
+  return triangles;
+}
+
+std::optional<std::vector<TriangleIndices>> split_quadrilateral(const PlanePoints& plane,
+                                                                std::span<const std::uint32_t> index) {
+  const auto lowest = static_cast<std::size_t>(std::min_element(index.begin(), index.end()) - index.begin());
+  for (const std::size_t a : {lowest, lowest + 1}) {
+    const TriangleIndices first = {a % 4, (a + 1) % 4, (a + 2) % 4};
+    const TriangleIndices second = {a % 4, (a + 2) % 4, (a + 3) % 4};
+    const auto runs_left = [&](const TriangleIndices& t) { return plane.orientation(t[0], t[1], t[2]) > 0; };
+    if (runs_left(first) && runs_left(second)) return std::vector{first, second};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::vector<TriangleIndices>> clip_ears(const PlanePoints& plane, std::span<const std::uint32_t> index) {
+  if (index.size() == 4) return split_quadrilateral(plane, index);
+  return EarClipper(plane, index).run();
+}
+
+}  // namespace exactff

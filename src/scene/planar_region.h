@@ -1,0 +1,43 @@
+// The inside of a planar polygon with holes as convex parts.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "scene/face_points.h"
+
+namespace exactff {
+
+enum class RegionFault {
+  kNone,
+  kCrossing,     // two edges cross in their interiors: `edges`
+  kWinding,      // the outer ring encloses something clockwise or more than once
+  kHoleOutside,  // a hole reaches outside the outer ring
+};
+
+// An edge from the point of that index to the next one of its ring.
+using EdgeIndex = std::size_t;
+
+struct PlanarRegion {
+  RegionFault fault = RegionFault::kNone;
+  std::pair<EdgeIndex, EdgeIndex> edges;
+  bool encloses_something = false;              // some part lies inside the outer ring, whichever way it runs
+  std::vector<std::vector<std::size_t>> parts;  // point indices, counter-clockwise in the plane
+};
+
+// Inside is what the outer ring winds around once counter-clockwise and the other rings leave out by even-odd
+// parity. Exact. `plane` holds the points projected with a normal of their plane, `vertices` the same points as
+// they were given; `normal` has any length.
+PlanarRegion planar_region(std::span<const Vec3> vertices, const FacePoints& points, const PlanePoints& plane,
+                           const kernel::ExactVec3& normal);
+
+// Edges of `points` that cross in their interiors, if there are any. Near-linear unless most edges overlap in x
+// and y.
+std::optional<std::pair<EdgeIndex, EdgeIndex>> find_crossing(const FacePoints& points, const PlanePoints& plane);
+
+// The index of the point that follows in its ring.
+std::size_t next_in_ring(const FacePoints& points, std::size_t point);
+
+}  // namespace exactff

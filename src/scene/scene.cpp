@@ -1,0 +1,253 @@
+#include "exactff/scene.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "scene/nearest_names.h"
+#include "scene/scene_data.h"
+
+namespace exactff {
+
+std::string quoted_face(std::string_view patch, std::uint32_t number) {
+  return "face '" + std::string(patch) + ":" + std::to_string(number) + "'";
+}
+
+Scene::Scene(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+Scene::~Scene() = default;
+
+std::span<const Vec3> Scene::vertices() const { return data_->vertices; }
+std::span<const Material> Scene::materials() const { return data_->materials; }
+std::span<const Patch> Scene::patches() const { return data_->patches; }
+std::span<const Face> Scene::faces() const { return data_->faces; }
+std::span<const Piece> Scene::pieces() const { return data_->pieces; }
+std::span<const Problem> Scene::warnings() const { return data_->warnings; }
+
+std::span<const std::uint32_t> Scene::corners(const Piece& piece) const {
+  return std::span(data_->corners).subspan(piece.first_corner, piece.corner_count);
+}
+
+std::span<const Piece> Scene::pieces_of(FaceId id) const {
+  return pieces().subspan(face(id).first_piece, face(id).piece_count);
+}
+
+std::vector<FaceId> Scene::faces_of(const Selection& selection) const {
+  std::vector<FaceId> candidates;
+  if (selection.face) {
+    candidates.push_back(*selection.face);
+  } else {
+    candidates = patch(selection.patch).faces;
+  }
+  std::erase_if(candidates, [&](FaceId id) { return face(id).piece_count == 0; });
+  return candidates;
+}
+
+namespace {
+
+// A name of the form NAME:k, taken apart at its last colon.
+struct NumberedName {
+  std::string patch;
+  std::uint64_t number = 0;
+};
+
+std::optional<NumberedName> numbered(std::string_view name) {
+  const std::size_t colon = name.rfind(':');
+  if (colon == std::string_view::npos) return std::nullopt;
+  const std::string_view digits = name.substr(colon + 1);
+  NumberedName result{std::string(name.substr(0, colon))};
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), result.number);
+  if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+  return result;
+}
+
+std::string choice_of_names(const Scene& scene, std::string_view wanted) {
+  if (scene.patches().empty()) return "the scene has no patches";
+  std::vector<std::string_view> names;
+  for (const Patch& patch : scene.patches()) names.push_back(patch.name);
+  constexpr std::size_t kShown = 6;
+  std::string text =
+      names.size() > kShown ? "the closest of its " + std::to_string(names.size()) + " patches are" : "the patches are";
+  char separator = ':';
+  for (const std::string_view name : nearest_names(names, wanted, kShown)) {
+    text += separator;
+    text += " '" + std::string(name) + "'";
+    separator = ',';
+  }
+  return text;
+}
+
+std::string count_of_faces(std::size_t count) { return std::to_string(count) + (count == 1 ? " face" : " faces"); }
+
+}  // namespace
+
+Selection Scene::select(std::string_view name) const {
+  const auto& by_name = data_->patch_by_name;
+  if (const auto exact = by_name.find(std::string(name)); exact != by_name.end()) return {exact->second, {}};
+  const auto parts = numbered(name);
+  const auto owner = parts ? by_name.find(parts->patch) : by_name.end();
+  if (owner == by_name.end()) {
+    throw InputError({data_->file, 0, "there is no patch named '" + std::string(name) + "'", "",
+                      choice_of_names(*this, parts ? parts->patch : name)});
+  }
+  const std::vector<FaceId>& faces = patch(owner->second).faces;
+  if (parts->number < 1 || parts->number > faces.size()) {
+    throw InputError({data_->file, 0, "there is no face '" + std::string(name) + "'",
+                      "patch '" + parts->patch + "' has " + count_of_faces(faces.size()), "faces count from 1"});
+  }
+  const FaceId id = faces[parts->number - 1];
+  if (face(id).shape == FaceShape::kSkipped) {
+    throw InputError({data_->file, face(id).line, "face '" + std::string(name) + "' cannot be used",
+                      "it was dropped as a bad face", "see the warning about it"});
+  }
+  return {owner->second, id};
+}
+
+std::string Scene::name_of(const Selection& selection) const {
+  return selection.face ? patch(selection.patch).name + ":" + std::to_string(face(*selection.face).number)
+                        : patch(selection.patch).name;
+}
+
+std::string Scene::name_of(FaceId id) const {
+  const PatchId owner = face(id).patch;
+  if (patch(owner).faces.size() == 1) return patch(owner).name;
+  return name_of(Selection{owner, id});
+}
+
+std::vector<Selection> Scene::emitters() const {
+  std::vector<Selection> result;
+  for (std::size_t p = 0; p < patches().size(); ++p) {
+    const Selection whole{PatchId(static_cast<std::uint32_t>(p)), {}};
+    const std::vector<FaceId> faces = faces_of(whole);
+    const auto emits = [&](FaceId id) { return material(face(id).material).emits(); };
+    if (std::any_of(faces.begin(), faces.end(), emits)) result.push_back(whole);
+  }
+  return result;
+}
+
+Rgb Scene::source_radiosity(const Selection& source) const {
+  const std::vector<FaceId> faces = faces_of(source);
+  const Rgb unit{1.0, 1.0, 1.0};
+  if (faces.empty()) return unit;
+  const Material& first = material(face(faces.front()).material);
+  for (const FaceId id : faces) {
+    const Material& other = material(face(id).material);
+    if (other.radiosity == first.radiosity) continue;
+    throw InputError({data_->file, face(id).line, "the faces of source '" + name_of(source) + "' differ in Ke",
+                      "'" + name_of(faces.front()) + "' has material '" + first.name + "', '" + name_of(id) +
+                          "' has '" + other.name + "'; a source has one radiosity",
+                      "name one face, or give the faces groups of their own"});
+  }
+  return first.emits() ? first.radiosity : unit;
+}
+
+Rgb Scene::receiver_reflectance(std::optional<FaceId> id) const {
+  return id ? material(face(*id).material).reflectance : Rgb{1.0, 1.0, 1.0};
+}
+
+namespace {
+
+// 64-bit FNV-1a over bytes in a fixed order, whatever the machine's.
+class Fnv1a {
+ public:
+  void add(std::uint64_t value) {
+    for (int shift = 0; shift < 64; shift += 8) add_byte(static_cast<unsigned char>(value >> shift));
+  }
+  void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
+  void add(const Vec3& p) {
+    for (const double c : {p.x, p.y, p.z}) add(c);
+  }
+  void add(const Rgb& c) {
+    for (const double v : {c.r, c.g, c.b}) add(v);
+  }
+  void add(const std::string& text) {
+    add(static_cast<std::uint64_t>(text.size()));
+    for (const char c : text) add_byte(static_cast<unsigned char>(c));
+  }
+
+  std::string digits() const {
+    std::string text(16, '0');
+    for (std::size_t i = 0; i < 16; ++i) text[i] = "0123456789abcdef"[(state_ >> (60 - 4 * i)) & 15U];
+    return text;
+  }
+
+ private:
+  void add_byte(unsigned char byte) { state_ = (state_ ^ byte) * 0x100000001b3U; }
+
+  std::uint64_t state_ = 0xcbf29ce484222325U;
+};
+
+void add_face(Fnv1a& hash, const Face& face) {
+  hash.add(static_cast<std::uint64_t>(face.patch));
+  hash.add(static_cast<std::uint64_t>(face.material));
+  hash.add(static_cast<std::uint64_t>(face.shape));
+  hash.add(static_cast<std::uint64_t>(face.rings.size()));
+  for (const auto& ring : face.rings) {
+    hash.add(static_cast<std::uint64_t>(ring.size()));
+    for (const std::uint32_t v : ring) hash.add(static_cast<std::uint64_t>(v));
+  }
+}
+
+}  // namespace
+
+std::string Scene::hash() const {
+  Fnv1a hash;
+  hash.add(static_cast<std::uint64_t>(vertices().size()));
+  for (const Vec3& vertex : vertices()) hash.add(vertex);
+  hash.add(static_cast<std::uint64_t>(materials().size()));
+  for (const Material& m : materials()) {
+    hash.add(m.name);
+    hash.add(m.reflectance);
+    hash.add(m.radiosity);
+  }
+  hash.add(static_cast<std::uint64_t>(patches().size()));
+  for (const Patch& patch : patches()) hash.add(patch.name);
+  hash.add(static_cast<std::uint64_t>(faces().size()));
+  for (const Face& face : faces()) add_face(hash, face);
+  return hash.digits();
+}
+
+namespace {
+
+// For each vertex the first one, in some order, at its position.
+std::vector<std::uint32_t> position_ids(std::span<const Vec3> vertices) {
+  const auto key = [&](std::uint32_t v) { return std::tuple(vertices[v].x, vertices[v].y, vertices[v].z); };
+  std::vector<std::uint32_t> order(vertices.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  std::vector<std::uint32_t> id(vertices.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool same = i > 0 && vertices[order[i]] == vertices[order[i - 1]];
+    id[order[i]] = same ? id[order[i - 1]] : order[i];
+  }
+  return id;
+}
+
+}  // namespace
+
+std::size_t Scene::open_edge_count() const {
+  const std::vector<std::uint32_t> id = position_ids(vertices());
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (const Face& face : faces()) {
+    if (face.piece_count == 0) continue;
+    for (const auto& ring : face.rings) {
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        edges.push_back(std::minmax(id[ring[i]], id[ring[(i + 1) % ring.size()]]));
+      }
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  std::size_t open = 0;
+  for (auto run = edges.begin(); run != edges.end();) {
+    const auto end = std::find_if(run, edges.end(), [&](const auto& edge) { return edge != *run; });
+    if ((end - run) % 2 == 1) ++open;
+    run = end;
+  }
+  return open;
+}
+
+}  // namespace exactff

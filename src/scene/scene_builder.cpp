@@ -1,0 +1,235 @@
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <utility>
+
+#include "scene/scene_data.h"
+#include "scene/triangulation.h"
+
+namespace exactff {
+
+struct SceneBuilder::State {
+  SceneOptions options;
+  std::unique_ptr<Scene::Data> data = std::make_unique<Scene::Data>();
+  std::vector<Problem> problems;
+  std::size_t zero_area_count = 0;
+  std::size_t first_zero_area = 0;
+
+  void check_vertices();
+  void check_materials();
+  bool check_indices(const Face& face);
+  void cut(FaceId id);
+  void refuse(const Face& face, const FaceFault& fault);
+  void add_parts(FaceId id, const std::vector<ConvexPart>& parts);
+  void warn_out_of_plane(const Face& face);
+  void warn_zero_area();
+  void warn_hidden_names();
+  void split_patches();
+  void index_names();
+
+  std::string quoted(const Face& face) const {
+    return quoted_face(data->patches[index_of(face.patch)].name, face.number);
+  }
+};
+
+SceneBuilder::SceneBuilder(std::string file, SceneOptions options) : state_(std::make_unique<State>()) {
+  state_->options = options;
+  state_->data->file = std::move(file);
+}
+SceneBuilder::SceneBuilder(SceneBuilder&&) noexcept = default;
+SceneBuilder& SceneBuilder::operator=(SceneBuilder&&) noexcept = default;
+SceneBuilder::~SceneBuilder() = default;
+
+std::uint32_t SceneBuilder::add_vertex(const Vec3& position) {
+  auto& vertices = state_->data->vertices;
+  assert(vertices.size() < std::numeric_limits<std::uint32_t>::max());
+  vertices.push_back({position.x + 0.0, position.y + 0.0, position.z + 0.0});  // turns -0 into +0
+  return static_cast<std::uint32_t>(vertices.size() - 1);
+}
+
+std::size_t SceneBuilder::vertex_count() const { return state_->data->vertices.size(); }
+
+MaterialId SceneBuilder::add_material(Material material) {
+  auto& materials = state_->data->materials;
+  materials.push_back(std::move(material));
+  return MaterialId(static_cast<std::uint32_t>(materials.size() - 1));
+}
+
+PatchId SceneBuilder::patch(std::string_view name) {
+  Scene::Data& data = *state_->data;
+  const auto next = static_cast<PatchId>(data.patches.size());
+  const auto [place, is_new] = data.patch_by_name.emplace(name, next);
+  if (is_new) data.patches.push_back({std::string(name), {}});
+  return place->second;
+}
+
+void SceneBuilder::add_face(PatchId patch, MaterialId material, std::vector<std::vector<std::uint32_t>> rings,
+                            std::size_t line) {
+  Scene::Data& data = *state_->data;
+  assert(index_of(patch) < data.patches.size() && index_of(material) < data.materials.size());
+  std::vector<FaceId>& siblings = data.patches[index_of(patch)].faces;
+  siblings.push_back(FaceId(static_cast<std::uint32_t>(data.faces.size())));
+  Face face;
+  face.patch = patch;
+  face.material = material;
+  face.number = static_cast<std::uint32_t>(siblings.size());
+  face.line = line;
+  face.rings = std::move(rings);
+  data.faces.push_back(std::move(face));
+}
+
+void SceneBuilder::warn(Problem warning) { state_->data->warnings.push_back(std::move(warning)); }
+
+Scene SceneBuilder::build() {
+  const std::unique_ptr<State> taken = std::exchange(state_, std::make_unique<State>());
+  State& state = *taken;
+  state.check_vertices();
+  state.check_materials();
+  if (state.problems.empty()) {
+    for (std::size_t i = 0; i < state.data->faces.size(); ++i) state.cut(FaceId(static_cast<std::uint32_t>(i)));
+  }
+  if (!state.problems.empty()) throw InputError(std::move(state.problems));
+  state.warn_zero_area();
+  if (state.options.patches == PatchMode::kFaces) state.split_patches();
+  state.warn_hidden_names();
+  return Scene(std::move(state.data));
+}
+
+void SceneBuilder::State::check_vertices() {
+  for (std::size_t i = 0; i < data->vertices.size(); ++i) {
+    const Vec3& v = data->vertices[i];
+    if (std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) continue;
+    problems.push_back({data->file, 0, "vertex " + std::to_string(i + 1) + " is not finite",
+                        "a coordinate stands for an exact number", "give finite coordinates"});
+  }
+}
+
+void SceneBuilder::State::check_materials() {
+  const auto usable = [](const Rgb& c) {
+    return std::ranges::all_of(std::array{c.r, c.g, c.b}, [](double v) { return std::isfinite(v) && v >= 0.0; });
+  };
+  for (const Material& material : data->materials) {
+    if (usable(material.reflectance) && usable(material.radiosity)) continue;
+    problems.push_back({data->file, 0, "material '" + material.name + "' has a negative or infinite Kd or Ke",
+                        "reflectances and radiosities are not negative", "correct it"});
+  }
+}
+
+bool SceneBuilder::State::check_indices(const Face& face) {
+  for (const auto& ring : face.rings) {
+    for (const std::uint32_t v : ring) {
+      if (v < data->vertices.size()) continue;
+      problems.push_back({data->file, face.line, quoted(face) + " refers to vertex " + std::to_string(v + 1ULL),
+                          "there are " + std::to_string(data->vertices.size()) + " vertices", ""});
+      return false;
+    }
+  }
+  return true;
+}
+
+void SceneBuilder::State::cut(FaceId id) {
+  Face& face = data->faces[index_of(id)];
+  if (!check_indices(face)) return;
+  CutFace cut = cut_face(data->vertices, std::move(face.rings));
+  face.rings = std::move(cut.rings);
+  face.shape = cut.shape;
+  face.newell = cut.newell;
+  face.area = cut.area;
+  face.out_of_plane = cut.out_of_plane;
+  if (cut.fault) return refuse(face, *cut.fault);
+  if (face.shape == FaceShape::kZeroArea && zero_area_count++ == 0) first_zero_area = index_of(id);
+  add_parts(id, cut.parts);
+  warn_out_of_plane(face);
+}
+
+void SceneBuilder::State::refuse(const Face& face, const FaceFault& fault) {
+  Problem problem{data->file, face.line, quoted(face) + " " + fault.what, fault.why, fault.suggestion};
+  if (options.bad_faces == BadFaces::kReject) {
+    problem.suggestion += ", or leave bad faces out with --skip-bad-faces";
+    problems.push_back(std::move(problem));
+  } else {
+    problem.suggestion = "it is left out";
+    data->warnings.push_back(std::move(problem));
+  }
+}
+
+void SceneBuilder::State::add_parts(FaceId id, const std::vector<ConvexPart>& parts) {
+  Face& face = data->faces[index_of(id)];
+  face.first_piece = static_cast<std::uint32_t>(data->pieces.size());
+  face.piece_count = static_cast<std::uint32_t>(parts.size());
+  for (const ConvexPart& part : parts) {
+    data->pieces.push_back({id,
+                            static_cast<std::uint32_t>(data->corners.size()),
+                            static_cast<std::uint32_t>(part.corners.size()),
+                            {part.frame[0], part.frame[1], part.frame[2]}});
+    data->corners.insert(data->corners.end(), part.corners.begin(), part.corners.end());
+  }
+}
+
+namespace {
+
+std::string two_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g", value);
+  return text;
+}
+
+}  // namespace
+
+void SceneBuilder::State::warn_out_of_plane(const Face& face) {
+  constexpr double kWorthSaying = 1e-6;
+  if (face.out_of_plane <= kWorthSaying) return;
+  data->warnings.push_back(
+      {data->file, face.line,
+       quoted(face) + " is out of plane by " + two_digits(face.out_of_plane) + " of its diameter",
+       "it was cut into " + std::to_string(face.piece_count) + " triangles; another cut would be another surface",
+       "give triangles where that matters"});
+}
+
+void SceneBuilder::State::warn_zero_area() {
+  if (zero_area_count == 0) return;
+  const Face& first = data->faces[first_zero_area];
+  const std::string what =
+      zero_area_count == 1
+          ? quoted(first) + " has no area and is ignored"
+          : std::to_string(zero_area_count) + " faces have no area and are ignored, the first is " + quoted(first);
+  data->warnings.push_back({data->file, first.line, what, "", ""});
+}
+
+// An exact patch name wins over NAME:k.
+void SceneBuilder::State::warn_hidden_names() {
+  for (const Face& face : data->faces) {
+    const Patch& patch = data->patches[index_of(face.patch)];
+    if (data->patch_by_name.size() == 1) return;
+    const auto rival = data->patch_by_name.find(patch.name + ":" + std::to_string(face.number));
+    if (rival == data->patch_by_name.end()) continue;
+    data->warnings.push_back({data->file, face.line, quoted(face) + " cannot be named",
+                              "a patch has that very name, and a patch's name wins", "rename the patch"});
+  }
+}
+
+// Names stay distinct: what follows the last colon tells the face, what comes before it the group.
+void SceneBuilder::State::split_patches() {
+  std::vector<Patch> split;
+  for (std::size_t i = 0; i < data->faces.size(); ++i) {
+    Face& face = data->faces[i];
+    const std::string& group = data->patches[index_of(face.patch)].name;
+    split.push_back({group + ":" + std::to_string(face.number), {FaceId(static_cast<std::uint32_t>(i))}});
+    face.patch = PatchId(static_cast<std::uint32_t>(i));
+    face.number = 1;
+  }
+  data->patches = std::move(split);
+  index_names();
+}
+
+void SceneBuilder::State::index_names() {
+  data->patch_by_name.clear();
+  for (std::size_t i = 0; i < data->patches.size(); ++i) {
+    data->patch_by_name.emplace(data->patches[i].name, PatchId(static_cast<std::uint32_t>(i)));
+  }
+}
+
+}  // namespace exactff

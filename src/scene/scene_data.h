@@ -1,0 +1,32 @@
+// What a Scene holds. Immutable once SceneBuilder::build has returned.
+#pragma once
+
+#include <mutex>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "exactff/scene.h"
+#include "scene/shaft_tree.h"
+
+namespace exactff {
+
+struct Scene::Data {
+  std::string file;
+  std::vector<Vec3> vertices;  // finite, no negative zero
+  std::vector<Material> materials;
+  std::vector<Patch> patches;
+  std::unordered_map<std::string, PatchId> patch_by_name;
+  std::vector<Face> faces;             // in file order
+  std::vector<Piece> pieces;           // in the order of their faces
+  std::vector<std::uint32_t> corners;  // vertex indices of all pieces
+  std::vector<Problem> warnings;
+
+  mutable std::once_flag tree_built;  // the tree is made when first asked for: see shaft_tree()
+  mutable ShaftTree tree;
+};
+
+// "face 'NAME:k'" for messages.
+std::string quoted_face(std::string_view patch, std::uint32_t number);
+
+}  // namespace exactff

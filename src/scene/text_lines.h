@@ -1,0 +1,56 @@
+// The lines and words of OBJ and MTL files, and the collecting of what is wrong with them.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "exactff/error.h"
+
+namespace exactff {
+
+// A line without comment and outer blanks; lines that end in a backslash are joined with the next by a blank.
+struct TextLine {
+  std::size_t number = 0;  // of its first physical line, from 1
+  std::string_view text;   // valid until the next call
+};
+
+// Reads lines that end in LF, CRLF, CR or the end of the text. A comment starts with a '#' at the start of a word
+// and ends with its line, backslash or not. A UTF-8 byte order mark at the start is passed over.
+class TextLines {
+ public:
+  explicit TextLines(std::string_view text);
+  bool next(TextLine& line);
+
+ private:
+  std::string_view take_physical();
+
+  std::string_view rest_;
+  std::size_t number_ = 0;  // of the last physical line taken
+  std::string joined_;
+};
+
+std::string_view trimmed(std::string_view text);
+// Removes and returns the first word; empty if there is none.
+std::string_view take_word(std::string_view& text);
+std::vector<std::string_view> words(std::string_view text);
+
+// At most the first 40 characters in quotes, unprintable ones replaced.
+std::string in_quotes(std::string_view text);
+
+// Every problem of a file in its order; beyond a cap they are only counted, so that memory stays bounded.
+class ProblemList {
+ public:
+  void add(Problem problem);
+  bool empty() const { return problems_.empty(); }
+  // Throws an InputError if there are any.
+  void throw_if_any();
+
+ private:
+  std::vector<Problem> problems_;
+  std::size_t dropped_ = 0;
+};
+
+}  // namespace exactff
