@@ -1,0 +1,24 @@
+// Exact clipping of convex polygons, seen from the receiving point, by planes through that point.
+#pragma once
+
+#include "kernel/direction.h"
+
+namespace exactff::visibility {
+
+enum class ClipResult {
+  kInside,  // no corner strictly outside: the ring is unchanged
+  kCut,
+  kEmpty,  // no corner strictly inside: nothing with an interior is left; the ring is cleared
+};
+
+// Keeps the part of `ring` with normal . t >= 0. The corners that the cut makes are directions only: positive
+// combinations of two corners, whatever scale these have.
+ClipResult clip(kernel::Ring& ring, const kernel::Direction& normal);
+
+// Drops corners that lie on the line through their neighbours. Requires positive area.
+void drop_collinear_corners(kernel::Ring& ring);
+
+// Inward normals of the planes through x and each side of the ring.
+std::vector<kernel::Direction> side_planes(const kernel::Ring& ring);
+
+}  // namespace exactff::visibility

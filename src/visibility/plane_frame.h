@@ -1,0 +1,55 @@
+// Exact coordinates in a source's plane as seen from x.
+//
+// The plane is { t : m . t = h } relative to x, with m pointing away from x (h > 0). A direction t meets it where
+// its multiple has m . t = h, so (p, q) = (t_i, t_j) / (m . t) are affine coordinates of the plane, i and j being
+// the axes other than k, the axis of m's largest component. (u, v) maps a bounding box of (p, q) to the unit
+// square: CGAL's filters need moderate numbers, and affine maps keep everything that the Booleans ask about.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "kernel/direction.h"
+
+namespace exactff::visibility {
+
+struct Point2 {
+  kernel::Rational u;
+  kernel::Rational v;
+};
+using Polygon2 = std::vector<Point2>;
+
+class PlaneFrame {
+ public:
+  // `front` is the plane's front normal, x in front of it; the unit square is the bounding box of `rings`, whose
+  // directions all meet the plane.
+  PlaneFrame(const kernel::ExactVec3& front, std::span<const kernel::Ring> rings);
+
+  [[nodiscard]] Point2 to_plane(const kernel::ExactVec3& direction) const;
+  [[nodiscard]] kernel::ExactVec3 to_direction(const Point2& point) const;
+  // Counter-clockwise in (u, v) whatever the ring's own orientation.
+  [[nodiscard]] Polygon2 to_polygon(const kernel::Ring& ring_from_x) const;
+  // True if counter-clockwise in (u, v) is counter-clockwise as x sees it.
+  [[nodiscard]] bool keeps_orientation() const { return keeps_orientation_; }
+  // Area in (p, q) of a region of area 1 in (u, v).
+  [[nodiscard]] kernel::Rational unit_area() const { return width_ * height_; }
+  [[nodiscard]] int axis() const { return k_; }
+
+ private:
+  [[nodiscard]] Point2 affine(const kernel::ExactVec3& direction) const;  // (p, q)
+
+  kernel::ExactVec3 m_;
+  int i_ = 0;
+  int j_ = 1;
+  int k_ = 2;
+  bool keeps_orientation_ = true;
+  kernel::Rational left_;
+  kernel::Rational bottom_;
+  kernel::Rational width_;
+  kernel::Rational height_;
+};
+
+// Twice the signed area.
+kernel::Rational doubled_area(const Polygon2& polygon);
+
+}  // namespace exactff::visibility

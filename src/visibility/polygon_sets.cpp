@@ -1,0 +1,98 @@
+#include "visibility/polygon_sets.h"
+
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Polygon_2.h>
+#include <CGAL/Polygon_set_2.h>
+#include <CGAL/Polygon_with_holes_2.h>
+#include <CGAL/convex_hull_2.h>
+
+#include <iterator>
+#include <list>
+
+namespace exactff::visibility {
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+using Point = Kernel::Point_2;
+using Polygon = CGAL::Polygon_2<Kernel>;
+using PolygonWithHoles = CGAL::Polygon_with_holes_2<Kernel>;
+using PolygonSet = CGAL::Polygon_set_2<Kernel>;
+
+static_assert(std::is_same_v<Kernel::Exact_kernel::FT, kernel::Rational>,
+              "CGAL's exact number and ours must be one type, so that nothing is converted");
+
+// Explicit rationals: the lazy kernel starts from leaves and its expression trees stay shallow.
+Point to_point(const Point2& p) { return {Kernel::FT(p.u), Kernel::FT(p.v)}; }
+Point2 from_point(const Point& p) { return {p.x().exact(), p.y().exact()}; }
+
+Polygon to_polygon(const Polygon2& polygon) {
+  Polygon result;
+  for (const Point2& corner : polygon) result.push_back(to_point(corner));
+  return result;
+}
+
+PolygonSet joined(std::span<const Polygon2> polygons) {
+  if (polygons.size() == 1) return PolygonSet(to_polygon(polygons.front()));
+  std::vector<Polygon> converted;
+  converted.reserve(polygons.size());
+  for (const Polygon2& polygon : polygons) converted.push_back(to_polygon(polygon));
+  PolygonSet set;
+  set.join(converted.begin(), converted.end());
+  return set;
+}
+
+// Collinear corners are dropped here: pieces of one edge become one again.
+RegionLoop to_loop(const Polygon& polygon, bool hole) {
+  RegionLoop loop{{}, hole};
+  std::vector<Point> kept;
+  const std::size_t n = polygon.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point& before = kept.empty() ? polygon.vertex(n - 1) : kept.back();
+    if (!CGAL::collinear(before, polygon.vertex(i), polygon.vertex((i + 1) % n))) kept.push_back(polygon.vertex(i));
+  }
+  loop.corners.reserve(kept.size());
+  for (const Point& p : kept) loop.corners.push_back(from_point(p));
+  return loop;
+}
+
+std::vector<RegionLoop> loops_of(const PolygonSet& set) {
+  std::vector<PolygonWithHoles> parts;
+  set.polygons_with_holes(std::back_inserter(parts));
+  std::vector<RegionLoop> loops;
+  for (const PolygonWithHoles& part : parts) {
+    loops.push_back(to_loop(part.outer_boundary(), false));
+    for (auto hole = part.holes_begin(); hole != part.holes_end(); ++hole) loops.push_back(to_loop(*hole, true));
+  }
+  return loops;
+}
+
+}  // namespace
+
+std::vector<RegionLoop> join(std::span<const Polygon2> polygons) { return loops_of(joined(polygons)); }
+
+std::vector<RegionLoop> difference(std::span<const Polygon2> source, std::span<const Polygon2> occluders) {
+  PolygonSet visible = joined(source);
+  visible.difference(joined(occluders));
+  return loops_of(visible);
+}
+
+Polygon2 convex_hull(std::span<const Polygon2> polygons) {
+  std::vector<Point> points;
+  for (const Polygon2& polygon : polygons) {
+    for (const Point2& corner : polygon) points.push_back(to_point(corner));
+  }
+  std::vector<Point> hull;
+  CGAL::convex_hull_2(points.begin(), points.end(), std::back_inserter(hull));
+  Polygon2 result;
+  for (const Point& p : hull) result.push_back(from_point(p));
+  return result;
+}
+
+kernel::Rational doubled_area(std::span<const RegionLoop> loops) {
+  kernel::Rational sum;
+  for (const RegionLoop& loop : loops) sum += doubled_area(loop.corners);
+  return sum;
+}
+
+}  // namespace exactff::visibility

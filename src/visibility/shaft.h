@@ -1,0 +1,76 @@
+// The open pyramid from x to the convex hull of the clipped source: who may hide something, and which part of it.
+//
+// Notation: s_i corners of the hull, t_j corners of an occluding piece, both relative to x; M the source's normal
+// turned away from x, h = M . s > 0. A piece hides a part of positive area exactly if its intersection with
+//   { t : M . t < h }  and  { t : (s_i+1 x s_i) . t > 0 for every side i }
+// has an interior in the piece's own plane and that plane does not hold x.
+//
+// Steps for one piece, each a sign with a filter first and an exact product last:
+//   1. nothing strictly on x's side of the source's plane, nothing ahead of x, or everything on or outside one side
+//      plane: out (conservative; most pieces end here);
+//   2. its plane holds x: out, it is seen edge-on;
+//   3. exact clip by the source's plane;
+//   4. every s_i inside or on every plane (x, t_j, t_j+1): it hides the whole source;
+//   5. exact clip by the side planes: nothing left, out. A clip keeps an interior as long as one corner lies strictly
+//      inside, so no area needs to be computed.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "exactff/scene.h"
+#include "kernel/direction.h"
+#include "scene/shaft_tree.h"
+
+namespace exactff::visibility {
+
+struct Occluder {
+  FaceId face{};
+  kernel::Ring ring;  // clipped to the shaft, as x sees it
+};
+
+enum class Fate { kOutside, kInShaft, kHidesAll };
+
+class Shaft {
+ public:
+  // `hull`: strictly convex, as x sees it; `front`: the source's front normal, x in front; `point`: in its plane.
+  Shaft(const Scene& scene, const Vec3& x, const kernel::Ring& hull, const kernel::ExactVec3& front, const Vec3& point);
+
+  // For the bounding-volume tree.
+  [[nodiscard]] std::span<const HalfSpace> half_spaces() const { return half_spaces_; }
+
+  // What becomes of a piece; on kInShaft `occluder` holds its visible part, `was_cut` whether that is less than all.
+  Fate test(std::uint32_t piece, Occluder& occluder, bool& was_cut);
+
+ private:
+  struct Offset {  // h = value * 2^exponent
+    kernel::Integer value;
+    long exponent = 0;
+    double approx = 0.0;  // in the scale of toward_.approx
+  };
+
+  [[nodiscard]] bool may_meet(std::span<const std::uint32_t> corners);
+  [[nodiscard]] int depth_sign(std::size_t corner);  // sign of M . t - h
+  [[nodiscard]] int side_sign(const kernel::Direction& normal, std::size_t corner);
+  const kernel::ScaledVec3& exact_corner(std::size_t corner);
+  bool clip_to_source_plane(kernel::Ring& ring);
+  [[nodiscard]] bool hides_all(const kernel::Ring& ring) const;
+
+  const Scene& scene_;
+  Vec3 x_;
+  kernel::Ring hull_;
+  std::vector<kernel::Direction> sides_;
+  kernel::Direction toward_;  // M
+  Offset offset_;
+  std::vector<HalfSpace> half_spaces_;
+
+  // The piece at hand.
+  std::span<const std::uint32_t> corners_;
+  std::vector<kernel::Approx3> approx_corners_;
+  std::vector<std::optional<kernel::ScaledVec3>> exact_corners_;
+  std::vector<int> depth_;
+};
+
+}  // namespace exactff::visibility

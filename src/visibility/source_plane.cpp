@@ -1,0 +1,127 @@
+#include "visibility/source_plane.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include "visibility/polygon_sets.h"
+
+namespace exactff::visibility {
+
+using kernel::ExactVec3;
+using kernel::Integer;
+using kernel::Rational;
+using kernel::sign;
+
+namespace {
+
+ExactVec3 front_normal(const Scene& scene, const Piece& piece) {
+  const auto vertices = scene.vertices();
+  const Vec3& a = vertices[piece.frame[0]];
+  ExactVec3 normal = cross(kernel::exact_difference(vertices[piece.frame[1]], a).v,
+                           kernel::exact_difference(vertices[piece.frame[2]], a).v);
+  make_primitive(normal);
+  return normal;
+}
+
+// One text for one oriented plane: the primitive normal N and the number N . p of any point p in it.
+std::string plane_key(const ExactVec3& normal, const Vec3& point) {
+  const kernel::ScaledVec3 p = kernel::exact_vector(point);
+  Integer offset = dot(normal, p.v);
+  long exponent = 0;
+  if (sign(offset) != 0) {
+    const mp_bitcnt_t zeros = mpz_scan1(offset.get_mpz_t(), 0);
+    offset >>= zeros;
+    exponent = p.exponent + static_cast<long>(zeros);
+  }
+  std::string key;
+  for (const Integer* number : {&normal.x, &normal.y, &normal.z, static_cast<const Integer*>(&offset)})
+    key += number->get_str(32) + ' ';
+  return key + std::to_string(exponent);
+}
+
+}  // namespace
+
+std::vector<SourcePlane> group_by_plane(const Scene& scene, const std::vector<FaceId>& faces) {
+  std::vector<SourcePlane> planes;
+  std::map<std::string, std::size_t> index_of_key;
+  for (const FaceId id : faces) {
+    const Face& face = scene.face(id);
+    for (std::uint32_t p = face.first_piece; p < face.first_piece + face.piece_count; ++p) {
+      const Piece& piece = scene.pieces()[p];
+      const Vec3& point = scene.vertices()[piece.frame[0]];
+      ExactVec3 normal = front_normal(scene, piece);
+      const auto [entry, is_new] = index_of_key.try_emplace(plane_key(normal, point), planes.size());
+      if (is_new) planes.push_back({{}, {}, kernel::make_direction(std::move(normal)), point});
+      SourcePlane& plane = planes[entry->second];
+      if (plane.faces.empty() || plane.faces.back() != id) plane.faces.push_back(id);
+      plane.pieces.push_back(p);
+    }
+  }
+  return planes;
+}
+
+int side_of(const SourcePlane& plane, const Vec3& x) {
+  const int filtered = sign_of_dot(plane.normal.approx, kernel::approx_difference(x, plane.point));
+  if (filtered != kernel::kUncertain) return filtered;
+  return sign(dot(plane.normal.exact, kernel::exact_difference(x, plane.point).v));
+}
+
+int projection_axis(const ExactVec3& normal) {
+  int axis = 0;
+  for (int other : {1, 2}) {
+    if (mpz_cmpabs(normal[other].get_mpz_t(), normal[axis].get_mpz_t()) > 0) axis = other;
+  }
+  return axis;
+}
+
+namespace {
+
+Polygon2 projected(const Scene& scene, const Piece& piece, int axis, bool reverse) {
+  Polygon2 polygon;
+  for (const std::uint32_t corner : scene.corners(piece)) {
+    const Vec3& p = scene.vertices()[corner];
+    const double coordinates[] = {p.x, p.y, p.z};
+    polygon.push_back(
+        {kernel::to_rational(coordinates[(axis + 1) % 3]), kernel::to_rational(coordinates[(axis + 2) % 3])});
+  }
+  if (reverse) std::reverse(polygon.begin(), polygon.end());
+  return polygon;
+}
+
+// Maps the bounding box of all polygons to the unit square; returns the area of the box.
+Rational normalise(std::vector<Polygon2>& polygons) {
+  Point2 low = polygons.front().front();
+  Point2 high = low;
+  for (const Polygon2& polygon : polygons) {
+    for (const Point2& p : polygon) {
+      low = {std::min(low.u, p.u), std::min(low.v, p.v)};
+      high = {std::max(high.u, p.u), std::max(high.v, p.v)};
+    }
+  }
+  const Rational width = high.u - low.u;
+  const Rational height = high.v - low.v;
+  for (Polygon2& polygon : polygons) {
+    for (Point2& p : polygon) p = {(p.u - low.u) / width, (p.v - low.v) / height};
+  }
+  return width * height;
+}
+
+}  // namespace
+
+ProjectedArea union_area(const Scene& scene, const SourcePlane& plane) {
+  const int axis = projection_axis(plane.normal.exact);
+  const bool reverse = sign(plane.normal.exact[axis]) < 0;
+  std::vector<Polygon2> polygons;
+  for (const std::uint32_t p : plane.pieces) polygons.push_back(projected(scene, scene.pieces()[p], axis, reverse));
+  Rational doubled;
+  if (plane.faces.size() == 1) {  // the pieces of one face do not overlap
+    for (const Polygon2& polygon : polygons) doubled += doubled_area(polygon);
+  } else {
+    const Rational box = normalise(polygons);
+    doubled = box * doubled_area(join(polygons));
+  }
+  return {doubled / 2, axis};
+}
+
+}  // namespace exactff::visibility

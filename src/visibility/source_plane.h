@@ -1,0 +1,35 @@
+// The faces of a source that lie in one oriented plane: they are treated together, as their union.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "exactff/scene.h"
+#include "kernel/direction.h"
+
+namespace exactff::visibility {
+
+struct SourcePlane {
+  std::vector<FaceId> faces;          // ascending
+  std::vector<std::uint32_t> pieces;  // those of their pieces that lie in it, ascending; into Scene::pieces()
+  kernel::Direction normal;           // front, primitive integers
+  Vec3 point;                         // a vertex in the plane
+};
+
+// Groups faces by exact equality of their oriented planes, in order of first appearance.
+std::vector<SourcePlane> group_by_plane(const Scene& scene, const std::vector<FaceId>& faces);
+
+// -1, 0, +1: x behind, in, in front of the plane.
+int side_of(const SourcePlane& plane, const Vec3& x);
+
+// Area of the union of the faces, projected along the axis of the normal's largest component; exact.
+struct ProjectedArea {
+  kernel::Rational area;
+  int axis = 0;
+};
+ProjectedArea union_area(const Scene& scene, const SourcePlane& plane);
+
+// The axis along which planes with this normal are projected: that of its largest component.
+int projection_axis(const kernel::ExactVec3& normal);
+
+}  // namespace exactff::visibility

@@ -1,0 +1,63 @@
+// From a receiving point, one plane of a source and the scene to the boundary of what is visible of it.
+//
+// Each step runs only if the one before left it work:
+//   1. cull: x behind or in the plane, or nothing above the horizon;
+//   2. exact clip by the receiver's horizon;
+//   3. shaft: candidates from the bounding-volume tree, exact predicates, exact clip (shaft.h);
+//   4. no candidates: the boundary of the clipped source itself;
+//   5. one candidate hides all: nothing;
+//   6. projection to the source's plane and polygon Booleans (plane_frame.h, polygon_sets.h);
+//   7. boundary loops of what is left, collinear pieces merged.
+// Knows nothing of radiometry.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "exactff/exact.h"
+#include "visibility/boundary_piece.h"
+#include "visibility/plane_frame.h"
+#include "visibility/polygon_sets.h"
+#include "visibility/shaft.h"
+#include "visibility/source_plane.h"
+
+namespace exactff::visibility {
+
+// Everything that depends on the receiver alone.
+struct View {
+  View(const Scene& scene_in, const Receiver& receiver);
+
+  const Scene& scene;
+  Vec3 x;
+  kernel::Direction normal;
+  std::optional<FaceId> on;
+};
+
+struct Request {
+  bool fraction = false;
+  bool list_cutters = false;
+  bool keep_geometry = false;                           // for drawings
+  const std::vector<FaceId>* only_occluders = nullptr;  // ascending
+};
+
+// The exact geometry behind a result, for drawings.
+struct PlaneGeometry {
+  std::vector<kernel::Ring> source;   // convex pieces in front of x, whole
+  std::vector<kernel::Ring> clipped;  // above the horizon
+  std::vector<Occluder> occluders;
+  std::optional<PlaneFrame> frame;
+  std::vector<RegionLoop> visible;  // in the frame
+};
+
+struct PlaneVisibility {
+  PlaneRecord record;
+  std::vector<BoundaryPiece> boundary;
+  std::optional<kernel::Rational> fraction;  // visible over whole unclipped area of the union, in [0, 1]
+  std::vector<FaceId> cutters;               // ascending
+  PlaneGeometry geometry;
+};
+
+// Exact. Requires a receiver normal other than zero.
+PlaneVisibility find_visible_boundary(const View& view, const SourcePlane& plane, const Request& request);
+
+}  // namespace exactff::visibility
