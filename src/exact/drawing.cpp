@@ -1,0 +1,77 @@
+// The exact geometry rounded to doubles. No value depends on anything here.
+#include <algorithm>
+
+#include "exact/source_planes.h"
+#include "exactff/exact.h"
+#include "visibility/visible_boundary.h"
+
+namespace exactff {
+
+namespace {
+
+using kernel::ExactVec3;
+using kernel::Rational;
+
+// Where directions from x meet the plane of the source.
+class Lift {
+ public:
+  Lift(const visibility::SourcePlane& plane, const Vec3& x)
+      : normal_(plane.normal.exact), x_{kernel::to_rational(x.x), kernel::to_rational(x.y), kernel::to_rational(x.z)} {
+    const kernel::ScaledVec3 s = kernel::exact_difference(plane.point, x);
+    distance_ = Rational(dot(normal_, s.v));
+    const auto bits = static_cast<mp_bitcnt_t>(std::abs(s.exponent));
+    (s.exponent >= 0 ? mpq_mul_2exp : mpq_div_2exp)(distance_.get_mpq_t(), distance_.get_mpq_t(), bits);
+  }
+
+  [[nodiscard]] Vec3 operator()(const ExactVec3& t) const {
+    const Rational factor = distance_ / Rational(dot(normal_, t));
+    return {kernel::nearest_double(x_[0] + factor * t.x), kernel::nearest_double(x_[1] + factor * t.y),
+            kernel::nearest_double(x_[2] + factor * t.z)};
+  }
+
+  [[nodiscard]] Loop operator()(const kernel::Ring& ring) const {
+    Loop loop;
+    for (const kernel::Direction& corner : ring) loop.corners.push_back((*this)(corner.exact));
+    return loop;
+  }
+
+ private:
+  ExactVec3 normal_;
+  Rational x_[3];
+  Rational distance_;
+};
+
+PlaneDrawing draw(const visibility::View& view, const visibility::SourcePlane& plane) {
+  const visibility::Request request{.keep_geometry = true};
+  const visibility::PlaneVisibility seen = find_visible_boundary(view, plane, request);
+  const Lift lift(plane, view.x);
+  PlaneDrawing drawing;
+  const kernel::Approx3& n = plane.normal.approx;
+  drawing.normal = {n.x, n.y, n.z};
+  if (side_of(plane, view.x) <= 0) return drawing;
+  for (const kernel::Ring& ring : seen.geometry.source) drawing.source.push_back(lift(ring));
+  for (const kernel::Ring& ring : seen.geometry.clipped) drawing.clipped_source.push_back(lift(ring));
+  for (const visibility::Occluder& occluder : seen.geometry.occluders) {
+    drawing.shadows.push_back({occluder.face, lift(occluder.ring)});
+  }
+  for (const visibility::RegionLoop& loop : seen.geometry.visible) {
+    Loop drawn{{}, loop.hole};
+    for (const visibility::Point2& corner : loop.corners) {
+      drawn.corners.push_back(lift(seen.geometry.frame->to_direction(corner)));
+    }
+    drawing.visible.push_back(std::move(drawn));
+  }
+  return drawing;
+}
+
+}  // namespace
+
+std::vector<PlaneDrawing> draw_visibility(const Scene& scene, const Receiver& receiver, const ExactSource& source) {
+  exact::check_receiver(receiver);
+  const visibility::View view(scene, receiver);
+  std::vector<PlaneDrawing> drawings;
+  for (const visibility::SourcePlane& plane : source.planes().planes) drawings.push_back(draw(view, plane));
+  return drawings;
+}
+
+}  // namespace exactff

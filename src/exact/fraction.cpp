@@ -1,0 +1,92 @@
+// Each area is r sqrt(q) with r rational and q = |normal|^2. One plane: the ratio is rational. Several: balls of rising
+// precision decide unless the ratio is the midpoint of two doubles, and then it is rational. Square roots of integers
+// whose product is no square are linearly independent over the rationals (Besicovitch 1940), so the ratio is rational
+// only if it is the same within every class of commensurable planes; that is tested exactly before balls could fail.
+#include "exact/fraction.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "exactff/enclosure.h"
+#include "kernel/ball.h"
+
+namespace exactff::exact {
+
+using kernel::Integer;
+using kernel::Rational;
+
+namespace {
+
+struct Area {
+  Rational coefficient;  // r
+  Integer radicand;      // q
+};
+
+Area area_of(const PlaneShare& plane) {
+  return {plane.projected_area / abs(plane.normal[plane.axis]), dot(plane.normal, plane.normal)};
+}
+
+Ball ratio_at(std::span<const PlaneShare> planes, long bits) {
+  Ball visible;
+  Ball whole;
+  for (const PlaneShare& plane : planes) {
+    const Area area = area_of(plane);
+    Ball value = kernel::to_ball(area.radicand, bits);
+    arb_sqrt(value.get(), value.get(), bits);
+    arb_mul(value.get(), value.get(), kernel::to_ball(area.coefficient, bits).get(), bits);
+    arb_add(whole.get(), whole.get(), value.get(), bits);
+    arb_mul(value.get(), value.get(), kernel::to_ball(plane.fraction, bits).get(), bits);
+    arb_add(visible.get(), visible.get(), value.get(), bits);
+  }
+  arb_div(visible.get(), visible.get(), whole.get(), bits);
+  return visible;
+}
+
+struct CommensurableClass {
+  Integer radicand;
+  Rational visible;
+  Rational whole;
+};
+
+void add_to_classes(std::vector<CommensurableClass>& classes, const PlaneShare& plane) {
+  const Area area = area_of(plane);
+  for (CommensurableClass& one : classes) {
+    const Integer product = area.radicand * one.radicand;
+    if (!mpz_perfect_square_p(product.get_mpz_t())) continue;
+    // sqrt(q) = sqrt(q q') / q' sqrt(q')
+    const Rational coefficient = area.coefficient * Rational(sqrt(product)) / one.radicand;
+    one.visible += coefficient * plane.fraction;
+    one.whole += coefficient;
+    return;
+  }
+  classes.push_back({area.radicand, area.coefficient * plane.fraction, area.coefficient});
+}
+
+// The ratio if it is rational.
+std::optional<Rational> rational_ratio(std::span<const PlaneShare> planes) {
+  std::vector<CommensurableClass> classes;
+  for (const PlaneShare& plane : planes) add_to_classes(classes, plane);
+  const Rational ratio = classes.front().visible / classes.front().whole;
+  const bool same = std::all_of(classes.begin(), classes.end(),
+                                [&](const CommensurableClass& one) { return one.visible == ratio * one.whole; });
+  return same ? std::optional(ratio) : std::nullopt;
+}
+
+}  // namespace
+
+double visible_fraction(std::span<const PlaneShare> planes) {
+  const Rational& first = planes.front().fraction;
+  const auto equals_first = [&](const PlaneShare& plane) { return plane.fraction == first; };
+  if (std::all_of(planes.begin(), planes.end(), equals_first)) return kernel::nearest_double(first);
+
+  constexpr long kFirstBits = 128;
+  constexpr long kBitsBeforeTheExactTest = 512;
+  for (long bits = kFirstBits;; bits *= 2) {
+    if (const std::optional<double> nearest = Enclosure(ratio_at(planes, bits)).nearest()) return *nearest;
+    if (bits != kBitsBeforeTheExactTest) continue;
+    if (const std::optional<Rational> ratio = rational_ratio(planes)) return kernel::nearest_double(*ratio);
+  }
+}
+
+}  // namespace exactff::exact
