@@ -23,10 +23,8 @@ enum class FaceId : std::uint32_t {};
 enum class MaterialId : std::uint32_t {};
 
 template <class Id>
-  requires std::is_enum_v<Id>
-constexpr std::size_t index_of(Id id) {
-  return static_cast<std::size_t>(id);
-}
+requires std::is_enum_v<Id>
+constexpr std::size_t index_of(Id id) { return static_cast<std::size_t>(id); }
 
 struct Material {
   std::string name;
@@ -49,15 +47,17 @@ struct Face {
   MaterialId material{};
   std::uint32_t number = 0;  // k of NAME:k: from 1 within its patch in file order, ignored ones counted
   FaceShape shape = FaceShape::kPlanar;
-  std::size_t line = 0;      // where the file defines it; 0 if made by the API
+  std::size_t line = 0;  // where the file defines it; 0 if made by the API
   // Vertex indices; the first ring is the outer one, the others are holes. The front is the side from
   // which the outer ring runs counter-clockwise.
   std::vector<std::vector<std::uint32_t>> rings;
   std::uint32_t first_piece = 0;  // into Scene::pieces()
   std::uint32_t piece_count = 0;
-  Vec3 newell;                    // half the Newell vector: front normal, length = area (correctly rounded)
-  double area = 0.0;              // square of the scene's unit of length; a double estimate
-  double out_of_plane = 0.0;      // largest distance of a vertex from the mean plane over the diameter (estimate)
+  // Half the outer ring's Newell vector, correctly rounded: the front normal, as long as the ring's area. Where the
+  // largest component is not within [2^-900, 2^1000) the vector is first scaled into [1/2, 1) by a power of two.
+  Vec3 newell;
+  double area = 0.0;          // square of the scene's unit of length; an estimate, clamped to positive doubles
+  double out_of_plane = 0.0;  // largest distance of a vertex from the mean plane over the diameter (estimate)
 };
 
 struct Patch {
@@ -82,7 +82,6 @@ struct Selection {
 
   friend bool operator==(const Selection&, const Selection&) = default;
 };
-
 
 class Scene {
  public:

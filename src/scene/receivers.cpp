@@ -28,8 +28,8 @@ using kernel::Integer;
 using kernel::Rational;
 using kernel::sign;
 
-Rational scaled(Integer numerator, const Integer& denominator, long exponent) {
-  Rational value(std::move(numerator), denominator);
+Rational scaled(const Integer& numerator, const Integer& denominator, long exponent) {
+  Rational value(numerator, denominator);
   value.canonicalize();
   if (exponent >= 0) {
     value <<= static_cast<mp_bitcnt_t>(exponent);
@@ -110,7 +110,7 @@ class FaceGrid {
 
   [[nodiscard]] ExactVec3 first_edge() const {
     for (std::size_t i = 1; i < points_.size(); ++i) {
-      const ExactVec3 edge = points_.at[i] - points_.at[i - 1];
+      ExactVec3 edge = points_.at[i] - points_.at[i - 1];
       if (!kernel::is_zero(cross(edge, normal_))) return edge;
     }
     return points_.at[1] - points_.at[0];

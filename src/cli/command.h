@@ -1,0 +1,20 @@
+// The commands of the program. Each file parses its own flags, calls the library and prints; no mathematics.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace exactff::cli {
+
+// Registers the command with `app`; returns what runs it. The exit code is the return value: 0 done, 1 a check
+// failed, 2 bad input (by InputError), 3 not certified, 4 internal.
+struct Command {
+  CLI::App* app = nullptr;
+  std::function<int()> run;
+};
+
+Command add_info(CLI::App& app);
+Command add_point(CLI::App& app);
+Command add_compare(CLI::App& app);
+
+}  // namespace exactff::cli

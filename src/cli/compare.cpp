@@ -1,0 +1,316 @@
+// exactff compare: the ray-sampled adaptive algorithm held against the exact values, as tables and a report.
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/output.h"
+#include "cli/scene_options.h"
+#include "exactff/study.h"
+#include "scene/number_text.h"
+#include "study/text.h"
+
+namespace exactff::cli {
+namespace {
+
+constexpr int kInterrupted = 128 + SIGINT;
+
+constexpr const char* kFooter =
+    "Every combination of the lists is run if there are at most 40; else every --eps-b with every --rays, and each\n"
+    "other list on its own around the base (the middle --eps-b and --rays, the first of every other list).\n"
+    "What the scene gives no work to is left out, and the report says what and why.\n"
+    "Times are those of single calls; --threads 1 keeps them undisturbed.\n"
+    "DIR is written whole or not at all; an earlier result of this command there is replaced.\n"
+    "\n"
+    "Example:\n"
+    "  exactff compare data/scenes/cornell_box.obj --on floor --grid 32x32 -o cornell-report";
+
+struct CompareArguments {
+  SceneArguments scene;
+  std::string on;
+  std::string grid;
+  std::string receivers;
+  std::vector<std::string> sources;
+  std::string eps_b, eps_a, rays, seeds, pattern, variant;
+  int threads = 0;
+  std::string folder;
+};
+
+[[noreturn]] void refuse(std::string what, std::string why, std::string suggestion) {
+  throw InputError(Problem{{}, 0, std::move(what), std::move(why), std::move(suggestion)});
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    parts.push_back(text.substr(at, comma - at));
+    at = comma + 1;
+  }
+  return parts;
+}
+
+double to_double(const std::string& text, const std::string& flag) {
+  const ParsedNumber number = parse_number(text);
+  if (number.fault == NumberFault::kNone) return number.value;
+  refuse(flag + ": " + describe(number.fault, text), "the list holds decimal numbers",
+         "separate them by commas only, such as " + flag + " 1e-2,1e-3");
+}
+
+template <class Whole>
+Whole to_whole(const std::string& text, const std::string& flag) {
+  Whole value{};
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (!text.empty() && end.ec == std::errc{} && end.ptr == text.data() + text.size()) return value;
+  refuse(flag + ": '" + text + "' is not a whole number in range", "it counts or numbers something",
+         "separate several by commas only, such as " + flag + " 1,4,16");
+}
+
+// An option that was not given is an empty list, which stands for the default.
+template <class T, class Convert>
+std::vector<T> list_of(const std::string& text, const std::string& flag, const Convert& convert) {
+  std::vector<T> values;
+  if (text.empty()) return values;
+  for (const std::string& part : split(text)) values.push_back(convert(part, flag));
+  return values;
+}
+
+SamplePattern to_pattern(const std::string& text, const std::string& flag) {
+  if (const auto pattern = study::pattern_named(text)) return *pattern;
+  refuse(flag + ": there is no pattern '" + text + "'", {}, "use centre, regular, jittered or low-discrepancy");
+}
+
+Variant to_variant(const std::string& text, const std::string& flag) {
+  if (const auto variant = study::variant_named(text)) return *variant;
+  refuse(flag + ": there is no variant '" + text + "'", {}, "use mended or literal");
+}
+
+study::Sweeps sweeps_of(const CompareArguments& args) {
+  study::Sweeps sweeps;
+  sweeps.eps_b = list_of<double>(args.eps_b, "--eps-b", to_double);
+  sweeps.eps_a = list_of<double>(args.eps_a, "--eps-a", to_double);
+  sweeps.rays = list_of<int>(args.rays, "--rays", to_whole<int>);
+  sweeps.seeds = list_of<std::uint64_t>(args.seeds, "--seeds", to_whole<std::uint64_t>);
+  sweeps.patterns = list_of<SamplePattern>(args.pattern, "--pattern", to_pattern);
+  sweeps.variants = list_of<Variant>(args.variant, "--variant", to_variant);
+  return sweeps;
+}
+
+GridSize grid_of(const std::string& text) {
+  const std::size_t cross = text.find('x');
+  if (cross == std::string::npos) refuse("--grid: '" + text + "' is no grid", {}, "write columns x rows: --grid 32x32");
+  return {to_whole<int>(text.substr(0, cross), "--grid"), to_whole<int>(text.substr(cross + 1), "--grid")};
+}
+
+// A name may hold a comma: the whole text is tried first.
+void add_sources(const Scene& scene, const std::string& text, std::vector<Selection>& sources) {
+  const std::vector<std::string> parts = split(text);
+  if (parts.size() > 1) {
+    try {
+      sources.push_back(scene.select(text));
+      return;
+    } catch (const InputError&) {
+      // Not one name, hence a list of them.
+    }
+  }
+  for (const std::string& name : parts) sources.push_back(scene.select(name));
+}
+
+std::vector<Selection> sources_of(const CompareArguments& args, const Scene& scene) {
+  std::vector<Selection> sources;
+  for (const std::string& text : args.sources) add_sources(scene, text, sources);
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    if (std::find(sources.begin(), sources.begin() + static_cast<std::ptrdiff_t>(i), sources[i]) ==
+        sources.begin() + static_cast<std::ptrdiff_t>(i)) {
+      continue;
+    }
+    refuse("--source: '" + scene.name_of(sources[i]) + "' is named twice", "its light would count twice", {});
+  }
+  return sources;
+}
+
+std::string shell_word(const std::string& text) {
+  const bool plain = !text.empty() && text.find_first_not_of(
+                                          "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                                          "0123456789_-+=:,./@%") == std::string::npos;
+  if (plain) return text;
+  std::string word = "'";
+  for (char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+
+std::string command_line(const CompareArguments& args) {
+  std::string line = "exactff compare " + shell_word(args.scene.path);
+  const auto add = [&](const char* flag, const std::string& value) {
+    if (!value.empty()) line += std::string(" ") + flag + ' ' + shell_word(value);
+  };
+  if (args.scene.patches != "groups") add("--patches", args.scene.patches);
+  if (args.scene.skip_bad_faces) line += " --skip-bad-faces";
+  add("--on", args.on);
+  add("--grid", args.grid);
+  add("--receivers", args.receivers);
+  for (const std::string& source : args.sources) add("--source", source);
+  add("--eps-b", args.eps_b);
+  add("--eps-a", args.eps_a);
+  add("--rays", args.rays);
+  add("--seeds", args.seeds);
+  add("--pattern", args.pattern);
+  add("--variant", args.variant);
+  if (args.threads > 0) add("--threads", std::to_string(args.threads));
+  add("-o", args.folder);
+  return line;
+}
+
+study::Request request_of(const CompareArguments& args, const Scene& scene) {
+  study::Request request;
+  request.scene = &scene;
+  request.scene_name = std::filesystem::path(args.scene.path).filename().string();
+  request.sweeps = sweeps_of(args);
+  request.sources = sources_of(args, scene);
+  request.threads = args.threads;
+  request.command_line = command_line(args);
+  if (!args.receivers.empty()) {
+    request.receivers = read_receivers(args.receivers, scene);
+    request.receivers_name = std::filesystem::path(args.receivers).filename().string();
+  } else {
+    request.receivers = grid_receivers(scene, scene.select(args.on), grid_of(args.grid));
+    request.receivers_name = args.on + ", grid " + args.grid;
+  }
+  return request;
+}
+
+// A bar with the time left, on a terminal only; at most ten times a second.
+class ProgressBar {
+ public:
+  ~ProgressBar() { clear(); }
+
+  void show(const study::Progress& progress) {
+    if (!on_terminal_) return;
+    const auto now = Clock::now();
+    if (progress.stage != stage_) {
+      stage_ = progress.stage;
+      started_ = now;
+    }
+    if (now - drawn_ < std::chrono::milliseconds(100) && progress.done < progress.total) return;
+    drawn_ = now;
+    draw(progress, std::chrono::duration<double>(now - started_).count());
+  }
+
+  void clear() const {
+    if (on_terminal_ && drawn_ != Clock::time_point{}) std::cerr << "\r\033[K" << std::flush;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  static void draw(const study::Progress& progress, double elapsed) {
+    constexpr std::size_t kWidth = 30;
+    const std::size_t filled = kWidth * progress.done / std::max<std::size_t>(progress.total, 1);
+    const double left = elapsed / static_cast<double>(std::max<std::size_t>(progress.done, 1)) *
+                        static_cast<double>(progress.total - progress.done);
+    std::cerr << "\r\033[K" << progress.stage << " [" << std::string(filled, '#') << std::string(kWidth - filled, '.')
+              << "] " << progress.done << '/' << progress.total << ", " << study::duration(left) << " left"
+              << std::flush;
+  }
+
+  const bool on_terminal_ = ::isatty(STDERR_FILENO) == 1;
+  std::string stage_;
+  Clock::time_point started_;
+  Clock::time_point drawn_;
+};
+
+std::atomic<bool> interrupted = false;
+
+// Ctrl-C sets a flag that the study looks at between receivers.
+class InterruptWatch {
+ public:
+  InterruptWatch() {
+    struct sigaction action {};
+    action.sa_handler = [](int) { interrupted = true; };
+    action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second Ctrl-C ends the program at once
+    ::sigaction(SIGINT, &action, &before_);
+  }
+  ~InterruptWatch() { ::sigaction(SIGINT, &before_, nullptr); }
+  InterruptWatch(const InterruptWatch&) = delete;
+  InterruptWatch& operator=(const InterruptWatch&) = delete;
+
+ private:
+  struct sigaction before_ {};
+};
+
+void check_flags(const CompareArguments& args) {
+  if (args.receivers.empty() && (args.on.empty() || args.grid.empty())) {
+    refuse("there are no receivers", "values are compared at points",
+           "give --on NAME with --grid 32x32, or --receivers FILE.csv");
+  }
+  if (!args.receivers.empty() && !(args.on.empty() && args.grid.empty())) {
+    refuse("--receivers comes with --on or --grid", "the receivers are those of the file, or those of the grid",
+           "leave one of them out");
+  }
+}
+
+int run(const CompareArguments& args) {
+  check_flags(args);
+  study::check_output_folder(args.folder);
+  const Scene scene = args.scene.load();
+  const InterruptWatch watch;
+  ProgressBar bar;
+  const study::Hooks hooks{[&](const study::Progress& progress) { bar.show(progress); },
+                           [] { return interrupted.load(); }};
+  std::vector<std::string> messages, sentences;
+  try {
+    const study::Study study = study::run(request_of(args, scene), hooks);
+    messages = study::write(study, args.folder, hooks);
+    sentences = study::headlines(study);
+  } catch (const study::Cancelled&) {
+    bar.clear();
+    std::cerr << "exactff: interrupted; nothing was written\n";
+    return kInterrupted;
+  }
+  bar.clear();
+  for (const std::string& message : messages) std::cerr << "note: " << message << '\n';
+  for (const std::string& sentence : sentences) std::cout << sentence << '\n';
+  std::cout << "Report: " << (std::filesystem::path(args.folder) / "report.html").string() << '\n';
+  check_output(std::cout);
+  return 0;
+}
+
+}  // namespace
+
+Command add_compare(CLI::App& app) {
+  auto args = std::make_shared<CompareArguments>();
+  CLI::App* command =
+      app.add_subcommand("compare", "Error and time of the ray-sampled algorithm against the exact values");
+  args->scene.add_to(*command);
+  command->add_option("--on", args->on, "Patch or face (NAME or NAME:K) that carries the grid of receivers");
+  command->add_option("--grid", args->grid, "Columns x rows of the grid, such as 32x32");
+  command->add_option("--receivers", args->receivers, "CSV file with the columns id,x,y,z,nx,ny,nz,on");
+  command
+      ->add_option("--source", args->sources,
+                   "Source patch; repeat it or separate names by commas (default: all that emit)")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("--eps-b", args->eps_b, "Tolerances, radiosity (default: max(rho B) times 1e-1,...,1e-5)");
+  command->add_option("--eps-a", args->eps_a,
+                      "Smallest areas (default: 0 and the mean source face times 1e-1,...,1e-4)");
+  command->add_option("--rays", args->rays, "Shadow rays per undecided leaf (default: 1,4,16,64,256)");
+  command->add_option("--seeds", args->seeds, "Seeds (default: 1,...,10)");
+  command->add_option("--pattern", args->pattern,
+                      "Where rays end: jittered, centre, regular, low-discrepancy (default: all)");
+  command->add_option("--variant", args->variant, "mended, literal (default: both)");
+  command->add_option("--threads", args->threads, "Threads (default: all); values do not depend on it")
+      ->check(CLI::Range(1, 4096));
+  command->add_option("-o,--output", args->folder, "Folder for the tables and the report")->required();
+  command->footer(kFooter);
+  return {command, [args] { return run(*args); }};
+}
+
+}  // namespace exactff::cli

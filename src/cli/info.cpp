@@ -1,0 +1,304 @@
+// exactff info: what a scene holds, so that a person knows what to pass to --source and --on.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cli/command.h"
+#include "cli/scene_options.h"
+#include "cli/text_table.h"
+#include "exactff/version.h"
+
+namespace exactff::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value == 0.0 ? 0.0 : value);
+  return text;
+}
+
+std::string short_colour(const Rgb& c) {
+  if (c.r == c.g && c.g == c.b) return short_number(c.r);
+  return short_number(c.r) + " " + short_number(c.g) + " " + short_number(c.b);
+}
+
+std::string counted(std::size_t count, const std::string& one, const std::string& many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+Vec3 scaled(const Vec3& v, double factor) { return {v.x * factor, v.y * factor, v.z * factor}; }
+Vec3 sum(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+
+// Zero stays zero. The largest component is brought near 1 first, so that nothing over- or underflows.
+Vec3 unit(const Vec3& v) {
+  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  if (largest == 0.0) return v;
+  const Vec3 safe{v.x / largest, v.y / largest, v.z / largest};
+  return scaled(safe, 1.0 / std::hypot(safe.x, safe.y, safe.z));
+}
+
+// One row of the table.
+struct PatchSummary {
+  std::string name;
+  std::size_t face_count = 0;  // with ignored ones
+  double area = 0.0;
+  std::optional<Vec3> front;          // mean unit normal; empty if the faces look different ways
+  std::vector<MaterialId> materials;  // in the order of their first use
+  bool emits = false;
+};
+
+std::vector<MaterialId> materials_of(const Scene& scene, const Patch& patch) {
+  std::vector<MaterialId> used;
+  std::set<MaterialId> seen;
+  for (const FaceId face : patch.faces) {
+    const MaterialId material = scene.face(face).material;
+    if (seen.insert(material).second) used.push_back(material);
+  }
+  return used;
+}
+
+std::optional<Vec3> common_front(const Scene& scene, const std::vector<FaceId>& faces) {
+  constexpr double kSameWay = 0.999;  // the cosine of about 2.6 degrees
+  Vec3 mean;
+  for (const FaceId face : faces) mean = sum(mean, unit(scene.face(face).newell));
+  mean = unit(mean);
+  for (const FaceId face : faces) {
+    const Vec3 n = unit(scene.face(face).newell);
+    if (n.x * mean.x + n.y * mean.y + n.z * mean.z < kSameWay) return std::nullopt;
+  }
+  return faces.empty() ? std::nullopt : std::optional(mean);
+}
+
+PatchSummary summarise(const Scene& scene, PatchId id) {
+  const Patch& patch = scene.patch(id);
+  const std::vector<FaceId> faces = scene.faces_of({id, {}});
+  PatchSummary summary{patch.name, patch.faces.size(), 0.0, common_front(scene, faces), materials_of(scene, patch)};
+  for (const FaceId face : faces) {
+    summary.area += scene.face(face).area;
+    summary.emits = summary.emits || scene.material(scene.face(face).material).emits();
+  }
+  return summary;
+}
+
+std::vector<PatchSummary> summarise(const Scene& scene) {
+  std::vector<PatchSummary> rows;
+  for (std::size_t i = 0; i < scene.patches().size(); ++i) rows.push_back(summarise(scene, static_cast<PatchId>(i)));
+  return rows;
+}
+
+std::vector<FaceId> faces_of_shape(const Scene& scene, FaceShape shape) {
+  std::vector<FaceId> result;
+  for (std::size_t i = 0; i < scene.faces().size(); ++i) {
+    if (scene.faces()[i].shape == shape) result.push_back(static_cast<FaceId>(i));
+  }
+  return result;
+}
+
+double total_area(const std::vector<PatchSummary>& rows) {
+  double area = 0.0;
+  for (const PatchSummary& row : rows) area += row.area;
+  return area;
+}
+
+// --- for people ---
+
+std::string front_text(const PatchSummary& row) {
+  if (row.area == 0.0) return "-";
+  if (!row.front) return "mixed";
+  const auto rounded = [](double c) { return short_number(std::round(c * 1e4) / 1e4); };
+  return "(" + rounded(row.front->x) + ", " + rounded(row.front->y) + ", " + rounded(row.front->z) + ")";
+}
+
+std::string material_text(const Scene& scene, const PatchSummary& row) {
+  constexpr std::size_t kShown = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShown, row.materials.size()); ++i) {
+    text += (i > 0 ? ", " : "") + scene.material(row.materials[i]).name;
+  }
+  return row.materials.size() > kShown ? text + " +" + std::to_string(row.materials.size() - kShown) : text;
+}
+
+std::string colour_text(const Scene& scene, const PatchSummary& row, Rgb Material::*colour) {
+  if (row.materials.empty()) return "-";
+  const Rgb& first = scene.material(row.materials.front()).*colour;
+  const auto same = [&](MaterialId id) { return scene.material(id).*colour == first; };
+  return std::all_of(row.materials.begin(), row.materials.end(), same) ? short_colour(first) : "mixed";
+}
+
+void print_patches(const Scene& scene, const std::vector<PatchSummary>& rows) {
+  TextTable table;
+  table.add_column("patch");
+  table.add_column("faces", Align::kRight);
+  table.add_column("area", Align::kRight);
+  for (const char* title : {"front", "material", "Kd", "Ke", "emits"}) table.add_column(title);
+  for (const PatchSummary& row : rows) {
+    table.add_row({row.name, std::to_string(row.face_count), short_number(row.area), front_text(row),
+                   material_text(scene, row), colour_text(scene, row, &Material::reflectance),
+                   colour_text(scene, row, &Material::radiosity), row.emits ? "yes" : "no"});
+  }
+  table.print(std::cout);
+}
+
+void print_totals(const Scene& scene, const std::vector<PatchSummary>& rows) {
+  std::cout << counted(scene.patches().size(), "patch", "patches") << ", "
+            << counted(scene.faces().size(), "face", "faces") << " in "
+            << counted(scene.pieces().size(), "convex piece", "convex pieces") << ", "
+            << counted(scene.vertices().size(), "vertex", "vertices") << ", area " << short_number(total_area(rows))
+            << '\n';
+}
+
+// "TITLE: a, b, c and 7 more" or "TITLE: none".
+void print_list(const std::string& title, const std::vector<std::string>& items) {
+  constexpr std::size_t kShown = 12;
+  std::cout << title << ": ";
+  for (std::size_t i = 0; i < std::min(kShown, items.size()); ++i) std::cout << (i > 0 ? ", " : "") << items[i];
+  if (items.empty()) std::cout << "none";
+  if (items.size() > kShown) std::cout << " and " << items.size() - kShown << " more";
+  std::cout << '\n';
+}
+
+std::vector<std::string> emitter_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Selection& emitter : scene.emitters()) names.push_back(scene.name_of(emitter));
+  return names;
+}
+
+// NAME:k even where the patch has one face: these lists are about faces.
+std::string numbered_name(const Scene& scene, FaceId face) { return scene.name_of({scene.face(face).patch, face}); }
+
+std::vector<std::string> numbered_names(const Scene& scene, FaceShape shape) {
+  std::vector<std::string> names;
+  for (const FaceId face : faces_of_shape(scene, shape)) names.push_back(numbered_name(scene, face));
+  return names;
+}
+
+void print_faces(const Scene& scene) {
+  std::vector<std::string> other;
+  for (const FaceId face : faces_of_shape(scene, FaceShape::kTriangulated)) {
+    other.push_back(numbered_name(scene, face) + " (off by " + short_number(scene.face(face).out_of_plane) + ", " +
+                    counted(scene.face(face).piece_count, "triangle", "triangles") + ")");
+  }
+  print_list("not exactly planar, cut into triangles (largest distance over diameter)", other);
+  print_list("without area, ignored", numbered_names(scene, FaceShape::kZeroArea));
+  print_list("unusable, left out", numbered_names(scene, FaceShape::kSkipped));
+  const std::size_t open = scene.open_edge_count();
+  std::cout << "open edges: " << open << (open == 0 ? " (the surface is closed)" : "") << '\n';
+}
+
+// The largest patch that does not emit, else the largest.
+const PatchSummary& suggested_receiver(const std::vector<PatchSummary>& rows) {
+  const auto smaller = [](const PatchSummary& a, const PatchSummary& b) {
+    return std::pair(!a.emits, a.area) < std::pair(!b.emits, b.area);
+  };
+  return *std::max_element(rows.begin(), rows.end(), smaller);
+}
+
+std::string shell_word(const std::string& text) {
+  const std::string harmless = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./:@%,=";
+  if (!text.empty() && text.find_first_not_of(harmless) == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+void print_suggestion(const Scene& scene, const std::vector<PatchSummary>& rows, const std::string& path) {
+  if (rows.empty()) return;
+  const std::vector<std::string> emitters = emitter_names(scene);
+  std::cout << "next: exactff compare " << shell_word(path) << " --on " << shell_word(suggested_receiver(rows).name)
+            << " --source " << shell_word(emitters.empty() ? rows.front().name : emitters.front())
+            << " --grid 16x16 -o DIR (--source and --on take a patch of the table, or PATCH:k for its k-th face)\n";
+}
+
+void print_text(const Scene& scene, const std::string& path) {
+  const std::vector<PatchSummary> rows = summarise(scene);
+  print_patches(scene, rows);
+  std::cout << '\n';
+  print_totals(scene, rows);
+  print_list("emitters", emitter_names(scene));
+  print_faces(scene);
+  print_suggestion(scene, rows, path);
+}
+
+// --- for programs ---
+
+ordered_json to_json(const Rgb& c) { return {c.r, c.g, c.b}; }
+ordered_json to_json(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+ordered_json to_json(const PatchSummary& row, const Scene& scene) {
+  ordered_json json;
+  json["name"] = row.name;
+  json["faces"] = row.face_count;
+  json["area"] = row.area;
+  json["front"] = row.front ? to_json(*row.front) : ordered_json();
+  json["materials"] = ordered_json::array();
+  for (const MaterialId id : row.materials) {
+    const Material& material = scene.material(id);
+    json["materials"].push_back(
+        {{"name", material.name}, {"Kd", to_json(material.reflectance)}, {"Ke", to_json(material.radiosity)}});
+  }
+  json["emits"] = row.emits;
+  return json;
+}
+
+ordered_json faces_to_json(const Scene& scene) {
+  ordered_json json = ordered_json::array();
+  for (const FaceId id : faces_of_shape(scene, FaceShape::kTriangulated)) {
+    const Face& face = scene.face(id);
+    json.push_back({{"name", numbered_name(scene, id)},
+                    {"line", face.line},
+                    {"out_of_plane", face.out_of_plane},
+                    {"triangles", face.piece_count}});
+  }
+  return json;
+}
+
+void print_json(const Scene& scene, const std::string& path) {
+  const std::vector<PatchSummary> rows = summarise(scene);
+  ordered_json json;
+  json["version"] = kVersion;
+  json["scene"] = path;
+  json["hash"] = scene.hash();
+  json["vertices"] = scene.vertices().size();
+  json["faces"] = scene.faces().size();
+  json["pieces"] = scene.pieces().size();
+  json["area"] = total_area(rows);
+  json["open_edges"] = scene.open_edge_count();
+  json["patches"] = ordered_json::array();
+  for (const PatchSummary& row : rows) json["patches"].push_back(to_json(row, scene));
+  json["emitters"] = emitter_names(scene);
+  json["not_planar"] = faces_to_json(scene);
+  json["ignored"] = numbered_names(scene, FaceShape::kZeroArea);
+  json["left_out"] = numbered_names(scene, FaceShape::kSkipped);
+  json["warnings"] = ordered_json::array();
+  for (const Problem& warning : scene.warnings()) json["warnings"].push_back(warning.message());
+  std::cout << json.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+}
+
+struct InfoArguments {
+  SceneArguments scene;
+  bool json = false;
+};
+
+}  // namespace
+
+Command add_info(CLI::App& app) {
+  const auto arguments = std::make_shared<InfoArguments>();
+  CLI::App* info = app.add_subcommand("info", "List what a scene holds: patches, emitters, faces worth a look");
+  info->footer("Example:\n  exactff info room.obj\n  exactff info room.obj --patches faces --json");
+  arguments->scene.add_to(*info);
+  info->add_flag("--json", arguments->json, "Print JSON instead of a table");
+  return {info, [arguments] {
+            const Scene scene = arguments->scene.load();
+            (arguments->json ? print_json : print_text)(scene, arguments->scene.path);
+            return 0;
+          }};
+}
+
+}  // namespace exactff::cli

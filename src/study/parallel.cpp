@@ -1,0 +1,73 @@
+#include "study/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace exactff::study {
+namespace {
+
+class SharedLoop {
+ public:
+  SharedLoop(std::size_t count, std::string_view stage, const Hooks& hooks,
+             const std::function<void(std::size_t)>& body)
+      : count_(count), stage_(stage), hooks_(hooks), body_(body) {}
+
+  // One thread's share: takes the next index until there is none, or until something was thrown anywhere.
+  void work() {
+    try {
+      for (std::size_t i = next_++; i < count_ && !stop_; i = next_++) {
+        if (hooks_.cancelled && hooks_.cancelled()) throw Cancelled();
+        body_(i);
+        report();
+      }
+    } catch (...) {
+      keep(std::current_exception());
+    }
+  }
+
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  void report() {
+    const std::lock_guard lock(mutex_);
+    ++done_;
+    if (hooks_.progress) hooks_.progress({stage_, done_, count_});
+  }
+  void keep(std::exception_ptr failure) {
+    stop_ = true;
+    const std::lock_guard lock(mutex_);
+    if (!failure_) failure_ = std::move(failure);
+  }
+
+  const std::size_t count_;
+  const std::string_view stage_;
+  const Hooks& hooks_;
+  const std::function<void(std::size_t)>& body_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<bool> stop_{false};
+  std::mutex mutex_;
+  std::size_t done_ = 0;
+  std::exception_ptr failure_;
+};
+
+}  // namespace
+
+void parallel_for(std::size_t count, int threads, std::string_view stage, const Hooks& hooks,
+                  const std::function<void(std::size_t)>& body) {
+  SharedLoop loop(count, stage, hooks, body);
+  {
+    std::vector<std::jthread> helpers;
+    const auto wanted = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
+    for (std::size_t i = 1; i < wanted; ++i) helpers.emplace_back([&loop] { loop.work(); });
+    loop.work();
+  }
+  loop.rethrow();
+}
+
+}  // namespace exactff::study

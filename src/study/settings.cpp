@@ -1,0 +1,316 @@
+// The sweeps of a study.
+//
+// The base takes the middle of the lists for eps_B and rays and the first of every other list. Where the full
+// product is small, it is run. Otherwise
+//   1. the plane eps_B x rays through the base: error against eps_B, against rays and against time;
+//   2. eps_A at the smallest eps_B and the most rays, where it is eps_A that stops the recursion;
+//   3. the variants over eps_B, the patterns over rays;
+//   4. the seeds at the base.
+// The centre pattern has one ray and no seed, the regular one no seed: settings that differ only in what their
+// pattern ignores are one setting.
+#include "study/settings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "study/text.h"
+
+namespace exactff::study {
+namespace {
+
+template <class T>
+void drop_repetitions(std::vector<T>& list) {
+  std::vector<T> kept;
+  for (const T& value : list) {
+    if (std::find(kept.begin(), kept.end(), value) == kept.end()) kept.push_back(value);
+  }
+  list = std::move(kept);
+}
+
+template <class T>
+const T& middle(const std::vector<T>& list) {
+  return list[list.size() / 2];
+}
+
+std::vector<double> powers_of_ten(double unit, int first, int last) {
+  std::vector<double> values;
+  // Division by an exact power of ten rounds once, so that 1 becomes 0.1 and not a neighbour of it.
+  for (int power = first; power <= last; ++power) values.push_back(unit / std::pow(10.0, power));
+  return values;
+}
+
+[[noreturn]] void refuse(std::string what, std::string why) {
+  throw InputError(Problem{{}, 0, std::move(what), std::move(why), {}});
+}
+
+void check_ranges(const Sweeps& sweeps) {
+  for (double eps_b : sweeps.eps_b) {
+    if (!std::isfinite(eps_b) || eps_b < 0.0)
+      refuse("eps_B is " + shortest(eps_b), "a tolerance is finite and not negative");
+  }
+  for (double eps_a : sweeps.eps_a) {
+    if (!std::isfinite(eps_a) || eps_a < 0.0)
+      refuse("eps_A is " + shortest(eps_a), "an area is finite and not negative");
+  }
+  for (int rays : sweeps.rays) {
+    if (rays < 1) refuse("a number of rays is " + std::to_string(rays), "every undecided leaf needs at least one");
+  }
+  const bool unbounded = std::count(sweeps.eps_b.begin(), sweeps.eps_b.end(), 0.0) > 0 &&
+                         std::count(sweeps.eps_a.begin(), sweeps.eps_a.end(), 0.0) > 0;
+  if (unbounded) refuse("eps_B and eps_A are both 0", "nothing but the depth cap would end the recursion");
+}
+
+// What the pattern ignores takes one value.
+AdaptiveOptions normalised(AdaptiveOptions setting, const Sweeps& sweeps) {
+  const bool seeded = setting.pattern == SamplePattern::kJittered || setting.pattern == SamplePattern::kLowDiscrepancy;
+  if (!seeded) setting.seed = sweeps.seeds.front();
+  if (setting.pattern == SamplePattern::kCentre) setting.rays = 1;
+  return setting;
+}
+
+class Collector {
+ public:
+  explicit Collector(const Sweeps& sweeps) : sweeps_(sweeps) {}
+
+  void add(const AdaptiveOptions& wanted) {
+    const AdaptiveOptions setting = normalised(wanted, sweeps_);
+    if (!find_setting(settings_, setting)) settings_.push_back(setting);
+  }
+  std::vector<AdaptiveOptions> take() { return std::move(settings_); }
+
+ private:
+  const Sweeps& sweeps_;
+  std::vector<AdaptiveOptions> settings_;
+};
+
+AdaptiveOptions base_of(const Sweeps& sweeps) {
+  AdaptiveOptions base;
+  base.eps_b = middle(sweeps.eps_b);
+  base.eps_a = sweeps.eps_a.front();
+  base.rays = middle(sweeps.rays);
+  base.pattern = sweeps.patterns.front();
+  base.seed = sweeps.seeds.front();
+  base.variant = sweeps.variants.front();
+  return normalised(base, sweeps);
+}
+
+std::size_t product_size(const Sweeps& sweeps) {
+  return sweeps.eps_b.size() * sweeps.eps_a.size() * sweeps.rays.size() * sweeps.seeds.size() * sweeps.patterns.size() *
+         sweeps.variants.size();
+}
+
+void add_plane(Collector& settings, AdaptiveOptions setting, const Sweeps& sweeps) {
+  for (int rays : sweeps.rays) {
+    for (double eps_b : sweeps.eps_b) {
+      setting.rays = rays;
+      setting.eps_b = eps_b;
+      settings.add(setting);
+    }
+  }
+}
+
+void add_full_product(Collector& settings, const Sweeps& sweeps) {
+  AdaptiveOptions setting;
+  for (Variant variant : sweeps.variants) {
+    for (SamplePattern pattern : sweeps.patterns) {
+      for (std::uint64_t seed : sweeps.seeds) {
+        for (double eps_a : sweeps.eps_a) {
+          setting.variant = variant;
+          setting.pattern = pattern;
+          setting.seed = seed;
+          setting.eps_a = eps_a;
+          add_plane(settings, setting, sweeps);
+        }
+      }
+    }
+  }
+}
+
+void add_areas(Collector& settings, AdaptiveOptions setting, const Sweeps& sweeps) {
+  setting.eps_b = *std::min_element(sweeps.eps_b.begin(), sweeps.eps_b.end());
+  setting.rays = *std::max_element(sweeps.rays.begin(), sweeps.rays.end());
+  for (double eps_a : sweeps.eps_a) {
+    setting.eps_a = eps_a;
+    settings.add(setting);
+  }
+}
+
+void add_variants_and_patterns(Collector& settings, const AdaptiveOptions& base, const Sweeps& sweeps) {
+  for (Variant variant : sweeps.variants) {
+    for (double eps_b : sweeps.eps_b) {
+      AdaptiveOptions setting = base;
+      setting.variant = variant;
+      setting.eps_b = eps_b;
+      settings.add(setting);
+    }
+  }
+  for (SamplePattern pattern : sweeps.patterns) {
+    for (int rays : sweeps.rays) {
+      AdaptiveOptions setting = base;
+      setting.pattern = pattern;
+      setting.rays = rays;
+      settings.add(setting);
+    }
+  }
+}
+
+void add_sweeps(Collector& settings, const AdaptiveOptions& base, const Sweeps& sweeps) {
+  add_plane(settings, base, sweeps);
+  add_areas(settings, base, sweeps);
+  add_variants_and_patterns(settings, base, sweeps);
+  AdaptiveOptions setting = base;
+  for (std::uint64_t seed : sweeps.seeds) {
+    setting.seed = seed;
+    settings.add(setting);
+  }
+}
+
+template <class T>
+void shorten(std::vector<T>& list, T kept, std::string what, const std::string& why, std::vector<LeftOut>& left_out) {
+  if (list.size() < 2) return;
+  list = {kept};
+  left_out.push_back({std::move(what), why});
+}
+
+void leave_out_sampling(Sweeps& sweeps, const std::string& why, std::vector<LeftOut>& left_out) {
+  shorten(sweeps.eps_a, sweeps.eps_a.front(), "sweep of eps_A", why, left_out);
+  shorten(sweeps.rays, middle(sweeps.rays), "sweep of the number of rays", why, left_out);
+  shorten(sweeps.seeds, sweeps.seeds.front(), "sweep of seeds", why, left_out);
+  shorten(sweeps.patterns, sweeps.patterns.front(), "comparison of sample patterns", why, left_out);
+}
+
+AdaptiveOptions without(AdaptiveOptions setting, Parameter parameter) {
+  const AdaptiveOptions none{};
+  switch (parameter) {
+    case Parameter::kEpsB:
+      setting.eps_b = none.eps_b;
+      break;
+    case Parameter::kEpsA:
+      setting.eps_a = none.eps_a;
+      break;
+    case Parameter::kRays:
+      setting.rays = none.rays;
+      break;
+    case Parameter::kSeed:
+      setting.seed = none.seed;
+      break;
+    case Parameter::kPattern:
+      setting.pattern = none.pattern;
+      break;
+    case Parameter::kVariant:
+      setting.variant = none.variant;
+      break;
+  }
+  return setting;
+}
+
+}  // namespace
+
+std::string_view name_of(SamplePattern pattern) {
+  switch (pattern) {
+    case SamplePattern::kCentre:
+      return "centre";
+    case SamplePattern::kRegular:
+      return "regular";
+    case SamplePattern::kJittered:
+      return "jittered";
+    case SamplePattern::kLowDiscrepancy:
+      return "low-discrepancy";
+  }
+  return {};
+}
+
+std::string_view name_of(Variant variant) { return variant == Variant::kMended ? "mended" : "literal"; }
+
+std::optional<SamplePattern> pattern_named(std::string_view name) {
+  for (SamplePattern pattern :
+       {SamplePattern::kCentre, SamplePattern::kRegular, SamplePattern::kJittered, SamplePattern::kLowDiscrepancy}) {
+    if (name_of(pattern) == name) return pattern;
+  }
+  return std::nullopt;
+}
+
+std::optional<Variant> variant_named(std::string_view name) {
+  for (Variant variant : {Variant::kMended, Variant::kLiteral}) {
+    if (name_of(variant) == name) return variant;
+  }
+  return std::nullopt;
+}
+
+void complete(Sweeps& sweeps, const Work& work) {
+  const double unit = work.largest_rho_b > 0.0 ? work.largest_rho_b : 1.0;
+  if (sweeps.eps_b.empty()) sweeps.eps_b = powers_of_ten(unit, 1, 5);
+  if (sweeps.eps_a.empty()) {
+    sweeps.eps_a = powers_of_ten(work.mean_source_area, 1, 4);
+    sweeps.eps_a.insert(sweeps.eps_a.begin(), 0.0);
+  }
+  if (sweeps.rays.empty()) sweeps.rays = {1, 4, 16, 64, 256};
+  if (sweeps.seeds.empty()) sweeps.seeds = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
+  if (sweeps.patterns.empty()) {
+    sweeps.patterns = {SamplePattern::kJittered, SamplePattern::kCentre, SamplePattern::kRegular,
+                       SamplePattern::kLowDiscrepancy};
+  }
+  if (sweeps.variants.empty()) sweeps.variants = {Variant::kMended, Variant::kLiteral};
+  drop_repetitions(sweeps.eps_b);
+  drop_repetitions(sweeps.eps_a);
+  drop_repetitions(sweeps.rays);
+  drop_repetitions(sweeps.seeds);
+  drop_repetitions(sweeps.patterns);
+  drop_repetitions(sweeps.variants);
+  check_ranges(sweeps);
+}
+
+std::vector<LeftOut> leave_out(Sweeps& sweeps, const Work& work) {
+  std::vector<LeftOut> left_out;
+  if (work.largest_rho_b <= 0.0) {
+    const std::string why = "no receiver reflects anything (rho B is 0), so the adaptive algorithm returns 0 at once";
+    shorten(sweeps.eps_b, middle(sweeps.eps_b), "sweep of eps_B", why, left_out);
+    leave_out_sampling(sweeps, why, left_out);
+  } else if (!work.anything_sampled) {
+    leave_out_sampling(
+        sweeps,
+        "every receiver sees all of a source or nothing of it, or one occluder hides it: no ray decides anything",
+        left_out);
+  }
+  return left_out;
+}
+
+Plan combine(const Sweeps& sweeps) {
+  const AdaptiveOptions base = base_of(sweeps);
+  Collector settings(sweeps);
+  Plan plan;
+  plan.full_product = product_size(sweeps) <= kFullProductLimit;
+  if (plan.full_product) {
+    add_full_product(settings, sweeps);
+  } else {
+    add_sweeps(settings, base, sweeps);
+  }
+  plan.settings = settings.take();
+  plan.base = find_setting(plan.settings, base).value();
+  return plan;
+}
+
+bool same_setting(const AdaptiveOptions& a, const AdaptiveOptions& b) {
+  return a.eps_b == b.eps_b && a.eps_a == b.eps_a && a.rays == b.rays && a.pattern == b.pattern && a.seed == b.seed &&
+         a.variant == b.variant && a.depth_cap == b.depth_cap;
+}
+
+std::vector<std::size_t> line_through(const std::vector<AdaptiveOptions>& settings, std::size_t from,
+                                      Parameter parameter) {
+  std::vector<std::size_t> line;
+  const AdaptiveOptions common = without(settings[from], parameter);
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    if (same_setting(without(settings[i], parameter), common)) line.push_back(i);
+  }
+  return line;
+}
+
+std::optional<std::size_t> find_setting(const std::vector<AdaptiveOptions>& settings, const AdaptiveOptions& wanted) {
+  const auto found =
+      std::find_if(settings.begin(), settings.end(), [&](const AdaptiveOptions& s) { return same_setting(s, wanted); });
+  if (found == settings.end()) return std::nullopt;
+  return static_cast<std::size_t>(std::distance(settings.begin(), found));
+}
+
+}  // namespace exactff::study

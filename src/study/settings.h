@@ -1,0 +1,43 @@
+// Which settings of the adaptive algorithm a study runs.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "exactff/study.h"
+
+namespace exactff::study {
+
+struct Plan {
+  std::vector<AdaptiveOptions> settings;
+  std::size_t base = 0;
+  bool full_product = false;
+};
+
+// What the scene has work for; decided by the exact values before any sampling.
+struct Work {
+  double largest_rho_b = 0.0;     // over receivers and sources
+  double mean_source_area = 0.0;  // of a face
+  bool anything_sampled = true;   // some receiver has a source hidden in part, or by several occluders together
+};
+
+// Fills empty lists with the defaults, drops repetitions, checks ranges. Throws InputError.
+void complete(Sweeps& sweeps, const Work& work);
+
+// Shortens to one value every list that cannot matter, and says why.
+[[nodiscard]] std::vector<LeftOut> leave_out(Sweeps& sweeps, const Work& work);
+
+// Requires completed sweeps. No setting occurs twice; the order depends on the lists alone.
+[[nodiscard]] Plan combine(const Sweeps& sweeps);
+
+// Equal in everything that can change a value.
+[[nodiscard]] bool same_setting(const AdaptiveOptions& a, const AdaptiveOptions& b);
+
+// The settings that differ from `from` in the one parameter only, `from` included.
+[[nodiscard]] std::vector<std::size_t> line_through(const std::vector<AdaptiveOptions>& settings, std::size_t from,
+                                                    Parameter parameter);
+// Where in the list the setting stands.
+[[nodiscard]] std::optional<std::size_t> find_setting(const std::vector<AdaptiveOptions>& settings,
+                                                      const AdaptiveOptions& wanted);
+
+}  // namespace exactff::study

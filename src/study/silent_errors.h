@@ -1,0 +1,23 @@
+// Sampled decisions held against the exact visible region.
+#pragma once
+
+#include <vector>
+
+#include "exactff/adaptive.h"
+#include "exactff/exact.h"
+
+namespace exactff::study {
+
+struct SampledVerdict {
+  std::uint64_t silent = 0;  // sampled as 0 or 1, in truth in between
+  std::uint64_t wrong = 0;   // sampled as 0 where the truth is 1, or the other way round
+};
+
+// Looks at the leaves that sampling decided (kSampledVisible, kSampledHidden) and at no other. The region is
+// the exact one rounded to doubles, so parts below 1e-9 of a leaf's area are not told from nothing.
+[[nodiscard]] SampledVerdict judge_leaves(const std::vector<Leaf>& leaves, const std::vector<PlaneDrawing>& truth);
+
+// Area of the part of the loops (outer ones minus holes) inside a convex polygon of the same plane.
+[[nodiscard]] double area_inside(const std::vector<Loop>& loops, const std::vector<Vec3>& convex, const Vec3& normal);
+
+}  // namespace exactff::study

@@ -1,0 +1,38 @@
+// Words and numbers for the tables and the report. Nothing here depends on the locale.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace exactff::study {
+
+// The shortest decimal that reads back to the same double; "nan", "inf", "-inf".
+[[nodiscard]] std::string shortest(double value);
+
+// For people: so many significant digits, "0.0123", "1.2·10⁻⁷"; numbers from 100 to 10^7 to the unit.
+[[nodiscard]] std::string rounded(double value, int digits = 3);
+
+// "312 ns", "4.51 µs", "1.2 ms", "3.4 s", "2 min 5 s".
+[[nodiscard]] std::string duration(double seconds);
+
+// "31.2 %"; "0 %" only for none and "100 %" only for all.
+[[nodiscard]] std::string share(std::size_t part, std::size_t whole);
+
+// One field of a CSV row, quoted where it must be (RFC 4180).
+[[nodiscard]] std::string csv_field(std::string_view text);
+
+// Text for HTML, attributes included.
+[[nodiscard]] std::string html(std::string_view text);
+
+// "a, b and c".
+[[nodiscard]] std::string enumerate(std::span<const std::string> items);
+
+// "1 receiver", "12 receivers"; `plural` where it is not the noun with an s.
+[[nodiscard]] std::string counted(std::uint64_t count, std::string_view noun, std::string_view plural = {});
+
+// "{c} of {whole} {noun}s", or "every one of ...".
+[[nodiscard]] std::string counted_of(std::size_t count, std::size_t whole, std::string_view noun);
+
+}  // namespace exactff::study
