@@ -1,0 +1,105 @@
+// F = -1/(2 pi) sum_i angle(R_i, R_i+1) / |R_i x R_i+1| * (R_i x R_i+1) . N_r
+//
+// Notation of F. Tampieri, "Accurate Form-Factor Computation" (1992), Eq. (4), which prints no minus: that is an
+// erratum for vertices that run counter-clockwise as x sees them, and both variants below mend it. The formula is
+// homogeneous in every R_i, so R_i need not be a unit vector.
+//   1. a x b is formed as a x (b - a): the plain product loses r/h to cancellation twice over;
+//   2. the angle is atan2(|a x b|, a . b), since acos is blind below 1e-8. Where all angles are small, as they are
+//      after a split or two, angle / |a x b| = g(q^2) / (a . b) with q = |a x b| / (a . b) and g(z) = atan(sqrt z) /
+//      sqrt z = 1 - z/3 + z^2/5 - ..., which needs no root and no atan2: four edges at a time.
+#include "sampled/closed_form.h"
+
+#include <numbers>
+
+#include "sampled/lanes.h"
+
+namespace exactff::sampled {
+
+namespace {
+
+// Edge i runs from corner i to corner i + 1; a triangle's third edge is void and adds 0.
+struct Edges {
+  Four height;        // (a x b) . N_r
+  Four cosine;        // a . b
+  Four squared_sine;  // |a x b|^2
+};
+
+inline void make_edges(const SubPatch& s, const Vec3& n, Edges& edges) {
+  const Four ax = load(s.x), ay = load(s.y), az = load(s.z);
+  const Four bx = next_lane(ax), by = next_lane(ay), bz = next_lane(az);
+  const Four ex = bx - ax, ey = by - ay, ez = bz - az;
+  const Four cx = ay * ez - az * ey, cy = az * ex - ax * ez, cz = ax * ey - ay * ex;
+  edges.height = cx * n.x + cy * n.y + cz * n.z;
+  edges.cosine = ax * bx + ay * by + az * bz;
+  edges.squared_sine = cx * cx + cy * cy + cz * cz;
+}
+
+// g(z) for z in [0, 1/64]; the first term left out is below 2^-64
+constexpr double kLargestSeriesArgument = 1.0 / 64.0;
+constexpr double kSeries[] = {1.0 / 19, 1.0 / 17, 1.0 / 15, 1.0 / 13, 1.0 / 11, 1.0 / 9, 1.0 / 7, 1.0 / 5, 1.0 / 3, 1};
+
+inline double series_sum(const Edges& e) {
+  const Four z = e.squared_sine / (e.cosine * e.cosine);
+  Four g{};
+  for (const double c : kSeries) g = c - z * g;
+  return lane_sum(g * e.height / e.cosine);
+}
+
+double atan2_sum(const Edges& e) {
+  double sum = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    const double sine = std::sqrt(e.squared_sine[i]);
+    if (sine > 0.0) sum += std::atan2(sine, e.cosine[i]) / sine * e.height[i];
+  }
+  return sum;
+}
+
+}  // namespace
+
+EXACTFF_SAMPLED_CLONES
+double unoccluded_form_factor(const SubPatch& s, const Vec3& unit_normal) {
+  Edges e;
+  make_edges(s, unit_normal, e);
+  const FourMask small = (e.squared_sine <= kLargestSeriesArgument * e.cosine * e.cosine) & (e.cosine > 0.0);
+  const double sum = all_lanes(small) ? series_sum(e) : atan2_sum(e);
+  return std::max(0.0, sum * (-0.5 * std::numbers::inv_pi));
+}
+
+namespace {
+
+struct Float3 {
+  float x, y, z;
+};
+
+float dot(const Float3& a, const Float3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+Float3 cross(const Float3& a, const Float3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+Float3 to_float(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+
+Float3 unit(const Float3& v) {
+  const float reciprocal = 1.0F / std::sqrt(dot(v, v));
+  return {v.x * reciprocal, v.y * reciprocal, v.z * reciprocal};
+}
+
+}  // namespace
+
+// The cosine is clamped to [-1, 1] and a vanishing cross product skipped, where the print would give NaN.
+double literal_unoccluded_form_factor(const SubPatch& s, const Vec3& unit_normal) {
+  const Float3 normal = to_float(unit_normal);
+  float sum = 0.0F;
+  const int n = s.corner_count();
+  for (int i = 0; i < n; ++i) {
+    const Float3 a = unit(to_float(s.corner(i)));
+    const Float3 b = unit(to_float(s.corner(i + 1 == n ? 0 : i + 1)));
+    const Float3 c = cross(a, b);
+    const float sine = std::sqrt(dot(c, c));
+    const float angle = std::acos(std::clamp(dot(a, b), -1.0F, 1.0F));
+    if (sine > 0.0F) sum -= angle / sine * dot(c, normal);
+  }
+  return static_cast<double>(sum) * (0.5 * std::numbers::inv_pi);
+}
+
+}  // namespace exactff::sampled

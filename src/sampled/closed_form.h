@@ -1,0 +1,15 @@
+// Tampieri's Eq. (4): the unoccluded form factor from the origin to a polygon.
+#pragma once
+
+#include "sampled/sub_patch.h"
+
+namespace exactff::sampled {
+
+// In double, by atan2; estimates within about 1e-15 r/h relative for a patch of size h at distance r. Requires a unit
+// normal and a patch above the horizon of x.
+[[nodiscard]] double unoccluded_form_factor(const SubPatch& s, const Vec3& unit_normal);
+
+// As printed in 1992, in single precision by acos: wrong for small or distant patches, and for what the horizon cuts.
+[[nodiscard]] double literal_unoccluded_form_factor(const SubPatch& s, const Vec3& unit_normal);
+
+}  // namespace exactff::sampled

@@ -1,0 +1,44 @@
+// Four doubles at a time, in the vector extension that GCC and Clang share.
+//
+// Functions marked EXACTFF_SAMPLED_CLONES are compiled for AVX2 as well and chosen at load time. Products and sums are
+// never contracted (-ffp-contract=off), so every version gives the same bits.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
+#define EXACTFF_SAMPLED_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define EXACTFF_SAMPLED_CLONES
+#endif
+
+namespace exactff::sampled {
+
+using Four = double __attribute__((vector_size(32)));
+using FourMask = std::int64_t __attribute__((vector_size(32)));  // 0 or -1 in each lane
+
+inline Four load(const double* p) {
+  Four v;
+  std::memcpy(&v, p, sizeof v);
+  return v;
+}
+
+inline void store(const Four& v, double* p) { std::memcpy(p, &v, sizeof v); }
+
+inline Four four(double a) { return Four{a, a, a, a}; }
+
+inline Four next_lane(const Four& v) { return Four{v[1], v[2], v[3], v[0]}; }
+inline Four absolute(const Four& v) { return v < 0.0 ? -v : v; }
+inline Four larger(const Four& a, const Four& b) { return a < b ? b : a; }
+
+inline double lowest(const Four& v) { return std::min(std::min(v[0], v[1]), std::min(v[2], v[3])); }
+inline double highest(const Four& v) { return std::max(std::max(v[0], v[1]), std::max(v[2], v[3])); }
+inline double lane_sum(const Four& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
+inline unsigned lane_bits(const FourMask& m) {
+  return static_cast<unsigned>((m[0] & 1) | (m[1] & 2) | (m[2] & 4) | (m[3] & 8));
+}
+inline bool all_lanes(const FourMask& m) { return (m[0] & m[1] & m[2] & m[3]) != 0; }
+
+}  // namespace exactff::sampled

@@ -1,0 +1,37 @@
+// Sides of planes for the set-up of one receiver: sums of products with a bound on their rounding error.
+//
+// Notation: u = 2^-53. Inputs are differences of points, within relative error u a component. A component of a cross
+// product errs by at most 4u of its magnitude (the sum of the magnitudes of its two products), a dot product with it
+// by less than 9u of its own; the bound taken is 32u. Every product with a zero factor has magnitude 0, and every
+// other at least 2^-400, far above what underflow can spoil in coordinates of about 1: so an axis-parallel plane gets
+// the bound 0 and is decided like the rest, without an exact sign.
+#pragma once
+
+#include "sampled/vec.h"
+
+namespace exactff::sampled {
+
+struct Bounded {
+  double value = 0.0;
+  double error = 0.0;
+
+  [[nodiscard]] bool certainly_positive() const { return value > error; }
+  [[nodiscard]] bool certainly_negative() const { return value < -error; }
+  [[nodiscard]] bool certainly_not_positive() const { return value <= -error; }
+  [[nodiscard]] bool certainly_zero() const { return value == 0.0 && error == 0.0; }
+};
+
+// A normal and the magnitudes its components were made of.
+struct Normal {
+  Vec3 value;
+  Vec3 magnitude;
+};
+
+// (b - a) x (c - a): towards those who see a, b, c counter-clockwise.
+[[nodiscard]] Normal plane_normal(const Vec3& a, const Vec3& b, const Vec3& c);
+// A vector that is a normal as it is.
+[[nodiscard]] Normal exact_normal(const Vec3& n);
+
+[[nodiscard]] Bounded bounded_dot(const Normal& n, const Vec3& d);
+
+}  // namespace exactff::sampled

@@ -1,0 +1,225 @@
+#include "sampled/ray_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+namespace exactff::sampled {
+
+namespace {
+
+struct Float3 {
+  float x, y, z;
+  friend bool operator==(const Float3&, const Float3&) = default;
+  friend auto operator<=>(const Float3&, const Float3&) = default;
+};
+
+Float3 in_unit_box(const UnitBox& box, const Vec3& p) {
+  const Vec3 q = (p - box.centre) * box.scale;
+  return {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)};
+}
+
+// Vertices that some piece uses, ascending.
+std::vector<std::uint32_t> used_vertices(const Scene& scene) {
+  std::vector<std::uint32_t> used;
+  for (const Piece& piece : scene.pieces()) {
+    const auto corners = scene.corners(piece);
+    used.insert(used.end(), corners.begin(), corners.end());
+  }
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  return used;
+}
+
+UnitBox unit_box(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& used) {
+  if (used.empty()) return {};
+  Vec3 low = points[used[0]];
+  Vec3 high = low;
+  for (const std::uint32_t v : used) {
+    const Vec3& p = points[v];
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const double size = max_norm(high - low);
+  const int exponent = size > 0.0 ? std::clamp(std::ilogb(size) + 1, -1000, 1000) : 0;
+  return {(low + high) * 0.5, std::ldexp(1.0, -exponent)};
+}
+
+Problem refusal(const Scene& scene, FaceId face, std::string what) {
+  return {{},
+          scene.face(face).line,
+          "face '" + scene.name_of(face) + "' " + std::move(what),
+          "shadow rays work in single precision, so the sampled methods refuse this scene; the exact one does not",
+          "leave out the sampled methods, or enlarge the detail or shrink the scene around it"};
+}
+
+std::string position(const Vec3& p) {
+  std::array<char, 96> text{};
+  std::snprintf(text.data(), text.size(), "(%.17g, %.17g, %.17g)", p.x, p.y, p.z);
+  return text.data();
+}
+
+FaceId face_with_vertex(const Scene& scene, std::uint32_t vertex) {
+  for (const Piece& piece : scene.pieces()) {
+    const auto corners = scene.corners(piece);
+    if (std::find(corners.begin(), corners.end(), vertex) != corners.end()) return piece.face;
+  }
+  throw std::logic_error("a used vertex has no piece");
+}
+
+void find_merged_vertices(const Scene& scene, const std::vector<Vec3>& points, const UnitBox& box,
+                          std::vector<std::uint32_t> used, std::vector<Problem>& problems) {
+  std::vector<Float3> rounded(points.size());
+  for (const std::uint32_t v : used) rounded[v] = in_unit_box(box, points[v]);
+  std::sort(used.begin(), used.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return rounded[a] < rounded[b] || (rounded[a] == rounded[b] && a < b);
+  });
+  for (std::size_t i = 1; i < used.size(); ++i) {
+    const Vec3& p = scene.vertices()[used[i - 1]];
+    const Vec3& q = scene.vertices()[used[i]];
+    if (rounded[used[i - 1]] != rounded[used[i]] || p == q) continue;
+    problems.push_back(
+        refusal(scene, face_with_vertex(scene, used[i]),
+                "has the vertex " + position(q) + ", which single precision merges with " + position(p)));
+    return;  // one is enough: there may be very many
+  }
+}
+
+// Newell's vector of a polygon given by its corners.
+template <class Corner>
+Vec3 area_vector(std::size_t count, const Corner& corner) {
+  Vec3 sum;
+  for (std::size_t i = 1; i + 1 < count; ++i) sum = sum + cross(corner(i) - corner(0), corner(i + 1) - corner(0));
+  return sum;
+}
+
+void find_spoiled_pieces(const Scene& scene, const std::vector<Vec3>& points, const UnitBox& box,
+                         std::vector<Problem>& problems) {
+  for (const Piece& piece : scene.pieces()) {
+    const auto corners = scene.corners(piece);
+    const Vec3 exact = area_vector(corners.size(), [&](std::size_t i) { return points[corners[i]]; });
+    const Vec3 rounded = area_vector(corners.size(), [&](std::size_t i) {
+      const Float3 p = in_unit_box(box, points[corners[i]]);
+      return Vec3{p.x, p.y, p.z};
+    });
+    const bool collapsed = rounded == Vec3{};
+    if (!collapsed && dot(exact, rounded) > 0.0) continue;
+    const char* what = collapsed ? "collapses to a line in single precision" : "is flipped by single precision";
+    problems.push_back(refusal(scene, piece.face, what));
+    return;
+  }
+}
+
+// Per call of rtcOccluded16: what the filter needs. The context must come first.
+struct FilterContext {
+  RTCIntersectContext context;
+  const Blockers* blockers;
+  const std::uint32_t* piece_of_triangle;
+};
+
+void pass_through_others(const RTCFilterFunctionNArguments* args) {
+  const auto& c = *reinterpret_cast<const FilterContext*>(args->context);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    const std::uint32_t triangle = RTCHitN_primID(args->hit, args->N, i);
+    if (!c.blockers->contains(c.piece_of_triangle[triangle])) args->valid[i] = 0;
+  }
+}
+
+// The scene lies in the unit box, so nothing further than 1 (max norm) from a ray's end can be met, and a ray from far
+// away need not start there: it would lose its digits.
+constexpr double kLongestRay = 2.0;
+
+void set_ray(RTCRay16& rays, int lane, const Vec3& end, const Vec3& from_x) {
+  const double distance = max_norm(from_x);
+  const Vec3 direction = distance > kLongestRay ? from_x * (kLongestRay / distance) : from_x;
+  const Vec3 start = end - direction;
+  rays.org_x[lane] = static_cast<float>(start.x);
+  rays.org_y[lane] = static_cast<float>(start.y);
+  rays.org_z[lane] = static_cast<float>(start.z);
+  rays.dir_x[lane] = static_cast<float>(direction.x);
+  rays.dir_y[lane] = static_cast<float>(direction.y);
+  rays.dir_z[lane] = static_cast<float>(direction.z);
+  rays.tnear[lane] = 0.0F;
+  rays.tfar[lane] = 1.0F;
+  rays.time[lane] = 0.0F;
+  rays.mask[lane] = ~0U;
+  rays.id[lane] = 0;
+  rays.flags[lane] = 0;
+}
+
+}  // namespace
+
+UnitBox checked_unit_box(const Scene& scene, const std::vector<Vec3>& points) {
+  const std::vector<std::uint32_t> used = used_vertices(scene);
+  const UnitBox box = unit_box(points, used);
+  std::vector<Problem> problems;
+  find_merged_vertices(scene, points, box, used, problems);
+  find_spoiled_pieces(scene, points, box, problems);
+  if (!problems.empty()) throw InputError(std::move(problems));
+  return box;
+}
+
+void Blockers::assign(std::size_t piece_count, std::span<const std::uint32_t> pieces) {
+  for (const std::uint32_t piece : pieces_) blocks_[piece] = 0;
+  blocks_.resize(piece_count);
+  pieces_.assign(pieces.begin(), pieces.end());
+  for (const std::uint32_t piece : pieces_) blocks_[piece] = 1;
+}
+
+RayScene::RayScene(const Scene& scene, const std::vector<Vec3>& points, const UnitBox& box)
+    : box_(box), device_(rtcNewDevice("threads=1,set_affinity=0")) {
+  if (!device_) throw std::runtime_error("Embree gives no device");
+  scene_.reset(rtcNewScene(device_.get()));
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (std::uint32_t k = 0; k < scene.pieces().size(); ++k) {
+    const Piece& piece = scene.pieces()[k];
+    const auto corners = scene.corners(piece);
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+      triangles.push_back({corners[0], corners[i], corners[i + 1]});
+      piece_of_triangle_.push_back(k);
+    }
+  }
+  RTCGeometry mesh = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<Float3*>(rtcSetNewGeometryBuffer(
+      mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Float3), std::max<std::size_t>(1, points.size())));
+  std::transform(points.begin(), points.end(), vertices, [&](const Vec3& p) { return in_unit_box(box, p); });
+  auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                      3 * sizeof(std::uint32_t),
+                                                                      std::max<std::size_t>(1, triangles.size())));
+  for (const auto& t : triangles) indices = std::copy(t.begin(), t.end(), indices);
+  rtcCommitGeometry(mesh);
+  rtcAttachGeometry(scene_.get(), mesh);
+  rtcReleaseGeometry(mesh);
+  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+  rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
+  rtcCommitScene(scene_.get());
+  if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot build its structure");
+}
+
+unsigned RayScene::hidden_lanes(const Vec3& origin, const RayEnds& ends, int first, const Blockers& blockers,
+                                unsigned hidden) const {
+  FilterContext filter{{}, &blockers, piece_of_triangle_.data()};
+  rtcInitIntersectContext(&filter.context);
+  filter.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  filter.context.filter = pass_through_others;
+  const Vec3 start = (origin - box_.centre) * box_.scale;
+  const int lanes = std::min(kPacket, ends.count - first);
+  RTCRay16 rays;
+  alignas(64) int valid[kPacket];
+  for (int lane = 0; lane < kPacket; ++lane) {
+    const auto i = static_cast<std::size_t>(first + std::min(lane, lanes - 1));
+    const Vec3 from_x = Vec3{ends.x[i], ends.y[i], ends.z[i]} * box_.scale;
+    valid[lane] = lane < lanes && (hidden >> lane & 1U) == 0 ? -1 : 0;
+    set_ray(rays, lane, start + from_x, from_x);
+  }
+  rtcOccluded16(valid, scene_.get(), &filter.context, &rays);
+  for (int lane = 0; lane < lanes; ++lane) hidden |= (rays.tfar[lane] < 0.0F ? 1U : 0U) << lane;
+  return hidden;
+}
+
+}  // namespace exactff::sampled

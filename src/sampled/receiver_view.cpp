@@ -1,0 +1,209 @@
+#include "sampled/receiver_view.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "kernel/exact_vec.h"
+#include "sampled/plane_side.h"
+
+namespace exactff::sampled {
+
+namespace {
+
+// The power of two that brings the largest of the values into [1/2, 1).
+double normalising_scale(double largest) {
+  return largest > 0.0 ? std::ldexp(1.0, -std::clamp(std::ilogb(largest) + 1, -1022, 1022)) : 1.0;
+}
+
+bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+Box box_of(const Scene& scene, const Piece& piece, const std::vector<Vec3>& points) {
+  const auto corners = scene.corners(piece);
+  Box box{points[corners[0]], points[corners[0]]};
+  for (const std::uint32_t v : corners) {
+    const Vec3& p = points[v];
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+  }
+  return box;
+}
+
+// One polygon's shaft: the half-spaces that the tree is asked about, then the same questions to each piece.
+class Gatherer {
+ public:
+  Gatherer(const ScaledScene& scene, const ReceiverView& view, const SourcePlane& plane, Horizon horizon,
+           Gathered& scratch)
+      : scene_(scene),
+        view_(view),
+        plane_(plane),
+        horizon_(horizon),
+        front_(plane_normal(plane.frame[0], plane.frame[1], plane.frame[2])),
+        above_(exact_normal(view.normal)),
+        extent_(2.0 + max_norm(view.point)),
+        half_spaces_(scratch.half_spaces),
+        seen_(scratch.seen) {}
+
+  // The polygon's sides, the plane of the source, the plane through x parallel to it, and the horizon.
+  std::span<const HalfSpace> shaft(std::span<const Vec3> polygon) {
+    half_spaces_.clear();
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec3 edge = polygon[i + 1 < polygon.size() ? i + 1 : 0] - polygon[i];
+      add(cross(edge, polygon[i]), 2.0 * max_norm(edge) * max_norm(polygon[i]), 0.0);
+    }
+    const Vec3 to_plane = plane_.frame[0] - view_.point;
+    const double magnitude = max_norm(front_.magnitude);
+    add(front_.value, magnitude * (1.0 + max_norm(to_plane)), dot(front_.value, to_plane));
+    add(-front_.value, magnitude, 0.0);
+    if (horizon_ == Horizon::kClips) half_spaces_.push_back({view_.normal, 0.0});
+    return half_spaces_;
+  }
+
+  // The piece that was seen last is too near x's or the source's plane for single precision.
+  [[nodiscard]] bool blurred(double blur) const {
+    const Vec3& normal = seen_.normal.value;
+    if (std::abs(dot(normal, seen_.corners[0])) <= blur * length(normal)) return true;
+    const Vec3 to_plane = plane_.frame[0] - view_.point;
+    return std::all_of(seen_.corners.begin(), seen_.corners.end(), [&](const Vec3& t) {
+      return std::abs(dot(front_.value, t - to_plane)) <= blur * length(front_.value);
+    });
+  }
+
+  // The piece as x sees it, or nothing if it certainly hides nothing.
+  const SeenPolygon* see(std::uint32_t index) {
+    const Piece& piece = scene_.scene->pieces()[index];
+    if (view_.on == piece.face) return nullptr;
+    if (std::binary_search(plane_.coplanar.begin(), plane_.coplanar.end(), index)) return nullptr;
+    corners_ = scene_.scene->corners(piece);
+    if (outside_slab()) return nullptr;
+    const std::vector<Vec3>& p = scene_.points;
+    const Normal front = plane_normal(p[piece.frame[0]], p[piece.frame[1]], p[piece.frame[2]]);
+    const int side = side_of_x(piece, front);
+    if (side == 0) return nullptr;
+    copy_corners();
+    seen_.normal = {-front.value, front.magnitude};
+    if (side < 0) seen_.reverse();
+    return &seen_;
+  }
+
+ private:
+  // A rounded normal n' stands for an n within 2^-50 of its magnitude, so n . d >= 0 implies only
+  // n' . d >= -3 * 2^-50 * magnitude * |d|: the offset gives way by more than that.
+  void add(const Vec3& normal, double magnitude, double offset) {
+    half_spaces_.push_back({normal, offset - 0x1p-47 * magnitude * extent_});
+  }
+
+  template <class Height>
+  [[nodiscard]] bool no_corner_above(const Height& height) const {
+    return std::none_of(corners_.begin(), corners_.end(),
+                        [&](std::uint32_t v) { return !height(scene_.points[v]).certainly_not_positive(); });
+  }
+
+  // All of it on or behind the source's plane, on or behind the plane through x, or on or below the horizon.
+  [[nodiscard]] bool outside_slab() const {
+    return no_corner_above([&](const Vec3& p) { return bounded_dot(front_, p - plane_.frame[0]); }) ||
+           no_corner_above([&](const Vec3& p) { return bounded_dot(front_, view_.point - p); }) ||
+           (horizon_ == Horizon::kClips &&
+            no_corner_above([&](const Vec3& p) { return bounded_dot(above_, p - view_.point); }));
+  }
+
+  // +1 if x is in front of the piece's plane, 0 if in it. Exact.
+  [[nodiscard]] int side_of_x(const Piece& piece, const Normal& front) const {
+    const Bounded height = bounded_dot(front, view_.point - scene_.points[piece.frame[0]]);
+    if (height.certainly_positive()) return 1;
+    if (height.certainly_negative()) return -1;
+    if (height.certainly_zero()) return 0;
+    const auto vertices = scene_.scene->vertices();
+    return kernel::orientation(vertices[piece.frame[0]], vertices[piece.frame[1]], vertices[piece.frame[2]],
+                               view_.exact_point);
+  }
+
+  void copy_corners() {
+    seen_.corners.clear();
+    seen_.edges.clear();
+    for (std::size_t i = 0; i < corners_.size(); ++i) {
+      const Vec3& p = scene_.points[corners_[i]];
+      seen_.corners.push_back(p - view_.point);
+      seen_.edges.push_back(scene_.points[corners_[i + 1 < corners_.size() ? i + 1 : 0]] - p);
+    }
+  }
+
+  const ScaledScene& scene_;
+  const ReceiverView& view_;
+  const SourcePlane& plane_;
+  Horizon horizon_;
+  Normal front_;
+  Normal above_;
+  double extent_;  // bounds the max norm of any scene point's distance from x, and 1
+  std::vector<HalfSpace>& half_spaces_;
+  SeenPolygon& seen_;
+  std::span<const std::uint32_t> corners_;
+};
+
+}  // namespace
+
+ScaledScene::ScaledScene(const Scene& scene_given) : scene(&scene_given) {
+  const auto vertices = scene->vertices();
+  double largest = 0.0;
+  for (const Vec3& v : vertices) largest = std::max(largest, max_norm(v));
+  scale = normalising_scale(largest);
+  points.reserve(vertices.size());
+  for (const Vec3& v : vertices) points.push_back(v * scale);
+  std::vector<Box> boxes;
+  for (const Piece& piece : scene->pieces()) boxes.push_back(box_of(*scene, piece, points));
+  tree = ShaftTree(boxes);
+}
+
+ReceiverView view_from(const Receiver& receiver, double scale) {
+  if (!finite(receiver.point) || !finite(receiver.normal)) {
+    throw InputError(Problem{{},
+                             0,
+                             "receiver '" + receiver.id + "' has a coordinate that is not finite",
+                             "no form factor is defined there",
+                             {}});
+  }
+  if (receiver.normal == Vec3{}) {
+    throw InputError(Problem{{},
+                             0,
+                             "receiver '" + receiver.id + "' has a normal of length 0",
+                             "it has no horizon",
+                             "give a normal of any other length"});
+  }
+  ReceiverView view{receiver.point, receiver.point * scale, {}, {}, receiver.on};
+  view.normal = receiver.normal * normalising_scale(max_norm(receiver.normal));
+  view.unit_normal = view.normal * (1.0 / length(view.normal));
+  return view;
+}
+
+bool in_front(const ReceiverView& view, const SourcePlane& plane) {
+  const Normal normal = plane_normal(plane.frame[0], plane.frame[1], plane.frame[2]);
+  const Bounded height = bounded_dot(normal, view.point - plane.frame[0]);
+  if (height.certainly_positive()) return true;
+  if (height.certainly_not_positive()) return false;
+  const std::array<Vec3, 3>& f = plane.exact_frame;
+  return kernel::orientation(f[0], f[1], f[2], view.exact_point) > 0;
+}
+
+void gather_occluders(const ScaledScene& scene, const ReceiverView& view, const SourcePlane& plane,
+                      std::span<const Vec3> polygon, Horizon horizon, double blur, Gathered& gathered) {
+  gathered.occluders.clear();
+  gathered.sharp_pieces.clear();
+  gathered.blurred.clear();
+  gathered.looked_at = 0;
+  Gatherer gatherer(scene, view, plane, horizon, gathered);
+  double reach = 0.0;
+  for (const Vec3& p : polygon) reach = std::max(reach, max_norm(p));
+  scene.tree.query(view.point, gatherer.shaft(polygon), [&](std::uint32_t piece) {
+    ++gathered.looked_at;
+    const SeenPolygon* seen = gatherer.see(piece);
+    if (seen == nullptr) return;
+    if (gatherer.blurred(blur)) {
+      gathered.blurred.push_back(static_cast<std::uint32_t>(gathered.occluders.size()));
+    } else {
+      gathered.sharp_pieces.push_back(piece);
+    }
+    gathered.occluders.add(*seen, reach);
+  });
+}
+
+}  // namespace exactff::sampled

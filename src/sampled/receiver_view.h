@@ -1,0 +1,59 @@
+// One receiver's view of a scene: what faces it, and what may lie between it and a source.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "exactff/adaptive.h"
+#include "sampled/shaft.h"
+#include "sampled/source_roots.h"
+#include "scene/shaft_tree.h"
+
+namespace exactff::sampled {
+
+// The scene in coordinates multiplied by the power of two that brings the largest into [1/2, 1). Products of a few
+// lengths then neither overflow nor underflow, whatever the unit of length.
+struct ScaledScene {
+  const Scene* scene = nullptr;
+  double scale = 1.0;
+  std::vector<Vec3> points;
+  ShaftTree tree;  // over the boxes of the pieces
+
+  explicit ScaledScene(const Scene& scene);
+};
+
+struct ReceiverView {
+  Vec3 exact_point;  // as given
+  Vec3 point;        // scaled
+  Vec3 normal;       // times a power of two
+  Vec3 unit_normal;
+  std::optional<FaceId> on;
+};
+
+// Throws InputError where a coordinate is not finite or the normal is zero.
+[[nodiscard]] ReceiverView view_from(const Receiver& receiver, double scale);
+
+// Exact: x is strictly in front of the plane.
+[[nodiscard]] bool in_front(const ReceiverView& view, const SourcePlane& plane);
+
+enum class Horizon { kClips, kIgnored };
+
+// What gather_occluders finds.
+struct Gathered {
+  OccluderSet occluders;
+  std::vector<std::uint32_t> sharp_pieces;  // of the occluders that single precision can place
+  std::vector<std::uint32_t> blurred;       // the other occluders' indices
+  std::size_t looked_at = 0;                // pieces that the tree could not rule out
+  std::vector<HalfSpace> half_spaces;       // scratch space
+  SeenPolygon seen;                         // scratch space
+};
+
+// Finds every piece that may hide from x some of a convex polygon of the source, given by its corners relative to x
+// (all above the horizon, if it clips). An occluder is blurred if its plane passes x, or it lies before the source's
+// plane, at less than `blur`.
+void gather_occluders(const ScaledScene& scene, const ReceiverView& view, const SourcePlane& plane,
+                      std::span<const Vec3> polygon, Horizon horizon, double blur, Gathered& gathered);
+
+}  // namespace exactff::sampled

@@ -1,0 +1,191 @@
+#include "sampled/sample_points.h"
+
+namespace exactff::sampled {
+
+namespace {
+
+constexpr double kUnit32 = 0x1p-32;
+
+double radical_inverse_base2(std::uint32_t i) {
+  i = (i << 16) | (i >> 16);
+  i = ((i & 0x00ff00ffU) << 8) | ((i & 0xff00ff00U) >> 8);
+  i = ((i & 0x0f0f0f0fU) << 4) | ((i & 0xf0f0f0f0U) >> 4);
+  i = ((i & 0x33333333U) << 2) | ((i & 0xccccccccU) >> 2);
+  i = ((i & 0x55555555U) << 1) | ((i & 0xaaaaaaaaU) >> 1);
+  return i * kUnit32;
+}
+
+double wrapped(double u) { return u >= 1.0 ? u - 1.0 : u; }
+
+// Each map is kept as an origin and directions, so that a point costs a few multiplications.
+struct ParallelogramMap {
+  Vec3 origin, along_u, along_v;
+  explicit ParallelogramMap(const SubPatch& s)
+      : origin(s.corner(0)), along_u(s.corner(1) - origin), along_v(s.corner(3) - origin) {}
+  Vec3 operator()(double u, double v) const { return origin + along_u * u + along_v * v; }
+};
+
+// From the unit square to a triangle, continuous and area-preserving: the square is folded along its diagonal and
+// each half sheared (E. Heitz, "A low-distortion map between triangle and square", 2019).
+struct TriangleMap {
+  Vec3 origin, along_b, along_c;
+  explicit TriangleMap(const SubPatch& s)
+      : origin(s.corner(2)), along_b(s.corner(0) - origin), along_c(s.corner(1) - origin) {}
+  Vec3 operator()(double u, double v) const {
+    const double smaller = 0.5 * std::min(u, v);
+    return origin + along_b * (u - smaller) + along_c * (v - smaller);
+  }
+};
+
+// The bilinear map of a convex quadrilateral has the area density j(u, v) = j0 + ju u + jv v (no uv term: the patch is
+// planar). Its marginal in u and its conditional in v are linear, so both are inverted in closed form.
+struct QuadrilateralMap {
+  Vec3 origin, along_u, along_v, twist;
+  double j0, ju, jv;
+
+  explicit QuadrilateralMap(const SubPatch& s)
+      : origin(s.corner(0)),
+        along_u(s.corner(1) - origin),
+        along_v(s.corner(3) - origin),
+        twist((s.corner(0) - s.corner(1)) + (s.corner(2) - s.corner(3))) {
+    const Vec3 whole = cross(s.corner(2) - s.corner(0), s.corner(3) - s.corner(1));
+    j0 = dot(cross(along_u, along_v), whole);
+    ju = dot(cross(along_u, twist), whole);
+    jv = dot(cross(twist, along_v), whole);
+  }
+
+  // The t in [0, 1] at which a density proportional to d0 + slope t has collected the share r of its mass.
+  static double inverse(double d0, double slope, double r) {
+    const double low = std::max(d0, 0.0);
+    const double high = std::max(d0 + slope, 0.0);
+    const double root = std::sqrt(low * low * (1.0 - r) + high * high * r);
+    return low + root > 0.0 ? std::min(1.0, (low + high) * r / (low + root)) : r;
+  }
+
+  Vec3 operator()(double r1, double r2) const {
+    const double u = inverse(j0 + 0.5 * jv, ju, r1);
+    const double v = inverse(j0 + ju * u, jv, r2);
+    return origin + along_u * u + along_v * v + twist * (u * v);
+  }
+};
+
+Vec3 centroid(const SubPatch& s) {
+  const Vec3 sum = s.corner(0) + s.corner(1) + s.corner(2);
+  return s.shape == PatchShape::kTriangle ? sum * (1.0 / 3.0) : (sum + s.corner(3)) * 0.25;
+}
+
+void set(RayEnds& ends, int i, const Vec3& p) {
+  const auto k = static_cast<std::size_t>(i);
+  ends.x[k] = p.x;
+  ends.y[k] = p.y;
+  ends.z[k] = p.z;
+}
+
+void pad(RayEnds& ends) {
+  const auto last = static_cast<std::size_t>(ends.count - 1);
+  const Vec3 p{ends.x[last], ends.y[last], ends.z[last]};
+  for (int i = ends.count; i < ends.padded_count; ++i) set(ends, i, p);
+}
+
+}  // namespace
+
+void RayEnds::resize(int rays) {
+  count = rays;
+  padded_count = (rays + kLanes - 1) / kLanes * kLanes;
+  for (std::vector<double>* values : {&x, &y, &z}) values->resize(static_cast<std::size_t>(padded_count));
+}
+
+void SamplePlan::prepare(SamplePattern pattern, int rays) {
+  if (pattern == pattern_ && rays == rays_) return;
+  pattern_ = pattern;
+  rays_ = rays;
+  cells_.clear();
+  if (pattern == SamplePattern::kCentre) {
+    cells_.push_back({0.0, 0.0, 1.0, 1.0});
+  } else if (pattern == SamplePattern::kLowDiscrepancy) {
+    make_hammersley(rays);
+  } else {
+    make_rows(rays);
+  }
+}
+
+// Row k of m holds the cells from k n / m to (k + 1) n / m, so every cell has the area 1/n.
+void SamplePlan::make_rows(int rays) {
+  const auto n = static_cast<std::int64_t>(rays);
+  const auto m = static_cast<std::int64_t>(std::lround(std::sqrt(static_cast<double>(rays))));
+  for (std::int64_t k = 0; k < m; ++k) {
+    const std::int64_t first = k * n / m;
+    const std::int64_t count = (k + 1) * n / m - first;
+    const double height = static_cast<double>(count) / static_cast<double>(n);
+    const double v = static_cast<double>(first) / static_cast<double>(n);
+    const double width = 1.0 / static_cast<double>(count);
+    for (std::int64_t i = 0; i < count; ++i) cells_.push_back({static_cast<double>(i) * width, v, width, height});
+  }
+}
+
+void SamplePlan::make_hammersley(int rays) {
+  for (int i = 0; i < rays; ++i) {
+    cells_.push_back({static_cast<double>(i) / rays, radical_inverse_base2(static_cast<std::uint32_t>(i)), 1.0, 1.0});
+  }
+}
+
+namespace {
+
+struct Point {
+  double u, v;
+};
+
+// Two numbers in [0, 1) from the stream `key`.
+Point random_point(std::uint64_t key, std::uint64_t index) {
+  const std::uint64_t bits = mixed(key + (index + 1) * kGoldenGamma);
+  return {static_cast<double>(static_cast<std::int64_t>(bits >> 32)) * kUnit32,
+          static_cast<double>(static_cast<std::int64_t>(bits & 0xffffffffU)) * kUnit32};
+}
+
+}  // namespace
+
+template <class Map>
+void SamplePlan::place_by(const Map& map, std::uint64_t key, RayEnds& ends) const {
+  double* const x = ends.x.data();
+  double* const y = ends.y.data();
+  double* const z = ends.z.data();
+  const auto place_all = [&](const auto& point_of) {
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      const Point point = point_of(cells_[i], i);
+      const Vec3 p = map(point.u, point.v);
+      x[i] = p.x;
+      y[i] = p.y;
+      z[i] = p.z;
+    }
+  };
+  const Point shift = random_point(key, 0);
+  if (pattern_ == SamplePattern::kJittered) {
+    place_all([key](const Cell& cell, std::size_t i) {
+      const Point r = random_point(key, i);
+      return Point{cell.u + cell.width * r.u, cell.v + cell.height * r.v};
+    });
+  } else if (pattern_ == SamplePattern::kLowDiscrepancy) {
+    place_all([shift](const Cell& cell, std::size_t) {
+      return Point{wrapped(cell.u + shift.u), wrapped(cell.v + shift.v)};
+    });
+  } else {
+    place_all([](const Cell& cell, std::size_t) {
+      return Point{cell.u + 0.5 * cell.width, cell.v + 0.5 * cell.height};
+    });
+  }
+}
+
+void SamplePlan::place(const SubPatch& s, std::uint64_t key, RayEnds& ends) const {
+  if (pattern_ == SamplePattern::kCentre) {
+    set(ends, 0, centroid(s));
+  } else if (s.shape == PatchShape::kParallelogram) {
+    place_by(ParallelogramMap(s), key, ends);
+  } else if (s.shape == PatchShape::kTriangle) {
+    place_by(TriangleMap(s), key, ends);
+  } else {
+    place_by(QuadrilateralMap(s), key, ends);
+  }
+  pad(ends);
+}
+
+}  // namespace exactff::sampled
