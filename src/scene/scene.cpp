@@ -12,10 +12,6 @@
 
 namespace exactff {
 
-std::string quoted_face(std::string_view patch, std::uint32_t number) {
-  return "face '" + std::string(patch) + ":" + std::to_string(number) + "'";
-}
-
 Scene::Scene(std::unique_ptr<Data> data) : data_(std::move(data)) {}
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;

@@ -31,7 +31,7 @@ struct SceneBuilder::State {
   void index_names();
 
   std::string quoted(const Face& face) const {
-    return quoted_face(data->patches[index_of(face.patch)].name, face.number);
+    return "face '" + data->patches[index_of(face.patch)].name + ":" + std::to_string(face.number) + "'";
   }
 };
 
@@ -133,7 +133,7 @@ bool SceneBuilder::State::check_indices(const Face& face) {
 void SceneBuilder::State::cut(FaceId id) {
   Face& face = data->faces[index_of(id)];
   if (!check_indices(face)) return;
-  CutFace cut = cut_face(data->vertices, std::move(face.rings));
+  CutFace cut = cut_face(data->vertices, face.rings);
   face.rings = std::move(cut.rings);
   face.shape = cut.shape;
   face.newell = cut.newell;

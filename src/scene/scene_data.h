@@ -26,7 +26,4 @@ struct Scene::Data {
   mutable ShaftTree tree;
 };
 
-// "face 'NAME:k'" for messages.
-std::string quoted_face(std::string_view patch, std::uint32_t number);
-
 }  // namespace exactff

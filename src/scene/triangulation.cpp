@@ -40,7 +40,7 @@ Ring without_repetitions(std::span<const Vec3> vertices, const Ring& ring) {
 // Works on one face; `face_` is what it hands back.
 class FaceCutter {
  public:
-  FaceCutter(std::span<const Vec3> vertices, std::vector<Ring> rings) : vertices_(vertices) {
+  FaceCutter(std::span<const Vec3> vertices, const std::vector<Ring>& rings) : vertices_(vertices) {
     for (const Ring& ring : rings) face_.rings.push_back(without_repetitions(vertices, ring));
     points_ = face_points(vertices, face_.rings);
   }
@@ -50,6 +50,7 @@ class FaceCutter {
     if (face_.fault) {
       face_.shape = FaceShape::kSkipped;
       face_.parts.clear();
+      face_.area = 0.0;
     }
     return std::move(face_);
   }
@@ -208,8 +209,8 @@ void FaceCutter::report(const PlanarRegion& region) {
 
 }  // namespace
 
-CutFace cut_face(std::span<const Vec3> vertices, std::vector<Ring> rings) {
-  return FaceCutter(vertices, std::move(rings)).run();
+CutFace cut_face(std::span<const Vec3> vertices, const std::vector<Ring>& rings) {
+  return FaceCutter(vertices, rings).run();
 }
 
 }  // namespace exactff

@@ -39,6 +39,6 @@ struct CutFace {
 // Exact in every decision. An exactly planar face keeps its shape and is cut into as few convex parts as
 // merging a constrained triangulation gives; one that is not planar is cut into triangles by the rule of
 // `ear_clipping.h`. Requires valid indices and finite coordinates; any rings otherwise.
-CutFace cut_face(std::span<const Vec3> vertices, std::vector<Ring> rings);
+CutFace cut_face(std::span<const Vec3> vertices, const std::vector<Ring>& rings);
 
 }  // namespace exactff
