@@ -3,20 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
+#include <cstdio>
+#include <new>
 #include <stdexcept>
 #include <string>
+
+#include "scene/scene_data.h"
 
 namespace exactff::sampled {
 
 namespace {
 
-struct Float3 {
-  float x, y, z;
-  friend bool operator==(const Float3&, const Float3&) = default;
-  friend auto operator<=>(const Float3&, const Float3&) = default;
-};
+using Float3 = std::array<float, 3>;
 
 Float3 in_unit_box(const UnitBox& box, const Vec3& p) {
   const Vec3 q = (p - box.centre) * box.scale;
@@ -50,9 +48,7 @@ UnitBox unit_box(const std::vector<Vec3>& points, const std::vector<std::uint32_
 }
 
 Problem refusal(const Scene& scene, FaceId face, std::string what) {
-  return {{},
-          scene.face(face).line,
-          "face '" + scene.name_of(face) + "' " + std::move(what),
+  return {scene.data().file, scene.face(face).line, "face '" + scene.name_of(face) + "' " + std::move(what),
           "shadow rays work in single precision, so the sampled methods refuse this scene; the exact one does not",
           "leave out the sampled methods, or enlarge the detail or shrink the scene around it"};
 }
@@ -104,7 +100,7 @@ void find_spoiled_pieces(const Scene& scene, const std::vector<Vec3>& points, co
     const Vec3 exact = area_vector(corners.size(), [&](std::size_t i) { return points[corners[i]]; });
     const Vec3 rounded = area_vector(corners.size(), [&](std::size_t i) {
       const Float3 p = in_unit_box(box, points[corners[i]]);
-      return Vec3{p.x, p.y, p.z};
+      return Vec3{p[0], p[1], p[2]};
     });
     const bool collapsed = rounded == Vec3{};
     if (!collapsed && dot(exact, rounded) > 0.0) continue;
@@ -112,6 +108,16 @@ void find_spoiled_pieces(const Scene& scene, const std::vector<Vec3>& points, co
     problems.push_back(refusal(scene, piece.face, what));
     return;
   }
+}
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+// Embree owns the buffer.
+template <class Element>
+Element* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count) {
+  void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Element), std::max<std::size_t>(1, count));
+  if (buffer == nullptr) throw std::bad_alloc();
+  return static_cast<Element*>(buffer);
 }
 
 // Per call of rtcOccluded16: what the filter needs. The context must come first.
@@ -175,30 +181,31 @@ RayScene::RayScene(const Scene& scene, const std::vector<Vec3>& points, const Un
     : box_(box), device_(rtcNewDevice("threads=1,set_affinity=0")) {
   if (!device_) throw std::runtime_error("Embree gives no device");
   scene_.reset(rtcNewScene(device_.get()));
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  add_mesh(scene, points);
+  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+  rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
+  rtcCommitScene(scene_.get());
+  if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot build its structure");
+}
+
+// All pieces as one mesh, each a fan of triangles.
+void RayScene::add_mesh(const Scene& scene, const std::vector<Vec3>& points) {
+  std::vector<Triangle> triangles;
   for (std::uint32_t k = 0; k < scene.pieces().size(); ++k) {
-    const Piece& piece = scene.pieces()[k];
-    const auto corners = scene.corners(piece);
+    const auto corners = scene.corners(scene.pieces()[k]);
     for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
       triangles.push_back({corners[0], corners[i], corners[i + 1]});
       piece_of_triangle_.push_back(k);
     }
   }
   RTCGeometry mesh = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<Float3*>(rtcSetNewGeometryBuffer(
-      mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Float3), std::max<std::size_t>(1, points.size())));
-  std::transform(points.begin(), points.end(), vertices, [&](const Vec3& p) { return in_unit_box(box, p); });
-  auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                      3 * sizeof(std::uint32_t),
-                                                                      std::max<std::size_t>(1, triangles.size())));
-  for (const auto& t : triangles) indices = std::copy(t.begin(), t.end(), indices);
+  Float3* vertices = new_buffer<Float3>(mesh, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, points.size());
+  std::transform(points.begin(), points.end(), vertices, [this](const Vec3& p) { return in_unit_box(box_, p); });
+  Triangle* indices = new_buffer<Triangle>(mesh, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles.size());
+  std::copy(triangles.begin(), triangles.end(), indices);
   rtcCommitGeometry(mesh);
   rtcAttachGeometry(scene_.get(), mesh);
   rtcReleaseGeometry(mesh);
-  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
-  rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
-  rtcCommitScene(scene_.get());
-  if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot build its structure");
 }
 
 unsigned RayScene::hidden_lanes(const Vec3& origin, const RayEnds& ends, int first, const Blockers& blockers,

@@ -57,6 +57,8 @@ class RayScene {
     void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
   };
 
+  void add_mesh(const Scene& scene, const std::vector<Vec3>& points);
+
   UnitBox box_;
   std::vector<std::uint32_t> piece_of_triangle_;
   std::unique_ptr<RTCDeviceTy, DeviceRelease> device_;

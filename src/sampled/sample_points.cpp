@@ -142,37 +142,38 @@ Point random_point(std::uint64_t key, std::uint64_t index) {
           static_cast<double>(static_cast<std::int64_t>(bits & 0xffffffffU)) * kUnit32};
 }
 
+// Runs point_of(cell, i) for every cell and stores the images.
+template <class Cells, class Map, class PointOf>
+void place_all(const Cells& cells, const Map& map, const PointOf& point_of, RayEnds& ends) {
+  double* const x = ends.x.data();
+  double* const y = ends.y.data();
+  double* const z = ends.z.data();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const Point point = point_of(cells[i], i);
+    const Vec3 p = map(point.u, point.v);
+    x[i] = p.x;
+    y[i] = p.y;
+    z[i] = p.z;
+  }
+}
+
 }  // namespace
 
 template <class Map>
 void SamplePlan::place_by(const Map& map, std::uint64_t key, RayEnds& ends) const {
-  double* const x = ends.x.data();
-  double* const y = ends.y.data();
-  double* const z = ends.z.data();
-  const auto place_all = [&](const auto& point_of) {
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      const Point point = point_of(cells_[i], i);
-      const Vec3 p = map(point.u, point.v);
-      x[i] = p.x;
-      y[i] = p.y;
-      z[i] = p.z;
-    }
+  const auto jittered = [key](const Cell& cell, std::size_t i) {
+    const Point r = random_point(key, i);
+    return Point{cell.u + cell.width * r.u, cell.v + cell.height * r.v};
   };
-  const Point shift = random_point(key, 0);
-  if (pattern_ == SamplePattern::kJittered) {
-    place_all([key](const Cell& cell, std::size_t i) {
-      const Point r = random_point(key, i);
-      return Point{cell.u + cell.width * r.u, cell.v + cell.height * r.v};
-    });
-  } else if (pattern_ == SamplePattern::kLowDiscrepancy) {
-    place_all([shift](const Cell& cell, std::size_t) {
-      return Point{wrapped(cell.u + shift.u), wrapped(cell.v + shift.v)};
-    });
-  } else {
-    place_all([](const Cell& cell, std::size_t) {
-      return Point{cell.u + 0.5 * cell.width, cell.v + 0.5 * cell.height};
-    });
-  }
+  const auto shifted = [shift = random_point(key, 0)](const Cell& cell, std::size_t) {
+    return Point{wrapped(cell.u + shift.u), wrapped(cell.v + shift.v)};
+  };
+  const auto central = [](const Cell& cell, std::size_t) {
+    return Point{cell.u + 0.5 * cell.width, cell.v + 0.5 * cell.height};
+  };
+  if (pattern_ == SamplePattern::kJittered) return place_all(cells_, map, jittered, ends);
+  if (pattern_ == SamplePattern::kLowDiscrepancy) return place_all(cells_, map, shifted, ends);
+  place_all(cells_, map, central, ends);
 }
 
 void SamplePlan::place(const SubPatch& s, std::uint64_t key, RayEnds& ends) const {

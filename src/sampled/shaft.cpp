@@ -109,30 +109,32 @@ CandidateRange OccluderSet::push(std::span<const std::uint32_t> indices) {
   return {first, stack_.size()};
 }
 
+inline ShaftRelation OccluderSet::relation(std::uint32_t index, const SubPatch& s, const ShaftSides& sides) const {
+  if (beyond_one_side(boxes_[index], sides)) return ShaftRelation::kOutside;
+  const Occluder& o = occluders_[index];
+  const Four x = load(s.x), y = load(s.y), z = load(s.z);
+  bool cuts = true;
+  for (const Form& f : forms(o)) {
+    const Four value = x * f.x + y * f.y + z * f.z - f.offset;
+    if (highest(value) < -f.error) return ShaftRelation::kOutside;
+    cuts = cuts && lowest(value) > f.error;
+  }
+  if (cuts) return ShaftRelation::kCuts;
+  return beyond_one_side(corners(o), boxes_[index].size, sides) ? ShaftRelation::kOutside : ShaftRelation::kInDoubt;
+}
+
 EXACTFF_SAMPLED_CLONES
 std::optional<CandidateRange> OccluderSet::inherit(CandidateRange parent, const SubPatch& s, const ShaftSides& sides) {
-  const Four x = load(s.x), y = load(s.y), z = load(s.z);
   const std::size_t first = stack_.size();
   stack_.resize(first + parent.size());
   std::uint32_t* next = stack_.data() + first;
   for (std::size_t k = parent.first; k < parent.last; ++k) {
-    const std::uint32_t index = stack_[k];
-    if (beyond_one_side(boxes_[index], sides)) continue;
-    const Occluder& o = occluders_[index];
-    bool cuts = true;
-    bool outside = false;
-    for (const Form& f : forms(o)) {
-      const Four value = x * f.x + y * f.y + z * f.z - f.offset;
-      outside = highest(value) < -f.error;
-      if (outside) break;
-      cuts = cuts && lowest(value) > f.error;
-    }
-    if (outside) continue;
-    if (cuts) {
+    const ShaftRelation found = relation(stack_[k], s, sides);
+    if (found == ShaftRelation::kCuts) {
       stack_.resize(first);
       return std::nullopt;
     }
-    if (!beyond_one_side(corners(o), boxes_[index].size, sides)) *next++ = index;
+    if (found == ShaftRelation::kInDoubt) *next++ = stack_[k];
   }
   stack_.resize(static_cast<std::size_t>(next - stack_.data()));
   return CandidateRange{first, stack_.size()};

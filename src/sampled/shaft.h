@@ -52,7 +52,9 @@ struct SeenBox {
   double size = 0.0;  // bounds the max norm of its points
 };
 
-// A run of a candidate list.
+enum class ShaftRelation { kOutside, kInDoubt, kCuts };
+
+// A run of the stack of candidate lists.
 struct CandidateRange {
   std::size_t first = 0;
   std::size_t last = 0;
@@ -95,6 +97,7 @@ class OccluderSet {
     std::uint32_t corner_count;  // one form more
   };
 
+  [[nodiscard]] ShaftRelation relation(std::uint32_t index, const SubPatch& s, const ShaftSides& sides) const;
   [[nodiscard]] std::span<const Form> forms(const Occluder& o) const {
     return {forms_.data() + o.first_form, o.corner_count + 1};
   }

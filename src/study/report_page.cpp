@@ -271,7 +271,10 @@ class PageWriter {
     fact("processor", html(processor_name()) + ", " + counted(std::thread::hardware_concurrency(), "hardware thread"));
     fact("threads", std::to_string(study_.request.threads));
     fact("set up once", "exact method " + duration(study_.exact_setup_seconds) + ", ray structure " +
-                            duration(study_.ray_setup_seconds) + "; not part of the times per receiver");
+                            (study_.ray_setup_seconds > 0.0
+                                 ? duration(study_.ray_setup_seconds)
+                                 : std::string("not built (no candidate list was long enough to need it)")) +
+                            "; not part of the times per receiver");
     fact("made", today());
     text_ += "</table></div>\n";
     text_ += paragraph(

@@ -129,7 +129,7 @@ class Runner {
     }
     study_.exact_setup_seconds = seconds_since(start);
     solver_.emplace(scene());
-    study_.ray_setup_seconds = solver_->build_seconds();
+    for (const Selection& source : request().sources) sampled_sources_.push_back(solver_->prepare(source));
     for (const Receiver& receiver : request().receivers) {
       for (std::size_t s = 0; s < sources_.size(); ++s) {
         study_.largest_rho_b = std::max(study_.largest_rho_b, largest_rho_b(receiver, s));
@@ -199,6 +199,7 @@ class Runner {
     const std::size_t count = request().receivers.size();
     study_.samples.assign(study_.settings.size(), std::vector<SampleRow>(count));
     parallel_for(count, threads(), "sampling", hooks_, [this](std::size_t i) { sample_receiver(i); });
+    study_.ray_setup_seconds = solver_->build_seconds();  // built where a candidate list first was long
   }
 
   void sample_receiver(std::size_t i) {
@@ -218,10 +219,10 @@ class Runner {
     AdaptiveOptions options = study_.settings[k];
     const double rho_b = largest_rho_b(receiver, s);
     options.record_leaves = true;
-    const AdaptiveResult recorded = solver_->form_factor(receiver, request().sources[s], rho_b, options);
+    const AdaptiveResult recorded = solver_->form_factor(receiver, sampled_sources_[s], rho_b, options);
     options.record_leaves = false;
     const auto start = Clock::now();
-    const AdaptiveResult result = solver_->form_factor(receiver, request().sources[s], rho_b, options);
+    const AdaptiveResult result = solver_->form_factor(receiver, sampled_sources_[s], rho_b, options);
     row.seconds += seconds_since(start);
     require_same(recorded, result);
     add_counts(row, result);
@@ -277,6 +278,7 @@ class Runner {
   std::vector<ExactSource> sources_;
   std::vector<Rgb> radiosities_;
   std::optional<AdaptiveSolver> solver_;
+  std::vector<AdaptiveSource> sampled_sources_;
   std::vector<char> sampled_;  // by receiver; not vector<bool>, whose neighbours share bytes between threads
 };
 

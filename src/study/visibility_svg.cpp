@@ -157,9 +157,8 @@ std::string shadow_elements(const Scene& scene, const PanelMap& map, const Plane
                                         : "fill=\"#0072b2\" fill-opacity=\"0.25\" stroke-width=\"0.8\"";
   std::string result;
   for (const PlaneDrawing::Shadow& shadow : drawing.shadows) {
-    result += "<path d=\"" + path_of(map, shadow.outline.corners) + "\" " + fill +
-              " stroke=\"#0072b2\"><title>" + html(scene.name_of(shadow.face)) +
-              "</title></path>\n";
+    result += "<path d=\"" + path_of(map, shadow.outline.corners) + "\" " + fill + " stroke=\"#0072b2\"><title>" +
+              html(scene.name_of(shadow.face)) + "</title></path>\n";
   }
   return result;
 }
