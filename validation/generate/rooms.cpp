@@ -1,0 +1,126 @@
+// The room with the venetian blind. Metres; x to the right, y up, z into the room. Every quadrilateral is exactly
+// planar in doubles: it either lies in a coordinate plane or is swept along an axis.
+#include <array>
+
+#include "generate/families.h"
+
+namespace exactff::generate {
+
+namespace {
+
+constexpr double kWidth = 4.0;    // x
+constexpr double kHeight = 2.75;  // y
+constexpr double kDepth = 5.0;    // z
+
+constexpr double kWindowLeft = 1.0;
+constexpr double kWindowRight = 3.0;
+constexpr double kSill = 0.875;
+constexpr double kLintel = 2.25;
+
+constexpr double kBlindGap = 0.125;    // from the window to the blind's middle
+constexpr double kBlindMargin = 0.05;  // by which the blind overlaps the window left and right
+constexpr double kSlatDepth = 1.0;     // of a slat, over the pitch
+constexpr double kSlatHeight = 0.75;   // of a slat, over the pitch: it slopes down towards the room, 3 in 4
+
+constexpr double kTableHeight = 0.75;
+constexpr double kTopThickness = 0.03125;
+constexpr double kLegSide = 0.0625;
+
+struct Box {
+  Vec3 low;
+  Vec3 high;
+};
+
+// The six faces of a box, fronts outward.
+void add_box(PlainScene& scene, const char* name, const Box& box) {
+  const auto& [a, b] = box;
+  PlainPatch& patch = scene.patch(name);
+  scene.add_ring(patch, {{a.x, a.y, a.z}, {a.x, a.y, b.z}, {a.x, b.y, b.z}, {a.x, b.y, a.z}});
+  scene.add_ring(patch, {{b.x, a.y, a.z}, {b.x, b.y, a.z}, {b.x, b.y, b.z}, {b.x, a.y, b.z}});
+  scene.add_ring(patch, {{a.x, a.y, a.z}, {b.x, a.y, a.z}, {b.x, a.y, b.z}, {a.x, a.y, b.z}});
+  scene.add_ring(patch, {{a.x, b.y, a.z}, {a.x, b.y, b.z}, {b.x, b.y, b.z}, {b.x, b.y, a.z}});
+  scene.add_ring(patch, {{a.x, a.y, a.z}, {a.x, b.y, a.z}, {b.x, b.y, a.z}, {b.x, a.y, a.z}});
+  scene.add_ring(patch, {{a.x, a.y, b.z}, {b.x, a.y, b.z}, {b.x, b.y, b.z}, {a.x, b.y, b.z}});
+}
+
+void add_patch(PlainScene& scene, const char* name, const char* material) {
+  scene.patches.push_back({name, material, {}});
+}
+
+// Floor, ceiling and three walls, fronts into the room.
+void add_shell(PlainScene& scene) {
+  const double w = kWidth;
+  const double h = kHeight;
+  const double d = kDepth;
+  scene.add_ring(scene.patch("floor"), {{0, 0, 0}, {0, 0, d}, {w, 0, d}, {w, 0, 0}});
+  scene.add_ring(scene.patch("ceiling"), {{0, h, 0}, {w, h, 0}, {w, h, d}, {0, h, d}});
+  scene.add_ring(scene.patch("wall_left"), {{0, 0, 0}, {0, h, 0}, {0, h, d}, {0, 0, d}});
+  scene.add_ring(scene.patch("wall_right"), {{w, 0, 0}, {w, 0, d}, {w, h, d}, {w, h, 0}});
+  scene.add_ring(scene.patch("wall_back"), {{0, 0, d}, {0, h, d}, {w, h, d}, {w, 0, d}});
+}
+
+// The window and, about it, its wall as four trapezoids that share every corner with it.
+void add_window_wall(PlainScene& scene) {
+  const std::array<Vec3, 4> outer{{{0, 0, 0}, {kWidth, 0, 0}, {kWidth, kHeight, 0}, {0, kHeight, 0}}};
+  const std::array<Vec3, 4> inner{
+      {{kWindowLeft, kSill, 0}, {kWindowRight, kSill, 0}, {kWindowRight, kLintel, 0}, {kWindowLeft, kLintel, 0}}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t j = (i + 1) % 4;
+    scene.add_ring(scene.patch("wall_window"), {outer[i], outer[j], inner[j], inner[i]});
+  }
+  scene.add_ring(scene.patch("window"), {inner.begin(), inner.end()});
+}
+
+void add_blind(PlainScene& scene, int slats) {
+  const double left = kWindowLeft - kBlindMargin;
+  const double right = kWindowRight + kBlindMargin;
+  const double pitch = (kLintel - kSill) / slats;
+  for (int i = 0; i < slats; ++i) {
+    const double middle = kSill + pitch * (i + 0.5);
+    const double top = middle + kSlatHeight * pitch / 2;
+    const double bottom = middle - kSlatHeight * pitch / 2;
+    const double near = kBlindGap - kSlatDepth * pitch / 2;
+    const double far = kBlindGap + kSlatDepth * pitch / 2;
+    scene.add_ring(scene.patch("blind"),
+                   {{left, bottom, far}, {right, bottom, far}, {right, top, near}, {left, top, near}});
+  }
+}
+
+void add_table(PlainScene& scene) {
+  const Box top{{1.25, kTableHeight - kTopThickness, 1.5}, {2.75, kTableHeight, 2.5}};
+  add_box(scene, "table_top", top);
+  for (const double x : {top.low.x, top.high.x - kLegSide}) {
+    for (const double z : {top.low.z, top.high.z - kLegSide}) {
+      add_box(scene, "table_legs", {{x, 0, z}, {x + kLegSide, top.low.y, z + kLegSide}});
+    }
+  }
+}
+
+}  // namespace
+
+PlainScene room(const FamilyOptions& options) {
+  PlainScene scene;
+  scene.materials = {{"wall", {0.75, 0.75, 0.7}, {}},
+                     {"floor", {0.4, 0.3, 0.2}, {}},
+                     {"sky", {}, {6, 8, 10}},
+                     {"slat", {0.8, 0.8, 0.8}, {}},
+                     {"wood", {0.5, 0.35, 0.2}, {}}};
+  scene.materials[2].reflectance = {0, 0, 0};
+  for (const char* name : {"wall_window", "wall_left", "wall_right", "wall_back", "ceiling"})
+    add_patch(scene, name, "wall");
+  add_patch(scene, "floor", "floor");
+  add_patch(scene, "window", "sky");
+  add_patch(scene, "blind", "slat");
+  add_patch(scene, "table_top", "wood");
+  add_patch(scene, "table_legs", "wood");
+  add_shell(scene);
+  add_window_wall(scene);
+  add_blind(scene, options.n);
+  add_table(scene);
+  scene.source = "window";
+  scene.point = {1.875, kTableHeight, 2.0};
+  scene.normal = {0, 1, 0};
+  return scene;
+}
+
+}  // namespace exactff::generate

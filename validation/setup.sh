@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 packages that exactff is built from, as root or through sudo. Does nothing where they are
+# already there.
+set -euo pipefail
+
+packages=(
+  g++ cmake ninja-build
+  libcgal-dev libboost-dev libgmp-dev libmpfr-dev libflint-dev libflint-arb-dev  # exact geometry, certified contour
+  libembree-dev                                                                  # shadow rays
+  libjemalloc-dev                                                                # the program's allocator
+  libcli11-dev nlohmann-json3-dev gnuplot-nox                                    # program and report
+  libgtest-dev                                                                   # tests
+)
+
+missing=()
+for package in "${packages[@]}"; do
+  dpkg-query --show --showformat='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
+done
+[ "${#missing[@]}" -gt 0 ] || exit 0
+
+echo "Installing: ${missing[*]}"
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "These packages need root or sudo: ${missing[*]}" >&2; exit 1; }
+  as_root=(sudo)
+fi
+"${as_root[@]}" apt-get update --quiet
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --quiet --yes --no-install-recommends "${missing[@]}"

@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# Includes point one way: each module may include only the modules listed beside it. Public headers name no library
+# that solves geometry or arithmetic for us. Usage: check_modules.sh SOURCE-FOLDER
+set -euo pipefail
+cd "$1"
+
+declare -A allowed=(
+  [kernel]="kernel"
+  [scene]="scene kernel"
+  [visibility]="visibility scene kernel"
+  [contour]="contour visibility kernel"
+  [exact]="exact contour visibility scene kernel"
+  [sampled]="sampled scene kernel"
+  [study]="study scene kernel"
+  [cli]="cli study scene"
+)
+
+failures=0
+complain() {
+  echo "$1"
+  failures=$((failures + 1))
+}
+
+modules=" ${!allowed[*]} "
+for module in "${!allowed[@]}"; do
+  while IFS=: read -r file included; do
+    [[ $modules == *" $included "* ]] || continue
+    [[ " ${allowed[$module]} " == *" $included "* ]] || complain "$file includes $included/, which $module must not know"
+  done < <(grep -rHoE '^#include "[a-z_]+/' "src/$module" | sed -E 's/#include "([a-z_]+)\//\1/')
+done
+
+while read -r line; do
+  complain "a public header names a library: $line"
+done < <(grep -rnE '\b(CGAL|gmp|gmpxx|mpfr|flint|arb_|embree|CLI)\b' include || true)
+
+[ "$failures" -eq 0 ] || exit 1
+echo "includes point one way"

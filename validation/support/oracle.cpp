@@ -1,0 +1,288 @@
+// Method: everything is moved so that the receiver x is the origin. In the plane of some source faces, a fragment is
+// a convex polygon with exact rational corners. What a face P hides is an intersection of half-spaces cut with the
+// source plane, so it is never projected:
+//   y is hidden by a triangle (a,b,c)  <=>  y lies in the cone over it (three planes through x)
+//                                           and beyond its plane, seen from x.
+// A polygon, with holes or not, is the even-odd sum of the triangles that one fixed corner makes with its edges;
+// each fragment carries the parity of the triangles that hold it.
+// 1. Begin with one fragment that holds all faces of the plane; split it along the cones of the faces and keep what
+//    they hold: the source. The sum of its areas is the whole.
+// 2. Keep what lies above the horizon. 3. For each other face split along its shadow and drop what that holds.
+// 4. The rest is visible: areas exactly, F by Lambert's sum over each fragment (oracle_sum.h).
+#include "support/oracle.h"
+
+#include <algorithm>
+#include <array>
+
+#include "support/oracle_sum.h"
+
+namespace exactff::validation {
+
+namespace {
+
+Vector exact(const Vec3& v) { return {Rational(v.x), Rational(v.y), Rational(v.z)}; }
+
+struct HalfSpace {  // normal . y > offset
+  Vector normal;
+  Rational offset;
+};
+
+// A planar polygon of the scene, the receiver at the origin.
+struct Polygon {
+  FaceId face{};
+  std::vector<std::vector<Vector>> rings;
+  Vector normal;    // Newell vector of the first ring
+  Rational offset;  // of its plane: normal . y = offset
+};
+
+struct Fragment {
+  Corners corners;
+  bool odd = false;
+};
+using Fragments = std::vector<Fragment>;
+
+// --- The scene as polygons ---
+
+std::vector<Vector> ring_of(const Scene& scene, std::span<const std::uint32_t> indices, const Vector& x) {
+  std::vector<Vector> ring;
+  for (const std::uint32_t index : indices) ring.push_back(minus(exact(scene.vertices()[index]), x));
+  return ring;
+}
+
+void finish(Polygon& polygon) {
+  const std::vector<Vector>& ring = polygon.rings.front();
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Vector term = cross(ring[i], ring[(i + 1) % ring.size()]);
+    for (int k = 0; k < 3; ++k) polygon.normal[k] += term[k];
+  }
+  polygon.offset = dot(polygon.normal, ring.front());
+}
+
+// Faces that are not planar count as the triangles the scene cut them into.
+std::vector<Polygon> polygons_of(const Scene& scene, FaceId id, const Vector& x) {
+  std::vector<Polygon> polygons;
+  if (scene.face(id).shape == FaceShape::kPlanar) {
+    Polygon& polygon = polygons.emplace_back(Polygon{id, {}, {}, {}});
+    for (const auto& ring : scene.face(id).rings) polygon.rings.push_back(ring_of(scene, ring, x));
+  } else {
+    for (const Piece& piece : scene.pieces_of(id)) {
+      polygons.push_back({id, {ring_of(scene, scene.corners(piece), x)}, {}, {}});
+    }
+  }
+  for (Polygon& polygon : polygons) finish(polygon);
+  return polygons;
+}
+
+bool same_oriented_plane(const Polygon& p, const Polygon& q) {
+  return is_zero(cross(p.normal, q.normal)) && sgn(dot(p.normal, q.normal)) > 0 &&
+         dot(p.normal, q.rings.front().front()) == p.offset;
+}
+
+// --- Fragments ---
+
+enum class Side { kIn, kOut, kBoth };
+
+std::vector<Rational> heights(const Fragment& fragment, const HalfSpace& half) {
+  std::vector<Rational> out;
+  for (const Vector& corner : fragment.corners) out.push_back(dot(half.normal, corner) - half.offset);
+  return out;
+}
+
+Side side_of(const std::vector<Rational>& height) {
+  const auto positive = [](const Rational& h) { return sgn(h) > 0; };
+  const auto negative = [](const Rational& h) { return sgn(h) < 0; };
+  if (std::ranges::none_of(height, positive)) return Side::kOut;
+  return std::ranges::none_of(height, negative) ? Side::kIn : Side::kBoth;
+}
+
+// The parts of a fragment that the boundary crosses: in first, out second.
+std::array<Fragment, 2> split(const Fragment& fragment, const std::vector<Rational>& height) {
+  std::array<Fragment, 2> parts{Fragment{{}, fragment.odd}, Fragment{{}, fragment.odd}};
+  const std::size_t count = height.size();
+  for (std::size_t i = 0, j = 1; i < count; ++i, j = (i + 1) % count) {
+    const Vector& a = fragment.corners[i];
+    if (sgn(height[i]) >= 0) parts[0].corners.push_back(a);
+    if (sgn(height[i]) <= 0) parts[1].corners.push_back(a);
+    if (sgn(height[i]) * sgn(height[j]) >= 0) continue;
+    const Rational t = height[i] / (height[i] - height[j]);
+    const Vector& b = fragment.corners[j];
+    const Vector point{a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])};
+    for (Fragment& part : parts) part.corners.push_back(point);
+  }
+  return parts;
+}
+
+// Turns over the parity of what lies in all half-spaces, splitting fragments where they leave one.
+void toggle(Fragments& fragments, const std::vector<HalfSpace>& halves) {
+  Fragments out;
+  for (Fragment& fragment : fragments) {
+    const auto misses = [&](const HalfSpace& half) { return side_of(heights(fragment, half)) == Side::kOut; };
+    if (std::ranges::any_of(halves, misses)) {
+      out.push_back(std::move(fragment));
+      continue;
+    }
+    bool gone = false;
+    for (std::size_t i = 0; i < halves.size() && !gone; ++i) {
+      const std::vector<Rational> height = heights(fragment, halves[i]);
+      const Side side = side_of(height);
+      gone = side == Side::kOut;
+      if (side != Side::kBoth) continue;
+      auto [in, rest] = split(fragment, height);
+      out.push_back(std::move(rest));
+      fragment = std::move(in);
+    }
+    out.push_back(std::move(fragment));
+    if (!gone) out.back().odd = !out.back().odd;
+  }
+  fragments = std::move(out);
+}
+
+// Turns over the parity of what lies in the cone over the polygon and in `beyond`.
+void toggle_cone(Fragments& fragments, const Polygon& polygon, const std::vector<HalfSpace>& beyond) {
+  const Vector& a = polygon.rings.front().front();
+  for (const std::vector<Vector>& ring : polygon.rings) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Vector& b = ring[i];
+      const Vector& c = ring[(i + 1) % ring.size()];
+      const int sense = sgn(dot(a, cross(b, c)));
+      if (sense == 0) continue;  // the corner a on the edge's line
+      std::vector<HalfSpace> halves = beyond;
+      for (const Vector& normal : {cross(a, b), cross(b, c), cross(c, a)}) {
+        halves.push_back({sense > 0 ? normal : negative(normal), 0});
+      }
+      toggle(fragments, halves);
+    }
+  }
+}
+
+void keep(Fragments& fragments, bool odd) {
+  std::erase_if(fragments, [odd](const Fragment& fragment) { return fragment.odd != odd; });
+  for (Fragment& fragment : fragments) fragment.odd = false;
+}
+
+// --- One plane ---
+
+int steep_axis(const Vector& normal) { return sgn(normal[0]) != 0 ? 0 : sgn(normal[1]) != 0 ? 1 : 2; }
+
+// The part of the plane over the bounding rectangle of the faces along one axis.
+Fragment bounding_fragment(const std::vector<Polygon>& faces) {
+  const Polygon& plane = faces.front();
+  const int k = steep_axis(plane.normal);
+  const int i = (k + 1) % 3;
+  const int j = (k + 2) % 3;
+  Vector low = plane.rings.front().front();
+  Vector high = low;
+  for (const Polygon& face : faces) {
+    for (const Vector& corner : face.rings.front()) {
+      for (int axis = 0; axis < 3; ++axis) low[axis] = std::min(low[axis], corner[axis]);
+      for (int axis = 0; axis < 3; ++axis) high[axis] = std::max(high[axis], corner[axis]);
+    }
+  }
+  Fragment fragment;
+  for (const auto& [u, v] : {std::array{low[i], low[j]}, {high[i], low[j]}, {high[i], high[j]}, {low[i], high[j]}}) {
+    Vector& corner = fragment.corners.emplace_back();
+    corner[i] = u;
+    corner[j] = v;
+    corner[k] = (plane.offset - plane.normal[i] * u - plane.normal[j] * v) / plane.normal[k];
+  }
+  return fragment;
+}
+
+Rational area_along(const Fragments& fragments, int k) {
+  Rational sum = 0;
+  for (const Fragment& fragment : fragments) {
+    Rational part = 0;
+    for (std::size_t i = 0; i < fragment.corners.size(); ++i) {
+      part += cross(fragment.corners[i], fragment.corners[(i + 1) % fragment.corners.size()])[k];
+    }
+    sum += abs(part);
+  }
+  return sum;
+}
+
+// Requires a plane that does not hold the receiver.
+Fragments union_of(const std::vector<Polygon>& faces) {
+  Fragments rest{bounding_fragment(faces)};
+  Fragments out;
+  for (const Polygon& face : faces) {
+    toggle_cone(rest, face, {});
+    std::ranges::copy_if(rest, std::back_inserter(out), &Fragment::odd);
+    keep(rest, false);
+  }
+  keep(out, true);
+  return out;
+}
+
+void hide(Fragments& fragments, const Polygon& occluder) {
+  const int sign = sgn(occluder.offset);
+  if (sign == 0) return;  // the occluder's plane holds the receiver
+  const HalfSpace beyond{sign > 0 ? occluder.normal : negative(occluder.normal), abs(occluder.offset)};
+  toggle_cone(fragments, occluder, {beyond});
+  keep(fragments, false);
+}
+
+// The visible part of one plane's faces; sets the fraction. Faces seen from behind or edge-on show nothing.
+Fragments visible_part(const std::vector<Polygon>& faces, const std::vector<Polygon>& all, const Vector& normal,
+                       OraclePlane& plane) {
+  for (const Polygon& face : faces) plane.faces.push_back(face.face);
+  std::ranges::sort(plane.faces);
+  plane.faces.erase(std::unique(plane.faces.begin(), plane.faces.end()), plane.faces.end());
+  if (sgn(faces.front().offset) >= 0) return {};
+  Fragments visible = union_of(faces);
+  const int axis = steep_axis(faces.front().normal);
+  const Rational whole = area_along(visible, axis);
+  toggle(visible, {{normal, 0}});
+  keep(visible, true);
+  for (const Polygon& polygon : all) hide(visible, polygon);
+  plane.visible_fraction = area_along(visible, axis) / whole;
+  return visible;
+}
+
+// The polygons of the source, gathered by oriented plane, and every polygon of the scene.
+struct Setting {
+  std::vector<std::vector<Polygon>> planes;
+  std::vector<Polygon> all;
+};
+
+void add_to_plane(std::vector<std::vector<Polygon>>& planes, const Polygon& polygon) {
+  const auto same = [&](const std::vector<Polygon>& plane) { return same_oriented_plane(plane.front(), polygon); };
+  const auto found = std::ranges::find_if(planes, same);
+  (found != planes.end() ? *found : planes.emplace_back()).push_back(polygon);
+}
+
+Setting make_setting(const Scene& scene, const Receiver& receiver, const Selection& source) {
+  Setting setting;
+  const std::vector<FaceId> chosen = scene.faces_of(source);
+  for (std::size_t i = 0; i < scene.faces().size(); ++i) {
+    const FaceId id{static_cast<std::uint32_t>(i)};
+    const FaceShape shape = scene.face(id).shape;
+    if (receiver.on == id || shape == FaceShape::kZeroArea || shape == FaceShape::kSkipped) continue;
+    for (const Polygon& polygon : polygons_of(scene, id, exact(receiver.point))) {
+      setting.all.push_back(polygon);
+      if (std::ranges::find(chosen, id) != chosen.end()) add_to_plane(setting.planes, polygon);
+    }
+  }
+  return setting;
+}
+
+}  // namespace
+
+OracleResult oracle(const Scene& scene, const Receiver& receiver, const Selection& source) {
+  const Setting setting = make_setting(scene, receiver, source);
+  OracleResult result;
+  Fragments visible;
+  for (const std::vector<Polygon>& faces : setting.planes) {
+    OraclePlane& plane = result.planes.emplace_back();
+    std::ranges::move(visible_part(faces, setting.all, exact(receiver.normal), plane), std::back_inserter(visible));
+  }
+  result.zero = visible.empty();
+  if (result.zero) return result;
+  std::vector<Corners> polygons;
+  for (Fragment& fragment : visible) polygons.push_back(std::move(fragment.corners));
+  const RoundedSum sum = lambert_sum(polygons, exact(receiver.normal));
+  result.value = sum.value;
+  result.decimals = sum.decimals;
+  return result;
+}
+
+}  // namespace exactff::validation

@@ -1,0 +1,33 @@
+// The oracle's arithmetic: exact vectors, and Lambert's sum over convex polygons seen from the origin.
+#pragma once
+
+#include <gmpxx.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace exactff::validation {
+
+using Rational = mpq_class;
+using Vector = std::array<Rational, 3>;
+using Corners = std::vector<Vector>;
+
+inline Vector minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+inline Vector negative(const Vector& a) { return {-a[0], -a[1], -a[2]}; }
+inline Rational dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+inline bool is_zero(const Vector& a) { return sgn(a[0]) == 0 && sgn(a[1]) == 0 && sgn(a[2]) == 0; }
+
+struct RoundedSum {
+  double value = 0.0;    // nearest double
+  std::string decimals;  // 30 significant digits, correctly rounded
+};
+
+// The form factors of the polygons together, for a receiver at the origin with normal n. Each must be convex, above
+// the horizon of n and in a plane that does not hold the origin; their direction does not matter.
+[[nodiscard]] RoundedSum lambert_sum(const std::vector<Corners>& polygons, const Vector& n);
+
+}  // namespace exactff::validation

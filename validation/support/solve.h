@@ -1,0 +1,50 @@
+// The exact solver on a plain scene, and what two results must share.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "exactff/exact.h"
+#include "generate/plain_scene.h"
+
+namespace exactff::validation {
+
+// Everything that spec and header promise to be independent of order, thread, machine and symmetry.
+struct Answer {
+  std::uint64_t value_bits = 0;
+  Status status = Status::kZero;
+  std::uint64_t fraction_bits = 0;
+
+  friend bool operator==(const Answer&, const Answer&) = default;
+};
+
+inline void PrintTo(const Answer& answer, std::ostream* out) {
+  *out << generate::to_text(std::bit_cast<double>(answer.value_bits)) << ' ' << to_string(answer.status) << " fraction "
+       << generate::to_text(std::bit_cast<double>(answer.fraction_bits));
+}
+
+inline FormFactor solve(const Scene& scene, const generate::PlainScene& plain, const ExactOptions& options = {}) {
+  const ExactSource source(scene, scene.select(plain.source));
+  return exact_form_factor(scene, generate::receiver_of(plain), source, options);
+}
+
+inline FormFactor solve(const generate::PlainScene& plain, const ExactOptions& options = {}) {
+  return solve(generate::build(plain), plain, options);
+}
+
+inline Answer answer_of(const FormFactor& result) {
+  return {std::bit_cast<std::uint64_t>(result.value), result.status,
+          std::bit_cast<std::uint64_t>(result.visible_fraction.value())};
+}
+
+inline Answer answer(const generate::PlainScene& plain) {
+  ExactOptions options;
+  options.visible_fraction = true;
+  return answer_of(solve(plain, options));
+}
+
+}  // namespace exactff::validation

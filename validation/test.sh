@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# All tests: first a part of the suite under AddressSanitizer and UndefinedBehaviorSanitizer, then the whole suite on the
+# optimised build. Warnings are errors in both. Ends with ctest's own summary.
+set -euo pipefail
+
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$top"
+validation/setup.sh
+
+validation/build.sh build/sanitize -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON -DEXACTFF_SANITIZE=ON -DCMAKE_BUILD_TYPE=Debug \
+  -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
+ctest --test-dir build/sanitize --output-on-failure --parallel 2
+
+validation/build.sh build -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON
+ctest --test-dir build --output-on-failure --parallel 2

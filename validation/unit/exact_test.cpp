@@ -1,0 +1,207 @@
+// The result of the exact method: status, bounds, decimals, cutters, fractions, bad receivers.
+#include "exactff/exact.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "generate/plain_scene.h"
+#include "support/solve.h"
+
+namespace exactff {
+namespace {
+
+using generate::PlainScene;
+using validation::solve;
+
+PlainScene square_source(double half = 1.0, double z = 1.0) {
+  PlainScene scene;
+  scene.add_ring(scene.patch("source"), {{-half, half, z}, {half, half, z}, {half, -half, z}, {-half, -half, z}});
+  return scene;
+}
+
+void add_square(PlainScene& scene, const std::string& name, double half, double z, double x = 0.0, double y = 0.0) {
+  scene.add_ring(scene.patch(name),
+                 {{x - half, y - half, z}, {x + half, y - half, z}, {x + half, y + half, z}, {x - half, y + half, z}});
+}
+
+TEST(ExactFormFactor, BoundsAreTheNeighboursOfACertifiedValue) {
+  const FormFactor f = solve(square_source());
+  EXPECT_EQ(f.status, Status::kCertified);
+  EXPECT_EQ(f.lower, std::nextafter(f.value, 0.0));
+  EXPECT_EQ(f.upper, std::nextafter(f.value, 1.0));
+  EXPECT_TRUE(f.enclosure.contains(f.enclosure));
+  EXPECT_EQ(f.enclosure.nearest(), f.value);
+}
+
+TEST(ExactFormFactor, AValueThatRoundsToOneIsBoundedByOne) {
+  const FormFactor f = solve(square_source(1.0, 1e-12));
+  EXPECT_EQ(f.value, 1.0);
+  EXPECT_EQ(f.upper, 1.0);
+  EXPECT_EQ(f.lower, std::nextafter(1.0, 0.0));
+  EXPECT_EQ(f.status, Status::kCertified);
+}
+
+TEST(ExactFormFactor, PositiveButRoundingToZeroIsAnUnderflow) {
+  const FormFactor f = solve(square_source(1e-170));
+  EXPECT_EQ(f.status, Status::kUnderflow);
+  EXPECT_EQ(f.value, 0.0);
+  EXPECT_EQ(f.lower, 0.0);
+  EXPECT_EQ(f.upper, std::numeric_limits<double>::denorm_min());
+}
+
+TEST(ExactFormFactor, DenormalValuesAreCorrectlyRounded) {
+  // F = A / (pi d^2) to a relative 1e-300 for a source so small: A = 4 h^2, h = 2^-530.
+  const FormFactor f = solve(square_source(0x1p-530));
+  EXPECT_EQ(f.status, Status::kCertified);
+  EXPECT_EQ(f.value, std::ldexp(4.0 / 3.14159265358979323846, -1060));
+}
+
+TEST(ExactFormFactor, TheCapGivesAValidBallAndSaysSo) {
+  const PlainScene tiny = square_source(1e-30);
+  const FormFactor poor = solve(tiny, {.precision_cap = 40});
+  EXPECT_EQ(poor.status, Status::kNotCertified);
+  EXPECT_EQ(poor.precision_bits, 40);
+  const FormFactor good = solve(tiny);
+  EXPECT_EQ(good.status, Status::kCertified);
+  EXPECT_TRUE(poor.enclosure.overlaps(good.enclosure));
+  EXPECT_LE(poor.lower, good.value);
+  EXPECT_GE(poor.upper, good.value);
+}
+
+TEST(ExactFormFactor, GivesAsManyDecimalsAsAskedFor) {
+  const FormFactor f = solve(square_source(), {.digits = 200});
+  const std::optional<std::string> decimals = f.enclosure.decimals(200);
+  ASSERT_TRUE(decimals.has_value());
+  EXPECT_EQ(decimals->substr(0, 31), "0.55412642397957198712307883453");
+  EXPECT_EQ(decimals->size(), 202U);
+}
+
+TEST(ExactFormFactor, ListsTheFacesThatCutTheSource) {
+  PlainScene plain = square_source();
+  add_square(plain, "left", 0.1, 0.5, -0.2);
+  add_square(plain, "aside", 0.1, 0.5, 2.0);
+  add_square(plain, "right", 0.1, 0.5, 0.2);
+  const Scene scene = generate::build(plain);
+  const FormFactor f = solve(scene, plain, {.list_cutters = true});
+  ASSERT_EQ(f.cutters.size(), 2U);
+  EXPECT_EQ(scene.name_of(f.cutters[0]), "left");
+  EXPECT_EQ(scene.name_of(f.cutters[1]), "right");
+}
+
+TEST(ExactFormFactor, AShadowInTheGapOfASourceDoesNotCutIt) {
+  PlainScene plain;
+  plain.add_rings(plain.patch("source"), {{{-1, 1, 1}, {1, 1, 1}, {1, -1, 1}, {-1, -1, 1}},
+                                          {{-0.5, 0.5, 1}, {0.5, 0.5, 1}, {0.5, -0.5, 1}, {-0.5, -0.5, 1}}});
+  add_square(plain, "in_the_gap", 0.2, 0.5);
+  add_square(plain, "over_the_rim", 0.2, 0.5, 0.2);
+  const Scene scene = generate::build(plain);
+  const FormFactor f = solve(scene, plain, {.list_cutters = true});
+  ASSERT_EQ(f.cutters.size(), 1U);
+  EXPECT_EQ(scene.name_of(f.cutters[0]), "over_the_rim");
+}
+
+TEST(ExactFormFactor, OccludersCanBeSingledOut) {
+  PlainScene plain = square_source();
+  add_square(plain, "a", 0.1, 0.5, -0.2);
+  add_square(plain, "b", 0.1, 0.5, 0.2);
+  const Scene scene = generate::build(plain);
+  const std::vector<FaceId> none;
+  const std::vector<FaceId> only_a = scene.faces_of(scene.select("a"));
+  const double open = solve(square_source()).value;
+  EXPECT_EQ(solve(scene, plain, {.only_occluders = &none}).value, open);
+  const double without_b = solve(scene, plain, {.only_occluders = &only_a}).value;
+  EXPECT_LT(without_b, open);
+  EXPECT_GT(without_b, solve(scene, plain).value);
+}
+
+TEST(ExactFormFactor, AFlippedSourceIsBehindAndTurnsBack) {
+  const PlainScene plain = square_source();
+  const Scene scene = generate::build(plain);
+  const Scene flipped = scene.with_flipped(scene.select("source"));
+  EXPECT_FALSE(behind_every_face(solve(scene, plain)));
+  const FormFactor dark = solve(flipped, plain);
+  EXPECT_TRUE(behind_every_face(dark));
+  EXPECT_EQ(dark.status, Status::kZero);
+  EXPECT_EQ(solve(flipped.with_flipped(flipped.select("source")), plain).value, solve(scene, plain).value);
+}
+
+TEST(ExactFormFactor, AFractionOverCommensurablePlanesIsExactEvenOnAMidpoint) {
+  // Two unit faces at right angles, both seen from x; of one a strip of 2^-53 is hidden: the fraction
+  // 1 - 2^-54 is the midpoint of two doubles, and ties go to the even 1.
+  PlainScene plain;
+  plain.add_ring(plain.patch("source"), {{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}});
+  plain.add_ring(plain.patch("source"), {{1, 0, 0}, {1, 0, 1}, {1, 1, 1}, {1, 1, 0}});
+  plain.point = {0.0, 0.0, 0.0};
+  plain.normal = {1, 0, 1};
+  const double strip = 0x1p-54;
+  plain.add_ring(plain.patch("o"), {{0, 0, 0.5}, {strip, 0, 0.5}, {strip, 0.5, 0.5}, {0, 0.5, 0.5}});
+  const FormFactor f = solve(plain, {.visible_fraction = true, .exact_fraction = true});
+  ASSERT_EQ(f.planes.size(), 2U);
+  EXPECT_EQ(f.planes[0].exact_fraction, "9007199254740991/9007199254740992");
+  EXPECT_EQ(f.planes[1].exact_fraction, "1");
+  EXPECT_EQ(f.visible_fraction, 1.0);
+}
+
+TEST(ExactFormFactor, AFractionOverIncommensurablePlanesIsRounded) {
+  // A unit face wholly seen and one of area sqrt(2) behind the horizon: 1 / (1 + sqrt(2)) = sqrt(2) - 1.
+  PlainScene plain;
+  plain.add_ring(plain.patch("source"), {{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}});
+  plain.add_ring(plain.patch("source"), {{0, 0, -2}, {0, 1, -2}, {1, 1, -1}, {1, 0, -1}});
+  const FormFactor f = solve(plain, {.visible_fraction = true});
+  EXPECT_EQ(f.visible_fraction, 0.41421356237309504880);
+}
+
+TEST(ExactFormFactor, RefusesAReceiverWithoutDirectionOrPlace) {
+  PlainScene plain = square_source();
+  plain.normal = {0.0, -0.0, 0.0};
+  EXPECT_THROW((void)solve(plain), InputError);
+  plain.normal = {0.0, std::numeric_limits<double>::infinity(), 0.0};
+  EXPECT_THROW((void)solve(plain), InputError);
+  plain.normal = {0.0, 0.0, 1.0};
+  plain.point.x = std::nan("");
+  EXPECT_THROW((void)solve(plain), InputError);
+}
+
+TEST(ExactFormFactor, TheLengthOfTheNormalMeansNothing) {
+  PlainScene plain = square_source();
+  plain.normal = {0.1, -0.2, 0.7};
+  const double value = solve(plain).value;
+  for (const double factor : {0x1p-1000, 0x1p1000}) {
+    plain.normal = {0.1 * factor, -0.2 * factor, 0.7 * factor};
+    EXPECT_EQ(solve(plain).value, value);
+  }
+  plain.normal = {0.0, 0.0, std::numeric_limits<double>::denorm_min()};
+  EXPECT_EQ(solve(plain).value, solve(square_source()).value);
+}
+
+TEST(ExactFormFactor, ASourceWithoutAreaGivesZero) {
+  PlainScene plain;
+  plain.add_ring(plain.patch("source"), {{-1, 0, 1}, {1, 0, 1}, {0, 0, 1}});
+  const FormFactor f = solve(plain, {.visible_fraction = true});
+  EXPECT_EQ(f.status, Status::kZero);
+  EXPECT_EQ(f.lower, 0.0);
+  EXPECT_EQ(f.upper, 0.0);
+  EXPECT_EQ(f.visible_fraction, 0.0);
+}
+
+TEST(ExactFormFactor, DrawsTheVisibleRegion) {
+  PlainScene plain = square_source();
+  add_square(plain, "o", 0.25, 0.5);
+  const Scene scene = generate::build(plain);
+  const ExactSource source(scene, scene.select("source"));
+  const std::vector<PlaneDrawing> drawings = draw_visibility(scene, generate::receiver_of(plain), source);
+  ASSERT_EQ(drawings.size(), 1U);
+  ASSERT_EQ(drawings[0].visible.size(), 2U);
+  EXPECT_FALSE(drawings[0].visible[0].hole);
+  EXPECT_TRUE(drawings[0].visible[1].hole);
+  ASSERT_EQ(drawings[0].shadows.size(), 1U);
+  for (const Vec3& corner : drawings[0].shadows[0].outline.corners) {
+    EXPECT_EQ(std::abs(corner.x), 0.5);
+    EXPECT_EQ(corner.z, 1.0);
+  }
+}
+
+}  // namespace
+}  // namespace exactff

@@ -1,0 +1,230 @@
+// Exact numbers, filters and balls.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "exactff/enclosure.h"
+#include "generate/random.h"
+#include "kernel/ball.h"
+#include "kernel/direction.h"
+#include "kernel/exact_vec.h"
+#include "kernel/filter.h"
+#include "kernel/numbers.h"
+
+namespace exactff::kernel {
+namespace {
+
+using generate::Random;
+
+constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
+constexpr double kLargest = std::numeric_limits<double>::max();
+
+Rational power_of_two(long exponent) {
+  Rational result(1);
+  const auto bits = static_cast<mp_bitcnt_t>(std::abs(exponent));
+  (exponent >= 0 ? mpq_mul_2exp : mpq_div_2exp)(result.get_mpq_t(), result.get_mpq_t(), bits);
+  return result;
+}
+
+// Any finite double, all exponents alike.
+double any_double(Random& random) {
+  const double fraction = random.between(1.0, 2.0) * (random.one_in(2) ? -1.0 : 1.0);
+  return std::ldexp(fraction, random.integer(-1074, 1023));
+}
+
+TEST(Numbers, NearestDoubleRoundsAsIeeeAdditionDoes) {
+  Random random(1);
+  for (int i = 0; i < 20000; ++i) {
+    const double a = any_double(random);
+    const double b = std::ldexp(any_double(random), 0);
+    if (!std::isfinite(a + b)) continue;
+    ASSERT_EQ(nearest_double(to_rational(a) + to_rational(b)), a + b) << a << " + " << b;
+  }
+}
+
+TEST(Numbers, NearestDoubleRoundsAsIeeeMultiplicationAndDivisionDoDenormalsIncluded) {
+  Random random(2);
+  for (int i = 0; i < 20000; ++i) {
+    const double a = any_double(random);
+    const double b = any_double(random);
+    ASSERT_EQ(nearest_double(to_rational(a) * to_rational(b)), a * b) << a << " * " << b;
+    ASSERT_EQ(nearest_double(to_rational(a) / to_rational(b)), a / b) << a << " / " << b;
+  }
+}
+
+TEST(Numbers, TiesGoToTheEvenMantissa) {
+  EXPECT_EQ(nearest_double(1 + power_of_two(-53)), 1.0);
+  EXPECT_EQ(nearest_double(1 + 3 * power_of_two(-53)), 1.0 + 0x1p-51);
+  EXPECT_EQ(nearest_double(1 + power_of_two(-53) + power_of_two(-2000)), 1.0 + 0x1p-52);
+  EXPECT_EQ(nearest_double(power_of_two(-1075)), 0.0);
+  EXPECT_EQ(nearest_double(3 * power_of_two(-1075)), 2 * kDenormal);
+  EXPECT_EQ(nearest_double(power_of_two(-1075) + power_of_two(-3000)), kDenormal);
+  EXPECT_EQ(nearest_double(-power_of_two(-1074)), -kDenormal);
+  EXPECT_EQ(nearest_double(power_of_two(1024)), std::numeric_limits<double>::infinity());
+}
+
+TEST(Numbers, DecomposeIsExact) {
+  for (const double value : {0.0, 1.0, -0.1, kDenormal, -3 * kDenormal, kLargest, 552.8}) {
+    const BinaryDouble parts = decompose(value);
+    EXPECT_EQ(Rational(parts.mantissa) * power_of_two(parts.exponent), to_rational(value)) << value;
+  }
+}
+
+Vec3 any_vec(Random& random) { return {any_double(random), any_double(random), any_double(random)}; }
+
+TEST(ExactVec, DifferenceIsExactAtAnyScale) {
+  Random random(3);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p = any_vec(random);
+    const Vec3 q = random.one_in(4) ? p : any_vec(random);
+    const ScaledVec3 d = exact_difference(p, q);
+    const Rational unit = power_of_two(d.exponent);
+    ASSERT_EQ(d.v.x * unit, to_rational(p.x) - to_rational(q.x));
+    ASSERT_EQ(d.v.y * unit, to_rational(p.y) - to_rational(q.y));
+    ASSERT_EQ(d.v.z * unit, to_rational(p.z) - to_rational(q.z));
+  }
+}
+
+TEST(ExactVec, OrientationSeesOneUlp) {
+  const Vec3 a{0, 0, 0.1};
+  const Vec3 b{1, 0, 0.1};
+  const Vec3 c{0, 1, 0.1};
+  EXPECT_EQ(orientation(a, b, c, {0.3, 0.3, 0.1}), 0);
+  EXPECT_EQ(orientation(a, b, c, {0.3, 0.3, std::nextafter(0.1, 1.0)}), 1);
+  EXPECT_EQ(orientation(a, b, c, {0.3, 0.3, std::nextafter(0.1, 0.0)}), -1);
+}
+
+// Vectors whose dot product is 0 or nearly 0, at scales from harmless to hopeless.
+struct Pair {
+  Vec3 a;
+  Vec3 b;
+};
+Pair nearly_orthogonal(Random& random) {
+  const double scale = std::ldexp(1.0, random.integer(-1000, 1000));
+  Vec3 a{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+  Vec3 b{-a.y * scale, a.x * scale, 0.0};
+  if (random.one_in(2)) b.x = std::nextafter(b.x, 1.0);
+  if (random.one_in(4)) b.z = std::ldexp(random.between(-1, 1), random.integer(-1074, 0));
+  return {a, b};
+}
+
+TEST(Filter, ASignItGivesIsTheExactSign) {
+  Random random(4);
+  for (int i = 0; i < 20000; ++i) {
+    const Pair pair = random.one_in(3) ? Pair{any_vec(random), any_vec(random)} : nearly_orthogonal(random);
+    const ExactVec3 a = exact_vector(pair.a).v;
+    const ExactVec3 b = exact_vector(pair.b).v;
+    const int exact = sign(dot(a, b));
+    const int raw = sign_of_dot(approx_difference(pair.a, {}), approx_difference(pair.b, {}));
+    const int scaled = sign_of_dot(approx(a), approx(b));
+    ASSERT_TRUE(raw == kUncertain || raw == exact);
+    ASSERT_TRUE(scaled == kUncertain || scaled == exact);
+  }
+}
+
+TEST(Filter, DecidesWhatIsNotNearlyZero) {
+  Random random(7);
+  for (int i = 0; i < 1000; ++i) {
+    const Approx3 a{random.between(1, 2), random.between(1, 2), random.between(1, 2)};
+    const Approx3 b{random.between(1, 2), random.between(-2, -1), random.between(0x1p-40, 1)};
+    const double dot_product = a.x * b.x + a.y * b.y + a.z * b.z;
+    if (std::abs(dot_product) <= 0x1p-44) continue;
+    ASSERT_EQ(sign_of_dot(a, b), dot_product > 0.0 ? 1 : -1);
+  }
+}
+
+TEST(Filter, DeclinesWhereItCannotKnow) {
+  EXPECT_EQ(sign_of_dot({1.0, 0x1p-53, 0.0}, {0x1p-53, -1.0, 0.0}), kUncertain);
+  EXPECT_EQ(sign_of_dot({1e-300, 0.0, 0.0}, {1e-300, 0.0, 0.0}), kUncertain);  // underflows
+  EXPECT_EQ(sign_of_dot({1e300, 0.0, 0.0}, {1e300, 0.0, 0.0}), kUncertain);    // overflows
+  EXPECT_EQ(sign_of_dot({std::nan(""), 1.0, 0.0}, {1.0, 1.0, 0.0}), kUncertain);
+  EXPECT_EQ(sign_of_dot({1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}), 0);
+  EXPECT_EQ(sign_of_dot({1.0, 2.0, 3.0}, {1.0, 1.0, -0.5}), 1);
+}
+
+TEST(Filter, ApproximationsAreWithinTheirStatedError) {
+  Random random(5);
+  for (int i = 0; i < 2000; ++i) {
+    const ExactVec3 v = exact_vector(any_vec(random)).v;
+    const Approx3 a = approx(v);
+    if (std::isnan(a.x + a.y + a.z)) continue;
+    const int axis = std::abs(a.x) >= std::abs(a.y) ? (std::abs(a.x) >= std::abs(a.z) ? 0 : 2)
+                                                    : (std::abs(a.y) >= std::abs(a.z) ? 1 : 2);
+    const double largest = axis == 0 ? a.x : axis == 1 ? a.y : a.z;
+    // One positive factor for all three components, within 2^-52 each.
+    const auto ratio_error = [&](double component, const Integer& exact) -> Rational {
+      return abs(to_rational(component) * v[axis] - to_rational(largest) * exact);
+    };
+    const Rational bound = power_of_two(-51);
+    ASSERT_LE(ratio_error(a.x, v.x), bound * abs(to_rational(largest) * v.x));
+    ASSERT_LE(ratio_error(a.y, v.y), bound * abs(to_rational(largest) * v.y));
+    ASSERT_LE(ratio_error(a.z, v.z), bound * abs(to_rational(largest) * v.z));
+  }
+}
+
+Enclosure ball_of(const Rational& value, long bits) { return Enclosure(to_ball(value, bits)); }
+
+TEST(Enclosure, NearestAgreesWithTheExactRounding) {
+  Random random(6);
+  for (int i = 0; i < 2000; ++i) {
+    const Rational value = to_rational(any_double(random)) + to_rational(any_double(random)) / 3;
+    const std::optional<double> nearest = ball_of(value, 4000).nearest();
+    ASSERT_TRUE(nearest.has_value());
+    ASSERT_EQ(*nearest, nearest_double(value));
+  }
+}
+
+TEST(Enclosure, NearestHandlesDenormalsAndTies) {
+  for (const long numerator : {1L, 2L, 3L, 5L, 7L}) {
+    const Rational value = numerator * power_of_two(-1075);  // exact balls: ties included
+    EXPECT_EQ(ball_of(value, 64).nearest(), nearest_double(value)) << numerator;
+  }
+  EXPECT_EQ(ball_of(power_of_two(-5000), 64).nearest(), 0.0);
+  EXPECT_FALSE(std::signbit(*ball_of(-power_of_two(-5000), 64).nearest()));
+}
+
+TEST(Enclosure, NearestIsUndecidedAcrossAMidpoint) {
+  const Rational midpoint = 1 + power_of_two(-53);
+  EXPECT_EQ(ball_of(midpoint, 200).nearest(), 1.0);  // exactly the tie
+  EXPECT_FALSE(ball_of(midpoint + power_of_two(-400) / 3, 200).nearest().has_value());
+  EXPECT_EQ(ball_of(midpoint + power_of_two(-400) / 3, 500).nearest(), 1.0 + 0x1p-52);
+}
+
+TEST(Enclosure, EndsAreRoundedOutward) {
+  const Enclosure third = ball_of(Rational(1, 3), 300);
+  EXPECT_EQ(third.lower(), 1.0 / 3.0);  // 1/3 rounds down
+  EXPECT_EQ(third.upper(), std::nextafter(1.0 / 3.0, 1.0));
+  EXPECT_TRUE(ball_of(Rational(1, 4), 300).contains(0.25));
+  EXPECT_FALSE(third.contains(1.0 / 3.0));
+}
+
+TEST(Enclosure, DecimalsAreRoundedOrRefused) {
+  const Enclosure third = ball_of(Rational(2, 3), 200);
+  EXPECT_EQ(third.decimals(5), "0.66667");
+  EXPECT_EQ(third.decimals(1), "0.7");
+  EXPECT_FALSE(third.decimals(100).has_value());
+  EXPECT_EQ(ball_of(Rational(1, 3000), 200).decimals(3), "0.000333");
+  EXPECT_EQ(ball_of(Rational(1, 3000000000), 200).decimals(3), "3.33e-10");
+  EXPECT_EQ(ball_of(Rational(999999, 1000000), 200).decimals(3), "1.00");
+}
+
+TEST(Enclosure, SumsEncloseSums) {
+  Enclosure sum;
+  for (int i = 0; i < 7; ++i) sum += ball_of(Rational(1, 7), 100);
+  EXPECT_TRUE(sum.contains(1.0));
+  EXPECT_LT(sum.upper() - sum.lower(), 0x1p-50);
+  EXPECT_FALSE(sum.contains(std::nextafter(1.0, 2.0)));
+}
+
+TEST(Enclosure, PrintsABallThatHoldsTheNumber) {
+  const Enclosure third = ball_of(Rational(1, 3), 64);
+  EXPECT_EQ(third.midpoint().substr(0, 17), "0.333333333333333");
+  EXPECT_NE(third.radius(), "0");
+  EXPECT_EQ(Enclosure().midpoint(), "0");
+  EXPECT_EQ(Enclosure().radius(), "0");
+}
+
+}  // namespace
+}  // namespace exactff::kernel

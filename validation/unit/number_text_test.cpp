@@ -1,0 +1,126 @@
+#include "scene/number_text.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <clocale>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "kernel/numbers.h"
+
+namespace exactff {
+namespace {
+
+struct Accepted {
+  std::string text;
+  double value;
+};
+
+TEST(NumberText, ReadsDecimalsWithCorrectRounding) {
+  const Accepted table[] = {
+      {"0", 0.0},
+      {"-0", 0.0},
+      {"7", 7.0},
+      {"+1.5", 1.5},
+      {".5", 0.5},
+      {"-.5", -0.5},
+      {"+.5e1", 5.0},
+      {"1.", 1.0},
+      {"1.e2", 100.0},
+      {"1E+3", 1000.0},
+      {"1e-3", 0x1.0624dd2f1a9fcp-10},
+      {"0.1", 0x1.999999999999ap-4},
+      {"00012.500", 12.5},
+      {"9007199254740993", 9007199254740992.0},  // a tie goes to the even neighbour
+      {"9007199254740993.0000000000000000001", 9007199254740994.0},
+      {"1.7976931348623157e308", std::numeric_limits<double>::max()},
+      {"179769313486231580793e288", std::numeric_limits<double>::max()},
+      {"2.2250738585072011e-308", 0x0.fffffffffffffp-1022},  // the largest denormal
+      {"2.4703282292062327e-324", 0.0},                      // just below half the smallest denormal
+      {"2.4703282292062328e-324", 0x1p-1074},                // just above it
+      {"-4.9406564584124654e-324", -0x1p-1074},
+      {"1e-400", 0.0},
+      {"-1e-400", 0.0},
+      {"1e-99999999999999999999", 0.0},
+      {"0e99999999999999999999", 0.0},
+      {"0.0000001e8", 10.0},
+  };
+  for (const Accepted& entry : table) {
+    const ParsedNumber number = parse_number(entry.text);
+    EXPECT_EQ(number.fault, NumberFault::kNone) << entry.text;
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(number.value), std::bit_cast<std::uint64_t>(entry.value)) << entry.text;
+  }
+}
+
+TEST(NumberText, DigitsAndExponentMayBalance) {
+  const std::string zeros(500, '0');
+  EXPECT_EQ(parse_number("1" + zeros + "e-500").value, 1.0);
+  EXPECT_EQ(parse_number("0." + zeros + "25e501").value, 2.5);
+  EXPECT_EQ(parse_number("0." + zeros + "25").value, 0.0);
+}
+
+TEST(NumberText, ATieBelowTheSmallestDenormalIsDecidedByTheLastDigit) {
+  kernel::Integer five_to_1075;
+  mpz_ui_pow_ui(five_to_1075.get_mpz_t(), 5, 1075);
+  const std::string digits = five_to_1075.get_str();  // 2^-1075 = 5^1075 / 10^1075
+  EXPECT_EQ(parse_number(digits + "e-1075").value, 0.0);
+  EXPECT_EQ(parse_number(digits + "1e-1076").value, 0x1p-1074);
+}
+
+TEST(NumberText, RejectsWhatIsNoNumber) {
+  const struct {
+    std::string text;
+    NumberFault fault;
+  } table[] = {
+      {"", NumberFault::kNotANumber},
+      {"+", NumberFault::kNotANumber},
+      {"-", NumberFault::kNotANumber},
+      {".", NumberFault::kNotANumber},
+      {"+-1", NumberFault::kNotANumber},
+      {"--1", NumberFault::kNotANumber},
+      {"e5", NumberFault::kNotANumber},
+      {"1e", NumberFault::kNotANumber},
+      {"1e+", NumberFault::kNotANumber},
+      {"1.2.3", NumberFault::kNotANumber},
+      {"1x", NumberFault::kNotANumber},
+      {"1 ", NumberFault::kNotANumber},
+      {" 1", NumberFault::kNotANumber},
+      {"1f", NumberFault::kNotANumber},
+      {"1d3", NumberFault::kNotANumber},
+      {"nan", NumberFault::kNotFinite},
+      {"-NaN", NumberFault::kNotFinite},
+      {"nan(0x1)", NumberFault::kNotFinite},
+      {"inf", NumberFault::kNotFinite},
+      {"+Infinity", NumberFault::kNotFinite},
+      {"-1.#IND", NumberFault::kNotFinite},
+      {"1.#QNAN", NumberFault::kNotFinite},
+      {"0x10", NumberFault::kHexadecimal},
+      {"-0X1p3", NumberFault::kHexadecimal},
+      {"1,5", NumberFault::kComma},
+      {"1,5,5", NumberFault::kNotANumber},
+      {"1e400", NumberFault::kTooLarge},
+      {"-1e400", NumberFault::kTooLarge},
+      {"1.7976931348623159e308", NumberFault::kTooLarge},
+      {"1e99999999999999999999", NumberFault::kTooLarge},
+  };
+  for (const auto& entry : table) EXPECT_EQ(parse_number(entry.text).fault, entry.fault) << "'" << entry.text << "'";
+}
+
+TEST(NumberText, TheLocaleDoesNotMatter) {
+  const char* const changed = std::setlocale(LC_ALL, "de_DE.UTF-8");  // where it is installed
+  EXPECT_EQ(parse_number("1.5").value, 1.5);
+  EXPECT_EQ(parse_number("1,5").fault, NumberFault::kComma);
+  if (changed != nullptr) std::setlocale(LC_ALL, "C");
+}
+
+TEST(NumberText, MessagesQuoteTheTextAndCutItShort) {
+  EXPECT_EQ(describe(NumberFault::kTooLarge, "1e400"), "'1e400' is too large for a double");
+  EXPECT_EQ(describe(NumberFault::kNotANumber, std::string(50, 'x')),
+            "'" + std::string(40, 'x') + "...' is not a number");
+}
+
+}  // namespace
+}  // namespace exactff

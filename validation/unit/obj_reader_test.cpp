@@ -1,0 +1,326 @@
+#include <gtest/gtest.h>
+
+#include <random>
+#include <sstream>
+#include <string>
+
+#include "exactff/obj.h"
+#include "support/program.h"
+
+namespace exactff {
+namespace {
+
+using validation::TemporaryDirectory;
+
+const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+Scene read(const std::string& text, SceneOptions options = {}) {
+  std::istringstream in(text);
+  return read_obj(in, "s.obj", options);
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    (void)read(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string warnings_of(const Scene& scene) {
+  std::string text;
+  for (const Problem& warning : scene.warnings()) text += warning.message() + "\n";
+  return text;
+}
+
+using Ring = std::vector<std::uint32_t>;
+Ring ring(const Scene& scene, std::size_t face = 0) { return scene.faces()[face].rings.at(0); }
+
+TEST(ObjReader, ReadsVerticesAndFaces) {
+  const Scene scene = read("# a square\n" + kSquare + "f 1 2 3 4\n");
+  ASSERT_EQ(scene.vertices().size(), 4U);
+  EXPECT_EQ(scene.vertices()[2], (Vec3{1, 1, 0}));
+  EXPECT_EQ(ring(scene), (Ring{0, 1, 2, 3}));
+  EXPECT_EQ(scene.faces()[0].line, 6U);
+  EXPECT_EQ(scene.patches()[0].name, "default");
+  EXPECT_EQ(scene.materials()[0].name, "(none)");
+  EXPECT_TRUE(scene.warnings().empty());
+}
+
+TEST(ObjReader, EveryFormOfACornerIsRead) {
+  for (const char* corners : {"1 2 3", "1/1 2/5 3/-1", "1//1 2//2 3//3", "1/1/1 2/2/2 3/3/3", "1/ 2// 3//", "+1 2 3"}) {
+    EXPECT_EQ(ring(read(kSquare + "f " + corners)), (Ring{0, 1, 2})) << corners;
+  }
+}
+
+TEST(ObjReader, NegativeIndicesCountFromTheEndSoFar) {
+  const Scene scene = read(kSquare + "f -4 -3 -2\nv 5 5 5\nf -4/1 -3/1 -1/1\n");
+  EXPECT_EQ(ring(scene, 0), (Ring{0, 1, 2}));
+  EXPECT_EQ(ring(scene, 1), (Ring{1, 2, 4}));
+}
+
+TEST(ObjReader, PositiveIndicesMayReferForward) { EXPECT_EQ(ring(read("f 1 2 3\n" + kSquare)), (Ring{0, 1, 2})); }
+
+TEST(ObjReader, OddSpellingsOfTheSameFileAgree) {
+  const std::string hash = read(kSquare + "f 1 2 3 4\n").hash();
+  const std::string spellings[] = {
+      "\xEF\xBB\xBFv 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nv 0 1 0\r\nf 1 2 3 4\r\n",
+      "v 0 0 0\rv 1 0 0\rv 1 1 0\rv 0 1 0\rf 1 2 3 4",
+      "v\t0\t0 0  \n  v 1 0 0#c\nv +1. 1e0 -0 # comment \\\nv .0 1 0 1.0\nf 1 2 \\\n3\\\n 4",
+      "v 0 0 0 .5 .5 .5\nv 1 0 0 what follows z is not looked at\nv 1 1 0\nv 0 1 0\nfo 1 2 3 4\nvt 0 0\nvn 0 0 1\ns "
+      "off\n",
+  };
+  for (const std::string& text : spellings) EXPECT_EQ(read(text).hash(), hash) << text;
+}
+
+TEST(ObjReader, CoordinatesAreCorrectlyRounded) {
+  const Scene scene = read("v 1e-400 -1e-400 4.9406564584124654e-324\nv 0.1 1e300 1e-300\nv 1 1 1\nf 1 2 3\n");
+  EXPECT_EQ(scene.vertices()[0], (Vec3{0.0, 0.0, 0x1p-1074}));
+  EXPECT_EQ(scene.vertices()[1], (Vec3{0.1, 1e300, 1e-300}));
+}
+
+TEST(ObjReader, GroupsMakePatchesInTheOrderOfTheirFirstFace) {
+  const Scene scene = read(kSquare + "f 1 2 3\ng unused\ng b c\nf 1 2 4\ng a\nf 2 3 4\ng b\nf 1 3 4\ng\nf 1 2 3 4\n");
+  ASSERT_EQ(scene.patches().size(), 3U);
+  EXPECT_EQ(scene.patches()[0].name, "default");
+  EXPECT_EQ(scene.patches()[0].faces, (std::vector<FaceId>{FaceId{0}, FaceId{4}}));
+  EXPECT_EQ(scene.patches()[1].name, "b");
+  EXPECT_EQ(scene.patches()[1].faces, (std::vector<FaceId>{FaceId{1}, FaceId{3}}));
+  EXPECT_EQ(scene.faces()[3].number, 2U);
+  EXPECT_EQ(warnings_of(scene),
+            "s.obj:7: g 'b c' names several groups (a face belongs to one patch); the first name counts\n");
+}
+
+TEST(ObjReader, ObjectsMakePatchesWhereThereAreNoGroups) {
+  const Scene objects = read(kSquare + "o big box\nf 1 2 3\no\nf 1 2 4\n");
+  EXPECT_EQ(objects.patches()[0].name, "big box");
+  EXPECT_EQ(objects.patches()[1].name, "default");
+  const Scene groups = read(kSquare + "o box\nf 1 2 3\ng side\nf 1 2 4\n");
+  EXPECT_EQ(groups.patches()[0].name, "default");
+  EXPECT_EQ(groups.patches()[1].name, "side");
+}
+
+TEST(ObjReader, EveryFaceIsAPatchOnRequest) {
+  const Scene scene = read(kSquare + "g a\nf 1 2 3\nf 1 1 1\nf 1 2 4\n", {BadFaces::kReject, PatchMode::kFaces});
+  EXPECT_EQ(scene.patches()[2].name, "a:3");
+}
+
+struct Malformed {
+  std::string text;
+  std::string message;
+};
+
+TEST(ObjReader, MalformedFilesAreNamedByLine) {
+  const std::string decimal = "; write a decimal number such as 1.5 or -2e-3";
+  const std::string corner = " is not a corner of a face; write v, v/vt, v//vn or v/vt/vn";
+  const std::string range = "; correct the index";
+  const std::string backwards = " (vertices count from 1, or from -1 backwards)" + range;
+  const Malformed table[] = {
+      {"", "s.obj: is empty; give a Wavefront OBJ file"},
+      {"\n\n", "s.obj: has no faces (there is nothing to compute with); is it a Wavefront OBJ file?"},
+      {kSquare, "s.obj: has no faces (there is nothing to compute with); is it a Wavefront OBJ file?"},
+      {std::string("v 0\0 0", 6), "s.obj: is not a text file (it holds zero bytes); save it as a Wavefront OBJ file"},
+      {"v 1 2\n", "s.obj:1: a vertex has fewer than three coordinates; write v x y z"},
+      {"v\n", "s.obj:1: a vertex has fewer than three coordinates; write v x y z"},
+      {"\n v 1 2 x\n", "s.obj:2: 'x' is not a number" + decimal},
+      {"v 1 2 3y\n", "s.obj:1: '3y' is not a number" + decimal},
+      {"v 1 nan 3\n", "s.obj:1: 'nan' is not a finite number; give a finite number"},
+      {"v 1 2 -Inf\n", "s.obj:1: '-Inf' is not a finite number; give a finite number"},
+      {"v 1e400 2 3\n", "s.obj:1: '1e400' is too large for a double; scale the scene; doubles end at 1.8e308"},
+      {"v 0x1 2 3\n", "s.obj:1: '0x1' is hexadecimal" + decimal},
+      {"v 1,5 2 3\n", "s.obj:1: '1,5' has a decimal comma; write a decimal point"},
+      {"v 1 \\\n2 \\\nz\n", "s.obj:1: 'z' is not a number" + decimal},
+      {kSquare + "f 1 2 3 0\n", "s.obj:5: vertex 0 does not exist" + backwards},
+      {kSquare + "f 1 2 5\n", "s.obj:5: vertex 5 does not exist (the file has 4 vertices)" + range},
+      {kSquare + "f 1 2 -5\n", "s.obj:5: vertex -5 does not exist (the lines before define 4 vertices)" + range},
+      {"f -1 -2 -3\n", "s.obj:1: vertex -1 does not exist (the lines before define 0 vertices)" + range +
+                           "\ns.obj:1: vertex -2 does not exist (the lines before define 0 vertices)" + range +
+                           "\ns.obj:1: vertex -3 does not exist (the lines before define 0 vertices)" + range},
+      {kSquare + "f 1 2 99999999999999999999\n",
+       "s.obj:5: vertex 99999999999999999999 does not exist (the lines before define 4 vertices)" + range},
+      {kSquare + "f 1 2 4294967297\n",
+       "s.obj:5: vertex 4294967297 does not exist (the lines before define 4 vertices)" + range},
+      {kSquare + "f 1 2 a\n", "s.obj:5: 'a'" + corner},
+      {kSquare + "f 1 2 3.0\n", "s.obj:5: '3.0'" + corner},
+      {kSquare + "f 1 2 /3\n", "s.obj:5: '/3'" + corner},
+      {kSquare + "f 1 2 3/1/1/1\n", "s.obj:5: '3/1/1/1'" + corner},
+      {kSquare + "f 1 2 3/x\n", "s.obj:5: '3/x'" + corner},
+      {kSquare + "f 1, 2, 3\n", "s.obj:5: '1,'" + corner + "\ns.obj:5: '2,'" + corner},
+      {kSquare + "f 1 2\n",
+       "s.obj:5: a face has 2 vertices (a polygon has at least three); remove it, or leave bad "
+       "faces out with --skip-bad-faces"},
+      {kSquare + "f\n",
+       "s.obj:5: a face has 0 vertices (a polygon has at least three); remove it, or leave bad faces "
+       "out with --skip-bad-faces"},
+      {kSquare + "g bow\nf 1 2 4 3\n",
+       "s.obj:6: face 'bow:1' crosses itself: edge 2-4 and edge 3-1 (vertex numbers) intersect (its inside is "
+       "ambiguous); split it into simple polygons, or leave bad faces out with --skip-bad-faces"},
+      {"f 1 2 9\nv 1 2 x\nf 1 0 1\n", "s.obj:1: vertex 2 does not exist (the file has 1 vertex)" + range +
+                                          "\ns.obj:1: vertex 9 does not exist (the file has 1 vertex)" + range +
+                                          "\ns.obj:2: 'x' is not a number" + decimal +
+                                          "\ns.obj:3: vertex 0 does not exist" + backwards},
+  };
+  for (const Malformed& entry : table) EXPECT_EQ(error_of(entry.text), entry.message) << entry.text;
+}
+
+TEST(ObjReader, PrintsTwentyProblemsAndCountsTheRest) {
+  std::string text;
+  for (int i = 0; i < 25; ++i) text += "v a 0 0\n";
+  EXPECT_TRUE(error_of(text).ends_with("\n... and 5 more problems")) << error_of(text);
+}
+
+TEST(ObjReader, ShortFacesAreSkippedOnRequest) {
+  const Scene scene = read(kSquare + "g a\nf 1 2\nf\nf 1 2 3\n", {BadFaces::kSkip, PatchMode::kGroups});
+  EXPECT_EQ(scene.faces().size(), 3U);
+  EXPECT_EQ(scene.select("a:3").face, FaceId{2});
+  EXPECT_EQ(warnings_of(scene), "s.obj:6: 2 faces have no area and are ignored, the first is face 'a:1'\n");
+}
+
+TEST(ObjReader, UnknownWordsAndCurvedGeometryAreMentionedOnce) {
+  const Scene scene = read(kSquare + "cstype bezier\nsurf 0 1 0 1 1 2 3\nend\nF 1 2 3\nface 1 2 3\nf 1 2 3\n");
+  EXPECT_EQ(warnings_of(scene),
+            "s.obj:6: 'surf' is not read (curves, surfaces and other files are no polygons); convert them to faces\n"
+            "s.obj:8: unknown keyword 'F' (and on 1 more line) (the line is passed over); is it a Wavefront OBJ "
+            "file?\n");
+}
+
+TEST(ObjReader, FilesThatCannotBeReadSaySo) {
+  const TemporaryDirectory directory;
+  const auto message = [](const std::filesystem::path& path) {
+    try {
+      (void)read_obj(path);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  const std::string where = directory.path().string();
+  EXPECT_EQ(message(directory.path()), where + ": is a directory; name a Wavefront OBJ file in it");
+  EXPECT_EQ(message(directory.path() / "none.obj"),
+            where + "/none.obj: cannot be opened (No such file or directory); check the path");
+  EXPECT_EQ(message(directory.write("empty.obj", "")), where + "/empty.obj: is empty; give a Wavefront OBJ file");
+}
+
+// Neither crashes nor hangs, whatever the bytes: either a scene or an InputError.
+TEST(ObjReader, SurvivesDamagedFiles) {
+  const std::string good = "mtllib none.mtl\no a\ng a b\nusemtl m\n" + kSquare +
+                           "v 2e-3 -1e+5 .5\nf 1/2/3 -1//2 3/4 2\nf 1 2 3 4 5\ns 1\nf \\\n 4 3 2\n# end\n";
+  const std::string bytes = "0123456789-+.eE/\\# \t\r\n\xff\x80gvfonusemtl";
+  std::mt19937 random(1);
+  const auto below = [&](std::size_t n) { return random() % n; };
+  int scenes = 0;
+  for (int round = 0; round < 1500; ++round) {
+    std::string text = good;
+    for (std::size_t edits = 1 + below(4); edits > 0; --edits) {
+      const std::size_t at = below(text.size());
+      if (below(3) == 0)
+        text.erase(at, 1 + below(6));
+      else if (below(2) == 0)
+        text.insert(at, 1, bytes[below(bytes.size())]);
+      else
+        text[at] = bytes[below(bytes.size())];
+    }
+    try {
+      (void)read(text, {BadFaces::kSkip, PatchMode::kGroups});
+      ++scenes;
+    } catch (const InputError&) {
+    }
+  }
+  EXPECT_GT(scenes, 100);
+}
+
+// --- materials ---
+
+Scene read_with_mtl(const std::string& mtl, const std::string& head = "mtllib m.mtl\nusemtl a\n") {
+  const TemporaryDirectory directory;
+  (void)directory.write("m.mtl", mtl);
+  return read_obj(directory.write("s.obj", head + kSquare + "f 1 2 3\n"));
+}
+
+std::string after(const std::string& text, const std::string& mark) {
+  const std::size_t at = text.find(mark);
+  return at == std::string::npos ? text : text.substr(at);
+}
+
+TEST(MtlReader, KdIsTheReflectanceAndKeTheRadiosity) {
+  const Scene scene =
+      read_with_mtl("# c\r\nnewmtl b\nKd 1 1 1\nnewmtl a\n Ka 9 9 9\n\tKd .25 .5 .75#x\nKe 2\nmap_Kd x.png\n");
+  const Material& material = scene.material(scene.faces()[0].material);
+  EXPECT_EQ(material.name, "a");
+  EXPECT_EQ(material.reflectance, (Rgb{0.25, 0.5, 0.75}));
+  EXPECT_EQ(material.radiosity, (Rgb{2, 2, 2}));
+  EXPECT_TRUE(scene.warnings().empty());
+}
+
+TEST(MtlReader, AbsentKdIsOneAndAbsentKeIsZero) {
+  const Scene scene = read_with_mtl("newmtl a\nNs 10\n");
+  EXPECT_EQ(scene.receiver_reflectance(FaceId{0}), (Rgb{1, 1, 1}));
+  EXPECT_TRUE(scene.emitters().empty());
+}
+
+TEST(MtlReader, NamesMayHoldBlanks) {
+  const Scene scene = read_with_mtl("newmtl old brick\nKd .5\n", "mtllib m.mtl\nusemtl old brick\n");
+  EXPECT_EQ(scene.receiver_reflectance(FaceId{0}), (Rgb{0.5, 0.5, 0.5}));
+}
+
+TEST(MtlReader, SeveralLibrariesAndBackslashesAreFound) {
+  EXPECT_TRUE(read_with_mtl("newmtl a\n", "mtllib .\\m.mtl m.mtl\nusemtl a\n").warnings().empty());
+}
+
+TEST(MtlReader, MalformedFilesAreNamedByLine) {
+  const Malformed table[] = {
+      {"newmtl a\nKd 1 x 1\n",
+       "m.mtl:2: Kd of material 'a': 'x' is not a number; write a decimal number such as 1.5 or -2e-3"},
+      {"newmtl a\nKe 1 2\n", "m.mtl:2: Ke of material 'a' has two values; give one value or red, green and blue"},
+      {"newmtl a\nKd\n", "m.mtl:2: Kd of material 'a' has no value; give one value or red, green and blue"},
+      {"newmtl a\nKe 1 -2 1\n", "m.mtl:2: Ke of material 'a' is negative (a radiosity is not negative); correct it"},
+      {"newmtl a\nKd -.1\n",
+       "m.mtl:2: Kd of material 'a' is negative (a reflectance lies between 0 and 1); correct it"},
+      {"Kd 1\n", "m.mtl:1: Kd before any newmtl (it belongs to no material); move it"},
+      {"newmtl\n", "m.mtl:1: newmtl without a name (nothing can use it); give the material a name"},
+      {"newmtl a\nKe inf\n", "m.mtl:2: Ke of material 'a': 'inf' is not a finite number; give a finite number"},
+  };
+  for (const Malformed& entry : table) {
+    try {
+      (void)read_with_mtl(entry.text);
+      ADD_FAILURE() << entry.text;
+    } catch (const InputError& error) {
+      EXPECT_EQ(after(error.what(), "m.mtl:"), entry.message);
+    }
+  }
+}
+
+TEST(MtlReader, DoubtfulFilesAreWarnedAbout) {
+  const Malformed table[] = {
+      {"newmtl a\nKd 1.5\n",
+       "m.mtl:2: Kd of material 'a' exceeds 1 (such a surface reflects more than it receives); "
+       "correct it\n"},
+      {"newmtl a\nKd spectral x.rfl\n",
+       "m.mtl:2: Kd of material 'a' is given as 'spectral' (only RGB values are "
+       "read); the default stands; write red, green and blue\n"},
+      {"newmtl a\nKd xyz 1 1 1\n",
+       "m.mtl:2: Kd of material 'a' is given as 'xyz' (only RGB values are read); the "
+       "default stands; write red, green and blue\n"},
+      {"newmtl a\nKd .5\nnewmtl a\nKd .25\n",
+       "m.mtl:3: material 'a' is defined again (the first definition counts); remove one\n"},
+      {"newmtl b\n",
+       "s.obj:2: material 'a' is not defined (it becomes Kd 1, Ke 0); define it in a file named by "
+       "mtllib\n"},
+  };
+  for (const Malformed& entry : table) {
+    const std::string warnings = warnings_of(read_with_mtl(entry.text));
+    EXPECT_EQ(after(warnings, entry.message.substr(0, 6)), entry.message);
+  }
+}
+
+TEST(MtlReader, AMissingFileIsAWarningAndGivesDefaults) {
+  const Scene scene = read("mtllib none.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 4\n");
+  EXPECT_EQ(warnings_of(scene),
+            "s.obj:1: material file 'none.mtl' cannot be read (its materials become Kd 1, Ke 0); "
+            "put it there if colours or emission matter\n");
+  EXPECT_EQ(scene.material(scene.faces()[1].material).name, "b");
+}
+
+}  // namespace
+}  // namespace exactff

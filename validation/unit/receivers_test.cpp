@@ -1,0 +1,235 @@
+// Grids of receivers and receiver files.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "exactff/obj.h"
+#include "exactff/receiver.h"
+
+namespace exactff {
+namespace {
+
+using Ring = std::vector<std::uint32_t>;
+
+Scene one_face(const std::vector<Vec3>& vertices, std::vector<Ring> rings, BadFaces bad = BadFaces::kReject) {
+  SceneBuilder builder("test", {bad, PatchMode::kGroups});
+  for (const Vec3& v : vertices) builder.add_vertex(v);
+  const MaterialId material = builder.add_material({});
+  builder.add_face(builder.patch("face"), material, std::move(rings));
+  return builder.build();
+}
+
+std::vector<Receiver> grid(const Scene& scene, int u, int v) {
+  return grid_receivers(scene, scene.select("face"), {u, v});
+}
+
+TEST(GridReceivers, CentresOfARectangleAreExactAndURunsFastest) {
+  const Scene scene = one_face({{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {0, 2, 0}}, {{0, 1, 2, 3}});
+  const auto receivers = grid(scene, 2, 2);
+  ASSERT_EQ(receivers.size(), 4U);
+  EXPECT_EQ(receivers[0].point, (Vec3{1, 0.5, 0}));
+  EXPECT_EQ(receivers[1].point, (Vec3{3, 0.5, 0}));
+  EXPECT_EQ(receivers[2].point, (Vec3{1, 1.5, 0}));
+  EXPECT_EQ(receivers[1].id, "2,1");
+  EXPECT_EQ(receivers[3].id, "2,2");
+}
+
+TEST(GridReceivers, RememberTheFaceAndCarryItsNewellVector) {
+  const Scene scene = one_face({{0, 0, 0}, {0, 2, 0}, {0, 2, 3}, {0, 0, 3}}, {{0, 1, 2, 3}});
+  const auto receivers = grid(scene, 1, 1);
+  ASSERT_EQ(receivers.size(), 1U);
+  EXPECT_EQ(receivers[0].on, FaceId{0});
+  EXPECT_EQ(receivers[0].normal, (Vec3{6, 0, 0}));
+}
+
+TEST(GridReceivers, ATrapezoidIsMappedBilinearly) {
+  // Centre of the single cell: the mean of the corners.
+  const Scene scene = one_face({{0, 0, 0}, {8, 0, 0}, {5, 4, 0}, {3, 4, 0}}, {{0, 1, 2, 3}});
+  EXPECT_EQ(grid(scene, 1, 1)[0].point, (Vec3{4, 2, 0}));
+  // s = 1/4, t = 3/4: 3/16 p0 + 1/16 p1 + 3/16 p2 + 9/16 p3.
+  EXPECT_EQ(grid(scene, 2, 2)[2].point, (Vec3{3.125, 3, 0}));
+}
+
+TEST(GridReceivers, ACentreIsTheNearestDoubleOfTheTrueOne) {
+  // The middle cell of three is centred at (0.1 + 0.7)/2, whose sum needs 56 bits: a long double holds it.
+  const Scene scene = one_face({{0.1, 0, 0}, {0.7, 0, 0}, {0.7, 1, 0}, {0.1, 1, 0}}, {{0, 1, 2, 3}});
+  const long double middle = (static_cast<long double>(0.1) + static_cast<long double>(0.7)) / 2;
+  EXPECT_EQ(grid(scene, 3, 1)[1].point.x, static_cast<double>(middle));
+}
+
+TEST(GridReceivers, ANonPlanarQuadrilateralLiesOnItsBilinearPatch) {
+  const Scene scene = one_face({{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0}}, {{0, 1, 2, 3}});
+  const auto receivers = grid(scene, 1, 1);
+  ASSERT_EQ(receivers.size(), 1U);
+  EXPECT_EQ(receivers[0].point, (Vec3{0.5, 0.5, 0.25}));
+  EXPECT_EQ(receivers[0].on, FaceId{0});
+}
+
+TEST(GridReceivers, AnotherFaceKeepsTheCentresInsideItsBoundingRectangle) {
+  // An L: the quarter with large x and y is missing.
+  const Scene scene =
+      one_face({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}}, {{0, 1, 2, 3, 4, 5}});
+  const auto receivers = grid(scene, 2, 2);
+  ASSERT_EQ(receivers.size(), 3U);
+  EXPECT_EQ(receivers[0].point, (Vec3{0.5, 0.5, 0}));
+  EXPECT_EQ(receivers[1].point, (Vec3{1.5, 0.5, 0}));
+  EXPECT_EQ(receivers[2].point, (Vec3{0.5, 1.5, 0}));
+  EXPECT_EQ(receivers[2].id, "1,2");
+}
+
+TEST(GridReceivers, ACentreOnAnEdgeOrACornerIsNotInside) {
+  // Grid 4x4 of the same L has centres at odd quarters; 3x3 has (1, 1), the inner corner, and points on x = 1.
+  const Scene scene =
+      one_face({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}}, {{0, 1, 2, 3, 4, 5}});
+  EXPECT_EQ(grid(scene, 4, 4).size(), 12U);
+  EXPECT_EQ(grid(scene, 1, 1).size(), 0U);
+  EXPECT_EQ(grid(scene, 3, 3).size(), 5U);
+}
+
+TEST(GridReceivers, HolesAreLeftOut) {
+  const Scene scene = one_face({{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {1, 1, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}},
+                               {{0, 1, 2, 3}, {4, 5, 6, 7}});
+  const auto receivers = grid(scene, 3, 3);
+  EXPECT_EQ(receivers.size(), 8U);
+  for (const Receiver& receiver : receivers) EXPECT_NE(receiver.point, (Vec3{1.5, 1.5, 0}));
+}
+
+TEST(GridReceivers, TheRectangleFollowsTheFirstEdgeInItsPlane) {
+  // A right triangle in the plane x = 7 whose first edge runs along +z; v = Newell x u.
+  const Scene scene = one_face({{7, 0, 0}, {7, 0, 4}, {7, -4, 0}}, {{0, 1, 2}});
+  const auto receivers = grid(scene, 4, 4);
+  EXPECT_EQ(receivers.size(), 6U);  // strictly below the diagonal
+  EXPECT_EQ(receivers[0].point, (Vec3{7, -0.5, 0.5}));
+  EXPECT_EQ(receivers[1].point, (Vec3{7, -0.5, 1.5}));
+  EXPECT_GT(receivers[0].normal.x, 0.0);
+}
+
+TEST(GridReceivers, AnIgnoredFaceHasNone) {
+  const Scene scene = one_face({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}});
+  EXPECT_TRUE(grid(scene, 4, 4).empty());
+}
+
+TEST(GridReceivers, HugeAndTinyFacesKeepTheirCentres) {
+  const double h = 0x1p1020, t = 0x1p-1060;
+  const Scene huge = one_face({{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}}, {{0, 1, 2, 3}});
+  EXPECT_EQ(grid(huge, 2, 1)[0].point, (Vec3{-h / 2, 0, 0}));
+  const Scene tiny = one_face({{0, 0, 0}, {t, 0, 0}, {t, t, 0}, {0, t, 0}}, {{0, 1, 2, 3}});
+  EXPECT_EQ(grid(tiny, 2, 1)[1].point, (Vec3{3 * t / 4, t / 2, 0}));
+  EXPECT_NE(grid(tiny, 1, 1)[0].normal, (Vec3{}));
+}
+
+TEST(GridReceivers, ACountBelowOneIsRefused) {
+  const Scene scene = one_face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, {{0, 1, 2}});
+  EXPECT_THROW((void)grid(scene, 0, 4), InputError);
+}
+
+TEST(GridReceivers, TheCellIsReadBackFromTheId) {
+  const Scene scene = one_face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2, 3}});
+  const auto cell = grid_cell(grid(scene, 5, 5)[7]);
+  ASSERT_TRUE(cell.has_value());
+  EXPECT_EQ(cell->column, 3);
+  EXPECT_EQ(cell->row, 2);
+  EXPECT_FALSE(grid_cell(Receiver{{}, {0, 0, 1}, std::nullopt, "3,2"}).has_value());
+}
+
+class ReceiverFile : public ::testing::Test {
+ protected:
+  ReceiverFile()
+      : scene_(make_scene()),
+        path_(std::filesystem::temp_directory_path() / ("receivers-" + std::to_string(::getpid()) + ".csv")) {}
+  ~ReceiverFile() override {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+
+  static Scene make_scene() {
+    SceneBuilder builder("test");
+    for (const Vec3& v : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{1, 1, 0}, Vec3{0, 1, 0}}) builder.add_vertex(v);
+    const MaterialId material = builder.add_material({});
+    builder.add_face(builder.patch("floor"), material, {{0, 1, 2}});
+    builder.add_face(builder.patch("floor"), material, {{0, 2, 3}});
+    builder.add_face(builder.patch("lid"), material, {{3, 2, 1, 0}});
+    return builder.build();
+  }
+
+  std::vector<Receiver> read(const std::string& text) {
+    std::ofstream(path_, std::ios::binary) << text;
+    return read_receivers(path_, scene_);
+  }
+
+  // The first message, without the file's name.
+  std::string fault(const std::string& text) {
+    try {
+      (void)read(text);
+    } catch (const InputError& error) {
+      const Problem& p = error.problems().front();
+      EXPECT_EQ(p.file, path_.string());
+      return std::to_string(p.line) + ": " + p.what;
+    }
+    return "no fault";
+  }
+
+  Scene scene_;
+  std::filesystem::path path_;
+};
+
+TEST_F(ReceiverFile, ReadsQuotesCommentsCrlfAndAnyColumnOrder) {
+  const auto receivers = read(
+      "\xEF\xBB\xBF# points\r\nnz,x,y,z,nx,ny,id,on\r\n\r\n1, 0.1 ,+2,3e-1,0,0,\"a \"\"b\"\", "
+      "c\",floor:2\r\n-1,1,1,1,0,0,,\r\n");
+  ASSERT_EQ(receivers.size(), 2U);
+  EXPECT_EQ(receivers[0].id, "a \"b\", c");
+  EXPECT_EQ(receivers[0].point, (Vec3{0.1, 2, 0.3}));
+  EXPECT_EQ(receivers[0].on, FaceId{1});
+  EXPECT_EQ(receivers[1].id, "2");
+  EXPECT_FALSE(receivers[1].on.has_value());
+}
+
+TEST_F(ReceiverFile, NeedsNeitherIdNorOn) {
+  const auto receivers = read("x,y,z,nx,ny,nz\n1,2,3,0,0,1\n");
+  ASSERT_EQ(receivers.size(), 1U);
+  EXPECT_EQ(receivers[0].id, "1");
+}
+
+TEST_F(ReceiverFile, APatchOfOneFaceNamesThatFace) {
+  EXPECT_EQ(read("x,y,z,nx,ny,nz,on\n1,2,3,0,0,1,lid\n")[0].on, FaceId{2});
+}
+
+TEST_F(ReceiverFile, FaultsNameTheLineAndWhatIsWrong) {
+  const std::string head = "id,x,y,z,nx,ny,nz,on\n";
+  EXPECT_EQ(fault(""), "0: the file has no header");
+  EXPECT_EQ(fault("id,x,y,z,nx,ny\n"), "1: there is no column 'nz'");
+  EXPECT_EQ(fault("id,x,y,z,nx,ny,nz,onn\n"), "1: unknown column 'onn'");
+  EXPECT_EQ(fault("x,y,z,nx,ny,nz,x\n"), "1: column 'x' occurs twice");
+  EXPECT_EQ(fault(head + "a,1,2,3,0,0,1\n"), "2: 7 fields where the header has 8");
+  EXPECT_EQ(fault(head + "\n# c\na,1,2,three,0,0,1,\n"), "4: 'three' is not a number in column z");
+  EXPECT_EQ(fault(head + "a,1,2,1e999,0,0,1,\n"), "2: '1e999' is too large for a double in column z");
+  EXPECT_EQ(fault(head + "a,1,2,3,0,0,-0.0,\n"), "2: the normal is zero");
+  EXPECT_EQ(fault(head + "a,1,2,3,0,0,1,floor\n"), "2: 'floor' has 2 faces");
+  EXPECT_EQ(fault(head + "\"a,1,2,3,0,0,1,\n"), "2: a quotation mark is not closed, or text follows it");
+  EXPECT_EQ(fault(head + "a,1,2,3,0,0,1,\na,1,2,4,0,0,1,\n"), "3: the id 'a' is used twice");
+}
+
+TEST_F(ReceiverFile, AnUnknownFaceIsReportedWithTheLineOfTheReceiver) {
+  EXPECT_EQ(fault("x,y,z,nx,ny,nz,on\n1,2,3,0,0,1,flor\n").substr(0, 3), "2: ");
+}
+
+TEST_F(ReceiverFile, AllFaultsAreReportedTogether) {
+  try {
+    (void)read("x,y,z,nx,ny,nz\n1,2,3,0,0,0\n1,2,q,0,0,1\n");
+    FAIL() << "no fault found";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problems().size(), 2U);
+  }
+}
+
+TEST_F(ReceiverFile, AMissingFileIsAnInputError) {
+  EXPECT_THROW((void)read_receivers("no-such-file.csv", scene_), InputError);
+}
+
+}  // namespace
+}  // namespace exactff

@@ -1,0 +1,270 @@
+#include "exactff/scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace exactff {
+namespace {
+
+using Rings = std::vector<std::vector<std::uint32_t>>;
+
+std::string message_of(const auto& action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "nothing thrown";
+}
+
+// A unit cube with one patch a side, fronts outwards, corners not shared between faces.
+struct Cube {
+  SceneBuilder builder{"cube"};
+  MaterialId material = builder.add_material({"grey", {0.5, 0.5, 0.5}, {}});
+
+  void add_side(const std::string& name, const std::vector<Vec3>& corners) {
+    std::vector<std::uint32_t> ring;
+    for (const Vec3& corner : corners) ring.push_back(builder.add_vertex(corner));
+    builder.add_face(builder.patch(name), material, {ring});
+  }
+
+  void add_all_but_top() {
+    add_side("bottom", {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}});
+    add_side("front", {{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}});
+    add_side("right", {{1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {1, 0, 1}});
+    add_side("back", {{1, 1, 0}, {0, 1, 0}, {0, 1, 1}, {1, 1, 1}});
+    add_side("left", {{0, 1, 0}, {0, 0, 0}, {0, 0, 1}, {0, 1, 1}});
+  }
+};
+
+TEST(SceneTopology, ClosedSolidHasNoOpenEdges) {
+  Cube cube;
+  cube.add_all_but_top();
+  cube.add_side("top", {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {-0.0, 1, 1}});
+  EXPECT_EQ(cube.builder.build().open_edge_count(), 0U);
+}
+
+TEST(SceneTopology, MissingSideLeavesItsEdgesOpen) {
+  Cube cube;
+  cube.add_all_but_top();
+  EXPECT_EQ(cube.builder.build().open_edge_count(), 4U);
+}
+
+TEST(SceneTopology, KeyholeBridgesAndIgnoredFacesOpenNothing) {
+  SceneBuilder builder;
+  const MaterialId material = builder.add_material({});
+  for (const Vec3& v : {Vec3{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {0, 8, 0}, {2, 2, 0}, {4, 2, 0}, {4, 5, 0}}) {
+    builder.add_vertex(v);
+  }
+  builder.add_face(builder.patch("a"), material, {{0, 4, 6, 5, 4, 0, 1, 2, 3}});
+  builder.add_face(builder.patch("a"), material, {{4, 5, 4}});
+  EXPECT_EQ(builder.build().open_edge_count(), 7U);
+}
+
+// Patches: wall (faces 1 to 3, the second without area), "wall:1" (one face), lamp (emits, one face).
+SceneBuilder rooms(SceneOptions options = {}) {
+  SceneBuilder builder("rooms.obj", options);
+  const MaterialId grey = builder.add_material({"grey", {0.5, 0.25, 0.125}, {}});
+  const MaterialId bright = builder.add_material({"bright", {}, {4, 2, 1}});
+  const MaterialId dim = builder.add_material({"dim", {}, {1, 1, 1}});
+  for (const Vec3& v : {Vec3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) builder.add_vertex(v);
+  builder.add_face(builder.patch("wall"), grey, {{0, 1, 2}}, 10);
+  builder.add_face(builder.patch("wall"), bright, {{0, 1, 0}}, 11);
+  builder.add_face(builder.patch("wall:1"), grey, {{0, 1, 3}}, 12);
+  builder.add_face(builder.patch("wall"), grey, {{0, 2, 3}}, 13);
+  builder.add_face(builder.patch("lamp"), bright, {{3, 2, 1}}, 14);
+  builder.add_face(builder.patch("mixed"), bright, {{3, 1, 2}}, 15);
+  builder.add_face(builder.patch("mixed"), dim, {{3, 1, 0}}, 16);
+  return builder;
+}
+
+constexpr PatchId kWall{0}, kWallOne{1}, kLamp{2}, kMixed{3};
+
+TEST(SceneNames, ANameSelectsAPatchAndNameColonKItsKthFace) {
+  const Scene scene = rooms().build();
+  EXPECT_EQ(scene.select("wall"), (Selection{kWall, {}}));
+  EXPECT_EQ(scene.select("wall:3"), (Selection{kWall, FaceId{3}}));  // the ignored second face counts
+  EXPECT_EQ(scene.select("lamp:1"), (Selection{kLamp, FaceId{4}}));
+}
+
+TEST(SceneNames, AnExactNameWins) {
+  const Scene scene = rooms().build();
+  EXPECT_EQ(scene.select("wall:1"), (Selection{kWallOne, {}}));
+  EXPECT_EQ(scene.select("wall:1:1"), (Selection{kWallOne, FaceId{2}}));
+  ASSERT_EQ(scene.warnings().size(), 2U);
+  EXPECT_EQ(scene.warnings()[1].message(),
+            "rooms.obj:10: face 'wall:1' cannot be named (a patch has that very name, and a patch's name wins); "
+            "rename the patch");
+}
+
+TEST(SceneNames, NamesReadBack) {
+  const Scene scene = rooms().build();
+  for (const char* name : {"wall", "wall:3", "wall:1", "lamp:1", "mixed:2"}) {
+    EXPECT_EQ(scene.name_of(scene.select(name)), name);
+  }
+  EXPECT_EQ(scene.name_of(FaceId{3}), "wall:3");
+  EXPECT_EQ(scene.name_of(FaceId{4}), "lamp");
+}
+
+TEST(SceneNames, UnknownNamesListTheClosest) {
+  const Scene scene = rooms().build();
+  EXPECT_EQ(message_of([&] { (void)scene.select("Lamb"); }),
+            "rooms.obj: there is no patch named 'Lamb'; the patches are: 'lamp', 'wall', 'wall:1', 'mixed'");
+  EXPECT_EQ(message_of([&] { (void)scene.select("wall:4"); }),
+            "rooms.obj: there is no face 'wall:4' (patch 'wall' has 3 faces); faces count from 1");
+  EXPECT_EQ(message_of([&] { (void)scene.select("lamp:0"); }),
+            "rooms.obj: there is no face 'lamp:0' (patch 'lamp' has 1 face); faces count from 1");
+  for (const char* name : {"", ":", "lamp:", "lamp:x", "lamp:-1", "lamp:+1", "lamp:1 ", "lamp:99999999999999999999"}) {
+    EXPECT_THROW((void)scene.select(name), InputError) << name;
+  }
+}
+
+TEST(SceneNames, ManyPatchesAreNotAllListed) {
+  SceneBuilder builder;
+  for (int i = 0; i < 50; ++i) (void)builder.patch("patch" + std::to_string(i));
+  const Scene scene = builder.build();
+  EXPECT_EQ(message_of([&] { (void)scene.select("patch77"); }),
+            "there is no patch named 'patch77'; the closest of its 50 patches are: 'patch7', 'patch17', 'patch27', "
+            "'patch37', 'patch47', 'patch0'");
+}
+
+TEST(SceneNames, PatchModeFacesMakesEveryFaceAPatch) {
+  const Scene scene = rooms({BadFaces::kReject, PatchMode::kFaces}).build();
+  ASSERT_EQ(scene.patches().size(), 7U);
+  EXPECT_EQ(scene.patches()[3].name, "wall:3");
+  EXPECT_EQ(scene.patches()[2].name, "wall:1:1");
+  EXPECT_EQ(scene.select("wall:3"), (Selection{PatchId{3}, {}}));
+  EXPECT_EQ(scene.name_of(FaceId{3}), "wall:3");
+  EXPECT_EQ(scene.face(FaceId{3}).number, 1U);
+  EXPECT_THROW((void)scene.select("wall"), InputError);
+}
+
+TEST(SceneMaterials, EmittersAreThePatchesWithAnEmittingFaceOfSomeArea) {
+  const Scene scene = rooms().build();
+  EXPECT_EQ(scene.emitters(), (std::vector<Selection>{{kLamp, {}}, {kMixed, {}}}));
+}
+
+TEST(SceneMaterials, SourceRadiosityIsKeOrOne) {
+  const Scene scene = rooms().build();
+  EXPECT_EQ(scene.source_radiosity(scene.select("lamp")), (Rgb{4, 2, 1}));
+  EXPECT_EQ(scene.source_radiosity(scene.select("wall")), (Rgb{1, 1, 1}));  // the ignored face does not count
+  EXPECT_EQ(scene.source_radiosity(scene.select("mixed:2")), (Rgb{1, 1, 1}));
+  EXPECT_EQ(message_of([&] { (void)scene.source_radiosity(scene.select("mixed")); }),
+            "rooms.obj:16: the faces of source 'mixed' differ in Ke ('mixed:1' has material 'bright', 'mixed:2' has "
+            "'dim'; a source has one radiosity); name one face, or give the faces groups of their own");
+}
+
+TEST(SceneMaterials, ReceiverReflectanceIsKdOfItsFaceOrOne) {
+  const Scene scene = rooms().build();
+  EXPECT_EQ(scene.receiver_reflectance(FaceId{0}), (Rgb{0.5, 0.25, 0.125}));
+  EXPECT_EQ(scene.receiver_reflectance({}), (Rgb{1, 1, 1}));
+}
+
+TEST(SceneFaces, IgnoredFacesAreKeptButStandForNothing) {
+  const Scene scene = rooms().build();
+  EXPECT_EQ(scene.face(FaceId{1}).shape, FaceShape::kZeroArea);
+  EXPECT_EQ(scene.faces_of({kWall, {}}), (std::vector<FaceId>{FaceId{0}, FaceId{3}}));
+  EXPECT_TRUE(scene.faces_of({kWall, FaceId{1}}).empty());
+  EXPECT_TRUE(scene.pieces_of(FaceId{1}).empty());
+  EXPECT_EQ(scene.warnings()[0].message(), "rooms.obj:11: face 'wall:2' has no area and is ignored");
+}
+
+TEST(SceneFaces, PiecesLeadToTheirFacesAndCorners) {
+  const Scene scene = rooms().build();
+  for (std::size_t f = 0; f < scene.faces().size(); ++f) {
+    const auto id = static_cast<FaceId>(f);
+    for (const Piece& piece : scene.pieces_of(id)) {
+      EXPECT_EQ(piece.face, id);
+      EXPECT_EQ(std::vector(scene.corners(piece).begin(), scene.corners(piece).end()), scene.face(id).rings[0]);
+    }
+  }
+}
+
+TEST(SceneBuilder, SkipsBadFacesOnRequest) {
+  const auto with_bow_tie = [](BadFaces bad_faces) {
+    SceneBuilder builder("bow.obj", {bad_faces, PatchMode::kGroups});
+    const MaterialId material = builder.add_material({});
+    for (const Vec3& v : {Vec3{0, 0, 0}, {4, 3, 0}, {4, 0, 0}, {0, 4, 0}}) builder.add_vertex(v);
+    builder.add_face(builder.patch("bow"), material, {{0, 1, 2, 3}}, 5);
+    builder.add_face(builder.patch("bow"), material, {{0, 1, 2}}, 6);
+    return builder.build();
+  };
+  EXPECT_EQ(message_of([&] { (void)with_bow_tie(BadFaces::kReject); }),
+            "bow.obj:5: face 'bow:1' crosses itself: edge 1-2 and edge 3-4 (vertex numbers) intersect (its inside is "
+            "ambiguous); split it into simple polygons, or leave bad faces out with --skip-bad-faces");
+  const Scene scene = with_bow_tie(BadFaces::kSkip);
+  EXPECT_EQ(scene.face(FaceId{0}).shape, FaceShape::kSkipped);
+  EXPECT_EQ(scene.faces_of({PatchId{0}, {}}), std::vector<FaceId>{FaceId{1}});
+  ASSERT_EQ(scene.warnings().size(), 1U);
+  EXPECT_EQ(scene.warnings()[0].suggestion, "it is left out");
+  EXPECT_EQ(message_of([&] { (void)scene.select("bow:1"); }),
+            "bow.obj:5: face 'bow:1' cannot be used (it was dropped as a bad face); see the warning about it");
+}
+
+TEST(SceneBuilder, WarnsAboutFacesOutOfPlaneByMoreThanAMillionth) {
+  for (const double height : {0x1p-10, 0x1p-30}) {
+    SceneBuilder builder;
+    const MaterialId material = builder.add_material({});
+    for (const Vec3& v : {Vec3{0, 0, 0}, {1, 0, 0}, {1, 1, height}, {0, 1, 0}}) builder.add_vertex(v);
+    builder.add_face(builder.patch("a"), material, {{0, 1, 2, 3}});
+    const Scene scene = builder.build();
+    EXPECT_EQ(scene.face(FaceId{0}).shape, FaceShape::kTriangulated);
+    EXPECT_EQ(scene.warnings().size(), height > 1e-5 ? 1U : 0U);
+    if (height < 1e-5) continue;
+    EXPECT_EQ(scene.warnings()[0].what, "face 'a:1' is out of plane by 0.00017 of its diameter");
+  }
+}
+
+TEST(SceneBuilder, CollectsEveryMistake) {
+  SceneBuilder builder("api");
+  const MaterialId material = builder.add_material({"black hole", {-1, 0, 0}, {}});
+  builder.add_vertex({std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  builder.add_vertex({0, std::numeric_limits<double>::infinity(), 0});
+  builder.add_face(builder.patch("a"), material, {{0, 1, 2}});
+  EXPECT_EQ(message_of([&] { (void)builder.build(); }),
+            "api: vertex 1 is not finite (a coordinate stands for an exact number); give finite coordinates\n"
+            "api: vertex 2 is not finite (a coordinate stands for an exact number); give finite coordinates\n"
+            "api: material 'black hole' has a negative or infinite Kd or Ke (reflectances and radiosities are not "
+            "negative); correct it");
+}
+
+TEST(SceneBuilder, RefusesIndicesBeyondTheVertices) {
+  SceneBuilder builder;
+  const MaterialId material = builder.add_material({});
+  builder.add_vertex({});
+  builder.add_face(builder.patch("a"), material, {{0, 0, 7}});
+  EXPECT_EQ(message_of([&] { (void)builder.build(); }), "face 'a:1' refers to vertex 8 (there are 1 vertices)");
+}
+
+TEST(SceneBuilder, IsEmptyAfterwards) {
+  SceneBuilder builder = rooms();
+  (void)builder.build();
+  EXPECT_EQ(builder.vertex_count(), 0U);
+  EXPECT_TRUE(builder.build().faces().empty());
+}
+
+TEST(SceneHash, DependsOnWhatAffectsValuesOnly) {
+  const std::string hash = rooms().build().hash();
+  EXPECT_EQ(hash, rooms({BadFaces::kSkip, PatchMode::kGroups}).build().hash());
+  EXPECT_NE(hash, rooms({BadFaces::kReject, PatchMode::kFaces}).build().hash());
+  SceneBuilder more = rooms();
+  more.add_vertex({0, 0, 0});
+  EXPECT_NE(hash, more.build().hash());
+  const auto with_vertex = [](double x) {
+    SceneBuilder builder;
+    builder.add_vertex({x, 0, 0});
+    return builder.build().hash();
+  };
+  EXPECT_EQ(with_vertex(0.0), with_vertex(-0.0));
+  EXPECT_NE(with_vertex(0.0), with_vertex(0x1p-1074));
+}
+
+// Pinned: truth files of other machines and versions must recognise their scenes.
+TEST(SceneHash, IsTheSameEverywhere) { EXPECT_EQ(rooms().build().hash(), "4b98b6de23c40d7a"); }
+
+}  // namespace
+}  // namespace exactff

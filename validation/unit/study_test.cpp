@@ -1,0 +1,476 @@
+// The study: statistics, sweeps, tables, figures and the report.
+#include "exactff/study.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "study/figures.h"
+#include "study/gnuplot.h"
+#include "study/report_page.h"
+#include "study/settings.h"
+#include "study/silent_errors.h"
+#include "study/statistics.h"
+#include "study/tables.h"
+#include "study/text.h"
+
+namespace exactff::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+// --- statistics --------------------------------------------------------------------------------------
+
+TEST(Statistics, OfErrorsAgreeWithHandValues) {
+  const std::vector<double> errors = {3, -4, 0, 0};
+  const ErrorStatistics s = error_statistics(errors);
+  EXPECT_EQ(s.rms, 2.5);
+  EXPECT_EQ(s.mean, -0.25);
+  EXPECT_EQ(s.p99, 4);
+  EXPECT_EQ(s.worst, 4);
+  EXPECT_EQ(s.not_a_number, 0U);
+}
+
+TEST(Statistics, OfNothingAreZero) {
+  const ErrorStatistics s = error_statistics({});
+  EXPECT_EQ(s.rms, 0);
+  EXPECT_EQ(s.worst, 0);
+}
+
+TEST(Statistics, WhatIsNoNumberIsCountedApart) {
+  const std::vector<double> errors = {1, std::numeric_limits<double>::quiet_NaN(), -1};
+  const ErrorStatistics s = error_statistics(errors);
+  EXPECT_EQ(s.not_a_number, 1U);
+  EXPECT_EQ(s.rms, 1);
+}
+
+TEST(Statistics, TheRmsOfTinyErrorsDoesNotUnderflow) {
+  const std::vector<double> errors = {3e-200, 4e-200};
+  EXPECT_NEAR(error_statistics(errors).rms / 1e-200, std::sqrt(12.5), 1e-15 * 10);
+}
+
+TEST(Statistics, PercentilesAreOfTheNearestRank) {
+  std::vector<double> values;
+  for (int i = 100; i >= 1; --i) values.push_back(i);
+  EXPECT_EQ(percentile(values, 99), 99);
+  EXPECT_EQ(percentile(values, 100), 100);
+  EXPECT_EQ(percentile(values, 0.5), 1);
+  values.push_back(101);
+  EXPECT_EQ(percentile(values, 99), 100);  // ceil(99.99)
+  EXPECT_EQ(percentile({7}, 99), 7);
+}
+
+TEST(Statistics, TheMedianOfAnEvenCountIsTheMeanOfTheMiddleTwo) {
+  EXPECT_EQ(median({5, 1, 3}), 3);
+  EXPECT_EQ(median({4, 1, 3, 2}), 2.5);
+  EXPECT_EQ(median({}), 0);
+}
+
+TEST(Statistics, TheSlopeOfAPowerLawIsItsExponent) {
+  const std::vector<std::pair<double, double>> points = {{1, 8}, {4, 4}, {16, 2}, {0, 9}};
+  EXPECT_NEAR(fitted_slope(points).value(), -0.5, 1e-12);
+  const std::vector<std::pair<double, double>> one = {{1, 8}, {1, 4}};
+  EXPECT_FALSE(fitted_slope(one).has_value());
+}
+
+// --- words and numbers -------------------------------------------------------------------------------
+
+TEST(Text, ShortestDecimalsReadBack) {
+  EXPECT_EQ(shortest(0.1), "0.1");
+  EXPECT_EQ(shortest(1e300), "1e+300");
+  EXPECT_EQ(shortest(-0.0), "-0");
+  EXPECT_EQ(shortest(5e-324), "5e-324");
+}
+
+TEST(Text, ASharedPartIsNeverRoundedToNoneOrAll) {
+  EXPECT_EQ(share(0, 10), "0 %");
+  EXPECT_EQ(share(1, 100000), "under 0.1 %");
+  EXPECT_EQ(share(99999, 100000), "over 99.9 %");
+  EXPECT_EQ(share(1, 3), "33.3 %");
+  EXPECT_EQ(share(3, 3), "100 %");
+}
+
+TEST(Text, FieldsAreQuotedWhereTheyMustBe) {
+  EXPECT_EQ(csv_field("plain"), "plain");
+  EXPECT_EQ(csv_field("1,2"), "\"1,2\"");
+  EXPECT_EQ(csv_field("a \"b\""), "\"a \"\"b\"\"\"");
+}
+
+TEST(Text, DurationsTakeTheUnitThatFits) {
+  EXPECT_EQ(duration(3.12e-7), "312 ns");
+  EXPECT_EQ(duration(4.512e-6), "4.51 µs");
+  EXPECT_EQ(duration(0.0012), "1.2 ms");
+  EXPECT_EQ(duration(125), "2 min 5 s");
+}
+
+// --- sweeps ------------------------------------------------------------------------------------------
+
+TEST(Settings, DefaultsFollowTheLargestContribution) {
+  Sweeps sweeps;
+  complete(sweeps, {20.0, 100.0, true});
+  EXPECT_EQ(sweeps.eps_b, (std::vector<double>{2, 0.2, 0.02, 0.002, 0.0002}));
+  EXPECT_EQ(sweeps.eps_a.front(), 0.0);
+  EXPECT_EQ(sweeps.eps_a[1], 10.0);
+}
+
+TEST(Settings, ASmallProductIsRunInFull) {
+  Sweeps sweeps{{0.1, 0.01}, {0.0}, {4, 16}, {1, 2}, {SamplePattern::kJittered}, {Variant::kMended}};
+  complete(sweeps, {});
+  const Plan plan = combine(sweeps);
+  EXPECT_TRUE(plan.full_product);
+  EXPECT_EQ(plan.settings.size(), 8U);
+  EXPECT_EQ(plan.settings[plan.base].eps_b, 0.01);
+  EXPECT_EQ(plan.settings[plan.base].rays, 16);
+}
+
+TEST(Settings, ALargeProductIsSweptThroughTheBase) {
+  Sweeps sweeps;
+  complete(sweeps, {1.0, 1.0, true});
+  const Plan plan = combine(sweeps);
+  EXPECT_FALSE(plan.full_product);
+  for (const Parameter p : {Parameter::kEpsB, Parameter::kRays, Parameter::kSeed, Parameter::kVariant}) {
+    EXPECT_GE(line_through(plan.settings, plan.base, p).size(), 2U);
+  }
+  for (std::size_t i = 0; i < plan.settings.size(); ++i) {
+    EXPECT_EQ(find_setting(plan.settings, plan.settings[i]), i) << "a setting occurs twice";
+  }
+}
+
+TEST(Settings, WhatAPatternIgnoresMakesNoSetting) {
+  Sweeps sweeps{{0.1}, {0.0}, {1, 4}, {1, 2, 3}, {SamplePattern::kCentre, SamplePattern::kRegular}, {Variant::kMended}};
+  complete(sweeps, {});
+  EXPECT_EQ(combine(sweeps).settings.size(), 3U);  // centre; regular with 1 and with 4 rays
+}
+
+TEST(Settings, RepetitionsAreDropped) {
+  Sweeps sweeps{{0.1, 0.1}, {0.0}, {4}, {1}, {SamplePattern::kJittered}, {Variant::kMended}};
+  complete(sweeps, {});
+  EXPECT_EQ(sweeps.eps_b.size(), 1U);
+}
+
+TEST(Settings, WithNothingToSampleOnlyEpsBIsSwept) {
+  Sweeps sweeps;
+  complete(sweeps, {1.0, 1.0, false});
+  const auto left_out = leave_out(sweeps, {1.0, 1.0, false});
+  EXPECT_EQ(left_out.size(), 4U);
+  EXPECT_EQ(sweeps.eps_b.size(), 5U);
+  EXPECT_EQ(sweeps.rays.size() * sweeps.eps_a.size() * sweeps.seeds.size() * sweeps.patterns.size(), 1U);
+}
+
+TEST(Settings, ImpossibleValuesAreInputErrors) {
+  const auto refused = [](Sweeps sweeps) {
+    try {
+      complete(sweeps, {1.0, 1.0, true});
+    } catch (const InputError&) {
+      return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(refused({.eps_b = {-1.0}}));
+  EXPECT_TRUE(refused({.eps_b = {std::numeric_limits<double>::infinity()}}));
+  EXPECT_TRUE(refused({.eps_a = {-1.0}}));
+  EXPECT_TRUE(refused({.rays = {0}}));
+  EXPECT_TRUE(refused({.eps_b = {0.0}, .eps_a = {0.0}}));
+  EXPECT_FALSE(refused({.eps_b = {0.0}, .eps_a = {0.1}}));
+}
+
+// --- silent errors -----------------------------------------------------------------------------------
+
+Loop rectangle(double x0, double y0, double x1, double y1, bool hole = false) {
+  return {{{x0, y0, 1}, {x1, y0, 1}, {x1, y1, 1}, {x0, y1, 1}}, hole};
+}
+
+// The unit square at z = 1, of which what lies left of `seen` is visible.
+PlaneDrawing unit_source(double seen) {
+  PlaneDrawing plane;
+  plane.normal = {0, 0, 1};
+  plane.source = plane.clipped_source = {rectangle(0, 0, 1, 1)};
+  plane.visible = {rectangle(0, 0, seen, 1)};
+  return plane;
+}
+
+Leaf leaf(double x0, double x1, LeafReason reason) {
+  Leaf result;
+  result.corners = {{{x0, 0, 1}, {x1, 0, 1}, {x1, 1, 1}, {x0, 1, 1}}};
+  result.corner_count = 4;
+  result.reason = reason;
+  return result;
+}
+
+TEST(SilentErrors, AreSampledLeavesThatAreSeenInPart) {
+  const std::vector<PlaneDrawing> truth = {unit_source(0.5)};
+  const std::vector<Leaf> leaves = {
+      leaf(0, 0.5, LeafReason::kSampledVisible),      // right
+      leaf(0.5, 1, LeafReason::kSampledHidden),       // right
+      leaf(0.25, 0.75, LeafReason::kSampledVisible),  // silent
+      leaf(0.25, 0.75, LeafReason::kEpsF),            // not sampled as 0 or 1
+      leaf(0.6, 0.8, LeafReason::kSampledVisible),    // wrong
+      leaf(0.1, 0.2, LeafReason::kSampledHidden),     // wrong
+  };
+  const SampledVerdict verdict = judge_leaves(leaves, truth);
+  EXPECT_EQ(verdict.silent, 1U);
+  EXPECT_EQ(verdict.wrong, 2U);
+}
+
+TEST(SilentErrors, HolesOfTheVisibleRegionAreNotVisible) {
+  const std::vector<Loop> loops = {rectangle(0, 0, 1, 1), rectangle(0.25, 0.25, 0.75, 0.75, true)};
+  const std::vector<Vec3> window = {{0, 0, 1}, {1, 0, 1}, {1, 0.5, 1}, {0, 0.5, 1}};
+  EXPECT_NEAR(area_inside(loops, window, {0, 0, 1}), 0.5 - 0.125, 1e-15);
+}
+
+TEST(SilentErrors, AConcaveRegionIsClippedToItsTrueArea) {
+  // A U whose two arms reach into the window: the clipped loop runs back along the window's side.
+  const Loop u{{{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {2, 3, 0}, {2, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}}, false};
+  const std::vector<Vec3> window = {{0, 2, 0}, {3, 2, 0}, {3, 4, 0}, {0, 4, 0}};
+  EXPECT_NEAR(area_inside({u}, window, {0, 0, 1}), 2.0, 1e-15);
+  EXPECT_NEAR(area_inside({u}, {window.rbegin(), window.rend()}, {0, 0, 1}), 2.0, 1e-15);
+}
+
+TEST(SilentErrors, ALeafIsHeldAgainstItsOwnPlane) {
+  PlaneDrawing other = unit_source(1.0);
+  other.normal = {0, 0, -1};
+  const std::vector<PlaneDrawing> truth = {other, unit_source(0.5)};
+  EXPECT_EQ(judge_leaves({leaf(0, 1, LeafReason::kSampledVisible)}, truth).silent, 1U);
+}
+
+// --- the whole ---------------------------------------------------------------------------------------
+
+// A floor, a lamp above it and a plate in between.
+Scene small_room(bool with_plate) {
+  SceneBuilder builder("room");
+  const MaterialId grey = builder.add_material({"grey", {0.5, 0.25, 0.5}, {}});
+  const MaterialId lamp = builder.add_material({"lamp", {1, 1, 1}, {10, 20, 30}});
+  const auto square = [&](const char* name, MaterialId material, double half, double z, bool down) {
+    const std::uint32_t first = builder.add_vertex({-half, -half, z});
+    builder.add_vertex({half, -half, z});
+    builder.add_vertex({half, half, z});
+    builder.add_vertex({-half, half, z});
+    std::vector<std::uint32_t> ring = {first, first + 1, first + 2, first + 3};
+    if (down) ring = {first + 3, first + 2, first + 1, first};
+    builder.add_face(builder.patch(name), material, {ring});
+  };
+  square("floor", grey, 2.0, 0.0, false);
+  square("lamp", lamp, 0.5, 2.0, true);
+  if (with_plate) square("plate", grey, 0.3, 1.0, false);
+  return builder.build();
+}
+
+Request small_request(const Scene& scene, int threads) {
+  Request request;
+  request.scene = &scene;
+  request.scene_name = "room <&>";
+  request.receivers = grid_receivers(scene, scene.select("floor"), {5, 4});
+  request.receivers_name = "floor, grid 5x4";
+  request.sweeps.eps_b = {0.5, 0.05};
+  request.sweeps.rays = {1, 4};
+  request.sweeps.seeds = {1, 2};
+  request.threads = threads;
+  return request;
+}
+
+std::string text_of(const Table& table, const Study& study) {
+  std::ostringstream out;
+  table.write(study, out);
+  return out.str();
+}
+
+const Study& small_study() {
+  static const Scene scene = small_room(true);
+  static const Study study = run(small_request(scene, 1));
+  return study;
+}
+
+TEST(Study, ValueTablesAreTheSameBytesForAnyNumberOfThreads) {
+  const Study two = run(small_request(*small_study().request.scene, 2));
+  for (const std::size_t i : {0, 1, 2}) {
+    const Table& table = tables()[i];
+    EXPECT_EQ(text_of(table, small_study()), text_of(table, two)) << table.file;
+    EXPECT_EQ(text_of(table, two).find("thread"), std::string::npos) << table.file;
+  }
+}
+
+TEST(Study, ValuesHaveARowPerReceiverAndSetting) {
+  const std::string text = text_of(tables()[0], small_study());
+  std::size_t rows = 0;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) rows += line.starts_with('#') ? 0 : 1;
+  EXPECT_EQ(rows, 1 + small_study().exact.size() * small_study().settings.size());
+}
+
+TEST(Study, ErrorsAreApproximateMinusExact) {
+  const Study& study = small_study();
+  for (std::size_t k = 0; k < study.settings.size(); ++k) {
+    for (std::size_t i = 0; i < study.exact.size(); ++i) {
+      const SampleRow& row = study.samples[k][i];
+      EXPECT_EQ(row.error, row.form_factor - study.exact[i].form_factor);
+      // Of rho B = (5, 5, 15) the third channel is the largest.
+      EXPECT_DOUBLE_EQ(row.radiosity_error, 15 * row.error);
+    }
+  }
+}
+
+TEST(Study, RadiosityAddsOverTheSources) {
+  const Scene scene = small_room(true);
+  Request request = small_request(scene, 1);
+  request.sources = {scene.select("lamp"), scene.select("plate")};
+  const Study both = run(std::move(request));
+  for (std::size_t i = 0; i < both.exact.size(); ++i) {
+    ASSERT_EQ(both.exact[i].terms.size(), 2U);
+    const double lamp = both.exact[i].terms[0].value, plate = both.exact[i].terms[1].value;
+    EXPECT_EQ(lamp, small_study().exact[i].form_factor);
+    EXPECT_DOUBLE_EQ(both.exact[i].form_factor, lamp + plate);
+    EXPECT_DOUBLE_EQ(both.exact[i].radiosity.b, 0.5 * (30 * lamp + 1 * plate));
+  }
+}
+
+TEST(Study, WithoutOccludersLeavesTheSamplingSweepsOut) {
+  const Scene scene = small_room(false);
+  Request request = small_request(scene, 1);
+  request.sweeps.eps_a = {0.0, 0.1};
+  const Study study = run(std::move(request));
+  std::set<std::string> left_out;
+  for (const LeftOut& item : study.left_out) left_out.insert(item.what);
+  EXPECT_TRUE(left_out.contains("sweep of eps_A"));
+  EXPECT_TRUE(left_out.contains("sweep of the number of rays"));
+  EXPECT_TRUE(left_out.contains("sweep of seeds"));
+  for (const Summary& summary : study.summaries) EXPECT_EQ(summary.rays, 0U);
+}
+
+TEST(Study, NeedsAReceiverAndASource) {
+  const Scene scene = small_room(true);
+  Request request = small_request(scene, 1);
+  request.receivers.clear();
+  EXPECT_THROW((void)run(std::move(request)), InputError);
+  SceneBuilder dark("dark");
+  for (const Vec3& v : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}}) dark.add_vertex(v);
+  dark.add_face(dark.patch("floor"), dark.add_material({}), {{0, 1, 2}});
+  const Scene unlit = dark.build();
+  EXPECT_THROW((void)run(small_request(unlit, 1)), InputError);
+}
+
+TEST(Study, StopsWhenItIsCancelled) {
+  const Scene scene = small_room(true);
+  const Hooks hooks{{}, [] { return true; }};
+  EXPECT_THROW((void)run(small_request(scene, 2), hooks), Cancelled);
+}
+
+TEST(Study, TheReportHoldsEveryFigureAndFetchesNothing) {
+  const Study& study = small_study();
+  Page page;
+  page.left_out = study.left_out;
+  for (Figure& figure : figures(study, page.left_out)) page.figures.push_back({std::move(figure), "<svg></svg>"});
+  ASSERT_GE(page.figures.size(), 6U);
+  const std::string text = report_page(study, page);
+  for (const DrawnFigure& drawn : page.figures) {
+    EXPECT_NE(text.find("<figure id=\"" + drawn.figure.id + "\">"), std::string::npos) << drawn.figure.id;
+  }
+  for (const char* outside : {"http:", "https:", "<script", "src=", "<link", "@import", "url("}) {
+    EXPECT_EQ(text.find(outside), std::string::npos) << outside;
+  }
+  EXPECT_NE(text.find("room &lt;&amp;&gt;"), std::string::npos) << "names are escaped";
+  EXPECT_EQ(text.find("room <&>"), std::string::npos);
+}
+
+TEST(Study, EveryFigureHasItsOwnName) {
+  std::vector<LeftOut> left_out;
+  std::set<std::string> ids;
+  for (const Figure& figure : figures(small_study(), left_out)) EXPECT_TRUE(ids.insert(figure.id).second) << figure.id;
+}
+
+TEST(InlinedSvg, HasItsOwnIdsAndNothingFromOutside) {
+  const std::string svg =
+      "<?xml version=\"1.0\"?>\n<svg viewBox=\"0 0 1 1\"\n xmlns=\"http://www.w3.org/2000/svg\"\n "
+      "xmlns:xlink=\"http://www.w3.org/1999/xlink\">\n<title>x</title><circle id='p'/><use xlink:href='#p'/>"
+      "<g color=\"black\" fill=\"black\"/></svg>\n";
+  const std::string text = inlined(svg, "fig", "A \"title\"");
+  EXPECT_TRUE(text.starts_with("<svg role=\"img\" aria-label=\"A &quot;title&quot;\""));
+  EXPECT_NE(text.find("id='fig-p'"), std::string::npos);
+  EXPECT_NE(text.find("href='#fig-p'"), std::string::npos);
+  EXPECT_NE(text.find("fill=\"currentColor\""), std::string::npos);
+  EXPECT_EQ(text.find("http:"), std::string::npos);
+  EXPECT_EQ(text.find("<title>"), std::string::npos);
+  EXPECT_EQ(text.find("color=\"black\""), std::string::npos);
+}
+
+TEST(InlinedSvg, ComesFromEveryFigureThatGnuplotDraws) {
+  std::vector<LeftOut> left_out;
+  std::vector<Figure> all = figures(small_study(), left_out);
+  std::set<bool> kinds;
+  for (const Figure& figure : all) {
+    if (!kinds.insert(figure.map).second) continue;  // one line figure and one map: gnuplot takes its time
+    const PlotResult plot = run_gnuplot(figure.script, fs::temp_directory_path());
+    if (plot.outcome == PlotResult::Outcome::kNoProgram) GTEST_SKIP() << "gnuplot is not installed";
+    EXPECT_EQ(plot.outcome, PlotResult::Outcome::kDrawn) << plot.message;
+    EXPECT_EQ(plot.message, "") << "gnuplot warned about " << figure.id;
+    EXPECT_EQ(inlined(plot.svg, figure.id, figure.title).find("http"), std::string::npos);
+  }
+  EXPECT_EQ(kinds.size(), 2U);
+}
+
+// --- the folder --------------------------------------------------------------------------------------
+
+class OutputFolder : public ::testing::Test {
+ protected:
+  OutputFolder() : root_(fs::temp_directory_path() / ("exactff-study-test-" + std::to_string(::getpid()))) {
+    fs::remove_all(root_);
+    fs::create_directories(root_);
+  }
+  ~OutputFolder() override {
+    std::error_code ignored;
+    fs::remove_all(root_, ignored);
+  }
+
+  std::set<std::string> names() const {
+    std::set<std::string> found;
+    for (const auto& entry : fs::directory_iterator(root_)) found.insert(entry.path().filename().string());
+    return found;
+  }
+
+  fs::path root_;
+};
+
+TEST_F(OutputFolder, OfAStrangerIsRefused) {
+  fs::create_directories(root_ / "out");
+  EXPECT_NO_THROW(check_output_folder(root_ / "out"));
+  std::ofstream(root_ / "out" / "thesis.txt") << "do not lose me";
+  EXPECT_THROW(check_output_folder(root_ / "out"), InputError);
+  std::ofstream(root_ / "file") << "x";
+  EXPECT_THROW(check_output_folder(root_ / "file"), InputError);
+}
+
+TEST_F(OutputFolder, OfAnEarlierStudyMayBeReplaced) {
+  fs::create_directories(root_ / "out");
+  std::ofstream(root_ / "out" / "values.csv") << "a,b\n";
+  EXPECT_THROW(check_output_folder(root_ / "out"), InputError) << "no summary.csv of ours";
+  std::ofstream(root_ / "out" / "summary.csv") << "# exactff 0.1.0 compare: summary\n";
+  EXPECT_NO_THROW(check_output_folder(root_ / "out" / ""));
+}
+
+TEST_F(OutputFolder, OfACancelledStudyIsNotThere) {
+  const Hooks hooks{{}, [] { return true; }};
+  EXPECT_THROW((void)write(small_study(), root_ / "out", hooks), Cancelled);
+  EXPECT_TRUE(names().empty());
+}
+
+TEST_F(OutputFolder, WithoutGnuplotHoldsTablesAndAReportThatSaysSo) {
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", root_.c_str(), 1);
+  const auto messages = write(small_study(), root_ / "out");
+  ::setenv("PATH", path.c_str(), 1);
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_NE(messages.front().find("gnuplot"), std::string::npos);
+  EXPECT_EQ(names(), std::set<std::string>{"out"});
+  for (const Table& table : tables()) EXPECT_TRUE(fs::exists(root_ / "out" / table.file)) << table.file;
+  EXPECT_TRUE(fs::exists(root_ / "out" / "report.html"));
+}
+
+}  // namespace
+}  // namespace exactff::study

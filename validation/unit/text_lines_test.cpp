@@ -1,0 +1,58 @@
+#include "scene/text_lines.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace exactff {
+namespace {
+
+using Lines = std::vector<std::pair<std::size_t, std::string>>;
+
+Lines read(std::string_view text) {
+  Lines result;
+  TextLines lines(text);
+  for (TextLine line; lines.next(line);) {
+    if (!line.text.empty()) result.emplace_back(line.number, line.text);
+  }
+  return result;
+}
+
+TEST(TextLines, EveryKindOfLineEndCounts) {
+  EXPECT_EQ(read("a\nb\r\nc\rd\n\ne"), (Lines{{1, "a"}, {2, "b"}, {3, "c"}, {4, "d"}, {6, "e"}}));
+}
+
+TEST(TextLines, BackslashJoinsAndTheFirstLineNumberStands) {
+  EXPECT_EQ(read("f 1 2 \\\n 3\\\r\n4\nv"), (Lines{{1, "f 1 2  3 4"}, {4, "v"}}));
+  EXPECT_EQ(read("a \\"), (Lines{{1, "a"}}));
+  EXPECT_EQ(read("a \\  \nb"), (Lines{{1, "a  b"}}));
+}
+
+TEST(TextLines, CommentsStartAtAWordAndNeverContinue) {
+  EXPECT_EQ(read("# one \\\nv 1 # two \\\ng a#b"), (Lines{{2, "v 1"}, {3, "g a#b"}}));
+}
+
+TEST(TextLines, ByteOrderMarkAndOuterBlanksVanish) { EXPECT_EQ(read("\xEF\xBB\xBF\t v  \t"), (Lines{{1, "v"}})); }
+
+TEST(TextLines, WordsAreSeparatedByBlanksAndTabs) {
+  EXPECT_EQ(words(" a\tb  c "), (std::vector<std::string_view>{"a", "b", "c"}));
+  EXPECT_TRUE(words(" \t").empty());
+}
+
+TEST(ProblemList, KeepsAThousandAndCountsTheRest) {
+  ProblemList list;
+  for (std::size_t i = 0; i < 1500; ++i) list.add({"f", 1500 - i, "wrong", "", ""});
+  try {
+    list.throw_if_any();
+    FAIL() << "nothing thrown";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problems().size(), 1001U);
+    EXPECT_EQ(error.problems().front().line, 501U);
+    EXPECT_EQ(error.problems().back().message(), "f: 500 more problems");
+    EXPECT_TRUE(std::string_view(error.what()).ends_with("\n... and 981 more problems"));
+  }
+}
+
+}  // namespace
+}  // namespace exactff
