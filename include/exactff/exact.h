@@ -30,13 +30,13 @@ enum class Status {
 
 // How far one plane of the source had to be followed; every later stage had no work.
 enum class Outcome {
-  kReceiverFace,  // the receiver lies on this face by construction
-  kBehind,        // x is behind or in the plane of the faces
-  kBelowHorizon,  // no part lies above the receiver's horizon
-  kUnoccluded,    // nothing in the shaft
-  kHiddenByOne,   // one occluder hides all
-  kPartlyHidden,  // the Booleans left something
-  kHiddenByUnion, // the Booleans left nothing
+  kReceiverFace,   // the receiver lies on this face by construction
+  kBehind,         // x is behind or in the plane of the faces
+  kBelowHorizon,   // no part lies above the receiver's horizon
+  kUnoccluded,     // nothing in the shaft
+  kHiddenByOne,    // one occluder hides all
+  kPartlyHidden,   // the Booleans left something
+  kHiddenByUnion,  // the Booleans left nothing
 };
 [[nodiscard]] std::string_view to_string(Outcome outcome);
 
@@ -44,15 +44,15 @@ enum class Outcome {
 struct PlaneRecord {
   std::vector<FaceId> faces;
   Outcome outcome = Outcome::kBehind;
-  bool horizon_clipped = false;      // the horizon cut the faces
-  bool source_joined = false;        // more than one convex piece had to be joined
-  std::uint64_t tree_candidates = 0; // pieces the bounding-volume tree could not rule out
-  std::uint64_t candidates = 0;      // pieces left by the exact predicates and the exact clip
-  std::uint64_t clipped = 0;         // candidates that the exact clip cut
-  std::uint64_t loops = 0;           // boundary loops integrated
-  std::uint64_t edges = 0;           // boundary pieces integrated, after merging collinear ones
-  std::optional<double> visible_fraction;       // on request, correctly rounded
-  std::optional<std::string> exact_fraction;    // on request: "p/q"
+  bool horizon_clipped = false;               // the horizon cut the faces
+  bool source_joined = false;                 // more than one convex piece had to be joined
+  std::uint64_t tree_candidates = 0;          // pieces the bounding-volume tree could not rule out
+  std::uint64_t candidates = 0;               // pieces left by the exact predicates and the exact clip
+  std::uint64_t clipped = 0;                  // candidates that the exact clip cut
+  std::uint64_t loops = 0;                    // boundary loops integrated
+  std::uint64_t edges = 0;                    // boundary pieces integrated, after merging collinear ones
+  std::optional<double> visible_fraction;     // on request, correctly rounded
+  std::optional<std::string> exact_fraction;  // on request: "p/q"
 };
 
 // One line of the account that a result gives of itself.
@@ -68,19 +68,19 @@ struct FormFactor {
   double lower = 0.0;  // when certified: the neighbouring doubles of value, clamped to [0, 1]
   double upper = 0.0;
   Status status = Status::kZero;
-  Enclosure enclosure;                    // holds F
-  std::optional<double> visible_fraction; // on request: visible over whole unclipped area, correctly rounded
-  std::vector<FaceId> cutters;            // on request: faces whose shadow overlaps the clipped source, ascending
+  Enclosure enclosure;                     // holds F
+  std::optional<double> visible_fraction;  // on request: visible over whole unclipped area, correctly rounded
+  std::vector<FaceId> cutters;             // on request: faces whose shadow overlaps the clipped source, ascending
   std::vector<PlaneRecord> planes;
-  int precision_bits = 0;                 // of the last contour evaluation; 0 if none was needed
+  int precision_bits = 0;  // of the last contour evaluation; 0 if none was needed
 };
 
 struct ExactOptions {
   bool visible_fraction = false;
-  bool exact_fraction = false;    // implies visible_fraction
+  bool exact_fraction = false;  // implies visible_fraction
   bool list_cutters = false;
-  int digits = 0;                 // raise the precision until so many decimals are certified
-  int precision_cap = 65536;      // bits
+  int digits = 0;                                       // raise the precision until so many decimals are certified
+  int precision_cap = 65536;                            // bits
   const std::vector<FaceId>* only_occluders = nullptr;  // ascending; every other face is ignored
 };
 
@@ -122,7 +122,7 @@ struct PlaneDrawing {
     FaceId face{};
     Loop outline;  // convex
   };
-  std::vector<Shadow> shadows;       // of each candidate, clipped to the source's hull
+  std::vector<Shadow> shadows;  // of each candidate, clipped to the source's hull
   std::vector<Loop> visible;
 };
 [[nodiscard]] std::vector<PlaneDrawing> draw_visibility(const Scene& scene, const Receiver& receiver,

@@ -21,7 +21,6 @@ namespace exactff {
 [[nodiscard]] Scene read_obj(const std::filesystem::path& path, const SceneOptions& options = {});
 
 // The same from an open stream; `name` stands for the file in messages and locates its MTL files.
-[[nodiscard]] Scene read_obj(std::istream& in, const std::filesystem::path& name,
-                             const SceneOptions& options = {});
+[[nodiscard]] Scene read_obj(std::istream& in, const std::filesystem::path& name, const SceneOptions& options = {});
 
 }  // namespace exactff
