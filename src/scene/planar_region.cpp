@@ -206,8 +206,10 @@ struct HalfEdges {
 
   std::size_t target(std::size_t h) const { return origin[next[h]]; }
 
-  // Whether the corner that removing h and its twin leaves at the origin of h is convex or straight.
+  // Whether the corner that removing h and its twin leaves at the origin of h is convex or straight. Where only one
+  // other edge would be left there, the part would keep it as a spike: walked to its end and back.
   bool convex_without(const PlanePoints& plane, std::size_t h, std::size_t twin) const {
+    if (origin[previous[h]] == target(next[twin])) return false;
     return plane.orientation(origin[previous[h]], origin[h], target(next[twin])) >= 0;
   }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <vector>
 
@@ -125,6 +126,19 @@ Truth truth(const std::vector<Polygon>& rings, const std::vector<Point>& points)
   return result;
 }
 
+// Turns left or goes straight on at every corner, never back, and goes around once.
+bool is_strictly_convex_ring(const Polygon& ring) {
+  int changes = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Point &a = ring[i], &b = ring[(i + 1) % ring.size()], &c = ring[(i + 2) % ring.size()];
+    const long ahead = (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y);
+    if (turn(a, b, c) < 0 || (turn(a, b, c) == 0 && ahead <= 0)) return false;
+    const auto upward = [](const Point& p, const Point& q) { return q.y != p.y ? q.y > p.y : q.x > p.x; };
+    changes += upward(a, b) != upward(b, c) ? 1 : 0;
+  }
+  return changes == 2;
+}
+
 class RandomRings : public testing::TestWithParam<bool> {};
 
 TEST_P(RandomRings, AreCutAsWindingNumbersSay) {
@@ -149,6 +163,11 @@ TEST_P(RandomRings, AreCutAsWindingNumbersSay) {
     // Edges may cross only where a vertex stands at the crossing and the winding numbers stay 0 and 1.
     crossings += any_crossing(rings) ? 1 : 0;
     ++accepted;
+    for (const ConvexPart& part : face.parts) {
+      Polygon corners = corners_of(part, rings);
+      if (twice_area(rings[0]) < 0) std::reverse(corners.begin(), corners.end());  // seen from the back
+      ASSERT_TRUE(is_strictly_convex_ring(corners)) << "round " << round;
+    }
     for (std::size_t i = 0; i < points.size(); ++i) {
       int covered = 0;
       for (const ConvexPart& part : face.parts) {
@@ -160,6 +179,54 @@ TEST_P(RandomRings, AreCutAsWindingNumbersSay) {
   EXPECT_GT(accepted, 100);
   EXPECT_GT(refused, 5);
   EXPECT_LT(crossings, accepted / 50);
+}
+
+// A ring with up to three spikes: paths into the interior and back the same way, often along one line.
+Polygon spiked_ring(std::mt19937& random, const Polygon& outer) {
+  const auto inside = [&](const Point& p) {
+    for (std::size_t i = 0; i < outer.size(); ++i) {
+      if (turn(outer[i], outer[(i + 1) % outer.size()], p) <= 0) return false;
+    }
+    return true;
+  };
+  Polygon ring = outer;
+  for (std::size_t spikes = 1 + random() % 3; spikes > 0; --spikes) {
+    const std::size_t base = random() % ring.size();
+    Polygon path = {ring[base]};
+    for (std::size_t steps = 1 + random() % 3; steps > 0; --steps) {
+      Point p{static_cast<long>(random() % 17), static_cast<long>(random() % 17)};
+      const Point& corner = outer[random() % outer.size()];
+      if (random() % 2 == 0) p = {(path.back().x + corner.x) / 2, (path.back().y + corner.y) / 2};
+      if (inside(p) && (p.x != path.back().x || p.y != path.back().y)) path.push_back(p);
+    }
+    Polygon back(path.rbegin(), path.rend());
+    path.insert(path.end(), back.begin() + 1, back.end());
+    ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(base), path.begin(), path.end() - 1);
+  }
+  return ring;
+}
+
+TEST(PlanarRegion, SpikesVanish) {
+  std::mt19937 random(7);
+  const std::vector<Polygon> outers = {
+      {{0, 0}, {16, 0}, {16, 16}, {0, 16}}, {{0, 0}, {16, 2}, {5, 15}}, {{2, 0}, {14, 1}, {16, 9}, {8, 16}, {0, 8}}};
+  int accepted = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const Polygon& outer = outers[random() % outers.size()];
+    const Polygon ring = spiked_ring(random, outer);
+    if (ring.size() == outer.size() || any_crossing({ring})) continue;
+    const CutFace face = cut({ring});
+    if (face.fault) continue;  // paths that touch each other can wind around something twice
+    ++accepted;
+    long area = 0;
+    for (const ConvexPart& part : face.parts) {
+      const Polygon corners = corners_of(part, {ring});
+      ASSERT_TRUE(is_strictly_convex_ring(corners)) << "round " << round;
+      area += twice_area(corners);
+    }
+    ASSERT_EQ(area, twice_area(outer)) << "round " << round;
+  }
+  EXPECT_GT(accepted, 1000);
 }
 
 INSTANTIATE_TEST_SUITE_P(PlanarRegion, RandomRings, testing::Bool(),
