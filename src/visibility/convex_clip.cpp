@@ -1,20 +1,16 @@
 #include "visibility/convex_clip.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace exactff::visibility {
 
 using kernel::Direction;
+using kernel::ExactVec3;
 using kernel::Integer;
 using kernel::Ring;
 
 namespace {
-
-// The direction in which the segment from a (at signed distance da) to b (at db, of the other sign) meets the
-// plane: a |db| + b |da|.
-Direction crossing(const Direction& a, const Integer& da, const Direction& b, const Integer& db) {
-  return kernel::make_direction(a.exact * abs(db) + b.exact * abs(da));
-}
 
 std::vector<int> sides_of(const Ring& ring, const Direction& normal) {
   std::vector<int> signs(ring.size());
@@ -23,6 +19,13 @@ std::vector<int> sides_of(const Ring& ring, const Direction& normal) {
 }
 
 }  // namespace
+
+// Many clips in a row make corners from corners: without the division their size would grow with every one.
+Direction crossing(const ExactVec3& a, const Integer& da, const ExactVec3& b, const Integer& db) {
+  ExactVec3 direction = a * abs(db) + b * abs(da);
+  make_primitive(direction);
+  return kernel::make_direction(std::move(direction));
+}
 
 ClipResult clip(Ring& ring, const Direction& normal) {
   const std::vector<int> signs = sides_of(ring, normal);
@@ -38,8 +41,9 @@ ClipResult clip(Ring& ring, const Direction& normal) {
     const std::size_t next = (i + 1) % ring.size();
     if (signs[i] >= 0) kept.push_back(ring[i]);
     if (signs[i] * signs[next] < 0) {
-      kept.push_back(
-          crossing(ring[i], dot(normal.exact, ring[i].exact), ring[next], dot(normal.exact, ring[next].exact)));
+      const ExactVec3& a = ring[i].exact;
+      const ExactVec3& b = ring[next].exact;
+      kept.push_back(crossing(a, dot(normal.exact, a), b, dot(normal.exact, b)));
     }
   }
   ring = std::move(kept);

@@ -15,6 +15,11 @@ enum class ClipResult {
 // combinations of two corners, whatever scale these have.
 ClipResult clip(kernel::Ring& ring, const kernel::Direction& normal);
 
+// The direction in which the segment from a (at signed distance da) to b (at db, of the other sign) meets the plane:
+// a |db| + b |da|, without common factor.
+kernel::Direction crossing(const kernel::ExactVec3& a, const kernel::Integer& da, const kernel::ExactVec3& b,
+                           const kernel::Integer& db);
+
 // Drops corners that lie on the line through their neighbours. Requires positive area.
 void drop_collinear_corners(kernel::Ring& ring);
 

@@ -125,7 +125,7 @@ bool Shaft::clip_to_source_plane(Ring& ring) {
     const std::size_t next = (c + 1) % n;
     if (depth_[c] <= 0) ring.push_back(kernel::make_direction(t[c].v));
     if (depth_[c] * depth_[next] < 0) {
-      ring.push_back(kernel::make_direction(t[c].v * abs(g[next]) + t[next].v * abs(g[c])));
+      ring.push_back(crossing(t[c].v, g[c], t[next].v, g[next]));
     }
   }
   return true;
