@@ -10,7 +10,7 @@ if(EXACTFF_WERROR)
   target_compile_options(exactff_flags INTERFACE -Werror)
 endif()
 if(EXACTFF_SANITIZE)
-  target_compile_options(exactff_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
+  target_compile_options(exactff_flags INTERFACE -fsanitize=address,undefined -fno-sanitize=vptr -fno-sanitize-recover=all
                                                  -fno-omit-frame-pointer)
   target_link_options(exactff_flags INTERFACE -fsanitize=address,undefined)
   target_compile_options(exactff_flags INTERFACE -Wno-maybe-uninitialized)  # instrumentation hides initialisations from it
