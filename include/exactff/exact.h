@@ -63,14 +63,21 @@ struct StageNote {
 };
 [[nodiscard]] std::vector<StageNote> stages(const PlaneRecord& plane);
 
+// How much of the source is visible, decided exactly: the fraction itself may round to 0 or 1.
+enum class VisiblePart { kNothing, kSome, kAll };
+[[nodiscard]] std::string_view to_string(VisiblePart part);
+
 struct FormFactor {
   double value = 0.0;
   double lower = 0.0;  // when certified: the neighbouring doubles of value, clamped to [0, 1]
   double upper = 0.0;
   Status status = Status::kZero;
-  Enclosure enclosure;                     // holds F
-  std::optional<double> visible_fraction;  // on request: visible over whole unclipped area, correctly rounded
-  std::vector<FaceId> cutters;             // on request: faces whose shadow overlaps the clipped source, ascending
+  Enclosure enclosure;                      // holds F
+  std::optional<double> visible_fraction;   // on request: visible over whole unclipped area, correctly rounded
+  std::optional<VisiblePart> visible_part;  // with it
+  // On request: faces whose shadow overlaps the clipped source, ascending. Where one face hides a whole plane, it alone
+  // is listed for that plane: the search ends there.
+  std::vector<FaceId> cutters;
   std::vector<PlaneRecord> planes;
   int precision_bits = 0;  // of the last contour evaluation; 0 if none was needed
 };
@@ -79,8 +86,8 @@ struct ExactOptions {
   bool visible_fraction = false;
   bool exact_fraction = false;  // implies visible_fraction
   bool list_cutters = false;
-  int digits = 0;                                       // raise the precision until so many decimals are certified
-  int precision_cap = 65536;                            // bits
+  int digits = 0;             // raise the precision until so many decimals are certified, if they can be
+  int precision_cap = 65536;  // bits
   const std::vector<FaceId>* only_occluders = nullptr;  // ascending; every other face is ignored
 };
 

@@ -177,6 +177,15 @@ void warn_if_flipped(const Scene& scene, const PointResult& point) {
   }
 }
 
+void warn_of_missing_decimals(const PointArguments& args, const Scene& scene, const PointResult& point) {
+  for (const SourceResult& one : point.sources) {
+    if (args.digits == 0 || one.exact.status == Status::kZero || one.exact.enclosure.decimals(args.digits)) continue;
+    std::cerr << "exactff: warning: " << args.digits << " decimals of '" << scene.name_of(one.source)
+              << "' are not certified (its value may be a tie there, or --precision-cap is too low); the double stands "
+                 "in their place\n";
+  }
+}
+
 // --plain: "0" is a proved zero; a positive value that rounds to zero prints "0.0".
 std::string plain_value(const FormFactor& result) {
   if (result.status == Status::kZero) return "0";
@@ -235,7 +244,10 @@ void print_source(const PointArguments& args, const Scene& scene, const SourceRe
   std::cout << "source " << scene.name_of(one.source) << '\n'
             << "  form factor  " << value_text(one.exact, args.digits) << "  (" << to_string(one.exact.status) << ")\n"
             << "  enclosure    [" << shortest(one.exact.lower) << ", " << shortest(one.exact.upper) << "]\n";
-  if (one.exact.visible_fraction) std::cout << "  visible      " << shortest(*one.exact.visible_fraction) << '\n';
+  if (one.exact.visible_fraction) {
+    std::cout << "  visible      " << shortest(*one.exact.visible_fraction) << "  ("
+              << to_string(*one.exact.visible_part) << " of it)\n";
+  }
   if (one.adaptive) print_adaptive(one);
   if (!args.explain) return;
   print_stages(scene, one);
@@ -302,7 +314,10 @@ nlohmann::ordered_json source_json(const PointArguments& args, const Scene& scen
                                  {"ball", ball_json(one.exact.enclosure)},
                                  {"bits", one.exact.precision_bits}};
   if (args.digits > 0) json["decimals"] = value_text(one.exact, args.digits);
-  if (one.exact.visible_fraction) json["visible_fraction"] = *one.exact.visible_fraction;
+  if (one.exact.visible_fraction) {
+    json["visible_fraction"] = *one.exact.visible_fraction;
+    json["visible_part"] = to_string(*one.exact.visible_part);
+  }
   if (one.unoccluded) json["unoccluded"] = *one.unoccluded;
   if (args.explain) {
     json["cutters"] = nlohmann::ordered_json::array();
@@ -360,6 +375,7 @@ int run(const PointArguments& args) {
   const Scene scene = load_scene(args);
   const PointResult point = compute(args, scene);
   warn_if_flipped(scene, point);
+  warn_of_missing_decimals(args, scene, point);
   if (!args.svg.empty()) write_svg(args, scene, point);
   if (args.plain) {
     std::cout << (args.digits > 0 ? value_text(point.sources.front().exact, args.digits)

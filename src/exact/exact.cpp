@@ -23,7 +23,7 @@ using visibility::PlaneVisibility;
 using visibility::SourcePlane;
 
 ExactSource::ExactSource(const Scene& scene, const Selection& selection)
-    : planes_(new Planes{scene, selection, visibility::group_by_plane(scene, scene.faces_of(selection))}) {}
+    : planes_(new Planes{selection, visibility::group_by_plane(scene, scene.faces_of(selection))}) {}
 ExactSource::ExactSource(ExactSource&&) noexcept = default;
 ExactSource& ExactSource::operator=(ExactSource&&) noexcept = default;
 ExactSource::~ExactSource() = default;
@@ -55,24 +55,18 @@ bool has_decimals(const Enclosure& enclosure, int digits) {
   return digits <= 0 || enclosure.decimals(digits).has_value();
 }
 
-// Raises the precision until the ball determines the double and the decimals asked for, or the cap is met.
+// Raises the precision until the ball determines the double and the decimals asked for, or the cap is met. The status
+// speaks of the double: decimals may stay undecided where F is a decimal tie, such as 1/8 to two digits.
 void certify(const contour::ContourIntegral& contour, const ExactOptions& options, FormFactor& result) {
-  for (int bits = std::min(kFirstBits, options.precision_cap);;) {
+  for (int bits = std::min(kFirstBits, options.precision_cap);; bits = std::min(2 * bits, options.precision_cap)) {
     const Ball ball = contour.evaluate(bits);
     result.enclosure = Enclosure(ball);
     result.precision_bits = bits;
     const std::optional<double> nearest = result.enclosure.nearest();
-    if (nearest && has_decimals(result.enclosure, options.digits)) {
-      result.value = *nearest;
-      result.status = *nearest == 0.0 ? Status::kUnderflow : Status::kCertified;
-      return;
-    }
-    if (bits >= options.precision_cap) {
-      result.value = nearest ? *nearest : std::clamp(kernel::nearest_to_midpoint(ball), 0.0, 1.0);
-      result.status = Status::kNotCertified;
-      return;
-    }
-    bits = std::min(2 * bits, options.precision_cap);
+    result.value = nearest ? *nearest : std::clamp(kernel::nearest_to_midpoint(ball), 0.0, 1.0);
+    result.status = !nearest ? Status::kNotCertified : result.value == 0.0 ? Status::kUnderflow : Status::kCertified;
+    if (nearest && has_decimals(result.enclosure, options.digits)) return;
+    if (bits >= options.precision_cap) return;
   }
 }
 
@@ -93,6 +87,15 @@ void note_fraction(PlaneVisibility& plane, const ExactOptions& options) {
 PlaneShare share_of(const Scene& scene, const SourcePlane& plane, const PlaneVisibility& seen) {
   visibility::ProjectedArea area = visibility::union_area(scene, plane);
   return {*seen.fraction, std::move(area.area), plane.normal.exact, area.axis};
+}
+
+// A source without area shows nothing of it.
+void set_fraction(const std::vector<PlaneShare>& shares, FormFactor& result) {
+  const auto all_are = [&](int whole) {
+    return std::all_of(shares.begin(), shares.end(), [&](const PlaneShare& share) { return share.fraction == whole; });
+  };
+  result.visible_part = all_are(0) ? VisiblePart::kNothing : all_are(1) ? VisiblePart::kAll : VisiblePart::kSome;
+  result.visible_fraction = shares.empty() ? 0.0 : exact::visible_fraction(shares);
 }
 
 void sort_unique(std::vector<FaceId>& faces) {
@@ -127,8 +130,7 @@ FormFactor exact_form_factor(const Scene& scene, const Receiver& receiver, const
   sort_unique(result.cutters);
   if (something_visible) certify(contour, options, result);
   set_bounds(result);
-  if (!shares.empty()) result.visible_fraction = exact::visible_fraction(shares);
-  if (shares.empty() && wants_fraction) result.visible_fraction = 0.0;  // a source without area
+  if (wants_fraction) set_fraction(shares, result);
   return result;
 }
 

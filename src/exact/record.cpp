@@ -19,6 +19,18 @@ std::string_view to_string(Status status) {
   return "";
 }
 
+std::string_view to_string(VisiblePart part) {
+  switch (part) {
+    case VisiblePart::kNothing:
+      return "nothing";
+    case VisiblePart::kSome:
+      return "some";
+    case VisiblePart::kAll:
+      return "all";
+  }
+  return "";
+}
+
 std::string_view to_string(Outcome outcome) {
   switch (outcome) {
     case Outcome::kReceiverFace:

@@ -78,6 +78,30 @@ TEST(ExactFormFactor, GivesAsManyDecimalsAsAskedFor) {
   EXPECT_EQ(decimals->size(), 202U);
 }
 
+TEST(ExactFormFactor, ADecimalTieLeavesTheDoubleCertified) {
+  // An eighth of the sphere of directions: F = 1/8, which no ball can round to two decimals.
+  PlainScene plain;
+  plain.add_ring(plain.patch("source"), {{1, 0, 0}, {1, 0, 2}, {1, 1, 2}, {1, 1, 0}});
+  plain.add_ring(plain.patch("source"), {{0, 0, 2}, {1, 1, 2}, {1, 0, 2}});
+  const FormFactor f = solve(plain, {.digits = 2, .precision_cap = 1024});
+  EXPECT_EQ(f.value, 0.125);
+  EXPECT_EQ(f.status, Status::kCertified);
+  EXPECT_FALSE(f.enclosure.decimals(2).has_value());
+  EXPECT_TRUE(f.enclosure.decimals(3).has_value());
+}
+
+TEST(ExactFormFactor, AllAndNothingAreDecidedExactlyHoweverTheFractionRounds) {
+  const auto seen = [](double occluder_half) {
+    PlainScene plain = square_source();
+    add_square(plain, "o", occluder_half, 0.5);
+    return solve(plain, {.visible_fraction = true});
+  };
+  EXPECT_EQ(seen(0x1p-40).visible_fraction, 1.0);
+  EXPECT_EQ(seen(0x1p-40).visible_part, VisiblePart::kSome);
+  EXPECT_EQ(seen(0.5).visible_part, VisiblePart::kNothing);
+  EXPECT_EQ(solve(square_source(), {.visible_fraction = true}).visible_part, VisiblePart::kAll);
+}
+
 TEST(ExactFormFactor, ListsTheFacesThatCutTheSource) {
   PlainScene plain = square_source();
   add_square(plain, "left", 0.1, 0.5, -0.2);
