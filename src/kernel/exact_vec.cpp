@@ -32,7 +32,7 @@ namespace {
 
 Integer shifted(const BinaryDouble& number, long exponent) {
   Integer result(number.mantissa);
-  if (number.mantissa != 0) result <<= static_cast<mp_bitcnt_t>(number.exponent - exponent);
+  if (number.mantissa != 0.0) result <<= static_cast<mp_bitcnt_t>(number.exponent - exponent);
   return result;
 }
 
@@ -43,7 +43,7 @@ ScaledVec3 exact_difference(const Vec3& p, const Vec3& q) {
                                                decompose(q.x), decompose(q.y), decompose(q.z)};
   long exponent = std::numeric_limits<long>::max();
   for (const BinaryDouble& number : numbers) {
-    if (number.mantissa != 0) exponent = std::min<long>(exponent, number.exponent);
+    if (number.mantissa != 0.0) exponent = std::min<long>(exponent, number.exponent);
   }
   if (exponent == std::numeric_limits<long>::max()) return {};
   const auto difference = [&](int axis) -> Integer {

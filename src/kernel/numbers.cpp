@@ -54,7 +54,7 @@ BinaryDouble decompose(double value) {
   if (value == 0.0) return {};
   int exponent = 0;
   const double fraction = std::frexp(value, &exponent);
-  return {static_cast<long>(std::ldexp(fraction, kMantissaBits)), exponent - static_cast<int>(kMantissaBits)};
+  return {std::ldexp(fraction, kMantissaBits), exponent - static_cast<int>(kMantissaBits)};
 }
 
 }  // namespace exactff::kernel

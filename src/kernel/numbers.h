@@ -27,9 +27,9 @@ double nearest_double(const Rational& value);
 // "p/q" in lowest terms, or "p".
 std::string to_string(const Rational& value);
 
-// A finite double as mantissa * 2^exponent with an integer mantissa below 2^53; zero has exponent 0.
+// A finite double as mantissa * 2^exponent with a whole mantissa of magnitude below 2^53; zero has exponent 0.
 struct BinaryDouble {
-  long mantissa = 0;
+  double mantissa = 0.0;
   int exponent = 0;
 };
 BinaryDouble decompose(double value);
