@@ -294,12 +294,28 @@ bool cross_properly(const PlanePoints& plane, const BoxedEdge& a, const BoxedEdg
          plane.orientation(b.edge, b.end, a.edge) * plane.orientation(b.edge, b.end, a.end) < 0;
 }
 
+// Swaps the axes where the edges are longer along x: fewer then overlap along the sweep.
+void sweep_along_shorter_extents(std::vector<BoxedEdge>& edges) {
+  double along_x = 0.0;
+  double along_y = 0.0;
+  for (const BoxedEdge& e : edges) {
+    along_x += e.high_x - e.low_x;
+    along_y += e.high_y - e.low_y;
+  }
+  if (along_x <= along_y) return;
+  for (BoxedEdge& e : edges) {
+    std::swap(e.low_x, e.low_y);
+    std::swap(e.high_x, e.high_y);
+  }
+}
+
 }  // namespace
 
 std::optional<std::pair<EdgeIndex, EdgeIndex>> find_crossing(const FacePoints& points, const PlanePoints& plane) {
   std::vector<BoxedEdge> edges;
   for (EdgeIndex edge = 0; edge < points.size(); ++edge)
     edges.push_back(boxed(plane, edge, next_in_ring(points, edge)));
+  sweep_along_shorter_extents(edges);
   std::sort(edges.begin(), edges.end(), [](const BoxedEdge& a, const BoxedEdge& b) { return a.low_x < b.low_x; });
   std::vector<const BoxedEdge*> active;
   for (const BoxedEdge& edge : edges) {
