@@ -9,7 +9,6 @@
 namespace exactff {
 
 struct ExactSource::Planes {
-  const Scene& scene;
   Selection selection;
   std::vector<visibility::SourcePlane> planes;
 };

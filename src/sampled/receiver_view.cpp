@@ -196,13 +196,14 @@ void gather_occluders(const ScaledScene& scene, const ReceiverView& view, const 
   scene.tree.query(view.point, gatherer.shaft(polygon), [&](std::uint32_t piece) {
     ++gathered.looked_at;
     const SeenPolygon* seen = gatherer.see(piece);
-    if (seen == nullptr) return;
+    if (seen == nullptr) return true;
     if (gatherer.blurred(blur)) {
       gathered.blurred.push_back(static_cast<std::uint32_t>(gathered.occluders.size()));
     } else {
       gathered.sharp_pieces.push_back(piece);
     }
     gathered.occluders.add(*seen, reach);
+    return true;
   });
 }
 

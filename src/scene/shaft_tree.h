@@ -29,7 +29,7 @@ class ShaftTree {
   ShaftTree() = default;
   explicit ShaftTree(std::span<const Box> boxes);
 
-  // Calls visit(index) for every box not certainly outside, in a fixed order.
+  // Calls visit(index) for every box not certainly outside, in a fixed order, until one call returns false.
   template <class Visit>
   void query(const Vec3& apex, std::span<const HalfSpace> shaft, Visit&& visit) const {
     if (nodes_.empty()) return;
@@ -45,7 +45,8 @@ class ShaftTree {
         continue;
       }
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        if (node.count == 1 || !certainly_outside(boxes_[i], apex, shaft)) visit(order_[i]);
+        if (node.count > 1 && certainly_outside(boxes_[i], apex, shaft)) continue;
+        if (!visit(order_[i])) return;
       }
     }
   }

@@ -33,7 +33,6 @@ class PlaneFrame {
   [[nodiscard]] bool keeps_orientation() const { return keeps_orientation_; }
   // Area in (p, q) of a region of area 1 in (u, v).
   [[nodiscard]] kernel::Rational unit_area() const { return width_ * height_; }
-  [[nodiscard]] int axis() const { return k_; }
 
  private:
   [[nodiscard]] Point2 affine(const kernel::ExactVec3& direction) const;  // (p, q)

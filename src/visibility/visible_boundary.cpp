@@ -43,7 +43,6 @@ class Walk {
   void trace_source();
   void trace_loops();
   [[nodiscard]] bool may_occlude(std::uint32_t piece) const;
-  [[nodiscard]] bool cuts(const Occluder& occluder) const;
   void list_cutters();
   [[nodiscard]] Rational fraction() const;
   void keep_geometry();
@@ -149,11 +148,11 @@ bool Walk::gather_occluders() {
   bool hidden = false;
   Occluder occluder;
   shaft_tree(view_.scene).query(view_.x, shaft.half_spaces(), [&](std::uint32_t piece) {
-    if (hidden || !may_occlude(piece)) return;
+    if (!may_occlude(piece)) return true;
     ++record.tree_candidates;
     bool was_cut = false;
     const Fate fate = shaft.test(piece, occluder, was_cut);
-    if (fate == Fate::kOutside) return;
+    if (fate == Fate::kOutside) return true;
     ++record.candidates;
     if (was_cut) ++record.clipped;
     if (fate == Fate::kHidesAll) {
@@ -162,6 +161,7 @@ bool Walk::gather_occluders() {
     }
     occluders_.push_back(std::move(occluder));
     occluder = {};
+    return !hidden;
   });
   return !hidden;
 }
@@ -198,21 +198,21 @@ void Walk::trace_loops() {
   result_.record.source_joined = clipped_.size() > 1;
 }
 
-// A candidate's shadow meets the interior of the hull; the source itself may have a gap there.
-bool Walk::cuts(const Occluder& occluder) const {
-  if (clipped_.size() == 1) return true;
-  return std::any_of(clipped_.begin(), clipped_.end(), [&](const Ring& piece) {
+// A candidate's shadow meets the interior of the hull; a source of several pieces may have a gap there.
+void Walk::list_cutters() {
+  std::vector<std::vector<Direction>> pieces;
+  if (clipped_.size() > 1) {
+    for (const Ring& piece : clipped_) pieces.push_back(side_planes(piece));
+  }
+  const auto cuts_piece = [](const Occluder& occluder, const std::vector<Direction>& sides) {
     Ring shadow = occluder.ring;
-    const std::vector<Direction> sides = side_planes(piece);
     return std::none_of(sides.begin(), sides.end(),
                         [&](const Direction& plane) { return clip(shadow, plane) == ClipResult::kEmpty; });
-  });
-}
-
-void Walk::list_cutters() {
+  };
   std::vector<FaceId>& cutters = result_.cutters;
   for (const Occluder& occluder : occluders_) {
-    if (cuts(occluder)) cutters.push_back(occluder.face);
+    const auto cuts = [&](const std::vector<Direction>& sides) { return cuts_piece(occluder, sides); };
+    if (pieces.empty() || std::any_of(pieces.begin(), pieces.end(), cuts)) cutters.push_back(occluder.face);
   }
   std::sort(cutters.begin(), cutters.end());
   cutters.erase(std::unique(cutters.begin(), cutters.end()), cutters.end());

@@ -26,7 +26,10 @@ std::vector<Box> random_boxes(Random& random, std::size_t count, double scale) {
 
 std::set<std::uint32_t> found(const ShaftTree& tree, const Vec3& apex, const std::vector<HalfSpace>& shaft) {
   std::set<std::uint32_t> result;
-  tree.query(apex, shaft, [&](std::uint32_t i) { EXPECT_TRUE(result.insert(i).second) << "visited twice"; });
+  tree.query(apex, shaft, [&](std::uint32_t i) {
+    EXPECT_TRUE(result.insert(i).second) << "visited twice";
+    return true;
+  });
   return result;
 }
 
@@ -76,6 +79,14 @@ TEST(ShaftTree, KeepsEverythingWhereArithmeticFails) {
   EXPECT_EQ(found(huge, {}, {nowhere}).size(), 20U);
   EXPECT_EQ(found(tiny, {}, {{{1e-20, 1e-20, 0}, 1e-310}}).size(), 20U);   // products underflow
   EXPECT_EQ(found(huge, {-1e308, 0, 0}, {{{1, 1, 1}, 0.0}}).size(), 20U);  // differences overflow
+}
+
+TEST(ShaftTree, StopsWhenTold) {
+  Random random(4);
+  const ShaftTree tree(random_boxes(random, 100, 1.0));
+  int visits = 0;
+  tree.query({}, {}, [&](std::uint32_t) { return ++visits < 7; });
+  EXPECT_EQ(visits, 7);
 }
 
 TEST(ShaftTree, AnEmptyTreeFindsNothing) {
