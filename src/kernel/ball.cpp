@@ -12,7 +12,19 @@ namespace exactff {
 
 namespace kernel {
 
+namespace {
+
+// FLINT keeps memory and constants for each thread; it is given back when the thread ends.
+struct ThreadCache {
+  ~ThreadCache() { flint_cleanup(); }
+  void touch() const {}
+};
+thread_local const ThreadCache thread_cache;
+
+}  // namespace
+
 Ball to_ball(const Integer& value, long bits) {
+  thread_cache.touch();  // makes it, and so has it destroyed, in every thread that works with balls
   fmpz_t copy;
   fmpz_init(copy);
   fmpz_set_mpz(copy, value.get_mpz_t());
