@@ -20,8 +20,8 @@ exactff_import_library(mpfr mpfr.h mpfr exactff_dep::gmp)
 exactff_import_library(flint flint/fmpz.h flint exactff_dep::mpfr)
 exactff_import_library(arb arb.h flint-arb exactff_dep::flint)
 
-# The Booleans allocate and free millions of small numbers: jemalloc makes the program a third faster (README). A library
-# must not choose its user's allocator, so only the program is linked with it; sanitizers bring their own.
-if(NOT EXACTFF_SANITIZE)
+# The Booleans allocate and free millions of small numbers, and jemalloc is faster at that (README has the figure). A
+# library must not choose its user's allocator, so only the program is linked with it; sanitizers bring their own.
+if(EXACTFF_JEMALLOC AND NOT EXACTFF_SANITIZE)
   exactff_import_library(jemalloc jemalloc/jemalloc.h jemalloc)
 endif()
