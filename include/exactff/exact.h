@@ -107,8 +107,9 @@ class ExactSource {
   std::unique_ptr<Planes> planes_;
 };
 
-// Exact (value), encloses (enclosure). Requires finite coordinates and a normal other than zero (else
-// InputError). Safe to call from several threads at once; the result depends on nothing but the arguments.
+// Exact (value), encloses (enclosure). `source` must have been made from `scene`. Requires finite coordinates and a
+// normal other than zero (else InputError). Safe to call from several threads at once; the result depends on nothing
+// but the arguments.
 [[nodiscard]] FormFactor exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                                            const ExactOptions& options = {});
 
