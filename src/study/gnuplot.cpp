@@ -10,6 +10,7 @@
 #include <fstream>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "study/text.h"
 
@@ -41,6 +42,23 @@ class SpawnActions {
   posix_spawn_file_actions_t actions_{};
 };
 
+// Our environment but for the locale: the scripts are UTF-8 wherever they run.
+class Utf8Environment {
+ public:
+  Utf8Environment() {
+    for (char** entry = environ; *entry != nullptr; ++entry) {
+      if (!std::string_view(*entry).starts_with("LC_ALL=")) entries_.push_back(*entry);
+    }
+    entries_.push_back(locale_.data());
+    entries_.push_back(nullptr);
+  }
+  [[nodiscard]] char* const* get() const { return entries_.data(); }
+
+ private:
+  std::string locale_ = "LC_ALL=C.UTF-8";
+  std::vector<char*> entries_;
+};
+
 // The exit status, or nothing where the program is not there. No shell: no name needs quoting.
 std::pair<bool, int> run(const fs::path& script, const fs::path& out, const fs::path& err) {
   SpawnActions actions;
@@ -49,8 +67,11 @@ std::pair<bool, int> run(const fs::path& script, const fs::path& out, const fs::
   actions.open(STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC);
   std::string program = "gnuplot", defaults = "-d", file = script.string();
   const std::array<char*, 4> arguments = {program.data(), defaults.data(), file.data(), nullptr};
+  const Utf8Environment environment;
   pid_t child = 0;
-  if (::posix_spawnp(&child, "gnuplot", actions.get(), nullptr, arguments.data(), environ) != 0) return {false, 0};
+  if (::posix_spawnp(&child, "gnuplot", actions.get(), nullptr, arguments.data(), environment.get()) != 0) {
+    return {false, 0};
+  }
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }

@@ -21,6 +21,7 @@
 #include "study/statistics.h"
 #include "study/tables.h"
 #include "study/text.h"
+#include "support/program.h"
 
 namespace exactff::study {
 namespace {
@@ -401,12 +402,14 @@ TEST(InlinedSvg, HasItsOwnIdsAndNothingFromOutside) {
 }
 
 TEST(InlinedSvg, ComesFromEveryFigureThatGnuplotDraws) {
+  ::setenv("LC_ALL", "C", 1);  // as on a bare machine: the scripts are UTF-8 all the same
+  const validation::TemporaryDirectory scratch;
   std::vector<LeftOut> left_out;
   std::vector<Figure> all = figures(small_study(), left_out);
   std::set<bool> kinds;
   for (const Figure& figure : all) {
     if (!kinds.insert(figure.map).second) continue;  // one line figure and one map: gnuplot takes its time
-    const PlotResult plot = run_gnuplot(figure.script, fs::temp_directory_path());
+    const PlotResult plot = run_gnuplot(figure.script, scratch.path());
     if (plot.outcome == PlotResult::Outcome::kNoProgram) GTEST_SKIP() << "gnuplot is not installed";
     EXPECT_EQ(plot.outcome, PlotResult::Outcome::kDrawn) << plot.message;
     EXPECT_EQ(plot.message, "") << "gnuplot warned about " << figure.id;
