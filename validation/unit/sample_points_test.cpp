@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "unit/sampled_rays.h"
+
 namespace exactff::sampled {
 namespace {
 
@@ -14,23 +16,6 @@ constexpr std::array kPatterns = {SamplePattern::kCentre, SamplePattern::kRegula
 const std::vector<Vec3> kTriangle = {{0, 0, 1}, {0, 2, 1}, {3, 0, 1}};
 const std::vector<Vec3> kSquare = {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}};
 const std::vector<Vec3> kTrapezium = {{0, 0, 1}, {0, 3, 1}, {1, 1, 1}, {1, 0, 1}};
-
-RayEnds place(const SubPatch& s, SamplePattern pattern, int rays, std::uint64_t key = 7) {
-  SamplePlan plan;
-  plan.prepare(pattern, rays);
-  RayEnds ends;
-  ends.resize(plan.ray_count());
-  plan.place(s, key, ends);
-  return ends;
-}
-
-std::vector<Vec3> points(const RayEnds& ends) {
-  std::vector<Vec3> result;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(ends.count); ++i) {
-    result.push_back({ends.x[i], ends.y[i], ends.z[i]});
-  }
-  return result;
-}
 
 // Twice the area of the triangle a, b, p as seen from above.
 double side(const Vec3& a, const Vec3& b, const Vec3& p) {

@@ -12,6 +12,7 @@
 #include "sampled/shaft.h"
 #include "sampled_scenes.h"
 #include "support/random_scenes.h"
+#include "unit/sampled_rays.h"
 
 namespace exactff::sampled {
 namespace {
@@ -78,23 +79,6 @@ bool meets(const std::vector<Vec3>& polygon, const Vec3& y) {
   return false;
 }
 
-RayEnds random_ends(const SubPatch& s, std::uint64_t key) {
-  SamplePlan plan;
-  plan.prepare(SamplePattern::kJittered, 16);
-  RayEnds ends;
-  ends.resize(plan.ray_count());
-  plan.place(s, key, ends);
-  return ends;
-}
-
-std::vector<Vec3> points(const RayEnds& ends) {
-  std::vector<Vec3> result;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(ends.count); ++i) {
-    result.push_back({ends.x[i], ends.y[i], ends.z[i]});
-  }
-  return result;
-}
-
 constexpr double kReach = 8.0;
 
 struct Seen {
@@ -115,7 +99,7 @@ TEST(ShaftCull, AgreesWithExactSegments) {
     OccluderSet set;
     set.add(*polygon, kReach);
     const auto list = set.inherit(set.push_all(), s, ShaftSides(s));
-    const std::vector<Vec3> ends = points(random_ends(s, random.bits()));
+    const std::vector<Vec3> ends = points(place(s, SamplePattern::kJittered, 16, random.bits()));
     const auto hidden = std::count_if(ends.begin(), ends.end(), [&](const Vec3& y) { return meets(corners, y); });
     if (!list) {
       EXPECT_EQ(hidden, 16) << "cut in round " << round;
@@ -144,7 +128,7 @@ TEST(ShaftCull, RaysAgreeWithExactSegments) {
     if (!polygon) continue;
     OccluderSet set;
     set.add(*polygon, kReach);
-    const RayEnds ends = random_ends(s, random.bits());
+    const RayEnds ends = place(s, SamplePattern::kJittered, 16, random.bits());
     const std::vector<Vec3> y = points(ends);
     const auto hidden = std::count_if(y.begin(), y.end(), [&](const Vec3& p) { return meets(corners, p); });
     hidden_rays += static_cast<int>(hidden);
@@ -167,7 +151,7 @@ TEST(ShaftCull, AnInheritedListLosesNoOccluder) {
     CandidateRange list = all;
     for (int depth = 0; depth < 12; ++depth) {
       const auto shrunk = set.inherit(list, s, ShaftSides(s));
-      const RayEnds ends = random_ends(s, random.bits());
+      const RayEnds ends = place(s, SamplePattern::kJittered, 16, random.bits());
       if (!shrunk) {
         EXPECT_EQ(set.count_visible(all, ends), 0);
         break;
@@ -188,7 +172,7 @@ TEST(ShaftCull, APatchCoveredExactlyIsNotDeclaredCut) {
   const auto list = set.inherit(set.push_all(), s, ShaftSides(s));
   ASSERT_TRUE(list);
   EXPECT_EQ(list->size(), 1U);  // in doubt, rays decide
-  EXPECT_EQ(set.count_visible(*list, random_ends(s, 1)), 0);
+  EXPECT_EQ(set.count_visible(*list, place(s, SamplePattern::kJittered, 16, 1)), 0);
 }
 
 // ---- From the scene to the first list ------------------------------------------------------------------------------
@@ -210,7 +194,7 @@ void expect_nothing_lost(const PlainScene& plain, std::uint64_t seed) {
     if (clipped.size() < 3 || clipped.size() > 4) continue;
     Gathered gathered;
     gather_occluders(scaled, view, plane, clipped, Horizon::kClips, 0.0, gathered);
-    const RayEnds ends = random_ends(make_sub_patch(clipped), seed);
+    const RayEnds ends = place(make_sub_patch(clipped), SamplePattern::kJittered, 16, seed);
     int visible = 0;
     for (const Vec3& y : points(ends)) {
       bool hidden = false;
