@@ -114,6 +114,10 @@ TEST(Invariance, RepeatedCornersAndCornersOnStraightSides) {
   expect_same_bits(100, [](const PlainScene& scene, Random& random) { return with_idle_corners(scene, random); });
 }
 
+TEST(Invariance, SpikesInRings) {
+  expect_same_bits(200, [](const PlainScene& scene, Random& random) { return with_spikes(scene, random); });
+}
+
 // Holes become keyholes and numbers become text on the way.
 TEST(Invariance, TheWayThroughObj) {
   ExactOptions options;

@@ -184,6 +184,52 @@ PlainScene with_idle_corners(const PlainScene& scene, Random& random) {
   return out;
 }
 
+namespace {
+
+std::uint32_t add_vertex(PlainScene& scene, const Vec3& position) {
+  scene.vertices.push_back(position);
+  return static_cast<std::uint32_t>(scene.vertices.size() - 1);
+}
+
+// From corner i of a convex ring halfway to the middle of two other corners, where all that is exact.
+Ring with_spike(PlainScene& scene, const Ring& ring, Random& random) {
+  const std::size_t n = ring.size(), i = random.below(n);
+  const Vec3 corner = scene.vertices[ring[i]];
+  const auto across = halfway(scene.vertices[ring[(i + 1) % n]], scene.vertices[ring[(i + n - 1) % n]]);
+  const auto tip = across ? halfway(corner, *across) : std::nullopt;
+  const auto middle = tip ? halfway(corner, *tip) : std::nullopt;
+  if (!middle) return ring;
+  Ring spike = {ring[i]};
+  const bool two_steps = !random.one_in(3);
+  const std::uint32_t inner = two_steps ? add_vertex(scene, *middle) : 0;
+  if (two_steps) spike.push_back(inner);
+  spike.push_back(add_vertex(scene, *tip));
+  if (two_steps) spike.push_back(inner);
+  Ring out = ring;
+  out.insert(out.begin() + static_cast<std::ptrdiff_t>(i), spike.begin(), spike.end());
+  return out;
+}
+
+}  // namespace
+
+PlainScene with_spikes(const PlainScene& scene, Random& random) {
+  const Scene built = build(scene);
+  PlainScene out = scene;
+  if (!all_planar(built)) return out;
+  for (PlainPatch& patch : out.patches) {
+    const Patch& same = built.patch(built.select(patch.name).patch);
+    for (std::size_t f = 0; f < patch.faces.size(); ++f) {
+      std::vector<Ring>& rings = patch.faces[f].rings;
+      if (rings.size() > 1 || built.pieces_of(same.faces[f]).size() != 1) continue;
+      for (int spikes = random.integer(0, 2); spikes > 0; --spikes) {
+        if (rings[0].size() > 8) break;
+        rings[0] = with_spike(out, rings[0], random);
+      }
+    }
+  }
+  return out;
+}
+
 PlainScene slid_along_rays(const PlainScene& scene, int range, Random& random) {
   PlainScene out = scene;
   std::vector<bool> is_source(scene.vertices.size(), false);

@@ -31,6 +31,9 @@ struct Symmetry {
 // with a face that is not planar stay as they are: another corner would give it another surface.
 [[nodiscard]] generate::PlainScene with_idle_corners(const generate::PlainScene& scene, generate::Random& random);
 
+// Rings of convex faces made to walk from a corner to a point inside and back the same way, in one step or two.
+[[nodiscard]] generate::PlainScene with_spikes(const generate::PlainScene& scene, generate::Random& random);
+
 // Every corner moved along its ray from the receiver by a power of two of its own: occluders' towards the receiver,
 // the source's away from it, by up to 2^range. The cones stay, and so does F (but not the visible fraction). Requires
 // a receiver at the origin, triangles only, and every occluder nearer than the plane of the source.
