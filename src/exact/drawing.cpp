@@ -18,9 +18,7 @@ class Lift {
   Lift(const visibility::SourcePlane& plane, const Vec3& x)
       : normal_(plane.normal.exact), x_{kernel::to_rational(x.x), kernel::to_rational(x.y), kernel::to_rational(x.z)} {
     const kernel::ScaledVec3 s = kernel::exact_difference(plane.point, x);
-    distance_ = Rational(dot(normal_, s.v));
-    const auto bits = static_cast<mp_bitcnt_t>(std::abs(s.exponent));
-    (s.exponent >= 0 ? mpq_mul_2exp : mpq_div_2exp)(distance_.get_mpq_t(), distance_.get_mpq_t(), bits);
+    distance_ = kernel::times_power_of_two(dot(normal_, s.v), s.exponent);
   }
 
   [[nodiscard]] Vec3 operator()(const ExactVec3& t) const {

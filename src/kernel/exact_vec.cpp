@@ -18,6 +18,16 @@ ExactVec3 operator*(const ExactVec3& a, const Integer& s) { return {a.x * s, a.y
 
 bool is_zero(const ExactVec3& a) { return sign(a.x) == 0 && sign(a.y) == 0 && sign(a.z) == 0; }
 
+long bit_length(const ExactVec3& a) { return std::max({bit_length(a.x), bit_length(a.y), bit_length(a.z)}); }
+
+int longest_axis(const ExactVec3& a) {
+  int longest = 0;
+  for (const int axis : {1, 2}) {
+    if (mpz_cmpabs(a[axis].get_mpz_t(), a[longest].get_mpz_t()) > 0) longest = axis;
+  }
+  return longest;
+}
+
 void negate(ExactVec3& a) {
   for (Integer* c : {&a.x, &a.y, &a.z}) mpz_neg(c->get_mpz_t(), c->get_mpz_t());
 }

@@ -28,6 +28,8 @@ ExactVec3 operator-(const ExactVec3& a, const ExactVec3& b);
 ExactVec3 operator+(const ExactVec3& a, const ExactVec3& b);
 ExactVec3 operator*(const ExactVec3& a, const Integer& s);
 bool is_zero(const ExactVec3& a);
+long bit_length(const ExactVec3& a);   // of the largest component
+int longest_axis(const ExactVec3& a);  // that of the largest component, the first of equals
 void negate(ExactVec3& a);
 
 // Divides by the greatest common divisor; the direction stays.

@@ -1,6 +1,7 @@
 #include "kernel/numbers.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 namespace exactff::kernel {
@@ -9,8 +10,6 @@ namespace {
 
 constexpr long kMantissaBits = std::numeric_limits<double>::digits;
 constexpr long kLowestExponent = std::numeric_limits<double>::min_exponent - kMantissaBits;  // of a denormal's last bit
-
-long bit_length(const Integer& a) { return static_cast<long>(mpz_sizeinbase(a.get_mpz_t(), 2)); }
 
 // floor(numerator * 2^-exponent / denominator) and whether anything was cut off.
 Integer scaled_quotient(const Rational& positive, long exponent, int& compare_rest_with_half) {
@@ -46,6 +45,12 @@ double nearest_double(const Rational& value) {
   if (rest > 0 || (rest == 0 && mpz_odd_p(mantissa.get_mpz_t()))) ++mantissa;
   const double rounded = std::ldexp(mantissa.get_d(), static_cast<int>(exponent));  // exact, or overflows
   return sign(value) < 0 ? -rounded : rounded;
+}
+
+Rational times_power_of_two(Rational value, long exponent) {
+  const auto bits = static_cast<mp_bitcnt_t>(std::abs(exponent));
+  (exponent >= 0 ? mpq_mul_2exp : mpq_div_2exp)(value.get_mpq_t(), value.get_mpq_t(), bits);
+  return value;
 }
 
 std::string to_string(const Rational& value) { return value.get_str(); }

@@ -18,6 +18,14 @@ using Rational = mpq_class;
 inline int sign(const Integer& a) { return sgn(a); }
 inline int sign(const Rational& a) { return sgn(a); }
 
+// Bits of |a|; 0 for 0.
+inline long bit_length(const Integer& a) {
+  return sign(a) == 0 ? 0 : static_cast<long>(mpz_sizeinbase(a.get_mpz_t(), 2));
+}
+
+// value * 2^exponent.
+Rational times_power_of_two(Rational value, long exponent);
+
 // Requires a finite value; exact, denormals included.
 inline Rational to_rational(double value) { return Rational(value); }
 

@@ -7,6 +7,7 @@
 
 namespace exactff {
 
+using kernel::bit_length;
 using kernel::cross;
 using kernel::dot;
 using kernel::ExactVec3;
@@ -18,12 +19,6 @@ namespace {
 
 constexpr long kLargestExponent = 1000;  // of a Newell vector that is not scaled
 constexpr long kSmallestExponent = -900;
-
-long bit_length(const Integer& a) {
-  return kernel::sign(a) == 0 ? 0 : static_cast<long>(mpz_sizeinbase(a.get_mpz_t(), 2));
-}
-
-long bit_length(const ExactVec3& v) { return std::max({bit_length(v.x), bit_length(v.y), bit_length(v.z)}); }
 
 // a * 2^-shift, truncated to a double; the error is below 2^-52 where |a| < 2^shift.
 double scaled(const Integer& a, long shift) {
@@ -192,14 +187,6 @@ double out_of_plane(const FacePoints& points, const ExactVec3& normal) {
   const Length unit = length(normal);
   return ratio(deviation,
                {unit.mantissa * static_cast<double>(points.size()) * diameter(rounded), unit.exponent + size});
-}
-
-int longest_axis(const ExactVec3& v) {
-  int longest = 0;
-  for (int axis = 1; axis < 3; ++axis) {
-    if (mpz_cmpabs(v[axis].get_mpz_t(), v[longest].get_mpz_t()) > 0) longest = axis;
-  }
-  return longest;
 }
 
 PlanePoints::PlanePoints(const FacePoints& points, const ExactVec3& normal, Projection projection) {

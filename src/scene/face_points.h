@@ -51,9 +51,6 @@ double to_double(const Length& a);
 // the largest distance between two points (an estimate).
 double out_of_plane(const FacePoints& points, const kernel::ExactVec3& normal);
 
-// The axis along which a vector is longest.
-int longest_axis(const kernel::ExactVec3& v);
-
 // Points of a plane with exact integer coordinates and double approximations for filters.
 class PlanePoints {
  public:

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "visibility/source_plane.h"
-
 namespace exactff::visibility {
 
 using kernel::ExactVec3;
@@ -22,7 +20,7 @@ Rational ratio(const Integer& numerator, const Integer& denominator) {
 
 }  // namespace
 
-PlaneFrame::PlaneFrame(const ExactVec3& front, std::span<const Ring> rings) : m_(front), k_(projection_axis(front)) {
+PlaneFrame::PlaneFrame(const ExactVec3& front, std::span<const Ring> rings) : m_(front), k_(longest_axis(front)) {
   kernel::negate(m_);
   i_ = (k_ + 1) % 3;
   j_ = (k_ + 2) % 3;

@@ -28,12 +28,6 @@ double approximate(const Integer& value, long exponent) {
   return std::ldexp(mantissa, static_cast<int>(own + exponent));
 }
 
-long largest_bit_length(const ExactVec3& v) {
-  std::size_t bits = 0;
-  for (int axis = 0; axis < 3; ++axis) bits = std::max(bits, mpz_sizeinbase(v[axis].get_mpz_t(), 2));
-  return static_cast<long>(bits);
-}
-
 Vec3 to_vec3(const Approx3& a) { return {a.x, a.y, a.z}; }
 
 }  // namespace
@@ -46,7 +40,7 @@ Shaft::Shaft(const Scene& scene, const Vec3& x, const Ring& hull, const ExactVec
   offset_.value = dot(away, s.v);
   offset_.exponent = s.exponent;
   // kernel::approx scales by 2^-(bits of the largest component).
-  offset_.approx = approximate(offset_.value, offset_.exponent - largest_bit_length(away));
+  offset_.approx = approximate(offset_.value, offset_.exponent - bit_length(away));
   toward_ = kernel::make_direction(std::move(away));
 
   for (const Direction& side_plane : sides_) half_spaces_.push_back({to_vec3(side_plane.approx), 0.0});

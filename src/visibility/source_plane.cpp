@@ -67,14 +67,6 @@ int side_of(const SourcePlane& plane, const Vec3& x) {
   return sign(dot(plane.normal.exact, kernel::exact_difference(x, plane.point).v));
 }
 
-int projection_axis(const ExactVec3& normal) {
-  int axis = 0;
-  for (int other : {1, 2}) {
-    if (mpz_cmpabs(normal[other].get_mpz_t(), normal[axis].get_mpz_t()) > 0) axis = other;
-  }
-  return axis;
-}
-
 namespace {
 
 Polygon2 projected(const Scene& scene, const Piece& piece, int axis, bool reverse) {
@@ -110,7 +102,7 @@ Rational normalise(std::vector<Polygon2>& polygons) {
 }  // namespace
 
 ProjectedArea union_area(const Scene& scene, const SourcePlane& plane) {
-  const int axis = projection_axis(plane.normal.exact);
+  const int axis = longest_axis(plane.normal.exact);
   const bool reverse = sign(plane.normal.exact[axis]) < 0;
   std::vector<Polygon2> polygons;
   for (const std::uint32_t p : plane.pieces) polygons.push_back(projected(scene, scene.pieces()[p], axis, reverse));

@@ -29,7 +29,4 @@ struct ProjectedArea {
 };
 ProjectedArea union_area(const Scene& scene, const SourcePlane& plane);
 
-// The axis along which planes with this normal are projected: that of its largest component.
-int projection_axis(const kernel::ExactVec3& normal);
-
 }  // namespace exactff::visibility

@@ -44,7 +44,7 @@ class Walk {
   void trace_loops();
   [[nodiscard]] bool may_occlude(std::uint32_t piece) const;
   void list_cutters();
-  [[nodiscard]] Rational fraction() const;
+  [[nodiscard]] Rational fraction();
   void keep_geometry();
   const PlaneFrame& frame();
 
@@ -219,21 +219,13 @@ void Walk::list_cutters() {
 }
 
 // The frame's (p, q) are the projected coordinates over h, so areas compare once they are multiplied by h^2.
-Rational Walk::fraction() const {
+Rational Walk::fraction() {
   if (whole_) return 1;
   if (result_.boundary.empty()) return 0;
-  const PlaneFrame own(plane_.normal.exact, clipped_);
-  const PlaneFrame& frame = frame_ ? *frame_ : own;
-  Rational doubled = doubled_area(loops_);
-  if (loops_.empty()) doubled = doubled_area(frame.to_polygon(hull_));
+  const Rational doubled = loops_.empty() ? doubled_area(frame().to_polygon(hull_)) : doubled_area(loops_);
   const kernel::ScaledVec3 s = kernel::exact_difference(plane_.point, view_.x);
-  Rational h(dot(plane_.normal.exact, s.v));
-  if (s.exponent >= 0) {
-    mpq_mul_2exp(h.get_mpq_t(), h.get_mpq_t(), static_cast<mp_bitcnt_t>(s.exponent));
-  } else {
-    mpq_div_2exp(h.get_mpq_t(), h.get_mpq_t(), static_cast<mp_bitcnt_t>(-s.exponent));
-  }
-  return doubled / 2 * frame.unit_area() * h * h / union_area(view_.scene, plane_).area;
+  const Rational h = kernel::times_power_of_two(dot(plane_.normal.exact, s.v), s.exponent);
+  return doubled / 2 * frame().unit_area() * h * h / union_area(view_.scene, plane_).area;
 }
 
 void Walk::keep_geometry() {

@@ -21,12 +21,7 @@ using generate::Random;
 constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
 constexpr double kLargest = std::numeric_limits<double>::max();
 
-Rational power_of_two(long exponent) {
-  Rational result(1);
-  const auto bits = static_cast<mp_bitcnt_t>(std::abs(exponent));
-  (exponent >= 0 ? mpq_mul_2exp : mpq_div_2exp)(result.get_mpq_t(), result.get_mpq_t(), bits);
-  return result;
-}
+Rational power_of_two(long exponent) { return times_power_of_two(1, exponent); }
 
 // Any finite double, all exponents alike.
 double any_double(Random& random) {
