@@ -11,6 +11,8 @@
 #include <cmath>
 #include <limits>
 
+#include "study/vec.h"
+
 namespace exactff::study {
 namespace {
 
@@ -21,12 +23,6 @@ struct Point {
   double v = 0.0;
 };
 using Polygon = std::vector<Point>;
-
-Vec3 difference(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 
 // Coordinates in the plane relative to `origin`, the axis of the longest normal component dropped.
 Point flattened(const Vec3& p, const Vec3& origin, const Vec3& normal) {
@@ -95,22 +91,9 @@ double misfit(const std::vector<Vec3>& leaf, const PlaneDrawing& plane) {
   return worst / std::sqrt(dot(plane.normal, plane.normal));
 }
 
-const PlaneDrawing* plane_of(const std::vector<Vec3>& leaf, const std::vector<PlaneDrawing>& planes) {
-  const PlaneDrawing* best = nullptr;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const PlaneDrawing& plane : planes) {
-    const double distance = misfit(leaf, plane);
-    if (distance < smallest) {
-      smallest = distance;
-      best = &plane;
-    }
-  }
-  return best;
-}
-
 void judge(const Leaf& leaf, const std::vector<PlaneDrawing>& truth, SampledVerdict& verdict) {
   const std::vector<Vec3> corners = corners_of(leaf);
-  const PlaneDrawing* plane = plane_of(corners, truth);
+  const PlaneDrawing* plane = plane_of(leaf, truth);
   if (plane == nullptr) return;
   const double whole = area_inside(plane->clipped_source, corners, plane->normal);
   if (!(whole > 0.0)) return;
@@ -122,6 +105,20 @@ void judge(const Leaf& leaf, const std::vector<PlaneDrawing>& truth, SampledVerd
 }
 
 }  // namespace
+
+const PlaneDrawing* plane_of(const Leaf& leaf, const std::vector<PlaneDrawing>& planes) {
+  const std::vector<Vec3> corners = corners_of(leaf);
+  const PlaneDrawing* best = nullptr;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const PlaneDrawing& plane : planes) {
+    const double distance = misfit(corners, plane);
+    if (distance < smallest) {
+      smallest = distance;
+      best = &plane;
+    }
+  }
+  return best;
+}
 
 double area_inside(const std::vector<Loop>& loops, const std::vector<Vec3>& convex, const Vec3& normal) {
   Polygon window = flattened(convex, convex.front(), normal);

@@ -17,6 +17,9 @@ struct SampledVerdict {
 // the exact one rounded to doubles, so parts below 1e-9 of a leaf's area are not told from nothing.
 [[nodiscard]] SampledVerdict judge_leaves(const std::vector<Leaf>& leaves, const std::vector<PlaneDrawing>& truth);
 
+// The plane that a leaf lies in: the nearest of those that face its way; null if none does.
+[[nodiscard]] const PlaneDrawing* plane_of(const Leaf& leaf, const std::vector<PlaneDrawing>& planes);
+
 // Area of the part of the loops (outer ones minus holes) inside a convex polygon of the same plane.
 [[nodiscard]] double area_inside(const std::vector<Loop>& loops, const std::vector<Vec3>& convex, const Vec3& normal);
 

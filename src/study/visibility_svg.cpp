@@ -7,7 +7,9 @@
 #include <limits>
 #include <vector>
 
+#include "study/silent_errors.h"
 #include "study/text.h"
+#include "study/vec.h"
 
 namespace exactff::study {
 
@@ -34,10 +36,6 @@ std::string number(double value) {
 
 Vec3 scaled_difference(const Vec3& a, const Vec3& b, double scale) {
   return {a.x / scale - b.x / scale, a.y / scale - b.y / scale, a.z / scale - b.z / scale};
-}
-double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 Vec3 unit(const Vec3& a) {
   const double length = std::sqrt(dot(a, a));
@@ -127,24 +125,11 @@ std::string colour_of_visibility(double visibility) {
   return text.data();
 }
 
-bool lies_in(const PlaneDrawing& drawing, const Leaf& leaf) {
-  // Of a source in several planes each leaf belongs to the plane that it is parallel to and nearest to.
-  const Vec3 a = scaled_difference(leaf.corners[1], leaf.corners[0], 1.0);
-  const Vec3 b = scaled_difference(leaf.corners[2], leaf.corners[0], 1.0);
-  const Vec3 n = unit(cross(a, b));
-  const Vec3 m = unit(drawing.normal);
-  constexpr double kParallel = 1e-6;  // for the picture alone
-  if (dot(n, m) < 1.0 - kParallel) return false;
-  const Vec3& origin = drawing.source.front().corners.front();
-  const double offset = dot(m, scaled_difference(leaf.corners[0], origin, 1.0));
-  const double size = std::sqrt(std::max(dot(a, a), dot(b, b)));
-  return std::abs(offset) <= kParallel * (size + std::abs(dot(m, origin)) + std::sqrt(dot(origin, origin)));
-}
-
-std::string leaf_elements(const PanelMap& map, const PlaneDrawing& drawing, std::span<const Leaf> leaves) {
+std::string leaf_elements(const PanelMap& map, const std::vector<PlaneDrawing>& drawings, std::size_t panel,
+                          std::span<const Leaf> leaves) {
   std::string result;
   for (const Leaf& leaf : leaves) {
-    if (!lies_in(drawing, leaf)) continue;
+    if (plane_of(leaf, drawings) != &drawings[panel]) continue;
     const std::span<const Vec3> corners(leaf.corners.data(), static_cast<std::size_t>(leaf.corner_count));
     result += element(path_of(map, corners),
                       "fill=\"" + colour_of_visibility(leaf.visibility) + "\" stroke=\"#ffffff\" stroke-width=\"0.4\"");
@@ -178,12 +163,14 @@ struct Panel {
   double height = 0.0;
 };
 
-Panel draw_panel(const Scene& scene, const PlaneDrawing& drawing, std::span<const Leaf> leaves) {
+Panel draw_panel(const Scene& scene, const std::vector<PlaneDrawing>& drawings, std::size_t panel,
+                 std::span<const Leaf> leaves) {
+  const PlaneDrawing& drawing = drawings[panel];
   const PanelMap map(drawing);
   const bool with_leaves = !leaves.empty();
   std::string body;
   body += element(paths_of(map, drawing.source), "fill=\"#e3e3e3\" stroke=\"none\"");
-  if (with_leaves) body += leaf_elements(map, drawing, leaves);
+  if (with_leaves) body += leaf_elements(map, drawings, panel, leaves);
   if (!with_leaves) {
     body += element(paths_of(map, drawing.clipped_source), "fill=\"#b9bec6\" stroke=\"none\"");
     body += element(paths_of(map, drawing.visible), "fill=\"#f6d64a\" fill-rule=\"evenodd\" stroke=\"none\"");
@@ -230,7 +217,7 @@ std::string visibility_svg(const Scene& scene, const Receiver& receiver, const E
       continue;
     }
     ++panels;
-    const Panel panel = draw_panel(scene, drawings[i], leaves);
+    const Panel panel = draw_panel(scene, drawings, i, leaves);
     body += caption(scene, result.planes[i], y - 12);
     y += kCaptionHeight - 12;
     body += "<g transform=\"translate(0 " + number(y) + ")\">\n" + panel.body + "</g>\n";
