@@ -117,7 +117,8 @@ class ExactSource {
 // often a flipped normal.
 [[nodiscard]] bool behind_every_face(const FormFactor& result);
 
-// The exact geometry rounded to doubles, for pictures and for counting silent errors. No value depends on it.
+// The exact geometry rounded to doubles, for pictures and for counting silent errors. No value depends on it. Loops run
+// counter-clockwise as x sees them, holes clockwise.
 struct Loop {
   std::vector<Vec3> corners;
   bool hole = false;

@@ -57,6 +57,7 @@ PlaneDrawing draw(const visibility::View& view, const visibility::SourcePlane& p
     for (const visibility::Point2& corner : loop.corners) {
       drawn.corners.push_back(lift(seen.geometry.frame->to_direction(corner)));
     }
+    if (!seen.geometry.frame->keeps_orientation()) std::reverse(drawn.corners.begin(), drawn.corners.end());
     drawing.visible.push_back(std::move(drawn));
   }
   return drawing;

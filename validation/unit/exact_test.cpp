@@ -227,5 +227,44 @@ TEST(ExactFormFactor, DrawsTheVisibleRegion) {
   }
 }
 
+// Twice the signed area along the drawing's front normal.
+double signed_area(const Loop& loop, const Vec3& n) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < loop.corners.size(); ++i) {
+    const Vec3 &a = loop.corners[i], &b = loop.corners[(i + 1) % loop.corners.size()];
+    sum += n.x * (a.y * b.z - a.z * b.y) + n.y * (a.z * b.x - a.x * b.z) + n.z * (a.x * b.y - a.y * b.x);
+  }
+  return sum;
+}
+
+// A square source across each half-axis, a smaller square before it that leaves a ring to be seen.
+TEST(Drawing, LoopsRunCounterClockwiseAsTheReceiverSeesThem) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {-1.0, 1.0}) {
+      const auto place = [&](double u, double v, double w) {
+        const double c[3] = {w * sign, u, v * sign};
+        return Vec3{c[(3 - axis) % 3], c[(4 - axis) % 3], c[(5 - axis) % 3]};
+      };
+      PlainScene scene;
+      const auto add = [&](const char* name, double h, double w) {
+        scene.add_ring(scene.patch(name), {place(-h, -h, w), place(-h, h, w), place(h, h, w), place(h, -h, w)});
+      };
+      add("source", 1, 1);
+      add("occ", 0.25, 0.5);
+      scene.normal = place(0, 0, 1);
+      const Scene built = generate::build(scene);
+      const ExactSource source(built, built.select("source"));
+      const PlaneDrawing drawing = draw_visibility(built, generate::receiver_of(scene), source).at(0);
+      ASSERT_EQ(drawing.visible.size(), 2U);
+      for (const Loop& loop : drawing.visible) {
+        EXPECT_EQ(signed_area(loop, drawing.normal) < 0.0, loop.hole) << axis << ' ' << sign;
+      }
+      EXPECT_GT(signed_area(drawing.source.at(0), drawing.normal), 0.0);
+      EXPECT_GT(signed_area(drawing.clipped_source.at(0), drawing.normal), 0.0);
+      EXPECT_GT(signed_area(drawing.shadows.at(0).outline, drawing.normal), 0.0);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace exactff
