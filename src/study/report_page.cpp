@@ -1,65 +1,13 @@
 #include "study/report_page.h"
 
 #include <algorithm>
-#include <ctime>
-#include <fstream>
-#include <thread>
 
-#include "study/report_style.h"
+#include "study/page_text.h"
 #include "study/tables.h"
 #include "study/text.h"
 
 namespace exactff::study {
 namespace {
-
-// Symbols of the running text with their subscripts, and units that stay with their numbers.
-std::string prose(std::string text) {
-  for (const auto& [plain, marked] : {std::pair{"ε_B", "ε<sub>B</sub>"},
-                                      {"ε_A", "ε<sub>A</sub>"},
-                                      {"θ_r", "θ<sub>r</sub>"},
-                                      {"θ_s", "θ<sub>s</sub>"},
-                                      {"ρ_r", "ρ<sub>r</sub>"},
-                                      {"B_s", "B<sub>s</sub>"},
-                                      {" %", "&nbsp;%"},
-                                      {" µs", "&nbsp;µs"},
-                                      {" ms", "&nbsp;ms"}}) {
-    const std::string from = plain, to = marked;
-    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-      text.replace(at, from.size(), to);
-    }
-  }
-  return text;
-}
-
-std::string paragraph(const std::string& text) { return "<p>" + prose(text) + "</p>\n"; }
-std::string heading(const std::string& text) { return "<h2>" + text + "</h2>\n"; }
-
-std::string processor_name() {
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);) {
-    if (!line.starts_with("model name")) continue;
-    const std::size_t colon = line.find(": ");
-    if (colon != std::string::npos) return line.substr(colon + 2);
-  }
-  return "unknown";
-}
-
-std::string compiler_name() {
-#if defined(__clang__)
-  return "clang " __clang_version__;
-#else
-  return "g++ " __VERSION__;
-#endif
-}
-
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  ::gmtime_r(&now, &parts);
-  std::string text(32, '\0');
-  text.resize(std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M UTC", &parts));
-  return text;
-}
 
 class PageWriter {
  public:
@@ -74,7 +22,7 @@ class PageWriter {
     left_out();
     definitions();
     reproduction();
-    text_ += "</main>\n</body>\n</html>\n";
+    text_ += page_end();
     return std::move(text_);
   }
 
@@ -85,10 +33,7 @@ class PageWriter {
   [[nodiscard]] bool partly() const { return study_.receivers_by_sight[static_cast<std::size_t>(Sight::kPartly)] > 0; }
 
   void head() {
-    text_ =
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-        title() + "</title>\n<style>" + kReportStyle + "</style>\n</head>\n<body>\n<main>\n";
+    text_ = page_head(title());
     text_ += "<h1>" + title() + "</h1>\n<p class=\"subtitle\">" + counted(study_.exact.size(), "receiver") + " (" +
              html(study_.request.receivers_name) + "), source " + html(source_names(study_)) + ", " +
              counted(study_.settings.size(), "setting") + " of the ray-sampled algorithm.</p>\n";
@@ -126,14 +71,14 @@ class PageWriter {
 
   void figures() {
     text_ += heading("Figures");
-    if (!page_.no_figures.empty()) text_ += paragraph(html(page_.no_figures));
+    if (!page_.drawn.none.empty()) text_ += paragraph(html(page_.drawn.none));
     figure_group(false);
     figure_group(true);
   }
 
   void figure_group(bool maps) {
     std::string group;
-    for (const DrawnFigure& drawn : page_.figures) {
+    for (const DrawnFigure& drawn : page_.drawn.figures) {
       if (drawn.figure.map != maps || drawn.svg.empty()) continue;
       group += "<figure id=\"" + drawn.figure.id + "\">\n<h3>" + prose(html(drawn.figure.title)) + "</h3>\n" +
                drawn.svg + "\n<figcaption>" + prose(drawn.figure.caption) + "</figcaption>\n</figure>\n";
@@ -256,27 +201,22 @@ class PageWriter {
     text_ += "</dl>\n";
   }
 
-  void fact(const std::string& name, const std::string& value) {
-    text_ += "<tr><td>" + name + "</td><td>" + prose(value) + "</td></tr>\n";
-  }
-
   void reproduction() {
     text_ += heading("How to reproduce this page");
     if (!study_.request.command_line.empty()) text_ += "<pre>" + html(study_.request.command_line) + "</pre>\n";
-    text_ += "<div class=\"wide\"><table class=\"facts\">\n";
-    fact("program", html(program_version()) + ", " + html(compiler_name()) + ", " EXACTFF_BUILD_TYPE);
-    fact("scene", html(study_.request.scene_name) + ", hash " + study_.request.scene->hash());
-    fact("settings", study_.full_product ? "every combination of the lists"
-                                         : "ε_B × rays, and sweeps of the other parameters through the base setting");
-    fact("processor", html(processor_name()) + ", " + counted(std::thread::hardware_concurrency(), "hardware thread"));
-    fact("threads", std::to_string(study_.request.threads));
-    fact("set up once", "exact method " + duration(study_.exact_setup_seconds) + ", ray structure " +
-                            (study_.ray_setup_seconds > 0.0
-                                 ? duration(study_.ray_setup_seconds)
-                                 : std::string("not built (no candidate list was long enough to need it)")) +
-                            "; not part of the times per receiver");
-    fact("made", today());
-    text_ += "</table></div>\n";
+    text_ += facts_table(
+        {{"program", program_fact()},
+         {"scene", html(study_.request.scene_name) + ", hash " + study_.request.scene->hash()},
+         {"settings", study_.full_product ? "every combination of the lists"
+                                          : "ε_B × rays, and sweeps of the other parameters through the base setting"},
+         {"processor", processor_fact()},
+         {"threads", std::to_string(study_.request.threads)},
+         {"set up once", "exact method " + duration(study_.exact_setup_seconds) + ", ray structure " +
+                             (study_.ray_setup_seconds > 0.0
+                                  ? duration(study_.ray_setup_seconds)
+                                  : std::string("not built (no candidate list was long enough to need it)")) +
+                             "; not part of the times per receiver"},
+         {"made", today()}});
     text_ += paragraph(
         "Every value is the same on every run and for any number of threads; times are not. A time is the wall time of "
         "one call on one thread, made after a first call with the same arguments. " +

@@ -17,7 +17,9 @@ main { max-width: 76rem; margin: 0 auto; padding: 1.5rem 1rem 4rem; }
 h1 { font-size: 1.75rem; line-height: 1.2; margin: .5rem 0 .25rem; }
 h2 { font-size: 1.25rem; margin: 2.5rem 0 .75rem; }
 h3 { font-size: 1rem; margin: 0 0 .25rem; }
+a { color: var(--accent); }
 p, ul, dl { max-width: 48rem; }
+summary { cursor: pointer; color: var(--soft); margin: .5rem 0; }
 .subtitle { color: var(--soft); margin-top: 0; }
 .answer li { margin: .4rem 0; }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(13rem, 1fr)); gap: .75rem; margin: 1.5rem 0; }

@@ -4,35 +4,11 @@
 #include <cctype>
 
 #include "exactff/version.h"
+#include "study/csv_row.h"
 #include "study/text.h"
 
 namespace exactff::study {
 namespace {
-
-// A comma-separated row, one field after the other.
-class Row {
- public:
-  explicit Row(std::ostream& out) : out_(out) {}
-  ~Row() { out_ << '\n'; }
-  Row(const Row&) = delete;
-  Row& operator=(const Row&) = delete;
-
-  Row& operator<<(std::string_view text) { return put(csv_field(text)); }
-  Row& operator<<(double value) { return put(shortest(value)); }
-  Row& operator<<(const Vec3& v) { return *this << v.x << v.y << v.z; }
-  Row& operator<<(std::uint64_t count) { return put(std::to_string(count)); }
-  Row& operator<<(int count) { return put(std::to_string(count)); }
-
- private:
-  Row& put(std::string_view field) {
-    if (!first_) out_ << ',';
-    first_ = false;
-    out_ << field;
-    return *this;
-  }
-  std::ostream& out_;
-  bool first_ = true;
-};
 
 template <class List, class Text>
 void write_list(std::ostream& out, std::string_view name, const List& list, const Text& text) {
@@ -79,7 +55,7 @@ std::string column_name(std::string_view words) {
 constexpr std::string_view kSettingColumns = "setting,variant,pattern,seed,eps_b,eps_a,rays_per_leaf";
 
 // Settings are numbered from 1.
-void put_setting(Row& row, const Study& study, std::size_t k) {
+void put_setting(CsvRow& row, const Study& study, std::size_t k) {
   const AdaptiveOptions& s = study.settings[k];
   row << std::uint64_t{k + 1} << name_of(s.variant) << name_of(s.pattern) << s.seed << s.eps_b << s.eps_a << s.rays;
 }
@@ -94,10 +70,10 @@ void write_exact(const Study& study, std::ostream& out) {
     for (std::size_t s = 0; s < study.request.sources.size(); ++s) {
       const ExactTerm& term = study.exact[i].terms[s];
       const Rgb b = scene.source_radiosity(study.request.sources[s]);
-      Row(out) << receiver.id << on_name(study, receiver) << receiver.point << receiver.normal
-               << scene.name_of(study.request.sources[s]) << term.value << term.lower << term.upper
-               << to_string(term.status) << name_of(term.sight) << rho.r * b.r * term.value << rho.g * b.g * term.value
-               << rho.b * b.b * term.value;
+      CsvRow(out) << receiver.id << on_name(study, receiver) << receiver.point << receiver.normal
+                  << scene.name_of(study.request.sources[s]) << term.value << term.lower << term.upper
+                  << to_string(term.status) << name_of(term.sight) << rho.r * b.r * term.value
+                  << rho.g * b.g * term.value << rho.b * b.b * term.value;
     }
   }
 }
@@ -116,7 +92,7 @@ void write_values(const Study& study, std::ostream& out) {
     const ExactRow& exact = study.exact[i];
     for (std::size_t k = 0; k < study.settings.size(); ++k) {
       const SampleRow& sample = study.samples[k][i];
-      Row row(out);
+      CsvRow row(out);
       row << receiver.id << on_name(study, receiver) << receiver.point << source;
       put_setting(row, study, k);
       row << exact.form_factor << sample.form_factor << sample.error << exact.radiosity.largest()
@@ -127,7 +103,7 @@ void write_values(const Study& study, std::ostream& out) {
   }
 }
 
-void put_statistics(Row& row, const ErrorStatistics& s) { row << s.rms << s.mean << s.p99 << s.worst; }
+void put_statistics(CsvRow& row, const ErrorStatistics& s) { row << s.rms << s.mean << s.p99 << s.worst; }
 
 void write_summary(const Study& study, std::ostream& out) {
   write_head(study, out, "summary");
@@ -136,7 +112,7 @@ void write_summary(const Study& study, std::ostream& out) {
          "violations,share_violating,leaves,rays,silent_leaves,wrong_leaves,not_a_number\n";
   for (std::size_t k = 0; k < study.settings.size(); ++k) {
     const Summary& summary = study.summaries[k];
-    Row row(out);
+    CsvRow row(out);
     put_setting(row, study, k);
     row << std::uint64_t{study.exact.size()};
     put_statistics(row, summary.form_factor);
@@ -155,14 +131,14 @@ void write_timings(const Study& study, std::ostream& out) {
   for (std::size_t i = 0; i < study.exact.size(); ++i) {
     const Receiver& receiver = study.request.receivers[i];
     const std::string on = on_name(study, receiver);
-    Row(out) << receiver.id << on << "exact" << study.exact[i].seconds;
+    CsvRow(out) << receiver.id << on << "exact" << study.exact[i].seconds;
     for (std::size_t k = 0; k < study.settings.size(); ++k) {
-      Row(out) << receiver.id << on << std::uint64_t{k + 1} << study.samples[k][i].seconds;
+      CsvRow(out) << receiver.id << on << std::uint64_t{k + 1} << study.samples[k][i].seconds;
     }
   }
 }
 
-void put_times(Row& row, const TimeSummary& t) { row << t.median << t.mean << t.median_partly << t.mean_partly; }
+void put_times(CsvRow& row, const TimeSummary& t) { row << t.median << t.mean << t.median_partly << t.mean_partly; }
 
 void write_summary_timings(const Study& study, std::ostream& out) {
   write_head(study, out, "wall time per receiver, in seconds");
@@ -173,7 +149,7 @@ void write_summary_timings(const Study& study, std::ostream& out) {
       << ",median,mean,median_partly_hidden,mean_partly_hidden,exact_median,exact_mean,exact_median_partly_hidden,"
          "exact_mean_partly_hidden\n";
   for (std::size_t k = 0; k < study.settings.size(); ++k) {
-    Row row(out);
+    CsvRow row(out);
     put_setting(row, study, k);
     put_times(row, study.times[k]);
     put_times(row, study.exact_time);

@@ -367,10 +367,10 @@ TEST(Study, TheReportHoldsEveryFigureAndFetchesNothing) {
   const Study& study = small_study();
   Page page;
   page.left_out = study.left_out;
-  for (Figure& figure : figures(study, page.left_out)) page.figures.push_back({std::move(figure), "<svg></svg>"});
-  ASSERT_GE(page.figures.size(), 6U);
+  for (Figure& figure : figures(study, page.left_out)) page.drawn.figures.push_back({std::move(figure), "<svg></svg>"});
+  ASSERT_GE(page.drawn.figures.size(), 6U);
   const std::string text = report_page(study, page);
-  for (const DrawnFigure& drawn : page.figures) {
+  for (const DrawnFigure& drawn : page.drawn.figures) {
     EXPECT_NE(text.find("<figure id=\"" + drawn.figure.id + "\">"), std::string::npos) << drawn.figure.id;
   }
   for (const char* outside : {"http:", "https:", "<script", "src=", "<link", "@import", "url("}) {
