@@ -16,5 +16,6 @@ struct Command {
 Command add_info(CLI::App& app);
 Command add_point(CLI::App& app);
 Command add_compare(CLI::App& app);
+Command add_stress(CLI::App& app);
 
 }  // namespace exactff::cli

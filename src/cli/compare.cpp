@@ -1,17 +1,13 @@
 // exactff compare: the ray-sampled adaptive algorithm held against the exact values, as tables and a report.
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
 #include <charconv>
-#include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <string>
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/scene_options.h"
 #include "exactff/study.h"
@@ -20,8 +16,6 @@
 
 namespace exactff::cli {
 namespace {
-
-constexpr int kInterrupted = 128 + SIGINT;
 
 constexpr const char* kFooter =
     "Every combination of the lists is run if there are at most 40; else every --eps-b with every --rays, and each\n"
@@ -137,16 +131,6 @@ std::vector<Selection> sources_of(const CompareArguments& args, const Scene& sce
   return sources;
 }
 
-std::string shell_word(const std::string& text) {
-  const bool plain = !text.empty() && text.find_first_not_of(
-                                          "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
-                                          "0123456789_-+=:,./@%") == std::string::npos;
-  if (plain) return text;
-  std::string word = "'";
-  for (char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
-
 std::string command_line(const CompareArguments& args) {
   std::string line = "exactff compare " + shell_word(args.scene.path);
   const auto add = [&](const char* flag, const std::string& value) {
@@ -187,65 +171,6 @@ study::Request request_of(const CompareArguments& args, const Scene& scene) {
   return request;
 }
 
-// A bar with the time left, on a terminal only; at most ten times a second.
-class ProgressBar {
- public:
-  ~ProgressBar() { clear(); }
-
-  void show(const study::Progress& progress) {
-    if (!on_terminal_) return;
-    const auto now = Clock::now();
-    if (progress.stage != stage_) {
-      stage_ = progress.stage;
-      started_ = now;
-    }
-    if (now - drawn_ < std::chrono::milliseconds(100) && progress.done < progress.total) return;
-    drawn_ = now;
-    draw(progress, std::chrono::duration<double>(now - started_).count());
-  }
-
-  void clear() const {
-    if (on_terminal_ && drawn_ != Clock::time_point{}) std::cerr << "\r\033[K" << std::flush;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-
-  static void draw(const study::Progress& progress, double elapsed) {
-    constexpr std::size_t kWidth = 30;
-    const std::size_t filled = kWidth * progress.done / std::max<std::size_t>(progress.total, 1);
-    const double left = elapsed / static_cast<double>(std::max<std::size_t>(progress.done, 1)) *
-                        static_cast<double>(progress.total - progress.done);
-    std::cerr << "\r\033[K" << progress.stage << " [" << std::string(filled, '#') << std::string(kWidth - filled, '.')
-              << "] " << progress.done << '/' << progress.total << ", " << study::duration(left) << " left"
-              << std::flush;
-  }
-
-  const bool on_terminal_ = ::isatty(STDERR_FILENO) == 1;
-  std::string stage_;
-  Clock::time_point started_;
-  Clock::time_point drawn_;
-};
-
-std::atomic<bool> interrupted = false;
-
-// Ctrl-C sets a flag that the study looks at between receivers.
-class InterruptWatch {
- public:
-  InterruptWatch() {
-    struct sigaction action {};
-    action.sa_handler = [](int) { interrupted = true; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second Ctrl-C ends the program at once
-    ::sigaction(SIGINT, &action, &before_);
-  }
-  ~InterruptWatch() { ::sigaction(SIGINT, &before_, nullptr); }
-  InterruptWatch(const InterruptWatch&) = delete;
-  InterruptWatch& operator=(const InterruptWatch&) = delete;
-
- private:
-  struct sigaction before_ {};
-};
-
 void check_flags(const CompareArguments& args) {
   if (args.receivers.empty() && (args.on.empty() || args.grid.empty())) {
     refuse("there are no receivers", "values are compared at points",
@@ -263,8 +188,7 @@ int run(const CompareArguments& args) {
   const Scene scene = args.scene.load();
   const InterruptWatch watch;
   ProgressBar bar;
-  const study::Hooks hooks{[&](const study::Progress& progress) { bar.show(progress); },
-                           [] { return interrupted.load(); }};
+  const study::Hooks hooks{[&](const study::Progress& progress) { bar.show(progress); }, is_interrupted};
   std::vector<std::string> messages, sentences;
   try {
     const study::Study study = study::run(request_of(args, scene), hooks);

@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("exactff ") + exactff::kVersion);
   app.require_subcommand(0, 1);
   const std::array commands = {exactff::cli::add_info(app), exactff::cli::add_point(app),
-                               exactff::cli::add_compare(app)};
+                               exactff::cli::add_compare(app), exactff::cli::add_stress(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

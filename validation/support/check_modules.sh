@@ -12,7 +12,8 @@ declare -A allowed=(
   [exact]="exact contour visibility scene kernel"
   [sampled]="sampled scene kernel"
   [study]="study scene kernel"
-  [cli]="cli study scene"
+  [stress]="stress study scene kernel"
+  [cli]="cli stress study scene"
 )
 
 failures=0

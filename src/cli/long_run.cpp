@@ -1,0 +1,66 @@
+#include "cli/long_run.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <iostream>
+
+#include "study/text.h"
+
+namespace exactff::cli {
+
+ProgressBar::ProgressBar() : on_terminal_(::isatty(STDERR_FILENO) == 1) {}
+ProgressBar::~ProgressBar() { clear(); }
+
+void ProgressBar::show(const study::Progress& progress) {
+  if (!on_terminal_) return;
+  const auto now = Clock::now();
+  if (progress.stage != stage_) {
+    stage_ = progress.stage;
+    started_ = now;
+  }
+  if (now - drawn_ < std::chrono::milliseconds(100) && progress.done < progress.total) return;
+  drawn_ = now;
+  draw(progress, std::chrono::duration<double>(now - started_).count());
+}
+
+void ProgressBar::clear() const {
+  if (on_terminal_ && drawn_ != Clock::time_point{}) std::cerr << "\r\033[K" << std::flush;
+}
+
+void ProgressBar::draw(const study::Progress& progress, double elapsed) {
+  constexpr std::size_t kWidth = 30;
+  const std::size_t filled = kWidth * progress.done / std::max<std::size_t>(progress.total, 1);
+  const double left = elapsed / static_cast<double>(std::max<std::size_t>(progress.done, 1)) *
+                      static_cast<double>(progress.total - progress.done);
+  std::cerr << "\r\033[K" << progress.stage << " [" << std::string(filled, '#') << std::string(kWidth - filled, '.')
+            << "] " << progress.done << '/' << progress.total << ", " << study::duration(left) << " left" << std::flush;
+}
+
+namespace {
+std::atomic<bool> interrupted = false;
+}
+
+InterruptWatch::InterruptWatch() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { interrupted = true; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  ::sigaction(SIGINT, &action, &before_);
+}
+
+InterruptWatch::~InterruptWatch() { ::sigaction(SIGINT, &before_, nullptr); }
+
+bool is_interrupted() { return interrupted; }
+
+std::string shell_word(const std::string& text) {
+  const bool plain = !text.empty() && text.find_first_not_of(
+                                          "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                                          "0123456789_-+=:,./@%") == std::string::npos;
+  if (plain) return text;
+  std::string word = "'";
+  for (char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+
+}  // namespace exactff::cli

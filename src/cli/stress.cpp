@@ -1,0 +1,136 @@
+// exactff stress: scenes driven from benign to extreme, and where each method stops being usable.
+#include "exactff/stress.h"
+
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/long_run.h"
+#include "cli/output.h"
+#include "cli/text_table.h"
+#include "stress/tables.h"
+#include "stress/words.h"
+#include "study/text.h"
+
+namespace exactff::cli {
+namespace {
+
+constexpr const char* kFooter =
+    "Without --family every family is run; --list tells their names. Each prints a table of relative errors against "
+    "the\n"
+    "family's stiffness, and one table at the end tells up to which stiffness each method's error stays below 1e-3, "
+    "1e-6\n"
+    "and 1e-12. With -o a folder is written with the tables as CSV and a report with figures.\n"
+    "The exit code is 1 if an exact value is not what the independent truth rounds to.\n"
+    "\n"
+    "Example:\n"
+    "  exactff stress -o stress-report";
+
+struct StressArguments {
+  std::vector<std::string> families;
+  int threads = 0;
+  std::string folder;
+  bool list = false;
+};
+
+void print_list() {
+  TextTable table;
+  table.add_column("family");
+  table.add_column("stiffness");
+  table.add_column("what happens");
+  for (const stress::FamilyInfo& family : stress::families()) {
+    table.add_row({std::string(family.name), std::string(family.stiffness), std::string(family.title)});
+  }
+  table.print(std::cout);
+}
+
+void print_family(const stress::FamilyResult& result) {
+  std::cout << result.family.title << " (" << result.family.name << ")\n"
+            << "stiffness: " << result.family.stiffness << "; truth: " << to_string(result.family.evidence) << '\n';
+  TextTable table;
+  for (const char* title : {"stiffness", "form factor", "bits", "time"}) table.add_column(title, Align::kRight);
+  for (stress::Method method : stress::kMethods) table.add_column(std::string(short_name_of(method)), Align::kRight);
+  for (const stress::Row& row : result.rows) {
+    const stress::Answer& exact = row.of(stress::Method::kExact);
+    std::vector<std::string> cells = {stress::stiffness_text(row.stiffness), study::rounded(exact.value, 6),
+                                      std::to_string(row.precision_bits), study::duration(exact.seconds)};
+    for (stress::Method method : stress::kMethods) cells.push_back(stress::error_text(row.of(method)));
+    if (!row.agrees) cells.back() += "  DISAGREES with the truth";
+    table.add_row(std::move(cells));
+  }
+  table.print(std::cout);
+  std::cout << '\n';
+}
+
+void print_summary(const stress::Report& report) {
+  std::cout << "The largest stiffness with an error below 1e-3, 1e-6, 1e-12 (all: to the end; –: not even at first)\n";
+  TextTable table;
+  table.add_column("family");
+  table.add_column("ends at", Align::kRight);
+  for (stress::Method method : stress::kMethods) table.add_column(std::string(short_name_of(method)));
+  for (const stress::FamilyResult& family : report.families) {
+    std::vector<std::string> cells = {std::string(family.family.name),
+                                      stress::stiffness_text(family.rows.back().stiffness)};
+    for (stress::Method method : stress::kMethods) cells.push_back(stress::reaches_text(family, method));
+    table.add_row(std::move(cells));
+  }
+  table.print(std::cout);
+  std::cout << '\n';
+}
+
+std::string command_line(const StressArguments& args) {
+  std::string line = "exactff stress";
+  for (std::size_t i = 0; i < args.families.size(); ++i) line += (i == 0 ? " --family " : ",") + args.families[i];
+  if (args.threads > 0) line += " --threads " + std::to_string(args.threads);
+  return line + " -o " + shell_word(args.folder);
+}
+
+int run(const StressArguments& args) {
+  if (args.list) {
+    print_list();
+    check_output(std::cout);
+    return 0;
+  }
+  if (!args.folder.empty()) study::check_output_folder(args.folder);
+  const InterruptWatch watch;
+  ProgressBar bar;
+  const study::Hooks hooks{[&](const study::Progress& progress) { bar.show(progress); }, is_interrupted};
+  stress::Report report;
+  std::vector<std::string> messages;
+  try {
+    report =
+        stress::run({args.families, args.threads, args.folder.empty() ? std::string() : command_line(args)}, hooks);
+    if (!args.folder.empty()) messages = stress::write(report, args.folder, hooks);
+  } catch (const study::Cancelled&) {
+    bar.clear();
+    std::cerr << "exactff: interrupted; nothing was written\n";
+    return kInterrupted;
+  }
+  bar.clear();
+  for (const std::string& message : messages) std::cerr << "note: " << message << '\n';
+  for (const stress::FamilyResult& family : report.families) print_family(family);
+  print_summary(report);
+  for (const std::string& sentence : stress::headlines(report)) std::cout << sentence << '\n';
+  if (!args.folder.empty()) {
+    std::cout << "Report: " << (std::filesystem::path(args.folder) / "report.html").string() << '\n';
+  }
+  check_output(std::cout);
+  return report.sound() ? 0 : 1;
+}
+
+}  // namespace
+
+Command add_stress(CLI::App& app) {
+  auto args = std::make_shared<StressArguments>();
+  CLI::App* command = app.add_subcommand("stress", "How every method behaves as scenes go from benign to extreme");
+  command->add_option("--family", args->families, "Families, separated by commas (default: all)")->delimiter(',');
+  command->add_flag("--list", args->list, "Tell the families and what their stiffness is");
+  command->add_option("--threads", args->threads, "Threads (default: all); values do not depend on it")
+      ->check(CLI::Range(1, 4096));
+  command->add_option("-o,--output", args->folder, "Folder for the tables and the report");
+  command->footer(kFooter);
+  return {command, [args] { return run(*args); }};
+}
+
+}  // namespace exactff::cli

@@ -1,0 +1,13 @@
+// The figures of a stress report: error, precision and time against the stiffness.
+#pragma once
+
+#include <vector>
+
+#include "exactff/stress.h"
+#include "study/figures.h"
+
+namespace exactff::stress {
+
+[[nodiscard]] std::vector<study::Figure> figures(const FamilyResult& result);
+
+}  // namespace exactff::stress

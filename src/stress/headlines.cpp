@@ -1,0 +1,89 @@
+#include <algorithm>
+
+#include "exactff/stress.h"
+#include "stress/tables.h"
+#include "stress/words.h"
+#include "study/text.h"
+
+namespace exactff::stress {
+
+namespace {
+
+using study::counted;
+using study::counted_of;
+
+struct Tally {
+  std::size_t scenes = 0;
+  std::size_t independent = 0;  // judged by a closed form or a symmetry
+  std::size_t agreeing = 0;
+  int most_bits = 0;
+  double smallest = 1.0;  // positive form factor
+};
+
+Tally tally(const Report& report) {
+  Tally t;
+  for (const FamilyResult& family : report.families) {
+    for (const Row& row : family.rows) {
+      ++t.scenes;
+      t.independent += family.family.evidence != Evidence::kCertified ? 1U : 0U;
+      t.agreeing += row.agrees ? 1U : 0U;
+      t.most_bits = std::max(t.most_bits, row.precision_bits);
+      const double value = row.of(Method::kExact).value;
+      if (value > 0.0) t.smallest = std::min(t.smallest, value);
+    }
+  }
+  return t;
+}
+
+std::string exact_sentence(const Report& report) {
+  const Tally t = tally(report);
+  std::string text = "The exact value is right to the last bit in " + counted_of(t.agreeing, t.scenes, "scene") + "; " +
+                     std::to_string(t.independent) + " of them are judged by a closed form or a symmetry";
+  text += ", down to a form factor of " + study::rounded(t.smallest, 2) + ". The proof needed at most " +
+          counted(static_cast<std::uint64_t>(t.most_bits), "bit") + '.';
+  return text;
+}
+
+bool to_the_end(const FamilyResult& family, Method method, double threshold) {
+  return usable_up_to(family, method, threshold) == family.rows.back().stiffness;
+}
+
+std::size_t families_kept(const Report& report, Method method, double threshold) {
+  return static_cast<std::size_t>(
+      std::count_if(report.families.begin(), report.families.end(),
+                    [&](const FamilyResult& family) { return to_the_end(family, method, threshold); }));
+}
+
+std::size_t refusals(const Report& report, Method method) {
+  std::size_t count = 0;
+  for (const FamilyResult& family : report.families) {
+    count += static_cast<std::size_t>(
+        std::count_if(family.rows.begin(), family.rows.end(), [&](const Row& row) { return row.of(method).refused; }));
+  }
+  return count;
+}
+
+std::string method_sentence(const Report& report, Method method) {
+  const std::size_t whole = report.families.size();
+  std::string text = std::string(name_of(method)) + " keeps its error below 10⁻³ to the end of " +
+                     std::to_string(families_kept(report, method, kThresholds[0])) + " of " +
+                     counted(whole, "family", "families") + ", below 10⁻⁶ of " +
+                     std::to_string(families_kept(report, method, kThresholds[1])) + " and below 10⁻¹² of " +
+                     std::to_string(families_kept(report, method, kThresholds[2]));
+  if (const std::size_t refused = refusals(report, method); refused > 0) {
+    text += "; it refuses " + counted(refused, "scene") + " whose corners single precision would merge";
+  }
+  return text + '.';
+}
+
+}  // namespace
+
+std::vector<std::string> headlines(const Report& report) {
+  std::vector<std::string> sentences = {exact_sentence(report)};
+  for (Method method : kMethods) {
+    if (method != Method::kExact) sentences.push_back(method_sentence(report, method));
+  }
+  return sentences;
+}
+
+}  // namespace exactff::stress

@@ -1,0 +1,94 @@
+// One harmless scene, a plate before a square, written in numbers of every size: the answer hardly changes.
+#include <cmath>
+
+#include "stress/family.h"
+
+namespace exactff::stress {
+
+namespace {
+
+constexpr Vec3 kUp{0, 0, 1};
+
+Span scaled(const Span& span, double factor) { return {span.low * factor, span.high * factor}; }
+Span moved(const Span& span, double by) { return {span.low + by, span.high + by}; }
+
+struct Boxed {
+  Vec3 point, normal;
+  Span source_x, source_y;
+  double source_z;
+  Span plate_x, plate_y;
+  double plate_z;
+};
+
+Case plate_before_square(double s, const Boxed& b) {
+  Stage stage(b.point, b.normal);
+  stage.add_level_source(b.source_x, b.source_y, b.source_z);
+  stage.add_level_occluder(b.plate_x, b.plate_y, b.plate_z);
+  const LevelView view(b.point, b.source_z);
+  const Rectangle source = view.shadow(b.source_x, b.source_y, b.source_z);
+  ClosedForm truth(b.normal);
+  truth.add(source);
+  truth.add(intersection(source, view.shadow(b.plate_x, b.plate_y, b.plate_z)), -1);
+  return stage.finish(s, std::move(truth));
+}
+
+// Source and plate each scaled by a factor of its own about the receiver.
+Case with_factors(double s, double source_factor, double plate_factor) {
+  const Span side = scaled({-1, 1}, source_factor);
+  return plate_before_square(s, {{0, 0, 0},
+                                 kUp,
+                                 side,
+                                 side,
+                                 source_factor,
+                                 scaled({-0.25, 0.3}, plate_factor),
+                                 scaled({-0.2, 0.35}, plate_factor),
+                                 0.5 * plate_factor});
+}
+
+Case tiny(double s) { return with_factors(s, 1 / s, 1 / s); }
+Case huge(double s) { return with_factors(s, s, s); }
+Case mixed(double s) { return with_factors(s, s, 1 / s); }
+
+// Multiples of 1/64 moved by a power of two: every coordinate of the moved scene is exact.
+Case moved_away(double s) {
+  const Span side{-1, 1}, plate{-0.265625, 0.296875};
+  return plate_before_square(
+      s, {{s, -s, s}, kUp, moved(side, s), moved(side, -s), 1 + s, moved(plate, s), moved(plate, -s), 0.5 + s});
+}
+
+// Of the direction (1, 2, 3) throughout; the last normals are denormal numbers.
+Case short_normal(double s) {
+  const double unit = std::ldexp(1.0, -74) / s;
+  const Vec3 normal{unit, 2 * unit, 3 * unit};
+  return plate_before_square(s, {{0, 0, 0}, normal, {0, 1}, {0, 1}, 1, {0.15, 0.3}, {0.05, 0.2}, 0.5});
+}
+
+}  // namespace
+
+std::vector<Family> number_families() {
+  return {
+      {{"tiny", "Everything tiny", "1 / size",
+        "All coordinates are scaled down. Squares of lengths underflow from 10⁻¹⁵⁴ on."},
+       decades(300),
+       tiny},
+      {{"huge", "Everything huge", "size", "All coordinates are scaled up. Squares of lengths overflow from 10¹⁵⁴ on."},
+       decades(300),
+       huge},
+      {{"mixed-scales", "Tiny and huge at once", "size of the source, and 1 / size of the occluder",
+        "The source is scaled up and the plate before it down: up to 10³⁰⁰ and 10⁻³⁰⁰ in one scene."},
+       decades(300),
+       mixed},
+      {{"moved-away", "Everything far from the origin", "distance from the origin",
+        "The scene is moved by a power of two; its coordinates remain exact, and F the same to the last bit. What "
+        "works "
+        "with differences never notices."},
+       octaves(46, 2),
+       moved_away},
+      {{"short-normal", "Denormal normal", "1 / length, over 5·10²¹",
+        "The receiver's normal, not a unit vector, gets shorter, down to denormal numbers; its direction stays."},
+       octaves(1000, 40),
+       short_normal},
+  };
+}
+
+}  // namespace exactff::stress

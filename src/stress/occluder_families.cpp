@@ -1,0 +1,160 @@
+// Occluders that all but touch: one another, the receiver, the source, or a plane through either.
+//
+// The source is the square [-1,1]^2 or near it, level, facing down; plates are wider than it is wherever only their
+// profile in the xz plane matters.
+#include <cmath>
+
+#include "stress/family.h"
+
+namespace exactff::stress {
+
+namespace {
+
+constexpr Vec3 kUp{0, 0, 1};
+constexpr Span kSide{-1, 1};
+constexpr Span kWide{-4, 4};
+
+// Two level plates at half the height of the source, from the left up to `left` and from `right` on.
+Case two_plates(double s, double left, double right) {
+  const Vec3 point{0.3, 0.2, 0};
+  Stage stage(point, kUp);
+  stage.add_level_source(kSide, kSide, 1);
+  stage.add_level_occluder({-4, left}, kWide, 0.5);
+  stage.add_level_occluder({right, 4}, kWide, 0.5);
+  const LevelView view(point, 1);
+  return stage.finish(s, left_by_strips(kUp, view.shadow(kSide, kSide, 1),
+                                        {view.shadow({-4, 0.5}, {left, 0.5}), view.shadow({right, 0.5}, {4, 0.5})}));
+}
+
+Case crack(double s) { return two_plates(s, 0, 1 / s); }
+Case crack_ulp(double s) { return two_plates(s, 0.25, 0.25 + 1 / s); }
+Case overlap(double s) { return two_plates(s, 0.25 + 1 / s, 0.25); }
+
+// One level plate between receiver and source, both given.
+Case one_plate(double s, const Vec3& point, double source_z, const Span& x, const Span& y, double z) {
+  Stage stage(point, kUp);
+  stage.add_level_source(kSide, kSide, source_z);
+  stage.add_level_occluder(x, y, z);
+  const LevelView view(point, source_z);
+  const Rectangle source = view.shadow(kSide, kSide, source_z);
+  ClosedForm truth(kUp);
+  truth.add(source);
+  truth.add(intersection(source, view.shadow(x, y, z)), -1);
+  return stage.finish(s, std::move(truth));
+}
+
+Case near_receiver(double s) { return one_plate(s, {0, 0, 0}, 1, {-0.25 / s, 0.3 / s}, {-0.2 / s, 0.35 / s}, 0.5 / s); }
+
+Case near_source(double s) { return one_plate(s, {0.1, 0.2, -1}, 0, {-0.3, 0.4}, {-0.2, 0.5}, -0.5 / s); }
+
+// Plates of the given profiles before a source at `source_z`.
+struct Slat {
+  ProfilePoint from, to;
+};
+
+Case slats(double s, const Vec3& point, double source_z, const std::vector<Slat>& profiles) {
+  Stage stage(point, kUp);
+  stage.add_level_source(kSide, kSide, source_z);
+  const LevelView view(point, source_z);
+  std::vector<Interval> shadows;
+  for (const auto& [from, to] : profiles) {
+    stage.add_slat(from, to, kWide);
+    shadows.push_back(view.shadow(from, to));
+  }
+  return stage.finish(s, left_by_strips(kUp, view.shadow(kSide, kSide, source_z), std::move(shadows)));
+}
+
+Case contact_with_source(double s) { return slats(s, {0.1, 0.2, -1}, 0, {{{-0.45, 0}, {0.55, -0.5 / s}}}); }
+
+Case crossing(double s) {
+  const double t = 0.5 / s;
+  return slats(s, {0, 0, -1}, 1, {{{-0.25, -0.25 * t}, {0.5, 0.5 * t}}, {{-0.375, 0.375 * t}, {0.5, -0.5 * t}}});
+}
+
+// From the receiver's own plane up to half the height of the source: its shadow reaches from the wall to infinity.
+Case wall_beside(double s) {
+  const double d = 0.25 / s;
+  const Span x{-1, 1.3};
+  const Vec3 point{0, 0.2, 0};
+  Stage stage(point, kUp);
+  stage.add_level_source(x, kSide, 1);
+  stage.add_slat({d, 0}, {d, 0.5}, kWide);
+  const LevelView view(point, 1);
+  return stage.finish(s, left_by_strips(kUp, view.shadow(x, kSide, 1), {{view.along_x(d, 0.5), Rational(8)}}));
+}
+
+// Two plates leave a crack of width 2 d; a third stands in it, its plane at the distance d from the receiver.
+Case edge_on(double s) {
+  const double d = 0.25 / s;
+  return slats(s, {0, 0.2, 0}, 1, {{{d, 0.25}, {d, 0.5}}, {{-1, 0.5}, {0, 0.5}}, {{2 * d, 0.5}, {1, 0.5}}});
+}
+
+// A bar along x, low at one end and high at the other, and its rotations by quarter turns: each lies over the next.
+Case pinwheel(double s) {
+  const double t = 0.25 / s;
+  Stage stage({0.0625, 0.03125, -1}, kUp);
+  stage.add_level_source(kSide, kSide, 1);
+  std::vector<Vec3> bar = {{-0.5, 0.2, -t}, {0.5, 0.2, t}, {0.5, 0.3, t}, {-0.5, 0.3, -t}};
+  for (int k = 0; k < 4; ++k) {
+    stage.add_occluder(bar);
+    for (Vec3& corner : bar) corner = {corner.y, -corner.x, corner.z};
+  }
+  return stage.finish(s, std::nullopt);
+}
+
+}  // namespace
+
+std::vector<Family> occluder_families() {
+  return {
+      {{"crack", "Crack between two occluders", "1 / width",
+        "Two plates hide all but a crack. F is proportional to its width, down to 10⁻³⁰⁰: no shadow ray finds it, and "
+        "after rounding its two sides coincide."},
+       decades(300),
+       crack},
+      {{"crack-ulp", "Crack of an ulp", "1 / width",
+        "The same crack at x = 1/4, where the narrowest that doubles can express is 2⁻⁵⁴ wide."},
+       octaves(54, 2),
+       crack_ulp},
+      {{"overlap", "Overlap of two occluders", "1 / width",
+        "The same two plates overlap, down to one unit in the last place. F is exactly 0; errors are relative to the "
+        "unoccluded form factor."},
+       octaves(54, 2),
+       overlap},
+      {{"near-receiver", "Occluder approaching the receiver", "1 / distance",
+        "A plate shrinks into the receiver, its shadow staying the same: coordinates of 10⁻³⁰⁰ decide over those of "
+        "order 1."},
+       decades(300),
+       near_receiver},
+      {{"near-source", "Occluder approaching the source", "1 / distance",
+        "A plate all but lies upon the source; one that does would hide nothing."},
+       decades(300),
+       near_source},
+      {{"edge-on", "Occluder seen edge on", "1 / distance of its plane from the receiver",
+        "Two plates leave a crack in which a third one stands, its plane all but holding the receiver. The crack and "
+        "the "
+        "third plate's shadow are as thin as that distance."},
+       decades(300),
+       edge_on},
+      {{"wall-beside", "Wall beside the receiver", "1 / distance of its plane from the receiver",
+        "The same with a wall that rises from the receiver's own plane: it hides half of the source however close it "
+        "comes, and nothing once it stands in the receiver."},
+       decades(300),
+       wall_beside},
+      {{"contact-with-source", "Occluder nearly in the plane of the source", "1 / slope",
+        "A plate touches the source along a line and rises from it at a vanishing slope. In the source's plane it "
+        "would "
+        "hide nothing."},
+       decades(300),
+       contact_with_source},
+      {{"crossing", "Occluders that cross", "1 / slope",
+        "Two plates cross one another at a vanishing angle; their shadows overlap."},
+       decades(300),
+       crossing},
+      {{"pinwheel", "Occluders that overlap in a cycle", "1 / slope",
+        "Four bars, each lying over the next: no order from front to back exists.", Evidence::kCertified},
+       decades(300),
+       pinwheel},
+  };
+}
+
+}  // namespace exactff::stress

@@ -1,0 +1,189 @@
+#include "stress/report_page.h"
+
+#include "stress/tables.h"
+#include "stress/words.h"
+#include "study/page_text.h"
+#include "study/text.h"
+
+namespace exactff::stress {
+
+namespace {
+
+using study::counted;
+using study::heading;
+using study::html;
+using study::paragraph;
+
+constexpr const char* kTitle = "Where each method stops being usable";
+
+class PageWriter {
+ public:
+  PageWriter(const Report& report, const study::DrawnFigures& drawn) : report_(report), drawn_(drawn) {}
+
+  std::string write() {
+    text_ = study::page_head(kTitle);
+    opening();
+    summary();
+    how_to_read();
+    for (const FamilyResult& family : report_.families) section(family);
+    definitions();
+    reproduction();
+    text_ += study::page_end();
+    return std::move(text_);
+  }
+
+ private:
+  void opening() {
+    std::size_t scenes = 0;
+    for (const FamilyResult& family : report_.families) scenes += family.rows.size();
+    text_ += std::string("<h1>") + kTitle + "</h1>\n<p class=\"subtitle\">" +
+             counted(report_.families.size(), "family", "families") + " of stiff scenes, " + counted(scenes, "scene") +
+             ", " + std::to_string(kMethodCount) + " methods.</p>\n";
+    text_ += paragraph(
+        "<strong>The question.</strong> A form factor from a point to a polygon, with occluders in between, is easy to "
+        "compute as long as nothing is very near, very far, very thin or very nearly aligned. Each family below is a "
+        "scene that one number, its stiffness, drives from benign to extreme. How far does each method follow?");
+    text_ += "<p><strong>The answer.</strong></p>\n<ul class=\"answer\">\n";
+    for (const std::string& sentence : headlines(report_)) text_ += "<li>" + study::prose(html(sentence)) + "</li>\n";
+    text_ += "</ul>\n";
+    if (!drawn_.none.empty()) text_ += paragraph(html(drawn_.none));
+  }
+
+  void cell(const std::string& content, const char* kind = "td", bool words = false) {
+    text_ += std::string("<") + kind + (words ? " class=\"text\"" : "") + '>' + content + "</" + kind + '>';
+  }
+
+  void summary() {
+    text_ += heading("The largest stiffness with an error below 10⁻³, 10⁻⁶ and 10⁻¹²");
+    text_ += paragraph(
+        "From the benign end on, without a gap: three numbers a cell, one a threshold. “all”: to the end of the "
+        "family. "
+        "“–”: not even at its benign end.");
+    text_ += "<div class=\"wide\"><table>\n<thead><tr>";
+    cell("family", "th", true);
+    cell("ends at", "th");
+    for (Method method : kMethods) cell(html(name_of(method)), "th");
+    text_ += "</tr></thead>\n<tbody>\n";
+    for (const FamilyResult& family : report_.families) summary_row(family);
+    text_ += "</tbody></table></div>\n";
+  }
+
+  void summary_row(const FamilyResult& family) {
+    text_ += "<tr>";
+    cell("<a href=\"#" + html(family.family.name) + "\">" + html(family.family.title) + "</a>", "td", true);
+    cell(stiffness_text(family.rows.back().stiffness));
+    for (Method method : kMethods) {
+      const std::string reaches = reaches_text(family, method);
+      cell(reaches == "all" ? "<b>all</b>" : reaches);
+    }
+    text_ += "</tr>\n";
+  }
+
+  void how_to_read() {
+    text_ += heading("How to read the figures");
+    text_ += paragraph(
+        "From left to right a scene grows stiffer; beyond 10<sup>16</sup> the axis is drawn together. Errors below "
+        "10<sup>−18</sup> and above 10<sup>3</sup> are drawn at these values. A line ends where its method returns no "
+        "number or refuses the scene. Bits are those at which the contour integral was last evaluated, 0 where none "
+        "was "
+        "needed. Times are medians of single calls; Eq. (4) in double is handed the visible region, and finding it is "
+        "not "
+        "in its time.");
+  }
+
+  void section(const FamilyResult& result) {
+    const FamilyInfo& family = result.family;
+    text_ += "<h2 id=\"" + html(family.name) + "\">" + html(family.title) + "</h2>\n";
+    text_ += paragraph(html(family.about) + " <em>Stiffness: " + html(family.stiffness) +
+                       ". Truth: " + html(to_string(family.evidence)) + ".</em>");
+    figures(family);
+    text_ += "<details><summary>Every value</summary>\n";
+    table(result);
+    text_ += "</details>\n";
+  }
+
+  void figures(const FamilyInfo& family) {
+    std::string group;
+    for (const auto& [figure, svg] : drawn_.figures) {
+      if (!figure.id.starts_with(std::string(family.name) + '.')) continue;
+      group += "<figure id=\"" + figure.id + "\">\n<h3>" + html(figure.title) + "</h3>\n" + svg + "\n</figure>\n";
+    }
+    if (!group.empty()) text_ += "<div class=\"figures maps\">\n" + group + "</div>\n";
+  }
+
+  void table(const FamilyResult& result) {
+    text_ += "<div class=\"wide\"><table>\n<thead><tr>";
+    for (const char* name : {"stiffness", "form factor", "status", "bits", "edges", "time"}) cell(name, "th");
+    for (Method method : kMethods) cell("error, " + html(short_name_of(method)), "th");
+    text_ += "</tr></thead>\n<tbody>\n";
+    for (const Row& row : result.rows) {
+      text_ += "<tr>";
+      const Answer& exact = row.of(Method::kExact);
+      cell(stiffness_text(row.stiffness));
+      cell(study::shortest(exact.value));
+      cell(row.agrees ? html(exactff::to_string(row.status)) : "<b>disagrees with the truth</b>");
+      cell(std::to_string(row.precision_bits));
+      cell(std::to_string(row.edges));
+      cell(study::prose(study::duration(exact.seconds)));
+      for (Method method : kMethods) cell(error_text(row.of(method)));
+      text_ += "</tr>\n";
+    }
+    text_ += "</tbody></table></div>\n";
+  }
+
+  void define(const char* term, const char* meaning) {
+    text_ += std::string("<dt>") + term + "</dt><dd>" + study::prose(meaning) + "</dd>\n";
+  }
+
+  void definitions() {
+    text_ += heading("Definitions") + "<dl>\n";
+    define(
+        "Relative error",
+        "|value − F| / F; where F is 0, |value| over the unoccluded form factor. F comes from the catalogue’s closed "
+        "forms for rectangles, evaluated in balls at a precision that grows until they are good to 36 digits, with "
+        "coordinates taken as the exact rationals that they are; or from a symmetry; or, where neither exists, from "
+        "the exact method’s own enclosure.");
+    define(
+        "Exact",
+        "The correctly rounded form factor. Its error is that of one rounding, at most 1.1·10⁻¹⁶ of a normal number.");
+    define(
+        "Eq. (4) in double",
+        "Tampieri’s contour formula over the exact visible region, whose corners were rounded to doubles. Three "
+        "ways to the angle between two corners a and b: by acos of unit vectors; by atan2(|a × b|, a · b); and with a "
+        "× b formed as a × (b − a). The visible region is given to them; a program must find it, too.");
+    define(
+        "Tampieri’s algorithm",
+        "The ray-sampled adaptive algorithm with 16 jittered shadow rays per undecided leaf and a tolerance ε_B of a "
+        "thousandth of the unoccluded form factor; mended, and as printed: no horizon clip, single precision, nothing "
+        "for perpendicular pairs. It refuses scenes whose corners single precision, in which its shadow rays are "
+        "traced, would merge.");
+    text_ += "</dl>\n";
+  }
+
+  void reproduction() {
+    text_ += heading("How to reproduce this page");
+    if (!report_.request.command_line.empty()) text_ += "<pre>" + html(report_.request.command_line) + "</pre>\n";
+    text_ += study::facts_table({{"program", study::program_fact()},
+                                 {"processor", study::processor_fact()},
+                                 {"threads", std::to_string(report_.request.threads)},
+                                 {"made", study::today()}});
+    text_ += paragraph("Every value is the same on every run and for any number of threads; times are not.");
+    text_ += "<p>Beside this page lie:</p>\n<ul>\n";
+    for (const Table& table : tables()) {
+      text_ += "<li><code>" + std::string(table.file) + "</code>: " + html(table.holds) + "</li>\n";
+    }
+    text_ += "</ul>\n";
+  }
+
+  const Report& report_;
+  const study::DrawnFigures& drawn_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string report_page(const Report& report, const study::DrawnFigures& drawn) {
+  return PageWriter(report, drawn).write();
+}
+
+}  // namespace exactff::stress

@@ -1,0 +1,15 @@
+// The stress report as one HTML page that fetches nothing and runs nothing.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "exactff/stress.h"
+#include "study/page_files.h"
+
+namespace exactff::stress {
+
+// `drawn` holds the figures of every family, in order.
+[[nodiscard]] std::string report_page(const Report& report, const study::DrawnFigures& drawn);
+
+}  // namespace exactff::stress

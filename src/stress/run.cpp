@@ -1,0 +1,211 @@
+// Every family at every stiffness, by every method.
+//
+//   1. make the scene and its truth;
+//   2. the exact method; its value must be what the truth rounds to;
+//   3. the exact visible region with its corners rounded to doubles, and Eq. (4) over it in three ways;
+//   4. Tampieri's algorithm, mended and literal. Its tolerance eps_B is a ten-thousandth of the unoccluded form factor:
+//   what
+//      one asks for who knows roughly what to expect;
+//   5. times: the median of several calls within a time limit.
+// A scene's place in the report is its index, so that nothing but the times depends on the number of threads.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "exactff/adaptive.h"
+#include "kernel/ball.h"
+#include "stress/double_formulas.h"
+#include "stress/family.h"
+#include "study/parallel.h"
+#include "study/text.h"
+
+namespace exactff::stress {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kToleranceShare = 1e-4;
+constexpr int kRays = 64;
+constexpr int kTruthDigits = 30;
+
+// |value - truth| / scale
+double relative_difference(double value, const Enclosure& truth, const Enclosure& scale) {
+  if (!std::isfinite(value)) return std::numeric_limits<double>::quiet_NaN();
+  constexpr long kBits = 256;
+  Ball difference, quotient;
+  arb_set_d(difference.get(), value);
+  arb_sub(difference.get(), difference.get(), truth.ball().get(), kBits);
+  arb_abs(difference.get(), difference.get());
+  arb_div(quotient.get(), difference.get(), scale.ball().get(), kBits);
+  return kernel::nearest_to_midpoint(quotient);
+}
+
+// Calls compute() until its median time is worth telling: at most kMostCalls times, and no longer than the limit.
+template <class Compute>
+double median_seconds(const Compute& compute) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::size_t kMostCalls = 7;
+  constexpr double kLimit = 0.05;
+  std::vector<double> times;
+  for (double total = 0.0; times.size() < kMostCalls && total < kLimit; total += times.back()) {
+    const auto start = Clock::now();
+    compute();
+    times.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+  }
+  const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
+  std::nth_element(times.begin(), middle, times.end());
+  return *middle;
+}
+
+AngleFormula formula_of(Method method) {
+  switch (method) {
+    case Method::kAcos:
+      return AngleFormula::kAcos;
+    case Method::kAtan2:
+      return AngleFormula::kAtan2;
+    default:
+      return AngleFormula::kAtan2Difference;
+  }
+}
+
+class Trial {
+ public:
+  Trial(const Case& scene_case, Row& row)
+      : case_(scene_case), row_(row), source_(case_.scene, case_.scene.select("source")) {}
+
+  void run() {
+    row_.stiffness = case_.stiffness;
+    row_.occluders = case_.scene.faces().size() - 1;
+    run_exact();
+    for (Method method : {Method::kAcos, Method::kAtan2, Method::kAtan2Difference}) run_formula(method);
+    run_adaptive();
+  }
+
+ private:
+  Answer& answer(Method method) { return row_.answers[static_cast<std::size_t>(method)]; }
+
+  [[nodiscard]] FormFactor exact(const ExactOptions& options = {}) const {
+    return exact_form_factor(case_.scene, case_.receiver, source_, options);
+  }
+
+  void run_exact() {
+    const FormFactor result = exact();
+    row_.status = result.status;
+    row_.precision_bits = result.precision_bits;
+    row_.edges = result.planes.front().edges;
+    region_is_whole_ = result.planes.front().outcome == Outcome::kUnoccluded;
+    const std::vector<FaceId> none;
+    unoccluded_ = exact({.digits = kTruthDigits, .only_occluders = &none}).enclosure;
+    row_.truth = case_.truth ? case_.truth->value() : exact({.digits = kTruthDigits}).enclosure;
+    // A ball about 0 of no width is a proved zero.
+    zero_ = row_.truth.lower() == 0.0 && row_.truth.upper() == 0.0;
+    row_.agrees = row_.truth.nearest() == result.value && row_.truth.overlaps(result.enclosure) &&
+                  (result.status == Status::kZero) == zero_;
+    record(Method::kExact, result.value, median_seconds([&] { (void)exact(); }));
+  }
+
+  void record(Method method, double value, double seconds) {
+    const double error = relative_difference(value, row_.truth, zero_ ? unoccluded_ : row_.truth);
+    answer(method) = {.refused = false, .value = value, .error = error, .seconds = seconds};
+  }
+
+  [[nodiscard]] std::vector<Polygon> region() const {
+    std::vector<Polygon> polygons;
+    for (PlaneDrawing& plane : draw_visibility(case_.scene, case_.receiver, source_)) {
+      for (Loop& loop : region_is_whole_ ? plane.clipped_source : plane.visible) polygons.push_back(loop.corners);
+    }
+    return polygons;
+  }
+
+  void run_formula(Method method) {
+    if (polygons_.empty()) polygons_ = region();
+    const auto compute = [&] {
+      return form_factor_in_double(polygons_, case_.receiver.point, case_.receiver.normal, formula_of(method));
+    };
+    constexpr int kCalls = 32;  // a single one is shorter than the clock's steps
+    const double value = compute();
+    const double seconds = median_seconds([&] {
+      volatile double kept = 0.0;
+      for (int i = 0; i < kCalls; ++i) kept = kept + compute();
+    });
+    record(method, value, seconds / kCalls);
+  }
+
+  void run_adaptive() {
+    try {
+      const AdaptiveSolver solver(case_.scene);
+      const AdaptiveSource source = solver.prepare(source_.selection());
+      AdaptiveOptions options;
+      options.eps_b = kToleranceShare * unoccluded_.upper();
+      options.rays = kRays;
+      for (const auto& [method, variant] :
+           {std::pair{Method::kAdaptive, Variant::kMended}, {Method::kAdaptiveLiteral, Variant::kLiteral}}) {
+        options.variant = variant;
+        const auto compute = [&] { return solver.form_factor(case_.receiver, source, 1.0, options).form_factor; };
+        const double value = compute();
+        record(method, value, median_seconds([&] { (void)compute(); }));
+      }
+    } catch (const InputError&) {
+      for (Method method : {Method::kAdaptive, Method::kAdaptiveLiteral}) {
+        answer(method) = {.refused = true, .value = 0.0, .error = kInfinity, .seconds = 0.0};
+      }
+    }
+  }
+
+  const Case& case_;
+  Row& row_;
+  ExactSource source_;
+  Enclosure unoccluded_;
+  bool zero_ = false;
+  bool region_is_whole_ = false;
+  std::vector<Polygon> polygons_;
+};
+
+[[noreturn]] void refuse_family(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Family& family : all_families()) names.emplace_back(family.info.name);
+  throw InputError(Problem{{}, 0, "there is no family '" + name + "'", {}, "use one of " + study::enumerate(names)});
+}
+
+const Family& family_named(const std::string& name) {
+  for (const Family& family : all_families()) {
+    if (family.info.name == name) return family;
+  }
+  refuse_family(name);
+}
+
+std::vector<const Family*> selected(const std::vector<std::string>& names) {
+  std::vector<const Family*> list;
+  if (names.empty()) {
+    for (const Family& family : all_families()) list.push_back(&family);
+  }
+  for (const std::string& name : names) list.push_back(&family_named(name));
+  return list;
+}
+
+}  // namespace
+
+Report run(Request request, const study::Hooks& hooks) {
+  if (request.threads <= 0) request.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  Report report{std::move(request), {}};
+  struct Place {
+    const Family* family;
+    std::size_t result, row;
+  };
+  std::vector<Place> places;
+  for (const Family* family : selected(report.request.families)) {
+    const std::size_t count = family->stiffnesses.size();
+    for (std::size_t row = 0; row < count; ++row) places.push_back({family, report.families.size(), row});
+    report.families.push_back({family->info, std::vector<Row>(count)});
+  }
+  study::parallel_for(places.size(), report.request.threads, "stiff scenes", hooks, [&](std::size_t i) {
+    const Place& place = places[i];
+    const Case scene_case = place.family->make(place.family->stiffnesses[place.row]);
+    Trial(scene_case, report.families[place.result].rows[place.row]).run();
+  });
+  return report;
+}
+
+}  // namespace exactff::stress

@@ -1,0 +1,89 @@
+// A stiff scene being put together: one receiver, one patch `source`, one patch `occluder`, and the closed form that
+// the answer must agree with.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "exactff/receiver.h"
+#include "exactff/scene.h"
+#include "stress/closed_form.h"
+
+namespace exactff::stress {
+
+// What is asked, and what is known of the answer.
+struct Case {
+  double stiffness = 1.0;
+  Scene scene;
+  Receiver receiver;
+  std::optional<ClosedForm> truth;  // none: the exact method's enclosure is all there is
+};
+
+// low < high
+struct Span {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+// In the xz plane.
+struct ProfilePoint {
+  double x = 0.0;
+  double z = 0.0;
+};
+
+class Stage {
+ public:
+  Stage(const Vec3& point, const Vec3& normal) : point_(point), normal_(normal), material_(builder_.add_material({})) {}
+
+  // Counter-clockwise seen from the front.
+  void add_source(const std::vector<Vec3>& ring) { add("source", {ring}); }
+  void add_occluder(const std::vector<Vec3>& ring) { add("occluder", {ring}); }
+  void add_occluder_with_hole(const std::vector<Vec3>& ring, const std::vector<Vec3>& hole) {
+    add("occluder", {ring, hole});
+  }
+  // Rectangles parallel to the xy plane; the front faces down, towards a receiver below.
+  [[nodiscard]] static std::vector<Vec3> level_ring(const Span& x, const Span& y, double z);
+  void add_level_source(const Span& x, const Span& y, double z);
+  void add_level_occluder(const Span& x, const Span& y, double z);
+  // The plate whose profile in the xz plane runs from one point to the other, as wide as `y`.
+  void add_slat(const ProfilePoint& from, const ProfilePoint& to, const Span& y);
+
+  [[nodiscard]] const Vec3& normal() const { return normal_; }
+  [[nodiscard]] Case finish(double stiffness, std::optional<ClosedForm> truth);
+
+ private:
+  void add(std::string_view patch, const std::vector<std::vector<Vec3>>& rings);
+
+  Vec3 point_, normal_;
+  SceneBuilder builder_;
+  MaterialId material_;
+};
+
+// Where the receiver at x sees things in the level plane z = `level`: rational coordinates relative to x.
+class LevelView {
+ public:
+  LevelView(const Vec3& x, double level) : x_(x), distance_(kernel::to_rational(level) - kernel::to_rational(x.z)) {}
+
+  // The shadow of the profile point (u, z), u along the first axis or the second.
+  [[nodiscard]] Rational along_x(double u, double z) const { return project(u, x_.x, z); }
+  [[nodiscard]] Rational along_y(double u, double z) const { return project(u, x_.y, z); }
+  // The shadow along x of the plate between two profile points.
+  [[nodiscard]] Interval shadow(const ProfilePoint& from, const ProfilePoint& to) const;
+  // The shadow of a level rectangle; at z = level it is the rectangle itself.
+  [[nodiscard]] Rectangle shadow(const Span& x, const Span& y, double z) const;
+
+ private:
+  [[nodiscard]] Rational project(double u, double origin, double z) const;
+
+  Vec3 x_;
+  Rational distance_;
+};
+
+[[nodiscard]] Rectangle intersection(const Rectangle& a, const Rectangle& b);  // of one plane
+
+// The closed form of a source behind plates that are as wide as it is (along v) or wider: what the union of their
+// shadows along u leaves of it.
+[[nodiscard]] ClosedForm left_by_strips(const Vec3& normal, const Rectangle& source, std::vector<Interval> shadows);
+
+}  // namespace exactff::stress

@@ -1,0 +1,102 @@
+#include "stress/tables.h"
+
+#include "study/csv_row.h"
+#include "study/tables.h"
+
+namespace exactff::stress {
+
+namespace {
+
+using study::CsvRow;
+
+constexpr int kTruthDigits = 30;
+
+void write_head(std::ostream& out, std::string_view what) {
+  out << "# " << study::program_version() << " stress: " << what << '\n';
+}
+
+std::string method_column(Method method, std::string_view suffix) {
+  return std::string(short_name_of(method)) + std::string(suffix);
+}
+
+void write_values(const Report& report, std::ostream& out) {
+  write_head(out, "every family, stiffness and method");
+  out << "# error: |value - truth| / truth; where the truth is 0, |value| over the unoccluded form factor\n"
+         "# tampieri: eps_B a ten-thousandth of the unoccluded form factor, 64 jittered rays, seed 1\n";
+  {
+    CsvRow row(out);
+    row << "family"
+        << "stiffness"
+        << "truth"
+        << "evidence"
+        << "agrees"
+        << "status"
+        << "precision_bits"
+        << "occluders"
+        << "edges";
+    for (Method method : kMethods) row << method_column(method, "_value") << method_column(method, "_error");
+  }
+  for (const FamilyResult& family : report.families) {
+    for (const Row& r : family.rows) {
+      CsvRow row(out);
+      row << family.family.name << r.stiffness << r.truth.decimals(kTruthDigits).value_or(r.truth.midpoint())
+          << to_string(family.family.evidence) << (r.agrees ? "yes" : "no") << exactff::to_string(r.status)
+          << r.precision_bits << r.occluders << r.edges;
+      for (Method method : kMethods) {
+        const Answer& answer = r.of(method);
+        if (answer.refused) {
+          row << "refused"
+              << "";
+        } else {
+          row << answer.value << answer.error;
+        }
+      }
+    }
+  }
+}
+
+void write_summary(const Report& report, std::ostream& out) {
+  write_head(out, "the largest stiffness up to which each method's error stays below each threshold; 0: not even once");
+  CsvRow(out) << "family"
+              << "method"
+              << "threshold"
+              << "usable_up_to"
+              << "largest_tried";
+  for (const FamilyResult& family : report.families) {
+    for (Method method : kMethods) {
+      for (double threshold : kThresholds) {
+        CsvRow(out) << family.family.name << short_name_of(method) << threshold
+                    << usable_up_to(family, method, threshold) << family.rows.back().stiffness;
+      }
+    }
+  }
+}
+
+void write_timings(const Report& report, std::ostream& out) {
+  write_head(out, "median seconds of one call, preprocessing apart");
+  {
+    CsvRow row(out);
+    row << "family"
+        << "stiffness";
+    for (Method method : kMethods) row << method_column(method, "_seconds");
+  }
+  for (const FamilyResult& family : report.families) {
+    for (const Row& r : family.rows) {
+      CsvRow row(out);
+      row << family.family.name << r.stiffness;
+      for (Method method : kMethods) row << r.of(method).seconds;
+    }
+  }
+}
+
+}  // namespace
+
+const std::array<Table, 3>& tables() {
+  static const std::array<Table, 3> list = {
+      {{"summary.csv", "up to which stiffness each method stays within each error", write_summary},
+       {"values.csv", "every value and error, the truth to 30 digits, bits needed", write_values},
+       {"timings.csv", "times of single calls", write_timings}}};
+  return list;
+}
+
+}  // namespace exactff::stress

@@ -1,0 +1,25 @@
+// The CSV files of a stress report.
+#pragma once
+
+#include <array>
+#include <ostream>
+#include <string_view>
+
+#include "exactff/stress.h"
+
+namespace exactff::stress {
+
+struct Table {
+  std::string_view file;
+  std::string_view holds;  // for the report's list of files
+  void (*write)(const Report& report, std::ostream& out);
+};
+
+// In the order in which the report lists them. Only timings.csv holds times.
+[[nodiscard]] const std::array<Table, 3>& tables();
+
+inline constexpr std::array<Method, kMethodCount> kMethods = {Method::kExact,    Method::kAcos,
+                                                              Method::kAtan2,    Method::kAtan2Difference,
+                                                              Method::kAdaptive, Method::kAdaptiveLiteral};
+
+}  // namespace exactff::stress

@@ -1,0 +1,55 @@
+#include "stress/words.h"
+
+#include <cmath>
+#include <string_view>
+
+#include "study/text.h"
+
+namespace exactff::stress {
+
+namespace {
+
+std::string superscript(int number) {
+  static constexpr std::string_view kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string text;
+  for (char digit : std::to_string(number)) text += kDigits[digit - '0'];
+  return text;
+}
+
+constexpr double kSmallEnoughToWrite = 1e4;
+
+}  // namespace
+
+std::string stiffness_text(double stiffness) {
+  if (stiffness == 0.0) return "–";
+  if (stiffness < kSmallEnoughToWrite) return study::shortest(stiffness);
+  int exponent = 0;
+  if (std::frexp(stiffness, &exponent) == 0.5) return "2" + superscript(exponent - 1);
+  const int decade = static_cast<int>(std::lround(std::log10(stiffness)));
+  if (std::stod("1e" + std::to_string(decade)) == stiffness) return "10" + superscript(decade);
+  return study::rounded(stiffness);
+}
+
+std::string error_text(const Answer& answer) {
+  if (answer.refused) return "refused";
+  if (std::isnan(answer.error)) return "no number";
+  return study::rounded(answer.error, 2);
+}
+
+std::string reach_text(const FamilyResult& result, Method method, double threshold) {
+  const double reach = usable_up_to(result, method, threshold);
+  return !result.rows.empty() && reach == result.rows.back().stiffness ? "all" : stiffness_text(reach);
+}
+
+std::string reaches_text(const FamilyResult& result, Method method) {
+  std::string text;
+  bool all = true;
+  for (double threshold : kThresholds) {
+    const std::string reach = reach_text(result, method, threshold);
+    all = all && reach == "all";
+    text += (text.empty() ? "" : " · ") + reach;
+  }
+  return all ? "all" : text;
+}
+
+}  // namespace exactff::stress

@@ -1,0 +1,299 @@
+#include "exactff/stress.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <set>
+#include <sstream>
+
+#include "stress/closed_form.h"
+#include "stress/double_formulas.h"
+#include "stress/family.h"
+#include "stress/figures.h"
+#include "stress/report_page.h"
+#include "stress/stage.h"
+#include "stress/tables.h"
+#include "stress/words.h"
+#include "support/program.h"
+
+namespace exactff::stress {
+namespace {
+
+using validation::run_program;
+using validation::TemporaryDirectory;
+
+constexpr Vec3 kUp{0, 0, 1};
+
+Interval between(double low, double high) { return {Rational(low), Rational(high)}; }
+
+std::string thirty_digits(const ClosedForm& form) { return form.value().decimals(30).value_or("undecided"); }
+
+// The catalogue's values, as in validation/reference/closed_form_test.cpp.
+TEST(StressClosedForm, ParallelRectangleBelowACorner) {
+  ClosedForm form(kUp);
+  form.add({2, 1, between(0, 1), between(0, 1)});
+  EXPECT_EQ(thirty_digits(form), "0.138531605994892996780769708634");
+}
+
+TEST(StressClosedForm, PerpendicularRectangle) {
+  ClosedForm form(kUp);
+  form.add({1, 1, between(0, 1), between(0, 1)});  // u is z, v is x
+  EXPECT_EQ(thirty_digits(form), "0.0557341970025535016096151456828");
+}
+
+TEST(StressClosedForm, TurnsWithTheAxesAndTheNormal) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (double sign : {-1.0, 1.0}) {
+      const double length = 3.0 * sign;
+      ClosedForm form({axis == 0 ? length : 0, axis == 1 ? length : 0, axis == 2 ? length : 0});
+      form.add({axis, Rational(sign), between(0, 1), between(0, 1)});
+      EXPECT_EQ(thirty_digits(form), "0.138531605994892996780769708634") << axis << ' ' << sign;
+    }
+  }
+}
+
+TEST(StressClosedForm, WeighsAndAdds) {
+  ClosedForm form(kUp);
+  form.add({2, 1, between(-1, 1), between(-1, 1)});
+  form.add({2, 1, between(-0.5, 0.5), between(-0.5, 0.5)}, -1);
+  EXPECT_EQ(thirty_digits(form), "0.314669953518798448298026682526");
+}
+
+TEST(StressClosedForm, KeepsItsDigitsWhereEverythingCancels) {
+  ClosedForm form(kUp);
+  form.add({2, 1, between(0, 1e-300), between(0, 1)});
+  // A strip of width w at the foot: w/(2 pi) (1/2 + pi/4)... = w/pi times the integral of 1/(1+y^2)^2.
+  const double expected = 1e-300 / M_PI * 0.5 * (0.5 + M_PI / 4);
+  EXPECT_NEAR(form.value().lower() / expected, 1.0, 1e-14);
+  EXPECT_TRUE(form.value().nearest().has_value());
+}
+
+TEST(StressClosedForm, IsExactlyZeroWithoutRectangles) {
+  ClosedForm form(kUp);
+  form.add({2, 1, between(1, 1), between(0, 1)});  // empty
+  EXPECT_EQ(form.value().nearest(), 0.0);
+  EXPECT_EQ(form.value().upper(), 0.0);
+}
+
+TEST(StressStage, StripsLeaveWhatNoShadowCovers) {
+  const Rectangle source{2, 1, between(-1, 1), between(-1, 1)};
+  const ClosedForm left =
+      left_by_strips(kUp, source, {between(0.5, 3), between(-0.5, 0), between(-2, -0.75), between(-0.25, 0.25)});
+  ClosedForm expected(kUp);
+  expected.add({2, 1, between(-0.75, -0.5), between(-1, 1)});
+  expected.add({2, 1, between(0.25, 0.5), between(-1, 1)});
+  EXPECT_EQ(thirty_digits(left), thirty_digits(expected));
+}
+
+TEST(StressStage, ShadowsGrowWithDistance) {
+  const Rectangle shadow = LevelView({1, 2, 0}, 4).shadow({1.5, 2}, {1, 2}, 1);
+  EXPECT_EQ(shadow.u.low, 2);
+  EXPECT_EQ(shadow.u.high, 4);
+  EXPECT_EQ(shadow.v.low, -4);
+  EXPECT_EQ(shadow.v.high, 0);
+  EXPECT_EQ(shadow.distance, 4);
+}
+
+const Polygon kSquare = {{-1, -1, 1}, {-1, 1, 1}, {1, 1, 1}, {1, -1, 1}};  // faces down
+const Polygon kHole = {{-0.5, -0.5, 1}, {0.5, -0.5, 1}, {0.5, 0.5, 1}, {-0.5, 0.5, 1}};
+
+TEST(StressDoubleFormulas, AgreeOnABenignRegionWithAHole) {
+  for (AngleFormula formula : {AngleFormula::kAcos, AngleFormula::kAtan2, AngleFormula::kAtan2Difference}) {
+    const std::vector<Polygon> region = {kSquare, kHole};
+    EXPECT_NEAR(form_factor_in_double(region, {0, 0, 0}, {0, 0, 5}, formula), 0.3146699535187985, 1e-15);
+  }
+}
+
+TEST(StressDoubleFormulas, LoseDigitsInTheKnownOrder) {
+  const double h = 1e-2;
+  const Vec3 x{100, 37, -50};
+  const std::vector<Polygon> region = {{{0, 0, 0}, {0, h, 0}, {h, h, 0}, {h, 0, 0}}};
+  ClosedForm form(kUp);
+  form.add({2, 50, {Rational(-100), Rational(h) - 100}, {Rational(-37), Rational(h) - 37}});
+  const double truth = form.value().nearest().value();
+  const auto error = [&](AngleFormula formula) {
+    return std::abs(form_factor_in_double(region, x, kUp, formula) / truth - 1);
+  };
+  EXPECT_GT(error(AngleFormula::kAcos), 1e-6);
+  EXPECT_LT(error(AngleFormula::kAtan2), 1e-6);
+  EXPECT_GT(error(AngleFormula::kAtan2), 1e-10);
+  EXPECT_LT(error(AngleFormula::kAtan2Difference), 1e-10);
+}
+
+Row row_with_error(double stiffness, double error) {
+  Row row;
+  row.stiffness = stiffness;
+  row.status = Status::kCertified;
+  row.agrees = true;
+  for (Answer& answer : row.answers) answer.error = error;
+  return row;
+}
+
+TEST(StressJudgement, AMethodIsUsableUpToItsFirstFailure) {
+  FamilyResult result;
+  for (const auto& [stiffness, error] : {std::pair{1.0, 1e-9}, {10.0, 1e-5}, {100.0, 0.1}, {1000.0, 1e-9}}) {
+    result.rows.push_back(row_with_error(stiffness, error));
+  }
+  EXPECT_EQ(usable_up_to(result, Method::kAcos, 1e-3), 10.0);
+  EXPECT_EQ(usable_up_to(result, Method::kAcos, 1e-6), 1.0);
+  EXPECT_EQ(usable_up_to(result, Method::kAcos, 1e-12), 0.0);
+  EXPECT_EQ(usable_up_to(result, Method::kAcos, 1.0), 1000.0);
+  EXPECT_EQ(reaches_text(result, Method::kAcos), "10 · 1 · –");
+}
+
+TEST(StressJudgement, NoNumberIsNotUsable) {
+  FamilyResult result;
+  result.rows = {row_with_error(1, std::numeric_limits<double>::quiet_NaN())};
+  EXPECT_EQ(usable_up_to(result, Method::kAcos, 1e300), 0.0);
+}
+
+TEST(StressJudgement, ADisagreementIsNotSound) {
+  Report report;
+  report.families.push_back({{}, {row_with_error(1, 0), row_with_error(2, 0)}});
+  EXPECT_TRUE(report.sound());
+  report.families[0].rows[1].agrees = false;
+  EXPECT_FALSE(report.sound());
+  report.families[0].rows[1].agrees = true;
+  report.families[0].rows[1].status = Status::kNotCertified;
+  EXPECT_FALSE(report.sound());
+}
+
+TEST(StressWords, PowersAreWrittenAsPowers) {
+  EXPECT_EQ(stiffness_text(1), "1");
+  EXPECT_EQ(stiffness_text(4096), "4096");
+  EXPECT_EQ(stiffness_text(1e4), "10⁴");
+  EXPECT_EQ(stiffness_text(1e300), "10³⁰⁰");
+  EXPECT_EQ(stiffness_text(0x1p52), "2⁵²");
+  EXPECT_EQ(stiffness_text(0), "–");
+}
+
+TEST(StressFamilies, HaveNamesOfTheirOwnAndRiseFromABenignStart) {
+  std::set<std::string_view> names, titles;
+  for (const Family& family : all_families()) {
+    EXPECT_TRUE(names.insert(family.info.name).second) << family.info.name;
+    EXPECT_TRUE(titles.insert(family.info.title).second) << family.info.title;
+    EXPECT_EQ(family.stiffnesses.front(), 1.0) << family.info.name;
+    for (std::size_t i = 1; i < family.stiffnesses.size(); ++i) {
+      EXPECT_LT(family.stiffnesses[i - 1], family.stiffnesses[i]) << family.info.name;
+    }
+  }
+  EXPECT_GE(names.size(), 30U);
+}
+
+bool has_closed_form(const Case& scene_case) { return scene_case.truth.has_value(); }
+
+TEST(StressFamilies, SayWhatTheirTruthRestsOn) {
+  for (const Family& family : all_families()) {
+    EXPECT_EQ(has_closed_form(family.make(1)), family.info.evidence != Evidence::kCertified) << family.info.name;
+  }
+}
+
+// The exact value against the closed form at the benign end, in the middle and as far as it goes within a moment.
+class StressFamily : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(StressFamily, ExactValueIsWhatTheTruthRoundsTo) {
+  const Family& family = all_families()[GetParam()];
+  constexpr std::size_t kMostFaces = 200;
+  for (double stiffness : family.stiffnesses) {
+    const Case scene_case = family.make(stiffness);
+    if (scene_case.scene.faces().size() > kMostFaces) break;
+    const ExactSource source(scene_case.scene, scene_case.scene.select("source"));
+    const FormFactor result = exact_form_factor(scene_case.scene, scene_case.receiver, source);
+    ASSERT_NE(result.status, Status::kNotCertified) << stiffness;
+    if (!scene_case.truth) continue;
+    const Enclosure truth = scene_case.truth->value();
+    ASSERT_EQ(truth.nearest(), result.value) << stiffness;
+    ASSERT_TRUE(truth.overlaps(result.enclosure)) << stiffness;
+    ASSERT_EQ(result.status == Status::kZero, truth.upper() == 0.0) << stiffness;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, StressFamily, testing::Range<std::size_t>(0, all_families().size()),
+                         [](const testing::TestParamInfo<std::size_t>& tested) {
+                           std::string name(all_families()[tested.param].info.name);
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+std::string values_of(const Report& report) {
+  std::ostringstream out;
+  for (const Table& table : tables()) {
+    if (table.file != "timings.csv") table.write(report, out);
+  }
+  return out.str();
+}
+
+TEST(Stress, ValuesDoNotDependOnTheNumberOfThreads) {
+  const std::vector<std::string> some = {"overlap", "horizon-ulp"};
+  const Report one = run({some, 1, {}});
+  EXPECT_TRUE(one.sound());
+  EXPECT_EQ(values_of(one), values_of(run({some, 3, {}})));
+}
+
+TEST(Stress, AnUnknownFamilyIsAnInputErrorThatNamesTheKnownOnes) {
+  try {
+    (void)run({{"cracks"}, 1, {}});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("'cracks'"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("crack-ulp"), std::string::npos);
+  }
+}
+
+TEST(Stress, StopsWhenItIsCancelled) {
+  EXPECT_THROW((void)run({{"shrink"}, 2, {}}, {{}, [] { return true; }}), study::Cancelled);
+}
+
+TEST(Stress, TheReportHoldsEveryFamilyAndFetchesNothing) {
+  const Report report = run({{"crack", "crack-ulp"}, 2, "exactff stress <&>"});
+  study::DrawnFigures drawn;
+  for (const FamilyResult& family : report.families) {
+    for (study::Figure& figure : figures(family)) drawn.figures.push_back({std::move(figure), "<svg></svg>"});
+  }
+  ASSERT_EQ(drawn.figures.size(), 6U);
+  const std::string page = report_page(report, drawn);
+  const auto count = [&](const std::string& part) {
+    std::size_t found = 0;
+    for (std::size_t at = page.find(part); at != std::string::npos; at = page.find(part, at + 1)) ++found;
+    return found;
+  };
+  EXPECT_EQ(count("<figure "), 6U);
+  EXPECT_EQ(count("<h2 id=\"crack\">"), 1U);
+  EXPECT_EQ(count("<h2 id=\"crack-ulp\">"), 1U);
+  EXPECT_EQ(count("exactff stress &lt;&amp;&gt;"), 1U);
+  for (const char* outside : {"http:", "https:", "<script", "src=", "<link", "@import", "url("}) {
+    EXPECT_EQ(count(outside), 0U) << outside;
+  }
+}
+
+TEST(StressCommand, WritesItsFilesAndReplacesThem) {
+  const TemporaryDirectory directory;
+  const std::string folder = (directory.path() / "out").string();
+  for (int turn = 0; turn < 2; ++turn) {
+    const auto run = run_program(EXACTFF_PROGRAM, {"stress", "--family", "overlap", "--threads", "1", "-o", folder});
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_NE(run.output.find("right to the last bit in every one of 28 scenes"), std::string::npos) << run.output;
+  }
+  for (const char* file : {"report.html", "values.csv", "summary.csv", "timings.csv"}) {
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(folder) / file)) << file;
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(directory.path()), {}), 1) << "nothing beside the folder";
+}
+
+TEST(StressCommand, RefusesAnUnknownFamily) {
+  EXPECT_EQ(run_program(EXACTFF_PROGRAM, {"stress", "--family", "cracks"}).exit_code, 2);
+}
+
+TEST(StressCommand, ListsItsFamilies) {
+  const auto run = run_program(EXACTFF_PROGRAM, {"stress", "--list"});
+  EXPECT_EQ(run.exit_code, 0);
+  for (const FamilyInfo& family : families()) {
+    EXPECT_NE(run.output.find(family.name), std::string::npos) << family.name;
+  }
+}
+
+}  // namespace
+}  // namespace exactff::stress
