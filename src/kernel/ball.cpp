@@ -168,21 +168,30 @@ bool Enclosure::contains(double value) const {
 
 namespace {
 
-// Arb prints "[midpoint +/- radius]", or the number alone where the radius is 0; the printed ball holds the ball.
+// Arb prints "[midpoint +/- radius]", the number alone where the radius is 0, or "[+/- radius]" where the midpoint is
+// 0; the printed ball holds the ball.
 struct PrintedBall {
   std::string midpoint;
   std::string radius;
 };
 
+// As many bits as the radius leaves meaning to, even if the midpoint itself needs fewer: Arb adds to the radius what it
+// may have lost by rounding to decimals.
+slong meaningful_bits(const Ball& ball) {
+  const slong bits = arb_bits(ball.get());
+  return arb_is_exact(ball.get()) != 0 ? bits : std::max(bits, arb_rel_accuracy_bits(ball.get()));
+}
+
 PrintedBall print(const Ball& ball) {
   constexpr double kDecimalsPerBit = 0.30103;
-  const auto digits = static_cast<slong>(static_cast<double>(arb_bits(ball.get())) * kDecimalsPerBit) + 5;
+  const auto digits = static_cast<slong>(static_cast<double>(meaningful_bits(ball)) * kDecimalsPerBit) + 5;
   char* raw = arb_get_str(ball.get(), digits, ARB_STR_MORE);
   const std::string text(raw);
   flint_free(raw);
-  const std::size_t separator = text.find(" +/- ");
-  if (separator == std::string::npos) return {text, "0"};
-  return {text.substr(1, separator - 1), text.substr(separator + 5, text.size() - separator - 6)};
+  const std::size_t sign = text.find("+/- ");
+  if (sign == std::string::npos) return {text, "0"};
+  const std::string radius = text.substr(sign + 4, text.size() - sign - 5);
+  return {sign == 1 ? "0" : text.substr(1, sign - 2), radius};
 }
 
 }  // namespace
