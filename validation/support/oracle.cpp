@@ -13,26 +13,18 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
+#include "support/oracle_faces.h"
 #include "support/oracle_sum.h"
 
 namespace exactff::validation {
 
 namespace {
 
-Vector exact(const Vec3& v) { return {Rational(v.x), Rational(v.y), Rational(v.z)}; }
-
 struct HalfSpace {  // normal . y > offset
   Vector normal;
   Rational offset;
-};
-
-// A planar polygon of the scene, the receiver at the origin.
-struct Polygon {
-  FaceId face{};
-  std::vector<std::vector<Vector>> rings;
-  Vector normal;    // Newell vector of the first ring
-  Rational offset;  // of its plane: normal . y = offset
 };
 
 struct Fragment {
@@ -41,44 +33,12 @@ struct Fragment {
 };
 using Fragments = std::vector<Fragment>;
 
-// --- The scene as polygons ---
-
-std::vector<Vector> ring_of(const Scene& scene, std::span<const std::uint32_t> indices, const Vector& x) {
-  std::vector<Vector> ring;
-  for (const std::uint32_t index : indices) ring.push_back(minus(exact(scene.vertices()[index]), x));
-  return ring;
-}
-
-void finish(Polygon& polygon) {
-  const std::vector<Vector>& ring = polygon.rings.front();
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Vector term = cross(ring[i], ring[(i + 1) % ring.size()]);
-    for (int k = 0; k < 3; ++k) polygon.normal[k] += term[k];
-  }
-  polygon.offset = dot(polygon.normal, ring.front());
-}
-
-// Faces that are not planar count as the triangles the scene cut them into.
-std::vector<Polygon> polygons_of(const Scene& scene, FaceId id, const Vector& x) {
-  std::vector<Polygon> polygons;
-  if (scene.face(id).shape == FaceShape::kPlanar) {
-    Polygon& polygon = polygons.emplace_back(Polygon{id, {}, {}, {}});
-    for (const auto& ring : scene.face(id).rings) polygon.rings.push_back(ring_of(scene, ring, x));
-  } else {
-    for (const Piece& piece : scene.pieces_of(id)) {
-      polygons.push_back({id, {ring_of(scene, scene.corners(piece), x)}, {}, {}});
-    }
-  }
-  for (Polygon& polygon : polygons) finish(polygon);
-  return polygons;
-}
+// --- Fragments ---
 
 bool same_oriented_plane(const Polygon& p, const Polygon& q) {
   return is_zero(cross(p.normal, q.normal)) && sgn(dot(p.normal, q.normal)) > 0 &&
          dot(p.normal, q.rings.front().front()) == p.offset;
 }
-
-// --- Fragments ---
 
 enum class Side { kIn, kOut, kBoth };
 
@@ -221,28 +181,44 @@ void hide(Fragments& fragments, const Polygon& occluder) {
   keep(fragments, false);
 }
 
-// The visible part of one plane's faces; sets the fraction. Faces seen from behind or edge-on show nothing.
-Fragments visible_part(const std::vector<Polygon>& faces, const std::vector<Polygon>& all, const Vector& normal,
-                       OraclePlane& plane) {
-  for (const Polygon& face : faces) plane.faces.push_back(face.face);
-  std::ranges::sort(plane.faces);
-  plane.faces.erase(std::unique(plane.faces.begin(), plane.faces.end()), plane.faces.end());
-  if (sgn(faces.front().offset) >= 0) return {};
-  Fragments visible = union_of(faces);
-  const int axis = steep_axis(faces.front().normal);
-  const Rational whole = area_along(visible, axis);
-  toggle(visible, {{normal, 0}});
-  keep(visible, true);
-  for (const Polygon& polygon : all) hide(visible, polygon);
-  plane.visible_fraction = area_along(visible, axis) / whole;
-  return visible;
-}
-
-// The polygons of the source, gathered by oriented plane, and every polygon of the scene.
+// The polygons of the source, gathered by oriented plane, and every polygon of the scene. Corners are relative to the
+// receiver.
 struct Setting {
   std::vector<std::vector<Polygon>> planes;
   std::vector<Polygon> all;
+  std::optional<FaceId> on;  // the face that the receiver lies on
+  Vector normal;             // of the receiver
 };
+
+// Any origin will do that does not lie in the plane.
+Rational whole_area(std::vector<Polygon> faces, int axis) {
+  if (sgn(faces.front().offset) == 0) {
+    const Vector away = faces.front().normal;
+    for (Polygon& face : faces) face = shifted(face, away);
+  }
+  return area_along(union_of(faces), axis);
+}
+
+// Faces seen from behind or edge-on show nothing.
+Fragments visible_part(const Setting& setting, std::vector<Polygon> faces) {
+  std::erase_if(faces, [&](const Polygon& face) { return face.face == setting.on; });
+  if (faces.empty() || sgn(faces.front().offset) >= 0) return {};
+  Fragments visible = union_of(faces);
+  toggle(visible, {{setting.normal, 0}});
+  keep(visible, true);
+  for (const Polygon& polygon : setting.all) {
+    if (polygon.face != setting.on) hide(visible, polygon);
+  }
+  return visible;
+}
+
+std::vector<FaceId> ids(const std::vector<Polygon>& faces) {
+  std::vector<FaceId> out;
+  for (const Polygon& face : faces) out.push_back(face.face);
+  std::ranges::sort(out);
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
 
 void add_to_plane(std::vector<std::vector<Polygon>>& planes, const Polygon& polygon) {
   const auto same = [&](const std::vector<Polygon>& plane) { return same_oriented_plane(plane.front(), polygon); };
@@ -251,12 +227,10 @@ void add_to_plane(std::vector<std::vector<Polygon>>& planes, const Polygon& poly
 }
 
 Setting make_setting(const Scene& scene, const Receiver& receiver, const Selection& source) {
-  Setting setting;
+  Setting setting{{}, {}, receiver.on, exact(receiver.normal)};
   const std::vector<FaceId> chosen = scene.faces_of(source);
   for (std::size_t i = 0; i < scene.faces().size(); ++i) {
     const FaceId id{static_cast<std::uint32_t>(i)};
-    const FaceShape shape = scene.face(id).shape;
-    if (receiver.on == id || shape == FaceShape::kZeroArea || shape == FaceShape::kSkipped) continue;
     for (const Polygon& polygon : polygons_of(scene, id, exact(receiver.point))) {
       setting.all.push_back(polygon);
       if (std::ranges::find(chosen, id) != chosen.end()) add_to_plane(setting.planes, polygon);
@@ -270,18 +244,25 @@ Setting make_setting(const Scene& scene, const Receiver& receiver, const Selecti
 OracleResult oracle(const Scene& scene, const Receiver& receiver, const Selection& source) {
   const Setting setting = make_setting(scene, receiver, source);
   OracleResult result;
-  Fragments visible;
-  for (const std::vector<Polygon>& faces : setting.planes) {
-    OraclePlane& plane = result.planes.emplace_back();
-    std::ranges::move(visible_part(faces, setting.all, exact(receiver.normal), plane), std::back_inserter(visible));
-  }
-  result.zero = visible.empty();
-  if (result.zero) return result;
+  std::vector<Share> shares;
   std::vector<Corners> polygons;
-  for (Fragment& fragment : visible) polygons.push_back(std::move(fragment.corners));
-  const RoundedSum sum = lambert_sum(polygons, exact(receiver.normal));
+  for (const std::vector<Polygon>& faces : setting.planes) {
+    const Vector& normal = faces.front().normal;
+    const int axis = steep_axis(normal);
+    Fragments visible = visible_part(setting, faces);
+    const Share& share = shares.emplace_back(
+        Share{area_along(visible, axis), whole_area(faces, axis), dot(normal, normal) / (normal[axis] * normal[axis])});
+    result.planes.push_back({ids(faces), share.visible / share.whole});
+    for (Fragment& fragment : visible) polygons.push_back(std::move(fragment.corners));
+  }
+  result.visible_fraction = rounded_share(shares);
+  result.zero = polygons.empty();
+  if (result.zero) return result;
+  const RoundedSum sum = lambert_sum(polygons, setting.normal);
   result.value = sum.value;
   result.decimals = sum.decimals;
+  result.low = sum.low;
+  result.high = sum.high;
   return result;
 }
 

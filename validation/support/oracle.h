@@ -1,5 +1,5 @@
-// A second opinion on the exact form factor, slow and simple. It shares nothing with the solver but the scene: no
-// CGAL, no shaft, no projection, no merging, another closed form.
+// A second opinion on the exact form factor, slow and simple. It shares nothing with the solver but the scene's
+// vertices and rings: no CGAL, no convex pieces, no shaft, no projection, no merging, another closed form.
 #pragma once
 
 #include <gmpxx.h>
@@ -14,7 +14,7 @@ namespace exactff::validation {
 
 // One oriented plane of the source.
 struct OraclePlane {
-  std::vector<FaceId> faces;   // ascending
+  std::vector<FaceId> faces;   // ascending; the face that the receiver lies on too, which shows nothing
   mpq_class visible_fraction;  // visible area over the area of the union of the faces, exactly
 };
 
@@ -22,6 +22,9 @@ struct OracleResult {
   double value = 0.0;          // F, correctly rounded
   bool zero = false;           // F is exactly 0
   std::string decimals = "0";  // 30 significant digits of F, correctly rounded; "0" if zero
+  mpq_class low = 0;           // low <= F <= high, within 2^-100 F
+  mpq_class high = 0;
+  double visible_fraction = 0.0;  // visible area over the area of all planes, correctly rounded; 0 if there is none
   std::vector<OraclePlane> planes;
 };
 

@@ -5,7 +5,11 @@
 
 #include <arb.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <stdexcept>
 
 namespace exactff::validation {
@@ -95,6 +99,34 @@ bool rounds_to(arb_ptr ball, double value) {
   return arb_gt(ball, low) && arb_lt(ball, high);
 }
 
+Rational rational(arf_srcptr number) {
+  fmpz_t mantissa;
+  fmpz_t exponent;
+  fmpz_init(mantissa);
+  fmpz_init(exponent);
+  arf_get_fmpz_2exp(mantissa, exponent, number);
+  mpz_class top;
+  fmpz_get_mpz(top.get_mpz_t(), mantissa);
+  const slong shift = fmpz_get_si(exponent);
+  fmpz_clear(mantissa);
+  fmpz_clear(exponent);
+  mpz_class power;
+  mpz_ui_pow_ui(power.get_mpz_t(), 2, static_cast<unsigned long>(std::abs(shift)));
+  return shift < 0 ? Rational(top, power) : Rational(top * power);
+}
+
+void set_ends(RoundedSum& result, arb_ptr ball) {
+  arf_t low;
+  arf_t high;
+  arf_init(low);
+  arf_init(high);
+  arb_get_interval_arf(low, high, ball, 256);
+  result.low = rational(low);
+  result.high = rational(high);
+  arf_clear(low);
+  arf_clear(high);
+}
+
 // False while the ball does not determine the double and 30 digits.
 bool settle(RoundedSum& result, arb_ptr ball) {
   if (arb_rel_accuracy_bits(ball) < 110) return false;
@@ -102,6 +134,7 @@ bool settle(RoundedSum& result, arb_ptr ball) {
   char* text = arb_get_str(ball, 30, ARB_STR_NO_RADIUS);
   result.decimals = text;
   flint_free(text);
+  set_ends(result, ball);
   return rounds_to(ball, result.value);
 }
 
@@ -115,6 +148,46 @@ RoundedSum lambert_sum(const std::vector<Corners>& polygons, const Vector& n) {
     if (settle(result, ball)) return result;
   }
   throw std::runtime_error("the oracle found no end of precision");
+}
+
+namespace {
+
+double nearest_double(const Rational& value) {
+  const double below = value.get_d();  // rounds towards zero
+  const double above = std::nextafter(below, 2.0);
+  const Rational twice_middle = Rational(below) + Rational(above);
+  if (2 * value != twice_middle) return 2 * value < twice_middle ? below : above;
+  return (std::bit_cast<std::uint64_t>(below) & 1u) == 0 ? below : above;
+}
+
+void evaluate_share(arb_ptr ratio, const std::vector<Share>& shares, slong bits) {
+  Real visible;
+  Real whole;
+  for (const Share& share : shares) {
+    Real factor(share.squared_factor, bits);
+    Real part(share.visible, bits);
+    Real all(share.whole, bits);
+    arb_sqrt(factor, factor, bits);
+    arb_addmul(visible, part, factor, bits);
+    arb_addmul(whole, all, factor, bits);
+  }
+  arb_div(ratio, visible, whole, bits);
+}
+
+}  // namespace
+
+double rounded_share(const std::vector<Share>& shares) {
+  if (shares.empty()) return 0.0;
+  const Share& first = shares.front();
+  const auto as_first = [&](const Share& s) { return s.visible * first.whole == first.visible * s.whole; };
+  if (std::ranges::all_of(shares, as_first)) return nearest_double(first.visible / first.whole);
+  Real ratio;
+  for (slong bits = 192; bits <= 65536; bits *= 2) {
+    evaluate_share(ratio, shares, bits);
+    const double value = arf_get_d(arb_midref(static_cast<arb_ptr>(ratio)), ARF_RND_NEAR);
+    if (rounds_to(ratio, value)) return value;
+  }
+  throw std::runtime_error("the oracle found no end of precision for the visible fraction");
 }
 
 }  // namespace exactff::validation

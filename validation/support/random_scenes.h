@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "generate/plain_scene.h"
 #include "generate/random.h"
@@ -31,6 +32,16 @@ namespace exactff::validation {
 
 // triangles_scene with its corners slid along their rays to anywhere between 2^-1000 and 2^1000.
 [[nodiscard]] generate::PlainScene scene_of_all_magnitudes(generate::Random& random);
+
+// Families whose corners lie on few rays from the receiver and whose coincidences, wherever the frame is exact, survive
+// full mantissas, axes scaled apart by powers of two and subnormal coordinates (random_scenes_rays.cpp). Where a scene
+// has a patch `on`, its receiver lies on the only face of that patch.
+struct RandomFamily {
+  const char* name;
+  std::uint64_t count;  // for a test that has little time
+  generate::PlainScene (*make)(generate::Random&);
+};
+[[nodiscard]] std::span<const RandomFamily> families_on_rays();
 
 // How many scenes a test looks at: `count` times the environment's EXACTFF_TEST_SCALE (1 if unset).
 [[nodiscard]] std::uint64_t scaled_count(std::uint64_t count);
