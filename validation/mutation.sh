@@ -1,0 +1,181 @@
+#!/usr/bin/env bash
+# The mutation check: plants known faults one at a time in a copy of the sources and shows that the test suite catches
+# each. A fault is a patch in validation/mutation, which says what it breaks and what a user would see.
+#
+#   mutation.sh [NAME...]          all faults, or those named
+#   mutation.sh --count [NAME...]  runs the whole suite for each, to count the tests that fail
+#   mutation.sh --check            only checks that every patch still applies (a test of the suite)
+#
+# Prints a line for each fault and exits with 1 if one survives, does not apply or does not compile. The copy and its
+# build stay in build/mutation (EXACTFF_MUTATION_FOLDER names another place), so that a second run builds little.
+set -euo pipefail
+
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+patches=$top/validation/mutation
+folder=${EXACTFF_MUTATION_FOLDER:-$top/build/mutation}
+source=$folder/source
+build=$folder/build
+log=$folder/log
+test_seconds=120   # a test that takes longer hangs
+suite_seconds=900  # and so does a suite
+
+# apply FAULT FOLDER [OPTION...]: exactly, with lines moved at most.
+apply() {
+  patch --silent --strip=1 --fuzz=0 --no-backup-if-mismatch --force --directory="$2" "${@:3}" < "$patches/$1.patch"
+}
+
+names_of_all() {
+  local file
+  for file in "$patches"/*.patch; do basename "$file" .patch; done
+}
+
+check() {
+  local name failures=0
+  command -v patch > /dev/null || { echo "the program 'patch' is missing; validation/setup.sh installs it" >&2; exit 1; }
+  for name in $(names_of_all); do
+    if ! grep -q '^Breaks: ' "$patches/$name.patch" || ! grep -q '^A user sees: ' "$patches/$name.patch"; then
+      echo "$name.patch does not say what it breaks and what a user sees"
+      failures=$((failures + 1))
+    fi
+    apply "$name" "$top" --dry-run && continue
+    echo "$name.patch no longer applies: plant the fault anew in the present sources, as 'diff -u' from a/ to b/"
+    failures=$((failures + 1))
+  done
+  [ "$failures" -eq 0 ] || exit 1
+  echo "every patch applies"
+}
+
+# By content: a file gets a new time exactly if it differs from what the last build saw.
+copy_sources() {
+  local file
+  mkdir -p "$source"
+  while IFS= read -r -d '' file; do
+    [ -e "$top/$file" ] || rm "$source/$file"
+  done < <(cd "$source" && find . -type f -print0)
+  while IFS= read -r -d '' file; do
+    cmp --silent "$top/$file" "$source/$file" && continue
+    mkdir -p "$source/$(dirname "$file")"
+    cp "$top/$file" "$source/$file"
+  done < <(cd "$top" && find CMakeLists.txt README.md src include validation data -type f -print0)
+}
+
+configure() {
+  local options=(-DEXACTFF_TESTS=ON -DCMAKE_BUILD_TYPE=Release)
+  ! command -v ccache > /dev/null || options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  [ -f "$build/CMakeCache.txt" ] || options+=(-G Ninja)
+  cmake -S "$source" -B "$build" "${options[@]}"
+}
+
+# compile LOG [TARGET...]
+compile() {
+  cmake --build "$build" --parallel 2 ${2:+--target "${@:2}"} > "$1" 2>&1
+}
+
+# suite LOG [OPTION...]: without the check of the patches, which fails where one is planted.
+suite() {
+  rm -rf "$build/Testing"  # or ctest would begin with what failed last
+  timeout "$suite_seconds" ctest --test-dir "$build" --parallel 2 --timeout "$test_seconds" \
+    --exclude-regex '^Mutation\.' "${@:2}" > "$1" 2>&1
+}
+
+# The first test that failed, from ctest's lines " 3/634 Test   #3: Suite.Name ....***Failed  0.1 sec".
+first_failure() {
+  sed -nE '/\*\*\*/ { s/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: ([^ ]+).*\*\*\*(Timeout)?.*/\1 \2/p; q }' "$1" |
+    sed -E 's/ Timeout$/ (hangs)/; s/ $//'
+}
+
+# What becomes of the fault that is planted: the text for the table. Returns 1 unless it is caught.
+verdict() {
+  local name=$1 status=0
+  compile "$log/$name.build" exactff exactff_program || { echo "DOES NOT COMPILE, see $log/$name.build"; return 1; }
+  if ! compile "$log/$name.build"; then
+    # CMake asks each test program for its tests; one that dies of the fault is a catch.
+    grep -q '^ *Error running test executable' "$log/$name.build" && { echo "a test program dies before its first test"; return 0; }
+    echo "TESTS DO NOT BUILD, see $log/$name.build"
+    return 1
+  fi
+  suite "$log/$name.test" "${suite_options[@]}" || status=$?
+  case $status in
+    0) echo "SURVIVES"; return 1 ;;
+    124) echo "suite hangs after $(first_failure "$log/$name.test")" ;;
+    *) caught_by "$log/$name.test" || { echo "CTEST FAILED, see $log/$name.test"; return 1; } ;;
+  esac
+}
+
+caught_by() {
+  local first
+  first=$(first_failure "$1")
+  [ -n "$first" ] || return 1
+  if [ "$count" = yes ]; then
+    first+=", $(grep -c '\*\*\*' "$1") in all"
+  fi
+  echo "$first"
+}
+
+# Plants one fault, prints its line, takes it out again.
+try_fault() {
+  local name=$1 start=$SECONDS text caught=0
+  if ! apply "$name" "$source" --dry-run > "$log/$name.patch" 2>&1; then
+    printf '%-28s %-78s %4s\n' "$name" "DOES NOT APPLY" -
+    return 1
+  fi
+  apply "$name" "$source"
+  text=$(verdict "$name") || caught=1
+  apply "$name" "$source" --reverse || { echo "$name cannot be taken out of $source" >&2; exit 1; }
+  printf '%-28s %-78s %4d\n' "$name" "$text" $((SECONDS - start))
+  printf '    %s\n' "$(sed -n 's/^Breaks: //p' "$patches/$name.patch")"
+  return $caught
+}
+
+count=no
+suite_options=(--stop-on-failure)
+
+prove_sound() {
+  local start=$SECONDS
+  compile "$log/sound.build" || { tail -20 "$log/sound.build" >&2; exit 1; }
+  echo "Sound sources: built in $((SECONDS - start)) s"
+  start=$SECONDS
+  suite "$log/sound.test" || { echo "the suite fails before any fault is planted:" >&2; tail -20 "$log/sound.test" >&2; exit 1; }
+  echo "Sound sources: every test passes, $((SECONDS - start)) s"
+  echo
+}
+
+try_faults() {
+  local name start=$SECONDS missed=()
+  printf '%-28s %-78s %4s\n' fault 'caught by' s
+  for name in "$@"; do
+    try_fault "$name" || missed+=("$name")
+  done
+  echo
+  echo "$# faults, $(($# - ${#missed[@]})) caught, in $((SECONDS - start)) s"
+  [ "${#missed[@]}" -eq 0 ] || { echo "not caught: ${missed[*]}" >&2; exit 1; }
+}
+
+main() {
+  case ${1:-} in
+    --check)
+      check
+      exit
+      ;;
+    --count)
+      count=yes
+      suite_options=()
+      shift
+      ;;
+  esac
+  local name names=("$@")
+  [ "${#names[@]}" -gt 0 ] || mapfile -t names < <(names_of_all)
+  for name in "${names[@]}"; do
+    [ -f "$patches/$name.patch" ] || { echo "there is no fault '$name'; there are: $(names_of_all | xargs)" >&2; exit 2; }
+  done
+
+  "$top/validation/setup.sh" patch
+  mkdir -p "$log"
+  copy_sources
+  configure > "$log/configure" 2>&1 || { tail -20 "$log/configure" >&2; exit 1; }
+  prove_sound
+  try_faults "${names[@]}"
+}
+
+main "$@"
+exit
