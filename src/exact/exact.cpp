@@ -70,13 +70,15 @@ void certify(const contour::ContourIntegral& contour, const ExactOptions& option
   }
 }
 
+// At very few bits a ball may hold every number; its midpoint and ends then are none.
 void set_bounds(FormFactor& result) {
   if (result.status == Status::kZero) return;  // [0, 0]
   const bool certified = result.status != Status::kNotCertified;
   const double below = certified ? std::nextafter(result.value, -1.0) : result.enclosure.lower();
   const double above = certified ? std::nextafter(result.value, 2.0) : result.enclosure.upper();
-  result.lower = std::clamp(below, 0.0, 1.0);
-  result.upper = std::clamp(above, 0.0, 1.0);
+  result.lower = std::isnan(below) ? 0.0 : std::clamp(below, 0.0, 1.0);
+  result.upper = std::isnan(above) ? 1.0 : std::clamp(above, 0.0, 1.0);
+  if (std::isnan(result.value)) result.value = 0.5 * (result.lower + result.upper);
 }
 
 void note_fraction(PlaneVisibility& plane, const ExactOptions& options) {

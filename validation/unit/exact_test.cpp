@@ -35,6 +35,20 @@ TEST(ExactFormFactor, BoundsAreTheNeighboursOfACertifiedValue) {
   EXPECT_EQ(f.enclosure.nearest(), f.value);
 }
 
+TEST(ExactFormFactor, BoundsAreNumbersHoweverFewBitsAreAllowed) {
+  PlainScene plain = square_source();
+  add_square(plain, "o", 0.3, 0.4, 0.1, 0.2);
+  const double value = solve(plain).value;
+  for (int cap = 1; cap <= 16; ++cap) {
+    const FormFactor f = solve(plain, {.precision_cap = cap});
+    EXPECT_LE(0.0, f.lower) << cap;
+    EXPECT_LE(f.lower, value) << cap;
+    EXPECT_LE(value, f.upper) << cap;
+    EXPECT_LE(f.upper, 1.0) << cap;
+    EXPECT_EQ(f.value, f.value) << cap;
+  }
+}
+
 TEST(ExactFormFactor, AValueThatRoundsToOneIsBoundedByOne) {
   const FormFactor f = solve(square_source(1.0, 1e-12));
   EXPECT_EQ(f.value, 1.0);
