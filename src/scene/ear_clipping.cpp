@@ -2,10 +2,11 @@
 //
 // The ring is a linked list; `valid_` holds the tips of all valid ears in the order in which they are to be
 // clipped. Clipping a tip changes the ears of its two neighbours. Any other ear can only become valid, and only
-// where the vertex that was found to block it goes; each blocked ear therefore waits in the list of its blocker.
+// where what was found to block it goes; each blocked ear therefore waits in the list of that position. Blockers are
+// found in a tree of positions; of several, one far from the ear's base, which stays longest.
 // Only vertices that are not strictly convex need to be looked at as blockers: of the vertices in an ear, the one
 // farthest from its base is reflex or straight, or else touches the ear's side from outside the polygon, where it
-// does no harm. This keeps nearly convex polygons with thousands of vertices fast.
+// does no harm.
 // Source: G. H. Meisters, "Polygons have ears" (1975); H. ElGindy, H. Everett and G. Toussaint (1993).
 #include "scene/ear_clipping.h"
 
@@ -14,6 +15,8 @@
 #include <set>
 #include <tuple>
 #include <utility>
+
+#include "scene/position_tree.h"
 
 namespace exactff {
 
@@ -28,15 +31,15 @@ class EarClipper {
   using Order = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::size_t>;
 
   Order order_of(std::size_t tip) const;
-  bool is_blocked_by(std::size_t tip, std::size_t vertex) const;
   void examine(std::size_t tip);
   void refresh(std::size_t vertex);
+  void start_blocking(std::size_t vertex);
   void stop_blocking(std::size_t vertex);
   void remove(std::size_t vertex);
   std::size_t settle(std::size_t vertex);
   TriangleIndices clip(std::size_t tip);
 
-  bool same_position(std::size_t a, std::size_t b) const { return plane_.compare(a, b) == 0; }
+  bool same_position(std::size_t a, std::size_t b) const { return tree_.position_of(a) == tree_.position_of(b); }
   bool is_convex(std::size_t v) const { return plane_.orientation(previous_[v], v, next_[v]) > 0; }
 
   const PlanePoints& plane_;
@@ -46,19 +49,26 @@ class EarClipper {
   std::vector<bool> present_;
   std::size_t count_ = 0;
   std::set<Order> valid_;
-  std::set<std::size_t> blockers_;                 // vertices that are not strictly convex
-  std::vector<std::vector<std::size_t>> waiting_;  // tips blocked by each vertex
+  std::vector<bool> blocks_;                       // vertices that are not strictly convex
+  PositionTree tree_;                              // has marks where they are
+  std::vector<std::vector<std::size_t>> waiting_;  // tips blocked from each position
 };
 
 EarClipper::EarClipper(const PlanePoints& plane, std::span<const std::uint32_t> index)
-    : plane_(plane), index_(index), present_(index.size(), true), count_(index.size()), waiting_(index.size()) {
+    : plane_(plane),
+      index_(index),
+      present_(index.size(), true),
+      count_(index.size()),
+      blocks_(index.size(), false),
+      tree_(plane),
+      waiting_(tree_.position_count()) {
   const std::size_t n = index.size();
   for (std::size_t v = 0; v < n; ++v) {
     next_.push_back((v + 1) % n);
     previous_.push_back((v + n - 1) % n);
   }
   for (std::size_t v = 0; v < n; ++v) {
-    if (!is_convex(v)) blockers_.insert(v);
+    if (!is_convex(v)) start_blocking(v);
   }
   for (std::size_t v = 0; v < n; ++v) examine(v);
 }
@@ -69,22 +79,12 @@ EarClipper::Order EarClipper::order_of(std::size_t tip) const {
   return {index_[tip], low, high, tip};
 }
 
-bool EarClipper::is_blocked_by(std::size_t tip, std::size_t vertex) const {
-  const std::size_t a = previous_[tip], c = next_[tip];
-  if (vertex == a || vertex == tip || vertex == c) return false;
-  return plane_.orientation(a, tip, vertex) >= 0 && plane_.orientation(tip, c, vertex) >= 0 &&
-         plane_.orientation(c, a, vertex) >= 0 && !same_position(vertex, a) && !same_position(vertex, tip) &&
-         !same_position(vertex, c);
-}
-
 void EarClipper::examine(std::size_t tip) {
   if (!is_convex(tip)) return;
-  const auto blocker =
-      std::find_if(blockers_.begin(), blockers_.end(), [&](std::size_t v) { return is_blocked_by(tip, v); });
-  if (blocker == blockers_.end()) {
-    valid_.insert(order_of(tip));
-  } else {
+  if (const auto blocker = tree_.find_marked(previous_[tip], tip, next_[tip])) {
     waiting_[*blocker].push_back(tip);
+  } else {
+    valid_.insert(order_of(tip));
   }
 }
 
@@ -93,14 +93,21 @@ void EarClipper::refresh(std::size_t vertex) {
   if (is_convex(vertex)) {
     stop_blocking(vertex);
   } else {
-    blockers_.insert(vertex);
+    start_blocking(vertex);
   }
   if (!valid_.contains(order_of(vertex))) examine(vertex);
 }
 
+void EarClipper::start_blocking(std::size_t vertex) {
+  if (!blocks_[vertex]) tree_.mark(vertex);
+  blocks_[vertex] = true;
+}
+
 void EarClipper::stop_blocking(std::size_t vertex) {
-  if (blockers_.erase(vertex) == 0) return;
-  for (const std::size_t tip : std::exchange(waiting_[vertex], {})) {
+  if (!blocks_[vertex]) return;
+  blocks_[vertex] = false;
+  if (!tree_.unmark(vertex)) return;
+  for (const std::size_t tip : std::exchange(waiting_[tree_.position_of(vertex)], {})) {
     if (present_[tip] && !valid_.contains(order_of(tip))) examine(tip);
   }
 }

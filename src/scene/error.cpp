@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "scene/printable.h"
+#include "scene/text_lines.h"
+
 namespace exactff {
 
 namespace {
@@ -17,7 +20,11 @@ std::string joined(const std::vector<Problem>& problems) {
     text += problems[i].message();
   }
   const std::size_t others = problems.size() - printed;
-  if (others > 0) text += "\n... and " + std::to_string(others) + (others == 1 ? " more problem" : " more problems");
+  const bool at_least = problems.size() > ProblemList::kKept;  // the last one then counts those that were dropped
+  if (others > 0) {
+    text += std::string("\n... and ") + (at_least ? "more than " : "") + std::to_string(others) +
+            (others == 1 ? " more problem" : " more problems");
+  }
   return text;
 }
 
@@ -31,7 +38,7 @@ std::string Problem::message() const {
   text += what;
   if (!why.empty()) text += " (" + why + ")";
   if (!suggestion.empty()) text += "; " + suggestion;
-  return text;
+  return printable(text);
 }
 
 InputError::InputError(std::vector<Problem> problems)

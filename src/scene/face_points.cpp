@@ -80,6 +80,11 @@ FacePoints face_points(std::span<const Vec3> vertices, const std::vector<std::ve
   return points;
 }
 
+std::size_t next_in_ring(const FacePoints& points, std::size_t point) {
+  const auto end = std::upper_bound(points.ring_start.begin(), points.ring_start.end(), point);
+  return point + 1 < *end ? point + 1 : *(end - 1);
+}
+
 ExactVec3 newell(const FacePoints& points, std::size_t first, std::size_t last) {
   ExactVec3 sum;
   for (std::size_t i = first; i < last; ++i) {
@@ -216,13 +221,10 @@ void PlanePoints::approximate() {
 }
 
 int PlanePoints::orientation(std::size_t a, std::size_t b, std::size_t c) const {
-  // Coordinates are at most 1 and off by 2^-52, differences by 2^-50, products (at most 4) by 20 * 2^-52 and
-  // the determinant by 48 * 2^-52, whatever the rounding mode.
-  constexpr double kBound = 0x1p-46;
   const double near =
       (near_x_[b] - near_x_[a]) * (near_y_[c] - near_y_[a]) - (near_y_[b] - near_y_[a]) * (near_x_[c] - near_x_[a]);
-  if (near > kBound) return 1;
-  if (near < -kBound) return -1;
+  if (near > kOrientationError) return 1;
+  if (near < -kOrientationError) return -1;
   const Integer exact = (x_[b] - x_[a]) * (y_[c] - y_[a]) - (y_[b] - y_[a]) * (x_[c] - x_[a]);
   return kernel::sign(exact);
 }

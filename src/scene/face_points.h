@@ -22,6 +22,12 @@ struct FacePoints {
   std::size_t ring_count() const { return ring_start.size() - 1; }
 };
 
+// An edge from the point of that index to the next one of its ring.
+using EdgeIndex = std::size_t;
+
+// The index of the point that follows in its ring.
+std::size_t next_in_ring(const FacePoints& points, std::size_t point);
+
 FacePoints face_points(std::span<const Vec3> vertices, const std::vector<std::vector<std::uint32_t>>& rings);
 
 // Twice the area vector of the closed polygon through the points first, ..., last - 1 (Newell's vector).
@@ -70,6 +76,10 @@ class PlanePoints {
   double x(std::size_t i) const { return near_x_[i]; }
   double y(std::size_t i) const { return near_y_[i]; }
   static constexpr double kApproximation = 0x1p-52;
+  // What the orientation of three points is off by at most where it is computed from those approximations. They are
+  // at most 1 and off by 2^-52, differences by 2^-50, products (at most 4) by 20 * 2^-52 and the determinant by
+  // 48 * 2^-52, whatever the rounding mode.
+  static constexpr double kOrientationError = 0x1p-46;
 
  private:
   void approximate();

@@ -13,7 +13,7 @@ namespace {
 
 class MtlReader {
  public:
-  MtlReader(const std::string& file, ProblemList& problems, std::vector<Problem>& warnings)
+  MtlReader(const std::string& file, ProblemList& problems, ProblemList& warnings)
       : file_(file), problems_(problems), warnings_(warnings) {}
 
   std::vector<Material> run(std::string_view text) {
@@ -37,7 +37,7 @@ class MtlReader {
 
   const std::string& file_;
   ProblemList& problems_;
-  std::vector<Problem>& warnings_;
+  ProblemList& warnings_;
   TextLine line_;
   Material current_;     // what the lines being read belong to
   bool counts_ = false;  // false before any newmtl and in a repeated material
@@ -51,7 +51,7 @@ void MtlReader::fail(std::string what, std::string why, std::string suggestion) 
 }
 
 void MtlReader::warn(std::string what, std::string why, std::string suggestion) {
-  warnings_.push_back({file_, line_.number, std::move(what), std::move(why), std::move(suggestion)});
+  warnings_.add({file_, line_.number, std::move(what), std::move(why), std::move(suggestion)});
 }
 
 void MtlReader::read_line() {
@@ -88,15 +88,16 @@ void MtlReader::read_colour(std::string_view keyword, std::string_view values) {
 
 bool MtlReader::read_numbers(std::string_view keyword, const std::vector<std::string_view>& texts, Rgb& colour) {
   if (texts.empty() || texts.size() == 2) {
-    fail(of_material(keyword) + " has " + (texts.empty() ? "no value" : "two values"), "",
-         "give one value or red, green and blue");
+    fail(of_material(keyword) + " has " + (texts.empty() ? "no value" : "two values"),
+         "a colour has one value or three", "give one value or red, green and blue");
     return false;
   }
   std::array<double, 3> values{};
   for (std::size_t i = 0; i < std::min<std::size_t>(texts.size(), 3); ++i) {
     const ParsedNumber number = parse_number(texts[i]);
     if (number.fault != NumberFault::kNone) {
-      fail(of_material(keyword) + ": " + describe(number.fault, texts[i]), "", advice(number.fault));
+      fail(of_material(keyword) + ": " + describe(number.fault, texts[i]), "a colour is made of finite numbers",
+           advice(number.fault));
       return false;
     }
     values[i] = number.value;
@@ -120,7 +121,7 @@ void MtlReader::check(std::string_view keyword, const Rgb& colour) {
 }  // namespace
 
 std::vector<Material> read_mtl(std::string_view text, const std::string& file, ProblemList& problems,
-                               std::vector<Problem>& warnings) {
+                               ProblemList& warnings) {
   return MtlReader(file, problems, warnings).run(text);
 }
 

@@ -7,11 +7,7 @@
 // Problems are collected throughout; those found so far are thrown before the builder looks at the faces.
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <set>
@@ -21,6 +17,7 @@
 #include "exactff/obj.h"
 #include "scene/mtl_reader.h"
 #include "scene/number_text.h"
+#include "scene/text_file.h"
 #include "scene/text_lines.h"
 
 namespace exactff {
@@ -31,6 +28,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kDefaultPatch = "default";
 constexpr std::string_view kNoMaterial = "(none)";
+constexpr std::size_t kMostIndices = std::numeric_limits<std::uint32_t>::max();
 
 // Distinct names in the order of their first use.
 class NameTable {
@@ -142,6 +140,10 @@ class ObjReader {
 
 Scene ObjReader::run() {
   while (lines_.next(line_)) read_line();
+  if (lines_.is_cut_off()) {
+    warn(line_.number, "the last line has no line end", "the file may have been cut off there",
+         "end it with a line end if it is complete");
+  }
   check_indices();
   if (faces_.empty() && problems_.empty()) {
     throw InputError({file_, 0, "has no faces", "there is nothing to compute with", "is it a Wavefront OBJ file?"});
@@ -184,7 +186,7 @@ void ObjReader::read_line() {
 std::string_view before_comment(std::string_view values) { return values.substr(0, values.find('#')); }
 
 void ObjReader::read_vertex(std::string_view values) {
-  if (builder_.vertex_count() == std::numeric_limits<std::uint32_t>::max()) {
+  if (builder_.vertex_count() == kMostIndices) {
     throw InputError({file_, line_.number, "more than 4294967295 vertices", "indices have 32 bits", "split the scene"});
   }
   // A faulty vertex still counts, so that the faces below keep their indices.
@@ -198,11 +200,12 @@ std::array<double, 3> ObjReader::read_coordinates(std::string_view values) {
   for (double& coordinate : xyz) {
     const std::string_view word = take_word(values);
     if (word.empty()) {
-      fail("a vertex has fewer than three coordinates", "", "write v x y z");
+      fail("a vertex has fewer than three coordinates", "the point would not be known", "write v x y z");
       return xyz;
     }
     const ParsedNumber number = parse_number(word);
-    if (number.fault != NumberFault::kNone) fail(describe(number.fault, word), "", advice(number.fault));
+    if (number.fault != NumberFault::kNone)
+      fail(describe(number.fault, word), "a coordinate stands for one exact number", advice(number.fault));
     coordinate = number.value;
   }
   return xyz;
@@ -220,6 +223,10 @@ void ObjReader::read_face(std::string_view corners) {
     if (corner) corners_.push_back(*corner);
   }
   face.corner_count = corners_.size() - face.first_corner;
+  if (corners_.size() > kMostIndices || faces_.size() == kMostIndices) {
+    throw InputError({file_, line_.number, "more than 4294967295 faces or corners of faces", "indices have 32 bits",
+                      "split the scene"});
+  }
   if (sound && face.corner_count < 3 && options_.bad_faces == BadFaces::kReject) {
     fail("a face has " + std::to_string(face.corner_count) + (face.corner_count == 1 ? " vertex" : " vertices"),
          "a polygon has at least three", "remove it, or leave bad faces out with --skip-bad-faces");
@@ -261,7 +268,8 @@ std::optional<std::uint32_t> ObjReader::read_corner(std::string_view corner) {
   long index = 0;
   const IndexText kind = parse_index(corner.substr(0, slash), index);
   if (kind == IndexText::kOther || !well_formed_tail(corner.substr(slash))) {
-    fail(in_quotes(corner) + " is not a corner of a face", "", "write v, v/vt, v//vn or v/vt/vn");
+    fail(in_quotes(corner) + " is not a corner of a face", "a corner is the number of a vertex",
+         "write v, v/vt, v//vn or v/vt/vn");
     return std::nullopt;
   }
   if (kind == IndexText::kNumber && index == 0) {
@@ -269,7 +277,7 @@ std::optional<std::uint32_t> ObjReader::read_corner(std::string_view corner) {
     return std::nullopt;
   }
   const long position = index > 0 ? index - 1 : count + index;
-  if (kind == IndexText::kTooLong || position < 0 || position >= std::numeric_limits<std::uint32_t>::max()) {
+  if (kind == IndexText::kTooLong || position < 0 || std::cmp_greater_equal(position, kMostIndices)) {
     fail("vertex " + std::string(corner.substr(0, std::min<std::size_t>(slash, 40))) + " does not exist",
          "the lines before define " + std::to_string(count) + " vertices", "correct the index");
     return std::nullopt;
@@ -321,6 +329,7 @@ void ObjReader::warn_tallies() {
 std::vector<fs::path> ObjReader::library_paths(std::string_view names) const {
   const auto beside = [&](std::string_view name) {
     const fs::path as_written = path_.parent_path() / name;
+    if (name.find('\\') == std::string_view::npos) return as_written;
     std::string other(name);
     std::replace(other.begin(), other.end(), '\\', '/');
     std::error_code ignored;
@@ -328,8 +337,11 @@ std::vector<fs::path> ObjReader::library_paths(std::string_view names) const {
   };
   std::error_code ignored;
   if (fs::exists(beside(names), ignored)) return {beside(names)};
+  std::set<std::string_view> seen;
   std::vector<fs::path> paths;
-  for (const std::string_view name : words(names)) paths.push_back(beside(name));
+  for (std::string_view name = take_word(names); !name.empty(); name = take_word(names)) {
+    if (seen.insert(name).second) paths.push_back(beside(name));
+  }
   return paths;
 }
 
@@ -344,19 +356,25 @@ void ObjReader::read_libraries() {
 
 void ObjReader::read_library(const fs::path& path, std::size_t line) {
   std::error_code error;
-  std::ifstream in;
-  if (fs::is_regular_file(path, error)) in.open(path, std::ios::binary);
-  if (!in.is_open()) {
-    library_missing_ = true;
-    return warn(line, "material file " + in_quotes(path.string()) + " cannot be read",
-                "its materials become Kd 1, Ke 0", "put it there if colours or emission matter");
+  std::optional<std::string> text;
+  std::string why;
+  try {
+    // Nothing but a plain file: a device or a pipe named in a scene could keep the reader waiting for ever.
+    if (fs::is_regular_file(path, error)) text = read_text_file(path, "a Wavefront MTL file");
+  } catch (const InputError& unreadable) {
+    const Problem& problem = unreadable.problems().front();
+    why = problem.what + ": " + problem.why + "; ";
   }
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  std::vector<Problem> warnings;
-  for (Material& material : read_mtl(text, path.string(), problems_, warnings)) {
+  if (!text) {
+    library_missing_ = true;
+    return warn(line, "material file " + in_quotes(path.string(), kShownName) + " cannot be read",
+                why + "its materials become Kd 1, Ke 0", "put it there if colours or emission matter");
+  }
+  ProblemList warnings;
+  for (Material& material : read_mtl(*text, path.string(), problems_, warnings)) {
     defined_.try_emplace(material.name, std::move(material));
   }
-  for (Problem& warning : warnings) builder_.warn(std::move(warning));
+  for (Problem& warning : warnings.take("warnings")) builder_.warn(std::move(warning));
 }
 
 void ObjReader::add_materials() {
@@ -370,42 +388,37 @@ void ObjReader::add_materials() {
   }
 }
 
+// Patches are made in the order of their first faces.
 void ObjReader::add_faces() {
+  const std::vector<std::string>& names = has_groups_ ? groups_.names() : objects_.names();
+  std::vector<std::optional<PatchId>> patches(names.size());
   for (const ObjFace& face : faces_) {
-    const std::string& name = has_groups_ ? groups_.names()[face.group] : objects_.names()[face.object];
+    const std::uint32_t name = has_groups_ ? face.group : face.object;
+    if (!patches[name]) patches[name] = builder_.patch(names[name]);
     const auto first = corners_.begin() + static_cast<std::ptrdiff_t>(face.first_corner);
     std::vector<std::uint32_t> ring(first, first + static_cast<std::ptrdiff_t>(face.corner_count));
     std::vector<std::vector<std::uint32_t>> rings;
     rings.push_back(std::move(ring));
-    builder_.add_face(builder_.patch(name), static_cast<MaterialId>(face.material), std::move(rings), face.line);
+    builder_.add_face(*patches[name], static_cast<MaterialId>(face.material), std::move(rings), face.line);
   }
 }
 
-std::string whole(std::istream& in, const std::string& file) {
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (text.empty()) throw InputError({file, 0, "is empty", "", "give a Wavefront OBJ file"});
-  if (text.find('\0') != std::string::npos) {
-    throw InputError({file, 0, "is not a text file", "it holds zero bytes", "save it as a Wavefront OBJ file"});
-  }
-  return text;
+constexpr const char* kPurpose = "a Wavefront OBJ file";
+
+Scene read(const std::string& text, const fs::path& path, const SceneOptions& options) {
+  if (text.empty())
+    throw InputError({path.string(), 0, "is empty", "there is nothing to compute with", "give a Wavefront OBJ file"});
+  return ObjReader(text, path, options).run();
 }
 
 }  // namespace
 
 Scene read_obj(std::istream& in, const fs::path& name, const SceneOptions& options) {
-  const std::string text = whole(in, name.string());
-  return ObjReader(text, name, options).run();
+  return read(read_text(in, name.string(), kPurpose), name, options);
 }
 
 Scene read_obj(const fs::path& path, const SceneOptions& options) {
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
-    throw InputError({path.string(), 0, "is a directory", "", "name a Wavefront OBJ file in it"});
-  }
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError({path.string(), 0, "cannot be opened", std::strerror(errno), "check the path"});
-  return read_obj(in, path, options);
+  return read(read_text_file(path, kPurpose), path, options);
 }
 
 }  // namespace exactff

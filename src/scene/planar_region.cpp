@@ -18,7 +18,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
+#include <random>
 #include <unordered_map>
+
+#include "scene/edge_crossing.h"
 
 namespace exactff {
 
@@ -69,7 +72,14 @@ class Builder {
   }
 
  private:
+  struct Ends {
+    VertexHandle from;
+    VertexHandle to;
+    int direction;  // 1 if the ring runs from `from` to `to`, else -1
+  };
+
   void insert_points(std::span<const Vec3> vertices, const kernel::ExactVec3& normal);
+  Ends ends_of(EdgeIndex edge) const;
   bool insert_edges(PlanarRegion& region);
   void add_steps(EdgeIndex edge);
   void label_triangles(PlanarRegion& region);
@@ -85,6 +95,7 @@ class Builder {
   const PlanePoints& plane_;
   Triangulation triangulation_;
   std::vector<VertexHandle> handle_;  // of each point; points at one position share theirs
+  std::vector<std::size_t> visits_;   // of the rings to the position of each point
   std::unordered_map<std::uint64_t, Step> steps_;
   int inside_count_ = 0;
 };
@@ -111,6 +122,9 @@ void Builder::insert_points(std::span<const Vec3> vertices, const kernel::ExactV
   triangulation_.insert(positions.begin(), positions.end());
   std::vector<VertexHandle> by_position(positions.size());
   for (const VertexHandle vertex : triangulation_.finite_vertex_handles()) by_position[vertex->info()] = vertex;
+  std::vector<std::size_t> visits(positions.size());
+  for (const std::size_t position : position_of) ++visits[position];
+  for (const std::size_t position : position_of) visits_.push_back(visits[position]);
   handle_.resize(points_.size());
   // A vertex now stands for one of the points at its position: the one of lowest index.
   for (std::size_t i = points_.size(); i-- > 0;) {
@@ -119,12 +133,32 @@ void Builder::insert_points(std::span<const Vec3> vertices, const kernel::ExactV
   }
 }
 
+// In random order (a fixed one) where there are many: an edge then crosses few triangles, whatever the polygon, since
+// those before it have cut the way (J. Shewchuk and B. Brown, "Fast segment insertion and incremental construction of
+// constrained Delaunay triangulations", 2015). In ring order a slanting comb takes quadratic time.
+std::vector<EdgeIndex> insertion_order(std::size_t count) {
+  constexpr std::size_t kMany = 1000;
+  std::vector<EdgeIndex> order(count);
+  std::iota(order.begin(), order.end(), EdgeIndex{0});
+  if (count < kMany) return order;
+  std::mt19937_64 random(1);
+  for (std::size_t i = count; i > 1; --i) std::swap(order[i - 1], order[random() % i]);
+  return order;
+}
+
+// Both ends of an edge. The triangulation looks for it all around the first, so that is the one the rings visit less.
+Builder::Ends Builder::ends_of(EdgeIndex edge) const {
+  const std::size_t end = next_in_ring(points_, edge);
+  if (visits_[edge] <= visits_[end]) return {handle_[edge], handle_[end], 1};
+  return {handle_[end], handle_[edge], -1};
+}
+
 bool Builder::insert_edges(PlanarRegion& region) {
-  for (EdgeIndex edge = 0; edge < points_.size(); ++edge) {
-    const std::size_t end = next_in_ring(points_, edge);
-    if (handle_[edge] == handle_[end]) continue;
+  for (const EdgeIndex edge : insertion_order(points_.size())) {
+    const Ends ends = ends_of(edge);
+    if (ends.from == ends.to) continue;
     try {
-      triangulation_.insert_constraint(handle_[edge], handle_[end]);
+      triangulation_.insert_constraint(ends.from, ends.to);
     } catch (const Triangulation::Intersection_of_constraints_exception&) {
       region.fault = RegionFault::kCrossing;
       region.edges = find_crossing(points_, plane_).value_or(std::pair{edge, edge});
@@ -137,17 +171,17 @@ bool Builder::insert_edges(PlanarRegion& region) {
 // Follows a ring edge over the vertices on it.
 void Builder::add_steps(EdgeIndex edge) {
   const bool outer = edge < points_.ring_start[1];
-  VertexHandle at = handle_[edge];
-  const VertexHandle end = handle_[next_in_ring(points_, edge)];
-  while (at != end) {
+  const Ends ends = ends_of(edge);
+  VertexHandle at = ends.from;
+  while (at != ends.to) {
     VertexHandle next;
     FaceHandle face;
     int side = 0;
-    const bool found = triangulation_.includes_edge(at, end, next, face, side);
+    const bool found = triangulation_.includes_edge(at, ends.to, next, face, side);
     CGAL_assertion(found);
     if (!found) return;
     Step& step = steps_[key(at, next)];
-    if (outer) step.winding += at->info() < next->info() ? 1 : -1;
+    if (outer) step.winding += at->info() < next->info() ? ends.direction : -ends.direction;
     if (!outer) step.hole = !step.hole;
     at = next;
   }
@@ -262,70 +296,9 @@ std::vector<std::vector<std::size_t>> Builder::merged_parts() {
 
 }  // namespace
 
-std::size_t next_in_ring(const FacePoints& points, std::size_t point) {
-  const auto end = std::upper_bound(points.ring_start.begin(), points.ring_start.end(), point);
-  return point + 1 < *end ? point + 1 : *(end - 1);
-}
-
 PlanarRegion planar_region(std::span<const Vec3> vertices, const FacePoints& points, const PlanePoints& plane,
                            const kernel::ExactVec3& normal) {
   return Builder(vertices, points, plane, normal).run();
-}
-
-namespace {
-
-// An edge with a box that holds it for certain.
-struct BoxedEdge {
-  double low_x, high_x, low_y, high_y;
-  EdgeIndex edge;
-  std::size_t end;
-};
-
-BoxedEdge boxed(const PlanePoints& plane, EdgeIndex edge, std::size_t end) {
-  constexpr double kMargin = 4 * PlanePoints::kApproximation;
-  const auto [low_x, high_x] = std::minmax({plane.x(edge), plane.x(end)});
-  const auto [low_y, high_y] = std::minmax({plane.y(edge), plane.y(end)});
-  return {low_x - kMargin, high_x + kMargin, low_y - kMargin, high_y + kMargin, edge, end};
-}
-
-bool cross_properly(const PlanePoints& plane, const BoxedEdge& a, const BoxedEdge& b) {
-  if (a.high_y < b.low_y || b.high_y < a.low_y) return false;
-  return plane.orientation(a.edge, a.end, b.edge) * plane.orientation(a.edge, a.end, b.end) < 0 &&
-         plane.orientation(b.edge, b.end, a.edge) * plane.orientation(b.edge, b.end, a.end) < 0;
-}
-
-// Swaps the axes where the edges are longer along x: fewer then overlap along the sweep.
-void sweep_along_shorter_extents(std::vector<BoxedEdge>& edges) {
-  double along_x = 0.0;
-  double along_y = 0.0;
-  for (const BoxedEdge& e : edges) {
-    along_x += e.high_x - e.low_x;
-    along_y += e.high_y - e.low_y;
-  }
-  if (along_x <= along_y) return;
-  for (BoxedEdge& e : edges) {
-    std::swap(e.low_x, e.low_y);
-    std::swap(e.high_x, e.high_y);
-  }
-}
-
-}  // namespace
-
-std::optional<std::pair<EdgeIndex, EdgeIndex>> find_crossing(const FacePoints& points, const PlanePoints& plane) {
-  std::vector<BoxedEdge> edges;
-  for (EdgeIndex edge = 0; edge < points.size(); ++edge)
-    edges.push_back(boxed(plane, edge, next_in_ring(points, edge)));
-  sweep_along_shorter_extents(edges);
-  std::sort(edges.begin(), edges.end(), [](const BoxedEdge& a, const BoxedEdge& b) { return a.low_x < b.low_x; });
-  std::vector<const BoxedEdge*> active;
-  for (const BoxedEdge& edge : edges) {
-    std::erase_if(active, [&](const BoxedEdge* other) { return other->high_x < edge.low_x; });
-    for (const BoxedEdge* other : active) {
-      if (cross_properly(plane, edge, *other)) return std::minmax(edge.edge, other->edge);
-    }
-    active.push_back(&edge);
-  }
-  return std::nullopt;
 }
 
 }  // namespace exactff

@@ -1,7 +1,6 @@
 // The inside of a planar polygon with holes as convex parts.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -17,9 +16,6 @@ enum class RegionFault {
   kHoleOutside,  // a hole reaches outside the outer ring
 };
 
-// An edge from the point of that index to the next one of its ring.
-using EdgeIndex = std::size_t;
-
 struct PlanarRegion {
   RegionFault fault = RegionFault::kNone;
   std::pair<EdgeIndex, EdgeIndex> edges;
@@ -32,12 +28,5 @@ struct PlanarRegion {
 // they were given; `normal` has any length.
 PlanarRegion planar_region(std::span<const Vec3> vertices, const FacePoints& points, const PlanePoints& plane,
                            const kernel::ExactVec3& normal);
-
-// Edges of `points` that cross in their interiors, if there are any. Near-linear unless most edges overlap in x
-// and y.
-std::optional<std::pair<EdgeIndex, EdgeIndex>> find_crossing(const FacePoints& points, const PlanePoints& plane);
-
-// The index of the point that follows in its ring.
-std::size_t next_in_ring(const FacePoints& points, std::size_t point);
 
 }  // namespace exactff

@@ -11,7 +11,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <string_view>
 #include <unordered_set>
 
@@ -19,6 +18,9 @@
 #include "exactff/receiver.h"
 #include "scene/face_points.h"
 #include "scene/number_text.h"
+#include "scene/scene_data.h"
+#include "scene/text_file.h"
+#include "scene/text_lines.h"
 
 namespace exactff {
 namespace {
@@ -95,7 +97,7 @@ class FaceGrid {
     receivers.push_back(std::move(receiver));
   }
 
-  // The edge directions e and f, and every corner's (a, b).
+  // The edge directions e and f, every corner's (a, b), and their sums.
   void set_up_rectangle() {
     const ExactVec3 edge = first_edge();
     e_ = edge * dot(normal_, normal_) - normal_ * dot(normal_, edge);
@@ -105,6 +107,9 @@ class FaceGrid {
     for (const ExactVec3& p : points_.at) {
       a_.push_back(dot(e_, p));
       b_.push_back(dot(f_, p));
+      a_sum_ += a_.back();
+      b_sum_ += b_.back();
+      sum_ = sum_ + p;
     }
   }
 
@@ -159,18 +164,11 @@ class FaceGrid {
   // planar face the mean drops out.
   [[nodiscard]] std::array<Fraction, 3> point_at(const Integer& a, const Integer& b) const {
     const Integer count = static_cast<unsigned long>(points_.size());
-    Integer a_sum = 0, b_sum = 0;
-    ExactVec3 sum{0, 0, 0};
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      a_sum += a_[i];
-      b_sum += b_[i];
-      sum = sum + points_.at[i];
-    }
-    const Rational along_e(Integer(a * count - a_sum * (2 * size_.u)), Integer(dot(e_, e_) * count * (2 * size_.u)));
-    const Rational along_f(Integer(b * count - b_sum * (2 * size_.v)), Integer(dot(f_, f_) * count * (2 * size_.v)));
+    const Rational along_e(Integer(a * count - a_sum_ * (2 * size_.u)), Integer(dot(e_, e_) * count * (2 * size_.u)));
+    const Rational along_f(Integer(b * count - b_sum_ * (2 * size_.v)), Integer(dot(f_, f_) * count * (2 * size_.v)));
     std::array<Fraction, 3> at;
     for (int axis = 0; axis < 3; ++axis) {
-      Rational mean(sum[axis], count);
+      Rational mean(sum_[axis], count);
       mean.canonicalize();
       const Rational value = mean + canonical(along_e) * e_[axis] + canonical(along_f) * f_[axis];
       at[static_cast<std::size_t>(axis)] = {value.get_num(), value.get_den()};
@@ -192,6 +190,9 @@ class FaceGrid {
   ExactVec3 f_;
   std::vector<Integer> a_;
   std::vector<Integer> b_;
+  Integer a_sum_ = 0;
+  Integer b_sum_ = 0;
+  ExactVec3 sum_;
 };
 
 bool parse_count(std::string_view text, int& value) {
@@ -204,11 +205,24 @@ bool parse_count(std::string_view text, int& value) {
 constexpr std::array<std::string_view, 8> kColumns = {"id", "x", "y", "z", "nx", "ny", "nz", "on"};
 constexpr std::size_t kId = 0, kX = 1, kNx = 4, kOn = 7;
 
-std::string_view trimmed(std::string_view text) {
-  const auto begin = text.find_first_not_of(" \t");
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
-}
+// Lines that end in LF, CRLF or CR, without a byte order mark.
+class TextRows {
+ public:
+  explicit TextRows(std::string_view text) : rest_(text) {
+    if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
+  }
+  bool next(std::string_view& line) {
+    if (rest_.empty()) return false;
+    const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
+    line = rest_.substr(0, end);
+    rest_.remove_prefix(end);
+    rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : std::min<std::size_t>(rest_.size(), 1));
+    return true;
+  }
+
+ private:
+  std::string_view rest_;
+};
 
 // The fields of one line, or nothing where a quote is not closed or text follows a closing one.
 std::optional<std::vector<std::string>> split(std::string_view line) {
@@ -246,18 +260,15 @@ class ReceiverTable {
  public:
   ReceiverTable(std::string file, const Scene& scene) : file_(std::move(file)), scene_(scene) {}
 
-  std::vector<Receiver> read(std::istream& in) {
-    std::string line;
-    while (std::getline(in, line)) {
+  std::vector<Receiver> read(std::string_view text) {
+    TextRows rows(text);
+    for (std::string_view line; rows.next(line);) {
       ++line_;
-      if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
-      if (line.ends_with('\r')) line.pop_back();
-      const std::string_view text = trimmed(line);
-      if (text.empty() || text.front() == '#') continue;
-      take(line);
+      const std::string_view content = trimmed(line);
+      if (!content.empty() && content.front() != '#') take(line);
     }
     if (!header_read_) complain("the file has no header", "its columns are told apart by name", kHeaderAdvice);
-    if (!problems_.empty()) throw InputError(std::move(problems_));
+    problems_.throw_if_any();
     return std::move(receivers_);
   }
 
@@ -265,7 +276,8 @@ class ReceiverTable {
   static constexpr const char* kHeaderAdvice = "begin it with id,x,y,z,nx,ny,nz,on";
 
   void complain(std::string what, std::string why, std::string suggestion = {}) {
-    problems_.push_back({file_, line_, std::move(what), std::move(why), std::move(suggestion)});
+    problems_.add({file_, line_, std::move(what), std::move(why), std::move(suggestion)});
+    ++problem_count_;
   }
 
   void take(std::string_view line) {
@@ -284,16 +296,17 @@ class ReceiverTable {
     header_read_ = true;
     column_.fill(names.size());
     field_count_ = names.size();
-    const std::size_t before = problems_.size();
+    const std::size_t before = problem_count_;
     for (std::size_t i = 0; i < names.size(); ++i) {
       const auto known = std::find(kColumns.begin(), kColumns.end(), names[i]);
       if (known == kColumns.end()) {
-        complain("unknown column '" + names[i] + "'", "a misspelt name would be silently ignored",
+        complain("unknown column " + in_quotes(names[i]), "a misspelt name would be silently ignored",
                  "the columns are id,x,y,z,nx,ny,nz,on");
         continue;
       }
       std::size_t& column = column_[static_cast<std::size_t>(known - kColumns.begin())];
-      if (column < field_count_) complain("column '" + names[i] + "' occurs twice", "only one can count");
+      if (column < field_count_)
+        complain("column " + in_quotes(names[i]) + " occurs twice", "only one can count", "remove one");
       column = i;
     }
     for (std::size_t c = kX; c < kOn; ++c) {
@@ -301,20 +314,20 @@ class ReceiverTable {
       complain("there is no column '" + std::string(kColumns[c]) + "'", "a receiver is a point with a normal",
                kHeaderAdvice);
     }
-    usable_ = problems_.size() == before;
+    usable_ = problem_count_ == before;
   }
 
   void take_row(const std::vector<std::string>& fields) {
     if (fields.size() != field_count_) {
       complain(std::to_string(fields.size()) + " fields where the header has " + std::to_string(field_count_),
-               "columns would be mixed up");
+               "columns would be mixed up", "separate fields by commas and quote those that hold one");
       return;
     }
-    const std::size_t before = problems_.size();
+    const std::size_t before = problem_count_;
     Receiver receiver;
     receiver.point = vector_at(fields, kX);
     receiver.normal = vector_at(fields, kNx);
-    if (problems_.size() == before && receiver.normal == Vec3{}) {
+    if (problem_count_ == before && receiver.normal == Vec3{}) {
       complain("the normal is zero", "it says which way the receiver faces", "give it any other length");
     }
     if (column_[kOn] < field_count_ && !fields[column_[kOn]].empty()) receiver.on = face_named(fields[column_[kOn]]);
@@ -327,7 +340,8 @@ class ReceiverTable {
   void take_id(std::string& id) {
     if (id.empty()) id = std::to_string(receivers_.size() + 1);
     if (!ids_.insert(id).second) {
-      complain("the id '" + id + "' is used twice", "rows of the results could not be told apart");
+      complain("the id " + in_quotes(id) + " is used twice", "rows of the results could not be told apart",
+               "give every receiver an id of its own, or none");
     }
   }
 
@@ -340,18 +354,26 @@ class ReceiverTable {
     const ParsedNumber number = parse_number(text);
     if (number.fault == NumberFault::kNone) return number.value;
     complain(describe(number.fault, text) + " in column " + std::string(kColumns[c]),
-             "points and normals are made of finite doubles");
+             "points and normals are made of finite doubles", advice(number.fault));
     return 0.0;
   }
 
+  // Looking for names like an unknown one takes time; where it would be told to nobody, it is not done.
   std::optional<FaceId> face_named(const std::string& name) {
+    constexpr std::size_t kExplained = 20;
+    const auto& patches = scene_.data().patch_by_name;
+    const bool known = patches.contains(name) || patches.contains(name.substr(0, name.rfind(':')));
+    if (problem_count_ >= kExplained && !known) {
+      complain("there is no face " + in_quotes(name), "it lies on no face of the scene", "see the first such line");
+      return std::nullopt;
+    }
     try {
       const Selection selection = scene_.select(name);
       if (selection.face) return selection.face;
       const std::vector<FaceId>& faces = scene_.patch(selection.patch).faces;
       if (faces.size() == 1) return faces.front();
-      complain("'" + name + "' has " + std::to_string(faces.size()) + " faces", "a receiver lies on one of them",
-               "write '" + name + ":k' for its k-th face");
+      complain(in_quotes(name, kShownName) + " has " + std::to_string(faces.size()) + " faces",
+               "a receiver lies on one of them", "write " + in_quotes(name + ":k", kShownName) + " for its k-th face");
     } catch (const InputError& error) {
       for (const Problem& p : error.problems()) complain(p.what, p.why, p.suggestion);
     }
@@ -367,8 +389,22 @@ class ReceiverTable {
   std::array<std::size_t, kColumns.size()> column_{};  // field_count_ where the column is absent
   std::unordered_set<std::string> ids_;
   std::vector<Receiver> receivers_;
-  std::vector<Problem> problems_;
+  ProblemList problems_;
+  std::size_t problem_count_ = 0;
 };
+
+// Every cell costs time and memory: what nobody can have meant is refused before it is begun.
+void check_grid_size(GridSize size, std::size_t faces) {
+  constexpr std::uint64_t kMostCells = std::uint64_t{1} << 22;
+  const std::uint64_t cells = static_cast<std::uint64_t>(size.u) * static_cast<std::uint64_t>(size.v);
+  if (cells * (faces > 0 ? 1 : 0) <= kMostCells / std::max<std::uint64_t>(faces, 1)) return;
+  throw InputError(Problem{{},
+                           0,
+                           "a grid of " + std::to_string(size.u) + "x" + std::to_string(size.v) + " cells on " +
+                               std::to_string(faces) + (faces == 1 ? " face" : " faces"),
+                           "there may be " + std::to_string(kMostCells) + " cells in all",
+                           "use fewer, or a smaller patch"});
+}
 
 }  // namespace
 
@@ -380,8 +416,10 @@ std::vector<Receiver> grid_receivers(const Scene& scene, const Selection& on, Gr
                              "each count is at least 1",
                              "write it as 32x32"});
   }
+  const std::vector<FaceId> faces = scene.faces_of(on);
+  check_grid_size(size, faces.size());
   std::vector<Receiver> receivers;
-  for (FaceId face : scene.faces_of(on)) FaceGrid(scene, face, size).append_to(receivers);
+  for (FaceId face : faces) FaceGrid(scene, face, size).append_to(receivers);
   return receivers;
 }
 
@@ -398,12 +436,7 @@ std::optional<GridCell> grid_cell(const Receiver& receiver) {
 }
 
 std::vector<Receiver> read_receivers(const std::filesystem::path& path, const Scene& scene) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path)) {
-    throw InputError(Problem{path.string(), 0, "cannot read the file", "it should hold the receivers",
-                             "check its name and its permissions"});
-  }
-  return ReceiverTable(path.string(), scene).read(in);
+  return ReceiverTable(path.string(), scene).read(read_text_file(path, "a CSV file of receivers"));
 }
 
 }  // namespace exactff

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "scene/nearest_names.h"
+#include "scene/numbered_name.h"
 #include "scene/scene_data.h"
+#include "scene/text_lines.h"
 
 namespace exactff {
 
@@ -45,22 +46,6 @@ std::vector<FaceId> Scene::faces_of(const Selection& selection) const {
 
 namespace {
 
-// A name of the form NAME:k, taken apart at its last colon.
-struct NumberedName {
-  std::string patch;
-  std::uint64_t number = 0;
-};
-
-std::optional<NumberedName> numbered(std::string_view name) {
-  const std::size_t colon = name.rfind(':');
-  if (colon == std::string_view::npos) return std::nullopt;
-  const std::string_view digits = name.substr(colon + 1);
-  NumberedName result{std::string(name.substr(0, colon))};
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), result.number);
-  if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
-  return result;
-}
-
 std::string choice_of_names(const Scene& scene, std::string_view wanted) {
   if (scene.patches().empty()) return "the scene has no patches";
   std::vector<std::string_view> names;
@@ -71,7 +56,7 @@ std::string choice_of_names(const Scene& scene, std::string_view wanted) {
   char separator = ':';
   for (const std::string_view name : nearest_names(names, wanted, kShown)) {
     text += separator;
-    text += " '" + std::string(name) + "'";
+    text += ' ' + in_quotes(name, kShownName);
     separator = ',';
   }
   return text;
@@ -84,20 +69,21 @@ std::string count_of_faces(std::size_t count) { return std::to_string(count) + (
 Selection Scene::select(std::string_view name) const {
   const auto& by_name = data_->patch_by_name;
   if (const auto exact = by_name.find(std::string(name)); exact != by_name.end()) return {exact->second, {}};
-  const auto parts = numbered(name);
+  const auto parts = numbered_name(name);
   const auto owner = parts ? by_name.find(parts->patch) : by_name.end();
   if (owner == by_name.end()) {
-    throw InputError({data_->file, 0, "there is no patch named '" + std::string(name) + "'", "",
-                      choice_of_names(*this, parts ? parts->patch : name)});
+    throw InputError({data_->file, 0, "there is no patch named " + in_quotes(name, kShownName),
+                      "names are matched letter by letter", choice_of_names(*this, parts ? parts->patch : name)});
   }
   const std::vector<FaceId>& faces = patch(owner->second).faces;
   if (parts->number < 1 || parts->number > faces.size()) {
-    throw InputError({data_->file, 0, "there is no face '" + std::string(name) + "'",
-                      "patch '" + parts->patch + "' has " + count_of_faces(faces.size()), "faces count from 1"});
+    throw InputError({data_->file, 0, "there is no face " + in_quotes(name, kShownName),
+                      "patch " + in_quotes(parts->patch, kShownName) + " has " + count_of_faces(faces.size()),
+                      "faces count from 1"});
   }
   const FaceId id = faces[parts->number - 1];
   if (face(id).shape == FaceShape::kSkipped) {
-    throw InputError({data_->file, face(id).line, "face '" + std::string(name) + "' cannot be used",
+    throw InputError({data_->file, face(id).line, "face " + in_quotes(name, kShownName) + " cannot be used",
                       "it was dropped as a bad face", "see the warning about it"});
   }
   return {owner->second, id};

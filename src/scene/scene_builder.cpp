@@ -6,7 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "scene/numbered_name.h"
 #include "scene/scene_data.h"
+#include "scene/text_lines.h"
 #include "scene/triangulation.h"
 
 namespace exactff {
@@ -14,12 +16,14 @@ namespace exactff {
 struct SceneBuilder::State {
   SceneOptions options;
   std::unique_ptr<Scene::Data> data = std::make_unique<Scene::Data>();
-  std::vector<Problem> problems;
+  ProblemList problems;
+  ProblemList warnings;
   std::size_t zero_area_count = 0;
   std::size_t first_zero_area = 0;
 
   void check_vertices();
   void check_materials();
+  void check_names();
   bool check_indices(const Face& face);
   void cut(FaceId id);
   void refuse(const Face& face, const FaceFault& fault);
@@ -31,7 +35,10 @@ struct SceneBuilder::State {
   void index_names();
 
   std::string quoted(const Face& face) const {
-    return "face '" + data->patches[index_of(face.patch)].name + ":" + std::to_string(face.number) + "'";
+    const std::string& name = data->patches[index_of(face.patch)].name;
+    const std::string number = ":" + std::to_string(face.number);
+    return "face " + (name.size() <= kShownName ? in_quotes(name + number, name.size() + number.size())
+                                                : in_quotes(name, kShownName) + number);
   }
 };
 
@@ -81,20 +88,22 @@ void SceneBuilder::add_face(PatchId patch, MaterialId material, std::vector<std:
   data.faces.push_back(std::move(face));
 }
 
-void SceneBuilder::warn(Problem warning) { state_->data->warnings.push_back(std::move(warning)); }
+void SceneBuilder::warn(Problem warning) { state_->warnings.add(std::move(warning)); }
 
 Scene SceneBuilder::build() {
   const std::unique_ptr<State> taken = std::exchange(state_, std::make_unique<State>());
   State& state = *taken;
   state.check_vertices();
   state.check_materials();
+  state.check_names();
   if (state.problems.empty()) {
     for (std::size_t i = 0; i < state.data->faces.size(); ++i) state.cut(FaceId(static_cast<std::uint32_t>(i)));
   }
-  if (!state.problems.empty()) throw InputError(std::move(state.problems));
+  state.problems.throw_if_any();
   state.warn_zero_area();
   if (state.options.patches == PatchMode::kFaces) state.split_patches();
   state.warn_hidden_names();
+  state.data->warnings = state.warnings.take("warnings");
   return Scene(std::move(state.data));
 }
 
@@ -102,8 +111,8 @@ void SceneBuilder::State::check_vertices() {
   for (std::size_t i = 0; i < data->vertices.size(); ++i) {
     const Vec3& v = data->vertices[i];
     if (std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) continue;
-    problems.push_back({data->file, 0, "vertex " + std::to_string(i + 1) + " is not finite",
-                        "a coordinate stands for an exact number", "give finite coordinates"});
+    problems.add({data->file, 0, "vertex " + std::to_string(i + 1) + " is not finite",
+                  "a coordinate stands for an exact number", "give finite coordinates"});
   }
 }
 
@@ -113,8 +122,24 @@ void SceneBuilder::State::check_materials() {
   };
   for (const Material& material : data->materials) {
     if (usable(material.reflectance) && usable(material.radiosity)) continue;
-    problems.push_back({data->file, 0, "material '" + material.name + "' has a negative or infinite Kd or Ke",
-                        "reflectances and radiosities are not negative", "correct it"});
+    problems.add({data->file, 0,
+                  "material " + in_quotes(material.name, kShownName) + " has a negative or infinite Kd or Ke",
+                  "reflectances and radiosities are not negative", "correct it"});
+  }
+}
+
+// A face is called by its patch's name and its number in messages, tables and, on request, patches of its own. Were
+// a long name the name of many faces, their names would take far more memory than the file.
+void SceneBuilder::State::check_names() {
+  constexpr std::size_t kLongName = 255;
+  constexpr std::size_t kMostBytes = std::size_t{1} << 26;
+  for (const Patch& patch : data->patches) {
+    if (patch.name.size() <= kLongName || patch.faces.size() < 2) continue;
+    if (patch.faces.size() < kMostBytes / patch.name.size()) continue;
+    problems.add({data->file, data->faces[index_of(patch.faces.front())].line,
+                  "the name " + in_quotes(patch.name) + " of " + std::to_string(patch.name.size()) +
+                      " characters belongs to " + std::to_string(patch.faces.size()) + " faces",
+                  "each of them is called by it", "choose a name of at most 255 characters"});
   }
 }
 
@@ -122,8 +147,8 @@ bool SceneBuilder::State::check_indices(const Face& face) {
   for (const auto& ring : face.rings) {
     for (const std::uint32_t v : ring) {
       if (v < data->vertices.size()) continue;
-      problems.push_back({data->file, face.line, quoted(face) + " refers to vertex " + std::to_string(v + 1ULL),
-                          "there are " + std::to_string(data->vertices.size()) + " vertices", ""});
+      problems.add({data->file, face.line, quoted(face) + " refers to vertex " + std::to_string(v + 1ULL),
+                    "there are " + std::to_string(data->vertices.size()) + " vertices", ""});
       return false;
     }
   }
@@ -149,10 +174,10 @@ void SceneBuilder::State::refuse(const Face& face, const FaceFault& fault) {
   Problem problem{data->file, face.line, quoted(face) + " " + fault.what, fault.why, fault.suggestion};
   if (options.bad_faces == BadFaces::kReject) {
     problem.suggestion += ", or leave bad faces out with --skip-bad-faces";
-    problems.push_back(std::move(problem));
+    problems.add(std::move(problem));
   } else {
     problem.suggestion = "it is left out";
-    data->warnings.push_back(std::move(problem));
+    warnings.add(std::move(problem));
   }
 }
 
@@ -182,7 +207,7 @@ std::string two_digits(double value) {
 void SceneBuilder::State::warn_out_of_plane(const Face& face) {
   constexpr double kWorthSaying = 1e-6;
   if (face.out_of_plane <= kWorthSaying) return;
-  data->warnings.push_back(
+  warnings.add(
       {data->file, face.line,
        quoted(face) + " is out of plane by " + two_digits(face.out_of_plane) + " of its diameter",
        "it was cut into " + std::to_string(face.piece_count) + " triangles; another cut would be another surface",
@@ -196,18 +221,22 @@ void SceneBuilder::State::warn_zero_area() {
       zero_area_count == 1
           ? quoted(first) + " has no area and is ignored"
           : std::to_string(zero_area_count) + " faces have no area and are ignored, the first is " + quoted(first);
-  data->warnings.push_back({data->file, first.line, what, "", ""});
+  warnings.add({data->file, first.line, what, "", ""});
 }
 
 // An exact patch name wins over NAME:k.
 void SceneBuilder::State::warn_hidden_names() {
-  for (const Face& face : data->faces) {
-    const Patch& patch = data->patches[index_of(face.patch)];
-    if (data->patch_by_name.size() == 1) return;
-    const auto rival = data->patch_by_name.find(patch.name + ":" + std::to_string(face.number));
-    if (rival == data->patch_by_name.end()) continue;
-    data->warnings.push_back({data->file, face.line, quoted(face) + " cannot be named",
-                              "a patch has that very name, and a patch's name wins", "rename the patch"});
+  for (const Patch& rival : data->patches) {
+    const std::optional<NumberedName> hidden = numbered_name(rival.name);
+    if (!hidden) continue;
+    const auto owner = data->patch_by_name.find(hidden->patch);
+    if (owner == data->patch_by_name.end()) continue;
+    const std::vector<FaceId>& faces = data->patches[index_of(owner->second)].faces;
+    if (hidden->number < 1 || hidden->number > faces.size()) continue;
+    const Face& face = data->faces[index_of(faces[hidden->number - 1])];
+    if (rival.name != hidden->patch + ":" + std::to_string(face.number)) continue;  // such as NAME:01
+    warnings.add({data->file, face.line, quoted(face) + " cannot be named",
+                  "a patch has that very name, and a patch's name wins", "rename the patch"});
   }
 }
 

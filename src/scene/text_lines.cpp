@@ -1,5 +1,7 @@
 #include "scene/text_lines.h"
 
+#include "scene/printable.h"
+
 namespace exactff {
 
 namespace {
@@ -33,13 +35,8 @@ std::vector<std::string_view> words(std::string_view text) {
   return result;
 }
 
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kShown = 40;
-  std::string shown(text.substr(0, kShown));
-  for (char& c : shown) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  }
-  return "'" + shown + (text.size() > kShown ? "...'" : "'");
+std::string in_quotes(std::string_view text, std::size_t shown) {
+  return "'" + printable(text.substr(0, shown)) + (text.size() > shown ? "...'" : "'");
 }
 
 TextLines::TextLines(std::string_view text) : rest_(text) {
@@ -51,6 +48,7 @@ std::string_view TextLines::take_physical() {
   const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
   const std::string_view line = rest_.substr(0, end);
   rest_.remove_prefix(end);
+  cut_off_ = rest_.empty() && !trimmed(line).empty();
   rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : std::min<std::size_t>(rest_.size(), 1));
   ++number_;
   const std::string_view data = without_comment(line);
@@ -74,12 +72,16 @@ bool TextLines::next(TextLine& line) {
 }
 
 void ProblemList::add(Problem problem) {
-  constexpr std::size_t kKept = 1000;
-  if (problems_.size() < kKept) {
-    problems_.push_back(std::move(problem));
-  } else {
-    ++dropped_;
+  if (full()) return count_dropped();
+  problems_.push_back(std::move(problem));
+}
+
+std::vector<Problem> ProblemList::take(const std::string& noun) {
+  if (dropped_ > 0) {
+    problems_.push_back(
+        {problems_[0].file, 0, std::to_string(dropped_) + " more " + noun, "only the first are kept", ""});
   }
+  return std::move(problems_);
 }
 
 void ProblemList::throw_if_any() {
@@ -88,8 +90,7 @@ void ProblemList::throw_if_any() {
   if (std::all_of(problems_.begin(), problems_.end(), [&](const Problem& p) { return p.file == problems_[0].file; })) {
     std::stable_sort(problems_.begin(), problems_.end(), by_line);
   }
-  if (dropped_ > 0) problems_.push_back({problems_[0].file, 0, std::to_string(dropped_) + " more problems", "", ""});
-  throw InputError(std::move(problems_));
+  throw InputError(take("problems"));
 }
 
 }  // namespace exactff

@@ -23,12 +23,15 @@ class TextLines {
  public:
   explicit TextLines(std::string_view text);
   bool next(TextLine& line);
+  // Once all lines are read: whether the last one, with something on it, lacks its line end.
+  bool is_cut_off() const { return cut_off_; }
 
  private:
   std::string_view take_physical();
 
   std::string_view rest_;
   std::size_t number_ = 0;  // of the last physical line taken
+  bool cut_off_ = false;
   std::string joined_;
 };
 
@@ -37,16 +40,24 @@ std::string_view trimmed(std::string_view text);
 std::string_view take_word(std::string_view& text);
 std::vector<std::string_view> words(std::string_view text);
 
-// At most the first 40 characters in quotes, unprintable ones replaced.
-std::string in_quotes(std::string_view text);
+// At most the first characters in quotes, unprintable ones replaced.
+std::string in_quotes(std::string_view text, std::size_t shown = 40);
+
+inline constexpr std::size_t kShownName = 200;  // of a name that somebody may want to copy
 
 // Every problem of a file in its order; beyond a cap they are only counted, so that memory stays bounded.
 class ProblemList {
  public:
+  static constexpr std::size_t kKept = 1000;
+
   void add(Problem problem);
   bool empty() const { return problems_.empty(); }
+  bool full() const { return problems_.size() == kKept; }
+  void count_dropped() { ++dropped_; }  // as add() does once the list is full
   // Throws an InputError if there are any.
   void throw_if_any();
+  // All of them; the last one counts those dropped, called `noun`.
+  std::vector<Problem> take(const std::string& noun);
 
  private:
   std::vector<Problem> problems_;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "scene/ear_clipping.h"
+#include "scene/edge_crossing.h"
 #include "scene/face_points.h"
 #include "scene/planar_region.h"
 

@@ -112,25 +112,28 @@ struct Malformed {
 };
 
 TEST(ObjReader, MalformedFilesAreNamedByLine) {
+  const std::string exact = " (a coordinate stands for one exact number)";
   const std::string decimal = "; write a decimal number such as 1.5 or -2e-3";
-  const std::string corner = " is not a corner of a face; write v, v/vt, v//vn or v/vt/vn";
+  const std::string corner =
+      " is not a corner of a face (a corner is the number of a vertex); write v, v/vt, v//vn or v/vt/vn";
   const std::string range = "; correct the index";
   const std::string backwards = " (vertices count from 1, or from -1 backwards)" + range;
   const Malformed table[] = {
-      {"", "s.obj: is empty; give a Wavefront OBJ file"},
+      {"", "s.obj: is empty (there is nothing to compute with); give a Wavefront OBJ file"},
       {"\n\n", "s.obj: has no faces (there is nothing to compute with); is it a Wavefront OBJ file?"},
       {kSquare, "s.obj: has no faces (there is nothing to compute with); is it a Wavefront OBJ file?"},
-      {std::string("v 0\0 0", 6), "s.obj: is not a text file (it holds zero bytes); save it as a Wavefront OBJ file"},
-      {"v 1 2\n", "s.obj:1: a vertex has fewer than three coordinates; write v x y z"},
-      {"v\n", "s.obj:1: a vertex has fewer than three coordinates; write v x y z"},
-      {"\n v 1 2 x\n", "s.obj:2: 'x' is not a number" + decimal},
-      {"v 1 2 3y\n", "s.obj:1: '3y' is not a number" + decimal},
-      {"v 1 nan 3\n", "s.obj:1: 'nan' is not a finite number; give a finite number"},
-      {"v 1 2 -Inf\n", "s.obj:1: '-Inf' is not a finite number; give a finite number"},
-      {"v 1e400 2 3\n", "s.obj:1: '1e400' is too large for a double; scale the scene; doubles end at 1.8e308"},
-      {"v 0x1 2 3\n", "s.obj:1: '0x1' is hexadecimal" + decimal},
-      {"v 1,5 2 3\n", "s.obj:1: '1,5' has a decimal comma; write a decimal point"},
-      {"v 1 \\\n2 \\\nz\n", "s.obj:1: 'z' is not a number" + decimal},
+      {std::string("v 0\0 0", 6), "s.obj: is not a text file (it holds zero bytes); give a Wavefront OBJ file"},
+      {"v 1 2\n", "s.obj:1: a vertex has fewer than three coordinates (the point would not be known); write v x y z"},
+      {"v\n", "s.obj:1: a vertex has fewer than three coordinates (the point would not be known); write v x y z"},
+      {"\n v 1 2 x\n", "s.obj:2: 'x' is not a number" + exact + decimal},
+      {"v 1 2 3y\n", "s.obj:1: '3y' is not a number" + exact + decimal},
+      {"v 1 nan 3\n", "s.obj:1: 'nan' is not a finite number" + exact + "; give a finite number"},
+      {"v 1 2 -Inf\n", "s.obj:1: '-Inf' is not a finite number" + exact + "; give a finite number"},
+      {"v 1e400 2 3\n",
+       "s.obj:1: '1e400' is too large for a double" + exact + "; give a smaller number; doubles end at 1.8e308"},
+      {"v 0x1 2 3\n", "s.obj:1: '0x1' is hexadecimal" + exact + decimal},
+      {"v 1,5 2 3\n", "s.obj:1: '1,5' has a decimal comma" + exact + "; write a decimal point"},
+      {"v 1 \\\n2 \\\nz\n", "s.obj:1: 'z' is not a number" + exact + decimal},
       {kSquare + "f 1 2 3 0\n", "s.obj:5: vertex 0 does not exist" + backwards},
       {kSquare + "f 1 2 5\n", "s.obj:5: vertex 5 does not exist (the file has 4 vertices)" + range},
       {kSquare + "f 1 2 -5\n", "s.obj:5: vertex -5 does not exist (the lines before define 4 vertices)" + range},
@@ -158,7 +161,7 @@ TEST(ObjReader, MalformedFilesAreNamedByLine) {
        "ambiguous); split it into simple polygons, or leave bad faces out with --skip-bad-faces"},
       {"f 1 2 9\nv 1 2 x\nf 1 0 1\n", "s.obj:1: vertex 2 does not exist (the file has 1 vertex)" + range +
                                           "\ns.obj:1: vertex 9 does not exist (the file has 1 vertex)" + range +
-                                          "\ns.obj:2: 'x' is not a number" + decimal +
+                                          "\ns.obj:2: 'x' is not a number" + exact + decimal +
                                           "\ns.obj:3: vertex 0 does not exist" + backwards},
   };
   for (const Malformed& entry : table) EXPECT_EQ(error_of(entry.text), entry.message) << entry.text;
@@ -196,10 +199,11 @@ TEST(ObjReader, FilesThatCannotBeReadSaySo) {
     return std::string("no error");
   };
   const std::string where = directory.path().string();
-  EXPECT_EQ(message(directory.path()), where + ": is a directory; name a Wavefront OBJ file in it");
+  EXPECT_EQ(message(directory.path()), where + ": is a directory (a file is wanted); name a Wavefront OBJ file in it");
   EXPECT_EQ(message(directory.path() / "none.obj"),
             where + "/none.obj: cannot be opened (No such file or directory); check the path");
-  EXPECT_EQ(message(directory.write("empty.obj", "")), where + "/empty.obj: is empty; give a Wavefront OBJ file");
+  EXPECT_EQ(message(directory.write("empty.obj", "")),
+            where + "/empty.obj: is empty (there is nothing to compute with); give a Wavefront OBJ file");
 }
 
 // Neither crashes nor hangs, whatever the bytes: either a scene or an InputError.
@@ -271,15 +275,22 @@ TEST(MtlReader, SeveralLibrariesAndBackslashesAreFound) {
 TEST(MtlReader, MalformedFilesAreNamedByLine) {
   const Malformed table[] = {
       {"newmtl a\nKd 1 x 1\n",
-       "m.mtl:2: Kd of material 'a': 'x' is not a number; write a decimal number such as 1.5 or -2e-3"},
-      {"newmtl a\nKe 1 2\n", "m.mtl:2: Ke of material 'a' has two values; give one value or red, green and blue"},
-      {"newmtl a\nKd\n", "m.mtl:2: Kd of material 'a' has no value; give one value or red, green and blue"},
+       "m.mtl:2: Kd of material 'a': 'x' is not a number (a colour is made of finite numbers); write a decimal number "
+       "such as 1.5 or -2e-3"},
+      {"newmtl a\nKe 1 2\n",
+       "m.mtl:2: Ke of material 'a' has two values (a colour has one value or three); give one value or red, green and "
+       "blue"},
+      {"newmtl a\nKd\n",
+       "m.mtl:2: Kd of material 'a' has no value (a colour has one value or three); give one value or red, green and "
+       "blue"},
       {"newmtl a\nKe 1 -2 1\n", "m.mtl:2: Ke of material 'a' is negative (a radiosity is not negative); correct it"},
       {"newmtl a\nKd -.1\n",
        "m.mtl:2: Kd of material 'a' is negative (a reflectance lies between 0 and 1); correct it"},
       {"Kd 1\n", "m.mtl:1: Kd before any newmtl (it belongs to no material); move it"},
       {"newmtl\n", "m.mtl:1: newmtl without a name (nothing can use it); give the material a name"},
-      {"newmtl a\nKe inf\n", "m.mtl:2: Ke of material 'a': 'inf' is not a finite number; give a finite number"},
+      {"newmtl a\nKe inf\n",
+       "m.mtl:2: Ke of material 'a': 'inf' is not a finite number (a colour is made of finite numbers); give a finite "
+       "number"},
   };
   for (const Malformed& entry : table) {
     try {

@@ -1,0 +1,15 @@
+// Edges of rings that cross.
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "scene/face_points.h"
+
+namespace exactff {
+
+// Two edges of `points` that cross in their interiors, the one of lower index first, if there are any; which ones
+// does not matter. Edges may touch, overlap and have no length. O(n log n), exact.
+std::optional<std::pair<EdgeIndex, EdgeIndex>> find_crossing(const FacePoints& points, const PlanePoints& plane);
+
+}  // namespace exactff
