@@ -12,10 +12,14 @@
 #include "cli/scene_options.h"
 #include "exactff/study.h"
 #include "scene/number_text.h"
+#include "scene/printable.h"
+#include "scene/text_lines.h"
 #include "study/text.h"
 
 namespace exactff::cli {
 namespace {
+
+constexpr int kMostRays = 1 << 20;
 
 constexpr const char* kFooter =
     "Every combination of the lists is run if there are at most 40; else every --eps-b with every --rays, and each\n"
@@ -52,8 +56,11 @@ std::vector<std::string> split(const std::string& text) {
   return parts;
 }
 
-double to_double(const std::string& text, const std::string& flag) {
+double to_tolerance(const std::string& text, const std::string& flag) {
   const ParsedNumber number = parse_number(text);
+  if (number.fault == NumberFault::kNone && number.value < 0.0) {
+    refuse(flag + ": " + in_quotes(text) + " is negative", "a tolerance is not", "give 0 or more");
+  }
   if (number.fault == NumberFault::kNone) return number.value;
   refuse(flag + ": " + describe(number.fault, text), "the list holds decimal numbers",
          "separate them by commas only, such as " + flag + " 1e-2,1e-3");
@@ -64,7 +71,7 @@ Whole to_whole(const std::string& text, const std::string& flag) {
   Whole value{};
   const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
   if (!text.empty() && end.ec == std::errc{} && end.ptr == text.data() + text.size()) return value;
-  refuse(flag + ": '" + text + "' is not a whole number in range", "it counts or numbers something",
+  refuse(flag + ": " + in_quotes(text) + " is not a whole number in range", "it counts or numbers something",
          "separate several by commas only, such as " + flag + " 1,4,16");
 }
 
@@ -73,35 +80,56 @@ template <class T, class Convert>
 std::vector<T> list_of(const std::string& text, const std::string& flag, const Convert& convert) {
   std::vector<T> values;
   if (text.empty()) return values;
+  constexpr std::size_t kMostValues = 1000;
   for (const std::string& part : split(text)) values.push_back(convert(part, flag));
+  if (values.size() > kMostValues) {
+    refuse(flag + " has " + std::to_string(values.size()) + " values", "every setting is run for every receiver",
+           "give at most 1000, better a dozen");
+  }
   return values;
+}
+
+int to_rays(const std::string& text, const std::string& flag) {
+  const int rays = to_whole<int>(text, flag);
+  if (rays >= 1 && rays <= kMostRays) return rays;
+  refuse(flag + ": " + in_quotes(text) + " is not within 1 to " + std::to_string(kMostRays),
+         "so many shadow rays are sent to every undecided leaf", "give numbers such as 1,4,16");
 }
 
 SamplePattern to_pattern(const std::string& text, const std::string& flag) {
   if (const auto pattern = study::pattern_named(text)) return *pattern;
-  refuse(flag + ": there is no pattern '" + text + "'", {}, "use centre, regular, jittered or low-discrepancy");
+  refuse(flag + ": there is no pattern " + in_quotes(text), "it says where rays end",
+         "use centre, regular, jittered or low-discrepancy");
 }
 
 Variant to_variant(const std::string& text, const std::string& flag) {
   if (const auto variant = study::variant_named(text)) return *variant;
-  refuse(flag + ": there is no variant '" + text + "'", {}, "use mended or literal");
+  refuse(flag + ": there is no variant " + in_quotes(text), "it says which algorithm is run", "use mended or literal");
 }
 
 study::Sweeps sweeps_of(const CompareArguments& args) {
   study::Sweeps sweeps;
-  sweeps.eps_b = list_of<double>(args.eps_b, "--eps-b", to_double);
-  sweeps.eps_a = list_of<double>(args.eps_a, "--eps-a", to_double);
-  sweeps.rays = list_of<int>(args.rays, "--rays", to_whole<int>);
+  sweeps.eps_b = list_of<double>(args.eps_b, "--eps-b", to_tolerance);
+  sweeps.eps_a = list_of<double>(args.eps_a, "--eps-a", to_tolerance);
+  sweeps.rays = list_of<int>(args.rays, "--rays", to_rays);
   sweeps.seeds = list_of<std::uint64_t>(args.seeds, "--seeds", to_whole<std::uint64_t>);
   sweeps.patterns = list_of<SamplePattern>(args.pattern, "--pattern", to_pattern);
   sweeps.variants = list_of<Variant>(args.variant, "--variant", to_variant);
   return sweeps;
 }
 
+int to_cells(std::string_view text, const std::string& grid) {
+  int count = 0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (!text.empty() && end.ec == std::errc{} && end.ptr == text.data() + text.size()) return count;
+  refuse("--grid: " + in_quotes(grid) + " is no grid", "it is made of two whole numbers",
+         "write columns x rows: --grid 32x32");
+}
+
 GridSize grid_of(const std::string& text) {
-  const std::size_t cross = text.find('x');
-  if (cross == std::string::npos) refuse("--grid: '" + text + "' is no grid", {}, "write columns x rows: --grid 32x32");
-  return {to_whole<int>(text.substr(0, cross), "--grid"), to_whole<int>(text.substr(cross + 1), "--grid")};
+  const std::string_view view = text;
+  const std::size_t cross = std::min(view.find('x'), view.size());
+  return {to_cells(view.substr(0, cross), text), to_cells(view.substr(std::min(cross + 1, view.size())), text)};
 }
 
 // A name may hold a comma: the whole text is tried first.
@@ -126,7 +154,8 @@ std::vector<Selection> sources_of(const CompareArguments& args, const Scene& sce
         sources.begin() + static_cast<std::ptrdiff_t>(i)) {
       continue;
     }
-    refuse("--source: '" + scene.name_of(sources[i]) + "' is named twice", "its light would count twice", {});
+    refuse("--source: '" + scene.name_of(sources[i]) + "' is named twice", "its light would count twice",
+           "name it once");
   }
   return sources;
 }
@@ -186,22 +215,23 @@ int run(const CompareArguments& args) {
   check_flags(args);
   study::check_output_folder(args.folder);
   const Scene scene = args.scene.load();
+  study::Request request = request_of(args, scene);
   const InterruptWatch watch;
   ProgressBar bar;
   const study::Hooks hooks{[&](const study::Progress& progress) { bar.show(progress); }, is_interrupted};
   std::vector<std::string> messages, sentences;
   try {
-    const study::Study study = study::run(request_of(args, scene), hooks);
+    const study::Study study = study::run(std::move(request), hooks);
     messages = study::write(study, args.folder, hooks);
     sentences = study::headlines(study);
   } catch (const study::Cancelled&) {
     bar.clear();
     std::cerr << "exactff: interrupted; nothing was written\n";
-    return kInterrupted;
+    return 128 + interrupting_signal();
   }
   bar.clear();
-  for (const std::string& message : messages) std::cerr << "note: " << message << '\n';
-  for (const std::string& sentence : sentences) std::cout << sentence << '\n';
+  for (const std::string& message : messages) std::cerr << "note: " << printable(message) << '\n';
+  for (const std::string& sentence : sentences) std::cout << printable(sentence) << '\n';
   std::cout << "Report: " << (std::filesystem::path(args.folder) / "report.html").string() << '\n';
   check_output(std::cout);
   return 0;

@@ -8,9 +8,12 @@
 #include <set>
 
 #include "cli/command.h"
+#include "cli/long_run.h"
+#include "cli/output.h"
 #include "cli/scene_options.h"
 #include "cli/text_table.h"
 #include "exactff/version.h"
+#include "scene/printable.h"
 
 namespace exactff::cli {
 
@@ -158,7 +161,8 @@ void print_totals(const Scene& scene, const std::vector<PatchSummary>& rows) {
 void print_list(const std::string& title, const std::vector<std::string>& items) {
   constexpr std::size_t kShown = 12;
   std::cout << title << ": ";
-  for (std::size_t i = 0; i < std::min(kShown, items.size()); ++i) std::cout << (i > 0 ? ", " : "") << items[i];
+  for (std::size_t i = 0; i < std::min(kShown, items.size()); ++i)
+    std::cout << (i > 0 ? ", " : "") << printable(items[i]);
   if (items.empty()) std::cout << "none";
   if (items.size() > kShown) std::cout << " and " << items.size() - kShown << " more";
   std::cout << '\n';
@@ -198,14 +202,6 @@ const PatchSummary& suggested_receiver(const std::vector<PatchSummary>& rows) {
     return std::pair(!a.emits, a.area) < std::pair(!b.emits, b.area);
   };
   return *std::max_element(rows.begin(), rows.end(), smaller);
-}
-
-std::string shell_word(const std::string& text) {
-  const std::string harmless = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./:@%,=";
-  if (!text.empty() && text.find_first_not_of(harmless) == std::string::npos) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
 }
 
 void print_suggestion(const Scene& scene, const std::vector<PatchSummary>& rows, const std::string& path) {
@@ -297,6 +293,7 @@ Command add_info(CLI::App& app) {
   return {info, [arguments] {
             const Scene scene = arguments->scene.load();
             (arguments->json ? print_json : print_text)(scene, arguments->scene.path);
+            check_output(std::cout);
             return 0;
           }};
 }

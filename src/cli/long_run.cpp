@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <csignal>
 #include <iostream>
 
+#include "study/output_folder.h"
 #include "study/text.h"
 
 namespace exactff::cli {
@@ -39,19 +41,36 @@ void ProgressBar::draw(const study::Progress& progress, double elapsed) {
 }
 
 namespace {
-std::atomic<bool> interrupted = false;
+
+std::atomic<int> interrupted_by = 0;
+static_assert(std::atomic<int>::is_always_lock_free);  // or no signal handler could use it
+
+void take_note(int signal) {
+  const bool again = interrupted_by.exchange(signal) != 0;
+  if (!again || study::StagedFolder::any()) return;
+  std::signal(signal, SIG_DFL);
+  ::raise(signal);  // takes effect on return from here
 }
+
+}  // namespace
 
 InterruptWatch::InterruptWatch() {
   struct sigaction action {};
-  action.sa_handler = [](int) { interrupted = true; };
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  ::sigaction(SIGINT, &action, &before_);
+  action.sa_handler = take_note;
+  action.sa_flags = SA_RESTART;
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    ::sigaction(kSignals[i], nullptr, &before_[i]);
+    // What the caller has the program ignore (nohup) stays ignored.
+    if (before_[i].sa_handler != SIG_IGN) ::sigaction(kSignals[i], &action, nullptr);
+  }
 }
 
-InterruptWatch::~InterruptWatch() { ::sigaction(SIGINT, &before_, nullptr); }
+InterruptWatch::~InterruptWatch() {
+  for (std::size_t i = 0; i < kSignals.size(); ++i) ::sigaction(kSignals[i], &before_[i], nullptr);
+}
 
-bool is_interrupted() { return interrupted; }
+bool is_interrupted() { return interrupted_by != 0; }
+int interrupting_signal() { return interrupted_by; }
 
 std::string shell_word(const std::string& text) {
   const bool plain = !text.empty() && text.find_first_not_of(

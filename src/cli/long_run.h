@@ -1,6 +1,7 @@
 // What commands that work for long have in common: a progress bar, an ear for Ctrl-C.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <string>
@@ -8,8 +9,6 @@
 #include "exactff/study.h"
 
 namespace exactff::cli {
-
-inline constexpr int kInterrupted = 128 + SIGINT;  // exit code
 
 // A bar with the time left, on a terminal only; at most ten times a second.
 class ProgressBar {
@@ -32,7 +31,8 @@ class ProgressBar {
   Clock::time_point drawn_;
 };
 
-// While it lives, Ctrl-C sets a flag instead of ending the program; a second Ctrl-C ends it at once.
+// While it lives, Ctrl-C (SIGINT), SIGTERM and SIGHUP set a flag instead of ending the program. A second one ends it
+// at once, unless files are being written, which is soon given up.
 class InterruptWatch {
  public:
   InterruptWatch();
@@ -41,9 +41,11 @@ class InterruptWatch {
   InterruptWatch& operator=(const InterruptWatch&) = delete;
 
  private:
-  struct sigaction before_ {};
+  static constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP};
+  std::array<struct sigaction, kSignals.size()> before_{};
 };
 [[nodiscard]] bool is_interrupted();
+[[nodiscard]] int interrupting_signal();  // 0 if none came
 
 // One word of a command line, quoted for the shell where it must be.
 [[nodiscard]] std::string shell_word(const std::string& text);

@@ -1,12 +1,20 @@
 #include "cli/output.h"
 
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
 #include <fstream>
 #include <system_error>
 
+#include "cli/long_run.h"
 #include "scene/number_text.h"
 #include "study/text.h"
 
 namespace exactff::cli {
+
+namespace fs = std::filesystem;
 
 std::string percent(double share) { return study::rounded(100.0 * share, 4) + " %"; }
 
@@ -35,28 +43,57 @@ FaceId select_face(const Scene& scene, const std::string& name) {
 
 namespace {
 
-[[noreturn]] void cannot_write(const std::filesystem::path& path, const std::string& reason) {
+[[noreturn]] void cannot_write(const fs::path& path, const std::string& reason) {
   throw InputError({.file = path.string(),
                     .what = "cannot write the file: " + reason,
                     .why = "nothing was written",
                     .suggestion = "name a file in a folder that exists, is writable and has room"});
 }
 
-}  // namespace
-
-void write_whole_file(const std::filesystem::path& path, const std::string& text) {
-  std::filesystem::path partial = path;
-  partial += ".partial";
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) cannot_write(path, "it is a folder");
-  std::ofstream file(partial, std::ios::binary);
+void write_to(const fs::path& target, const fs::path& path, const std::string& text) {
+  errno = 0;
+  std::ofstream file(target, std::ios::binary);
   file << text;
   file.close();
-  if (file) std::filesystem::rename(partial, path, error);
-  if (file && !error) return;
-  const std::string reason = error ? error.message() : "opening or writing failed";
-  std::filesystem::remove(partial, error);
+  if (file) return;
+  const std::string reason = errno != 0 ? std::strerror(errno) : "opening or writing failed";
+  std::error_code ignored;
+  if (target != path) fs::remove(target, ignored);
   cannot_write(path, reason);
+}
+
+// Where a symbolic link leads to; else the path itself.
+fs::path destination(const fs::path& path) {
+  std::error_code error;
+  const fs::path resolved = fs::canonical(path, error);
+  if (!error) return resolved;
+  const fs::path leads_to = fs::read_symlink(path, error);  // to what does not exist yet
+  return error ? path : path.parent_path() / leads_to;
+}
+
+void replace_file(const fs::path& path, const std::string& text) {
+  const fs::path final = destination(path);
+  fs::path partial = final;
+  partial += ".partial-" + std::to_string(::getpid());
+  write_to(partial, path, text);
+  std::error_code error, ignored;
+  fs::rename(partial, final, error);
+  if (!error) return;
+  fs::remove(partial, ignored);
+  cannot_write(path, error.message());
+}
+
+}  // namespace
+
+void write_whole_file(const fs::path& path, const std::string& text) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) cannot_write(path, "it is a folder");
+  if (fs::is_other(path, ignored)) return write_to(path, path, text);  // a pipe or device: nothing can replace it
+  {
+    const InterruptWatch watch;  // a signal waits for the moment that it takes: nothing partial shall stay behind
+    replace_file(path, text);
+  }
+  if (is_interrupted()) ::raise(interrupting_signal());
 }
 
 void check_output(std::ostream& out) {

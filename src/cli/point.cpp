@@ -14,6 +14,9 @@
 #include "exactff/exact.h"
 #include "exactff/study.h"
 #include "exactff/version.h"
+#include "scene/number_text.h"
+#include "scene/printable.h"
+#include "scene/receiver_distance.h"
 #include "study/text.h"
 #include "study/visibility_svg.h"
 
@@ -175,6 +178,19 @@ void warn_if_flipped(const Scene& scene, const PointResult& point) {
     std::cerr << "exactff: warning: the receiver is behind every face of '" << scene.name_of(one.source)
               << "' (a source emits from its front only, so the form factor is 0); is it flipped? --flip turns it\n";
   }
+}
+
+// A typing error in --at or --on would otherwise go unnoticed.
+void warn_if_off_its_face(const Scene& scene, const Receiver& receiver) {
+  constexpr double kFar = 0.01;
+  if (!receiver.on) return;
+  const double distance = relative_distance_from_face(scene, *receiver.on, receiver.point);
+  if (distance <= kFar) return;
+  std::cerr
+      << "exactff: warning: --at is " << percent(distance) << " of the size of face '"
+      << printable(scene.name_of(*receiver.on))
+      << "' away from it (that face neither occludes nor illuminates a receiver that lies on it); is it the right "
+         "one?\n";
 }
 
 void warn_of_missing_decimals(const PointArguments& args, const Scene& scene, const PointResult& point) {
@@ -374,6 +390,7 @@ Scene load_scene(const PointArguments& args) {
 int run(const PointArguments& args) {
   const Scene scene = load_scene(args);
   const PointResult point = compute(args, scene);
+  warn_if_off_its_face(scene, point.receiver);
   warn_if_flipped(scene, point);
   warn_of_missing_decimals(args, scene, point);
   if (!args.svg.empty()) write_svg(args, scene, point);
@@ -397,6 +414,18 @@ std::string is_no_flag(const std::string& text) {
   return text.starts_with("--") ? "takes three numbers; found '" + text + "' among them" : "";
 }
 
+// A NaN is within every range, since it compares as nothing.
+std::string is_a_number(const std::string& text) {
+  return parse_number(text).fault == NumberFault::kNone ? "" : "'" + text + "' is not a finite decimal number";
+}
+
+std::string is_a_tolerance(const std::string& text) {
+  const ParsedNumber number = parse_number(text);
+  return number.fault == NumberFault::kNone && number.value >= 0.0
+             ? ""
+             : "'" + text + "' is not a finite decimal number of at least 0";
+}
+
 void add_receiver_flags(CLI::App& app, PointArguments& args) {
   app.add_option("--at", args.at, "Receiving point X Y Z")->required()->type_name("X Y Z")->check(is_no_flag);
   app.add_option("--normal", args.normal, "Its normal, of any length other than zero")
@@ -412,7 +441,8 @@ void add_receiver_flags(CLI::App& app, PointArguments& args) {
   app.add_option("--reflectance", args.reflectance,
                  "rho of the receiver, one value or three; default: Kd of --on's face, else 1")
       ->expected(1, 3)
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(CLI::Range(0.0, 1.0))
+      ->check(is_a_number);
 }
 
 void add_output_flags(CLI::App& app, PointArguments& args) {
@@ -433,10 +463,8 @@ void add_output_flags(CLI::App& app, PointArguments& args) {
 void add_adaptive_flags(CLI::App& app, PointArguments& args) {
   AdaptiveOptions& options = args.adaptive_options;
   app.add_flag("--adaptive", args.adaptive, "Run the ray-sampled adaptive algorithm too; --svg then shows its leaves");
-  app.add_option("--eps-b", options.eps_b, "Its radiosity tolerance")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--eps-a", options.eps_a, "Its area tolerance")->capture_default_str()->check(CLI::NonNegativeNumber);
+  app.add_option("--eps-b", options.eps_b, "Its radiosity tolerance")->capture_default_str()->check(is_a_tolerance);
+  app.add_option("--eps-a", options.eps_a, "Its area tolerance")->capture_default_str()->check(is_a_tolerance);
   app.add_option("--rays", options.rays, "Its shadow rays per sub-patch")
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 20));

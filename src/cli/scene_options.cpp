@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "exactff/obj.h"
+#include "scene/text_lines.h"
 
 namespace exactff::cli {
 
@@ -12,7 +13,10 @@ void print_warnings(std::span<const Problem> warnings) {
   for (const Problem& warning : warnings.first(std::min(warnings.size(), kPrinted))) {
     std::cerr << "warning: " << warning.message() << '\n';
   }
-  if (warnings.size() > kPrinted) std::cerr << "warning: ... and " << warnings.size() - kPrinted << " more\n";
+  const bool at_least = warnings.size() > ProblemList::kKept;
+  if (warnings.size() > kPrinted) {
+    std::cerr << "warning: ... and " << (at_least ? "more than " : "") << warnings.size() - kPrinted << " more\n";
+  }
 }
 
 void SceneArguments::add_to(CLI::App& app) {

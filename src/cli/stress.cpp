@@ -105,7 +105,7 @@ int run(const StressArguments& args) {
   } catch (const study::Cancelled&) {
     bar.clear();
     std::cerr << "exactff: interrupted; nothing was written\n";
-    return kInterrupted;
+    return 128 + interrupting_signal();
   }
   bar.clear();
   for (const std::string& message : messages) std::cerr << "note: " << message << '\n';

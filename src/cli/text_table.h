@@ -1,4 +1,5 @@
-// A table for people: columns as wide as their widest cell, numbers to the right.
+// A table for people: columns as wide as their widest cell, numbers to the right. Cells beyond a limit stick out
+// instead of widening every row.
 #pragma once
 
 #include <algorithm>
@@ -6,6 +7,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "scene/printable.h"
 
 namespace exactff::cli {
 
@@ -18,7 +21,10 @@ class TextTable {
     aligns_.push_back(align);
   }
   // One cell a column.
-  void add_row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+  void add_row(std::vector<std::string> cells) {
+    for (std::string& cell : cells) cell = printable(cell);
+    rows_.push_back(std::move(cells));
+  }
 
   void print(std::ostream& out) const {
     std::vector<std::size_t> widths(titles_.size());
@@ -29,6 +35,8 @@ class TextTable {
   }
 
  private:
+  static constexpr std::size_t kWidest = 80;
+
   // Bytes that begin a character of UTF-8.
   static std::size_t width(const std::string& text) {
     return static_cast<std::size_t>(std::count_if(
@@ -36,14 +44,15 @@ class TextTable {
   }
 
   static void widen(std::vector<std::size_t>& widths, const std::vector<std::string>& cells) {
-    for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = std::max(widths[i], width(cells[i]));
+    for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = std::max(widths[i], std::min(width(cells[i]), kWidest));
   }
 
   void print_row(std::ostream& out, const std::vector<std::size_t>& widths,
                  const std::vector<std::string>& cells) const {
     std::string line;
     for (std::size_t i = 0; i < widths.size(); ++i) {
-      const std::string blanks(widths[i] - width(cells[i]), ' ');
+      const std::size_t taken = width(cells[i]);
+      const std::string blanks(widths[i] > taken ? widths[i] - taken : 0, ' ');
       line += aligns_[i] == Align::kLeft ? cells[i] + blanks : blanks + cells[i];
       line += "  ";
     }

@@ -5,10 +5,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
 #include <fstream>
 #include <sstream>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -59,24 +64,81 @@ class Utf8Environment {
   std::vector<char*> entries_;
 };
 
-// The exit status, or nothing where the program is not there. No shell: no name needs quoting.
-std::pair<bool, int> run(const fs::path& script, const fs::path& out, const fs::path& err) {
+// Has the child take limits on the size of files as programs usually do, whatever ours does.
+class SpawnAttributes {
+ public:
+  SpawnAttributes() {
+    ::posix_spawnattr_init(&attributes_);
+    sigset_t restored;
+    ::sigemptyset(&restored);
+    ::sigaddset(&restored, SIGXFSZ);
+    ::posix_spawnattr_setsigdefault(&attributes_, &restored);
+    ::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGDEF);
+  }
+  ~SpawnAttributes() { ::posix_spawnattr_destroy(&attributes_); }
+  SpawnAttributes(const SpawnAttributes&) = delete;
+  SpawnAttributes& operator=(const SpawnAttributes&) = delete;
+  [[nodiscard]] const posix_spawnattr_t* get() const { return &attributes_; }
+
+ private:
+  posix_spawnattr_t attributes_{};
+};
+
+struct Child {
+  int error = 0;  // why it could not be started, if so
+  int status = 0;
+  std::string given_up;  // why it was ended, if so
+};
+
+bool has_ended(pid_t child, int& status) {
+  const pid_t result = ::waitpid(child, &status, WNOHANG);
+  return result == child || (result < 0 && errno != EINTR);
+}
+
+void wait_for(pid_t pid, const std::function<bool()>& cancelled, Child& child) {
+  constexpr auto kLongest = std::chrono::seconds(60);
+  const auto start = std::chrono::steady_clock::now();
+  for (auto pause = std::chrono::milliseconds(1); !has_ended(pid, child.status);) {
+    if (cancelled && cancelled()) child.given_up = "interrupted";
+    if (std::chrono::steady_clock::now() - start > kLongest) child.given_up = "it took longer than a minute";
+    if (!child.given_up.empty()) {
+      ::kill(pid, SIGKILL);
+      while (::waitpid(pid, &child.status, 0) < 0 && errno == EINTR) {
+      }
+      return;
+    }
+    std::this_thread::sleep_for(pause);
+    pause = std::min(2 * pause, std::chrono::milliseconds(20));
+  }
+}
+
+// No shell: no name needs quoting.
+Child run(const fs::path& script, const fs::path& out, const fs::path& err, const std::function<bool()>& cancelled) {
   SpawnActions actions;
   actions.open(STDIN_FILENO, "/dev/null", O_RDONLY);
   actions.open(STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC);
   actions.open(STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC);
+  const SpawnAttributes attributes;
   std::string program = "gnuplot", defaults = "-d", file = script.string();
   const std::array<char*, 4> arguments = {program.data(), defaults.data(), file.data(), nullptr};
   const Utf8Environment environment;
-  pid_t child = 0;
-  if (::posix_spawnp(&child, "gnuplot", actions.get(), nullptr, arguments.data(), environment.get()) != 0) {
-    return {false, 0};
-  }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 127) return {false, 0};
-  return {true, status};
+  Child child;
+  pid_t pid = 0;
+  child.error = ::posix_spawnp(&pid, "gnuplot", actions.get(), attributes.get(), arguments.data(), environment.get());
+  if (child.error == 0) wait_for(pid, cancelled, child);
+  return child;
+}
+
+bool is_missing(const Child& child) {
+  const bool unable = WIFEXITED(child.status) && WEXITSTATUS(child.status) == 127;
+  return child.error == ENOENT || child.error == EACCES || (child.error == 0 && unable);
+}
+
+std::string complaint(const Child& child, const fs::path& err) {
+  constexpr std::size_t kShown = 500;
+  if (child.error != 0) return std::strerror(child.error);
+  if (!child.given_up.empty()) return child.given_up;
+  return contents(err).substr(0, kShown);
 }
 
 void replace_all(std::string& text, std::string_view from, std::string_view to) {
@@ -95,21 +157,24 @@ void remove_between(std::string& text, std::string_view begin, std::string_view 
 
 }  // namespace
 
-PlotResult run_gnuplot(std::string_view script, const fs::path& scratch) {
+PlotResult run_gnuplot(std::string_view script, const fs::path& scratch, const std::function<bool()>& cancelled) {
   const fs::path in = scratch / "figure.gp", out = scratch / "figure.svg", err = scratch / "figure.err";
-  std::ofstream(in, std::ios::binary) << script;
-  const auto [started, status] = run(in, out, err);
   PlotResult result;
-  if (!started) {
+  std::ofstream file(in, std::ios::binary);
+  file << script;
+  file.close();
+  if (!file) {
+    result.message = "its script could not be written; the disk may be full";
+  } else if (const Child child = run(in, out, err, cancelled); is_missing(child)) {
     result.outcome = PlotResult::Outcome::kNoProgram;
   } else {
     result.svg = contents(out);
-    result.message = contents(err);
-    const bool drawn = status == 0 && result.svg.find("</svg>") != std::string::npos;
-    result.outcome = drawn ? PlotResult::Outcome::kDrawn : PlotResult::Outcome::kFailed;
+    result.message = complaint(child, err);
+    const bool drawn = child.error == 0 && child.status == 0 && result.svg.find("</svg>") != std::string::npos;
+    if (drawn) result.outcome = PlotResult::Outcome::kDrawn;
   }
   std::error_code ignored;
-  for (const fs::path& file : {in, out, err}) fs::remove(file, ignored);
+  for (const fs::path& used : {in, out, err}) fs::remove(used, ignored);
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <fstream>
 #include <string>
 #include <system_error>
@@ -17,6 +18,7 @@ namespace fs = std::filesystem;
 
 // Absolute, without a trailing separator, so that it has a parent and a name.
 fs::path normalised(const fs::path& folder) {
+  if (folder.empty()) return {};
   fs::path path = fs::absolute(folder).lexically_normal();
   return path.has_filename() ? path : path.parent_path();
 }
@@ -39,26 +41,61 @@ bool begins_like_ours(const fs::path& file) {
 
 void require_replaceable(const fs::path& folder) {
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    if (entry.is_regular_file() && is_our_file(entry.path())) continue;
-    refuse(folder, "the folder holds '" + entry.path().filename().string() + "', which is not of our making",
+  bool empty = true;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    empty = false;
+    std::error_code ignored;
+    if (entry->is_regular_file(ignored) && is_our_file(entry->path())) continue;
+    refuse(folder, "the folder holds '" + entry->path().filename().string() + "', which is not of our making",
            "the whole folder would be replaced", "name a new one");
   }
   if (error)
     refuse(folder, "the folder cannot be read: " + error.message(), "it would be replaced", "name another one");
-  if (!fs::is_empty(folder) && !begins_like_ours(folder / "summary.csv")) {
+  if (!empty && !begins_like_ours(folder / "summary.csv")) {
     refuse(folder, "the folder holds files, but no summary.csv of an earlier comparison",
            "the whole folder would be replaced", "name a new one");
   }
 }
 
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
 // The folder will be made in the nearest ancestor that exists.
 void require_writable_place(const fs::path& folder, const fs::path& target) {
   fs::path place = target.parent_path();
-  while (place.has_relative_path() && !fs::exists(place)) place = place.parent_path();
-  if (fs::is_directory(place) && ::access(place.c_str(), W_OK | X_OK) == 0) return;
+  while (place.has_relative_path() && !is_there(place)) place = place.parent_path();
+  std::error_code ignored;
+  if (fs::is_directory(place, ignored) && ::access(place.c_str(), W_OK | X_OK) == 0) return;
   refuse(folder, "cannot be made: '" + place.string() + "' is not a folder that can be written to",
          "the results need a place", "name another folder");
+}
+
+// Replacing the folder that a shell stands in would leave the shell in a folder that is gone.
+void require_elsewhere(const fs::path& folder, const fs::path& target) {
+  std::error_code error;
+  const fs::path here = fs::current_path(error);
+  const auto [end, ignored] = std::mismatch(target.begin(), target.end(), here.begin(), here.end());
+  if (error || end != target.end()) return;
+  refuse(folder, "is the current folder or holds it", "the whole folder would be replaced", "name a folder in it");
+}
+
+void require_free_or_ours(const fs::path& folder, const fs::path& target) {
+  if (target.empty()) refuse(folder, "the name of the output folder is empty", "the results need a place", "name one");
+  require_writable_place(folder, target);
+  std::error_code ignored;
+  const fs::file_status status = fs::symlink_status(target, ignored);
+  if (!fs::exists(status)) return;
+  if (fs::is_symlink(status)) {
+    refuse(folder, "is a symbolic link", "the link would be replaced, not what it leads to",
+           "name the folder itself, or a new one");
+  }
+  if (!fs::is_directory(status)) {
+    refuse(folder, "is not a folder", "the results are several files", "name a new folder");
+  }
+  require_elsewhere(folder, target);
+  require_replaceable(target);
 }
 
 fs::path sibling(const fs::path& folder, const std::string& suffix) {
@@ -67,45 +104,63 @@ fs::path sibling(const fs::path& folder, const std::string& suffix) {
   return folder.parent_path() / name;
 }
 
-}  // namespace
-
-void check_output_folder(const fs::path& folder) {
-  const fs::path target = normalised(folder);
-  require_writable_place(folder, target);
-  if (!fs::exists(fs::symlink_status(target))) return;
-  if (!fs::is_directory(fs::symlink_status(target))) {
-    refuse(folder, "is not a folder", "the results are several files", "name a new folder");
-  }
-  require_replaceable(target);
+// The path itself or the highest folder above it that does not exist.
+fs::path outermost_missing(fs::path path) {
+  while (path.has_relative_path() && !is_there(path.parent_path())) path = path.parent_path();
+  return path;
 }
 
+std::atomic<int> staged_count = 0;
+static_assert(std::atomic<int>::is_always_lock_free);  // or no signal handler could ask
+
+}  // namespace
+
+void check_output_folder(const fs::path& folder) { const StagedFolder attempt(folder); }
+
+bool StagedFolder::any() { return staged_count > 0; }
+
 StagedFolder::StagedFolder(const fs::path& target) : target_(normalised(target)), staged_(sibling(target_, "partial")) {
-  check_output_folder(target);
+  require_free_or_ours(target, target_);
   std::error_code error;
+  ++staged_count;
   fs::remove_all(staged_, error);
+  outermost_made_ = outermost_missing(staged_);
   fs::create_directories(staged_, error);
-  if (error) refuse(target, "cannot be made: " + error.message(), "the results need a place", "name another folder");
+  if (!error) return;
+  remove_made();
+  refuse(target, "cannot be made: " + error.message(), "the results need a place", "name another folder");
 }
 
 StagedFolder::~StagedFolder() {
-  std::error_code ignored;
-  if (!staged_.empty()) fs::remove_all(staged_, ignored);
+  if (!staged_.empty()) remove_made();
+}
+
+void StagedFolder::remove_made() {
+  std::error_code error;
+  fs::remove_all(staged_, error);
+  // Only what is empty is removed, so that nobody else's files can be lost.
+  for (fs::path made = staged_; made != outermost_made_ && !error;) {
+    made = made.parent_path();
+    fs::remove(made, error);
+  }
+  --staged_count;
 }
 
 void StagedFolder::commit() {
-  check_output_folder(target_);
+  require_free_or_ours(target_, target_);
   const fs::path old = sibling(target_, "old");
-  const bool replace = fs::exists(target_);
-  if (replace) fs::rename(target_, old);
+  const bool replace = is_there(target_);
   std::error_code error;
-  fs::rename(staged_, target_, error);
+  if (replace) fs::rename(target_, old, error);
+  if (!error) fs::rename(staged_, target_, error);
+  std::error_code ignored;
   if (error) {
-    if (replace) fs::rename(old, target_);
+    if (replace && !is_there(target_)) fs::rename(old, target_, ignored);
     refuse(target_, "cannot be put in place: " + error.message(), "the results need a place", "name another folder");
   }
   staged_.clear();
-  std::error_code ignored;
   if (replace) fs::remove_all(old, ignored);
+  --staged_count;
 }
 
 }  // namespace exactff::study

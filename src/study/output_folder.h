@@ -7,7 +7,8 @@ namespace exactff::study {
 
 inline constexpr const char* kReportFile = "report.html";
 
-// A hidden sibling of the target in which files are prepared; removed again unless commit() was called.
+// A hidden sibling of the target in which files are prepared; removed again, with the folders made on the way to it,
+// unless commit() was called.
 class StagedFolder {
  public:
   // Throws InputError where check_output_folder does, or where nothing can be written.
@@ -18,12 +19,18 @@ class StagedFolder {
 
   [[nodiscard]] const std::filesystem::path& path() const { return staged_; }
 
+  // Whether there is one anywhere in the program; safe to ask in a signal handler.
+  [[nodiscard]] static bool any();
+
   // Puts the prepared folder in the target's place; an earlier study there is removed.
   void commit();
 
  private:
+  void remove_made();
+
   std::filesystem::path target_;
   std::filesystem::path staged_;
+  std::filesystem::path outermost_made_;  // staged_ or the folder above it that did not exist before
 };
 
 }  // namespace exactff::study

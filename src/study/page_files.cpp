@@ -15,7 +15,9 @@ void write_file(const std::filesystem::path& file, const std::function<void(std:
   put(out);
   out.close();
   if (out) return;
-  throw InputError(Problem{file.string(), 0, "cannot be written", "the disk may be full or read-only", {}});
+  throw InputError(Problem{file.string(), 0, "cannot be written",
+                           "the disk may be full or read-only; nothing is left behind",
+                           "make room, or name a folder elsewhere"});
 }
 
 namespace {
@@ -32,7 +34,7 @@ DrawnFigures draw_figures(std::vector<Figure> figures, const std::filesystem::pa
   std::size_t done = 0;
   for (Figure& figure : figures) {
     require_not_cancelled(hooks);
-    const PlotResult plot = run_gnuplot(figure.script, scratch);
+    const PlotResult plot = run_gnuplot(figure.script, scratch, hooks.cancelled);
     if (hooks.progress) hooks.progress({"figures", ++done, figures.size()});
     if (plot.outcome == PlotResult::Outcome::kNoProgram) {
       drawn.none = kNoGnuplot;

@@ -29,6 +29,13 @@ class SharedLoop {
     }
   }
 
+  // Ends every thread's share.
+  void keep(std::exception_ptr failure) {
+    stop_ = true;
+    const std::lock_guard lock(mutex_);
+    if (!failure_) failure_ = std::move(failure);
+  }
+
   void rethrow() const {
     if (failure_) std::rethrow_exception(failure_);
   }
@@ -38,11 +45,6 @@ class SharedLoop {
     const std::lock_guard lock(mutex_);
     ++done_;
     if (hooks_.progress) hooks_.progress({stage_, done_, count_});
-  }
-  void keep(std::exception_ptr failure) {
-    stop_ = true;
-    const std::lock_guard lock(mutex_);
-    if (!failure_) failure_ = std::move(failure);
   }
 
   const std::size_t count_;
@@ -64,7 +66,11 @@ void parallel_for(std::size_t count, int threads, std::string_view stage, const 
   {
     std::vector<std::jthread> helpers;
     const auto wanted = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
-    for (std::size_t i = 1; i < wanted; ++i) helpers.emplace_back([&loop] { loop.work(); });
+    try {
+      for (std::size_t i = 1; i < wanted; ++i) helpers.emplace_back([&loop] { loop.work(); });
+    } catch (...) {  // a thread could not be started: the others need not go on
+      loop.keep(std::current_exception());
+    }
     loop.work();
   }
   loop.rethrow();

@@ -1,0 +1,296 @@
+// The program in trouble: full disks, signals, little memory, a small stack, a broken gnuplot, folders that are none.
+// Whatever happens, the exit code is right and nothing half-written stays behind.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <numbers>
+#include <sstream>
+#include <thread>
+
+#include "support/program.h"
+#include "unit/sanitized.h"
+
+namespace exactff {
+namespace {
+
+namespace fs = std::filesystem;
+using validation::TemporaryDirectory;
+
+const std::string kRoom =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 2\nv 1 0 2\nv 1 1 2\nv 0 1 2\n"
+    "g floor\nf 1 2 3 4\ng light\nf 8 7 6 5\n";
+
+// The program with its standard error in a file and whatever `prepare` does to the new process first.
+class Running {
+ public:
+  Running(std::vector<std::string> arguments, fs::path error_file, const std::function<void()>& prepare)
+      : error_file_(std::move(error_file)) {
+    arguments.insert(arguments.begin(), EXACTFF_PROGRAM);
+    std::vector<char*> words;
+    for (std::string& argument : arguments) words.push_back(argument.data());
+    words.push_back(nullptr);
+    child_ = ::fork();
+    if (child_ != 0) return;
+    if (std::freopen(error_file_.c_str(), "w", stderr) == nullptr) ::_exit(125);
+    if (std::freopen("/dev/null", "w", stdout) == nullptr) ::_exit(125);
+    prepare();
+    ::execv(words[0], words.data());
+    ::_exit(126);
+  }
+
+  void send(int signal) const { ::kill(child_, signal); }
+
+  // As a shell tells it: 128 + the signal where one ended the program.
+  int wait() const {
+    int status = 0;
+    ::waitpid(child_, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+
+  [[nodiscard]] std::string error() const {
+    std::ostringstream text;
+    text << std::ifstream(error_file_).rdbuf();
+    return text.str();
+  }
+
+ private:
+  fs::path error_file_;
+  pid_t child_ = 0;
+};
+
+void limit(int resource, rlim_t value) {
+  const rlimit both{value, value};
+  ::setrlimit(static_cast<__rlimit_resource>(resource), &both);
+}
+
+class HostileProgram : public testing::Test {
+ protected:
+  HostileProgram() { fs::create_directory(place_); }
+
+  Running start(
+      std::vector<std::string> arguments, const std::function<void()>& prepare = [] {}) const {
+    return {std::move(arguments), directory_.path() / "stderr", prepare};
+  }
+
+  std::vector<std::string> comparison(const fs::path& folder) const {
+    return {"compare", room_, "--on", "floor", "--source", "light", "--grid", "2x2", "--threads", "1", "-o", folder};
+  }
+  std::vector<std::string> point(std::vector<std::string> more) const {
+    std::vector<std::string> all{"point",    room_, "--at", ".5", ".5",       "0",
+                                 "--normal", "0",   "0",    "1",  "--source", "light"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+  // A gnuplot of our own, found before any other.
+  std::function<void()> with_gnuplot(const std::string& script) const {
+    const fs::path folder = directory_.path() / "bin";
+    fs::create_directory(folder);
+    std::ofstream(folder / "gnuplot") << "#!/bin/sh\n" << script << '\n';
+    fs::permissions(folder / "gnuplot", fs::perms::owner_all);
+    return [path = folder.string() + ":/usr/bin:/bin"] { ::setenv("PATH", path.c_str(), 1); };
+  }
+
+  void expect_nothing_in_place() const { EXPECT_TRUE(fs::is_empty(place_)); }
+
+  const TemporaryDirectory directory_;
+  const std::string room_ = directory_.write("room.obj", kRoom).string();
+  const fs::path place_ = directory_.path() / "place";  // where the results go
+};
+
+TEST_F(HostileProgram, AFullDiskLeavesNoFolder) {
+  const Running run = start(comparison(place_ / "new" / "result"), [] { limit(RLIMIT_FSIZE, 2048); });
+  EXPECT_EQ(run.wait(), 2);
+  expect_nothing_in_place();
+}
+
+TEST_F(HostileProgram, AFullDiskLeavesNoPicture) {
+  const Running run = start(point({"--svg", place_ / "a.svg"}), [] { limit(RLIMIT_FSIZE, 512); });
+  EXPECT_EQ(run.wait(), 2);
+  EXPECT_NE(run.error().find("a.svg: cannot write the file: File too large (nothing was written); "),
+            std::string::npos);
+  expect_nothing_in_place();
+}
+
+TEST_F(HostileProgram, AFullDiskAsStandardOutputIsAnError) {
+  const auto full = [] {
+    if (std::freopen("/dev/full", "w", stdout) == nullptr) ::_exit(125);
+  };
+  EXPECT_EQ(start({"info", room_}, full).wait(), 2);
+  EXPECT_EQ(start({"info", room_, "--json"}, full).wait(), 2);
+  EXPECT_EQ(start(point({"--plain"}), full).wait(), 2);
+}
+
+// While gnuplot draws, the hidden folder exists: the worst moment to be interrupted.
+TEST_F(HostileProgram, SignalsWhileItWritesLeaveNothing) {
+  const fs::path started = directory_.path() / "started";
+  const auto gnuplot = with_gnuplot("touch '" + started.string() + "'; exec sleep 100");
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    for (const int times : {1, 2}) {
+      fs::remove(started);
+      const Running run = start(comparison(place_ / "result"), gnuplot);
+      while (!fs::exists(started)) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      EXPECT_FALSE(fs::is_empty(place_));
+      for (int i = 0; i < times; ++i) run.send(signal);
+      EXPECT_EQ(run.wait(), 128 + signal);
+      EXPECT_EQ(run.error(), "exactff: interrupted; nothing was written\n");
+      expect_nothing_in_place();
+    }
+  }
+}
+
+TEST_F(HostileProgram, WithoutAWorkingGnuplotTheTablesAreComplete) {
+  const Running failing = start(comparison(place_ / "a"), with_gnuplot("echo no such luck >&2; exit 1"));
+  EXPECT_EQ(failing.wait(), 0);
+  EXPECT_NE(failing.error().find("no such luck"), std::string::npos);
+  const Running missing = start(comparison(place_ / "b"), [] { ::setenv("PATH", "/nonexistent", 1); });
+  EXPECT_EQ(missing.wait(), 0);
+  EXPECT_NE(missing.error().find("gnuplot was not found"), std::string::npos);
+  for (const char* folder : {"a", "b"}) {
+    EXPECT_TRUE(fs::exists(place_ / folder / "values.csv"));
+    EXPECT_TRUE(fs::exists(place_ / folder / "report.html"));
+  }
+}
+
+TEST_F(HostileProgram, TheEndOfMemoryIsTold) {
+  if (kSanitized) GTEST_SKIP() << "address space cannot be limited here";
+  std::string text;
+  for (int i = 0; i < 4'000'000; ++i) text += "v 0 0 0\n";
+  const std::string many = directory_.write("many.obj", text + kRoom).string();
+  const Running run = start({"info", many}, [] { limit(RLIMIT_AS, 200 << 20); });
+  EXPECT_EQ(run.wait(), 4);
+  EXPECT_TRUE(run.error().starts_with("exactff: out of memory (")) << run.error();
+}
+
+// Coordinates so far apart that the exact numbers, and nothing else, take much memory: GMP itself would abort.
+TEST_F(HostileProgram, TheEndOfMemoryIsToldByExactNumbersToo) {
+  if (kSanitized) GTEST_SKIP() << "address space cannot be limited here";
+  constexpr int kCorners = 2000;
+  std::ostringstream text;
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kCorners;
+    text << "v " << 1e300 * std::cos(angle) << ' ' << 1e300 * std::sin(angle) << ' ' << 1e-300 * (1 + i % 7) << '\n';
+  }
+  text << 'f';
+  for (int i = 1; i <= kCorners; ++i) text << ' ' << i;
+  const std::string wide = directory_.write("wide.obj", text.str() + '\n').string();
+  int told = 0;
+  for (rlim_t megabytes = 60; megabytes <= 110; megabytes += 2) {
+    const auto little_memory = [megabytes] { limit(RLIMIT_AS, megabytes << 20); };
+    if (start({"--version"}, little_memory).wait() != 0) continue;  // not even the libraries can be loaded
+    const int code = start({"info", wide}, little_memory).wait();
+    EXPECT_TRUE(code == 0 || code == 4) << megabytes << " MB: " << code;
+    if (code == 4) ++told;
+  }
+  EXPECT_GT(told, 0);
+}
+
+TEST_F(HostileProgram, ASmallStackIsEnough) {
+  if (kSanitized) GTEST_SKIP() << "sanitized code needs a large stack";
+  constexpr int kTeeth = 10'000;
+  std::string text = "v 0 -1 0\nv " + std::to_string(kTeeth) + " -1 0\n", face = "g comb\nf 1 2";
+  for (int i = kTeeth; i-- > 0;) {
+    const std::string x = std::to_string(i);
+    text += "v " + x + ".5 1000 " + (i % 2 == 0 ? "0" : ".1") + "\nv " + x + " 0 0\n";
+    const int next = 2 * (kTeeth - i) + 1;
+    face += ' ' + std::to_string(next) + ' ' + std::to_string(next + 1);
+  }
+  const std::string comb =
+      directory_.write("comb.obj", text + face + "\ng light\nv 0 0 9\nv 1 0 9\nv 0 1 9\nf -1 -2 -3\n").string();
+  const Running run =
+      start({"point", comb, "--at", "0", "0", "5", "--normal", "0", "0", "1", "--source", "light", "--plain"},
+            [] { limit(RLIMIT_STACK, 256 << 10); });
+  EXPECT_EQ(run.wait(), 0) << run.error();
+}
+
+TEST_F(HostileProgram, FoldersThatMustNotBeReplacedAreNot) {
+  fs::create_directory(place_ / "foreign");
+  std::ofstream(place_ / "foreign" / "letter.txt") << "dear";
+  std::ofstream(place_ / "file") << "not a folder";
+  fs::create_directory(place_ / "real");
+  fs::create_directory_symlink("real", place_ / "link");
+  const std::pair<std::string, std::string> table[] = {
+      {"foreign", "the folder holds 'letter.txt', which is not of our making"},
+      {"file", "is not a folder"},
+      {"file/below", "is not a folder that can be written to"},
+      {"link", "is a symbolic link"},
+      {std::string(250, 'n'), "File name too long"},
+      {".", "is the current folder"},
+      {"..", "is the current folder"},
+      {"", "the name of the output folder is empty"},
+  };
+  for (const auto& [folder, message] : table) {
+    const Running run = start(comparison(folder), [this] {
+      if (::chdir(place_.c_str()) != 0) ::_exit(125);
+    });
+    EXPECT_EQ(run.wait(), 2) << folder;
+    EXPECT_NE(run.error().find(message), std::string::npos) << run.error();
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(place_), fs::directory_iterator()), 4);
+  EXPECT_TRUE(fs::exists(place_ / "foreign" / "letter.txt"));
+}
+
+TEST_F(HostileProgram, FoldersMadeOnTheWayDisappearWithARefusal) {
+  std::vector<std::string> arguments = comparison(place_ / "a" / "b" / "c");
+  arguments[5] = "nobody";  // --source
+  EXPECT_EQ(start(arguments).wait(), 2);
+  expect_nothing_in_place();
+}
+
+TEST_F(HostileProgram, APictureGoesWhereALinkLeads) {
+  fs::create_symlink("target.svg", place_ / "link.svg");
+  for (int i = 0; i < 2; ++i) {  // at first the target does not exist
+    EXPECT_EQ(start(point({"--svg", place_ / "link.svg"})).wait(), 0);
+    EXPECT_TRUE(fs::is_symlink(place_ / "link.svg"));
+    EXPECT_GT(fs::file_size(place_ / "target.svg"), 100U);
+  }
+}
+
+TEST_F(HostileProgram, SenselessFlagsAreRefused) {
+  const std::vector<std::string> table[] = {
+      {"--grid", "0x0"},  {"--grid", "-1x5"},  {"--grid", "1e9x1e9"}, {"--grid", "1000000000x1000000000"},
+      {"--grid", ""},     {"--grid", "3x4x5"}, {"--rays", "0"},       {"--rays", "2147483647"},
+      {"--eps-b", "nan"}, {"--eps-b", "-1"},   {"--eps-b", "1,,2"},   {"--threads", "0"},
+      {"--source", "x"},  {"--pattern", "?"},
+  };
+  for (const std::vector<std::string>& flags : table) {
+    std::vector<std::string> arguments = comparison(place_ / "result");
+    const auto place = std::find(arguments.begin(), arguments.end(), flags[0]);
+    if (place != arguments.end()) {
+      *(place + 1) = flags[1];
+    } else {
+      arguments.insert(arguments.end(), flags.begin(), flags.end());
+    }
+    const Running run = start(arguments);
+    EXPECT_EQ(run.wait(), 2) << flags[0] << ' ' << flags[1];
+    EXPECT_FALSE(run.error().empty());
+    expect_nothing_in_place();
+  }
+  for (const std::vector<std::string>& flags : std::vector<std::vector<std::string>>{{"--digits", "1000000000"},
+                                                                                     {"--eps-b", "nan"},
+                                                                                     {"--eps-a", "-1"},
+                                                                                     {"--reflectance", "nan"},
+                                                                                     {"--rays", "0"}}) {
+    EXPECT_EQ(start(point(flags)).wait(), 2) << flags[0];
+  }
+}
+
+TEST_F(HostileProgram, AReceiverFarFromItsFaceIsWarnedAbout) {
+  const Running far =
+      start({"point", room_, "--at", "5", "5", "1", "--normal", "0", "0", "1", "--on", "floor", "--source", "light"});
+  EXPECT_EQ(far.wait(), 0);
+  EXPECT_NE(far.error().find("of the size of face 'floor' away from it"), std::string::npos);
+  const Running near = start(point({"--on", "floor"}));
+  EXPECT_EQ(near.wait(), 0);
+  EXPECT_EQ(near.error(), "");
+}
+
+}  // namespace
+}  // namespace exactff
