@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that exactff is built from, as root or through sudo. Does nothing where they are
-# already there.
+# setup.sh [PACKAGE...]: installs the Debian 12 packages that exactff is built from, and those named, as root or through
+# sudo. Does nothing where they are already there.
 set -euo pipefail
 
 packages=(
@@ -9,7 +9,8 @@ packages=(
   libembree-dev                                                                  # shadow rays
   libjemalloc-dev                                                                # the program's allocator
   libcli11-dev nlohmann-json3-dev gnuplot-nox                                    # program and report
-  libgtest-dev                                                                   # tests
+  libgtest-dev patch                                                             # tests
+  "$@"
 )
 
 missing=()

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# All tests: first a part of the suite under AddressSanitizer and UndefinedBehaviorSanitizer, then the whole suite on the
-# optimised build. Warnings are errors in both. Ends with ctest's own summary.
+# All tests: first a part of the suite under AddressSanitizer and UndefinedBehaviorSanitizer, with GCC and with Clang, and
+# a short fuzzing run in the latter build; then the whole suite on the optimised build. Warnings are errors in all three.
+# Ends with ctest's own summary.
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -10,6 +11,9 @@ validation/setup.sh
 validation/build.sh build/sanitize -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON -DEXACTFF_SANITIZE=ON -DCMAKE_BUILD_TYPE=Debug \
   -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
 ctest --test-dir build/sanitize --output-on-failure --parallel 2
+
+validation/fuzz.sh 30  # builds build/clang
+ctest --test-dir build/clang --output-on-failure --parallel 2
 
 validation/build.sh build -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON
 ctest --test-dir build --output-on-failure --parallel 2

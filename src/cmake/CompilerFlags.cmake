@@ -13,5 +13,10 @@ if(EXACTFF_SANITIZE)
   target_compile_options(exactff_flags INTERFACE -fsanitize=address,undefined -fno-sanitize=vptr -fno-sanitize-recover=all
                                                  -fno-omit-frame-pointer)
   target_link_options(exactff_flags INTERFACE -fsanitize=address,undefined)
-  target_compile_options(exactff_flags INTERFACE -Wno-maybe-uninitialized)  # instrumentation hides initialisations from it
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(exactff_flags INTERFACE -Wno-maybe-uninitialized)  # instrumentation hides initialisations
+  endif()
+endif()
+if(EXACTFF_FUZZ)
+  target_compile_options(exactff_flags INTERFACE -fsanitize=fuzzer-no-link)  # coverage; libFuzzer comes with its targets
 endif()

@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# Fuzzes the readers of OBJ, MTL and receivers and the exact solver: fuzz.sh [SECONDS], for each target, default 60.
+#
+# Builds build/clang: Clang, AddressSanitizer, UndefinedBehaviorSanitizer and libFuzzer. Each target starts from
+# data/fuzz/TARGET and a fresh working corpus; fuzz_solver also from the reference and regression cases. Two targets run
+# at a time. Ends with a summary; the exit code is 1 if there is a finding. A finding of fuzz_solver is shrunk to a case
+# that becomes a test when it is moved into data/regression. EXACTFF_BUILD names another build folder.
+set -euo pipefail
+
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$top"
+seconds=${1:-60}
+build=${EXACTFF_BUILD:-build/clang}
+work=$build/fuzzing
+findings=$build/findings
+
+validation/setup.sh clang libclang-rt-14-dev llvm
+validation/build.sh "$build" -DCMAKE_CXX_COMPILER=clang++ -DEXACTFF_FUZZ=ON -DEXACTFF_WERROR=ON -DCMAKE_BUILD_TYPE=Debug \
+  -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
+
+rm -rf "$work"
+mkdir -p "$work/temporary" "$findings"
+"$build/exactff_fuzz_seed" "$work/solver-seeds" data/reference/*.json data/regression/*.json
+
+run() {
+  local target=$1 corpora=("$work/$1" "data/fuzz/$1") options=(-max_total_time="$seconds" -max_len=4096 -timeout=60
+    -rss_limit_mb=2048 -report_slow_units=60 -print_final_stats=1 -artifact_prefix="$findings/$1-")
+  mkdir "$work/$target"
+  [ ! -d "$work/$target-seeds" ] || corpora+=("$work/$target-seeds")
+  [ ! -f "validation/fuzz/$target.dict" ] || options+=(-dict="validation/fuzz/$target.dict")
+  rm -f "$findings/$target"-*
+  TMPDIR=$work/temporary "$build/fuzz_$target" "${options[@]}" "${corpora[@]}" > "$work/$target.log" 2>&1 ||
+    touch "$work/$target.failed"
+}
+export -f run
+export seconds build work findings
+
+echo "Fuzzing for $seconds s each: solver, obj, receivers"
+printf '%s\n' solver obj receivers | xargs -P 2 -I TARGET bash -c 'run TARGET'
+
+replay() {
+  local target=$1 file
+  for file in "$findings/$target"-*; do
+    [ -e "$file" ] || continue
+    echo "  replay: $build/fuzz_$target $file"
+    [ "$target" != solver ] || "$build/exactff_minimise" -o "$findings" "$file" || true
+  done
+}
+
+status=0
+printf '%-10s %10s %10s %10s   %s\n' target runs coverage corpus result
+for target in solver obj receivers; do
+  log=$work/$target.log
+  runs=$(awk '/^stat::number_of_executed_units/ { print $2 }' "$log")
+  coverage=$(grep -o 'cov: [0-9]*' "$log" | tail -n 1 | cut -d ' ' -f 2 || true)
+  result=clean
+  [ ! -e "$work/$target.failed" ] || result="FINDING: see $log"
+  printf '%-10s %10s %10s %10s   %s\n' "$target" "${runs:-?}" "${coverage:-?}" "$(ls "$work/$target" | wc -l)" "$result"
+  if [ -e "$work/$target.failed" ]; then
+    status=1
+    replay "$target"
+  fi
+done
+exit "$status"

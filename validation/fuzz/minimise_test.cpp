@@ -1,0 +1,99 @@
+// A failure made on purpose becomes a small case that says the truth.
+#include "support/minimise.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "generate/families.h"
+#include "support/oracle.h"
+#include "support/program.h"
+#include "support/random_scenes.h"
+
+namespace exactff::validation {
+namespace {
+
+using generate::PlainPatch;
+using generate::PlainScene;
+
+bool has_patch(const PlainScene& scene, const std::string& name) {
+  return std::ranges::any_of(scene.patches, [&](const PlainPatch& patch) { return patch.name == name; });
+}
+
+PlainScene frame_and_plate() {
+  PlainScene scene;
+  scene.point = {0.1, 0.2, 0};
+  scene.add_ring(scene.patch("source"), {{-1, 1, 2}, {1, 1, 2}, {1, -1, 2}, {-1, -1, 2}});
+  scene.add_rings(scene.patch("frame"), {{{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}},
+                                         {{-0.3, -0.3, 1}, {0.3, -0.3, 1}, {0.3, 0.3, 1}, {-0.3, 0.3, 1}}});
+  scene.add_ring(scene.patch("plate"), {{0, 0, 0.7}, {1.0 / 3.0, 0, 0.7}, {0, 1.0 / 3.0, 0.7}});
+  return scene;
+}
+
+TEST(Minimise, KeepsWhatTheFailureNeeds) {
+  const auto fails = [](const PlainScene& scene) { return has_patch(scene, "plate"); };
+  const PlainScene small = minimised(frame_and_plate(), fails);
+  EXPECT_TRUE(fails(small));
+  EXPECT_EQ(small.patches.size(), 2u);  // the source is never dropped
+  EXPECT_EQ(small.vertices.size(), 6u) << "of two triangles";
+  EXPECT_EQ(small.point, Vec3{});
+}
+
+TEST(Minimise, DropsHolesBeforeFaces) {
+  const auto fails = [](const PlainScene& scene) { return has_patch(scene, "frame"); };
+  const PlainScene small = minimised(frame_and_plate(), fails);
+  ASSERT_TRUE(has_patch(small, "frame"));
+  const auto frame = std::ranges::find(small.patches, "frame", &PlainPatch::name);
+  EXPECT_EQ(frame->faces.at(0).rings.size(), 1u);
+  EXPECT_EQ(frame->faces.at(0).rings.at(0).size(), 3u);
+}
+
+TEST(Minimise, ShortensNumbers) {
+  const auto fails = [](const PlainScene& scene) {
+    return std::ranges::any_of(scene.vertices, [](const Vec3& v) { return v.x > 0.3 && v.x < 0.34; });
+  };
+  const PlainScene small = minimised(frame_and_plate(), fails);
+  ASSERT_TRUE(fails(small));
+  const auto v = std::ranges::find_if(small.vertices, [](const Vec3& p) { return p.x > 0.3 && p.x < 0.34; });
+  EXPECT_EQ(v->x, std::round(v->x * 2048) / 2048) << "ten bits are enough";
+}
+
+// A failure that any change would hide, also one by an exception.
+TEST(Minimise, NeverLeavesTheScenesThatCanBeBuilt) {
+  for (std::uint64_t i = 0; i < scaled_count(10); ++i) {
+    generate::Random random(seed_of(i));
+    const auto fails = [](const PlainScene& scene) {
+      try {
+        (void)generate::build(scene);
+        return true;
+      } catch (const InputError&) {
+        return true;
+      }
+    };
+    const PlainScene small = minimised(degenerate_scene(random), fails);
+    EXPECT_NO_THROW((void)generate::build(small)) << "seed " << seed_of(i);
+    EXPECT_NE(small.normal, Vec3{});
+  }
+}
+
+// Whatever is shrunk can be written, read and holds the oracle's value: a source of many polygons too.
+TEST(Minimise, EveryCaseFileReadsBack) {
+  const TemporaryDirectory directory;
+  for (std::uint64_t i = 0; i < scaled_count(30); ++i) {
+    generate::Random random(seed_of(i));
+    const PlainScene scene = degenerate_scene(random);
+    const CaseFile written = as_case("case", scene);
+    const CaseFile read = read_case(directory.write("case.json", to_json(written, "for a test")));
+    ASSERT_EQ(read.scene.vertices, written.scene.vertices);
+    ASSERT_EQ(read.expected.nearest, written.expected.nearest);
+    const Scene built = generate::build(read.scene);
+    EXPECT_EQ(
+        oracle(built, generate::receiver_of(read.scene), built.select("source")).value,
+        oracle(generate::build(scene), generate::receiver_of(scene), generate::build(scene).select("source")).value)
+        << "seed " << seed_of(i);
+  }
+}
+
+}  // namespace
+}  // namespace exactff::validation

@@ -1,0 +1,633 @@
+#include "fuzz/scene_bytes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "fuzz/bytes.h"
+
+namespace exactff::validation {
+
+using generate::PlainFace;
+using generate::PlainPatch;
+using generate::PlainScene;
+using generate::Ring;
+
+namespace {
+
+using Corners = std::vector<Vec3>;
+using Rings = std::vector<Corners>;
+
+constexpr std::size_t kMaxRings = 4;         // of one face
+constexpr std::size_t kMaxRingCorners = 24;  // of one ring
+
+Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vec3 operator*(double s, const Vec3& a) { return {s * a.x, s * a.y, s * a.z}; }
+
+double& component(Vec3& v, std::size_t axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+// The numbers of the instructions; part of the corpus' format.
+enum class Op : std::uint8_t {
+  kTriangle,
+  kParallelogram,
+  kRectangle,
+  kStar,
+  kRing,
+  kFrame,
+  kCopy,
+  kCover,
+  kThroughReceiver,
+  kNeighbour,
+  kTiles,
+  kRaw,
+  kSpike,
+  kIdleCorner,
+  kNudge,
+  kSlide,
+};
+constexpr std::size_t kOpCount = 16;
+
+// Beside the instruction in its byte.
+enum Flag : std::uint8_t { kSamePatch = 1, kReversed = 2, kKeyhole = 4, kOther = 8 };
+
+enum class Place : std::uint8_t { kOrigin, kLattice, kCorner, kMiddle, kInPlane, kRaw };
+constexpr std::size_t kPlaceCount = 6;
+
+enum class NormalKind : std::uint8_t { kUp, kLattice, kRaw };
+constexpr std::size_t kNormalCount = 3;
+
+// A plane w = height + slope_u u + slope_v v over two of the axes.
+struct Plane {
+  std::size_t axis = 2;
+  double height = 0.0;
+  double slope_u = 0.0;
+  double slope_v = 0.0;
+
+  [[nodiscard]] Vec3 at(double u, double v) const {
+    Vec3 out;
+    component(out, (axis + 1) % 3) = u;
+    component(out, (axis + 2) % 3) = v;
+    component(out, axis) = height + slope_u * u + slope_v * v;
+    return out;
+  }
+};
+
+struct Rectangle {
+  double u = 0.0;
+  double v = 0.0;
+  double width = 1.0;
+  double height = 1.0;
+
+  [[nodiscard]] Corners corners(const Plane& plane) const {
+    return {plane.at(u, v + height), plane.at(u + width, v + height), plane.at(u + width, v), plane.at(u, v)};
+  }
+  // The part between two pairs of sixteenths.
+  [[nodiscard]] Rectangle part(std::size_t left, std::size_t low, std::size_t right, std::size_t high) const {
+    const auto sixteenth = [](std::size_t k) { return static_cast<double>(k) / 16.0; };
+    return {u + sixteenth(left) * width, v + sixteenth(low) * height, sixteenth(right - left) * width,
+            sixteenth(high - low) * height};
+  }
+};
+
+struct DecodedFace {
+  std::size_t patch = 0;  // 0 is the source
+  Rings rings;
+  bool keyhole = false;
+};
+
+class Decoder {
+ public:
+  explicit Decoder(std::span<const std::uint8_t> bytes) : in_(bytes) {}
+
+  FuzzCase run() {
+    FuzzCase out;
+    out.identity = static_cast<Identity>(in_.below(kIdentityCount));
+    out.seed = in_.next();
+    read_header();
+    while (!in_.done() && faces_.size() < kMaxFaces && corner_count() < kMaxCorners) instruction();
+    place_receiver_on_faces();
+    out.scene = scene();
+    return out;
+  }
+
+ private:
+  void read_header() {
+    place_ = static_cast<Place>(in_.below(kPlaceCount));
+    if (place_ == Place::kLattice) point_ = lattice_point();
+    if (place_ == Place::kRaw) point_ = raw_point();
+    const auto kind = static_cast<NormalKind>(in_.below(kNormalCount));
+    if (kind == NormalKind::kLattice) normal_ = lattice_point();
+    if (kind == NormalKind::kRaw) normal_ = raw_point();
+    if (normal_ == Vec3{}) normal_.z = 1.0;
+    // Sources of one face are the rule.
+    const std::size_t size = in_.next();
+    source_faces_ = size < 192 ? 1 : size - 190;
+    exponent_ = static_cast<std::int8_t>(in_.next());
+    merge_corners_ = in_.below(2) == 1;
+  }
+
+  // --- numbers ---
+
+  double coordinate() {
+    const std::uint8_t byte = in_.next();
+    const double plain = ((byte & 15) - 8) / 4.0;
+    switch (byte >> 4) {
+      case 11:
+        return std::nextafter(plain, 1e300);
+      case 12:
+        return std::nextafter(plain, -1e300);
+      case 13:
+        return 0x1p-40 * plain;
+      case 14:
+        return 0x1p40 * plain;
+      case 15:
+        return plain / 3.0;
+      default:
+        return plain;
+    }
+  }
+
+  Vec3 lattice_point() {
+    const double x = coordinate();
+    const double y = coordinate();
+    return {x, y, coordinate()};
+  }
+
+  Vec3 raw_point() {
+    const double x = in_.raw_double();
+    const double y = in_.raw_double();
+    return {x, y, in_.raw_double()};
+  }
+
+  // A new corner, or one that is there already.
+  Vec3 corner() {
+    const std::uint8_t choice = in_.next();
+    if (choice < 160 || faces_.empty()) return lattice_point();
+    return some_corner(choice);
+  }
+
+  [[nodiscard]] Vec3 some_corner(std::size_t choice) const {
+    const DecodedFace& face = faces_[choice % faces_.size()];
+    const Corners& ring = face.rings.front();
+    return ring[choice / faces_.size() % ring.size()];
+  }
+
+  double slope() {
+    constexpr std::array kSlopes{0.0, 0.5, -0.5, 1.0, -1.0, 0.25, 2.0, 1.0 / 3.0};
+    return kSlopes[in_.below(kSlopes.size())];
+  }
+
+  Plane plane() {
+    const std::uint8_t kind = in_.next();
+    Plane out;
+    out.axis = (kind + 2u) % 3;  // horizontal first
+    out.height = coordinate();
+    if (kind < 160) return out;
+    out.slope_u = slope();
+    out.slope_v = slope();
+    return out;
+  }
+
+  Rectangle rectangle() {
+    Rectangle out;
+    out.u = coordinate();
+    out.v = coordinate();
+    const std::uint8_t size = in_.next();
+    out.width = (1 + (size & 15)) / 4.0;
+    out.height = (1 + (size >> 4)) / 4.0;
+    return out;
+  }
+
+  // --- instructions ---
+
+  void instruction() {
+    const std::uint8_t byte = in_.next();
+    const auto op = static_cast<Op>(byte % kOpCount);
+    flags_ = static_cast<std::uint8_t>(byte / kOpCount);
+    switch (op) {
+      case Op::kSpike:
+        return add_spike();
+      case Op::kIdleCorner:
+        return add_idle_corner();
+      case Op::kNudge:
+        return nudge();
+      case Op::kSlide:
+        return slide();
+      case Op::kTiles:
+        return add_tiles();
+      default:
+        return add(new_face(op));
+    }
+  }
+
+  Rings new_face(Op op) {
+    switch (op) {
+      case Op::kParallelogram:
+        return {parallelogram()};
+      case Op::kRectangle:
+        return {flat_rectangle()};
+      case Op::kStar:
+        return {polygon(true)};
+      case Op::kRing:
+        return {polygon(false)};
+      case Op::kFrame:
+        return frame();
+      case Op::kCopy:
+        return copy();
+      case Op::kCover:
+        return cover();
+      case Op::kThroughReceiver:
+        return {through_receiver()};
+      case Op::kNeighbour:
+        return {neighbour()};
+      case Op::kRaw:
+        return raw_rings();
+      default:
+        return {triangle()};
+    }
+  }
+
+  Corners triangle() {
+    const Vec3 a = corner();
+    const Vec3 b = corner();
+    return {a, b, corner()};
+  }
+
+  Corners parallelogram() {
+    const Vec3 a = corner();
+    const Vec3 b = corner();
+    const Vec3 c = corner();
+    return {a, b, b + (c - a), c};
+  }
+
+  Corners flat_rectangle() {
+    const Plane where = plane();
+    return rectangle().corners(where);
+  }
+
+  // Corners in one plane, in any order or sorted around their middle.
+  Corners polygon(bool sorted) {
+    const Plane where = plane();
+    std::vector<std::pair<double, double>> flat(3 + in_.below(6));
+    double u_sum = 0.0;
+    double v_sum = 0.0;
+    for (auto& [u, v] : flat) {
+      u = coordinate();
+      v = coordinate();
+      u_sum += u;
+      v_sum += v;
+    }
+    const auto count = static_cast<double>(flat.size());
+    const auto angle = [&](const auto& p) { return std::atan2(p.second - v_sum / count, p.first - u_sum / count); };
+    if (sorted) std::ranges::stable_sort(flat, [&](const auto& p, const auto& q) { return angle(p) > angle(q); });
+    Corners out;
+    for (const auto& [u, v] : flat) out.push_back(where.at(u, v));
+    return out;
+  }
+
+  // A rectangle with one hole or two, which may touch it or each other.
+  Rings frame() {
+    const Plane where = plane();
+    const Rectangle outer = rectangle();
+    Rings out{outer.corners(where)};
+    const std::size_t holes = 1 + in_.below(2);
+    for (std::size_t i = 0; i < holes; ++i) {
+      const std::size_t left = in_.below(16);
+      const std::size_t low = in_.below(16);
+      const std::size_t right = left + 1 + in_.below(16 - left);
+      const std::size_t high = low + 1 + in_.below(16 - low);
+      out.push_back(outer.part(left, low, right, high).corners(where));
+      if ((flags_ & kOther) != 0) out.back().pop_back();  // a triangle
+      std::ranges::reverse(out.back());
+    }
+    return out;
+  }
+
+  // A face once more, in place or one step of the lattice away.
+  Rings copy() {
+    if (faces_.empty()) return {triangle()};
+    Rings out = faces_[in_.below(faces_.size())].rings;
+    if ((flags_ & kOther) == 0) return out;
+    const Vec3 step = lattice_point();
+    for (Corners& ring : out) {
+      for (Vec3& v : ring) v = v + step;
+    }
+    return out;
+  }
+
+  // A face drawn towards the receiver or away from it: the shadows of its sides are the sides.
+  Rings cover() {
+    if (faces_.empty()) return {triangle()};
+    constexpr std::array kFactors{0.5, 0.25, 0.75, 2.0, 0x1p-30, -0.5, 1.0, 1.0 / 3.0};
+    Rings out = faces_[in_.below(faces_.size())].rings;
+    const double factor = kFactors[in_.below(kFactors.size())];
+    for (Corners& ring : out) {
+      for (Vec3& v : ring) v = point_ + factor * (v - point_);
+    }
+    return out;
+  }
+
+  // A parallelogram with the receiver as a corner, on a side, inside, or merely in its plane.
+  Corners through_receiver() {
+    const Vec3 u = corner() - point_;
+    const Vec3 v = corner() - point_;
+    const auto at = [&](double s, double t) { return point_ + (s * u + t * v); };
+    switch (in_.below(4)) {
+      case 0:
+        return {at(0, 0), at(1, 0), at(1, 1), at(0, 1)};
+      case 1:
+        return {at(-1, 0), at(1, 0), at(1, 1), at(-1, 1)};
+      case 2:
+        return {at(-1, -1), at(1, -1), at(1, 1), at(-1, 1)};
+      default:
+        return {at(1, 0), at(1, 1), at(0, 1)};
+    }
+  }
+
+  // Shares a side, or part of one, with a face.
+  Corners neighbour() {
+    if (faces_.empty()) return triangle();
+    const Corners& ring = faces_[in_.below(faces_.size())].rings.front();
+    const std::size_t i = in_.below(ring.size());
+    const Vec3 a = ring[i];
+    Vec3 b = ring[(i + 1) % ring.size()];
+    if ((flags_ & kOther) != 0) b = a + 0.5 * (b - a);
+    return {b, a, corner()};
+  }
+
+  // A rectangle in four tiles of one patch, some of them missing.
+  void add_tiles() {
+    const Plane where = plane();
+    const Rectangle whole = rectangle();
+    const std::size_t missing = in_.below(16);
+    const std::size_t u = 1 + in_.below(15);
+    const std::size_t v = 1 + in_.below(15);
+    const std::array parts{whole.part(0, 0, u, v), whole.part(u, 0, 16, v), whole.part(0, v, u, 16),
+                           whole.part(u, v, 16, 16)};
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      if ((missing >> k & 1) == 0) add({parts[k].corners(where)});
+      flags_ |= kSamePatch;
+    }
+  }
+
+  Rings raw_rings() {
+    Rings out(1 + in_.below(kMaxRings));
+    for (Corners& ring : out) {
+      ring.resize(3 + in_.below(kMaxRingCorners - 2));
+      for (Vec3& v : ring) v = raw_point();
+    }
+    return out;
+  }
+
+  void add(Rings rings) {
+    if (!std::ranges::all_of(rings, [](const Corners& ring) { return std::ranges::all_of(ring, &finite); })) return;
+    if ((flags_ & kReversed) != 0) {
+      for (Corners& ring : rings) std::ranges::reverse(ring);
+    }
+    if (faces_.size() >= source_faces_ && (patches_ == 1 || (flags_ & kSamePatch) == 0)) ++patches_;
+    faces_.push_back({patches_ - 1, std::move(rings), (flags_ & kKeyhole) != 0});
+  }
+
+  // --- changes of the last face ---
+
+  Corners* last_ring() {
+    if (faces_.empty()) return nullptr;
+    Corners& ring = faces_.back().rings.front();
+    return ring.size() < kMaxRingCorners ? &ring : nullptr;
+  }
+
+  // From a corner towards another corner, or anywhere, and back.
+  void add_spike() {
+    Corners* ring = last_ring();
+    if (ring == nullptr) return;
+    const std::size_t i = in_.below(ring->size());
+    const Vec3 from = (*ring)[i];
+    const Vec3 towards = (flags_ & kOther) != 0 ? corner() : (*ring)[in_.below(ring->size())];
+    const Vec3 tip = from + 0.5 * (towards - from);
+    Corners spike{from};
+    if ((flags_ & kReversed) != 0) spike.push_back(from + 0.25 * (towards - from));
+    spike.push_back(tip);
+    if ((flags_ & kReversed) != 0) spike.push_back(spike[1]);
+    ring->insert(ring->begin() + static_cast<std::ptrdiff_t>(i), spike.begin(), spike.end());
+  }
+
+  // A corner repeated, or one in the middle of a side.
+  void add_idle_corner() {
+    Corners* ring = last_ring();
+    if (ring == nullptr) return;
+    const std::size_t i = in_.below(ring->size());
+    const Vec3 a = (*ring)[i];
+    const Vec3 b = (*ring)[(i + 1) % ring->size()];
+    const Vec3 idle = (flags_ & kOther) != 0 ? a : a + 0.5 * (b - a);
+    ring->insert(ring->begin() + static_cast<std::ptrdiff_t>(i) + 1, idle);
+  }
+
+  void nudge() {
+    Corners* ring = last_ring();
+    if (ring == nullptr) return;
+    Vec3& v = (*ring)[in_.below(ring->size())];
+    double& c = component(v, in_.below(3));
+    const double towards = (flags_ & kOther) != 0 ? 1e300 : -1e300;
+    c = std::nextafter(c, towards);
+  }
+
+  void slide() {
+    Corners* ring = last_ring();
+    if (ring == nullptr) return;
+    Vec3& v = (*ring)[in_.below(ring->size())];
+    const int exponent = static_cast<std::int8_t>(in_.next()) * ((flags_ & kOther) != 0 ? 7 : 1);
+    const Vec3 slid = point_ + std::ldexp(1.0, exponent) * (v - point_);
+    if (finite(slid)) v = slid;
+  }
+
+  // --- the whole ---
+
+  [[nodiscard]] std::size_t corner_count() const {
+    std::size_t count = 0;
+    for (const DecodedFace& face : faces_) {
+      for (const Corners& ring : face.rings) count += ring.size();
+    }
+    return count;
+  }
+
+  // Faces drawn around the receiver keep their places: they then meet it no more, or still do.
+  void place_receiver_on_faces() {
+    if (faces_.empty()) return;
+    const Corners& ring = faces_.back().rings.front();
+    const Vec3& a = ring[0];
+    const Vec3& b = ring[1];
+    if (place_ == Place::kCorner) point_ = a;
+    if (place_ == Place::kMiddle) point_ = a + 0.5 * (b - a);
+    if (place_ == Place::kInPlane) point_ = (a + (a - b)) + (a - ring[2]);
+    if (!finite(point_)) point_ = {};
+  }
+
+  PlainScene scene() const {
+    PlainScene out;
+    out.point = point_;
+    out.normal = normal_;
+    for (const DecodedFace& face : faces_) {
+      PlainPatch& patch = out.patch(face.patch == 0 ? out.source : std::string("o").append(std::to_string(face.patch)));
+      out.add_rings(patch, face.rings);
+      if (face.keyhole) join_rings(out.vertices, patch.faces.back());
+    }
+    if (merge_corners_) merge_corners(out);
+    return rescaled(std::move(out));
+  }
+
+  static void join_rings(const std::vector<Vec3>& vertices, PlainFace& face) {
+    try {
+      face.rings = {generate::keyhole(vertices, face)};
+    } catch (const std::invalid_argument&) {  // they touch: no bridge
+    }
+  }
+
+  // Equal corners become one vertex.
+  static void merge_corners(PlainScene& scene) {
+    std::map<std::tuple<double, double, double>, std::uint32_t> first;
+    std::vector<Vec3> vertices;
+    for (PlainPatch& patch : scene.patches) {
+      for (PlainFace& face : patch.faces) {
+        for (Ring& ring : face.rings) {
+          for (std::uint32_t& index : ring) {
+            const Vec3& v = scene.vertices[index];
+            const auto [entry, is_new] =
+                first.try_emplace({v.x, v.y, v.z}, static_cast<std::uint32_t>(vertices.size()));
+            if (is_new) vertices.push_back(v);
+            index = entry->second;
+          }
+        }
+      }
+    }
+    scene.vertices = std::move(vertices);
+  }
+
+  // Most of the 256 exponents leave the scene as it is.
+  [[nodiscard]] PlainScene rescaled(PlainScene scene) const {
+    if (std::abs(exponent_) < 100) return scene;
+    PlainScene out = scene;
+    generate::scale(out, std::ldexp(1.0, exponent_ > 0 ? (exponent_ - 99) * 36 : (exponent_ + 99) * 36));
+    return finite(out.point) && std::ranges::all_of(out.vertices, &finite) ? out : scene;
+  }
+
+  Bytes in_;
+  Place place_ = Place::kOrigin;
+  Vec3 point_;
+  Vec3 normal_{0.0, 0.0, 1.0};
+  std::size_t source_faces_ = 1;
+  int exponent_ = 0;
+  bool merge_corners_ = false;
+  std::uint8_t flags_ = 0;
+  std::size_t patches_ = 1;
+  std::vector<DecodedFace> faces_;
+};
+
+Scene build_what_can_be(const PlainScene& plain) {
+  SceneBuilder builder({}, {.bad_faces = BadFaces::kSkip});
+  for (const Vec3& vertex : plain.vertices) builder.add_vertex(vertex);
+  const MaterialId material = builder.add_material({});
+  for (const PlainPatch& patch : plain.patches) {
+    const PatchId id = builder.patch(patch.name);
+    for (const PlainFace& face : patch.faces) builder.add_face(id, material, face.rings);
+  }
+  return builder.build();
+}
+
+// Without the faces that a scene cannot hold.
+PlainScene usable_part(const PlainScene& plain) {
+  const Scene built = build_what_can_be(plain);
+  PlainScene out = plain;
+  std::size_t i = 0;  // faces in the order they were added
+  for (PlainPatch& patch : out.patches) {
+    std::vector<PlainFace> usable;
+    for (PlainFace& face : patch.faces) {
+      if (built.faces()[i++].shape != FaceShape::kSkipped) usable.push_back(std::move(face));
+    }
+    patch.faces = std::move(usable);
+  }
+  std::erase_if(out.patches, [](const PlainPatch& patch) { return patch.faces.empty(); });
+  return out;
+}
+
+}  // namespace
+
+std::optional<FuzzCase> decode(std::span<const std::uint8_t> bytes) {
+  FuzzCase out = Decoder(bytes).run();
+  out.scene = usable_part(out.scene);
+  const bool has_source =
+      std::ranges::any_of(out.scene.patches, [&](const PlainPatch& patch) { return patch.name == out.scene.source; });
+  return has_source ? std::optional(std::move(out)) : std::nullopt;
+}
+
+namespace {
+
+class Encoder {
+ public:
+  std::vector<std::uint8_t> run(const PlainScene& scene, Identity identity) {
+    const PlainPatch& source = *std::ranges::find(scene.patches, scene.source, &PlainPatch::name);
+    for (const PlainPatch& patch : scene.patches) {
+      for (const PlainFace& face : patch.faces) count(face);
+    }
+    put(static_cast<std::size_t>(identity));
+    put(1);
+    put(static_cast<std::size_t>(Place::kRaw));
+    put(scene.point);
+    put(static_cast<std::size_t>(NormalKind::kRaw));
+    put(scene.normal);
+    put(source.faces.size() == 1 ? 0 : source.faces.size() + 190);
+    put(0);
+    put(0);
+    put(scene, source);
+    for (const PlainPatch& patch : scene.patches) {
+      if (patch.name != scene.source) put(scene, patch);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  void count(const PlainFace& face) {
+    if (++faces_ > kMaxFaces) throw std::invalid_argument("too many faces to be encoded");
+    if (face.rings.size() > kMaxRings) throw std::invalid_argument("too many rings to be encoded");
+    for (const Ring& ring : face.rings) {
+      if (ring.size() > kMaxRingCorners) throw std::invalid_argument("too many corners to be encoded");
+      corners_ += ring.size();
+    }
+    if (corners_ > kMaxCorners) throw std::invalid_argument("too many corners to be encoded");
+  }
+
+  void put(std::size_t value) { out_.push_back(static_cast<std::uint8_t>(value)); }
+  void put(const Vec3& v) {
+    for (const double c : {v.x, v.y, v.z}) {
+      for (int shift = 0; shift < 64; shift += 8) put(std::bit_cast<std::uint64_t>(c) >> shift & 255);
+    }
+  }
+  void put(const PlainScene& scene, const PlainPatch& patch) {
+    for (std::size_t f = 0; f < patch.faces.size(); ++f) {
+      const std::vector<Ring>& rings = patch.faces[f].rings;
+      put(static_cast<std::size_t>(Op::kRaw) + (f > 0 ? kOpCount * kSamePatch : 0));
+      put(rings.size() - 1);
+      for (const Ring& ring : rings) {
+        put(ring.size() - 3);
+        for (const std::uint32_t index : ring) put(scene.vertices[index]);
+      }
+    }
+  }
+
+  std::size_t faces_ = 0;
+  std::size_t corners_ = 0;
+  std::vector<std::uint8_t> out_;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> encode(const PlainScene& scene, Identity identity) { return Encoder().run(scene, identity); }
+
+}  // namespace exactff::validation
