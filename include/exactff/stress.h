@@ -48,12 +48,15 @@ inline constexpr std::size_t kMethodCount = 6;
 [[nodiscard]] std::string_view name_of(Method method);
 [[nodiscard]] std::string_view short_name_of(Method method);
 
+// The relative width that the truth is known to, with room to spare.
+inline constexpr double kTruthIsGoodTo = 1e-35;
+
 // One method on one scene.
 struct Answer {
   bool refused = false;  // the method will not take the scene
   double value = 0.0;    // estimates F; for kExact correctly rounded
-  // |value - F| / F, or |value| over the unoccluded form factor where F is 0. NaN where the value is no number, infinite
-  // where the method refused.
+  // |value - F| / F, or |value| over the unoccluded form factor where F is 0; 0 where it is below kTruthIsGoodTo. NaN
+  // where the value is no number, infinite where the method refused.
   double error = 0.0;
   double seconds = 0.0;  // median of several calls; preprocessing apart
 };
@@ -75,6 +78,11 @@ struct FamilyResult {
   FamilyInfo family;
   std::vector<Row> rows;  // by rising stiffness
 };
+
+// What Tampieri's algorithm is asked for: a tolerance eps_B of this share of the unoccluded form factor, by so many
+// jittered rays per undecided leaf, from seed 1.
+inline constexpr double kToleranceShare = 1e-4;
+inline constexpr int kRays = 64;
 
 // Errors below which a method counts as usable.
 inline constexpr std::array<double, 3> kThresholds = {1e-3, 1e-6, 1e-12};

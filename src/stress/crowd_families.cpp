@@ -11,7 +11,7 @@ constexpr Vec3 kUp{0, 0, 1};
 constexpr Vec3 kOrigin{0, 0, 0};
 constexpr Span kSide{-1, 1};
 
-// Side n of a square of n x n.
+// Side n of a square of n × n.
 int side_of(double count) { return static_cast<int>(std::lround(std::sqrt(count))); }
 
 // Tile k of n across [-1/2, 1/2]: exactly abutting, since both neighbours round the same quotient.
@@ -137,12 +137,12 @@ std::vector<double> squares(std::vector<double> sides) {
 std::vector<Family> crowd_families() {
   return {
       {{"tiles", "Tiles that cover the source exactly", "number of tiles",
-        "n x n abutting squares; the outermost edges fall exactly on the source's. F is exactly 0; errors are relative "
+        "n × n abutting squares; the outermost edges fall exactly on the source's. F is exactly 0; errors are relative "
         "to the unoccluded form factor."},
        squares({1, 2, 4, 8, 16, 32, 64}),
        tiles},
-      {{"tiles-one-missing", "Decimal tiles, one missing", "number of tiles",
-        "n x n squares around a gap. Their corners are quotients by an odd number, rounded. All that is visible lies "
+      {{"tiles-one-missing", "Tiles at rounded corners, one missing", "number of tiles",
+        "n × n squares around a gap. Their corners are quotients by an odd number, rounded. All that is visible lies "
         "in the gap of the middle tile."},
        squares({1, 3, 5, 9, 17, 33, 65}),
        tiles_one_missing},
@@ -150,13 +150,13 @@ std::vector<Family> crowd_families() {
         "Square rings within one another, faces with holes, with as wide gaps between them."},
        {1, 3, 10, 30, 100, 300, 1000},
        rings},
-      {{"blinds", "Venetian blind", "number of slats", "Tilted slats, about half of what lies behind them visible."},
+      {{"blinds", "Venetian blind", "number of slats",
+        "Tilted slats, from ten on about half of what lies behind them visible."},
        {1, 10, 30, 100, 300, 1000, 3000, 10000},
        blinds},
-      {{"fan", "Edges meeting at a point", "edges, over 8",
+      {{"fan", "Edges meeting at a point", "(edges - 4) / 8",
         "Triangles with one common corner hide every other sector around it. A quarter turn exchanges the hidden and "
-        "the "
-        "visible sectors: F is half of the unoccluded form factor.",
+        "the visible sectors: F is half of the unoccluded form factor.",
         Evidence::kSymmetry},
        {1, 3, 10, 30, 100, 300},
        fan},

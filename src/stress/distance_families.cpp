@@ -76,8 +76,7 @@ std::vector<Family> distance_families() {
        approach_interior},
       {{"approach-edge", "Receiver approaching an edge of the source", "1 / distance",
         "The receiver comes closer to a point of an edge, right below it. F tends to 1/2, and the edge comes to be "
-        "seen "
-        "under a half turn, where a x b vanishes against a . b."},
+        "seen under a half turn, where a x b vanishes against a . b."},
        decades(300),
        approach_edge},
       {{"approach-vertex", "Receiver approaching a vertex of the source", "1 / distance",
@@ -86,13 +85,12 @@ std::vector<Family> distance_families() {
        approach_vertex},
       {{"foot-of-wall", "Receiver at the foot of a wall", "1 / distance",
         "A wall at right angles to the receiver's surface, standing on it, comes closer. F tends to 1/2. A listing "
-        "that "
-        "drops perpendicular pairs returns 0."},
+        "that drops perpendicular pairs returns 0."},
        decades(300),
        foot_of_wall},
       {{"shrink", "Source shrinking", "1 / side",
-        "A square off the receiver's axis, at (100, 37, 50), shrinks. The terms of the edges stay as they are and "
-        "cancel; F falls with the square of the side, to 10⁻²⁸⁵."},
+        "A square off the receiver's axis, at (100, 37, 50), shrinks. The terms of its edges fall with its side and F "
+        "with the square, to 10⁻²⁸⁵: all but a vanishing share of them cancels."},
        decades(140),
        shrink},
       {{"recede", "Source receding", "distance / side, over 118",
@@ -106,7 +104,8 @@ std::vector<Family> distance_families() {
        sliver},
       {{"horizon-grazed", "Source hardly above the horizon", "1 / height above the horizon",
         "A wall across the receiver's horizon of which less and less rises above it. F falls with the square of "
-        "that height. Without a clip by the horizon Eq. (4) returns the difference of two halves, below 0."},
+        "that height. Without a clip by the horizon Eq. (4) returns the part above less the part below; the printed "
+        "listing drops the pair and returns 0."},
        decades(150),
        horizon_grazed},
       {{"horizon-ulp", "Source above the horizon by an ulp", "1 / height above the horizon",
@@ -114,9 +113,9 @@ std::vector<Family> distance_families() {
         "of its coordinates."},
        octaves(52),
        horizon_ulp},
-      {{"horizon-tilted", "Horizon cutting a corner of the source", "1 / width left",
-        "The receiver turns away until its horizon leaves a strip of the square above it, down to one unit in the last "
-        "place. Both the strip and the cosine at the receiver vanish."},
+      {{"horizon-tilted", "Horizon leaving a strip of the source", "1 / width left",
+        "The receiver turns away until its horizon leaves a strip of the square above it, down to a width of 2⁻⁵². "
+        "Both the strip and the cosine at the receiver vanish."},
        octaves(52),
        horizon_tilted},
   };

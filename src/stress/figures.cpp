@@ -95,7 +95,8 @@ Axes axes(const FamilyResult& result, const char* y) {
 study::Figure error_figure(const FamilyResult& result) {
   Axes a = axes(result, "relative error");
   a.extra.emplace_back("set yrange [3e-19:3e3]");
-  a.extra.emplace_back("set ytics 1e3");
+  a.extra.emplace_back("set ytics 1e-18,1e3");
+  a.extra.emplace_back("unset mytics");
   std::vector<Series> series;
   for (Method method : kMethods) series.push_back(series_of(result, method, drawn_error));
   return {
@@ -127,6 +128,9 @@ study::Figure time_figure(const FamilyResult& result) {
 }  // namespace
 
 std::vector<study::Figure> figures(const FamilyResult& result) {
+  const auto bits = [](const Row& row) { return row.precision_bits; };
+  const bool constant = std::ranges::adjacent_find(result.rows, std::not_equal_to<>{}, bits) == result.rows.end();
+  if (constant) return {error_figure(result), time_figure(result)};
   return {error_figure(result), precision_figure(result), time_figure(result)};
 }
 

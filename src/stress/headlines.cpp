@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "exactff/stress.h"
 #include "stress/tables.h"
@@ -13,21 +15,22 @@ using study::counted;
 using study::counted_of;
 
 struct Tally {
-  std::size_t scenes = 0;
   std::size_t independent = 0;  // judged by a closed form or a symmetry
-  std::size_t agreeing = 0;
+  std::size_t agreeing = 0;     // of these
+  std::size_t certified = 0;    // judged by the exact method's own enclosure
   int most_bits = 0;
-  double smallest = 1.0;  // positive form factor
+  double smallest = std::numeric_limits<double>::infinity();  // positive form factor judged independently
 };
 
 Tally tally(const Report& report) {
   Tally t;
   for (const FamilyResult& family : report.families) {
+    const bool independent = family.family.evidence != Evidence::kCertified;
     for (const Row& row : family.rows) {
-      ++t.scenes;
-      t.independent += family.family.evidence != Evidence::kCertified ? 1U : 0U;
-      t.agreeing += row.agrees ? 1U : 0U;
+      ++(independent ? t.independent : t.certified);
       t.most_bits = std::max(t.most_bits, row.precision_bits);
+      if (!independent) continue;
+      t.agreeing += row.agrees ? 1U : 0U;
       const double value = row.of(Method::kExact).value;
       if (value > 0.0) t.smallest = std::min(t.smallest, value);
     }
@@ -37,10 +40,18 @@ Tally tally(const Report& report) {
 
 std::string exact_sentence(const Report& report) {
   const Tally t = tally(report);
-  std::string text = "The exact value is right to the last bit in " + counted_of(t.agreeing, t.scenes, "scene") + "; " +
-                     std::to_string(t.independent) + " of them are judged by a closed form or a symmetry";
-  text += ", down to a form factor of " + study::rounded(t.smallest, 2) + ". The proof needed at most " +
-          counted(static_cast<std::uint64_t>(t.most_bits), "bit") + '.';
+  std::string text;
+  if (t.independent > 0) {
+    text = "The exact value is what an independent closed form or symmetry rounds to in " +
+           counted_of(t.agreeing, t.independent, "scene");
+    if (std::isfinite(t.smallest)) text += ", down to a form factor of " + study::rounded(t.smallest, 2);
+    text += t.certified > 0 ? "; " : ". ";
+  }
+  if (t.certified > 0) {
+    text += (text.empty() ? "In " : "in ") + counted(t.certified, "scene") +
+            " there is none, and its own enclosure at higher precision is the judge. ";
+  }
+  if (t.most_bits > 0) text += "The proof needed at most " + std::to_string(t.most_bits) + " bits.";
   return text;
 }
 

@@ -24,13 +24,13 @@ std::string_view name_of(Method method) {
     case Method::kExact:
       return "exact";
     case Method::kAcos:
-      return "Eq. (4) in double, acos";
+      return "Eq. (4) in double on the exact region, acos";
     case Method::kAtan2:
-      return "Eq. (4) in double, atan2";
+      return "Eq. (4) in double on the exact region, atan2";
     case Method::kAtan2Difference:
-      return "Eq. (4) in double, atan2 with a × (b − a)";
+      return "Eq. (4) in double on the exact region, atan2 with a × (b − a)";
     case Method::kAdaptive:
-      return "Tampieri's algorithm, mended";
+      return "Tampieri's algorithm as mended";
     case Method::kAdaptiveLiteral:
       break;
   }

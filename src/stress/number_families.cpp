@@ -68,10 +68,12 @@ Case short_normal(double s) {
 std::vector<Family> number_families() {
   return {
       {{"tiny", "Everything tiny", "1 / size",
-        "All coordinates are scaled down. Squares of lengths underflow from 10⁻¹⁵⁴ on."},
+        "All coordinates are scaled down. Squares of lengths underflow from 10⁻¹⁵⁴ on, "
+        "|a × b|², a fourth power, already from about 10⁻⁸⁰ on."},
        decades(300),
        tiny},
-      {{"huge", "Everything huge", "size", "All coordinates are scaled up. Squares of lengths overflow from 10¹⁵⁴ on."},
+      {{"huge", "Everything huge", "size",
+        "All coordinates are scaled up. Squares of lengths overflow from 10¹⁵⁴ on, |a × b|² already from 10⁷⁷ on."},
        decades(300),
        huge},
       {{"mixed-scales", "Tiny and huge at once", "size of the source, and 1 / size of the occluder",
@@ -79,9 +81,8 @@ std::vector<Family> number_families() {
        decades(300),
        mixed},
       {{"moved-away", "Everything far from the origin", "distance from the origin",
-        "The scene is moved by a power of two; its coordinates remain exact, and F the same to the last bit. What "
-        "works "
-        "with differences never notices."},
+        "The scene is moved by a power of two; its coordinates remain exact, and F the same to the last bit. Eq. (4) "
+        "never notices; shadow rays fall otherwise."},
        octaves(46, 2),
        moved_away},
       {{"short-normal", "Denormal normal", "1 / length, over 5·10²¹",

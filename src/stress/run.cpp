@@ -26,9 +26,7 @@ namespace exactff::stress {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kToleranceShare = 1e-4;
-constexpr int kRays = 64;
-constexpr int kTruthDigits = 30;
+constexpr int kTruthDigits = 40;
 
 // |value - truth| / scale
 double relative_difference(double value, const Enclosure& truth, const Enclosure& scale) {
@@ -39,7 +37,8 @@ double relative_difference(double value, const Enclosure& truth, const Enclosure
   arb_sub(difference.get(), difference.get(), truth.ball().get(), kBits);
   arb_abs(difference.get(), difference.get());
   arb_div(quotient.get(), difference.get(), scale.ball().get(), kBits);
-  return kernel::nearest_to_midpoint(quotient);
+  const double error = kernel::nearest_to_midpoint(quotient);
+  return error < kTruthIsGoodTo ? 0.0 : error;
 }
 
 // Calls compute() until its median time is worth telling: at most kMostCalls times, and no longer than the limit.
@@ -108,7 +107,8 @@ class Trial {
 
   void record(Method method, double value, double seconds) {
     const double error = relative_difference(value, row_.truth, zero_ ? unoccluded_ : row_.truth);
-    answer(method) = {.refused = false, .value = value, .error = error, .seconds = seconds};
+    const double number = std::isnan(value) ? std::numeric_limits<double>::quiet_NaN() : value;  // never -nan
+    answer(method) = {.refused = false, .value = number, .error = error, .seconds = seconds};
   }
 
   [[nodiscard]] std::vector<Polygon> region() const {
@@ -166,7 +166,11 @@ class Trial {
 [[noreturn]] void refuse_family(const std::string& name) {
   std::vector<std::string> names;
   for (const Family& family : all_families()) names.emplace_back(family.info.name);
-  throw InputError(Problem{{}, 0, "there is no family '" + name + "'", {}, "use one of " + study::enumerate(names)});
+  throw InputError(Problem{{},
+                           0,
+                           "there is no family '" + name + "'",
+                           {},
+                           "exactff stress --list tells them all: " + study::enumerate(names)});
 }
 
 const Family& family_named(const std::string& name) {
@@ -181,7 +185,10 @@ std::vector<const Family*> selected(const std::vector<std::string>& names) {
   if (names.empty()) {
     for (const Family& family : all_families()) list.push_back(&family);
   }
-  for (const std::string& name : names) list.push_back(&family_named(name));
+  for (const std::string& name : names) {
+    const Family* family = &family_named(name);
+    if (std::find(list.begin(), list.end(), family) == list.end()) list.push_back(family);
+  }
   return list;
 }
 

@@ -19,10 +19,17 @@ std::string method_column(Method method, std::string_view suffix) {
   return std::string(short_name_of(method)) + std::string(suffix);
 }
 
+void write_settings(std::ostream& out) {
+  out << "# tampieri: eps_B " << study::shortest(kToleranceShare) << " of the unoccluded form factor, " << kRays
+      << " jittered rays, seed 1\n";
+}
+
 void write_values(const Report& report, std::ostream& out) {
   write_head(out, "every family, stiffness and method");
   out << "# error: |value - truth| / truth; where the truth is 0, |value| over the unoccluded form factor\n"
-         "# tampieri: eps_B a ten-thousandth of the unoccluded form factor, 64 jittered rays, seed 1\n";
+         "# errors below "
+      << study::shortest(kTruthIsGoodTo) << ", which is as far as the truth is known, are written 0\n";
+  write_settings(out);
   {
     CsvRow row(out);
     row << "family"
@@ -57,6 +64,8 @@ void write_values(const Report& report, std::ostream& out) {
 
 void write_summary(const Report& report, std::ostream& out) {
   write_head(out, "the largest stiffness up to which each method's error stays below each threshold; 0: not even once");
+  out << "# stiffnesses are tried in steps (see values.csv); each number is the last one tried\n";
+  write_settings(out);
   CsvRow(out) << "family"
               << "method"
               << "threshold"

@@ -33,13 +33,26 @@ std::string stiffness_text(double stiffness) {
 std::string error_text(const Answer& answer) {
   if (answer.refused) return "refused";
   if (std::isnan(answer.error)) return "no number";
-  return study::rounded(answer.error, 2);
+  return answer.error == 0.0 ? "0" : study::rounded(answer.error, 2);
 }
 
 std::string reach_text(const FamilyResult& result, Method method, double threshold) {
   const double reach = usable_up_to(result, method, threshold);
   return !result.rows.empty() && reach == result.rows.back().stiffness ? "all" : stiffness_text(reach);
 }
+
+namespace {
+
+// Where the method stops keeping the first threshold it does so by refusing the scene.
+bool next_is_refused(const FamilyResult& result, Method method) {
+  const double reach = usable_up_to(result, method, kThresholds.front());
+  for (const Row& row : result.rows) {
+    if (row.stiffness > reach) return row.of(method).refused;
+  }
+  return false;
+}
+
+}  // namespace
 
 std::string reaches_text(const FamilyResult& result, Method method) {
   std::string text;
@@ -49,7 +62,8 @@ std::string reaches_text(const FamilyResult& result, Method method) {
     all = all && reach == "all";
     text += (text.empty() ? "" : " · ") + reach;
   }
-  return all ? "all" : text;
+  if (all) return "all";
+  return next_is_refused(result, method) ? text + " (refused)" : text;
 }
 
 }  // namespace exactff::stress

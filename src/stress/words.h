@@ -16,7 +16,7 @@ namespace exactff::stress {
 // How far a method keeps its error below a threshold: "all" to the family's end, else the last stiffness, or "–".
 [[nodiscard]] std::string reach_text(const FamilyResult& result, Method method, double threshold);
 
-// The same for every threshold: "10⁸ · 10⁵ · 100", or "all".
+// The same for every threshold: "10⁸ · 10⁵ · 100", or "all"; "(refused)" where the method then refuses the scene.
 [[nodiscard]] std::string reaches_text(const FamilyResult& result, Method method);
 
 }  // namespace exactff::stress
