@@ -8,6 +8,7 @@
 #include "scene/triangulation.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "scene/ear_clipping.h"
@@ -64,6 +65,7 @@ class FaceCutter {
   void without_newell(const ExactVec3& normal);
   void cut_other();
   bool is_convex(const PlanePoints& plane) const;
+  bool leaves_gap(const std::vector<TriangleIndices>& triangles) const;
   void add_part(const PlanePoints& plane, std::span<const std::size_t> corners);
   void report(const PlanarRegion& region);
   void report_crossing(std::pair<EdgeIndex, EdgeIndex> edges);
@@ -165,7 +167,36 @@ void FaceCutter::cut_other() {
                    "it cannot be cut into triangles", "split it into simple polygons"};
     return;
   }
+  if (leaves_gap(*triangles)) {
+    face_.fault = {"is not planar and has corners that coincide only as seen along its Newell vector",
+                   "cut along that vector it would have a gap", "split it into simple polygons"};
+    return;
+  }
   for (const TriangleIndices& triangle : *triangles) add_part(plane, triangle);
+}
+
+// Whether the triangles are bounded by anything but the ring: in space, not only as seen along the Newell vector.
+bool FaceCutter::leaves_gap(const std::vector<TriangleIndices>& triangles) const {
+  using Place = std::tuple<double, double, double>;
+  std::vector<std::pair<Place, Place>> sides, reversed;
+  const auto place = [&](std::size_t point) {
+    const Vec3& v = vertices_[points_.vertex[point]];
+    return Place{v.x, v.y, v.z};
+  };
+  const auto add = [&](std::size_t from, std::size_t to) {
+    const Place a = place(from), b = place(to);
+    if (a < b) sides.emplace_back(a, b);
+    if (b < a) reversed.emplace_back(b, a);
+  };
+  for (const auto& [a, b, c] : triangles) {
+    add(a, b);
+    add(b, c);
+    add(c, a);
+  }
+  for (std::size_t i = 0; i < points_.size(); ++i) add(next_in_ring(points_, i), i);
+  std::sort(sides.begin(), sides.end());
+  std::sort(reversed.begin(), reversed.end());
+  return sides != reversed;
 }
 
 void FaceCutter::add_part(const PlanePoints& plane, std::span<const std::size_t> corners) {

@@ -381,6 +381,23 @@ TEST(EarClipping, KeyholeRingsAndLobesThatTouchAreCut) {
   }
 }
 
+TEST(EarClipping, CornersThatCoincideOnlyAsSeenAlongTheNewellVectorMakeNoGap) {
+  // The Newell vector is along (1, -1, 0), and so is the side between the first two corners; the triangle that they
+  // make with the fourth is seen end-on.
+  const Vertices end_on = {{-1, 1, 2}, {1, -1, 2}, {-1, -1, 2}, {0, 0, 1}, {1, 1, 2}};
+  const CutFace refused = cut_face(end_on, {{4, 0, 1, 2, 3}});
+  ASSERT_TRUE(refused.fault);
+  EXPECT_NE(refused.fault->what.find("coincide"), std::string::npos) << refused.fault->what;
+  EXPECT_TRUE(refused.parts.empty());
+
+  // Corners that coincide in space do no harm, whether they are one vertex or two.
+  Vertices lobes = flat({{0, 0}, {2, 0}, {2, 2}, {4, 2}, {4, 4}, {2, 4}, {0, 2}, {2, 2}});
+  lobes[0].z = 0.125;
+  const CutFace touching = cut_face(lobes, {{0, 1, 2, 3, 4, 5, 7, 6}});
+  ASSERT_FALSE(touching.fault) << touching.fault->what;
+  EXPECT_EQ(touching.parts.size(), 4U);
+}
+
 TEST(EarClipping, LargeNearlyPlanarDiscsAreFast) {
   Vertices vertices;
   for (int i = 0; i < 3000; ++i) {
