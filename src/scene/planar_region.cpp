@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <numeric>
 #include <random>
+#include <stdexcept>
 #include <unordered_map>
 
 #include "scene/edge_crossing.h"
@@ -161,7 +162,9 @@ bool Builder::insert_edges(PlanarRegion& region) {
       triangulation_.insert_constraint(ends.from, ends.to);
     } catch (const Triangulation::Intersection_of_constraints_exception&) {
       region.fault = RegionFault::kCrossing;
-      region.edges = find_crossing(points_, plane_).value_or(std::pair{edge, edge});
+      const auto crossing = find_crossing(points_, plane_);
+      if (!crossing) throw std::logic_error("a face crosses itself, but no two of its edges do");
+      region.edges = *crossing;
       return false;
     }
   }
@@ -178,8 +181,7 @@ void Builder::add_steps(EdgeIndex edge) {
     FaceHandle face;
     int side = 0;
     const bool found = triangulation_.includes_edge(at, ends.to, next, face, side);
-    CGAL_assertion(found);
-    if (!found) return;
+    if (!found) throw std::logic_error("an edge of a face is missing from its triangulation");
     Step& step = steps_[key(at, next)];
     if (outer) step.winding += at->info() < next->info() ? ends.direction : -ends.direction;
     if (!outer) step.hole = !step.hole;
