@@ -9,6 +9,7 @@
 // product that underflows errs by at most 2^-1075, nothing beside 2^-49 * 2^-900, the least threshold admitted.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -52,6 +53,22 @@ inline int sign_of_dot(const Approx3& a, const Approx3& b) {
     return zero ? 0 : kUncertain;
   }
   return certified_sign(px + py + pz, m);
+}
+
+// Sign of det(a, b, c). Each of its six products carries (1 + 2u)^3 (1 + u)^2, the five sums add 5u of the sum m of
+// magnitudes: below 14u m in all, well within certified_sign's 16u m, m being computed to within 8u. A product of two that
+// underflows errs by 2^-1075, times at most 2^300, which is nothing beside 2^-49 * 2^-700.
+inline int sign_of_det(const Approx3& a, const Approx3& b, const Approx3& c) {
+  const double terms[] = {a.x * (b.y * c.z), -a.x * (b.z * c.y), a.y * (b.z * c.x),
+                          -a.y * (b.x * c.z), a.z * (b.x * c.y), -a.z * (b.y * c.x)};
+  double sum = 0.0;
+  double magnitude = 0.0;
+  for (const double term : terms) {
+    sum += term;
+    magnitude += std::abs(term);
+  }
+  const bool moderate = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}) <= 0x1p300 && magnitude >= 0x1p-700;
+  return moderate ? certified_sign(sum, magnitude) : kUncertain;
 }
 
 }  // namespace exactff::kernel

@@ -8,6 +8,7 @@
 
 #include "scene/nearest_names.h"
 #include "scene/numbered_name.h"
+#include "scene/places.h"
 #include "scene/scene_data.h"
 #include "scene/text_lines.h"
 
@@ -211,8 +212,14 @@ std::vector<std::uint32_t> position_ids(std::span<const Vec3> vertices) {
 
 }  // namespace
 
+std::span<const std::uint32_t> places(const Scene& scene) {
+  const Scene::Data& data = scene.data();
+  std::call_once(data.places_found, [&] { data.places = position_ids(data.vertices); });
+  return data.places;
+}
+
 std::size_t Scene::open_edge_count() const {
-  const std::vector<std::uint32_t> id = position_ids(vertices());
+  const std::span<const std::uint32_t> id = places(*this);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (const Face& face : faces()) {
     if (face.piece_count == 0) continue;

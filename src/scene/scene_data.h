@@ -22,6 +22,8 @@ struct Scene::Data {
   std::vector<std::uint32_t> corners;  // vertex indices of all pieces
   std::vector<Problem> warnings;
 
+  mutable std::once_flag places_found;  // see places()
+  mutable std::vector<std::uint32_t> places;
   mutable std::once_flag tree_built;  // the tree is made when first asked for: see shaft_tree()
   mutable ShaftTree tree;
 };

@@ -28,16 +28,26 @@ int longest_axis(const Box& box) {
   return size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
 }
 
+// The largest sum of magnitudes of y - apex over the box.
+double reach(const Box& box, const Vec3& apex) {
+  return std::max(std::abs(box.low.x - apex.x), std::abs(box.high.x - apex.x)) +
+         std::max(std::abs(box.low.y - apex.y), std::abs(box.high.y - apex.y)) +
+         std::max(std::abs(box.low.z - apex.z), std::abs(box.high.z - apex.z));
+}
+
 // The largest normal . (y - apex) - offset over the box is proved negative. With u = 2^-53: each difference is
 // rounded once (u), each product carries 2u of the normal and u of its own, three additions 3u of the sum m of
 // magnitudes, the offset 2u: below 9u m in all, against a threshold of 2^-48 m = 32u m. Overflow makes m infinite
-// and underflow is excluded by m >= 2^-900; NaN fails every comparison: each keeps the box.
+// and underflow is excluded by m >= 2^-900; NaN fails every comparison: each keeps the box. A further error e of the
+// normal's components adds at most e times the largest differences anywhere in the box, whatever their signs.
 bool certainly_outside_one(const Box& box, const Vec3& apex, const HalfSpace& h) {
-  const double x = h.normal.x * ((h.normal.x > 0.0 ? box.high.x : box.low.x) - apex.x);
-  const double y = h.normal.y * ((h.normal.y > 0.0 ? box.high.y : box.low.y) - apex.y);
-  const double z = h.normal.z * ((h.normal.z > 0.0 ? box.high.z : box.low.z) - apex.z);
+  const double dx = (h.normal.x > 0.0 ? box.high.x : box.low.x) - apex.x;
+  const double dy = (h.normal.y > 0.0 ? box.high.y : box.low.y) - apex.y;
+  const double dz = (h.normal.z > 0.0 ? box.high.z : box.low.z) - apex.z;
+  const double x = h.normal.x * dx, y = h.normal.y * dy, z = h.normal.z * dz;
   const double m = std::abs(x) + std::abs(y) + std::abs(z) + std::abs(h.offset);
-  return x + y + z - h.offset < -0x1p-48 * m && m >= 0x1p-900 && m <= 0x1p1000;
+  const double slack = h.error == 0.0 ? 0.0 : 1.001 * h.error * reach(box, apex);
+  return x + y + z - h.offset < -0x1p-48 * m - slack && m >= 0x1p-900 && m <= 0x1p1000;
 }
 
 }  // namespace

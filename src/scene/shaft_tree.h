@@ -17,6 +17,7 @@ namespace exactff {
 struct HalfSpace {
   Vec3 normal;
   double offset = 0.0;
+  double error = 0.0;  // of each component of the normal, beyond the relative one
 };
 
 struct Box {
