@@ -28,6 +28,14 @@ enum class Status {
 };
 [[nodiscard]] std::string_view to_string(Status status);
 
+// How the visible region is found. Both ways give the same bits.
+enum class Engine {
+  kEdges,    // what is left of every edge, by signs of determinants alone
+  kBoolean,  // polygon Booleans: the reference
+  kBoth,     // both, one checked against the other: std::logic_error where value, status or fraction differ
+};
+[[nodiscard]] std::string_view to_string(Engine engine);
+
 // How far one plane of the source had to be followed; every later stage had no work.
 enum class Outcome {
   kReceiverFace,   // the receiver lies on this face by construction
@@ -43,13 +51,14 @@ enum class Outcome {
 // What was done for the faces of the source that lie in one oriented plane.
 struct PlaneRecord {
   std::vector<FaceId> faces;
+  Engine engine = Engine::kEdges;  // that did the work
   Outcome outcome = Outcome::kBehind;
   bool horizon_clipped = false;               // the horizon cut the faces
   bool source_joined = false;                 // more than one convex piece had to be joined
   std::uint64_t tree_candidates = 0;          // pieces the bounding-volume tree could not rule out
   std::uint64_t candidates = 0;               // pieces left by the exact predicates and the exact clip
-  std::uint64_t clipped = 0;                  // candidates that the exact clip cut
-  std::uint64_t loops = 0;                    // boundary loops integrated
+  std::uint64_t clipped = 0;                  // candidates that an exact clip cut
+  std::uint64_t loops = 0;                    // boundary loops integrated; the edge engine does not count them
   std::uint64_t edges = 0;                    // boundary pieces integrated, after merging collinear ones
   std::optional<double> visible_fraction;     // on request, correctly rounded
   std::optional<std::string> exact_fraction;  // on request: "p/q"
@@ -83,6 +92,7 @@ struct FormFactor {
 };
 
 struct ExactOptions {
+  Engine engine = Engine::kEdges;
   bool visible_fraction = false;
   bool exact_fraction = false;  // implies visible_fraction
   bool list_cutters = false;

@@ -54,6 +54,7 @@ struct Request {
   std::string receivers_name;      // "floor, grid 32x32", or the name of a file
   std::vector<Selection> sources;  // empty: every patch that emits
   Sweeps sweeps;
+  Engine engine = Engine::kEdges;
   int threads = 0;           // 0: as many as the machine has
   std::string command_line;  // for the report's last section
 };

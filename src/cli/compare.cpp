@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/engine_option.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/scene_options.h"
@@ -38,6 +39,7 @@ struct CompareArguments {
   std::string receivers;
   std::vector<std::string> sources;
   std::string eps_b, eps_a, rays, seeds, pattern, variant;
+  EngineArgument engine;
   int threads = 0;
   std::string folder;
 };
@@ -177,6 +179,7 @@ std::string command_line(const CompareArguments& args) {
   add("--seeds", args.seeds);
   add("--pattern", args.pattern);
   add("--variant", args.variant);
+  if (args.engine.engine() != Engine::kEdges) add("--engine", args.engine.name);
   if (args.threads > 0) add("--threads", std::to_string(args.threads));
   add("-o", args.folder);
   return line;
@@ -188,6 +191,7 @@ study::Request request_of(const CompareArguments& args, const Scene& scene) {
   request.scene_name = std::filesystem::path(args.scene.path).filename().string();
   request.sweeps = sweeps_of(args);
   request.sources = sources_of(args, scene);
+  request.engine = args.engine.engine();
   request.threads = args.threads;
   request.command_line = command_line(args);
   if (!args.receivers.empty()) {
@@ -260,6 +264,7 @@ Command add_compare(CLI::App& app) {
   command->add_option("--pattern", args->pattern,
                       "Where rays end: jittered, centre, regular, low-discrepancy (default: all)");
   command->add_option("--variant", args->variant, "mended, literal (default: both)");
+  args->engine.add_to(*command);
   command->add_option("--threads", args->threads, "Threads (default: all); values do not depend on it")
       ->check(CLI::Range(1, 4096));
   command->add_option("-o,--output", args->folder, "Folder for the tables and the report")->required();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/engine_option.h"
 #include "cli/output.h"
 #include "cli/scene_options.h"
 #include "exactff/adaptive.h"
@@ -42,6 +43,7 @@ struct PointArguments {
   std::vector<double> reflectance;
   int digits = 0;
   int precision_cap = ExactOptions{}.precision_cap;
+  EngineArgument engine;
   bool flip = false;
   bool fraction = false;
   bool exact_fraction = false;
@@ -137,7 +139,8 @@ AdaptiveOptions adaptive_options(const PointArguments& args) {
 SourceResult compute_source(const PointArguments& args, const Scene& scene, const PointResult& point,
                             const ExactSource& source, const std::optional<AdaptiveSolver>& sampler) {
   SourceResult result{.source = source.selection(), .exact = {}, .unoccluded = {}, .shares = {}, .adaptive = {}};
-  const ExactOptions options{.visible_fraction = args.fraction || args.exact_fraction,
+  const ExactOptions options{.engine = args.engine.engine(),
+                             .visible_fraction = args.fraction || args.exact_fraction,
                              .exact_fraction = args.exact_fraction,
                              .list_cutters = args.explain,
                              .digits = args.digits,
@@ -447,6 +450,7 @@ void add_receiver_flags(CLI::App& app, PointArguments& args) {
 
 void add_output_flags(CLI::App& app, PointArguments& args) {
   app.add_option("--digits", args.digits, "Certified significant decimals")->check(CLI::Range(1, kMostDigits));
+  args.engine.add_to(app);
   app.add_option("--precision-cap", args.precision_cap, "Most bits that the contour may use")
       ->check(CLI::Range(32, 1 << 24))
       ->capture_default_str();

@@ -10,11 +10,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "contour/contour.h"
 #include "exact/fraction.h"
+#include "exact/quick_tier.h"
 #include "exact/source_planes.h"
 #include "visibility/visible_boundary.h"
+#include "visibility/visible_edges.h"
 
 namespace exactff {
 
@@ -105,34 +108,114 @@ void sort_unique(std::vector<FaceId>& faces) {
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
 }
 
+// The value from the double-double tier, if that determines it.
+bool certify_quickly(const exact::QuickTier& quick, const ExactOptions& options, FormFactor& result) {
+  result.enclosure = quick.enclosure();
+  result.precision_bits = exact::QuickTier::kBits;
+  const std::optional<double> nearest = result.enclosure.nearest();
+  if (!nearest || !has_decimals(result.enclosure, options.digits)) return false;
+  result.value = *nearest;
+  result.status = result.value == 0.0 ? Status::kUnderflow : Status::kCertified;
+  return true;
+}
+
+// One engine at work on one receiver and one source.
+class Solver {
+ public:
+  Solver(const Scene& scene, const Receiver& receiver, const ExactSource& source, const ExactOptions& options)
+      : scene_(scene),
+        planes_(source.planes().planes),
+        options_(options),
+        wants_fraction_(options.visible_fraction || options.exact_fraction),
+        view_(scene, receiver),
+        quick_(receiver.normal) {
+    request_ = {.engine = options.engine,
+                .fraction = wants_fraction_,
+                .list_cutters = options.list_cutters,
+                .only_occluders = options.only_occluders};
+  }
+
+  FormFactor run() {
+    for (const SourcePlane& plane : planes_) look_at(plane);
+    sort_unique(result_.cutters);
+    if (something_visible_) integrate();
+    set_bounds(result_);
+    if (wants_fraction_) set_fraction(shares_, result_);
+    return std::move(result_);
+  }
+
+ private:
+  void look_at(const SourcePlane& plane) {
+    PlaneVisibility seen = find_visible_boundary(view_, plane, request_);
+    if (!seen.boundary.empty() || seen.edges != nullptr) {
+      something_visible_ = true;
+      all_by_edges_ = all_by_edges_ && seen.edges != nullptr;
+      if (seen.edges != nullptr) quick_.add(*seen.edges);
+    }
+    if (wants_fraction_) {
+      note_fraction(seen, options_);
+      shares_.push_back(share_of(scene_, plane, seen));
+    }
+    result_.cutters.insert(result_.cutters.end(), seen.cutters.begin(), seen.cutters.end());
+    result_.planes.push_back(std::move(seen.record));
+    last_ = std::move(seen);
+  }
+
+  void integrate() {
+    const bool may_be_quick = all_by_edges_ && options_.precision_cap >= exact::QuickTier::kBits;
+    if (may_be_quick && certify_quickly(quick_, options_, result_)) return;
+    contour::ContourIntegral contour(view_.normal.exact);
+    if (planes_.size() == 1) {
+      add_exactly(last_, contour);
+    } else {
+      for (const SourcePlane& plane : planes_) add_exactly(find_visible_boundary(view_, plane, request_), contour);
+    }
+    certify(contour, options_, result_);
+  }
+
+  static void add_exactly(const PlaneVisibility& seen, contour::ContourIntegral& contour) {
+    for (const visibility::BoundaryPiece& piece : seen.boundary) contour.add(piece);
+    if (seen.edges == nullptr) return;
+    for (const visibility::VisibleEdges::Part& part : seen.edges->parts()) contour.add(seen.edges->exact(part));
+  }
+
+  const Scene& scene_;
+  const std::vector<SourcePlane>& planes_;
+  const ExactOptions& options_;
+  const bool wants_fraction_;
+  const visibility::View view_;
+  visibility::Request request_;
+  exact::QuickTier quick_;
+  FormFactor result_;
+  std::vector<PlaneShare> shares_;
+  PlaneVisibility last_;
+  bool something_visible_ = false;
+  bool all_by_edges_ = true;
+};
+
+FormFactor solve_by(Engine engine, const Scene& scene, const Receiver& receiver, const ExactSource& source,
+                    ExactOptions options) {
+  options.engine = engine;
+  return Solver(scene, receiver, source, options).run();
+}
+
+void require_agreement(const FormFactor& a, const FormFactor& b) {
+  if (a.value == b.value && a.status == b.status && a.enclosure.overlaps(b.enclosure) &&
+      a.visible_fraction == b.visible_fraction && a.visible_part == b.visible_part) {
+    return;
+  }
+  throw std::logic_error("the two engines disagree: " + a.enclosure.midpoint() + " by edges, " +
+                         b.enclosure.midpoint() + " by Booleans");
+}
+
 }  // namespace
 
 FormFactor exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                              const ExactOptions& options) {
   exact::check_receiver(receiver);
-  const visibility::View view(scene, receiver);
-  const bool wants_fraction = options.visible_fraction || options.exact_fraction;
-  const visibility::Request request{
-      .fraction = wants_fraction, .list_cutters = options.list_cutters, .only_occluders = options.only_occluders};
-  contour::ContourIntegral contour(view.normal.exact);
-  FormFactor result;
-  std::vector<PlaneShare> shares;
-  bool something_visible = false;
-  for (const SourcePlane& plane : source.planes().planes) {
-    PlaneVisibility seen = find_visible_boundary(view, plane, request);
-    for (const visibility::BoundaryPiece& piece : seen.boundary) contour.add(piece);
-    something_visible = something_visible || !seen.boundary.empty();
-    if (wants_fraction) {
-      note_fraction(seen, options);
-      shares.push_back(share_of(scene, plane, seen));
-    }
-    result.cutters.insert(result.cutters.end(), seen.cutters.begin(), seen.cutters.end());
-    result.planes.push_back(std::move(seen.record));
-  }
-  sort_unique(result.cutters);
-  if (something_visible) certify(contour, options, result);
-  set_bounds(result);
-  if (wants_fraction) set_fraction(shares, result);
+  if (options.engine != Engine::kBoth) return solve_by(options.engine, scene, receiver, source, options);
+  FormFactor result = solve_by(Engine::kEdges, scene, receiver, source, options);
+  require_agreement(result, solve_by(Engine::kBoolean, scene, receiver, source, options));
   return result;
 }
 

@@ -31,6 +31,18 @@ std::string_view to_string(VisiblePart part) {
   return "";
 }
 
+std::string_view to_string(Engine engine) {
+  switch (engine) {
+    case Engine::kEdges:
+      return "edges";
+    case Engine::kBoolean:
+      return "boolean";
+    case Engine::kBoth:
+      return "both";
+  }
+  return "";
+}
+
 std::string_view to_string(Outcome outcome) {
   switch (outcome) {
     case Outcome::kReceiverFace:
@@ -104,8 +116,13 @@ StageNote shaft_note(const PlaneRecord& plane, const std::string& left_out) {
 
 StageNote clip_note(const PlaneRecord& plane, const std::string& left_out) {
   if (progress(plane.outcome) < kSearched) return {"exact clip", false, left_out};
-  if (plane.clipped == 0) return {"exact clip", false, "no candidate reaches out of the shaft"};
-  return {"exact clip", true, counted(plane.clipped, "candidate") + " cut to the shaft"};
+  const bool by_edges = plane.engine == Engine::kEdges;
+  if (plane.clipped == 0) {
+    return {"exact clip", false,
+            by_edges ? "no candidate crosses the source's plane" : "no candidate reaches out of the shaft"};
+  }
+  return {"exact clip", true,
+          counted(plane.clipped, "candidate") + " cut " + (by_edges ? "at the source's plane" : "to the shaft")};
 }
 
 StageNote total_note(const PlaneRecord& plane, const std::string& left_out) {
@@ -128,11 +145,25 @@ StageNote boolean_note(const PlaneRecord& plane, const std::string& left_out) {
               (plane.outcome == Outcome::kHiddenByUnion ? ": nothing left" : "")};
 }
 
+StageNote edges_note(const PlaneRecord& plane, const std::string& left_out) {
+  const std::string stage = "edges";
+  if (progress(plane.outcome) < kSearched) return {stage, false, left_out};
+  if (plane.outcome == Outcome::kHiddenByOne) return {stage, false, "nothing left to hide"};
+  if (plane.outcome == Outcome::kUnoccluded) {
+    if (plane.source_joined) return {stage, true, "only to join the source's own pieces; nothing hides any"};
+    return {stage, false, "no candidates"};
+  }
+  return {stage, true,
+          "what " + counted(plane.candidates, "candidate") + " leave of each edge" +
+              (plane.outcome == Outcome::kHiddenByUnion ? ": nothing" : "")};
+}
+
 StageNote contour_note(const PlaneRecord& plane, const std::string& left_out) {
   if (plane.edges == 0) {
     return {"contour", false, progress(plane.outcome) < kSearched ? left_out : "nothing is visible"};
   }
-  return {"contour", true, counted(plane.loops, "loop") + ", " + counted(plane.edges, "edge")};
+  const std::string edges = counted(plane.edges, "edge");
+  return {"contour", true, plane.loops == 0 ? edges : counted(plane.loops, "loop") + ", " + edges};
 }
 
 StageNote fraction_note(const PlaneRecord& plane) {
@@ -149,7 +180,7 @@ std::vector<StageNote> stages(const PlaneRecord& plane) {
           shaft_note(plane, left_out),
           clip_note(plane, left_out),
           total_note(plane, left_out),
-          boolean_note(plane, left_out),
+          plane.engine == Engine::kEdges ? edges_note(plane, left_out) : boolean_note(plane, left_out),
           contour_note(plane, left_out),
           fraction_note(plane)};
 }

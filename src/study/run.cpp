@@ -172,11 +172,12 @@ class Runner {
 
   FormFactor timed_exact(const Receiver& receiver, const ExactSource& source, double& seconds) const {
     auto start = Clock::now();
-    FormFactor result = exact_form_factor(scene(), receiver, source);
+    const ExactOptions options{.engine = study_.request.engine};
+    FormFactor result = exact_form_factor(scene(), receiver, source, options);
     double elapsed = seconds_since(start);
     if (elapsed < kLongCallSeconds) {
       start = Clock::now();
-      result = exact_form_factor(scene(), receiver, source);
+      result = exact_form_factor(scene(), receiver, source, options);
       elapsed = seconds_since(start);
     }
     seconds += elapsed;

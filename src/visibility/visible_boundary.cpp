@@ -4,6 +4,7 @@
 
 #include "scene/scene_data.h"
 #include "visibility/convex_clip.h"
+#include "visibility/edge_walk.h"
 
 namespace exactff::visibility {
 
@@ -25,6 +26,15 @@ class Walk {
   Walk(const View& view, const SourcePlane& plane, const Request& request)
       : view_(view), plane_(plane), request_(request) {
     result_.record.faces = plane.faces;
+    result_.record.engine = Engine::kBoolean;
+  }
+
+  // Steps 1 to 3 alone.
+  std::vector<FaceId> find_cutters() {
+    if (!gather_source() || side_of(plane_, view_.x) <= 0 || !clip_by_horizon()) return {};
+    make_hull();
+    if (gather_occluders()) list_cutters();
+    return std::move(result_.cutters);
   }
 
   PlaneVisibility run() {
@@ -245,7 +255,11 @@ void Walk::keep_geometry() {
 }  // namespace
 
 PlaneVisibility find_visible_boundary(const View& view, const SourcePlane& plane, const Request& request) {
-  return Walk(view, plane, request).run();
+  const bool by_edges = request.engine != Engine::kBoolean && !request.keep_geometry;
+  std::optional<PlaneVisibility> found = by_edges ? find_by_edges(view, plane, request) : std::nullopt;
+  if (!found) return Walk(view, plane, request).run();
+  if (request.list_cutters) found->cutters = Walk(view, plane, request).find_cutters();
+  return std::move(*found);
 }
 
 }  // namespace exactff::visibility

@@ -34,6 +34,7 @@ struct View {
 };
 
 struct Request {
+  Engine engine = Engine::kEdges;
   bool fraction = false;
   bool list_cutters = false;
   bool keep_geometry = false;                           // for drawings
@@ -49,9 +50,12 @@ struct PlaneGeometry {
   std::vector<RegionLoop> visible;  // in the frame
 };
 
+class VisibleEdges;
+
 struct PlaneVisibility {
   PlaneRecord record;
-  std::vector<BoundaryPiece> boundary;
+  std::vector<BoundaryPiece> boundary;  // by the Booleans
+  VisibleEdges* edges = nullptr;  // by the edge engine: valid until this thread asks it again; null if nothing is seen
   std::optional<kernel::Rational> fraction;  // visible over whole unclipped area of the union, in [0, 1]
   std::vector<FaceId> cutters;               // ascending
   PlaneGeometry geometry;

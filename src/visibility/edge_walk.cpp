@@ -1,0 +1,315 @@
+#include "visibility/edge_walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/scene_data.h"
+#include "visibility/convex_clip.h"
+#include "visibility/plane_frame.h"
+#include "visibility/visible_edges.h"
+
+namespace exactff::visibility {
+
+using kernel::Approx3;
+using kernel::ExactVec3;
+using kernel::Integer;
+using kernel::kUncertain;
+using kernel::Rational;
+using kernel::Ring;
+using kernel::ScaledVec3;
+using kernel::sign;
+
+namespace {
+
+// What a thread keeps from one call to the next.
+struct Workspace {
+  VisibleEdges edges;
+  std::vector<HalfSpace> half_spaces;
+  std::vector<CornerId> corners;
+  std::vector<int> signs;
+  std::vector<std::uint32_t> seen_in;  // by piece: the last run that looked at it
+  std::uint32_t run = 0;
+};
+
+Workspace& workspace() {
+  thread_local Workspace own;
+  return own;
+}
+
+double largest(const Approx3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
+
+class EdgeWalk {
+ public:
+  EdgeWalk(const View& view, const SourcePlane& plane, const Request& request)
+      : view_(view), plane_(plane), request_(request), work_(workspace()), outlines_(work_.edges.outlines()) {
+    result_.record.faces = plane.faces;
+  }
+
+  std::optional<PlaneVisibility> run() {
+    PlaneRecord& record = result_.record;
+    record.outcome = find_outcome();
+    if (gave_up_) return std::nullopt;
+    record.edges = work_parts_.size();
+    if (!work_parts_.empty()) result_.edges = &work_.edges;
+    if (request_.fraction) result_.fraction = fraction();
+    return std::move(result_);
+  }
+
+ private:
+  Outcome find_outcome();
+  bool gather_source();
+  bool add_above_horizon(const Piece& piece);
+  bool gather_occluders();
+  bool visit(std::uint32_t piece, OutlineId source);
+  void make_shaft(OutlineId source);
+  [[nodiscard]] bool may_occlude(std::uint32_t piece) const;
+  [[nodiscard]] bool may_meet(OutlineId source);
+  [[nodiscard]] int depth_sign(std::uint32_t vertex) const;
+  [[nodiscard]] int toward_sign(CornerId corner);
+  [[nodiscard]] int facing(const Piece& piece) const;
+  [[nodiscard]] Ring near_part(std::span<const std::uint32_t> vertices, bool mirrored);
+  [[nodiscard]] Rational fraction();
+
+  const View& view_;
+  const SourcePlane& plane_;
+  const Request& request_;
+  Workspace& work_;
+  Outlines& outlines_;
+  PlaneVisibility result_;
+  std::span<const VisibleEdges::Part> work_parts_;
+  std::size_t source_count_ = 0;
+  bool gave_up_ = false;
+  bool gathered_all_ = true;  // the receiver lies on none of the source's faces
+};
+
+Outcome EdgeWalk::find_outcome() {
+  // 1. Cull.
+  if (std::none_of(plane_.pieces.begin(), plane_.pieces.end(),
+                   [&](std::uint32_t p) { return !view_.on || view_.scene.pieces()[p].face != *view_.on; })) {
+    return Outcome::kReceiverFace;
+  }
+  if (side_of(plane_, view_.x) <= 0) return Outcome::kBehind;
+  // 2. Clip by the receiver's horizon.
+  if (!gather_source()) return Outcome::kBelowHorizon;
+  // 3. and 5. Candidates in the shaft.
+  if (!gather_occluders()) return Outcome::kHiddenByOne;
+  // 4., 6. and 7. What is left of every edge.
+  gave_up_ = !work_.edges.find(source_count_);
+  work_parts_ = work_.edges.parts();
+  result_.record.source_joined = source_count_ > 1;
+  if (result_.record.candidates == 0) return Outcome::kUnoccluded;
+  return work_parts_.empty() ? Outcome::kHiddenByUnion : Outcome::kPartlyHidden;
+}
+
+bool EdgeWalk::gather_source() {
+  outlines_.start(view_.scene, view_.x, largest(kernel::approx_difference(plane_.point, view_.x)));
+  for (const std::uint32_t index : plane_.pieces) {
+    const Piece& piece = view_.scene.pieces()[index];
+    if (view_.on && piece.face == *view_.on) {
+      gathered_all_ = false;
+    } else if (add_above_horizon(piece)) {
+      ++source_count_;
+    }
+  }
+  return source_count_ > 0;
+}
+
+// False if nothing with an interior is left.
+bool EdgeWalk::add_above_horizon(const Piece& piece) {
+  bool above = false, below = false;
+  for (const std::uint32_t vertex : view_.scene.corners(piece)) {
+    const CornerId corner = outlines_.corner_of_vertex(vertex);
+    const int side = outlines_.side(view_.normal, corner);
+    above = above || side > 0;
+    below = below || side < 0;
+  }
+  if (below) result_.record.horizon_clipped = true;
+  if (!above) result_.record.horizon_clipped = true;
+  if (!above) return false;
+  if (!below) {
+    outlines_.add(piece, false);
+    return true;
+  }
+  Ring ring;
+  for (const std::uint32_t vertex : view_.scene.corners(piece)) {
+    ring.push_back(kernel::make_direction(outlines_.exact(outlines_.corner_of_vertex(vertex))));
+  }
+  clip(ring, view_.normal);
+  outlines_.add(ring);
+  return true;
+}
+
+bool EdgeWalk::may_occlude(std::uint32_t piece) const {
+  const FaceId face = view_.scene.pieces()[piece].face;
+  if (view_.on && face == *view_.on) return false;
+  if (std::binary_search(plane_.pieces.begin(), plane_.pieces.end(), piece)) return false;
+  const std::vector<FaceId>* only = request_.only_occluders;
+  return only == nullptr || std::binary_search(only->begin(), only->end(), face);
+}
+
+// Half-spaces for the tree. The components of an edge's normal err by less than 12u |a||b| = 2^-49.4 |a||b|
+// (outlines.h).
+void EdgeWalk::make_shaft(OutlineId source) {
+  const auto vec = [](const Approx3& a) { return Vec3{a.x, a.y, a.z}; };
+  work_.half_spaces.clear();
+  const Outlines::Outline& outline = outlines_.outline(source);
+  for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
+    const Outlines::Edge& edge = outlines_.edge(id);
+    work_.half_spaces.push_back(
+        {vec(edge.normal), 0.0, 0x1p-49 * outlines_.corner(edge.a).size * outlines_.corner(edge.b).size});
+  }
+  const Approx3& front = plane_.normal.approx;
+  work_.half_spaces.push_back({{-front.x, -front.y, -front.z}, 0.0});
+  // front . (y - x) >= front . (point - x), a negative number that errs by less than 2^-49 of its terms' magnitudes.
+  const Approx3 s = kernel::approx_difference(plane_.point, view_.x);
+  const double terms[] = {front.x * s.x, front.y * s.y, front.z * s.z};
+  const double magnitude = std::abs(terms[0]) + std::abs(terms[1]) + std::abs(terms[2]);
+  work_.half_spaces.push_back({vec(front), terms[0] + terms[1] + terms[2] - 0x1p-48 * magnitude});
+}
+
+// False if one occluder hides all; the others then are nobody's business.
+bool EdgeWalk::gather_occluders() {
+  work_.seen_in.resize(view_.scene.pieces().size(), 0);
+  if (++work_.run == 0) {
+    std::fill(work_.seen_in.begin(), work_.seen_in.end(), 0U);
+    work_.run = 1;
+  }
+  bool hidden = false;
+  for (OutlineId source = 0; source < source_count_ && !hidden; ++source) {
+    make_shaft(source);
+    shaft_tree(view_.scene).query(view_.x, work_.half_spaces, [&](std::uint32_t piece) {
+      hidden = visit(piece, source);
+      return !hidden;
+    });
+  }
+  return !hidden;
+}
+
+// True if the piece hides all.
+bool EdgeWalk::visit(std::uint32_t index, OutlineId source) {
+  if (work_.seen_in[index] == work_.run || !may_occlude(index)) return false;
+  const Piece& piece = view_.scene.pieces()[index];
+  const auto vertices = view_.scene.corners(piece);
+  ++result_.record.tree_candidates;
+  // Something of it must lie on x's side of the source's plane, ahead of x, and inside every edge of the source.
+  work_.signs.clear();
+  bool before = false, beyond = false, ahead = false;
+  for (const std::uint32_t vertex : vertices) {
+    work_.signs.push_back(depth_sign(vertex));
+    before = before || work_.signs.back() > 0;
+    beyond = beyond || work_.signs.back() < 0;
+  }
+  if (!before) return false;
+  work_.corners.clear();
+  for (const std::uint32_t vertex : vertices) {
+    work_.corners.push_back(outlines_.corner_of_vertex(vertex));
+    ahead = ahead || toward_sign(work_.corners.back()) > 0;
+  }
+  if (!ahead || !may_meet(source)) return false;
+  work_.seen_in[index] = work_.run;
+  const int facing = this->facing(piece);
+  if (facing == 0) return false;
+  ++result_.record.candidates;
+  const bool mirrored = facing > 0;
+  if (beyond) ++result_.record.clipped;
+  const OutlineId outline = beyond ? outlines_.add(near_part(vertices, mirrored)) : outlines_.add(piece, mirrored);
+  if (!work_.edges.hides_all(outline, source_count_)) return false;
+  result_.cutters = {piece.face};
+  return true;
+}
+
+// +1: on x's side of the source's plane.
+int EdgeWalk::depth_sign(std::uint32_t vertex) const {
+  const Vec3& v = view_.scene.vertices()[vertex];
+  const int filtered = kernel::sign_of_dot(plane_.normal.approx, kernel::approx_difference(v, plane_.point));
+  if (filtered != kUncertain) return filtered;
+  return sign(dot(plane_.normal.exact, kernel::exact_difference(v, plane_.point).v));
+}
+
+// +1: ahead of the plane through x that is parallel to the source's.
+int EdgeWalk::toward_sign(CornerId corner) { return -outlines_.side(plane_.normal, corner); }
+
+bool EdgeWalk::may_meet(OutlineId source) {
+  const Outlines::Outline& outline = outlines_.outline(source);
+  for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
+    const Outlines::Edge edge = outlines_.edge(id);
+    if (std::none_of(work_.corners.begin(), work_.corners.end(),
+                     [&](CornerId corner) { return outlines_.side(edge, corner) > 0; })) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// The sign of det of three corners, 0 where the piece's plane holds x.
+int EdgeWalk::facing(const Piece& piece) const {
+  const auto vertices = view_.scene.vertices();
+  const auto rounded = [&](int f) { return kernel::approx_difference(vertices[piece.frame[f]], view_.x); };
+  const int filtered = kernel::sign_of_det(rounded(0), rounded(1), rounded(2));
+  if (filtered != kUncertain) return filtered;
+  const auto exact = [&](int f) { return kernel::exact_difference(vertices[piece.frame[f]], view_.x).v; };
+  return sign(dot(cross(exact(0), exact(1)), exact(2)));
+}
+
+// The part on x's side of the source's plane: with g the height above that plane, an edge crosses it in direction
+// a |g_b| + b |g_a|. Affine, so all corners share one scale.
+Ring EdgeWalk::near_part(std::span<const std::uint32_t> vertices, bool mirrored) {
+  const std::size_t n = vertices.size();
+  std::vector<ScaledVec3> t(n), above(n);
+  long t_exponent = 0, g_exponent = 0;
+  for (std::size_t c = 0; c < n; ++c) {
+    const Vec3& v = view_.scene.vertices()[vertices[c]];
+    t[c] = kernel::exact_difference(v, view_.x);
+    above[c] = kernel::exact_difference(v, plane_.point);
+    t_exponent = c == 0 ? t[c].exponent : std::min(t_exponent, t[c].exponent);
+    g_exponent = c == 0 ? above[c].exponent : std::min(g_exponent, above[c].exponent);
+  }
+  std::vector<Integer> g(n);
+  for (std::size_t c = 0; c < n; ++c) {
+    lower_exponent(t[c], t_exponent);
+    lower_exponent(above[c], g_exponent);
+    g[c] = dot(plane_.normal.exact, above[c].v);
+  }
+  Ring ring;
+  for (std::size_t c = 0; c < n; ++c) {
+    const std::size_t next = (c + 1) % n;
+    if (work_.signs[c] >= 0) ring.push_back(kernel::make_direction(t[c].v));
+    if (work_.signs[c] * work_.signs[next] < 0) ring.push_back(crossing(t[c].v, g[c], t[next].v, g[next]));
+  }
+  if (mirrored) std::reverse(ring.begin(), ring.end());
+  return ring;
+}
+
+// The frame's (p, q) are the projected coordinates over h, so areas compare once they are multiplied by h^2.
+Rational EdgeWalk::fraction() {
+  if (work_parts_.empty()) return 0;
+  if (result_.record.outcome == Outcome::kUnoccluded && !result_.record.horizon_clipped && gathered_all_) return 1;
+  std::vector<Ring> source;
+  for (OutlineId o = 0; o < source_count_; ++o) {
+    Ring& ring = source.emplace_back();
+    const Outlines::Outline& outline = outlines_.outline(o);
+    for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
+      ring.push_back(kernel::make_direction(outlines_.exact(outlines_.edge(id).a)));
+    }
+  }
+  const PlaneFrame frame(plane_.normal.exact, source);
+  Rational doubled;
+  for (const VisibleEdges::Part& part : work_parts_) {
+    const BoundaryPiece piece = work_.edges.exact(part);
+    const Point2 p = frame.to_plane(piece.a * piece.begin.l + piece.b * piece.begin.m);
+    const Point2 q = frame.to_plane(piece.a * piece.end.l + piece.b * piece.end.m);
+    doubled += p.u * q.v - q.u * p.v;
+  }
+  if (!frame.keeps_orientation()) doubled = -doubled;
+  const ScaledVec3 s = kernel::exact_difference(plane_.point, view_.x);
+  const Rational h = kernel::times_power_of_two(dot(plane_.normal.exact, s.v), s.exponent);
+  return doubled / 2 * frame.unit_area() * h * h / union_area(view_.scene, plane_).area;
+}
+
+}  // namespace
+
+std::optional<PlaneVisibility> find_by_edges(const View& view, const SourcePlane& plane, const Request& request) {
+  return EdgeWalk(view, plane, request).run();
+}
+
+}  // namespace exactff::visibility

@@ -1,0 +1,322 @@
+#include "visibility/outline_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace exactff::visibility {
+
+using kernel::Approx3;
+using Edge = Outlines::Edge;
+using Outline = Outlines::Outline;
+
+namespace {
+
+constexpr double kSlack = 0x1p-32;
+constexpr double kLeastAhead = 0x1p-8;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kFewestForAGrid = 8;
+constexpr double kCellsPerOutline = 2.0;
+constexpr EdgeId kNone = 0xFFFFFFFFU;
+
+double dot(const Approx3& a, const Approx3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Approx3 cross(const Approx3& a, const Approx3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+Approx3 times(const Approx3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
+// Of length 1, or no more than a hair less.
+Approx3 unit(const Approx3& a) { return times(a, (1.0 - 0x1p-40) / std::sqrt(dot(a, a))); }
+
+}  // namespace
+
+OutlineGrid::Range OutlineGrid::Axis::extent(int cell) const {
+  return {range.low + cell / per_unit, range.low + (cell + 1) / per_unit};
+}
+
+OutlineGrid::Cells OutlineGrid::Axis::cells_inside(const Range& r) const {
+  const double first = std::ceil((r.low - range.low) * per_unit),
+               last = std::floor((r.high - range.low) * per_unit) - 1;
+  return {static_cast<int>(std::clamp(first, 0.0, static_cast<double>(count))),
+          static_cast<int>(std::clamp(last, -1.0, count - 1.0))};
+}
+
+void OutlineGrid::build(const Outlines& outlines, std::size_t source_count) {
+  const std::size_t count = outlines.outlines().size();
+  first_ = static_cast<OutlineId>(source_count);
+  everywhere_.clear();
+  single_ = count < source_count + kFewestForAGrid || !choose_projection(outlines, source_count);
+  if (single_) {
+    for (auto o = static_cast<OutlineId>(source_count); o < count; ++o) everywhere_.push_back(o);
+    return;
+  }
+  last_edge_.assign(count, kNone);
+  project(outlines);
+  align(outlines, source_count);
+  choose_cells(outlines, source_count);
+  find_covered_cells(outlines);
+  fill(outlines);
+}
+
+// w points to the middle of the source. False where some corner of the source is not ahead.
+bool OutlineGrid::choose_projection(const Outlines& outlines, std::size_t source_count) {
+  const auto corner = [&](EdgeId id) -> const Outlines::Corner& { return outlines.corner(outlines.edge(id).a); };
+  const Outline& last = outlines.outline(static_cast<OutlineId>(source_count - 1));
+  Approx3 sum;
+  for (EdgeId id = 0; id < last.first + last.count; ++id) {
+    const Outlines::Corner& c = corner(id);
+    const Approx3 t = times(c.t, 1.0 / c.size);
+    sum = {sum.x + t.x, sum.y + t.y, sum.z + t.z};
+  }
+  w_ = unit(sum);
+  const double x = std::abs(w_.x), y = std::abs(w_.y), z = std::abs(w_.z);
+  const Approx3 axis = x <= y && x <= z ? Approx3{1, 0, 0} : y <= z ? Approx3{0, 1, 0} : Approx3{0, 0, 1};
+  e_ = unit(cross(axis, w_));
+  f_ = unit(cross(w_, e_));
+  for (EdgeId id = 0; id < last.first + last.count; ++id) {
+    const Outlines::Corner& c = corner(id);
+    if (!(dot(w_, c.t) >= 2.0 * kLeastAhead * c.size)) return false;  // NaN too
+  }
+  return true;
+}
+
+void OutlineGrid::project(const Outlines& outlines) {
+  std::size_t corners = 0;
+  for (const Edge& edge : outlines.edges()) corners = std::max<std::size_t>(corners, edge.a + 1U);
+  images_.resize(corners);
+  for (CornerId c = 0; c < corners; ++c) {
+    const Outlines::Corner& corner = outlines.corner(c);
+    const double depth = dot(w_, corner.t);
+    // |t| <= sqrt(3) size
+    if (depth >= 1.75 * kLeastAhead * corner.size) {
+      images_[c] = {dot(e_, corner.t) / depth, dot(f_, corner.t) / depth, true};
+    } else {
+      images_[c] = {};
+    }
+  }
+}
+
+bool OutlineGrid::is_ahead(const Outlines& outlines, const Outline& outline) const {
+  for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
+    if (!images_[outlines.edge(id).a].ahead) return false;
+  }
+  return true;
+}
+
+// Turns the image so that the occluders' edges, on the whole, run along u: slats then share few cells.
+void OutlineGrid::align(const Outlines& outlines, std::size_t source_count) {
+  double along = 0.0, across = 0.0;  // sums of length cos 2 phi, length sin 2 phi
+  for (OutlineId o = static_cast<OutlineId>(source_count); o < outlines.outlines().size(); ++o) {
+    const Outline& outline = outlines.outline(o);
+    if (!is_ahead(outlines, outline)) continue;
+    for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
+      const Image &a = images_[outlines.edge(id).a], &b = images_[outlines.edge(id).b];
+      const double du = b.u - a.u, dv = b.v - a.v, length = std::sqrt(du * du + dv * dv);
+      if (length <= kSlack) continue;
+      const double weight = std::min(length, 1.0) / (length * length);
+      along += (du * du - dv * dv) * weight;
+      across += 2.0 * du * dv * weight;
+    }
+  }
+  const double phi = 0.5 * std::atan2(across, along), c = std::cos(phi), s = std::sin(phi);
+  for (Image& image : images_) image = {c * image.u + s * image.v, c * image.v - s * image.u, image.ahead};
+}
+
+void OutlineGrid::choose_cells(const Outlines& outlines, std::size_t source_count) {
+  u_.range = v_.range = {kInfinity, -kInfinity};
+  double width = 0.0, height = 0.0;
+  std::size_t count = 0;
+  const auto bounds = [&](const Outline& outline, Range& u, Range& v) {
+    for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
+      const Image& image = images_[outlines.edge(id).a];
+      u.include(image.u);
+      v.include(image.v);
+    }
+  };
+  for (OutlineId o = 0; o < source_count; ++o) bounds(outlines.outline(o), u_.range, v_.range);
+  u_.range.widen(4 * kSlack);
+  v_.range.widen(4 * kSlack);
+  const double whole_width = u_.range.high - u_.range.low, whole_height = v_.range.high - v_.range.low;
+  for (OutlineId o = static_cast<OutlineId>(source_count); o < outlines.outlines().size(); ++o) {
+    if (!is_ahead(outlines, outlines.outline(o))) continue;
+    Range u{kInfinity, -kInfinity}, v = u;
+    bounds(outlines.outline(o), u, v);
+    width += std::min(u.high - u.low, whole_width);
+    height += std::min(v.high - v.low, whole_height);
+    ++count;
+  }
+  // Cells shaped like the mean outline.
+  const double cells = kCellsPerOutline * static_cast<double>(std::max<std::size_t>(count, 1));
+  const double mean_width = std::max(width / static_cast<double>(std::max<std::size_t>(count, 1)), kSlack);
+  const double mean_height = std::max(height / static_cast<double>(std::max<std::size_t>(count, 1)), kSlack);
+  const double wide = whole_width / mean_width, high = whole_height / mean_height;  // in mean outlines
+  const double factor = std::sqrt(cells / (wide * high));
+  const auto set = [&](Axis& axis, double wanted, double extent) {
+    axis.count = static_cast<int>(std::clamp(std::round(wanted), 1.0, cells));
+    axis.per_unit = axis.count / extent;
+  };
+  set(u_, wide * factor, whole_width);
+  set(v_, high * factor, whole_height);
+}
+
+// The range of u of the segment's points whose v lies in the given range, widened by the slack.
+OutlineGrid::Range OutlineGrid::part_within(const Image& a, const Image& b, const Range& v) {
+  const double rise = b.v - a.v;
+  double s = 0.0, t = 1.0;
+  if (std::abs(rise) > 16.0 * kSlack) {
+    s = (v.low - 4.0 * kSlack - a.v) / rise;
+    t = (v.high + 4.0 * kSlack - a.v) / rise;
+    if (s > t) std::swap(s, t);
+    s = std::clamp(s, 0.0, 1.0);
+    t = std::clamp(t, 0.0, 1.0);
+  }
+  Range u{a.u + s * (b.u - a.u), a.u + s * (b.u - a.u)};
+  u.include(a.u + t * (b.u - a.u));
+  u.widen(4.0 * kSlack);
+  return u;
+}
+
+template <class Visit>
+bool OutlineGrid::for_few_cells(const Cells& columns, const Cells& rows, const Visit& visit) const {
+  constexpr int kFew = 1;  // beyond the first, in each direction
+  if (columns.last - columns.first > kFew && rows.last - rows.first > kFew) return false;
+  for (int j = rows.first; j <= rows.last; ++j) {
+    for (int i = columns.first; i <= columns.last; ++i) visit(static_cast<std::size_t>(j * u_.count + i));
+  }
+  return true;
+}
+
+template <class Visit>
+void OutlineGrid::for_each_cell_of(const Outlines& outlines, const Outline& outline, const Visit& visit) {
+  Range u{kInfinity, -kInfinity}, v = u;
+  for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
+    const Image& image = images_[outlines.edge(id).a];
+    u.include(image.u);
+    v.include(image.v);
+  }
+  u.widen(4.0 * kSlack);
+  v.widen(4.0 * kSlack);
+  const Cells rows = v_.cells(v);
+  if (rows.first > rows.last || for_few_cells(u_.cells(u), rows, visit)) return;
+  spans_.assign(static_cast<std::size_t>(rows.last - rows.first + 1), {kInfinity, -kInfinity});
+  for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
+    const Image &a = images_[outlines.edge(id).a], &b = images_[outlines.edge(id).b];
+    Range own{std::min(a.v, b.v), std::max(a.v, b.v)};
+    own.widen(4.0 * kSlack);
+    const Cells crossed = v_.cells(own);
+    for (int j = crossed.first; j <= crossed.last; ++j) {
+      const Range part = part_within(a, b, v_.extent(j));
+      Range& span = spans_[static_cast<std::size_t>(j - rows.first)];
+      span.include(part.low);
+      span.include(part.high);
+    }
+  }
+  for (int j = rows.first; j <= rows.last; ++j) {
+    const Cells columns = u_.cells(spans_[static_cast<std::size_t>(j - rows.first)]);
+    for (int i = columns.first; i <= columns.last; ++i) visit(static_cast<std::size_t>(j * u_.count + i));
+  }
+}
+
+// Every corner of the cell lies on the inner side of every edge, further from it than the edge's line can be off: by
+// the slack at the edge's own ends, by more in proportion beyond them.
+bool OutlineGrid::covers(const Outlines& outlines, const Outline& outline, const Range& u, const Range& v) const {
+  double orientation = 0.0;
+  for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
+    const Image &a = images_[outlines.edge(id).a], &b = images_[outlines.edge(id).b];
+    const double du = b.u - a.u, dv = b.v - a.v, length = std::sqrt(du * du + dv * dv);
+    for (const double pu : {u.low, u.high}) {
+      for (const double pv : {v.low, v.high}) {
+        const double area = du * (pv - a.v) - dv * (pu - a.u);
+        const double reach = std::abs(pu - a.u) + std::abs(pv - a.v) + length;
+        if (orientation == 0.0) orientation = area;
+        if (!(std::copysign(1.0, orientation) * area > 16.0 * kSlack * reach)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+void OutlineGrid::find_covered_cells(const Outlines& outlines) {
+  coverer_.assign(static_cast<std::size_t>(u_.count) * static_cast<std::size_t>(v_.count), kNone);
+  for (OutlineId o = first_; o < outlines.outlines().size(); ++o) {
+    const Outline& outline = outlines.outline(o);
+    if (!is_ahead(outlines, outline)) continue;
+    Range u{kInfinity, -kInfinity}, v = u;
+    for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
+      const Image& image = images_[outlines.edge(id).a];
+      u.include(image.u);
+      v.include(image.v);
+    }
+    const Cells columns = u_.cells_inside(u), rows = v_.cells_inside(v);
+    for (int j = rows.first; j <= rows.last; ++j) {
+      for (int i = columns.first; i <= columns.last; ++i) {
+        OutlineId& coverer = coverer_[static_cast<std::size_t>(j * u_.count + i)];
+        if (coverer == kNone && covers(outlines, outline, u_.extent(i), v_.extent(j))) coverer = o;
+      }
+    }
+  }
+}
+
+void OutlineGrid::fill(const Outlines& outlines) {
+  cell_begin_.assign(coverer_.size() + 1, 0);
+  const auto end = static_cast<OutlineId>(outlines.outlines().size());
+  const auto belongs = [&](OutlineId o, std::size_t cell) { return coverer_[cell] == kNone || coverer_[cell] == o; };
+  for (OutlineId o = first_; o < end; ++o) {
+    const Outline& outline = outlines.outline(o);
+    if (!is_ahead(outlines, outline)) {
+      everywhere_.push_back(o);
+    } else {
+      for_each_cell_of(outlines, outline,
+                       [&](std::size_t cell) { cell_begin_[cell + 1] += belongs(o, cell) ? 1U : 0U; });
+    }
+  }
+  for (std::size_t cell = 1; cell < cell_begin_.size(); ++cell) cell_begin_[cell] += cell_begin_[cell - 1];
+  members_.resize(cell_begin_.back());
+  next_.assign(cell_begin_.begin(), cell_begin_.end() - 1);
+  for (OutlineId o = first_; o < end; ++o) {
+    const Outline& outline = outlines.outline(o);
+    if (!is_ahead(outlines, outline)) continue;
+    for_each_cell_of(outlines, outline, [&](std::size_t cell) {
+      if (belongs(o, cell)) members_[next_[cell]++] = o;
+    });
+  }
+}
+
+std::uint64_t OutlineGrid::unsorted_pairs(const Outlines& outlines) const {
+  const std::uint64_t edges = outlines.edges().size();
+  if (single_) return edges * everywhere_.size();
+  std::uint64_t not_ahead = 0;
+  for (const Edge& edge : outlines.edges()) not_ahead += images_[edge.a].ahead && images_[edge.b].ahead ? 0U : 1U;
+  return edges * everywhere_.size() + not_ahead * outlines.outlines().size();
+}
+
+void OutlineGrid::find_near(const Outlines& outlines, EdgeId id, std::vector<OutlineId>& near) {
+  near = everywhere_;
+  if (single_) return;
+  const Image &a = images_[outlines.edge(id).a], &b = images_[outlines.edge(id).b];
+  if (!a.ahead || !b.ahead) {
+    // The edge may be anywhere.
+    near.clear();
+    for (OutlineId o = first_; o < last_edge_.size(); ++o) near.push_back(o);
+    return;
+  }
+  Range v{std::min(a.v, b.v), std::max(a.v, b.v)};
+  v.widen(4.0 * kSlack);
+  const auto visit = [&](std::size_t cell) {
+    for (std::uint32_t m = cell_begin_[cell]; m < cell_begin_[cell + 1]; ++m) {
+      const OutlineId o = members_[m];
+      if (last_edge_[o] == id) continue;
+      last_edge_[o] = id;
+      near.push_back(o);
+    }
+  };
+  Range u{std::min(a.u, b.u), std::max(a.u, b.u)};
+  u.widen(4.0 * kSlack);
+  const Cells rows = v_.cells(v);
+  if (for_few_cells(u_.cells(u), rows, visit)) return;
+  for (int j = rows.first; j <= rows.last; ++j) {
+    const Cells columns = u_.cells(part_within(a, b, v_.extent(j)));
+    for (int i = columns.first; i <= columns.last; ++i) visit(static_cast<std::size_t>(j * u_.count + i));
+  }
+}
+
+}  // namespace exactff::visibility

@@ -1,0 +1,101 @@
+// Which occluders an edge may meet: a grid over the source as x sees it.
+//
+// The grid lives in the image of a projection (u, v) = (e . t, f . t) / w . t whose vectors are doubles taken as they
+// are: any projection does as long as w . t > 0, since it only has to map lines to lines. |w| = 1, |e|, |f| <= 1. A
+// corner is ahead if w . t >= 2^-8 |t|; then |u|, |v| <= 2^8, numerator and denominator err by less than 8u |t|
+// (u = 2^-53), the quotient by less than 2^-42 (1 + 2^8) < 2^-33, and rotating the image adds nothing that matters: the
+// slack of 2^-32 bounds it all. Ranges are widened by multiples of it, so that whoever meets inside the source shares a
+// cell; more may. An outline that is not ahead is taken to be near everything.
+//
+// A cell that one occluder covers, with room to spare, lists that one alone: it hides all that any edge has there, so
+// nothing else matters for the part of an edge within the cell.
+#pragma once
+
+#include <vector>
+
+#include "visibility/outlines.h"
+
+namespace exactff::visibility {
+
+class OutlineGrid {
+ public:
+  // The first `source_count` outlines are the source's, the others go into the grid.
+  void build(const Outlines& outlines, std::size_t source_count);
+
+  // About how many pairs of an edge and an occluder find_near would return for all edges because they cannot be told
+  // apart by cells: the grid is of little use where they are many.
+  [[nodiscard]] std::uint64_t unsorted_pairs(const Outlines& outlines) const;
+
+  // Every occluder that meets the edge inside the source, each once, and perhaps others.
+  void find_near(const Outlines& outlines, EdgeId edge, std::vector<OutlineId>& near);
+
+ private:
+  struct Image {
+    double u = 0.0, v = 0.0;
+    bool ahead = false;
+  };
+  struct Range {
+    double low, high;
+    void widen(double by) {
+      low -= by;
+      high += by;
+    }
+    void include(double x) {
+      low = x < low ? x : low;
+      high = x > high ? x : high;
+    }
+    [[nodiscard]] bool empty() const { return !(low <= high); }
+  };
+  struct Cells {  // first > last: none
+    int first, last;
+  };
+  // One axis of the grid.
+  struct Axis {
+    Range range{0, 0};  // of the source, widened
+    int count = 1;
+    double per_unit = 0.0;
+    [[nodiscard]] Cells cells(const Range& r) const {
+      if (!(r.high >= range.low && r.low <= range.high)) return {1, 0};
+      return {cell(r.low), cell(r.high)};
+    }
+    // Of the grid's cells the nearest; a number that is not negative is truncated downwards.
+    [[nodiscard]] int cell(double x) const {
+      const double at = (x - range.low) * per_unit;
+      return at <= 0.0 ? 0 : at >= count - 1 ? count - 1 : static_cast<int>(at);
+    }
+    [[nodiscard]] Range extent(int cell) const;
+    // The cells that lie within the range.
+    [[nodiscard]] Cells cells_inside(const Range& r) const;
+  };
+
+  [[nodiscard]] bool choose_projection(const Outlines& outlines, std::size_t source_count);
+  void project(const Outlines& outlines);
+  void align(const Outlines& outlines, std::size_t source_count);
+  void choose_cells(const Outlines& outlines, std::size_t source_count);
+  void find_covered_cells(const Outlines& outlines);
+  [[nodiscard]] bool covers(const Outlines& outlines, const Outlines::Outline& outline, const Range& u,
+                            const Range& v) const;
+  void fill(const Outlines& outlines);
+  [[nodiscard]] bool is_ahead(const Outlines& outlines, const Outlines::Outline& outline) const;
+  [[nodiscard]] static Range part_within(const Image& a, const Image& b, const Range& v);
+  // In a few cells its bounds are as good as the outline itself.
+  template <class Visit>
+  bool for_few_cells(const Cells& columns, const Cells& rows, const Visit& visit) const;
+  template <class Visit>
+  void for_each_cell_of(const Outlines& outlines, const Outlines::Outline& outline, const Visit& visit);
+
+  kernel::Approx3 e_, f_, w_;
+  OutlineId first_ = 0;  // of the occluders
+  Axis u_, v_;
+  bool single_ = true;         // too few outlines for a grid, or no projection: everything is near everything
+  std::vector<Image> images_;  // by corner
+  std::vector<std::uint32_t> cell_begin_;  // into members_, by cell, one more at the end
+  std::vector<OutlineId> members_;
+  std::vector<OutlineId> coverer_;  // by cell: an occluder that certainly covers it; then it is the only member
+  std::vector<OutlineId> everywhere_;
+  std::vector<std::uint32_t> next_;  // scratch: by cell
+  std::vector<EdgeId> last_edge_;    // by outline: the last edge that found it
+  std::vector<Range> spans_;         // scratch: by row
+};
+
+}  // namespace exactff::visibility

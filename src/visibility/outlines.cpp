@@ -1,0 +1,141 @@
+#include "visibility/outlines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "scene/places.h"
+
+namespace exactff::visibility {
+
+using kernel::Approx3;
+using kernel::Direction;
+using kernel::ExactVec3;
+using kernel::Integer;
+
+namespace {
+
+constexpr double kSideError = 0x1p-46;
+
+double size_of(const Approx3& t) {
+  const double largest = std::max({std::abs(t.x), std::abs(t.y), std::abs(t.z)});
+  const bool usable = largest >= 0x1p-300 && largest <= 0x1p300;  // false for NaN
+  return usable && t.x == t.x && t.y == t.y && t.z == t.z ? largest : std::numeric_limits<double>::quiet_NaN();
+}
+
+bool scaled_safely(double from, double to) { return from == 0.0 || std::abs(to) >= std::numeric_limits<double>::min(); }
+
+// Of the power of two nearest below 1 / length, within the range of normal doubles.
+int exponent_for(double length) {
+  int exponent = 0;
+  if (std::isfinite(length) && length > 0.0) std::frexp(length, &exponent);
+  return std::clamp(-exponent, -1000, 1000);
+}
+
+}  // namespace
+
+void Outlines::start(const Scene& scene, const Vec3& x, double unit) {
+  if (scene_ != &scene || corner_of_vertex_.size() != scene.vertices().size()) {
+    corner_of_vertex_.assign(scene.vertices().size(), {0, 0});
+    run_ = 0;
+  }
+  if (++run_ == 0) {
+    std::fill(corner_of_vertex_.begin(), corner_of_vertex_.end(), std::pair<std::uint32_t, CornerId>{0, 0});
+    run_ = 1;
+  }
+  scene_ = &scene;
+  places_ = places(scene);
+  x_ = x;
+  scale_exponent_ = exponent_for(unit);
+  scale_ = std::ldexp(1.0, scale_exponent_);
+  corners_.clear();
+  vertex_of_corner_.clear();
+  exact_.clear();
+  exponent_.clear();
+  edges_.clear();
+  outlines_.clear();
+  exact_decisions_ = 0;
+}
+
+CornerId Outlines::corner_of_vertex(std::uint32_t any_vertex) {
+  const std::uint32_t vertex = places_[any_vertex];
+  auto& [run, corner] = corner_of_vertex_[vertex];
+  if (run == run_) return corner;
+  const Approx3 d = kernel::approx_difference(scene_->vertices()[vertex], x_);
+  const Approx3 t{d.x * scale_, d.y * scale_, d.z * scale_};
+  run = run_;
+  corner = static_cast<CornerId>(corners_.size());
+  const bool exact_scaling = scaled_safely(d.x, t.x) && scaled_safely(d.y, t.y) && scaled_safely(d.z, t.z);
+  corners_.push_back({t, exact_scaling ? size_of(t) : std::numeric_limits<double>::quiet_NaN()});
+  vertex_of_corner_.push_back(vertex);
+  exact_.emplace_back();
+  exponent_.push_back(0);
+  return corner;
+}
+
+OutlineId Outlines::add(const kernel::Ring& ring) {
+  ring_.clear();
+  for (const Direction& direction : ring) {
+    ring_.push_back(static_cast<CornerId>(corners_.size()));
+    corners_.push_back({direction.approx, size_of(direction.approx)});
+    vertex_of_corner_.push_back(kNoVertex);
+    exact_.emplace_back(direction.exact);
+    exponent_.push_back(-bit_length(direction.exact));
+  }
+  add_edges(ring_, false);
+  return static_cast<OutlineId>(outlines_.size() - 1);
+}
+
+OutlineId Outlines::add(const Piece& piece, bool mirrored) {
+  ring_.clear();
+  for (const std::uint32_t vertex : scene_->corners(piece)) ring_.push_back(corner_of_vertex(vertex));
+  if (mirrored) std::reverse(ring_.begin(), ring_.end());
+  add_edges(ring_, true);
+  return static_cast<OutlineId>(outlines_.size() - 1);
+}
+
+void Outlines::add_edges(std::span<const CornerId> corners, bool whole) {
+  const auto outline = static_cast<OutlineId>(outlines_.size());
+  outlines_.push_back({static_cast<EdgeId>(edges_.size()), static_cast<std::uint32_t>(corners.size()), whole});
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const CornerId a = corners[i], b = corners[i + 1 == corners.size() ? 0 : i + 1];
+    const Approx3 &p = corners_[a].t, &q = corners_[b].t;
+    edges_.push_back({a,
+                      b,
+                      outline,
+                      {q.y * p.z - q.z * p.y, q.z * p.x - q.x * p.z, q.x * p.y - q.y * p.x},
+                      kSideError * corners_[a].size * corners_[b].size});
+  }
+}
+
+const ExactVec3& Outlines::exact(CornerId id) {
+  std::optional<ExactVec3>& exact = exact_[id];
+  if (!exact) {
+    kernel::ScaledVec3 difference = kernel::exact_difference(scene_->vertices()[vertex_of_corner_[id]], x_);
+    exact = std::move(difference.v);
+    exponent_[id] = difference.exponent + scale_exponent_;
+  }
+  return *exact;
+}
+
+Integer Outlines::exact_height(const Edge& edge, CornerId t) {
+  ++exact_decisions_;
+  return dot(cross(exact(edge.b), exact(edge.a)), exact(t));
+}
+
+int Outlines::side(const Direction& normal, CornerId t) {
+  const Corner& c = corners_[t];
+  const int filtered = c.size == c.size ? kernel::sign_of_dot(normal.approx, c.t) : kernel::kUncertain;
+  return filtered != kernel::kUncertain ? filtered : kernel::sign(dot(normal.exact, exact(t)));
+}
+
+int Outlines::side(const Edge& edge, CornerId t) {
+  const Height h = height(edge, t);
+  if (h.value > h.error) return 1;
+  if (h.value < -h.error) return -1;
+  if (t == edge.a || t == edge.b) return 0;
+  return kernel::sign(exact_height(edge, t));
+}
+
+}  // namespace exactff::visibility

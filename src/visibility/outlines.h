@@ -1,0 +1,122 @@
+// Convex outlines as x sees them, their edges as planes through x, and where these meet: the geometry of the edge
+// engine.
+//
+// Notation: an edge runs from a to b, two directions from x less than a half turn apart, with the inside of its outline
+// on its left as x sees it. The plane through x and the edge has the inward normal N = b x a, so that a direction t
+// lies inside, on or outside the edge's line as N . t is positive, zero or negative. A point of the edge has the
+// parameter (l : m), l, m >= 0, and lies in direction l a + m b. Where the line of another edge f crosses it,
+//   l : m = |F . b| : |F . a|,   F the inward normal of f.
+//
+// Filters. A corner is known as a triple of doubles, each within relative error 2u, u = 2^-53, and by the largest
+// magnitude |t| among them. With c_i = b_j a_k - b_k a_j in doubles, each product errs by 5u and their difference by u
+// more of its magnitude: in all by 12u |a||b|; |c_i| <= 2 |a||b|. Then N . t is a sum of three products, each of which
+// errs by (12u + 2 (2u + u)) |a||b||t| = 18u |a||b||t|, and two sums of at most 6 |a||b||t|, so that the total is below
+// 54u + 12u = 66u < 2^-46 |a||b||t|. Corners are scaled so that those of the source are of order 1; a corner whose |t|
+// is not within [2^-300, 2^300], or whose components do not survive the scaling, makes every filter decline, so that
+// underflow is of no account.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "exactff/scene.h"
+#include "kernel/direction.h"
+#include "visibility/boundary_piece.h"
+
+namespace exactff::visibility {
+
+using CornerId = std::uint32_t;
+using EdgeId = std::uint32_t;
+using OutlineId = std::uint32_t;
+
+// The value of N . t with what is known of it: its sign is certain where |value| > error, or where it is exact.
+struct Height {
+  double value = 0.0;
+  double error = 0.0;
+};
+
+class Outlines {
+ public:
+  struct Corner {
+    kernel::Approx3 t;
+    double size = 0.0;  // largest magnitude; NaN where filters must decline
+  };
+  struct Edge {
+    CornerId a = 0, b = 0;
+    OutlineId outline = 0;
+    kernel::Approx3 normal;
+    double error = 0.0;  // 2^-46 |a||b|
+  };
+  struct Outline {
+    EdgeId first = 0;
+    std::uint32_t count = 0;
+    bool whole = false;  // a piece of the scene, not clipped: its corners are vertices
+  };
+
+  // Forgets everything; directions are relative to x, a point of `scene`'s space. Vertices at one position are one
+  // corner. `unit`: a length of the order of the
+  // distances of what matters.
+  void start(const Scene& scene, const Vec3& x, double unit);
+
+  // Counter-clockwise as x sees it.
+  OutlineId add(const kernel::Ring& ring);
+  [[nodiscard]] CornerId corner_of_vertex(std::uint32_t vertex);
+  // A piece of the scene. `mirrored`: its corners run clockwise as x sees them.
+  OutlineId add(const Piece& piece, bool mirrored);
+
+  [[nodiscard]] std::span<const Edge> edges() const { return edges_; }
+  [[nodiscard]] std::span<const Outline> outlines() const { return outlines_; }
+  [[nodiscard]] const Edge& edge(EdgeId id) const { return edges_[id]; }
+  [[nodiscard]] const Outline& outline(OutlineId id) const { return outlines_[id]; }
+  [[nodiscard]] const Corner& corner(CornerId id) const { return corners_[id]; }
+  [[nodiscard]] std::size_t corner_count() const { return corners_.size(); }
+  // The scene's vertex that a corner is, if it is one; its doubles are those of (position - x) * 2^scale_exponent.
+  [[nodiscard]] std::optional<std::uint32_t> vertex(CornerId id) const {
+    return vertex_of_corner_[id] == kNoVertex ? std::nullopt : std::optional(vertex_of_corner_[id]);
+  }
+  [[nodiscard]] const Vec3& position(std::uint32_t vertex) const { return scene_->vertices()[vertex]; }
+  [[nodiscard]] const Vec3& x() const { return x_; }
+  [[nodiscard]] int scale_exponent() const { return scale_exponent_; }
+
+  // N . t, exactly zero where t is an end of the edge.
+  [[nodiscard]] Height height(const Edge& edge, CornerId t) const {
+    if (t == edge.a || t == edge.b) return {};
+    const Corner& c = corners_[t];
+    return {edge.normal.x * c.t.x + edge.normal.y * c.t.y + edge.normal.z * c.t.z, edge.error * c.size};
+  }
+  // -1, 0, +1: outside, on, inside the line of the edge.
+  [[nodiscard]] int side(const Edge& edge, CornerId t);
+  // Sign of normal . t.
+  [[nodiscard]] int side(const kernel::Direction& normal, CornerId t);
+
+  [[nodiscard]] const kernel::ExactVec3& exact(CornerId id);
+  // exact(id) * 2^exponent(id) is what the doubles of the corner approximate. Known once exact(id) has been asked for.
+  [[nodiscard]] long exponent(CornerId id) const { return exponent_[id]; }
+  [[nodiscard]] kernel::Integer exact_height(const Edge& edge, CornerId t);
+
+  [[nodiscard]] std::uint64_t exact_decisions() const { return exact_decisions_; }
+
+ private:
+  static constexpr std::uint32_t kNoVertex = 0xFFFFFFFFU;
+  void add_edges(std::span<const CornerId> corners, bool whole);
+
+  const Scene* scene_ = nullptr;
+  std::span<const std::uint32_t> places_;
+  Vec3 x_;
+  int scale_exponent_ = 0;
+  double scale_ = 1.0;
+  std::vector<Corner> corners_;
+  std::vector<std::uint32_t> vertex_of_corner_;
+  std::vector<std::optional<kernel::ExactVec3>> exact_;
+  std::vector<long> exponent_;
+  std::vector<Edge> edges_;
+  std::vector<Outline> outlines_;
+  std::vector<CornerId> ring_;                                        // scratch
+  std::vector<std::pair<std::uint32_t, CornerId>> corner_of_vertex_;  // (run, corner) for every vertex of the scene
+  std::uint32_t run_ = 0;
+  std::uint64_t exact_decisions_ = 0;
+};
+
+}  // namespace exactff::visibility
