@@ -1,0 +1,97 @@
+// The Cornell box end to end: the certified value at each receiver of a grid on the floor, the light as source.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/scenes.h"
+#include "bench/subjects.h"
+#include "exactff/exact.h"
+#include "exactff/obj.h"
+#include "exactff/receiver.h"
+
+namespace exactff::bench {
+
+namespace {
+
+struct Cornell {
+  Scene scene = read_obj(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
+  ExactSource light{scene, scene.select("light")};
+  std::vector<Receiver> receivers = grid_receivers(scene, scene.select("floor"), {32, 32});
+};
+
+const Cornell& cornell() {
+  static const Cornell the_box;
+  return the_box;
+}
+
+FormFactor solve(const Receiver& receiver, Engine engine) {
+  return exact_form_factor(cornell().scene, receiver, cornell().light, {.engine = engine});
+}
+
+std::vector<Receiver> receivers_with(const std::function<bool(Outcome)>& chosen) {
+  std::vector<Receiver> receivers;
+  for (const Receiver& receiver : cornell().receivers) {
+    if (chosen(solve(receiver, Engine::kEdges).planes.front().outcome)) receivers.push_back(receiver);
+  }
+  return receivers;
+}
+
+double seconds_of(const Receiver& receiver, Engine engine) {
+  const auto begin = std::chrono::steady_clock::now();
+  keep(solve(receiver, engine));
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+// One iteration asks every receiver once; its time is the median over them.
+void median_receiver(benchmark::State& state, const std::vector<Receiver>& receivers, Engine engine) {
+  std::vector<double> seconds(receivers.size());
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < receivers.size(); ++i) seconds[i] = seconds_of(receivers[i], engine);
+    const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
+    std::nth_element(seconds.begin(), middle, seconds.end());
+    state.SetIterationTime(*middle);
+  }
+  state.counters["receivers"] = static_cast<double>(receivers.size());
+}
+
+// Receivers one after the other, dealt out to the threads.
+void throughput(benchmark::State& state) {
+  const std::vector<Receiver>& receivers = cornell().receivers;
+  auto i = static_cast<std::size_t>(state.thread_index());
+  for (auto _ : state) {
+    keep(solve(receivers[i], Engine::kEdges));
+    i = (i + static_cast<std::size_t>(state.threads())) % receivers.size();
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+
+}  // namespace
+
+void add_cornell() {
+  using Kind = std::pair<std::string, std::function<bool(Outcome)>>;
+  for (const auto& [kind, chosen] : {Kind("unoccluded", [](Outcome o) { return o == Outcome::kUnoccluded; }),
+                                     Kind("partly", [](Outcome o) { return o == Outcome::kPartlyHidden; }),
+                                     Kind("every", [](Outcome) { return true; })}) {
+    for (const auto& [name, engine] : {std::pair{"edges", Engine::kEdges}, std::pair{"boolean", Engine::kBoolean}}) {
+      benchmark::RegisterBenchmark(("cornell/" + kind + '/' + name).c_str(),
+                                   [chosen = chosen, engine = engine](benchmark::State& state) {
+                                     median_receiver(state, receivers_with(chosen), engine);
+                                   })
+          ->Unit(benchmark::kMicrosecond)
+          ->UseManualTime()
+          ->Iterations(5);  // each asks every receiver
+    }
+  }
+  benchmark::RegisterBenchmark("cornell/throughput", throughput)
+      ->Unit(benchmark::kMicrosecond)
+      ->UseRealTime()
+      ->Threads(1)
+      ->Threads(2);
+}
+
+}  // namespace exactff::bench

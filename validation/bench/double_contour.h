@@ -1,0 +1,21 @@
+// Eq. (4) in plain double over visible edges: what the value would cost if nothing had to be proved.
+#pragma once
+
+#include <span>
+
+#include "exactff/geometry.h"
+#include "visibility/boundary_piece.h"
+
+namespace exactff::bench {
+
+// Directions from x to the ends of a boundary piece.
+struct DoubleEdge {
+  Vec3 p, q;
+};
+
+[[nodiscard]] DoubleEdge to_double(const visibility::BoundaryPiece& piece);
+
+// Estimates F. Requires a normal other than zero.
+[[nodiscard]] double form_factor(std::span<const DoubleEdge> edges, const Vec3& normal);
+
+}  // namespace exactff::bench

@@ -1,0 +1,89 @@
+// Both engines: the certified value end to end, and the visible boundary with Eq. (4) in double over it.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/scenes.h"
+#include "bench/subjects.h"
+#include "bench/visible_region.h"
+#include "scene/shaft_tree.h"
+
+namespace exactff::bench {
+
+namespace {
+
+// Decisions that the filter left to exact arithmetic, where the engine's record tells.
+template <class Record>
+void count_exact_decisions(benchmark::State& state, const Record& record) {
+  if constexpr (requires { record.exact_decisions; }) {
+    state.counters["exact_decisions"] = static_cast<double>(record.exact_decisions);
+  }
+}
+
+void certified(benchmark::State& state, const BenchScene& s, Engine engine) {
+  FormFactor result;
+  for (auto _ : state) {
+    result = exact_form_factor(s.scene, s.receiver, s.source, {.engine = engine});
+    keep(result.value);
+  }
+  if (result.status == Status::kNotCertified) state.SkipWithError("the value is not certified");
+  const PlaneRecord& plane = result.planes.front();
+  state.counters["value"] = result.value;
+  state.counters["bits"] = result.precision_bits;
+  state.counters["candidates"] = static_cast<double>(plane.candidates);
+  state.counters["edges"] = static_cast<double>(plane.edges);
+  count_exact_decisions(state, plane);
+}
+
+void visible(benchmark::State& state, const BenchScene& s, Engine engine) {
+  std::vector<DoubleEdge> edges;
+  double value = 0.0;
+  for (auto _ : state) {
+    find_double_boundary(s, engine, edges);
+    value = form_factor(edges, s.receiver.normal);
+    keep(value);
+  }
+  state.counters["value"] = value;
+  // The double contour errs by its rounding alone; more would mean that something else was measured.
+  if (std::abs(value - s.value()) > 1e-9) state.SkipWithError("the double contour is off");
+}
+
+Box box_of(const Scene& scene, const Piece& piece) {
+  Box box{scene.vertices()[scene.corners(piece).front()], {}};
+  box.high = box.low;
+  for (const std::uint32_t corner : scene.corners(piece)) {
+    const Vec3& p = scene.vertices()[corner];
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+  }
+  return box;
+}
+
+// The bounding-volume tree: what the exact method builds once a scene, as rays build theirs.
+void tree(benchmark::State& state, const BenchScene& s) {
+  for (auto _ : state) {
+    std::vector<Box> boxes;
+    for (const Piece& piece : s.scene.pieces()) boxes.push_back(box_of(s.scene, piece));
+    ShaftTree made(boxes);
+    keep(made);
+  }
+}
+
+}  // namespace
+
+void add_engines() {
+  for (const auto& [engine, name] : {std::pair{Engine::kEdges, "edges"}, std::pair{Engine::kBoolean, "boolean"}}) {
+    const auto with = [engine = engine](auto run) {
+      return [run, engine](benchmark::State& state, const BenchScene& s) { run(state, s, engine); };
+    };
+    add_for_every_scene(std::string("certified/") + name, with(certified));
+    add_for_every_scene(std::string("visible/") + name, with(visible));
+  }
+  add_for_every_scene("tree", tree);
+}
+
+}  // namespace exactff::bench

@@ -1,0 +1,21 @@
+// exactff_bench: takes Google Benchmark's options, --benchmark_filter=REGEX first among them.
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "bench/subjects.h"
+
+int main(int argc, char** argv) try {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  exactff::bench::add_engines();
+  exactff::bench::add_contour();
+  exactff::bench::add_rays();
+  exactff::bench::add_memory();
+  exactff::bench::add_cornell();
+  return benchmark::RunSpecifiedBenchmarks() > 0 ? 0 : 2;  // 0: the filter matches nothing
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "exactff_bench: %s\n", error.what());
+  return 4;
+}

@@ -1,0 +1,164 @@
+// The opponent, not handicapped: 10^4 shadow rays to jittered points of the source, in coherent packets of 16 that lie
+// ready, against exactly the occluders that the exact method has. Building their structure is timed apart, and reads
+// the occluders where they lie.
+#include <benchmark/benchmark.h>
+#include <embree3/rtcore.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "bench/scenes.h"
+#include "bench/subjects.h"
+#include "generate/random.h"
+#include "sampled/vec.h"
+
+namespace exactff::bench {
+
+using sampled::operator+;
+using sampled::operator-;
+using sampled::operator*;
+
+namespace {
+
+constexpr int kCells = 100;  // a side of the source; one ray each
+constexpr int kTile = 4;     // cells a side of a packet
+constexpr int kPacket = kTile * kTile;
+
+template <class Handle, void (*release)(Handle)>
+struct Release {
+  void operator()(Handle handle) const { release(handle); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, Release<RTCDevice, rtcReleaseDevice>>;
+using RayStructure = std::unique_ptr<RTCSceneTy, Release<RTCScene, rtcReleaseScene>>;
+
+RTCDevice device() {
+  static const Device the_device(rtcNewDevice("threads=1,set_affinity=0"));
+  if (!the_device) throw std::runtime_error("Embree gives no device");
+  return the_device.get();
+}
+
+struct Occluders {
+  std::vector<std::array<float, 3>> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+// All faces but the source's, as fans.
+Occluders occluders_of(const BenchScene& s) {
+  Occluders result;
+  const auto number = [](double value) { return static_cast<float>(value); };
+  for (const Vec3& v : s.scene.vertices()) result.vertices.push_back({number(v.x), number(v.y), number(v.z)});
+  result.vertices.push_back({});  // Embree reads 16 bytes for each
+  for (const Piece& piece : s.scene.pieces()) {
+    if (s.scene.face(piece.face).patch == s.source.selection().patch) continue;
+    const auto corners = s.scene.corners(piece);
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+      result.triangles.push_back({corners[0], corners[i], corners[i + 1]});
+    }
+  }
+  return result;
+}
+
+template <class Element>
+void share(RTCGeometry geometry, RTCBufferType type, RTCFormat format, const std::vector<Element>& elements,
+           std::size_t count) {
+  rtcSetSharedGeometryBuffer(geometry, type, 0, format, elements.data(), 0, sizeof(Element), count);
+}
+
+RayStructure build_structure(const Occluders& occluders) {
+  RayStructure structure(rtcNewScene(device()));
+  RTCGeometry mesh = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  share(mesh, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, occluders.vertices, occluders.vertices.size() - 1);
+  share(mesh, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, occluders.triangles, occluders.triangles.size());
+  rtcCommitGeometry(mesh);
+  rtcAttachGeometry(structure.get(), mesh);
+  rtcReleaseGeometry(mesh);
+  rtcCommitScene(structure.get());
+  if (rtcGetDeviceError(device()) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot build its structure");
+  return structure;
+}
+
+// From just off x to just short of the source, whose own plane hides nothing.
+void set_ray(RTCRay16& rays, int lane, const Vec3& x, const Vec3& end) {
+  constexpr float kMargin = 0x1p-20F;
+  const Vec3 direction = end - x;
+  rays.org_x[lane] = static_cast<float>(x.x);
+  rays.org_y[lane] = static_cast<float>(x.y);
+  rays.org_z[lane] = static_cast<float>(x.z);
+  rays.dir_x[lane] = static_cast<float>(direction.x);
+  rays.dir_y[lane] = static_cast<float>(direction.y);
+  rays.dir_z[lane] = static_cast<float>(direction.z);
+  rays.tnear[lane] = kMargin;
+  rays.tfar[lane] = 1.0F - kMargin;
+  rays.time[lane] = 0.0F;
+  rays.mask[lane] = ~0U;
+  rays.id[lane] = 0;
+  rays.flags[lane] = 0;
+}
+
+// Requires a source that is one parallelogram.
+std::vector<RTCRay16> make_rays(const BenchScene& s) {
+  const Piece& source = s.scene.pieces_of(s.scene.faces_of(s.source.selection()).front()).front();
+  const auto corners = s.scene.corners(source);
+  const Vec3 origin = s.scene.vertices()[corners[0]];
+  const Vec3 along_u = s.scene.vertices()[corners[1]] - origin, along_v = s.scene.vertices()[corners[3]] - origin;
+  generate::Random random(1);
+  const auto jittered = [&](int cell) { return (cell + random.unit()) / kCells; };
+  std::vector<RTCRay16> packets((kCells / kTile) * (kCells / kTile));
+  for (int row = 0; row < kCells; ++row) {
+    for (int column = 0; column < kCells; ++column) {
+      const double u = jittered(column), v = jittered(row);
+      RTCRay16& packet = packets[static_cast<std::size_t>(row / kTile * (kCells / kTile) + column / kTile)];
+      set_ray(packet, row % kTile * kTile + column % kTile, s.receiver.point, origin + along_u * u + along_v * v);
+    }
+  }
+  return packets;
+}
+
+// How many rays arrive.
+int cast_rays(RTCScene structure, const std::vector<RTCRay16>& packets) {
+  alignas(64) static const std::array<int, kPacket> kAll = [] {
+    std::array<int, kPacket> all{};
+    all.fill(-1);
+    return all;
+  }();
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  int arrived = 0;
+  for (const RTCRay16& packet : packets) {
+    RTCRay16 rays = packet;
+    rtcOccluded16(kAll.data(), structure, &context, &rays);
+    for (const float far : rays.tfar) arrived += far >= 0.0F;
+  }
+  return arrived;
+}
+
+void cast(benchmark::State& state, const BenchScene& s) {
+  const Occluders occluders = occluders_of(s);
+  const RayStructure structure = build_structure(occluders);
+  const std::vector<RTCRay16> packets = make_rays(s);
+  double visible = 0.0;
+  for (auto _ : state) visible = static_cast<double>(cast_rays(structure.get(), packets)) / (kCells * kCells);
+  state.counters["visible"] = visible;
+  if (s.scene.pieces().size() > 2000) return;
+  // Jittered rays err by less than 1/200 (one standard deviation): more would mean another scene.
+  if (std::abs(visible - s.visible_fraction()) > 0.025)
+    state.SkipWithError("the rays do not see what the exact method sees");
+}
+
+void build(benchmark::State& state, const BenchScene& s) {
+  const Occluders occluders = occluders_of(s);
+  for (auto _ : state) keep(build_structure(occluders));
+}
+
+}  // namespace
+
+void add_rays() {
+  add_for_every_scene("rays/cast", cast);
+  add_for_every_scene("rays/build", build);
+}
+
+}  // namespace exactff::bench
