@@ -17,6 +17,7 @@ constexpr double kLeastAhead = 0x1p-8;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kFewestForAGrid = 8;
 constexpr double kCellsPerOutline = 2.0;
+constexpr std::uint64_t kEdgesPerOutline = 4;
 constexpr EdgeId kNone = 0xFFFFFFFFU;
 
 double dot(const Approx3& a, const Approx3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -144,16 +145,19 @@ void OutlineGrid::choose_cells(const Outlines& outlines, std::size_t source_coun
     height += std::min(v.high - v.low, whole_height);
     ++count;
   }
-  // Cells shaped like the mean outline.
+  // Cells shaped like the mean outline, but no smaller than what the images' slack spreads over anyway.
   const double cells = kCellsPerOutline * static_cast<double>(std::max<std::size_t>(count, 1));
   const double mean_width = std::max(width / static_cast<double>(std::max<std::size_t>(count, 1)), kSlack);
   const double mean_height = std::max(height / static_cast<double>(std::max<std::size_t>(count, 1)), kSlack);
   const double wide = whole_width / mean_width, high = whole_height / mean_height;  // in mean outlines
   const double factor = std::sqrt(cells / (wide * high));
   const auto set = [&](Axis& axis, double wanted, double extent) {
-    axis.count = static_cast<int>(std::clamp(std::round(wanted), 1.0, cells));
+    const double finest = std::max(1.0, std::floor(extent / (8.0 * kSlack)));
+    axis.count = static_cast<int>(std::clamp(std::round(wanted), 1.0, std::min(cells, finest)));
     axis.per_unit = axis.count / extent;
+    too_fine_ = too_fine_ || wanted > 2.0 * finest;
   };
+  too_fine_ = false;
   set(u_, wide * factor, whole_width);
   set(v_, high * factor, whole_height);
 }
@@ -286,7 +290,12 @@ std::uint64_t OutlineGrid::unsorted_pairs(const Outlines& outlines) const {
   if (single_) return edges * everywhere_.size();
   std::uint64_t not_ahead = 0;
   for (const Edge& edge : outlines.edges()) not_ahead += images_[edge.a].ahead && images_[edge.b].ahead ? 0U : 1U;
-  return edges * everywhere_.size() + not_ahead * outlines.outlines().size();
+  std::uint64_t in_cells = 0;
+  for (std::size_t cell = 0; too_fine_ && cell < coverer_.size(); ++cell) {
+    const std::uint64_t members = cell_begin_[cell + 1] - cell_begin_[cell];
+    in_cells += kEdgesPerOutline * members * members;
+  }
+  return edges * everywhere_.size() + not_ahead * outlines.outlines().size() + in_cells;
 }
 
 void OutlineGrid::find_near(const Outlines& outlines, EdgeId id, std::vector<OutlineId>& near) {

@@ -88,6 +88,7 @@ class OutlineGrid {
   OutlineId first_ = 0;  // of the occluders
   Axis u_, v_;
   bool single_ = true;         // too few outlines for a grid, or no projection: everything is near everything
+  bool too_fine_ = false;      // smaller cells were wanted than the images are good for: many may crowd into one
   std::vector<Image> images_;  // by corner
   std::vector<std::uint32_t> cell_begin_;  // into members_, by cell, one more at the end
   std::vector<OutlineId> members_;

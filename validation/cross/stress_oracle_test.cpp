@@ -23,7 +23,7 @@ TEST_P(StiffScene, HasTheSameValueAndFractionForBoth) {
     if (stiff.scene.faces().size() > kMostFaces) break;
     const Selection selection = stiff.scene.select("source");
     const FormFactor result = exact_form_factor(stiff.scene, stiff.receiver, ExactSource(stiff.scene, selection),
-                                                {.visible_fraction = true, .digits = 30});
+                                                {.engine = Engine::kBoth, .visible_fraction = true, .digits = 30});
     const OracleResult other = oracle(stiff.scene, stiff.receiver, selection);
     ASSERT_EQ(result.value, other.value) << stiffness;
     ASSERT_EQ(result.status == Status::kZero, other.zero) << stiffness;

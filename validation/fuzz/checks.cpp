@@ -23,7 +23,8 @@ using generate::Random;
 
 namespace {
 
-FormFactor solve(const Scene& scene, const PlainScene& plain, const ExactOptions& options) {
+FormFactor solve(const Scene& scene, const PlainScene& plain, ExactOptions options) {
+  options.engine = Engine::kBoth;
   const ExactSource source(scene, scene.select(plain.source));
   return exact_form_factor(scene, generate::receiver_of(plain), source, options);
 }

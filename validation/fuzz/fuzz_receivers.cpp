@@ -44,7 +44,7 @@ void check(const Scene& scene, const std::vector<Receiver>& receivers) {
     if (receiver.on && index_of(*receiver.on) >= scene.faces().size()) fail("a receiver on a face that is not there");
     if (receiver.id.empty() || !ids.insert(receiver.id).second) fail("a receiver without an id of its own");
     if (ids.size() > kSolved) continue;
-    const FormFactor f = exact_form_factor(scene, receiver, source);
+    const FormFactor f = exact_form_factor(scene, receiver, source, {.engine = Engine::kBoth});
     if (!(f.value >= 0.0 && f.value <= 1.0) || f.status == Status::kNotCertified) fail("not a form factor");
   }
 }

@@ -26,14 +26,17 @@ TEST(Certificate, BallsAndBoundsOfEveryPrecisionHoldTheFormFactor) {
     const FormFactor fine = solve(scene, plain, {.digits = 60});
     if (fine.status == Status::kZero) continue;
     const Decimal exact = read_decimal(fine.enclosure.decimals(60).value());
-    for (int bits = 4; bits <= 96; bits += 2) {
-      const FormFactor coarse = solve(scene, plain, {.precision_cap = bits});
-      const std::string where = std::to_string(bits) + " bits, seed " + std::to_string(seed_of(i));
-      ASSERT_TRUE(coarse.enclosure.overlaps(fine.enclosure)) << where << '\n' << generate::to_obj(plain);
-      ASSERT_LE(mpq_class(coarse.lower), exact.value + exact.half_unit) << where << '\n' << generate::to_obj(plain);
-      ASSERT_GE(mpq_class(coarse.upper), exact.value - exact.half_unit) << where << '\n' << generate::to_obj(plain);
-      if (coarse.status != Status::kCertified) continue;
-      ASSERT_EQ(coarse.value, fine.value) << where << '\n' << generate::to_obj(plain);
+    for (int bits = 4; bits <= 108; bits += 2) {
+      for (const Engine engine : kEngines) {
+        const FormFactor coarse = solve_by(engine, scene, plain, {.precision_cap = bits});
+        const std::string where = std::string(to_string(engine)) + " with " + std::to_string(bits) + " bits, seed " +
+                                  std::to_string(seed_of(i)) + '\n' + generate::to_obj(plain);
+        ASSERT_TRUE(coarse.enclosure.overlaps(fine.enclosure)) << where;
+        ASSERT_LE(mpq_class(coarse.lower), exact.value + exact.half_unit) << where;
+        ASSERT_GE(mpq_class(coarse.upper), exact.value - exact.half_unit) << where;
+        if (coarse.status != Status::kCertified) continue;
+        ASSERT_EQ(coarse.value, fine.value) << where;
+      }
     }
   }
 }

@@ -21,6 +21,7 @@ using generate::Random;
 
 Enclosure sum_over_patches(const Scene& scene, const PlainScene& plain, int digits) {
   ExactOptions options;
+  options.engine = Engine::kBoth;
   options.digits = digits;
   Enclosure sum;
   for (const Patch& patch : scene.patches()) {

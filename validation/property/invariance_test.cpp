@@ -148,6 +148,7 @@ TEST(Invariance, CornersSlideAlongRaysThroughTheReceiver) {
 
 std::vector<Answer> answers(const Scene& scene, const std::vector<Receiver>& receivers, const ExactSource& source) {
   ExactOptions options;
+  options.engine = Engine::kBoth;
   options.visible_fraction = true;
   std::vector<Answer> out;
   for (const Receiver& receiver : receivers) {

@@ -11,6 +11,7 @@
 #include "support/case_file.h"
 #include "support/decimal.h"
 #include "support/program.h"
+#include "support/solve.h"
 
 namespace exactff::validation {
 namespace {
@@ -26,11 +27,6 @@ std::string name_of(const testing::TestParamInfo<std::filesystem::path>& info) {
 }
 
 std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
-
-FormFactor solve(const Scene& scene, const generate::PlainScene& plain, const ExactOptions& options = {}) {
-  return exact_form_factor(scene, generate::receiver_of(plain), ExactSource(scene, scene.select(plain.source)),
-                           options);
-}
 
 void expect_value(const FormFactor& result, const Expected& expected) {
   EXPECT_EQ(bits(result.value), bits(expected.nearest))

@@ -24,6 +24,7 @@ void add_square(PlainScene& scene, const char* patch, double low, double high, d
 void expect_digits(const PlainScene& plain, const char* digits) {
   const Scene scene = generate::build(plain);
   ExactOptions options;
+  options.engine = Engine::kBoth;
   options.digits = 30;
   const FormFactor result =
       exact_form_factor(scene, generate::receiver_of(plain), ExactSource(scene, scene.select(plain.source)), options);

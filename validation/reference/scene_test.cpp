@@ -28,7 +28,7 @@ std::vector<std::string> patch_names(const Scene& scene) {
 }
 
 FormFactor form_factor(const Scene& scene, const Receiver& receiver, const std::string& source) {
-  return exact_form_factor(scene, receiver, ExactSource(scene, scene.select(source)));
+  return exact_form_factor(scene, receiver, ExactSource(scene, scene.select(source)), {.engine = Engine::kBoth});
 }
 
 TEST(CornellBox, HasItsPatchesAndNothingToWarnOf) {
@@ -91,6 +91,7 @@ TEST(BlindsRoom, WindowIsPartlyHiddenByTheBlind) {
   EXPECT_TRUE(scene.warnings().empty());
   ExactOptions options;
   options.visible_fraction = true;
+  options.engine = Engine::kBoth;
   const FormFactor result =
       exact_form_factor(scene, generate::receiver_of(plain), ExactSource(scene, scene.select("window")), options);
   EXPECT_GT(result.visible_fraction.value(), 0.0);

@@ -60,6 +60,21 @@ std::string instead(const std::string& what, double got, double wanted) {
   return what + ' ' + to_text(got) + " instead of " + to_text(wanted);
 }
 
+std::string disagreement(const FormFactor& result, const OracleResult& truth) {
+  if (!same_bits(result.value, truth.value)) return instead("value", result.value, truth.value);
+  if ((result.status == Status::kZero) != truth.zero) return "zero flag: " + std::string(to_string(result.status));
+  if (fractions(result) != fractions(truth)) return "visible fractions differ";
+  if (!same_bits(result.visible_fraction.value(), truth.visible_fraction)) {
+    return instead("visible fraction", *result.visible_fraction, truth.visible_fraction);
+  }
+  if (result.visible_part != visible_part(truth)) {
+    return "visible part: " + std::string(to_string(result.visible_part.value()));
+  }
+  if (!overlap(result, truth)) return "enclosures apart: " + result.enclosure.midpoint();
+  if (!encloses_its_value(result)) return "the value is not what its enclosure rounds to";
+  return {};
+}
+
 }  // namespace
 
 Receiver receiver_in(const Scene& scene, const PlainScene& plain) {
@@ -74,22 +89,14 @@ OracleResult ask_oracle(const PlainScene& plain) {
   return oracle(scene, receiver_in(scene, plain), scene.select(plain.source));
 }
 
-std::string disagreement(const Scene& scene, const Receiver& receiver, const Selection& source) {
-  ExactOptions options;
-  options.exact_fraction = true;
-  const FormFactor result = exact_form_factor(scene, receiver, ExactSource(scene, source), options);
-  const OracleResult truth = oracle(scene, receiver, source);
-  if (!same_bits(result.value, truth.value)) return instead("value", result.value, truth.value);
-  if ((result.status == Status::kZero) != truth.zero) return "zero flag: " + std::string(to_string(result.status));
-  if (fractions(result) != fractions(truth)) return "visible fractions differ";
-  if (!same_bits(result.visible_fraction.value(), truth.visible_fraction)) {
-    return instead("visible fraction", *result.visible_fraction, truth.visible_fraction);
+std::string disagreement(const Scene& scene, const Receiver& receiver, const Selection& selection) {
+  const OracleResult truth = oracle(scene, receiver, selection);
+  const ExactSource source(scene, selection);
+  for (const Engine engine : {Engine::kEdges, Engine::kBoolean}) {
+    const FormFactor result = exact_form_factor(scene, receiver, source, {.engine = engine, .exact_fraction = true});
+    const std::string wrong = disagreement(result, truth);
+    if (!wrong.empty()) return std::string(to_string(engine)) + ": " + wrong;
   }
-  if (result.visible_part != visible_part(truth)) {
-    return "visible part: " + std::string(to_string(result.visible_part.value()));
-  }
-  if (!overlap(result, truth)) return "enclosures apart: " + result.enclosure.midpoint();
-  if (!encloses_its_value(result)) return "the value is not what its enclosure rounds to";
   return {};
 }
 

@@ -1,4 +1,4 @@
-// Does the solver agree with the oracle?
+// Do both engines of the solver agree with the oracle?
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ namespace exactff::validation {
 
 [[nodiscard]] OracleResult ask_oracle(const generate::PlainScene& plain);
 
-// Empty if solver and oracle agree: in the double, in the zero flag, in the exact visible fraction of every plane, in
-// what is said of all planes together, and their enclosures share a number. Throws what either throws.
+// Empty if both engines and the oracle agree: in the double, in the zero flag, in the exact visible fraction of every
+// plane, in what is said of all planes together, and their enclosures share a number. Throws what any of them throws.
 [[nodiscard]] std::string disagreement(const Scene& scene, const Receiver& receiver, const Selection& source);
 
 // The same for a plain scene; an exception is a disagreement.

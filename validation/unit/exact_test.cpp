@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "generate/plain_scene.h"
+#include "generate/random.h"
 #include "support/solve.h"
 
 namespace exactff {
@@ -39,13 +40,15 @@ TEST(ExactFormFactor, BoundsAreNumbersHoweverFewBitsAreAllowed) {
   PlainScene plain = square_source();
   add_square(plain, "o", 0.3, 0.4, 0.1, 0.2);
   const double value = solve(plain).value;
-  for (int cap = 1; cap <= 16; ++cap) {
-    const FormFactor f = solve(plain, {.precision_cap = cap});
-    EXPECT_LE(0.0, f.lower) << cap;
-    EXPECT_LE(f.lower, value) << cap;
-    EXPECT_LE(value, f.upper) << cap;
-    EXPECT_LE(f.upper, 1.0) << cap;
-    EXPECT_EQ(f.value, f.value) << cap;
+  for (const Engine engine : validation::kEngines) {
+    for (int cap = 1; cap <= 16; ++cap) {
+      const FormFactor f = validation::solve_by(engine, plain, {.precision_cap = cap});
+      EXPECT_LE(0.0, f.lower) << cap;
+      EXPECT_LE(f.lower, value) << cap;
+      EXPECT_LE(value, f.upper) << cap;
+      EXPECT_LE(f.upper, 1.0) << cap;
+      EXPECT_EQ(f.value, f.value) << cap;
+    }
   }
 }
 
@@ -74,14 +77,16 @@ TEST(ExactFormFactor, DenormalValuesAreCorrectlyRounded) {
 
 TEST(ExactFormFactor, TheCapGivesAValidBallAndSaysSo) {
   const PlainScene tiny = square_source(1e-30);
-  const FormFactor poor = solve(tiny, {.precision_cap = 40});
-  EXPECT_EQ(poor.status, Status::kNotCertified);
-  EXPECT_EQ(poor.precision_bits, 40);
   const FormFactor good = solve(tiny);
   EXPECT_EQ(good.status, Status::kCertified);
-  EXPECT_TRUE(poor.enclosure.overlaps(good.enclosure));
-  EXPECT_LE(poor.lower, good.value);
-  EXPECT_GE(poor.upper, good.value);
+  for (const Engine engine : validation::kEngines) {
+    const FormFactor poor = validation::solve_by(engine, tiny, {.precision_cap = 40});
+    EXPECT_EQ(poor.status, Status::kNotCertified);
+    EXPECT_EQ(poor.precision_bits, 40);
+    EXPECT_TRUE(poor.enclosure.overlaps(good.enclosure));
+    EXPECT_LE(poor.lower, good.value);
+    EXPECT_GE(poor.upper, good.value);
+  }
 }
 
 TEST(ExactFormFactor, GivesAsManyDecimalsAsAskedFor) {
@@ -239,6 +244,23 @@ TEST(ExactFormFactor, DrawsTheVisibleRegion) {
     EXPECT_EQ(std::abs(corner.x), 0.5);
     EXPECT_EQ(corner.z, 1.0);
   }
+}
+
+// From so near the source no projection shows all of it, and so many occluders cannot be sorted without one.
+TEST(ExactFormFactor, AWideSourceBehindManyOccludersIsLeftToTheBooleans) {
+  PlainScene plain = square_source(1000.0);
+  generate::Random random(7);
+  constexpr int kTriangles = 2700;
+  for (int i = 0; i < kTriangles; ++i) {
+    const double x = random.between(-2, 2), y = random.between(-2, 2);
+    const auto corner = [&] { return Vec3{x + random.between(-0.05, 0.05), y + random.between(-0.05, 0.05), 0.5}; };
+    plain.add_ring(plain.patch("occ"), {corner(), corner(), corner()});
+  }
+  const FormFactor f = validation::solve_by(Engine::kEdges, plain);
+  EXPECT_EQ(f.planes.at(0).engine, Engine::kBoolean);
+  EXPECT_EQ(f.status, Status::kCertified);
+  plain.patch("occ").faces.resize(100);
+  EXPECT_EQ(validation::solve_by(Engine::kEdges, plain).planes.at(0).engine, Engine::kEdges);
 }
 
 // Twice the signed area along the drawing's front normal.

@@ -74,7 +74,9 @@ TEST(NearMiss, ASideOneUlpShortLeavesAGap) {
   PlainScene scene = scene_with(cover(1.0), {0, 0, -1});
   EXPECT_EQ(validation::solve(scene).status, Status::kZero);
   scene = scene_with(cover(1.0 - 0x1p-51), {0, 0, -1});
-  EXPECT_EQ(validation::solve(scene).planes.at(0).outcome, Outcome::kPartlyHidden);
+  for (const Engine engine : validation::kEngines) {
+    EXPECT_EQ(validation::solve_by(engine, scene).planes.at(0).outcome, Outcome::kPartlyHidden) << to_string(engine);
+  }
 }
 
 }  // namespace

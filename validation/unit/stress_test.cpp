@@ -201,7 +201,8 @@ TEST_P(StressFamily, ExactValueIsWhatTheTruthRoundsTo) {
     const Case scene_case = family.make(stiffness);
     if (scene_case.scene.faces().size() > kMostFaces) break;
     const ExactSource source(scene_case.scene, scene_case.scene.select("source"));
-    const FormFactor result = exact_form_factor(scene_case.scene, scene_case.receiver, source);
+    const FormFactor result =
+        exact_form_factor(scene_case.scene, scene_case.receiver, source, {.engine = Engine::kBoth});
     ASSERT_NE(result.status, Status::kNotCertified) << stiffness;
     if (!scene_case.truth) continue;
     const Enclosure truth = scene_case.truth->value();

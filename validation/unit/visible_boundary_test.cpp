@@ -28,23 +28,40 @@ Corners square(double half, double z, double x = 0.0, double y = 0.0) {
   return {{x - half, y - half, z}, {x + half, y - half, z}, {x + half, y + half, z}, {x - half, y + half, z}};
 }
 
-PlaneRecord record_of(const PlainScene& scene) { return validation::solve(scene).planes.at(0); }
+PlaneRecord record_by(Engine engine, const PlainScene& scene) {
+  return validation::solve_by(engine, scene).planes.at(0);
+}
 double value_of(const PlainScene& scene) { return validation::solve(scene).value; }
-const double kOpen = value_of(scene_with({}));
+
+// For each engine, which names itself in a failure.
+template <class Check>
+void for_each_engine(const PlainScene& scene, const Check& check) {
+  for (const Engine engine : validation::kEngines) {
+    const PlaneRecord record = record_by(engine, scene);
+    SCOPED_TRACE(to_string(engine));
+    EXPECT_EQ(record.engine, engine);
+    check(record);
+  }
+}
+
+void expect_outcome(const PlainScene& scene, Outcome expected) {
+  for_each_engine(scene, [&](const PlaneRecord& record) { EXPECT_EQ(to_string(record.outcome), to_string(expected)); });
+}
+double open_value() { return value_of(scene_with({})); }
 
 TEST(VisibleBoundary, ReachesEveryOutcome) {
-  EXPECT_EQ(record_of(scene_with({})).outcome, Outcome::kUnoccluded);
-  EXPECT_EQ(record_of(scene_with({square(0.25, 0.5)})).outcome, Outcome::kPartlyHidden);
-  EXPECT_EQ(record_of(scene_with({square(0.5, 0.5)})).outcome, Outcome::kHiddenByOne);
-  EXPECT_EQ(record_of(scene_with({square(0.5, 0.5, -0.25), square(0.5, 0.5, 0.25)})).outcome, Outcome::kHiddenByUnion);
+  expect_outcome(scene_with({}), Outcome::kUnoccluded);
+  expect_outcome(scene_with({square(0.25, 0.5)}), Outcome::kPartlyHidden);
+  expect_outcome(scene_with({square(0.5, 0.5)}), Outcome::kHiddenByOne);
+  expect_outcome(scene_with({square(0.5, 0.5, -0.25), square(0.5, 0.5, 0.25)}), Outcome::kHiddenByUnion);
   PlainScene behind = scene_with({});
   behind.point.z = 2.0;
-  EXPECT_EQ(record_of(behind).outcome, Outcome::kBehind);
+  expect_outcome(behind, Outcome::kBehind);
   behind.point.z = 1.0;  // in the plane
-  EXPECT_EQ(record_of(behind).outcome, Outcome::kBehind);
+  expect_outcome(behind, Outcome::kBehind);
   PlainScene below = scene_with({});
   below.normal.z = -1.0;
-  EXPECT_EQ(record_of(below).outcome, Outcome::kBelowHorizon);
+  expect_outcome(below, Outcome::kBelowHorizon);
 }
 
 TEST(VisibleBoundary, TheReceiversOwnFaceNeitherOccludesNorIlluminates) {
@@ -53,11 +70,15 @@ TEST(VisibleBoundary, TheReceiversOwnFaceNeitherOccludesNorIlluminates) {
   Receiver receiver = generate::receiver_of(plain);
   const ExactSource source(scene, scene.select("source"));
   receiver.on = scene.faces_of(scene.select("o1")).front();
-  EXPECT_EQ(exact_form_factor(scene, receiver, source).value, kOpen);
+  for (const Engine engine : validation::kEngines) {
+    EXPECT_EQ(exact_form_factor(scene, receiver, source, {.engine = engine}).value, open_value()) << to_string(engine);
+  }
   receiver.on = scene.faces_of(scene.select("source")).front();
-  const FormFactor result = exact_form_factor(scene, receiver, source);
-  EXPECT_EQ(result.status, Status::kZero);
-  EXPECT_EQ(result.planes.at(0).outcome, Outcome::kReceiverFace);
+  for (const Engine engine : validation::kEngines) {
+    const FormFactor result = exact_form_factor(scene, receiver, source, {.engine = engine});
+    EXPECT_EQ(result.status, Status::kZero) << to_string(engine);
+    EXPECT_EQ(result.planes.at(0).outcome, Outcome::kReceiverFace) << to_string(engine);
+  }
 }
 
 TEST(VisibleBoundary, TouchingOccluderHidesNothing) {
@@ -65,9 +86,8 @@ TEST(VisibleBoundary, TouchingOccluderHidesNothing) {
   for (const Corners& touching : {Corners{{0.5, -0.5, 0.5}, {2, -0.5, 0.5}, {2, 0.5, 0.5}, {0.5, 0.5, 0.5}},
                                   Corners{{0.5, 0.5, 0.5}, {2, 0.5, 0.5}, {2, 2, 0.5}, {0.5, 2, 0.5}},
                                   Corners{{0.5, 1, 0.5}, {0.5, 2, 0.5}, {2, 2, 0.5}}}) {
-    const PlaneRecord record = record_of(scene_with({touching}));
-    EXPECT_EQ(record.outcome, Outcome::kUnoccluded);
-    EXPECT_EQ(record.candidates, 0U);
+    expect_outcome(scene_with({touching}), Outcome::kUnoccluded);
+    for_each_engine(scene_with({touching}), [](const PlaneRecord& record) { EXPECT_EQ(record.candidates, 0U); });
   }
 }
 
@@ -78,14 +98,14 @@ TEST(VisibleBoundary, FacesSeenEdgeOnOrBeyondOrInTheSourcesPlaneHideNothing) {
   const Corners farther = square(0.5, std::nextafter(1.0, 2.0));
   const Corners behind_x = square(5.0, -0.5);
   for (const Corners& harmless : {edge_on, through_x, coplanar, farther, behind_x}) {
-    EXPECT_EQ(value_of(scene_with({harmless})), kOpen);
-    EXPECT_EQ(record_of(scene_with({harmless})).candidates, 0U);
+    EXPECT_EQ(value_of(scene_with({harmless})), open_value());
+    for_each_engine(scene_with({harmless}), [](const PlaneRecord& record) { EXPECT_EQ(record.candidates, 0U); });
   }
 }
 
 TEST(VisibleBoundary, OneUlpNearerThanTheSourceHides) {
-  EXPECT_EQ(record_of(scene_with({square(0.5, std::nextafter(1.0, 0.0))})).outcome, Outcome::kPartlyHidden);
-  EXPECT_EQ(record_of(scene_with({square(1.0, std::nextafter(1.0, 0.0))})).outcome, Outcome::kHiddenByOne);
+  expect_outcome(scene_with({square(0.5, std::nextafter(1.0, 0.0))}), Outcome::kPartlyHidden);
+  expect_outcome(scene_with({square(1.0, std::nextafter(1.0, 0.0))}), Outcome::kHiddenByOne);
 }
 
 TEST(VisibleBoundary, AFaceThroughTheSourcesPlaneHidesWithItsNearPartOnly) {
@@ -96,15 +116,16 @@ TEST(VisibleBoundary, AFaceThroughTheSourcesPlaneHidesWithItsNearPartOnly) {
   half.patches.clear();
   half.add_ring(half.patch("source"), {{-1, 1, 1}, {0.5, 1, 1}, {0.5, -1, 1}, {-1, -1, 1}});
   EXPECT_EQ(value_of(scene), value_of(half));
-  EXPECT_EQ(record_of(scene).clipped, 1U);
+  for_each_engine(scene, [](const PlaneRecord& record) { EXPECT_EQ(record.clipped, 1U); });
 }
 
 TEST(VisibleBoundary, AFaceThroughThePlaneOfXStaysBounded) {
   // Slanted from behind x to ahead of it; its shadow would reach to infinity without the clip.
   const Corners slanted = {{-3, -3, -0.5}, {3, -3, -0.5}, {3, 1, 0.7}, {-3, 1, 0.7}};
-  const PlaneRecord record = record_of(scene_with({slanted}));
-  EXPECT_EQ(record.candidates, 1U);
-  EXPECT_TRUE(record.outcome == Outcome::kPartlyHidden || record.outcome == Outcome::kHiddenByOne);
+  for_each_engine(scene_with({slanted}), [](const PlaneRecord& record) {
+    EXPECT_EQ(record.candidates, 1U);
+    EXPECT_TRUE(record.outcome == Outcome::kPartlyHidden || record.outcome == Outcome::kHiddenByOne);
+  });
 }
 
 TEST(VisibleBoundary, BothSidesOfAnOccluderBlock) {
@@ -122,21 +143,59 @@ TEST(VisibleBoundary, AHoleInAnOccluderLetsLightThrough) {
   EXPECT_EQ(value_of(ring), value_of(window));
 }
 
+TEST(VisibleBoundary, OccludersThatMeetInAnEdgeHideAllTogether) {
+  const Corners left = {{-0.5, -0.5, 0.5}, {0, -0.5, 0.5}, {0, 0.5, 0.5}, {-0.5, 0.5, 0.5}};
+  const Corners right = {{0, -0.5, 0.5}, {0.5, -0.5, 0.5}, {0.5, 0.5, 0.5}, {0, 0.5, 0.5}};
+  const Corners longer = {{0, -0.75, 0.5}, {0.5, -0.75, 0.5}, {0.5, 0.75, 0.5}, {0, 0.75, 0.5}};
+  for (const Corners& other : {right, longer}) {
+    expect_outcome(scene_with({left, other}), Outcome::kHiddenByUnion);
+    EXPECT_EQ(validation::solve(scene_with({left, other})).status, Status::kZero);
+  }
+}
+
+TEST(VisibleBoundary, AnOccluderThatIsThereTwiceHidesOnce) {
+  EXPECT_EQ(value_of(scene_with({square(0.25, 0.5), square(0.25, 0.5)})), value_of(scene_with({square(0.25, 0.5)})));
+  // Twice in shadow, though at two distances.
+  EXPECT_EQ(value_of(scene_with({square(0.25, 0.5), square(0.125, 0.25)})), value_of(scene_with({square(0.25, 0.5)})));
+}
+
+TEST(VisibleBoundary, AnOccluderFlushWithASideOfTheSourceLeavesTheRest) {
+  PlainScene rest = scene_with({});
+  rest.patches.clear();
+  rest.add_ring(rest.patch("source"), {{-0.5, 1, 1}, {1, 1, 1}, {1, -1, 1}, {-0.5, -1, 1}});
+  const Corners flush = {{-0.5, -0.5, 0.5}, {-0.25, -0.5, 0.5}, {-0.25, 0.5, 0.5}, {-0.5, 0.5, 0.5}};
+  EXPECT_EQ(value_of(scene_with({flush})), value_of(rest));
+}
+
+// The first face of the source is covered, the second is not.
+TEST(VisibleBoundary, WhatHidesOneFaceOfTheSourceDoesNotHideTheOther) {
+  PlainScene two = scene_with({});
+  two.patches.clear();
+  two.add_ring(two.patch("source"), {{-1, 1, 1}, {0, 1, 1}, {0, -1, 1}, {-1, -1, 1}});
+  two.add_ring(two.patch("source"), {{0, 1, 1}, {1, 1, 1}, {1, -1, 1}, {0, -1, 1}});
+  two.add_ring(two.patch("o1"), {{-0.5, -0.5, 0.5}, {0, -0.5, 0.5}, {0, 0.5, 0.5}, {-0.5, 0.5, 0.5}});
+  PlainScene right = scene_with({});
+  right.patches.clear();
+  right.add_ring(right.patch("source"), {{0, 1, 1}, {1, 1, 1}, {1, -1, 1}, {0, -1, 1}});
+  expect_outcome(two, Outcome::kPartlyHidden);
+  EXPECT_EQ(value_of(two), value_of(right));
+}
+
 TEST(VisibleBoundary, CoplanarFacesOfTheSourceCountOnce) {
   PlainScene doubled = scene_with({});
   doubled.add_ring(doubled.patch("source"), {{-1, 1, 1}, {0.3, 1, 1}, {0.3, -1, 1}, {-1, -1, 1}});
   const FormFactor result = validation::solve(doubled);
-  EXPECT_EQ(result.value, kOpen);
+  EXPECT_EQ(result.value, open_value());
   EXPECT_EQ(result.planes.size(), 1U);
-  EXPECT_EQ(result.planes[0].edges, 4U) << "collinear pieces merge, interior edges vanish";
+  EXPECT_EQ(record_by(Engine::kBoolean, doubled).edges, 4U) << "collinear pieces merge, interior edges vanish";
 }
 
 TEST(VisibleBoundary, CoplanarFacesOfOtherPatchesCountFully) {
   PlainScene plain = scene_with({});
   plain.add_ring(plain.patch("twin"), {{-1, 1, 1}, {1, 1, 1}, {1, -1, 1}, {-1, -1, 1}});
-  EXPECT_EQ(value_of(plain), kOpen);
+  EXPECT_EQ(value_of(plain), open_value());
   plain.source = "twin";
-  EXPECT_EQ(value_of(plain), kOpen);
+  EXPECT_EQ(value_of(plain), open_value());
 }
 
 TEST(VisibleBoundary, OtherFacesOfTheSourceOccludeIt) {
@@ -148,15 +207,17 @@ TEST(VisibleBoundary, OtherFacesOfTheSourceOccludeIt) {
 TEST(VisibleBoundary, ADiscWithHorizonThroughItKeepsTheUpperPart) {
   PlainScene plain = scene_with({});
   plain.normal = {1, 0, 0};
-  const FormFactor result = validation::solve(plain, {.visible_fraction = true, .exact_fraction = true});
-  EXPECT_TRUE(result.planes[0].horizon_clipped);
-  EXPECT_EQ(result.planes[0].exact_fraction, "1/2");
-  EXPECT_EQ(result.visible_fraction, 0.5);
+  for (const Engine engine : validation::kEngines) {
+    const FormFactor result = validation::solve_by(engine, plain, {.exact_fraction = true});
+    EXPECT_TRUE(result.planes[0].horizon_clipped) << to_string(engine);
+    EXPECT_EQ(result.planes[0].exact_fraction, "1/2") << to_string(engine);
+    EXPECT_EQ(result.visible_fraction, 0.5) << to_string(engine);
+  }
 }
 
 TEST(VisibleBoundary, StagesTellWhatWasLeftOut) {
-  const auto ran = [](const PlainScene& scene, const std::string& stage) {
-    for (const StageNote& note : stages(record_of(scene))) {
+  const auto ran_by = [](Engine engine, const PlainScene& scene, const std::string& stage) {
+    for (const StageNote& note : stages(record_by(engine, scene))) {
       if (note.stage == stage) return note.ran;
     }
     ADD_FAILURE() << "no stage " << stage;
@@ -165,13 +226,18 @@ TEST(VisibleBoundary, StagesTellWhatWasLeftOut) {
   const PlainScene open = scene_with({});
   const PlainScene cut = scene_with({square(0.25, 0.5)});
   const PlainScene hidden = scene_with({square(0.5, 0.5)});
-  EXPECT_FALSE(ran(open, "projection and Booleans"));
-  EXPECT_TRUE(ran(open, "contour"));
-  EXPECT_TRUE(ran(cut, "projection and Booleans"));
-  EXPECT_FALSE(ran(cut, "horizon clip"));
-  EXPECT_FALSE(ran(hidden, "projection and Booleans"));
-  EXPECT_FALSE(ran(hidden, "contour"));
-  EXPECT_TRUE(ran(hidden, "total occlusion"));
+  for (const Engine engine : validation::kEngines) {
+    SCOPED_TRACE(to_string(engine));
+    const auto ran = [&](const PlainScene& scene, const std::string& stage) { return ran_by(engine, scene, stage); };
+    const std::string work = engine == Engine::kEdges ? "edges" : "projection and Booleans";
+    EXPECT_FALSE(ran(open, work));
+    EXPECT_TRUE(ran(open, "contour"));
+    EXPECT_TRUE(ran(cut, work));
+    EXPECT_FALSE(ran(cut, "horizon clip"));
+    EXPECT_FALSE(ran(hidden, work));
+    EXPECT_FALSE(ran(hidden, "contour"));
+    EXPECT_TRUE(ran(hidden, "total occlusion"));
+  }
 }
 
 }  // namespace

@@ -1,0 +1,906 @@
+// Eq. (4) in double-double beside Eq. (4) in balls over exact integers. EXACTFF_TEST_SCALE multiplies the number of
+// random loops.
+#include "contour/quick_contour.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "contour/contour.h"
+#include "contour/quick_angle.h"
+#include "contour/quick_vector.h"
+#include "exactff/enclosure.h"
+#include "generate/random.h"
+#include "support/random_scenes.h"
+
+namespace exactff::contour {
+namespace {
+
+using generate::Random;
+using kernel::ExactVec3;
+using kernel::Integer;
+using kernel::Rational;
+using kernel::sign;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr long kBits = 600;
+constexpr QuickEnd kA{QuickEnd::Kind::kA};
+constexpr QuickEnd kB{QuickEnd::Kind::kB};
+
+QuickEnd crossing(std::uint32_t c, std::uint32_t d) { return {QuickEnd::Kind::kCrossing, c, d}; }
+
+// --- A contour in both arithmetics ---
+
+// Its corners are vertices seen from x, or directions given by integers.
+struct Both {
+  Vec3 normal{0, 0, 1};
+  Vec3 x;
+  std::vector<QuickCorner> corners;
+  std::vector<ExactVec3> exact;
+  std::vector<QuickPiece> pieces;
+
+  std::uint32_t add(const Vec3& vertex, int scale_exponent = 0) {
+    corners.push_back(quick_corner(vertex, x, scale_exponent));
+    exact.push_back(kernel::exact_difference(vertex, x).v);
+    return static_cast<std::uint32_t>(corners.size() - 1);
+  }
+  std::uint32_t add(const ExactVec3& direction) {
+    corners.push_back(quick_corner(direction));
+    exact.push_back(direction);
+    return static_cast<std::uint32_t>(corners.size() - 1);
+  }
+  void close_loop() {
+    const auto count = static_cast<std::uint32_t>(corners.size());
+    for (std::uint32_t i = 0; i < count; ++i) pieces.push_back({i, (i + 1) % count, kA, kB});
+  }
+
+  [[nodiscard]] QuickContour::Value quick() const {
+    QuickContour contour(normal);
+    for (const QuickPiece& piece : pieces) contour.add(corners, piece);
+    return contour.value();
+  }
+
+  [[nodiscard]] visibility::EdgeParameter parameter(const QuickPiece& piece, const QuickEnd& end) const {
+    if (end.kind == QuickEnd::Kind::kA) return {1, 0};
+    if (end.kind == QuickEnd::Kind::kB) return {0, 1};
+    const ExactVec3 plane = cross(exact[end.c], exact[end.d]);
+    return {abs(dot(plane, exact[piece.b])), abs(dot(plane, exact[piece.a]))};
+  }
+  [[nodiscard]] Enclosure ball() const {
+    ContourIntegral contour(kernel::exact_vector(normal).v);
+    for (const QuickPiece& piece : pieces) {
+      contour.add({exact[piece.a], exact[piece.b], parameter(piece, piece.begin), parameter(piece, piece.end)});
+    }
+    return Enclosure(contour.evaluate(kBits));
+  }
+};
+
+Enclosure enclosure_of(const QuickContour::Value& value) {
+  Ball ball;
+  Ball part;
+  arb_set_d(ball.get(), value.hi);
+  arb_set_d(part.get(), value.lo);
+  arb_add(ball.get(), ball.get(), part.get(), ARF_PREC_EXACT);
+  arb_set_d(part.get(), value.error);
+  arb_add_error(ball.get(), part.get());
+  return Enclosure(ball);
+}
+
+bool answers(const QuickContour::Value& value) { return std::isfinite(value.error); }
+
+double relative_error(const QuickContour::Value& value) { return value.error / std::abs(value.hi); }
+
+// Returns whether the double was found.
+bool expect_the_truth(const Both& both) {
+  const QuickContour::Value value = both.quick();
+  if (!answers(value)) return false;
+  EXPECT_EQ(value.hi, value.hi + value.lo);
+  const Enclosure truth = both.ball();
+  EXPECT_TRUE(enclosure_of(value).contains(truth))
+      << value.hi << " + " << value.lo << " +/- " << value.error << ", but " << truth.midpoint();
+  const std::optional<double> found = nearest(value);
+  if (found) {
+    EXPECT_EQ(found, truth.nearest());
+  }
+  return found.has_value();
+}
+
+// --- Random loops ---
+
+Vec3 random_vector(Random& random, double size) {
+  return {random.between(-size, size), random.between(-size, size), random.between(-size, size)};
+}
+
+// A triangle of about the size, near a point above x.
+Both triangle(Random& random, double size) {
+  Both both;
+  both.x = random_vector(random, 1);
+  both.normal = {random.between(-0.3, 0.3), random.between(-0.3, 0.3), 1};
+  const Vec3 middle{random.between(-2, 2), random.between(-2, 2), random.between(3, 5)};
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 offset = random_vector(random, size);
+    both.add(Vec3{middle.x + offset.x, middle.y + offset.y, middle.z + offset.z});
+  }
+  return both;
+}
+
+// What the cutter's line c d leaves of the triangle, between its first corner and the line: a loop with pieces of all
+// kinds. c and d lie on either side, at a random depth between x and the triangle.
+Both cut_triangle(Random& random, double size) {
+  Both both = triangle(random, size);
+  const std::array<QuickCorner, 3> corners = {both.corners[0], both.corners[1], both.corners[2]};
+  const double t = random.between(0.2, 0.8);
+  const double u = random.between(0.2, 0.8);
+  const double depth = random.between(0.3, 1);
+  // The point with the barycentric coordinates, seen from x at that depth.
+  const auto point = [&](double k0, double k1, double k2) {
+    const auto along = [&](int i) {
+      return depth * (k0 * corners[0].hi[i] + k1 * corners[1].hi[i] + k2 * corners[2].hi[i]);
+    };
+    return Vec3{both.x.x + along(0), both.x.y + along(1), both.x.z + along(2)};
+  };
+  // Through the points t and u along the two sides, longer by half at either end.
+  const std::uint32_t c = both.add(point(1 - 1.5 * t + 0.5 * u, 1.5 * t, -0.5 * u));
+  const std::uint32_t d = both.add(point(1 - 1.5 * u + 0.5 * t, -0.5 * t, 1.5 * u));
+  both.pieces = {{0, 1, kA, crossing(c, d)}, {c, d, crossing(0, 1), crossing(2, 0)}, {2, 0, crossing(c, d), kB}};
+  if (random.one_in(2)) std::swap(both.pieces[1].a, both.pieces[1].b);
+  return both;
+}
+
+Integer random_integer(Random& random, int bits) {
+  Integer result;
+  for (int done = 0; done < bits; done += 16) result = (result << 16) + static_cast<long>(random.below(65536));
+  result >>= static_cast<mp_bitcnt_t>((bits + 15) / 16 * 16 - bits);
+  return random.one_in(2) ? result : Integer(-result);
+}
+
+ExactVec3 random_direction(Random& random, int bits) {
+  return {random_integer(random, bits), random_integer(random, bits), random_integer(random, bits)};
+}
+
+struct Count {
+  std::size_t loops = 0;
+  std::size_t found = 0;
+};
+
+// `make` gives a loop; every one must enclose the truth.
+template <typename Make>
+Count expect_the_truth_of(std::size_t count, std::uint64_t first_seed, Make make) {
+  Count result{.loops = validation::scaled_count(count)};
+  for (std::uint64_t seed = first_seed; seed < first_seed + result.loops; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(validation::seed_of(seed));
+    result.found += expect_the_truth(make(random)) ? 1 : 0;
+    if (::testing::Test::HasFailure()) break;
+  }
+  return result;
+}
+
+TEST(QuickContour, RoundsEveryTriangleOfModerateSize) {
+  const Count count = expect_the_truth_of(500, 1, [](Random& random) {
+    const double size = std::exp2(random.between(-8, 1));
+    Both both = triangle(random, size);
+    both.close_loop();
+    EXPECT_LT(both.quick().error, size * 0x1p-97);
+    return both;
+  });
+  RecordProperty("found", static_cast<int>(count.found));
+  EXPECT_EQ(count.found, count.loops);
+}
+
+// Squares that face x at a slant.
+TEST(QuickContour, KeepsItsBitsOfWhatIsPlainlySeen) {
+  const Count count = expect_the_truth_of(200, 501, [](Random& random) {
+    Both both;
+    const double u = random.between(-0.5, 0.5);
+    const double v = random.between(-0.5, 0.5);
+    const auto corner = [&](double s, double t) { both.add(Vec3{s + 0.1, t + 0.3, 2 + u * s + v * t}); };
+    corner(-1, -1);
+    corner(-1, 1);
+    corner(1, 1);
+    corner(1, -1);
+    both.close_loop();
+    EXPECT_LT(relative_error(both.quick()), 0x1p-95);
+    return both;
+  });
+  EXPECT_EQ(count.found, count.loops);
+}
+
+TEST(QuickContour, RoundsNearlyEveryTinyTriangle) {
+  const Count count = expect_the_truth_of(500, 1001, [](Random& random) {
+    Both both = triangle(random, 1e-8);
+    both.close_loop();
+    return both;
+  });
+  RecordProperty("found", static_cast<int>(count.found));
+  EXPECT_GT(count.found, count.loops * 98 / 100);
+}
+
+TEST(QuickContour, RoundsWhatCrossingsLeave) {
+  const Count count = expect_the_truth_of(
+      500, 2001, [](Random& random) { return cut_triangle(random, std::exp2(random.between(-8, 0))); });
+  RecordProperty("found", static_cast<int>(count.found));
+  EXPECT_GT(count.found, count.loops * 99 / 100);
+}
+
+TEST(QuickContour, EnclosesTinyLoopsWithCrossings) {
+  const Count count = expect_the_truth_of(
+      500, 3001, [](Random& random) { return cut_triangle(random, std::exp2(random.between(-30, -15))); });
+  RecordProperty("found", static_cast<int>(count.found));
+  EXPECT_GT(count.found, count.loops * 9 / 10);
+}
+
+TEST(QuickContour, EnclosesSlivers) {
+  const Count count = expect_the_truth_of(500, 4001, [](Random& random) {
+    Both both = triangle(random, 1);
+    both.corners.clear();
+    both.exact.clear();
+    const Vec3 p{random.between(-2, 2), random.between(-2, 2), random.between(3, 5)};
+    const double width = std::exp2(random.between(-45, -10));
+    both.add(p);
+    both.add(Vec3{p.x + random.between(0, 1), p.y + random.between(0, 1), p.z});
+    both.add(Vec3{p.x + width * random.between(0, 1), p.y + width * random.between(0, 1), p.z + width});
+    both.close_loop();
+    return both;
+  });
+  RecordProperty("found", static_cast<int>(count.found));
+  EXPECT_GT(count.found, count.loops * 2 / 3);
+}
+
+TEST(QuickContour, EnclosesLoopsNearTheHorizon) {
+  const Count count = expect_the_truth_of(500, 5001, [](Random& random) {
+    Both both;
+    both.normal = {0, 0, 1};
+    both.x = random_vector(random, 1);
+    const double height = std::exp2(random.between(-40, 0));
+    for (int i = 0; i < 4; ++i) {
+      both.add(Vec3{both.x.x + random.between(2, 3), both.x.y + random.between(-1, 1),
+                    both.x.z + height * random.between(0, 1)});
+    }
+    both.close_loop();
+    return both;
+  });
+  RecordProperty("found", static_cast<int>(count.found));
+  EXPECT_GT(count.found, count.loops / 3);
+}
+
+TEST(QuickContour, EnclosesAnglesNearAHalfTurn) {
+  const Count count = expect_the_truth_of(500, 6001, [](Random& random) {
+    Both both;
+    const Vec3 a = random_vector(random, 1);
+    const double gap = std::exp2(random.between(-40, 0));
+    const double s = random.between(0.5, 2);
+    both.add(a);
+    both.add(Vec3{-s * a.x + gap * random.between(-1, 1), -s * a.y + gap * random.between(-1, 1), -s * a.z + gap});
+    both.add(random_vector(random, 1));
+    both.close_loop();
+    return both;
+  });
+  RecordProperty("found", static_cast<int>(count.found));
+  EXPECT_GT(count.found, count.loops * 9 / 10);
+}
+
+// Any pieces, not closed, of directions with more bits than double-double has, or fewer.
+TEST(QuickContour, EnclosesPiecesOfExactDirections) {
+  const Count count = expect_the_truth_of(1000, 7001, [](Random& random) {
+    Both both;
+    both.normal = random_vector(random, 1);
+    for (int i = 0; i < 8; ++i) both.add(random_direction(random, 4 + static_cast<int>(random.below(400))));
+    for (int i = 0; i < 6; ++i) {
+      const auto pick = [&](std::uint32_t other) {
+        return (other + 1 + static_cast<std::uint32_t>(random.below(7))) % 8;
+      };
+      const std::uint32_t a = static_cast<std::uint32_t>(random.below(8));
+      QuickPiece piece{a, pick(a), kA, kB};
+      for (QuickEnd* end : {&piece.begin, &piece.end}) {
+        const std::uint32_t c = static_cast<std::uint32_t>(random.below(8));
+        const QuickEnd other = crossing(c, pick(c));
+        const ExactVec3 plane = cross(both.exact[other.c], both.exact[other.d]);
+        const int signs = sign(dot(plane, both.exact[piece.a])) * sign(dot(plane, both.exact[piece.b]));
+        if (signs < 0) *end = other;
+      }
+      both.pieces.push_back(piece);
+    }
+    return both;
+  });
+  RecordProperty("found", static_cast<int>(count.found));
+  EXPECT_GT(count.found, count.loops * 8 / 10);
+}
+
+TEST(QuickContour, EnclosesCornersOfAnyModerateSize) {
+  const Count count = expect_the_truth_of(500, 8001, [](Random& random) {
+    Both both;
+    const double direction = random.one_in(2) ? 1 : -1;
+    for (int i = 0; i < 5; ++i) {
+      const Vec3 t = random_vector(random, 1);
+      const double size = std::exp2(direction * random.between(0, 199));
+      both.add(Vec3{size * t.x, size * t.y, size * t.z});
+    }
+    const ExactVec3 plane = cross(both.exact[3], both.exact[4]);
+    const bool crosses = sign(dot(plane, both.exact[0])) * sign(dot(plane, both.exact[1])) < 0;
+    both.pieces = {{0, 1, kA, crosses ? crossing(3, 4) : kB}, {1, 2, kA, kB}, {2, 0, kA, kB}};
+    return both;
+  });
+  RecordProperty("found", static_cast<int>(count.found));
+  EXPECT_GT(count.found, count.loops * 8 / 10);
+}
+
+// Every step of the table of arc tangents, both ends of it, in every octant.
+TEST(QuickContour, EnclosesAnglesOfEveryStep) {
+  constexpr int kSteps = 512;
+  for (int k = -kSteps; k <= kSteps; ++k) {
+    for (const bool steep : {false, true}) {
+      for (const int side : {1, -1}) {
+        if (!steep && k == 0) continue;  // a on one line with b
+        Both both;
+        both.normal = {0.3, 0.4, 0.5};
+        both.add(ExactVec3{1, 0, 0});
+        both.add(steep ? ExactVec3{k, side * kSteps, 0} : ExactVec3{side * kSteps, k, 0});
+        both.pieces = {{0, 1, kA, kB}};
+        ASSERT_TRUE(expect_the_truth(both)) << k << ' ' << steep << ' ' << side;
+        ASSERT_LT(relative_error(both.quick()), 0x1p-86) << k << ' ' << steep << ' ' << side;
+      }
+    }
+  }
+}
+
+// --- Properties ---
+
+TEST(QuickContour, AgreesWithTheClosedFormBelowACorner) {
+  // J. R. Howell, configuration B-3 with a = b = c = 1.
+  Both both;
+  for (const ExactVec3& corner : {ExactVec3{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}) both.add(corner);
+  both.close_loop();
+  EXPECT_EQ(nearest(both.quick()), 0.138531605994892996780769708634);
+  EXPECT_LT(both.quick().error, 0x1p-96);
+}
+
+TEST(QuickContour, ThePieceInTheOtherSenseIsTheNegative) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    Random random(validation::seed_of(seed));
+    Both forward = cut_triangle(random, 1);
+    Both backward = forward;
+    for (QuickPiece& piece : backward.pieces) std::swap(piece.begin, piece.end);
+    EXPECT_EQ(forward.quick().hi, -backward.quick().hi) << seed;
+  }
+}
+
+TEST(QuickContour, TheLengthOfTheNormalMeansNothing) {
+  for (const int exponent : {-1060, -900, -1, 1, 900, 1020}) {
+    Both both;
+    for (const ExactVec3& corner : {ExactVec3{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}) both.add(corner);
+    both.close_loop();
+    both.normal = {0.25, -0.5, 4};  // few bits: they outlast any shift
+    const QuickContour::Value plain = both.quick();
+    both.normal = {std::ldexp(0.25, exponent), std::ldexp(-0.5, exponent), std::ldexp(4, exponent)};
+    EXPECT_EQ(both.quick().hi, plain.hi) << exponent;
+    EXPECT_EQ(both.quick().lo, plain.lo) << exponent;
+    EXPECT_TRUE(expect_the_truth(both)) << exponent;
+  }
+}
+
+TEST(QuickContour, TheSizeOfAllCornersMeansNothing) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    Random random(validation::seed_of(seed));
+    Both both = cut_triangle(random, 1);
+    const QuickContour::Value plain = both.quick();
+    for (const double scale : {0x1p190, 0x1p-190}) {
+      Both scaled = both;
+      for (QuickCorner& corner : scaled.corners) {
+        for (int i = 0; i < 3; ++i) {
+          corner.hi[i] *= scale;
+          corner.lo[i] *= scale;
+        }
+      }
+      EXPECT_EQ(scaled.quick().hi, plain.hi) << seed;
+      EXPECT_EQ(scaled.quick().lo, plain.lo) << seed;
+    }
+  }
+}
+
+TEST(QuickContour, ANormalWithComponentsOfAnyRatioIsEnclosed) {
+  Both both;
+  for (const ExactVec3& corner : {ExactVec3{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}) both.add(corner);
+  both.close_loop();
+  for (const Vec3& normal : {Vec3{1e-320, 0, 1e300}, Vec3{5e-324, 5e-324, 5e-324}, Vec3{1e308, -1e308, 1.5e308}}) {
+    both.normal = normal;
+    EXPECT_TRUE(expect_the_truth(both));
+  }
+}
+
+// --- Declining ---
+
+Both one_piece(const ExactVec3& a, const ExactVec3& b) {
+  Both both;
+  both.add(a);
+  both.add(b);
+  both.pieces = {{0, 1, kA, kB}};
+  return both;
+}
+
+TEST(QuickContour, DeclinesAnEdgeOnOneLineWithX) {
+  const Integer big = Integer(1) << 400;
+  EXPECT_FALSE(answers(one_piece({1, 2, 3}, {1, 2, 3}).quick()));
+  EXPECT_FALSE(answers(one_piece({1, 2, 3}, {-1, -2, -3}).quick()));
+  EXPECT_FALSE(answers(one_piece({1, 2, 3}, {2, 4, 6}).quick()));
+  EXPECT_FALSE(answers(one_piece({big, big, big}, {big, big, big + (Integer(1) << 200) + 1}).quick()));
+  EXPECT_FALSE(answers(one_piece({big, big, big}, {-big, -big, -big - (Integer(1) << 200) - 1}).quick()));
+  EXPECT_TRUE(answers(one_piece({1, 2, 3}, {1, 2, 4}).quick()));
+}
+
+// One piece that is declined is one too many.
+TEST(QuickContour, StaysDeclined) {
+  Both both = one_piece({1, 2, 3}, {2, 4, 6});
+  both.add(ExactVec3{1, 5, 2});
+  both.pieces.push_back({1, 2, kA, kB});
+  EXPECT_FALSE(answers(both.quick()));
+  EXPECT_FALSE(nearest(both.quick()).has_value());
+}
+
+TEST(QuickContour, DeclinesACrossingThatIsNone) {
+  const auto crossed_by = [](const ExactVec3& c, const ExactVec3& d) {
+    Both both = one_piece({1, 0, 1}, {0, 1, 1});
+    both.add(c);
+    both.add(d);
+    both.pieces[0].end = crossing(2, 3);
+    return answers(both.quick());
+  };
+  EXPECT_TRUE(crossed_by({0, 0, 1}, {1, 2, 0}));
+  EXPECT_FALSE(crossed_by({0, 0, 1}, {1, 0, 0}));     // through a
+  EXPECT_FALSE(crossed_by({0, 0, 1}, {0, 1, 0}));     // through b
+  EXPECT_FALSE(crossed_by({0, 0, 1}, {1, -2, 0}));    // beside the edge
+  EXPECT_FALSE(crossed_by({1, 0, 1}, {0, 1, 1}));     // along it
+  EXPECT_FALSE(crossed_by({1, 2, 3}, {2, 4, 6}));     // no plane
+  EXPECT_FALSE(crossed_by({1, 2, 3}, {-2, -4, -6}));  // no plane
+  const Integer big = Integer(1) << 300;
+  EXPECT_FALSE(crossed_by({0, 0, 1}, {big, 1, 0}));  // too near to a for double-double
+}
+
+TEST(QuickContour, DeclinesCornersTooLargeOrTooSmall) {
+  const auto with = [](const Vec3& vertex, int scale_exponent) {
+    const std::vector<QuickCorner> corners = {quick_corner({1, 0, 0}, {}, 0), quick_corner(vertex, {}, scale_exponent)};
+    QuickContour contour({0, 0, 1});
+    contour.add(corners, {0, 1, kA, kB});
+    return answers(contour.value());
+  };
+  EXPECT_TRUE(with({0, 1, 0}, 200));
+  EXPECT_TRUE(with({0, 1, 0}, -200));
+  EXPECT_FALSE(with({0, 1, 0}, 201));
+  EXPECT_FALSE(with({0, 1, 0}, -201));
+  EXPECT_FALSE(with({0, 1, 0}, 2000));
+  EXPECT_FALSE(with({0, 1, 0}, -2000));
+  EXPECT_FALSE(with({0, 0, 0}, 0));
+  EXPECT_FALSE(with({0, 1, std::nan("")}, 0));
+  EXPECT_FALSE(with({0, kInfinity, 0}, 0));
+}
+
+TEST(QuickContour, ALoopWithoutAreaIsNotRounded) {
+  Both both = one_piece({1, 2, 3}, {1, 2, 4});
+  both.pieces.push_back({1, 0, kA, kB});
+  EXPECT_TRUE(answers(both.quick()));
+  EXPECT_FALSE(nearest(both.quick()).has_value());
+  EXPECT_TRUE(enclosure_of(both.quick()).contains(0.0));
+}
+
+// --- Corners ---
+
+Rational exactly(double hi, double lo) { return kernel::to_rational(hi) + kernel::to_rational(lo); }
+
+TEST(QuickCorner, IsTheExactDifference) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    Random random(validation::seed_of(seed));
+    const Vec3 p = random_vector(random, std::exp2(random.between(-40, 40)));
+    const Vec3 q = random_vector(random, std::exp2(random.between(-40, 40)));
+    const int exponent = static_cast<int>(random.below(200)) - 100;
+    const QuickCorner corner = quick_corner(p, q, exponent);
+    EXPECT_EQ(corner.error, 0.0);
+    const std::array<double, 3> from = {q.x, q.y, q.z};
+    const std::array<double, 3> to = {p.x, p.y, p.z};
+    for (int i = 0; i < 3; ++i) {
+      const Rational difference = kernel::to_rational(to[i]) - kernel::to_rational(from[i]);
+      EXPECT_EQ(exactly(corner.hi[i], corner.lo[i]), kernel::times_power_of_two(difference, exponent)) << seed;
+    }
+  }
+}
+
+TEST(QuickCorner, TheErrorCoversWhatUnderflows) {
+  for (const int exponent : {-900, -960, -1000, -1010, -1074, -1500}) {
+    const Vec3 p{1.0 / 3, 1e-200, 3};
+    const Vec3 q{1e-17, 0, 1e-9};
+    const QuickCorner corner = quick_corner(p, q, exponent);
+    EXPECT_GT(corner.error, 0.0);
+    EXPECT_LT(corner.error, 0x1p-900);
+    const std::array<double, 3> from = {q.x, q.y, q.z};
+    const std::array<double, 3> to = {p.x, p.y, p.z};
+    for (int i = 0; i < 3; ++i) {
+      const Rational difference = kernel::to_rational(to[i]) - kernel::to_rational(from[i]);
+      const Rational lost = kernel::times_power_of_two(difference, exponent) - exactly(corner.hi[i], corner.lo[i]);
+      EXPECT_LE(abs(lost), kernel::to_rational(corner.error)) << exponent;
+    }
+  }
+}
+
+TEST(QuickCorner, IsNoNumberWhereItOverflows) {
+  EXPECT_TRUE(std::isnan(quick_corner({1.5e308, 0, 0}, {-1.5e308, 0, 0}, -100).hi[0]));
+  EXPECT_TRUE(std::isnan(quick_corner({0, 1, 0}, {}, 1024).hi[1]));
+  EXPECT_TRUE(std::isnan(quick_corner({0, 0, 1}, {}, 5000).hi[2]));
+  EXPECT_EQ(quick_corner({0, 5e-324, 0}, {}, 1074).hi[1], 1.0);
+}
+
+TEST(QuickCorner, OfAnExactDirectionKeepsItsErrorBound) {
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    Random random(validation::seed_of(seed));
+    ExactVec3 direction = random_direction(random, 1 + static_cast<int>(random.below(600)));
+    direction.y >>= static_cast<mp_bitcnt_t>(random.below(120));
+    if (is_zero(direction)) continue;
+    const QuickCorner corner = quick_corner(direction);
+    const long bits = bit_length(direction);
+    EXPECT_TRUE(bits > 106 || corner.error == 0.0) << seed;
+    EXPECT_LE(corner.error, 0x1p-105);
+    double largest = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      const Rational lost =
+          kernel::times_power_of_two(Rational(direction[i]), -bits) - exactly(corner.hi[i], corner.lo[i]);
+      EXPECT_LE(abs(lost), kernel::to_rational(corner.error)) << seed;
+      EXPECT_EQ(corner.hi[i], corner.hi[i] + corner.lo[i]);
+      largest = std::max(largest, std::abs(corner.hi[i]));
+    }
+    EXPECT_GE(largest, 0.5);
+    EXPECT_LE(largest, 1.0);  // 1 - 2^-60 rounds to 1
+  }
+}
+
+TEST(QuickCorner, OfAFewBitsIsExact) {
+  const QuickCorner corner = quick_corner(ExactVec3{3, -5, (Integer(1) << 100) + 1});
+  EXPECT_EQ(corner.error, 0.0);
+  EXPECT_EQ(corner.hi[2], 0.5);
+  EXPECT_EQ(corner.lo[2], 0x1p-101);
+  EXPECT_EQ(corner.hi[1], -5 * 0x1p-101);
+}
+
+// --- The nearest double ---
+
+TEST(QuickNearest, DecidesOnEitherSideOfAMidpoint) {
+  const double half = 0x1p-53;  // the midpoint between 1 and its successor
+  EXPECT_EQ(nearest({1, 0, 0x1p-60}), 1.0);
+  EXPECT_EQ(nearest({1, half * 0.75, half * 0.2}), 1.0);
+  EXPECT_EQ(nearest({1, half * 0.75, half * 0.3}), std::nullopt);
+  EXPECT_EQ(nearest({1 + 0x1p-52, -half * 0.75, half * 0.2}), 1 + 0x1p-52);
+  EXPECT_EQ(nearest({1 + 0x1p-52, -half * 0.75, half * 0.3}), std::nullopt);
+}
+
+TEST(QuickNearest, KnowsThatDoublesAreDenserBelowAPowerOfTwo) {
+  EXPECT_EQ(nearest({1, 0, 0x1p-54}), std::nullopt);  // the midpoint below 1 is that near
+  EXPECT_EQ(nearest({1, 0, 0x1p-55}), 1.0);
+  EXPECT_EQ(nearest({1, 0x1p-54, 0x1p-55}), 1.0);
+}
+
+TEST(QuickNearest, DoesNotDecideTies) {
+  EXPECT_EQ(nearest({1, 0x1p-53, 0x1p-100}), std::nullopt);
+  EXPECT_EQ(nearest({1, 0x1p-53, 0}), std::nullopt);
+  EXPECT_EQ(nearest({3, 0x1p-52, 0x1p-110}), std::nullopt);
+}
+
+TEST(QuickNearest, DecidesDenormals) {
+  EXPECT_EQ(nearest({0x1p-1074, 0, 0}), std::nullopt);  // a double beside it might be meant: bounds go outward by one
+  EXPECT_EQ(nearest({0x1p-1000, 0, 0x1p-1060}), 0x1p-1000);
+  EXPECT_EQ(nearest({0x1p-1000, 0, 0x1p-1050}), std::nullopt);
+  EXPECT_EQ(nearest({0x1p-1030, 0, 0x1p-1074}), std::nullopt);
+}
+
+TEST(QuickNearest, DeclinesWhatIsNotFinite) {
+  EXPECT_EQ(nearest({0, 0, kInfinity}), std::nullopt);
+  EXPECT_EQ(nearest({0, 0, std::nan("")}), std::nullopt);
+  EXPECT_EQ(nearest({std::nan(""), 0, 0}), std::nullopt);
+  EXPECT_EQ(nearest({kInfinity, 0, 0}), std::nullopt);
+  EXPECT_EQ(nearest({std::numeric_limits<double>::max(), 0x1p969, 0x1p990}), std::nullopt);
+}
+
+// Every answer is that of the ball, and near midpoints both change their mind within a few units of error.
+TEST(QuickNearest, AgreesWithTheBall) {
+  for (std::uint64_t seed = 1; seed <= validation::scaled_count(2000); ++seed) {
+    Random random(validation::seed_of(seed));
+    const double hi =
+        std::ldexp(1 + static_cast<double>(random.below(4)) * 0x1p-52, static_cast<int>(random.below(60)) - 30);
+    const double half_gap = (std::nextafter(hi, kInfinity) - hi) / 2;
+    const double lo = half_gap * (random.one_in(2) ? random.between(-1, 1) : 1 - std::exp2(random.between(-50, 0)));
+    const QuickContour::Value value{hi, lo, half_gap * std::exp2(random.between(-50, 0))};
+    const std::optional<double> found = nearest(value);
+    const std::optional<double> truth = enclosure_of(value).nearest();
+    if (found) {
+      EXPECT_EQ(found, truth) << seed;
+    }
+    if (truth && !found) {
+      const QuickContour::Value wider{hi, lo, value.error * (1 + 0x1p-40) + half_gap * 0x1p-51};
+      EXPECT_FALSE(enclosure_of(wider).nearest().has_value()) << seed;
+    }
+  }
+}
+
+// --- Arithmetic ---
+
+// Every operation on numbers at the edge of what their bounds allow: its own bound must hold, and, where the operands
+// are exact, must not be a hundred times too large for the worst of many.
+class Arithmetic : public ::testing::Test {
+ protected:
+  struct Operand {
+    Bounded bounded;
+    Rational truth;
+  };
+
+  static Operand operand(Random& random, bool exact) {
+    const double hi = random.between(0.5, 2) * (random.one_in(2) ? 1 : -1) * std::exp2(random.between(-3, 3));
+    const DoubleDouble x = two_sum(hi, hi * 0x1p-53 * random.between(-1, 1));
+    const double error = exact ? 0.0 : std::abs(hi) * std::exp2(random.between(-100, -30));
+    const Rational shift = kernel::to_rational(random.one_in(2) ? error : -error);
+    return {{x.hi, x.lo, error}, exactly(x.hi, x.lo) + shift};
+  }
+
+  // |result - truth| / error.
+  static double share(const Bounded& result, const Rational& truth) {
+    const Rational lost = abs(Rational(exactly(result.hi, result.lo) - truth));
+    EXPECT_EQ(result.hi, result.hi + result.lo);
+    return Rational(lost / kernel::to_rational(kInflation * result.error)).get_d();
+  }
+
+  // `shares` gives the share of the bound that one case uses up.
+  template <typename Shares>
+  static void expect_sharp_bounds(Shares shares) {
+    double worst = 0.0;
+    for (std::uint64_t seed = 1; seed <= validation::scaled_count(4000); ++seed) {
+      Random random(validation::seed_of(seed));
+      worst = std::max(worst, shares(random, true));
+      ASSERT_LE(worst, 1.0) << seed;
+      ASSERT_LE(shares(random, false), 1.0) << seed;
+    }
+    EXPECT_GT(worst, 0.05);
+  }
+};
+
+TEST_F(Arithmetic, SumsKeepTheirBounds) {
+  expect_sharp_bounds([](Random& random, bool exact) {
+    const Operand x = operand(random, exact);
+    const Operand y = operand(random, exact);
+    return share(x.bounded + y.bounded, x.truth + y.truth);
+  });
+}
+
+// Operands that cancel to a few of their last bits, or all.
+TEST_F(Arithmetic, SumsThatCancelKeepTheirBounds) {
+  for (std::uint64_t seed = 1; seed <= validation::scaled_count(4000); ++seed) {
+    Random random(validation::seed_of(seed));
+    const Operand x = operand(random, true);
+    const double hi = -x.bounded.hi * (1 + 0x1p-52 * static_cast<double>(random.below(5)));
+    const DoubleDouble y = two_sum(hi, hi * 0x1p-53 * random.between(-1, 1));
+    const Rational truth = x.truth + exactly(y.hi, y.lo);
+    ASSERT_LE(share(x.bounded + bounded(y, 0), truth), 1.0) << seed;
+    const DoubleDouble sum = accurate_sum({x.bounded.hi, x.bounded.lo}, y);
+    ASSERT_LE(abs(Rational(exactly(sum.hi, sum.lo) - truth)), abs(truth) * kernel::to_rational(0x1p-104)) << seed;
+  }
+}
+
+TEST_F(Arithmetic, ProductsKeepTheirBounds) {
+  expect_sharp_bounds([](Random& random, bool exact) {
+    const Operand x = operand(random, exact);
+    const Operand y = operand(random, exact);
+    return share(x.bounded * y.bounded, x.truth * y.truth);
+  });
+  expect_sharp_bounds([](Random& random, bool exact) {
+    const Operand y = operand(random, exact);
+    const double t = random.between(0, 1);
+    return share(t * y.bounded, kernel::to_rational(t) * y.truth);
+  });
+}
+
+TEST_F(Arithmetic, SumsOfProductsKeepTheirBounds) {
+  expect_sharp_bounds([](Random& random, bool exact) {
+    const Operand a = operand(random, exact);
+    const Operand b = operand(random, exact);
+    const Operand c = operand(random, exact);
+    const Operand d = operand(random, exact);
+    return share(sum_of_products(a.bounded, b.bounded, c.bounded, d.bounded), a.truth * b.truth + c.truth * d.truth);
+  });
+}
+
+TEST_F(Arithmetic, QuotientsKeepTheirBounds) {
+  expect_sharp_bounds([](Random& random, bool exact) {
+    const Operand x = operand(random, exact);
+    const Operand y = operand(random, exact);
+    return share(x.bounded / y.bounded, x.truth / y.truth);
+  });
+}
+
+TEST_F(Arithmetic, RootsKeepTheirBounds) {
+  expect_sharp_bounds([](Random& random, bool exact) {
+    Operand x = operand(random, exact);
+    if (x.bounded.hi < 0.0) x = {-x.bounded, -x.truth};
+    // A rational root within 2^-300.
+    Integer root;
+    const Integer scaled =
+        kernel::times_power_of_two(x.truth, 600).get_num() / kernel::times_power_of_two(x.truth, 600).get_den();
+    mpz_sqrt(root.get_mpz_t(), scaled.get_mpz_t());
+    return share(square_root(x.bounded), kernel::times_power_of_two(Rational(root), -300));
+  });
+}
+
+TEST_F(Arithmetic, DeclinesDivisorsThatMayBeZero) {
+  EXPECT_EQ((Bounded{1} / Bounded{0}).error, kInfinity);
+  EXPECT_EQ((Bounded{1} / Bounded{1, 0, 0x1p-19}).error, kInfinity);
+  EXPECT_EQ(square_root({1, 0, 0x1p-19}).error, kInfinity);
+  EXPECT_EQ(square_root({-1, 0, 0}).error, kInfinity);
+  EXPECT_EQ(square_root({0, 0, 0}).error, kInfinity);
+}
+
+// --- Vectors ---
+
+using Truth = std::array<Rational, 3>;
+
+struct VectorOperand {
+  Vector bounded;
+  Truth truth;
+};
+
+class VectorArithmetic : public Arithmetic {
+ protected:
+  static VectorOperand vector_operand(Random& random, bool exact, double size = 1) {
+    VectorOperand result;
+    const double error = exact ? 0.0 : size * std::exp2(random.between(-100, -30));
+    for (int i = 0; i < 3; ++i) {
+      const double hi = random.between(-1, 1) * size;
+      result.bounded.c[i] = two_sum(hi, hi * 0x1p-53 * random.between(-1, 1));
+      const Rational shift = kernel::to_rational(random.one_in(2) ? error : -error);
+      result.truth[i] = exactly(result.bounded.c[i].hi, result.bounded.c[i].lo) + shift;
+    }
+    result.bounded = vector(result.bounded.c, error);
+    return result;
+  }
+
+  static double worst_share(const Vector& result, const Truth& truth) {
+    double worst = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      worst = std::max(worst, share({result.c[i].hi, result.c[i].lo, result.error}, truth[i]));
+    }
+    return worst;
+  }
+};
+
+Truth true_combination(const Rational& l, const Truth& p, const Rational& m, const Truth& q) {
+  return {l * p[0] + m * q[0], l * p[1] + m * q[1], l * p[2] + m * q[2]};
+}
+
+TEST_F(VectorArithmetic, DifferencesKeepTheirBounds) {
+  expect_sharp_bounds([](Random& random, bool exact) {
+    const VectorOperand p = vector_operand(random, exact);
+    VectorOperand q = vector_operand(random, exact, std::exp2(random.between(-60, 0)));
+    if (random.one_in(2)) {  // near p
+      for (int i = 0; i < 3; ++i) q.truth[i] += p.truth[i];
+      q.bounded = difference(p.bounded, vector({-q.bounded.c[0], -q.bounded.c[1], -q.bounded.c[2]}, q.bounded.error));
+      if (exact) q.bounded.error = 0;  // the sum as it was rounded is an exact operand
+      if (exact) {
+        for (int i = 0; i < 3; ++i) q.truth[i] = exactly(q.bounded.c[i].hi, q.bounded.c[i].lo);
+      }
+    }
+    return worst_share(difference(p.bounded, q.bounded), true_combination(1, p.truth, -1, q.truth));
+  });
+}
+
+TEST_F(VectorArithmetic, CrossProductsKeepTheirBounds) {
+  expect_sharp_bounds([](Random& random, bool exact) {
+    const VectorOperand p = vector_operand(random, exact);
+    const VectorOperand q = vector_operand(random, exact);
+    const auto component = [&](int j, int k) -> Rational { return p.truth[j] * q.truth[k] - p.truth[k] * q.truth[j]; };
+    return worst_share(cross(p.bounded, q.bounded), {component(1, 2), component(2, 0), component(0, 1)});
+  });
+}
+
+TEST_F(VectorArithmetic, DotProductsKeepTheirBounds) {
+  expect_sharp_bounds([](Random& random, bool exact) {
+    const VectorOperand p = vector_operand(random, exact);
+    const VectorOperand q = vector_operand(random, exact);
+    return share(dot(p.bounded, q.bounded),
+                 p.truth[0] * q.truth[0] + p.truth[1] * q.truth[1] + p.truth[2] * q.truth[2]);
+  });
+}
+
+TEST_F(VectorArithmetic, CombinationsKeepTheirBounds) {
+  expect_sharp_bounds([](Random& random, bool exact) {
+    const VectorOperand p = vector_operand(random, exact);
+    const VectorOperand q = vector_operand(random, exact);
+    const Operand l = operand(random, exact || random.one_in(2));
+    const Operand m = operand(random, exact || random.one_in(2));
+    return worst_share(combination(l.bounded, p.bounded, m.bounded, q.bounded),
+                       true_combination(l.truth, p.truth, m.truth, q.truth));
+  });
+}
+
+// p is t q to within anything from 2^-100 to 1 of its size.
+TEST_F(VectorArithmetic, NearCancellationsKeepTheirBounds) {
+  expect_sharp_bounds([](Random& random, bool exact) {
+    const VectorOperand q = vector_operand(random, exact);
+    VectorOperand p;
+    const double t = random.between(0.5, 2);
+    const double away = std::exp2(random.between(-100, 0));
+    for (int i = 0; i < 3; ++i) {
+      const Bounded product = t * Bounded{q.bounded.c[i].hi, q.bounded.c[i].lo};
+      const Bounded sum = product + Bounded{away * random.between(-1, 1)};
+      p.bounded.c[i] = {sum.hi, sum.lo};
+      p.truth[i] = exactly(sum.hi, sum.lo);
+    }
+    p.bounded = vector(p.bounded.c, 0);
+    return worst_share(near_cancellation(p.bounded, t, q.bounded),
+                       true_combination(1, p.truth, kernel::to_rational(-t), q.truth));
+  });
+}
+
+// --- Angles ---
+
+Enclosure true_angle(const Rational& sine, const Rational& cosine) {
+  Ball ball = kernel::to_ball(sine, kBits);
+  arb_atan2(ball.get(), ball.get(), kernel::to_ball(cosine, kBits).get(), kBits);
+  return Enclosure(ball);
+}
+
+bool holds(const Bounded& angle, const Enclosure& truth) {
+  return enclosure_of({angle.hi, angle.lo, kInflation * angle.error}).contains(truth);
+}
+
+class Angle : public Arithmetic {};
+
+TEST_F(Angle, TheSeriesKeepsItsBound) {
+  for (std::uint64_t seed = 1; seed <= validation::scaled_count(4000); ++seed) {
+    Random random(validation::seed_of(seed));
+    const double hi = random.between(-1, 1) * (random.one_in(2) ? 0x1p-9 : std::exp2(-random.between(9, 200)));
+    const Bounded z = bounded(two_sum(hi, hi * 0x1p-53 * random.between(-1, 1)), 0);
+    ASSERT_TRUE(holds(atan_near_zero(z), true_angle(exactly(z.hi, z.lo), 1))) << seed;
+  }
+}
+
+TEST_F(Angle, AnglesKeepTheirBounds) {
+  for (std::uint64_t seed = 1; seed <= validation::scaled_count(4000); ++seed) {
+    Random random(validation::seed_of(seed));
+    const bool exact = random.one_in(2);
+    Operand s = operand(random, exact);
+    const Operand c = operand(random, exact);
+    const double scale = std::exp2(-static_cast<double>(random.below(60)));
+    s = {{s.bounded.hi * scale, s.bounded.lo * scale, s.bounded.error * scale}, s.truth * kernel::to_rational(scale)};
+    for (const bool swapped : {false, true}) {
+      const Operand& sine = swapped ? c : s;
+      const Operand& cosine = swapped ? s : c;
+      const Bounded angle = atan2(sine.bounded, cosine.bounded, angle_constants());
+      ASSERT_TRUE(std::isfinite(angle.error)) << seed;
+      ASSERT_TRUE(holds(angle, true_angle(sine.truth, cosine.truth))) << seed;
+      ASSERT_TRUE(!exact || angle.error < 0x1p-99 * std::abs(angle.hi)) << seed;
+    }
+  }
+}
+
+TEST_F(Angle, ASineThatMayBeZeroIsNoHindrance) {
+  const Bounded angle = atan2({0x1p-60, 0, 0x1p-50}, {1, 0, 0}, angle_constants());
+  for (const double sine : {0x1p-60 + 0x1p-50, 0x1p-60 - 0x1p-50, 0.0}) {
+    EXPECT_TRUE(holds(angle, true_angle(kernel::to_rational(sine), 1)));
+  }
+  const Bounded right = atan2({1, 0, 0}, {0x1p-60, 0, 0x1p-50}, angle_constants());
+  for (const double cosine : {0x1p-60 + 0x1p-50, 0x1p-60 - 0x1p-50, 0.0}) {
+    EXPECT_TRUE(holds(right, true_angle(1, kernel::to_rational(cosine))));
+  }
+}
+
+TEST_F(Angle, DeclinesTheOriginAndTheNegativeAxis) {
+  const auto declined = [](const Bounded& s, const Bounded& c) {
+    return std::isinf(atan2(s, c, angle_constants()).error);
+  };
+  EXPECT_TRUE(declined({0, 0, 0}, {0, 0, 0}));
+  EXPECT_TRUE(declined({1, 0, 0x1p-10}, {1, 0, 0}));
+  EXPECT_TRUE(declined({1, 0, 0}, {1, 0, 0x1p-10}));
+  EXPECT_TRUE(declined({0, 0, 0}, {-1, 0, 0}));
+  EXPECT_TRUE(declined({0x1p-50, 0, 0x1p-50}, {-1, 0, 0}));
+  EXPECT_TRUE(declined({1, 0, 0}, {std::nan(""), 0, 0}));
+  EXPECT_TRUE(declined({std::nan(""), 0, 0}, {1, 0, 0}));
+  EXPECT_FALSE(declined({0x1p-48, 0, 0x1p-50}, {-1, 0, 0}));
+}
+
+}  // namespace
+}  // namespace exactff::contour
