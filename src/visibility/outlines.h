@@ -56,8 +56,7 @@ class Outlines {
   };
 
   // Forgets everything; directions are relative to x, a point of `scene`'s space. Vertices at one position are one
-  // corner. `unit`: a length of the order of the
-  // distances of what matters.
+  // corner. `unit`: a length of the order of the distances of what matters.
   void start(const Scene& scene, const Vec3& x, double unit);
 
   // Counter-clockwise as x sees it.

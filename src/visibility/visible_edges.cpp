@@ -18,8 +18,8 @@ using Parameter = VisibleEdges::Parameter;
 constexpr Parameter kBegin{Parameter::Kind::kBegin, 0, VisibleEdges::kNowhere, 0.0, 0.0};
 constexpr Parameter kEnd{Parameter::Kind::kEnd, 0, VisibleEdges::kNowhere, 1.0, 0.0};
 
-// What the Booleans take for as many occluders as make this many pairs is about the same.
-constexpr std::uint64_t kMostUnsortedPairs = 20'000'000;
+// Pairs cost 1 to 2 us each where nothing tells them apart; as many occluders as make this many cost the Booleans less.
+constexpr std::uint64_t kMostUnsortedPairs = 1'000'000;
 
 double dot(const kernel::Approx3& a, const kernel::Approx3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 

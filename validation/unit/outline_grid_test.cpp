@@ -1,0 +1,192 @@
+// The grid loses no pair of an edge and an occluder that counts. EXACTFF_TEST_SCALE multiplies the number of scenes.
+#include "visibility/outline_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "generate/plain_scene.h"
+#include "generate/random.h"
+#include "support/random_scenes.h"
+
+namespace exactff::visibility {
+namespace {
+
+using generate::Random;
+using kernel::ExactVec3;
+using kernel::Integer;
+using kernel::Rational;
+using Corners = std::vector<Vec3>;
+
+Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vec3 operator*(const Vec3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
+
+// Outlines of directions from the origin.
+class Seen {
+ public:
+  Seen() : scene_(generate::build(triangle())) { outlines_.start(scene_, {}, 1.0); }
+
+  // Nothing is added where the origin sees no area.
+  void add(const Corners& corners) {
+    kernel::Ring ring;
+    for (const Vec3& c : corners) ring.push_back(kernel::make_direction(kernel::exact_vector(c).v));
+    const int turn = kernel::orientation(ring[0], ring[1], ring[2]);
+    if (turn == 0) return;
+    if (turn > 0) std::reverse(ring.begin(), ring.end());
+    static_cast<void>(outlines_.add(ring));
+  }
+  Outlines& outlines() { return outlines_; }
+
+ private:
+  static generate::PlainScene triangle() {
+    generate::PlainScene plain;
+    plain.add_ring(plain.patch("source"), {{0, 0, 1}, {0, 1, 1}, {1, 0, 1}});
+    return plain;
+  }
+  Scene scene_;
+  Outlines outlines_;
+};
+
+struct Interval {
+  Rational low = 0, high = 1;  // of m / (l + m)
+};
+
+// The part of the edge in the closed outline.
+void cut(Outlines& outlines, const Outlines::Edge& edge, OutlineId by, Interval& interval) {
+  const Outlines::Outline o = outlines.outline(by);
+  for (EdgeId id = o.first; id < o.first + o.count; ++id) {
+    const Integer a = outlines.exact_height(outlines.edge(id), edge.a);
+    const Integer b = outlines.exact_height(outlines.edge(id), edge.b);
+    if (sgn(a) < 0 && sgn(b) < 0) interval.high = -1;
+    if (sgn(a) * sgn(b) >= 0 && !(sgn(a) < 0 || sgn(b) < 0)) continue;
+    if (a == b) continue;
+    const Rational at = Rational(a) / Rational(a - b);
+    if (sgn(a) < 0) interval.low = std::max(interval.low, at);
+    if (sgn(b) < 0) interval.high = std::min(interval.high, at);
+  }
+}
+
+bool holds_inside(Outlines& outlines, OutlineId by, const Outlines::Edge& edge, const Rational& at) {
+  const Outlines::Outline o = outlines.outline(by);
+  for (EdgeId id = o.first; id < o.first + o.count; ++id) {
+    const Rational a = outlines.exact_height(outlines.edge(id), edge.a);
+    const Rational b = outlines.exact_height(outlines.edge(id), edge.b);
+    if (a * (1 - at) + b * at <= 0) return false;
+  }
+  return true;
+}
+
+struct Tally {
+  std::uint64_t met = 0, left_out = 0, near = 0, pairs = 0;
+};
+
+// Whatever an edge meets within the source is near it, or hidden there by another that is near it.
+void expect_nothing_lost(Outlines& outlines, Tally& tally) {
+  OutlineGrid grid;
+  grid.build(outlines, 1);
+  std::vector<OutlineId> near;
+  const auto count = static_cast<OutlineId>(outlines.outlines().size());
+  for (EdgeId id = 0; id < outlines.edges().size(); ++id) {
+    const Outlines::Edge edge = outlines.edge(id);
+    grid.find_near(outlines, id, near);
+    std::sort(near.begin(), near.end());
+    EXPECT_EQ(std::adjacent_find(near.begin(), near.end()), near.end()) << "twice";
+    tally.near += near.size();
+    tally.pairs += count - 1;
+    for (OutlineId o = 1; o < count; ++o) {
+      Interval common;
+      cut(outlines, edge, 0, common);
+      cut(outlines, edge, o, common);
+      if (common.low > common.high) continue;
+      ++tally.met;
+      if (std::binary_search(near.begin(), near.end(), o)) continue;
+      ++tally.left_out;
+      for (const Rational& at : {common.low, common.high, Rational((common.low + common.high) / 2)}) {
+        EXPECT_TRUE(
+            std::any_of(near.begin(), near.end(), [&](OutlineId c) { return holds_inside(outlines, c, edge, at); }))
+            << "edge " << id << " loses outline " << o;
+      }
+    }
+  }
+}
+
+// Slats, giants, specks and faces that reach behind the receiver, before a source of a size.
+Corners random_corners(Random& random, double size) {
+  const auto number = [&](double most) { return random.between(-most, most); };
+  const double x = number(1.5 * size), y = number(1.5 * size), z = random.between(0.1, 1.0);
+  const auto parallelogram = [&](const Vec3& p, const Vec3& q) {
+    const Vec3 c{x, y, 1};
+    return Corners{(c - p - q) * z, (c + p - q) * z, (c + p + q) * z, (c - p + q) * z};
+  };
+  switch (random.below(6)) {
+    case 0:
+      return parallelogram({2.0 * size, size, 0}, {0, 0.01 * size, 0});
+    case 1:
+      return parallelogram({number(3.0 * size), number(3.0 * size), 0}, {number(3.0 * size), number(3.0 * size), 0});
+    case 2:
+      return parallelogram({number(0.01 * size), 0, 0}, {0, number(0.01 * size), 0});
+    case 3:
+      return {{x, y, 1}, {number(size), number(size), 0.5}, {number(2), number(2), random.between(-1, 0.01)}};
+    case 4:  // a lattice: shared lines and corners
+      return parallelogram({0.5 * size, 0, 0}, {0, 0.25 * size * random.integer(1, 4), 0});
+    default:
+      return {{x, y, 1}, {number(size), number(size), 1}, {number(size), number(size), random.between(0.2, 1)}};
+  }
+}
+
+TEST(OutlineGrid, LosesNothingThatCounts) {
+  Tally tally;
+  for (std::uint64_t i = 0; i < validation::scaled_count(30); ++i) {
+    SCOPED_TRACE("seed " + std::to_string(validation::seed_of(i)));
+    Random random(validation::seed_of(i));
+    // Down to sources smaller than what the images are known to.
+    const double size = random.one_in(2) ? 1.0 : std::ldexp(1.0, -random.integer(1, 45));
+    Seen seen;
+    seen.add({{-size, -size, 1}, {size, -size, 1}, {size, size, 1}, {-size, size, 1}});
+    const int count = random.integer(8, 24);
+    for (int k = 0; k < count; ++k) seen.add(random_corners(random, size));
+    expect_nothing_lost(seen.outlines(), tally);
+  }
+  EXPECT_GT(tally.met, 0U);
+  EXPECT_GT(tally.left_out, 0U);       // cells that one covers were met with
+  EXPECT_LT(tally.near, tally.pairs);  // and not everything is near everything
+}
+
+TEST(OutlineGrid, TellsTheSlatsOfABlindApart) {
+  constexpr int kSlats = 64;
+  Seen seen;
+  seen.add({{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}});
+  for (int i = 0; i < kSlats; ++i) {
+    const double low = -1.0 + 2.0 * i / kSlats, high = low + 1.0 / kSlats;
+    seen.add({{-2, low, 1}, {2, low, 1}, {2, high, 1}, {-2, high, 1}});
+  }
+  Tally tally;
+  expect_nothing_lost(seen.outlines(), tally);
+  EXPECT_LT(tally.near, 8 * seen.outlines().edges().size());
+}
+
+// Where all lie closer together than their images are known, no number of cells helps, and the grid says so.
+TEST(OutlineGrid, KnowsWhatItCannotTellApart) {
+  constexpr int kCount = 300;
+  constexpr double kSize = 0x1p-40;
+  Seen seen;
+  seen.add({{-kSize, -kSize, 1}, {kSize, -kSize, 1}, {kSize, kSize, 1}, {-kSize, kSize, 1}});
+  for (int i = 0; i < kCount; ++i) {
+    const double low = kSize * (-1.0 + 2.0 * i / kCount), high = low + kSize / kCount;
+    seen.add({{-kSize, low, 1}, {kSize, low, 1}, {kSize, high, 1}, {-kSize, high, 1}});
+  }
+  OutlineGrid grid;
+  grid.build(seen.outlines(), 1);
+  const std::uint64_t pairs = std::uint64_t{4} * kCount * kCount;
+  EXPECT_GE(grid.unsorted_pairs(seen.outlines()), pairs);
+  EXPECT_LE(grid.unsorted_pairs(seen.outlines()), 4 * pairs);  // few cells hold them all
+  std::vector<OutlineId> near;
+  grid.find_near(seen.outlines(), 0, near);
+  EXPECT_EQ(near.size(), std::size_t{kCount});
+}
+
+}  // namespace
+}  // namespace exactff::visibility
