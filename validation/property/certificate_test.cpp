@@ -69,6 +69,7 @@ TEST(Certificate, AValueStaysWhenMoreDecimalsAreAskedFor) {
     const FormFactor closely = solve(plain, {.digits = 60});
     ASSERT_EQ(plainly.value, closely.value) << "2^-" << shrink << ", seed " << seed_of(i);
     ASSERT_EQ(plainly.status, closely.status) << "2^-" << shrink << ", seed " << seed_of(i);
+    if (plainly.status == Status::kZero) continue;  // corners on one line: nothing to integrate
     ASSERT_LT(plainly.precision_bits, closely.precision_bits);
     raised = raised || plainly.precision_bits > 96;
   }
