@@ -1,6 +1,7 @@
 #include "stress/figures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -21,28 +22,13 @@ using study::Series;
 constexpr double kSmallestDrawn = 1e-18;
 constexpr double kLargestDrawn = 1e3;
 
-const char* label_of(Method method) {
-  switch (method) {
-    case Method::kExact:
-      return "exact";
-    case Method::kAcos:
-      return "acos";
-    case Method::kAtan2:
-      return "atan2";
-    case Method::kAtan2Difference:
-      return "a×(b−a)";
-    case Method::kAdaptive:
-      return "Tampieri";
-    case Method::kAdaptiveLiteral:
-      break;
-  }
-  return "as printed";
-}
-
-int style_of(Method method) {
-  constexpr int kStyles[] = {1, 2, 3, study::kOverlay, 5, 6};
-  return kStyles[static_cast<std::size_t>(method)];
-}
+// In the order of Method.
+struct LineLook {
+  const char* label;
+  int style;
+};
+constexpr std::array<LineLook, kMethodCount> kLooks = {
+    {{"exact", 1}, {"acos", 2}, {"atan2", 3}, {"a×(b−a)", study::kOverlay}, {"Tampieri", 5}, {"as printed", 6}}};
 
 // Up to 10^16 a decade is a unit of the axis, beyond it an eighteenth: both ends can be read.
 constexpr double kBend = 16.0;
@@ -74,7 +60,8 @@ Points points(const FamilyResult& result, const std::function<double(const Row&)
 }
 
 Series series_of(const FamilyResult& result, Method method, const std::function<double(const Answer&)>& y) {
-  return {label_of(method), points(result, [&](const Row& row) { return y(row.of(method)); }), style_of(method)};
+  const LineLook& look = kLooks[static_cast<std::size_t>(method)];
+  return {look.label, points(result, [&](const Row& row) { return y(row.of(method)); }), look.style};
 }
 
 // What is no number or refused is not drawn.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "exactff/stress.h"
@@ -19,41 +20,24 @@ std::string_view to_string(Evidence evidence) {
   return "certified enclosure";
 }
 
-std::string_view name_of(Method method) {
-  switch (method) {
-    case Method::kExact:
-      return "exact";
-    case Method::kAcos:
-      return "Eq. (4) in double on the exact region, acos";
-    case Method::kAtan2:
-      return "Eq. (4) in double on the exact region, atan2";
-    case Method::kAtan2Difference:
-      return "Eq. (4) in double on the exact region, atan2 with a × (b − a)";
-    case Method::kAdaptive:
-      return "Tampieri's algorithm as mended";
-    case Method::kAdaptiveLiteral:
-      break;
-  }
-  return "Tampieri's algorithm as printed";
-}
+namespace {
 
-std::string_view short_name_of(Method method) {
-  switch (method) {
-    case Method::kExact:
-      return "exact";
-    case Method::kAcos:
-      return "acos";
-    case Method::kAtan2:
-      return "atan2";
-    case Method::kAtan2Difference:
-      return "atan2-difference";
-    case Method::kAdaptive:
-      return "tampieri";
-    case Method::kAdaptiveLiteral:
-      break;
-  }
-  return "tampieri-literal";
-}
+struct MethodNames {
+  std::string_view name, short_name;
+};
+// In the order of Method.
+constexpr std::array<MethodNames, kMethodCount> kMethodNames = {
+    {{"exact", "exact"},
+     {"Eq. (4) in double on the exact region, acos", "acos"},
+     {"Eq. (4) in double on the exact region, atan2", "atan2"},
+     {"Eq. (4) in double on the exact region, atan2 with a × (b − a)", "atan2-difference"},
+     {"Tampieri's algorithm as mended", "tampieri"},
+     {"Tampieri's algorithm as printed", "tampieri-literal"}}};
+
+}  // namespace
+
+std::string_view name_of(Method method) { return kMethodNames[static_cast<std::size_t>(method)].name; }
+std::string_view short_name_of(Method method) { return kMethodNames[static_cast<std::size_t>(method)].short_name; }
 
 const std::vector<FamilyInfo>& families() {
   static const std::vector<FamilyInfo> list = [] {

@@ -103,6 +103,14 @@ bool OutlineGrid::is_ahead(const Outlines& outlines, const Outline& outline) con
   return true;
 }
 
+void OutlineGrid::include(const Outlines& outlines, const Outline& outline, Range& u, Range& v) const {
+  for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
+    const Image& image = images_[outlines.edge(id).a];
+    u.include(image.u);
+    v.include(image.v);
+  }
+}
+
 // Turns the image so that the occluders' edges, on the whole, run along u: slats then share few cells.
 void OutlineGrid::align(const Outlines& outlines, std::size_t source_count) {
   double along = 0.0, across = 0.0;  // sums of length cos 2 phi, length sin 2 phi
@@ -126,21 +134,14 @@ void OutlineGrid::choose_cells(const Outlines& outlines, std::size_t source_coun
   u_.range = v_.range = {kInfinity, -kInfinity};
   double width = 0.0, height = 0.0;
   std::size_t count = 0;
-  const auto bounds = [&](const Outline& outline, Range& u, Range& v) {
-    for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
-      const Image& image = images_[outlines.edge(id).a];
-      u.include(image.u);
-      v.include(image.v);
-    }
-  };
-  for (OutlineId o = 0; o < source_count; ++o) bounds(outlines.outline(o), u_.range, v_.range);
+  for (OutlineId o = 0; o < source_count; ++o) include(outlines, outlines.outline(o), u_.range, v_.range);
   u_.range.widen(4 * kSlack);
   v_.range.widen(4 * kSlack);
   const double whole_width = u_.range.high - u_.range.low, whole_height = v_.range.high - v_.range.low;
   for (OutlineId o = static_cast<OutlineId>(source_count); o < outlines.outlines().size(); ++o) {
     if (!is_ahead(outlines, outlines.outline(o))) continue;
     Range u{kInfinity, -kInfinity}, v = u;
-    bounds(outlines.outline(o), u, v);
+    include(outlines, outlines.outline(o), u, v);
     width += std::min(u.high - u.low, whole_width);
     height += std::min(v.high - v.low, whole_height);
     ++count;
@@ -192,11 +193,7 @@ bool OutlineGrid::for_few_cells(const Cells& columns, const Cells& rows, const V
 template <class Visit>
 void OutlineGrid::for_each_cell_of(const Outlines& outlines, const Outline& outline, const Visit& visit) {
   Range u{kInfinity, -kInfinity}, v = u;
-  for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
-    const Image& image = images_[outlines.edge(id).a];
-    u.include(image.u);
-    v.include(image.v);
-  }
+  include(outlines, outline, u, v);
   u.widen(4.0 * kSlack);
   v.widen(4.0 * kSlack);
   const Cells rows = v_.cells(v);
@@ -245,11 +242,7 @@ void OutlineGrid::find_covered_cells(const Outlines& outlines) {
     const Outline& outline = outlines.outline(o);
     if (!is_ahead(outlines, outline)) continue;
     Range u{kInfinity, -kInfinity}, v = u;
-    for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
-      const Image& image = images_[outlines.edge(id).a];
-      u.include(image.u);
-      v.include(image.v);
-    }
+    include(outlines, outline, u, v);
     const Cells columns = u_.cells_inside(u), rows = v_.cells_inside(v);
     for (int j = rows.first; j <= rows.last; ++j) {
       for (int i = columns.first; i <= columns.last; ++i) {

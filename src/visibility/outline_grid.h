@@ -76,6 +76,8 @@ class OutlineGrid {
   [[nodiscard]] bool covers(const Outlines& outlines, const Outlines::Outline& outline, const Range& u,
                             const Range& v) const;
   void fill(const Outlines& outlines);
+  // Widens the ranges to hold the outline's image.
+  void include(const Outlines& outlines, const Outlines::Outline& outline, Range& u, Range& v) const;
   [[nodiscard]] bool is_ahead(const Outlines& outlines, const Outlines::Outline& outline) const;
   [[nodiscard]] static Range part_within(const Image& a, const Image& b, const Range& v);
   // In a few cells its bounds are as good as the outline itself.
