@@ -11,7 +11,6 @@
 namespace exactff::visibility {
 
 using kernel::Approx3;
-using kernel::ExactVec3;
 using kernel::Integer;
 using kernel::kUncertain;
 using kernel::Rational;
@@ -62,7 +61,6 @@ class EdgeWalk {
   bool gather_occluders();
   bool visit(std::uint32_t piece, OutlineId source);
   void make_shaft(OutlineId source);
-  [[nodiscard]] bool may_occlude(std::uint32_t piece) const;
   [[nodiscard]] bool may_meet(OutlineId source);
   [[nodiscard]] int depth_sign(std::uint32_t vertex) const;
   [[nodiscard]] int toward_sign(CornerId corner);
@@ -123,8 +121,7 @@ bool EdgeWalk::add_above_horizon(const Piece& piece) {
     above = above || side > 0;
     below = below || side < 0;
   }
-  if (below) result_.record.horizon_clipped = true;
-  if (!above) result_.record.horizon_clipped = true;
+  if (below || !above) result_.record.horizon_clipped = true;
   if (!above) return false;
   if (!below) {
     outlines_.add(piece, false);
@@ -137,14 +134,6 @@ bool EdgeWalk::add_above_horizon(const Piece& piece) {
   clip(ring, view_.normal);
   outlines_.add(ring);
   return true;
-}
-
-bool EdgeWalk::may_occlude(std::uint32_t piece) const {
-  const FaceId face = view_.scene.pieces()[piece].face;
-  if (view_.on && face == *view_.on) return false;
-  if (std::binary_search(plane_.pieces.begin(), plane_.pieces.end(), piece)) return false;
-  const std::vector<FaceId>* only = request_.only_occluders;
-  return only == nullptr || std::binary_search(only->begin(), only->end(), face);
 }
 
 // Half-spaces for the tree. The components of an edge's normal err by less than 12u |a||b| = 2^-49.4 |a||b|
@@ -187,7 +176,7 @@ bool EdgeWalk::gather_occluders() {
 
 // True if the piece hides all.
 bool EdgeWalk::visit(std::uint32_t index, OutlineId source) {
-  if (work_.seen_in[index] == work_.run || !may_occlude(index)) return false;
+  if (work_.seen_in[index] == work_.run || !may_occlude(view_, plane_, request_, index)) return false;
   const Piece& piece = view_.scene.pieces()[index];
   const auto vertices = view_.scene.corners(piece);
   ++result_.record.tree_candidates;
@@ -280,7 +269,6 @@ Ring EdgeWalk::near_part(std::span<const std::uint32_t> vertices, bool mirrored)
   return ring;
 }
 
-// The frame's (p, q) are the projected coordinates over h, so areas compare once they are multiplied by h^2.
 Rational EdgeWalk::fraction() {
   if (work_parts_.empty()) return 0;
   if (result_.record.outcome == Outcome::kUnoccluded && !result_.record.horizon_clipped && gathered_all_) return 1;
@@ -301,9 +289,7 @@ Rational EdgeWalk::fraction() {
     doubled += p.u * q.v - q.u * p.v;
   }
   if (!frame.keeps_orientation()) doubled = -doubled;
-  const ScaledVec3 s = kernel::exact_difference(plane_.point, view_.x);
-  const Rational h = kernel::times_power_of_two(dot(plane_.normal.exact, s.v), s.exponent);
-  return doubled / 2 * frame.unit_area() * h * h / union_area(view_.scene, plane_).area;
+  return share_of_source(view_, plane_, frame, doubled);
 }
 
 }  // namespace

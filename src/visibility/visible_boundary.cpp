@@ -18,6 +18,21 @@ View::View(const Scene& scene_in, const Receiver& receiver)
       normal(kernel::make_direction(kernel::exact_vector(receiver.normal).v)),
       on(receiver.on) {}
 
+bool may_occlude(const View& view, const SourcePlane& plane, const Request& request, std::uint32_t piece) {
+  const FaceId face = view.scene.pieces()[piece].face;
+  if (view.on && face == *view.on) return false;
+  if (std::binary_search(plane.pieces.begin(), plane.pieces.end(), piece)) return false;
+  const std::vector<FaceId>* only = request.only_occluders;
+  return only == nullptr || std::binary_search(only->begin(), only->end(), face);
+}
+
+// The frame's (p, q) are the projected coordinates over h, so areas compare once they are multiplied by h^2.
+Rational share_of_source(const View& view, const SourcePlane& plane, const PlaneFrame& frame, const Rational& doubled) {
+  const kernel::ScaledVec3 s = kernel::exact_difference(plane.point, view.x);
+  const Rational h = kernel::times_power_of_two(dot(plane.normal.exact, s.v), s.exponent);
+  return doubled / 2 * frame.unit_area() * h * h / union_area(view.scene, plane).area;
+}
+
 namespace {
 
 // Carries one plane through the steps; the first step that leaves no work ends the walk.
@@ -52,7 +67,6 @@ class Walk {
   bool gather_occluders();
   void trace_source();
   void trace_loops();
-  [[nodiscard]] bool may_occlude(std::uint32_t piece) const;
   void list_cutters();
   [[nodiscard]] Rational fraction();
   void keep_geometry();
@@ -142,15 +156,6 @@ void Walk::make_hull() {
   drop_collinear_corners(hull_);
 }
 
-// The source's own pieces in this plane cannot; those in other planes can.
-bool Walk::may_occlude(std::uint32_t piece) const {
-  const FaceId face = view_.scene.pieces()[piece].face;
-  if (view_.on && face == *view_.on) return false;
-  if (std::binary_search(plane_.pieces.begin(), plane_.pieces.end(), piece)) return false;
-  const std::vector<FaceId>* only = request_.only_occluders;
-  return only == nullptr || std::binary_search(only->begin(), only->end(), face);
-}
-
 // False if one occluder hides all; the others then are nobody's business.
 bool Walk::gather_occluders() {
   Shaft shaft(view_.scene, view_.x, hull_, plane_.normal.exact, plane_.point);
@@ -158,7 +163,7 @@ bool Walk::gather_occluders() {
   bool hidden = false;
   Occluder occluder;
   shaft_tree(view_.scene).query(view_.x, shaft.half_spaces(), [&](std::uint32_t piece) {
-    if (!may_occlude(piece)) return true;
+    if (!may_occlude(view_, plane_, request_, piece)) return true;
     ++record.tree_candidates;
     bool was_cut = false;
     const Fate fate = shaft.test(piece, occluder, was_cut);
@@ -228,14 +233,11 @@ void Walk::list_cutters() {
   cutters.erase(std::unique(cutters.begin(), cutters.end()), cutters.end());
 }
 
-// The frame's (p, q) are the projected coordinates over h, so areas compare once they are multiplied by h^2.
 Rational Walk::fraction() {
   if (whole_) return 1;
   if (result_.boundary.empty()) return 0;
   const Rational doubled = loops_.empty() ? doubled_area(frame().to_polygon(hull_)) : doubled_area(loops_);
-  const kernel::ScaledVec3 s = kernel::exact_difference(plane_.point, view_.x);
-  const Rational h = kernel::times_power_of_two(dot(plane_.normal.exact, s.v), s.exponent);
-  return doubled / 2 * frame().unit_area() * h * h / union_area(view_.scene, plane_).area;
+  return share_of_source(view_, plane_, frame(), doubled);
 }
 
 void Walk::keep_geometry() {

@@ -61,6 +61,13 @@ struct PlaneVisibility {
   PlaneGeometry geometry;
 };
 
+// For both engines: whether a piece of the scene may occlude the plane. The source's own pieces in this plane cannot;
+// those in other planes can.
+[[nodiscard]] bool may_occlude(const View& view, const SourcePlane& plane, const Request& request, std::uint32_t piece);
+// Twice an area in the frame's unit square, as a share of the whole unclipped source in the plane.
+[[nodiscard]] kernel::Rational share_of_source(const View& view, const SourcePlane& plane, const PlaneFrame& frame,
+                                               const kernel::Rational& doubled);
+
 // Exact. Requires a receiver normal other than zero.
 PlaneVisibility find_visible_boundary(const View& view, const SourcePlane& plane, const Request& request);
 
