@@ -3,9 +3,11 @@
 
 #include <array>
 
-#include "contour/double_double.h"
+#include "kernel/double_double.h"
 
 namespace exactff::contour {
+
+using namespace kernel::double_double;
 
 inline constexpr int kAtanSteps = 256;  // of the table from 0 to 1
 

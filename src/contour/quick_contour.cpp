@@ -12,14 +12,6 @@
 #include "contour/quick_vector.h"
 #include "kernel/ball.h"
 
-// std::fma is a function of the library without hardware FMA and one instruction with it. Functions so marked are
-// compiled for both and chosen at load time; they give the same bits.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
-#define EXACTFF_FMA_CLONES __attribute__((target_clones("fma", "default")))
-#else
-#define EXACTFF_FMA_CLONES
-#endif
-
 namespace exactff::contour {
 
 // --- Constants ---

@@ -15,8 +15,8 @@
 #include <optional>
 #include <span>
 
-#include "contour/double_double.h"
 #include "exactff/geometry.h"
+#include "kernel/double_double.h"
 #include "kernel/exact_vec.h"
 
 namespace exactff::contour {
@@ -68,7 +68,7 @@ class QuickContour {
 
  private:
   std::array<double, 3> normal_{};  // largest component in [1/2, 1)
-  Bounded sum_;                     // of the terms of the pieces, without the factor -1/(2 pi |n|)
+  kernel::double_double::Bounded sum_;  // of the terms of the pieces, without the factor -1/(2 pi |n|)
 };
 
 // The double that every number of the enclosure rounds to (nearest, ties to even), if there is one.

@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 
-#include "contour/double_double.h"
+#include "kernel/double_double.h"
 
 namespace exactff::contour {
+
+using namespace kernel::double_double;
 
 struct Vector {
   std::array<DoubleDouble, 3> c;

@@ -30,20 +30,30 @@ void QuickTier::add(VisibleEdges& edges) {
   }
 }
 
+namespace {
+
+contour::QuickCorner quick_corner(Outlines& outlines, CornerId id) {
+  if (const auto vertex = outlines.vertex(id)) {
+    return contour::quick_corner(outlines.position(*vertex), outlines.x(), outlines.scale_exponent());
+  }
+  if (const visibility::FineDirection* fine = outlines.fine(id)) return {fine->hi, fine->lo, fine->error};
+  return contour::quick_corner(outlines.exact(id));
+}
+
+}  // namespace
+
 std::uint32_t QuickTier::corner(Outlines& outlines, CornerId id) {
   std::uint32_t& index = index_[id];
   if (index != kNone) return index;
   index = static_cast<std::uint32_t>(corners_.size());
-  const std::optional<std::uint32_t> vertex = outlines.vertex(id);
-  corners_.push_back(vertex ? contour::quick_corner(outlines.position(*vertex), outlines.x(), outlines.scale_exponent())
-                            : contour::quick_corner(outlines.exact(id)));
+  corners_.push_back(quick_corner(outlines, id));
   return index;
 }
 
 QuickEnd QuickTier::end(Outlines& outlines, const VisibleEdges::Parameter& p) {
-  using Kind = VisibleEdges::Parameter::Kind;
-  if (p.kind == Kind::kBegin) return {QuickEnd::Kind::kA};
-  if (p.kind == Kind::kEnd) return {QuickEnd::Kind::kB};
+  using Parameter = VisibleEdges::Parameter;
+  if (p.line == Parameter::kAtBegin) return {QuickEnd::Kind::kA};
+  if (p.line == Parameter::kAtEnd) return {QuickEnd::Kind::kB};
   const Outlines::Edge line = outlines.edge(p.line);
   return {QuickEnd::Kind::kCrossing, corner(outlines, line.a), corner(outlines, line.b)};
 }

@@ -11,9 +11,11 @@
 
 #include <numbers>
 
-#include "sampled/lanes.h"
+#include "kernel/lanes.h"
 
 namespace exactff::sampled {
+
+using namespace kernel::lanes;
 
 namespace {
 
@@ -56,7 +58,7 @@ double atan2_sum(const Edges& e) {
 
 }  // namespace
 
-EXACTFF_SAMPLED_CLONES
+EXACTFF_CLONES
 double unoccluded_form_factor(const SubPatch& s, const Vec3& unit_normal) {
   Edges e;
   make_edges(s, unit_normal, e);

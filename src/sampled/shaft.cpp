@@ -4,9 +4,11 @@
 #include <bit>
 #include <numeric>
 
-#include "sampled/lanes.h"
+#include "kernel/lanes.h"
 
 namespace exactff::sampled {
+
+using namespace kernel::lanes;
 
 namespace {
 
@@ -123,7 +125,7 @@ inline ShaftRelation OccluderSet::relation(std::uint32_t index, const SubPatch& 
   return beyond_one_side(corners(o), boxes_[index].size, sides) ? ShaftRelation::kOutside : ShaftRelation::kInDoubt;
 }
 
-EXACTFF_SAMPLED_CLONES
+EXACTFF_CLONES
 std::optional<CandidateRange> OccluderSet::inherit(CandidateRange parent, const SubPatch& s, const ShaftSides& sides) {
   const std::size_t first = stack_.size();
   stack_.resize(first + parent.size());
@@ -141,7 +143,7 @@ std::optional<CandidateRange> OccluderSet::inherit(CandidateRange parent, const 
 }
 
 // A ray is hidden by an occluder if no form is negative at its end.
-EXACTFF_SAMPLED_CLONES
+EXACTFF_CLONES
 unsigned OccluderSet::hidden_lanes(CandidateRange list, const RayEnds& ends, int first) const {
   const auto i = static_cast<std::size_t>(first);
   const Four x0 = load(&ends.x[i]), y0 = load(&ends.y[i]), z0 = load(&ends.z[i]);

@@ -50,7 +50,27 @@ bool certainly_outside_one(const Box& box, const Vec3& apex, const HalfSpace& h)
   return x + y + z - h.offset < -0x1p-48 * m - slack && m >= 0x1p-900 && m <= 0x1p1000;
 }
 
+// The smallest normal . (y - apex) - offset over the box as computed, without proof: what is taken to be inside is kept.
+bool is_inside(const Box& box, const Vec3& apex, const HalfSpace& h) {
+  const double dx = (h.normal.x > 0.0 ? box.low.x : box.high.x) - apex.x;
+  const double dy = (h.normal.y > 0.0 ? box.low.y : box.high.y) - apex.y;
+  const double dz = (h.normal.z > 0.0 ? box.low.z : box.high.z) - apex.z;
+  return h.normal.x * dx + h.normal.y * dy + h.normal.z * dz >= h.offset;
+}
+
 }  // namespace
+
+std::uint64_t ShaftTree::crossed_half_spaces(const Box& box, const Vec3& apex, std::span<const HalfSpace> shaft,
+                                             std::uint64_t asked) {
+  std::uint64_t crossed = 0;
+  for (std::size_t i = 0; i < shaft.size(); ++i) {
+    const std::uint64_t bit = std::uint64_t{1} << std::min<std::size_t>(i, 62);
+    if (i < 62 && (asked & bit) == 0) continue;
+    if (certainly_outside_one(box, apex, shaft[i])) return kOutside;
+    if (i < 62 && !is_inside(box, apex, shaft[i])) crossed |= bit;
+  }
+  return crossed;
+}
 
 bool ShaftTree::certainly_outside(const Box& box, const Vec3& apex, std::span<const HalfSpace> shaft) {
   return std::any_of(shaft.begin(), shaft.end(),

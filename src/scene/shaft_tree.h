@@ -34,19 +34,21 @@ class ShaftTree {
   template <class Visit>
   void query(const Vec3& apex, std::span<const HalfSpace> shaft, Visit&& visit) const {
     if (nodes_.empty()) return;
-    std::uint32_t stack[kDepthLimit];
+    Waiting stack[kDepthLimit];
     int size = 0;
-    stack[size++] = 0;
+    stack[size++] = {0, kAllHalfSpaces};
     while (size > 0) {
-      const Node& node = nodes_[stack[--size]];
-      if (certainly_outside(node.box, apex, shaft)) continue;
+      const Waiting at = stack[--size];
+      const Node& node = nodes_[at.node];
+      const std::uint64_t crossed = crossed_half_spaces(node.box, apex, shaft, at.crossed);
+      if (crossed == kOutside) continue;
       if (node.count == 0) {
-        stack[size++] = node.right;
-        stack[size++] = static_cast<std::uint32_t>(&node - nodes_.data()) + 1;
+        stack[size++] = {node.right, crossed};
+        stack[size++] = {static_cast<std::uint32_t>(&node - nodes_.data()) + 1, crossed};
         continue;
       }
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        if (node.count > 1 && certainly_outside(boxes_[i], apex, shaft)) continue;
+        if (node.count > 1 && crossed_half_spaces(boxes_[i], apex, shaft, crossed) == kOutside) continue;
         if (!visit(order_[i])) return;
       }
     }
@@ -58,6 +60,14 @@ class ShaftTree {
   static constexpr int kDepthLimit = 64;  // the tree is balanced: depth <= 32 for any 32-bit count
   static constexpr std::uint32_t kLeafSize = 4;
 
+  // A set of half-spaces as bits; those beyond the 62nd are always in it.
+  static constexpr std::uint64_t kAllHalfSpaces = (std::uint64_t{1} << 62U) - 1;
+  static constexpr std::uint64_t kOutside = std::uint64_t{1} << 63U;
+  struct Waiting {
+    std::uint32_t node;
+    std::uint64_t crossed;
+  };
+
   struct Node {  // the left child follows its parent
     Box box;
     std::uint32_t right = 0;
@@ -66,6 +76,10 @@ class ShaftTree {
   };
 
   void build(std::span<const Box> boxes, std::uint32_t first, std::uint32_t last);
+  // Of the half-spaces asked for, those that may cut the box: what lies inside need not be asked again further down.
+  // kOutside if the box lies certainly outside one of them.
+  static std::uint64_t crossed_half_spaces(const Box& box, const Vec3& apex, std::span<const HalfSpace> shaft,
+                                           std::uint64_t asked);
 
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_;

@@ -24,8 +24,8 @@ namespace {
 struct Workspace {
   VisibleEdges edges;
   std::vector<HalfSpace> half_spaces;
-  std::vector<CornerId> corners;
-  std::vector<int> signs;
+  std::vector<CornerId> corners, ring;
+  std::vector<std::uint64_t> codes;    // by corner: what is known of it beside the source at hand
   std::vector<std::uint32_t> seen_in;  // by piece: the last run that looked at it
   std::uint32_t run = 0;
 };
@@ -34,6 +34,10 @@ Workspace& workspace() {
   thread_local Workspace own;
   return own;
 }
+
+// A corner's code: where it lies, and from kInside on a bit for every edge of the source that it lies inside of.
+constexpr std::uint64_t kKnown = 1, kBefore = 2, kBeyond = 4, kAhead = 8, kInside = 16;
+constexpr std::uint32_t kMostCodedEdges = 60;
 
 double largest(const Approx3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 
@@ -61,11 +65,12 @@ class EdgeWalk {
   bool gather_occluders();
   bool visit(std::uint32_t piece, OutlineId source);
   void make_shaft(OutlineId source);
-  [[nodiscard]] bool may_meet(OutlineId source);
+  [[nodiscard]] std::uint64_t code_of(CornerId corner, OutlineId source);
+  [[nodiscard]] bool may_meet_beyond_codes(OutlineId source);
   [[nodiscard]] int depth_sign(std::uint32_t vertex) const;
   [[nodiscard]] int toward_sign(CornerId corner);
   [[nodiscard]] int facing(const Piece& piece) const;
-  [[nodiscard]] Ring near_part(std::span<const std::uint32_t> vertices, bool mirrored);
+  OutlineId add_near_part(std::span<const std::uint32_t> vertices, bool mirrored);
   [[nodiscard]] Rational fraction();
 
   const View& view_;
@@ -101,6 +106,7 @@ Outcome EdgeWalk::find_outcome() {
 
 bool EdgeWalk::gather_source() {
   outlines_.start(view_.scene, view_.x, largest(kernel::approx_difference(plane_.point, view_.x)));
+  outlines_.set_plane(plane_.normal, plane_.point);
   for (const std::uint32_t index : plane_.pieces) {
     const Piece& piece = view_.scene.pieces()[index];
     if (view_.on && piece.face == *view_.on) {
@@ -166,6 +172,7 @@ bool EdgeWalk::gather_occluders() {
   bool hidden = false;
   for (OutlineId source = 0; source < source_count_ && !hidden; ++source) {
     make_shaft(source);
+    work_.codes.clear();
     shaft_tree(view_.scene).query(view_.x, work_.half_spaces, [&](std::uint32_t piece) {
       hidden = visit(piece, source);
       return !hidden;
@@ -181,27 +188,23 @@ bool EdgeWalk::visit(std::uint32_t index, OutlineId source) {
   const auto vertices = view_.scene.corners(piece);
   ++result_.record.tree_candidates;
   // Something of it must lie on x's side of the source's plane, ahead of x, and inside every edge of the source.
-  work_.signs.clear();
-  bool before = false, beyond = false, ahead = false;
-  for (const std::uint32_t vertex : vertices) {
-    work_.signs.push_back(depth_sign(vertex));
-    before = before || work_.signs.back() > 0;
-    beyond = beyond || work_.signs.back() < 0;
-  }
-  if (!before) return false;
+  std::uint64_t some = 0;
   work_.corners.clear();
   for (const std::uint32_t vertex : vertices) {
     work_.corners.push_back(outlines_.corner_of_vertex(vertex));
-    ahead = ahead || toward_sign(work_.corners.back()) > 0;
+    some |= code_of(work_.corners.back(), source);
   }
-  if (!ahead || !may_meet(source)) return false;
+  const std::uint32_t coded = std::min(outlines_.outline(source).count, kMostCodedEdges);
+  const std::uint64_t needed = kKnown | kBefore | kAhead | ((std::uint64_t{1} << coded) - 1) * kInside;
+  if ((some & needed) != needed || !may_meet_beyond_codes(source)) return false;
   work_.seen_in[index] = work_.run;
   const int facing = this->facing(piece);
   if (facing == 0) return false;
   ++result_.record.candidates;
   const bool mirrored = facing > 0;
-  if (beyond) ++result_.record.clipped;
-  const OutlineId outline = beyond ? outlines_.add(near_part(vertices, mirrored)) : outlines_.add(piece, mirrored);
+  const bool cut = (some & kBeyond) != 0;
+  if (cut) ++result_.record.clipped;
+  const OutlineId outline = cut ? add_near_part(vertices, mirrored) : outlines_.add(piece, mirrored);
   if (!work_.edges.hides_all(outline, source_count_)) return false;
   result_.cutters = {piece.face};
   return true;
@@ -218,10 +221,23 @@ int EdgeWalk::depth_sign(std::uint32_t vertex) const {
 // +1: ahead of the plane through x that is parallel to the source's.
 int EdgeWalk::toward_sign(CornerId corner) { return -outlines_.side(plane_.normal, corner); }
 
-bool EdgeWalk::may_meet(OutlineId source) {
+std::uint64_t EdgeWalk::code_of(CornerId corner, OutlineId source) {
+  if (work_.codes.size() <= corner) work_.codes.resize(outlines_.corner_count(), 0);
+  std::uint64_t code = work_.codes[corner];
+  if (code != 0) return code;
+  const int depth = depth_sign(*outlines_.vertex(corner));
+  code = kKnown | (depth > 0 ? kBefore : depth < 0 ? kBeyond : 0) | (toward_sign(corner) > 0 ? kAhead : 0);
   const Outlines::Outline& outline = outlines_.outline(source);
-  for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
-    const Outlines::Edge edge = outlines_.edge(id);
+  for (std::uint32_t k = 0; k < std::min(outline.count, kMostCodedEdges); ++k) {
+    if (outlines_.side(outlines_.edge(outline.first + k), corner) > 0) code |= kInside << k;
+  }
+  return work_.codes[corner] = code;
+}
+
+bool EdgeWalk::may_meet_beyond_codes(OutlineId source) {
+  const Outlines::Outline& outline = outlines_.outline(source);
+  for (std::uint32_t k = kMostCodedEdges; k < outline.count; ++k) {
+    const Outlines::Edge edge = outlines_.edge(outline.first + k);
     if (std::none_of(work_.corners.begin(), work_.corners.end(),
                      [&](CornerId corner) { return outlines_.side(edge, corner) > 0; })) {
       return false;
@@ -240,33 +256,20 @@ int EdgeWalk::facing(const Piece& piece) const {
   return sign(dot(cross(exact(0), exact(1)), exact(2)));
 }
 
-// The part on x's side of the source's plane: with g the height above that plane, an edge crosses it in direction
-// a |g_b| + b |g_a|. Affine, so all corners share one scale.
-Ring EdgeWalk::near_part(std::span<const std::uint32_t> vertices, bool mirrored) {
+// The part on x's side of the source's plane.
+OutlineId EdgeWalk::add_near_part(std::span<const std::uint32_t> vertices, bool mirrored) {
   const std::size_t n = vertices.size();
-  std::vector<ScaledVec3> t(n), above(n);
-  long t_exponent = 0, g_exponent = 0;
-  for (std::size_t c = 0; c < n; ++c) {
-    const Vec3& v = view_.scene.vertices()[vertices[c]];
-    t[c] = kernel::exact_difference(v, view_.x);
-    above[c] = kernel::exact_difference(v, plane_.point);
-    t_exponent = c == 0 ? t[c].exponent : std::min(t_exponent, t[c].exponent);
-    g_exponent = c == 0 ? above[c].exponent : std::min(g_exponent, above[c].exponent);
-  }
-  std::vector<Integer> g(n);
-  for (std::size_t c = 0; c < n; ++c) {
-    lower_exponent(t[c], t_exponent);
-    lower_exponent(above[c], g_exponent);
-    g[c] = dot(plane_.normal.exact, above[c].v);
-  }
-  Ring ring;
+  const auto lies = [&](std::size_t c, std::uint64_t where) { return (work_.codes[work_.corners[c]] & where) != 0; };
+  work_.ring.clear();
   for (std::size_t c = 0; c < n; ++c) {
     const std::size_t next = (c + 1) % n;
-    if (work_.signs[c] >= 0) ring.push_back(kernel::make_direction(t[c].v));
-    if (work_.signs[c] * work_.signs[next] < 0) ring.push_back(crossing(t[c].v, g[c], t[next].v, g[next]));
+    if (!lies(c, kBeyond)) work_.ring.push_back(work_.corners[c]);
+    if ((lies(c, kBefore) && lies(next, kBeyond)) || (lies(c, kBeyond) && lies(next, kBefore))) {
+      work_.ring.push_back(outlines_.add_crossing(vertices[c], vertices[next]));
+    }
   }
-  if (mirrored) std::reverse(ring.begin(), ring.end());
-  return ring;
+  if (mirrored) std::reverse(work_.ring.begin(), work_.ring.end());
+  return outlines_.add(work_.ring);
 }
 
 Rational EdgeWalk::fraction() {

@@ -14,11 +14,12 @@ namespace {
 
 constexpr double kSlack = 0x1p-32;
 constexpr double kLeastAhead = 0x1p-8;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kFewestForAGrid = 8;
 constexpr double kCellsPerOutline = 2.0;
 constexpr std::uint64_t kEdgesPerOutline = 4;
-constexpr EdgeId kNone = 0xFFFFFFFFU;
+constexpr std::size_t kOutlinesToAlign = 256;
+constexpr std::size_t kFewShare = 4;  // fewer than one edge in so many are few
+constexpr std::uint32_t kMostOwnCells = 24;
 
 double dot(const Approx3& a, const Approx3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Approx3 cross(const Approx3& a, const Approx3& b) {
@@ -41,7 +42,7 @@ OutlineGrid::Cells OutlineGrid::Axis::cells_inside(const Range& r) const {
           static_cast<int>(std::clamp(last, -1.0, count - 1.0))};
 }
 
-void OutlineGrid::build(const Outlines& outlines, std::size_t source_count) {
+void OutlineGrid::build(const Outlines& outlines, std::size_t source_count, std::span<const std::uint8_t> dropped) {
   const std::size_t count = outlines.outlines().size();
   first_ = static_cast<OutlineId>(source_count);
   everywhere_.clear();
@@ -50,12 +51,16 @@ void OutlineGrid::build(const Outlines& outlines, std::size_t source_count) {
     for (auto o = static_cast<OutlineId>(source_count); o < count; ++o) everywhere_.push_back(o);
     return;
   }
-  last_edge_.assign(count, kNone);
+  last_found_.assign(count, kNone);
   project(outlines);
   align(outlines, source_count);
-  choose_cells(outlines, source_count);
+  find_bounds(outlines);
+  choose_cells(source_count);
+  last_seen_.assign(static_cast<std::size_t>(u_.count) * static_cast<std::size_t>(v_.count), kNone);
+  find_needed_cells(outlines, dropped);
   find_covered_cells(outlines);
-  fill(outlines);
+  find_cells(outlines);
+  fill();
 }
 
 // w points to the middle of the source. False where some corner of the source is not ahead.
@@ -103,18 +108,33 @@ bool OutlineGrid::is_ahead(const Outlines& outlines, const Outline& outline) con
   return true;
 }
 
-void OutlineGrid::include(const Outlines& outlines, const Outline& outline, Range& u, Range& v) const {
-  for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
-    const Image& image = images_[outlines.edge(id).a];
-    u.include(image.u);
-    v.include(image.v);
+void OutlineGrid::find_bounds(const Outlines& outlines) {
+  bounds_.assign(outlines.outlines().size(), {});
+  for (OutlineId o = 0; o < bounds_.size(); ++o) {
+    const Outline& outline = outlines.outline(o);
+    if (!is_ahead(outlines, outline)) {
+      if (o >= first_) everywhere_.push_back(o);
+      continue;
+    }
+    Bounds bounds;
+    for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
+      const Image& image = images_[outlines.edge(id).a];
+      bounds.u.include(image.u);
+      bounds.v.include(image.v);
+    }
+    bounds.u.widen(4.0 * kSlack);
+    bounds.v.widen(4.0 * kSlack);
+    bounds_[o] = bounds;
   }
 }
 
-// Turns the image so that the occluders' edges, on the whole, run along u: slats then share few cells.
+// Turns the image so that the occluders' edges, on the whole, run along u: slats then share few cells. Some hundreds of
+// occluders tell as well as all.
 void OutlineGrid::align(const Outlines& outlines, std::size_t source_count) {
   double along = 0.0, across = 0.0;  // sums of length cos 2 phi, length sin 2 phi
-  for (OutlineId o = static_cast<OutlineId>(source_count); o < outlines.outlines().size(); ++o) {
+  const std::size_t count = outlines.outlines().size();
+  const auto stride = static_cast<OutlineId>(1 + (count - source_count) / kOutlinesToAlign);
+  for (OutlineId o = static_cast<OutlineId>(source_count); o < count; o += stride) {
     const Outline& outline = outlines.outline(o);
     if (!is_ahead(outlines, outline)) continue;
     for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
@@ -130,18 +150,18 @@ void OutlineGrid::align(const Outlines& outlines, std::size_t source_count) {
   for (Image& image : images_) image = {c * image.u + s * image.v, c * image.v - s * image.u, image.ahead};
 }
 
-void OutlineGrid::choose_cells(const Outlines& outlines, std::size_t source_count) {
+void OutlineGrid::choose_cells(std::size_t source_count) {
   u_.range = v_.range = {kInfinity, -kInfinity};
+  for (OutlineId o = 0; o < source_count; ++o) {
+    u_.range.include(bounds_[o].u);
+    v_.range.include(bounds_[o].v);
+  }
+  const double whole_width = u_.range.high - u_.range.low, whole_height = v_.range.high - v_.range.low;
   double width = 0.0, height = 0.0;
   std::size_t count = 0;
-  for (OutlineId o = 0; o < source_count; ++o) include(outlines, outlines.outline(o), u_.range, v_.range);
-  u_.range.widen(4 * kSlack);
-  v_.range.widen(4 * kSlack);
-  const double whole_width = u_.range.high - u_.range.low, whole_height = v_.range.high - v_.range.low;
-  for (OutlineId o = static_cast<OutlineId>(source_count); o < outlines.outlines().size(); ++o) {
-    if (!is_ahead(outlines, outlines.outline(o))) continue;
-    Range u{kInfinity, -kInfinity}, v = u;
-    include(outlines, outlines.outline(o), u, v);
+  for (OutlineId o = first_; o < bounds_.size(); ++o) {
+    const auto& [u, v] = bounds_[o];
+    if (u.empty()) continue;
     width += std::min(u.high - u.low, whole_width);
     height += std::min(v.high - v.low, whole_height);
     ++count;
@@ -191,16 +211,13 @@ bool OutlineGrid::for_few_cells(const Cells& columns, const Cells& rows, const V
 }
 
 template <class Visit>
-void OutlineGrid::for_each_cell_of(const Outlines& outlines, const Outline& outline, const Visit& visit) {
-  Range u{kInfinity, -kInfinity}, v = u;
-  include(outlines, outline, u, v);
-  u.widen(4.0 * kSlack);
-  v.widen(4.0 * kSlack);
-  const Cells rows = v_.cells(v);
-  if (rows.first > rows.last || for_few_cells(u_.cells(u), rows, visit)) return;
+void OutlineGrid::for_each_cell_of(const Outlines& outlines, OutlineId id, const Visit& visit) {
+  const Cells columns = u_.cells(bounds_[id].u), rows = v_.cells(bounds_[id].v);
+  if (!is_needed(columns, rows) || for_few_cells(columns, rows, visit)) return;
+  const Outline& outline = outlines.outline(id);
   spans_.assign(static_cast<std::size_t>(rows.last - rows.first + 1), {kInfinity, -kInfinity});
-  for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
-    const Image &a = images_[outlines.edge(id).a], &b = images_[outlines.edge(id).b];
+  for (EdgeId edge = outline.first; edge < outline.first + outline.count; ++edge) {
+    const Image &a = images_[outlines.edge(edge).a], &b = images_[outlines.edge(edge).b];
     Range own{std::min(a.v, b.v), std::max(a.v, b.v)};
     own.widen(4.0 * kSlack);
     const Cells crossed = v_.cells(own);
@@ -212,8 +229,8 @@ void OutlineGrid::for_each_cell_of(const Outlines& outlines, const Outline& outl
     }
   }
   for (int j = rows.first; j <= rows.last; ++j) {
-    const Cells columns = u_.cells(spans_[static_cast<std::size_t>(j - rows.first)]);
-    for (int i = columns.first; i <= columns.last; ++i) visit(static_cast<std::size_t>(j * u_.count + i));
+    const Cells filled = u_.cells(spans_[static_cast<std::size_t>(j - rows.first)]);
+    for (int i = filled.first; i <= filled.last; ++i) visit(static_cast<std::size_t>(j * u_.count + i));
   }
 }
 
@@ -236,45 +253,71 @@ bool OutlineGrid::covers(const Outlines& outlines, const Outline& outline, const
   return true;
 }
 
+void OutlineGrid::find_needed_cells(const Outlines& outlines, std::span<const std::uint8_t> dropped) {
+  const std::size_t kept = static_cast<std::size_t>(std::count(dropped.begin(), dropped.end(), 0));
+  all_needed_ = dropped.empty() || kept > dropped.size() / kFewShare;
+  if (all_needed_) return;
+  const auto wide = static_cast<std::size_t>(u_.count), stride = wide + 1;
+  needed_.assign(stride * (static_cast<std::size_t>(v_.count) + 1), 0);
+  for (EdgeId id = 0; id < dropped.size(); ++id) {
+    const Image &a = images_[outlines.edge(id).a], &b = images_[outlines.edge(id).b];
+    if (dropped[id] != 0 || !a.ahead || !b.ahead) continue;
+    for_each_cell_of_edge(a, b, [&](std::size_t cell) { needed_[(cell / wide + 1) * stride + cell % wide + 1] = 1; });
+  }
+  for (std::size_t at = stride + 1; at < needed_.size(); ++at) {
+    if (at % stride != 0) needed_[at] += needed_[at - 1] + needed_[at - stride] - needed_[at - stride - 1];
+  }
+}
+
+bool OutlineGrid::is_needed(const Cells& columns, const Cells& rows) const {
+  if (columns.first > columns.last || rows.first > rows.last) return false;
+  if (all_needed_) return true;
+  const auto sum = [&](int row, int column) { return needed_[static_cast<std::size_t>(row * (u_.count + 1) + column)]; };
+  return sum(rows.last + 1, columns.last + 1) - sum(rows.first, columns.last + 1) -
+             sum(rows.last + 1, columns.first) + sum(rows.first, columns.first) !=
+         0;
+}
+
 void OutlineGrid::find_covered_cells(const Outlines& outlines) {
   coverer_.assign(static_cast<std::size_t>(u_.count) * static_cast<std::size_t>(v_.count), kNone);
   for (OutlineId o = first_; o < outlines.outlines().size(); ++o) {
-    const Outline& outline = outlines.outline(o);
-    if (!is_ahead(outlines, outline)) continue;
-    Range u{kInfinity, -kInfinity}, v = u;
-    include(outlines, outline, u, v);
-    const Cells columns = u_.cells_inside(u), rows = v_.cells_inside(v);
+    const Cells columns = u_.cells_inside(bounds_[o].u), rows = v_.cells_inside(bounds_[o].v);
+    if (!is_needed(columns, rows)) continue;
     for (int j = rows.first; j <= rows.last; ++j) {
       for (int i = columns.first; i <= columns.last; ++i) {
         OutlineId& coverer = coverer_[static_cast<std::size_t>(j * u_.count + i)];
-        if (coverer == kNone && covers(outlines, outline, u_.extent(i), v_.extent(j))) coverer = o;
+        if (coverer == kNone && is_needed({i, i}, {j, j}) &&
+            covers(outlines, outlines.outline(o), u_.extent(i), v_.extent(j))) {
+          coverer = o;
+        }
       }
     }
   }
 }
 
-void OutlineGrid::fill(const Outlines& outlines) {
+void OutlineGrid::find_cells(const Outlines& outlines) {
+  cells_.clear();
+  outline_begin_.assign(1, 0);
   cell_begin_.assign(coverer_.size() + 1, 0);
-  const auto end = static_cast<OutlineId>(outlines.outlines().size());
-  const auto belongs = [&](OutlineId o, std::size_t cell) { return coverer_[cell] == kNone || coverer_[cell] == o; };
-  for (OutlineId o = first_; o < end; ++o) {
-    const Outline& outline = outlines.outline(o);
-    if (!is_ahead(outlines, outline)) {
-      everywhere_.push_back(o);
-    } else {
-      for_each_cell_of(outlines, outline,
-                       [&](std::size_t cell) { cell_begin_[cell + 1] += belongs(o, cell) ? 1U : 0U; });
+  for (OutlineId o = 0; o < outlines.outlines().size(); ++o) {
+    if (o >= first_ && !bounds_[o].u.empty()) {
+      for_each_cell_of(outlines, o, [&](std::size_t cell) {
+        cells_.push_back(static_cast<std::uint32_t>(cell));
+        if (belongs(o, cell)) ++cell_begin_[cell + 1];
+      });
     }
+    outline_begin_.push_back(static_cast<std::uint32_t>(cells_.size()));
   }
+}
+
+void OutlineGrid::fill() {
   for (std::size_t cell = 1; cell < cell_begin_.size(); ++cell) cell_begin_[cell] += cell_begin_[cell - 1];
   members_.resize(cell_begin_.back());
   next_.assign(cell_begin_.begin(), cell_begin_.end() - 1);
-  for (OutlineId o = first_; o < end; ++o) {
-    const Outline& outline = outlines.outline(o);
-    if (!is_ahead(outlines, outline)) continue;
-    for_each_cell_of(outlines, outline, [&](std::size_t cell) {
-      if (belongs(o, cell)) members_[next_[cell]++] = o;
-    });
+  for (OutlineId o = first_; o + 1 < outline_begin_.size(); ++o) {
+    for (std::uint32_t at = outline_begin_[o]; at < outline_begin_[o + 1]; ++at) {
+      if (belongs(o, cells_[at])) members_[next_[cells_[at]]++] = o;
+    }
   }
 }
 
@@ -291,33 +334,49 @@ std::uint64_t OutlineGrid::unsorted_pairs(const Outlines& outlines) const {
   return edges * everywhere_.size() + not_ahead * outlines.outlines().size() + in_cells;
 }
 
-void OutlineGrid::find_near(const Outlines& outlines, EdgeId id, std::vector<OutlineId>& near) {
-  near = everywhere_;
-  if (single_) return;
-  const Image &a = images_[outlines.edge(id).a], &b = images_[outlines.edge(id).b];
-  if (!a.ahead || !b.ahead) {
-    // The edge may be anywhere.
-    near.clear();
-    for (OutlineId o = first_; o < last_edge_.size(); ++o) near.push_back(o);
-    return;
-  }
-  Range v{std::min(a.v, b.v), std::max(a.v, b.v)};
-  v.widen(4.0 * kSlack);
-  const auto visit = [&](std::size_t cell) {
-    for (std::uint32_t m = cell_begin_[cell]; m < cell_begin_[cell + 1]; ++m) {
-      const OutlineId o = members_[m];
-      if (last_edge_[o] == id) continue;
-      last_edge_[o] = id;
-      near.push_back(o);
-    }
-  };
-  Range u{std::min(a.u, b.u), std::max(a.u, b.u)};
+template <class Visit>
+void OutlineGrid::for_each_cell_of_edge(const Image& a, const Image& b, const Visit& visit) const {
+  Range u{std::min(a.u, b.u), std::max(a.u, b.u)}, v{std::min(a.v, b.v), std::max(a.v, b.v)};
   u.widen(4.0 * kSlack);
+  v.widen(4.0 * kSlack);
   const Cells rows = v_.cells(v);
   if (for_few_cells(u_.cells(u), rows, visit)) return;
   for (int j = rows.first; j <= rows.last; ++j) {
     const Cells columns = u_.cells(part_within(a, b, v_.extent(j)));
     for (int i = columns.first; i <= columns.last; ++i) visit(static_cast<std::size_t>(j * u_.count + i));
+  }
+}
+
+void OutlineGrid::find_near(const Outlines& outlines, EdgeId first, unsigned wanted, std::vector<OutlineId>& near) {
+  near = everywhere_;
+  if (single_) return;
+  const OutlineId own = outlines.edge(first).outline;
+  constexpr Range kAnywhere{-kInfinity, kInfinity};
+  const Bounds bounds = bounds_[own].u.empty() ? Bounds{kAnywhere, kAnywhere} : bounds_[own];
+  const auto visit = [&](std::size_t cell) {
+    if (last_seen_[cell] == first) return;
+    last_seen_[cell] = first;
+    for (std::uint32_t m = cell_begin_[cell]; m < cell_begin_[cell + 1]; ++m) {
+      const OutlineId o = members_[m];
+      if (last_found_[o] == first) continue;
+      last_found_[o] = first;
+      if (bounds.meets(bounds_[o])) near.push_back(o);
+    }
+  };
+  const std::uint32_t begin = outline_begin_[own], end = outline_begin_[own + 1];
+  if (all_needed_ && begin < end && end - begin <= kMostOwnCells) {
+    for (std::uint32_t at = begin; at < end; ++at) visit(cells_[at]);
+    return;
+  }
+  for (EdgeId id = first; wanted >> (id - first) != 0; ++id) {
+    if ((wanted >> (id - first) & 1U) == 0) continue;
+    const Image &a = images_[outlines.edge(id).a], &b = images_[outlines.edge(id).b];
+    if (!a.ahead || !b.ahead) {  // it may be anywhere
+      near.clear();
+      for (OutlineId o = first_; o < last_found_.size(); ++o) near.push_back(o);
+      return;
+    }
+    for_each_cell_of_edge(a, b, visit);
   }
 }
 

@@ -7,10 +7,14 @@
 // slack of 2^-32 bounds it all. Ranges are widened by multiples of it, so that whoever meets inside the source shares a
 // cell; more may. An outline that is not ahead is taken to be near everything.
 //
+// Where few edges are asked for, only the cells that they run through are filled.
+//
 // A cell that one occluder covers, with room to spare, lists that one alone: it hides all that any edge has there, so
 // nothing else matters for the part of an edge within the cell.
 #pragma once
 
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "visibility/outlines.h"
@@ -19,21 +23,25 @@ namespace exactff::visibility {
 
 class OutlineGrid {
  public:
-  // The first `source_count` outlines are the source's, the others go into the grid.
-  void build(const Outlines& outlines, std::size_t source_count);
+  // The first `source_count` outlines are the source's, the others go into the grid. Nobody will ask for edges with a
+  // mark in `dropped`.
+  void build(const Outlines& outlines, std::size_t source_count, std::span<const std::uint8_t> dropped);
 
   // About how many pairs of an edge and an occluder find_near would return for all edges because they cannot be told
   // apart by cells: the grid is of little use where they are many.
   [[nodiscard]] std::uint64_t unsorted_pairs(const Outlines& outlines) const;
 
-  // Every occluder that meets the edge inside the source, each once, and perhaps others.
-  void find_near(const Outlines& outlines, EdgeId edge, std::vector<OutlineId>& near);
+  // Every occluder that meets one of the edges inside the source, each once, and perhaps others. The edges are those of
+  // the set bits of `wanted`, counted from `first`.
+  void find_near(const Outlines& outlines, EdgeId first, unsigned wanted, std::vector<OutlineId>& near);
 
  private:
   struct Image {
     double u = 0.0, v = 0.0;
     bool ahead = false;
   };
+  static constexpr OutlineId kNone = 0xFFFFFFFFU;
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   struct Range {
     double low, high;
     void widen(double by) {
@@ -43,6 +51,10 @@ class OutlineGrid {
     void include(double x) {
       low = x < low ? x : low;
       high = x > high ? x : high;
+    }
+    void include(const Range& r) {
+      include(r.low);
+      include(r.high);
     }
     [[nodiscard]] bool empty() const { return !(low <= high); }
   };
@@ -68,36 +80,57 @@ class OutlineGrid {
     [[nodiscard]] Cells cells_inside(const Range& r) const;
   };
 
+  // The bounds of an outline's image, widened; empty if it is not ahead.
+  struct Bounds {
+    Range u{kInfinity, -kInfinity}, v{kInfinity, -kInfinity};
+    [[nodiscard]] bool meets(const Bounds& b) const {
+      return u.low <= b.u.high && b.u.low <= u.high && v.low <= b.v.high && b.v.low <= v.high;
+    }
+  };
+
   [[nodiscard]] bool choose_projection(const Outlines& outlines, std::size_t source_count);
   void project(const Outlines& outlines);
   void align(const Outlines& outlines, std::size_t source_count);
-  void choose_cells(const Outlines& outlines, std::size_t source_count);
+  void find_bounds(const Outlines& outlines);
+  void choose_cells(std::size_t source_count);
+  void find_needed_cells(const Outlines& outlines, std::span<const std::uint8_t> dropped);
+  [[nodiscard]] bool is_needed(const Cells& columns, const Cells& rows) const;
   void find_covered_cells(const Outlines& outlines);
   [[nodiscard]] bool covers(const Outlines& outlines, const Outlines::Outline& outline, const Range& u,
                             const Range& v) const;
-  void fill(const Outlines& outlines);
-  // Widens the ranges to hold the outline's image.
-  void include(const Outlines& outlines, const Outlines::Outline& outline, Range& u, Range& v) const;
+  void find_cells(const Outlines& outlines);
+  void fill();
+  [[nodiscard]] bool belongs(OutlineId o, std::size_t cell) const {
+    return coverer_[cell] == kNone || coverer_[cell] == o;
+  }
   [[nodiscard]] bool is_ahead(const Outlines& outlines, const Outlines::Outline& outline) const;
   [[nodiscard]] static Range part_within(const Image& a, const Image& b, const Range& v);
+  template <class Visit>
+  void for_each_cell_of_edge(const Image& a, const Image& b, const Visit& visit) const;
+  template <class Visit>
+  void for_each_cell_of(const Outlines& outlines, OutlineId id, const Visit& visit);
   // In a few cells its bounds are as good as the outline itself.
   template <class Visit>
   bool for_few_cells(const Cells& columns, const Cells& rows, const Visit& visit) const;
-  template <class Visit>
-  void for_each_cell_of(const Outlines& outlines, const Outlines::Outline& outline, const Visit& visit);
 
   kernel::Approx3 e_, f_, w_;
   OutlineId first_ = 0;  // of the occluders
   Axis u_, v_;
   bool single_ = true;         // too few outlines for a grid, or no projection: everything is near everything
   bool too_fine_ = false;      // smaller cells were wanted than the images are good for: many may crowd into one
-  std::vector<Image> images_;  // by corner
-  std::vector<std::uint32_t> cell_begin_;  // into members_, by cell, one more at the end
+  std::vector<Image> images_;   // by corner
+  std::vector<Bounds> bounds_;  // by outline
+  bool all_needed_ = true;
+  std::vector<std::uint32_t> needed_;      // cells that edges run through, before this one: sums over both axes
+  std::vector<std::uint32_t> outline_begin_;  // into cells_, by outline, one more at the end
+  std::vector<std::uint32_t> cells_;          // where occluders are
+  std::vector<std::uint32_t> cell_begin_;     // into members_, by cell, one more at the end
   std::vector<OutlineId> members_;
   std::vector<OutlineId> coverer_;  // by cell: an occluder that certainly covers it; then it is the only member
   std::vector<OutlineId> everywhere_;
   std::vector<std::uint32_t> next_;  // scratch: by cell
-  std::vector<EdgeId> last_edge_;    // by outline: the last edge that found it
+  std::vector<EdgeId> last_found_;   // by outline: the first of the edges that found it last
+  std::vector<EdgeId> last_seen_;    // by cell: the first of the edges that looked into it last
   std::vector<Range> spans_;         // scratch: by row
 };
 

@@ -50,9 +50,9 @@ void Outlines::start(const Scene& scene, const Vec3& x, double unit) {
   scale_exponent_ = exponent_for(unit);
   scale_ = std::ldexp(1.0, scale_exponent_);
   corners_.clear();
-  vertex_of_corner_.clear();
-  exact_.clear();
-  exponent_.clear();
+  origins_.clear();
+  if (!exact_.empty()) exact_.clear();
+  fine_.clear();
   edges_.clear();
   outlines_.clear();
   exact_decisions_ = 0;
@@ -64,27 +64,50 @@ CornerId Outlines::corner_of_vertex(std::uint32_t any_vertex) {
   if (run == run_) return corner;
   const Approx3 d = kernel::approx_difference(scene_->vertices()[vertex], x_);
   const Approx3 t{d.x * scale_, d.y * scale_, d.z * scale_};
-  run = run_;
-  corner = static_cast<CornerId>(corners_.size());
   const bool exact_scaling = scaled_safely(d.x, t.x) && scaled_safely(d.y, t.y) && scaled_safely(d.z, t.z);
-  corners_.push_back({t, exact_scaling ? size_of(t) : std::numeric_limits<double>::quiet_NaN()});
-  vertex_of_corner_.push_back(vertex);
-  exact_.emplace_back();
-  exponent_.push_back(0);
+  run = run_;
+  corner = add_corner(t, exact_scaling ? size_of(t) : std::numeric_limits<double>::quiet_NaN(), {.p = vertex});
   return corner;
+}
+
+CornerId Outlines::add_corner(const Approx3& t, double size, const Origin& origin) {
+  corners_.push_back({t, size});
+  origins_.push_back(origin);
+  return static_cast<CornerId>(corners_.size() - 1);
+}
+
+const ExactVec3& Outlines::keep_exact(Origin& origin, ExactVec3 direction, long exponent) {
+  origin.exact = static_cast<std::uint32_t>(exact_.size());
+  origin.exponent = exponent;
+  return exact_.emplace_back(std::move(direction));
+}
+
+CornerId Outlines::add_exactly(Direction direction) {
+  Origin origin;
+  const long bits = bit_length(direction.exact);
+  keep_exact(origin, std::move(direction.exact), -bits);
+  return add_corner(direction.approx, size_of(direction.approx), origin);
+}
+
+CornerId Outlines::add_crossing(std::uint32_t p, std::uint32_t q) {
+  const auto fine = crossings_.fine(position(p), position(q));
+  if (!fine) return add_exactly(kernel::make_direction(crossings_.exact(position(p), position(q), 0).direction));
+  const auto& [hi, lo, error] = fine->direction;
+  fine_.push_back(fine->direction);
+  const Approx3 t{hi[0], hi[1], hi[2]};
+  return add_corner(t, size_of(t),
+                    {.p = p, .q = q, .fine = static_cast<std::uint32_t>(fine_.size() - 1), .exponent = fine->exponent});
+}
+
+OutlineId Outlines::add(std::span<const CornerId> corners) {
+  add_edges(corners, false);
+  return static_cast<OutlineId>(outlines_.size() - 1);
 }
 
 OutlineId Outlines::add(const kernel::Ring& ring) {
   ring_.clear();
-  for (const Direction& direction : ring) {
-    ring_.push_back(static_cast<CornerId>(corners_.size()));
-    corners_.push_back({direction.approx, size_of(direction.approx)});
-    vertex_of_corner_.push_back(kNoVertex);
-    exact_.emplace_back(direction.exact);
-    exponent_.push_back(-bit_length(direction.exact));
-  }
-  add_edges(ring_, false);
-  return static_cast<OutlineId>(outlines_.size() - 1);
+  for (const Direction& direction : ring) ring_.push_back(add_exactly(direction));
+  return add(ring_);
 }
 
 OutlineId Outlines::add(const Piece& piece, bool mirrored) {
@@ -110,13 +133,15 @@ void Outlines::add_edges(std::span<const CornerId> corners, bool whole) {
 }
 
 const ExactVec3& Outlines::exact(CornerId id) {
-  std::optional<ExactVec3>& exact = exact_[id];
-  if (!exact) {
-    kernel::ScaledVec3 difference = kernel::exact_difference(scene_->vertices()[vertex_of_corner_[id]], x_);
-    exact = std::move(difference.v);
-    exponent_[id] = difference.exponent + scale_exponent_;
+  Origin& origin = origins_[id];
+  if (origin.exact != kNone) return exact_[origin.exact];
+  if (origin.is_vertex()) {
+    kernel::ScaledVec3 difference = kernel::exact_difference(position(origin.p), x_);
+    return keep_exact(origin, std::move(difference.v), difference.exponent + scale_exponent_);
   }
-  return *exact;
+  PlaneCrossings::Exact crossing =
+      crossings_.exact(position(origin.p), position(origin.q), static_cast<int>(origin.exponent));
+  return keep_exact(origin, std::move(crossing.direction), crossing.fine_exponent);
 }
 
 Integer Outlines::exact_height(const Edge& edge, CornerId t) {

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
@@ -24,6 +25,7 @@
 #include "exactff/scene.h"
 #include "kernel/direction.h"
 #include "visibility/boundary_piece.h"
+#include "visibility/plane_crossings.h"
 
 namespace exactff::visibility {
 
@@ -58,10 +60,17 @@ class Outlines {
   // Forgets everything; directions are relative to x, a point of `scene`'s space. Vertices at one position are one
   // corner. `unit`: a length of the order of the distances of what matters.
   void start(const Scene& scene, const Vec3& x, double unit);
+  // The plane that add_crossing refers to, which must live on.
+  void set_plane(const kernel::Direction& normal, const Vec3& point) {
+    crossings_.start(x_, normal, point, scale_exponent_);
+  }
 
   // Counter-clockwise as x sees it.
   OutlineId add(const kernel::Ring& ring);
   [[nodiscard]] CornerId corner_of_vertex(std::uint32_t vertex);
+  // Where the segment between two vertices on different sides of the plane crosses it.
+  [[nodiscard]] CornerId add_crossing(std::uint32_t p, std::uint32_t q);
+  OutlineId add(std::span<const CornerId> corners);
   // A piece of the scene. `mirrored`: its corners run clockwise as x sees them.
   OutlineId add(const Piece& piece, bool mirrored);
 
@@ -73,7 +82,11 @@ class Outlines {
   [[nodiscard]] std::size_t corner_count() const { return corners_.size(); }
   // The scene's vertex that a corner is, if it is one; its doubles are those of (position - x) * 2^scale_exponent.
   [[nodiscard]] std::optional<std::uint32_t> vertex(CornerId id) const {
-    return vertex_of_corner_[id] == kNoVertex ? std::nullopt : std::optional(vertex_of_corner_[id]);
+    return origins_[id].is_vertex() ? std::optional(origins_[id].p) : std::nullopt;
+  }
+  // What is known of a corner that was constructed, if it is not known exactly: its doubles are those of `hi`.
+  [[nodiscard]] const FineDirection* fine(CornerId id) const {
+    return origins_[id].fine == kNone ? nullptr : &fine_[origins_[id].fine];
   }
   [[nodiscard]] const Vec3& position(std::uint32_t vertex) const { return scene_->vertices()[vertex]; }
   [[nodiscard]] const Vec3& x() const { return x_; }
@@ -92,13 +105,24 @@ class Outlines {
 
   [[nodiscard]] const kernel::ExactVec3& exact(CornerId id);
   // exact(id) * 2^exponent(id) is what the doubles of the corner approximate. Known once exact(id) has been asked for.
-  [[nodiscard]] long exponent(CornerId id) const { return exponent_[id]; }
+  [[nodiscard]] long exponent(CornerId id) const { return origins_[id].exponent; }
   [[nodiscard]] kernel::Integer exact_height(const Edge& edge, CornerId t);
 
   [[nodiscard]] std::uint64_t exact_decisions() const { return exact_decisions_; }
 
  private:
-  static constexpr std::uint32_t kNoVertex = 0xFFFFFFFFU;
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+  // Where a corner comes from: the vertex p, the crossing of the segment from p to q, or an exact direction.
+  struct Origin {
+    std::uint32_t p = kNone, q = kNone;
+    std::uint32_t exact = kNone;  // into exact_
+    std::uint32_t fine = kNone;   // into fine_
+    long exponent = 0;            // see exponent(); of a crossing, until then, that of its Fine
+    [[nodiscard]] bool is_vertex() const { return p != kNone && q == kNone; }
+  };
+  CornerId add_corner(const kernel::Approx3& t, double size, const Origin& origin);
+  CornerId add_exactly(kernel::Direction direction);
+  const kernel::ExactVec3& keep_exact(Origin& origin, kernel::ExactVec3 direction, long exponent);
   void add_edges(std::span<const CornerId> corners, bool whole);
 
   const Scene* scene_ = nullptr;
@@ -107,9 +131,10 @@ class Outlines {
   int scale_exponent_ = 0;
   double scale_ = 1.0;
   std::vector<Corner> corners_;
-  std::vector<std::uint32_t> vertex_of_corner_;
-  std::vector<std::optional<kernel::ExactVec3>> exact_;
-  std::vector<long> exponent_;
+  std::vector<Origin> origins_;  // by corner
+  std::deque<kernel::ExactVec3> exact_;
+  std::vector<FineDirection> fine_;
+  PlaneCrossings crossings_;
   std::vector<Edge> edges_;
   std::vector<Outline> outlines_;
   std::vector<CornerId> ring_;                                        // scratch

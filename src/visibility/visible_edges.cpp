@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "kernel/lanes.h"
+
 namespace exactff::visibility {
 
 using kernel::Integer;
@@ -15,25 +17,25 @@ using Outline = Outlines::Outline;
 namespace {
 
 using Parameter = VisibleEdges::Parameter;
-constexpr Parameter kBegin{Parameter::Kind::kBegin, 0, VisibleEdges::kNowhere, 0.0, 0.0};
-constexpr Parameter kEnd{Parameter::Kind::kEnd, 0, VisibleEdges::kNowhere, 1.0, 0.0};
+constexpr Parameter kBegin{0.0, 0.0F, Parameter::kAtBegin};
+constexpr Parameter kEnd{1.0, 0.0F, Parameter::kAtEnd};
 
 // Pairs cost 1 to 2 us each where nothing tells them apart; as many occluders as make this many cost the Booleans less.
 constexpr std::uint64_t kMostUnsortedPairs = 1'000'000;
 
-double dot(const kernel::Approx3& a, const kernel::Approx3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+// Of a crossing's parameter, not less than the double.
+float rounded_up(double error) { return static_cast<float>(error * (1.0 + 0x1p-20)); }
 
 }  // namespace
 
 bool VisibleEdges::find(std::size_t source_count) {
   parts_.clear();
   stored_.clear();
+  stored_at_.resize(4 * outlines_.edges().size());
   drop_inner_edges(source_count);
-  grid_.build(outlines_, source_count);
+  grid_.build(outlines_, source_count, dropped_);
   if (grid_.unsorted_pairs(outlines_) > kMostUnsortedPairs) return false;
-  for (EdgeId id = 0; id < outlines_.edges().size(); ++id) {
-    if (dropped_[id] == 0) trace(id, source_count);
-  }
+  for (OutlineId o = 0; o < outlines_.outlines().size(); ++o) trace_outline(o, source_count);
   return true;
 }
 
@@ -78,30 +80,72 @@ void VisibleEdges::drop_inner_edges(std::size_t source_count) {
   }
 }
 
+void VisibleEdges::add_corner(Run& run, unsigned lane, CornerId id) const {
+  const Outlines::Corner& corner = outlines_.corner(id);
+  run.x[lane] = corner.t.x;
+  run.y[lane] = corner.t.y;
+  run.z[lane] = corner.t.z;
+  run.size[lane] = corner.size;
+}
+
 // Step 3.
-void VisibleEdges::trace(EdgeId id, std::size_t source_count) {
-  const Edge& edge = outlines_.edge(id);
-  find_allowed(edge, source_count);
-  if (allowed_.empty()) return;
-  grid_.find_near(outlines_, id, near_);
-  if (!find_removed(edge, source_count)) return;
-  sort(edge, removed_);
-  const bool reversed = edge.outline >= source_count;
-  for (const Interval& allowed : allowed_) keep_rest(id, reversed, allowed);
+void VisibleEdges::trace_outline(OutlineId id, std::size_t source_count) {
+  const Outline& outline = outlines_.outline(id);
+  const unsigned step = outline.count <= kRunCorners ? outline.count : kRunCorners - 1;
+  Run run{.outline = id, .of_source = id < source_count};
+  for (unsigned at = 0; at < outline.count; at += step) {
+    run.first = outline.first + at;
+    run.edges = std::min(step, outline.count - at);
+    run.wanted = 0;
+    for (unsigned k = 0; k < run.edges; ++k) {
+      add_corner(run, k, outlines_.edge(run.first + k).a);
+      if (dropped_[run.first + k] == 0) run.wanted |= 1U << k;
+    }
+    for (unsigned k = run.edges; k < kRunCorners; ++k) add_corner(run, k, outlines_.edge(run.first + run.edges - 1).b);
+    if (run.wanted != 0) trace(run, source_count);
+  }
+}
+
+void VisibleEdges::trace(Run& run, std::size_t source_count) {
+  find_allowed(run, source_count);
+  if (run.wanted == 0) return;
+  grid_.find_near(outlines_, run.first, run.wanted, near_);
+  find_removed(run, source_count);
+  // Step 4.
+  for (unsigned k = 0; k < run.edges; ++k) {
+    if ((run.wanted >> k & 1U) == 0) continue;
+    const EdgeId id = run.first + k;
+    sort(id, removed_[k]);
+    for (const Interval& allowed : allowed_[k]) keep_rest(id, !run.of_source, allowed, removed_[k]);
+  }
 }
 
 // The whole of a source's edge; of an occluder's, what has the source on both sides.
-void VisibleEdges::find_allowed(const Edge& edge, std::size_t source_count) {
-  allowed_.clear();
-  if (edge.outline < source_count) {
-    allowed_.push_back({kBegin, kEnd});
-    return;
+void VisibleEdges::find_allowed(Run& run, std::size_t source_count) {
+  for (unsigned k = 0; k < run.edges; ++k) allowed_[k].clear();
+  Cuts cuts;
+  if (source_count == 1 && !run.of_source) cuts = cut(run, 0);
+  for (unsigned k = 0; k < run.edges; ++k) {
+    if ((run.wanted >> k & 1U) == 0) continue;
+    Cover found;
+    if (run.of_source) {
+      allowed_[k].push_back({kBegin, kEnd});
+    } else if (source_count > 1) {
+      find_allowed_in_union(run, k, source_count);
+    } else if (cover(run, k, 0, cuts, found) && found.left && found.right) {
+      allowed_[k].push_back(found.interval);
+    }
+    if (allowed_[k].empty()) run.wanted &= ~(1U << k);
   }
+}
+
+void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, std::size_t source_count) {
+  const EdgeId edge = run.first + k;
   left_.clear();
   right_.clear();
   Cover found;
   for (OutlineId s = 0; s < source_count; ++s) {
-    if (!cover(edge, s, found)) continue;
+    if (!cover(run, k, s, cut(run, s), found)) continue;
     if (found.left) left_.push_back(found.interval);
     if (found.right) right_.push_back(found.interval);
   }
@@ -111,49 +155,138 @@ void VisibleEdges::find_allowed(const Edge& edge, std::size_t source_count) {
     for (const Interval& b : right_) {
       const Parameter& begin = compare(edge, a.begin, b.begin) >= 0 ? a.begin : b.begin;
       const Parameter& end = compare(edge, a.end, b.end) <= 0 ? a.end : b.end;
-      if (compare(edge, begin, end) < 0) allowed_.push_back({begin, end});
+      if (compare(edge, begin, end) < 0) allowed_[k].push_back({begin, end});
     }
   }
 }
 
-bool VisibleEdges::find_removed(const Edge& edge, std::size_t source_count) {
-  removed_.clear();
-  const bool of_source = edge.outline < source_count;
-  Cover found;
-  const auto remove = [&](OutlineId o, bool same_kind, bool covers_boundary_side) {
-    const bool double_of_earlier = same_kind && found.coincides && found.left && o < edge.outline;
-    if (!covers_boundary_side && !double_of_earlier) return true;
-    removed_.push_back(found.interval);
-    return allowed_.size() != 1 || !covers(edge, found.interval, allowed_.front());
-  };
-  if (of_source) {
-    for (OutlineId s = 0; s < source_count; ++s) {
-      if (s != edge.outline && cover(edge, s, found) && !remove(s, true, found.right)) return false;
-    }
+void VisibleEdges::find_removed(Run& run, std::size_t source_count) {
+  for (unsigned k = 0; k < run.edges; ++k) removed_[k].clear();
+  for (OutlineId s = 0; run.of_source && s < source_count && run.wanted != 0; ++s) {
+    if (s != run.outline) remove(run, s, true);
   }
   for (const OutlineId o : near_) {
-    if (o == edge.outline || !cover(edge, o, found)) continue;
-    if (!remove(o, !of_source, of_source ? found.left : found.right)) return false;
+    if (o != run.outline) remove(run, o, !run.of_source);
+    if (run.wanted == 0) return;
+  }
+}
+
+// Of an edge, what the outline covers on the side that must not be covered, or where it coincides and comes first.
+// Edges of which nothing is left are no longer wanted.
+void VisibleEdges::remove(Run& run, OutlineId by, bool same_kind) {
+  const Cuts cuts = cut(run, by);
+  if (((cuts.covered | cuts.unsure) & run.wanted) == 0) return;
+  const bool left_matters = run.of_source && !same_kind;
+  Cover found;
+  for (unsigned k = 0; k < run.edges; ++k) {
+    if ((run.wanted >> k & 1U) == 0 || !cover(run, k, by, cuts, found)) continue;
+    const bool double_of_earlier = same_kind && found.coincides && found.left && by < run.outline;
+    if (!(left_matters ? found.left : found.right) && !double_of_earlier) continue;
+    if (!take_off(run.first + k, found.interval, allowed_[k], removed_[k])) run.wanted &= ~(1U << k);
+  }
+}
+
+// Takes an interval off the ends of what is allowed, if that is one piece, or keeps it for the sweep where it lies
+// within. False if nothing is left.
+bool VisibleEdges::take_off(EdgeId edge, const Interval& interval, std::vector<Interval>& allowed,
+                            std::vector<Interval>& removed) {
+  if (allowed.size() != 1) {
+    removed.push_back(interval);
+    return true;
+  }
+  auto& [begin, end] = allowed.front();
+  if (compare(edge, interval.end, begin) <= 0 || compare(edge, interval.begin, end) >= 0) return true;
+  const bool from_begin = compare(edge, interval.begin, begin) <= 0, to_end = compare(edge, interval.end, end) >= 0;
+  if (from_begin && to_end) return false;
+  if (from_begin) {
+    begin = interval.end;
+  } else if (to_end) {
+    end = interval.begin;
+  } else {
+    removed.push_back(interval);
   }
   return true;
 }
 
-// The signs of f's heights at both ends of the edge, exactly, and where they differ the crossing.
-void VisibleEdges::cut_exactly(const Edge& edge, EdgeId f_id, int& sign_a, int& sign_b, Parameter& crossing) {
-  const Edge& f = outlines_.edge(f_id);
+// The crossing of a line with an edge whose ends have heights m and l above it, of different signs, lies at
+// |m| / (|l| + |m|). As computed, with D = |l| + |m| and e the larger error of the two heights, that errs by at most
+// e / (D - 2e) <= 2e / D where D >= 4e, and by roundings below 2^-50; the error is set to 2, which decides nothing,
+// where D is smaller. NaN decides nothing either.
+EXACTFF_CLONES VisibleEdges::Cuts VisibleEdges::cut(const Run& run, std::span<const Edge> lines, EdgeId first) {
+  using namespace kernel::lanes;
+  const Four x = load(run.x.data()), y = load(run.y.data()), z = load(run.z.data()), size = load(run.size.data());
+  Four begin = four(0.0), begin_error = begin, end = four(1.0), end_error = begin;
+  FourMask begin_line = four_whole(Parameter::kAtBegin), end_line = four_whole(Parameter::kAtEnd);
+  FourMask outside = four_whole(0), unsure = outside;
+  Cuts cuts;
+  for (std::size_t f = 0; f < lines.size(); ++f) {
+    const Edge& line = lines[f];
+    const Four h = line.normal.x * x + line.normal.y * y + line.normal.z * z, e = line.error * size;
+    const FourMask above_a = h > e, below_a = -h > e, above_b = next_lane(above_a), below_b = next_lane(below_a);
+    outside |= below_a & below_b;
+    if (all_lanes(outside)) return cuts;
+    const FourMask inside = above_a & above_b;
+    const FourMask entering = below_a & above_b, leaving = above_a & below_b;
+    const Four m = absolute(h), sum = m + next_lane(m), inverse = 1.0 / sum, error = larger(e, next_lane(e));
+    const Four at = m * inverse, at_error = sum > 4.0 * error ? 2.0 * error * inverse + 0x1p-50 : four(2.0);
+    const FourMask after_begin = at - begin > at_error + begin_error, before_begin = begin - at > at_error + begin_error;
+    const FourMask before_end = end - at > at_error + end_error, after_end = at - end > at_error + end_error;
+    unsure |= ~(inside | (entering & (after_begin | before_begin)) | (leaving & (before_end | after_end)));
+    const FourMask later = entering & after_begin, earlier = leaving & before_end;
+    const FourMask id = four_whole(static_cast<std::int64_t>(first + f));
+    begin = later ? at : begin;
+    begin_error = later ? at_error : begin_error;
+    begin_line = later ? id : begin_line;
+    end = earlier ? at : end;
+    end_error = earlier ? at_error : end_error;
+    end_line = earlier ? id : end_line;
+  }
+  const FourMask some = end - begin > begin_error + end_error, none = begin - end > begin_error + end_error;
+  cuts.covered = lane_bits(~outside & ~unsure & some);
+  cuts.unsure = lane_bits(~outside & (unsure | ~(some | none)));
+  store(begin, cuts.begin.data());
+  store(begin_error, cuts.begin_error.data());
+  store(end, cuts.end.data());
+  store(end_error, cuts.end_error.data());
+  store(begin_line, cuts.begin_line.data());
+  store(end_line, cuts.end_line.data());
+  return cuts;
+}
+
+VisibleEdges::Cuts VisibleEdges::cut(const Run& run, OutlineId outline) const {
+  const Outline& o = outlines_.outline(outline);
+  return cut(run, outlines_.edges().subspan(o.first, o.count), o.first);
+}
+
+bool VisibleEdges::cover(const Run& run, unsigned k, OutlineId outline, const Cuts& cuts, Cover& result) {
+  if ((cuts.unsure >> k & 1U) != 0) return cover_exactly(run.first + k, outline, result);
+  result.left = result.right = true;
+  result.coincides = false;
+  result.interval = {{cuts.begin[k], rounded_up(cuts.begin_error[k]), static_cast<EdgeId>(cuts.begin_line[k])},
+                     {cuts.end[k], rounded_up(cuts.end_error[k]), static_cast<EdgeId>(cuts.end_line[k])}};
+  return (cuts.covered >> k & 1U) != 0;
+}
+
+// The signs of the line's heights at both ends of the edge, exactly, and where they differ the crossing.
+void VisibleEdges::cut_exactly(EdgeId edge_id, EdgeId line, int& sign_a, int& sign_b, Parameter& crossing) {
+  const Edge edge = outlines_.edge(edge_id), f = outlines_.edge(line);
   sign_a = outlines_.side(f, edge.a);
   sign_b = outlines_.side(f, edge.b);
   if (sign_a * sign_b >= 0) return;
-  Integer l = abs(outlines_.exact_height(f, edge.b)), m = abs(outlines_.exact_height(f, edge.a));
+  const Height a = outlines_.height(f, edge.a), b = outlines_.height(f, edge.b);
+  const double sum = std::abs(a.value) + std::abs(b.value), error = std::max(a.error, b.error);
+  if (std::abs(a.value) > a.error && std::abs(b.value) > b.error && sum > 4.0 * error) {
+    crossing = {std::abs(a.value) / sum, rounded_up(2.0 * error / sum + 0x1p-50), line};
+    return;
+  }
+  const EdgeParameter at = exact(edge_id, {0.0, 0.0F, line});
   long l_exponent = 0, m_exponent = 0;
-  const double l_mantissa = mpz_get_d_2exp(&l_exponent, l.get_mpz_t());
-  const double m_mantissa = mpz_get_d_2exp(&m_exponent, m.get_mpz_t());
+  const double l_mantissa = mpz_get_d_2exp(&l_exponent, at.l.get_mpz_t());
+  const double m_mantissa = mpz_get_d_2exp(&m_exponent, at.m.get_mpz_t());
   // In the scale of the doubles, which is that of the other crossings.
   const long exponent = l_exponent + outlines_.exponent(edge.b) - m_exponent - outlines_.exponent(edge.a);
   const double l_over_m = std::ldexp(l_mantissa / m_mantissa, static_cast<int>(std::clamp(exponent, -2000L, 2000L)));
-  crossing = {Parameter::Kind::kCrossing, f_id, static_cast<std::uint32_t>(stored_.size()), 1.0 / (1.0 + l_over_m),
-              0x1p-49};
-  stored_.push_back({std::move(l), std::move(m)});
+  crossing = {1.0 / (1.0 + l_over_m), 0x1p-49F, line};
 }
 
 bool VisibleEdges::lies_left(const Edge& edge, OutlineId outline) {
@@ -165,84 +298,56 @@ bool VisibleEdges::lies_left(const Edge& edge, OutlineId outline) {
   return true;  // an outline without area: cannot be
 }
 
-// m / (l + m) errs by at most e / (D - 2e), e being the larger error of the two heights and D = |a| + |b| as computed,
-// and by roundings below 2^-51.
-VisibleEdges::Parameter VisibleEdges::crossing_at(EdgeId line, double height_a, double height_b, double error) {
-  const double size = std::abs(height_a) + std::abs(height_b);
-  return {Parameter::Kind::kCrossing, line, kNowhere, std::abs(height_a) / size,
-          size > 4.0 * error ? 2.0 * error / size + 0x1p-50 : 2.0};
-}
-
-bool VisibleEdges::cover(const Edge& edge, OutlineId outline, Cover& result) {
+bool VisibleEdges::cover_exactly(EdgeId edge, OutlineId outline, Cover& result) {
   const Outline& o = outlines_.outline(outline);
-  const Outlines::Corner &a = outlines_.corner(edge.a), &b = outlines_.corner(edge.b);
   Interval& interval = result.interval;
   interval = {kBegin, kEnd};
   result.coincides = false;
-  for (EdgeId id = o.first; id < o.first + o.count; ++id) {
-    const Edge& f = outlines_.edge(id);
-    const double height_a = dot(f.normal, a.t), height_b = dot(f.normal, b.t);
-    const double error_a = f.error * a.size, error_b = f.error * b.size;
-    int sign_a = height_a > error_a ? 1 : height_a < -error_a ? -1 : 0;
-    int sign_b = height_b > error_b ? 1 : height_b < -error_b ? -1 : 0;
-    if (sign_a > 0 && sign_b > 0) continue;
-    if (sign_a < 0 && sign_b < 0) return false;
+  for (EdgeId line = o.first; line < o.first + o.count; ++line) {
+    int sign_a = 0, sign_b = 0;
     Parameter crossing;
-    if (sign_a * sign_b != 0) {
-      crossing = crossing_at(id, height_a, height_b, std::max(error_a, error_b));
-    } else {
-      cut_exactly(edge, id, sign_a, sign_b, crossing);
-      if (sign_a <= 0 && sign_b <= 0) {
-        if (sign_a < 0 || sign_b < 0) return false;
-        result.coincides = true;
-        continue;
-      }
-      if (sign_a >= 0 && sign_b >= 0) continue;
+    cut_exactly(edge, line, sign_a, sign_b, crossing);
+    if (sign_a <= 0 && sign_b <= 0) {
+      if (sign_a < 0 || sign_b < 0) return false;
+      result.coincides = true;
+      continue;
     }
     if (sign_a < 0 && compare(edge, interval.begin, crossing) < 0) interval.begin = crossing;
     if (sign_b < 0 && compare(edge, crossing, interval.end) < 0) interval.end = crossing;
     if (compare(edge, interval.begin, interval.end) >= 0) return false;
   }
-  const bool on_left = result.coincides && lies_left(edge, outline);
+  const bool on_left = result.coincides && lies_left(outlines_.edge(edge), outline);
   result.left = !result.coincides || on_left;
   result.right = !result.coincides || !on_left;
   return true;
 }
 
-EdgeParameter VisibleEdges::exact(const Edge& edge, const Parameter& p) {
-  switch (p.kind) {
-    case Parameter::Kind::kBegin:
-      return {1, 0};
-    case Parameter::Kind::kEnd:
-      return {0, 1};
-    case Parameter::Kind::kCrossing:
-      break;
-  }
-  if (p.stored != kNowhere) return stored_[p.stored];
-  const Edge& f = outlines_.edge(p.line);
-  return {abs(outlines_.exact_height(f, edge.b)), abs(outlines_.exact_height(f, edge.a))};
+EdgeParameter VisibleEdges::exact(EdgeId edge, const Parameter& p) {
+  if (p.line == Parameter::kAtBegin) return {1, 0};
+  if (p.line == Parameter::kAtEnd) return {0, 1};
+  std::uint32_t& at = stored_at(edge, p.line);
+  if (at < stored_.size() && stored_[at].edge == edge && stored_[at].line == p.line) return stored_[at].parameter;
+  const Edge e = outlines_.edge(edge), f = outlines_.edge(p.line);
+  at = static_cast<std::uint32_t>(stored_.size());
+  stored_.push_back({edge, p.line, {abs(outlines_.exact_height(f, e.b)), abs(outlines_.exact_height(f, e.a))}});
+  return stored_.back().parameter;
 }
 
-int VisibleEdges::compare_exactly(const Edge& edge, const Parameter& p, const Parameter& q) {
-  using Kind = Parameter::Kind;
-  if (p.kind == q.kind && (p.kind != Kind::kCrossing || p.line == q.line)) return 0;
-  if (p.kind == Kind::kBegin || q.kind == Kind::kEnd) return -1;
-  if (p.kind == Kind::kEnd || q.kind == Kind::kBegin) return 1;
+int VisibleEdges::compare_exactly(EdgeId edge, const Parameter& p, const Parameter& q) {
+  if (p.line == q.line) return 0;
+  if (p.line == Parameter::kAtBegin || q.line == Parameter::kAtEnd) return -1;
+  if (p.line == Parameter::kAtEnd || q.line == Parameter::kAtBegin) return 1;
   const EdgeParameter a = exact(edge, p), b = exact(edge, q);
   return cmp(a.m * b.l, b.m * a.l) < 0 ? -1 : a.m * b.l == b.m * a.l ? 0 : 1;
 }
 
-bool VisibleEdges::covers(const Edge& edge, const Interval& a, const Interval& b) {
-  return compare(edge, a.begin, b.begin) <= 0 && compare(edge, a.end, b.end) >= 0;
-}
-
-void VisibleEdges::sort(const Edge& edge, std::vector<Interval>& intervals) {
+void VisibleEdges::sort(EdgeId edge, std::vector<Interval>& intervals) {
   std::sort(intervals.begin(), intervals.end(),
             [&](const Interval& a, const Interval& b) { return compare(edge, a.begin, b.begin) < 0; });
 }
 
 // The union, as disjoint intervals in order.
-void VisibleEdges::merge(const Edge& edge, std::vector<Interval>& intervals) {
+void VisibleEdges::merge(EdgeId edge, std::vector<Interval>& intervals) {
   if (intervals.size() < 2) return;
   sort(edge, intervals);
   std::size_t last = 0;
@@ -257,15 +362,14 @@ void VisibleEdges::merge(const Edge& edge, std::vector<Interval>& intervals) {
 }
 
 // What the removed intervals, in order of their beginnings, leave of an allowed one.
-void VisibleEdges::keep_rest(EdgeId id, bool reversed, const Interval& allowed) {
-  const Edge& edge = outlines_.edge(id);
+void VisibleEdges::keep_rest(EdgeId id, bool reversed, const Interval& allowed, std::span<const Interval> removed) {
   Parameter reached = allowed.begin;
-  for (const Interval& removed : removed_) {
-    if (compare(edge, removed.begin, allowed.end) >= 0) break;
-    if (compare(edge, removed.begin, reached) > 0) keep(id, reversed, reached, removed.begin);
-    if (compare(edge, removed.end, reached) > 0) reached = removed.end;
+  for (const Interval& r : removed) {
+    if (compare(id, r.begin, allowed.end) >= 0) break;
+    if (compare(id, r.begin, reached) > 0) keep(id, reversed, reached, r.begin);
+    if (compare(id, r.end, reached) > 0) reached = r.end;
   }
-  if (compare(edge, reached, allowed.end) < 0) keep(id, reversed, reached, allowed.end);
+  if (compare(id, reached, allowed.end) < 0) keep(id, reversed, reached, allowed.end);
 }
 
 void VisibleEdges::keep(EdgeId id, bool reversed, const Parameter& begin, const Parameter& end) {
@@ -274,7 +378,7 @@ void VisibleEdges::keep(EdgeId id, bool reversed, const Parameter& begin, const 
 
 BoundaryPiece VisibleEdges::exact(const Part& part) {
   const Edge& edge = outlines_.edge(part.edge);
-  return {outlines_.exact(edge.a), outlines_.exact(edge.b), exact(edge, part.begin), exact(edge, part.end)};
+  return {outlines_.exact(edge.a), outlines_.exact(edge.b), exact(part.edge, part.begin), exact(part.edge, part.end)};
 }
 
 }  // namespace exactff::visibility

@@ -14,10 +14,14 @@
 // Steps:
 //   1. silhouettes: an edge that two occluders share, one on either side, cannot bound V; nor can its doubles;
 //   2. a grid over the source (outline_grid.h) tells which outlines an edge may meet;
-//   3. for each edge the intervals, from which what is left of it follows by one sweep.
+//   3. edges are taken up in runs of up to four corners. The heights of a run's corners above the lines of an outline
+//      give, for each of its edges, the interval that the outline covers;
+//   4. for each edge one sweep over its intervals gives what is left of it.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "visibility/boundary_piece.h"
@@ -29,15 +33,14 @@ namespace exactff::visibility {
 // A workspace: what it holds is reused from one call to the next.
 class VisibleEdges {
  public:
-  static constexpr std::uint32_t kNowhere = 0xFFFFFFFFU;
-
-  // A parameter of an edge: one of its ends, or where the line of another edge crosses it.
+  // A parameter of an edge: one of its ends, or where the line of another edge crosses it. Within `error` of `value`,
+  // m / (l + m).
   struct Parameter {
-    enum class Kind : std::uint8_t { kBegin, kCrossing, kEnd } kind = Kind::kBegin;
-    EdgeId line = 0;                  // that crosses
-    std::uint32_t stored = kNowhere;  // where the exact parameter is, if it had to be computed
-    double value = 0.0;               // m / (l + m)
-    double error = 0.0;
+    static constexpr EdgeId kAtBegin = 0xFFFFFFFEU, kAtEnd = 0xFFFFFFFFU;
+    double value = 0.0;
+    float error = 0.0F;
+    EdgeId line = kAtBegin;  // that crosses
+    [[nodiscard]] bool is_crossing() const { return line < kAtBegin; }
   };
   // A part of the boundary of V, V to its left.
   struct Part {
@@ -59,47 +62,83 @@ class VisibleEdges {
   [[nodiscard]] BoundaryPiece exact(const Part& part);
 
  private:
+  static constexpr unsigned kRunCorners = 4;
+  using Lanes = std::array<double, kRunCorners>;
+
   struct Interval {
     Parameter begin, end;
   };
-  // What an outline covers along the edge, on either side of it.
+  // What an outline covers along an edge, on either side of it.
   struct Cover {
     bool left = false, right = false;
     bool coincides = false;  // it has an edge on the line
     Interval interval;
   };
+  // Consecutive edges of an outline with up to four corners between them: all edges of a triangle or a quadrilateral,
+  // else three. Edge k runs from the corner in lane k to that in the next lane, lane 0 after the last; lanes that are
+  // left over repeat a corner.
+  struct Run {
+    OutlineId outline = 0;
+    bool of_source = false;
+    EdgeId first = 0;
+    unsigned edges = 0;
+    unsigned wanted = 0;  // a bit for every edge of which something may be left
+    Lanes x{}, y{}, z{}, size{};
+  };
+  // What an outline covers of a run, by the filter alone.
+  struct Cuts {
+    unsigned covered = 0;  // a bit for every edge that crosses the outline's interior, certainly, from begin to end
+    unsigned unsure = 0;   // and for those of which nothing is certain
+    Lanes begin, begin_error, end, end_error;
+    std::array<std::int64_t, kRunCorners> begin_line, end_line;
+  };
+  // An exact parameter, kept lest it be computed twice.
+  struct Stored {
+    EdgeId edge, line;
+    EdgeParameter parameter;
+  };
 
   void drop_inner_edges(std::size_t source_count);
-  void trace(EdgeId id, std::size_t source_count);
-  // What the outline covers; false if nothing.
-  [[nodiscard]] bool cover(const Outlines::Edge& edge, OutlineId outline, Cover& result);
-  void cut_exactly(const Outlines::Edge& edge, EdgeId line, int& sign_a, int& sign_b, Parameter& crossing);
-  [[nodiscard]] static Parameter crossing_at(EdgeId line, double height_a, double height_b, double error);
+  void trace_outline(OutlineId id, std::size_t source_count);
+  void trace(Run& run, std::size_t source_count);
+  void add_corner(Run& run, unsigned lane, CornerId corner) const;
+  void find_allowed(Run& run, std::size_t source_count);
+  void find_allowed_in_union(Run& run, unsigned k, std::size_t source_count);
+  void find_removed(Run& run, std::size_t source_count);
+  void remove(Run& run, OutlineId by, bool same_kind);
+  [[nodiscard]] bool take_off(EdgeId edge, const Interval& interval, std::vector<Interval>& allowed,
+                              std::vector<Interval>& removed);
+
+  [[nodiscard]] static Cuts cut(const Run& run, std::span<const Outlines::Edge> lines, EdgeId first);
+  [[nodiscard]] Cuts cut(const Run& run, OutlineId outline) const;
+  // What the outline covers of the run's k-th edge; false if nothing.
+  [[nodiscard]] bool cover(const Run& run, unsigned k, OutlineId outline, const Cuts& cuts, Cover& result);
+  [[nodiscard]] bool cover_exactly(EdgeId edge, OutlineId outline, Cover& result);
+  void cut_exactly(EdgeId edge, EdgeId line, int& sign_a, int& sign_b, Parameter& crossing);
   [[nodiscard]] bool lies_left(const Outlines::Edge& edge, OutlineId outline);
-  void find_allowed(const Outlines::Edge& edge, std::size_t source_count);
-  // False where what is removed is all.
-  [[nodiscard]] bool find_removed(const Outlines::Edge& edge, std::size_t source_count);
-  void keep_rest(EdgeId id, bool reversed, const Interval& allowed);
+  void keep_rest(EdgeId id, bool reversed, const Interval& allowed, std::span<const Interval> removed);
   void keep(EdgeId id, bool reversed, const Parameter& begin, const Parameter& end);
 
-  [[nodiscard]] int compare(const Outlines::Edge& edge, const Parameter& p, const Parameter& q) {
-    const double difference = p.value - q.value;
-    if (std::abs(difference) > p.error + q.error) return difference > 0.0 ? 1 : -1;
+  [[nodiscard]] int compare(EdgeId edge, const Parameter& p, const Parameter& q) {
+    const double difference = p.value - q.value, error = p.error + q.error;
+    if (std::abs(difference) > error) return difference > 0.0 ? 1 : -1;
     return compare_exactly(edge, p, q);
   }
-  [[nodiscard]] int compare_exactly(const Outlines::Edge& edge, const Parameter& p, const Parameter& q);
-  [[nodiscard]] EdgeParameter exact(const Outlines::Edge& edge, const Parameter& p);
-  [[nodiscard]] bool covers(const Outlines::Edge& edge, const Interval& a, const Interval& b);
-  void sort(const Outlines::Edge& edge, std::vector<Interval>& intervals);
-  void merge(const Outlines::Edge& edge, std::vector<Interval>& intervals);
+  [[nodiscard]] int compare_exactly(EdgeId edge, const Parameter& p, const Parameter& q);
+  [[nodiscard]] EdgeParameter exact(EdgeId edge, const Parameter& p);
+  [[nodiscard]] std::uint32_t& stored_at(EdgeId edge, EdgeId line) { return stored_at_[4 * std::size_t{line} + edge % 4]; }
+  void sort(EdgeId edge, std::vector<Interval>& intervals);
+  void merge(EdgeId edge, std::vector<Interval>& intervals);
 
   Outlines outlines_;
   OutlineGrid grid_;
   std::vector<std::uint8_t> dropped_;  // by edge
-  std::vector<OutlineId> near_;        // occluders that the edge at hand may meet
+  std::vector<OutlineId> near_;        // occluders that the run at hand may meet
   std::vector<Part> parts_;
-  std::vector<EdgeParameter> stored_;
-  std::vector<Interval> allowed_, left_, right_, removed_;
+  std::vector<Stored> stored_;
+  std::vector<std::uint32_t> stored_at_;  // into stored_, for every line and four edges; what is there may be another's
+  std::array<std::vector<Interval>, kRunCorners> allowed_, removed_;  // by edge of the run
+  std::vector<Interval> left_, right_;
   std::vector<EdgeId> slots_;  // of drop_inner_edges: a hash table
 };
 

@@ -86,12 +86,12 @@ struct Tally {
 // Whatever an edge meets within the source is near it, or hidden there by another that is near it.
 void expect_nothing_lost(Outlines& outlines, Tally& tally) {
   OutlineGrid grid;
-  grid.build(outlines, 1);
+  grid.build(outlines, 1, {});
   std::vector<OutlineId> near;
   const auto count = static_cast<OutlineId>(outlines.outlines().size());
   for (EdgeId id = 0; id < outlines.edges().size(); ++id) {
     const Outlines::Edge edge = outlines.edge(id);
-    grid.find_near(outlines, id, near);
+    grid.find_near(outlines, id, 1, near);
     std::sort(near.begin(), near.end());
     EXPECT_EQ(std::adjacent_find(near.begin(), near.end()), near.end()) << "twice";
     tally.near += near.size();
@@ -179,12 +179,12 @@ TEST(OutlineGrid, KnowsWhatItCannotTellApart) {
     seen.add({{-kSize, low, 1}, {kSize, low, 1}, {kSize, high, 1}, {-kSize, high, 1}});
   }
   OutlineGrid grid;
-  grid.build(seen.outlines(), 1);
+  grid.build(seen.outlines(), 1, {});
   const std::uint64_t pairs = std::uint64_t{4} * kCount * kCount;
   EXPECT_GE(grid.unsorted_pairs(seen.outlines()), pairs);
   EXPECT_LE(grid.unsorted_pairs(seen.outlines()), 4 * pairs);  // few cells hold them all
   std::vector<OutlineId> near;
-  grid.find_near(seen.outlines(), 0, near);
+  grid.find_near(seen.outlines(), 0, 1, near);
   EXPECT_EQ(near.size(), std::size_t{kCount});
 }
 

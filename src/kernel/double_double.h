@@ -24,10 +24,17 @@
 #include <cmath>
 #include <limits>
 
-// Inlined into functions that are compiled more than once, with and without hardware FMA.
+// std::fma is a function of the library without hardware FMA and one instruction with it. Functions marked
+// EXACTFF_FMA_CLONES are compiled for both and chosen at load time; they give the same bits. What they call is inlined
+// into both.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
+#define EXACTFF_FMA_CLONES __attribute__((target_clones("fma", "default")))
+#else
+#define EXACTFF_FMA_CLONES
+#endif
 #define EXACTFF_INLINE [[gnu::always_inline]] inline
 
-namespace exactff::contour {
+namespace exactff::kernel::double_double {
 
 struct DoubleDouble {
   double hi = 0.0;
@@ -155,4 +162,4 @@ EXACTFF_INLINE Bounded square_root(const Bounded& x) {
   return bounded(fast_two_sum(s, remainder * half_inverse), x.error * half_inverse + 0x1p-103 * s);
 }
 
-}  // namespace exactff::contour
+}  // namespace exactff::kernel::double_double

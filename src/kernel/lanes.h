@@ -1,6 +1,6 @@
 // Four doubles at a time, in the vector extension that GCC and Clang share.
 //
-// Functions marked EXACTFF_SAMPLED_CLONES are compiled for AVX2 as well and chosen at load time. Products and sums are
+// Functions marked EXACTFF_CLONES are compiled for AVX2 as well and chosen at load time. Products and sums are
 // never contracted (-ffp-contract=off), so every version gives the same bits.
 #pragma once
 
@@ -8,13 +8,17 @@
 #include <cstdint>
 #include <cstring>
 
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
-#define EXACTFF_SAMPLED_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define EXACTFF_SAMPLED_CLONES
+#if defined(__SSE2__)
+#include <emmintrin.h>
 #endif
 
-namespace exactff::sampled {
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
+#define EXACTFF_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define EXACTFF_CLONES
+#endif
+
+namespace exactff::kernel::lanes {
 
 using Four = double __attribute__((vector_size(32)));
 using FourMask = std::int64_t __attribute__((vector_size(32)));  // 0 or -1 in each lane
@@ -29,16 +33,27 @@ inline void store(const Four& v, double* p) { std::memcpy(p, &v, sizeof v); }
 
 inline Four four(double a) { return Four{a, a, a, a}; }
 
+inline FourMask four_whole(std::int64_t a) { return FourMask{a, a, a, a}; }
+inline void store(const FourMask& v, std::int64_t* p) { std::memcpy(p, &v, sizeof v); }
+
 inline Four next_lane(const Four& v) { return Four{v[1], v[2], v[3], v[0]}; }
+inline FourMask next_lane(const FourMask& v) { return FourMask{v[1], v[2], v[3], v[0]}; }
 inline Four absolute(const Four& v) { return v < 0.0 ? -v : v; }
 inline Four larger(const Four& a, const Four& b) { return a < b ? b : a; }
 
 inline double lowest(const Four& v) { return std::min(std::min(v[0], v[1]), std::min(v[2], v[3])); }
 inline double highest(const Four& v) { return std::max(std::max(v[0], v[1]), std::max(v[2], v[3])); }
 inline double lane_sum(const Four& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
+#if defined(__SSE2__)
+inline unsigned lane_bits(const FourMask& m) {
+  const __m128i low{m[0], m[1]}, high{m[2], m[3]};
+  return static_cast<unsigned>(_mm_movemask_pd(_mm_castsi128_pd(low)) | _mm_movemask_pd(_mm_castsi128_pd(high)) << 2);
+}
+#else
 inline unsigned lane_bits(const FourMask& m) {
   return static_cast<unsigned>((m[0] & 1) | (m[1] & 2) | (m[2] & 4) | (m[3] & 8));
 }
-inline bool all_lanes(const FourMask& m) { return (m[0] & m[1] & m[2] & m[3]) != 0; }
+#endif
+inline bool all_lanes(const FourMask& m) { return lane_bits(m) == 15; }
 
-}  // namespace exactff::sampled
+}  // namespace exactff::kernel::lanes

@@ -1,0 +1,128 @@
+#include "visibility/plane_crossings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace exactff::visibility {
+
+using kernel::ExactVec3;
+using kernel::Integer;
+using kernel::ScaledVec3;
+using namespace kernel::double_double;
+
+namespace {
+
+using Vector = std::array<Bounded, 3>;
+
+std::array<double, 3> components(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+// (p - q) * scale, exactly but for underflow.
+EXACTFF_INLINE Vector difference(const Vec3& p, const Vec3& q, double scale) {
+  const std::array<double, 3> from = components(q), to = components(p);
+  Vector d;
+  for (int i = 0; i < 3; ++i) {
+    const DoubleDouble exact = two_sum(to[i], -from[i]);
+    d[i] = {exact.hi * scale, exact.lo * scale, kUnderflow};
+  }
+  return d;
+}
+
+EXACTFF_INLINE Bounded magnitude(const Bounded& x) { return x.hi < 0.0 ? -x : x; }
+
+EXACTFF_INLINE Bounded dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// Not certain of a height's sign: nothing is known of the crossing then.
+EXACTFF_FMA_CLONES
+bool cross(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& s, const Vector& normal, double scale,
+           Vector& result) {
+  const Bounded g_p = dot(normal, difference(p, s, scale)), g_q = dot(normal, difference(q, s, scale));
+  if (!sign_is_certain(g_p) || !sign_is_certain(g_q)) return false;
+  const Vector t_p = difference(p, x, scale), t_q = difference(q, x, scale);
+  const Bounded l = magnitude(g_q), m = magnitude(g_p);
+  const std::array<double, 3> pc = components(p), qc = components(q), xc = components(x);
+  for (int i = 0; i < 3; ++i) {
+    const bool zero = pc[i] == xc[i] && qc[i] == xc[i];
+    result[i] = zero ? Bounded{} : sum_of_products(t_p[i], l, t_q[i], m);
+  }
+  return true;
+}
+
+// |c - hi| <= |lo| + error <= u |hi| + error.
+bool is_fine(const Bounded& c) {
+  return (c.hi == 0.0 && c.lo == 0.0 && c.error == 0.0) || kInflation * c.error <= 0x1p-54 * std::abs(c.hi);
+}
+
+// The two leading doubles of a number over 2^bits.
+Bounded leading(const Integer& number, long bits) {
+  if (kernel::sign(number) == 0) return {};
+  long exponent = 0;
+  const double first = mpz_get_d_2exp(&exponent, number.get_mpz_t());
+  Integer rest = number;
+  Integer head = Integer(std::ldexp(first, 53));
+  if (exponent >= 53) {
+    head <<= static_cast<unsigned long>(exponent - 53);
+  } else {
+    head >>= static_cast<unsigned long>(53 - exponent);  // whole: the number has no more than `exponent` bits
+  }
+  rest -= head;
+  long rest_exponent = 0;
+  const double second = mpz_get_d_2exp(&rest_exponent, rest.get_mpz_t());  // truncated
+  const auto scaled = [&](double mantissa, long e) {
+    return std::ldexp(mantissa, static_cast<int>(std::max(e - bits, -4000L)));
+  };
+  const double hi = scaled(first, exponent), lo = second == 0.0 ? 0.0 : scaled(second, rest_exponent);
+  return bounded(fast_two_sum(hi, lo), 0x1p-104 * std::abs(hi) + kUnderflow);
+}
+
+}  // namespace
+
+void PlaneCrossings::start(const Vec3& x, const kernel::Direction& normal, const Vec3& point, int scale_exponent) {
+  x_ = x;
+  normal_ = &normal;
+  point_ = point;
+  scale_exponent_ = scale_exponent;
+  scale_ = std::ldexp(1.0, scale_exponent);
+  prepared_ = false;
+}
+
+void PlaneCrossings::prepare_normal() {
+  if (prepared_) return;
+  const long bits = bit_length(normal_->exact);
+  for (int i = 0; i < 3; ++i) fine_normal_[i] = leading(normal_->exact[i], bits);
+  prepared_ = true;
+}
+
+std::optional<PlaneCrossings::Fine> PlaneCrossings::fine(const Vec3& p, const Vec3& q) {
+  prepare_normal();
+  Vector c;
+  if (!cross(p, q, x_, point_, fine_normal_, scale_, c)) return std::nullopt;
+  const double largest = std::max({std::abs(c[0].hi), std::abs(c[1].hi), std::abs(c[2].hi)});
+  const bool usable = largest >= 0x1p-300 && largest <= 0x1p300;  // false for NaN
+  if (!usable || !is_fine(c[0]) || !is_fine(c[1]) || !is_fine(c[2])) return std::nullopt;
+  Fine result;
+  static_cast<void>(std::frexp(largest, &result.exponent));
+  result.exponent = -result.exponent;
+  const double normalisation = std::ldexp(1.0, result.exponent);
+  for (int i = 0; i < 3; ++i) {
+    result.direction.hi[i] = c[i].hi * normalisation;
+    result.direction.lo[i] = c[i].lo * normalisation;
+    result.direction.error = std::max(result.direction.error, kInflation * c[i].error * normalisation);
+  }
+  result.direction.error += kUnderflow;
+  return result;
+}
+
+PlaneCrossings::Exact PlaneCrossings::exact(const Vec3& p, const Vec3& q, int exponent) const {
+  ScaledVec3 t_p = kernel::exact_difference(p, x_), t_q = kernel::exact_difference(q, x_);
+  ScaledVec3 d_p = kernel::exact_difference(p, point_), d_q = kernel::exact_difference(q, point_);
+  const long t_exponent = std::min(t_p.exponent, t_q.exponent), d_exponent = std::min(d_p.exponent, d_q.exponent);
+  lower_exponent(t_p, t_exponent);
+  lower_exponent(t_q, t_exponent);
+  lower_exponent(d_p, d_exponent);
+  lower_exponent(d_q, d_exponent);
+  const Integer g_p = abs(kernel::dot(normal_->exact, d_p.v)), g_q = abs(kernel::dot(normal_->exact, d_q.v));
+  return {t_p.v * g_q + t_q.v * g_p,
+          t_exponent + d_exponent + 2L * scale_exponent_ - bit_length(normal_->exact) + exponent};
+}
+
+}  // namespace exactff::visibility

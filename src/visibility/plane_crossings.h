@@ -1,0 +1,55 @@
+// Where the segment between two vertices crosses the plane of the source, as a direction from x.
+//
+// With g(y) = N . (y - s), s a point of the plane, N its normal, and g(p), g(q) of different signs, it lies in direction
+//   (p - x) |g(q)| + (q - x) |g(p)|.
+// First in double-double arithmetic with a bound on its error; exactly where that declines, or where somebody asks.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "exactff/geometry.h"
+#include "kernel/direction.h"
+#include "kernel/double_double.h"
+
+namespace exactff::visibility {
+
+// A direction in double-double: every true component is within `error` of hi + lo.
+struct FineDirection {
+  std::array<double, 3> hi{};
+  std::array<double, 3> lo{};
+  double error = 0.0;
+};
+
+class PlaneCrossings {
+ public:
+  // Lengths are multiplied by 2^scale_exponent, which should bring them to the order of 1.
+  void start(const Vec3& x, const kernel::Direction& normal, const Vec3& point, int scale_exponent);
+
+  // Times 2^-bit_length(N) 2^exponent, so that the largest component is in [1/2, 1]. Each hi is within relative error 2u
+  // of the true component and zero only where that is.
+  struct Fine {
+    FineDirection direction;
+    int exponent = 0;
+  };
+  [[nodiscard]] std::optional<Fine> fine(const Vec3& p, const Vec3& q);
+
+  // exact * 2^fine_exponent is what a Fine with the given exponent approximates.
+  struct Exact {
+    kernel::ExactVec3 direction;
+    long fine_exponent = 0;
+  };
+  [[nodiscard]] Exact exact(const Vec3& p, const Vec3& q, int exponent) const;
+
+ private:
+  void prepare_normal();
+
+  Vec3 x_, point_;
+  const kernel::Direction* normal_ = nullptr;
+  int scale_exponent_ = 0;
+  double scale_ = 1.0;
+  bool prepared_ = false;
+  std::array<kernel::double_double::Bounded, 3> fine_normal_{};  // largest component in [1/2, 1)
+};
+
+}  // namespace exactff::visibility
