@@ -188,14 +188,16 @@ bool EdgeWalk::visit(std::uint32_t index, OutlineId source) {
   const auto vertices = view_.scene.corners(piece);
   ++result_.record.tree_candidates;
   // Something of it must lie on x's side of the source's plane, ahead of x, and inside every edge of the source.
-  std::uint64_t some = 0;
+  std::uint64_t some = 0, all = ~std::uint64_t{0};
   work_.corners.clear();
   for (const std::uint32_t vertex : vertices) {
     work_.corners.push_back(outlines_.corner_of_vertex(vertex));
-    some |= code_of(work_.corners.back(), source);
+    const std::uint64_t code = code_of(work_.corners.back(), source);
+    some |= code;
+    all &= code;
   }
-  const std::uint32_t coded = std::min(outlines_.outline(source).count, kMostCodedEdges);
-  const std::uint64_t needed = kKnown | kBefore | kAhead | ((std::uint64_t{1} << coded) - 1) * kInside;
+  const std::uint32_t edges = outlines_.outline(source).count, coded = std::min(edges, kMostCodedEdges);
+  const std::uint64_t inside = ((std::uint64_t{1} << coded) - 1) * kInside, needed = kKnown | kBefore | kAhead | inside;
   if ((some & needed) != needed || !may_meet_beyond_codes(source)) return false;
   work_.seen_in[index] = work_.run;
   const int facing = this->facing(piece);
@@ -205,6 +207,10 @@ bool EdgeWalk::visit(std::uint32_t index, OutlineId source) {
   const bool cut = (some & kBeyond) != 0;
   if (cut) ++result_.record.clipped;
   const OutlineId outline = cut ? add_near_part(vertices, mirrored) : outlines_.add(piece, mirrored);
+  if (!cut && coded == edges && (all & (inside | kAhead)) == (inside | kAhead)) {
+    outlines_.set_inside_source(outline);
+    return false;
+  }
   if (!work_.edges.hides_all(outline, source_count_)) return false;
   result_.cutters = {piece.face};
   return true;

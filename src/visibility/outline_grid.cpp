@@ -15,7 +15,7 @@ namespace {
 constexpr double kSlack = 0x1p-32;
 constexpr double kLeastAhead = 0x1p-8;
 constexpr std::size_t kFewestForAGrid = 8;
-constexpr double kCellsPerOutline = 2.0;
+constexpr double kCellsPerOutline = 1.0;
 constexpr std::uint64_t kEdgesPerOutline = 4;
 constexpr std::size_t kOutlinesToAlign = 256;
 constexpr std::size_t kFewShare = 4;  // fewer than one edge in so many are few

@@ -120,7 +120,7 @@ OutlineId Outlines::add(const Piece& piece, bool mirrored) {
 
 void Outlines::add_edges(std::span<const CornerId> corners, bool whole) {
   const auto outline = static_cast<OutlineId>(outlines_.size());
-  outlines_.push_back({static_cast<EdgeId>(edges_.size()), static_cast<std::uint32_t>(corners.size()), whole});
+  outlines_.push_back({static_cast<EdgeId>(edges_.size()), static_cast<std::uint32_t>(corners.size()), whole, false});
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const CornerId a = corners[i], b = corners[i + 1 == corners.size() ? 0 : i + 1];
     const Approx3 &p = corners_[a].t, &q = corners_[b].t;

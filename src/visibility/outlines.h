@@ -54,7 +54,8 @@ class Outlines {
   struct Outline {
     EdgeId first = 0;
     std::uint32_t count = 0;
-    bool whole = false;  // a piece of the scene, not clipped: its corners are vertices
+    bool whole = false;          // a piece of the scene, not clipped: its corners are vertices
+    bool inside_source = false;  // known to lie inside a piece of the source, off its edges
   };
 
   // Forgets everything; directions are relative to x, a point of `scene`'s space. Vertices at one position are one
@@ -73,6 +74,8 @@ class Outlines {
   OutlineId add(std::span<const CornerId> corners);
   // A piece of the scene. `mirrored`: its corners run clockwise as x sees them.
   OutlineId add(const Piece& piece, bool mirrored);
+
+  void set_inside_source(OutlineId id) { outlines_[id].inside_source = true; }
 
   [[nodiscard]] std::span<const Edge> edges() const { return edges_; }
   [[nodiscard]] std::span<const Outline> outlines() const { return outlines_; }

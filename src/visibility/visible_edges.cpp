@@ -120,15 +120,16 @@ void VisibleEdges::trace(Run& run, std::size_t source_count) {
   }
 }
 
-// The whole of a source's edge; of an occluder's, what has the source on both sides.
+// The whole of a source's edge, or of one inside it; else what has the source on both sides.
 void VisibleEdges::find_allowed(Run& run, std::size_t source_count) {
   for (unsigned k = 0; k < run.edges; ++k) allowed_[k].clear();
+  const bool all = run.of_source || outlines_.outline(run.outline).inside_source;
   Cuts cuts;
-  if (source_count == 1 && !run.of_source) cuts = cut(run, 0);
+  if (source_count == 1 && !all) cuts = cut(run, 0);
   for (unsigned k = 0; k < run.edges; ++k) {
     if ((run.wanted >> k & 1U) == 0) continue;
     Cover found;
-    if (run.of_source) {
+    if (all) {
       allowed_[k].push_back({kBegin, kEnd});
     } else if (source_count > 1) {
       find_allowed_in_union(run, k, source_count);
