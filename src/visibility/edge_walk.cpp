@@ -70,6 +70,7 @@ class EdgeWalk {
   [[nodiscard]] int depth_sign(std::uint32_t vertex) const;
   [[nodiscard]] int toward_sign(CornerId corner);
   [[nodiscard]] int facing(const Piece& piece) const;
+  OutlineId add_whole(bool mirrored);
   OutlineId add_near_part(std::span<const std::uint32_t> vertices, bool mirrored);
   [[nodiscard]] Rational fraction();
 
@@ -206,7 +207,7 @@ bool EdgeWalk::visit(std::uint32_t index, OutlineId source) {
   const bool mirrored = facing > 0;
   const bool cut = (some & kBeyond) != 0;
   if (cut) ++result_.record.clipped;
-  const OutlineId outline = cut ? add_near_part(vertices, mirrored) : outlines_.add(piece, mirrored);
+  const OutlineId outline = cut ? add_near_part(vertices, mirrored) : add_whole(mirrored);
   if (!cut && coded == edges && (all & (inside | kAhead)) == (inside | kAhead)) {
     outlines_.set_inside_source(outline);
     return false;
@@ -235,7 +236,10 @@ std::uint64_t EdgeWalk::code_of(CornerId corner, OutlineId source) {
   code = kKnown | (depth > 0 ? kBefore : depth < 0 ? kBeyond : 0) | (toward_sign(corner) > 0 ? kAhead : 0);
   const Outlines::Outline& outline = outlines_.outline(source);
   for (std::uint32_t k = 0; k < std::min(outline.count, kMostCodedEdges); ++k) {
-    if (outlines_.side(outlines_.edge(outline.first + k), corner) > 0) code |= kInside << k;
+    const Outlines::Edge& edge = outlines_.edge(outline.first + k);
+    const Height height = outlines_.height(edge, corner);
+    const bool certain = std::abs(height.value) > height.error;
+    if (certain ? height.value > 0.0 : outlines_.side(edge, corner) > 0) code |= kInside << k;
   }
   return work_.codes[corner] = code;
 }
@@ -262,6 +266,11 @@ int EdgeWalk::facing(const Piece& piece) const {
   return sign(dot(cross(exact(0), exact(1)), exact(2)));
 }
 
+OutlineId EdgeWalk::add_whole(bool mirrored) {
+  if (mirrored) std::reverse(work_.corners.begin(), work_.corners.end());
+  return outlines_.add(work_.corners, true);
+}
+
 // The part on x's side of the source's plane.
 OutlineId EdgeWalk::add_near_part(std::span<const std::uint32_t> vertices, bool mirrored) {
   const std::size_t n = vertices.size();
@@ -275,7 +284,7 @@ OutlineId EdgeWalk::add_near_part(std::span<const std::uint32_t> vertices, bool 
     }
   }
   if (mirrored) std::reverse(work_.ring.begin(), work_.ring.end());
-  return outlines_.add(work_.ring);
+  return outlines_.add(work_.ring, false);
 }
 
 Rational EdgeWalk::fraction() {

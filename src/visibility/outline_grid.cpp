@@ -1,6 +1,7 @@
 #include "visibility/outline_grid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -183,6 +184,31 @@ void OutlineGrid::choose_cells(std::size_t source_count) {
   set(v_, high * factor, whole_height);
 }
 
+// What meets inside the source does so at a point of the grid, so that bounds may be clamped to just beyond it. Floats
+// then err by less than 2^-22 of the sum of both counts.
+OutlineGrid::Octagon OutlineGrid::octagon(const Outlines& outlines, OutlineId id) const {
+  const double wide = u_.count, high = v_.count;
+  std::array<Range, 4> bounds;
+  bounds.fill(bounds_[id].u.empty() ? Range{-kInfinity, kInfinity} : Range{kInfinity, -kInfinity});
+  const Outline& outline = outlines.outline(id);
+  for (EdgeId edge = outline.first; edge < outline.first + outline.count && !bounds_[id].u.empty(); ++edge) {
+    const Image& image = images_[outlines.edge(edge).a];
+    const double u = (image.u - u_.range.low) * u_.per_unit, v = (image.v - v_.range.low) * v_.per_unit;
+    bounds[0].include(u);
+    bounds[1].include(v);
+    bounds[2].include(u + v);
+    bounds[3].include(u - v);
+  }
+  const std::array<Range, 4> whole{{{0.0, wide}, {0.0, high}, {0.0, wide + high}, {-high, wide}}};
+  const double slack = 4.0 * kSlack * (u_.per_unit + v_.per_unit) + 0x1p-18 * (wide + high);
+  Octagon result;
+  for (int i = 0; i < 4; ++i) {
+    result.low[i] = static_cast<float>(std::max(bounds[i].low - slack, whole[i].low - 1.0));
+    result.high[i] = static_cast<float>(std::min(bounds[i].high + slack, whole[i].high + 1.0));
+  }
+  return result;
+}
+
 // The range of u of the segment's points whose v lies in the given range, widened by the slack.
 OutlineGrid::Range OutlineGrid::part_within(const Image& a, const Image& b, const Range& v) {
   const double rise = b.v - a.v;
@@ -299,6 +325,7 @@ void OutlineGrid::find_cells(const Outlines& outlines) {
   cells_.clear();
   outline_begin_.assign(1, 0);
   cell_begin_.assign(coverer_.size() + 1, 0);
+  octagons_.resize(outlines.outlines().size());
   for (OutlineId o = 0; o < outlines.outlines().size(); ++o) {
     if (o >= first_ && !bounds_[o].u.empty()) {
       for_each_cell_of(outlines, o, [&](std::size_t cell) {
@@ -307,6 +334,8 @@ void OutlineGrid::find_cells(const Outlines& outlines) {
       });
     }
     outline_begin_.push_back(static_cast<std::uint32_t>(cells_.size()));
+    const bool counts = o < first_ || bounds_[o].u.empty() || outline_begin_[o] < outline_begin_[o + 1];
+    if (counts) octagons_[o] = octagon(outlines, o);
   }
 }
 
@@ -351,17 +380,20 @@ void OutlineGrid::find_near(const Outlines& outlines, EdgeId first, unsigned wan
   near = everywhere_;
   if (single_) return;
   const OutlineId own = outlines.edge(first).outline;
-  constexpr Range kAnywhere{-kInfinity, kInfinity};
-  const Bounds bounds = bounds_[own].u.empty() ? Bounds{kAnywhere, kAnywhere} : bounds_[own];
+  const Octagon octagon = octagons_[own];
   const auto visit = [&](std::size_t cell) {
     if (last_seen_[cell] == first) return;
     last_seen_[cell] = first;
-    for (std::uint32_t m = cell_begin_[cell]; m < cell_begin_[cell + 1]; ++m) {
+    const std::uint32_t end = cell_begin_[cell + 1];
+    std::size_t count = near.size();
+    near.resize(count + (end - cell_begin_[cell]));
+    for (std::uint32_t m = cell_begin_[cell]; m < end; ++m) {  // without branches, which nobody could predict
       const OutlineId o = members_[m];
-      if (last_found_[o] == first) continue;
+      near[count] = o;
+      count += static_cast<std::size_t>(last_found_[o] != first) & static_cast<std::size_t>(octagon.meets(octagons_[o]));
       last_found_[o] = first;
-      if (bounds.meets(bounds_[o])) near.push_back(o);
     }
+    near.resize(count);
   };
   const std::uint32_t begin = outline_begin_[own], end = outline_begin_[own + 1];
   if (all_needed_ && begin < end && end - begin <= kMostOwnCells) {

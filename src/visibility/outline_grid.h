@@ -17,6 +17,7 @@
 #include <span>
 #include <vector>
 
+#include "kernel/float_lanes.h"
 #include "visibility/outlines.h"
 
 namespace exactff::visibility {
@@ -83,8 +84,13 @@ class OutlineGrid {
   // The bounds of an outline's image, widened; empty if it is not ahead.
   struct Bounds {
     Range u{kInfinity, -kInfinity}, v{kInfinity, -kInfinity};
-    [[nodiscard]] bool meets(const Bounds& b) const {
-      return u.low <= b.u.high && b.u.low <= u.high && v.low <= b.v.high && b.v.low <= v.high;
+  };
+  // Bounds of an outline's image within the grid, in cells, along the axes and both diagonals: rounded outwards by much
+  // more than floats err.
+  struct Octagon {
+    kernel::lanes::FourFloats low, high;
+    [[nodiscard]] bool meets(const Octagon& o) const {
+      return kernel::lanes::all_lanes((low <= o.high) & (o.low <= high));
     }
   };
 
@@ -93,6 +99,7 @@ class OutlineGrid {
   void align(const Outlines& outlines, std::size_t source_count);
   void find_bounds(const Outlines& outlines);
   void choose_cells(std::size_t source_count);
+  [[nodiscard]] Octagon octagon(const Outlines& outlines, OutlineId id) const;
   void find_needed_cells(const Outlines& outlines, std::span<const std::uint8_t> dropped);
   [[nodiscard]] bool is_needed(const Cells& columns, const Cells& rows) const;
   void find_covered_cells(const Outlines& outlines);
@@ -120,6 +127,7 @@ class OutlineGrid {
   bool too_fine_ = false;      // smaller cells were wanted than the images are good for: many may crowd into one
   std::vector<Image> images_;   // by corner
   std::vector<Bounds> bounds_;  // by outline
+  std::vector<Octagon> octagons_;  // by outline; of those that nobody meets, whatever was there
   bool all_needed_ = true;
   std::vector<std::uint32_t> needed_;      // cells that edges run through, before this one: sums over both axes
   std::vector<std::uint32_t> outline_begin_;  // into cells_, by outline, one more at the end

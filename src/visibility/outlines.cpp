@@ -99,23 +99,22 @@ CornerId Outlines::add_crossing(std::uint32_t p, std::uint32_t q) {
                     {.p = p, .q = q, .fine = static_cast<std::uint32_t>(fine_.size() - 1), .exponent = fine->exponent});
 }
 
-OutlineId Outlines::add(std::span<const CornerId> corners) {
-  add_edges(corners, false);
+OutlineId Outlines::add(std::span<const CornerId> corners, bool whole) {
+  add_edges(corners, whole);
   return static_cast<OutlineId>(outlines_.size() - 1);
 }
 
 OutlineId Outlines::add(const kernel::Ring& ring) {
   ring_.clear();
   for (const Direction& direction : ring) ring_.push_back(add_exactly(direction));
-  return add(ring_);
+  return add(ring_, false);
 }
 
 OutlineId Outlines::add(const Piece& piece, bool mirrored) {
   ring_.clear();
   for (const std::uint32_t vertex : scene_->corners(piece)) ring_.push_back(corner_of_vertex(vertex));
   if (mirrored) std::reverse(ring_.begin(), ring_.end());
-  add_edges(ring_, true);
-  return static_cast<OutlineId>(outlines_.size() - 1);
+  return add(ring_, true);
 }
 
 void Outlines::add_edges(std::span<const CornerId> corners, bool whole) {

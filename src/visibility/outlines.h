@@ -71,7 +71,8 @@ class Outlines {
   [[nodiscard]] CornerId corner_of_vertex(std::uint32_t vertex);
   // Where the segment between two vertices on different sides of the plane crosses it.
   [[nodiscard]] CornerId add_crossing(std::uint32_t p, std::uint32_t q);
-  OutlineId add(std::span<const CornerId> corners);
+  // `whole`: all of a piece of the scene.
+  OutlineId add(std::span<const CornerId> corners, bool whole);
   // A piece of the scene. `mirrored`: its corners run clockwise as x sees them.
   OutlineId add(const Piece& piece, bool mirrored);
 
