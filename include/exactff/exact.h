@@ -58,6 +58,8 @@ struct PlaneRecord {
   std::uint64_t tree_candidates = 0;          // pieces the bounding-volume tree could not rule out
   std::uint64_t candidates = 0;               // pieces left by the exact predicates and the exact clip
   std::uint64_t clipped = 0;                  // candidates that an exact clip cut
+  std::uint64_t pairs = 0;                    // of an edge and an occluder, looked at by the edge engine
+  std::uint64_t undecided_pairs = 0;          // those that the floating-point filter left to exact predicates
   std::uint64_t loops = 0;                    // boundary loops integrated; the edge engine does not count them
   std::uint64_t edges = 0;                    // boundary pieces integrated, after merging collinear ones
   std::optional<double> visible_fraction;     // on request, correctly rounded

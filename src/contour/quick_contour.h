@@ -67,7 +67,7 @@ class QuickContour {
   [[nodiscard]] Value value() const;
 
  private:
-  std::array<double, 3> normal_{};  // largest component in [1/2, 1)
+  std::array<double, 3> normal_{};      // largest component in [1/2, 1)
   kernel::double_double::Bounded sum_;  // of the terms of the pieces, without the factor -1/(2 pi |n|)
 };
 

@@ -50,7 +50,8 @@ bool certainly_outside_one(const Box& box, const Vec3& apex, const HalfSpace& h)
   return x + y + z - h.offset < -0x1p-48 * m - slack && m >= 0x1p-900 && m <= 0x1p1000;
 }
 
-// The smallest normal . (y - apex) - offset over the box as computed, without proof: what is taken to be inside is kept.
+// The smallest normal . (y - apex) - offset over the box as computed, without proof: what is taken to be inside is
+// kept.
 bool is_inside(const Box& box, const Vec3& apex, const HalfSpace& h) {
   const double dx = (h.normal.x > 0.0 ? box.low.x : box.high.x) - apex.x;
   const double dy = (h.normal.y > 0.0 ? box.low.y : box.high.y) - apex.y;

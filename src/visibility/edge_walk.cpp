@@ -100,6 +100,8 @@ Outcome EdgeWalk::find_outcome() {
   // 4., 6. and 7. What is left of every edge.
   gave_up_ = !work_.edges.find(source_count_);
   work_parts_ = work_.edges.parts();
+  result_.record.pairs = work_.edges.pairs();
+  result_.record.undecided_pairs = work_.edges.undecided_pairs();
   result_.record.source_joined = source_count_ > 1;
   if (result_.record.candidates == 0) return Outcome::kUnoccluded;
   return work_parts_.empty() ? Outcome::kHiddenByUnion : Outcome::kPartlyHidden;

@@ -2,8 +2,9 @@
 //
 //   1. cull: x behind or in the plane, or nothing above the horizon;
 //   2. clip by the receiver's horizon: only what it cuts is constructed, exactly;
-//   3. shaft: candidates from the bounding-volume tree; then signs of heights above the source's edges. A face that the
-//      source's plane cuts is clipped, exactly; no face is clipped to the shaft;
+//   3. shaft: candidates from the bounding-volume tree; then signs of heights above the source's edges, once a vertex.
+//   A
+//      face that the source's plane cuts is clipped (plane_crossings.h); no face is clipped to the shaft;
 //   4. and 5. no candidates, or one that hides all;
 //   6. and 7. what is left of every edge (visible_edges.h).
 #pragma once

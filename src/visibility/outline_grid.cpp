@@ -37,6 +37,7 @@ OutlineGrid::Range OutlineGrid::Axis::extent(int cell) const {
 }
 
 OutlineGrid::Cells OutlineGrid::Axis::cells_inside(const Range& r) const {
+  if (!((r.high - r.low) * per_unit >= 1.0)) return {1, 0};
   const double first = std::ceil((r.low - range.low) * per_unit),
                last = std::floor((r.high - range.low) * per_unit) - 1;
   return {static_cast<int>(std::clamp(first, 0.0, static_cast<double>(count))),
@@ -298,9 +299,11 @@ void OutlineGrid::find_needed_cells(const Outlines& outlines, std::span<const st
 bool OutlineGrid::is_needed(const Cells& columns, const Cells& rows) const {
   if (columns.first > columns.last || rows.first > rows.last) return false;
   if (all_needed_) return true;
-  const auto sum = [&](int row, int column) { return needed_[static_cast<std::size_t>(row * (u_.count + 1) + column)]; };
-  return sum(rows.last + 1, columns.last + 1) - sum(rows.first, columns.last + 1) -
-             sum(rows.last + 1, columns.first) + sum(rows.first, columns.first) !=
+  const auto sum = [&](int row, int column) {
+    return needed_[static_cast<std::size_t>(row * (u_.count + 1) + column)];
+  };
+  return sum(rows.last + 1, columns.last + 1) - sum(rows.first, columns.last + 1) - sum(rows.last + 1, columns.first) +
+             sum(rows.first, columns.first) !=
          0;
 }
 
@@ -390,7 +393,8 @@ void OutlineGrid::find_near(const Outlines& outlines, EdgeId first, unsigned wan
     for (std::uint32_t m = cell_begin_[cell]; m < end; ++m) {  // without branches, which nobody could predict
       const OutlineId o = members_[m];
       near[count] = o;
-      count += static_cast<std::size_t>(last_found_[o] != first) & static_cast<std::size_t>(octagon.meets(octagons_[o]));
+      count +=
+          static_cast<std::size_t>(last_found_[o] != first) & static_cast<std::size_t>(octagon.meets(octagons_[o]));
       last_found_[o] = first;
     }
     near.resize(count);

@@ -123,13 +123,13 @@ class OutlineGrid {
   kernel::Approx3 e_, f_, w_;
   OutlineId first_ = 0;  // of the occluders
   Axis u_, v_;
-  bool single_ = true;         // too few outlines for a grid, or no projection: everything is near everything
-  bool too_fine_ = false;      // smaller cells were wanted than the images are good for: many may crowd into one
-  std::vector<Image> images_;   // by corner
-  std::vector<Bounds> bounds_;  // by outline
+  bool single_ = true;             // too few outlines for a grid, or no projection: everything is near everything
+  bool too_fine_ = false;          // smaller cells were wanted than the images are good for: many may crowd into one
+  std::vector<Image> images_;      // by corner
+  std::vector<Bounds> bounds_;     // by outline
   std::vector<Octagon> octagons_;  // by outline; of those that nobody meets, whatever was there
   bool all_needed_ = true;
-  std::vector<std::uint32_t> needed_;      // cells that edges run through, before this one: sums over both axes
+  std::vector<std::uint32_t> needed_;         // cells that edges run through, before this one: sums over both axes
   std::vector<std::uint32_t> outline_begin_;  // into cells_, by outline, one more at the end
   std::vector<std::uint32_t> cells_;          // where occluders are
   std::vector<std::uint32_t> cell_begin_;     // into members_, by cell, one more at the end

@@ -55,7 +55,6 @@ void Outlines::start(const Scene& scene, const Vec3& x, double unit) {
   fine_.clear();
   edges_.clear();
   outlines_.clear();
-  exact_decisions_ = 0;
 }
 
 CornerId Outlines::corner_of_vertex(std::uint32_t any_vertex) {
@@ -144,7 +143,6 @@ const ExactVec3& Outlines::exact(CornerId id) {
 }
 
 Integer Outlines::exact_height(const Edge& edge, CornerId t) {
-  ++exact_decisions_;
   return dot(cross(exact(edge.b), exact(edge.a)), exact(t));
 }
 

@@ -112,8 +112,6 @@ class Outlines {
   [[nodiscard]] long exponent(CornerId id) const { return origins_[id].exponent; }
   [[nodiscard]] kernel::Integer exact_height(const Edge& edge, CornerId t);
 
-  [[nodiscard]] std::uint64_t exact_decisions() const { return exact_decisions_; }
-
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
   // Where a corner comes from: the vertex p, the crossing of the segment from p to q, or an exact direction.
@@ -144,7 +142,6 @@ class Outlines {
   std::vector<CornerId> ring_;                                        // scratch
   std::vector<std::pair<std::uint32_t, CornerId>> corner_of_vertex_;  // (run, corner) for every vertex of the scene
   std::uint32_t run_ = 0;
-  std::uint64_t exact_decisions_ = 0;
 };
 
 }  // namespace exactff::visibility

@@ -1,6 +1,7 @@
 // Where the segment between two vertices crosses the plane of the source, as a direction from x.
 //
-// With g(y) = N . (y - s), s a point of the plane, N its normal, and g(p), g(q) of different signs, it lies in direction
+// With g(y) = N . (y - s), s a point of the plane, N its normal, and g(p), g(q) of different signs, it lies in
+// direction
 //   (p - x) |g(q)| + (q - x) |g(p)|.
 // First in double-double arithmetic with a bound on its error; exactly where that declines, or where somebody asks.
 #pragma once
@@ -26,8 +27,8 @@ class PlaneCrossings {
   // Lengths are multiplied by 2^scale_exponent, which should bring them to the order of 1.
   void start(const Vec3& x, const kernel::Direction& normal, const Vec3& point, int scale_exponent);
 
-  // Times 2^-bit_length(N) 2^exponent, so that the largest component is in [1/2, 1]. Each hi is within relative error 2u
-  // of the true component and zero only where that is.
+  // Times 2^-bit_length(N) 2^exponent, so that the largest component is in [1/2, 1]. Each hi is within relative error
+  // 2u of the true component and zero only where that is.
   struct Fine {
     FineDirection direction;
     int exponent = 0;

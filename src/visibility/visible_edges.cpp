@@ -31,6 +31,7 @@ float rounded_up(double error) { return static_cast<float>(error * (1.0 + 0x1p-2
 bool VisibleEdges::find(std::size_t source_count) {
   parts_.clear();
   stored_.clear();
+  pairs_ = undecided_pairs_ = 0;
   stored_at_.resize(4 * outlines_.edges().size());
   drop_inner_edges(source_count);
   grid_.build(outlines_, source_count, dropped_);
@@ -97,12 +98,13 @@ void VisibleEdges::trace_outline(OutlineId id, std::size_t source_count) {
     run.first = outline.first + at;
     run.edges = std::min(step, outline.count - at);
     run.wanted = 0;
-    for (unsigned k = 0; k < run.edges; ++k) {
-      add_corner(run, k, outlines_.edge(run.first + k).a);
-      if (dropped_[run.first + k] == 0) run.wanted |= 1U << k;
+    for (unsigned k = 0; k < run.edges; ++k) run.wanted |= (dropped_[run.first + k] == 0 ? 1U : 0U) << k;
+    if (run.wanted == 0) continue;
+    for (unsigned k = 0; k < kRunCorners; ++k) {
+      const Edge& edge = outlines_.edge(run.first + std::min(k, run.edges - 1));
+      add_corner(run, k, k < run.edges ? edge.a : edge.b);
     }
-    for (unsigned k = run.edges; k < kRunCorners; ++k) add_corner(run, k, outlines_.edge(run.first + run.edges - 1).b);
-    if (run.wanted != 0) trace(run, source_count);
+    trace(run, source_count);
   }
 }
 
@@ -209,10 +211,17 @@ bool VisibleEdges::take_off(EdgeId edge, const Interval& interval, std::vector<I
   return true;
 }
 
-// The crossing of a line with an edge whose ends have heights m and l above it, of different signs, lies at
-// |m| / (|l| + |m|). As computed, with D = |l| + |m| and e the larger error of the two heights, that errs by at most
-// e / (D - 2e) <= 2e / D where D >= 4e, and by roundings below 2^-50; the error is set to 2, which decides nothing,
-// where D is smaller. NaN decides nothing either.
+// By the filter alone, for all edges of the run at once. A line is entered or left at its crossing with the edge: where
+// the ends have heights m and l above it, of different signs, that is at the parameter |m| / (|l| + |m|).
+//
+// Its error. Let D be |l| + |m| and e the larger error of the two heights, all as computed, and u = 2^-53. The quotient
+// of the true heights differs by at most e / (D - 2e) <= 2e / D where D >= 4e. Sum, inverse and product err by u each,
+// relatively, so that the quotient, at most 1, is off by 4u more at most; 2e / D, at most 1/2 there, is computed to
+// within 4u of itself. 2e / D + 2^-50 covers it all. Where D < 4e the error is set to 2, which decides nothing; nor
+// does NaN.
+//
+// Every comparison that does not hold for all numbers within the errors makes the edge unsure, except that one line
+// with both ends below it is certainly enough for the outline to cover nothing.
 EXACTFF_CLONES VisibleEdges::Cuts VisibleEdges::cut(const Run& run, std::span<const Edge> lines, EdgeId first) {
   using namespace kernel::lanes;
   const Four x = load(run.x.data()), y = load(run.y.data()), z = load(run.z.data()), size = load(run.size.data());
@@ -230,7 +239,8 @@ EXACTFF_CLONES VisibleEdges::Cuts VisibleEdges::cut(const Run& run, std::span<co
     const FourMask entering = below_a & above_b, leaving = above_a & below_b;
     const Four m = absolute(h), sum = m + next_lane(m), inverse = 1.0 / sum, error = larger(e, next_lane(e));
     const Four at = m * inverse, at_error = sum > 4.0 * error ? 2.0 * error * inverse + 0x1p-50 : four(2.0);
-    const FourMask after_begin = at - begin > at_error + begin_error, before_begin = begin - at > at_error + begin_error;
+    const FourMask after_begin = at - begin > at_error + begin_error,
+                   before_begin = begin - at > at_error + begin_error;
     const FourMask before_end = end - at > at_error + end_error, after_end = at - end > at_error + end_error;
     unsure |= ~(inside | (entering & (after_begin | before_begin)) | (leaving & (before_end | after_end)));
     const FourMask later = entering & after_begin, earlier = leaving & before_end;
@@ -254,9 +264,12 @@ EXACTFF_CLONES VisibleEdges::Cuts VisibleEdges::cut(const Run& run, std::span<co
   return cuts;
 }
 
-VisibleEdges::Cuts VisibleEdges::cut(const Run& run, OutlineId outline) const {
+VisibleEdges::Cuts VisibleEdges::cut(const Run& run, OutlineId outline) {
   const Outline& o = outlines_.outline(outline);
-  return cut(run, outlines_.edges().subspan(o.first, o.count), o.first);
+  const Cuts cuts = cut(run, outlines_.edges().subspan(o.first, o.count), o.first);
+  pairs_ += static_cast<unsigned>(std::popcount(run.wanted));
+  undecided_pairs_ += static_cast<unsigned>(std::popcount(cuts.unsure & run.wanted));
+  return cuts;
 }
 
 bool VisibleEdges::cover(const Run& run, unsigned k, OutlineId outline, const Cuts& cuts, Cover& result) {

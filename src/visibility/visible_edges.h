@@ -59,6 +59,9 @@ class VisibleEdges {
   // the better way.
   [[nodiscard]] bool find(std::size_t source_count);
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
+  // Of an edge and an outline: those looked at, and those of which the filter was not certain.
+  [[nodiscard]] std::uint64_t pairs() const { return pairs_; }
+  [[nodiscard]] std::uint64_t undecided_pairs() const { return undecided_pairs_; }
   [[nodiscard]] BoundaryPiece exact(const Part& part);
 
  private:
@@ -110,7 +113,7 @@ class VisibleEdges {
                               std::vector<Interval>& removed);
 
   [[nodiscard]] static Cuts cut(const Run& run, std::span<const Outlines::Edge> lines, EdgeId first);
-  [[nodiscard]] Cuts cut(const Run& run, OutlineId outline) const;
+  [[nodiscard]] Cuts cut(const Run& run, OutlineId outline);
   // What the outline covers of the run's k-th edge; false if nothing.
   [[nodiscard]] bool cover(const Run& run, unsigned k, OutlineId outline, const Cuts& cuts, Cover& result);
   [[nodiscard]] bool cover_exactly(EdgeId edge, OutlineId outline, Cover& result);
@@ -126,7 +129,9 @@ class VisibleEdges {
   }
   [[nodiscard]] int compare_exactly(EdgeId edge, const Parameter& p, const Parameter& q);
   [[nodiscard]] EdgeParameter exact(EdgeId edge, const Parameter& p);
-  [[nodiscard]] std::uint32_t& stored_at(EdgeId edge, EdgeId line) { return stored_at_[4 * std::size_t{line} + edge % 4]; }
+  [[nodiscard]] std::uint32_t& stored_at(EdgeId edge, EdgeId line) {
+    return stored_at_[4 * std::size_t{line} + edge % 4];
+  }
   void sort(EdgeId edge, std::vector<Interval>& intervals);
   void merge(EdgeId edge, std::vector<Interval>& intervals);
 
@@ -135,6 +140,7 @@ class VisibleEdges {
   std::vector<std::uint8_t> dropped_;  // by edge
   std::vector<OutlineId> near_;        // occluders that the run at hand may meet
   std::vector<Part> parts_;
+  std::uint64_t pairs_ = 0, undecided_pairs_ = 0;
   std::vector<Stored> stored_;
   std::vector<std::uint32_t> stored_at_;  // into stored_, for every line and four edges; what is there may be another's
   std::array<std::vector<Interval>, kRunCorners> allowed_, removed_;  // by edge of the run

@@ -16,14 +16,6 @@ namespace exactff::bench {
 
 namespace {
 
-// Decisions that the filter left to exact arithmetic, where the engine's record tells.
-template <class Record>
-void count_exact_decisions(benchmark::State& state, const Record& record) {
-  if constexpr (requires { record.exact_decisions; }) {
-    state.counters["exact_decisions"] = static_cast<double>(record.exact_decisions);
-  }
-}
-
 void certified(benchmark::State& state, const BenchScene& s, Engine engine) {
   FormFactor result;
   for (auto _ : state) {
@@ -36,7 +28,8 @@ void certified(benchmark::State& state, const BenchScene& s, Engine engine) {
   state.counters["bits"] = result.precision_bits;
   state.counters["candidates"] = static_cast<double>(plane.candidates);
   state.counters["edges"] = static_cast<double>(plane.edges);
-  count_exact_decisions(state, plane);
+  state.counters["pairs"] = static_cast<double>(plane.pairs);
+  state.counters["undecided_pairs"] = static_cast<double>(plane.undecided_pairs);
 }
 
 void visible(benchmark::State& state, const BenchScene& s, Engine engine) {

@@ -147,31 +147,30 @@ std::string exponents_by_decade(const std::map<int, double>& time_of) {
 
 void print_growth_of(const Results& results, const std::string& engine, const std::string& scene) {
   std::map<int, double> time_of;
-  Maybe exact_decisions, peak;
+  Maybe undecided, peak;
   std::vector<std::string> cells{engine == "edges" ? scene : scene + ", Boolean"};
   for (const int n : kSizes) {
     const std::string name = at("certified/" + engine, scene, n);
     const Maybe time = results.microseconds(name);
     if (time) time_of[n] = *time;
     cells.push_back(text(in_ms(time)));
-    if (const Maybe share = results.figure(name, "exact_decisions") / results.figure(name, "candidates")) {
-      exact_decisions = share;
-    }
+    if (const Maybe share = results.figure(name, "undecided_pairs") / results.figure(name, "pairs")) undecided = share;
     if (engine == "edges") {
       if (const Maybe mib = results.figure(at("memory", scene, n), "peak_mib")) peak = mib;
     }
   }
   if (time_of.size() < 2) return;  // one size does not grow
   cells.insert(cells.end(), {exponents_by_decade(time_of), text(fitted_exponent(time_of, 1000, 100'000)),
-                             text(exact_decisions), text(peak)});
+                             text(undecided), text(peak)});
   print_row(cells);
 }
 
 void print_growth(const Results& results) {
   print_head(
-      "The certified value, ms. Exponents: per decade, and fitted over 10^3 to 10^5. Exact decisions (per "
-      "occluder in the shaft) and peak memory (of the whole process) at the largest n.",
-      {"scene", "10^2", "10^3", "10^4", "10^5", "10^6", "per decade", "fitted", "exact decisions", "peak MiB"});
+      "The certified value, ms. Exponents: per decade, and fitted over 10^3 to 10^5. Undecided: the share "
+      "of pairs of an edge and an occluder that the filter left to exact predicates. That and the peak memory (of the "
+      "whole process) at the largest n.",
+      {"scene", "10^2", "10^3", "10^4", "10^5", "10^6", "per decade", "fitted", "undecided", "peak MiB"});
   for (const char* engine : {"edges", "boolean"}) {
     for (const char* scene : kScenes) print_growth_of(results, engine, scene);
   }

@@ -104,11 +104,13 @@ TEST(Outlines, OwnCornersLieOnTheirEdgesWithoutArithmetic) {
   outlines.start(scene, {}, 1.0);
   static_cast<void>(outlines.add(scene.pieces()[0], false));
   for (const Outlines::Edge& edge : outlines.edges()) {
-    EXPECT_EQ(outlines.side(edge, edge.a), 0);
-    EXPECT_EQ(outlines.side(edge, edge.b), 0);
+    for (const CornerId end : {edge.a, edge.b}) {
+      EXPECT_EQ(outlines.side(edge, end), 0);
+      EXPECT_EQ(outlines.height(edge, end).value, 0.0);
+      EXPECT_EQ(outlines.height(edge, end).error, 0.0);
+    }
     for (const Outlines::Edge& other : outlines.edges()) EXPECT_GE(outlines.side(edge, other.a), 0);
   }
-  EXPECT_EQ(outlines.exact_decisions(), 0U);
 }
 
 TEST(Outlines, VerticesAtOnePositionAreOneCorner) {

@@ -1,0 +1,111 @@
+// Crossings with the source's plane: what double-double says of them holds, and it declines where it cannot know.
+// EXACTFF_TEST_SCALE multiplies the number of segments.
+#include "visibility/plane_crossings.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "generate/random.h"
+#include "support/random_scenes.h"
+
+namespace exactff::visibility {
+namespace {
+
+using generate::Random;
+using kernel::Rational;
+
+struct Segment {
+  Vec3 x, p, q;
+  Vec3 a, b, c;  // in the plane
+};
+
+Vec3 random_point(Random& random, double size) {
+  return {size * random.between(-1, 1), size * random.between(-1, 1), size * random.between(-1, 1)};
+}
+
+Vec3 between(const Vec3& a, const Vec3& b, double t) {
+  return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)};
+}
+
+// Among them segments whose ends are within roundings of the plane, and crossings straight ahead of x.
+Segment random_segment(Random& random) {
+  const double size = std::ldexp(1.0, random.integer(-40, 40));
+  Segment s{random_point(random, size), random_point(random, size), random_point(random, size),
+            random_point(random, size), random_point(random, size), random_point(random, size)};
+  if (random.below(3) == 0) s.p = between(between(s.a, s.b, random.between(0, 1)), s.c, random.between(0, 1));
+  if (random.below(3) == 0) s.x.x = s.p.x = s.q.x;
+  if (random.below(4) == 0) s.x = between(s.p, s.q, random.between(0, 1));
+  return s;
+}
+
+kernel::Direction normal_of(const Segment& s) {
+  const kernel::ScaledVec3 ab = kernel::exact_difference(s.b, s.a), ac = kernel::exact_difference(s.c, s.a);
+  kernel::ExactVec3 normal = kernel::cross(ab.v, ac.v);
+  kernel::make_primitive(normal);
+  return kernel::make_direction(normal);
+}
+
+int height_sign(const Segment& s, const Vec3& y) { return kernel::orientation(s.a, s.b, s.c, y); }
+
+// The true component, in the scale of the doubles.
+Rational truth(const PlaneCrossings::Exact& exact, int axis) {
+  return kernel::times_power_of_two(Rational(exact.direction[axis]), exact.fine_exponent);
+}
+
+void expect_holds(const PlaneCrossings::Fine& fine, const PlaneCrossings::Exact& exact) {
+  const Rational u = kernel::to_rational(0x1p-53);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Rational t = truth(exact, axis);
+    const Rational hi = kernel::to_rational(fine.direction.hi[axis]), lo = kernel::to_rational(fine.direction.lo[axis]);
+    EXPECT_LE(abs(t - hi - lo), kernel::to_rational(fine.direction.error));
+    EXPECT_LE(abs(t - hi), 2 * u * abs(t));
+    EXPECT_EQ(fine.direction.hi[axis] == 0.0, kernel::sign(t) == 0);
+  }
+}
+
+TEST(PlaneCrossings, HoldWhatTheyPromise) {
+  int fine_ones = 0, declined = 0;
+  for (std::uint64_t i = 0; i < validation::scaled_count(3000); ++i) {
+    Random random(validation::seed_of(i));
+    const Segment s = random_segment(random);
+    const kernel::Direction normal = normal_of(s);
+    if (kernel::is_zero(normal.exact) || height_sign(s, s.p) * height_sign(s, s.q) >= 0) continue;
+    int scale = 0;
+    std::frexp(std::abs(s.p.x - s.x.x) + std::abs(s.q.y - s.x.y) + std::abs(s.q.z - s.x.z), &scale);
+    PlaneCrossings crossings;
+    crossings.start(s.x, normal, s.a, -scale);
+    const auto fine = crossings.fine(s.p, s.q);
+    if (!fine) {
+      ++declined;
+      continue;
+    }
+    ++fine_ones;
+    expect_holds(*fine, crossings.exact(s.p, s.q, fine->exponent));
+  }
+  EXPECT_GT(fine_ones, 500);
+  EXPECT_GT(declined, 20);
+}
+
+TEST(PlaneCrossings, KnowAnExactZero) {
+  const kernel::Direction normal = kernel::make_direction({0, 0, 1});
+  PlaneCrossings crossings;
+  crossings.start({0.1, 0.3, 0}, normal, {5, 5, 1}, 0);
+  const auto fine = crossings.fine({0.1, 0.7, 0.5}, {0.1, 0.2, 1.5});
+  ASSERT_TRUE(fine);
+  EXPECT_EQ(fine->direction.hi[0], 0.0);
+  EXPECT_EQ(fine->direction.lo[0], 0.0);
+  expect_holds(*fine, crossings.exact({0.1, 0.7, 0.5}, {0.1, 0.2, 1.5}, fine->exponent));
+}
+
+// An x that lies on the segment's line sees the crossing within roundings of itself.
+TEST(PlaneCrossings, DeclineWhereComponentsCancel) {
+  const kernel::Direction normal = kernel::make_direction({0, 0, 1});
+  PlaneCrossings crossings;
+  const Vec3 p{0, 0, 0.5}, q{1, 1, 1.5};
+  crossings.start({0.5, 0.5, 0}, normal, {0, 0, 1}, 0);  // straight below the crossing
+  EXPECT_FALSE(crossings.fine(p, q));
+}
+
+}  // namespace
+}  // namespace exactff::visibility
