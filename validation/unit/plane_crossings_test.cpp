@@ -28,14 +28,14 @@ Vec3 between(const Vec3& a, const Vec3& b, double t) {
   return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)};
 }
 
-// Among them segments whose ends are within roundings of the plane, and crossings straight ahead of x.
+// Among them segments whose ends are within roundings of the plane, and some that cross it within roundings of x.
 Segment random_segment(Random& random) {
   const double size = std::ldexp(1.0, random.integer(-40, 40));
   Segment s{random_point(random, size), random_point(random, size), random_point(random, size),
             random_point(random, size), random_point(random, size), random_point(random, size)};
   if (random.below(3) == 0) s.p = between(between(s.a, s.b, random.between(0, 1)), s.c, random.between(0, 1));
   if (random.below(3) == 0) s.x.x = s.p.x = s.q.x;
-  if (random.below(4) == 0) s.x = between(s.p, s.q, random.between(0, 1));
+  if (random.below(6) == 0) s.x = s.a = between(s.p, s.q, random.between(0, 1));
   return s;
 }
 
