@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scene/scene_data.h"
 #include "visibility/convex_clip.h"
 #include "visibility/plane_frame.h"
+#include "visibility/side_planes.h"
 #include "visibility/visible_edges.h"
 
 namespace exactff::visibility {
@@ -24,6 +26,7 @@ namespace {
 struct Workspace {
   VisibleEdges edges;
   std::vector<HalfSpace> half_spaces;
+  std::vector<SidePlane> side_planes;
   std::vector<CornerId> corners, ring;
   std::vector<std::uint64_t> codes;    // by corner: what is known of it beside the source at hand
   std::vector<std::uint32_t> seen_in;  // by piece: the last run that looked at it
@@ -65,13 +68,16 @@ class EdgeWalk {
   bool gather_occluders();
   bool visit(std::uint32_t piece, OutlineId source);
   void make_shaft(OutlineId source);
+  void make_side_planes(OutlineId source);
+  [[nodiscard]] Sides sides_by_filter();
+  [[nodiscard]] Sides sides_exactly(OutlineId source);
   [[nodiscard]] std::uint64_t code_of(CornerId corner, OutlineId source);
   [[nodiscard]] bool may_meet_beyond_codes(OutlineId source);
   [[nodiscard]] int depth_sign(std::uint32_t vertex) const;
   [[nodiscard]] int toward_sign(CornerId corner);
   [[nodiscard]] int facing(const Piece& piece) const;
   OutlineId add_whole(bool mirrored);
-  OutlineId add_near_part(std::span<const std::uint32_t> vertices, bool mirrored);
+  OutlineId add_near_part(std::span<const std::uint32_t> vertices, bool mirrored, OutlineId source);
   [[nodiscard]] Rational fraction();
 
   const View& view_;
@@ -175,6 +181,7 @@ bool EdgeWalk::gather_occluders() {
   bool hidden = false;
   for (OutlineId source = 0; source < source_count_ && !hidden; ++source) {
     make_shaft(source);
+    make_side_planes(source);
     work_.codes.clear();
     shaft_tree(view_.scene).query(view_.x, work_.half_spaces, [&](std::uint32_t piece) {
       hidden = visit(piece, source);
@@ -190,33 +197,75 @@ bool EdgeWalk::visit(std::uint32_t index, OutlineId source) {
   const Piece& piece = view_.scene.pieces()[index];
   const auto vertices = view_.scene.corners(piece);
   ++result_.record.tree_candidates;
-  // Something of it must lie on x's side of the source's plane, ahead of x, and inside every edge of the source.
-  std::uint64_t some = 0, all = ~std::uint64_t{0};
   work_.corners.clear();
-  for (const std::uint32_t vertex : vertices) {
-    work_.corners.push_back(outlines_.corner_of_vertex(vertex));
-    const std::uint64_t code = code_of(work_.corners.back(), source);
-    some |= code;
-    all &= code;
-  }
-  const std::uint32_t edges = outlines_.outline(source).count, coded = std::min(edges, kMostCodedEdges);
-  const std::uint64_t inside = ((std::uint64_t{1} << coded) - 1) * kInside, needed = kKnown | kBefore | kAhead | inside;
-  if ((some & needed) != needed || !may_meet_beyond_codes(source)) return false;
+  for (const std::uint32_t vertex : vertices) work_.corners.push_back(outlines_.corner_of_vertex(vertex));
+  Sides sides = sides_by_filter();
+  if (!sides.certain) sides = sides_exactly(source);
+  if (!sides.some_above_each) return false;
   work_.seen_in[index] = work_.run;
   const int facing = this->facing(piece);
   if (facing == 0) return false;
   ++result_.record.candidates;
   const bool mirrored = facing > 0;
-  const bool cut = (some & kBeyond) != 0;
-  if (cut) ++result_.record.clipped;
-  const OutlineId outline = cut ? add_near_part(vertices, mirrored) : add_whole(mirrored);
-  if (!cut && coded == edges && (all & (inside | kAhead)) == (inside | kAhead)) {
+  if (sides.some_below_first) ++result_.record.clipped;
+  const OutlineId outline = sides.some_below_first ? add_near_part(vertices, mirrored, source) : add_whole(mirrored);
+  if (sides.all_above_each) {
     outlines_.set_inside_source(outline);
     return false;
   }
   if (!work_.edges.hides_all(outline, source_count_)) return false;
   result_.cutters = {piece.face};
   return true;
+}
+
+// What an occluder must have something above of: the source's plane, as its front sees it, the plane through x that is
+// parallel to it, as the source sees it, and every edge of the source.
+//
+// With N and s the normal and a point of the source's plane, as seen from x, the height N . t - N . s has components of
+// relative error 2u each, |N| <= 1; the two sums err by less than 6u of the magnitudes of their terms, at most 3 |t|
+// and 3 |s|, and their difference by u more: 2^-48 (|t| + |s|) bounds it all.
+void EdgeWalk::make_side_planes(OutlineId source) {
+  work_.side_planes.clear();
+  const Approx3& front = plane_.normal.approx;
+  const Approx3 s = kernel::approx_difference(plane_.point, view_.x);
+  const double scale = std::ldexp(1.0, outlines_.scale_exponent()), size = scale * largest(s);
+  const bool usable = size >= 0x1p-300 && size <= 0x1p300;
+  const double offset = scale * (front.x * s.x + front.y * s.y + front.z * s.z);
+  work_.side_planes.push_back(
+      {front, offset, 0x1p-48, usable ? 0x1p-48 * size : std::numeric_limits<double>::infinity()});
+  work_.side_planes.push_back({{-front.x, -front.y, -front.z}, 0.0, 0x1p-48, 0.0});
+  const Outlines::Outline& outline = outlines_.outline(source);
+  for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
+    const Outlines::Edge& edge = outlines_.edge(id);
+    work_.side_planes.push_back({edge.normal, 0.0, edge.error, 0.0});
+  }
+}
+
+Sides EdgeWalk::sides_by_filter() {
+  constexpr std::size_t kFour = 4;
+  if (work_.corners.size() > kFour) return {};
+  FourCorners four;
+  for (std::size_t c = 0; c < kFour; ++c) {
+    const Outlines::Corner& corner = outlines_.corner(work_.corners[std::min(c, work_.corners.size() - 1)]);
+    four.x[c] = corner.t.x;
+    four.y[c] = corner.t.y;
+    four.z[c] = corner.t.z;
+    four.size[c] = corner.size;
+  }
+  return sides_of(work_.side_planes, four);
+}
+
+Sides EdgeWalk::sides_exactly(OutlineId source) {
+  std::uint64_t some = 0, all = ~std::uint64_t{0};
+  for (const CornerId corner : work_.corners) {
+    const std::uint64_t code = code_of(corner, source);
+    some |= code;
+    all &= code;
+  }
+  const std::uint32_t edges = outlines_.outline(source).count, coded = std::min(edges, kMostCodedEdges);
+  const std::uint64_t above = kBefore | kAhead | ((std::uint64_t{1} << coded) - 1) * kInside;
+  return {true, (some & above) == above && may_meet_beyond_codes(source), (all & above) == above && coded == edges,
+          (some & kBeyond) != 0};
 }
 
 // +1: on x's side of the source's plane.
@@ -238,10 +287,7 @@ std::uint64_t EdgeWalk::code_of(CornerId corner, OutlineId source) {
   code = kKnown | (depth > 0 ? kBefore : depth < 0 ? kBeyond : 0) | (toward_sign(corner) > 0 ? kAhead : 0);
   const Outlines::Outline& outline = outlines_.outline(source);
   for (std::uint32_t k = 0; k < std::min(outline.count, kMostCodedEdges); ++k) {
-    const Outlines::Edge& edge = outlines_.edge(outline.first + k);
-    const Height height = outlines_.height(edge, corner);
-    const bool certain = std::abs(height.value) > height.error;
-    if (certain ? height.value > 0.0 : outlines_.side(edge, corner) > 0) code |= kInside << k;
+    if (outlines_.side(outlines_.edge(outline.first + k), corner) > 0) code |= kInside << k;
   }
   return work_.codes[corner] = code;
 }
@@ -274,9 +320,11 @@ OutlineId EdgeWalk::add_whole(bool mirrored) {
 }
 
 // The part on x's side of the source's plane.
-OutlineId EdgeWalk::add_near_part(std::span<const std::uint32_t> vertices, bool mirrored) {
+OutlineId EdgeWalk::add_near_part(std::span<const std::uint32_t> vertices, bool mirrored, OutlineId source) {
   const std::size_t n = vertices.size();
-  const auto lies = [&](std::size_t c, std::uint64_t where) { return (work_.codes[work_.corners[c]] & where) != 0; };
+  const auto lies = [&](std::size_t c, std::uint64_t where) {
+    return (code_of(work_.corners[c], source) & where) != 0;
+  };
   work_.ring.clear();
   for (std::size_t c = 0; c < n; ++c) {
     const std::size_t next = (c + 1) % n;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "kernel/lanes.h"
@@ -51,11 +52,14 @@ bool VisibleEdges::hides_all(OutlineId occluder, std::size_t source_count) {
   return true;
 }
 
-// Step 1. Of edges with the same two corners the first is kept, and only if none runs the other way.
+// Step 1. Of edges with the same two corners the first is kept, and only if none runs the other way. It stands for the
+// line of all, so that crossings with it need no arithmetic to be found equal.
 void VisibleEdges::drop_inner_edges(std::size_t source_count) {
   constexpr EdgeId kFree = 0xFFFFFFFFU;
   const auto edges = outlines_.edges();
   dropped_.assign(edges.size(), 0);
+  line_.resize(edges.size());
+  std::iota(line_.begin(), line_.end(), EdgeId{0});
   const std::size_t mask = std::bit_ceil(2 * edges.size()) - 1;
   slots_.assign(mask + 1, kFree);
   for (OutlineId o = static_cast<OutlineId>(source_count); o < outlines_.outlines().size(); ++o) {
@@ -75,6 +79,7 @@ void VisibleEdges::drop_inner_edges(std::size_t source_count) {
         if (!same && !opposite) continue;
         dropped_[id] = 1;
         if (opposite) dropped_[first] = 1;
+        line_[id] = first;
         break;
       }
     }
@@ -274,11 +279,16 @@ VisibleEdges::Cuts VisibleEdges::cut(const Run& run, OutlineId outline) {
 
 bool VisibleEdges::cover(const Run& run, unsigned k, OutlineId outline, const Cuts& cuts, Cover& result) {
   if ((cuts.unsure >> k & 1U) != 0) return cover_exactly(run.first + k, outline, result);
+  if ((cuts.covered >> k & 1U) == 0) return false;
   result.left = result.right = true;
   result.coincides = false;
-  result.interval = {{cuts.begin[k], rounded_up(cuts.begin_error[k]), static_cast<EdgeId>(cuts.begin_line[k])},
-                     {cuts.end[k], rounded_up(cuts.end_error[k]), static_cast<EdgeId>(cuts.end_line[k])}};
-  return (cuts.covered >> k & 1U) != 0;
+  const auto line = [&](std::int64_t id) {
+    const auto edge = static_cast<EdgeId>(id);
+    return edge < Parameter::kAtBegin ? line_[edge] : edge;
+  };
+  result.interval = {{cuts.begin[k], rounded_up(cuts.begin_error[k]), line(cuts.begin_line[k])},
+                     {cuts.end[k], rounded_up(cuts.end_error[k]), line(cuts.end_line[k])}};
+  return true;
 }
 
 // The signs of the line's heights at both ends of the edge, exactly, and where they differ the crossing.
@@ -321,6 +331,7 @@ bool VisibleEdges::cover_exactly(EdgeId edge, OutlineId outline, Cover& result) 
     int sign_a = 0, sign_b = 0;
     Parameter crossing;
     cut_exactly(edge, line, sign_a, sign_b, crossing);
+    crossing.line = line_[line];
     if (sign_a <= 0 && sign_b <= 0) {
       if (sign_a < 0 || sign_b < 0) return false;
       result.coincides = true;

@@ -138,6 +138,7 @@ class VisibleEdges {
   Outlines outlines_;
   OutlineGrid grid_;
   std::vector<std::uint8_t> dropped_;  // by edge
+  std::vector<EdgeId> line_;           // by edge: the first edge between the same two corners
   std::vector<OutlineId> near_;        // occluders that the run at hand may meet
   std::vector<Part> parts_;
   std::uint64_t pairs_ = 0, undecided_pairs_ = 0;

@@ -1,0 +1,33 @@
+// On which sides of a few planes a piece of up to four corners lies, by the filter alone and for all corners at once.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "kernel/filter.h"
+
+namespace exactff::visibility {
+
+// A corner t, a direction from x, lies above the plane where normal . t > offset, which is certain where the two differ
+// by more than error_per_size |t| + error, |t| being the largest component.
+struct SidePlane {
+  kernel::Approx3 normal;
+  double offset = 0.0;
+  double error_per_size = 0.0;
+  double error = 0.0;
+};
+
+struct FourCorners {
+  std::array<double, 4> x{}, y{}, z{}, size{};  // a triangle's last corner repeated
+};
+
+struct Sides {
+  bool certain = false;           // else nothing is known
+  bool some_above_each = false;   // every plane has a corner above it
+  bool all_above_each = false;    // every corner lies above every plane
+  bool some_below_first = false;  // a corner lies below the first plane
+};
+
+Sides sides_of(std::span<const SidePlane> planes, const FourCorners& corners);
+
+}  // namespace exactff::visibility
