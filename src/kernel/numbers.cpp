@@ -1,5 +1,6 @@
 #include "kernel/numbers.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -28,7 +29,25 @@ Integer scaled_quotient(const Rational& positive, long exponent, int& compare_re
   return quotient;
 }
 
+// |a| * 2^-shift, to nearest, ties to even.
+Integer rounded_shift(const Integer& a, long shift) {
+  const auto bits = static_cast<mp_bitcnt_t>(shift);
+  Integer quotient = abs(a);
+  const bool half = mpz_tstbit(quotient.get_mpz_t(), bits - 1) != 0;
+  const bool more = mpz_scan1(quotient.get_mpz_t(), 0) < bits - 1;
+  quotient >>= bits;
+  if (half && (more || mpz_odd_p(quotient.get_mpz_t()))) ++quotient;
+  return quotient;
+}
+
 }  // namespace
+
+double nearest_double(const Integer& a, long exponent) {
+  const long excess = std::max(bit_length(a) - kMantissaBits, kLowestExponent - exponent);
+  if (excess <= 0) return std::ldexp(a.get_d(), static_cast<int>(exponent));  // exact
+  const double magnitude = std::ldexp(rounded_shift(a, excess).get_d(), static_cast<int>(exponent + excess));
+  return sign(a) < 0 ? -magnitude : magnitude;
+}
 
 double nearest_double(const Rational& value) {
   if (sign(value) == 0) return 0.0;

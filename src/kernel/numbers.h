@@ -31,6 +31,8 @@ inline Rational to_rational(double value) { return Rational(value); }
 
 // Correctly rounded, ties to even, gradual underflow; overflow gives an infinity.
 double nearest_double(const Rational& value);
+// The same of a * 2^exponent; it must not overflow.
+double nearest_double(const Integer& a, long exponent);
 
 // "p/q" in lowest terms, or "p".
 std::string to_string(const Rational& value);

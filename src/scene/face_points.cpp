@@ -27,28 +27,6 @@ double scaled(const Integer& a, long shift) {
   return std::ldexp(mantissa, static_cast<int>(std::max<long>(exponent - shift, -2000)));
 }
 
-constexpr long kMantissaBits = std::numeric_limits<double>::digits;
-constexpr long kLastBit = std::numeric_limits<double>::min_exponent - kMantissaBits;  // of a denormal: 2^-1074
-
-// |a| * 2^-shift, to nearest, ties to even.
-Integer rounded_shift(const Integer& a, long shift) {
-  const auto bits = static_cast<mp_bitcnt_t>(shift);
-  Integer quotient = abs(a);
-  const bool half = mpz_tstbit(quotient.get_mpz_t(), bits - 1) != 0;
-  const bool more = mpz_scan1(quotient.get_mpz_t(), 0) < bits - 1;
-  quotient >>= bits;
-  if (half && (more || mpz_odd_p(quotient.get_mpz_t()))) ++quotient;
-  return quotient;
-}
-
-// a * 2^exponent, correctly rounded; it must not overflow.
-double nearest(const Integer& a, long exponent) {
-  const long excess = std::max(bit_length(a) - kMantissaBits, kLastBit - exponent);
-  if (excess <= 0) return std::ldexp(a.get_d(), static_cast<int>(exponent));  // exact
-  const double magnitude = std::ldexp(rounded_shift(a, excess).get_d(), static_cast<int>(exponent + excess));
-  return kernel::sign(a) < 0 ? -magnitude : magnitude;
-}
-
 long lowest_exponent(const std::vector<ScaledVec3>& vectors) {
   long exponent = std::numeric_limits<long>::max();
   for (const ScaledVec3& v : vectors) {
@@ -122,7 +100,8 @@ Vec3 nearest_vector(const ExactVec3& v, long exponent) {
   if (is_zero(v)) return {};
   const long top = bit_length(v) + exponent;
   if (top > kLargestExponent || top <= kSmallestExponent) exponent -= top;
-  return {nearest(v.x, exponent), nearest(v.y, exponent), nearest(v.z, exponent)};
+  return {kernel::nearest_double(v.x, exponent), kernel::nearest_double(v.y, exponent),
+          kernel::nearest_double(v.z, exponent)};
 }
 
 Length length(const ExactVec3& v) {

@@ -1,8 +1,11 @@
 // Input files as text: read whole, or refused with a message that says why.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <istream>
+#include <span>
 #include <string>
 
 namespace exactff {
@@ -13,5 +16,10 @@ namespace exactff {
 
 // The same from an open stream, called `file` in messages.
 [[nodiscard]] std::string read_text(std::istream& in, const std::string& file, const std::string& purpose);
+
+// The same in two steps, for what need not be held whole. A block is full unless the file ends in it; 0 at its end.
+[[nodiscard]] std::ifstream open_text_file(const std::filesystem::path& path, const std::string& purpose);
+[[nodiscard]] std::size_t read_text_block(std::istream& in, std::span<char> block, const std::string& file,
+                                          const std::string& purpose);
 
 }  // namespace exactff
