@@ -136,6 +136,36 @@ TEST(GridReceivers, TheCellIsReadBackFromTheId) {
   EXPECT_FALSE(grid_cell(Receiver{{}, {0, 0, 1}, std::nullopt, "3,2"}).has_value());
 }
 
+TEST(GridReceivers, OnSeveralFacesIdsMayBeMadeUnique) {
+  SceneBuilder builder("test");
+  for (const Vec3& v : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{1, 1, 0}, Vec3{0, 1, 0}}) builder.add_vertex(v);
+  const MaterialId material = builder.add_material({});
+  builder.add_face(builder.patch("slab"), material, {{0, 1, 2, 3}});
+  builder.add_face(builder.patch("slab"), material, {{0, 1, 0}});  // no area: it does not count
+  builder.add_face(builder.patch("slab"), material, {{3, 2, 1, 0}});
+  const Scene scene = builder.build();
+  const std::vector<FaceId> both = {FaceId{0}, FaceId{1}, FaceId{2}}, one = {FaceId{0}, FaceId{1}};
+  const auto receivers = grid_receivers(scene, both, {2, 1}, GridIds::kUnique);
+  ASSERT_EQ(receivers.size(), 4U);
+  EXPECT_EQ(receivers[1].id, "slab:1/2,1");
+  EXPECT_EQ(receivers[2].id, "slab:3/1,1");
+  EXPECT_EQ(grid_receivers(scene, both, {2, 1})[2].id, "1,1");
+  EXPECT_EQ(grid_receivers(scene, one, {2, 1}, GridIds::kUnique)[1].id, "2,1");
+  const auto cell = grid_cell(receivers[1]);
+  ASSERT_TRUE(cell.has_value());
+  EXPECT_EQ(cell->column, 2);
+  EXPECT_EQ(cell->row, 1);
+}
+
+TEST(GridReceivers, OtherReceiversHaveNoCell) {
+  const Scene scene = one_face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2, 3}});
+  const std::vector<FaceId> faces = {FaceId{0}};
+  EXPECT_FALSE(grid_cell(vertex_receivers(scene, faces)[0]).has_value());
+  EXPECT_FALSE(grid_cell(centre_receivers(scene, faces)[0]).has_value());
+  EXPECT_FALSE(grid_cell(sample_receivers(scene, faces, 1, 1)[0]).has_value());
+  EXPECT_FALSE(grid_cell(Receiver{{}, {0, 0, 1}, FaceId{0}, "here/3,2"}).has_value());
+}
+
 class ReceiverFile : public ::testing::Test {
  protected:
   ReceiverFile()

@@ -1,0 +1,40 @@
+// Where values are asked for, as every command over many receivers has it: --receivers FILE, or --on NAME with one of
+// --grid, --vertices, --centres, --samples.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "exactff/receiver.h"
+
+namespace exactff::cli {
+
+// As given; empty where a flag was not.
+struct ReceiverArguments {
+  std::vector<std::string> on;
+  std::string grid;
+  bool vertices = false;
+  bool centres = false;
+  std::string samples;
+  std::string sample_seed;
+  std::string file;
+};
+
+struct ChosenReceivers {
+  std::vector<Receiver> receivers;
+  std::string description;  // "floor, grid 32x32", "floor, 1000 samples, seed 1", "points.csv"
+};
+
+void add_receiver_options(CLI::App& app, ReceiverArguments& args);
+
+// Throws InputError where flags are missing or contradict one another, which can be told before a scene is read.
+void check_receiver_options(const ReceiverArguments& args);
+
+// Checks the flags, too. Throws InputError, also where there is no receiver in what was named.
+ChosenReceivers receivers_of(const ReceiverArguments& args, const Scene& scene, GridIds grid_ids = GridIds::kUnique);
+
+// The flags again, each preceded by a blank, in words that a shell takes.
+std::string command_words(const ReceiverArguments& args);
+
+}  // namespace exactff::cli

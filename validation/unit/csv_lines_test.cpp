@@ -1,0 +1,109 @@
+#include "scene/csv_lines.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "exactff/error.h"
+#include "support/program.h"
+
+namespace exactff {
+namespace {
+
+using validation::TemporaryDirectory;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  const TemporaryDirectory directory;
+  CsvLines lines(directory.write("a.csv", text), "a CSV file");
+  std::vector<std::string> result;
+  for (std::string_view line; lines.next(line);) {
+    result.emplace_back(line);
+    EXPECT_EQ(lines.number(), result.size());
+  }
+  return result;
+}
+
+using List = std::vector<std::string>;
+
+TEST(CsvLines, EndInAnyWay) {
+  EXPECT_EQ(lines_of("a\nb\r\nc\rd"), (List{"a", "b", "c", "d"}));
+  EXPECT_EQ(lines_of("a\n\n\r\n\rb\n"), (List{"a", "", "", "", "b"}));
+  EXPECT_EQ(lines_of(""), List{});
+  EXPECT_EQ(lines_of("\n"), List{""});
+}
+
+TEST(CsvLines, PassByteOrderMarkAtTheStartOnly) {
+  EXPECT_EQ(lines_of("\xEF\xBB\xBF"
+                     "a\n\xEF\xBB\xBF"
+                     "b"),
+            (List{"a",
+                  "\xEF\xBB\xBF"
+                  "b"}));
+  EXPECT_EQ(lines_of("\xEF\xBB\xBF"), List{});
+}
+
+// The file is read in blocks of 65536 bytes: let CR LF, and a long line, lie across their borders.
+TEST(CsvLines, LieAcrossBlocks) {
+  for (const std::size_t length : {65533U, 65534U, 65535U, 65536U, 65537U, 200000U}) {
+    const std::string line(length, 'x');
+    EXPECT_EQ(lines_of(line + "\r\nb\r\n"), (List{line, "b"})) << length;
+  }
+}
+
+TEST(CsvLines, RefuseWhatIsNoText) {
+  const TemporaryDirectory directory;
+  const auto refusal = [&](const std::filesystem::path& path) -> std::string {
+    try {
+      CsvLines lines(path, "a CSV file");
+      for (std::string_view line; lines.next(line);) {
+      }
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  using namespace std::string_literals;
+  EXPECT_NE(refusal(directory.path()).find("is a directory"), std::string::npos);
+  EXPECT_NE(refusal(directory.path() / "none.csv").find("cannot be opened"), std::string::npos);
+  EXPECT_NE(refusal(directory.write("u.csv",
+                                    "\xFF\xFE"
+                                    "a\0"s))
+                .find("UTF-16"),
+            std::string::npos);
+  EXPECT_NE(refusal(directory.write("z.csv", std::string(70000, 'a') + "\0"s)).find("zero bytes"), std::string::npos);
+}
+
+List fields_of(std::string_view line) {
+  List fields{"left", "over", "from", "before"};
+  return split_csv_line(line, fields) ? fields : List{"refused"};
+}
+
+TEST(CsvFields, AreTrimmedUnlessQuoted) {
+  EXPECT_EQ(fields_of("a, b ,\tc"), (List{"a", "b", "c"}));
+  EXPECT_EQ(fields_of("\" a \",b"), (List{" a ", "b"}));
+  EXPECT_EQ(fields_of(""), List{""});
+  EXPECT_EQ(fields_of(",,"), (List{"", "", ""}));
+}
+
+TEST(CsvFields, MayHoldCommasAndQuotes) {
+  EXPECT_EQ(fields_of(R"("a,b","c ""d""", "" )"), (List{"a,b", "c \"d\"", ""}));
+  EXPECT_EQ(fields_of(R"(a"b,c)"), (List{"a\"b", "c"}));
+}
+
+TEST(CsvFields, AreRefusedWhereQuotesDoNotMatch) {
+  EXPECT_EQ(fields_of("\"a"), List{"refused"});
+  EXPECT_EQ(fields_of("\"a\"b,c"), List{"refused"});
+  EXPECT_EQ(fields_of("a,\""), List{"refused"});
+}
+
+TEST(CsvComments, AreBlankOrBeginWithANumberSign) {
+  EXPECT_TRUE(is_csv_comment(""));
+  EXPECT_TRUE(is_csv_comment(" \t"));
+  EXPECT_TRUE(is_csv_comment("  # x"));
+  EXPECT_FALSE(is_csv_comment("a # x"));
+  EXPECT_FALSE(is_csv_comment("\"#\""));
+}
+
+}  // namespace
+}  // namespace exactff
