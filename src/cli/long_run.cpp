@@ -21,6 +21,7 @@ void ProgressBar::show(const study::Progress& progress) {
   if (progress.stage != stage_) {
     stage_ = progress.stage;
     started_ = now;
+    done_before_ = progress.done;
   }
   if (now - drawn_ < std::chrono::milliseconds(100) && progress.done < progress.total) return;
   drawn_ = now;
@@ -31,13 +32,17 @@ void ProgressBar::clear() const {
   if (on_terminal_ && drawn_ != Clock::time_point{}) std::cerr << "\r\033[K" << std::flush;
 }
 
-void ProgressBar::draw(const study::Progress& progress, double elapsed) {
+void ProgressBar::draw(const study::Progress& progress, double elapsed) const {
   constexpr std::size_t kWidth = 30;
   const std::size_t filled = kWidth * progress.done / std::max<std::size_t>(progress.total, 1);
-  const double left = elapsed / static_cast<double>(std::max<std::size_t>(progress.done, 1)) *
-                      static_cast<double>(progress.total - progress.done);
   std::cerr << "\r\033[K" << progress.stage << " [" << std::string(filled, '#') << std::string(kWidth - filled, '.')
-            << "] " << progress.done << '/' << progress.total << ", " << study::duration(left) << " left" << std::flush;
+            << "] " << progress.done << '/' << progress.total;
+  if (progress.done > done_before_ && elapsed > 0.0) {
+    const double pace = static_cast<double>(progress.done - done_before_) / elapsed;
+    std::cerr << ", " << study::duration(static_cast<double>(progress.total - progress.done) / pace) << " left, "
+              << study::rounded(pace) << "/s";
+  }
+  std::cerr << std::flush;
 }
 
 namespace {

@@ -10,7 +10,8 @@
 
 namespace exactff::cli {
 
-// A bar with the time left, on a terminal only; at most ten times a second.
+// A bar with the time left and the pace, on a terminal only; at most ten times a second. What was done when a stage
+// was first shown, such as the resumed part of a run, counts for neither.
 class ProgressBar {
  public:
   ProgressBar();
@@ -23,10 +24,11 @@ class ProgressBar {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static void draw(const study::Progress& progress, double elapsed);
+  void draw(const study::Progress& progress, double elapsed) const;
 
   const bool on_terminal_;
   std::string stage_;
+  std::size_t done_before_ = 0;
   Clock::time_point started_;
   Clock::time_point drawn_;
 };

@@ -2,10 +2,13 @@
 
 #include <stdlib.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
+#include <csignal>
 #include <cstdio>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 
@@ -35,8 +38,44 @@ ProgramRun run_program(const std::string& program, const std::vector<std::string
   return run;
 }
 
-TemporaryDirectory::TemporaryDirectory() {
-  std::string name = (std::filesystem::temp_directory_path() / "exactff_XXXXXX").string();
+RunningProgram::RunningProgram(const std::string& program, const std::vector<std::string>& arguments,
+                               std::filesystem::path error_file, const std::function<void()>& prepare)
+    : error_file_(std::move(error_file)) {
+  std::vector<std::string> words = arguments;
+  words.insert(words.begin(), program);
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  child_ = ::fork();
+  if (child_ != 0) return;
+  if (std::freopen(error_file_.c_str(), "w", stderr) == nullptr) ::_exit(125);
+  if (std::freopen("/dev/null", "w", stdout) == nullptr) ::_exit(125);
+  prepare();
+  ::execv(pointers[0], pointers.data());
+  ::_exit(126);
+}
+
+void RunningProgram::send(int signal) const { ::kill(child_, signal); }
+
+int RunningProgram::wait() const {
+  int status = 0;
+  ::waitpid(child_, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+bool RunningProgram::has_ended() const {
+  siginfo_t info{};
+  return ::waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != 0;
+}
+
+std::string RunningProgram::error() const {
+  std::ostringstream text;
+  text << std::ifstream(error_file_).rdbuf();
+  return text.str();
+}
+
+TemporaryDirectory::TemporaryDirectory(const std::filesystem::path& parent) {
+  std::string name = (parent / "exactff_XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a temporary directory");
   path_ = name;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,30 @@ struct ProgramRun {
 // Standard error goes to the test's own.
 [[nodiscard]] ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments);
 
+// The program with its standard error in a file, its standard output nowhere, and whatever `prepare` does to the new
+// process first. Whoever starts it waits for it.
+class RunningProgram {
+ public:
+  RunningProgram(
+      const std::string& program, const std::vector<std::string>& arguments, std::filesystem::path error_file,
+      const std::function<void()>& prepare = [] {});
+
+  void send(int signal) const;
+  // As a shell tells it: 128 + the signal where one ended the program.
+  int wait() const;
+  [[nodiscard]] bool has_ended() const;  // does not wait; wait() tells how
+  [[nodiscard]] int process() const { return child_; }
+  [[nodiscard]] std::string error() const;
+
+ private:
+  std::filesystem::path error_file_;
+  int child_ = 0;
+};
+
 // A directory of its own that disappears with the object.
 class TemporaryDirectory {
  public:
-  TemporaryDirectory();
+  explicit TemporaryDirectory(const std::filesystem::path& parent = std::filesystem::temp_directory_path());
   ~TemporaryDirectory();
   TemporaryDirectory(const TemporaryDirectory&) = delete;
   TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;

@@ -2,7 +2,6 @@
 // Whatever happens, the exit code is right and nothing half-written stays behind.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -21,49 +20,12 @@ namespace exactff {
 namespace {
 
 namespace fs = std::filesystem;
+using Running = validation::RunningProgram;
 using validation::TemporaryDirectory;
 
 const std::string kRoom =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 2\nv 1 0 2\nv 1 1 2\nv 0 1 2\n"
     "g floor\nf 1 2 3 4\ng light\nf 8 7 6 5\n";
-
-// The program with its standard error in a file and whatever `prepare` does to the new process first.
-class Running {
- public:
-  Running(std::vector<std::string> arguments, fs::path error_file, const std::function<void()>& prepare)
-      : error_file_(std::move(error_file)) {
-    arguments.insert(arguments.begin(), EXACTFF_PROGRAM);
-    std::vector<char*> words;
-    for (std::string& argument : arguments) words.push_back(argument.data());
-    words.push_back(nullptr);
-    child_ = ::fork();
-    if (child_ != 0) return;
-    if (std::freopen(error_file_.c_str(), "w", stderr) == nullptr) ::_exit(125);
-    if (std::freopen("/dev/null", "w", stdout) == nullptr) ::_exit(125);
-    prepare();
-    ::execv(words[0], words.data());
-    ::_exit(126);
-  }
-
-  void send(int signal) const { ::kill(child_, signal); }
-
-  // As a shell tells it: 128 + the signal where one ended the program.
-  int wait() const {
-    int status = 0;
-    ::waitpid(child_, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  }
-
-  [[nodiscard]] std::string error() const {
-    std::ostringstream text;
-    text << std::ifstream(error_file_).rdbuf();
-    return text.str();
-  }
-
- private:
-  fs::path error_file_;
-  pid_t child_ = 0;
-};
 
 void limit(int resource, rlim_t value) {
   const rlimit both{value, value};
@@ -75,8 +37,8 @@ class HostileProgram : public testing::Test {
   HostileProgram() { fs::create_directory(place_); }
 
   Running start(
-      std::vector<std::string> arguments, const std::function<void()>& prepare = [] {}) const {
-    return {std::move(arguments), directory_.path() / "stderr", prepare};
+      const std::vector<std::string>& arguments, const std::function<void()>& prepare = [] {}) const {
+    return {EXACTFF_PROGRAM, arguments, directory_.path() / "stderr", prepare};
   }
 
   std::vector<std::string> comparison(const fs::path& folder) const {

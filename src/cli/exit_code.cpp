@@ -1,0 +1,41 @@
+#include "cli/exit_code.h"
+
+#include <exception>
+#include <iostream>
+#include <new>
+#include <stdexcept>
+#include <system_error>
+
+#include "exactff/error.h"
+
+namespace exactff::cli {
+namespace {
+
+constexpr const char* kOutOfMemory =
+    "exactff: out of memory (the scene and what is asked of it need more than there is); nothing was written; use a "
+    "smaller scene or grid or fewer --threads, or raise the limit\n";
+
+}  // namespace
+
+int exit_code_of(const std::function<int()>& command) {
+  try {
+    return command();
+  } catch (const InputError& error) {
+    std::cerr << "exactff: " << error.what() << '\n';
+    return kBadInput;
+  } catch (const std::bad_alloc&) {
+    std::cerr << kOutOfMemory;
+  } catch (const std::length_error&) {  // more than any memory could hold
+    std::cerr << kOutOfMemory;
+  } catch (const std::system_error& error) {
+    std::cerr << "exactff: the system refused: " << error.what()
+              << " (a thread could not be started or a file not be reached); nothing was written; try --threads 1, or "
+                 "raise the limits\n";
+  } catch (const std::exception& error) {
+    std::cerr << "exactff: internal failure: " << error.what()
+              << " (this is a fault of the program); please report it with the scene and the command line\n";
+  }
+  return kInternalFailure;
+}
+
+}  // namespace exactff::cli

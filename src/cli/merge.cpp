@@ -1,0 +1,62 @@
+// exactff merge: the shards of a truth file put together.
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/long_run.h"
+#include "cli/truth_summary.h"
+#include "exactff/truth.h"
+
+namespace exactff::cli {
+namespace {
+
+constexpr const char* kFooter =
+    "The shards are those that `exactff truth --shard 1/N` to `--shard N/N` wrote with the same flags, in any order. "
+    "None\n"
+    "may be missing, doubled, damaged, unfinished or of another request. FILE gets the bytes of one run without "
+    "shards;\n"
+    "it appears whole or not at all.\n"
+    "\n"
+    "Example:\n"
+    "  exactff merge truth.*.csv -o truth.csv";
+
+struct MergeArguments {
+  std::vector<std::string> shards;
+  bool force = false;
+  std::string file;
+};
+
+int run(const MergeArguments& args) {
+  const InterruptWatch watch;
+  ProgressBar bar;
+  const truth::Hooks hooks{.progress = [&](const study::Progress& progress) { bar.show(progress); },
+                           .cancelled = is_interrupted};
+  truth::Summary summary;
+  try {
+    summary = truth::merge({args.shards.begin(), args.shards.end()}, args.file,
+                           args.force ? truth::Existing::kReplace : truth::Existing::kRefuse, hooks);
+  } catch (const study::Cancelled&) {
+    bar.clear();
+    std::cerr << "exactff: interrupted; nothing was written\n";
+    return 128 + interrupting_signal();
+  }
+  bar.clear();
+  return print_summary(summary, args.file);
+}
+
+}  // namespace
+
+Command add_merge(CLI::App& app) {
+  auto args = std::make_shared<MergeArguments>();
+  CLI::App* command = app.add_subcommand("merge", "Put the shards of a truth file together");
+  command->add_option("SHARD", args->shards, "Files that exactff truth --shard wrote")->required()->type_name("FILE");
+  command->add_flag("--force", args->force, "Replace what is there");
+  command->add_option("-o,--output", args->file, "CSV file to write")->required()->type_name("FILE");
+  command->footer(kFooter);
+  return {command, [args] { return run(*args); }};
+}
+
+}  // namespace exactff::cli

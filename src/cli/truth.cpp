@@ -1,0 +1,228 @@
+// exactff truth: a file of certified values that other programs are held against.
+#include "exactff/truth.h"
+
+#include <charconv>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cli/command.h"
+#include "cli/engine_option.h"
+#include "cli/exit_code.h"
+#include "cli/launch.h"
+#include "cli/long_run.h"
+#include "cli/output.h"
+#include "cli/receiver_options.h"
+#include "cli/scene_options.h"
+#include "cli/source_options.h"
+#include "cli/truth_summary.h"
+#include "scene/printable.h"
+#include "scene/text_lines.h"
+#include "study/text.h"
+#include "truth/journal.h"
+
+namespace exactff::cli {
+namespace {
+
+constexpr const char* kFooter =
+    "One row per receiver and source: point, normal, the face that it lies on, the certified value between its "
+    "bounds,\n"
+    "the radiosity that it brings in each channel, and the status. The bytes of FILE depend on the scene and on what "
+    "is\n"
+    "asked, not on threads, machines, shards or interruptions.\n"
+    "While it works, finished rows are in FILE.part, whatever happens: the same command with --resume goes on from\n"
+    "there. Scripts may give --resume always; a complete FILE is left as it is.\n"
+    "More than one machine: `mpirun -n 4 exactff truth ...` with the same flags (rank 0 writes, all compute; every "
+    "rank\n"
+    "reads the scene), or --shard 1/4, 2/4, ... in jobs of their own and `exactff merge` at the end.\n"
+    "Exit codes: 0 done, 2 bad input, 3 done but some row is not certified, 128 + signal when interrupted.\n"
+    "\n"
+    "Example:\n"
+    "  exactff truth data/scenes/cornell_box.obj --on floor --grid 200x200 -o truth.csv";
+
+struct TruthArguments {
+  SceneArguments scene;
+  ReceiverArguments receivers;
+  SourceArguments sources;
+  bool unoccluded = false;
+  bool fraction = false;
+  std::string shard;
+  bool resume = false;
+  bool force = false;
+  double slow_seconds = 1.0;
+  EngineArgument engine;
+  int threads = 0;
+  std::string file;
+
+  [[nodiscard]] truth::Existing existing() const {
+    return resume ? truth::Existing::kResume : force ? truth::Existing::kReplace : truth::Existing::kRefuse;
+  }
+};
+
+truth::Shard shard_of(const std::string& text) {
+  truth::Shard shard;
+  if (text.empty()) return shard;
+  const char* const end = text.data() + text.size();
+  const auto number = std::from_chars(text.data(), end, shard.number);
+  if (number.ec == std::errc{} && number.ptr != end && *number.ptr == '/') {
+    const auto count = std::from_chars(number.ptr + 1, end, shard.count);
+    if (count.ec == std::errc{} && count.ptr == end && shard.number >= 1 && shard.number <= shard.count) return shard;
+  }
+  throw InputError({.what = "--shard: " + in_quotes(text) + " is no shard",
+                    .why = "it is one of several, counted from 1",
+                    .suggestion = "write number/count: --shard 1/4 to --shard 4/4"});
+}
+
+// What is asked for, and the scene that it refers to.
+struct Job {
+  Scene scene;
+  truth::Request request;
+};
+
+std::unique_ptr<Job> job_of(const TruthArguments& args, const truth::Team* team) {
+  const truth::Shard shard = shard_of(args.shard);
+  check_receiver_options(args.receivers);
+  auto job = std::make_unique<Job>(Job{args.scene.load(), {}});
+  truth::Request& request = job->request;
+  ChosenReceivers receivers = receivers_of(args.receivers, job->scene);
+  request.scene = &job->scene;
+  request.scene_name = std::filesystem::path(args.scene.path).filename().string();
+  request.receivers = std::move(receivers.receivers);
+  request.receivers_name = std::move(receivers.description);
+  request.sources = sources_of(args.sources, job->scene);
+  request.unoccluded = args.unoccluded;
+  request.visible_fraction = args.fraction;
+  request.engine = args.engine.engine();
+  request.shard = shard;
+  request.threads = args.threads > 0 || team == nullptr ? args.threads : truth::fair_threads(*team);
+  return job;
+}
+
+// What is told while rows are computed.
+class Narrator {
+ public:
+  [[nodiscard]] truth::Hooks hooks(double slow_seconds) {
+    return {.progress = [this](const study::Progress& progress) { show(progress); },
+            .cancelled = is_interrupted,
+            .note = [this](const std::string& text) { tell("warning: " + printable(text)); },
+            .slow_row = [this](const std::string& row, double seconds) { tell_slow(row, seconds); },
+            .slow_seconds = slow_seconds};
+  }
+  void clear() const { bar_.clear(); }
+
+  // Where the work was given up.
+  void tell_what_is_kept(const std::string& reason, const std::string& file) const {
+    bar_.clear();
+    if (rows_.total == 0) return;  // it had not begun
+    std::cerr << "exactff: " << reason << "; ";
+    if (rows_.done == 0) {
+      std::cerr << "no row was finished, nothing is left behind\n";
+    } else {
+      std::cerr << rows_.done << " of " << study::counted(rows_.total, "row") << " are kept in "
+                << truth::journal_of(file).string() << "; the same command with --resume goes on\n";
+    }
+  }
+
+ private:
+  void show(const study::Progress& progress) {
+    if (progress.stage == "rows") rows_ = progress;
+    bar_.show(progress);
+  }
+  void tell(const std::string& text) {
+    bar_.clear();
+    std::cerr << text << '\n';
+  }
+  void tell_slow(const std::string& row, double seconds) {
+    constexpr int kMostTold = 50;
+    if (++slow_ > kMostTold) return;
+    tell("slow: " + printable(row) + " took " + study::duration(seconds));
+    if (slow_ == kMostTold) tell("slow: further rows are only counted");
+  }
+
+  ProgressBar bar_;
+  study::Progress rows_;
+  int slow_ = 0;
+};
+
+int write(const TruthArguments& args, truth::Team* team) {
+  truth::require_free(args.file, args.existing());  // before anything that takes time
+  const std::unique_ptr<Job> job = job_of(args, team);
+  Narrator narrator;
+  truth::Summary summary;
+  try {
+    summary =
+        truth::write(std::move(job->request), args.file, args.existing(), narrator.hooks(args.slow_seconds), team);
+  } catch (const study::Cancelled&) {
+    narrator.tell_what_is_kept("interrupted", args.file);
+    return 128 + (interrupting_signal() != 0 ? interrupting_signal() : SIGTERM);  // another rank was interrupted
+  } catch (...) {
+    narrator.tell_what_is_kept("ended by an error, told below", args.file);
+    throw;
+  }
+  narrator.clear();
+  return print_summary(summary, args.file);
+}
+
+// What is wrong is told before the others end: mpirun may then end this process, too.
+int lead(const TruthArguments& args, truth::Team& team) {
+  const int exit_code = exit_code_of([&] { return write(args, &team); });
+  truth::dismiss(team, exit_code);
+  return exit_code;
+}
+
+// What is wrong is told by the leader.
+int follow(const TruthArguments& args, truth::Team& team) {
+  std::cerr.rdbuf(nullptr);
+  std::unique_ptr<Job> job;
+  const auto request = [&] {
+    job = job_of(args, &team);
+    return std::move(job->request);
+  };
+  return truth::follow(team, request, {.cancelled = is_interrupted, .slow_seconds = args.slow_seconds});
+}
+
+int run(const TruthArguments& args) {
+  std::unique_ptr<truth::Team> team;
+  try {
+    team = join_team();
+  } catch (const InputError&) {
+    if (launched_rank() > 0) return 0;  // told by the first
+    throw;
+  }
+  const InterruptWatch watch;
+  if (team == nullptr) return write(args, nullptr);
+  return team->rank() == 0 ? lead(args, *team) : follow(args, *team);
+}
+
+}  // namespace
+
+Command add_truth(CLI::App& app) {
+  auto args = std::make_shared<TruthArguments>();
+  CLI::App* command = app.add_subcommand("truth", "A file of certified values to hold other programs against");
+  args->scene.add_to(*command);
+  add_receiver_options(*command, args->receivers);
+  add_source_options(*command, args->sources);
+  command->add_flag("--unoccluded", args->unoccluded, "A column more: the value without any occluder");
+  command->add_flag("--fraction", args->fraction, "A column more: the visible fraction of the source");
+  command
+      ->add_option("--shard", args->shard, "Compute one of several parts, for exactff merge: 1/4 is the first of four")
+      ->type_name("I/N");
+  CLI::Option* resume = command->add_flag("--resume", args->resume, "Go on with an interrupted run, if there is one");
+  command->add_flag("--force", args->force, "Begin anew and replace what is there")->excludes(resume);
+  command->add_option("--slow", args->slow_seconds, "Tell of every row that takes so many seconds")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("SECONDS");
+  args->engine.add_to(*command);
+  command
+      ->add_option("--threads", args->threads, "Threads (default: all; under mpirun this rank's share of the machine)")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+  command->add_option("-o,--output", args->file, "CSV file to write")->required()->type_name("FILE");
+  command->footer(kFooter);
+  return {command, [args] { return run(*args); }};
+}
+
+}  // namespace exactff::cli

@@ -1,0 +1,43 @@
+// What truth and merge tell at their end.
+#pragma once
+
+#include <iostream>
+#include <string>
+
+#include "cli/output.h"
+#include "exactff/truth.h"
+#include "study/text.h"
+
+namespace exactff::cli {
+
+// Prints the summary; returns the exit code: 3 where a row is not certified.
+inline int print_summary(const truth::Summary& summary, const std::string& file) {
+  const std::uint64_t uncertified = summary.with(Status::kNotCertified);
+  std::cout << study::counted(summary.rows, "row") << ':';
+  const char* separator = " ";
+  for (const Status status : {Status::kCertified, Status::kZero, Status::kUnderflow, Status::kNotCertified}) {
+    if (summary.with(status) == 0) continue;
+    std::cout << separator << summary.with(status) << ' ' << to_string(status);
+    separator = ", ";
+  }
+  std::cout << '\n';
+  const std::uint64_t computed = summary.rows - summary.resumed;
+  if (summary.seconds > 0.0 && computed > 0) {
+    std::cout << "computed " << (summary.resumed > 0 ? study::counted(computed, "row") + " of them" : "them") << " in "
+              << study::duration(summary.seconds) << ", "
+              << study::rounded(static_cast<double>(computed) / summary.seconds) << " per second";
+    if (summary.slow > 0) std::cout << "; " << study::counted(summary.slow, "slow row");
+    std::cout << '\n';
+  } else if (summary.resumed > 0) {
+    std::cout << "all were there already\n";
+  }
+  std::cout << "Truth file: " << file << '\n';
+  check_output(std::cout);
+  if (uncertified == 0) return 0;
+  std::cerr << "exactff: " << study::counted(uncertified, "row")
+            << " met the cap on precision and could not be certified (their bounds are valid, their values estimates); "
+               "look for the status 'not certified'\n";
+  return 3;
+}
+
+}  // namespace exactff::cli

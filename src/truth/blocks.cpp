@@ -1,0 +1,131 @@
+#include "truth/blocks.h"
+
+#include <array>
+#include <boost/crc.hpp>
+#include <charconv>
+
+namespace exactff::truth {
+namespace {
+
+constexpr std::string_view kOpening = "# rows ";
+constexpr std::size_t kLongestLine = 96;
+constexpr std::size_t kReadBytes = 1 << 20;
+
+std::uint32_t crc_of(std::string_view a, std::string_view b) {
+  boost::crc_32_type crc;
+  crc.process_bytes(a.data(), a.size());
+  crc.process_bytes(b.data(), b.size());
+  return crc.checksum();
+}
+
+std::string hexadecimal(std::uint32_t crc) {
+  std::string digits(8, '0');
+  for (std::size_t i = 8; i-- > 0; crc >>= 4) digits[i] = "0123456789abcdef"[crc & 15];
+  return digits;
+}
+
+std::string opening_of(Range range, std::uint64_t bytes) {
+  return std::string(kOpening) + std::to_string(range.first) + '+' + std::to_string(range.rows) + ", " +
+         std::to_string(bytes) + " bytes, crc ";
+}
+
+// Reads what block_text wrote, from left to right.
+class Scanner {
+ public:
+  explicit Scanner(std::string_view text) : text_(text) {}
+
+  bool skip(std::string_view word) {
+    if (!text_.substr(at_).starts_with(word)) return false;
+    at_ += word.size();
+    return true;
+  }
+  template <class Whole>
+  bool number(Whole& value) {
+    const auto end = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+    at_ = static_cast<std::size_t>(end.ptr - text_.data());
+    return end.ec == std::errc{};
+  }
+  std::string_view take(std::size_t count) {
+    const std::string_view word = text_.substr(at_, count);
+    at_ += word.size();
+    return word;
+  }
+  [[nodiscard]] std::size_t at() const { return at_; }
+
+ private:
+  std::string_view text_;
+  std::size_t at_ = 0;
+};
+
+// The block whose comment line is at `offset`, if it is sound.
+std::optional<Block> block_at(const File& file, std::uint64_t offset) {
+  const std::string line = file.read(offset, kLongestLine);
+  Scanner scan(line);
+  Block block;
+  if (!(scan.skip(kOpening) && scan.number(block.range.first) && scan.skip("+") && scan.number(block.range.rows) &&
+        scan.skip(", ") && scan.number(block.bytes) && scan.skip(" bytes, crc "))) {
+    return std::nullopt;
+  }
+  const std::string opening = line.substr(0, scan.at());
+  const std::string_view crc = scan.take(8);
+  if (!scan.skip("\n")) return std::nullopt;
+  block.offset = offset + scan.at();
+  if (block.bytes > file.size() - block.offset) return std::nullopt;
+  if (crc != hexadecimal(crc_of(opening, read_lines(file, block)))) return std::nullopt;
+  return block;
+}
+
+// Where the next comment line of a block may begin, after `offset`: the line break before it may be damaged, too.
+std::optional<std::uint64_t> next_opening(const File& file, std::uint64_t offset) {
+  for (++offset;;) {
+    const std::string bytes = file.read(offset, kReadBytes);
+    if (const std::size_t found = bytes.find(kOpening); found != std::string::npos) return offset + found;
+    if (bytes.size() < kReadBytes) return std::nullopt;
+    offset += bytes.size() - kOpening.size();  // it may lie across two reads
+  }
+}
+
+}  // namespace
+
+std::optional<std::string> read_head(const File& file) {
+  std::string text;
+  for (std::size_t line = 0;;) {
+    const std::string more = file.read(text.size(), kReadBytes);
+    text += more;
+    for (std::size_t end = text.find('\n', line); end != std::string::npos; end = text.find('\n', line)) {
+      if (text[line] != '#') return text.substr(0, end + 1);
+      line = end + 1;
+    }
+    if (more.empty()) return std::nullopt;
+  }
+}
+
+std::string block_text(Range range, std::string_view lines) {
+  std::string text = opening_of(range, lines.size());
+  text += hexadecimal(crc_of(text, lines)) + '\n';
+  text += lines;
+  return text;
+}
+
+Blocks find_blocks(const File& file, std::uint64_t head_bytes) {
+  Blocks blocks;
+  blocks.end = head_bytes;
+  std::optional<std::uint64_t> offset = head_bytes;
+  while (offset && *offset < file.size()) {
+    if (const std::optional<Block> block = block_at(file, *offset)) {
+      blocks.damaged += *offset - blocks.end;
+      blocks.list.push_back(*block);
+      blocks.end = block->offset + block->bytes;
+      offset = blocks.end;
+    } else {
+      offset = next_opening(file, *offset);
+    }
+  }
+  return blocks;
+}
+
+std::string read_lines(const File& file, const Block& block) {
+  return file.read(block.offset, static_cast<std::size_t>(block.bytes));
+}
+
+}  // namespace exactff::truth

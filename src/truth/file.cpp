@@ -1,0 +1,165 @@
+#include "truth/file.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+#include "exactff/error.h"
+
+namespace exactff::truth {
+
+namespace fs = std::filesystem;
+
+File::File(fs::path path, Mode mode, Consolation consolation)
+    : path_(std::move(path)), consolation_(std::move(consolation)) {
+  const int flags = mode == Mode::kRead ? O_RDONLY : O_RDWR | O_CREAT;
+  descriptor_ = ::open(path_.c_str(), flags | O_CLOEXEC, 0666);
+  if (descriptor_ >= 0) return;
+  if (mode == Mode::kReadWrite) fail(errno);
+  throw InputError({.file = path_.string(),
+                    .what = std::string("cannot be read: ") + std::strerror(errno),
+                    .suggestion = "check the name and the file's permissions"});
+}
+
+File::File(File&& other) noexcept
+    : path_(std::move(other.path_)),
+      consolation_(std::move(other.consolation_)),
+      descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+File::~File() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void File::fail(int error) const {
+  throw InputError({.file = path_.string(),
+                    .what = std::string("cannot be written: ") + std::strerror(error),
+                    .why = consolation_.why,
+                    .suggestion = consolation_.suggestion});
+}
+
+std::uint64_t File::size() const {
+  struct stat status {};
+  return ::fstat(descriptor_, &status) == 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
+}
+
+std::string File::read(std::uint64_t offset, std::size_t count) const {
+  std::string bytes(count, '\0');
+  std::size_t have = 0;
+  while (have < count) {
+    const ssize_t got = ::pread(descriptor_, bytes.data() + have, count - have, static_cast<off_t>(offset + have));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) {
+      throw InputError({.file = path_.string(),
+                        .what = std::string("cannot be read: ") + std::strerror(errno),
+                        .why = "the disk or the network may be failing",
+                        .suggestion = "check them, then try again"});
+    }
+    if (got == 0) break;
+    have += static_cast<std::size_t>(got);
+  }
+  bytes.resize(have);
+  return bytes;
+}
+
+void File::write(std::uint64_t offset, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t put = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) fail(errno);
+    bytes.remove_prefix(static_cast<std::size_t>(put));
+    offset += static_cast<std::uint64_t>(put);
+  }
+}
+
+void File::truncate(std::uint64_t size) {
+  if (::ftruncate(descriptor_, static_cast<off_t>(size)) != 0) fail(errno);
+}
+
+void File::sync() {
+  // EINVAL: what cannot be synced at all, such as a special file.
+  if (::fdatasync(descriptor_) != 0 && errno != EINVAL) fail(errno);
+}
+
+File::Lock File::lock() {
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return Lock::kTaken;
+  return errno == EWOULDBLOCK ? Lock::kInUse : Lock::kUnsupported;
+}
+
+bool File::is_in_place() const {
+  struct stat here {
+  }, there{};
+  return ::fstat(descriptor_, &here) == 0 && ::stat(path_.c_str(), &there) == 0 && here.st_ino == there.st_ino &&
+         here.st_dev == there.st_dev;
+}
+
+void sync_folder_of(const fs::path& path) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+namespace {
+
+// Where a symbolic link leads to; else the path itself.
+fs::path destination(const fs::path& path) {
+  std::error_code error;
+  const fs::path resolved = fs::canonical(path, error);
+  if (!error) return resolved;
+  const fs::path leads_to = fs::read_symlink(path, error);  // to what does not exist yet
+  return error ? path : path.parent_path() / leads_to;
+}
+
+fs::path with_suffix(fs::path path, const char* suffix) { return path += suffix; }
+
+constexpr std::size_t kBufferBytes = 1 << 20;
+
+}  // namespace
+
+WholeFile::WholeFile(const fs::path& path, Consolation consolation)
+    : target_(destination(path)),
+      file_(with_suffix(target_, ".whole"), File::Mode::kReadWrite, std::move(consolation)) {
+  if (file_.lock() == File::Lock::kInUse) {
+    committed_ = true;  // it is not ours to remove
+    throw InputError({.file = path.string(),
+                      .what = "another process is writing the file",
+                      .why = "two would spoil it",
+                      .suggestion = "wait for the other one, or name another file"});
+  }
+  file_.truncate(0);
+}
+
+WholeFile::~WholeFile() {
+  std::error_code ignored;
+  if (!committed_) fs::remove(file_.path(), ignored);
+}
+
+void WholeFile::append(std::string_view bytes) {
+  buffer_ += bytes;
+  if (buffer_.size() >= kBufferBytes) flush();
+}
+
+void WholeFile::flush() {
+  file_.write(written_, buffer_);
+  written_ += buffer_.size();
+  buffer_.clear();
+}
+
+void WholeFile::commit() {
+  flush();
+  file_.sync();
+  std::error_code error;
+  fs::rename(file_.path(), target_, error);
+  if (error) file_.fail(error.value());
+  committed_ = true;
+  sync_folder_of(target_);
+}
+
+}  // namespace exactff::truth

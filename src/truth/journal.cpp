@@ -1,0 +1,196 @@
+#include "truth/journal.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include "exactff/error.h"
+#include "scene/printable.h"
+#include "study/text.h"
+
+namespace exactff::truth {
+
+namespace fs = std::filesystem;
+
+fs::path journal_of(const fs::path& file) {
+  fs::path journal = file;
+  return journal += ".part";
+}
+
+namespace {
+
+constexpr std::string_view kUnfinished =
+    "# unfinished: rows in the order in which they were done; exactff truth with --resume goes on\n";
+
+// The head of the truth file with one comment line more.
+std::string journal_head(const std::string& head) {
+  const std::size_t columns = head.rfind('\n', head.size() - 2) + 1;
+  return head.substr(0, columns) + std::string(kUnfinished) + head.substr(columns);
+}
+
+std::string_view line_at(std::string_view text, std::size_t at) {
+  return text.substr(at, std::min(text.find('\n', at), text.size()) - at);
+}
+
+std::string shortened(std::string_view line) {
+  constexpr std::size_t kMost = 200;
+  return printable(line.size() <= kMost ? std::string(line) : std::string(line.substr(0, kMost)) + "...");
+}
+
+File opened(const fs::path& path, const Hooks& hooks) {
+  for (;;) {
+    File file(path, File::Mode::kReadWrite,
+              {"the rows need a place", "name a file in a folder that exists, is writable and has room"});
+    const File::Lock lock = file.lock();
+    if (lock == File::Lock::kInUse) {
+      throw InputError({.file = path.string(),
+                        .what = "another process is working on it",
+                        .why = "two would compute the same rows and spoil each other's file",
+                        .suggestion = "wait for the other one, or name another file with -o"});
+    }
+    if (lock == File::Lock::kUnsupported && hooks.note) {
+      hooks.note(path.string() + ": this file system cannot lock files; see to it that no other process uses it");
+    }
+    // The process that had the lock may have finished and removed the file in between.
+    if (file.is_in_place()) return file;
+  }
+}
+
+}  // namespace
+
+void require_free(const fs::path& file, Existing existing) {
+  std::error_code ignored;
+  const bool folder = fs::is_directory(file, ignored), device = fs::is_other(file, ignored);
+  if (folder || device || !file.has_filename()) {
+    throw InputError({.file = file.string(),
+                      .what = folder   ? "is a folder"
+                              : device ? "is a device"
+                                       : "is not the name of a file",
+                      .why = "rows are kept in a file from which an interrupted run can go on",
+                      .suggestion = "name a file, such as -o truth.csv"});
+  }
+  if (existing == Existing::kRefuse && fs::exists(file, ignored)) {
+    throw InputError({.file = file.string(),
+                      .what = "is there already",
+                      .why = "it may hold hours of work",
+                      .suggestion = "name another file, or replace it with --force"});
+  }
+}
+
+void require_same_head(const fs::path& file, std::string_view head, std::string_view other, const std::string& whose,
+                       const std::string& suggestion) {
+  const std::string_view common =
+      head.substr(0, static_cast<std::size_t>(
+                         std::mismatch(head.begin(), head.end(), other.begin(), other.end()).first - head.begin()));
+  if (common.size() == head.size() && head.size() == other.size()) return;
+  const std::size_t line = common.rfind('\n') + 1;  // npos + 1 is 0
+  throw InputError({.file = file.string(),
+                    .line = static_cast<std::size_t>(std::count(common.begin(), common.end(), '\n')) + 1,
+                    .what = "is of another request: it says '" + shortened(line_at(head, line)) + "', and " + whose +
+                            " '" + shortened(line_at(other, line)) + "'",
+                    .why = "rows of two requests must not be mixed",
+                    .suggestion = suggestion});
+}
+
+Journal::Journal(const fs::path& file, const Rows& rows, Existing existing, const Hooks& hooks)
+    : file_(opened(journal_of(file), hooks)) {
+  take_over(rows, existing, hooks);
+  file_.console({"the rows finished so far are kept in it", "make room, then go on with --resume"});
+}
+
+Journal::~Journal() {
+  if (!removed_ && blocks_.empty() && end_ > 0) remove();
+}
+
+void Journal::take_over(const Rows& rows, Existing existing, const Hooks& hooks) {
+  const std::string head = journal_head(rows.head());
+  const std::optional<std::string> found = read_head(file_);
+  // A journal cut off within its head holds no row.
+  const bool nothing = !found && head.starts_with(file_.read(0, head.size()));
+  if (existing == Existing::kReplace || nothing) return begin(head);
+  require_same_head(file_.path(), found.value_or(file_.read(0, 4096)), head);
+  Blocks there = find_blocks(file_, head.size());
+  if (there.list.empty()) return begin(head);
+  if (existing == Existing::kRefuse) {
+    throw InputError({.file = file_.path().string(),
+                      .what = "holds the rows of a run that was not finished",
+                      .why = "they would be lost",
+                      .suggestion = "go on with them by --resume, or begin anew with --force"});
+  }
+  const std::uint64_t lost = there.damaged + file_.size() - there.end;
+  if (lost > 0) {
+    if (hooks.note) {
+      hooks.note(file_.path().string() + ": " + study::counted(lost, "byte") +
+                 " of it are incomplete or damaged; their rows are computed again");
+    }
+    file_.truncate(there.end);
+  }
+  end_ = synced_ = there.end;
+  keep_usable(std::move(there.list), rows, hooks);
+}
+
+void Journal::begin(const std::string& head) {
+  file_.truncate(0);
+  end_ = head.size();
+  file_.write(0, head);
+}
+
+// The request's own rows, each once. Nothing else is ever appended, but files can be tampered with.
+void Journal::keep_usable(std::vector<Block> found, const Rows& rows, const Hooks& hooks) {
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Block& a, const Block& b) { return a.range.first < b.range.first; });
+  const std::size_t count = found.size();
+  std::uint64_t next = 0;
+  for (const Block& block : found) {
+    const Range& range = block.range;
+    if (range.first < next || range.rows == 0 || !rows.may_be_one_block(range)) continue;
+    if (!Tally().add_rows(read(block), range.rows)) continue;
+    blocks_.push_back(block);
+    next = range.end();
+  }
+  if (blocks_.size() < count && hooks.note) {
+    hooks.note(file_.path().string() + ": " + study::counted(count - blocks_.size(), "block") +
+               " of it are of no use here; their rows are computed again");
+  }
+}
+
+void Journal::append(Range range, std::string_view lines) {
+  const std::string text = block_text(range, lines);
+  const std::lock_guard lock(mutex_);
+  try {
+    file_.write(end_, text);
+  } catch (...) {
+    try {
+      file_.truncate(end_);
+    } catch (...) {  // a torn block is recognised anyway
+    }
+    throw;
+  }
+  blocks_.push_back({range, end_ + text.size() - lines.size(), lines.size()});
+  end_ += text.size();
+}
+
+void Journal::sync() {
+  std::uint64_t end = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    end = end_;
+  }
+  if (end == synced_) return;
+  file_.sync();
+  if (synced_ == 0) sync_folder_of(file_.path());  // so that the file is there at all
+  synced_ = end;
+}
+
+std::vector<Block> Journal::blocks() const {
+  std::vector<Block> sorted = blocks_;
+  std::sort(sorted.begin(), sorted.end(), [](const Block& a, const Block& b) { return a.range.first < b.range.first; });
+  return sorted;
+}
+
+void Journal::remove() {
+  std::error_code ignored;
+  fs::remove(file_.path(), ignored);
+  removed_ = true;
+}
+
+}  // namespace exactff::truth

@@ -1,0 +1,251 @@
+#include "truth/rows.h"
+
+#include <sched.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <numeric>
+#include <sstream>
+#include <string_view>
+#include <thread>
+
+#include "exactff/version.h"
+#include "study/text.h"
+
+namespace exactff::truth {
+namespace {
+
+constexpr std::array kStatuses = {Status::kCertified, Status::kZero, Status::kUnderflow, Status::kNotCertified};
+
+// Names from the input may hold anything; a line break would end the comment.
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return text;
+}
+
+// 64-bit FNV-1a over all that the rows tell of the receivers: a file of the same name may have changed.
+class Hash {
+ public:
+  void add(std::string_view bytes) {
+    for (const char c : bytes) add_byte(static_cast<unsigned char>(c));
+    add(bytes.size());
+  }
+  void add(std::uint64_t word) {
+    for (int shift = 0; shift < 64; shift += 8) add_byte(static_cast<unsigned char>(word >> shift));
+  }
+  void add(const Vec3& v) {
+    for (const double c : {v.x, v.y, v.z}) add(std::bit_cast<std::uint64_t>(c));
+  }
+  [[nodiscard]] std::string text() const {
+    std::array<char, 16> digits;
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), state_, 16);
+    const std::string written(digits.data(), end.ptr);
+    return std::string(16 - written.size(), '0') + written;
+  }
+
+ private:
+  void add_byte(unsigned char byte) { state_ = (state_ ^ byte) * 0x100000001b3U; }
+  std::uint64_t state_ = 0xcbf29ce484222325U;
+};
+
+std::string hash_of(const std::vector<Receiver>& receivers) {
+  Hash hash;
+  for (const Receiver& receiver : receivers) {
+    hash.add(receiver.point);
+    hash.add(receiver.normal);
+    hash.add(receiver.on ? std::uint64_t{index_of(*receiver.on)} : ~std::uint64_t{0});
+    hash.add(receiver.id);
+  }
+  return hash.text();
+}
+
+void complete(Request& request) {
+  const auto refuse = [](std::string file, std::string what, std::string why, std::string suggestion) {
+    throw InputError(Problem{std::move(file), 0, std::move(what), std::move(why), std::move(suggestion)});
+  };
+  if (request.receivers.empty()) {
+    refuse({}, "there is no receiver in " + request.receivers_name, "a truth file has a row for each",
+           "use a finer grid, or another patch");
+  }
+  if (request.sources.empty()) request.sources = request.scene->emitters();
+  if (request.sources.empty()) {
+    refuse(request.scene_name, "no patch emits", "a truth file has a row for each source", "name one with --source");
+  }
+  const Shard& shard = request.shard;
+  if (shard.number < 1 || shard.number > shard.count) {
+    refuse({}, "there is no shard " + std::to_string(shard.number) + " of " + std::to_string(shard.count),
+           "shards are counted from 1", "write --shard 1/4 for the first of four");
+  }
+  if (request.threads <= 0) request.threads = usable_threads();
+}
+
+}  // namespace
+
+int usable_threads() {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  if (::sched_getaffinity(0, sizeof allowed, &allowed) == 0) return std::max(1, CPU_COUNT(&allowed));
+  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+Rows::Rows(Request request) : request_(std::move(request)) {
+  complete(request_);
+  for (const Selection& source : request_.sources) {
+    sources_.emplace_back(*request_.scene, source);
+    source_names_.push_back(request_.scene->name_of(source));
+    radiosities_.push_back(request_.scene->source_radiosity(source));
+  }
+  receivers_hash_ = hash_of(request_.receivers);
+}
+
+std::uint64_t Rows::shard_rows() const {
+  const Shard& shard = request_.shard;
+  const std::uint64_t chunks = (count() + kChunkRows - 1) / kChunkRows;
+  const std::uint64_t rows = (chunks + shard.count - shard.number) / shard.count * kChunkRows;
+  const bool has_last = (chunks - 1) % shard.count == shard.number - 1;
+  return has_last ? rows - (chunks * kChunkRows - count()) : rows;  // the last chunk may be a short one
+}
+
+bool Rows::may_be_one_block(Range range) const {
+  const std::uint64_t chunk = range.first / kChunkRows;
+  return range.rows > 0 && range.end() <= count() && (range.end() - 1) / kChunkRows == chunk &&
+         chunk % request_.shard.count == request_.shard.number - 1;
+}
+
+std::string Rows::head() const {
+  std::ostringstream out;
+  out << "# exactff " << kVersion << " truth: form factors, correctly rounded, between proved bounds\n"
+      << "# scene: " << one_line(request_.scene_name) << ", hash " << request_.scene->hash() << '\n'
+      << "# receivers: " << one_line(request_.receivers_name) << ", hash " << receivers_hash_ << '\n'
+      << "# sources: ";
+  for (std::size_t s = 0; s < source_names_.size(); ++s) out << (s > 0 ? " + " : "") << one_line(source_names_[s]);
+  out << '\n'
+      << "# rows: " << count() << '\n'
+      << "# units: form factors are pure numbers, radiosity is in the unit of Ke, lengths are in the unit of the "
+         "scene\n";
+  if (const Shard& shard = request_.shard; shard.count > 1) {
+    out << "# shard: " << shard.number << '/' << shard.count << " in chunks of " << kChunkRows
+        << " rows, for exactff merge\n";
+  }
+  out << "receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper" << (request_.unoccluded ? ",unoccluded" : "")
+      << (request_.visible_fraction ? ",visible_fraction" : "")
+      << ",radiosity_r,radiosity_g,radiosity_b,largest_rho_b,status\n";
+  return std::move(out).str();
+}
+
+namespace {
+
+// The fields of one row, appended one after the other.
+class Line {
+ public:
+  explicit Line(std::string& text) : text_(text) {}
+  ~Line() { text_.back() = '\n'; }
+  Line(const Line&) = delete;
+  Line& operator=(const Line&) = delete;
+
+  Line& operator<<(double value) {
+    std::array<char, 32> digits;
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+    return put({digits.data(), end.ptr});
+  }
+  Line& operator<<(const Vec3& v) { return *this << v.x << v.y << v.z; }
+  Line& operator<<(std::string_view text) { return put(study::csv_field(text)); }
+
+ private:
+  Line& put(std::string_view field) {
+    text_.append(field);
+    text_ += ',';
+    return *this;
+  }
+  std::string& text_;
+};
+
+// True where nothing stood in the way of what is above the horizon: F is then what it is without occluders.
+bool nothing_in_the_shaft(const FormFactor& result) {
+  return std::all_of(result.planes.begin(), result.planes.end(), [](const PlaneRecord& plane) {
+    return plane.outcome == Outcome::kUnoccluded || plane.outcome == Outcome::kReceiverFace ||
+           plane.outcome == Outcome::kBehind || plane.outcome == Outcome::kBelowHorizon;
+  });
+}
+
+}  // namespace
+
+void Rows::append(std::uint64_t row, std::string& lines) const {
+  const Receiver& receiver = request_.receivers[row / sources_.size()];
+  const std::size_t source = row % sources_.size();
+  const ExactOptions options{.engine = request_.engine, .visible_fraction = request_.visible_fraction};
+  const FormFactor f = exact_form_factor(*request_.scene, receiver, sources_[source], options);
+  Status status = f.status;
+  Line line(lines);
+  line << id(row / sources_.size()) << (receiver.on ? request_.scene->name_of(*receiver.on) : std::string())
+       << receiver.point << receiver.normal << source_names_[source] << f.value << f.lower << f.upper;
+  if (request_.unoccluded) {
+    const FormFactor free = without_occluders(receiver, sources_[source], f);
+    if (free.status == Status::kUnderflow) {
+      line << "0.0";
+    } else {
+      line << free.value;
+    }
+    if (free.status == Status::kNotCertified) status = free.status;  // a row is as good as its worst value
+  }
+  if (request_.visible_fraction) line << f.visible_fraction.value_or(0.0);
+  const Rgb rho = request_.scene->receiver_reflectance(receiver.on), b = radiosities_[source];
+  line << rho.r * b.r * f.value << rho.g * b.g * f.value << rho.b * b.b * f.value
+       << std::max({rho.r * b.r, rho.g * b.g, rho.b * b.b}) << to_string(status);
+}
+
+FormFactor Rows::without_occluders(const Receiver& receiver, const ExactSource& source,
+                                   const FormFactor& occluded) const {
+  static const std::vector<FaceId> kNone;
+  if (nothing_in_the_shaft(occluded)) return occluded;
+  return exact_form_factor(*request_.scene, receiver, source, {.engine = request_.engine, .only_occluders = &kNone});
+}
+
+std::string Rows::id(std::size_t receiver) const {
+  const std::string& given = request_.receivers[receiver].id;
+  return given.empty() ? std::to_string(receiver + 1) : given;
+}
+
+std::string Rows::name(std::uint64_t row) const {
+  const std::size_t receiver = row / sources_.size();
+  const std::optional<FaceId> on = request_.receivers[receiver].on;
+  return "receiver '" + id(receiver) + "'" + (on ? " on '" + request_.scene->name_of(*on) + "'" : std::string()) +
+         ", source '" + source_names_[row % sources_.size()] + "'";
+}
+
+void Tally::add(std::string_view text) {
+  constexpr std::size_t kLongestKept = 64;  // no status is as long
+  std::size_t field = 0;                    // where the last field begins
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') quoted_ = !quoted_;
+    if (quoted_ || (c != ',' && c != '\n')) continue;
+    if (c == '\n') end_row(field_.append(text.substr(field, i - field)));
+    field_.clear();
+    field = i + 1;
+  }
+  if (!text.empty()) row_open_ = quoted_ || text.back() != '\n';
+  if (field_.size() < kLongestKept) field_ += text.substr(field, kLongestKept);
+}
+
+void Tally::end_row(std::string_view status) {
+  const auto found = std::find_if(kStatuses.begin(), kStatuses.end(), [&](Status s) { return to_string(s) == status; });
+  if (found == kStatuses.end()) {
+    sound_ = false;
+  } else {
+    ++by_status_[static_cast<std::size_t>(*found)];
+  }
+}
+
+bool Tally::add_rows(std::string_view text, std::uint64_t expected) {
+  const std::uint64_t before = rows();
+  add(text);
+  return whole() && rows() - before == expected;
+}
+
+std::uint64_t Tally::rows() const { return std::accumulate(by_status_.begin(), by_status_.end(), std::uint64_t{0}); }
+
+}  // namespace exactff::truth

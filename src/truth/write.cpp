@@ -1,0 +1,185 @@
+// From a request to its truth file.
+//
+// 1. What is asked must be sound, and nobody's work destroyed: the file, its journal.
+// 2. The journal tells which rows are done. The schedule deals out the others, by chunks, to whoever is free: threads
+//    here, and other processes where there is a team.
+// 3. What is finished is appended to the journal at once, in whatever order; every second it is made to last.
+// 4. When every row is there the file is put together in order beside its place, and renamed; the journal goes.
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <system_error>
+#include <thread>
+
+#include "exactff/truth.h"
+#include "study/text.h"
+#include "truth/assemble.h"
+#include "truth/journal.h"
+#include "truth/rows.h"
+#include "truth/team.h"
+#include "truth/workers.h"
+
+namespace exactff::truth {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kAlone = std::chrono::milliseconds(100);   // between looks at progress and signals
+constexpr auto kWithTeam = std::chrono::milliseconds(1);  // and at messages
+constexpr auto kSyncEvery = std::chrono::seconds(1);
+
+// The rows that are not in the journal, computed and appended to it.
+class Computation {
+ public:
+  Computation(const Rows& rows, Journal& journal, Team* team, const Hooks& hooks)
+      : rows_(rows), journal_(journal), hooks_(hooks), schedule_(rows, journal.blocks()) {
+    if (team != nullptr && team->size() > 1) leader_.emplace(*team, rows);
+  }
+
+  void run(Summary& summary) {
+    const auto start = Clock::now();
+    summary.resumed = rows_.shard_rows() - schedule_.rows();
+    done_ = summary.resumed;
+    tell(summary);
+    if (schedule_.rows() > 0) compute(summary);
+    summary.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  }
+
+ private:
+  void compute(Summary& summary) {
+    Workers workers(
+        rows_, rows_.request().threads, hooks_, [this] { return schedule_.next(); },
+        [this](Finished finished) { keep(std::move(finished)); });
+    try {
+      attend(workers, summary);
+    } catch (...) {
+      workers.stop();
+      while (!workers.wait_for(kAlone)) {
+      }
+      collect_the_rest();
+      tell(summary);
+      throw;
+    }
+    tell(summary);
+  }
+
+  // While threads work: progress, slow rows, other processes, the disk.
+  void attend(Workers& workers, Summary& summary) {
+    auto synced = Clock::now();
+    for (bool ended = false; !ended || !all_done() || (leader_ && !leader_->all_here());) {
+      if (ended) std::this_thread::sleep_for(kWithTeam);  // others have not
+      ended = workers.wait_for(leader_ ? kWithTeam : kAlone);
+      if (ended) workers.rethrow();
+      if (leader_) leader_->attend([this] { return schedule_.next(); }, [this](Finished f) { keep(std::move(f)); });
+      tell(summary);
+      if (hooks_.cancelled && hooks_.cancelled()) throw study::Cancelled();
+      if (Clock::now() - synced < kSyncEvery) continue;
+      journal_.sync();
+      synced = Clock::now();
+    }
+    journal_.sync();
+  }
+
+  // Given up: what others have finished is kept all the same.
+  void collect_the_rest() {
+    if (leader_) leader_->cease([this](Finished f) { keep(std::move(f)); });
+    journal_.sync();
+  }
+
+  // From any thread.
+  void keep(Finished finished) {
+    journal_.append(finished.range, finished.lines);
+    const std::lock_guard lock(mutex_);
+    done_ += finished.range.rows;
+    slow_.insert(slow_.end(), finished.slow.begin(), finished.slow.end());
+  }
+
+  [[nodiscard]] bool all_done() {
+    const std::lock_guard lock(mutex_);
+    return done_ == rows_.shard_rows();
+  }
+
+  void tell(Summary& summary) {
+    std::vector<SlowRow> slow;
+    std::uint64_t done = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      slow.swap(slow_);
+      done = done_;
+    }
+    summary.slow += slow.size();
+    for (const SlowRow& row : slow) {
+      if (hooks_.slow_row) hooks_.slow_row(rows_.name(row.row), row.seconds);
+    }
+    if (hooks_.progress) hooks_.progress({"rows", done, rows_.shard_rows()});
+  }
+
+  const Rows& rows_;
+  Journal& journal_;
+  const Hooks& hooks_;
+  Schedule schedule_;
+  std::optional<Leader> leader_;
+  std::mutex mutex_;
+  std::uint64_t done_ = 0;
+  std::vector<SlowRow> slow_;
+};
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+void add_shard(const File& file, std::uint64_t head_bytes, Tally& tally) {
+  for (const Block& block : find_blocks(file, head_bytes).list) tally.add(read_lines(file, block));
+}
+
+void add_rows(const File& file, std::uint64_t offset, Tally& tally) {
+  constexpr std::size_t kReadBytes = 1 << 20;
+  for (std::string text = file.read(offset, kReadBytes); !text.empty(); text = file.read(offset, kReadBytes)) {
+    tally.add(text);
+    offset += text.size();
+  }
+}
+
+// A file without a journal is complete, for it appeared whole.
+Summary account_of(const fs::path& path, const Rows& rows) {
+  const File file(path, File::Mode::kRead);
+  const std::string head = rows.head();
+  require_same_head(path, read_head(file).value_or(file.read(0, head.size())), head);
+  Tally tally;
+  (rows.request().shard.count > 1 ? add_shard : add_rows)(file, head.size(), tally);
+  if (!tally.whole() || tally.rows() != rows.shard_rows()) {
+    throw InputError({.file = path.string(),
+                      .what = "is damaged: " + std::to_string(tally.rows()) + " of " +
+                              study::counted(rows.shard_rows(), "row") + " can be read",
+                      .why = "a complete file has them all",
+                      .suggestion = "compute it again with --force"});
+  }
+  Summary summary;
+  summary.rows = summary.resumed = tally.rows();
+  summary.rows_by_status = tally.by_status();
+  return summary;
+}
+
+}  // namespace
+
+Summary write(Request request, const fs::path& file, Existing existing, const Hooks& hooks, Team* team) {
+  const Rows rows(std::move(request));
+  require_free(file, existing);
+  if (existing == Existing::kResume && is_there(file) && !is_there(journal_of(file))) return account_of(file, rows);
+  Summary summary;
+  summary.rows = rows.shard_rows();
+  Journal journal(file, rows, existing, hooks);
+  Computation(rows, journal, team, hooks).run(summary);
+  assemble(rows, journal, file, hooks, summary);
+  return summary;
+}
+
+Summary write(Request request, const fs::path& file, Existing existing, const Hooks& hooks) {
+  return write(std::move(request), file, existing, hooks, nullptr);
+}
+
+}  // namespace exactff::truth

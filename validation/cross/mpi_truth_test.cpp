@@ -1,0 +1,108 @@
+// exactff truth under mpirun: four processes, whatever the number of cores.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <thread>
+
+#include "support/program.h"
+
+namespace exactff {
+namespace {
+
+namespace fs = std::filesystem;
+using validation::RunningProgram;
+
+std::string text_of(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return std::move(text).str();
+}
+
+std::uintmax_t size_of(const fs::path& path) {
+  std::error_code ignored;
+  const std::uintmax_t size = fs::file_size(path, ignored);
+  return ignored ? 0 : size;
+}
+
+std::size_t count(const std::string& text, const std::string& word) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++found;
+  return found;
+}
+
+class MpiTruth : public testing::Test {
+ protected:
+  static std::vector<std::string> truth(const std::string& on, const fs::path& file, std::vector<std::string> more) {
+    std::vector<std::string> all{
+        "truth", EXACTFF_DATA_DIR "/scenes/cornell_box.obj", "--on", on, "--grid", "160x160", "-o", file};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  RunningProgram start(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> all{"--oversubscribe", "-n", "4", EXACTFF_PROGRAM};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    return {EXACTFF_MPIRUN, all, directory_.path() / "stderr", [] {
+              ::setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+              ::setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+            }};
+  }
+  std::string whole() const {
+    const fs::path file = directory_.path() / "whole.csv";
+    EXPECT_EQ(validation::run_program(EXACTFF_PROGRAM, truth("floor", file, {})).exit_code, 0);
+    return text_of(file);
+  }
+  static std::vector<int> children_of(int process) {
+    std::ifstream file("/proc/" + std::to_string(process) + "/task/" + std::to_string(process) + "/children");
+    return {std::istream_iterator<int>(file), {}};
+  }
+
+  const validation::TemporaryDirectory directory_;
+  const fs::path file_ = directory_.path() / "truth.csv";
+  const fs::path journal_ = directory_.path() / "truth.csv.part";
+};
+
+TEST_F(MpiTruth, FourProcessesWriteTheBytesOfOne) {
+  const RunningProgram run = start(truth("floor", file_, {}));
+  EXPECT_EQ(run.wait(), 0) << run.error();
+  EXPECT_EQ(text_of(file_), whole());
+}
+
+TEST_F(MpiTruth, AKilledProcessCostsNoFinishedRow) {
+  for (std::size_t victim = 0; victim < 4; ++victim) {
+    const std::uintmax_t before = size_of(journal_);
+    const RunningProgram run = start(truth("floor", file_, {"--resume", "--engine", "boolean"}));
+    while (size_of(journal_) <= before + 2000 && !run.has_ended()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    const std::vector<int> ranks = children_of(run.process());
+    ASSERT_EQ(ranks.size(), 4U) << run.error();
+    ::kill(ranks[victim], SIGKILL);
+    EXPECT_NE(run.wait(), 0);
+    ASSERT_GT(size_of(journal_), before);
+    ASSERT_FALSE(fs::exists(file_));
+  }
+  const validation::ProgramRun alone = validation::run_program(EXACTFF_PROGRAM, truth("floor", file_, {"--resume"}));
+  EXPECT_EQ(alone.exit_code, 0);
+  EXPECT_NE(alone.output.find(" of them in "), std::string::npos) << alone.output;
+  EXPECT_EQ(text_of(file_), whole());
+}
+
+TEST_F(MpiTruth, WhatIsWrongIsToldOnce) {
+  for (const std::vector<std::string>& arguments :
+       {truth("flor", file_, {}), truth("floor", file_, {"--shard", "9/4"}), truth("floor", file_, {"--what"})}) {
+    const RunningProgram run = start(arguments);
+    EXPECT_EQ(run.wait(), 2);
+    const std::string error = run.error();
+    EXPECT_EQ(count(error, "exactff: ") + count(error, "--help"), 1U) << error;
+    EXPECT_FALSE(fs::exists(file_));
+    EXPECT_FALSE(fs::exists(journal_));
+  }
+}
+
+}  // namespace
+}  // namespace exactff
