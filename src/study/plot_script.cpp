@@ -86,6 +86,12 @@ std::string style_of(const Series& series) {
          std::string(kLineStyles[static_cast<std::size_t>(series.style - 1) % kLineStyles.size()]);
 }
 
+// Of a mark over bars, which have the first colour.
+std::string mark_style(std::size_t i) {
+  constexpr std::array<std::string_view, 4> kColours = {"#D55E00", "#CC79A7", "#009E73", "#E69F00"};
+  return "lw 2 dt " + std::to_string(1 + i % 5) + " lc rgb '" + std::string(kColours[i % kColours.size()]) + '\'';
+}
+
 double largest_value(const Map& map) {
   double largest = 0.0;
   for (const MapCell& cell : map.cells) largest = std::max(largest, cell.value);
@@ -126,6 +132,29 @@ std::string line_plot(const Axes& axes, const std::vector<Series>& series) {
   }
   if (plot.empty()) return {};
   return head(560, 430) + axis_commands(axes) + x_range(axes, drawn) + data + plot + '\n';
+}
+
+std::string bar_plot(const Axes& axes, const std::vector<Bar>& bars, const std::vector<Mark>& marks) {
+  const auto is_drawable = [&](double x) { return std::isfinite(x) && (x > 0.0 || !axes.log_x); };
+  std::string data, arrows, keys;
+  Points ends;
+  for (const Bar& bar : bars) {
+    if (!is_drawable(bar.low) || !is_drawable(bar.high)) continue;
+    data += shortest(bar.low) + ' ' + shortest(bar.high) + ' ' + shortest(bar.height) + '\n';
+    ends.insert(ends.end(), {{bar.low, 0.0}, {bar.high, 0.0}});
+  }
+  if (data.empty()) return {};
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    if (!is_drawable(marks[i].x)) continue;
+    const std::string at = shortest(marks[i].x), style = mark_style(i);
+    ends.emplace_back(marks[i].x, 0.0);
+    arrows += "set arrow from " + at + ", graph 0 to " + at + ", graph 1 nohead front " + style + '\n';
+    keys += ", \\\n     keyentry with lines " + style + " title " + quoted(marks[i].title);
+  }
+  return head(560, 430) + axis_commands(axes) + x_range(axes, {ends}) + "set yrange [0:*]\n" + arrows +
+         "$bars << END\n" + data +
+         "END\nplot $bars using 1:3:1:2:(0):3 with boxxyerror lc rgb '#0072B2' fs solid 0.6 noborder notitle" + keys +
+         '\n';
 }
 
 std::string map_plot(const Map& map) {

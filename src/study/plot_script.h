@@ -31,6 +31,22 @@ struct Axes {
 // Empty if nothing remains.
 [[nodiscard]] std::string line_plot(const Axes& axes, const std::vector<Series>& series);
 
+// A bar of a histogram over the x axis.
+struct Bar {
+  double low = 0.0;
+  double high = 0.0;
+  double height = 0.0;
+};
+
+// A vertical line.
+struct Mark {
+  std::string title;
+  double x = 0.0;
+};
+
+// Bars from 0, with marks over them. What a logarithmic x axis cannot show is left out. Empty if no bar remains.
+[[nodiscard]] std::string bar_plot(const Axes& axes, const std::vector<Bar>& bars, const std::vector<Mark>& marks);
+
 struct MapCell {
   int column = 1;
   int row = 1;

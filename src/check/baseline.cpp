@@ -1,0 +1,137 @@
+// The ratchet: today's statistics, recorded in a file, are the limits of tomorrow.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "check/words.h"
+#include "exactff/check.h"
+#include "scene/text_file.h"
+#include "study/tables.h"
+#include "study/text.h"
+
+namespace exactff::check {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kFormat = 1;
+
+struct Ratcheted {
+  std::optional<double> now;
+  double scale = 0.0;  // what its roundings are relative to
+};
+
+Ratcheted ratcheted(const Statistics& statistics, std::string_view name) {
+  if (name == "max-abs") return {statistics.absolute.max, statistics.largest_value};
+  if (name == "max-rel") return {statistics.relative.max, 1.0};
+  if (name == "rms") return {statistics.absolute.rms, statistics.largest_value};
+  if (name == "quantile 0.99") return {statistics.absolute.p99, statistics.largest_value};
+  if (!statistics.radiosity) return {};
+  return {statistics.radiosity->max, statistics.largest_radiosity};
+}
+
+// JSON knows no infinity: null stands for it.
+ordered_json to_json(const Statistics& statistics) {
+  ordered_json json = ordered_json::object();
+  for (const std::string_view name : kRatcheted) {
+    if (const auto value = ratcheted(statistics, name).now) json[std::string(name)] = *value;
+  }
+  return json;
+}
+
+class Baseline {
+ public:
+  explicit Baseline(const std::filesystem::path& path) : file_(path.string()) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) {
+      throw InputError({file_, 0, "there is no such baseline", "there is nothing to compare with",
+                        "record one by --write-baseline"});
+    }
+    json_ = ordered_json::parse(read_text_file(path, "a file of --write-baseline"), nullptr, false);
+    if (!json_.is_object() || !json_.contains("baseline") || json_["baseline"] != kFormat) refuse_format();
+  }
+
+  void require_same_rows(const Report& report) const {
+    if (at({"truth", "identity"}) == report.identity && at({"relative_floor"}) == report.criteria.relative_floor)
+      return;
+    throw InputError({file_, 0, "was recorded with other rows, other truths or another relative floor",
+                      "its errors would not be comparable", "record a new one by --write-baseline"});
+  }
+
+  // Nothing where it was not known.
+  [[nodiscard]] std::optional<double> recorded(const std::string& source, std::string_view name) const {
+    const ordered_json& statistics = source.empty() ? at({"overall"}) : at({"sources", clean_text(source)});
+    if (!statistics.is_object()) refuse_format();
+    const auto found = statistics.find(std::string(name));
+    if (found == statistics.end()) return std::nullopt;
+    if (found->is_null()) return std::numeric_limits<double>::infinity();
+    if (!found->is_number()) refuse_format();
+    return found->get<double>();
+  }
+
+ private:
+  [[noreturn]] void refuse_format() const {
+    throw InputError({file_, 0, "is not a baseline that this program can read", "there is nothing to compare with",
+                      "record one by --write-baseline"});
+  }
+
+  [[nodiscard]] const ordered_json& at(std::initializer_list<std::string> path) const {
+    const ordered_json* node = &json_;
+    for (const std::string& key : path) {
+      if (!node->is_object() || !node->contains(key)) refuse_format();
+      node = &(*node)[key];
+    }
+    return *node;
+  }
+
+  std::string file_;
+  ordered_json json_;
+};
+
+void compare(Report& report, const Baseline& baseline, const std::string& source, const Statistics& statistics,
+             double slack) {
+  constexpr double kRoundings = 4.0 * std::numeric_limits<double>::epsilon();
+  for (const std::string_view name : kRatcheted) {
+    const auto recorded = baseline.recorded(source, name);
+    const Ratcheted one = ratcheted(statistics, name);
+    if (!recorded || !one.now) continue;
+    const double allowance = std::isinf(*recorded) ? 0.0 : std::max(*recorded * slack, kRoundings * one.scale);
+    const double limit = *recorded + allowance;
+    const std::string criterion = "baseline " + std::string(name);
+    report.verdicts.push_back({criterion, source, *one.now, limit, *one.now <= limit, {}});
+    if (*one.now < *recorded - allowance) report.improvements.push_back({criterion, source, *recorded, *one.now});
+  }
+}
+
+}  // namespace
+
+std::string baseline_text(const Report& report) {
+  ordered_json json;
+  json["baseline"] = kFormat;
+  json["program"] = study::program_version();
+  json["truth"] = {{"identity", report.identity}, {"rows", report.overall.rows}, {"column", report.column}};
+  json["relative_floor"] = report.criteria.relative_floor;
+  json["overall"] = to_json(report.overall);
+  json["sources"] = ordered_json::object();
+  for (std::size_t s = 0; s < report.sources.size(); ++s) {
+    json["sources"][clean_text(report.sources[s])] = to_json(report.by_source[s]);
+  }
+  return json.dump(2) + '\n';
+}
+
+void hold_against_baseline(Report& report, const std::filesystem::path& path, double slack) {
+  if (!(slack >= 0.0) || std::isinf(slack)) {
+    throw InputError({.what = "the slack of the baseline is " + study::shortest(slack),
+                      .why = "it is a share of what was recorded",
+                      .suggestion = "give 0 or more, such as 0.1"});
+  }
+  const Baseline baseline(path);
+  baseline.require_same_rows(report);
+  if (!report.criteria.per_source) return compare(report, baseline, {}, report.overall, slack);
+  for (std::size_t s = 0; s < report.sources.size(); ++s) {
+    compare(report, baseline, report.sources[s], report.by_source[s], slack);
+  }
+}
+
+}  // namespace exactff::check

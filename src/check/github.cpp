@@ -1,0 +1,71 @@
+// Workflow commands of GitHub Actions: lines that the runner turns into annotations of files.
+#include <string_view>
+
+#include "check/words.h"
+#include "exactff/check.h"
+
+namespace exactff::check {
+namespace {
+
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+}
+
+std::string data(std::string text) {
+  replace_all(text, "%", "%25");
+  replace_all(text, "\r", "%0D");
+  replace_all(text, "\n", "%0A");
+  return text;
+}
+
+// Of a property, which ends at a comma or colon.
+std::string property(std::string text) {
+  text = data(std::move(text));
+  replace_all(text, ":", "%3A");
+  replace_all(text, ",", "%2C");
+  return text;
+}
+
+struct Place {
+  std::string file = {};
+  std::size_t line = 0;
+};
+
+std::string command(std::string_view kind, const Place& place, const std::string& title, const std::string& message) {
+  std::string text = "::" + std::string(kind) + ' ';
+  if (!place.file.empty()) text += "file=" + property(place.file) + ',';
+  if (!place.file.empty() && place.line > 0) text += "line=" + std::to_string(place.line) + ',';
+  return text + "title=" + property(title) + "::" + data(message) + '\n';
+}
+
+}  // namespace
+
+std::string github_annotations(const Report& report) {
+  std::string text;
+  const std::size_t own = report.worst.empty() ? 0 : report.worst.front().line;
+  for (const Verdict& verdict : report.verdicts) {
+    if (verdict.passed) continue;
+    std::string message = sentence(verdict);
+    if (verdict.worst) message += "\n" + describe(*verdict.worst);
+    text += command("error", {report.candidate_file, verdict.worst ? verdict.worst->line : own},
+                    "exactff check: " + name_of(verdict), message);
+  }
+  for (const std::string& warning : warnings(report)) {
+    text += command("warning", {report.candidate_file, 0}, "exactff check", warning);
+  }
+  return text;
+}
+
+std::string github_annotations(const InputError& error) {
+  constexpr std::size_t kShown = 10;  // what the runner shows of one step
+  std::string text;
+  for (const Problem& problem : error.problems()) {
+    if (&problem - error.problems().data() == kShown) break;
+    text += command("error", {problem.file, problem.line}, "exactff check: bad input", problem.message());
+  }
+  return text;
+}
+
+}  // namespace exactff::check

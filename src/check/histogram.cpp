@@ -1,0 +1,68 @@
+// Histograms over the logarithm of the error.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "exactff/check.h"
+#include "study/plot_script.h"
+#include "study/text.h"
+
+namespace exactff::check {
+namespace {
+
+double edge(long index, int bins_per_decade) {
+  return std::pow(10.0, static_cast<double>(index) / static_cast<double>(bins_per_decade));
+}
+
+// The bin with edge(k - 1) < value <= edge(k).
+long bin_of(double value, int bins_per_decade) {
+  const double finite = std::min(value, std::numeric_limits<double>::max());
+  auto k = static_cast<long>(std::ceil(std::log10(finite) * bins_per_decade));
+  if (edge(k, bins_per_decade) < finite) ++k;  // where the logarithm was rounded down onto an edge
+  return k;
+}
+
+// The limits of single errors, each once however many sources have to keep it.
+std::vector<study::Mark> limits(const Report& report) {
+  std::vector<study::Mark> marks;
+  for (const Verdict& verdict : report.verdicts) {
+    if (verdict.criterion != "max-abs" && !verdict.criterion.starts_with("quantile")) continue;
+    const study::Mark mark{verdict.criterion + " " + study::shortest(verdict.limit), verdict.limit};
+    const auto is_same = [&](const study::Mark& other) { return other.title == mark.title; };
+    if (std::none_of(marks.begin(), marks.end(), is_same)) marks.push_back(mark);
+  }
+  return marks;
+}
+
+}  // namespace
+
+Histogram histogram(const Report& report, int bins_per_decade, std::size_t most_bins) {
+  Histogram result;
+  const std::vector<double>& errors = report.magnitudes;
+  const auto nonzero = std::upper_bound(errors.begin(), errors.end(), 0.0);
+  result.exact = static_cast<std::size_t>(nonzero - errors.begin());
+  if (nonzero == errors.end()) return result;
+  const long last = bin_of(errors.back(), bins_per_decade);
+  const long first = std::max(bin_of(*nonzero, bins_per_decade), last - static_cast<long>(most_bins) + 1);
+  auto from = nonzero;
+  for (long k = first; k <= last; ++k) {
+    const double high = edge(k, bins_per_decade);
+    const auto to = k == last ? errors.end() : std::upper_bound(from, errors.end(), high);
+    result.bins.push_back({edge(k - 1, bins_per_decade), high, static_cast<std::size_t>(to - from)});
+    from = to;
+  }
+  return result;
+}
+
+std::string histogram_script(const Report& report) {
+  constexpr int kBinsPerDecade = 4;
+  constexpr std::size_t kMostBins = 120;
+  const Histogram shown = histogram(report, kBinsPerDecade, kMostBins);
+  std::vector<study::Bar> bars;
+  for (const HistogramBin& bin : shown.bins) bars.push_back({bin.low, bin.high, static_cast<double>(bin.count)});
+  const std::string rows = study::counted(report.overall.rows, "row") +
+                           (shown.exact > 0 ? ", " + std::to_string(shown.exact) + " of them without error" : "");
+  return study::bar_plot({"absolute error", rows, true, false}, bars, limits(report));
+}
+
+}  // namespace exactff::check

@@ -1,0 +1,99 @@
+// The report for programs.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "check/words.h"
+#include "exactff/check.h"
+#include "study/tables.h"
+
+namespace exactff::check {
+namespace {
+
+using nlohmann::ordered_json;
+
+// JSON knows neither infinity nor NaN: they are told as words.
+ordered_json number(double value) {
+  if (std::isfinite(value)) return value;
+  return std::isnan(value) ? "nan" : value > 0.0 ? "inf" : "-inf";
+}
+
+ordered_json to_json(const Distribution& d) {
+  return {{"median", number(d.median)}, {"p90", number(d.p90)}, {"p99", number(d.p99)},
+          {"p999", number(d.p999)},     {"max", number(d.max)}, {"rms", number(d.rms)}};
+}
+
+ordered_json to_json(const Statistics& s) {
+  ordered_json json = {{"rows", s.rows},         {"not_finite", s.not_finite},      {"leaks", s.leaks},
+                       {"bias", number(s.bias)}, {"absolute", to_json(s.absolute)}, {"relative", to_json(s.relative)}};
+  if (s.radiosity) json["radiosity"] = to_json(*s.radiosity);
+  return json;
+}
+
+ordered_json to_json(const RowError& row) {
+  ordered_json json = {
+      {"receiver", clean_text(row.receiver)}, {"source", clean_text(row.source)}, {"line", row.line},
+      {"truth_line", row.truth_line},         {"status", to_string(row.status)},  {"truth", number(row.truth)},
+      {"value", number(row.value)},           {"error", number(row.error)},       {"relative", number(row.relative)}};
+  if (row.radiosity) json["radiosity"] = number(*row.radiosity);
+  return json;
+}
+
+ordered_json to_json(const Verdict& verdict) {
+  ordered_json json = {{"criterion", verdict.criterion},
+                       {"source", clean_text(verdict.source)},
+                       {"measured", number(verdict.measured)},
+                       {"limit", number(verdict.limit)},
+                       {"passed", verdict.passed}};
+  if (verdict.worst) json["worst"] = to_json(*verdict.worst);
+  return json;
+}
+
+ordered_json to_json(const Improvement& improvement) {
+  return {{"criterion", improvement.criterion},
+          {"source", clean_text(improvement.source)},
+          {"recorded", number(improvement.recorded)},
+          {"now", number(improvement.now)}};
+}
+
+ordered_json to_json(const Histogram& histogram) {
+  ordered_json json = {{"without_error", histogram.exact}, {"bins", ordered_json::array()}};
+  for (const HistogramBin& bin : histogram.bins) {
+    json["bins"].push_back({{"above", number(bin.low)}, {"up_to", number(bin.high)}, {"rows", bin.count}});
+  }
+  return json;
+}
+
+template <class List>
+ordered_json list(const List& items) {
+  ordered_json json = ordered_json::array();
+  for (const auto& item : items) json.push_back(to_json(item));
+  return json;
+}
+
+}  // namespace
+
+std::string json_text(const Report& report) {
+  ordered_json json;
+  json["program"] = study::program_version();
+  json["truth"] = {{"file", clean_text(report.truth_file)},
+                   {"column", clean_text(report.column)},
+                   {"rows", report.truth_rows},
+                   {"identity", report.identity}};
+  json["candidate"] = clean_text(report.candidate_file);
+  json["passed"] = report.passed();
+  json["warnings"] = warnings(report);
+  json["verdicts"] = list(report.verdicts);
+  json["improvements"] = list(report.improvements);
+  json["relative_floor"] = report.criteria.relative_floor;
+  json["overall"] = to_json(report.overall);
+  json["sources"] = ordered_json::object();
+  for (std::size_t s = 0; s < report.sources.size(); ++s) {
+    json["sources"][clean_text(report.sources[s])] = to_json(report.by_source[s]);
+  }
+  json["worst_by"] = to_string(report.worst_by);
+  json["worst"] = list(report.worst);
+  json["histogram"] = to_json(histogram(report));
+  return json.dump(2) + '\n';
+}
+
+}  // namespace exactff::check

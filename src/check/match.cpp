@@ -1,0 +1,204 @@
+// Which row of the truth a value is held against.
+//
+//   1. The candidate's sources are looked up among the truth's; without such a column the truth must have one only.
+//   2. Every row of the candidate finds its row by receiver and source, or by position and source.
+//   3. No row of the truth may be found twice, and, unless asked for, none may be left.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "check/position_index.h"
+#include "check/row_keys.h"
+#include "check/words.h"
+#include "exactff/check.h"
+#include "scene/text_lines.h"
+#include "study/text.h"
+
+namespace exactff::check {
+namespace {
+
+constexpr std::uint32_t kNothing = std::numeric_limits<std::uint32_t>::max();
+
+class Matcher {
+ public:
+  Matcher(const Truth& truth, const Candidate& candidate, const MatchOptions& options)
+      : truth_(truth), candidate_(candidate), options_(options), found_(truth.rows.size(), kNothing) {}
+
+  std::vector<Measured> match() {
+    check_request();
+    look_up_sources();
+    options_.by == MatchBy::kReceiver ? match_receivers() : match_positions();
+    complain_about_missing();
+    problems_.throw_if_any();
+    return measured();
+  }
+
+ private:
+  void complain(std::size_t line, std::string what, std::string why, std::string suggestion) {
+    problems_.add({candidate_.file, line, std::move(what), std::move(why), std::move(suggestion)});
+  }
+
+  void check_request() {
+    const auto is_tolerance = [](double t) { return std::isfinite(t) && t >= 0.0; };
+    if (!is_tolerance(options_.tolerance) || !is_tolerance(options_.normal_tolerance)) {
+      throw InputError({.what = "the tolerance of matching is negative or not finite",
+                        .why = "it is a distance",
+                        .suggestion = "give 0 or more"});
+    }
+    if (options_.by == MatchBy::kPosition && !truth_.has_points) {
+      throw InputError({truth_.file, 0, "has no columns x, y and z", "rows are to be matched by their position",
+                        "match them by receiver"});
+    }
+    if (candidate_.rows.empty()) {
+      throw InputError({candidate_.file, 0, "has no rows", "there is nothing to judge", "write one row per value"});
+    }
+  }
+
+  void look_up_sources() {
+    source_.assign(candidate_.sources.size(), 0);
+    const bool has_none = truth_.sources.size() == 1 && truth_.sources.front().empty();
+    if (has_none) return;
+    if (!candidate_.has_sources) return require_single_source();
+    for (std::size_t i = 0; i < source_.size(); ++i) {
+      const auto known = std::find(truth_.sources.begin(), truth_.sources.end(), candidate_.sources[i]);
+      source_[i] =
+          known == truth_.sources.end() ? kNothing : static_cast<std::uint32_t>(known - truth_.sources.begin());
+    }
+  }
+
+  void require_single_source() const {
+    if (truth_.sources.size() == 1) return;
+    throw InputError({candidate_.file, 0, "has no column that names the source",
+                      "the truth has " + std::to_string(truth_.sources.size()) + ": " + source_names(),
+                      "add a column source, or name it by --source-column"});
+  }
+
+  [[nodiscard]] std::string source_names() const {
+    constexpr std::size_t kShown = 10;
+    std::vector<std::string> names(
+        truth_.sources.begin(),
+        truth_.sources.begin() + static_cast<std::ptrdiff_t>(std::min(truth_.sources.size(), kShown)));
+    if (truth_.sources.size() > kShown) names.emplace_back("others");
+    return study::enumerate(names);
+  }
+
+  // False, with a complaint, where the truth does not know the row's source.
+  bool has_known_source(const CandidateRow& row) {
+    if (source_[row.source] != kNothing) return true;
+    complain(row.line, "the truth has no source " + in_quotes(candidate_.sources[row.source]),
+             "its sources are " + source_names(), "check the name, or leave the row out");
+    return false;
+  }
+
+  void match_receivers() {
+    RowKeys<TruthRow> keys(truth_.rows);
+    for (std::uint32_t i = 0; i < truth_.rows.size(); ++i) (void)keys.insert(i);
+    for (std::uint32_t i = 0; i < candidate_.rows.size(); ++i) {
+      const CandidateRow& row = candidate_.rows[i];
+      if (!has_known_source(row)) continue;
+      const std::size_t found = keys.find(row.receiver, source_[row.source]);
+      if (found == truth_.rows.size()) {
+        complain(row.line, "the truth has no receiver " + in_quotes(row.receiver) + of_source(name_of(row)),
+                 "its value cannot be judged", unknown_advice());
+      } else {
+        take(found, i);
+      }
+    }
+  }
+
+  [[nodiscard]] std::string unknown_advice() const {
+    return "its receivers are called such as " + in_quotes(truth_.rows.front().receiver) +
+           "; correct the id, or give --match position";
+  }
+
+  void match_positions() {
+    const PositionIndex index(truth_, options_, truth_.has_normals && candidate_.has_normals);
+    for (std::uint32_t i = 0; i < candidate_.rows.size(); ++i) {
+      const CandidateRow& row = candidate_.rows[i];
+      if (!has_known_source(row)) continue;
+      const std::vector<std::uint32_t> found = index.near(row.point, row.normal, source_[row.source]);
+      if (found.size() == 1) {
+        take(found.front(), i);
+      } else if (found.empty()) {
+        complain(row.line,
+                 "the truth has no receiver within " + study::shortest(options_.tolerance) + of_source(name_of(row)),
+                 "its value cannot be judged", "give a larger --tolerance if the coordinates were rounded");
+      } else {
+        complain_about_choice(row, found);
+      }
+    }
+  }
+
+  void complain_about_choice(const CandidateRow& row, const std::vector<std::uint32_t>& found) {
+    const auto told = [&](std::size_t i) {
+      const TruthRow& other = truth_.rows[found[i]];
+      return in_quotes(other.receiver) + " at a distance of " + short_number(distance(other.point, row.point));
+    };
+    complain(row.line,
+             std::to_string(found.size()) + " receivers of the truth match: " + told(0) + " and " + told(1) +
+                 (found.size() > 2 ? ", and more" : ""),
+             "the value could be held against either", "give a smaller --tolerance, or normals, or match by receiver");
+  }
+
+  [[nodiscard]] const std::string& name_of(const CandidateRow& row) const { return candidate_.sources[row.source]; }
+
+  void take(std::size_t truth_row, std::uint32_t row) {
+    std::uint32_t& found = found_[truth_row];
+    if (found == kNothing) {
+      found = row;
+      return;
+    }
+    complain(candidate_.rows[row].line,
+             "receiver " + in_quotes(truth_.rows[truth_row].receiver) +
+                 of_source(truth_.source_of(truth_.rows[truth_row])) + " has a value already (line " +
+                 std::to_string(candidate_.rows[found].line) + ")",
+             "only one can be judged", "keep one of them");
+  }
+
+  // Told last: rows that were found under a wrong name are missing, too.
+  void complain_about_missing() {
+    const auto missing = static_cast<std::size_t>(std::count(found_.begin(), found_.end(), kNothing));
+    if (missing == 0 || (options_.partial && missing < found_.size())) return;
+    constexpr std::size_t kShown = 5;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < found_.size() && names.size() < kShown; ++i) {
+      if (found_[i] != kNothing) continue;
+      const TruthRow& row = truth_.rows[i];
+      names.push_back(in_quotes(row.receiver) + of_source(truth_.source_of(row)));
+    }
+    if (missing > kShown) names.push_back(std::to_string(missing - kShown) + " more");
+    complain(
+        0,
+        "no value for " + study::counted_of(missing, found_.size(), "row") + " of the truth: receiver " +
+            study::enumerate(names),
+        "what is missing cannot be judged",
+        missing < found_.size() ? "add them, or give --partial to judge the others" : "check how rows are matched");
+  }
+
+  [[nodiscard]] std::vector<Measured> measured() const {
+    std::vector<Measured> values;
+    for (std::uint32_t i = 0; i < found_.size(); ++i) {
+      if (found_[i] == kNothing) continue;
+      const CandidateRow& row = candidate_.rows[found_[i]];
+      values.push_back({i, row.line, row.value});
+    }
+    return values;
+  }
+
+  const Truth& truth_;
+  const Candidate& candidate_;
+  const MatchOptions& options_;
+  std::vector<std::uint32_t> source_;  // of the truth, by source of the candidate
+  std::vector<std::uint32_t> found_;   // row of the candidate, by row of the truth
+  ProblemList problems_;
+};
+
+}  // namespace
+
+std::vector<Measured> match(const Truth& truth, const Candidate& candidate, const MatchOptions& options) {
+  return Matcher(truth, candidate, options).match();
+}
+
+}  // namespace exactff::check

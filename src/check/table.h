@@ -1,0 +1,79 @@
+// A CSV file with a row of column names, read row by row; what is wrong with it is collected.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "exactff/geometry.h"
+#include "scene/csv_lines.h"
+#include "scene/text_lines.h"
+
+namespace exactff::check {
+
+// Names to numbers from 0, in the order in which they come up.
+class NameList {
+ public:
+  std::uint32_t number_of(const std::string& name) {
+    const auto [found, is_new] = numbers_.try_emplace(name, static_cast<std::uint32_t>(names_.size()));
+    if (is_new) names_.push_back(name);
+    return found->second;
+  }
+  [[nodiscard]] std::vector<std::string> take() { return std::move(names_); }
+
+ private:
+  std::unordered_map<std::string, std::uint32_t> numbers_;
+  std::vector<std::string> names_;
+};
+
+enum class NotFinite { kRefuse, kAccept };
+
+class Table {
+ public:
+  // Reads up to the column names. `purpose` completes "give ...".
+  Table(const std::filesystem::path& path, const std::string& purpose);
+
+  [[nodiscard]] const std::string& file() const { return lines_.file(); }
+  [[nodiscard]] std::size_t line() const { return lines_.number(); }
+  [[nodiscard]] std::vector<std::string>& comments() { return comments_; }  // above the column names, without '#'
+
+  [[nodiscard]] std::optional<std::size_t> column(std::string_view name) const;
+  // The first of these that there is.
+  [[nodiscard]] std::optional<std::size_t> first_column(std::initializer_list<std::string_view> names) const;
+  // The same, or a complaint.
+  [[nodiscard]] std::size_t needed_column(std::initializer_list<std::string_view> names, const std::string& why,
+                                          const std::string& suggestion);
+  [[nodiscard]] const std::string& name_of(std::size_t column) const { return names_[column]; }
+
+  // The next row with as many fields as there are names; the others are complained about.
+  [[nodiscard]] bool next();
+  [[nodiscard]] const std::string& field(std::size_t column) const { return fields_[column]; }
+  [[nodiscard]] double number(std::size_t column, NotFinite not_finite = NotFinite::kRefuse);
+  [[nodiscard]] Vec3 vector(const std::array<std::size_t, 3>& columns);
+
+  void complain(std::string what, std::string why, std::string suggestion = {});
+  void complain_at(std::size_t line, std::string what, std::string why, std::string suggestion = {});
+  [[nodiscard]] bool is_sound() const { return problems_.empty(); }
+  void throw_if_any() { problems_.throw_if_any(); }
+
+ private:
+  void read_names();
+  void take_names();
+  [[nodiscard]] bool split(std::string_view line);
+
+  CsvLines lines_;
+  std::vector<std::string> comments_;
+  std::vector<std::string> names_;
+  std::vector<std::string> fields_;
+  ProblemList problems_;
+};
+
+}  // namespace exactff::check

@@ -1,0 +1,127 @@
+#include "check/words.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "scene/printable.h"
+#include "scene/text_lines.h"
+#include "study/text.h"
+
+namespace exactff::check {
+namespace {
+
+using study::shortest;
+
+// How many bytes the character of UTF-8 has that begins at `at`; 0 if there is none.
+std::size_t character_length(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+  const unsigned first = byte(at);
+  const std::size_t length = first < 0x80   ? 1
+                             : first < 0xC2 ? 0
+                             : first < 0xE0 ? 2
+                             : first < 0xF0 ? 3
+                             : first < 0xF5 ? 4
+                                            : 0;
+  unsigned code = length < 2 ? first : first & (0x7FU >> length);
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(at + i) & 0xC0U) != 0x80U) return 0;
+    code = (code << 6U) | (byte(at + i) & 0x3FU);
+  }
+  const bool too_long = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+  const bool no_character = (code >= 0xD800 && code < 0xE000) || code == 0xFFFE || code == 0xFFFF || code > 0x10FFFF;
+  return too_long || no_character ? 0 : length;
+}
+
+}  // namespace
+
+std::string_view to_string(Measure measure) {
+  switch (measure) {
+    case Measure::kAbsolute:
+      return "absolute error";
+    case Measure::kRelative:
+      return "relative error";
+    case Measure::kRadiosity:
+      return "error in radiosity";
+  }
+  return {};
+}
+
+std::string short_number(double value, int digits) {
+  std::array<char, 32> buffer;
+  const auto end =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
+  return {buffer.data(), end.ptr};
+}
+
+std::string name_of(const Quantile& quantile) { return "quantile " + shortest(quantile.share); }
+
+std::string name_of(const Verdict& verdict) {
+  return verdict.criterion + (verdict.source.empty() ? "" : ", source " + verdict.source);
+}
+
+std::string name_of(const RowError& row) {
+  return "receiver " + in_quotes(row.receiver) + (row.source.empty() ? "" : ", source " + in_quotes(row.source));
+}
+
+std::string describe(const RowError& row) {
+  std::string text = "exact " + shortest(row.truth) + ", found " + shortest(row.value);
+  if (!std::isfinite(row.value)) return text;
+  text += ", error " + short_number(row.error, 4) + ", relative " + short_number(row.relative, 4);
+  if (row.status == Status::kNotCertified) text += ", truth not certified";
+  return text;
+}
+
+std::string sentence(const Verdict& verdict) {
+  std::string text = name_of(verdict) + ": ";
+  if (verdict.criterion == "finite") {
+    text += verdict.passed ? std::string("every value is a finite number")
+                           : "values that are no finite numbers: " + shortest(verdict.measured);
+  } else {
+    text += shortest(verdict.measured) + (verdict.passed ? " is within the limit " : " is above the limit ") +
+            shortest(verdict.limit);
+  }
+  return text + (verdict.worst ? ", worst at " + name_of(*verdict.worst) : "");
+}
+
+std::vector<std::string> warnings(const Report& report) {
+  std::vector<std::string> texts;
+  if (report.not_certified > 0) {
+    texts.push_back(study::counted_of(report.not_certified, report.overall.rows, "row") +
+                    " of the truth judged by enclosure: not certified");
+  }
+  if (report.overall.rows < report.truth_rows) {
+    texts.push_back(study::counted_of(report.truth_rows - report.overall.rows, report.truth_rows, "row") +
+                    " of the truth without a value: not judged");
+  }
+  if (report.verdicts.size() == 1) {
+    texts.emplace_back("no limit was given: nothing was judged but that values are finite numbers");
+  }
+  return texts;
+}
+
+std::string failure_message(const Report& report) {
+  std::string text;
+  for (const Verdict& verdict : report.verdicts) {
+    if (!verdict.passed) text += sentence(verdict) + '\n';
+  }
+  if (report.worst.empty()) return text;
+  text += "worst rows by " + std::string(to_string(report.worst_by)) + ":\n";
+  for (const RowError& row : report.worst) text += "  " + printable(name_of(row) + ": " + describe(row)) + '\n';
+  return text;
+}
+
+std::string clean_text(std::string_view text) {
+  std::string clean;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = character_length(text, at);
+    const bool control = length == 1 && static_cast<unsigned char>(text[at]) < 0x20 && text[at] != '\n';
+    const bool keep = length > 0 && !control && text[at] != '\x7f';
+    clean += keep ? std::string(text.substr(at, length)) : "?";
+    at += std::max<std::size_t>(length, 1);
+  }
+  return clean;
+}
+
+}  // namespace exactff::check

@@ -1,0 +1,28 @@
+// Words that the outputs of a check share.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exactff/check.h"
+
+namespace exactff::check {
+
+// So many significant digits in plain characters, fit to be given to a flag: "0.0123", "1.2e-07".
+[[nodiscard]] std::string short_number(double value, int digits = 3);
+[[nodiscard]] std::string name_of(const Quantile& quantile);  // "quantile 0.99"
+[[nodiscard]] std::string name_of(const Verdict& verdict);    // "max-abs, source light"
+// "max-abs, source light: 0.0123 is above the limit 0.01, at receiver '7'"
+[[nodiscard]] std::string sentence(const Verdict& verdict);
+// "receiver '7', source 'light'"
+[[nodiscard]] std::string name_of(const RowError& row);
+// "exact 0.25, found 0.26, error 0.01, relative 0.04"
+[[nodiscard]] std::string describe(const RowError& row);
+// What a person should know about the result, passed or not.
+[[nodiscard]] std::vector<std::string> warnings(const Report& report);
+
+// Bytes that are no UTF-8 and control characters as question marks: XML and JSON have no way to hold them.
+[[nodiscard]] std::string clean_text(std::string_view text);
+
+}  // namespace exactff::check

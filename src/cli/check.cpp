@@ -1,0 +1,458 @@
+// exactff check: the values of another program held against a truth file.
+#include "exactff/check.h"
+
+#include <stdlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "check/words.h"
+#include "cli/command.h"
+#include "cli/long_run.h"
+#include "cli/output.h"
+#include "cli/text_table.h"
+#include "scene/csv_lines.h"
+#include "scene/number_text.h"
+#include "scene/printable.h"
+#include "scene/text_lines.h"
+#include "study/gnuplot.h"
+#include "study/text.h"
+
+namespace exactff::cli {
+namespace {
+
+using check::short_number;
+
+constexpr const char* kFooter =
+    "Every row of the truth has to have a value, and every value a row. A value that is not a finite number is a "
+    "failure\n"
+    "of the candidate. Without a limit the errors are told and only that is judged. A limit is kept by an error equal "
+    "to "
+    "it.\n"
+    "The relative error is infinite where the truth is 0 and the value is not; --relative-floor has small truths "
+    "count\n"
+    "as larger ones. eps_B bounds the error times the largest rho B of the row, row by row.\n"
+    "A baseline makes today's errors the limits of tomorrow: worse is larger by more than --slack and by more than\n"
+    "4 units in the last place. What draws new random numbers in every run needs a slack such as 0.2, or a fixed "
+    "seed.\n"
+    "With --baseline, --write-baseline writes only if nothing got worse.\n"
+    "Exit codes: 0 passed, 1 failed, 2 bad input.\n"
+    "\n"
+    "Examples:\n"
+    "  exactff check truth.csv mine.csv --max-abs 1e-4 --quantile 0.99=1e-6 --junit check.xml\n"
+    "  exactff check truth.csv mine.csv --match position --tolerance 1e-6 --value-column ff\n"
+    "  exactff check truth.csv mine.csv --baseline accuracy.json";
+
+struct CheckArguments {
+  std::string truth, candidate;
+  std::string truth_column = "exact";
+  check::CandidateColumns columns;
+  std::string position_columns = "x,y,z", normal_columns = "nx,ny,nz";
+  std::string match = "receiver", tolerance = "0", normal_tolerance = "0.001";
+  bool partial = false;
+  std::string max_abs, max_rel, rms, eps_b, relative_floor = "0";
+  std::vector<std::string> quantiles;
+  bool per_source = false;
+  std::string baseline, write_baseline, slack = "1e-9";
+  std::size_t worst = 10;
+  std::string plot, junit, json;
+  bool github = false;
+};
+
+[[noreturn]] void refuse(std::string what, std::string why, std::string suggestion) {
+  throw InputError({.what = std::move(what), .why = std::move(why), .suggestion = std::move(suggestion)});
+}
+
+double to_limit(const std::string& text, const std::string& flag) {
+  const ParsedNumber number = parse_number(text);
+  if (number.fault == NumberFault::kNone && number.value >= 0.0) return number.value;
+  refuse(flag + ": " +
+             (number.fault == NumberFault::kNone ? in_quotes(text) + " is negative" : describe(number.fault, text)),
+         "it is a finite number of at least 0", "write it such as " + flag + " 1e-6");
+}
+
+std::optional<double> to_optional_limit(const std::string& text, const std::string& flag) {
+  return text.empty() ? std::nullopt : std::optional(to_limit(text, flag));
+}
+
+check::Quantile to_quantile(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) {
+    refuse("--quantile: " + in_quotes(text) + " has no equals sign", "it is a share of the rows and their limit",
+           "write it such as --quantile 0.99=1e-3");
+  }
+  return {to_limit(text.substr(0, equals), "--quantile"), to_limit(text.substr(equals + 1), "--quantile")};
+}
+
+std::array<std::string, 3> to_three_names(const std::string& text, const std::string& flag) {
+  std::array<std::string, 3> names;
+  std::vector<std::string> fields;
+  if (!split_csv_line(text, fields) || fields.size() != 3) {
+    refuse(flag + ": " + in_quotes(text) + " does not name three columns", "there are three coordinates",
+           "separate them by commas, such as " + flag + " x,y,z");
+  }
+  std::move(fields.begin(), fields.end(), names.begin());
+  return names;
+}
+
+check::Criteria criteria_of(const CheckArguments& args) {
+  check::Criteria criteria;
+  criteria.max_abs = to_optional_limit(args.max_abs, "--max-abs");
+  criteria.max_rel = to_optional_limit(args.max_rel, "--max-rel");
+  criteria.rms = to_optional_limit(args.rms, "--rms");
+  criteria.eps_b = to_optional_limit(args.eps_b, "--eps-b");
+  criteria.relative_floor = to_limit(args.relative_floor, "--relative-floor");
+  for (const std::string& text : args.quantiles) criteria.quantiles.push_back(to_quantile(text));
+  criteria.per_source = args.per_source;
+  criteria.worst = args.worst;
+  return criteria;
+}
+
+check::MatchOptions match_options_of(const CheckArguments& args) {
+  check::MatchOptions options;
+  options.by = args.match == "position" ? check::MatchBy::kPosition : check::MatchBy::kReceiver;
+  options.tolerance = to_limit(args.tolerance, "--tolerance");
+  options.normal_tolerance = to_limit(args.normal_tolerance, "--normal-tolerance");
+  options.partial = args.partial;
+  return options;
+}
+
+check::CandidateColumns columns_of(const CheckArguments& args) {
+  check::CandidateColumns columns = args.columns;
+  columns.position = to_three_names(args.position_columns, "--position-columns");
+  columns.normal = to_three_names(args.normal_columns, "--normal-columns");
+  return columns;
+}
+
+// Both files are read before either is complained about.
+template <class First, class Second>
+auto both(const First& first, const Second& second) {
+  std::optional<decltype(first())> a;
+  std::optional<decltype(second())> b;
+  std::vector<Problem> problems;
+  const auto attempt = [&](auto& result, const auto& read) {
+    try {
+      result = read();
+    } catch (const InputError& error) {
+      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+    }
+  };
+  attempt(a, first);
+  attempt(b, second);
+  if (!problems.empty()) throw InputError(std::move(problems));
+  return std::pair(std::move(*a), std::move(*b));
+}
+
+check::Report report_of(const CheckArguments& args) {
+  const check::Criteria criteria = criteria_of(args);
+  const check::MatchOptions options = match_options_of(args);
+  const check::CandidateColumns columns = columns_of(args);
+  const auto [truth, candidate] = both([&] { return check::read_truth(args.truth, args.truth_column); },
+                                       [&] { return check::read_candidate(args.candidate, columns, options.by); });
+  check::Report report = check::judge(truth, check::match(truth, candidate, options), criteria, candidate.file);
+  if (!args.baseline.empty()) check::hold_against_baseline(report, args.baseline, to_limit(args.slack, "--slack"));
+  return report;
+}
+
+void add_statistics(TextTable& table, const std::string& what, const std::string& source,
+                    const check::Statistics& statistics, const check::Distribution& d, bool has_bias) {
+  table.add_row({what, source, std::to_string(statistics.rows - statistics.not_finite), short_number(d.median),
+                 short_number(d.p90), short_number(d.p99), short_number(d.p999), short_number(d.max),
+                 short_number(d.rms), has_bias ? short_number(statistics.bias) : ""});
+}
+
+void add_all(TextTable& table, const std::string& source, const check::Statistics& s) {
+  add_statistics(table, "absolute", source, s, s.absolute, true);
+  add_statistics(table, "relative", source, s, s.relative, false);
+  if (s.radiosity) add_statistics(table, "radiosity", source, s, *s.radiosity, false);
+}
+
+void print_distribution(const check::Report& report) {
+  TextTable table;
+  table.add_column("error");
+  table.add_column("source");
+  for (const char* title : {"rows", "median", "90 %", "99 %", "99.9 %", "max", "RMS", "bias"}) {
+    table.add_column(title, Align::kRight);
+  }
+  const bool several = report.sources.size() > 1;
+  add_all(table, several ? "all" : report.sources.front(), report.overall);
+  for (std::size_t s = 0; several && s < report.sources.size(); ++s) {
+    add_all(table, report.sources[s], report.by_source[s]);
+  }
+  table.print(std::cout);
+  if (report.overall.leaks > 0) {
+    std::cout << "The truth is 0 and the value is not: " << study::counted(report.overall.leaks, "row") << '\n';
+  }
+  std::cout << '\n';
+}
+
+void print_histogram(const check::Report& report) {
+  const check::Histogram histogram = check::histogram(report);
+  std::size_t most = histogram.exact;
+  for (const check::HistogramBin& bin : histogram.bins) most = std::max(most, bin.count);
+  TextTable table;
+  table.add_column("absolute error");
+  table.add_column("rows", Align::kRight);
+  table.add_column("");
+  const auto add = [&](const std::string& range, std::size_t count) {
+    constexpr std::size_t kWidth = 50;
+    const std::size_t length = count == 0 ? 0 : std::max<std::size_t>(1, kWidth * count / most);
+    table.add_row({range, std::to_string(count), std::string(length, '#')});
+  };
+  if (histogram.exact > 0) add("0", histogram.exact);
+  for (const check::HistogramBin& bin : histogram.bins) add("up to " + short_number(bin.high, 1), bin.count);
+  table.print(std::cout);
+  std::cout << '\n';
+}
+
+// The first column is ours: no line can begin with what a file holds.
+void print_worst(const check::Report& report) {
+  if (report.worst.empty()) return;
+  std::cout << "Worst rows by " << to_string(report.worst_by) << '\n';
+  TextTable table;
+  table.add_column("#", Align::kRight);
+  for (const char* title : {"receiver", "source"}) table.add_column(title);
+  for (const char* title : {"exact", "found", "error", "relative", "line"}) table.add_column(title, Align::kRight);
+  for (std::size_t i = 0; i < report.worst.size(); ++i) {
+    const check::RowError& row = report.worst[i];
+    table.add_row({std::to_string(i + 1), row.receiver, row.source, study::shortest(row.truth),
+                   study::shortest(row.value), short_number(row.error), short_number(row.relative),
+                   std::to_string(row.line)});
+  }
+  table.print(std::cout);
+  std::cout << '\n';
+}
+
+void print_verdicts(const check::Report& report) {
+  TextTable table;
+  for (const char* title : {"verdict", "criterion", "source"}) table.add_column(title);
+  for (const char* title : {"measured", "limit"}) table.add_column(title, Align::kRight);
+  for (const check::Verdict& verdict : report.verdicts) {
+    table.add_row({verdict.passed ? "pass" : "FAIL", verdict.criterion, verdict.source.empty() ? "all" : verdict.source,
+                   short_number(verdict.measured, 6), short_number(verdict.limit, 6)});
+  }
+  table.print(std::cout);
+}
+
+void print_improvements(const check::Report& report) {
+  for (const check::Improvement& better : report.improvements) {
+    std::cout << "Better than " << better.criterion
+              << (better.source.empty() ? "" : ", source " + printable(better.source)) << ": "
+              << short_number(better.recorded) << " -> " << short_number(better.now);
+    if (better.recorded > 0.0 && std::isfinite(better.recorded)) {
+      std::cout << ", " << short_number(100.0 * (1.0 - better.now / better.recorded)) << " % less";
+    }
+    std::cout << '\n';
+  }
+}
+
+void print_end(const CheckArguments& args, const check::Report& report) {
+  const auto failed = static_cast<std::size_t>(std::count_if(
+      report.verdicts.begin(), report.verdicts.end(), [](const check::Verdict& verdict) { return !verdict.passed; }));
+  if (failed > 0) {
+    std::cout << "Failed: " << failed << " of " << study::counted(report.verdicts.size(), "criterion", "criteria")
+              << '\n';
+  } else {
+    std::cout << "Passed\n";
+  }
+  const bool suggests = failed == 0 && !report.improvements.empty() && args.write_baseline.empty();
+  if (suggests) std::cout << "Hold on to it: --write-baseline " << printable(args.baseline) << '\n';
+}
+
+void print(const CheckArguments& args, const check::Report& report) {
+  std::cout << "truth      " << printable(report.truth_file) << " (" << printable(report.column) << ", "
+            << study::counted(report.truth_rows, "row") << ")\n"
+            << "candidate  " << printable(report.candidate_file) << " (" << study::counted(report.overall.rows, "row")
+            << " judged)\n\n";
+  print_distribution(report);
+  print_histogram(report);
+  print_worst(report);
+  print_verdicts(report);
+  print_improvements(report);
+  print_end(args, report);
+}
+
+// A folder of its own that disappears with the object.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "exactff-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+      refuse("no temporary folder can be made: " + std::string(std::strerror(errno)), "gnuplot draws in one",
+             "set TMPDIR to a folder that can be written to, or leave --plot out");
+    }
+    path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+study::PlotResult run_plot(const std::string& script) {
+  study::PlotResult result;
+  {
+    const InterruptWatch watch;  // a signal waits until the folder is gone
+    const ScratchFolder scratch;
+    result = study::run_gnuplot(script, scratch.path(), is_interrupted);
+  }
+  if (is_interrupted()) ::raise(interrupting_signal());
+  return result;
+}
+
+void draw(const check::Report& report, const std::string& file) {
+  const std::string script = check::histogram_script(report);
+  if (script.empty()) {
+    std::cerr << "note: " << file << " is not drawn: every error is 0, which a logarithmic axis cannot show\n";
+    return;
+  }
+  const study::PlotResult result = run_plot(script);
+  if (result.outcome == study::PlotResult::Outcome::kDrawn) return write_whole_file(file, result.svg);
+  const bool missing = result.outcome == study::PlotResult::Outcome::kNoProgram;
+  std::cerr << "note: " << file << " is not drawn: "
+            << (missing ? "there is no gnuplot; install it" : "gnuplot failed: " + printable(result.message)) << '\n';
+}
+
+void write_files(const CheckArguments& args, const check::Report& report) {
+  if (!args.junit.empty()) write_whole_file(args.junit, check::junit_xml(report));
+  if (!args.json.empty()) write_whole_file(args.json, check::json_text(report));
+  if (!args.plot.empty()) draw(report, args.plot);
+}
+
+// A ratchet goes one way: without a baseline to hold on to, whatever there is gets recorded.
+void record(const CheckArguments& args, const check::Report& report) {
+  if (args.write_baseline.empty()) return;
+  const auto is_worse = [](const check::Verdict& verdict) {
+    return !verdict.passed && (verdict.criterion == "finite" || verdict.criterion.starts_with("baseline "));
+  };
+  if (std::any_of(report.verdicts.begin(), report.verdicts.end(), is_worse)) {
+    std::cerr << "note: " << args.write_baseline << " is not written: "
+              << (report.overall.not_finite > 0 ? "not every value is a number\n" : "errors got worse\n");
+    return;
+  }
+  write_whole_file(args.write_baseline, check::baseline_text(report));
+  std::cout << "Baseline: " << printable(args.write_baseline) << '\n';
+}
+
+int run_check(const CheckArguments& args) {
+  const check::Report report = report_of(args);
+  write_files(args, report);
+  print(args, report);
+  record(args, report);
+  if (args.github) std::cout << check::github_annotations(report);
+  for (const std::string& warning : check::warnings(report)) std::cerr << "warning: " << warning << '\n';
+  check_output(std::cout);
+  return report.passed() ? 0 : 1;
+}
+
+int run(const CheckArguments& args) {
+  try {
+    return run_check(args);
+  } catch (const InputError& error) {
+    if (args.github) std::cout << check::github_annotations(error) << std::flush;
+    throw;
+  }
+}
+
+void add_matching(CLI::App& command, CheckArguments& args) {
+  command
+      .add_option("--value-column", args.columns.value,
+                  "The candidate's column to judge (default: value, approximate or exact)")
+      ->type_name("NAME");
+  command.add_option("--receiver-column", args.columns.receiver, "Its column of receivers (default: receiver or id)")
+      ->type_name("NAME");
+  command
+      .add_option("--source-column", args.columns.source,
+                  "Its column of sources (default: source); needed only where the truth has several")
+      ->type_name("NAME");
+  command
+      .add_option("--truth-column", args.truth_column,
+                  "The truth's column to hold against, such as unoccluded or radiosity_g")
+      ->capture_default_str()
+      ->type_name("NAME");
+  command.add_option("--match", args.match, "How rows find each other: by the receiver's id or by its coordinates")
+      ->check(CLI::IsMember({"receiver", "position"}))
+      ->capture_default_str();
+  command.add_option("--tolerance", args.tolerance, "By position: largest distance of points that are the same")
+      ->capture_default_str()
+      ->type_name("DISTANCE");
+  command
+      .add_option("--normal-tolerance", args.normal_tolerance,
+                  "By position: largest distance of unit normals, where both files have normals")
+      ->capture_default_str()
+      ->type_name("DISTANCE");
+  command.add_option("--position-columns", args.position_columns, "The candidate's columns of coordinates")
+      ->capture_default_str()
+      ->type_name("X,Y,Z");
+  command.add_option("--normal-columns", args.normal_columns, "Its columns of normals, which need not be there")
+      ->capture_default_str()
+      ->type_name("NX,NY,NZ");
+  command.add_flag("--partial", args.partial, "Rows of the truth may be missing");
+}
+
+void add_criteria(CLI::App& command, CheckArguments& args) {
+  command.add_option("--max-abs", args.max_abs, "Limit of every absolute error")->type_name("LIMIT");
+  command.add_option("--max-rel", args.max_rel, "Limit of every relative error")->type_name("LIMIT");
+  command.add_option("--rms", args.rms, "Limit of the root mean square of the absolute errors")->type_name("LIMIT");
+  command.add_option("--eps-b", args.eps_b, "Limit of every error in radiosity")->type_name("LIMIT");
+  command
+      .add_option("--quantile", args.quantiles,
+                  "Share of the rows and the limit of their absolute errors, such as 0.99=1e-3; can be repeated")
+      ->type_name("SHARE=LIMIT")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_flag("--per-source", args.per_source, "Every source has to keep every limit, and its own baseline");
+  command.add_option("--relative-floor", args.relative_floor, "Relative errors are taken of at least this")
+      ->capture_default_str()
+      ->type_name("NUMBER");
+  command.add_option("--baseline", args.baseline, "Fail where errors are worse than those recorded here")
+      ->type_name("FILE");
+  command.add_option("--write-baseline", args.write_baseline, "Record today's errors")->type_name("FILE");
+  command.add_option("--slack", args.slack, "Share by which errors may exceed the baseline")
+      ->capture_default_str()
+      ->type_name("SHARE");
+}
+
+void add_outputs(CLI::App& command, CheckArguments& args) {
+  command.add_option("--worst", args.worst, "Rows to list, the worst first")->capture_default_str()->type_name("N");
+  command.add_option("--plot", args.plot, "Draw the histogram of the errors as SVG")->type_name("FILE");
+  command.add_option("--junit", args.junit, "Write the verdicts as JUnit XML")->type_name("FILE");
+  command.add_option("--json", args.json, "Write everything as JSON")->type_name("FILE");
+  command.add_flag("--github", args.github, "Print annotations for GitHub Actions, too");
+}
+
+}  // namespace
+
+Command add_check(CLI::App& app) {
+  auto args = std::make_shared<CheckArguments>();
+  CLI::App* command = app.add_subcommand("check", "Values of another program against a truth file: pass or fail");
+  command->add_option("TRUTH", args->truth, "File of `exactff truth`, or exact.csv of `exactff compare`")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("CANDIDATE", args->candidate, "CSV file of the values to judge")->required()->type_name("FILE");
+  add_matching(*command, *args);
+  add_criteria(*command, *args);
+  add_outputs(*command, *args);
+  command->footer(kFooter);
+  return {command, [args] { return run(*args); }};
+}
+
+}  // namespace exactff::cli

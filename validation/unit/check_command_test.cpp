@@ -1,0 +1,244 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "exactff/check.h"
+#include "study/text.h"
+#include "support/program.h"
+
+namespace exactff {
+namespace {
+
+using validation::ProgramRun;
+using validation::run_program;
+using validation::TemporaryDirectory;
+
+// Tables with one blank between columns: their widths depend on the other rows.
+std::string squeezed(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c != ' ' || !result.ends_with(' ')) result += c;
+  }
+  return result;
+}
+
+bool holds(const std::string& text, const std::string& part) {
+  return squeezed(text).find(squeezed(part)) != std::string::npos;
+}
+
+#define EXPECT_HOLDS(text, part) EXPECT_TRUE(holds(text, part)) << "\"" << (part) << "\" is not in:\n" << (text)
+
+std::string contents(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+// Three receivers and two sources; a candidate that is off by `error` at receiver b and source t.
+class CheckCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    truth_ = directory_
+                 .write("truth.csv",
+                        "# exactff truth\nreceiver,x,y,z,nx,ny,nz,source,exact,largest_rho_b\n"
+                        "a,0,0,0,0,0,1,s,0.5,10\na,0,0,0,0,0,1,t,0.25,10\nb,1,0,0,0,0,1,s,0.125,10\n"
+                        "b,1,0,0,0,0,1,t,0.25,10\nc,2,0,0,0,0,1,s,0,10\nc,2,0,0,0,0,1,t,0.25,10\n")
+                 .string();
+  }
+  std::string candidate(const std::string& b_t, const std::string& name = "mine.csv") const {
+    return directory_
+        .write(name, "receiver,source,value\na,s,0.5\na,t,0.25\nb,s,0.125\nb,t," + b_t + "\nc,s,0\nc,t,0.25\n")
+        .string();
+  }
+  ProgramRun check(const std::string& file, std::vector<std::string> flags) const {
+    flags.insert(flags.begin(), {"check", truth_, file});
+    return run_program(EXACTFF_PROGRAM, flags);
+  }
+  std::string path(const std::string& name) const { return (directory_.path() / name).string(); }
+
+  TemporaryDirectory directory_;
+  std::string truth_;
+};
+
+TEST_F(CheckCommand, CatchesAnErrorOfAThousandthAndForgivesABillionth) {
+  const ProgramRun caught = check(candidate("0.251"), {"--max-abs", "1e-6"});
+  EXPECT_EQ(caught.exit_code, 1);
+  EXPECT_HOLDS(caught.output, "FAIL max-abs all 0.001 1e-06\n");
+  EXPECT_HOLDS(caught.output, "1 b t 0.25 0.251 0.001 0.004 5\n");
+  EXPECT_HOLDS(caught.output, "Failed: 1 of 2 criteria\n");
+  const ProgramRun forgiven = check(candidate("0.250000001"), {"--max-abs", "1e-6"});
+  EXPECT_EQ(forgiven.exit_code, 0);
+  EXPECT_HOLDS(forgiven.output, "pass max-abs all 1e-09 1e-06\n");
+  EXPECT_HOLDS(forgiven.output, "Passed\n");
+}
+
+TEST_F(CheckCommand, JudgesByEveryLimit) {
+  const std::string mine = candidate("0.375");  // 0.125 of 0.25
+  const std::vector<std::vector<std::string>> kept = {
+      {"--max-abs", "0.125"},
+      {"--max-rel", "0.5"},
+      {"--rms", "0.0511"},
+      {"--eps-b", "1.25"},
+      {"--quantile", "0.83=0"},
+      {"--quantile", "1=0.125"},
+      {"--max-rel", "0.125", "--relative-floor", "1"},
+      {"--rms", "0.0722", "--per-source"},
+  };
+  const std::vector<std::vector<std::string>> broken = {
+      {"--max-abs", "0.124"},
+      {"--max-rel", "0.49"},
+      {"--rms", "0.051"},
+      {"--eps-b", "1.24"},
+      {"--quantile", "0.84=0.1"},
+      {"--quantile", "0.5=0", "--quantile", "1=0.1"},
+      {"--max-rel", "0.124", "--relative-floor", "1"},
+      {"--rms", "0.0721", "--per-source"},
+  };
+  for (const auto& flags : kept) EXPECT_EQ(check(mine, flags).exit_code, 0) << flags[0] << ' ' << flags[1];
+  for (const auto& flags : broken) EXPECT_EQ(check(mine, flags).exit_code, 1) << flags[0] << ' ' << flags[1];
+}
+
+TEST_F(CheckCommand, TellsErrorsWithoutALimit) {
+  const ProgramRun run = check(candidate("0.375"), {});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_HOLDS(run.output, "error source rows median 90 % 99 % 99.9 % max RMS bias\n");
+  EXPECT_HOLDS(run.output, "absolute all 6 0 0.125 0.125 0.125 0.125 0.051 0.0208\n");
+  EXPECT_HOLDS(run.output, "radiosity t 3 0 1.25 1.25 1.25 1.25 0.722\n");
+  EXPECT_HOLDS(run.output, "0 5 ##################################################\n");
+  EXPECT_HOLDS(run.output, "up to 1 1 ##########\n");
+  EXPECT_HOLDS(run.output,
+               "verdict  criterion  source  measured  limit\npass     finite     all            0      0\n");
+}
+
+TEST_F(CheckCommand, FailsValuesThatAreNoNumbersWhateverTheLimits) {
+  const ProgramRun run = check(candidate("nan"), {});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_HOLDS(run.output, "1 b t 0.25 nan");
+  EXPECT_HOLDS(run.output, "FAIL finite all 1 0\n");
+}
+
+TEST_F(CheckCommand, MatchesByPosition) {
+  const std::string mine =
+      directory_
+          .write("places.csv",
+                 "px,py,pz,lamp,ff\n2.001,0,0,t,.25\n2,0,0,s,0\n1,0,0,s,.125\n1,0,0,t,.25\n0,0,0,t,.25\n0,0,0,s,.5\n")
+          .string();
+  std::vector<std::string> flags = {"--match",         "position", "--position-columns", "px,py,pz",
+                                    "--source-column", "lamp",     "--value-column",     "ff",
+                                    "--max-abs",       "0"};
+  EXPECT_EQ(check(mine, flags).exit_code, 2);
+  flags.insert(flags.end(), {"--tolerance", "0.01"});
+  EXPECT_EQ(check(mine, flags).exit_code, 0);
+}
+
+TEST_F(CheckCommand, JudgesSomeRowsOnRequest) {
+  const std::string mine = directory_.write("some.csv", "receiver,source,value\nb,t,0.25\n").string();
+  EXPECT_EQ(check(mine, {"--max-abs", "0"}).exit_code, 2);
+  const ProgramRun run = check(mine, {"--max-abs", "0", "--partial"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_HOLDS(run.output, "(exact, 6 rows)");
+  EXPECT_HOLDS(run.output, "(1 row judged)");
+}
+
+TEST_F(CheckCommand, WritesWhatMachinesRead) {
+  const ProgramRun run = check(candidate("0.375"), {"--max-abs", "0.1", "--junit", path("j.xml"), "--json",
+                                                    path("j.json"), "--github", "--worst", "1"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_HOLDS(contents(path("j.xml")), "<testsuites name=\"exactff check\" tests=\"2\" failures=\"1\"");
+  EXPECT_EQ(nlohmann::json::parse(contents(path("j.json")))["overall"]["absolute"]["max"], 0.125);
+  EXPECT_HOLDS(run.output,
+               "::error file=" + path("mine.csv") + ",line=5,title=exactff check%3A max-abs::max-abs: 0.125 is");
+}
+
+TEST_F(CheckCommand, AnnotatesBadInput) {
+  const ProgramRun run = check(candidate("x"), {"--github"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_HOLDS(run.output, "::error file=" + path("mine.csv") + ",line=5,title=exactff check%3A bad input::");
+}
+
+TEST_F(CheckCommand, DrawsTheHistogram) {
+  if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "gnuplot is not installed";
+  EXPECT_EQ(check(candidate("0.375"), {"--plot", path("h.svg"), "--max-abs", "1"}).exit_code, 0);
+  EXPECT_HOLDS(contents(path("h.svg")), "</svg>");
+  EXPECT_HOLDS(contents(path("h.svg")), "max-abs");
+}
+
+TEST_F(CheckCommand, HoldsOnToABaseline) {
+  const std::string file = path("b.json");
+  EXPECT_EQ(check(candidate("0.375"), {"--write-baseline", file}).exit_code, 0);
+  EXPECT_EQ(check(candidate("0.375"), {"--baseline", file}).exit_code, 0);
+  const ProgramRun worse = check(candidate("0.376"), {"--baseline", file});
+  EXPECT_EQ(worse.exit_code, 1);
+  EXPECT_HOLDS(worse.output, "FAIL baseline max-abs all 0.126 0.125\n");
+  EXPECT_EQ(check(candidate("0.376"), {"--baseline", file, "--slack", "0.01"}).exit_code, 0);
+  const ProgramRun better = check(candidate("0.3125"), {"--baseline", file});
+  EXPECT_EQ(better.exit_code, 0);
+  EXPECT_HOLDS(better.output, "Better than baseline max-abs: 0.125 -> 0.0625, 50 % less\n");
+  EXPECT_HOLDS(better.output, "Hold on to it: --write-baseline " + file + '\n');
+}
+
+TEST_F(CheckCommand, TightensABaselineAndNeverLoosensIt) {
+  const std::string file = path("b.json");
+  (void)check(candidate("0.375"), {"--write-baseline", file});
+  const std::string first = contents(file);
+  EXPECT_EQ(check(candidate("0.5"), {"--baseline", file, "--write-baseline", file}).exit_code, 1);
+  EXPECT_EQ(contents(file), first);
+  EXPECT_EQ(check(candidate("0.3125"), {"--baseline", file, "--write-baseline", file}).exit_code, 0);
+  EXPECT_NE(contents(file), first);
+  EXPECT_EQ(check(candidate("0.375"), {"--baseline", file}).exit_code, 1);
+}
+
+TEST_F(CheckCommand, RecordsNothingThatIsNoNumber) {
+  EXPECT_EQ(check(candidate("nan"), {"--write-baseline", path("b.json")}).exit_code, 1);
+  EXPECT_FALSE(std::filesystem::exists(path("b.json")));
+}
+
+TEST_F(CheckCommand, RefusesFlagsThatMeanNothing) {
+  const std::string mine = candidate("0.25");
+  for (const std::vector<std::string>& flags :
+       std::vector<std::vector<std::string>>{{"--max-abs", "small"},
+                                             {"--max-abs", "-1"},
+                                             {"--max-rel", "nan"},
+                                             {"--quantile", "0.99"},
+                                             {"--quantile", "1.5=1"},
+                                             {"--quantile", "x=1"},
+                                             {"--match", "name"},
+                                             {"--match", "position", "--position-columns", "x,y"},
+                                             {"--truth-column", "unoccluded"},
+                                             {"--baseline", "none.json"},
+                                             {"--slack", "-1", "--baseline", "none.json"},
+                                             {"--junit", "no/such/folder/j.xml"}}) {
+    EXPECT_EQ(check(mine, flags).exit_code, 2) << flags[0] << ' ' << flags[1];
+  }
+}
+
+// From the scene to the verdict: the values of a truth file as a candidate, with one of them off.
+TEST(CheckOfATruthFile, CatchesAThousandthAndForgivesABillionth) {
+  const TemporaryDirectory directory;
+  const std::string truth = (directory.path() / "truth.csv").string();
+  const std::string scene = EXACTFF_DATA_DIR "/scenes/cornell_box.obj";
+  ASSERT_EQ(run_program(EXACTFF_PROGRAM, {"truth", scene, "--on", "floor", "--grid", "4x4", "-o", truth}).exit_code, 0);
+  for (const double bug : {1e-3, 1e-9}) {
+    std::string mine = "receiver,value\n";
+    for (const check::TruthRow& row : check::read_truth(truth).rows) {
+      mine += '"' + row.receiver + "\"," + study::shortest(row.value + (row.receiver == "2,3" ? bug : 0.0)) + '\n';
+    }
+    const std::string file = directory.write("mine.csv", mine).string();
+    const ProgramRun run = run_program(EXACTFF_PROGRAM, {"check", truth, file, "--max-abs", "1e-6", "--eps-b", "1e-6"});
+    EXPECT_EQ(run.exit_code, bug == 1e-3 ? 1 : 0) << run.output;
+    EXPECT_HOLDS(run.output, "1 2,3 light ");
+  }
+}
+
+TEST_F(CheckCommand, ShowsAnExample) {
+  const ProgramRun run = run_program(EXACTFF_PROGRAM, {"check", "--help"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_HOLDS(run.output, "exactff check truth.csv mine.csv --max-abs 1e-4");
+}
+
+}  // namespace
+}  // namespace exactff
