@@ -9,7 +9,7 @@ packages=(
   libembree-dev                                                                  # shadow rays
   libjemalloc-dev                                                                # the program's allocator
   libcli11-dev nlohmann-json3-dev gnuplot-nox                                    # program and report
-  libgtest-dev patch                                                             # tests
+  libgtest-dev patch pkgconf                                                     # tests
   "$@"
 )
 

@@ -16,6 +16,11 @@ struct Command {
 Command add_info(CLI::App& app);
 Command add_point(CLI::App& app);
 Command add_compare(CLI::App& app);
+Command add_truth(CLI::App& app);
+Command add_merge(CLI::App& app);
+Command add_check(CLI::App& app);
 Command add_stress(CLI::App& app);
+Command add_completion(CLI::App& app);
+Command add_manual(CLI::App& app);
 
 }  // namespace exactff::cli

@@ -6,57 +6,30 @@
 #include <cstdlib>
 #include <exception>
 #include <iostream>
-#include <new>
-#include <stdexcept>
-#include <system_error>
 
 #include "cli/command.h"
+#include "cli/exit_code.h"
+#include "cli/help.h"
+#include "cli/launch.h"
 #include "cli/memory.h"
-#include "exactff/error.h"
 #include "exactff/version.h"
 
 namespace {
-
-constexpr int kBadInput = 2;
-constexpr int kInternalFailure = 4;
-
-constexpr const char* kOutOfMemory =
-    "exactff: out of memory (the scene and what is asked of it need more than there is); nothing was written; use a "
-    "smaller scene or grid or fewer --threads, or raise the limit\n";
 
 constexpr const char* kDescription =
     "exactff: exact form factors from a point to a polygonal source, with occluders in between\n"
     "\n"
     "Start with `exactff info SCENE` to see what can be named, then\n"
     "  exactff point SCENE --at X Y Z --normal NX NY NZ --source NAME\n"
-    "  exactff compare SCENE --on NAME --grid 32x32 -o DIR";
-
-int run(const std::function<int()>& command) {
-  try {
-    return command();
-  } catch (const exactff::InputError& error) {
-    std::cerr << "exactff: " << error.what() << '\n';
-    return kBadInput;
-  } catch (const std::bad_alloc&) {
-    std::cerr << kOutOfMemory;
-  } catch (const std::length_error&) {  // more than any memory could hold
-    std::cerr << kOutOfMemory;
-  } catch (const std::system_error& error) {
-    std::cerr << "exactff: the system refused: " << error.what()
-              << " (a thread could not be started or a file not be reached); nothing was written; try --threads 1, or "
-                 "raise the limits\n";
-  } catch (const std::exception& error) {
-    std::cerr << "exactff: internal failure: " << error.what()
-              << " (this is a fault of the program); please report it with the scene and the command line\n";
-  }
-  return kInternalFailure;
-}
+    "  exactff compare SCENE --on NAME --grid 32x32 -o DIR\n"
+    "  exactff truth SCENE --on NAME --grid 32x32 -o truth.csv\n"
+    "  exactff check truth.csv CANDIDATE.csv --max-abs 1e-4";
 
 // Memory may also end where no exception may pass.
 [[noreturn]] void end_at_once() {
   std::fputs("exactff: ended by an error that nothing could handle, such as the end of memory; no result was written\n",
              stderr);
-  std::_Exit(kInternalFailure);
+  std::_Exit(exactff::cli::kInternalFailure);
 }
 
 void prepare_for_the_worst() {
@@ -70,18 +43,22 @@ void prepare_for_the_worst() {
 int main(int argc, char** argv) {
   prepare_for_the_worst();
   CLI::App app(kDescription, "exactff");
+  app.formatter(exactff::cli::help_formatter());
   app.set_version_flag("--version", std::string("exactff ") + exactff::kVersion);
   app.require_subcommand(0, 1);
-  const std::array commands = {exactff::cli::add_info(app), exactff::cli::add_point(app),
-                               exactff::cli::add_compare(app), exactff::cli::add_stress(app)};
+  const std::array commands = {
+      exactff::cli::add_info(app),   exactff::cli::add_point(app),      exactff::cli::add_compare(app),
+      exactff::cli::add_truth(app),  exactff::cli::add_merge(app),      exactff::cli::add_check(app),
+      exactff::cli::add_stress(app), exactff::cli::add_completion(app), exactff::cli::add_manual(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error, std::cout, std::cerr) == 0 ? 0 : kBadInput;
+    if (exactff::cli::launched_rank() > 0) return 0;  // under mpirun it is told once
+    return app.exit(error, std::cout, std::cerr) == 0 ? 0 : exactff::cli::kBadInput;
   }
   for (const exactff::cli::Command& command : commands) {
-    if (command.app->parsed()) return run(command.run);
+    if (command.app->parsed()) return exactff::cli::exit_code_of(command.run);
   }
   std::cerr << app.help() << "\nName one of the commands.\n";
-  return kBadInput;
+  return exactff::cli::kBadInput;
 }

@@ -127,11 +127,14 @@ int run(const StressArguments& args) {
 Command add_stress(CLI::App& app) {
   auto args = std::make_shared<StressArguments>();
   CLI::App* command = app.add_subcommand("stress", "How every method behaves as scenes go from benign to extreme");
-  command->add_option("--family", args->families, "Families, separated by commas (default: all)")->delimiter(',');
+  command->add_option("--family", args->families, "Families, separated by commas (default: all)")
+      ->delimiter(',')
+      ->type_name("NAME");
   command->add_flag("--list", args->list, "Tell the families and what their stiffness is");
   command->add_option("--threads", args->threads, "Threads (default: all); values do not depend on it")
-      ->check(CLI::Range(1, 4096));
-  command->add_option("-o,--output", args->folder, "Folder for the tables and the report");
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+  command->add_option("-o,--output", args->folder, "Folder for the tables and the report")->type_name("DIR");
   command->footer(kFooter);
   return {command, [args] { return run(*args); }};
 }

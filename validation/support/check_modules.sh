@@ -12,8 +12,10 @@ declare -A allowed=(
   [exact]="exact contour visibility scene kernel"
   [sampled]="sampled scene kernel"
   [study]="study scene kernel"
+  [check]="check study scene kernel"
   [stress]="stress study scene kernel"
-  [cli]="cli stress study scene"
+  [truth]="truth study scene kernel"
+  [cli]="cli check stress truth study scene"
 )
 
 failures=0

@@ -1,0 +1,13 @@
+// The manual page, written from the program's own options.
+#pragma once
+
+#include <string>
+
+#include "cli/option_table.h"
+
+namespace exactff::cli {
+
+// In the language of man(7).
+[[nodiscard]] std::string manual_page(const ProgramTable& program);
+
+}  // namespace exactff::cli

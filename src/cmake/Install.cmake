@@ -1,0 +1,79 @@
+# cmake --install. Everything is found relative to its own place, so that an installed tree may be moved.
+# Components: program, mpi (what it loads under mpirun), library (what a program linked with the shared library needs to
+# run), development.
+include(CMakePackageConfigHelpers)
+
+set(exactff_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/exactff)
+set(exactff_doc_dir ${CMAKE_INSTALL_DATADIR}/doc/exactff)
+set(exactff_generated ${PROJECT_BINARY_DIR}/installed)
+
+# --- library ---
+get_target_property(library_type exactff TYPE)
+install(TARGETS exactff EXPORT exactff-targets
+  ARCHIVE COMPONENT development
+  LIBRARY COMPONENT library NAMELINK_COMPONENT development)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/exactff ${PROJECT_BINARY_DIR}/include/exactff
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN *.h)
+
+install(EXPORT exactff-targets NAMESPACE exactff:: DESTINATION ${exactff_cmake_dir} COMPONENT development)
+configure_package_config_file(src/cmake/exactff-config.cmake.in ${exactff_generated}/exactff-config.cmake
+  INSTALL_DESTINATION ${exactff_cmake_dir})
+write_basic_package_version_file(${exactff_generated}/exactff-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${exactff_generated}/exactff-config.cmake ${exactff_generated}/exactff-config-version.cmake
+              ${PROJECT_SOURCE_DIR}/src/cmake/ImportLibrary.cmake
+  DESTINATION ${exactff_cmake_dir} COMPONENT development)
+
+# --- pkg-config ---
+# Where there is a static library alone, plain `pkg-config --libs` has to name what it needs. FLINT, Arb and Embree bring
+# no file of their own in Debian 12.
+if(library_type STREQUAL "STATIC_LIBRARY")
+  set(pc_requires "mpfr gmpxx gmp")
+  set(pc_libraries " -lflint-arb -lflint -lembree3 -pthread")
+endif()
+set(pc_prefix ${CMAKE_INSTALL_PREFIX})
+foreach(kind LIB INCLUDE)
+  string(TOLOWER pc_${kind}dir variable)
+  set(${variable} ${CMAKE_INSTALL_${kind}DIR})
+  if(NOT IS_ABSOLUTE "${${variable}}")
+    set(${variable} "\${prefix}/${${variable}}")
+  endif()
+endforeach()
+if(NOT IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
+  file(RELATIVE_PATH up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  string(REGEX REPLACE "/$" "" pc_prefix "\${pcfiledir}/${up}")
+endif()
+configure_file(src/cmake/exactff.pc.in ${exactff_generated}/exactff.pc @ONLY)
+install(FILES ${exactff_generated}/exactff.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+
+# --- program ---
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${exactff_doc_dir} COMPONENT program)
+if(NOT EXACTFF_PROGRAM)
+  return()
+endif()
+if(library_type STREQUAL "SHARED_LIBRARY")
+  file(RELATIVE_PATH to_library /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
+  set_target_properties(exactff_program PROPERTIES INSTALL_RPATH "\$ORIGIN/${to_library}")
+endif()
+install(TARGETS exactff_program RUNTIME COMPONENT program)
+if(TARGET exactff_mpi)
+  install(TARGETS exactff_mpi LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/exactff COMPONENT mpi)
+endif()
+install(FILES ${PROJECT_SOURCE_DIR}/data/scenes/cornell_box.obj ${PROJECT_SOURCE_DIR}/data/scenes/cornell_box.mtl
+  DESTINATION ${exactff_doc_dir}/examples COMPONENT program)
+
+# The program writes its manual page and completions itself, from the options that it parses:
+# exactff_install_written(FILE FOLDER ARGUMENT...)
+function(exactff_install_written file folder)
+  set(written ${exactff_generated}/${file})
+  get_filename_component(folder_of_written ${written} DIRECTORY)
+  file(MAKE_DIRECTORY ${folder_of_written})
+  add_custom_command(OUTPUT ${written} COMMAND exactff_program ${ARGN} -o ${written} DEPENDS exactff_program VERBATIM)
+  set_property(GLOBAL APPEND PROPERTY exactff_written ${written})
+  install(FILES ${written} DESTINATION ${folder} COMPONENT program)
+endfunction()
+exactff_install_written(man/exactff.1 ${CMAKE_INSTALL_MANDIR}/man1 manual)
+exactff_install_written(bash/exactff ${CMAKE_INSTALL_DATADIR}/bash-completion/completions completion bash)
+exactff_install_written(zsh/_exactff ${CMAKE_INSTALL_DATADIR}/zsh/site-functions completion zsh)
+exactff_install_written(fish/exactff.fish ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d completion fish)
+get_property(exactff_written GLOBAL PROPERTY exactff_written)
+add_custom_target(exactff_written ALL DEPENDS ${exactff_written})

@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# check_install.sh BUILD-FOLDER COMPILER VERSION: installs the build into a temporary folder, moves that elsewhere, checks
+# what is in it, and builds and runs other people's projects against it: through find_package, pkg-config, as a
+# folder of a larger project (configured only; it would build the library again), and with GoogleTest.
+set -euo pipefail
+
+build=$1
+export CXX=$2
+version=$3
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+top=$(cd "$here/../.." && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export CMAKE_GENERATOR=Ninja
+
+fail() {
+  echo "FAILED: $1" >&2
+  exit 1
+}
+
+# quietly TEXT COMMAND...: what the command prints is shown only if it fails.
+quietly() {
+  echo "$1"
+  "${@:2}" > "$work/log" 2>&1 || { cat "$work/log" >&2; fail "$1"; }
+}
+
+prefix=$work/moved
+quietly "installing" env DESTDIR="$work/stage" cmake --install "$build" --prefix /opt/first
+mv "$work/stage/opt/first" "$prefix"
+[ -z "$(find "$work/stage" -type f)" ] || fail "files were installed outside the prefix: $(find "$work/stage" -type f)"
+
+for file in bin/exactff include/exactff/exact.h include/exactff/version.h share/man/man1/exactff.1 \
+  share/bash-completion/completions/exactff share/zsh/site-functions/_exactff \
+  share/fish/vendor_completions.d/exactff.fish share/doc/exactff/LICENSE share/doc/exactff/examples/cornell_box.obj; do
+  [ -s "$prefix/$file" ] || fail "$file is not installed"
+done
+programs=$(find "$prefix" -type f -perm /111 ! -name '*.so*' -printf '%P\n')
+[ "$programs" = bin/exactff ] || fail "programs other than exactff are installed: $programs"
+! grep -rIl --fixed-strings -e "$top" -e "$build" "$prefix" || fail "these files name the folder that they were built in"
+
+quietly "running the program" "$prefix/bin/exactff" point "$here/app/room.obj" --at 0 0 0 --normal 0 0 1 --source lamp
+quietly "reading the completion" bash -n "$prefix/share/bash-completion/completions/exactff"
+if command -v groff > /dev/null; then
+  quietly "reading the manual page" groff -man -Tutf8 -ww -z "$prefix/share/man/man1/exactff.1"
+  [ ! -s "$work/log" ] || { cat "$work/log"; fail "the manual page has faults"; }
+fi
+
+export CMAKE_PREFIX_PATH=$prefix
+quietly "find_package: configuring" cmake -S "$here/app" -B "$work/app"
+quietly "find_package: building" cmake --build "$work/app"
+quietly "find_package: running" "$work/app/consumer" "$here/app/room.obj"
+grep "^exactff $version: " "$work/log" || fail "the headers are not those of $version"
+mkdir "$work/older"
+printf 'cmake_minimum_required(VERSION 3.25)\nproject(older LANGUAGES CXX)\nfind_package(exactff 0.0 REQUIRED)\n' \
+  > "$work/older/CMakeLists.txt"
+! cmake -S "$work/older" -B "$work/older" > "$work/log" 2>&1 || fail "find_package takes version $version for 0.0"
+grep -q "exactff-config.cmake, version: $version" "$work/log" || fail "find_package did not see version $version"
+
+export PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name exactff.pc)")
+read -ra flags <<< "$(pkg-config --cflags --libs exactff)"
+quietly "pkg-config: building" "$CXX" -std=c++20 "$here/app/main.cpp" -o "$work/by_pkg_config" "${flags[@]}" \
+  "-Wl,-rpath,$(dirname "$PKG_CONFIG_PATH")"
+quietly "pkg-config: running" "$work/by_pkg_config" "$here/app/room.obj"
+[ "$(pkg-config --modversion exactff)" = "$version" ] || fail "pkg-config names another version than $version"
+
+quietly "add_subdirectory: configuring" cmake -S "$here/app" -B "$work/subdirectory" -DEXACTFF_SOURCE="$top"
+! grep -q '^EXACTFF_TESTS:BOOL=ON' "$work/subdirectory/CMakeCache.txt" || fail "a larger project would get the tests"
+
+if [ -f "$here/guard/CMakeLists.txt" ]; then
+  export PATH=$prefix/bin:$PATH
+  quietly "guard: configuring" cmake -S "$here/guard" -B "$work/guard"
+  quietly "guard: building" cmake --build "$work/guard"
+  quietly "guard: testing" ctest --test-dir "$work/guard" --output-on-failure
+fi
+echo "the installation serves other projects"

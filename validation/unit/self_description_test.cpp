@@ -1,0 +1,158 @@
+// Completions, manual page and help are written from the same option tables; the help tells what there must be.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/program.h"
+
+namespace exactff {
+namespace {
+
+using validation::run_program;
+
+std::string output_of(const std::vector<std::string>& arguments) {
+  const auto run = run_program(EXACTFF_PROGRAM, arguments);
+  EXPECT_EQ(run.exit_code, 0);
+  return run.output;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+// "  info      List what ..." after "Subcommands:".
+std::vector<std::string> commands() {
+  const std::string help = output_of({"--help"});
+  std::vector<std::string> names;
+  for (const std::string& line : lines_of(help.substr(help.find("Subcommands:")))) {
+    if (line.starts_with("  ")) names.push_back(line.substr(2, line.find(' ', 2) - 2));
+  }
+  EXPECT_GE(names.size(), 4U);
+  return names;
+}
+
+// "  -o,--output DIR   Folder ...": the names of every option.
+std::set<std::string> options_in_help(const std::string& command) {
+  static const std::regex kTitle(R"(^  (-[-a-z0-9]+)(?:,(--[-a-z0-9]+))?)", std::regex::ECMAScript);
+  std::set<std::string> names;
+  for (const std::string& line : lines_of(output_of({command, "--help"}))) {
+    std::smatch title;
+    if (!std::regex_search(line, title, kTitle)) continue;
+    names.insert(title[1]);
+    if (title[2].matched) names.insert(title[2]);
+  }
+  return names;
+}
+
+// What bash offers where the last of `words` is being typed; for files and folders, how it is told to offer them.
+std::vector<std::string> offered_by_bash(const std::vector<std::string>& words) {
+  static const std::string kCompletion = output_of({"completion", "bash"});
+  std::string script = "compopt() { COMPREPLY=(\"compopt $*\"); }\n" + kCompletion + "COMP_WORDS=(";
+  for (const std::string& word : words) script += "'" + word + "' ";
+  script += ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_exactff\nprintf '%s\\n' \"${COMPREPLY[@]}\"\n";
+  const auto run = run_program("/bin/bash", {"-c", script});
+  std::vector<std::string> offers = lines_of(run.output);
+  if (offers == std::vector<std::string>{""}) offers.clear();
+  return offers;
+}
+
+using Offers = std::vector<std::string>;
+
+TEST(Completion, BashOffersEveryOptionThatHelpLists) {
+  for (const std::string& command : commands()) {
+    const Offers offers = offered_by_bash({"exactff", command, "-"});
+    EXPECT_EQ(std::set<std::string>(offers.begin(), offers.end()), options_in_help(command)) << command;
+  }
+}
+
+TEST(Completion, ZshAndFishKnowEveryOptionThatHelpLists) {
+  const std::string zsh = output_of({"completion", "zsh"});
+  const std::string fish = output_of({"completion", "fish"});
+  for (const std::string& command : commands()) {
+    const std::size_t in_zsh = zsh.find("\n      " + command + ")\n");
+    ASSERT_NE(in_zsh, std::string::npos) << command;
+    const std::string section = zsh.substr(in_zsh, zsh.find(";;", in_zsh) - in_zsh);
+    for (const std::string& option : options_in_help(command)) {
+      EXPECT_NE(section.find("'" + option + "["), std::string::npos) << command << ' ' << option;
+      const std::string flag = option.starts_with("--") ? " -l " + option.substr(2) : " -s " + option.substr(1);
+      EXPECT_TRUE(std::regex_search(fish, std::regex("from " + command + "'[^\n]*" + flag + " "))) << command << flag;
+    }
+  }
+}
+
+TEST(Completion, BashOffersCommandsFirst) {
+  EXPECT_EQ(offered_by_bash({"exactff", ""}), commands());
+  EXPECT_EQ(offered_by_bash({"exactff", "po"}), Offers{"point"});
+  EXPECT_EQ(offered_by_bash({"exactff", "--v"}), Offers{"--version"});
+}
+
+TEST(Completion, BashOffersTheChoicesOfAnOption) {
+  EXPECT_EQ(offered_by_bash({"exactff", "point", "room.obj", "--engine", ""}), (Offers{"edges", "boolean", "both"}));
+  EXPECT_EQ(offered_by_bash({"exactff", "point", "--engine", "b"}), (Offers{"boolean", "both"}));
+  EXPECT_EQ(offered_by_bash({"exactff", "info", "--patches", "=", "f"}), Offers{"faces"});
+  EXPECT_EQ(offered_by_bash({"exactff", "info", "--patches", "="}), (Offers{"groups", "faces"}));
+}
+
+TEST(Completion, BashOffersFilesForScenes) {
+  const Offers files = {"compopt -o default"};
+  EXPECT_EQ(offered_by_bash({"exactff", "point", "ro"}), files);
+  EXPECT_EQ(offered_by_bash({"exactff", "point", "--json", ""}), files);
+  EXPECT_EQ(offered_by_bash({"exactff", "point", "--at", "-1", "0", ".5", ""}), files);
+  EXPECT_EQ(offered_by_bash({"exactff", "point", "room.obj", "--svg", ""}), files);
+}
+
+TEST(Completion, BashOffersNothingForNumbers) {
+  EXPECT_EQ(offered_by_bash({"exactff", "point", "--at", "-1", "0", ""}), Offers{});
+  EXPECT_EQ(offered_by_bash({"exactff", "point", "room.obj", "--digits", ""}), Offers{});
+}
+
+TEST(Completion, RefusesAShellThatItDoesNotKnow) {
+  EXPECT_EQ(run_program(EXACTFF_PROGRAM, {"completion", "csh"}).exit_code, 2);
+}
+
+TEST(Manual, NamesEveryCommandAndOption) {
+  const std::string page = std::regex_replace(output_of({"manual"}), std::regex(R"(\\-)"), "-");
+  for (const std::string& command : commands()) {
+    const std::size_t begin = page.find("\n.SH exactff " + command + "\n");
+    ASSERT_NE(begin, std::string::npos) << command;
+    const std::string section = page.substr(begin, page.find("\n.SH ", begin + 1) - begin);
+    for (const std::string& option : options_in_help(command)) {
+      EXPECT_NE(section.find("\\fB" + option + "\\fR"), std::string::npos) << command << ' ' << option;
+    }
+  }
+}
+
+TEST(Help, TellsChoicesDefaultsAndWhatIsRequired) {
+  const std::string help = output_of({"point", "--help"});
+  for (const char* part : {"--engine edges|boolean|both ", "(default: edges)", "--at X Y Z ", "(required)",
+                           "--source NAME[:K]...", "(1 to 10000)", "(not with --json)"}) {
+    EXPECT_NE(help.find(part), std::string::npos) << part << "\nin\n" << help;
+  }
+  for (const char* part : {"TEXT:{", "INT in [", "REQUIRED"}) EXPECT_EQ(help.find(part), std::string::npos) << part;
+}
+
+TEST(Help, TellsNoneOfTheParsersOwnNotation) {
+  static const std::regex kNotation(R"(:(\{|[A-Z]+ in \[|POSITIVE|NONNEGATIVE|NUMBER|FILE|DIR|PATH))");
+  for (const std::string& command : commands()) {
+    for (const std::string& line : lines_of(output_of({command, "--help"}))) {
+      EXPECT_FALSE(std::regex_search(line, kNotation)) << line;
+    }
+  }
+}
+
+TEST(Help, FitsIntoLinesOf120Characters) {
+  for (const std::string& command : commands()) {
+    for (const std::string& line : lines_of(output_of({command, "--help"}))) EXPECT_LE(line.size(), 120U) << line;
+  }
+}
+
+}  // namespace
+}  // namespace exactff
