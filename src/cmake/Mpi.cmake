@@ -6,6 +6,7 @@ set(EXACTFF_HAS_MPI OFF)
 if(EXACTFF_MPI)
   set(MPI_CXX_SKIP_MPICXX ON)  # not the bindings that MPI-3 has removed
   find_package(MPI COMPONENTS CXX QUIET)
+  set(Boost_USE_STATIC_LIBS OFF)  # the static one cannot be linked into a module
   find_package(Boost QUIET OPTIONAL_COMPONENTS mpi)
   if(MPI_CXX_FOUND AND TARGET Boost::mpi)
     set(EXACTFF_HAS_MPI ON)

@@ -73,22 +73,28 @@ TEST_F(MpiTruth, FourProcessesWriteTheBytesOfOne) {
 }
 
 TEST_F(MpiTruth, AKilledProcessCostsNoFinishedRow) {
-  for (std::size_t victim = 0; victim < 4; ++victim) {
+  int killed = 0;
+  // mpirun takes its time to end the others, which go on meanwhile: they may even finish.
+  for (std::size_t victim = 0; victim < 4 && !fs::exists(file_); ++victim) {
     const std::uintmax_t before = size_of(journal_);
     const RunningProgram run = start(truth("floor", file_, {"--resume", "--engine", "boolean"}));
     while (size_of(journal_) <= before + 2000 && !run.has_ended()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     const std::vector<int> ranks = children_of(run.process());
+    if (run.has_ended()) break;
     ASSERT_EQ(ranks.size(), 4U) << run.error();
     ::kill(ranks[victim], SIGKILL);
     EXPECT_NE(run.wait(), 0);
-    ASSERT_GT(size_of(journal_), before);
-    ASSERT_FALSE(fs::exists(file_));
+    ASSERT_TRUE(fs::exists(file_) || size_of(journal_) > before);
+    ++killed;
   }
+  EXPECT_GT(killed, 0);
   const validation::ProgramRun alone = validation::run_program(EXACTFF_PROGRAM, truth("floor", file_, {"--resume"}));
   EXPECT_EQ(alone.exit_code, 0);
-  EXPECT_NE(alone.output.find(" of them in "), std::string::npos) << alone.output;
+  EXPECT_TRUE(alone.output.find(" of them in ") != std::string::npos ||
+              alone.output.find("all were there already") != std::string::npos)
+      << alone.output;
   EXPECT_EQ(text_of(file_), whole());
 }
 

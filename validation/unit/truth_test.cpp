@@ -166,7 +166,7 @@ TEST_F(Truth, EveryRowIsTheExactValueOfItsReceiverAndSource) {
     ASSERT_EQ(line.back(), '\n');
     line.pop_back();
     const std::vector<std::string> fields = fields_of(line);
-    ASSERT_EQ(fields.size(), 18U) << line;
+    ASSERT_EQ(fields.size(), 19U) << line;
     const Receiver& receiver = asked.receivers[row / 2];
     const ExactSource source(scene_, asked.sources[row % 2]);
     const FormFactor f = exact_form_factor(scene_, receiver, source, {.visible_fraction = true});
@@ -183,7 +183,8 @@ TEST_F(Truth, EveryRowIsTheExactValueOfItsReceiverAndSource) {
     EXPECT_EQ(std::stod(fields[12]), free.value);
     EXPECT_EQ(std::stod(fields[13]), f.visible_fraction);
     EXPECT_EQ(std::stod(fields[14]), f.value);  // rho and B are 1
-    EXPECT_EQ(fields[17], to_string(f.status));
+    EXPECT_EQ(std::stod(fields[17]), 1.0);
+    EXPECT_EQ(fields[18], to_string(f.status));
   }
   EXPECT_GT(hidden, 0);
 }
