@@ -26,9 +26,13 @@ constexpr std::string_view kViridis =
 constexpr std::string_view kDiverging =
     "set palette defined (0 '#2166ac', 1 '#67a9cf', 2 '#d1e5f0', 3 '#f7f7f7', 4 '#fddbc7', 5 '#ef8a62', 6 '#b2182b')\n";
 
-std::string head(int width, int height) {
+// Figures of a page have its background; those that stand alone are white everywhere.
+enum class Background { kOfPage, kWhite };
+
+std::string head(int width, int height, Background background = Background::kOfPage) {
   return "set encoding utf8\nset terminal svg size " + std::to_string(width) + ',' + std::to_string(height) +
-         " dynamic enhanced font 'sans-serif,15' linewidth 1.2\n";
+         " dynamic enhanced font 'sans-serif,15' linewidth 1.2" +
+         (background == Background::kWhite ? " background rgb 'white'" : "") + "\n";
 }
 
 std::string quoted(std::string_view text) {
@@ -151,8 +155,8 @@ std::string bar_plot(const Axes& axes, const std::vector<Bar>& bars, const std::
     arrows += "set arrow from " + at + ", graph 0 to " + at + ", graph 1 nohead front " + style + '\n';
     keys += ", \\\n     keyentry with lines " + style + " title " + quoted(marks[i].title);
   }
-  return head(560, 430) + axis_commands(axes) + x_range(axes, {ends}) + "set yrange [0:*]\n" + arrows +
-         "$bars << END\n" + data +
+  return head(560, 430, Background::kWhite) + axis_commands(axes) + x_range(axes, {ends}) + "set yrange [0:*]\n" +
+         arrows + "$bars << END\n" + data +
          "END\nplot $bars using 1:3:1:2:(0):3 with boxxyerror lc rgb '#0072B2' fs solid 0.6 noborder notitle" + keys +
          '\n';
 }
