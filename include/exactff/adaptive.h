@@ -14,6 +14,10 @@
 
 namespace exactff {
 
+namespace sampled {
+class PatchVisibility;
+}
+
 enum class SamplePattern { kCentre, kRegular, kJittered, kLowDiscrepancy };
 
 enum class Variant {
@@ -102,6 +106,9 @@ class AdaptiveSolver {
   // depth cap wherever a shadow's edge is seen: 2^depth leaves or more.
   [[nodiscard]] AdaptiveResult form_factor(const Receiver& receiver, const AdaptiveSource& source, double largest_rho_b,
                                            const AdaptiveOptions& options) const;
+  // For the library's own modules: where shaft culling leaves V in doubt, `visibility` is asked instead of rays.
+  [[nodiscard]] AdaptiveResult form_factor(const Receiver& receiver, const AdaptiveSource& source, double largest_rho_b,
+                                           const AdaptiveOptions& options, sampled::PatchVisibility& visibility) const;
   // The same with prepare(source) each time, which looks at every face of the scene.
   [[nodiscard]] AdaptiveResult form_factor(const Receiver& receiver, const Selection& source, double largest_rho_b,
                                            const AdaptiveOptions& options) const;

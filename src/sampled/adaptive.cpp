@@ -11,17 +11,14 @@
 #include "exactff/adaptive.h"
 
 #include <array>
-#include <atomic>
 #include <bit>
-#include <chrono>
 #include <limits>
-#include <mutex>
 #include <optional>
 #include <string>
 
 #include "sampled/closed_form.h"
-#include "sampled/ray_scene.h"
-#include "sampled/receiver_view.h"
+#include "sampled/patch_visibility.h"
+#include "sampled/sampled_scene.h"
 
 namespace exactff {
 
@@ -34,26 +31,6 @@ struct AdaptiveSource::Data {
 
 namespace {
 
-struct SampledScene {
-  explicit SampledScene(const Scene& given) : scene(given), unit_box(checked_unit_box(given, scene.points)) {}
-
-  // Built when first asked for.
-  const RayScene& ray_scene() const {
-    std::call_once(rays_built, [this] {
-      const auto start = std::chrono::steady_clock::now();
-      rays.emplace(*scene.scene, scene.points, unit_box);
-      build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    });
-    return *rays;
-  }
-
-  ScaledScene scene;
-  UnitBox unit_box;
-  mutable std::once_flag rays_built;
-  mutable std::optional<RayScene> rays;
-  mutable std::atomic<double> build_seconds = 0.0;
-};
-
 // Memory that one thread uses again for each receiver.
 struct Workspace {
   Gathered gathered;
@@ -64,40 +41,24 @@ struct Workspace {
   std::vector<Vec3> clipped;
 };
 
-// Longer lists are left to Embree. Measured for 16 rays: a candidate costs 25 ns, a packet of rays 1 to 6 us in scenes
-// of 100 to 10,000 triangles, so that both cost the same at 50 (blinds) to 300 (soup).
-constexpr std::size_t kLongestDirectList = 128;
-
-// Beyond this distance, in sizes of the scene, products of lengths might overflow; F is below 2^-400 there.
-constexpr double kFarthest = 0x1p200;
-
 struct VisibilityFactor {
   double value = 0.0;
   std::optional<LeafReason> certain;  // where shaft culling settled it
   CandidateRange candidates;
 };
 
-std::uint64_t bits_of(double value) { return std::bit_cast<std::uint64_t>(value + 0.0); }  // -0 is 0
-
-std::uint64_t stream_key(const ReceiverView& view, const Selection& source, const AdaptiveOptions& options) {
-  std::uint64_t key = derived_key(options.seed, 0);
-  for (const Vec3& v : {view.exact_point, view.normal}) {
-    for (const double value : {v.x, v.y, v.z}) key = derived_key(key, bits_of(value));
-  }
-  key = derived_key(key, index_of(source.patch));
-  return derived_key(key, source.face ? index_of(*source.face) + 1 : 0);
-}
-
 // One receiver and one source.
 class Recursion {
  public:
+  // `visibility`: asked instead of rays, unless null.
   Recursion(const SampledScene& solver, const ReceiverView& view, const AdaptiveOptions& options, double largest_rho_b,
-            Workspace& work, AdaptiveResult& result)
+            PatchVisibility* visibility, Workspace& work, AdaptiveResult& result)
       : solver_(solver),
         view_(view),
         options_(options),
         eps_f_(options.eps_b / largest_rho_b),
         eps_a_(options.eps_a * solver.scene.scale * solver.scene.scale),
+        visibility_(visibility),
         work_(work),
         result_(result) {
     work_.plan.prepare(options.pattern, options.rays);
@@ -140,6 +101,7 @@ class Recursion {
     gather_occluders(solver_.scene, view_, plane, p, horizon, solver_.unit_box.blur(), work_.gathered);
     result_.shaft_tests += work_.gathered.looked_at;
     prepare_rays();
+    if (visibility_ != nullptr) visibility_->start(root.piece);
     const CandidateRange all = occluders_.push_all();
     if (p.size() <= 4) return compute_form_factor(make_sub_patch(p), all, key, 0);
     double sum = 0.0;
@@ -181,7 +143,7 @@ class Recursion {
     const auto list = occluders_.inherit(inherited, s, ShaftSides(s));
     if (!list) return {0.0, LeafReason::kShaftCut, {}};
     if (list->empty()) return {1.0, LeafReason::kShaftEmpty, *list};
-    return {trace_shadow_rays(s, *list, key), std::nullopt, *list};
+    return {visibility_ != nullptr ? visibility_->fraction(s) : trace_shadow_rays(s, *list, key), std::nullopt, *list};
   }
 
   double trace_shadow_rays(const SubPatch& s, CandidateRange list, std::uint64_t key) {
@@ -238,6 +200,7 @@ class Recursion {
   const AdaptiveOptions& options_;
   double eps_f_;
   double eps_a_;
+  PatchVisibility* visibility_;
   Workspace& work_;
   OccluderSet& occluders_ = work_.gathered.occluders;
   AdaptiveResult& result_;
@@ -300,18 +263,31 @@ AdaptiveSource AdaptiveSolver::prepare(const Selection& source) const {
       AdaptiveSource::Data{source, make_source_roots(*scene.scene, scene.points, source)}));
 }
 
-AdaptiveResult AdaptiveSolver::form_factor(const Receiver& receiver, const AdaptiveSource& source, double largest_rho_b,
-                                           const AdaptiveOptions& options) const {
+namespace {
+
+AdaptiveResult estimate(const SampledScene& solver, const Receiver& receiver, const AdaptiveSource::Data& source,
+                        double largest_rho_b, const AdaptiveOptions& options, PatchVisibility* visibility) {
   check(options, largest_rho_b);
   AdaptiveResult result;
-  const ReceiverView view = view_from(receiver, impl_->scene.scale);
+  const ReceiverView view = view_from(receiver, solver.scene.scale);
   const bool divides_by_zero = options.variant == Variant::kLiteral && options.eps_b > 0.0;
   if ((largest_rho_b == 0.0 && !divides_by_zero) || max_norm(view.point) > kFarthest) return result;
   thread_local Workspace work;
-  const AdaptiveSource::Data& data = source.data();
-  Recursion recursion(*impl_, view, options, largest_rho_b, work, result);
-  result.form_factor = recursion.compute_contribution(data.source, stream_key(view, data.selection, options));
+  Recursion recursion(solver, view, options, largest_rho_b, visibility, work, result);
+  result.form_factor = recursion.compute_contribution(source.source, stream_key(view, source.selection, options.seed));
   return result;
+}
+
+}  // namespace
+
+AdaptiveResult AdaptiveSolver::form_factor(const Receiver& receiver, const AdaptiveSource& source, double largest_rho_b,
+                                           const AdaptiveOptions& options) const {
+  return estimate(*impl_, receiver, source.data(), largest_rho_b, options, nullptr);
+}
+
+AdaptiveResult AdaptiveSolver::form_factor(const Receiver& receiver, const AdaptiveSource& source, double largest_rho_b,
+                                           const AdaptiveOptions& options, PatchVisibility& visibility) const {
+  return estimate(*impl_, receiver, source.data(), largest_rho_b, options, &visibility);
 }
 
 AdaptiveResult AdaptiveSolver::form_factor(const Receiver& receiver, const Selection& source, double largest_rho_b,

@@ -170,11 +170,21 @@ UnitBox checked_unit_box(const Scene& scene, const std::vector<Vec3>& points) {
   return box;
 }
 
-void Blockers::assign(std::size_t piece_count, std::span<const std::uint32_t> pieces) {
-  for (const std::uint32_t piece : pieces_) blocks_[piece] = 0;
-  blocks_.resize(piece_count);
+void Blockers::name(std::size_t piece_count, std::span<const std::uint32_t> pieces) {
+  for (const std::uint32_t piece : pieces_) named_[piece] = 0;
+  named_.resize(piece_count);
   pieces_.assign(pieces.begin(), pieces.end());
-  for (const std::uint32_t piece : pieces_) blocks_[piece] = 1;
+  for (const std::uint32_t piece : pieces_) named_[piece] = 1;
+}
+
+void Blockers::assign(std::size_t piece_count, std::span<const std::uint32_t> pieces) {
+  name(piece_count, pieces);
+  all_but_ = false;
+}
+
+void Blockers::assign_all_but(std::size_t piece_count, std::span<const std::uint32_t> pieces) {
+  name(piece_count, pieces);
+  all_but_ = true;
 }
 
 RayScene::RayScene(const Scene& scene, const std::vector<Vec3>& points, const UnitBox& box)

@@ -27,11 +27,15 @@ struct UnitBox {
 class Blockers {
  public:
   void assign(std::size_t piece_count, std::span<const std::uint32_t> pieces);
-  [[nodiscard]] bool contains(std::uint32_t piece) const { return blocks_[piece] != 0; }
+  void assign_all_but(std::size_t piece_count, std::span<const std::uint32_t> pieces);
+  [[nodiscard]] bool contains(std::uint32_t piece) const { return (named_[piece] != 0) != all_but_; }
 
  private:
-  std::vector<std::uint8_t> blocks_;
+  void name(std::size_t piece_count, std::span<const std::uint32_t> pieces);
+
+  std::vector<std::uint8_t> named_;
   std::vector<std::uint32_t> pieces_;
+  bool all_but_ = false;
 };
 
 // Throws InputError where rounding to single precision merges vertices or collapses or flips a piece. `points` are the

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "kernel/exact_vec.h"
@@ -175,6 +176,16 @@ ReceiverView view_from(const Receiver& receiver, double scale) {
   return view;
 }
 
+std::uint64_t stream_key(const ReceiverView& view, const Selection& source, std::uint64_t seed) {
+  const auto bits_of = [](double value) { return std::bit_cast<std::uint64_t>(value + 0.0); };  // -0 is 0
+  std::uint64_t key = derived_key(seed, 0);
+  for (const Vec3& v : {view.exact_point, view.normal}) {
+    for (const double value : {v.x, v.y, v.z}) key = derived_key(key, bits_of(value));
+  }
+  key = derived_key(key, index_of(source.patch));
+  return derived_key(key, source.face ? index_of(*source.face) + 1 : 0);
+}
+
 bool in_front(const ReceiverView& view, const SourcePlane& plane) {
   const Normal normal = plane_normal(plane.frame[0], plane.frame[1], plane.frame[2]);
   const Bounded height = bounded_dot(normal, view.point - plane.frame[0]);
@@ -184,27 +195,60 @@ bool in_front(const ReceiverView& view, const SourcePlane& plane) {
   return kernel::orientation(f[0], f[1], f[2], view.exact_point) > 0;
 }
 
-void gather_occluders(const ScaledScene& scene, const ReceiverView& view, const SourcePlane& plane,
-                      std::span<const Vec3> polygon, Horizon horizon, double blur, Gathered& gathered) {
+namespace {
+
+void start(Gathered& gathered) {
   gathered.occluders.clear();
   gathered.sharp_pieces.clear();
   gathered.blurred.clear();
   gathered.looked_at = 0;
-  Gatherer gatherer(scene, view, plane, horizon, gathered);
+}
+
+double reach_of(std::span<const Vec3> polygon) {
   double reach = 0.0;
   for (const Vec3& p : polygon) reach = std::max(reach, max_norm(p));
+  return reach;
+}
+
+void add_blurred(const SeenPolygon& seen, double reach, Gathered& gathered) {
+  gathered.blurred.push_back(static_cast<std::uint32_t>(gathered.occluders.size()));
+  gathered.occluders.add(seen, reach);
+}
+
+}  // namespace
+
+bool gather_occluders(const ScaledScene& scene, const ReceiverView& view, const SourcePlane& plane,
+                      std::span<const Vec3> polygon, Horizon horizon, double blur, Gathered& gathered,
+                      std::size_t most) {
+  start(gathered);
+  Gatherer gatherer(scene, view, plane, horizon, gathered);
+  const double reach = reach_of(polygon);
   scene.tree.query(view.point, gatherer.shaft(polygon), [&](std::uint32_t piece) {
     ++gathered.looked_at;
+    if (gathered.looked_at > most) return false;
     const SeenPolygon* seen = gatherer.see(piece);
     if (seen == nullptr) return true;
     if (gatherer.blurred(blur)) {
-      gathered.blurred.push_back(static_cast<std::uint32_t>(gathered.occluders.size()));
+      add_blurred(*seen, reach, gathered);
     } else {
       gathered.sharp_pieces.push_back(piece);
+      gathered.occluders.add(*seen, reach);
     }
-    gathered.occluders.add(*seen, reach);
     return true;
   });
+  return gathered.looked_at <= most;
+}
+
+void gather_blurred(const ScaledScene& scene, const ReceiverView& view, const SourcePlane& plane,
+                    std::span<const Vec3> polygon, Horizon horizon, std::span<const std::uint32_t> pieces,
+                    Gathered& gathered) {
+  start(gathered);
+  Gatherer gatherer(scene, view, plane, horizon, gathered);
+  const double reach = reach_of(polygon);
+  for (const std::uint32_t piece : pieces) {
+    ++gathered.looked_at;
+    if (const SeenPolygon* seen = gatherer.see(piece)) add_blurred(*seen, reach, gathered);
+  }
 }
 
 }  // namespace exactff::sampled

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -35,6 +36,9 @@ struct ReceiverView {
 // Throws InputError where a coordinate is not finite or the normal is zero.
 [[nodiscard]] ReceiverView view_from(const Receiver& receiver, double scale);
 
+// The stream of random numbers that a seed, a receiver and a source have to themselves.
+[[nodiscard]] std::uint64_t stream_key(const ReceiverView& view, const Selection& source, std::uint64_t seed);
+
 // Exact: x is strictly in front of the plane.
 [[nodiscard]] bool in_front(const ReceiverView& view, const SourcePlane& plane);
 
@@ -52,8 +56,26 @@ struct Gathered {
 
 // Finds every piece that may hide from x some of a convex polygon of the source, given by its corners relative to x
 // (all above the horizon, if it clips). An occluder is blurred if its plane passes x, or it lies before the source's
-// plane, at less than `blur`.
-void gather_occluders(const ScaledScene& scene, const ReceiverView& view, const SourcePlane& plane,
-                      std::span<const Vec3> polygon, Horizon horizon, double blur, Gathered& gathered);
+// plane, at less than `blur`. Gives up, with a list cut short and false, where the tree cannot rule out more than
+// `most`.
+bool gather_occluders(const ScaledScene& scene, const ReceiverView& view, const SourcePlane& plane,
+                      std::span<const Vec3> polygon, Horizon horizon, double blur, Gathered& gathered,
+                      std::size_t most = std::numeric_limits<std::size_t>::max());
+
+// The same among the pieces given, whose occluders all count as blurred.
+void gather_blurred(const ScaledScene& scene, const ReceiverView& view, const SourcePlane& plane,
+                    std::span<const Vec3> polygon, Horizon horizon, std::span<const std::uint32_t> pieces,
+                    Gathered& gathered);
+
+// Calls visit(piece) for every piece whose box comes within `distance` of x.
+template <class Visit>
+void visit_pieces_near(const ScaledScene& scene, const Vec3& x, double distance, Visit&& visit) {
+  const HalfSpace box[] = {{{1, 0, 0}, -distance},  {{-1, 0, 0}, -distance}, {{0, 1, 0}, -distance},
+                           {{0, -1, 0}, -distance}, {{0, 0, 1}, -distance},  {{0, 0, -1}, -distance}};
+  scene.tree.query(x, box, [&](std::uint32_t piece) {
+    visit(piece);
+    return true;
+  });
+}
 
 }  // namespace exactff::sampled

@@ -131,16 +131,7 @@ void SamplePlan::make_hammersley(int rays) {
 
 namespace {
 
-struct Point {
-  double u, v;
-};
-
-// Two numbers in [0, 1) from the stream `key`.
-Point random_point(std::uint64_t key, std::uint64_t index) {
-  const std::uint64_t bits = mixed(key + (index + 1) * kGoldenGamma);
-  return {static_cast<double>(static_cast<std::int64_t>(bits >> 32)) * kUnit32,
-          static_cast<double>(static_cast<std::int64_t>(bits & 0xffffffffU)) * kUnit32};
-}
+using Point = UnitPoint;
 
 // Runs point_of(cell, i) for every cell and stores the images.
 template <class Cells, class Map, class PointOf>
@@ -185,6 +176,20 @@ void SamplePlan::place(const SubPatch& s, std::uint64_t key, RayEnds& ends) cons
     place_by(TriangleMap(s), key, ends);
   } else {
     place_by(QuadrilateralMap(s), key, ends);
+  }
+  pad(ends);
+}
+
+void place_by_area(const SubPatch& s, std::span<const UnitPoint> points, RayEnds& ends) {
+  if (points.empty()) return ends.resize(0);
+  ends.resize(static_cast<int>(points.size()));
+  const auto given = [](const UnitPoint& point, std::size_t) { return point; };
+  if (s.shape == PatchShape::kParallelogram) {
+    place_all(points, ParallelogramMap(s), given, ends);
+  } else if (s.shape == PatchShape::kTriangle) {
+    place_all(points, TriangleMap(s), given, ends);
+  } else {
+    place_all(points, QuadrilateralMap(s), given, ends);
   }
   pad(ends);
 }

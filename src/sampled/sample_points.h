@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "exactff/adaptive.h"
@@ -33,6 +34,23 @@ struct RayEnds {
 
   void resize(int rays);
 };
+
+// A point of the unit square.
+struct UnitPoint {
+  double u = 0.0;
+  double v = 0.0;
+};
+
+// Number `index` of the stream `key`, each coordinate in [0, 1).
+inline UnitPoint random_point(std::uint64_t key, std::uint64_t index) {
+  constexpr double kUnit32 = 0x1p-32;
+  const std::uint64_t bits = mixed(key + (index + 1) * kGoldenGamma);
+  return {static_cast<double>(static_cast<std::int64_t>(bits >> 32)) * kUnit32,
+          static_cast<double>(static_cast<std::int64_t>(bits & 0xffffffffU)) * kUnit32};
+}
+
+// The images of the points under a map to the sub-patch that keeps ratios of areas. Fills `ends`, padding included.
+void place_by_area(const SubPatch& s, std::span<const UnitPoint> points, RayEnds& ends);
 
 // The points of the unit square that a pattern prescribes for n rays, and their images on sub-patches.
 class SamplePlan {

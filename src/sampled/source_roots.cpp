@@ -44,16 +44,16 @@ class RootMaker {
     const std::span<const std::uint32_t> corners = scene_.corners(piece);
     const std::uint32_t plane = plane_of(index);
     if (corners.size() <= 4) {
-      add_root(corners, plane, piece.face);
+      add_root(corners, plane, index);
       return;
     }
     for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
-      add_root(std::array{corners[0], corners[i], corners[i + 1]}, plane, piece.face);
+      add_root(std::array{corners[0], corners[i], corners[i + 1]}, plane, index);
     }
   }
 
-  void add_root(std::span<const std::uint32_t> corners, std::uint32_t plane, FaceId face) {
-    SourceRoot root{{}, static_cast<int>(corners.size()), plane, face};
+  void add_root(std::span<const std::uint32_t> corners, std::uint32_t plane, std::uint32_t piece) {
+    SourceRoot root{{}, static_cast<int>(corners.size()), plane, piece, scene_.pieces()[piece].face};
     std::transform(corners.begin(), corners.end(), root.corners.begin(), [&](std::uint32_t v) { return points_[v]; });
     result_.roots.push_back(root);
   }

@@ -20,6 +20,7 @@ struct SourceRoot {
   std::array<Vec3, 4> corners;  // scaled
   int corner_count = 0;
   std::uint32_t plane = 0;
+  std::uint32_t piece = 0;
   FaceId face{};
 };
 

@@ -11,6 +11,7 @@ declare -A allowed=(
   [contour]="contour visibility kernel"
   [exact]="exact contour visibility scene kernel"
   [sampled]="sampled scene kernel"
+  [methods]="methods sampled exact scene kernel"
   [study]="study scene kernel"
   [check]="check study scene kernel"
   [stress]="stress study scene kernel"

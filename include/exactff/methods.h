@@ -1,0 +1,248 @@
+// Every method of computing form factors behind one interface: the exact one, and those that it judges.
+//
+// A method is named, with its settings, by a text such as
+//
+//   hemicube:resolution=200,rotation=15
+//
+// and works in stages that can be timed apart: per scene, per source, per choice of settings and thread, per receiver,
+// per receiver and source. Five lines from a scene to a value:
+//
+//   const methods::Choice choice = methods::parse("wallace:splits=8");
+//   const auto on_scene = choice.method->prepare(scene);                                 // shared between threads
+//   const auto light = on_scene->prepare_source(scene.select("light"));                  // shared between threads
+//   const auto evaluator = on_scene->configure(choice.settings);                         // one for each thread
+//   const double f = evaluator->form_factor(receiver, *light).form_factor;
+//
+// Your own algorithm joins by the same interface: derive from PreparedScene and Evaluator, describe the method and its
+// settings in a Method, and hand that to add_method(). From then on parse() knows its name, and whatever takes a Choice
+// takes it. All of it:
+//
+//   using namespace exactff;
+//   struct Guess : methods::Evaluator {                     // F of a small source, no shadows
+//     double scale;
+//     void look_from(const Receiver& receiver) override;    // keep what depends on the receiver alone
+//     methods::Estimate form_factor(const methods::PreparedSource& source) override;
+//   };
+//   struct GuessOnScene : methods::PreparedScene {
+//     using PreparedScene::PreparedScene;
+//     std::unique_ptr<methods::Evaluator> configure(const methods::Settings& settings) const override {
+//       auto guess = std::make_unique<Guess>();
+//       guess->scale = settings.number("scale");
+//       return guess;
+//     }
+//   };
+//   methods::add_method({.name = "guess", .summary = "a guess",
+//                        .settings = {methods::number_setting("scale", 1.0, 0.0, 10.0, "a factor on everything")},
+//                        .prepare = [](const Scene& scene) { return std::make_unique<GuessOnScene>(scene); }});
+//
+// Inside the library a method is one file in src/methods and one line in src/methods/list.h.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "exactff/receiver.h"
+#include "exactff/scene.h"
+
+namespace exactff::methods {
+
+// ---------------------------------------------------------------------------------------------------------- settings
+
+// A whole number, a number, or a word.
+using SettingValue = std::variant<std::int64_t, double, std::string>;
+
+struct SettingSpec {
+  std::string name;
+  std::string meaning;
+  std::string unit;       // "degrees", "radiosity", "area"; empty: a pure number or a word
+  SettingValue fallback;  // the default; its type is the setting's
+  double lowest = 0.0;    // of numbers, both ends included
+  double highest = 0.0;
+  std::int64_t multiple_of = 1;  // of whole numbers
+  std::vector<std::string> words = {};
+};
+
+[[nodiscard]] SettingSpec whole_setting(std::string name, std::int64_t fallback, std::int64_t lowest,
+                                        std::int64_t highest, std::string meaning, std::string unit = {},
+                                        std::int64_t multiple_of = 1);
+[[nodiscard]] SettingSpec number_setting(std::string name, double fallback, double lowest, double highest,
+                                         std::string meaning, std::string unit = {});
+// The first word is the default.
+[[nodiscard]] SettingSpec word_setting(std::string name, std::vector<std::string> words, std::string meaning);
+// "seed": what stochastic methods draw their random numbers from.
+[[nodiscard]] SettingSpec seed_setting();
+
+// "an even whole number from 2 to 8192", "a number of at least 0", "one of random, stratified".
+[[nodiscard]] std::string allowed(const SettingSpec& spec);
+// The shortest text that reads back to the same value.
+[[nodiscard]] std::string to_string(const SettingValue& value);
+
+// A value for every setting of a method; those not set have their defaults.
+class Settings {
+ public:
+  Settings() = default;
+  explicit Settings(std::vector<SettingSpec> specs);
+
+  [[nodiscard]] std::span<const SettingSpec> specs() const { return specs_ ? *specs_ : std::span<const SettingSpec>(); }
+  [[nodiscard]] std::span<const SettingValue> values() const { return values_; }
+
+  // Throw InputError where there is no such setting or it does not allow the value. A whole number will do for a
+  // number.
+  void set(std::string_view name, const SettingValue& value);
+  void set_text(std::string_view name, std::string_view text);
+
+  // Throw std::logic_error where there is no such setting of that type: names in a program are the programmer's.
+  [[nodiscard]] std::int64_t whole(std::string_view name) const;
+  [[nodiscard]] double number(std::string_view name) const;
+  [[nodiscard]] const std::string& word(std::string_view name) const;
+  [[nodiscard]] bool has(std::string_view name) const;
+
+  // "resolution=100,rotation=0"; the short text leaves out what has its default value, and may be empty.
+  [[nodiscard]] std::string text() const;
+  [[nodiscard]] std::string short_text() const;
+
+  friend bool operator==(const Settings& a, const Settings& b) { return a.values_ == b.values_ && a.names_equal(b); }
+
+ private:
+  [[nodiscard]] std::size_t place_of(std::string_view name) const;  // specs().size() if there is none
+  [[nodiscard]] std::size_t must_find(std::string_view name) const;
+  [[nodiscard]] std::string text_of(bool all) const;
+  [[nodiscard]] bool names_equal(const Settings& other) const;
+
+  std::shared_ptr<const std::vector<SettingSpec>> specs_;
+  std::vector<SettingValue> values_;
+};
+
+// ----------------------------------------------------------------------------------------------------------- results
+
+// How much work was done, by name: "rays", "leaves", "pixels". A few named numbers without allocation.
+class Counters {
+ public:
+  struct Counter {
+    std::string_view name;
+    std::uint64_t count = 0;
+  };
+  static constexpr std::size_t kMost = 16;
+
+  // Adds to the counter of that name, which is made if it is new. `name` must live as long as the program. Throws
+  // std::logic_error beyond kMost names.
+  void add(std::string_view name, std::uint64_t count);
+  [[nodiscard]] std::uint64_t operator[](std::string_view name) const;  // 0 where there is none
+  [[nodiscard]] std::span<const Counter> list() const { return {counters_.data(), size_}; }
+
+ private:
+  std::array<Counter, kMost> counters_{};
+  std::size_t size_ = 0;
+};
+
+struct Estimate {
+  double form_factor = 0.0;
+  Counters counters;
+};
+
+// ------------------------------------------------------------------------------------------------------------ stages
+
+// What depends on the source alone. Immutable, shared between threads.
+class PreparedSource {
+ public:
+  explicit PreparedSource(const Selection& selection) : selection_(selection) {}
+  virtual ~PreparedSource() = default;
+  [[nodiscard]] const Selection& selection() const { return selection_; }
+
+ private:
+  Selection selection_;
+};
+
+// One choice of settings, with the memory that one thread works in. Values depend on the scene, the settings, the
+// receiver and the source alone: never on what was evaluated before, or on other threads.
+class Evaluator {
+ public:
+  virtual ~Evaluator() = default;
+
+  // What depends on the receiver alone, such as a hemicube's item buffer; the values asked for next are seen from
+  // there. A receiver that is not finite or has a zero normal is an InputError, here or at the first value.
+  virtual void look_from(const Receiver& receiver) = 0;
+  // Requires look_from, and a source prepared by the PreparedScene that made this.
+  [[nodiscard]] virtual Estimate form_factor(const PreparedSource& source) = 0;
+
+  // Many sources from where it looks: the same values as one by one. `estimates` is as long as `sources`.
+  virtual void form_factors(std::span<const PreparedSource* const> sources, std::span<Estimate> estimates);
+
+  [[nodiscard]] Estimate form_factor(const Receiver& receiver, const PreparedSource& source) {
+    look_from(receiver);
+    return form_factor(source);
+  }
+};
+
+// What depends on the scene alone. Immutable, shared between threads; refers to the scene.
+class PreparedScene {
+ public:
+  explicit PreparedScene(const Scene& scene) : scene_(scene) {}
+  virtual ~PreparedScene() = default;
+  PreparedScene(const PreparedScene&) = delete;
+  PreparedScene& operator=(const PreparedScene&) = delete;
+
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] virtual std::unique_ptr<PreparedSource> prepare_source(const Selection& selection) const;
+  // An evaluator for one thread; it refers to this. `settings` are the method's.
+  [[nodiscard]] virtual std::unique_ptr<Evaluator> configure(const Settings& settings) const = 0;
+
+ private:
+  const Scene& scene_;
+};
+
+// ----------------------------------------------------------------------------------------------------------- methods
+
+struct Method {
+  std::string name;     // letters, digits and hyphens
+  std::string summary;  // one sentence
+  std::string source;   // where it was published; may be empty
+  std::vector<SettingSpec> settings;
+  // One look from a receiver gives all sources: its cost does not grow with their number.
+  bool all_sources_at_once = false;
+  // Throws InputError where the scene is not fit for the method.
+  std::function<std::unique_ptr<PreparedScene>(const Scene&)> prepare;
+  // Whether a setting can change a value, given the others; empty: all can.
+  std::function<bool(const Settings&, std::string_view setting)> uses = {};
+  // Throws InputError where settings do not go together; empty: all do.
+  std::function<void(const Settings&)> check = {};
+
+  [[nodiscard]] Settings defaults() const { return Settings(settings); }
+  // True if the values depend on the seed.
+  [[nodiscard]] bool stochastic(const Settings& chosen) const;
+  // Settings that cannot change a value put to their defaults: equal results then compare equal.
+  [[nodiscard]] Settings normalised(const Settings& chosen) const;
+};
+
+// In the order of registration. Methods stay where they are as long as the program runs.
+[[nodiscard]] std::vector<const Method*> all_methods();
+// Throws InputError that names the closest ones.
+[[nodiscard]] const Method& method_named(std::string_view name);
+// Throws std::logic_error where the name is taken or not made of letters, digits and hyphens, or `prepare` is empty.
+const Method& add_method(Method method);
+
+// A method and its settings.
+struct Choice {
+  const Method* method = nullptr;
+  Settings settings;
+
+  [[nodiscard]] std::string text() const;        // "hemicube:resolution=100,rotation=0"
+  [[nodiscard]] std::string short_text() const;  // "hemicube"
+  friend bool operator==(const Choice&, const Choice&) = default;
+};
+
+// NAME or NAME:SETTING=VALUE,... with blanks anywhere between. Throws one InputError with everything that is wrong, and
+// says what is allowed.
+[[nodiscard]] Choice parse(std::string_view text);
+
+// Name, summary and every setting with its meaning, unit, default and range, a setting a line.
+[[nodiscard]] std::string description(const Method& method);
+
+}  // namespace exactff::methods

@@ -1,0 +1,273 @@
+#include "exact/visible_share.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "visibility/visible_edges.h"
+
+namespace exactff::exact {
+
+using kernel::ExactVec3;
+using kernel::Integer;
+using kernel::Rational;
+using visibility::BoundaryPiece;
+
+namespace {
+
+Point<double> rounded(const Point<Rational>& p) { return {kernel::nearest_double(p.u), kernel::nearest_double(p.v)}; }
+
+// Whether the open segment pq meets the interior of a convex polygon.
+bool meets_exactly(const SmallPolygon<Rational>& polygon, const Point<Rational>& p, const Point<Rational>& q) {
+  Rational from = 0, to = 1;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Point<Rational>& next = polygon.after(k);
+    const Rational at_p = turn(polygon[k], next, p), at_q = turn(polygon[k], next, q);
+    if (at_p <= 0 && at_q <= 0) return false;
+    if (at_p < 0) from = std::max(from, Rational(at_p / (at_p - at_q)));
+    if (at_q < 0) to = std::min(to, Rational(at_p / (at_p - at_q)));
+  }
+  return from < to;
+}
+
+Rational ratio(const Integer& numerator, const Integer& denominator) {
+  Rational result(numerator, denominator);
+  result.canonicalize();
+  return result;
+}
+
+}  // namespace
+
+VisibleShare::VisibleShare(const Scene& scene, const Receiver& receiver, const visibility::SourcePlane& plane)
+    : view_(scene, receiver), plane_(plane), away_(plane.normal.exact) {
+  const visibility::Request request;
+  const visibility::PlaneVisibility seen = find_visible_boundary(view_, plane, request);
+  all_ = seen.record.outcome == Outcome::kUnoccluded;
+  if (all_ || (seen.boundary.empty() && seen.edges == nullptr)) return;
+  make_frame();
+  for (const BoundaryPiece& piece : seen.boundary) add(piece);
+  if (seen.edges == nullptr) return;
+  for (const visibility::VisibleEdges::Part& part : seen.edges->parts()) add(seen.edges->exact(part));
+}
+
+Point<Rational> VisibleShare::affine(const ExactVec3& t) const {
+  const Integer depth = dot(away_, t);
+  return {ratio(t[i_], depth), ratio(t[j_], depth)};
+}
+
+Point<Rational> VisibleShare::flat(const ExactVec3& t) const {
+  const Point<Rational> p = affine(t);
+  return {Rational((p.u - low_.u) / size_.u), Rational((p.v - low_.v) / size_.v)};
+}
+
+void VisibleShare::make_frame() {
+  const int k = longest_axis(away_);
+  i_ = (k + 1) % 3;
+  j_ = (k + 2) % 3;
+  keeps_orientation_ = kernel::sign(away_[k]) > 0;
+  kernel::negate(away_);
+  const kernel::Approx3 away = kernel::approx(away_);
+  away_approx_ = {away.x, away.y, away.z};
+  Point<Rational> high;
+  bool first = true;
+  for (const std::uint32_t index : plane_.pieces) {
+    for (const std::uint32_t corner : view_.scene.corners(view_.scene.pieces()[index])) {
+      const Point<Rational> p = affine(kernel::exact_difference(view_.scene.vertices()[corner], view_.x).v);
+      low_ = first ? p : Point<Rational>{std::min(low_.u, p.u), std::min(low_.v, p.v)};
+      high = first ? p : Point<Rational>{std::max(high.u, p.u), std::max(high.v, p.v)};
+      first = false;
+    }
+  }
+  size_ = {high.u - low_.u, high.v - low_.v};
+  // The double form of `away` has a scale of its own, and so has what is divided by it.
+  const double longest = away_approx_[static_cast<std::size_t>(k)];
+  if (!std::isfinite(away.x + away.y + away.z)) {
+    away_approx_ = {};  // a window's error is then infinite
+    return;
+  }
+  const Rational scale = Rational(away_[k]) / kernel::to_rational(longest);
+  low_approx_ = rounded({Rational(low_.u * scale), Rational(low_.v * scale)});
+  size_approx_ = rounded({Rational(size_.u * scale), Rational(size_.v * scale)});
+}
+
+void VisibleShare::add(const BoundaryPiece& piece) {
+  Piece added;
+  added.exact_p = flat(piece.a * piece.begin.l + piece.b * piece.begin.m);
+  added.exact_q = flat(piece.a * piece.end.l + piece.b * piece.end.m);
+  if (!keeps_orientation_) std::swap(added.exact_p, added.exact_q);
+  added.p = rounded(added.exact_p);
+  added.q = rounded(added.exact_q);
+  const ExactVec3& normal = view_.normal.exact;
+  added.horizon = kernel::sign(dot(normal, piece.a)) == 0 && kernel::sign(dot(normal, piece.b)) == 0;
+  pieces_.push_back(std::move(added));
+}
+
+// Other outlines of the source do not run through this piece's interior: there they bound nothing.
+void VisibleShare::start(std::uint32_t index) {
+  if (pieces_.empty()) return;
+  std::vector<Point<Rational>> ring;
+  for (const std::uint32_t corner : view_.scene.corners(view_.scene.pieces()[index])) {
+    ring.push_back(flat(kernel::exact_difference(view_.scene.vertices()[corner], view_.x).v));
+  }
+  for (Piece& piece : pieces_) {
+    piece.outline = piece.horizon;
+    for (std::size_t k = 0; k < ring.size() && !piece.outline; ++k) {
+      piece.outline = on_edge(piece, ring[k], ring[k + 1 < ring.size() ? k + 1 : 0]);
+    }
+  }
+}
+
+// Both ends on the line: the region's boundary lies in the source, so between a and b then. Coordinates in the unit
+// square, each within 2^-54, leave a turn within 2^-50.
+bool VisibleShare::on_edge(const Piece& piece, const Point<Rational>& a, const Point<Rational>& b) const {
+  constexpr double kBound = 0x1p-50;
+  const Point<double> from = rounded(a), to = rounded(b);
+  for (const Point<double>& end : {piece.p, piece.q}) {
+    if (std::abs(turn(from, to, end)) > kBound) return false;
+  }
+  return turn(a, b, piece.exact_p) == 0 && turn(a, b, piece.exact_q) == 0;
+}
+
+// With u = 2^-53: the depth's terms, of relative error 3u each, make it wrong by less than 6u of the sum of their
+// magnitudes S; the quotient p by that over the depth and u more; the box by 2u of its own numbers. 16u covers what
+// follows, and as much again the division.
+Point<double> VisibleShare::flat(const Vec3& t, double& error) const {
+  const std::array<double, 3> d{t.x, t.y, t.z};
+  double depth = 0.0, magnitude = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    depth += away_approx_[axis] * d[axis];
+    magnitude += std::abs(away_approx_[axis] * d[axis]);
+  }
+  const double p = d[static_cast<std::size_t>(i_)] / depth, q = d[static_cast<std::size_t>(j_)] / depth;
+  const double worst = magnitude / depth;
+  const auto bound = [&](double value, double low, double size) {
+    return 0x1p-48 * (std::abs(value) * (worst + 1.0) + std::abs(low) + size) / size;
+  };
+  const double here = std::max(bound(p, low_approx_.u, size_approx_.u), bound(q, low_approx_.v, size_approx_.v));
+  error = depth > 0.0 && here >= 0.0 ? std::max(error, here) : std::numeric_limits<double>::infinity();
+  return {(p - low_approx_.u) / size_approx_.u, (q - low_approx_.v) / size_approx_.v};
+}
+
+void VisibleShare::set_window(std::span<const Vec3> directions) {
+  window_.corners.clear();
+  window_.error = 0.0;
+  for (const Vec3& direction : directions) window_.corners.push_back(flat(direction, window_.error));
+  if (!keeps_orientation_) window_.corners.reverse();
+}
+
+SmallPolygon<Rational> VisibleShare::exact_window(std::span<const Vec3> directions) const {
+  SmallPolygon<Rational> corners;
+  for (const Vec3& direction : directions) corners.push_back(flat(kernel::exact_vector(direction).v));
+  if (!keeps_orientation_) corners.reverse();
+  return corners;
+}
+
+// Clips the piece by the window's sides as meets_exactly does. A turn with a side e and an offset f, whose coordinates
+// err by E and G, errs by less than |e| G + |f| E + 2 E G and 2^-51 of its products' magnitudes, |.| the sums of
+// magnitudes of the two coordinates.
+VisibleShare::Meeting VisibleShare::meets(const Piece& piece) const {
+  constexpr double kPieceError = 0x1p-53;
+  const std::size_t n = window_.corners.size();
+  double from_low = 0.0, from_high = 0.0, to_low = 1.0, to_high = 1.0;
+  bool unsure = false;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Point<double>& a = window_.corners[k];
+    const Point<double>& b = window_.corners.after(k);
+    const double eu = b.u - a.u, ev = b.v - a.v;
+    const double side = std::abs(eu) + std::abs(ev), side_error = 2.0 * window_.error + 0x1p-53 * side;
+    const auto height = [&](const Point<double>& p, double& error) {
+      const double fu = p.u - a.u, fv = p.v - a.v, offset = std::abs(fu) + std::abs(fv);
+      const double offset_error = window_.error + kPieceError + 0x1p-53 * offset;
+      error = 1.01 * (side * offset_error + offset * side_error + 2.0 * side_error * offset_error +
+                      0x1p-51 * (std::abs(eu * fv) + std::abs(ev * fu)));
+      return eu * fv - ev * fu;
+    };
+    double error_p = 0.0, error_q = 0.0;
+    const double at_p = height(piece.p, error_p), at_q = height(piece.q, error_q);
+    if (at_p <= -error_p && at_q <= -error_q) return Meeting::kNo;
+    if (at_p > error_p && at_q > error_q) continue;
+    const double fall = at_p - at_q, fall_error = error_p + error_q;
+    if (!(std::abs(fall) > 4.0 * fall_error)) {
+      unsure = true;
+      continue;
+    }
+    const double crossing = at_p / fall;
+    const double error =
+        2.0 * (error_p + std::abs(crossing) * fall_error) / std::abs(fall) + 0x1p-50 * (1.0 + std::abs(crossing));
+    if (fall < 0.0) {
+      from_low = std::max(from_low, crossing - error);
+      from_high = std::max(from_high, crossing + error);
+    } else {
+      to_low = std::min(to_low, crossing - error);
+      to_high = std::min(to_high, crossing + error);
+    }
+  }
+  if (from_low > to_high) return Meeting::kNo;
+  return !unsure && from_high < to_low ? Meeting::kYes : Meeting::kUnsure;
+}
+
+bool VisibleShare::partly(std::span<const Vec3> directions) {
+  SmallPolygon<Rational> exact;
+  for (const Piece& piece : pieces_) {
+    if (piece.outline) continue;
+    const Meeting meeting = meets(piece);
+    if (meeting == Meeting::kYes) return true;
+    if (meeting == Meeting::kNo) continue;
+    ++undecided_;
+    if (exact.size() == 0) exact = exact_window(directions);
+    if (meets_exactly(exact, piece.exact_p, piece.exact_q)) return true;
+  }
+  return false;
+}
+
+namespace {
+
+// Strictly between 0 and 1.
+double proper_share(double share) { return std::clamp(share, std::numeric_limits<double>::min(), 1.0 - 0x1p-53); }
+
+}  // namespace
+
+// Moving the sides by the error of their corners changes the share by no more than this.
+double VisibleShare::window_blur(double doubled_area_of_window) const {
+  double around = 0.0;
+  const SmallPolygon<double>& corners = window_.corners;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Point<double>& next = corners.after(k);
+    around += std::abs(next.u - corners[k].u) + std::abs(next.v - corners[k].v);
+  }
+  const double moved = 4.0 * around * (window_.error + 0x1p-53);
+  return doubled_area_of_window > 0.0 ? moved / doubled_area_of_window : std::numeric_limits<double>::infinity();
+}
+
+double VisibleShare::of(std::span<const Vec3> directions) {
+  if (all_) return 1.0;
+  if (pieces_.empty()) return 0.0;
+  set_window(directions);
+  const double whole = doubled_area(window_.corners);
+  if (!(window_blur(whole) <= kAccuracy)) {
+    ++undecided_;
+    return of_exactly(directions);
+  }
+  const bool in_part = partly(directions);
+  const Point<double> c = middle_of(window_.corners);
+  double visible = 0.0;
+  for (const Piece& piece : pieces_) visible += wedge(window_.corners, c, piece.p, piece.q);
+  const double share = visible / whole;
+  return in_part ? proper_share(share) : share > 0.5 ? 1.0 : 0.0;
+}
+
+double VisibleShare::of_exactly(std::span<const Vec3> directions) {
+  if (all_) return 1.0;
+  if (pieces_.empty()) return 0.0;
+  const SmallPolygon<Rational> window = exact_window(directions);
+  const bool in_part = std::any_of(pieces_.begin(), pieces_.end(), [&](const Piece& piece) {
+    return !piece.outline && meets_exactly(window, piece.exact_p, piece.exact_q);
+  });
+  const Point<Rational> c = middle_of(window);
+  Rational visible(0);
+  for (const Piece& piece : pieces_) visible += wedge(window, c, piece.exact_p, piece.exact_q);
+  const double share = kernel::nearest_double(visible / doubled_area(window));
+  return in_part ? proper_share(share) : share > 0.5 ? 1.0 : 0.0;
+}
+
+}  // namespace exactff::exact

@@ -1,0 +1,89 @@
+// How much of a small convex window x sees, where the window lies in a plane of a source: for the control of the
+// sampled algorithm, which asks this of every sub-patch instead of tracing rays.
+//
+// The visible region of the whole plane is found once for a receiver, exactly, by the exact method's own machinery. A
+// window is given by directions from x: it is where they meet the plane, so that no rounding can take its corners out
+// of it. With c a point of the window and p_i q_i the oriented pieces of the region's boundary, in any order,
+//
+//   visible area = sum_i +- area( triangle(c, p_i, q_i) n window ).
+//
+// Whether the answer is 0, 1 or in between is decided exactly: it is in between just where a piece, other than of the
+// source's own outline, runs through the window's interior. That is a filter in double with a proved bound, and
+// rational numbers where it is not certain. The share itself is then a sum in double.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "exact/window_area.h"
+#include "exactff/receiver.h"
+#include "exactff/scene.h"
+#include "kernel/numbers.h"
+#include "visibility/source_plane.h"
+#include "visibility/visible_boundary.h"
+
+namespace exactff::exact {
+
+class VisibleShare {
+ public:
+  // Requires x in front of the plane, and a receiver as exact_form_factor does.
+  VisibleShare(const Scene& scene, const Receiver& receiver, const visibility::SourcePlane& plane);
+
+  // The windows asked about next lie in this piece of the plane, but for roundings.
+  void start(std::uint32_t piece);
+
+  static constexpr double kAccuracy = 0x1p-30;
+  // Visible over whole area of the window: exactly 0 or exactly 1, or strictly in between and then within kAccuracy of
+  // the truth, mostly far less.
+  // Three or four corners, convex, counter-clockwise as x sees them, not all on a line.
+  [[nodiscard]] double of(std::span<const Vec3> directions);
+  // The same in rational numbers throughout, rounded once.
+  [[nodiscard]] double of_exactly(std::span<const Vec3> directions);
+
+  // Pieces and windows that the filter left to rational numbers.
+  [[nodiscard]] std::uint64_t undecided() const { return undecided_; }
+
+ private:
+  using Rational = kernel::Rational;
+  struct Piece {
+    Point<Rational> exact_p, exact_q;  // the region to the left of pq
+    Point<double> p, q;
+    bool outline = false;  // of the source
+    bool horizon = false;
+  };
+  // A window, counter-clockwise in (u, v).
+  struct Window {
+    SmallPolygon<double> corners;
+    double error = 0.0;  // of each coordinate
+  };
+  enum class Meeting { kNo, kYes, kUnsure };
+
+  [[nodiscard]] Point<Rational> affine(const kernel::ExactVec3& direction) const;
+  [[nodiscard]] Point<Rational> flat(const kernel::ExactVec3& direction) const;
+  [[nodiscard]] Point<double> flat(const Vec3& direction, double& error) const;
+  void make_frame();
+  void add(const visibility::BoundaryPiece& piece);
+  [[nodiscard]] bool on_edge(const Piece& piece, const Point<Rational>& a, const Point<Rational>& b) const;
+  void set_window(std::span<const Vec3> directions);
+  [[nodiscard]] SmallPolygon<Rational> exact_window(std::span<const Vec3> directions) const;
+  [[nodiscard]] bool partly(std::span<const Vec3> directions);
+  [[nodiscard]] Meeting meets(const Piece& piece) const;
+  [[nodiscard]] double window_blur(double doubled_area_of_window) const;
+
+  const visibility::View view_;
+  const visibility::SourcePlane& plane_;
+  bool all_ = false;  // of the source is visible
+  std::vector<Piece> pieces_;
+  kernel::ExactVec3 away_;  // the plane's normal turned away from x
+  std::array<double, 3> away_approx_{};
+  int i_ = 0, j_ = 1;
+  bool keeps_orientation_ = true;
+  Point<Rational> low_, size_;  // the source's box in affine coordinates: the unit square of (u, v)
+  Point<double> low_approx_{}, size_approx_{};
+  Window window_;
+  std::uint64_t undecided_ = 0;
+};
+
+}  // namespace exactff::exact

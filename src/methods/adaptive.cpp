@@ -1,0 +1,91 @@
+// Tampieri's ray-sampled adaptive algorithm (adaptive.h), as one method among the others.
+#include "exactff/adaptive.h"
+
+#include <limits>
+
+#include "methods/adaptive_settings.h"
+#include "methods/method_files.h"
+#include "methods/sample_pattern.h"
+
+namespace exactff::methods {
+
+namespace {
+
+constexpr std::int64_t kMostRays = 65536;
+
+struct AdaptivePrepared : PreparedSource {
+  AdaptivePrepared(const AdaptiveSolver& solver, const Scene& scene, const Selection& chosen)
+      : PreparedSource(chosen), source(solver.prepare(chosen)), radiosity(scene.source_radiosity(chosen)) {}
+  AdaptiveSource source;
+  Rgb radiosity;
+};
+
+class Adaptive : public Evaluator {
+ public:
+  Adaptive(const Scene& scene, const AdaptiveSolver& solver, const AdaptiveOptions& options)
+      : scene_(scene), solver_(solver), options_(options) {}
+
+  void look_from(const Receiver& receiver) override { receiver_ = receiver; }
+
+  using Evaluator::form_factor;
+  Estimate form_factor(const PreparedSource& prepared) override {
+    const auto& source = static_cast<const AdaptivePrepared&>(prepared);
+    const double rho_b = largest_rho_b(scene_, receiver_, source.radiosity);
+    const AdaptiveResult found = solver_.form_factor(receiver_, source.source, rho_b, options_);
+    Estimate result{found.form_factor, {}};
+    count_leaves(found, result.counters);
+    return result;
+  }
+
+ private:
+  const Scene& scene_;
+  const AdaptiveSolver& solver_;
+  AdaptiveOptions options_;
+  Receiver receiver_;
+};
+
+AdaptiveOptions options_of(const Settings& settings) {
+  AdaptiveOptions options;
+  take_tolerances(settings, options);
+  options.rays = static_cast<int>(settings.whole("rays"));
+  options.pattern = pattern_named(settings.word("pattern"));
+  options.seed = static_cast<std::uint64_t>(settings.whole("seed"));
+  options.variant = settings.word("variant") == "mended" ? Variant::kMended : Variant::kLiteral;
+  return options;
+}
+
+class AdaptiveOnScene : public PreparedScene {
+ public:
+  explicit AdaptiveOnScene(const Scene& scene) : PreparedScene(scene), solver_(scene) {}
+
+  [[nodiscard]] std::unique_ptr<PreparedSource> prepare_source(const Selection& selection) const override {
+    return std::make_unique<AdaptivePrepared>(solver_, scene(), selection);
+  }
+  [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
+    return std::make_unique<Adaptive>(scene(), solver_, options_of(settings));
+  }
+
+ private:
+  AdaptiveSolver solver_;
+};
+
+}  // namespace
+
+Method adaptive_method() {
+  const AdaptiveOptions defaults;
+  std::vector<SettingSpec> settings = tolerance_settings();
+  settings.push_back(whole_setting("rays", defaults.rays, 1, kMostRays, "shadow rays for each undecided sub-patch"));
+  settings.push_back(pattern_setting());
+  settings.push_back(word_setting("variant", {"mended", "literal"},
+                                  "literal: as printed in 1992, with no horizon clip, in single precision"));
+  settings.push_back(seed_setting());
+  return {.name = "adaptive",
+          .summary = "recursive splitting until visibility is certain or the form factor small, V from shadow rays",
+          .source = "F. Tampieri, Accurate Form-Factor Computation (1992)",
+          .settings = std::move(settings),
+          .prepare = [](const Scene& scene) { return std::make_unique<AdaptiveOnScene>(scene); },
+          .uses = pattern_uses,
+          .check = check_tolerances};
+}
+
+}  // namespace exactff::methods

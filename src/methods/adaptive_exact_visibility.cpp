@@ -1,0 +1,139 @@
+// The control: Tampieri's recursion with the exact V of every sub-patch that shaft culling leaves in doubt, in the
+// place of shadow rays.
+//
+// What error is left is that of "constant visibility per leaf", which eps_B and eps_A govern: a leaf that is visible in
+// part and stops, by its F or its area, is credited with V F, as if what is seen of it were spread evenly. What the
+// sampled algorithm errs beyond that comes from sampling V. There are no silent errors here: V is 0 or 1 only where the
+// sub-patch is hidden or visible altogether, decided exactly (exact/visible_share.h).
+//
+// The recursion, its shaft culling, its arithmetic and its sub-patches are the sampled algorithm's own. A sub-patch is
+// taken for the window of the directions from x to its corners, which are doubles: off the source's plane by roundings,
+// but the directions meet it all the same, so that nothing needs to be planar and neighbours share their corners.
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <stdexcept>
+
+#include "exact/source_planes.h"
+#include "exact/visible_share.h"
+#include "methods/adaptive_settings.h"
+#include "methods/method_files.h"
+#include "sampled/patch_visibility.h"
+
+namespace exactff::methods {
+
+namespace {
+
+struct ControlSource : PreparedSource {
+  ControlSource(const AdaptiveSolver& solver, const Scene& scene, const Selection& chosen)
+      : PreparedSource(chosen),
+        adaptive(solver.prepare(chosen)),
+        exact(scene, chosen),
+        radiosity(scene.source_radiosity(chosen)) {}
+  AdaptiveSource adaptive;
+  ExactSource exact;
+  Rgb radiosity;
+};
+
+// What the recursion asks, for one receiver and one source. The visible region of a plane is found when first needed.
+class ExactVisibility : public sampled::PatchVisibility {
+ public:
+  ExactVisibility(const Scene& scene, const Receiver& receiver, const ExactSource& source)
+      : scene_(scene), receiver_(receiver), planes_(source.planes().planes), shares_(planes_.size()) {}
+
+  void start(std::uint32_t piece) override {
+    piece_ = piece;
+    started_ = false;
+  }
+
+  double fraction(const sampled::SubPatch& s) override {
+    if (!started_) turn_to_piece();
+    std::array<Vec3, 4> corners;
+    const auto count = static_cast<std::size_t>(s.corner_count());
+    for (std::size_t k = 0; k < count; ++k) corners[k] = s.corner(static_cast<int>(k));
+    ++asked_;
+    return share_->of({corners.data(), count});
+  }
+
+  [[nodiscard]] std::uint64_t asked() const { return asked_; }
+
+ private:
+  void turn_to_piece() {
+    const auto holds_piece = [this](const visibility::SourcePlane& plane) {
+      return std::binary_search(plane.pieces.begin(), plane.pieces.end(), piece_);
+    };
+    const auto found = std::find_if(planes_.begin(), planes_.end(), holds_piece);
+    if (found == planes_.end()) throw std::logic_error("a sub-patch lies in no plane of its source");
+    const auto plane = static_cast<std::size_t>(found - planes_.begin());
+    if (!shares_[plane]) shares_[plane].emplace(scene_, receiver_, planes_[plane]);
+    share_ = &*shares_[plane];
+    share_->start(piece_);
+    started_ = true;
+  }
+
+  const Scene& scene_;
+  const Receiver& receiver_;
+  const std::vector<visibility::SourcePlane>& planes_;
+  std::vector<std::optional<exact::VisibleShare>> shares_;  // by plane
+  exact::VisibleShare* share_ = nullptr;
+  std::uint32_t piece_ = 0;
+  bool started_ = false;
+  std::uint64_t asked_ = 0;
+};
+
+class Control : public Evaluator {
+ public:
+  Control(const Scene& scene, const AdaptiveSolver& solver, const Settings& settings) : scene_(scene), solver_(solver) {
+    take_tolerances(settings, options_);
+    options_.pattern = SamplePattern::kCentre;
+    options_.rays = 1;
+  }
+
+  void look_from(const Receiver& receiver) override { receiver_ = receiver; }
+
+  using Evaluator::form_factor;
+  Estimate form_factor(const PreparedSource& prepared) override {
+    const auto& source = static_cast<const ControlSource&>(prepared);
+    const double rho_b = largest_rho_b(scene_, receiver_, source.radiosity);
+    ExactVisibility visibility(scene_, receiver_, source.exact);
+    const AdaptiveResult found = solver_.form_factor(receiver_, source.adaptive, rho_b, options_, visibility);
+    Estimate result{found.form_factor, {}};
+    count_leaves(found, result.counters);
+    result.counters.add("exact V", visibility.asked());
+    return result;
+  }
+
+ private:
+  const Scene& scene_;
+  const AdaptiveSolver& solver_;
+  AdaptiveOptions options_;
+  Receiver receiver_;
+};
+
+class ControlOnScene : public PreparedScene {
+ public:
+  explicit ControlOnScene(const Scene& scene) : PreparedScene(scene), solver_(scene) {}
+
+  [[nodiscard]] std::unique_ptr<PreparedSource> prepare_source(const Selection& selection) const override {
+    return std::make_unique<ControlSource>(solver_, scene(), selection);
+  }
+  [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
+    return std::make_unique<Control>(scene(), solver_, settings);
+  }
+
+ private:
+  AdaptiveSolver solver_;
+};
+
+}  // namespace
+
+Method adaptive_exact_visibility_method() {
+  return {.name = "adaptive-exact-visibility",
+          .summary = "the adaptive recursion with the exact visible fraction of every sub-patch: the control",
+          .source = "F. Tampieri, Accurate Form-Factor Computation (1992), with V computed exactly",
+          .settings = tolerance_settings(),
+          .prepare = [](const Scene& scene) { return std::make_unique<ControlOnScene>(scene); },
+          .check = check_tolerances};
+}
+
+}  // namespace exactff::methods

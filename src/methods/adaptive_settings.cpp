@@ -1,0 +1,58 @@
+#include "methods/adaptive_settings.h"
+
+#include <limits>
+
+namespace exactff::methods {
+
+namespace {
+
+constexpr std::int64_t kDeepest = 1000;
+
+// In the order of LeafReason.
+constexpr std::array<std::string_view, kLeafReasonCount> kLeafCounters = {
+    "leaves: shaft empty", "leaves: shaft cut", "leaves: V=1",      "leaves: V=0",
+    "leaves: eps_F",       "leaves: eps_A",     "leaves: depth cap"};
+
+}  // namespace
+
+std::vector<SettingSpec> tolerance_settings() {
+  constexpr double kAny = std::numeric_limits<double>::max();
+  const AdaptiveOptions defaults;
+  return {number_setting("eps_B", defaults.eps_b, 0.0, kAny, "tolerance; a leaf stops at F <= eps_B / max(rho B)",
+                         "radiosity"),
+          number_setting("eps_A", defaults.eps_a, 0.0, kAny, "a leaf stops at this area", "area"),
+          whole_setting("depth_cap", defaults.depth_cap, 0, kDeepest, "a leaf stops after so many splits")};
+}
+
+void take_tolerances(const Settings& settings, AdaptiveOptions& options) {
+  options.eps_b = settings.number("eps_B");
+  options.eps_a = settings.number("eps_A");
+  options.depth_cap = static_cast<int>(settings.whole("depth_cap"));
+}
+
+void check_tolerances(const Settings& settings) {
+  constexpr std::int64_t kModestDepth = 12;
+  if (settings.number("eps_B") > 0.0 || settings.number("eps_A") > 0.0) return;
+  if (settings.whole("depth_cap") <= kModestDepth) return;
+  throw InputError(Problem{{},
+                           0,
+                           "eps_B and eps_A are both 0",
+                           "nothing but the depth cap would end the recursion, after 2^depth leaves or more",
+                           "give one of them, or a depth_cap of at most 12"});
+}
+
+double largest_rho_b(const Scene& scene, const Receiver& receiver, const Rgb& radiosity) {
+  const Rgb rho = scene.receiver_reflectance(receiver.on);
+  return Rgb{rho.r * radiosity.r, rho.g * radiosity.g, rho.b * radiosity.b}.largest();
+}
+
+void count_leaves(const AdaptiveResult& found, Counters& counters) {
+  counters.add("leaves", found.leaves);
+  counters.add("rays", found.rays);
+  counters.add("shaft tests", found.shaft_tests);
+  for (std::size_t reason = 0; reason < kLeafReasonCount; ++reason) {
+    counters.add(kLeafCounters[reason], found.leaves_by_reason[reason]);
+  }
+}
+
+}  // namespace exactff::methods

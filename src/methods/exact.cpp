@@ -1,0 +1,76 @@
+// The exact method, as one among the others: correctly rounded values.
+#include "exactff/exact.h"
+
+#include "methods/method_files.h"
+
+namespace exactff::methods {
+
+namespace {
+
+Engine engine_named(std::string_view name) {
+  return name == "edges" ? Engine::kEdges : name == "boolean" ? Engine::kBoolean : Engine::kBoth;
+}
+
+struct ExactSourcePrepared : PreparedSource {
+  ExactSourcePrepared(const Scene& scene, const Selection& chosen) : PreparedSource(chosen), source(scene, chosen) {}
+  ExactSource source;
+};
+
+class Exact : public Evaluator {
+ public:
+  Exact(const Scene& scene, Engine engine) : scene_(scene) { options_.engine = engine; }
+
+  void look_from(const Receiver& receiver) override { receiver_ = receiver; }
+
+  using Evaluator::form_factor;
+  Estimate form_factor(const PreparedSource& source) override {
+    const auto& prepared = static_cast<const ExactSourcePrepared&>(source);
+    const FormFactor found = exact_form_factor(scene_, receiver_, prepared.source, options_);
+    Estimate result;
+    result.form_factor = found.value;
+    std::uint64_t occluders = 0, edges = 0;
+    for (const PlaneRecord& plane : found.planes) {
+      occluders += plane.candidates;
+      edges += plane.edges;
+    }
+    result.counters.add("occluders", occluders);
+    result.counters.add("edges", edges);
+    result.counters.add("bits", static_cast<std::uint64_t>(found.precision_bits));
+    result.counters.add("not certified", found.status == Status::kNotCertified ? 1 : 0);
+    return result;
+  }
+
+ private:
+  const Scene& scene_;
+  ExactOptions options_;
+  Receiver receiver_;
+};
+
+class ExactOnScene : public PreparedScene {
+ public:
+  explicit ExactOnScene(const Scene& scene) : PreparedScene(scene) {}
+
+  [[nodiscard]] std::unique_ptr<PreparedSource> prepare_source(const Selection& selection) const override {
+    return std::make_unique<ExactSourcePrepared>(scene(), selection);
+  }
+  [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
+    return std::make_unique<Exact>(scene(), engine_named(settings.word("engine")));
+  }
+};
+
+// All engines give the same bits.
+bool exact_uses(const Settings&, std::string_view setting) { return setting != "engine"; }
+
+}  // namespace
+
+Method exact_method() {
+  return {.name = "exact",
+          .summary = "the exact visible region and Eq. (4) over its boundary, correctly rounded with proof",
+          .source = "",
+          .settings = {word_setting("engine", {"edges", "boolean", "both"},
+                                    "how the visible region is found; the values are the same bits")},
+          .prepare = [](const Scene& scene) { return std::make_unique<ExactOnScene>(scene); },
+          .uses = exact_uses};
+}
+
+}  // namespace exactff::methods

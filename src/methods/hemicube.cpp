@@ -1,0 +1,242 @@
+// The hemicube: M. F. Cohen and D. P. Greenberg, "The Hemi-Cube: A Radiosity Solution for Complex Environments" (1985).
+//
+//   1. half a cube is set upon x, its top at right angles to the normal, turned about it by an angle;
+//   2. every face of the scene but the receiver's own is drawn into the item buffers of its five faces;
+//   3. the form factor of a face is the sum of the delta form factors of the pixels that show its front.
+// One item buffer serves all sources. Coplanar faces hide each other here as everything in front does: see
+// item_buffer.h for who wins.
+#include <cmath>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <numbers>
+
+#include "kernel/exact_vec.h"
+#include "methods/item_buffer.h"
+#include "methods/method_files.h"
+#include "sampled/plane_side.h"
+#include "sampled/sampled_scene.h"
+
+namespace exactff::methods {
+
+using namespace sampled;
+
+namespace {
+
+constexpr int kHighestResolution = 4096;
+
+struct Frame {
+  Vec3 u, v, n;
+
+  [[nodiscard]] Vec3 operator()(const Vec3& p) const { return {dot(u, p), dot(v, p), dot(n, p)}; }
+};
+
+// At 0 degrees u is the axis that the normal is furthest from (the first of equals), made perpendicular to it; the
+// angle turns u towards v = n x u.
+Frame frame_about(const Vec3& n, double degrees) {
+  const double x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
+  const Vec3 axis = x <= y && x <= z ? Vec3{1, 0, 0} : y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
+  const Vec3 off = axis - n * dot(axis, n);
+  const Vec3 u = off * (1.0 / length(off));
+  if (degrees == 0.0) return {u, cross(n, u), n};
+  const double angle = degrees * (std::numbers::pi / 180.0);
+  const Vec3 turned = u * std::cos(angle) + cross(n, u) * std::sin(angle);
+  return {turned, cross(n, turned), n};
+}
+
+// How many items from the first on are equal to it.
+std::size_t run_length(std::span<const std::uint32_t> items) {
+  const std::uint32_t item = items[0];
+  std::size_t length = 1;
+  // Four at a time without a branch among them.
+  while (length + 4 <= items.size() && ((items[length] ^ item) | (items[length + 1] ^ item) |
+                                        (items[length + 2] ^ item) | (items[length + 3] ^ item)) == 0) {
+    length += 4;
+  }
+  while (length < items.size() && items[length] == item) ++length;
+  return length;
+}
+
+// By four sums side by side: one addition waits for the one before it.
+double sum_of(std::span<const double> values) {
+  double sums[4] = {};
+  std::size_t k = 0;
+  for (; k + 4 <= values.size(); k += 4) {
+    for (std::size_t lane = 0; lane < 4; ++lane) sums[lane] += values[k + lane];
+  }
+  for (; k < values.size(); ++k) sums[0] += values[k];
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
+class HemicubeOnScene;
+
+class Hemicube : public Evaluator {
+ public:
+  Hemicube(const HemicubeOnScene& on_scene, const HemicubePixels& pixels, double rotation)
+      : on_scene_(on_scene), pixels_(pixels), rotation_(rotation) {}
+
+  void look_from(const Receiver& receiver) override;
+  using Evaluator::form_factor;
+  Estimate form_factor(const PreparedSource& source) override;
+
+ private:
+  struct Share {
+    double form_factor = 0.0;
+    std::uint64_t pixels = 0;
+  };
+
+  void render(const ReceiverView& view);
+  void draw(std::uint32_t piece, const ReceiverView& view);
+  [[nodiscard]] int side_of_x(std::uint32_t piece, const ReceiverView& view) const;
+  void add_up();
+
+  const HemicubeOnScene& on_scene_;
+  const HemicubePixels& pixels_;
+  double rotation_;
+  Frame frame_;
+  std::vector<Vec3> points_;   // of the scene, in the frame
+  std::vector<Vec3> corners_;  // of the piece at hand
+  std::vector<char> front_;    // by piece: x is in front of it
+  ItemBuffer buffer_;
+  std::vector<Share> shares_;  // by face
+  std::uint64_t drawn_ = 0;
+};
+
+struct HemicubeSource : PreparedSource {
+  HemicubeSource(const Scene& scene, const Selection& chosen) : PreparedSource(chosen), faces(scene.faces_of(chosen)) {}
+  std::vector<FaceId> faces;
+};
+
+class HemicubeOnScene : public PreparedScene {
+ public:
+  explicit HemicubeOnScene(const Scene& given) : PreparedScene(given), scaled(given) {
+    for (const Piece& piece : given.pieces()) {
+      const std::vector<Vec3>& p = scaled.points;
+      normals.push_back(plane_normal(p[piece.frame[0]], p[piece.frame[1]], p[piece.frame[2]]));
+    }
+  }
+
+  [[nodiscard]] std::unique_ptr<PreparedSource> prepare_source(const Selection& selection) const override {
+    return std::make_unique<HemicubeSource>(scene(), selection);
+  }
+
+  [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
+    return std::make_unique<Hemicube>(*this, pixels(static_cast<int>(settings.whole("resolution"))),
+                                      settings.number("rotation"));
+  }
+
+  const ScaledScene scaled;
+  std::vector<Normal> normals;  // by piece
+
+ private:
+  // Made once for a resolution.
+  const HemicubePixels& pixels(int resolution) const {
+    const std::scoped_lock lock(mutex_);
+    return pixels_.try_emplace(resolution, resolution).first->second;
+  }
+
+  mutable std::mutex mutex_;
+  mutable std::map<int, HemicubePixels> pixels_;
+};
+
+void Hemicube::look_from(const Receiver& receiver) {
+  const ReceiverView view = view_from(receiver, on_scene_.scaled.scale);
+  shares_.assign(on_scene_.scene().faces().size(), {});
+  drawn_ = 0;
+  if (max_norm(view.point) > kFarthest) return;
+  render(view);
+  add_up();
+}
+
+void Hemicube::render(const ReceiverView& view) {
+  frame_ = frame_about(view.unit_normal, rotation_);
+  points_.clear();
+  for (const Vec3& p : on_scene_.scaled.points) points_.push_back(frame_(p - view.point));
+  buffer_.start(pixels_);
+  const auto pieces = on_scene_.scene().pieces();
+  front_.assign(pieces.size(), 0);
+  for (std::uint32_t k = 0; k < pieces.size(); ++k) {
+    if (view.on != pieces[k].face) draw(k, view);
+  }
+}
+
+// The plane's form is made in the scene's coordinates and with a normal whose largest component is 1, so that planes
+// that are parallel to two axes have the same one to the last bit whatever piece they are taken from.
+void Hemicube::draw(std::uint32_t index, const ReceiverView& view) {
+  const Piece& piece = on_scene_.scene().pieces()[index];
+  corners_.clear();
+  bool above = false;
+  for (const std::uint32_t v : on_scene_.scene().corners(piece)) {
+    corners_.push_back(points_[v]);
+    above = above || points_[v].z > 0.0;
+  }
+  if (!above) return;
+  const int side = side_of_x(index, view);
+  if (side == 0) return;
+  front_[index] = side > 0 ? 1 : 0;
+  const Vec3& given = on_scene_.normals[index].value;
+  const double largest = max_norm(given);
+  if (!(largest > 0.0)) return;
+  const Vec3 normal{given.x / largest, given.y / largest, given.z / largest};
+  const double distance = std::abs(dot(normal, view.point - on_scene_.scaled.points[piece.frame[0]]));
+  const double sign = side > 0 ? -1.0 : 1.0;
+  const double scale = sign / std::max(distance, std::numeric_limits<double>::min());
+  buffer_.draw({corners_, side < 0, frame_(normal) * scale, index});
+  ++drawn_;
+}
+
+// +1 if x is in front of the piece's plane, 0 if in it. Exact.
+int Hemicube::side_of_x(std::uint32_t index, const ReceiverView& view) const {
+  const Piece& piece = on_scene_.scene().pieces()[index];
+  const Bounded height = bounded_dot(on_scene_.normals[index], view.point - on_scene_.scaled.points[piece.frame[0]]);
+  if (height.certainly_positive()) return 1;
+  if (height.certainly_negative()) return -1;
+  if (height.certainly_zero()) return 0;
+  const auto vertices = on_scene_.scene().vertices();
+  return kernel::orientation(vertices[piece.frame[0]], vertices[piece.frame[1]], vertices[piece.frame[2]],
+                             view.exact_point);
+}
+
+// Pixels that show the same piece are added up run by run.
+void Hemicube::add_up() {
+  const auto pieces = on_scene_.scene().pieces();
+  const std::vector<std::uint32_t>& items = buffer_.items();
+  for (std::size_t first = 0, next = 0; first < items.size(); first = next) {
+    const std::uint32_t item = items[first];
+    next = first + run_length({items.data() + first, items.size() - first});
+    if (item == ItemBuffer::kNothing || front_[item] == 0) continue;
+    Share& share = shares_[index_of(pieces[item].face)];
+    share.form_factor += sum_of({pixels_.form_factors().data() + first, next - first});
+    share.pixels += next - first;
+  }
+}
+
+Estimate Hemicube::form_factor(const PreparedSource& source) {
+  Estimate result;
+  std::uint64_t pixels = 0;
+  for (const FaceId face : static_cast<const HemicubeSource&>(source).faces) {
+    result.form_factor += shares_[index_of(face)].form_factor;
+    pixels += shares_[index_of(face)].pixels;
+  }
+  result.counters.add("pixels", pixels);
+  result.counters.add("pixels drawn", pixels_.count());
+  result.counters.add("polygons", drawn_);
+  return result;
+}
+
+}  // namespace
+
+Method hemicube_method() {
+  return {.name = "hemicube",
+          .summary = "item buffer of the whole scene on half a cube, delta form factors exact for each pixel",
+          .source = "M. F. Cohen and D. P. Greenberg, The Hemi-Cube (1985)",
+          .settings = {whole_setting("resolution", 100, 2, kHighestResolution,
+                                     "pixels along a side of the top face; the side faces have half as many rows",
+                                     "pixels", 2),
+                       number_setting("rotation", 0.0, -360.0, 360.0, "angle by which it is turned about the normal",
+                                      "degrees")},
+          .all_sources_at_once = true,
+          .prepare = [](const Scene& scene) { return std::make_unique<HemicubeOnScene>(scene); }};
+}
+
+}  // namespace exactff::methods

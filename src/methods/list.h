@@ -1,0 +1,9 @@
+// The library's methods, in the order in which they are listed: one line for each. Every one has a file that defines
+// `Method NAME_method()`. No include guard: whoever includes this says what to make of a line.
+EXACTFF_METHOD(exact)
+EXACTFF_METHOD(adaptive)
+EXACTFF_METHOD(adaptive_exact_visibility)
+EXACTFF_METHOD(hemicube)
+EXACTFF_METHOD(nettle)
+EXACTFF_METHOD(wallace)
+EXACTFF_METHOD(area_sampling)

@@ -1,0 +1,155 @@
+// Nettle's form factor: P. Nettle, "Radiosity In English - Form Factor Calculation" (flipcode, 1999), from centre to
+// centre:
+//
+//   F ~ sum over m x m sub-patches of  H A cos th_r cos th_s / (pi r^2),
+//
+// with the angles and r at the sub-patch's centre, A its area and H, the visibility scalar, the share of k rays to its
+// points that meet nothing. m = 1 is the article's; its rule that patches be "relatively small, when compared to the
+// distance between them" is what m is for.
+//
+// The literal variant does as the text says where that goes wrong: cosines are made positive, so that surfaces shine on
+// what lies behind them and light what faces away; and in the place of A stands the ratio of the two areas, which the
+// text gives once as the sender's over the receiver's and at last as the receiver's over the sender's.
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "methods/even_split.h"
+#include "methods/method_files.h"
+#include "methods/ray_sum.h"
+#include "methods/sample_pattern.h"
+
+namespace exactff::methods {
+
+using namespace sampled;
+
+namespace {
+
+constexpr std::int64_t kMostSplits = 4096;
+constexpr std::int64_t kMostRays = 65536;
+
+enum class AreaFactor { kSender, kSenderOverReceiver, kReceiverOverSender };
+
+AreaFactor area_factor_of(const Settings& settings) {
+  if (settings.word("variant") == "mended") return AreaFactor::kSender;
+  return settings.word("area_ratio") == "sender-over-receiver" ? AreaFactor::kSenderOverReceiver
+                                                               : AreaFactor::kReceiverOverSender;
+}
+
+class Nettle : public Evaluator {
+ public:
+  Nettle(const Scene& scene, const SampledScene& sampled, const Settings& settings)
+      : scene_(scene),
+        scale_(sampled.scene.scale),
+        rays_(sampled),
+        splits_(static_cast<int>(settings.whole("splits"))),
+        seed_(static_cast<std::uint64_t>(settings.whole("seed"))),
+        area_factor_(area_factor_of(settings)),
+        given_receiver_area_(settings.number("receiver_area")) {
+    plan_.prepare(pattern_named(settings.word("pattern")), static_cast<int>(settings.whole("rays")));
+    ends_.resize(plan_.ray_count());
+  }
+
+  void look_from(const Receiver& receiver) override {
+    rays_.look_from(receiver);
+    receiver_area_ = given_receiver_area_ > 0.0 ? given_receiver_area_
+                     : receiver.on              ? scene_.face(*receiver.on).area
+                                                : 1.0;
+  }
+
+  using Evaluator::form_factor;
+  Estimate form_factor(const PreparedSource& prepared) override {
+    const auto& source = static_cast<const RaySource&>(prepared);
+    std::uint64_t key = stream_key(rays_.view(), source.selection(), seed_);
+    const auto parts = static_cast<std::size_t>(splits_) * static_cast<std::size_t>(splits_);
+    std::uint64_t sub_patches = 0;
+    for (std::size_t root = 0; root < source.roots.size(); ++root) {
+      key = derived_key(key, 0);
+      const Reach reach = literal() ? Reach::kEverything : Reach::kVisible;
+      const auto points = parts * static_cast<std::size_t>(plan_.ray_count());
+      if (!rays_.aim(source, root, reach, points)) continue;
+      split_evenly(rays_.patch(), splits_, parts_);
+      for (std::size_t i = 0; i < parts_.size(); ++i) add_part(parts_[i], derived_key(key, i));
+      sub_patches += parts_.size();
+    }
+    Estimate result;
+    result.form_factor = rays_.take();
+    result.counters.add("sub-patches", sub_patches);
+    result.counters.add("rays", rays_.take_rays());
+    return result;
+  }
+
+ private:
+  [[nodiscard]] bool literal() const { return area_factor_ != AreaFactor::kSender; }
+
+  void add_part(const SubPatch& part, std::uint64_t key) {
+    const double share =
+        (literal() ? literal_form_factor(part) : rays_.kernel(centre_of(part)) * area(part)) / plan_.ray_count();
+    if (share == 0.0) return;
+    plan_.place(part, key, ends_);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(ends_.count); ++i) {
+      const Vec3 end{ends_.x[i], ends_.y[i], ends_.z[i]};
+      const bool counts = literal() || dot(rays_.view().normal, end) > 0.0;
+      rays_.add(end, counts ? share : 0.0);
+    }
+  }
+
+  // Not a pure number: one over an area, as the text has it.
+  [[nodiscard]] double literal_form_factor(const SubPatch& part) const {
+    const Vec3 centre = centre_of(part);
+    const double squared_distance = dot(centre, centre);
+    const double cosines = std::abs(dot(rays_.view().unit_normal, centre) * rays_.height()) / squared_distance;
+    const double sender_area = area(part) / (scale_ * scale_);
+    const double ratio =
+        area_factor_ == AreaFactor::kSenderOverReceiver ? sender_area / receiver_area_ : receiver_area_ / sender_area;
+    return cosines / (std::numbers::pi * squared_distance / (scale_ * scale_)) * ratio;
+  }
+
+  const Scene& scene_;
+  double scale_;
+  RaySum rays_;
+  int splits_;
+  std::uint64_t seed_;
+  AreaFactor area_factor_;
+  double given_receiver_area_;
+  double receiver_area_ = 1.0;  // in the scene's unit
+  SamplePlan plan_;
+  RayEnds ends_;
+  std::vector<SubPatch> parts_;
+};
+
+class NettleOnScene : public RaysOnScene {
+ public:
+  using RaysOnScene::RaysOnScene;
+  [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
+    return std::make_unique<Nettle>(scene(), sampled(), settings);
+  }
+};
+
+bool nettle_uses(const Settings& settings, std::string_view setting) {
+  if (setting == "area_ratio" || setting == "receiver_area") return settings.word("variant") == "literal";
+  return pattern_uses(settings, setting);
+}
+
+}  // namespace
+
+Method nettle_method() {
+  return {
+      .name = "nettle",
+      .summary = "centre to centre for each of m x m sub-patches, times a visibility scalar from k rays",
+      .source = "P. Nettle, Radiosity In English - Form Factor Calculation (1999)",
+      .settings = {whole_setting("splits", 1, 1, kMostSplits, "m of the m x m sub-patches of a face"),
+                   whole_setting("rays", 16, 1, kMostRays, "k rays for each sub-patch's visibility scalar"),
+                   pattern_setting(),
+                   word_setting("variant", {"mended", "literal"},
+                                "literal: cosines always positive, and a ratio of areas in the sender's place"),
+                   word_setting("area_ratio", {"receiver-over-sender", "sender-over-receiver"},
+                                "of the literal variant, whose text says both"),
+                   number_setting("receiver_area", 0.0, 0.0, std::numeric_limits<double>::max(),
+                                  "of the literal variant; 0: that of the face the receiver lies on, else 1", "area"),
+                   seed_setting()},
+      .prepare = [](const Scene& scene) { return std::make_unique<NettleOnScene>(scene); },
+      .uses = nettle_uses};
+}
+
+}  // namespace exactff::methods

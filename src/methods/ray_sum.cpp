@@ -1,0 +1,129 @@
+#include "methods/ray_sum.h"
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
+namespace exactff::methods {
+
+using namespace sampled;
+
+namespace {
+
+// The longest list worth gathering: a piece in the shaft costs about as much as two rays that Embree traces.
+std::size_t longest_list(std::size_t points) { return std::clamp(points / 2, kShortestLimit, kLongestDirectList); }
+
+}  // namespace
+
+void RaySum::look_from(const Receiver& receiver) {
+  view_ = view_from(receiver, scene_.scene.scale);
+  ends_.resize(kBlock);
+  ends_.count = 0;
+  weights_.resize(kBlock);
+  sum_ = 0.0;
+  rays_ = 0;
+}
+
+bool RaySum::aim(const RaySource& source, std::size_t index, Reach reach, std::size_t points) {
+  trace();
+  const SourceRoot& root = source.roots[index];
+  const RayPlane& plane = source.planes[root.plane];
+  if (root.face == view_.on || max_norm(view_.point) > kFarthest) return false;
+  if (reach == Reach::kVisible && !in_front(view_, plane.front)) return false;
+  polygon_.clear();
+  for (int i = 0; i < root.corner_count; ++i) {
+    polygon_.push_back(root.corners[static_cast<std::size_t>(i)] - view_.point);
+  }
+  patch_ = make_sub_patch(polygon_);
+  height_ = dot(plane.unit_normal, view_.point - plane.front.frame[0]);
+  if (!clip(reach)) return false;
+  gather(plane, reach, points);
+  return true;
+}
+
+bool RaySum::clip(Reach reach) {
+  if (reach == Reach::kEverything) return height_ != 0.0;
+  clip_by_horizon(polygon_, view_.normal, clipped_);
+  polygon_.swap(clipped_);
+  return !polygon_.empty();
+}
+
+void RaySum::gather(const RayPlane& plane, Reach reach, std::size_t points) {
+  const bool behind = reach == Reach::kEverything && height_ < 0.0;
+  if (behind) std::reverse(polygon_.begin(), polygon_.end());
+  const SourcePlane& seen = behind ? plane.back : plane.front;
+  const Horizon horizon = reach == Reach::kVisible ? Horizon::kClips : Horizon::kIgnored;
+  asks_embree_ = !gather_occluders(scene_.scene, view_, seen, polygon_, horizon, scene_.unit_box.blur(), gathered_,
+                                   longest_list(points));
+  if (asks_embree_) gather_from_all(plane, seen, horizon);
+  list_ = gathered_.occluders.push_all();
+}
+
+// Rays pass through the source's plane and the receiver's face; what is too near either for single precision is tested
+// directly.
+void RaySum::gather_from_all(const RayPlane& plane, const SourcePlane& seen, Horizon horizon) {
+  const Scene& scene = *scene_.scene.scene;
+  pieces_ = plane.close;
+  visit_pieces_near(scene_.scene, view_.point, scene_.unit_box.blur(),
+                    [this](std::uint32_t piece) { pieces_.push_back(piece); });
+  std::sort(pieces_.begin(), pieces_.end());
+  pieces_.erase(std::unique(pieces_.begin(), pieces_.end()), pieces_.end());
+  gather_blurred(scene_.scene, view_, seen, polygon_, horizon, pieces_, gathered_);
+  pieces_.insert(pieces_.end(), seen.coplanar.begin(), seen.coplanar.end());
+  if (view_.on) {
+    const Face& face = scene.face(*view_.on);
+    for (std::uint32_t k = 0; k < face.piece_count; ++k) pieces_.push_back(face.first_piece + k);
+  }
+  blockers_.assign_all_but(scene.pieces().size(), pieces_);
+}
+
+double RaySum::kernel(const Vec3& point) const {
+  const double squared_distance = dot(point, point);
+  const double above = std::max(0.0, dot(view_.unit_normal, point));
+  return std::numbers::inv_pi * (above / squared_distance) * (height_ / squared_distance);
+}
+
+void RaySum::add(const Vec3& point, double weight) {
+  if (weight == 0.0) return;
+  if (list_.empty() && !asks_embree_) {
+    sum_ += weight;
+    return;
+  }
+  const auto k = static_cast<std::size_t>(ends_.count++);
+  ends_.x[k] = point.x;
+  ends_.y[k] = point.y;
+  ends_.z[k] = point.z;
+  weights_[k] = weight;
+  if (ends_.count == kBlock) trace();
+}
+
+// Ends that are left over from before serve as padding: their lanes are not looked at.
+void RaySum::trace() {
+  rays_ += static_cast<std::uint64_t>(ends_.count);
+  for (int first = 0; first < ends_.count; first += RayScene::kPacket) {
+    const unsigned hidden = hidden_lanes(first);
+    const int lanes = std::min(RayScene::kPacket, ends_.count - first);
+    for (int lane = 0; lane < lanes; ++lane) {
+      if ((hidden >> lane & 1U) == 0) sum_ += weights_[static_cast<std::size_t>(first + lane)];
+    }
+  }
+  ends_.count = 0;
+}
+
+unsigned RaySum::hidden_lanes(int first) const {
+  unsigned hidden = 0;
+  for (int half = 0; half < RayScene::kPacket && !list_.empty(); half += RayEnds::kLanes) {
+    if (first + half < ends_.count) hidden |= gathered_.occluders.hidden_lanes(list_, ends_, first + half) << half;
+  }
+  if (!asks_embree_) return hidden;
+  return scene_.ray_scene().hidden_lanes(view_.point, ends_, first, blockers_, hidden);
+}
+
+double RaySum::take() {
+  trace();
+  return std::exchange(sum_, 0.0);
+}
+
+std::uint64_t RaySum::take_rays() { return std::exchange(rays_, 0); }
+
+}  // namespace exactff::methods

@@ -1,0 +1,69 @@
+// Sums of weights over the points of a source that x sees: what every method comes to that traces single rays.
+//
+// For one root of the source at a time, either a short list of occluders is gathered from its shaft and tested
+// directly in double, or Embree is asked about the whole scene. Gathering costs as much as some rays, so the list may
+// be about as long as there are rays to trace, and is given up beyond.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "methods/ray_source.h"
+
+namespace exactff::methods {
+
+// Scenes of no more pieces never need Embree.
+inline constexpr std::size_t kShortestLimit = 16;
+
+// Which points count: as the definition has it; or all, on both sides of the source and below the horizon too.
+enum class Reach { kVisible, kEverything };
+
+class RaySum {
+ public:
+  explicit RaySum(const sampled::SampledScene& scene) : scene_(scene) {}
+
+  void look_from(const Receiver& receiver);
+  [[nodiscard]] const sampled::ReceiverView& view() const { return view_; }
+
+  // Turns to a root, of which about so many points will be asked about. False if nothing of it counts.
+  [[nodiscard]] bool aim(const RaySource& source, std::size_t root, Reach reach, std::size_t points);
+  [[nodiscard]] const sampled::SubPatch& patch() const { return patch_; }  // the root, relative to x, unclipped
+  [[nodiscard]] double height() const { return height_; }                  // of x above its plane; negative behind
+
+  // cos th_r cos th_s / (pi r^2) at a point of the root, 0 below the horizon; signed where x is behind.
+  [[nodiscard]] double kernel(const Vec3& point) const;
+
+  // Adds `weight` to the sum if x sees the point.
+  void add(const Vec3& point, double weight);
+  // The sum since the last call.
+  [[nodiscard]] double take();
+  // Rays traced since the last call.
+  [[nodiscard]] std::uint64_t take_rays();
+
+ private:
+  static constexpr int kBlock = 256;
+
+  [[nodiscard]] bool clip(Reach reach);
+  void gather(const RayPlane& plane, Reach reach, std::size_t points);
+  void gather_from_all(const RayPlane& plane, const sampled::SourcePlane& seen, sampled::Horizon horizon);
+  void trace();
+  [[nodiscard]] unsigned hidden_lanes(int first) const;
+
+  const sampled::SampledScene& scene_;
+  sampled::ReceiverView view_;
+  double height_ = 0.0;
+  sampled::SubPatch patch_;
+  std::vector<Vec3> polygon_, clipped_;
+  std::vector<std::uint32_t> pieces_;
+  sampled::Gathered gathered_;
+  sampled::CandidateRange list_;
+  sampled::Blockers blockers_;
+  bool asks_embree_ = false;
+  sampled::RayEnds ends_;
+  std::vector<double> weights_;
+  double sum_ = 0.0;
+  std::uint64_t rays_ = 0;
+};
+
+}  // namespace exactff::methods

@@ -1,0 +1,37 @@
+// Point sets of the unit square for area sampling.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "sampled/sample_points.h"
+
+namespace exactff::methods {
+
+enum class PointSet {
+  kRandom,      // independent
+  kStratified,  // one in each of n cells of equal area, in about sqrt(n) rows
+  kSobol,       // the first n points of a sequence, shifted modulo 1 by a random vector (Cranley and Patterson 1976)
+  kHalton,      // bases 2 and 3
+  kR2,          // Roberts' additive recurrence by the plastic number
+};
+
+class UnitPoints {
+ public:
+  UnitPoints(PointSet set, int count);
+
+  // The points that the stream `key` makes of the set.
+  void place(std::uint64_t key, std::vector<sampled::UnitPoint>& points);
+
+ private:
+  void place_stratified(std::uint64_t key, std::vector<sampled::UnitPoint>& points);
+
+  PointSet set_;
+  int count_;
+  std::vector<sampled::UnitPoint> sequence_;
+  sampled::SamplePlan cells_;
+  sampled::RayEnds ends_;
+};
+
+}  // namespace exactff::methods

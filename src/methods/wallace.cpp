@@ -1,0 +1,100 @@
+// Wallace's ray-traced form factor: J. R. Wallace, K. A. Elmquist and E. A. Haines, "A Ray Tracing Algorithm for
+// Progressive Radiosity" (1989). The source is cut into sub-patches of area dA, each is taken for a disc that faces the
+// line to its sample point at distance r, and one ray tells whether x sees it:
+//
+//   F ~ sum V dA cos th_r cos th_s / (pi r^2 + dA).
+//
+// The disc keeps the value finite where dA is large beside r^2.
+#include <numbers>
+
+#include "methods/even_split.h"
+#include "methods/method_files.h"
+#include "methods/ray_sum.h"
+
+namespace exactff::methods {
+
+using namespace sampled;
+
+namespace {
+
+constexpr std::int64_t kMostSplits = 4096;
+
+class Wallace : public Evaluator {
+ public:
+  Wallace(const SampledScene& scene, const Settings& settings)
+      : rays_(scene),
+        splits_(static_cast<int>(settings.whole("splits"))),
+        seed_(static_cast<std::uint64_t>(settings.whole("seed"))) {
+    const bool jittered = settings.word("pattern") == "jittered";
+    plan_.prepare(jittered ? SamplePattern::kJittered : SamplePattern::kCentre, 1);
+    end_.resize(1);
+  }
+
+  void look_from(const Receiver& receiver) override { rays_.look_from(receiver); }
+
+  using Evaluator::form_factor;
+  Estimate form_factor(const PreparedSource& prepared) override {
+    const auto& source = static_cast<const RaySource&>(prepared);
+    std::uint64_t key = stream_key(rays_.view(), source.selection(), seed_);
+    std::uint64_t samples = 0;
+    for (std::size_t root = 0; root < source.roots.size(); ++root) {
+      key = derived_key(key, 0);
+      const auto count = static_cast<std::size_t>(splits_) * static_cast<std::size_t>(splits_);
+      if (!rays_.aim(source, root, Reach::kVisible, count)) continue;
+      split_evenly(rays_.patch(), splits_, parts_);
+      for (std::size_t i = 0; i < parts_.size(); ++i) add_part(parts_[i], derived_key(key, i));
+      samples += parts_.size();
+    }
+    Estimate result;
+    result.form_factor = rays_.take();
+    result.counters.add("samples", samples);
+    result.counters.add("rays", rays_.take_rays());
+    return result;
+  }
+
+ private:
+  void add_part(const SubPatch& part, std::uint64_t key) {
+    plan_.place(part, key, end_);
+    const Vec3 point{end_.x[0], end_.y[0], end_.z[0]};
+    const double size = area(part);
+    const double disc = std::numbers::pi * dot(point, point);
+    rays_.add(point, rays_.kernel(point) * size * (disc / (disc + size)));
+  }
+
+  RaySum rays_;
+  int splits_;
+  std::uint64_t seed_;
+  SamplePlan plan_;
+  RayEnds end_;
+  std::vector<SubPatch> parts_;
+};
+
+class WallaceOnScene : public RaysOnScene {
+ public:
+  using RaysOnScene::RaysOnScene;
+  [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
+    return std::make_unique<Wallace>(sampled(), settings);
+  }
+};
+
+bool wallace_uses(const Settings& settings, std::string_view setting) {
+  return setting != "seed" || settings.word("pattern") == "jittered";
+}
+
+}  // namespace
+
+Method wallace_method() {
+  return {.name = "wallace",
+          .summary = "m x m sub-patches of each face of the source, each a disc with a ray to it",
+          .source =
+              "J. R. Wallace, K. A. Elmquist and E. A. Haines, A Ray Tracing Algorithm for Progressive Radiosity "
+              "(1989)",
+          .settings = {whole_setting("splits", 4, 1, kMostSplits, "m of the m x m sub-patches of a face"),
+                       word_setting("pattern", {"centre", "jittered"},
+                                    "where in its sub-patch a sample lies: in the middle or anywhere"),
+                       seed_setting()},
+          .prepare = [](const Scene& scene) { return std::make_unique<WallaceOnScene>(scene); },
+          .uses = wallace_uses};
+}
+
+}  // namespace exactff::methods
