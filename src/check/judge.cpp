@@ -8,6 +8,7 @@
 #include "check/errors.h"
 #include "check/words.h"
 #include "exactff/check.h"
+#include "scene/fnv1a.h"
 #include "study/text.h"
 
 namespace exactff::check {
@@ -35,33 +36,6 @@ void check_criteria(const Criteria& criteria) {
                       .why = "it is a share of the rows",
                       .suggestion = "give more than 0 and at most 1, such as 0.99"});
   }
-}
-
-// 64-bit FNV-1a.
-class Hash {
- public:
-  Hash& operator<<(std::string_view text) {
-    for (const char c : text) take(static_cast<unsigned char>(c));
-    take(0);
-    return *this;
-  }
-  Hash& operator<<(double value) {
-    auto bits = std::bit_cast<std::uint64_t>(value);
-    for (int i = 0; i < 8; ++i, bits >>= 8U) take(static_cast<unsigned char>(bits & 0xFFU));
-    return *this;
-  }
-  [[nodiscard]] std::uint64_t value() const { return hash_; }
-
- private:
-  void take(unsigned char byte) { hash_ = (hash_ ^ byte) * 0x100000001B3U; }
-  std::uint64_t hash_ = 0xCBF29CE484222325U;
-};
-
-std::string hexadecimal(std::uint64_t value) {
-  std::string text(16, '0');
-  for (auto digit = text.rbegin(); digit != text.rend(); ++digit, value >>= 4U)
-    *digit = "0123456789abcdef"[value & 15U];
-  return text;
 }
 
 class Judge {
@@ -111,9 +85,16 @@ class Judge {
     std::uint64_t sum = 0;
     for (const Measured& one : values_) {
       const TruthRow& row = truth_.rows[one.row];
-      sum += (Hash() << truth_.column << row.receiver << truth_.source_of(row) << row.value).value();
+      Fnv1a hash;
+      for (const std::string_view text :
+           {std::string_view(truth_.column), std::string_view(row.receiver), std::string_view(truth_.source_of(row))}) {
+        hash.add_bytes(text);
+        hash.add_byte(0);
+      }
+      hash.add(row.value);
+      sum += hash.value();
     }
-    return hexadecimal(sum);
+    return hexadecimal(sum, 16);
   }
 
   void require_rho_b() const {

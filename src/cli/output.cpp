@@ -10,6 +10,7 @@
 
 #include "cli/long_run.h"
 #include "scene/number_text.h"
+#include "scene/text_file.h"
 #include "study/text.h"
 
 namespace exactff::cli {
@@ -60,15 +61,6 @@ void write_to(const fs::path& target, const fs::path& path, const std::string& t
   std::error_code ignored;
   if (target != path) fs::remove(target, ignored);
   cannot_write(path, reason);
-}
-
-// Where a symbolic link leads to; else the path itself.
-fs::path destination(const fs::path& path) {
-  std::error_code error;
-  const fs::path resolved = fs::canonical(path, error);
-  if (!error) return resolved;
-  const fs::path leads_to = fs::read_symlink(path, error);  // to what does not exist yet
-  return error ? path : path.parent_path() / leads_to;
 }
 
 void replace_file(const fs::path& path, const std::string& text) {

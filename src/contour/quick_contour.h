@@ -18,15 +18,11 @@
 #include "exactff/geometry.h"
 #include "kernel/double_double.h"
 #include "kernel/exact_vec.h"
+#include "kernel/fine_direction.h"
 
 namespace exactff::contour {
 
-// A direction from x in double-double: every true component is within `error` of hi + lo (0: exact).
-struct QuickCorner {
-  std::array<double, 3> hi{};
-  std::array<double, 3> lo{};
-  double error = 0.0;
-};
+using QuickCorner = kernel::FineDirection;
 
 // (vertex - x) * 2^scale_exponent, exactly but for underflow; NaN where it overflows.
 QuickCorner quick_corner(const Vec3& vertex, const Vec3& x, int scale_exponent);

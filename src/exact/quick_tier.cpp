@@ -36,7 +36,7 @@ contour::QuickCorner quick_corner(Outlines& outlines, CornerId id) {
   if (const auto vertex = outlines.vertex(id)) {
     return contour::quick_corner(outlines.position(*vertex), outlines.x(), outlines.scale_exponent());
   }
-  if (const visibility::FineDirection* fine = outlines.fine(id)) return {fine->hi, fine->lo, fine->error};
+  if (const contour::QuickCorner* fine = outlines.fine(id)) return *fine;
   return contour::quick_corner(outlines.exact(id));
 }
 

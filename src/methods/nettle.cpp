@@ -60,18 +60,11 @@ class Nettle : public Evaluator {
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
     const auto& source = static_cast<const RaySource&>(prepared);
-    std::uint64_t key = stream_key(rays_.view(), source.selection(), seed_);
-    const auto parts = static_cast<std::size_t>(splits_) * static_cast<std::size_t>(splits_);
-    std::uint64_t sub_patches = 0;
-    for (std::size_t root = 0; root < source.roots.size(); ++root) {
-      key = derived_key(key, 0);
-      const Reach reach = literal() ? Reach::kEverything : Reach::kVisible;
-      const auto points = parts * static_cast<std::size_t>(plan_.ray_count());
-      if (!rays_.aim(source, root, reach, points)) continue;
-      split_evenly(rays_.patch(), splits_, parts_);
-      for (std::size_t i = 0; i < parts_.size(); ++i) add_part(parts_[i], derived_key(key, i));
-      sub_patches += parts_.size();
-    }
+    const std::uint64_t key = stream_key(rays_.view(), source.selection(), seed_);
+    const Reach reach = literal() ? Reach::kEverything : Reach::kVisible;
+    const std::uint64_t sub_patches =
+        rays_.for_each_part(source, reach, splits_, key, plan_.ray_count(),
+                            [this](const SubPatch& part, std::uint64_t part_key) { add_part(part, part_key); });
     Estimate result;
     result.form_factor = rays_.take();
     result.counters.add("sub-patches", sub_patches);
@@ -115,7 +108,6 @@ class Nettle : public Evaluator {
   double receiver_area_ = 1.0;  // in the scene's unit
   SamplePlan plan_;
   RayEnds ends_;
-  std::vector<SubPatch> parts_;
 };
 
 class NettleOnScene : public RaysOnScene {

@@ -9,7 +9,9 @@
 #include <span>
 #include <vector>
 
+#include "methods/even_split.h"
 #include "methods/ray_source.h"
+#include "sampled/sample_points.h"
 
 namespace exactff::methods {
 
@@ -34,6 +36,23 @@ class RaySum {
   // cos th_r cos th_s / (pi r^2) at a point of the root, 0 below the horizon; signed where x is behind.
   [[nodiscard]] double kernel(const Vec3& point) const;
 
+  // Cuts every root of the source that counts into splits x splits parts and calls add(part, key) for each, with a key
+  // of its own for random numbers. So many points will be asked about in each part. Returns how many parts there were.
+  template <class Add>
+  std::uint64_t for_each_part(const RaySource& source, Reach reach, int splits, std::uint64_t key, int points,
+                              const Add& add) {
+    const auto parts = static_cast<std::size_t>(splits) * static_cast<std::size_t>(splits);
+    std::uint64_t count = 0;
+    for (std::size_t root = 0; root < source.roots.size(); ++root) {
+      key = sampled::derived_key(key, 0);
+      if (!aim(source, root, reach, parts * static_cast<std::size_t>(points))) continue;
+      split_evenly(patch_, splits, parts_);
+      for (std::size_t i = 0; i < parts_.size(); ++i) add(parts_[i], sampled::derived_key(key, i));
+      count += parts_.size();
+    }
+    return count;
+  }
+
   // Adds `weight` to the sum if x sees the point.
   void add(const Vec3& point, double weight);
   // The sum since the last call.
@@ -54,6 +73,7 @@ class RaySum {
   sampled::ReceiverView view_;
   double height_ = 0.0;
   sampled::SubPatch patch_;
+  std::vector<sampled::SubPatch> parts_;
   std::vector<Vec3> polygon_, clipped_;
   std::vector<std::uint32_t> pieces_;
   sampled::Gathered gathered_;

@@ -35,16 +35,10 @@ class Wallace : public Evaluator {
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
     const auto& source = static_cast<const RaySource&>(prepared);
-    std::uint64_t key = stream_key(rays_.view(), source.selection(), seed_);
-    std::uint64_t samples = 0;
-    for (std::size_t root = 0; root < source.roots.size(); ++root) {
-      key = derived_key(key, 0);
-      const auto count = static_cast<std::size_t>(splits_) * static_cast<std::size_t>(splits_);
-      if (!rays_.aim(source, root, Reach::kVisible, count)) continue;
-      split_evenly(rays_.patch(), splits_, parts_);
-      for (std::size_t i = 0; i < parts_.size(); ++i) add_part(parts_[i], derived_key(key, i));
-      samples += parts_.size();
-    }
+    const std::uint64_t key = stream_key(rays_.view(), source.selection(), seed_);
+    const std::uint64_t samples =
+        rays_.for_each_part(source, Reach::kVisible, splits_, key, 1,
+                            [this](const SubPatch& part, std::uint64_t part_key) { add_part(part, part_key); });
     Estimate result;
     result.form_factor = rays_.take();
     result.counters.add("samples", samples);
@@ -66,7 +60,6 @@ class Wallace : public Evaluator {
   std::uint64_t seed_;
   SamplePlan plan_;
   RayEnds end_;
-  std::vector<SubPatch> parts_;
 };
 
 class WallaceOnScene : public RaysOnScene {

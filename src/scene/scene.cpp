@@ -1,11 +1,11 @@
 #include "exactff/scene.h"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
+#include "scene/fnv1a.h"
 #include "scene/nearest_names.h"
 #include "scene/numbered_name.h"
 #include "scene/places.h"
@@ -134,35 +134,14 @@ Rgb Scene::receiver_reflectance(std::optional<FaceId> id) const {
 
 namespace {
 
-// 64-bit FNV-1a over bytes in a fixed order, whatever the machine's.
-class Fnv1a {
- public:
-  void add(std::uint64_t value) {
-    for (int shift = 0; shift < 64; shift += 8) add_byte(static_cast<unsigned char>(value >> shift));
-  }
-  void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
-  void add(const Vec3& p) {
-    for (const double c : {p.x, p.y, p.z}) add(c);
-  }
-  void add(const Rgb& c) {
-    for (const double v : {c.r, c.g, c.b}) add(v);
-  }
-  void add(const std::string& text) {
-    add(static_cast<std::uint64_t>(text.size()));
-    for (const char c : text) add_byte(static_cast<unsigned char>(c));
-  }
+void add_text(Fnv1a& hash, const std::string& text) {
+  hash.add(std::uint64_t{text.size()});
+  hash.add_bytes(text);
+}
 
-  std::string digits() const {
-    std::string text(16, '0');
-    for (std::size_t i = 0; i < 16; ++i) text[i] = "0123456789abcdef"[(state_ >> (60 - 4 * i)) & 15U];
-    return text;
-  }
-
- private:
-  void add_byte(unsigned char byte) { state_ = (state_ ^ byte) * 0x100000001b3U; }
-
-  std::uint64_t state_ = 0xcbf29ce484222325U;
-};
+void add_colour(Fnv1a& hash, const Rgb& c) {
+  for (const double v : {c.r, c.g, c.b}) hash.add(v);
+}
 
 void add_face(Fnv1a& hash, const Face& face) {
   hash.add(static_cast<std::uint64_t>(face.patch));
@@ -183,12 +162,12 @@ std::string Scene::hash() const {
   for (const Vec3& vertex : vertices()) hash.add(vertex);
   hash.add(static_cast<std::uint64_t>(materials().size()));
   for (const Material& m : materials()) {
-    hash.add(m.name);
-    hash.add(m.reflectance);
-    hash.add(m.radiosity);
+    add_text(hash, m.name);
+    add_colour(hash, m.reflectance);
+    add_colour(hash, m.radiosity);
   }
   hash.add(static_cast<std::uint64_t>(patches().size()));
-  for (const Patch& patch : patches()) hash.add(patch.name);
+  for (const Patch& patch : patches()) add_text(hash, patch.name);
   hash.add(static_cast<std::uint64_t>(faces().size()));
   for (const Face& face : faces()) add_face(hash, face);
   return hash.digits();

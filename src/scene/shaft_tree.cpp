@@ -74,8 +74,7 @@ std::uint64_t ShaftTree::crossed_half_spaces(const Box& box, const Vec3& apex, s
 }
 
 bool ShaftTree::certainly_outside(const Box& box, const Vec3& apex, std::span<const HalfSpace> shaft) {
-  return std::any_of(shaft.begin(), shaft.end(),
-                     [&](const HalfSpace& h) { return certainly_outside_one(box, apex, h); });
+  return crossed_half_spaces(box, apex, shaft, kAllHalfSpaces) == kOutside;
 }
 
 ShaftTree::ShaftTree(std::span<const Box> boxes) : order_(boxes.size()) {

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <string_view>
+#include <system_error>
 
 #include "exactff/error.h"
 
@@ -61,6 +62,14 @@ std::ifstream open_text_file(const std::filesystem::path& path, const std::strin
 std::string read_text_file(const std::filesystem::path& path, const std::string& purpose) {
   std::ifstream in = open_text_file(path, purpose);
   return read_text(in, path.string(), purpose);
+}
+
+std::filesystem::path destination(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::path resolved = std::filesystem::canonical(path, error);
+  if (!error) return resolved;
+  const std::filesystem::path leads_to = std::filesystem::read_symlink(path, error);  // to what does not exist yet
+  return error ? path : path.parent_path() / leads_to;
 }
 
 }  // namespace exactff

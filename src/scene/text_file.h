@@ -1,4 +1,4 @@
-// Input files as text: read whole, or refused with a message that says why.
+// Files: input as text, read whole or refused with a message that says why; and where output belongs.
 #pragma once
 
 #include <cstddef>
@@ -21,5 +21,8 @@ namespace exactff {
 [[nodiscard]] std::ifstream open_text_file(const std::filesystem::path& path, const std::string& purpose);
 [[nodiscard]] std::size_t read_text_block(std::istream& in, std::span<char> block, const std::string& file,
                                           const std::string& purpose);
+
+// Where a file that takes the place of `path` belongs: where a symbolic link leads to, else the path itself.
+[[nodiscard]] std::filesystem::path destination(const std::filesystem::path& path);
 
 }  // namespace exactff

@@ -1,6 +1,5 @@
 #include "study/tables.h"
 
-#include <algorithm>
 #include <cctype>
 
 #include "exactff/version.h"
@@ -15,13 +14,6 @@ void write_list(std::ostream& out, std::string_view name, const List& list, cons
   out << "# " << name << ": ";
   for (std::size_t i = 0; i < list.size(); ++i) out << (i > 0 ? "," : "") << text(list[i]);
   out << '\n';
-}
-
-// Names from the input may hold anything; a line break would end the comment.
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return text;
 }
 
 void write_head(const Study& study, std::ostream& out, std::string_view what) {

@@ -74,6 +74,12 @@ std::string csv_field(std::string_view text) {
   return quoted + '"';
 }
 
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return text;
+}
+
 std::string html(std::string_view text) {
   std::string safe;
   for (char c : text) {

@@ -23,6 +23,9 @@ namespace exactff::study {
 // One field of a CSV row, quoted where it must be (RFC 4180).
 [[nodiscard]] std::string csv_field(std::string_view text);
 
+// With blanks for line breaks, which would end a comment: names from the input may hold anything.
+[[nodiscard]] std::string one_line(std::string text);
+
 // Text for HTML, attributes included.
 [[nodiscard]] std::string html(std::string_view text);
 

@@ -4,6 +4,8 @@
 #include <boost/crc.hpp>
 #include <charconv>
 
+#include "scene/fnv1a.h"
+
 namespace exactff::truth {
 namespace {
 
@@ -16,12 +18,6 @@ std::uint32_t crc_of(std::string_view a, std::string_view b) {
   crc.process_bytes(a.data(), a.size());
   crc.process_bytes(b.data(), b.size());
   return crc.checksum();
-}
-
-std::string hexadecimal(std::uint32_t crc) {
-  std::string digits(8, '0');
-  for (std::size_t i = 8; i-- > 0; crc >>= 4) digits[i] = "0123456789abcdef"[crc & 15];
-  return digits;
 }
 
 std::string opening_of(Range range, std::uint64_t bytes) {
@@ -71,7 +67,7 @@ std::optional<Block> block_at(const File& file, std::uint64_t offset) {
   if (!scan.skip("\n")) return std::nullopt;
   block.offset = offset + scan.at();
   if (block.bytes > file.size() - block.offset) return std::nullopt;
-  if (crc != hexadecimal(crc_of(opening, read_lines(file, block)))) return std::nullopt;
+  if (crc != hexadecimal(crc_of(opening, read_lines(file, block)), 8)) return std::nullopt;
   return block;
 }
 
@@ -102,7 +98,7 @@ std::optional<std::string> read_head(const File& file) {
 
 std::string block_text(Range range, std::string_view lines) {
   std::string text = opening_of(range, lines.size());
-  text += hexadecimal(crc_of(text, lines)) + '\n';
+  text += hexadecimal(crc_of(text, lines), 8) + '\n';
   text += lines;
   return text;
 }

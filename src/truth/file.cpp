@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "exactff/error.h"
+#include "scene/text_file.h"
 
 namespace exactff::truth {
 
@@ -107,15 +108,6 @@ void sync_folder_of(const fs::path& path) {
 }
 
 namespace {
-
-// Where a symbolic link leads to; else the path itself.
-fs::path destination(const fs::path& path) {
-  std::error_code error;
-  const fs::path resolved = fs::canonical(path, error);
-  if (!error) return resolved;
-  const fs::path leads_to = fs::read_symlink(path, error);  // to what does not exist yet
-  return error ? path : path.parent_path() / leads_to;
-}
 
 fs::path with_suffix(fs::path path, const char* suffix) { return path += suffix; }
 

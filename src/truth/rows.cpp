@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "exactff/version.h"
+#include "scene/fnv1a.h"
 #include "study/text.h"
 
 namespace exactff::truth {
@@ -19,47 +20,17 @@ namespace {
 
 constexpr std::array kStatuses = {Status::kCertified, Status::kZero, Status::kUnderflow, Status::kNotCertified};
 
-// Names from the input may hold anything; a line break would end the comment.
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return text;
-}
-
-// 64-bit FNV-1a over all that the rows tell of the receivers: a file of the same name may have changed.
-class Hash {
- public:
-  void add(std::string_view bytes) {
-    for (const char c : bytes) add_byte(static_cast<unsigned char>(c));
-    add(bytes.size());
-  }
-  void add(std::uint64_t word) {
-    for (int shift = 0; shift < 64; shift += 8) add_byte(static_cast<unsigned char>(word >> shift));
-  }
-  void add(const Vec3& v) {
-    for (const double c : {v.x, v.y, v.z}) add(std::bit_cast<std::uint64_t>(c));
-  }
-  [[nodiscard]] std::string text() const {
-    std::array<char, 16> digits;
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), state_, 16);
-    const std::string written(digits.data(), end.ptr);
-    return std::string(16 - written.size(), '0') + written;
-  }
-
- private:
-  void add_byte(unsigned char byte) { state_ = (state_ ^ byte) * 0x100000001b3U; }
-  std::uint64_t state_ = 0xcbf29ce484222325U;
-};
-
+// Of all that the rows tell of the receivers: a file of the same name may have changed.
 std::string hash_of(const std::vector<Receiver>& receivers) {
-  Hash hash;
+  Fnv1a hash;
   for (const Receiver& receiver : receivers) {
     hash.add(receiver.point);
     hash.add(receiver.normal);
     hash.add(receiver.on ? std::uint64_t{index_of(*receiver.on)} : ~std::uint64_t{0});
-    hash.add(receiver.id);
+    hash.add_bytes(receiver.id);
+    hash.add(std::uint64_t{receiver.id.size()});
   }
-  return hash.text();
+  return hash.digits();
 }
 
 void complete(Request& request) {
@@ -118,10 +89,11 @@ bool Rows::may_be_one_block(Range range) const {
 std::string Rows::head() const {
   std::ostringstream out;
   out << "# exactff " << kVersion << " truth: form factors, correctly rounded, between proved bounds\n"
-      << "# scene: " << one_line(request_.scene_name) << ", hash " << request_.scene->hash() << '\n'
-      << "# receivers: " << one_line(request_.receivers_name) << ", hash " << receivers_hash_ << '\n'
+      << "# scene: " << study::one_line(request_.scene_name) << ", hash " << request_.scene->hash() << '\n'
+      << "# receivers: " << study::one_line(request_.receivers_name) << ", hash " << receivers_hash_ << '\n'
       << "# sources: ";
-  for (std::size_t s = 0; s < source_names_.size(); ++s) out << (s > 0 ? " + " : "") << one_line(source_names_[s]);
+  for (std::size_t s = 0; s < source_names_.size(); ++s)
+    out << (s > 0 ? " + " : "") << study::one_line(source_names_[s]);
   out << '\n'
       << "# rows: " << count() << '\n'
       << "# units: form factors are pure numbers, radiosity is in the unit of Ke, lengths are in the unit of the "

@@ -28,7 +28,7 @@ struct Workspace {
   std::vector<HalfSpace> half_spaces;
   std::vector<SidePlane> side_planes;
   std::vector<CornerId> corners, ring;
-  std::vector<std::uint64_t> codes;    // by corner: what is known of it beside the source at hand
+  std::vector<int> depths;             // of the corners at hand: depth_sign
   std::vector<std::uint32_t> seen_in;  // by piece: the last run that looked at it
   std::uint32_t run = 0;
 };
@@ -37,10 +37,6 @@ Workspace& workspace() {
   thread_local Workspace own;
   return own;
 }
-
-// A corner's code: where it lies, and from kInside on a bit for every edge of the source that it lies inside of.
-constexpr std::uint64_t kKnown = 1, kBefore = 2, kBeyond = 4, kAhead = 8, kInside = 16;
-constexpr std::uint32_t kMostCodedEdges = 60;
 
 double largest(const Approx3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 
@@ -71,13 +67,12 @@ class EdgeWalk {
   void make_side_planes(OutlineId source);
   [[nodiscard]] Sides sides_by_filter();
   [[nodiscard]] Sides sides_exactly(OutlineId source);
-  [[nodiscard]] std::uint64_t code_of(CornerId corner, OutlineId source);
-  [[nodiscard]] bool may_meet_beyond_codes(OutlineId source);
   [[nodiscard]] int depth_sign(std::uint32_t vertex) const;
   [[nodiscard]] int toward_sign(CornerId corner);
   [[nodiscard]] int facing(const Piece& piece) const;
   OutlineId add_whole(bool mirrored);
-  OutlineId add_near_part(std::span<const std::uint32_t> vertices, bool mirrored, OutlineId source);
+  void find_depths();
+  OutlineId add_near_part(std::span<const std::uint32_t> vertices, bool mirrored);
   [[nodiscard]] Rational fraction();
 
   const View& view_;
@@ -182,7 +177,6 @@ bool EdgeWalk::gather_occluders() {
   for (OutlineId source = 0; source < source_count_ && !hidden; ++source) {
     make_shaft(source);
     make_side_planes(source);
-    work_.codes.clear();
     shaft_tree(view_.scene).query(view_.x, work_.half_spaces, [&](std::uint32_t piece) {
       hidden = visit(piece, source);
       return !hidden;
@@ -208,7 +202,7 @@ bool EdgeWalk::visit(std::uint32_t index, OutlineId source) {
   ++result_.record.candidates;
   const bool mirrored = facing > 0;
   if (sides.some_below_first) ++result_.record.clipped;
-  const OutlineId outline = sides.some_below_first ? add_near_part(vertices, mirrored, source) : add_whole(mirrored);
+  const OutlineId outline = sides.some_below_first ? add_near_part(vertices, mirrored) : add_whole(mirrored);
   if (sides.all_above_each) {
     outlines_.set_inside_source(outline);
     return false;
@@ -256,16 +250,28 @@ Sides EdgeWalk::sides_by_filter() {
 }
 
 Sides EdgeWalk::sides_exactly(OutlineId source) {
-  std::uint64_t some = 0, all = ~std::uint64_t{0};
-  for (const CornerId corner : work_.corners) {
-    const std::uint64_t code = code_of(corner, source);
-    some |= code;
-    all &= code;
+  Sides sides{true, true, true, false};
+  const std::size_t n = work_.corners.size();
+  const auto look = [&](const auto& side) {  // the side of the c-th corner
+    std::size_t above = 0;
+    for (std::size_t c = 0; c < n; ++c) above += side(c) > 0 ? 1U : 0U;
+    sides.some_above_each = sides.some_above_each && above > 0;
+    sides.all_above_each = sides.all_above_each && above == n;
+  };
+  find_depths();
+  sides.some_below_first = std::any_of(work_.depths.begin(), work_.depths.end(), [](int depth) { return depth < 0; });
+  look([&](std::size_t c) { return work_.depths[c]; });
+  look([&](std::size_t c) { return toward_sign(work_.corners[c]); });
+  const Outlines::Outline& outline = outlines_.outline(source);
+  for (EdgeId id = outline.first; id < outline.first + outline.count && sides.some_above_each; ++id) {
+    look([&](std::size_t c) { return outlines_.side(outlines_.edge(id), work_.corners[c]); });
   }
-  const std::uint32_t edges = outlines_.outline(source).count, coded = std::min(edges, kMostCodedEdges);
-  const std::uint64_t above = kBefore | kAhead | ((std::uint64_t{1} << coded) - 1) * kInside;
-  return {true, (some & above) == above && may_meet_beyond_codes(source), (all & above) == above && coded == edges,
-          (some & kBeyond) != 0};
+  return sides;
+}
+
+void EdgeWalk::find_depths() {
+  work_.depths.clear();
+  for (const CornerId corner : work_.corners) work_.depths.push_back(depth_sign(*outlines_.vertex(corner)));
 }
 
 // +1: on x's side of the source's plane.
@@ -278,31 +284,6 @@ int EdgeWalk::depth_sign(std::uint32_t vertex) const {
 
 // +1: ahead of the plane through x that is parallel to the source's.
 int EdgeWalk::toward_sign(CornerId corner) { return -outlines_.side(plane_.normal, corner); }
-
-std::uint64_t EdgeWalk::code_of(CornerId corner, OutlineId source) {
-  if (work_.codes.size() <= corner) work_.codes.resize(outlines_.corner_count(), 0);
-  std::uint64_t code = work_.codes[corner];
-  if (code != 0) return code;
-  const int depth = depth_sign(*outlines_.vertex(corner));
-  code = kKnown | (depth > 0 ? kBefore : depth < 0 ? kBeyond : 0) | (toward_sign(corner) > 0 ? kAhead : 0);
-  const Outlines::Outline& outline = outlines_.outline(source);
-  for (std::uint32_t k = 0; k < std::min(outline.count, kMostCodedEdges); ++k) {
-    if (outlines_.side(outlines_.edge(outline.first + k), corner) > 0) code |= kInside << k;
-  }
-  return work_.codes[corner] = code;
-}
-
-bool EdgeWalk::may_meet_beyond_codes(OutlineId source) {
-  const Outlines::Outline& outline = outlines_.outline(source);
-  for (std::uint32_t k = kMostCodedEdges; k < outline.count; ++k) {
-    const Outlines::Edge edge = outlines_.edge(outline.first + k);
-    if (std::none_of(work_.corners.begin(), work_.corners.end(),
-                     [&](CornerId corner) { return outlines_.side(edge, corner) > 0; })) {
-      return false;
-    }
-  }
-  return true;
-}
 
 // The sign of det of three corners, 0 where the piece's plane holds x.
 int EdgeWalk::facing(const Piece& piece) const {
@@ -320,16 +301,14 @@ OutlineId EdgeWalk::add_whole(bool mirrored) {
 }
 
 // The part on x's side of the source's plane.
-OutlineId EdgeWalk::add_near_part(std::span<const std::uint32_t> vertices, bool mirrored, OutlineId source) {
+OutlineId EdgeWalk::add_near_part(std::span<const std::uint32_t> vertices, bool mirrored) {
   const std::size_t n = vertices.size();
-  const auto lies = [&](std::size_t c, std::uint64_t where) {
-    return (code_of(work_.corners[c], source) & where) != 0;
-  };
+  find_depths();
   work_.ring.clear();
   for (std::size_t c = 0; c < n; ++c) {
     const std::size_t next = (c + 1) % n;
-    if (!lies(c, kBeyond)) work_.ring.push_back(work_.corners[c]);
-    if ((lies(c, kBefore) && lies(next, kBeyond)) || (lies(c, kBeyond) && lies(next, kBefore))) {
+    if (work_.depths[c] >= 0) work_.ring.push_back(work_.corners[c]);
+    if (work_.depths[c] * work_.depths[next] < 0) {
       work_.ring.push_back(outlines_.add_crossing(vertices[c], vertices[next]));
     }
   }

@@ -12,15 +12,11 @@
 #include "exactff/geometry.h"
 #include "kernel/direction.h"
 #include "kernel/double_double.h"
+#include "kernel/fine_direction.h"
 
 namespace exactff::visibility {
 
-// A direction in double-double: every true component is within `error` of hi + lo.
-struct FineDirection {
-  std::array<double, 3> hi{};
-  std::array<double, 3> lo{};
-  double error = 0.0;
-};
+using kernel::FineDirection;
 
 class PlaneCrossings {
  public:

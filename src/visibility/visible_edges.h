@@ -40,7 +40,6 @@ class VisibleEdges {
     double value = 0.0;
     float error = 0.0F;
     EdgeId line = kAtBegin;  // that crosses
-    [[nodiscard]] bool is_crossing() const { return line < kAtBegin; }
   };
   // A part of the boundary of V, V to its left.
   struct Part {

@@ -16,18 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using validation::RunningProgram;
-
-std::string text_of(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return std::move(text).str();
-}
-
-std::uintmax_t size_of(const fs::path& path) {
-  std::error_code ignored;
-  const std::uintmax_t size = fs::file_size(path, ignored);
-  return ignored ? 0 : size;
-}
+using validation::size_of;
+using validation::text_of;
 
 std::size_t count(const std::string& text, const std::string& word) {
   std::size_t found = 0;

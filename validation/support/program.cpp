@@ -105,4 +105,16 @@ ProgramRun run_point_plain(const std::string& program, const std::string& name, 
   return run_program(program, arguments);
 }
 
+std::string text_of(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return std::move(text).str();
+}
+
+std::uintmax_t size_of(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::uintmax_t size = std::filesystem::file_size(path, ignored);
+  return ignored ? 0 : size;
+}
+
 }  // namespace exactff::validation

@@ -1,6 +1,7 @@
 // Runs the program under test the way a script would.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -53,6 +54,10 @@ class TemporaryDirectory {
  private:
   std::filesystem::path path_;
 };
+
+// What a file holds; its size, 0 where there is none.
+[[nodiscard]] std::string text_of(const std::filesystem::path& path);
+[[nodiscard]] std::uintmax_t size_of(const std::filesystem::path& path);
 
 // `point FILE --at ... --normal ... --source ... --plain` for a scene written as OBJ with 17 digits.
 [[nodiscard]] ProgramRun run_point_plain(const std::string& program, const std::string& name,

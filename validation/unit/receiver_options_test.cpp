@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using validation::RunningProgram;
 using validation::TemporaryDirectory;
+using validation::text_of;
 
 using Words = std::vector<std::string>;
 
@@ -28,11 +29,6 @@ const std::string kRoom =
     "g floor\nf 1 2 3 4\ng lid\nf 5 6 7\nf 5 7 8\ng a,b\nf 1 2 3\ng line\nf 1 2 1\n"
     "usemtl bright\ng lamp\nf 12 11 10 9\n";
 const std::string kMaterials = "newmtl grey\nKd .5\nnewmtl bright\nKe 17 12 4\n";
-
-std::string text_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 class ReceiverFlags : public testing::Test {
  protected:

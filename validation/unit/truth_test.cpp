@@ -26,6 +26,7 @@ namespace exactff::truth {
 namespace {
 
 namespace fs = std::filesystem;
+using validation::text_of;
 
 // A floor, two lights above it, and a board that hides the first from part of the floor.
 Scene room() {
@@ -34,12 +35,6 @@ Scene room() {
       "v 0 0 1\nv 1 0 1\nv 1 2 1\nv 0 2 1\n"
       "g floor\nf 1 2 3 4\ng light\nf 8 7 6 5\ng lamp\nf 12 11 10 9\ng board\nf 13 14 15 16\n");
   return read_obj(obj, "room.obj");
-}
-
-std::string text_of(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return std::move(text).str();
 }
 
 void write_text(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
