@@ -6,7 +6,8 @@ set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$top"
-validation/setup.sh libboost-mpi-dev libopenmpi-dev openmpi-bin  # an option of the build, and tested
+validation/setup.sh libboost-mpi-dev libopenmpi-dev openmpi-bin \
+  chromium chromium-driver python3-selenium  # an option of the build, and the reports in a browser: both tested
 
 validation/build.sh build/sanitize -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON -DEXACTFF_SANITIZE=ON -DCMAKE_BUILD_TYPE=Debug \
   -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"

@@ -195,6 +195,8 @@ std::string inlined(std::string_view svg, std::string_view prefix, std::string_v
   replace_all(text, " color=\"black\"", "");
   replace_all(text, "'black'", "'currentColor'");
   replace_all(text, "\"black\"", "\"currentColor\"");
+  replace_all(text, "fill=\"#ffffff\"", "fill=\"none\"");  // a sheet of its own; the page has one for every figure
+  replace_all(text, "stroke-width='0.178'", "stroke-width='0.3'");  // of open marks, which are thin on a phone
   text.insert(4, " role=\"img\" aria-label=\"" + html(title) + "\"");
   return text;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <string_view>
 
@@ -10,12 +11,13 @@
 namespace exactff::study {
 namespace {
 
-// Okabe and Ito's colours, told apart with every common colour blindness; marks and dashes differ as well, for
-// print. Chosen from the middle of their range: readable on white and on near-black.
-constexpr std::array<std::string_view, 7> kLineStyles = {"lc rgb '#0072B2' pt 7 dt 1",  "lc rgb '#D55E00' pt 5 dt 1",
-                                                         "lc rgb '#009E73' pt 9 dt 1",  "lc rgb '#CC79A7' pt 13 dt 1",
-                                                         "lc rgb '#E69F00' pt 11 dt 1", "lc rgb '#56B4E9' pt 6 dt 1",
-                                                         "lc rgb '#8A8A8A' pt 4 dt 1"};
+// Okabe and Ito's colours, told apart with every common colour blindness, then the ink of the page and a grey; marks
+// and dashes differ as well, for print. Their yellow is left out: it cannot be seen on white. The light ones come late,
+// and the last four are dashed, so that the eighth line is not taken for the first.
+constexpr std::array<std::string_view, 8> kLineStyles = {
+    "lc rgb '#0072B2' pt 7 dt 1",  "lc rgb '#D55E00' pt 5 dt 1",       "lc rgb '#009E73' pt 9 dt 1",
+    "lc rgb '#CC79A7' pt 13 dt 1", "lc rgb '#E69F00' pt 11 dt (16,4)", "lc rgb '#56B4E9' pt 6 dt (8,3)",
+    "lc black pt 4 dt (12,3,2,3)", "lc rgb '#8A8A8A' pt 2 dt (4,3)"};
 // For a line that may lie upon another: its open marks leave the other's to be seen.
 constexpr std::string_view kOverlayStyle = "with linespoints lw 1.2 ps 1.3 lc rgb '#CC79A7' pt 12 dt 3";
 
@@ -28,6 +30,8 @@ constexpr std::string_view kDiverging =
 
 // Figures of a page have its background; those that stand alone are white everywhere.
 enum class Background { kOfPage, kWhite };
+constexpr int kPlotWidth = 520;  // small enough for lettering that can be read on a phone
+constexpr int kKeyFont = 13;
 
 std::string head(int width, int height, Background background = Background::kOfPage) {
   return "set encoding utf8\nset terminal svg size " + std::to_string(width) + ',' + std::to_string(height) +
@@ -61,11 +65,46 @@ std::string data_block(const std::string& name, const Points& points) {
   return text + "END\n";
 }
 
-std::string axis_commands(const Axes& axes) {
-  std::string text =
-      "set xlabel " + quoted(axes.x) + "\nset ylabel " + quoted(axes.y) +
-      "\nset grid lw 0.5 lc rgb '#8A8A8A' dt 3\nset key tmargin center horizontal maxrows 2 samplen 2 width 1\n"
-      "set border 3 lw 0.8\nset tics nomirror\n";
+// Above the plot, in as many equally full columns as its words leave room for.
+struct Key {
+  std::size_t rows = 0;
+  std::size_t columns = 1;
+  std::size_t spare = 0;  // characters by which gnuplot takes the words for longer than they are
+};
+
+std::size_t characters(std::string_view text) {
+  const auto begins = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };  // in UTF-8
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins));
+}
+
+// Room and widths as gnuplot's SVG terminal takes them.
+Key key_of(const std::vector<std::string>& titles) {
+  constexpr double kRoom = kPlotWidth - 40, kCharacter = 0.7 * kKeyFont, kSample = 5.7 * kCharacter;
+  std::size_t entries = 0, longest = 0;
+  for (const std::string& title : titles) {
+    if (title.empty()) continue;
+    ++entries;
+    longest = std::max(longest, characters(title));
+  }
+  if (entries == 0) return {};
+  const std::size_t spare = longest / 8;
+  const auto fitting = static_cast<std::size_t>(kRoom / (kCharacter * static_cast<double>(longest - spare) + kSample));
+  const std::size_t most = std::clamp<std::size_t>(fitting, 1, entries);
+  const std::size_t rows = (entries + most - 1) / most;
+  return {rows, (entries + rows - 1) / rows, spare};
+}
+
+// The axes have the same room whatever the key takes.
+std::string plot_head(const Key& key, Background background = Background::kOfPage) {
+  return head(kPlotWidth, 360 + 20 * static_cast<int>(key.rows), background);
+}
+
+std::string axis_commands(const Axes& axes, const Key& key) {
+  std::string text = "set xlabel " + quoted(axes.x) + "\nset ylabel " + quoted(axes.y) +
+                     "\nset grid lw 0.5 lc rgb '#8A8A8A' dt 3\nset minussign\nset bmargin 3.3\n"
+                     "set key tmargin center horizontal samplen 2.4 font '," +
+                     std::to_string(kKeyFont) + "' width -" + std::to_string(key.spare) + " maxcols " +
+                     std::to_string(key.columns) + "\nset border 3 lw 0.8\nset tics nomirror\n";
   if (axes.log_x) text += "set logscale x\nset format x '10^{%T}'\n";
   if (axes.log_y) text += "set logscale y\nset format y '10^{%T}'\n";
   for (const std::string& command : axes.extra) text += command + '\n';
@@ -86,14 +125,58 @@ std::string x_range(const Axes& axes, const std::vector<Points>& drawn) {
 std::string style_of(const Series& series) {
   if (series.style == kOverlay) return std::string(kOverlayStyle);
   if (series.style == 0) return "with lines lw 1.2 dt 2 lc rgb '#8A8A8A'";
-  return "with linespoints lw 1.8 ps 0.7 " +
-         std::string(kLineStyles[static_cast<std::size_t>(series.style - 1) % kLineStyles.size()]);
+  const std::string style(kLineStyles[static_cast<std::size_t>(series.style - 1) % kLineStyles.size()]);
+  if (series.drawn == Drawn::kMarks) return "with points ps 0.5 " + style;
+  if (series.drawn == Drawn::kLine) return "with lines lw 2.2 " + style.substr(0, style.find(" pt")) + " dt 1";
+  return "with linespoints lw 1.8 ps 0.8 " + style;
 }
 
 // Of a mark over bars, which have the first colour.
 std::string mark_style(std::size_t i) {
   constexpr std::array<std::string_view, 4> kColours = {"#D55E00", "#CC79A7", "#009E73", "#E69F00"};
   return "lw 2 dt " + std::to_string(1 + i % 5) + " lc rgb '" + std::string(kColours[i % kColours.size()]) + '\'';
+}
+
+// Dots for a crowd, crosses for what must not be overlooked in it. A dot is a line of no length to speak of with round
+// ends: as a mark it would take three times the bytes.
+struct CloudLook {
+  bool dots = true;
+  std::string_view colour;
+};
+CloudLook cloud_look(int style) {
+  constexpr std::array<CloudLook, 4> kClouds = {
+      {{true, "#600072B2"}, {false, "#D55E00"}, {true, "#60009E73"}, {false, "#CC79A7"}}};
+  return kClouds[static_cast<std::size_t>(style - 1) % kClouds.size()];
+}
+
+// `width`: of the points' range in x.
+std::string cloud_command(const std::string& name, const Series& cloud, const Axes& axes, double width) {
+  const CloudLook look = cloud_look(cloud.style);
+  const std::string colour = " lc rgb '" + std::string(look.colour) + '\'';
+  const std::string title = cloud.title.empty() ? " notitle" : " title " + quoted(cloud.title);
+  if (!look.dots) return name + " using 1:2 with points pt 2 ps 0.6 lw 1.5" + colour + title;
+  const std::string length = axes.log_x ? "$1*0.003" : shortest(0.0003 * width);
+  return name + " using 1:2:(" + length + "):(0) with vectors nohead lw 2.6" + colour +
+         " notitle, keyentry with points pt 7 ps 0.6" + colour + title;
+}
+
+// Four digits are finer than a plot's pixels.
+std::string four_digits(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 4);
+  return {text.data(), end.ptr};
+}
+
+// Marks that fall upon the one before are drawn once.
+std::string cloud_block(const std::string& name, const Points& points) {
+  std::string text = name + " << END\n", last;
+  for (const auto& [x, y] : points) {
+    std::string mark = four_digits(x) + ' ' + four_digits(y) + '\n';
+    if (mark == last) continue;
+    text += mark;
+    last = std::move(mark);
+  }
+  return text + "END\n";
 }
 
 double largest_value(const Map& map) {
@@ -104,7 +187,9 @@ double largest_value(const Map& map) {
 
 // A few marks, so that their numbers do not run into one another on a narrow bar.
 std::string colour_range(double low, double middle, double high) {
-  const auto mark = [](double value) { return '\'' + rounded(value, 2) + "' " + shortest(value); };
+  const auto mark = [](double value) {
+    return std::string(value < 0.0 ? "'−" : "'") + rounded(std::abs(value), 2) + "' " + shortest(value);
+  };
   return "set cbrange [" + shortest(low) + ':' + shortest(high) + "]\nset cbtics (" + mark(low) + ", " + mark(middle) +
          ", " + mark(high) + ") offset 0,2.1 nomirror scale 0\n";
 }
@@ -124,6 +209,7 @@ std::string colour_commands(const Map& map) {
 
 std::string line_plot(const Axes& axes, const std::vector<Series>& series) {
   std::string data, plot;
+  std::vector<std::string> titles;
   std::vector<Points> drawn;
   for (const Series& line : series) {
     Points points = drawable(line.points, axes);
@@ -132,15 +218,40 @@ std::string line_plot(const Axes& axes, const std::vector<Series>& series) {
     data += data_block(name, points);
     plot += (plot.empty() ? "plot " : ", \\\n     ") + ('$' + name) + " using 1:2 " + style_of(line) +
             (line.title.empty() ? " notitle" : " title " + quoted(line.title));
+    titles.push_back(line.title);
     drawn.push_back(std::move(points));
   }
   if (plot.empty()) return {};
-  return head(560, 430) + axis_commands(axes) + x_range(axes, drawn) + data + plot + '\n';
+  const Key key = key_of(titles);
+  return plot_head(key) + axis_commands(axes, key) + x_range(axes, drawn) + data + plot + '\n';
+}
+
+std::string scatter_plot(const Axes& axes, const std::vector<Series>& series) {
+  std::string data, plot;
+  std::vector<std::string> titles;
+  std::vector<Points> drawn;
+  for (const Series& cloud : series) {
+    Points points = drawable(cloud.points, axes);
+    if (points.empty()) continue;
+    const std::string name = "$series" + std::to_string(drawn.size());
+    data += cloud_block(name, points);
+    const std::string line = name + " using 1:2 " + style_of(cloud) + " title " + quoted(cloud.title);
+    plot += (plot.empty() ? "plot " : ", \\\n     ") +
+            (cloud.style > 0 ? cloud_command(name, cloud, axes, points.back().first - points.front().first) : line);
+    titles.push_back(cloud.title);
+    drawn.push_back(std::move(points));
+  }
+  if (plot.empty()) return {};
+  const Key key = key_of(titles);
+  std::string head = plot_head(key);
+  head.insert(head.find(" dynamic"), " rounded");
+  return head + axis_commands(axes, key) + x_range(axes, drawn) + data + plot + '\n';
 }
 
 std::string bar_plot(const Axes& axes, const std::vector<Bar>& bars, const std::vector<Mark>& marks) {
   const auto is_drawable = [&](double x) { return std::isfinite(x) && (x > 0.0 || !axes.log_x); };
   std::string data, arrows, keys;
+  std::vector<std::string> titles;
   Points ends;
   for (const Bar& bar : bars) {
     if (!is_drawable(bar.low) || !is_drawable(bar.high)) continue;
@@ -152,10 +263,12 @@ std::string bar_plot(const Axes& axes, const std::vector<Bar>& bars, const std::
     if (!is_drawable(marks[i].x)) continue;
     const std::string at = shortest(marks[i].x), style = mark_style(i);
     ends.emplace_back(marks[i].x, 0.0);
+    titles.push_back(marks[i].title);
     arrows += "set arrow from " + at + ", graph 0 to " + at + ", graph 1 nohead front " + style + '\n';
     keys += ", \\\n     keyentry with lines " + style + " title " + quoted(marks[i].title);
   }
-  return head(560, 430, Background::kWhite) + axis_commands(axes) + x_range(axes, {ends}) + "set yrange [0:*]\n" +
+  const Key key = key_of(titles);
+  return plot_head(key, Background::kWhite) + axis_commands(axes, key) + x_range(axes, {ends}) + "set yrange [0:*]\n" +
          arrows + "$bars << END\n" + data +
          "END\nplot $bars using 1:3:1:2:(0):3 with boxxyerror lc rgb '#0072B2' fs solid 0.6 noborder notitle" + keys +
          '\n';

@@ -12,10 +12,12 @@ using Points = std::vector<std::pair<double, double>>;
 
 // One line of a plot. `style` numbers the colours and marks, from 1; 0 draws a grey dashed line.
 inline constexpr int kOverlay = -1;  // dashed with open marks, for a line that may lie upon another
+enum class Drawn { kLineAndMarks, kLine, kMarks };
 struct Series {
   std::string title;
   Points points;
   int style = 1;
+  Drawn drawn = Drawn::kLineAndMarks;  // where the style is a number from 1
 };
 
 struct Axes {
@@ -30,6 +32,9 @@ struct Axes {
 // Lines with marks. Points that a logarithmic axis cannot show are left out; so are series without points.
 // Empty if nothing remains.
 [[nodiscard]] std::string line_plot(const Axes& axes, const std::vector<Series>& series);
+
+// Points alone, thousands of them, small and half transparent; series of style 0 and kOverlay are lines, as above.
+[[nodiscard]] std::string scatter_plot(const Axes& axes, const std::vector<Series>& series);
 
 // A bar of a histogram over the x axis.
 struct Bar {
