@@ -12,6 +12,7 @@
 #include "cli/output.h"
 #include "cli/scene_options.h"
 #include "cli/text_table.h"
+#include "exactff/models.h"
 #include "exactff/version.h"
 #include "scene/printable.h"
 
@@ -196,11 +197,12 @@ void print_faces(const Scene& scene) {
   std::cout << "open edges: " << open << (open == 0 ? " (the surface is closed)" : "") << '\n';
 }
 
-// The largest patch that does not emit, else the largest.
+// The patch of the largest faces that does not emit, else of the largest.
 const PatchSummary& suggested_receiver(const std::vector<PatchSummary>& rows) {
-  const auto smaller = [](const PatchSummary& a, const PatchSummary& b) {
-    return std::pair(!a.emits, a.area) < std::pair(!b.emits, b.area);
+  const auto rank = [](const PatchSummary& row) {
+    return std::pair(!row.emits, row.area / static_cast<double>(std::max<std::size_t>(1, row.face_count)));
   };
+  const auto smaller = [&](const PatchSummary& a, const PatchSummary& b) { return rank(a) < rank(b); };
   return *std::max_element(rows.begin(), rows.end(), smaller);
 }
 
@@ -277,22 +279,58 @@ void print_json(const Scene& scene, const std::string& path) {
   std::cout << json.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
 }
 
+// --- the scenes that the program makes itself ---
+
+void print_models() {
+  for (const models::Model* model : models::all_models()) std::cout << models::description(*model) << '\n';
+  std::cout
+      << "A command takes @MODEL or @MODEL:SETTING=VALUE,... for SCENE, such as @teapot:segments=4; a setting left "
+         "out has the value above.\n";
+}
+
+ordered_json to_json(const methods::SettingSpec& setting) {
+  return {{"name", setting.name},
+          {"default", methods::to_string(setting.fallback)},
+          {"meaning", setting.meaning},
+          {"unit", setting.unit},
+          {"allowed", methods::allowed(setting)}};
+}
+
+void print_models_json() {
+  ordered_json json = ordered_json::array();
+  for (const models::Model* model : models::all_models()) {
+    json.push_back({{"name", model->name}, {"summary", model->summary}, {"settings", ordered_json::array()}});
+    for (const methods::SettingSpec& setting : model->settings) json.back()["settings"].push_back(to_json(setting));
+  }
+  std::cout << ordered_json{{"version", kVersion}, {"models", json}}.dump(2) << '\n';
+}
+
 struct InfoArguments {
   SceneArguments scene;
   bool json = false;
 };
+
+void print(const InfoArguments& arguments) {
+  if (arguments.scene.path == "@") return arguments.json ? print_models_json() : print_models();
+  const Scene scene = arguments.scene.load();
+  (arguments.json ? print_json : print_text)(scene, arguments.scene.path);
+}
 
 }  // namespace
 
 Command add_info(CLI::App& app) {
   const auto arguments = std::make_shared<InfoArguments>();
   CLI::App* info = app.add_subcommand("info", "List what a scene holds: patches, emitters, faces worth a look");
-  info->footer("Example:\n  exactff info room.obj\n  exactff info room.obj --patches faces --json");
+  info->footer(
+      "Example:\n"
+      "  exactff info room.obj\n"
+      "  exactff info room.obj --patches faces --json\n"
+      "  exactff info @                       the scenes that the program makes itself, with their settings\n"
+      "  exactff info @teapot:segments=4");
   arguments->scene.add_to(*info);
   info->add_flag("--json", arguments->json, "Print JSON instead of a table");
   return {info, [arguments] {
-            const Scene scene = arguments->scene.load();
-            (arguments->json ? print_json : print_text)(scene, arguments->scene.path);
+            print(*arguments);
             check_output(std::cout);
             return 0;
           }};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "exactff/models.h"
 #include "exactff/obj.h"
 #include "scene/text_lines.h"
 
@@ -20,7 +21,9 @@ void print_warnings(std::span<const Problem> warnings) {
 }
 
 void SceneArguments::add_to(CLI::App& app) {
-  app.add_option("SCENE", path, "Wavefront OBJ file")->required();
+  app.add_option("SCENE", path,
+                 "Wavefront OBJ file, or @MODEL[:SETTING=VALUE,...] for a generated scene: `exactff info @` lists them")
+      ->required();
   app.add_option("--patches", patches, "What makes a patch: groups (g, else o) or faces (each face NAME:k)")
       ->check(CLI::IsMember({"groups", "faces"}))
       ->capture_default_str();
@@ -33,7 +36,7 @@ SceneOptions SceneArguments::options() const {
 }
 
 Scene SceneArguments::load() const {
-  Scene scene = read_obj(path, options());
+  Scene scene = path.starts_with('@') ? models::make_scene(path.substr(1), options()) : read_obj(path, options());
   print_warnings(scene.warnings());
   return scene;
 }

@@ -3,8 +3,8 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "methods/choice_text.h"
 #include "methods/method_files.h"
-#include "scene/nearest_names.h"
 
 namespace exactff::methods {
 
@@ -60,36 +60,6 @@ class Registry {
   std::deque<Method> methods_;  // whose elements stay where they are
 };
 
-// Without the blanks at both ends.
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r\n";
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
-
-// The part before `mark`, which is taken off `rest` with it; the whole rest where there is none.
-std::string_view take_until(std::string_view& rest, char mark) {
-  const std::size_t end = std::min(rest.find(mark), rest.size());
-  const std::string_view part = rest.substr(0, end);
-  rest.remove_prefix(std::min(end + 1, rest.size()));
-  return trimmed(part);
-}
-
-// Takes up one SETTING=VALUE.
-void read_assignment(std::string_view text, Settings& settings, std::vector<std::string>& seen) {
-  std::string_view value = text;
-  const std::string name(take_until(value, '='));
-  if (text.find('=') == std::string_view::npos) {
-    throw InputError(Problem{{}, 0, "'" + std::string(text) + "' gives no value", "settings read NAME=VALUE", {}});
-  }
-  if (std::find(seen.begin(), seen.end(), name) != seen.end()) {
-    throw InputError(Problem{{}, 0, "setting '" + name + "' is given twice", "it has one value", "leave one out"});
-  }
-  seen.push_back(name);
-  settings.set_text(name, trimmed(value));
-}
-
 }  // namespace
 
 bool Method::stochastic(const Settings& chosen) const { return chosen.has("seed") && (!uses || uses(chosen, "seed")); }
@@ -109,14 +79,7 @@ const Method& method_named(std::string_view name) {
   if (const Method* found = Registry::get().find_named(name)) return *found;
   std::vector<std::string_view> names;
   for (const Method* method : all_methods()) names.emplace_back(method->name);
-  std::string suggestion;
-  for (const std::string_view near : nearest_names(names, name, 3)) {
-    suggestion += (suggestion.empty() ? "did you mean " : ", ") + std::string(near);
-  }
-  std::string list;
-  for (const std::string_view known : names) list += (list.empty() ? "" : ", ") + std::string(known);
-  throw InputError(
-      Problem{{}, 0, "there is no method '" + std::string(name) + "'", "methods are " + list, suggestion + "?"});
+  throw unknown_name("method", name, names);
 }
 
 const Method& add_method(Method method) { return Registry::get().add(std::move(method)); }
@@ -132,22 +95,10 @@ std::string Choice::short_text() const {
 }
 
 Choice parse(std::string_view text) {
-  std::string_view rest = text;
-  const Method& method = method_named(take_until(rest, ':'));
+  const auto [name, assignments] = take_apart(text);
+  const Method& method = method_named(name);
   Choice choice{&method, method.defaults()};
-  std::vector<Problem> problems;
-  std::vector<std::string> seen;
-  while (!trimmed(rest).empty()) {
-    try {
-      read_assignment(take_until(rest, ','), choice.settings, seen);
-    } catch (const InputError& error) {
-      for (Problem problem : error.problems()) {
-        problem.what = "method '" + method.name + "': " + problem.what;
-        problems.push_back(std::move(problem));
-      }
-    }
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
+  read_assignments(assignments, "method '" + method.name + "'", choice.settings);
   if (method.check) method.check(choice.settings);
   return choice;
 }
@@ -155,11 +106,7 @@ Choice parse(std::string_view text) {
 std::string description(const Method& method) {
   std::string text = method.name + ": " + method.summary + "\n";
   if (!method.source.empty()) text += "  " + method.source + "\n";
-  for (const SettingSpec& spec : method.settings) {
-    text += "  " + spec.name + "=" + to_string(spec.fallback) + (spec.unit.empty() ? "" : " " + spec.unit) + ": " +
-            spec.meaning + "; " + allowed(spec) + "\n";
-  }
-  return text;
+  return text + setting_lines(method.settings);
 }
 
 }  // namespace exactff::methods

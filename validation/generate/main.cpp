@@ -1,40 +1,44 @@
-// exactff_generate: writes one scene of a family as OBJ (and MTL where it has materials).
+// exactff_generate: writes a generated scene as OBJ (and MTL where it has materials): any model, or a family by flags.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 
-#include "generate/families.h"
+#include "exactff/models.h"
+#include "models/families.h"
+#include "models/model_files.h"
 
 namespace {
 
-using namespace exactff::generate;
+using namespace exactff::models;
 
 struct Request {
-  std::string family;
+  std::string scene;
   FamilyOptions options;
   double scale = 1.0;
   std::string output;
 };
 
-const Family& find(const std::string& name) {
+const Family* find_family(const std::string& name) {
   for (const Family& family : families()) {
-    if (family.name == name) return family;
+    if (family.name == name) return &family;
   }
-  throw std::invalid_argument("unknown family");  // the command line admits only known ones
+  return nullptr;
 }
 
-std::string family_list() {
-  std::string out = "Families:\n";
+std::string scene_list() {
+  std::string out = "Families, which the flags describe:\n";
   for (const Family& family : families())
     out += "  " + std::string(family.name) + ": " + std::string(family.summary) + '\n';
-  return out + "\nExample: exactff_generate soup --n 1000 --seed 7 -o soup.obj";
+  out += "\nModels, as MODEL:SETTING=VALUE,... (@MODEL of the program exactff; exactff info @ tells the settings):\n ";
+  for (const Model* model : all_models()) out += ' ' + model->name;
+  return out +
+         "\n\nExamples: exactff_generate soup --n 1000 --seed 7 -o soup.obj\n"
+         "          exactff_generate teapot:segments=4 -o teapot.obj";
 }
 
 void declare(CLI::App& app, Request& request) {
-  std::vector<std::string> names;
-  for (const Family& family : families()) names.emplace_back(family.name);
-  app.add_option("family", request.family, "Which family of scenes")->required()->check(CLI::IsMember(names));
+  app.add_option("scene", request.scene, "Family, or model with settings")->required();
   app.add_option("--n", request.options.n, "Size, as the family understands it")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
@@ -48,14 +52,22 @@ void declare(CLI::App& app, Request& request) {
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   app.add_option("-o", request.output, "OBJ file to write; standard output if absent");
-  app.footer(family_list());
+  app.footer(scene_list());
 }
 
 std::string provenance(const Request& request) {
-  std::string text = "exactff_generate " + request.family + " --n " + std::to_string(request.options.n) + " --seed " +
+  std::string text = "exactff_generate " + request.scene + " --n " + std::to_string(request.options.n) + " --seed " +
                      std::to_string(request.options.seed) + " --cover " + to_text(request.options.cover);
   if (request.options.drop > 0) text += " --drop " + std::to_string(request.options.drop);
   return text + " --scale " + to_text(request.scale);
+}
+
+PlainScene made(const Request& request) {
+  const Family* family = find_family(request.scene);
+  PlainScene scene = family != nullptr ? family->make(request.options) : make_plain(request.scene);
+  scale(scene, request.scale);
+  if (family != nullptr) scene.comments.insert(scene.comments.begin(), provenance(request));
+  return scene;
 }
 
 void write_file(const std::filesystem::path& path, const std::string& text) {
@@ -82,10 +94,7 @@ int main(int argc, char** argv) {
   declare(app, request);
   CLI11_PARSE(app, argc, argv);
   try {
-    PlainScene scene = find(request.family).make(request.options);
-    scale(scene, request.scale);
-    scene.comments.insert(scene.comments.begin(), provenance(request));
-    write(scene, request.output);
+    write(made(request), request.output);
   } catch (const std::exception& error) {
     std::cerr << "exactff_generate: " << error.what() << '\n';
     return 2;

@@ -12,6 +12,7 @@ declare -A allowed=(
   [exact]="exact contour visibility scene kernel"
   [sampled]="sampled scene kernel"
   [methods]="methods sampled exact scene kernel"
+  [models]="models methods scene kernel"
   [study]="study scene kernel"
   [check]="check study scene kernel"
   [stress]="stress study scene kernel"

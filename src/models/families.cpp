@@ -1,12 +1,12 @@
-#include "generate/families.h"
+#include "models/families.h"
 
 #include <array>
 #include <cmath>
 #include <map>
 
-#include "generate/random.h"
+#include "models/random.h"
 
-namespace exactff::generate {
+namespace exactff::models {
 
 namespace {
 
@@ -236,4 +236,4 @@ std::span<const Family> families() {
   return kFamilies;
 }
 
-}  // namespace exactff::generate
+}  // namespace exactff::models

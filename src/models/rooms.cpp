@@ -1,10 +1,9 @@
 // The room with the venetian blind. Metres; x to the right, y up, z into the room. Every quadrilateral is exactly
 // planar in doubles: it either lies in a coordinate plane or is swept along an axis.
-#include <array>
+#include "models/families.h"
+#include "models/room_parts.h"
 
-#include "generate/families.h"
-
-namespace exactff::generate {
+namespace exactff::models {
 
 namespace {
 
@@ -24,28 +23,6 @@ constexpr double kSlatHeight = 0.75;   // of a slat, over the pitch: it slopes d
 
 constexpr double kTableHeight = 0.75;
 constexpr double kTopThickness = 0.03125;
-constexpr double kLegSide = 0.0625;
-
-struct Box {
-  Vec3 low;
-  Vec3 high;
-};
-
-// The six faces of a box, fronts outward.
-void add_box(PlainScene& scene, const char* name, const Box& box) {
-  const auto& [a, b] = box;
-  PlainPatch& patch = scene.patch(name);
-  scene.add_ring(patch, {{a.x, a.y, a.z}, {a.x, a.y, b.z}, {a.x, b.y, b.z}, {a.x, b.y, a.z}});
-  scene.add_ring(patch, {{b.x, a.y, a.z}, {b.x, b.y, a.z}, {b.x, b.y, b.z}, {b.x, a.y, b.z}});
-  scene.add_ring(patch, {{a.x, a.y, a.z}, {b.x, a.y, a.z}, {b.x, a.y, b.z}, {a.x, a.y, b.z}});
-  scene.add_ring(patch, {{a.x, b.y, a.z}, {a.x, b.y, b.z}, {b.x, b.y, b.z}, {b.x, b.y, a.z}});
-  scene.add_ring(patch, {{a.x, a.y, a.z}, {a.x, b.y, a.z}, {b.x, b.y, a.z}, {b.x, a.y, a.z}});
-  scene.add_ring(patch, {{a.x, a.y, b.z}, {b.x, a.y, b.z}, {b.x, b.y, b.z}, {a.x, b.y, b.z}});
-}
-
-void add_patch(PlainScene& scene, const char* name, const char* material) {
-  scene.patches.push_back({name, material, {}});
-}
 
 // Floor, ceiling and three walls, fronts into the room.
 void add_shell(PlainScene& scene) {
@@ -59,16 +36,13 @@ void add_shell(PlainScene& scene) {
   scene.add_ring(scene.patch("wall_back"), {{0, 0, d}, {0, h, d}, {w, h, d}, {w, 0, d}});
 }
 
-// The window and, about it, its wall as four trapezoids that share every corner with it.
+// The window and, about it, its wall.
 void add_window_wall(PlainScene& scene) {
-  const std::array<Vec3, 4> outer{{{0, 0, 0}, {kWidth, 0, 0}, {kWidth, kHeight, 0}, {0, kHeight, 0}}};
-  const std::array<Vec3, 4> inner{
+  const Quad outer{{{0, 0, 0}, {kWidth, 0, 0}, {kWidth, kHeight, 0}, {0, kHeight, 0}}};
+  const Quad inner{
       {{kWindowLeft, kSill, 0}, {kWindowRight, kSill, 0}, {kWindowRight, kLintel, 0}, {kWindowLeft, kLintel, 0}}};
-  for (std::size_t i = 0; i < 4; ++i) {
-    const std::size_t j = (i + 1) % 4;
-    scene.add_ring(scene.patch("wall_window"), {outer[i], outer[j], inner[j], inner[i]});
-  }
-  scene.add_ring(scene.patch("window"), {inner.begin(), inner.end()});
+  add_frame(scene, "wall_window", outer, inner);
+  add_quad(scene, "window", inner);
 }
 
 void add_blind(PlainScene& scene, int slats) {
@@ -83,16 +57,6 @@ void add_blind(PlainScene& scene, int slats) {
     const double far = kBlindGap + kSlatDepth * pitch / 2;
     scene.add_ring(scene.patch("blind"),
                    {{left, bottom, far}, {right, bottom, far}, {right, top, near}, {left, top, near}});
-  }
-}
-
-void add_table(PlainScene& scene) {
-  const Box top{{1.25, kTableHeight - kTopThickness, 1.5}, {2.75, kTableHeight, 2.5}};
-  add_box(scene, "table_top", top);
-  for (const double x : {top.low.x, top.high.x - kLegSide}) {
-    for (const double z : {top.low.z, top.high.z - kLegSide}) {
-      add_box(scene, "table_legs", {{x, 0, z}, {x + kLegSide, top.low.y, z + kLegSide}});
-    }
   }
 }
 
@@ -116,11 +80,11 @@ PlainScene room(const FamilyOptions& options) {
   add_shell(scene);
   add_window_wall(scene);
   add_blind(scene, options.n);
-  add_table(scene);
+  add_table(scene, {{1.25, kTableHeight - kTopThickness, 1.5}, {2.75, kTableHeight, 2.5}});
   scene.source = "window";
   scene.point = {1.875, kTableHeight, 2.0};
   scene.normal = {0, 1, 0};
   return scene;
 }
 
-}  // namespace exactff::generate
+}  // namespace exactff::models

@@ -1,6 +1,4 @@
-#include "generate/plain_scene.h"
-
-#include <gmpxx.h>
+#include "models/plain_scene.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +8,9 @@
 #include <map>
 #include <stdexcept>
 
-namespace exactff::generate {
+#include "kernel/numbers.h"
+
+namespace exactff::models {
 
 void PlainScene::add_ring(PlainPatch& patch, const std::vector<Vec3>& corners) { add_rings(patch, {corners}); }
 
@@ -82,7 +82,8 @@ std::string to_mtl(const PlainScene& scene) {
 // --- Keyholes: exact signs in the plane's least slanted projection; no arithmetic is ever rounded. ---
 namespace {
 
-using Rational = mpq_class;
+using kernel::Rational;
+using kernel::sign;
 
 struct Flat {
   Rational u;
@@ -90,7 +91,7 @@ struct Flat {
 };
 
 int turn(const Flat& a, const Flat& b, const Flat& c) {
-  return sgn(Rational((b.u - a.u) * (c.v - a.v) - (b.v - a.v) * (c.u - a.u)));
+  return sign(Rational((b.u - a.u) * (c.v - a.v) - (b.v - a.v) * (c.u - a.u)));
 }
 
 bool between(const Flat& a, const Flat& b, const Flat& c) {  // c on the closed segment ab
@@ -120,7 +121,7 @@ std::vector<Flat> flatten(const std::vector<Vec3>& vertices, const Ring& outer) 
       const std::array<double, 3> c{v.x, v.y, v.z};
       points.push_back({Rational(c[(axis + 1) % 3]), Rational(c[(axis + 2) % 3])});
     }
-    if (sgn(twice_area(points, outer)) != 0) return points;
+    if (sign(twice_area(points, outer)) != 0) return points;
   }
   throw std::invalid_argument("a face with holes has no area");
 }
@@ -165,7 +166,7 @@ Ring keyhole(const std::vector<Vec3>& vertices, const PlainFace& face) {
   const std::vector<Flat> points = flatten(vertices, ring);
   std::vector<Ring> holes(face.rings.begin() + 1, face.rings.end());
   for (Ring& hole : holes) {
-    if (sgn(twice_area(points, hole)) == sgn(twice_area(points, ring))) std::ranges::reverse(hole);
+    if (sign(twice_area(points, hole)) == sign(twice_area(points, ring))) std::ranges::reverse(hole);
   }
   while (!holes.empty()) {
     const auto [at, hole, from] = find_bridge(points, ring, holes);
@@ -175,14 +176,39 @@ Ring keyhole(const std::vector<Vec3>& vertices, const PlainFace& face) {
   return ring;
 }
 
-Scene build(const PlainScene& scene) {
-  SceneBuilder builder;
+namespace {
+
+// As read_obj() numbers them: first the one of faces without any, then each at its first use.
+class Materials {
+ public:
+  Materials(const PlainScene& scene, SceneBuilder& builder) : scene_(scene), builder_(builder) {
+    ids_.emplace("", builder_.add_material({.name = "(none)"}));
+  }
+
+  MaterialId id(const std::string& name) {
+    const auto known = ids_.find(name);
+    if (known != ids_.end()) return known->second;
+    const auto material = std::ranges::find(scene_.materials, name, &Material::name);
+    if (material == scene_.materials.end()) throw std::invalid_argument("there is no material '" + name + "'");
+    return ids_.emplace(name, builder_.add_material(*material)).first->second;
+  }
+
+ private:
+  const PlainScene& scene_;
+  SceneBuilder& builder_;
+  std::map<std::string, MaterialId> ids_;
+};
+
+}  // namespace
+
+Scene build(const PlainScene& scene, const std::string& name, const SceneOptions& options) {
+  SceneBuilder builder(name, options);
   for (const Vec3& vertex : scene.vertices) builder.add_vertex(vertex);
-  std::map<std::string, MaterialId> materials{{"", builder.add_material({})}};
-  for (const Material& material : scene.materials) materials[material.name] = builder.add_material(material);
+  Materials materials(scene, builder);
   for (const PlainPatch& patch : scene.patches) {
+    if (patch.faces.empty()) continue;
     const PatchId id = builder.patch(patch.name);
-    for (const PlainFace& face : patch.faces) builder.add_face(id, materials.at(patch.material), face.rings);
+    for (const PlainFace& face : patch.faces) builder.add_face(id, materials.id(patch.material), face.rings);
   }
   return builder.build();
 }
@@ -195,4 +221,4 @@ void scale(PlainScene& scene, double factor) {
   scene.point = scaled(scene.point);
 }
 
-}  // namespace exactff::generate
+}  // namespace exactff::models

@@ -1,0 +1,30 @@
+// NAME:SETTING=VALUE,... taken apart: what methods and models have in common.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exactff/error.h"
+#include "exactff/methods.h"
+
+namespace exactff::methods {
+
+struct ChoiceText {
+  std::string_view name;
+  std::string_view assignments;  // after the colon
+};
+[[nodiscard]] ChoiceText take_apart(std::string_view text);
+
+// Throws one InputError with everything that is wrong, each told of `whose`: "method 'hemicube'".
+void read_assignments(std::string_view assignments, const std::string& whose, Settings& settings);
+
+// "there is no method 'hemicub' (methods are ...); did you mean hemicube?" for `kind` "method".
+[[nodiscard]] InputError unknown_name(const std::string& kind, std::string_view name,
+                                      const std::vector<std::string_view>& known);
+
+// Every setting with its meaning, unit, default and range, a line each, indented.
+[[nodiscard]] std::string setting_lines(std::span<const SettingSpec> settings);
+
+}  // namespace exactff::methods

@@ -1,0 +1,93 @@
+// A hall with many small bright lamps below its ceiling and boxes on its floor: each lamp is smaller than a pixel of a
+// usual hemicube on the floor, and casts shadows with hardly a penumbra. Metres; y up. Lamps and boxes stand each in a
+// cell of a square grid, off its middle.
+#include <algorithm>
+
+#include "models/model_files.h"
+#include "models/random.h"
+#include "models/room_parts.h"
+#include "models/square_grid.h"
+
+namespace exactff::models {
+
+namespace {
+
+constexpr Vec3 kHall{10.0, 3.0, 10.0};
+constexpr double kLampHeight = 2.875;
+constexpr double kTallestBox = 2.25;
+
+// A point in the middle half of each cell, row by row.
+template <class Add>
+void for_each_cell(Random& random, int count, const Add& add) {
+  const int columns = columns_for(count);
+  const double cell = kHall.x / columns;
+  for (int i = 0; i < count; ++i) {
+    const double x = cell * (i % columns + random.between(0.25, 0.75));
+    const double z = cell * (i / columns + random.between(0.25, 0.75));
+    add(i + 1, x, z, cell);
+  }
+}
+
+void add_lamps(PlainScene& scene, Random& random, int count, double size) {
+  for_each_cell(random, count, [&](int number, double x, double z, double) {
+    const std::string name = "lamp" + std::to_string(number);
+    const double half = size / 2;
+    add_patch(scene, name, "lamp");
+    add_quad(scene, name, facing_down(x - half, x + half, kLampHeight, z - half, z + half));
+  });
+}
+
+void add_boxes(PlainScene& scene, Random& random, int count) {
+  for_each_cell(random, count, [&](int number, double x, double z, double cell) {
+    const std::string name = "box" + std::to_string(number);
+    const double largest = std::min(0.75, 0.25 * cell);
+    const double half_width = largest * random.between(0.3, 1.0);
+    const double half_depth = largest * random.between(0.3, 1.0);
+    const double height = random.between(0.3, kTallestBox);
+    add_patch(scene, name, "board");
+    add_box(scene, name, {{x - half_width, 0.0, z - half_depth}, {x + half_width, height, z + half_depth}});
+  });
+}
+
+// As bright as makes the floor about 1 under all of them.
+double radiosity(int count, double size) { return kHall.x * kHall.z / (count * size * size); }
+
+PlainScene make(const methods::Settings& settings) {
+  const int count = static_cast<int>(settings.whole("n"));
+  const double size = settings.number("size");
+  const double bright = radiosity(count, size);
+  PlainScene scene;
+  scene.materials = {{"floor", {0.4, 0.4, 0.4}, {}},
+                     {"wall", {0.75, 0.75, 0.7}, {}},
+                     {"lamp", {0, 0, 0}, {bright, bright, bright}},
+                     {"board", {0.6, 0.6, 0.55}, {}}};
+  add_patch(scene, "floor", "floor");
+  for (const char* name : {"wall_left", "wall_right", "wall_back", "wall_front", "ceiling"}) {
+    add_patch(scene, name, "wall");
+  }
+  add_floor_and_walls(scene, kHall);
+  add_quad(scene, "ceiling", ceiling_of(kHall));
+  Random random(static_cast<std::uint64_t>(settings.whole("seed")));
+  add_boxes(scene, random, static_cast<int>(settings.whole("boxes")));
+  add_lamps(scene, random, count, size);
+  scene.source = "lamp1";
+  scene.point = {0.125, 0.0, 0.125};  // where no box stands
+  scene.normal = {0, 1, 0};
+  return scene;
+}
+
+}  // namespace
+
+Model emitters_model() {
+  return {
+      .name = "emitters",
+      .summary =
+          "a hall of 10 x 10 x 3 m with n small bright lamps, each a source of its own, and boxes between "
+          "them and the floor (floor, ceiling, wall_*, box1 ..., lamp1 ...)",
+      .settings = {methods::whole_setting("n", 64, 1, 2500, "lamps"),
+                   methods::number_setting("size", 0.03, 1e-6, 0.1, "side of a lamp; all together shine the same", "m"),
+                   methods::whole_setting("boxes", 12, 0, 1000, "boxes on the floor"), methods::seed_setting()},
+      .make = &make};
+}
+
+}  // namespace exactff::models

@@ -1,0 +1,76 @@
+#include <algorithm>
+
+#include "methods/choice_text.h"
+#include "models/model_files.h"
+
+namespace exactff::models {
+
+namespace {
+
+const std::vector<Model>& list() {
+  static const std::vector<Model> models = {
+#define EXACTFF_MODEL(name) name##_model(),
+#include "models/list.h"
+#undef EXACTFF_MODEL
+  };
+  return models;
+}
+
+const Model& model_named(std::string_view name) {
+  const auto found = std::ranges::find(list(), name, &Model::name);
+  if (found != list().end()) return *found;
+  std::vector<std::string_view> names;
+  for (const Model& model : list()) names.emplace_back(model.name);
+  throw methods::unknown_name("model", name, names);
+}
+
+struct Choice {
+  const Model& model;
+  methods::Settings settings;
+
+  // In full, so that it stays the same when a default changes.
+  [[nodiscard]] std::string text() const { return model.name + ":" + settings.text(); }
+};
+
+Choice parse(std::string_view text) {
+  const auto [name, assignments] = methods::take_apart(text);
+  const Model& model = model_named(name);
+  Choice choice{model, methods::Settings(model.settings)};
+  methods::read_assignments(assignments, "model '" + model.name + "'", choice.settings);
+  return choice;
+}
+
+}  // namespace
+
+std::vector<const Model*> all_models() {
+  std::vector<const Model*> models;
+  for (const Model& model : list()) models.push_back(&model);
+  return models;
+}
+
+PlainScene make_plain(std::string_view text) {
+  const Choice choice = parse(text);
+  PlainScene scene = choice.model.make(choice.settings);
+  scene.comments.insert(scene.comments.begin(), "exactff model " + choice.text());
+  return scene;
+}
+
+Scene make_scene(std::string_view text, const SceneOptions& options) {
+  return build(make_plain(text), "@" + std::string(text), options);
+}
+
+std::string make_obj(std::string_view text, const std::string& mtl) {
+  PlainScene scene = make_plain(text);
+  if (mtl.empty()) {
+    for (PlainPatch& patch : scene.patches) patch.material.clear();  // else readers miss their definition
+  }
+  return to_obj(scene, mtl);
+}
+
+std::string make_mtl(std::string_view text) { return to_mtl(make_plain(text)); }
+
+std::string description(const Model& model) {
+  return model.name + ": " + model.summary + "\n" + methods::setting_lines(model.settings);
+}
+
+}  // namespace exactff::models
