@@ -36,6 +36,13 @@ enum class Engine {
 };
 [[nodiscard]] std::string_view to_string(Engine engine);
 
+// Who is looked at as a possible occluder. Both ways give the same bits of values and fractions; the records tell of
+// the work that was done.
+enum class ShaftCulling {
+  kTree,  // what the bounding-volume tree and the half-spaces of the shaft do not rule out
+  kNone,  // every face of the scene, as if there were no shaft: to measure what it saves
+};
+
 // How far one plane of the source had to be followed; every later stage had no work.
 enum class Outcome {
   kReceiverFace,   // the receiver lies on this face by construction
@@ -101,6 +108,7 @@ struct ExactOptions {
   int digits = 0;             // raise the precision until so many decimals are certified, if they can be
   int precision_cap = 65536;  // bits
   const std::vector<FaceId>* only_occluders = nullptr;  // ascending; every other face is ignored
+  ShaftCulling culling = ShaftCulling::kTree;
 };
 
 // What depends on the source alone, computed once. Refers to the scene it was made from.

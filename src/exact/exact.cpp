@@ -132,7 +132,8 @@ class Solver {
     request_ = {.engine = options.engine,
                 .fraction = wants_fraction_,
                 .list_cutters = options.list_cutters,
-                .only_occluders = options.only_occluders};
+                .only_occluders = options.only_occluders,
+                .culling = options.culling};
   }
 
   FormFactor run() {

@@ -149,6 +149,9 @@ CloudLook cloud_look(int style) {
   return kClouds[static_cast<std::size_t>(style - 1) % kClouds.size()];
 }
 
+// For a line that must be seen within a crowd.
+constexpr const char* kOverCloudStyle = "with linespoints lw 1.6 ps 1.1 lc rgb 'black' pt 6 dt 1";
+
 // `width`: of the points' range in x.
 std::string cloud_command(const std::string& name, const Series& cloud, const Axes& axes, double width) {
   const CloudLook look = cloud_look(cloud.style);
@@ -235,7 +238,8 @@ std::string scatter_plot(const Axes& axes, const std::vector<Series>& series) {
     if (points.empty()) continue;
     const std::string name = "$series" + std::to_string(drawn.size());
     data += cloud_block(name, points);
-    const std::string line = name + " using 1:2 " + style_of(cloud) + " title " + quoted(cloud.title);
+    const std::string style = cloud.style == kOverlay ? kOverCloudStyle : style_of(cloud);
+    const std::string line = name + " using 1:2 " + style + " title " + quoted(cloud.title);
     plot += (plot.empty() ? "plot " : ", \\\n     ") +
             (cloud.style > 0 ? cloud_command(name, cloud, axes, points.back().first - points.front().first) : line);
     titles.push_back(cloud.title);

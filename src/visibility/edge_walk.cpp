@@ -63,6 +63,7 @@ class EdgeWalk {
   bool add_above_horizon(const Piece& piece);
   bool gather_occluders();
   bool visit(std::uint32_t piece, OutlineId source);
+  [[nodiscard]] bool culls() const { return request_.culling == ShaftCulling::kTree; }
   void make_shaft(OutlineId source);
   void make_side_planes(OutlineId source);
   [[nodiscard]] Sides sides_by_filter();
@@ -174,10 +175,11 @@ bool EdgeWalk::gather_occluders() {
     work_.run = 1;
   }
   bool hidden = false;
-  for (OutlineId source = 0; source < source_count_ && !hidden; ++source) {
-    make_shaft(source);
+  const OutlineId shafts = culls() ? static_cast<OutlineId>(source_count_) : 1;
+  for (OutlineId source = 0; source < shafts && !hidden; ++source) {
+    if (culls()) make_shaft(source);
     make_side_planes(source);
-    shaft_tree(view_.scene).query(view_.x, work_.half_spaces, [&](std::uint32_t piece) {
+    for_each_candidate(view_, work_.half_spaces, request_.culling, [&](std::uint32_t piece) {
       hidden = visit(piece, source);
       return !hidden;
     });
@@ -203,7 +205,7 @@ bool EdgeWalk::visit(std::uint32_t index, OutlineId source) {
   const bool mirrored = facing > 0;
   if (sides.some_below_first) ++result_.record.clipped;
   const OutlineId outline = sides.some_below_first ? add_near_part(vertices, mirrored) : add_whole(mirrored);
-  if (sides.all_above_each) {
+  if (sides.all_above_each && culls()) {
     outlines_.set_inside_source(outline);
     return false;
   }
@@ -213,7 +215,8 @@ bool EdgeWalk::visit(std::uint32_t index, OutlineId source) {
 }
 
 // What an occluder must have something above of: the source's plane, as its front sees it, the plane through x that is
-// parallel to it, as the source sees it, and every edge of the source.
+// parallel to it, as the source sees it, and every edge of the source. Without culling the first two alone, which its
+// outline relies on: who is out of the shaft then is found out edge by edge.
 //
 // With N and s the normal and a point of the source's plane, as seen from x, the height N . t - N . s has components of
 // relative error 2u each, |N| <= 1; the two sums err by less than 6u of the magnitudes of their terms, at most 3 |t|
@@ -228,6 +231,7 @@ void EdgeWalk::make_side_planes(OutlineId source) {
   work_.side_planes.push_back(
       {front, offset, 0x1p-48, usable ? 0x1p-48 * size : std::numeric_limits<double>::infinity()});
   work_.side_planes.push_back({{-front.x, -front.y, -front.z}, 0.0, 0x1p-48, 0.0});
+  if (!culls()) return;
   const Outlines::Outline& outline = outlines_.outline(source);
   for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
     const Outlines::Edge& edge = outlines_.edge(id);
@@ -262,6 +266,7 @@ Sides EdgeWalk::sides_exactly(OutlineId source) {
   sides.some_below_first = std::any_of(work_.depths.begin(), work_.depths.end(), [](int depth) { return depth < 0; });
   look([&](std::size_t c) { return work_.depths[c]; });
   look([&](std::size_t c) { return toward_sign(work_.corners[c]); });
+  if (!culls()) return sides;
   const Outlines::Outline& outline = outlines_.outline(source);
   for (EdgeId id = outline.first; id < outline.first + outline.count && sides.some_above_each; ++id) {
     look([&](std::size_t c) { return outlines_.side(outlines_.edge(id), work_.corners[c]); });

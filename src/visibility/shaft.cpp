@@ -85,11 +85,12 @@ int Shaft::depth_sign(std::size_t corner) {
 }
 
 // Step 1.
-bool Shaft::may_meet(std::span<const std::uint32_t> corners) {
+bool Shaft::may_meet(std::span<const std::uint32_t> corners, ShaftCulling culling) {
   const std::size_t n = corners.size();
   depth_.resize(n);
   for (std::size_t c = 0; c < n; ++c) depth_[c] = depth_sign(c);
   if (std::none_of(depth_.begin(), depth_.end(), [](int s) { return s < 0; })) return false;
+  if (culling == ShaftCulling::kNone) return true;
 
   const auto some_corner_inside = [&](const Direction& normal) {
     for (std::size_t c = 0; c < n; ++c) {
@@ -135,7 +136,7 @@ bool Shaft::hides_all(const Ring& ring) const {
   return true;
 }
 
-Fate Shaft::test(std::uint32_t piece_index, Occluder& occluder, bool& was_cut) {
+Fate Shaft::test(std::uint32_t piece_index, ShaftCulling culling, Occluder& occluder, bool& was_cut) {
   const Piece& piece = scene_.pieces()[piece_index];
   corners_ = scene_.corners(piece);
   const auto vertices = scene_.vertices();
@@ -144,7 +145,7 @@ Fate Shaft::test(std::uint32_t piece_index, Occluder& occluder, bool& was_cut) {
     approx_corners_.push_back(kernel::approx_difference(vertices[corner], x_));
   }
   exact_corners_.assign(corners_.size(), std::nullopt);
-  if (!may_meet(corners_)) return Fate::kOutside;
+  if (!may_meet(corners_, culling)) return Fate::kOutside;
 
   // Step 2, and the orientation as x sees it.
   const auto relative = [&](int f) { return kernel::exact_difference(vertices[piece.frame[f]], x_).v; };

@@ -20,6 +20,7 @@
 #include <span>
 #include <vector>
 
+#include "exactff/exact.h"
 #include "exactff/scene.h"
 #include "kernel/direction.h"
 #include "scene/shaft_tree.h"
@@ -42,7 +43,8 @@ class Shaft {
   [[nodiscard]] std::span<const HalfSpace> half_spaces() const { return half_spaces_; }
 
   // What becomes of a piece; on kInShaft `occluder` holds its visible part, `was_cut` whether that is less than all.
-  Fate test(std::uint32_t piece, Occluder& occluder, bool& was_cut);
+  // Without culling, step 1 looks at the source's plane alone, which step 3 relies on; step 5 finds out the rest.
+  Fate test(std::uint32_t piece, ShaftCulling culling, Occluder& occluder, bool& was_cut);
 
  private:
   struct Offset {  // h = value * 2^exponent
@@ -51,7 +53,7 @@ class Shaft {
     double approx = 0.0;  // in the scale of toward_.approx
   };
 
-  [[nodiscard]] bool may_meet(std::span<const std::uint32_t> corners);
+  [[nodiscard]] bool may_meet(std::span<const std::uint32_t> corners, ShaftCulling culling);
   [[nodiscard]] int depth_sign(std::size_t corner);  // sign of M . t - h
   [[nodiscard]] int side_sign(const kernel::Direction& normal, std::size_t corner);
   const kernel::ScaledVec3& exact_corner(std::size_t corner);

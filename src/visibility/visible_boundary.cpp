@@ -162,11 +162,11 @@ bool Walk::gather_occluders() {
   PlaneRecord& record = result_.record;
   bool hidden = false;
   Occluder occluder;
-  shaft_tree(view_.scene).query(view_.x, shaft.half_spaces(), [&](std::uint32_t piece) {
+  for_each_candidate(view_, shaft.half_spaces(), request_.culling, [&](std::uint32_t piece) {
     if (!may_occlude(view_, plane_, request_, piece)) return true;
     ++record.tree_candidates;
     bool was_cut = false;
-    const Fate fate = shaft.test(piece, occluder, was_cut);
+    const Fate fate = shaft.test(piece, request_.culling, occluder, was_cut);
     if (fate == Fate::kOutside) return true;
     ++record.candidates;
     if (was_cut) ++record.clipped;

@@ -11,10 +11,13 @@
 // Knows nothing of radiometry.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "exactff/exact.h"
+#include "scene/shaft_tree.h"
 #include "visibility/boundary_piece.h"
 #include "visibility/plane_frame.h"
 #include "visibility/polygon_sets.h"
@@ -39,6 +42,7 @@ struct Request {
   bool list_cutters = false;
   bool keep_geometry = false;                           // for drawings
   const std::vector<FaceId>* only_occluders = nullptr;  // ascending
+  ShaftCulling culling = ShaftCulling::kTree;
 };
 
 // The exact geometry behind a result, for drawings.
@@ -60,6 +64,18 @@ struct PlaneVisibility {
   std::vector<FaceId> cutters;               // ascending
   PlaneGeometry geometry;
 };
+
+// For both engines: calls visit(piece) for every piece that may lie in the shaft, until one call returns false.
+template <class Visit>
+void for_each_candidate(const View& view, std::span<const HalfSpace> shaft, ShaftCulling culling, Visit&& visit) {
+  if (culling == ShaftCulling::kTree) {
+    shaft_tree(view.scene).query(view.x, shaft, visit);
+    return;
+  }
+  const auto count = static_cast<std::uint32_t>(view.scene.pieces().size());
+  for (std::uint32_t piece = 0; piece < count && visit(piece); ++piece) {
+  }
+}
 
 // For both engines: whether a piece of the scene may occlude the plane. The source's own pieces in this plane cannot;
 // those in other planes can.

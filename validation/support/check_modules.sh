@@ -14,6 +14,7 @@ declare -A allowed=(
   [methods]="methods sampled exact scene kernel"
   [models]="models methods scene kernel"
   [study]="study scene kernel"
+  [experiments]="experiments study models methods scene kernel"
   [check]="check study scene kernel"
   [stress]="stress study scene kernel"
   [truth]="truth study scene kernel"

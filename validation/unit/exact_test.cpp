@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "generate/families.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
+#include "support/random_scenes.h"
 #include "support/solve.h"
 
 namespace exactff {
@@ -157,6 +159,43 @@ TEST(ExactFormFactor, OccludersCanBeSingledOut) {
   const double without_b = solve(scene, plain, {.only_occluders = &only_a}).value;
   EXPECT_LT(without_b, open);
   EXPECT_GT(without_b, solve(scene, plain).value);
+}
+
+// Value, status and fraction with the shaft and without it, by both engines.
+void expect_the_same_without_shaft(const PlainScene& plain) {
+  const Scene scene = generate::build(plain);
+  for (const Engine engine : validation::kEngines) {
+    ExactOptions options{.engine = engine, .visible_fraction = true};
+    const FormFactor culled = solve(scene, plain, options);
+    options.culling = ShaftCulling::kNone;
+    const FormFactor all = solve(scene, plain, options);
+    EXPECT_EQ(all.value, culled.value) << to_string(engine);
+    EXPECT_EQ(all.status, culled.status) << to_string(engine);
+    EXPECT_EQ(all.visible_fraction, culled.visible_fraction) << to_string(engine);
+  }
+}
+
+TEST(ExactFormFactor, TheShaftSavesWorkAndChangesNoBit) {
+  for (std::uint64_t i = 0; i < validation::scaled_count(4); ++i) {
+    SCOPED_TRACE(i);
+    generate::Random random(validation::seed_of(i));
+    expect_the_same_without_shaft(validation::degenerate_scene(random));
+    expect_the_same_without_shaft(validation::generic_scene(random));
+    expect_the_same_without_shaft(validation::nudged_scene(random));
+    expect_the_same_without_shaft(generate::soup({.n = 12, .seed = i + 1}));
+  }
+}
+
+TEST(ExactFormFactor, WithoutShaftEveryFaceIsLookedAt) {
+  PlainScene plain = square_source();
+  add_square(plain, "in_the_shaft", 0.1, 0.5);
+  for (int k = 1; k <= 5; ++k) add_square(plain, "beside", 0.1, 0.5, 2.0 * k);
+  const Scene scene = generate::build(plain);
+  for (const Engine engine : validation::kEngines) {
+    EXPECT_EQ(solve(scene, plain, {.engine = engine}).planes.at(0).tree_candidates, 1U) << to_string(engine);
+    EXPECT_EQ(solve(scene, plain, {.engine = engine, .culling = ShaftCulling::kNone}).planes.at(0).tree_candidates, 6U)
+        << to_string(engine);
+  }
 }
 
 TEST(ExactFormFactor, AFlippedSourceIsBehindAndTurnsBack) {

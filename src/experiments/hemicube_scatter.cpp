@@ -1,0 +1,257 @@
+#include "experiments/hemicube_scatter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "study/parallel.h"
+#include "study/statistics.h"
+#include "study/text.h"
+
+namespace exactff::experiments {
+
+namespace {
+
+using study::Axes;
+using study::counted;
+using study::rounded;
+using study::Series;
+
+std::string choice_text(int resolution) { return "hemicube:resolution=" + std::to_string(resolution); }
+std::string pixels_text(int resolution) { return std::to_string(resolution) + " × " + std::to_string(resolution); }
+
+std::vector<ScatterPoint> points_of_scene(int number, const ScatterSize& size) {
+  const KarkanisScene scene = karkanis_scene(size.triangles, static_cast<std::uint64_t>(number));
+  std::vector<ScatterPoint> points;
+  for (const ExactSource& triangle : exact_sources(scene.scene, scene.triangles)) {
+    const double exact = exact_form_factor(scene.scene, scene.receiver, triangle).value;
+    points.push_back({number, static_cast<int>(points.size()) + 1, exact, {}});
+  }
+  for (const int resolution : size.resolutions) {
+    const auto values = values_of(choice_text(resolution), scene.scene, scene.receiver, scene.triangles);
+    for (std::size_t i = 0; i < points.size(); ++i) points[i].hemicube.push_back(values[i]);
+  }
+  return points;
+}
+
+double error_of(const ScatterPoint& point, std::size_t resolution) {
+  return std::abs(point.hemicube[resolution] - point.exact) / point.exact;
+}
+
+struct Counts {
+  std::size_t visible = 0;
+  std::size_t missed = 0;
+  double largest_missed = 0.0;
+};
+
+Counts count(std::span<const ScatterPoint> points, std::size_t resolution) {
+  Counts counts;
+  for (const ScatterPoint& p : points) {
+    if (p.exact <= 0.0) continue;
+    ++counts.visible;
+    if (p.hemicube[resolution] != 0.0) continue;
+    ++counts.missed;
+    counts.largest_missed = std::max(counts.largest_missed, p.exact);
+  }
+  return counts;
+}
+
+// "10⁻⁴"; form factors are at most 1.
+std::string power_of_ten(int exponent) {
+  constexpr std::array<std::string_view, 10> kSuperscripts = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  if (exponent == 0) return "1";
+  std::string text = "10⁻";
+  for (const char digit : std::to_string(-exponent)) text += kSuperscripts[static_cast<std::size_t>(digit - '0')];
+  return text;
+}
+
+// ------------------------------------------------------------------------------------------------------- what is told
+
+std::string scene_sentence(std::span<const ScatterPoint> points, const ScatterSize& size) {
+  const std::size_t visible = count(points, 0).visible;
+  return counted(static_cast<std::uint64_t>(size.scenes), "scene") + " of Karkanis' kind, each of " +
+         counted(static_cast<std::uint64_t>(size.triangles), "triangle") +
+         " of one normal that face one point: " + std::to_string(visible) + " of the " + std::to_string(points.size()) +
+         " triangles can be seen from it. Their exact form factors are held against those of a hemicube with " +
+         pixels_text(size.resolutions.front()) + " pixels, his yardstick.";
+}
+
+std::string missed_sentence(std::span<const ScatterPoint> points, const ScatterSize& size) {
+  std::string text;
+  for (std::size_t r = 0; r < size.resolutions.size(); ++r) {
+    const Counts counts = count(points, r);
+    text += (r == 0 ? "With " : " With ") + pixels_text(size.resolutions[r]) + " pixels it misses " +
+            std::to_string(counts.missed) + " of the visible triangles altogether (" +
+            study::share(counts.missed, counts.visible) + ")";
+    if (counts.missed > 0) {
+      text += ", the largest of them with F = " + rounded(counts.largest_missed, 2) + " (its largest pixel has " +
+              rounded(largest_pixel(size.resolutions[r]), 2) + ")";
+    }
+    text += '.';
+  }
+  return text;
+}
+
+std::string decades_sentence(std::span<const ScatterDecade> decades) {
+  std::string text = "Normalised error |hemicube − exact| / exact, median and 99th percentile, by the size of F:";
+  for (const ScatterDecade& d : decades) {
+    text += (&d == decades.data() ? " " : "; ") + power_of_ten(d.exponent) + " to " + power_of_ten(d.exponent + 1) +
+            " (" + counted(d.visible, "triangle") + "): " + percent(d.median) + " and " + percent(d.p99);
+  }
+  return text + '.';
+}
+
+std::string trend_sentence(std::span<const ScatterPoint> points, const ScatterSize& size) {
+  std::vector<std::string> powers;
+  for (std::size_t r = 0; r < size.resolutions.size(); ++r) {
+    const std::vector<double> slopes = scatter_slopes(points, size, r);
+    if (slopes.size() < 2) continue;
+    powers.push_back(to_text(mean_slope(slopes)) + " with " + pixels_text(size.resolutions[r]) + " pixels");
+  }
+  if (powers.empty()) return {};
+  return "Karkanis' trend is confirmed: the error falls as the form factor grows. Among triangles larger than a pixel "
+         "the normalised error goes like F to the power " +
+         study::enumerate(powers) + " (95 % confidence over " +
+         counted(static_cast<std::uint64_t>(size.scenes), "scene") +
+         "). Theory gives −3/4 where errors of a pixel's area add up at random along an outline of length √F. It is a "
+         "little flatter where outlines of the larger triangles are longer than that, since others cut them, and where "
+         "many are hardly larger than a pixel, since these cannot err by much more than 100 %.";
+}
+
+// ------------------------------------------------------------------------------------------------------------ figures
+
+study::Figure value_figure(std::span<const ScatterPoint> points, int resolution) {
+  Series seen{"seen by the hemicube", {}, 1}, missed{"missed (drawn at the bottom)", {}, 2};
+  double low = 1.0, high = 0.0;
+  for (const ScatterPoint& p : points) {
+    if (p.exact <= 0.0) continue;
+    low = std::min(low, p.exact);
+    high = std::max(high, p.exact);
+    if (p.hemicube.front() > 0.0) seen.points.emplace_back(p.exact, p.hemicube.front());
+  }
+  double bottom = high;
+  for (const auto& point : seen.points) bottom = std::min(bottom, point.second);
+  bottom /= 3.0;
+  for (const ScatterPoint& p : points) {
+    if (p.exact > 0.0 && p.hemicube.front() == 0.0) missed.points.emplace_back(p.exact, bottom);
+  }
+  const Series diagonal{"hemicube = exact", {{std::max(low, bottom), std::max(low, bottom)}, {high, high}}, 0};
+  return {"hemicube-scatter.value", "Hemicube against exact, triangle by triangle",
+          "Karkanis' first plot, with " + pixels_text(resolution) +
+              " pixels. Crosses at the bottom: visible triangles of which the hemicube sees nothing.",
+          study::scatter_plot(Axes{.x = "exact form factor",
+                                   .y = "form factor by the hemicube",
+                                   .extra = {"set yrange [" + study::shortest(bottom / 1.5) + ":*]"}},
+                              {diagonal, seen, missed})};
+}
+
+study::Figure error_figure(std::span<const ScatterPoint> points, const ScatterSize& size) {
+  Series seen{"a triangle", {}, 1}, missed{"missed: error 1", {}, 2}, medians{"median by decade", {}, study::kOverlay};
+  for (const ScatterPoint& p : points) {
+    if (p.exact > 0.0) (p.hemicube.front() > 0.0 ? seen : missed).points.emplace_back(p.exact, error_of(p, 0));
+  }
+  for (const ScatterDecade& d : scatter_decades(points, 0)) {
+    medians.points.emplace_back(std::pow(10.0, d.exponent + 0.5), d.median);
+  }
+  const double pixel = largest_pixel(size.resolutions.front());
+  const Series theory{"slope −3/4", {{pixel, 1.0}, {1000.0 * pixel, std::pow(1000.0, -0.75)}}, 0};
+  return {"hemicube-scatter.error", "Normalised error of the hemicube against the exact value",
+          "Karkanis' second plot. The grey line starts at the largest pixel; left of it a triangle is hit or missed.",
+          study::scatter_plot(Axes{.x = "exact form factor", .y = "|hemicube − exact| / exact"},
+                              {theory, seen, missed, medians})};
+}
+
+// ------------------------------------------------------------------------------------------------------------- tables
+
+TextTable point_table(std::span<const ScatterPoint> points, const ScatterSize& size) {
+  Table table("every triangle of Karkanis' scenes: models karkanis:n=" + std::to_string(size.triangles) +
+                  ",floor=0,seed=SCENE, seen from the origin along +z\nexact is correctly rounded, 0 where nothing can "
+                  "be seen; form_factor is of the method hemicube:resolution=RESOLUTION",
+              {"scene", "triangle", "exact", "resolution", "form_factor"});
+  for (const ScatterPoint& p : points) {
+    for (std::size_t r = 0; r < p.hemicube.size(); ++r) {
+      table.row() << p.scene << p.triangle << p.exact << size.resolutions[r] << p.hemicube[r];
+    }
+  }
+  return table.finish("hemicube-scatter.csv", "exact and hemicube form factor of every triangle");
+}
+
+TextTable decade_table(std::span<const ScatterPoint> points, const ScatterSize& size) {
+  Table table("normalised error |hemicube - exact| / exact of visible triangles, by decades of the exact form factor",
+              {"resolution", "from", "to", "visible", "missed", "median", "p99"});
+  for (std::size_t r = 0; r < size.resolutions.size(); ++r) {
+    for (const ScatterDecade& d : scatter_decades(points, r)) {
+      table.row() << size.resolutions[r] << std::pow(10.0, d.exponent) << std::pow(10.0, d.exponent + 1) << d.visible
+                  << d.missed << d.median << d.p99;
+    }
+  }
+  return table.finish("hemicube-scatter-decades.csv", "hemicube error by decades of the form factor");
+}
+
+}  // namespace
+
+std::vector<ScatterPoint> scatter_points(const ScatterSize& size, int threads, const study::Hooks& hooks) {
+  std::vector<std::vector<ScatterPoint>> by_scene(static_cast<std::size_t>(size.scenes));
+  study::parallel_for(by_scene.size(), threads, "hemicube-scatter", hooks,
+                      [&](std::size_t i) { by_scene[i] = points_of_scene(static_cast<int>(i) + 1, size); });
+  std::vector<ScatterPoint> all;
+  for (std::vector<ScatterPoint>& points : by_scene) std::ranges::move(points, std::back_inserter(all));
+  return all;
+}
+
+std::vector<ScatterDecade> scatter_decades(std::span<const ScatterPoint> points, std::size_t resolution) {
+  std::map<int, std::vector<double>> errors;
+  std::map<int, std::size_t> missed;
+  for (const ScatterPoint& p : points) {
+    if (p.exact <= 0.0) continue;
+    const int exponent = static_cast<int>(std::floor(std::log10(p.exact)));
+    errors[exponent].push_back(error_of(p, resolution));
+    missed[exponent] += p.hemicube[resolution] == 0.0 ? 1U : 0U;
+  }
+  std::vector<ScatterDecade> decades;
+  for (const auto& [exponent, list] : errors) {
+    decades.push_back({exponent, list.size(), missed[exponent], study::median(list), study::percentile(list, 99.0)});
+  }
+  return decades;
+}
+
+// A pixel of side 2 / n at distance 1.
+double largest_pixel(int resolution) { return 4.0 / (std::numbers::pi * resolution * resolution); }
+
+std::vector<double> scatter_slopes(std::span<const ScatterPoint> points, const ScatterSize& size,
+                                   std::size_t resolution) {
+  constexpr std::size_t kFew = 10;
+  std::vector<Points> by_scene(static_cast<std::size_t>(size.scenes));
+  const double pixel = largest_pixel(size.resolutions[resolution]);
+  for (const ScatterPoint& p : points) {
+    if (p.exact <= pixel) continue;
+    by_scene[static_cast<std::size_t>(p.scene - 1)].emplace_back(p.exact, error_of(p, resolution));
+  }
+  std::vector<double> slopes;
+  for (const Points& scene : by_scene) {
+    const std::optional<double> slope = scene.size() < kFew ? std::nullopt : study::fitted_slope(scene);
+    if (slope) slopes.push_back(*slope);
+  }
+  return slopes;
+}
+
+Result hemicube_scatter(const ScatterSize& size, int threads, const study::Hooks& hooks) {
+  const std::vector<ScatterPoint> points = scatter_points(size, threads, hooks);
+  Result result{.name = "hemicube-scatter", .title = "Karkanis' two plots: hemicube against exact"};
+  result.paragraphs = {scene_sentence(points, size), missed_sentence(points, size),
+                       decades_sentence(scatter_decades(points, 0)), trend_sentence(points, size)};
+  std::erase(result.paragraphs, "");
+  result.figures = {value_figure(points, size.resolutions.front()), error_figure(points, size)};
+  result.values = {point_table(points, size), decade_table(points, size)};
+  return result;
+}
+
+Result hemicube_scatter(const Effort& effort, const study::Hooks& hooks) {
+  ScatterSize size;
+  if (effort.abridged) size.scenes = 4;
+  return hemicube_scatter(size, effort.threads, hooks);
+}
+
+}  // namespace exactff::experiments

@@ -1,0 +1,358 @@
+#include "experiments/karkanis_times.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "study/page_files.h"
+#include "study/text.h"
+
+namespace exactff::experiments {
+
+namespace {
+
+using study::Axes;
+using study::counted;
+using study::duration;
+using study::rounded;
+using study::Series;
+
+struct HisTime {
+  int triangles;
+  double seconds;
+};
+constexpr std::array<HisTime, 4> kHis = {{{50, 0.2}, {100, 2.8}, {200, 300.0}, {500, 8.0 * 3600.0}}};
+
+constexpr std::string_view kStage = "karkanis-times";
+
+// ------------------------------------------------------------------------------------------------------- measurements
+
+std::vector<FormFactor> all_patches(const KarkanisScene& scene, const std::vector<ExactSource>& sources,
+                                    ShaftCulling culling, const study::Hooks& hooks) {
+  std::vector<FormFactor> results;
+  results.reserve(sources.size());
+  for (const ExactSource& source : sources) {
+    if (results.size() % 64 == 0) study::require_not_cancelled(hooks);
+    results.push_back(exact_form_factor(scene.scene, scene.receiver, source, {.culling = culling}));
+  }
+  return results;
+}
+
+double exact_seconds(const KarkanisScene& scene, const std::vector<ExactSource>& sources, ShaftCulling culling,
+                     const study::Hooks& hooks) {
+  return seconds_of([&] { (void)all_patches(scene, sources, culling, hooks); });
+}
+
+// Of every k-th source; the time is that of all, if all take as long.
+double sampled_seconds(const std::string& choice, const KarkanisScene& scene, std::size_t most) {
+  std::vector<Selection> some;
+  const std::size_t step = std::max<std::size_t>(1, scene.triangles.size() / most);
+  for (std::size_t i = step / 2; i < scene.triangles.size(); i += step) some.push_back(scene.triangles[i]);
+  Bench bench(methods::parse(choice), scene.scene, some);
+  const double seconds = seconds_of([&] { (void)bench.look_from(scene.receiver); }, 3);
+  return seconds * static_cast<double>(scene.triangles.size()) / static_cast<double>(some.size());
+}
+
+double hemicube_seconds(const KarkanisScene& scene) {
+  Bench bench(methods::parse("hemicube"), scene.scene, scene.triangles);
+  return seconds_of([&] { (void)bench.look_from(scene.receiver); });
+}
+
+std::string rays_choice(int rays) { return "area-sampling:pattern=stratified,samples=" + std::to_string(rays); }
+
+// What it would take, from the two times before; nothing is known of the first two.
+double predicted(const std::vector<TimeRow>& rows, int triangles) {
+  const TimeRow& last = rows.back();
+  if (rows.size() < 2 || !last.without_shaft) return last.without_shaft.value_or(INFINITY);
+  const TimeRow& before = rows[rows.size() - 2];
+  const double exponent =
+      std::max(2.0, local_exponent(before.triangles, *before.without_shaft, last.triangles, *last.without_shaft));
+  return *last.without_shaft * std::pow(static_cast<double>(triangles) / last.triangles, exponent);
+}
+
+bool affordable_without_shaft(const std::vector<TimeRow>& rows, int triangles, double budget) {
+  return rows.empty() || predicted(rows, triangles) <= budget;
+}
+
+TimeRow time_row(const TimesSize& size, int triangles, const std::vector<TimeRow>& before, const study::Hooks& hooks) {
+  const KarkanisScene scene = karkanis_scene(triangles, 1);
+  const std::vector<ExactSource> sources = exact_sources(scene.scene, scene.triangles);
+  TimeRow row{.triangles = triangles};
+  row.with_shaft = exact_seconds(scene, sources, ShaftCulling::kTree, hooks);
+  if (affordable_without_shaft(before, triangles, size.budget)) {
+    row.without_shaft = exact_seconds(scene, sources, ShaftCulling::kNone, hooks);
+  }
+  row.hemicube = hemicube_seconds(scene);
+  row.rays = sampled_seconds(rays_choice(size.rays), scene, size.ray_patches);
+  return row;
+}
+
+// How far rays are from the truth, and what they cost, on one scene.
+struct Affordable {
+  int rays = 0;
+  double seconds = 0.0;
+  double error = 0.0;  // RMS over the patches, over the RMS form factor
+};
+
+std::vector<Affordable> affordable_rays(const TimesSize& size, const study::Hooks& hooks) {
+  const KarkanisScene scene = karkanis_scene(size.affordable_at, 1);
+  std::vector<double> exact;
+  for (const FormFactor& f :
+       all_patches(scene, exact_sources(scene.scene, scene.triangles), ShaftCulling::kTree, hooks)) {
+    exact.push_back(f.value);
+  }
+  std::vector<Affordable> rows;
+  for (const int rays : size.affordable) {
+    study::require_not_cancelled(hooks);
+    Bench bench(methods::parse(rays_choice(rays)), scene.scene, scene.triangles);
+    std::vector<double> errors;
+    for (const methods::Estimate& e : bench.look_from(scene.receiver)) {
+      errors.push_back(e.form_factor - exact[errors.size()]);
+    }
+    const double seconds = seconds_of([&] { (void)bench.look_from(scene.receiver); });
+    rows.push_back({rays, seconds, root_mean_square(errors) / root_mean_square(exact)});
+  }
+  return rows;
+}
+
+// ------------------------------------------------------------------------------------------------------- what is told
+
+std::string his_list() {
+  std::string text;
+  for (std::size_t i = 1; i < kHis.size(); ++i) {
+    const double exponent =
+        local_exponent(kHis[i - 1].triangles, kHis[i - 1].seconds, kHis[i].triangles, kHis[i].seconds);
+    text += (i == 1 ? "" : i + 1 == kHis.size() ? " and " : ", ") + rounded(exponent, 2);
+  }
+  return text;
+}
+
+const TimeRow* row_at(const std::vector<TimeRow>& rows, int triangles) {
+  const auto found = std::ranges::find(rows, triangles, &TimeRow::triangles);
+  return found == rows.end() ? nullptr : &*found;
+}
+
+// Over the last four-fold growth or so, where a start-up no longer counts.
+std::string exponent_between(const std::vector<TimeRow>& rows, const auto& seconds) {
+  std::vector<const TimeRow*> measured;
+  for (const TimeRow& row : rows) {
+    if (seconds(row)) measured.push_back(&row);
+  }
+  if (measured.size() < 2) return "?";
+  const TimeRow& last = *measured.back();
+  const TimeRow* first = measured.front();
+  for (const TimeRow* row : measured) {
+    if (row->triangles * 4 <= last.triangles) first = row;
+  }
+  return slope_text(local_exponent(first->triangles, *seconds(*first), last.triangles, *seconds(last))) + " (from " +
+         std::to_string(first->triangles) + " to " + std::to_string(last.triangles) + " triangles)";
+}
+
+std::optional<double> with_shaft(const TimeRow& row) { return row.with_shaft; }
+std::optional<double> without_shaft(const TimeRow& row) { return row.without_shaft; }
+
+// "3.7 million", "2100"
+std::string large_number(double value) {
+  if (value >= 1e6) return rounded(value / 1e6, 2) + " million";
+  if (value < 100.0) return rounded(value, 2);
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  return rounded(std::round(value / unit) * unit);
+}
+
+std::string against_him(const std::vector<TimeRow>& rows) {
+  std::string text = "Time for the certified form factors of all triangles from one point, one thread:";
+  for (const TimeRow& row : rows) {
+    text += (&row == rows.data() ? " " : "; ") + counted(static_cast<std::uint64_t>(row.triangles), "triangle") + " " +
+            duration(row.with_shaft);
+    if (row.without_shaft) text += " (without the shaft " + duration(*row.without_shaft) + ")";
+  }
+  if (const TimeRow* at = row_at(rows, kHis.back().triangles)) {
+    text += ". Karkanis needed about 8 hours for " + std::to_string(kHis.back().triangles) +
+            " triangles on a 300 MHz Pentium II: " + large_number(kHis.back().seconds / at->with_shaft) +
+            " times as long";
+  }
+  return text + '.';
+}
+
+std::string exponents_sentence(const std::vector<TimeRow>& rows) {
+  return "The time grows like n to the power " + exponent_between(rows, with_shaft) + ", and without the shaft " +
+         exponent_between(rows, without_shaft) + "; Karkanis' local exponents are " + his_list() +
+         ", which made him speak of exponential behaviour. It was his algorithm's, not the problem's.";
+}
+
+std::string others_sentence(const std::vector<TimeRow>& rows, const TimesSize& size) {
+  const TimeRow& row = rows.back();
+  return "At " + std::to_string(row.triangles) + " triangles a hemicube of 100 × 100 pixels takes " +
+         duration(row.hemicube) + " for all of them at once, " + rounded(row.with_shaft / row.hemicube, 2) +
+         " times less than exact; " + study::rounded(size.rays) + " rays to each take " + duration(row.rays) + ", " +
+         rounded(row.rays / row.with_shaft, 2) + " times as much as exact.";
+}
+
+std::string bits_sentence(const std::vector<WorkRow>& rows) {
+  std::size_t compared = 0, differences = 0;
+  for (const WorkRow& row : rows) {
+    if (!row.differences) continue;
+    compared += static_cast<std::size_t>(row.triangles);
+    differences += *row.differences;
+  }
+  if (compared == 0) return {};
+  const WorkRow& last =
+      *std::find_if(rows.rbegin(), rows.rend(), [](const WorkRow& r) { return r.differences.has_value(); });
+  return "Shaft culling changes no bit: " + std::to_string(differences) + " of " + std::to_string(compared) +
+         " values differ without it. It leaves " + rounded(static_cast<double>(last.looked_at) / last.triangles, 2) +
+         " possible occluders to a source of " + std::to_string(last.triangles) + ", instead of " +
+         rounded(static_cast<double>(last.looked_at_without) / last.triangles, 3) + ".";
+}
+
+std::string affordable_sentence(const std::vector<Affordable>& rows, double exact_time, int triangles) {
+  const auto dearer = std::ranges::find_if(rows, [&](const Affordable& a) { return a.seconds >= exact_time; });
+  if (dearer == rows.end()) return {};
+  const std::string at = " on the scene of " + std::to_string(triangles) + " triangles";
+  if (dearer == rows.begin()) {
+    return "Sampling cannot be cheaper" + at + ": " + counted(static_cast<std::uint64_t>(dearer->rays), "ray") +
+           " to each triangle take " + duration(dearer->seconds) + " against " + duration(exact_time) +
+           " for exact, with an RMS error of " + percent(dearer->error) + " of the RMS form factor.";
+  }
+  const Affordable& cheaper = *std::prev(dearer);
+  return "In the time that exact takes" + at + " (" + duration(exact_time) + "), stratified sampling affords between " +
+         std::to_string(cheaper.rays) + " and " + std::to_string(dearer->rays) +
+         " rays to each triangle; its RMS error then is between " + percent(dearer->error) + " and " +
+         percent(cheaper.error) + " of the RMS form factor.";
+}
+
+// ------------------------------------------------------------------------------------------------------------ figures
+
+study::Figure figure(const std::vector<TimeRow>& rows, int rays) {
+  Series with{"exact", {}, 1}, without{"exact, no shaft", {}, 3}, his{"Karkanis 1999", {}, 2};
+  Series hemicube{"hemicube 100", {}, 4}, sampled{rounded(rays) + " rays each", {}, 5};
+  for (const HisTime& time : kHis) his.points.emplace_back(time.triangles, time.seconds);
+  for (const TimeRow& row : rows) {
+    with.points.emplace_back(row.triangles, row.with_shaft);
+    if (row.without_shaft) without.points.emplace_back(row.triangles, *row.without_shaft);
+    hemicube.points.emplace_back(row.triangles, row.hemicube);
+    sampled.points.emplace_back(row.triangles, row.rays);
+  }
+  return {"karkanis-times.time", "Time for all patches from one point",
+          "Certified values, one thread. Karkanis' times are of a 300 MHz Pentium II.",
+          study::line_plot(
+              Axes{.x = "triangles, each a source",
+                   .y = "time for all of them, s",
+                   .extra = {"set xtics (50,100,200,500,1000,2000,5000,10000) rotate by -40", "set format x '%g'"}},
+              {his, without, with, sampled, hemicube})};
+}
+
+// ------------------------------------------------------------------------------------------------------------- tables
+
+TextTable time_table(const std::vector<TimeRow>& rows, const TimesSize& size) {
+  Table table(
+      "seconds for the form factors of all triangles from one point: models karkanis:n=TRIANGLES,floor=0,"
+      "seed=1\none thread, after a first call unless that took more than a second; preparation of scene and sources "
+      "not included\nrays: " +
+          std::to_string(size.rays) + " stratified rays to each, from the time of " + std::to_string(size.ray_patches) +
+          " triangles or all",
+      {"triangles", "exact", "exact_without_shaft", "hemicube_100", "rays"});
+  for (const TimeRow& row : rows) {
+    auto line = table.row();
+    line << row.triangles << row.with_shaft;
+    row.without_shaft ? line << *row.without_shaft : line << "";
+    line << row.hemicube << row.rays;
+  }
+  return table.finish("karkanis-times.csv", "time for all patches from one point against their number");
+}
+
+TextTable affordable_table(const std::vector<Affordable>& rows, int triangles) {
+  Table table("stratified sampling of all triangles of karkanis:n=" + std::to_string(triangles) +
+                  ",floor=0,seed=1 from one point: seconds, and the RMS error over the RMS form factor",
+              {"rays", "seconds", "error"});
+  for (const Affordable& row : rows) table.row() << row.rays << row.seconds << row.error;
+  return table.finish("karkanis-times-rays.csv", "what rays cost and how far off they are on one of his scenes");
+}
+
+TextTable work_table(const std::vector<WorkRow>& rows) {
+  Table table(
+      "all triangles of karkanis:n=TRIANGLES,floor=0,seed=1 from one point\nlooked_at: pairs of a source and a "
+      "face that may hide it; differences: values that differ without the shaft, empty where not compared",
+      {"triangles", "visible", "sum", "looked_at", "looked_at_without_shaft", "differences"});
+  for (const WorkRow& row : rows) {
+    auto line = table.row();
+    line << row.triangles << row.visible << row.sum << row.looked_at;
+    row.differences ? line << row.looked_at_without << *row.differences
+                    : line << ""
+                           << "";
+  }
+  return table.finish("karkanis-times-work.csv", "work and values behind the times");
+}
+
+std::vector<study::LeftOut> left_out(const std::vector<TimeRow>& rows, const TimesSize& size) {
+  std::vector<std::string> missing;
+  for (const TimeRow& row : rows) {
+    if (!row.without_shaft) missing.push_back(std::to_string(row.triangles));
+  }
+  if (missing.empty()) return {};
+  return {{"exact times without the shaft at " + study::enumerate(missing) + " triangles",
+           "judging by the smaller scenes they would take longer than the budget of " + duration(size.budget)}};
+}
+
+}  // namespace
+
+double local_exponent(int n0, double t0, int n1, double t1) {
+  return std::log(t1 / t0) / std::log(static_cast<double>(n1) / n0);
+}
+
+WorkRow work_row(int triangles, bool compare) {
+  const KarkanisScene scene = karkanis_scene(triangles, 1);
+  const std::vector<ExactSource> sources = exact_sources(scene.scene, scene.triangles);
+  const std::vector<FormFactor> with = all_patches(scene, sources, ShaftCulling::kTree, {});
+  WorkRow row{.triangles = triangles};
+  for (const FormFactor& f : with) {
+    row.visible += f.value > 0.0 ? 1U : 0U;
+    row.sum += f.value;
+    row.looked_at += f.planes.front().tree_candidates;
+  }
+  if (!compare) return row;
+  const std::vector<FormFactor> without = all_patches(scene, sources, ShaftCulling::kNone, {});
+  row.differences = 0;
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    row.looked_at_without += without[i].planes.front().tree_candidates;
+    *row.differences += with[i].value != without[i].value || with[i].status != without[i].status ? 1U : 0U;
+  }
+  return row;
+}
+
+Result karkanis_times(const TimesSize& size, const study::Hooks& hooks) {
+  std::vector<TimeRow> times;
+  std::vector<WorkRow> work;
+  for (const int triangles : size.triangles) {
+    study::require_not_cancelled(hooks);
+    work.push_back(work_row(triangles, triangles <= size.same_bits_up_to));
+    times.push_back(time_row(size, triangles, times, hooks));
+    if (hooks.progress) hooks.progress({kStage, times.size(), size.triangles.size()});
+  }
+  const std::vector<Affordable> affordable = affordable_rays(size, hooks);
+  const TimeRow* at = row_at(times, size.affordable_at);
+  Result result{.name = "karkanis-times", .title = "Karkanis' timings: all patches from one point"};
+  result.paragraphs = {against_him(times), exponents_sentence(times), bits_sentence(work), others_sentence(times, size),
+                       at == nullptr ? "" : affordable_sentence(affordable, at->with_shaft, size.affordable_at)};
+  std::erase(result.paragraphs, "");
+  result.figures = {figure(times, size.rays)};
+  result.values = {work_table(work)};
+  result.times = {time_table(times, size), affordable_table(affordable, size.affordable_at)};
+  result.left_out = left_out(times, size);
+  return result;
+}
+
+Result karkanis_times(const Effort& effort, const study::Hooks& hooks) {
+  TimesSize size;
+  if (effort.abridged) {
+    size.triangles = {50, 100, 200, 500};
+    size.same_bits_up_to = 200;
+    size.budget = 2.0;
+    size.rays = 1000;
+    size.affordable = {1, 4, 16, 64};
+  }
+  Result result = karkanis_times(size, hooks);
+  if (effort.abridged) result.left_out.push_back({"Karkanis' scenes above 500 triangles, and 10,000 rays", "abridged"});
+  return result;
+}
+
+}  // namespace exactff::experiments

@@ -1,0 +1,131 @@
+#include "experiments/support.h"
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <chrono>
+#include <cmath>
+#include <locale>
+
+#include "exactff/models.h"
+#include "study/statistics.h"
+#include "study/text.h"
+
+namespace exactff::experiments {
+
+KarkanisScene karkanis_scene(int triangles, std::uint64_t seed) {
+  Scene scene = models::make_scene("karkanis:n=" + std::to_string(triangles) + ",floor=0,seed=" + std::to_string(seed));
+  std::vector<Selection> sources;
+  const Selection all = scene.select("occ");
+  for (const FaceId face : scene.faces_of(all)) sources.push_back({all.patch, face});
+  return {std::move(scene), {.point = {0, 0, 0}, .normal = {0, 0, 1}, .on = {}, .id = {}}, std::move(sources)};
+}
+
+void SmallScene::add(std::string_view patch, const std::vector<Vec3>& ring) {
+  std::vector<std::uint32_t> corners;
+  for (const Vec3& corner : ring) corners.push_back(builder_.add_vertex(corner));
+  builder_.add_face(builder_.patch(patch), material_, {corners});
+}
+
+Bench::Bench(const methods::Choice& choice, const Scene& scene, std::span<const Selection> sources)
+    : on_scene_(choice.method->prepare(scene)),
+      evaluator_(on_scene_->configure(choice.settings)),
+      estimates_(sources.size()) {
+  for (const Selection& source : sources) {
+    owned_.push_back(on_scene_->prepare_source(source));
+    sources_.push_back(owned_.back().get());
+  }
+}
+
+std::span<const methods::Estimate> Bench::look_from(const Receiver& receiver) {
+  evaluator_->look_from(receiver);
+  evaluator_->form_factors(sources_, estimates_);
+  return estimates_;
+}
+
+std::vector<double> values_of(std::string_view choice, const Scene& scene, const Receiver& receiver,
+                              std::span<const Selection> sources) {
+  Bench bench(methods::parse(choice), scene, sources);
+  std::vector<double> values;
+  for (const methods::Estimate& estimate : bench.look_from(receiver)) values.push_back(estimate.form_factor);
+  return values;
+}
+
+std::vector<ExactSource> exact_sources(const Scene& scene, std::span<const Selection> sources) {
+  std::vector<ExactSource> exact;
+  exact.reserve(sources.size());
+  for (const Selection& source : sources) exact.emplace_back(scene, source);
+  return exact;
+}
+
+double root_mean_square(std::span<const double> errors) { return study::error_statistics(errors).rms; }
+
+double seconds_of(const std::function<void()>& call, int repeats) {
+  using Clock = std::chrono::steady_clock;
+  constexpr double kLong = 1.0;
+  const auto timed = [&] {
+    const auto start = Clock::now();
+    call();
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  const double first = timed();
+  if (first > kLong) return first;
+  std::vector<double> times;
+  for (double spent = 0.0; static_cast<int>(times.size()) < repeats && spent < kLong; spent += times.back()) {
+    times.push_back(timed());
+  }
+  return study::median(times);
+}
+
+SlopeFit mean_slope(std::span<const double> slopes) {
+  const auto count = static_cast<double>(slopes.size());
+  const double mean = study::mean(slopes);
+  double squares = 0.0;
+  for (const double s : slopes) squares += (s - mean) * (s - mean);
+  const boost::math::students_t student(count - 1.0);
+  const double t = quantile(student, 0.975);
+  return {mean, t * std::sqrt(squares / (count - 1.0) / count), slopes.size()};
+}
+
+std::string to_text(const SlopeFit& fit) { return slope_text(fit.slope) + " ± " + slope_text(fit.half_width); }
+
+std::string slope_text(double slope) {
+  const long hundredths = std::lround(std::abs(slope) * 100.0);
+  const std::string digits = std::to_string(100 + hundredths % 100).substr(1);
+  return (slope < 0.0 && hundredths > 0 ? "−" : "") + std::to_string(hundredths / 100) + '.' + digits;
+}
+
+std::optional<double> reaches(const Points& points, double y) {
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const auto& [x0, y0] = points[i - 1];
+    const auto& [x1, y1] = points[i];
+    if (!(y0 > 0.0 && y0 < y && y1 >= y)) continue;
+    return x0 * std::pow(x1 / x0, std::log(y / y0) / std::log(y1 / y0));
+  }
+  return std::nullopt;
+}
+
+std::string percent(double share) { return study::rounded(100.0 * share, 2) + " %"; }
+
+Table::Table(std::string_view about, std::initializer_list<std::string_view> columns) {
+  out_.imbue(std::locale::classic());
+  std::string_view rest = about;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    out_ << "# " << rest.substr(0, end) << '\n';
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  study::CsvRow names(out_);
+  for (const std::string_view name : columns) names << name;
+}
+
+TextTable Table::finish(std::string file, std::string holds) const {
+  return {std::move(file), std::move(holds), out_.str()};
+}
+
+std::vector<double> geometric(double first, double last, int count) {
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) values.push_back(first * std::pow(last / first, i / static_cast<double>(count - 1)));
+  return values;
+}
+
+}  // namespace exactff::experiments

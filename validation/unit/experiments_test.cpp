@@ -1,0 +1,300 @@
+// The experiments of the report, each on a scene small enough for a test, and what they share.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "exactff/models.h"
+#include "experiments/closure.h"
+#include "experiments/experiment.h"
+#include "experiments/hemicube_resolution.h"
+#include "experiments/hemicube_scatter.h"
+#include "experiments/karkanis_times.h"
+#include "experiments/nettle_rule.h"
+#include "experiments/small_emitters.h"
+#include "study/plot_script.h"
+
+namespace exactff::experiments {
+namespace {
+
+const study::Hooks kNoHooks;
+
+// --- what they share -----------------------------------------------------------------------------------
+
+TEST(Experiments, AreFoundByNameAndNearlyByAnother) {
+  ASSERT_EQ(all_experiments().size(), 6U);
+  for (const Experiment& e : all_experiments()) EXPECT_EQ(&experiment_named(e.name), &e);
+  try {
+    (void)experiment_named("nettle");
+    FAIL() << "there is none of that name";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("nettle-rule"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Experiments, AMeanSlopeHasStudentsInterval) {
+  const std::vector<double> slopes = {-1.0, -2.0, -3.0};
+  const SlopeFit fit = mean_slope(slopes);
+  EXPECT_DOUBLE_EQ(fit.slope, -2.0);
+  EXPECT_NEAR(fit.half_width, 4.3027 / std::sqrt(3.0), 1e-3);  // t of 2 degrees of freedom, standard deviation 1
+  EXPECT_EQ(to_text(fit), "−2.00 ± 2.48");
+  EXPECT_EQ(slope_text(0.996), "1.00");
+  EXPECT_EQ(slope_text(-0.001), "0.00");
+}
+
+TEST(Experiments, TellWhereABrokenLineReachesAValue) {
+  const Points line = {{1.0, 1.0}, {10.0, 100.0}, {100.0, 100.0}};
+  EXPECT_NEAR(reaches(line, 10.0).value(), std::sqrt(10.0), 1e-12);
+  EXPECT_FALSE(reaches(line, 1000.0));
+  EXPECT_FALSE(reaches(line, 0.1));
+}
+
+// The values of a run, joined.
+std::string values_of(const Result& result) {
+  std::string text;
+  for (const TextTable& table : result.values) text += table.file + '\n' + table.csv;
+  return text;
+}
+
+struct SmallRun {
+  const char* name;
+  std::function<Result(int threads, const study::Hooks&)> run;
+};
+
+std::vector<SmallRun> small_runs() {
+  const auto scatter = [](int threads, const study::Hooks& hooks) {
+    return hemicube_scatter(ScatterSize{.scenes = 3, .triangles = 30, .resolutions = {20}}, threads, hooks);
+  };
+  const auto resolution = [](int threads, const study::Hooks& hooks) {
+    ResolutionSize size{.resolutions = {16, 32}, .rotations = {0, 45}, .distances = {1, 2, 4}};
+    size.groups = 2;
+    size.triangles = 20;
+    size.places = 2;
+    return hemicube_resolution(size, threads, hooks);
+  };
+  const auto nettle = [](int threads, const study::Hooks& hooks) {
+    NettleSize size{.sides = {0.05, 0.1, 0.5}, .splits = {1, 2}, .rays = 4, .groups = 2};
+    size.configurations = 3;
+    size.orientations = 20;
+    return nettle_rule(size, threads, hooks);
+  };
+  const auto emitters = [](int threads, const study::Hooks& hooks) {
+    return small_emitters(EmittersSize{.lamps = 4, .grid = 3, .timed = 1, .choices = {"hemicube", "nettle:rays=4"}},
+                          threads, hooks);
+  };
+  const auto room = [](int threads, const study::Hooks& hooks) {
+    return closure(ClosureSize{.receivers = 4, .choices = {"hemicube", "nettle:rays=4"}}, threads, hooks);
+  };
+  return {{"scatter", scatter}, {"resolution", resolution}, {"nettle", nettle}, {"emitters", emitters}, {"room", room}};
+}
+
+TEST(Experiments, GiveTheSameBytesOfValuesForAnyNumberOfThreads) {
+  for (const SmallRun& small : small_runs()) {
+    const Result one = small.run(1, kNoHooks);
+    EXPECT_FALSE(one.paragraphs.empty()) << small.name;
+    EXPECT_FALSE(one.values.empty()) << small.name;
+    EXPECT_EQ(values_of(one), values_of(small.run(3, kNoHooks))) << small.name;
+    for (const study::Figure& figure : one.figures) EXPECT_FALSE(figure.script.empty()) << figure.id;
+  }
+}
+
+TEST(Experiments, GiveUpWhenCancelled) {
+  study::Hooks hooks;
+  hooks.cancelled = [] { return true; };
+  for (const SmallRun& small : small_runs()) EXPECT_THROW((void)small.run(2, hooks), study::Cancelled) << small.name;
+  EXPECT_THROW((void)karkanis_times(TimesSize{.triangles = {10}}, hooks), study::Cancelled);
+}
+
+// --- Karkanis' two plots -------------------------------------------------------------------------------
+
+TEST(HemicubeScatter, CountsTheTrianglesThatTheHemicubeMisses) {
+  const ScatterSize size{.scenes = 2, .triangles = 100, .resolutions = {20, 100}};
+  const std::vector<ScatterPoint> points = scatter_points(size, 1, kNoHooks);
+  ASSERT_EQ(points.size(), 200U);
+  for (std::size_t r = 0; r < 2; ++r) {
+    std::size_t visible = 0, missed = 0;
+    for (const ScatterPoint& p : points) {
+      visible += p.exact > 0.0 ? 1U : 0U;
+      missed += p.exact > 0.0 && p.hemicube[r] == 0.0 ? 1U : 0U;
+    }
+    for (const ScatterDecade& d : scatter_decades(points, r)) {
+      visible -= d.visible;
+      missed -= d.missed;
+    }
+    EXPECT_EQ(visible, 0U);
+    EXPECT_EQ(missed, 0U);
+  }
+}
+
+TEST(HemicubeScatter, AFinerHemicubeMissesFewerAndErrsLess) {
+  const ScatterSize size{.scenes = 2, .triangles = 100, .resolutions = {20, 200}};
+  const std::vector<ScatterPoint> points = scatter_points(size, 1, kNoHooks);
+  const auto missed = [&](std::size_t r) {
+    return std::ranges::count_if(points, [&](const ScatterPoint& p) { return p.exact > 0.0 && p.hemicube[r] == 0.0; });
+  };
+  EXPECT_GT(missed(0), 10);
+  EXPECT_LT(missed(1), missed(0) / 2);
+  const std::vector<ScatterDecade> coarse = scatter_decades(points, 0), fine = scatter_decades(points, 1);
+  EXPECT_LT(fine.back().median, 0.2 * coarse.back().median);
+}
+
+TEST(HemicubeScatter, TheErrorFallsAsTheFormFactorGrows) {
+  const ScatterSize size{.scenes = 3, .triangles = 150, .resolutions = {100}};
+  const std::vector<double> slopes = scatter_slopes(scatter_points(size, 1, kNoHooks), size, 0);
+  ASSERT_EQ(slopes.size(), 3U);
+  const double slope = mean_slope(slopes).slope;
+  EXPECT_LT(slope, -0.4);
+  EXPECT_GT(slope, -1.1);
+}
+
+TEST(HemicubeScatter, DrawsWhatIsMissedApart) {
+  const Result result = hemicube_scatter(ScatterSize{.scenes = 1, .triangles = 100, .resolutions = {20}}, 1, kNoHooks);
+  ASSERT_EQ(result.figures.size(), 2U);
+  for (const study::Figure& figure : result.figures) EXPECT_NE(figure.script.find("missed"), std::string::npos);
+}
+
+// --- resolution, rotation, distance --------------------------------------------------------------------
+
+TEST(HemicubeResolution, SlopesAreThoseOfCountingPixels) {
+  ResolutionSize size{.resolutions = {16, 32, 64, 128, 256}, .rotations = {0, 20, 45}, .distances = {1, 2, 4, 8}};
+  size.groups = 4;
+  size.triangles = 60;
+  size.places = 8;
+  const ResolutionCurves curves = resolution_curves(size, 1, kNoHooks);
+  EXPECT_NEAR(curves.triangles_by_resolution.slope(1e9).slope, -1.5, 0.2);
+  EXPECT_NEAR(curves.aligned_by_resolution.slope(1e9).slope, -1.0, 0.3);
+  EXPECT_LT(curves.turned_by_resolution.slope(1e9).slope, curves.aligned_by_resolution.slope(1e9).slope - 0.3);
+  EXPECT_GT(curves.light_by_rotation.rms[0], 2.0 * curves.light_by_rotation.rms[1]);
+  EXPECT_GT(curves.light_by_rotation.rms[2], 2.0 * curves.light_by_rotation.rms[1]);
+  EXPECT_GT(curves.turned_by_distance.slope(1e9).slope, 1.0);
+}
+
+// --- times ---------------------------------------------------------------------------------------------
+
+TEST(KarkanisTimes, LocalExponentsOfHisTimesAreThosePublished) {
+  EXPECT_NEAR(local_exponent(50, 0.2, 100, 2.8), 3.807, 1e-3);
+  EXPECT_NEAR(local_exponent(200, 300.0, 500, 28800.0), 4.981, 1e-3);
+}
+
+TEST(KarkanisTimes, TheShaftSavesPairsAndChangesNoBit) {
+  const WorkRow row = work_row(40, true);
+  EXPECT_EQ(row.differences, std::size_t{0});
+  EXPECT_EQ(row.looked_at_without, 40U * 40U);  // every other triangle and the light behind them
+  EXPECT_LT(row.looked_at, row.looked_at_without / 4);
+  EXPECT_GT(row.visible, 30U);
+  EXPECT_GT(row.sum, 0.0);
+  EXPECT_FALSE(work_row(10, false).differences);
+}
+
+TEST(KarkanisTimes, NamesWhatTheBudgetLeavesOut) {
+  TimesSize size{.triangles = {10, 20, 40}};
+  size.budget = 0.0;
+  size.rays = 4;
+  size.affordable = {1};
+  size.affordable_at = 20;
+  const Result result = karkanis_times(size, kNoHooks);
+  ASSERT_EQ(result.left_out.size(), 1U);
+  EXPECT_NE(result.left_out[0].what.find("20 and 40"), std::string::npos) << result.left_out[0].what;
+  ASSERT_EQ(result.values.size(), 1U);
+  EXPECT_EQ(result.values[0].csv, karkanis_times(size, kNoHooks).values[0].csv);
+}
+
+// --- Nettle --------------------------------------------------------------------------------------------
+
+const NettleCurve& curve(const std::vector<NettleCurve>& curves, NettleCase kind, int splits) {
+  return *std::ranges::find_if(curves, [&](const NettleCurve& c) { return c.kind == kind && c.splits == splits; });
+}
+
+NettleSize small_nettle() {
+  NettleSize size{.sides = {0.02, 0.04, 0.08, 0.3}, .splits = {1, 4}, .rays = 16, .groups = 4};
+  size.configurations = 8;
+  return size;
+}
+
+TEST(NettleRule, SlopesAreTwoWithoutOcclusionOneWithTheExactFractionAndNoneWithRays) {
+  const std::vector<NettleCurve> curves = nettle_curves(small_nettle(), 1, kNoHooks);
+  EXPECT_NEAR(curve(curves, NettleCase::kFree, 1).slope().slope, 2.0, 0.02);
+  EXPECT_NEAR(curve(curves, NettleCase::kExactV, 1).slope().slope, 1.0, 0.1);
+  EXPECT_LT(curve(curves, NettleCase::kRayV, 1).slope().slope, 0.5);
+}
+
+TEST(NettleRule, GroupsAreIndependent) {
+  const NettleCurve free = nettle_curves(small_nettle(), 1, kNoHooks).front();
+  ASSERT_EQ(free.rms_by_group.size(), 4U);
+  EXPECT_NE(free.rms_by_group[0].front(), free.rms_by_group[1].front());
+  EXPECT_NE(free.rms_by_group[0].front(), free.rms_by_group[3].front());
+}
+
+TEST(NettleRule, SplittingDividesTheErrorByTheNumberOfParts) {
+  const std::vector<NettleCurve> curves = nettle_curves(small_nettle(), 1, kNoHooks);
+  const double whole = curve(curves, NettleCase::kFree, 1).rms.front();
+  const double split = curve(curves, NettleCase::kFree, 4).rms.front();
+  EXPECT_NEAR(whole / split, 16.0, 0.5);
+}
+
+TEST(NettleRule, TheLiteralTextIsPerAreaAndKnowsNoDirection) {
+  NettleSize size = small_nettle();
+  size.orientations = 200;
+  const NettleLiteral row = nettle_literal(size, 1, kNoHooks).front();
+  EXPECT_NEAR(row.sender_over_receiver * row.side * row.side, 1.0, 0.01);
+  EXPECT_NEAR(row.receiver_over_sender * row.side * row.side, 1.0, 0.01);
+  EXPECT_NEAR(row.in_tenths / row.sender_over_receiver, 0.01, 1e-4);
+  const TurnedAway turned = nettle_turned_away(size);
+  EXPECT_EQ(turned.pairs, 200U);
+  EXPECT_NEAR(static_cast<double>(turned.zero), 150.0, 25.0);
+  EXPECT_EQ(turned.literal_positive, turned.zero);
+}
+
+// --- emitters, closure ---------------------------------------------------------------------------------
+
+TEST(SmallEmitters, ExactHasNoErrorAndTheHemicubeTheLargest) {
+  const EmittersSize size{.lamps = 9, .grid = 4, .choices = {"exact", "hemicube", "adaptive:eps_B=0.001"}};
+  const EmitterStudy study = emitter_study(size, 1, kNoHooks);
+  ASSERT_EQ(study.methods.size(), 3U);
+  EXPECT_GT(study.mean, 0.0);
+  EXPECT_EQ(study.methods[0].worst, 0.0);
+  EXPECT_GT(study.methods[2].rms, 0.0);
+  EXPECT_GT(study.methods[1].rms, 10.0 * study.methods[2].rms);
+  EXPECT_GE(study.methods[1].worst, study.methods[1].rms);
+}
+
+TEST(SmallEmitters, TheRadiosityIsThatOfAllLamps) {
+  const EmitterStudy study = emitter_study({.lamps = 4, .grid = 3, .choices = {}}, 1, kNoHooks);
+  const Scene hall = models::make_scene("emitters:n=4");
+  for (std::size_t i = 0; i < study.receivers.size(); ++i) {
+    const Receiver& receiver = study.receivers[i];
+    double sum = 0.0;
+    for (const Selection& lamp : hall.emitters()) {
+      sum += hall.source_radiosity(lamp).r * exact_form_factor(hall, receiver, ExactSource(hall, lamp)).value;
+    }
+    EXPECT_DOUBLE_EQ(study.exact[i], hall.receiver_reflectance(receiver.on).r * sum);
+  }
+}
+
+TEST(Closure, ExactBallsHoldOneAndTheHemicubeClosesThoughItsValuesErr) {
+  const ClosureStudy study = closure_study({.receivers = 5, .choices = {"hemicube", "nettle:rays=4"}}, 1, kNoHooks);
+  EXPECT_EQ(study.receivers, 5U);
+  EXPECT_EQ(study.hold_one, 5U);
+  EXPECT_LT(study.widest, 1e-14);
+  EXPECT_LT(study.methods[0].worst, 1e-12);
+  EXPECT_GT(study.methods[0].single_rms, 1e-5);
+  EXPECT_GT(study.methods[1].rms, 1e-3);
+}
+
+// --- the plot they need --------------------------------------------------------------------------------
+
+TEST(ScatterPlot, RoundsItsPointsAndDrawsEachPlaceOnce) {
+  const study::Axes axes{.x = "x", .y = "y"};
+  const std::string script = study::scatter_plot(
+      axes,
+      {{"cloud", {{0.123456, 1.0}, {0.123461, 1.0}, {2.0, 0.0}, {3.0, 5.0}}, 1}, {"diagonal", {{1, 1}, {2, 2}}, 0}});
+  EXPECT_NE(script.find("0.1235 1\n3 5\nEND"), std::string::npos) << script;
+  EXPECT_NE(script.find("'diagonal'"), std::string::npos);
+  EXPECT_EQ(script.find("0.12346"), std::string::npos);
+  EXPECT_EQ(study::scatter_plot(axes, {{"nothing", {{-1.0, 1.0}}, 1}}), "");
+}
+
+}  // namespace
+}  // namespace exactff::experiments
