@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "exactff/study.h"
-#include "study/figures.h"
+#include "study/report.h"
 
 namespace exactff::experiments {
 
@@ -21,21 +21,8 @@ struct Effort {
   int threads = 1;        // for values; times are always of one thread
 };
 
-struct TextTable {
-  std::string file;   // "hemicube-scatter.csv"
-  std::string holds;  // what it holds, in a line
-  std::string csv;    // all of it, `#` lines first
-};
-
-struct Result {
-  std::string name;
-  std::string title;                         // a heading
-  std::vector<std::string> paragraphs = {};  // what was done and found, plain text that can be quoted
-  std::vector<study::Figure> figures = {};
-  std::vector<TextTable> values = {};
-  std::vector<TextTable> times = {};
-  std::vector<study::LeftOut> left_out = {};
-};
+using study::TextTable;
+using Result = study::Chapter;
 
 struct Experiment {
   std::string_view name;     // letters, digits and hyphens

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "study/method_figures.h"
 #include "study/plot_script.h"
 #include "study/settings.h"
 #include "study/statistics.h"
@@ -45,10 +46,13 @@ class FigureMaker {
   std::vector<Figure> make() {
     add_error_against_eps_b();
     add_violations();
+    add_work_against_eps_b();
+    add_silent_errors();
     add_error_against_time();
     add_error_against_rays();
     add_patterns();
     add_error_against_eps_a();
+    add_method_figures(study_, figures_, left_out_);
     add_maps();
     return std::move(figures_);
   }
@@ -142,6 +146,53 @@ class FigureMaker {
          line_plot({kEpsB, "receivers with |error| > ε_B, %", true, false, {"set yrange [0:*<100]"}}, series)});
   }
 
+  // Of all receivers, per receiver.
+  [[nodiscard]] std::vector<Series> work_series(const std::vector<std::size_t>& line, Parameter x) const {
+    const auto count = static_cast<double>(study_.exact.size());
+    Series leaves{"leaves", {}, 1}, rays{"rays", {}, 2};
+    for (const std::size_t k : line) {
+      const double at = parameter_of(study_.settings[k], x);
+      leaves.points.emplace_back(at, static_cast<double>(study_.summaries[k].leaves) / count);
+      rays.points.emplace_back(at, static_cast<double>(study_.summaries[k].rays) / count);
+    }
+    return {leaves, rays};
+  }
+
+  void add_work_against_eps_b() {
+    const std::string title = "Leaves and rays against the tolerance ε_B";
+    const auto line = sweep(study_.base, Parameter::kEpsB, title);
+    if (!line) return;
+    add({"work-eps-b", title,
+         "What a receiver costs in the mean, with " + std::to_string(base().rays) + ' ' +
+             std::string(name_of(base().pattern)) + " rays per undecided leaf.",
+         line_plot({kEpsB, "per receiver", true, true, {}}, work_series(*line, Parameter::kEpsB))});
+  }
+
+  void add_silent_errors() {
+    const std::string title = "Silent errors against the tolerance ε_B";
+    const auto line = sweep(study_.base, Parameter::kEpsB, title);
+    if (!line) return;
+    Series all{"RMS error of F", {}, 1}, silent{"RMS of what silent leaves add", {}, 2},
+        worst{"the worst of it", {}, 4};
+    for (const std::size_t k : *line) {
+      const Summary& s = study_.summaries[k];
+      const double eps_b = study_.settings[k].eps_b;
+      all.points.emplace_back(eps_b, s.form_factor.rms);
+      silent.points.emplace_back(eps_b, s.silent.rms);
+      worst.points.emplace_back(eps_b, s.silent.worst);
+    }
+    if (std::all_of(silent.points.begin(), silent.points.end(), [](const auto& p) { return p.second == 0.0; })) {
+      leave_out("figure: " + title, "no leaf was silently wrong");
+      return;
+    }
+    const Summary& b = study_.summaries[study_.base];
+    add({"silent", title,
+         "Leaves whose rays all agreed although they were partly visible, or that were the opposite of what the rays "
+         "said: how much they add to the form factor beyond what they should. At the base setting " +
+             counted_of(b.silent_receivers, study_.judged.size(), "receiver") + " had such leaves.",
+         line_plot({kEpsB, "error of the form factor", true, true, {}}, {all, silent, worst})});
+  }
+
   void add_error_against_time() {
     const bool partly = study_.receivers_by_sight[static_cast<std::size_t>(Sight::kPartly)] > 0;
     const auto time_of = [&](const TimeSummary& t) { return 1e6 * (partly ? t.median_partly : t.median); };
@@ -227,6 +278,10 @@ class FigureMaker {
              "table has it.",
          line_plot({"smallest area ε_A (square of the scene’s unit)", kError, true, true, {}},
                    error_series(*line, Parameter::kEpsA))});
+    add({"work-eps-a", "Leaves and rays against the area limit ε_A",
+         "What a receiver costs in the mean, at the same ε_B and rays as the errors beside.",
+         line_plot({"smallest area ε_A (square of the scene’s unit)", "per receiver", true, true, {}},
+                   work_series(*line, Parameter::kEpsA))});
   }
 
   // The receivers of the face with the most grid cells.
@@ -285,8 +340,11 @@ class FigureMaker {
                 "the maps show " + study_.request.scene->name_of(grid->face) + ", which has the most receivers");
     }
     add_exact_map(*grid);
+    add_approximate_map(*grid);
     add_error_map(*grid);
     add_leaves_map(*grid);
+    add_sight_map(*grid);
+    add_silent_map(*grid);
   }
 
   void add_exact_map(const Grid& grid) {
@@ -300,6 +358,49 @@ class FigureMaker {
     add({"map-exact", "Exact radiosity",
          "Over " + html(study_.request.scene->name_of(grid.face)) +
              ", largest colour channel. Columns run along the face’s first edge.",
+         map_plot(map), true});
+  }
+
+  void add_approximate_map(const Grid& grid) {
+    const auto& samples = study_.samples[study_.base];
+    // The exact radiosity plus the error of the channel where that is largest: grey scenes have but one.
+    const Map map = map_of(grid, "radiosity", MapColours::kSequential, [&](std::size_t i) {
+      return std::max(0.0, study_.exact[i].radiosity.largest() + samples[i].radiosity_error);
+    });
+    const auto lit = [](const MapCell& cell) { return cell.value > 0.0; };
+    if (std::none_of(map.cells.begin(), map.cells.end(), lit)) return;
+    add({"map-approximate", "Radiosity by the base setting",
+         html(label(study_, study_.base)) + ": what the ray-sampled algorithm makes of it.", map_plot(map), true});
+  }
+
+  void add_sight_map(const Grid& grid) {
+    const auto class_of = [&](std::size_t i) { return static_cast<double>(study_.exact[i].sight); };
+    Map map = map_of(grid, "the source is", MapColours::kClasses, class_of);
+    map.classes = {"behind", "hidden", "partly", "visible"};
+    add({"map-sight", "What is seen of the source",
+         "Decided exactly. From dark to light: the receiver faces away; the source is hidden (umbra), partly hidden "
+         "(penumbra), wholly visible.",
+         map_plot(map), true});
+  }
+
+  void add_silent_map(const Grid& grid) {
+    const auto& samples = study_.samples[study_.base];
+    if (study_.judged.size() < study_.exact.size()) {
+      leave_out("map of silent errors", "they were looked for at some receivers only");
+      return;
+    }
+    Map map = map_of(grid, "form factor, too much or too little", MapColours::kDiverging,
+                     [&](std::size_t i) { return samples[i].silent_error; });
+    std::vector<double> magnitudes;
+    for (const MapCell& cell : map.cells) magnitudes.push_back(std::abs(cell.value));
+    map.largest = *std::max_element(magnitudes.begin(), magnitudes.end());
+    if (!(map.largest > 0.0)) {
+      leave_out("map of silent errors", "no leaf of the base setting was silently wrong");
+      return;
+    }
+    add({"map-silent", "Where silent errors are",
+         "What leaves whose rays all agreed, and were wrong, add to the form factor at the base setting. Red: too "
+         "much.",
          map_plot(map), true});
   }
 

@@ -5,6 +5,7 @@
 #include "exactff/study.h"
 #include "study/figures.h"
 #include "study/settings.h"
+#include "study/statistics.h"
 #include "study/text.h"
 
 namespace exactff::study {
@@ -81,12 +82,6 @@ std::string violations_sentence(const Study& study) {
          " settings broke their own tolerance at one receiver or more.";
 }
 
-double largest_radiosity(const Study& study) {
-  double largest = 0.0;
-  for (const ExactRow& row : study.exact) largest = std::max(largest, row.radiosity.largest());
-  return largest;
-}
-
 // Where the exact method overtakes: the best that sampling reaches in its time, and what the best of all costs.
 std::string crossover_sentence(const Study& study) {
   const double exact = typical(study, study.exact_time);
@@ -134,7 +129,8 @@ std::string variant_sentence(const Study& study) {
 std::string silent_sentence(const Study& study) {
   std::uint64_t sampled = 0, silent = 0, wrong = 0;
   const auto reason = [](LeafReason r) { return static_cast<std::size_t>(r); };
-  for (const SampleRow& row : study.samples[study.base]) {
+  for (const std::size_t i : study.judged) {
+    const SampleRow& row = study.samples[study.base][i];
     sampled += row.leaves_by_reason[reason(LeafReason::kSampledVisible)] +
                row.leaves_by_reason[reason(LeafReason::kSampledHidden)];
     silent += row.silent_leaves;

@@ -9,7 +9,6 @@
 #include <system_error>
 
 #include "exactff/study.h"
-#include "study/tables.h"
 
 namespace exactff::study {
 namespace {
@@ -27,32 +26,34 @@ fs::path normalised(const fs::path& folder) {
   throw InputError(Problem{folder.string(), 0, std::move(what), std::move(why), std::move(suggestion)});
 }
 
-bool is_our_file(const fs::path& path) {
-  const std::string name = path.filename().string();
-  return name == kReportFile ||
-         std::any_of(tables().begin(), tables().end(), [&](const Table& table) { return name == table.file; });
-}
-
 bool begins_like_ours(const fs::path& file) {
   std::ifstream in(file);
   std::string line;
   return std::getline(in, line) && line.starts_with("# exactff ");
 }
 
+// The report, or a table: those say in their first line whose they are.
+bool is_our_file(const fs::path& path) {
+  return path.filename() == kReportFile || (path.extension() == ".csv" && begins_like_ours(path));
+}
+
 void require_replaceable(const fs::path& folder) {
   std::error_code error;
-  bool empty = true;
+  bool empty = true, any_table = false;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     empty = false;
     std::error_code ignored;
-    if (entry->is_regular_file(ignored) && is_our_file(entry->path())) continue;
+    if (entry->is_regular_file(ignored) && is_our_file(entry->path())) {
+      any_table = any_table || entry->path().extension() == ".csv";
+      continue;
+    }
     refuse(folder, "the folder holds '" + entry->path().filename().string() + "', which is not of our making",
            "the whole folder would be replaced", "name a new one");
   }
   if (error)
     refuse(folder, "the folder cannot be read: " + error.message(), "it would be replaced", "name another one");
-  if (!empty && !begins_like_ours(folder / "summary.csv")) {
-    refuse(folder, "the folder holds files, but no summary.csv of an earlier comparison",
+  if (!empty && !any_table) {
+    refuse(folder, "the folder holds a page, but no table of an earlier comparison",
            "the whole folder would be replaced", "name a new one");
   }
 }

@@ -149,8 +149,8 @@ CloudLook cloud_look(int style) {
   return kClouds[static_cast<std::size_t>(style - 1) % kClouds.size()];
 }
 
-// For a line that must be seen within a crowd.
-constexpr const char* kOverCloudStyle = "with linespoints lw 1.6 ps 1.1 lc rgb 'black' pt 6 dt 1";
+// For a line that must be seen within a crowd; plain black becomes the page's ink.
+constexpr const char* kOverCloudStyle = "with linespoints lw 1.6 ps 1.1 lc black pt 6 dt 1";
 
 // `width`: of the points' range in x.
 std::string cloud_command(const std::string& name, const Series& cloud, const Axes& axes, double width) {
@@ -200,6 +200,14 @@ std::string colour_range(double low, double middle, double high) {
 std::string colour_commands(const Map& map) {
   if (map.colours == MapColours::kDiverging) {
     return std::string(kDiverging) + colour_range(-map.largest, 0.0, map.largest);
+  }
+  if (map.colours == MapColours::kClasses) {
+    std::string marks;
+    for (std::size_t i = 0; i < map.classes.size(); ++i) {
+      marks += (i > 0 ? ", " : "") + quoted(map.classes[i]) + ' ' + std::to_string(i);
+    }
+    return std::string(kViridis) + "set cbrange [0:" + std::to_string(map.classes.size() - 1) + "]\nset cbtics (" +
+           marks + ") offset 0,2.1 nomirror scale 0\n";
   }
   const double largest = largest_value(map);
   if (map.colours == MapColours::kLogarithmic && largest > 10.0) {

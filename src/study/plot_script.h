@@ -58,7 +58,7 @@ struct MapCell {
   double value = 0.0;
 };
 
-enum class MapColours { kSequential, kDiverging, kLogarithmic };
+enum class MapColours { kSequential, kDiverging, kLogarithmic, kClasses };
 
 struct Map {
   std::string quantity;  // of the colour bar
@@ -68,6 +68,7 @@ struct Map {
   MapColours colours = MapColours::kSequential;
   double largest = 0.0;  // ends of a diverging scale; larger magnitudes take the colours of its ends
   std::vector<MapCell> cells;
+  std::vector<std::string> classes = {};  // names of the values 0, 1, ... where the colours are of classes
 };
 
 [[nodiscard]] std::string map_plot(const Map& map);

@@ -4,16 +4,22 @@
 #include <string>
 #include <vector>
 
-#include "exactff/study.h"
 #include "study/page_files.h"
+#include "study/report.h"
 
 namespace exactff::study {
 
+// What goes with each scene and each chapter of a report, in their order.
 struct Page {
   DrawnFigures drawn;
-  std::vector<LeftOut> left_out;  // the study's and the figures' that it had no data for
+  std::vector<LeftOut> left_out;  // of the study or chapter, and of its figures
 };
 
-[[nodiscard]] std::string report_page(const Study& study, const Page& page);
+struct Pages {
+  std::vector<Page> scenes;
+  std::vector<Page> chapters;
+};
+
+[[nodiscard]] std::string report_page(const Report& report, const Pages& pages);
 
 }  // namespace exactff::study

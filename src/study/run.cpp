@@ -2,75 +2,34 @@
 //
 //   1. complete the request: sources, threads; refuse what has no receiver or no source;
 //   2. exact values of every receiver and source: they also tell what there is to sample;
-//   3. sweeps: defaults, what the scene gives no work to, the list of settings;
-//   4. every setting for every receiver, twice: a recording call whose leaves are held against the exact visible
-//      region, then the timed one. Both must give the same bits;
-//   5. statistics.
+//   3. sweeps and ladders: defaults, what the scene gives no work to, the list of settings;
+//   4. every setting of the adaptive algorithm for every receiver, its leaves held against the exact visible region;
+//   5. every method at a choice of the receivers; where what is visible changes in kind; a profile along a line;
+//   6. times, with nothing else at work;
+//   7. statistics.
 // Receivers are shared out between threads; a result's place is its index, so nothing depends on their number.
 #include <algorithm>
-#include <bit>
-#include <chrono>
-#include <stdexcept>
+#include <limits>
 #include <thread>
 
 #include "exactff/study.h"
+#include "study/kept_work.h"
+#include "study/ladders.h"
+#include "study/method_runs.h"
 #include "study/parallel.h"
+#include "study/profile.h"
+#include "study/radiosity.h"
 #include "study/settings.h"
+#include "study/shadow_edges.h"
+#include "study/sight.h"
 #include "study/silent_errors.h"
 #include "study/statistics.h"
+#include "study/sweep_budget.h"
+#include "study/text.h"
+#include "study/timing.h"
 
 namespace exactff::study {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-// A first call this long has warmed itself up; it is not repeated for the sake of its time.
-constexpr double kLongCallSeconds = 0.02;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-Rgb times(const Rgb& a, const Rgb& b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
-Rgb times(const Rgb& a, double s) { return {a.r * s, a.g * s, a.b * s}; }
-void add(Rgb& sum, const Rgb& term) {
-  sum.r += term.r;
-  sum.g += term.g;
-  sum.b += term.b;
-}
-
-double largest_in_magnitude(const Rgb& c) {
-  const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
-  return std::max({c.r, c.g, c.b}, smaller);
-}
-
-Sight sight_of(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::kUnoccluded:
-      return Sight::kVisible;
-    case Outcome::kPartlyHidden:
-      return Sight::kPartly;
-    case Outcome::kHiddenByOne:
-    case Outcome::kHiddenByUnion:
-      return Sight::kHidden;
-    case Outcome::kReceiverFace:
-    case Outcome::kBehind:
-    case Outcome::kBelowHorizon:
-      break;
-  }
-  return Sight::kNothing;
-}
-
-Sight joined(Sight a, Sight b) {
-  if (a == Sight::kNothing) return b;
-  if (b == Sight::kNothing || a == b) return a;
-  return Sight::kPartly;
-}
-
-// True where nothing but rays can tell the adaptive algorithm what is seen.
-bool needs_rays(const FormFactor& result) {
-  return std::any_of(result.planes.begin(), result.planes.end(), [](const PlaneRecord& plane) {
-    return plane.outcome == Outcome::kPartlyHidden || plane.outcome == Outcome::kHiddenByUnion;
-  });
-}
 
 void complete(Request& request) {
   if (request.receivers.empty()) {
@@ -100,9 +59,75 @@ double mean_face_area(const Request& request) {
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
+void put(WordWriter& words, const ExactRow& row) {
+  for (const ExactTerm& term : row.terms) {
+    for (const double v : {term.value, term.lower, term.upper, term.visible_fraction}) words.put(v);
+    words.put(static_cast<std::uint64_t>(term.status));
+    words.put(static_cast<std::uint64_t>(term.sight));
+  }
+  for (const double v : {row.form_factor, row.radiosity.r, row.radiosity.g, row.radiosity.b, row.visible_fraction}) {
+    words.put(v);
+  }
+  words.put(static_cast<std::uint64_t>(row.sight));
+  words.put(std::uint64_t{row.certified});
+  words.put(std::uint64_t{row.sampled});
+}
+
+void take(WordReader& words, ExactRow& row, std::size_t sources) {
+  row.terms.assign(sources, {});
+  for (ExactTerm& term : row.terms) {
+    for (double* v : {&term.value, &term.lower, &term.upper, &term.visible_fraction}) *v = words.number();
+    term.status = static_cast<Status>(words.word());
+    term.sight = static_cast<Sight>(words.word());
+  }
+  for (double* v : {&row.form_factor, &row.radiosity.r, &row.radiosity.g, &row.radiosity.b, &row.visible_fraction}) {
+    *v = words.number();
+  }
+  row.sight = static_cast<Sight>(words.word());
+  row.certified = words.word() != 0;
+  row.sampled = words.word() != 0;
+}
+
+void put(WordWriter& words, const SampleRow& row) {
+  for (const double v : {row.form_factor, row.error, row.radiosity_error, row.silent_error}) words.put(v);
+  for (const std::uint64_t n : {row.leaves, row.rays, row.shaft_tests}) words.put(n);
+  for (const std::uint64_t n : row.leaves_by_reason) words.put(n);
+  for (const std::uint64_t n : {row.silent_leaves, row.wrong_leaves}) words.put(n);
+}
+
+void take(WordReader& words, SampleRow& row) {
+  for (double* v : {&row.form_factor, &row.error, &row.radiosity_error, &row.silent_error}) *v = words.number();
+  for (std::uint64_t* n : {&row.leaves, &row.rays, &row.shaft_tests}) *n = words.word();
+  for (std::uint64_t& n : row.leaves_by_reason) n = words.word();
+  for (std::uint64_t* n : {&row.silent_leaves, &row.wrong_leaves}) *n = words.word();
+}
+
+// Everything that exact values depend on.
+std::string request_text(const Request& request) {
+  std::string text = request.scene->hash();
+  const auto put = [&](const std::string& part) { text += '\n' + part; };
+  for (const Receiver& r : request.receivers) {
+    for (const double c : {r.point.x, r.point.y, r.point.z, r.normal.x, r.normal.y, r.normal.z}) put(shortest(c));
+    put(r.on ? std::to_string(index_of(*r.on)) : "free");
+  }
+  for (const Selection& source : request.sources) put(request.scene->name_of(source));
+  return text;
+}
+
+std::string settings_text(const Study& study) {
+  std::string text;
+  const auto put = [&](const std::string& part) { text += '\n' + part; };
+  for (const AdaptiveOptions& s : study.settings) {
+    for (const double v : {s.eps_b, s.eps_a}) put(shortest(v));
+    put(std::to_string(s.rays) + ' ' + std::to_string(s.seed));
+    put(std::string(name_of(s.pattern)) + ' ' + std::string(name_of(s.variant)));
+  }
+  return text;
+}
+
 class Runner {
  public:
-  Runner(Request request, const Hooks& hooks) : hooks_(hooks) {
+  Runner(Request request, const Hooks& hooks, Journal* journal) : hooks_(hooks), journal_(journal) {
     complete(request);
     study_.request = std::move(request);
   }
@@ -112,6 +137,8 @@ class Runner {
     find_exact_values();
     choose_settings();
     sample();
+    if (request().methods.enabled) look_closer();
+    measure_times(study_, hooks_);
     summarise_all();
     return std::move(study_);
   }
@@ -122,12 +149,12 @@ class Runner {
   [[nodiscard]] int threads() const { return study_.request.threads; }
 
   void set_up() {
-    const auto start = Clock::now();
     for (const Selection& source : request().sources) {
       sources_.emplace_back(scene(), source);
       radiosities_.push_back(scene().source_radiosity(source));
+      areas_.push_back(0.0);
+      for (const FaceId face : scene().faces_of(source)) areas_.back() += scene().face(face).area;
     }
-    study_.exact_setup_seconds = seconds_since(start);
     solver_.emplace(scene());
     for (const Selection& source : request().sources) sampled_sources_.push_back(solver_->prepare(source));
     for (const Receiver& receiver : request().receivers) {
@@ -135,6 +162,7 @@ class Runner {
         study_.largest_rho_b = std::max(study_.largest_rho_b, largest_rho_b(receiver, s));
       }
     }
+    request_hash_ = short_hash(request_text(request()));
   }
 
   [[nodiscard]] double largest_rho_b(const Receiver& receiver, std::size_t source) const {
@@ -144,49 +172,55 @@ class Runner {
   void find_exact_values() {
     const std::size_t count = request().receivers.size();
     study_.exact.resize(count);
-    sampled_.assign(count, 0);
-    parallel_for(count, threads(), "exact values", hooks_, [this](std::size_t i) { find_exact_row(i); });
+    const KeptWork kept(journal_, request_hash_);
+    parallel_for(count, threads(), "exact values", hooks_, [&](std::size_t i) {
+      ExactRow& row = study_.exact[i];
+      kept.get(
+          "exact/" + std::to_string(i), [&] { find_exact_row(i); }, [&](WordWriter& words) { put(words, row); },
+          [&](WordReader& words) { take(words, row, sources_.size()); });
+    });
   }
 
   void find_exact_row(std::size_t i) {
     const Receiver& receiver = request().receivers[i];
-    ExactRow& row = study_.exact[i];
+    ExactRow row;
     Enclosure sum;
     Rgb arriving;
+    double visible = 0.0, whole = 0.0;
     for (std::size_t s = 0; s < sources_.size(); ++s) {
-      const FormFactor result = timed_exact(receiver, sources_[s], row.seconds);
-      ExactTerm term{result.value, result.lower, result.upper, result.status, Sight::kNothing};
-      for (const PlaneRecord& plane : result.planes) term.sight = joined(term.sight, sight_of(plane.outcome));
+      const bool fractions = scene().faces().size() <= kMostFacesForFractions;
+      const ExactOptions options{.engine = request().engine, .visible_fraction = fractions};
+      const FormFactor result = exact_form_factor(scene(), receiver, sources_[s], options);
+      ExactTerm term{result.value,     result.lower,
+                     result.upper,     result.status,
+                     sight_of(result), result.visible_fraction.value_or(std::numeric_limits<double>::quiet_NaN())};
       row.sight = joined(row.sight, term.sight);
       row.certified = row.certified && result.status != Status::kNotCertified;
-      if (needs_rays(result)) sampled_[i] = 1;
+      row.sampled = row.sampled || needs_rays(result);
       row.terms.push_back(term);
       sum += result.enclosure;
       add(arriving, times(radiosities_[s], result.value));
+      visible += areas_[s] * term.visible_fraction;
+      whole += areas_[s];
     }
     row.form_factor = sources_.size() == 1 ? row.terms.front().value : nearest(sum);
     row.radiosity = times(scene().receiver_reflectance(receiver.on), arriving);
+    row.visible_fraction = sources_.size() == 1 ? row.terms.front().visible_fraction : visible / whole;
+    study_.exact[i] = std::move(row);
   }
 
   static double nearest(const Enclosure& sum) { return sum.nearest().value_or(0.5 * sum.lower() + 0.5 * sum.upper()); }
 
-  FormFactor timed_exact(const Receiver& receiver, const ExactSource& source, double& seconds) const {
-    auto start = Clock::now();
-    const ExactOptions options{.engine = study_.request.engine};
-    FormFactor result = exact_form_factor(scene(), receiver, source, options);
-    double elapsed = seconds_since(start);
-    if (elapsed < kLongCallSeconds) {
-      start = Clock::now();
-      result = exact_form_factor(scene(), receiver, source, options);
-      elapsed = seconds_since(start);
-    }
-    seconds += elapsed;
-    return result;
+  [[nodiscard]] bool anything_sampled() const {
+    return std::any_of(study_.exact.begin(), study_.exact.end(), [](const ExactRow& row) { return row.sampled; });
+  }
+  [[nodiscard]] bool anything_seen() const {
+    return std::any_of(study_.exact.begin(), study_.exact.end(),
+                       [](const ExactRow& row) { return row.sight == Sight::kPartly || row.sight == Sight::kVisible; });
   }
 
   void choose_settings() {
-    const bool anything = std::find(sampled_.begin(), sampled_.end(), 1) != sampled_.end();
-    const Work work{study_.largest_rho_b, mean_face_area(request()), anything};
+    const Work work{study_.largest_rho_b, mean_face_area(request()), anything_sampled()};
     Sweeps& sweeps = study_.request.sweeps;
     study::complete(sweeps, work);
     study_.left_out = leave_out(sweeps, work);
@@ -194,17 +228,46 @@ class Runner {
     study_.settings = std::move(plan.settings);
     study_.base = plan.base;
     study_.full_product = plan.full_product;
+    keep_to_budget(study_, sources_, *solver_, sampled_sources_);
+    MethodSweep& methods = study_.request.methods;
+    if (!methods.enabled) return;
+    if (methods.ladders.empty()) methods.ladders = default_ladders(study_.largest_rho_b);
+    for (LeftOut& item : leave_out(methods.ladders, {anything_seen(), work.anything_sampled, work.largest_rho_b})) {
+      study_.left_out.push_back(std::move(item));
+    }
+  }
+
+  void choose_judged() {
+    constexpr std::size_t kLargeScene = 300, kJudged = 32;
+    if (scene().faces().size() > kLargeScene) {
+      study_.judged = choose_receivers(study_.exact, kJudged);
+      study_.left_out.push_back({"silent errors at all but " + counted(study_.judged.size(), "receiver"),
+                                 "the exact visible region of so many faces takes long to draw"});
+    } else {
+      for (std::size_t i = 0; i < study_.exact.size(); ++i) study_.judged.push_back(i);
+    }
   }
 
   void sample() {
+    choose_judged();
     const std::size_t count = request().receivers.size();
     study_.samples.assign(study_.settings.size(), std::vector<SampleRow>(count));
-    parallel_for(count, threads(), "sampling", hooks_, [this](std::size_t i) { sample_receiver(i); });
-    study_.ray_setup_seconds = solver_->build_seconds();  // built where a candidate list first was long
+    const KeptWork kept(journal_, request_hash_ + '-' + short_hash(settings_text(study_)));
+    parallel_for(count, threads(), "sampling", hooks_, [&](std::size_t i) {
+      kept.get(
+          "samples/" + std::to_string(i), [&] { sample_receiver(i); },
+          [&](WordWriter& words) {
+            for (const auto& of_setting : study_.samples) put(words, of_setting[i]);
+          },
+          [&](WordReader& words) {
+            for (auto& of_setting : study_.samples) take(words, of_setting[i]);
+          });
+    });
   }
 
   void sample_receiver(std::size_t i) {
     std::vector<Rgb> errors(study_.settings.size());
+    for (auto& of_setting : study_.samples) of_setting[i] = {};
     for (std::size_t s = 0; s < sources_.size(); ++s) {
       std::optional<std::vector<PlaneDrawing>> truth;
       for (std::size_t k = 0; k < study_.settings.size(); ++k) add_sample(i, s, k, truth, errors[k]);
@@ -218,30 +281,19 @@ class Runner {
     const Receiver& receiver = request().receivers[i];
     SampleRow& row = study_.samples[k][i];
     AdaptiveOptions options = study_.settings[k];
-    const double rho_b = largest_rho_b(receiver, s);
-    options.record_leaves = true;
-    const AdaptiveResult recorded = solver_->form_factor(receiver, sampled_sources_[s], rho_b, options);
-    options.record_leaves = false;
-    const auto start = Clock::now();
-    const AdaptiveResult result = solver_->form_factor(receiver, sampled_sources_[s], rho_b, options);
-    row.seconds += seconds_since(start);
-    require_same(recorded, result);
+    options.record_leaves = std::binary_search(study_.judged.begin(), study_.judged.end(), i);
+    const AdaptiveResult result =
+        solver_->form_factor(receiver, sampled_sources_[s], largest_rho_b(receiver, s), options);
     add_counts(row, result);
     const double value = study_.exact[i].terms[s].value;
     row.form_factor += result.form_factor;
     add(error, times(radiosities_[s], result.form_factor - value));
-    if (sampled_leaves(result) == 0) return;
+    if (!options.record_leaves || sampled_leaves(result) == 0) return;
     if (!truth) truth = draw_visibility(scene(), receiver, sources_[s]);
-    const SampledVerdict verdict = judge_leaves(recorded.leaf_list, *truth);
+    const SampledVerdict verdict = judge_leaves(result.leaf_list, *truth);
     row.silent_leaves += verdict.silent;
     row.wrong_leaves += verdict.wrong;
-  }
-
-  static void require_same(const AdaptiveResult& a, const AdaptiveResult& b) {
-    const auto bits = [](double v) { return std::bit_cast<std::uint64_t>(v); };
-    if (bits(a.form_factor) != bits(b.form_factor) || a.leaves != b.leaves || a.rays != b.rays) {
-      throw std::logic_error("the adaptive algorithm gave two results for one receiver and setting");
-    }
+    row.silent_error += verdict.error;
   }
 
   static std::uint64_t sampled_leaves(const AdaptiveResult& result) {
@@ -262,43 +314,42 @@ class Runner {
     row.radiosity_error = largest_in_magnitude(times(scene().receiver_reflectance(request().receivers[i].on), error));
   }
 
+  void look_closer() {
+    const MethodSweep& methods = request().methods;
+    const KeptWork kept(journal_,
+                        request_hash_ + '-' + std::to_string(methods.seeds) + '-' + std::to_string(methods.receivers));
+    study_.methods = run_methods(study_, kept, hooks_);
+    find_shadow_edges(study_, sources_, hooks_);
+    find_profile(study_, sources_, hooks_);
+  }
+
   void summarise_all() {
     for (const ExactRow& row : study_.exact) ++study_.receivers_by_sight[static_cast<std::size_t>(row.sight)];
     std::vector<double> seconds;
     for (const ExactRow& row : study_.exact) seconds.push_back(row.seconds);
     study_.exact_time = summarise_times(seconds, study_.exact);
     for (std::size_t k = 0; k < study_.settings.size(); ++k) {
-      study_.summaries.push_back(summarise(study_.samples[k], study_.exact, study_.settings[k].eps_b));
+      study_.summaries.push_back(summarise(study_.samples[k], study_, study_.settings[k].eps_b));
       for (std::size_t i = 0; i < seconds.size(); ++i) seconds[i] = study_.samples[k][i].seconds;
       study_.times.push_back(summarise_times(seconds, study_.exact));
     }
   }
 
   const Hooks& hooks_;
+  Journal* journal_;
+  std::string request_hash_;
   Study study_;
   std::vector<ExactSource> sources_;
   std::vector<Rgb> radiosities_;
+  std::vector<double> areas_;
   std::optional<AdaptiveSolver> solver_;
   std::vector<AdaptiveSource> sampled_sources_;
-  std::vector<char> sampled_;  // by receiver; not vector<bool>, whose neighbours share bytes between threads
 };
 
 }  // namespace
 
-std::string_view name_of(Sight sight) {
-  switch (sight) {
-    case Sight::kNothing:
-      return "faces away";
-    case Sight::kHidden:
-      return "hidden";
-    case Sight::kPartly:
-      return "partly hidden";
-    case Sight::kVisible:
-      return "visible";
-  }
-  return {};
+Study run(Request request, const Hooks& hooks, Journal* journal) {
+  return Runner(std::move(request), hooks, journal).run();
 }
-
-Study run(Request request, const Hooks& hooks) { return Runner(std::move(request), hooks).run(); }
 
 }  // namespace exactff::study

@@ -102,6 +102,9 @@ void judge(const Leaf& leaf, const std::vector<PlaneDrawing>& truth, SampledVerd
   const bool all = visible >= 1.0 - kNegligible;
   if (!none && !all) ++verdict.silent;
   if (leaf.reason == LeafReason::kSampledVisible ? none : all) ++verdict.wrong;
+  const double sampled = leaf.reason == LeafReason::kSampledVisible ? 1.0 : 0.0;
+  const double truth_here = none ? 0.0 : all ? 1.0 : visible;
+  verdict.error += leaf.form_factor * (sampled - truth_here);
 }
 
 }  // namespace

@@ -11,6 +11,9 @@ namespace exactff::study {
 struct SampledVerdict {
   std::uint64_t silent = 0;  // sampled as 0 or 1, in truth in between
   std::uint64_t wrong = 0;   // sampled as 0 where the truth is 1, or the other way round
+  // What these leaves add to the form factor, minus what they should: each leaf's unoccluded form factor times the
+  // error of its visible fraction, taken by area.
+  double error = 0.0;
 };
 
 // Looks at the leaves that sampling decided (kSampledVisible, kSampledHidden) and at no other. The region is

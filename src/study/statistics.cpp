@@ -82,32 +82,43 @@ std::optional<double> fitted_slope(std::span<const std::pair<double, double>> po
   return product_sum(logs, x_mean, y_mean, false) / spread;
 }
 
-Summary summarise(const std::vector<SampleRow>& rows, const std::vector<ExactRow>& exact, double eps_b) {
+Summary summarise(const std::vector<SampleRow>& rows, const Study& study, double eps_b) {
   Summary summary;
-  std::vector<double> form_factor, radiosity, partly;
+  std::vector<double> form_factor, radiosity, partly, silent;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const SampleRow& row = rows[i];
     form_factor.push_back(row.error);
     radiosity.push_back(row.radiosity_error);
-    if (exact[i].sight == Sight::kPartly) partly.push_back(row.radiosity_error);
+    if (study.exact[i].sight == Sight::kPartly) partly.push_back(row.radiosity_error);
     if (!(std::abs(row.radiosity_error) <= eps_b)) ++summary.violations;
     summary.leaves += row.leaves;
     summary.rays += row.rays;
     summary.silent_leaves += row.silent_leaves;
     summary.wrong_leaves += row.wrong_leaves;
+    summary.silent_receivers += row.silent_leaves + row.wrong_leaves > 0 ? 1 : 0;
   }
+  for (const std::size_t i : study.judged) silent.push_back(rows[i].silent_error);
   summary.form_factor = error_statistics(form_factor);
   summary.radiosity = error_statistics(radiosity);
   summary.radiosity_partly = error_statistics(partly);
+  summary.silent = error_statistics(silent);
   return summary;
 }
 
+double largest_radiosity(const Study& study) {
+  double largest = 0.0;
+  for (const ExactRow& row : study.exact) largest = std::max(largest, row.radiosity.largest());
+  return largest;
+}
+
 TimeSummary summarise_times(std::span<const double> seconds, const std::vector<ExactRow>& exact) {
-  std::vector<double> partly;
+  std::vector<double> all, partly;
   for (std::size_t i = 0; i < seconds.size(); ++i) {
+    if (std::isnan(seconds[i])) continue;  // not timed
+    all.push_back(seconds[i]);
     if (exact[i].sight == Sight::kPartly) partly.push_back(seconds[i]);
   }
-  return {median({seconds.begin(), seconds.end()}), mean(seconds), median(partly), mean(partly)};
+  return {median(all), mean(all), median(partly), mean(partly)};
 }
 
 }  // namespace exactff::study

@@ -24,7 +24,11 @@ namespace exactff::study {
 // below two such points with different x.
 [[nodiscard]] std::optional<double> fitted_slope(std::span<const std::pair<double, double>> points);
 
-[[nodiscard]] Summary summarise(const std::vector<SampleRow>& rows, const std::vector<ExactRow>& exact, double eps_b);
+[[nodiscard]] Summary summarise(const std::vector<SampleRow>& rows, const Study& study, double eps_b);
+// Of the brightest receiver, largest channel.
+[[nodiscard]] double largest_radiosity(const Study& study);
+
+// Times that are NaN were not measured.
 [[nodiscard]] TimeSummary summarise_times(std::span<const double> seconds, const std::vector<ExactRow>& exact);
 
 }  // namespace exactff::study

@@ -1,9 +1,11 @@
 #include "study/tables.h"
 
 #include <cctype>
+#include <cmath>
 
 #include "exactff/version.h"
 #include "study/csv_row.h"
+#include "study/method_tables.h"
 #include "study/text.h"
 
 namespace exactff::study {
@@ -15,6 +17,8 @@ void write_list(std::ostream& out, std::string_view name, const List& list, cons
   for (std::size_t i = 0; i < list.size(); ++i) out << (i > 0 ? "," : "") << text(list[i]);
   out << '\n';
 }
+
+}  // namespace
 
 void write_head(const Study& study, std::ostream& out, std::string_view what) {
   const Sweeps& sweeps = study.request.sweeps;
@@ -33,6 +37,8 @@ void write_head(const Study& study, std::ostream& out, std::string_view what) {
   out << "# settings: " << (study.full_product ? "every combination" : "sweeps through a base") << '\n';
   for (const LeftOut& item : study.left_out) out << "# left out: " << item.what << ": " << item.why << '\n';
 }
+
+namespace {
 
 std::string on_name(const Study& study, const Receiver& receiver) {
   return receiver.on ? study.request.scene->name_of(*receiver.on) : std::string();
@@ -55,7 +61,8 @@ void put_setting(CsvRow& row, const Study& study, std::size_t k) {
 void write_exact(const Study& study, std::ostream& out) {
   const Scene& scene = *study.request.scene;
   write_head(study, out, "exact values");
-  out << "receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,status,sight,radiosity_r,radiosity_g,radiosity_b\n";
+  out << "receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,status,sight,visible_fraction,radiosity_r,radiosity_g,"
+         "radiosity_b\n";
   for (std::size_t i = 0; i < study.exact.size(); ++i) {
     const Receiver& receiver = study.request.receivers[i];
     const Rgb rho = scene.receiver_reflectance(receiver.on);
@@ -64,7 +71,7 @@ void write_exact(const Study& study, std::ostream& out) {
       const Rgb b = scene.source_radiosity(study.request.sources[s]);
       CsvRow(out) << receiver.id << on_name(study, receiver) << receiver.point << receiver.normal
                   << scene.name_of(study.request.sources[s]) << term.value << term.lower << term.upper
-                  << to_string(term.status) << name_of(term.sight) << rho.r * b.r * term.value
+                  << to_string(term.status) << name_of(term.sight) << term.visible_fraction << rho.r * b.r * term.value
                   << rho.g * b.g * term.value << rho.b * b.b * term.value;
     }
   }
@@ -77,7 +84,7 @@ void write_values(const Study& study, std::ostream& out) {
   for (std::size_t r = 0; r < kLeafReasonCount; ++r) {
     out << ",leaves_" << column_name(to_string(static_cast<LeafReason>(r)));
   }
-  out << ",silent_leaves,wrong_leaves\n";
+  out << ",silent_leaves,wrong_leaves,silent_error\n";
   const std::string source = source_names(study);
   for (std::size_t i = 0; i < study.exact.size(); ++i) {
     const Receiver& receiver = study.request.receivers[i];
@@ -90,7 +97,7 @@ void write_values(const Study& study, std::ostream& out) {
       row << exact.form_factor << sample.form_factor << sample.error << exact.radiosity.largest()
           << sample.radiosity_error << sample.leaves << sample.rays << sample.shaft_tests;
       for (std::uint64_t count : sample.leaves_by_reason) row << count;
-      row << sample.silent_leaves << sample.wrong_leaves;
+      row << sample.silent_leaves << sample.wrong_leaves << sample.silent_error;
     }
   }
 }
@@ -101,7 +108,9 @@ void write_summary(const Study& study, std::ostream& out) {
   write_head(study, out, "summary");
   out << kSettingColumns
       << ",receivers,rms_f,mean_f,p99_f,worst_f,rms_radiosity,mean_radiosity,p99_radiosity,worst_radiosity,"
-         "violations,share_violating,leaves,rays,silent_leaves,wrong_leaves,not_a_number\n";
+         "violations,share_violating,leaves,rays,silent_leaves,wrong_leaves,silent_receivers,rms_silent_f,worst_silent_"
+         "f,"
+         "not_a_number\n";
   for (std::size_t k = 0; k < study.settings.size(); ++k) {
     const Summary& summary = study.summaries[k];
     CsvRow row(out);
@@ -111,21 +120,21 @@ void write_summary(const Study& study, std::ostream& out) {
     put_statistics(row, summary.radiosity);
     row << std::uint64_t{summary.violations}
         << static_cast<double>(summary.violations) / static_cast<double>(study.exact.size()) << summary.leaves
-        << summary.rays << summary.silent_leaves << summary.wrong_leaves
-        << std::uint64_t{summary.form_factor.not_a_number};
+        << summary.rays << summary.silent_leaves << summary.wrong_leaves << std::uint64_t{summary.silent_receivers}
+        << summary.silent.rms << summary.silent.worst << std::uint64_t{summary.form_factor.not_a_number};
   }
 }
 
 void write_timings(const Study& study, std::ostream& out) {
-  write_head(study, out, "wall time of every call");
-  out << "# threads: " << study.request.threads << '\n';
+  write_head(study, out, "wall time of single calls, one thread at work");
   out << "receiver,on,setting,seconds\n";
-  for (std::size_t i = 0; i < study.exact.size(); ++i) {
+  for (const std::size_t i : study.timed) {
     const Receiver& receiver = study.request.receivers[i];
     const std::string on = on_name(study, receiver);
     CsvRow(out) << receiver.id << on << "exact" << study.exact[i].seconds;
     for (std::size_t k = 0; k < study.settings.size(); ++k) {
-      CsvRow(out) << receiver.id << on << std::uint64_t{k + 1} << study.samples[k][i].seconds;
+      const double seconds = study.samples[k][i].seconds;
+      if (!std::isnan(seconds)) CsvRow(out) << receiver.id << on << std::uint64_t{k + 1} << seconds;
     }
   }
 }
@@ -133,9 +142,8 @@ void write_timings(const Study& study, std::ostream& out) {
 void put_times(CsvRow& row, const TimeSummary& t) { row << t.median << t.mean << t.median_partly << t.mean_partly; }
 
 void write_summary_timings(const Study& study, std::ostream& out) {
-  write_head(study, out, "wall time per receiver, in seconds");
-  out << "# threads: " << study.request.threads << '\n'
-      << "# set up once: exact " << shortest(study.exact_setup_seconds) << ", ray structure "
+  write_head(study, out, "wall time per receiver, in seconds, one thread at work");
+  out << "# set up once: exact " << shortest(study.exact_setup_seconds) << ", ray structure "
       << shortest(study.ray_setup_seconds) << '\n';
   out << kSettingColumns
       << ",median,mean,median_partly_hidden,mean_partly_hidden,exact_median,exact_mean,exact_median_partly_hidden,"
@@ -148,17 +156,26 @@ void write_summary_timings(const Study& study, std::ostream& out) {
   }
 }
 
+bool always(const Study&) { return true; }
+
 }  // namespace
 
-const std::array<Table, 5>& tables() {
-  static const std::array<Table, 5> kTables = {{
-      {"values.csv", "one row per receiver and setting: exact and approximate value, errors, work", write_values},
-      {"exact.csv", "one row per receiver and source: the certified value with its bounds", write_exact},
-      {"summary.csv", "one row per setting: the error statistics", write_summary},
-      {"timings.csv", "one row per receiver and method: the time of a single call", write_timings},
-      {"summary_timings.csv", "one row per setting: time per receiver, with the exact method's beside it",
-       write_summary_timings},
-  }};
+const std::vector<Table>& tables() {
+  static const std::vector<Table> kTables = [] {
+    std::vector<Table> list = {
+        {"values.csv", "one row per receiver and setting: exact and approximate value, errors, work", write_values,
+         always, Holds::kValues},
+        {"exact.csv", "one row per receiver and source: the certified value with its bounds", write_exact, always,
+         Holds::kValues},
+        {"summary.csv", "one row per setting: the error statistics", write_summary, always, Holds::kValues},
+        {"timings.csv", "one row per receiver that was timed and method: the time of a single call", write_timings,
+         always, Holds::kTimes},
+        {"summary_timings.csv", "one row per setting: time per receiver, with the exact method's beside it",
+         write_summary_timings, always, Holds::kTimes},
+    };
+    for (const Table& table : method_tables()) list.push_back(table);
+    return list;
+  }();
   return kTables;
 }
 

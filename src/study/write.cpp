@@ -1,28 +1,94 @@
+#include <iterator>
+
 #include "exactff/study.h"
 #include "study/figures.h"
 #include "study/output_folder.h"
 #include "study/page_files.h"
+#include "study/report.h"
 #include "study/report_page.h"
 #include "study/tables.h"
+#include "study/text.h"
 
 namespace exactff::study {
+namespace {
 
-std::vector<std::string> write(const Study& study, const std::filesystem::path& folder, const Hooks& hooks) {
+namespace fs = std::filesystem;
+
+void write_tables(const SceneChapter& scene, const fs::path& folder, const Hooks& hooks) {
+  for (const Table& table : tables()) {
+    if (!table.has_rows(scene.study)) continue;
+    require_not_cancelled(hooks);
+    write_file(folder / file_name(scene, table), [&](std::ostream& out) { table.write(scene.study, out); });
+  }
+}
+
+void write_tables(const Chapter& chapter, const fs::path& folder) {
+  for (const auto* list : {&chapter.values, &chapter.times}) {
+    for (const TextTable& table : *list) {
+      write_file(folder / table.file, [&](std::ostream& out) {
+        out << "# " << program_version() << " compare: " << one_line(table.holds) << '\n' << table.csv;
+      });
+    }
+  }
+}
+
+class PageDrawer {
+ public:
+  PageDrawer(const fs::path& scratch, std::vector<std::string>& messages, const Hooks& hooks)
+      : scratch_(scratch), messages_(messages), hooks_(hooks) {}
+
+  Page draw(std::vector<Figure> figures, std::vector<LeftOut> left_out, const std::string& prefix) {
+    for (Figure& figure : figures) figure.id = prefix.empty() ? figure.id : prefix + '-' + figure.id;
+    DrawnFigures drawn;
+    if (without_gnuplot_.empty()) {
+      drawn = draw_figures(std::move(figures), scratch_, messages_, hooks_);
+      without_gnuplot_ = drawn.none;
+    } else {
+      drawn.none = without_gnuplot_;
+    }
+    std::move(drawn.left_out.begin(), drawn.left_out.end(), std::back_inserter(left_out));
+    return {std::move(drawn), std::move(left_out)};
+  }
+
+ private:
+  const fs::path& scratch_;
+  std::vector<std::string>& messages_;
+  const Hooks& hooks_;
+  std::string without_gnuplot_;
+};
+
+}  // namespace
+
+std::string file_name(const SceneChapter& scene, const Table& table) {
+  return (scene.name.empty() ? std::string() : scene.name + '_') + std::string(table.file);
+}
+
+std::vector<std::string> write(const Report& report, const fs::path& folder, const Hooks& hooks) {
   StagedFolder staged(folder);
   std::vector<std::string> messages;
-  for (const Table& table : tables()) {
-    require_not_cancelled(hooks);
-    write_file(staged.path() / table.file, [&](std::ostream& out) { table.write(study, out); });
+  PageDrawer drawer(staged.path(), messages, hooks);
+  Pages pages;
+  for (const SceneChapter& scene : report.scenes) {
+    write_tables(scene, staged.path(), hooks);
+    std::vector<LeftOut> left_out = scene.study.left_out;
+    std::vector<Figure> wanted = figures(scene.study, left_out);
+    pages.scenes.push_back(drawer.draw(std::move(wanted), std::move(left_out), scene.name));
   }
-  std::vector<LeftOut> left_out = study.left_out;
-  std::vector<Figure> wanted = figures(study, left_out);
-  DrawnFigures drawn = draw_figures(std::move(wanted), staged.path(), messages, hooks);
-  left_out.insert(left_out.end(), drawn.left_out.begin(), drawn.left_out.end());
-  const Page page{std::move(drawn), std::move(left_out)};
-  write_file(staged.path() / kReportFile, [&](std::ostream& out) { out << report_page(study, page); });
+  for (const Chapter& chapter : report.chapters) {
+    write_tables(chapter, staged.path());
+    pages.chapters.push_back(drawer.draw(chapter.figures, chapter.left_out, chapter.name));
+  }
+  write_file(staged.path() / kReportFile, [&](std::ostream& out) { out << report_page(report, pages); });
   require_not_cancelled(hooks);
   staged.commit();
   return messages;
+}
+
+std::vector<std::string> write(const Study& study, const fs::path& folder, const Hooks& hooks) {
+  Report report;
+  report.scenes.push_back({"", study.request.scene_name, study});
+  report.command_line = study.request.command_line;
+  return write(report, folder, hooks);
 }
 
 }  // namespace exactff::study

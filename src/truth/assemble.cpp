@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "truth/file.h"
+#include "study/file.h"
 
 namespace exactff::truth {
 
@@ -14,7 +14,7 @@ void Pace::add(std::uint64_t rows) {
 
 void assemble(const Rows& rows, Journal& journal, const std::filesystem::path& file, const Hooks& hooks,
               Summary& summary) {
-  WholeFile whole(file,
+  study::WholeFile whole(file,
                   {"every row is done and kept in " + journal.path().string() + "; the file needs as much room again",
                    "make room, then go on with --resume"});
   const bool in_blocks = rows.request().shard.count > 1;

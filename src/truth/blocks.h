@@ -13,10 +13,13 @@
 #include <string_view>
 #include <vector>
 
-#include "truth/file.h"
+#include "study/file.h"
 #include "truth/rows.h"
 
 namespace exactff::truth {
+
+using study::File;
+using study::WholeFile;
 
 // The head of a file: its comment lines and the line of column names. Nothing if the file ends before.
 [[nodiscard]] std::optional<std::string> read_head(const File& file);

@@ -177,7 +177,7 @@ void Journal::sync() {
   }
   if (end == synced_) return;
   file_.sync();
-  if (synced_ == 0) sync_folder_of(file_.path());  // so that the file is there at all
+  if (synced_ == 0) study::sync_folder_of(file_.path());  // so that the file is there at all
   synced_ = end;
 }
 

@@ -13,7 +13,7 @@
 
 #include "exactff/truth.h"
 #include "truth/blocks.h"
-#include "truth/file.h"
+#include "study/file.h"
 
 namespace exactff::truth {
 

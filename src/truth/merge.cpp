@@ -8,7 +8,7 @@
 #include "study/text.h"
 #include "truth/assemble.h"
 #include "truth/blocks.h"
-#include "truth/file.h"
+#include "study/file.h"
 #include "truth/journal.h"
 
 namespace exactff::truth {

@@ -18,7 +18,7 @@ declare -A allowed=(
   [check]="check study scene kernel"
   [stress]="stress study scene kernel"
   [truth]="truth study scene kernel"
-  [cli]="cli check stress truth study scene"
+  [cli]="cli experiments check stress truth study scene"
 )
 
 failures=0

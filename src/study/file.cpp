@@ -1,4 +1,4 @@
-#include "truth/file.h"
+#include "study/file.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -13,7 +13,7 @@
 #include "exactff/error.h"
 #include "scene/text_file.h"
 
-namespace exactff::truth {
+namespace exactff::study {
 
 namespace fs = std::filesystem;
 
@@ -154,4 +154,4 @@ void WholeFile::commit() {
   sync_folder_of(target_);
 }
 
-}  // namespace exactff::truth
+}  // namespace exactff::study

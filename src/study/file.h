@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace exactff::truth {
+namespace exactff::study {
 
 // What to tell where writing fails: what is kept, and what to do.
 struct Consolation {
@@ -76,4 +76,4 @@ class WholeFile {
   bool committed_ = false;
 };
 
-}  // namespace exactff::truth
+}  // namespace exactff::study

@@ -1,0 +1,40 @@
+// The small file that describes a study of several scenes.
+//
+//   # a comment
+//   title Form factors of rooms
+//   scene cornell_box.obj --on floor --grid 32x32 --title "Cornell box"
+//   scene @karkanis:n=200 --on ... --unless-abridged
+//   experiment karkanis-times nettle-rule
+//
+// A scene line has the words and flags that `exactff compare` has for one scene; files are looked for beside the study.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "exactff/error.h"
+
+namespace exactff::cli {
+
+struct StudyLine {
+  std::size_t number = 0;
+  std::vector<std::string> words;  // without the first one
+};
+
+struct StudyFile {
+  std::string title;
+  std::vector<StudyLine> scenes;
+  std::vector<StudyLine> experiments;
+};
+
+[[nodiscard]] bool is_study_file(const std::string& path);
+
+// Throws InputError with everything that is wrong in the file's own words; flags are looked at by who takes them.
+[[nodiscard]] StudyFile read_study_file(const std::filesystem::path& path);
+
+// The words of a line: separated by blanks, with "..." or '...' around what holds blanks. Throws InputError where a
+// quote is not closed.
+[[nodiscard]] std::vector<std::string> split_words(std::string_view line, const std::string& file, std::size_t number);
+
+}  // namespace exactff::cli

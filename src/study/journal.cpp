@@ -1,0 +1,226 @@
+// A file of records, appended as pieces of work are finished:
+//
+//   exactff journal 1, version 0.1.0\n
+//   NAME BYTES CRC32\n  and then BYTES bytes and a line end, again and again
+//
+// The CRC-32 is of name and bytes. Reading stops at the first record that is torn or damaged, and what follows is
+// overwritten: a journal is as good as its sound beginning. Another version's journal is of no use, since its values
+// may differ; a file that is no journal is never touched.
+#include <boost/crc.hpp>
+#include <charconv>
+#include <map>
+#include <mutex>
+
+#include "exactff/study.h"
+#include "exactff/version.h"
+#include "scene/fnv1a.h"
+#include "study/file.h"
+
+namespace exactff::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kBeginning = "exactff journal ";
+constexpr std::size_t kLongestHead = 512;
+
+std::string first_line() { return std::string(kBeginning) + "1, version " + kVersion + '\n'; }
+
+std::string checksum(std::string_view name, std::string_view bytes) {
+  boost::crc_32_type crc;
+  crc.process_bytes(name.data(), name.size());
+  crc.process_bytes(bytes.data(), bytes.size());
+  return hexadecimal(crc.checksum(), 8);
+}
+
+std::string record(std::string_view name, std::string_view bytes) {
+  std::string text(name);
+  text += ' ' + std::to_string(bytes.size()) + ' ' + checksum(name, bytes) + '\n';
+  text += bytes;
+  return text += '\n';
+}
+
+struct RecordHead {
+  std::string name;
+  std::uint64_t bytes = 0;
+  std::string checksum;
+  std::uint64_t length = 0;  // of the head, its line end included
+};
+
+std::optional<RecordHead> head_at(std::string_view text) {
+  const std::size_t end = text.find('\n');
+  if (end == std::string_view::npos) return std::nullopt;
+  const std::string_view line = text.substr(0, end);
+  const std::size_t first = line.find(' ');
+  const std::size_t second = first == std::string_view::npos ? first : line.find(' ', first + 1);
+  if (second == std::string_view::npos) return std::nullopt;
+  RecordHead head{std::string(line.substr(0, first)), 0, std::string(line.substr(second + 1)), end + 1};
+  const char* last = line.data() + second;
+  const auto parsed = std::from_chars(line.data() + first + 1, last, head.bytes);
+  if (parsed.ec != std::errc{} || parsed.ptr != last) return std::nullopt;
+  return head;
+}
+
+struct Place {
+  std::uint64_t offset = 0;
+  std::uint64_t bytes = 0;
+};
+
+const Consolation kConsolation{"finished work is kept there, so that an interrupted run can go on",
+                               "make room, or name a folder elsewhere"};
+
+}  // namespace
+
+struct Journal::Impl {
+  explicit Impl(const fs::path& path) : outermost_made(made_for(path)), file(opened(path)) {}
+  ~Impl() {
+    if (removed) remove_made();
+  }
+
+  // The file may be in a folder that is not there yet: gives the highest one that was made.
+  static fs::path made_for(const fs::path& path) {
+    const fs::path folder = fs::absolute(path).parent_path();
+    fs::path made;
+    for (fs::path f = folder; f.has_relative_path() && !is_there(f); f = f.parent_path()) made = f;
+    std::error_code ignored;  // opening the file will fail
+    fs::create_directories(folder, ignored);
+    return made;
+  }
+
+  // Folders that were made and are empty.
+  void remove_made() const {
+    std::error_code error;
+    fs::path folder = fs::absolute(file.path()).parent_path();
+    for (bool more = !outermost_made.empty(); more && !error; folder = folder.parent_path()) {
+      more = folder != outermost_made;
+      fs::remove(folder, error);
+    }
+  }
+
+  static bool is_there(const fs::path& path) {
+    std::error_code ignored;
+    return fs::exists(path, ignored);
+  }
+
+  // The process that had the lock may have finished and removed the file in between.
+  static File opened(const fs::path& path) {
+    for (;;) {
+      File file(path, File::Mode::kReadWrite, kConsolation);
+      if (file.lock() == File::Lock::kInUse) {
+        throw InputError({.file = path.string(),
+                          .what = "another process is working on it",
+                          .why = "two would compute the same values and spoil each other's journal",
+                          .suggestion = "wait for the other one, or name another folder with -o"});
+      }
+      if (file.is_in_place()) return file;
+    }
+  }
+
+  // A first line that is cut off has nothing after it.
+  void require_ours(Existing existing) const {
+    const std::string ours = first_line(), theirs = file.read(0, ours.size());
+    if (ours.starts_with(theirs)) return;
+    if (!theirs.starts_with(kBeginning)) {
+      throw InputError({.file = file.path().string(),
+                        .what = "is there already and is not of our making",
+                        .why = "finished work is to be kept in a file of this name",
+                        .suggestion = "move it away, or name another folder with -o"});
+    }
+    if (existing == Existing::kReplace) return;
+    throw InputError({.file = file.path().string(),
+                      .what = "is of another version of exactff",
+                      .why = "its values may differ",
+                      .suggestion = "go on with that version, or begin anew with --force"});
+  }
+
+  void read() {
+    const std::string ours = first_line();
+    if (file.read(0, ours.size()) != ours) return;
+    end = ours.size();
+    while (const auto next = record_at(end)) end = *next;
+  }
+
+  // The end of the sound record there; nothing if it is torn, damaged or not there.
+  std::optional<std::uint64_t> record_at(std::uint64_t offset) {
+    const auto head = head_at(file.read(offset, kLongestHead));
+    const std::uint64_t start = offset + (head ? head->length : 0);
+    if (!head || head->bytes > file.size() || start + head->bytes + 1 > file.size()) return std::nullopt;
+    const std::string bytes = file.read(start, head->bytes + 1);
+    if (bytes.back() != '\n') return std::nullopt;
+    if (checksum(head->name, std::string_view(bytes).substr(0, head->bytes)) != head->checksum) return std::nullopt;
+    places[head->name] = {start, head->bytes};
+    return start + head->bytes + 1;
+  }
+
+  void begin() {
+    places.clear();
+    file.truncate(0);
+    file.write(0, first_line());
+    end = first_line().size();
+  }
+
+  fs::path outermost_made;  // empty: none
+  File file;
+  mutable std::mutex mutex;
+  std::map<std::string, Place> places;
+  std::uint64_t end = 0;
+  bool removed = false;
+};
+
+Journal::Journal(const fs::path& path, Existing existing) : impl_(std::make_unique<Impl>(path)) {
+  impl_->require_ours(existing);
+  impl_->read();
+  if (existing == Existing::kRefuse && !impl_->places.empty()) {
+    throw InputError({.file = path.string(),
+                      .what = "holds the finished work of an interrupted run",
+                      .why = "it may be hours of work",
+                      .suggestion = "go on with --resume, or begin anew with --force"});
+  }
+  try {
+    if (existing != Existing::kResume || impl_->end == 0) impl_->begin();
+  } catch (const InputError&) {
+    remove();
+    throw;
+  }
+}
+
+Journal::~Journal() {
+  if (impl_->places.empty()) remove();
+}
+
+std::optional<std::string> Journal::find(const std::string& name) const {
+  const std::scoped_lock lock(impl_->mutex);
+  const auto found = impl_->places.find(name);
+  if (found == impl_->places.end()) return std::nullopt;
+  return impl_->file.read(found->second.offset, found->second.bytes);
+}
+
+void Journal::add(const std::string& name, std::string_view bytes) {
+  const std::string text = record(name, bytes);
+  const std::scoped_lock lock(impl_->mutex);
+  impl_->file.write(impl_->end, text);
+  impl_->places[name] = {impl_->end + text.size() - bytes.size() - 1, bytes.size()};
+  impl_->end += text.size();
+}
+
+std::size_t Journal::size() const {
+  const std::scoped_lock lock(impl_->mutex);
+  return impl_->places.size();
+}
+
+const fs::path& Journal::path() const { return impl_->file.path(); }
+
+void Journal::remove() {
+  if (impl_->removed) return;
+  std::error_code ignored;
+  fs::remove(path(), ignored);
+  impl_->removed = true;
+}
+
+fs::path journal_of_folder(const fs::path& folder) {
+  fs::path journal = folder.lexically_normal();
+  if (!journal.has_filename()) journal = journal.parent_path();
+  return journal += ".part";
+}
+
+}  // namespace exactff::study

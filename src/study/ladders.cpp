@@ -1,0 +1,193 @@
+#include "study/ladders.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "study/text.h"
+
+namespace exactff::study {
+namespace {
+
+std::vector<std::string> parts_of(std::string_view text, char separator) {
+  std::vector<std::string> parts;
+  for (std::size_t start = 0;;) {
+    const std::size_t end = text.find(separator, start);
+    parts.emplace_back(text.substr(start, end == std::string_view::npos ? end : end - start));
+    if (end == std::string_view::npos) return parts;
+    start = end + 1;
+  }
+}
+
+std::string trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
+}
+
+[[noreturn]] void refuse(const std::string& what, const std::string& why, const std::string& suggestion) {
+  throw InputError(Problem{{}, 0, what, why, suggestion});
+}
+
+// A ladder's text, taken apart.
+struct LadderText {
+  std::string method;
+  std::vector<std::pair<std::string, std::vector<std::string>>> settings;  // name and values
+
+  explicit LadderText(std::string_view text) {
+    const std::size_t colon = text.find(':');
+    method = trimmed(text.substr(0, colon));
+    if (colon == std::string_view::npos) return;
+    for (const std::string& part : parts_of(text.substr(colon + 1), ',')) {
+      const std::size_t equals = part.find('=');
+      const std::string values = equals == std::string::npos ? std::string() : part.substr(equals + 1);
+      settings.emplace_back(trimmed(part.substr(0, equals)), parts_of(values, '|'));
+    }
+  }
+
+  [[nodiscard]] std::string along() const {
+    std::string found;
+    for (const auto& [name, values] : settings) {
+      if (values.size() < 2) continue;
+      if (!found.empty()) {
+        refuse("'" + found + "' and '" + name + "' of " + method + " both have several values",
+               "a method is followed along one setting at a time",
+               "give the other one a single value, or two --method");
+      }
+      found = name;
+    }
+    return found;
+  }
+
+  [[nodiscard]] std::string with(const std::string& along, const std::string& value) const {
+    std::string text = method;
+    char before = ':';
+    for (const auto& [name, values] : settings) {
+      text += before + name + '=' + (name == along ? value : values.front());
+      before = ',';
+    }
+    return text;
+  }
+
+  [[nodiscard]] std::vector<std::string> values_of(const std::string& along) const {
+    for (const auto& [name, values] : settings) {
+      if (name == along) return values;
+    }
+    return {""};
+  }
+};
+
+bool is_word(const methods::Method& method, const std::string& setting) {
+  return std::any_of(method.settings.begin(), method.settings.end(), [&](const methods::SettingSpec& spec) {
+    return spec.name == setting && std::holds_alternative<std::string>(spec.fallback);
+  });
+}
+
+std::string method_words(const std::string& name) {
+  if (name == "adaptive-exact-visibility") return "adaptive, exact V";
+  if (name == "area-sampling") return "area";
+  std::string words = name;
+  std::replace(words.begin(), words.end(), '-', ' ');
+  return words;
+}
+
+std::string setting_words(const methods::Method& method, const std::string& name, const std::string& value) {
+  if (is_word(method, name)) return value;
+  return name == "rays" ? value + (value == "1" ? " ray" : " rays") : name + ' ' + value;
+}
+
+std::string name_of(const LadderText& text, const methods::Method& method, const std::string& along) {
+  std::string name = method_words(method.name);
+  for (const auto& [setting, values] : text.settings) {
+    if (setting != along) name += ", " + setting_words(method, setting, trimmed(values.front()));
+  }
+  return name;
+}
+
+}  // namespace
+
+Ladder parse_ladder(std::string_view text) {
+  const LadderText taken_apart(text);
+  Ladder ladder;
+  ladder.along = taken_apart.along();
+  for (const std::string& value : taken_apart.values_of(ladder.along)) {
+    methods::Choice choice = methods::parse(taken_apart.with(ladder.along, value));
+    choice.settings = choice.method->normalised(choice.settings);
+    const bool repeated = std::find(ladder.rungs.begin(), ladder.rungs.end(), choice) != ladder.rungs.end();
+    if (!repeated) ladder.rungs.push_back(std::move(choice));
+  }
+  if (ladder.along == "seed") {
+    refuse("the seed of " + taken_apart.method + " has several values", "a study runs many seeds by itself",
+           "leave the seed out, and say how many with --method-seeds");
+  }
+  ladder.name = name_of(taken_apart, *ladder.rungs.front().method, ladder.along);
+  return ladder;
+}
+
+std::vector<Ladder> default_ladders(double largest_rho_b) {
+  const auto tolerances = [&](int first, int last) {
+    std::string list;
+    for (int power = first; power <= last; ++power) {
+      list += (list.empty() ? "" : "|") + shortest(largest_rho_b / std::pow(10.0, power));
+    }
+    return list;
+  };
+  std::vector<Ladder> ladders = {parse_ladder("exact")};
+  if (largest_rho_b > 0.0) {
+    for (const std::string& text :
+         {"adaptive:rays=16,eps_B=" + tolerances(1, 6), "adaptive:rays=64,eps_B=" + tolerances(1, 6),
+          "adaptive:rays=256,eps_B=" + tolerances(1, 6), "adaptive:pattern=centre,eps_B=" + tolerances(1, 6),
+          "adaptive-exact-visibility:eps_B=" + tolerances(1, 6)}) {
+      ladders.push_back(parse_ladder(text));
+    }
+  }
+  for (const char* text : {"hemicube:resolution=32|64|128|256|512|1024", "nettle:rays=16,splits=1|2|4|8|16",
+                           "nettle:variant=literal,rays=16,splits=1|2|4|8|16", "wallace:splits=1|2|4|8|16|32|64",
+                           "area-sampling:pattern=random,samples=4|16|64|256|1024|4096",
+                           "area-sampling:pattern=stratified,samples=4|16|64|256|1024|4096",
+                           "area-sampling:pattern=sobol,samples=4|16|64|256|1024|4096"}) {
+    ladders.push_back(parse_ladder(text));
+  }
+  return ladders;
+}
+
+std::vector<LeftOut> leave_out(std::vector<Ladder>& ladders, const Sightings& sightings) {
+  std::vector<LeftOut> left_out;
+  const auto drop = [&](const auto& is_idle, const std::string& why) {
+    std::erase_if(ladders, [&](const Ladder& ladder) {
+      if (!is_idle(ladder.rungs.front())) return false;
+      left_out.push_back({"method " + ladder.name, why});
+      return true;
+    });
+  };
+  const auto adaptive = [](const methods::Choice& c) { return c.method->name.starts_with("adaptive"); };
+  const auto control = [](const methods::Choice& c) { return c.method->name == "adaptive-exact-visibility"; };
+  if (!sightings.any) {
+    drop([](const methods::Choice&) { return true; }, "no receiver sees any part of a source");
+  }
+  if (!(sightings.largest_rho_b > 0.0)) drop(adaptive, "nothing is emitted or reflected, so that it returns 0 at once");
+  if (!sightings.sampled) {
+    drop(control, "no receiver has a source hidden in part, so that there is no sampling to be replaced");
+  }
+  return left_out;
+}
+
+std::string rung_text(const Ladder& ladder, std::size_t rung) {
+  if (ladder.along.empty()) return {};
+  const methods::Settings& settings = ladder.rungs[rung].settings;
+  for (std::size_t k = 0; k < settings.specs().size(); ++k) {
+    if (settings.specs()[k].name != ladder.along) continue;
+    const methods::SettingValue& value = settings.values()[k];
+    if (const double* number = std::get_if<double>(&value)) return rounded(*number);
+    return methods::to_string(value);
+  }
+  return {};
+}
+
+std::string rung_name(const Ladder& ladder, std::size_t rung) {
+  if (ladder.along.empty()) return ladder.name;
+  std::string along = ladder.along;
+  if (along == "eps_B") along = "ε_B";
+  return ladder.name + ", " + along + ' ' + rung_text(ladder, rung);
+}
+
+}  // namespace exactff::study

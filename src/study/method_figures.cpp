@@ -1,0 +1,276 @@
+#include "study/method_figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "study/ladders.h"
+#include "study/plot_script.h"
+#include "study/statistics.h"
+#include "study/text.h"
+#include "study/verdicts.h"
+
+namespace exactff::study {
+namespace {
+
+constexpr std::size_t kMostLines = 8;  // that can be told apart in one figure
+// Errors of rounding alone are below the axis.
+constexpr const char* kFloor = "set yrange [1e-9<*:]";
+constexpr const char* kRelative = "RMS error / brightest receiver";
+
+// Variants are in the tables; the figures show each method once.
+bool is_variant(const Ladder& ladder) {
+  const methods::Choice& choice = ladder.rungs.front();
+  if (choice.method->name == "adaptive" && choice.settings.whole("rays") > 16) return true;
+  const auto has = [&](const char* setting, const char* word) {
+    return choice.settings.has(setting) && choice.settings.word(setting) == word;
+  };
+  return has("variant", "literal") || (choice.method->name == "adaptive" && has("pattern", "centre"));
+}
+
+class MethodFigures {
+ public:
+  MethodFigures(const Study& study, std::vector<Figure>& figures, std::vector<LeftOut>& left_out)
+      : study_(study), figures_(figures), left_out_(left_out), brightest_(largest_radiosity(study)) {
+    for (std::size_t l = 0; l < methods().ladders.size() && shown_.size() < kMostLines; ++l) {
+      const Ladder& ladder = methods().ladders[l];
+      if (ladder.rungs.front().method->name != "exact" && !is_variant(ladder)) shown_.push_back(l);
+    }
+  }
+
+  void add_all() {
+    if (methods().cells.empty() || !(brightest_ > 0.0)) return;
+    add_error_against_time();
+    add_convergence(Sight::kPartly, "convergence-partly", "Convergence where the source is partly hidden");
+    add_convergence(Sight::kVisible, "convergence-visible", "Convergence where all of the source is seen");
+    add_by_fraction();
+    add_by_distance();
+    add_profile();
+  }
+
+ private:
+  [[nodiscard]] const MethodStudy& methods() const { return study_.methods; }
+
+  void leave_out(const std::string& title, std::string why) {
+    left_out_.push_back({"figure: " + title, std::move(why)});
+  }
+
+  void add(Figure figure, const std::string& why_empty) {
+    if (figure.script.empty()) {
+      leave_out(figure.title, why_empty);
+    } else {
+      figures_.push_back(std::move(figure));
+    }
+  }
+
+  void add_error_against_time() {
+    std::vector<Series> series;
+    int style = 0;
+    for (const std::size_t l : shown_) {
+      Series one{methods().ladders[l].name, {}, ++style};
+      for (const MethodCell& cell : methods().cells) {
+        if (cell.ladder == l) one.points.emplace_back(1e6 * cell.seconds, relative_error(study_, cell));
+      }
+      series.push_back(std::move(one));
+    }
+    Series front{"best for its time", {}, 0};
+    for (const MethodCell* cell : pareto_front(study_)) {
+      front.points.emplace_back(1e6 * cell->seconds, relative_error(study_, *cell));
+    }
+    series.push_back(std::move(front));
+    Axes axes{"time per receiver, µs", kRelative, true, true, {kFloor}, {}};
+    std::string caption = "Each line is a method with rising effort, at " +
+                          counted(methods().receivers.size(), "receiver") +
+                          "; the dashed one joins those that none beats in both time and error. ";
+    if (const MethodCell* exact = exact_cell(study_)) {
+      const std::string at = shortest(1e6 * exact->seconds);
+      axes.marks = {1e6 * exact->seconds};
+      axes.extra = {kFloor, "set arrow from " + at + ", graph 0 to " + at + ", graph 1 nohead lw 2.5 lc rgb '#8A8A8A'",
+                    "set label 'exact: error 0' at " + at + ", graph 0.98 rotate by 90 right offset character -0.8,0"};
+      caption += "The exact method has no error and stands at its time, " + duration(exact->seconds) + ". ";
+    }
+    add({"methods-time", "All methods: error against run time", caption + time_slopes(), line_plot(axes, series)},
+        "no method has an error that a logarithmic axis can show");
+  }
+
+  // Exponents of error = c time^p, by least squares over the settings of a method.
+  [[nodiscard]] std::string time_slopes() const {
+    std::vector<std::string> words;
+    for (const std::size_t l : shown_) {
+      Points points;
+      for (const MethodCell& cell : methods().cells) {
+        if (cell.ladder == l) points.emplace_back(cell.seconds, relative_error(study_, cell));
+      }
+      const auto slope = points.size() >= 3 ? fitted_slope(points) : std::nullopt;
+      if (slope) {
+        words.push_back(methods().ladders[l].name + ' ' + (*slope < 0.0 ? "−" : "") + rounded(std::abs(*slope), 2));
+      }
+    }
+    if (words.empty()) return {};
+    return "The error falls as time to the power: " + html(enumerate(words)) + " (least squares).";
+  }
+
+  void add_convergence(Sight sight, const char* id, const char* title) {
+    std::vector<Series> series;
+    std::vector<std::string> words;
+    int style = 0;
+    for (const std::size_t l : shown_) {
+      const auto& slope = sight == Sight::kPartly ? methods().slopes[l].partly : methods().slopes[l].visible;
+      ++style;
+      if (!slope) continue;
+      Series one{methods().ladders[l].name, {}, style};
+      for (const MethodCell& cell : methods().cells) {
+        if (cell.ladder != l) continue;
+        const ErrorStatistics& e = sight == Sight::kPartly ? cell.error_partly : cell.error_visible;
+        one.points.emplace_back(cell.work, e.rms / brightest_);
+      }
+      series.push_back(std::move(one));
+      words.push_back(slope_words(*slope, methods().ladders[l], sight));
+    }
+    std::string list;
+    for (const std::string& word : words) list += "<br>" + html(word) + '.';
+    add({id, title,
+         "Against the number of samples for a receiver (hemicube: pixels; adaptive: leaves and rays, or exact V). "
+         "Fitted "
+         "exponents, "
+         "with 95 % confidence intervals over the seeds where there are any:" +
+             list,
+         line_plot({"samples, pixels, or leaves and rays", kRelative, true, true, {kFloor}, {}}, series)},
+        sight == Sight::kPartly ? "no receiver sees the source partly, or fewer than three settings were run"
+                                : "no receiver sees all of the source, or fewer than three settings were run");
+  }
+
+  // Every method's errors at all receivers: the fields, and the adaptive algorithm's base setting.
+  struct Field {
+    std::string name;
+    std::vector<double> errors;
+    int style = 1;
+  };
+
+  [[nodiscard]] std::vector<Field> fields() const {
+    std::vector<Field> list;
+    for (const MethodField& field : methods().fields) {
+      const auto place = std::find(shown_.begin(), shown_.end(), field.ladder);
+      if (place == shown_.end()) continue;
+      list.push_back(
+          {methods().ladders[field.ladder].name, field.radiosity_errors, static_cast<int>(place - shown_.begin()) + 1});
+    }
+    return list;
+  }
+
+  // RMS over the receivers of each bin, against the bin's place on the axis. A bin of fewer than three is left out.
+  template <class BinOf>
+  [[nodiscard]] std::vector<Series> binned(const BinOf& bin_of) const {
+    constexpr std::size_t kFewest = 3;
+    std::vector<Series> series;
+    for (const Field& field : fields()) {
+      std::map<double, std::vector<double>> bins;
+      for (std::size_t i = 0; i < field.errors.size(); ++i) {
+        if (const std::optional<double> bin = bin_of(i)) bins[*bin].push_back(field.errors[i]);
+      }
+      Series one{field.name, {}, field.style};
+      for (const auto& [bin, errors] : bins) {
+        if (errors.size() >= kFewest) one.points.emplace_back(bin, error_statistics(errors).rms / brightest_);
+      }
+      series.push_back(std::move(one));
+    }
+    return series;
+  }
+
+  [[nodiscard]] std::string middle_settings() const {
+    std::vector<std::string> names;
+    for (const MethodField& field : methods().fields) {
+      if (std::find(shown_.begin(), shown_.end(), field.ladder) == shown_.end()) continue;
+      names.push_back(rung_name(methods().ladders[field.ladder], field.rung));
+    }
+    return "Each method at its middle setting, with one seed: " + html(enumerate(names)) + ".";
+  }
+
+  void add_by_fraction() {
+    if (study_.request.scene->faces().size() > kMostFacesForFractions) {
+      leave_out("Error by how much of the source is visible",
+                "exact visible fractions of a scene with so many faces take long");
+      return;
+    }
+    const auto bin_of = [&](std::size_t i) -> std::optional<double> {
+      const double v = study_.exact[i].visible_fraction;
+      if (study_.exact[i].sight == Sight::kNothing) return std::nullopt;
+      if (study_.exact[i].sight == Sight::kHidden) return 0.0;
+      if (study_.exact[i].sight == Sight::kVisible) return 100.0;
+      return std::clamp(10.0 * std::floor(10.0 * v) + 5.0, 5.0, 95.0);
+    };
+    add({"by-fraction", "Error by how much of the source is visible",
+         "Receivers in bins by the exact visible share of the source’s area: nothing, tenths, all; bins with "
+         "fewer than three receivers are left out. " +
+             middle_settings(),
+         line_plot({"visible share of the source, %", kRelative, false, true, {"set xrange [-3:103]", kFloor}, {}},
+                   binned(bin_of))},
+        "every error is 0, or no bin has three receivers");
+  }
+
+  void add_by_distance() {
+    const std::string title = "Error by distance to the nearest shadow edge";
+    if (study_.edge_distance.empty()) return;  // left out already, with its reason
+    const double unit = 0.5 * study_.edge_resolution;
+    const auto bin_of = [&](std::size_t i) -> std::optional<double> {
+      if (study_.exact[i].sight == Sight::kNothing) return std::nullopt;
+      const double d = std::max(study_.edge_distance[i], unit);
+      return unit * std::exp2(std::floor(std::log2(d / unit)) + 0.5);
+    };
+    add({"by-distance", title,
+         "An edge is where the source begins to be hidden or to be seen, found by classifying a finer raster exactly; "
+         "distances below " +
+             rounded(unit, 2) +
+             " are not told apart. Bins are powers of two; the methods’ settings are those of the figure before.",
+         line_plot({"distance to the nearest shadow edge (scene’s unit)", kRelative, true, true, {kFloor}, {}},
+                   binned(bin_of))},
+        "every error is 0, or no bin has three receivers");
+  }
+
+  void add_profile() {
+    if (!study_.profile) return;
+    const Profile& profile = *study_.profile;
+    std::vector<Series> series;
+    int style = 1;
+    for (const Profile::Curve& curve : profile.others) {
+      Series one{curve.name, {}, ++style};
+      for (std::size_t i = 0; i < profile.position.size(); i += 2) {
+        one.points.emplace_back(profile.position[i], curve.radiosity[i]);
+      }
+      one.drawn = Drawn::kMarks;
+      series.push_back(std::move(one));
+    }
+    Series exact{"exact", {}, 1};
+    for (std::size_t i = 0; i < profile.position.size(); ++i) {
+      exact.points.emplace_back(profile.position[i], profile.exact[i]);
+    }
+    exact.drawn = Drawn::kLine;
+    series.push_back(std::move(exact));
+    Axes axes{"position along " + profile.where + " (scene’s unit)", "radiosity", false, false, {}, {}};
+    for (const double kink : profile.kinks) {
+      const std::string at = shortest(kink);
+      axes.extra.push_back("set arrow from " + at + ", graph 0 to " + at +
+                           ", graph 1 nohead back lw 1 dt 3 lc rgb '#8A8A8A'");
+    }
+    add({"profile", "A profile through the penumbra",
+         "The exact curve against single evaluations of other methods at their middle setting. Dotted verticals: where "
+         "the source begins to be hidden or to be seen (" +
+             counted(profile.kinks.size(), "place") + "), to which the curve’s kinks belong.",
+         line_plot(axes, series)},
+        "the profile has no value");
+  }
+
+  const Study& study_;
+  std::vector<Figure>& figures_;
+  std::vector<LeftOut>& left_out_;
+  double brightest_;
+  std::vector<std::size_t> shown_;  // ladders
+};
+
+}  // namespace
+
+void add_method_figures(const Study& study, std::vector<Figure>& figures, std::vector<LeftOut>& left_out) {
+  MethodFigures(study, figures, left_out).add_all();
+}
+
+}  // namespace exactff::study

@@ -1,0 +1,361 @@
+// Methods against one another, ladder by ladder.
+//
+//   1. choose receivers;
+//   2. for every rung: evaluate it once, price the counted work of all receivers and seeds, and end the ladder where
+//      that exceeds what is left of its budget;
+//   3. evaluate it for every seed and receiver: tasks of one seed and a few receivers, shared out between threads;
+//   4. fit error = c * work^exponent over the rungs, for every seed apart;
+//   5. evaluate the middle rung at every receiver.
+#include "study/method_runs.h"
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <map>
+
+#include "study/ladders.h"
+#include "study/parallel.h"
+#include "study/radiosity.h"
+#include "study/statistics.h"
+#include "study/text.h"
+
+namespace exactff::study {
+namespace {
+
+constexpr std::size_t kReceiversPerTask = 8;
+constexpr double kRoundingError = 1e-12;  // relative; what is below says nothing of a method
+
+// Nanoseconds of a counted piece of work on a processor of 2020 or so, rounded: for planning only.
+double price(std::string_view counter, std::size_t faces) {
+  static const std::map<std::string_view, double> kPrices = {
+      {"rays", 150.0},       {"leaves", 300.0},    {"shaft tests", 10.0}, {"samples", 20.0},
+      {"sub-patches", 50.0}, {"pixels", 0.0},      {"pixels drawn", 1.5}, {"polygons", 100.0},
+      {"edges", 400.0},      {"occluders", 300.0}, {"bits", 0.0},         {"not certified", 0.0}};
+  if (counter == "exact V") return 2e4 + 400.0 * static_cast<double>(faces);
+  if (counter.starts_with("leaves:")) return 0.0;  // counted among the leaves
+  const auto found = kPrices.find(counter);
+  return found == kPrices.end() ? 100.0 : found->second;
+}
+
+// What an error is plotted and fitted against: samples or pixels, else what a recursion or a splitting did.
+double main_work(const methods::Counters& counters) {
+  for (const char* name : {"samples", "pixels drawn"}) {
+    if (counters[name] > 0) return static_cast<double>(counters[name]);
+  }
+  double sum = 0.0;
+  for (const char* name : {"sub-patches", "leaves", "rays", "exact V"}) sum += static_cast<double>(counters[name]);
+  return sum;
+}
+
+void take_evenly(std::vector<std::size_t>& chosen, const std::vector<std::size_t>& from, std::size_t count) {
+  count = std::min(count, from.size());
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(from[(2 * i + 1) * from.size() / (2 * count)]);
+}
+
+// A ladder's method made ready for the scene.
+struct Prepared {
+  std::unique_ptr<methods::PreparedScene> scene;
+  std::vector<std::unique_ptr<methods::PreparedSource>> owned;
+  std::vector<const methods::PreparedSource*> sources;
+
+  Prepared(const methods::Method& method, const Request& request) : scene(method.prepare(*request.scene)) {
+    for (const Selection& source : request.sources) {
+      owned.push_back(scene->prepare_source(source));
+      sources.push_back(owned.back().get());
+    }
+  }
+};
+
+class MethodRunner {
+ public:
+  MethodRunner(Study& study, const KeptWork& kept, const Hooks& hooks) : study_(study), kept_(kept), hooks_(hooks) {
+    for (const Selection& source : request().sources) radiosities_.push_back(scene().source_radiosity(source));
+  }
+
+  MethodStudy run() {
+    result_.ladders = request().methods.ladders;
+    result_.receivers = choose_receivers(study_.exact, request().methods.receivers);
+    for (std::size_t l = 0; l < result_.ladders.size(); ++l) run_ladder(l);
+    drop_idle_ladders();
+    for (std::size_t l = 0; l < result_.ladders.size(); ++l) result_.slopes.push_back(slopes_of(l));
+    return std::move(result_);
+  }
+
+ private:
+  // One evaluation: the sum over the sources.
+  struct Outcome {
+    double form_factor = 0.0;
+    double radiosity_error = 0.0;
+    methods::Counters counters;
+  };
+
+  [[nodiscard]] const Request& request() const { return study_.request; }
+  [[nodiscard]] const Scene& scene() const { return *request().scene; }
+
+  Outcome evaluate(methods::Evaluator& evaluator, const Prepared& prepared, std::size_t i) const {
+    const Receiver& receiver = request().receivers[i];
+    std::vector<methods::Estimate> estimates(prepared.sources.size());
+    evaluator.look_from(receiver);
+    evaluator.form_factors(prepared.sources, estimates);
+    Outcome outcome;
+    Rgb error;
+    for (std::size_t s = 0; s < estimates.size(); ++s) {
+      const double value = estimates[s].form_factor;
+      outcome.form_factor += value;
+      add(error, times(radiosities_[s], value - study_.exact[i].terms[s].value));
+      for (const auto& counter : estimates[s].counters.list()) outcome.counters.add(counter.name, counter.count);
+    }
+    outcome.radiosity_error = largest_in_magnitude(times(scene().receiver_reflectance(receiver.on), error));
+    return outcome;
+  }
+
+  [[nodiscard]] static methods::Settings seeded(const methods::Choice& choice, std::uint64_t seed) {
+    methods::Settings settings = choice.settings;
+    if (seed > 0) settings.set("seed", static_cast<std::int64_t>(seed));
+    return settings;
+  }
+
+  void run_ladder(std::size_t l) {
+    const Ladder& ladder = result_.ladders[l];
+    std::optional<Prepared> prepared;
+    try {
+      prepared.emplace(*ladder.rungs.front().method, request());
+    } catch (const InputError& refusal) {
+      study_.left_out.push_back({"method " + ladder.name, one_line(refusal.what())});
+      return;
+    }
+    double left = request().methods.budget;
+    std::size_t rung = 0;
+    for (; rung < ladder.rungs.size(); ++rung) {
+      MethodCell cell = begun(l, rung);
+      const double planned = plan(cell, *prepared);
+      if (planned > left) break;
+      left -= planned;
+      fill(cell, *prepared);
+      summarise(cell);
+      result_.cells.push_back(std::move(cell));
+    }
+    if (rung < ladder.rungs.size()) tell_truncation(ladder, rung);
+    add_field(l, rung, *prepared);
+  }
+
+  // Ladders that were refused, or beyond the budget from the first rung on; the numbers of those after them move up.
+  void drop_idle_ladders() {
+    std::vector<Ladder> kept;
+    std::vector<std::size_t> place(result_.ladders.size(), 0);
+    for (std::size_t l = 0; l < result_.ladders.size(); ++l) {
+      const bool has_cells = std::any_of(result_.cells.begin(), result_.cells.end(),
+                                         [&](const MethodCell& cell) { return cell.ladder == l; });
+      place[l] = kept.size();
+      if (has_cells) kept.push_back(result_.ladders[l]);
+    }
+    for (MethodCell& cell : result_.cells) cell.ladder = place[cell.ladder];
+    for (MethodField& field : result_.fields) field.ladder = place[field.ladder];
+    result_.ladders = std::move(kept);
+  }
+
+  [[nodiscard]] MethodCell begun(std::size_t l, std::size_t rung) const {
+    MethodCell cell;
+    cell.ladder = l;
+    cell.rung = rung;
+    const methods::Choice& choice = result_.ladders[l].rungs[rung];
+    if (!choice.method->stochastic(choice.settings)) {
+      cell.seeds = {0};
+    } else {
+      for (std::size_t seed = 1; seed <= request().methods.seeds; ++seed) cell.seeds.push_back(seed);
+    }
+    cell.values.resize(cell.seeds.size());
+    cell.radiosity_errors.resize(cell.seeds.size());
+    return cell;
+  }
+
+  [[nodiscard]] const methods::Choice& choice_of(const MethodCell& cell) const {
+    return result_.ladders[cell.ladder].rungs[cell.rung];
+  }
+
+  [[nodiscard]] double plan(const MethodCell& cell, const Prepared& prepared) const {
+    if (result_.receivers.empty()) return 0.0;
+    const auto evaluator = prepared.scene->configure(seeded(choice_of(cell), cell.seeds.front()));
+    const std::size_t middle = result_.receivers[result_.receivers.size() / 2];
+    const Outcome outcome = evaluate(*evaluator, prepared, middle);
+    const auto evaluations = static_cast<double>(cell.seeds.size() * result_.receivers.size());
+    return evaluations * planned_seconds(outcome.counters, scene().faces().size());
+  }
+
+  void fill(MethodCell& cell, const Prepared& prepared) {
+    kept_.get(
+        "method/" + short_hash(choice_of(cell).text()), [&] { compute(cell, prepared); },
+        [&](WordWriter& words) {
+          words.put(cell.work);
+          for (std::size_t s = 0; s < cell.seeds.size(); ++s) {
+            words.put(cell.values[s]);
+            words.put(cell.radiosity_errors[s]);
+          }
+        },
+        [&](WordReader& words) {
+          cell.work = words.number();
+          for (std::size_t s = 0; s < cell.seeds.size(); ++s) {
+            cell.values[s] = words.numbers();
+            cell.radiosity_errors[s] = words.numbers();
+          }
+        });
+  }
+
+  void compute(MethodCell& cell, const Prepared& prepared) {
+    const std::size_t receivers = result_.receivers.size();
+    cell.work = 0.0;  // a journal may have had something else
+    cell.values.assign(cell.seeds.size(), std::vector<double>(receivers));
+    cell.radiosity_errors = cell.values;
+    const std::size_t chunks = (receivers + kReceiversPerTask - 1) / kReceiversPerTask;
+    std::vector<double> work(cell.seeds.size() * chunks, 0.0);
+    const auto task = [&](std::size_t t) {
+      const std::size_t seed = t / chunks, first = t % chunks * kReceiversPerTask;
+      const auto evaluator = prepared.scene->configure(seeded(choice_of(cell), cell.seeds[seed]));
+      for (std::size_t r = first; r < std::min(first + kReceiversPerTask, receivers); ++r) {
+        const Outcome outcome = evaluate(*evaluator, prepared, result_.receivers[r]);
+        cell.values[seed][r] = outcome.form_factor;
+        cell.radiosity_errors[seed][r] = outcome.radiosity_error;
+        work[t] += main_work(outcome.counters);
+      }
+    };
+    const std::string stage = result_.ladders[cell.ladder].name;
+    parallel_for(work.size(), request().threads, stage, hooks_, task);
+    for (const double w : work) cell.work += w;
+    cell.work /= static_cast<double>(std::max<std::size_t>(receivers * cell.seeds.size(), 1));
+  }
+
+  void summarise(MethodCell& cell) const {
+    cell.error = statistics(cell, [](Sight) { return true; });
+    cell.error_partly = statistics(cell, [](Sight sight) { return sight == Sight::kPartly; });
+    cell.error_visible = statistics(cell, [](Sight sight) { return sight == Sight::kVisible; });
+  }
+
+  template <class Takes>
+  [[nodiscard]] ErrorStatistics statistics(const MethodCell& cell, const Takes& takes) const {
+    std::vector<double> errors;
+    for (const std::vector<double>& of_seed : cell.radiosity_errors) append(errors, of_seed, takes);
+    return error_statistics(errors);
+  }
+
+  template <class Takes>
+  void append(std::vector<double>& errors, const std::vector<double>& of_seed, const Takes& takes) const {
+    for (std::size_t r = 0; r < of_seed.size(); ++r) {
+      if (takes(study_.exact[result_.receivers[r]].sight)) errors.push_back(of_seed[r]);
+    }
+  }
+
+  void tell_truncation(const Ladder& ladder, std::size_t rung) {
+    std::vector<std::string> names;
+    for (std::size_t k = rung; k < ladder.rungs.size(); ++k) names.push_back(rung_text(ladder, k));
+    study_.left_out.push_back(
+        {"method " + ladder.name +
+             (ladder.along.empty() ? std::string() : ", " + ladder.along + ' ' + enumerate(names)),
+         "its counted work would take more than the budget of " + duration(request().methods.budget) +
+             " for a method on this scene (--method-budget)"});
+  }
+
+  // `rungs` of the ladder were run.
+  void add_field(std::size_t l, std::size_t rungs, const Prepared& prepared) {
+    const Ladder& ladder = result_.ladders[l];
+    if (rungs == 0 || ladder.rungs.front().method->name == "exact") return;
+    MethodField field{l, std::min(ladder.rungs.size() / 2, rungs - 1), {}};
+    const methods::Choice& choice = ladder.rungs[field.rung];
+    const std::uint64_t seed = choice.method->stochastic(choice.settings) ? 1 : 0;
+    kept_.get(
+        "field/" + short_hash(choice.text()),
+        [&] {
+          const std::size_t count = study_.exact.size();
+          field.radiosity_errors.assign(count, 0.0);
+          parallel_for((count + kReceiversPerTask - 1) / kReceiversPerTask, request().threads, ladder.name, hooks_,
+                       [&](std::size_t t) {
+                         const auto evaluator = prepared.scene->configure(seeded(choice, seed));
+                         for (std::size_t i = t * kReceiversPerTask; i < std::min((t + 1) * kReceiversPerTask, count);
+                              ++i) {
+                           field.radiosity_errors[i] = evaluate(*evaluator, prepared, i).radiosity_error;
+                         }
+                       });
+        },
+        [&](WordWriter& words) { words.put(field.radiosity_errors); },
+        [&](WordReader& words) { field.radiosity_errors = words.numbers(); });
+    result_.fields.push_back(std::move(field));
+  }
+
+  [[nodiscard]] LadderSlopes slopes_of(std::size_t l) const {
+    return {slope(l, Sight::kPartly), slope(l, Sight::kVisible)};
+  }
+
+  [[nodiscard]] std::optional<Slope> slope(std::size_t l, Sight sight) const {
+    std::vector<const MethodCell*> cells;
+    for (const MethodCell& cell : result_.cells) {
+      if (cell.ladder == l && cell.work > 0.0) cells.push_back(&cell);
+    }
+    if (cells.size() < 3) return std::nullopt;
+    std::vector<double> exponents;
+    for (std::size_t seed = 0; seed < cells.front()->seeds.size(); ++seed) {
+      Points points;
+      for (const MethodCell* cell : cells) {
+        std::vector<double> errors;
+        append(errors, cell->radiosity_errors[std::min(seed, cell->seeds.size() - 1)],
+               [&](Sight s) { return s == sight; });
+        const double rms = error_statistics(errors).rms;
+        if (rms > kRoundingError * largest_radiosity(study_)) points.emplace_back(cell->work, rms);
+      }
+      const auto exponent = points.size() == cells.size() ? fitted_slope(points) : std::nullopt;
+      if (exponent) exponents.push_back(*exponent);
+    }
+    if (exponents.empty()) return std::nullopt;
+    return with_interval(exponents, cells.size());
+  }
+
+  using Points = std::vector<std::pair<double, double>>;
+
+  static Slope with_interval(const std::vector<double>& exponents, std::size_t rungs) {
+    Slope slope{mean(exponents), 0.0, 0.0, exponents.size(), rungs};
+    double squares = 0.0;
+    for (const double e : exponents) squares += (e - slope.exponent) * (e - slope.exponent);
+    double half = 0.0;
+    if (exponents.size() > 1) {
+      const double n = static_cast<double>(exponents.size());
+      half = boost::math::quantile(boost::math::students_t(n - 1.0), 0.975) * std::sqrt(squares / (n - 1.0) / n);
+    }
+    slope.low = slope.exponent - half;
+    slope.high = slope.exponent + half;
+    return slope;
+  }
+
+  Study& study_;
+  const KeptWork& kept_;
+  const Hooks& hooks_;
+  std::vector<Rgb> radiosities_;
+  MethodStudy result_;
+};
+
+}  // namespace
+
+std::vector<std::size_t> choose_receivers(const std::vector<ExactRow>& exact, std::size_t count) {
+  std::vector<std::size_t> partly, visible;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    if (exact[i].sight == Sight::kPartly) partly.push_back(i);
+    if (exact[i].sight == Sight::kVisible) visible.push_back(i);
+  }
+  const std::size_t of_visible = std::max(count / 3, count - std::min(count, partly.size()));
+  std::vector<std::size_t> chosen;
+  take_evenly(chosen, visible, of_visible);
+  take_evenly(chosen, partly, count - chosen.size());
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+double planned_seconds(const methods::Counters& counters, std::size_t faces) {
+  double nanoseconds = 1000.0;
+  for (const auto& counter : counters.list()) {
+    nanoseconds += price(counter.name, faces) * static_cast<double>(counter.count);
+  }
+  return 1e-9 * nanoseconds;
+}
+
+MethodStudy run_methods(Study& study, const KeptWork& kept, const Hooks& hooks) {
+  return MethodRunner(study, kept, hooks).run();
+}
+
+}  // namespace exactff::study

@@ -1,0 +1,12 @@
+// The CSV files about the methods against one another.
+#pragma once
+
+#include <vector>
+
+#include "study/tables.h"
+
+namespace exactff::study {
+
+[[nodiscard]] const std::vector<Table>& method_tables();
+
+}  // namespace exactff::study

@@ -1,0 +1,163 @@
+#include "study/profile.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "study/ladders.h"
+#include "study/parallel.h"
+#include "study/radiosity.h"
+#include "study/shadow_edges.h"
+
+namespace exactff::study {
+namespace {
+
+constexpr int kPoints = 256;
+constexpr int kBisections = 20;
+constexpr std::size_t kMostCurves = 3;
+
+struct Line {
+  FaceId face{};
+  int row = 0;
+  int columns = 0;
+  int rows = 0;
+};
+
+std::optional<Line> line_through_penumbra(const Study& study) {
+  std::map<int, int> partly_by_row;
+  Line line;
+  for (std::size_t i = 0; i < study.exact.size(); ++i) {
+    const auto cell = grid_cell(study.request.receivers[i]);
+    if (!cell || (i > 0 && cell->face != line.face)) return std::nullopt;
+    line.face = cell->face;
+    line.columns = std::max(line.columns, cell->column);
+    line.rows = std::max(line.rows, cell->row);
+    if (study.exact[i].sight == Sight::kPartly) ++partly_by_row[cell->row];
+  }
+  const auto most = std::max_element(partly_by_row.begin(), partly_by_row.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (most == partly_by_row.end() || line.columns < 2) return std::nullopt;
+  line.row = most->first;
+  return line;
+}
+
+class Profiler {
+ public:
+  Profiler(Study& study, std::span<const ExactSource> sources, const Hooks& hooks)
+      : study_(study), sources_(sources), hooks_(hooks) {
+    for (const Selection& source : request().sources) radiosities_.push_back(scene().source_radiosity(source));
+  }
+
+  std::optional<Profile> along(const Line& line) {
+    take_receivers(line);
+    if (profile_.receivers.size() < 2) return std::nullopt;
+    profile_.where = "row " + std::to_string(line.row) + " of " + scene().name_of(line.face);
+    find_exact();
+    find_kinks();
+    add_curves();
+    return std::move(profile_);
+  }
+
+ private:
+  [[nodiscard]] const Request& request() const { return study_.request; }
+  [[nodiscard]] const Scene& scene() const { return *request().scene; }
+
+  void take_receivers(const Line& line) {
+    const int finer = std::max(1, kPoints / line.columns);
+    const std::vector<FaceId> on = {line.face};
+    for (Receiver& receiver : grid_receivers(scene(), on, {line.columns * finer, line.rows})) {
+      if (grid_cell(receiver)->row == line.row) profile_.receivers.push_back(std::move(receiver));
+    }
+    for (const Receiver& receiver : profile_.receivers) {
+      const Vec3 &p = receiver.point, &q = profile_.receivers.front().point;
+      profile_.position.push_back(std::hypot(p.x - q.x, p.y - q.y, p.z - q.z));
+    }
+  }
+
+  [[nodiscard]] double radiosity(const Receiver& receiver, const std::vector<double>& form_factors) const {
+    Rgb sum;
+    for (std::size_t s = 0; s < form_factors.size(); ++s) add(sum, times(radiosities_[s], form_factors[s]));
+    return times(scene().receiver_reflectance(receiver.on), sum).largest();
+  }
+
+  void find_exact() {
+    const std::size_t count = profile_.receivers.size();
+    profile_.exact.resize(count);
+    sights_.resize(count);
+    parallel_for(count, request().threads, "profile", hooks_, [&](std::size_t i) {
+      const Receiver& receiver = profile_.receivers[i];
+      std::vector<double> values;
+      for (const ExactSource& source : sources_) values.push_back(exact_form_factor(scene(), receiver, source).value);
+      profile_.exact[i] = radiosity(receiver, values);
+      sights_[i] = sights(scene(), receiver, sources_);
+    });
+  }
+
+  [[nodiscard]] Receiver between(std::size_t i, double t) const {
+    Receiver receiver = profile_.receivers[i];
+    const Vec3 &p = receiver.point, &q = profile_.receivers[i + 1].point;
+    receiver.point = {p.x + t * (q.x - p.x), p.y + t * (q.y - p.y), p.z + t * (q.z - p.z)};
+    return receiver;
+  }
+
+  // A kink between two points whose sights differ, by bisection.
+  void find_kinks() {
+    for (std::size_t i = 0; i + 1 < profile_.receivers.size(); ++i) {
+      if (sights_[i] == sights_[i + 1]) continue;
+      double low = 0.0, high = 1.0;
+      for (int step = 0; step < kBisections; ++step) {
+        const double middle = 0.5 * (low + high);
+        (sights(scene(), between(i, middle), sources_) == sights_[i] ? low : high) = middle;
+      }
+      profile_.kinks.push_back(profile_.position[i] + low * (profile_.position[i + 1] - profile_.position[i]));
+    }
+  }
+
+  // The middle rungs of the methods that people use most.
+  void add_curves() {
+    for (const char* wanted : {"adaptive", "hemicube", "area-sampling"}) {
+      const auto& ladders = study_.methods.ladders;
+      const auto found = std::find_if(ladders.begin(), ladders.end(), [&](const Ladder& ladder) {
+        return ladder.rungs.front().method->name == wanted;
+      });
+      if (found != ladders.end() && profile_.others.size() < kMostCurves) add_curve(*found);
+    }
+  }
+
+  void add_curve(const Ladder& ladder) {
+    const std::size_t rung = ladder.rungs.size() / 2;
+    const methods::Choice& choice = ladder.rungs[rung];
+    const auto on_scene = choice.method->prepare(scene());
+    std::vector<std::unique_ptr<methods::PreparedSource>> prepared;
+    for (const Selection& source : request().sources) prepared.push_back(on_scene->prepare_source(source));
+    const auto evaluator = on_scene->configure(choice.settings);
+    Profile::Curve curve{rung_name(ladder, rung), {}};
+    for (const Receiver& receiver : profile_.receivers) {
+      evaluator->look_from(receiver);
+      std::vector<double> values;
+      for (const auto& source : prepared) values.push_back(evaluator->form_factor(*source).form_factor);
+      curve.radiosity.push_back(radiosity(receiver, values));
+    }
+    profile_.others.push_back(std::move(curve));
+  }
+
+  Study& study_;
+  std::span<const ExactSource> sources_;
+  const Hooks& hooks_;
+  std::vector<Rgb> radiosities_;
+  std::vector<std::vector<Sight>> sights_;
+  Profile profile_;
+};
+
+}  // namespace
+
+void find_profile(Study& study, std::span<const ExactSource> sources, const Hooks& hooks) {
+  const auto line = line_through_penumbra(study);
+  if (line) study.profile = Profiler(study, sources, hooks).along(*line);
+  if (study.profile) return;
+  study.left_out.push_back(
+      {"penumbra profile", "the receivers are not one grid on one quadrilateral on which some see a source partly"});
+}
+
+}  // namespace exactff::study

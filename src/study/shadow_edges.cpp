@@ -1,0 +1,140 @@
+// The raster is a grid on the same face, some times finer, whose every cell is classified exactly. Wherever two cells
+// beside each other differ, an edge runs between their centres; it is taken to be half-way. A receiver's distance is
+// that to the nearest such place.
+#include "study/shadow_edges.h"
+
+#include <algorithm>
+#include <boost/geometry.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <cmath>
+
+#include "study/parallel.h"
+#include "study/sight.h"
+#include "study/vec.h"
+
+namespace exactff::study {
+namespace {
+
+namespace bgi = boost::geometry::index;
+using Point = boost::geometry::model::point<double, 3, boost::geometry::cs::cartesian>;
+using Tree = bgi::rtree<Point, bgi::rstar<16>>;
+
+constexpr int kRasterCells = 16384;
+constexpr int kRasterCellsOfLargeScenes = 4096;
+constexpr std::size_t kLargeScene = 300;  // faces
+
+struct Grid {
+  FaceId face{};
+  GridSize size;
+};
+
+// The one grid that all receivers belong to.
+std::optional<Grid> grid_of(const std::vector<Receiver>& receivers) {
+  std::optional<Grid> grid;
+  for (const Receiver& receiver : receivers) {
+    const auto cell = grid_cell(receiver);
+    if (!cell || (grid && grid->face != cell->face)) return std::nullopt;
+    if (!grid) grid = Grid{cell->face, {1, 1}};
+    grid->size.u = std::max(grid->size.u, cell->column);
+    grid->size.v = std::max(grid->size.v, cell->row);
+  }
+  return grid;
+}
+
+double distance(const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
+
+class Raster {
+ public:
+  Raster(const Study& study, const Grid& grid) : study_(study) {
+    const Request& request = study.request;
+    const bool large = request.scene->faces().size() > kLargeScene;
+    const int cells = grid.size.u * grid.size.v;
+    const int finer = static_cast<int>(std::sqrt((large ? kRasterCellsOfLargeScenes : kRasterCells) / cells));
+    size_ = {grid.size.u * std::max(finer, 1), grid.size.v * std::max(finer, 1)};
+    const std::vector<FaceId> on = {grid.face};
+    receivers_ = grid_receivers(*request.scene, on, size_);
+  }
+
+  // Faces that are no quadrilaterals have cells left out.
+  [[nodiscard]] bool complete() const {
+    return receivers_.size() == static_cast<std::size_t>(size_.u) * static_cast<std::size_t>(size_.v);
+  }
+
+  void classify(std::span<const ExactSource> sources, const Hooks& hooks) {
+    sights_.resize(receivers_.size());
+    parallel_for(receivers_.size(), study_.request.threads, "shadow edges", hooks,
+                 [&](std::size_t i) { sights_[i] = sights(*study_.request.scene, receivers_[i], sources); });
+  }
+
+  [[nodiscard]] std::vector<Point> edges() const {
+    std::vector<Point> found;
+    for (int v = 0; v < size_.v; ++v) {
+      for (int u = 0; u < size_.u; ++u) {
+        if (u + 1 < size_.u) add_edge(found, index(u, v), index(u + 1, v));
+        if (v + 1 < size_.v) add_edge(found, index(u, v), index(u, v + 1));
+      }
+    }
+    return found;
+  }
+
+  [[nodiscard]] double spacing() const {
+    double largest = 0.0;
+    if (size_.u > 1) largest = std::max(largest, distance(receivers_[0].point, receivers_[1].point));
+    if (size_.v > 1) largest = std::max(largest, distance(receivers_[0].point, receivers_[index(0, 1)].point));
+    return largest;
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(int u, int v) const {
+    return static_cast<std::size_t>(v) * static_cast<std::size_t>(size_.u) + static_cast<std::size_t>(u);
+  }
+
+  void add_edge(std::vector<Point>& found, std::size_t a, std::size_t b) const {
+    if (sights_[a] == sights_[b]) return;
+    const Vec3 p = receivers_[a].point, q = receivers_[b].point;
+    found.emplace_back(0.5 * (p.x + q.x), 0.5 * (p.y + q.y), 0.5 * (p.z + q.z));
+  }
+
+  const Study& study_;
+  GridSize size_;
+  std::vector<Receiver> receivers_;
+  std::vector<std::vector<Sight>> sights_;
+};
+
+double nearest_distance(const Tree& tree, const Vec3& p) {
+  const Point from(p.x, p.y, p.z);
+  double best = 0.0;
+  for (auto found = tree.qbegin(bgi::nearest(from, 1)); found != tree.qend(); ++found) {
+    best = boost::geometry::distance(from, *found);
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<Sight> sights(const Scene& scene, const Receiver& receiver, std::span<const ExactSource> sources) {
+  std::vector<Sight> result;
+  for (const ExactSource& source : sources) result.push_back(sight_of(exact_form_factor(scene, receiver, source)));
+  return result;
+}
+
+void find_shadow_edges(Study& study, std::span<const ExactSource> sources, const Hooks& hooks) {
+  const auto leave_out = [&](const char* why) {
+    study.left_out.push_back({"error by distance to the nearest shadow edge", why});
+  };
+  const auto grid = grid_of(study.request.receivers);
+  if (!grid) return leave_out("the receivers are not one grid on one face");
+  Raster raster(study, *grid);
+  if (!raster.complete()) return leave_out("the face is no quadrilateral");
+  raster.classify(sources, hooks);
+  const std::vector<Point> edges = raster.edges();
+  if (edges.empty()) return leave_out("what is visible is of one kind all over the face");
+  const Tree tree(edges);
+  for (const Receiver& receiver : study.request.receivers) {
+    study.edge_distance.push_back(nearest_distance(tree, receiver.point));
+  }
+  study.edge_resolution = raster.spacing();
+}
+
+}  // namespace exactff::study

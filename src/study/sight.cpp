@@ -1,0 +1,59 @@
+#include "study/sight.h"
+
+#include <algorithm>
+
+namespace exactff::study {
+namespace {
+
+Sight sight_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kUnoccluded:
+      return Sight::kVisible;
+    case Outcome::kPartlyHidden:
+      return Sight::kPartly;
+    case Outcome::kHiddenByOne:
+    case Outcome::kHiddenByUnion:
+      return Sight::kHidden;
+    case Outcome::kReceiverFace:
+    case Outcome::kBehind:
+    case Outcome::kBelowHorizon:
+      break;
+  }
+  return Sight::kNothing;
+}
+
+}  // namespace
+
+Sight sight_of(const FormFactor& result) {
+  Sight sight = Sight::kNothing;
+  for (const PlaneRecord& plane : result.planes) sight = joined(sight, sight_of(plane.outcome));
+  return sight;
+}
+
+Sight joined(Sight a, Sight b) {
+  if (a == Sight::kNothing) return b;
+  if (b == Sight::kNothing || a == b) return a;
+  return Sight::kPartly;
+}
+
+bool needs_rays(const FormFactor& result) {
+  return std::any_of(result.planes.begin(), result.planes.end(), [](const PlaneRecord& plane) {
+    return plane.outcome == Outcome::kPartlyHidden || plane.outcome == Outcome::kHiddenByUnion;
+  });
+}
+
+std::string_view name_of(Sight sight) {
+  switch (sight) {
+    case Sight::kNothing:
+      return "faces away";
+    case Sight::kHidden:
+      return "hidden";
+    case Sight::kPartly:
+      return "partly hidden";
+    case Sight::kVisible:
+      return "visible";
+  }
+  return {};
+}
+
+}  // namespace exactff::study

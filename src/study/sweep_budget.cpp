@@ -1,0 +1,94 @@
+#include "study/sweep_budget.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "study/figures.h"
+#include "study/method_runs.h"
+#include "study/radiosity.h"
+#include "study/text.h"
+
+namespace exactff::study {
+namespace {
+
+constexpr std::size_t kProbes = 3;
+
+class SweepPlan {
+ public:
+  SweepPlan(Study& study, std::span<const ExactSource> sources, const AdaptiveSolver& solver,
+            std::span<const AdaptiveSource> sampled_sources)
+      : study_(study), sources_(sources), solver_(solver), sampled_sources_(sampled_sources) {}
+
+  // By setting, over all receivers, in seconds.
+  std::vector<double> costs() const {
+    const std::vector<std::size_t> probes = choose_receivers(study_.exact, kProbes);
+    std::vector<double> result(study_.settings.size(), 0.0);
+    if (probes.empty()) return result;
+    const double scale = static_cast<double>(study_.exact.size()) / static_cast<double>(probes.size());
+    for (const std::size_t i : probes) {
+      for (std::size_t s = 0; s < sources_.size(); ++s) add_costs(i, s, scale, result);
+    }
+    return result;
+  }
+
+ private:
+  // The leaves are held against the visible region, which takes its edges times the leaves that sampling decided.
+  void add_costs(std::size_t i, std::size_t s, double scale, std::vector<double>& result) const {
+    const Request& request = study_.request;
+    const Receiver& receiver = request.receivers[i];
+    const Scene& scene = *request.scene;
+    std::uint64_t edges = 0;
+    for (const PlaneRecord& plane : exact_form_factor(scene, receiver, sources_[s]).planes) edges += plane.edges;
+    const double rho_b =
+        times(scene.receiver_reflectance(receiver.on), scene.source_radiosity(request.sources[s])).largest();
+    for (std::size_t k = 0; k < result.size(); ++k) {
+      const AdaptiveResult found = solver_.form_factor(receiver, sampled_sources_[s], rho_b, study_.settings[k]);
+      const auto of = [&](LeafReason reason) { return found.leaves_by_reason[static_cast<std::size_t>(reason)]; };
+      const std::uint64_t judged = of(LeafReason::kSampledVisible) + of(LeafReason::kSampledHidden);
+      const double nanoseconds = 60.0 * static_cast<double>(found.rays) + 300.0 * static_cast<double>(found.leaves) +
+                                 10.0 * static_cast<double>(found.shaft_tests) +
+                                 20.0 * static_cast<double>(judged) * static_cast<double>(edges);
+      result[k] += 1e-9 * scale * nanoseconds;
+    }
+  }
+
+  Study& study_;
+  std::span<const ExactSource> sources_;
+  const AdaptiveSolver& solver_;
+  std::span<const AdaptiveSource> sampled_sources_;
+};
+
+}  // namespace
+
+void keep_to_budget(Study& study, std::span<const ExactSource> sources, const AdaptiveSolver& solver,
+                    std::span<const AdaptiveSource> sampled_sources) {
+  const std::vector<double> costs = SweepPlan(study, sources, solver, sampled_sources).costs();
+  std::vector<std::size_t> order(costs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return costs[a] > costs[b]; });
+  double total = std::accumulate(costs.begin(), costs.end(), 0.0);
+  std::vector<bool> dropped(costs.size(), false);
+  std::vector<std::string> names;
+  for (const std::size_t k : order) {
+    if (total <= study.request.sweep_budget) break;
+    if (k == study.base) continue;
+    total -= costs[k];
+    dropped[k] = true;
+    names.push_back(label(study, k));
+  }
+  if (names.empty()) return;
+  study.left_out.push_back(
+      {counted(names.size(), "setting") + " of the ray-sampled algorithm (" + enumerate(names) + ')',
+       "the counted work of all settings would take more than the budget of " + duration(study.request.sweep_budget) +
+           " for this scene (--sweep-budget)"});
+  std::vector<AdaptiveOptions> kept;
+  std::size_t base = 0;
+  for (std::size_t k = 0; k < dropped.size(); ++k) {
+    if (k == study.base) base = kept.size();
+    if (!dropped[k]) kept.push_back(study.settings[k]);
+  }
+  study.base = base;
+  study.settings = std::move(kept);
+}
+
+}  // namespace exactff::study

@@ -1,0 +1,16 @@
+// Which settings of the sweeps are too much work for a scene.
+#pragma once
+
+#include <span>
+
+#include "exactff/study.h"
+
+namespace exactff::study {
+
+// Leaves out the settings with the most planned work, the base excepted, until all together keep to
+// Request::sweep_budget; says which. Work is counted at a few receivers and taken at fixed prices, so that the choice
+// depends on the request alone.
+void keep_to_budget(Study& study, std::span<const ExactSource> sources, const AdaptiveSolver& solver,
+                    std::span<const AdaptiveSource> sampled_sources);
+
+}  // namespace exactff::study

@@ -1,0 +1,207 @@
+#include "study/timing.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "study/page_files.h"
+#include "study/radiosity.h"
+#include "study/statistics.h"
+
+namespace exactff::study {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kLongCallSeconds = 0.02;  // such a first call has warmed itself up
+constexpr std::size_t kMostTimed = 256;    // receivers
+constexpr std::size_t kFewestTimed = 12;
+constexpr std::size_t kFewestInCell = 4;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+template <class Call>
+double timed(const Call& call) {
+  const auto start = Clock::now();
+  call();
+  return seconds_since(start);
+}
+
+template <class Call>
+double typical_time(const Call& call) {
+  const double first = timed(call);
+  if (first >= kLongCallSeconds) return first;
+  std::array<double, 3> times{};
+  for (double& t : times) t = timed(call);
+  std::sort(times.begin(), times.end());
+  return times[1];
+}
+
+class Stopwatch {
+ public:
+  Stopwatch(Study& study, const Hooks& hooks) : study_(study), hooks_(hooks) {}
+
+  void run() {
+    total_ = 1 + study_.settings.size() + study_.methods.cells.size();
+    prepare();
+    choose();
+    time_exact();
+    for (std::size_t k = 0; k < study_.settings.size(); ++k) time_setting(k);
+    study_.ray_setup_seconds = solver_->build_seconds();  // built where a candidate list first was long
+    time_methods();
+  }
+
+ private:
+  [[nodiscard]] const Request& request() const { return study_.request; }
+  [[nodiscard]] const Scene& scene() const { return *request().scene; }
+
+  void prepare() {
+    study_.exact_setup_seconds = timed([&] {
+      for (const Selection& source : request().sources) sources_.emplace_back(scene(), source);
+    });
+    solver_.emplace(scene());
+    for (const Selection& source : request().sources) {
+      sampled_sources_.push_back(solver_->prepare(source));
+      radiosities_.push_back(scene().source_radiosity(source));
+    }
+  }
+
+  void choose() {
+    std::vector<std::size_t> order = spread_order(study_.exact.size());
+    order.resize(std::min(order.size(), kMostTimed));
+    const auto is_partly = [&](std::size_t i) { return study_.exact[i].sight == Sight::kPartly; };
+    if (std::none_of(order.begin(), order.end(), is_partly)) {
+      for (std::size_t i = 0; i < study_.exact.size() && order.size() < kMostTimed + 3; ++i) {
+        if (is_partly(i)) order.push_back(i);
+      }
+    }
+    order_ = std::move(order);
+  }
+
+  void report() {
+    require_not_cancelled(hooks_);
+    if (hooks_.progress) hooks_.progress({"times", ++done_, total_});
+  }
+
+  // Calls measure(i) for receivers until the time is used up; some that see the source partly are always among them.
+  template <class Measure>
+  void spend(double seconds, std::size_t fewest, const std::vector<std::size_t>& order, const Measure& measure) {
+    const auto start = Clock::now();
+    std::size_t done = 0, partly = 0;
+    const std::size_t all_partly = static_cast<std::size_t>(std::count_if(
+        order.begin(), order.end(), [&](std::size_t i) { return study_.exact[i].sight == Sight::kPartly; }));
+    for (const std::size_t i : order) {
+      const bool is_partly = study_.exact[i].sight == Sight::kPartly;
+      const bool spent = seconds_since(start) > seconds && done >= fewest;
+      if (spent && partly >= std::min<std::size_t>(3, all_partly)) break;
+      if (spent && !is_partly) continue;
+      measure(i);
+      ++done;
+      partly += is_partly ? 1 : 0;
+    }
+  }
+
+  void time_exact() {
+    spend(4.0 * request().seconds_for_a_time, kFewestTimed, order_, [&](std::size_t i) {
+      study_.timed.push_back(i);
+      const ExactOptions options{.engine = request().engine};
+      double sum = 0.0;
+      for (const ExactSource& source : sources_) {
+        sum += typical_time([&] { (void)exact_form_factor(scene(), request().receivers[i], source, options); });
+      }
+      study_.exact[i].seconds = sum;
+    });
+    std::sort(study_.timed.begin(), study_.timed.end());
+    report();
+  }
+
+  void time_setting(std::size_t k) {
+    spend(request().seconds_for_a_time, kFewestTimed, order_, [&](std::size_t i) {
+      const Receiver& receiver = request().receivers[i];
+      SampleRow& row = study_.samples[k][i];
+      double form_factor = 0.0;
+      row.seconds = 0.0;
+      for (std::size_t s = 0; s < sampled_sources_.size(); ++s) {
+        const double rho_b = times(scene().receiver_reflectance(receiver.on), radiosities_[s]).largest();
+        double value = 0.0;
+        row.seconds += typical_time([&] {
+          value = solver_->form_factor(receiver, sampled_sources_[s], rho_b, study_.settings[k]).form_factor;
+        });
+        form_factor += value;
+      }
+      if (form_factor != row.form_factor && !(std::isnan(form_factor) && std::isnan(row.form_factor))) {
+        throw std::logic_error("the adaptive algorithm gave two results for one receiver and setting");
+      }
+    });
+    report();
+  }
+
+  void time_methods() {
+    MethodStudy& methods = study_.methods;
+    std::vector<std::size_t> order;
+    for (const std::size_t k : spread_order(methods.receivers.size())) order.push_back(methods.receivers[k]);
+    for (std::size_t first = 0, l = 0; l < methods.ladders.size(); ++l) {
+      const methods::Choice& choice = methods.ladders[l].rungs.front();
+      std::unique_ptr<methods::PreparedScene> on_scene;
+      std::vector<std::unique_ptr<methods::PreparedSource>> owned;
+      std::vector<const methods::PreparedSource*> sources;
+      methods.setup_seconds.push_back(timed([&] {
+        on_scene = choice.method->prepare(scene());
+        for (const Selection& source : request().sources) owned.push_back(on_scene->prepare_source(source));
+      }));
+      for (const auto& source : owned) sources.push_back(source.get());
+      for (; first < methods.cells.size() && methods.cells[first].ladder == l; ++first) {
+        time_cell(methods.cells[first], *on_scene, sources, order);
+      }
+    }
+  }
+
+  void time_cell(MethodCell& cell, const methods::PreparedScene& on_scene,
+                 const std::vector<const methods::PreparedSource*>& sources, const std::vector<std::size_t>& order) {
+    methods::Settings settings = study_.methods.ladders[cell.ladder].rungs[cell.rung].settings;
+    if (cell.seeds.front() > 0) settings.set("seed", static_cast<std::int64_t>(cell.seeds.front()));
+    const auto evaluator = on_scene.configure(settings);
+    std::vector<methods::Estimate> estimates(sources.size());
+    std::vector<double> all, partly;
+    spend(request().seconds_for_a_time, kFewestInCell, order, [&](std::size_t i) {
+      all.push_back(typical_time([&] {
+        evaluator->look_from(request().receivers[i]);
+        evaluator->form_factors(sources, estimates);
+      }));
+      if (study_.exact[i].sight == Sight::kPartly) partly.push_back(all.back());
+    });
+    if (!all.empty()) cell.seconds = mean(all);
+    if (!partly.empty()) cell.seconds_partly = mean(partly);
+    report();
+  }
+
+  Study& study_;
+  const Hooks& hooks_;
+  std::vector<ExactSource> sources_;
+  std::optional<AdaptiveSolver> solver_;
+  std::vector<AdaptiveSource> sampled_sources_;
+  std::vector<Rgb> radiosities_;
+  std::vector<std::size_t> order_;
+  std::size_t done_ = 0;
+  std::size_t total_ = 0;
+};
+
+}  // namespace
+
+// Multiples of about the golden section of the count, modulo it.
+std::vector<std::size_t> spread_order(std::size_t count) {
+  std::vector<std::size_t> order;
+  if (count == 0) return order;
+  auto step =
+      std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(0.6180339887 * static_cast<double>(count))));
+  while (std::gcd(step, count) != 1) ++step;
+  for (std::size_t k = 0; k < count; ++k) order.push_back((count / 2 + k * step) % count);
+  return order;
+}
+
+void measure_times(Study& study, const Hooks& hooks) { Stopwatch(study, hooks).run(); }
+
+}  // namespace exactff::study
