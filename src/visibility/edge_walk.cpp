@@ -224,10 +224,12 @@ bool EdgeWalk::visit(std::uint32_t index, OutlineId source) {
 void EdgeWalk::make_side_planes(OutlineId source) {
   work_.side_planes.clear();
   const Approx3& front = plane_.normal.approx;
-  const Approx3 s = kernel::approx_difference(plane_.point, view_.x);
-  const double scale = std::ldexp(1.0, outlines_.scale_exponent()), size = scale * largest(s);
+  const double scale = std::ldexp(1.0, outlines_.scale_exponent());
+  const Approx3 d = kernel::approx_difference(plane_.point, view_.x);
+  const Approx3 s{scale * d.x, scale * d.y, scale * d.z};  // first: products of what is not scaled may underflow
+  const double size = largest(s);
   const bool usable = size >= 0x1p-300 && size <= 0x1p300;
-  const double offset = scale * (front.x * s.x + front.y * s.y + front.z * s.z);
+  const double offset = front.x * s.x + front.y * s.y + front.z * s.z;
   work_.side_planes.push_back(
       {front, offset, 0x1p-48, usable ? 0x1p-48 * size : std::numeric_limits<double>::infinity()});
   work_.side_planes.push_back({{-front.x, -front.y, -front.z}, 0.0, 0x1p-48, 0.0});
