@@ -1,5 +1,7 @@
-// One piece at a time:
-//   1. a x b, as the smaller of a and b times b - a, whose error then shrinks with the edge (b x (b - a) = a x b);
+// Once an edge:
+//   1. a x b, as the smaller of a and b times b - a, whose error then shrinks with the edge (b x (b - a) = a x b), its
+//      length, and n . (a x b) / |a x b|.
+// Once a piece:
 //   2. p and q, corners or crossings, and w (contour.h);
 //   3. the angle atan2(w |a x b|, p . q), with the sign of w;
 //   4. its product with n . (a x b) / |a x b|, added to the sum.
@@ -96,27 +98,23 @@ EXACTFF_INLINE double inverse_power_of_two(double x) {
 }
 
 EXACTFF_FMA_CLONES
-bool cross_edge(const QuickCorner* corners, const QuickEnd& end, const Vector& a, const Vector& b, Point& result) {
-  const Vector c = vector_of(corners[end.c]);
-  const Vector d = vector_of(corners[end.d]);
-  if (!has_moderate_size(c) || !has_moderate_size(d)) return false;
-  const Vector normal = cross_of_edge(c, d);
-  const Bounded height_a = height(normal, c, a);
-  const Bounded height_b = height(normal, c, b);
+bool cross_edge(const QuickLine& line, const QuickLine& edge, Point& result) {
+  if (!line.usable) return false;
+  const Bounded height_a = height(line.cross, line.a, edge.a);
+  const Bounded height_b = height(line.cross, line.a, edge.b);
   if (!sign_is_certain(height_a) || !sign_is_certain(height_b)) return false;
   if ((height_a.hi < 0.0) == (height_b.hi < 0.0)) return false;
   const double scale = inverse_power_of_two(std::max(std::abs(height_a.hi), std::abs(height_b.hi)));
   result.l = scaled(absolute(height_b), scale);
   result.m = scaled(absolute(height_a), scale);
-  result.direction = combination(result.l, a, result.m, b);
+  result.direction = combination(result.l, edge.a, result.m, edge.b);
   return true;
 }
 
-EXACTFF_INLINE bool locate(const QuickCorner* corners, const QuickEnd& end, const Vector& a, const Vector& b,
-                           Point& result) {
-  if (end.kind == QuickEnd::Kind::kCrossing) return cross_edge(corners, end, a, b, result);
+EXACTFF_INLINE bool locate(const QuickLine& edge, const QuickEnd& end, Point& result) {
+  if (end.kind == QuickEnd::Kind::kCrossing) return cross_edge(*end.line, edge, result);
   const bool at_a = end.kind == QuickEnd::Kind::kA;
-  result = {{at_a ? 1.0 : 0.0}, {at_a ? 0.0 : 1.0}, at_a ? a : b};
+  result = {{at_a ? 1.0 : 0.0}, {at_a ? 0.0 : 1.0}, at_a ? edge.a : edge.b};
   return true;
 }
 
@@ -126,32 +124,36 @@ EXACTFF_INLINE bool locate(const QuickCorner* corners, const QuickEnd& end, cons
 
 namespace {
 
+EXACTFF_FMA_CLONES
+QuickLine line_of(const std::array<double, 3>& normal, const QuickCorner& from, const QuickCorner& to) {
+  QuickLine line;
+  line.a = vector_of(from);
+  line.b = vector_of(to);
+  line.usable = has_moderate_size(line.a) && has_moderate_size(line.b);
+  if (!line.usable) return line;
+  line.cross = cross_of_edge(line.a, line.b);
+  line.size = square_root(dot(line.cross, line.cross));
+  line.weight = dot(vector_of(normal), line.cross) / line.size;
+  return line;
+}
+
 // The angle of the piece, with the sign of w.
 EXACTFF_FMA_CLONES
-Bounded angle_between(const QuickCorner* corners, const QuickPiece& piece, const Vector& a, const Vector& b,
-                      const Bounded& size_of_cross, const AngleConstants& known) {
+Bounded angle_between(const QuickLine& edge, const QuickEnd& begin, const QuickEnd& end, const AngleConstants& known) {
   Point p;
   Point q;
-  if (!locate(corners, piece.begin, a, b, p) || !locate(corners, piece.end, a, b, q)) return kDeclined;
+  if (!locate(edge, begin, p) || !locate(edge, end, q)) return kDeclined;
   const Bounded w = sum_of_products(p.l, q.m, -p.m, q.l);
-  return atan2(w * size_of_cross, dot(p.direction, q.direction), known);
-}
-
-bool is_whole(const QuickPiece& piece) {
-  return piece.begin.kind == QuickEnd::Kind::kA && piece.end.kind == QuickEnd::Kind::kB;
+  return atan2(w * edge.size, dot(p.direction, q.direction), known);
 }
 
 EXACTFF_FMA_CLONES
-Bounded term(const std::array<double, 3>& normal, const QuickCorner* corners, const QuickPiece& piece,
-             const AngleConstants& known) {
-  const Vector a = vector_of(corners[piece.a]);
-  const Vector b = vector_of(corners[piece.b]);
-  if (!has_moderate_size(a) || !has_moderate_size(b)) return kDeclined;
-  const Vector a_cross_b = cross_of_edge(a, b);
-  const Bounded size_of_cross = square_root(dot(a_cross_b, a_cross_b));
-  const Bounded angle = is_whole(piece) ? atan2(size_of_cross, dot(a, b), known)
-                                        : angle_between(corners, piece, a, b, size_of_cross, known);
-  return angle * (dot(vector_of(normal), a_cross_b) / size_of_cross);
+Bounded term(const QuickLine& edge, const QuickEnd& begin, const QuickEnd& end, const AngleConstants& known) {
+  if (!edge.usable) return kDeclined;
+  const bool is_whole = begin.kind == QuickEnd::Kind::kA && end.kind == QuickEnd::Kind::kB;
+  const Bounded angle =
+      is_whole ? atan2(edge.size, dot(edge.a, edge.b), known) : angle_between(edge, begin, end, known);
+  return angle * edge.weight;
 }
 
 std::array<double, 3> scaled_normal(const Vec3& n) {
@@ -164,8 +166,10 @@ std::array<double, 3> scaled_normal(const Vec3& n) {
 
 QuickContour::QuickContour(const Vec3& normal) : normal_(scaled_normal(normal)) {}
 
-void QuickContour::add(std::span<const QuickCorner> corners, const QuickPiece& piece) {
-  sum_ = sum_ + term(normal_, corners.data(), piece, angle_constants());
+QuickLine QuickContour::line(const QuickCorner& a, const QuickCorner& b) const { return line_of(normal_, a, b); }
+
+void QuickContour::add(const QuickLine& edge, const QuickEnd& begin, const QuickEnd& end) {
+  sum_ = sum_ + term(edge, begin, end, angle_constants());
 }
 
 QuickContour::Value QuickContour::value() const {

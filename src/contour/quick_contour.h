@@ -4,7 +4,7 @@
 // cancel by some 45 bits.
 //
 // Notation: as in contour.h, with a piece of the edge from a to b given by corners alone. Where the plane through x and
-// the corners c, d meets the edge, the parameter is l : m = |det(c, d, b)| : |det(c, d, a)|.
+// another edge, from c to d, meets the edge, the parameter is l : m = |det(c, d, b)| : |det(c, d, a)|.
 //
 // Corners whose largest component is outside [2^-200, 2^200] are declined, so that no operation overflows and whatever
 // underflows is covered by kUnderflow (double_double.h).
@@ -13,8 +13,8 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <span>
 
+#include "contour/quick_vector.h"
 #include "exactff/geometry.h"
 #include "kernel/double_double.h"
 #include "kernel/exact_vec.h"
@@ -29,19 +29,20 @@ QuickCorner quick_corner(const Vec3& vertex, const Vec3& x, int scale_exponent);
 // The direction with its largest component scaled into [1/2, 1). Requires that it is not zero.
 QuickCorner quick_corner(const kernel::ExactVec3& direction);
 
-// A point of the edge from a to b: an end of it, or where the plane through x and the corners c, d meets it.
-struct QuickEnd {
-  enum class Kind : std::uint8_t { kA, kB, kCrossing } kind = Kind::kA;
-  std::uint32_t c = 0;
-  std::uint32_t d = 0;
+// An edge from a to b, with what all pieces of it and all that its line crosses have in common.
+struct QuickLine {
+  bool usable = false;  // else nothing below is set
+  Vector a;
+  Vector b;
+  Vector cross;                           // a x b
+  kernel::double_double::Bounded size;    // |a x b|
+  kernel::double_double::Bounded weight;  // n . (a x b) / |a x b|
 };
 
-// From begin to end, which need not be the sense from a to b.
-struct QuickPiece {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
-  QuickEnd begin{QuickEnd::Kind::kA};
-  QuickEnd end{QuickEnd::Kind::kB};
+// A point of an edge: an end of it, or where the plane through x and another edge meets it.
+struct QuickEnd {
+  enum class Kind : std::uint8_t { kA, kB, kCrossing } kind = Kind::kA;
+  const QuickLine* line = nullptr;  // of a crossing
 };
 
 class QuickContour {
@@ -49,8 +50,10 @@ class QuickContour {
   // n: the receiver's normal, finite and not zero, of any length.
   explicit QuickContour(const Vec3& normal);
 
-  // The indices of the piece count from the first of `corners`.
-  void add(std::span<const QuickCorner> corners, const QuickPiece& piece);
+  [[nodiscard]] QuickLine line(const QuickCorner& a, const QuickCorner& b) const;
+
+  // The piece of an edge from begin to end, which need not be the sense from a to b. The lines are of this contour.
+  void add(const QuickLine& edge, const QuickEnd& begin, const QuickEnd& end);
 
   // |F - (hi + lo)| <= error for the closed loops added so far, hi being the double nearest to hi + lo. The error is
   // infinite where some piece was declined: a and b, c and d, or p and q too close to one line with x, a crossing too

@@ -1,9 +1,6 @@
 // The first attempt at a certified value: the boundary that the edge engine found, integrated in double-double.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "contour/quick_contour.h"
 #include "exactff/exact.h"
 #include "visibility/visible_edges.h"
@@ -23,12 +20,7 @@ class QuickTier {
   [[nodiscard]] Enclosure enclosure() const;
 
  private:
-  [[nodiscard]] std::uint32_t corner(visibility::Outlines& outlines, visibility::CornerId id);
-  [[nodiscard]] contour::QuickEnd end(visibility::Outlines& outlines, const visibility::VisibleEdges::Parameter& p);
-
   contour::QuickContour contour_;
-  std::vector<contour::QuickCorner> corners_;
-  std::vector<std::uint32_t> index_;  // into corners_, by the engine's corner
 };
 
 }  // namespace exactff::exact

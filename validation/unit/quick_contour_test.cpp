@@ -27,10 +27,24 @@ using kernel::sign;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr long kBits = 600;
-constexpr QuickEnd kA{QuickEnd::Kind::kA};
-constexpr QuickEnd kB{QuickEnd::Kind::kB};
 
-QuickEnd crossing(std::uint32_t c, std::uint32_t d) { return {QuickEnd::Kind::kCrossing, c, d}; }
+// An end of an edge, or where the plane through x and the corners c, d meets it.
+struct End {
+  QuickEnd::Kind kind = QuickEnd::Kind::kA;
+  std::uint32_t c = 0;
+  std::uint32_t d = 0;
+};
+constexpr End kA{QuickEnd::Kind::kA};
+constexpr End kB{QuickEnd::Kind::kB};
+
+End crossing(std::uint32_t c, std::uint32_t d) { return {QuickEnd::Kind::kCrossing, c, d}; }
+
+// Of the edge between the corners a and b.
+struct Part {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  End begin, end;
+};
 
 // --- A contour in both arithmetics ---
 
@@ -40,7 +54,7 @@ struct Both {
   Vec3 x;
   std::vector<QuickCorner> corners;
   std::vector<ExactVec3> exact;
-  std::vector<QuickPiece> pieces;
+  std::vector<Part> pieces;
 
   std::uint32_t add(const Vec3& vertex, int scale_exponent = 0) {
     corners.push_back(quick_corner(vertex, x, scale_exponent));
@@ -59,11 +73,15 @@ struct Both {
 
   [[nodiscard]] QuickContour::Value quick() const {
     QuickContour contour(normal);
-    for (const QuickPiece& piece : pieces) contour.add(corners, piece);
+    const auto line = [&](std::uint32_t a, std::uint32_t b) { return contour.line(corners[a], corners[b]); };
+    for (const auto& [a, b, begin, end] : pieces) {
+      const QuickLine at_begin = line(begin.c, begin.d), at_end = line(end.c, end.d);
+      contour.add(line(a, b), {begin.kind, &at_begin}, {end.kind, &at_end});
+    }
     return contour.value();
   }
 
-  [[nodiscard]] visibility::EdgeParameter parameter(const QuickPiece& piece, const QuickEnd& end) const {
+  [[nodiscard]] visibility::EdgeParameter parameter(const Part& piece, const End& end) const {
     if (end.kind == QuickEnd::Kind::kA) return {1, 0};
     if (end.kind == QuickEnd::Kind::kB) return {0, 1};
     const ExactVec3 plane = cross(exact[end.c], exact[end.d]);
@@ -71,7 +89,7 @@ struct Both {
   }
   [[nodiscard]] Enclosure ball() const {
     ContourIntegral contour(kernel::exact_vector(normal).v);
-    for (const QuickPiece& piece : pieces) {
+    for (const Part& piece : pieces) {
       contour.add({exact[piece.a], exact[piece.b], parameter(piece, piece.begin), parameter(piece, piece.end)});
     }
     return Enclosure(contour.evaluate(kBits));
@@ -294,10 +312,10 @@ TEST(QuickContour, EnclosesPiecesOfExactDirections) {
         return (other + 1 + static_cast<std::uint32_t>(random.below(7))) % 8;
       };
       const std::uint32_t a = static_cast<std::uint32_t>(random.below(8));
-      QuickPiece piece{a, pick(a), kA, kB};
-      for (QuickEnd* end : {&piece.begin, &piece.end}) {
+      Part piece{a, pick(a), kA, kB};
+      for (End* end : {&piece.begin, &piece.end}) {
         const std::uint32_t c = static_cast<std::uint32_t>(random.below(8));
-        const QuickEnd other = crossing(c, pick(c));
+        const End other = crossing(c, pick(c));
         const ExactVec3 plane = cross(both.exact[other.c], both.exact[other.d]);
         const int signs = sign(dot(plane, both.exact[piece.a])) * sign(dot(plane, both.exact[piece.b]));
         if (signs < 0) *end = other;
@@ -363,7 +381,7 @@ TEST(QuickContour, ThePieceInTheOtherSenseIsTheNegative) {
     Random random(validation::seed_of(seed));
     Both forward = cut_triangle(random, 1);
     Both backward = forward;
-    for (QuickPiece& piece : backward.pieces) std::swap(piece.begin, piece.end);
+    for (Part& piece : backward.pieces) std::swap(piece.begin, piece.end);
     EXPECT_EQ(forward.quick().hi, -backward.quick().hi) << seed;
   }
 }
@@ -461,9 +479,9 @@ TEST(QuickContour, DeclinesACrossingThatIsNone) {
 
 TEST(QuickContour, DeclinesCornersTooLargeOrTooSmall) {
   const auto with = [](const Vec3& vertex, int scale_exponent) {
-    const std::vector<QuickCorner> corners = {quick_corner({1, 0, 0}, {}, 0), quick_corner(vertex, {}, scale_exponent)};
     QuickContour contour({0, 0, 1});
-    contour.add(corners, {0, 1, kA, kB});
+    const QuickLine line = contour.line(quick_corner({1, 0, 0}, {}, 0), quick_corner(vertex, {}, scale_exponent));
+    contour.add(line, {QuickEnd::Kind::kA}, {QuickEnd::Kind::kB});
     return answers(contour.value());
   };
   EXPECT_TRUE(with({0, 1, 0}, 200));
