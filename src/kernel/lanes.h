@@ -40,6 +40,7 @@ inline Four next_lane(const Four& v) { return Four{v[1], v[2], v[3], v[0]}; }
 inline FourMask next_lane(const FourMask& v) { return FourMask{v[1], v[2], v[3], v[0]}; }
 inline Four absolute(const Four& v) { return v < 0.0 ? -v : v; }
 inline Four larger(const Four& a, const Four& b) { return a < b ? b : a; }
+inline Four smaller(const Four& a, const Four& b) { return b < a ? b : a; }
 
 inline double lowest(const Four& v) { return std::min(std::min(v[0], v[1]), std::min(v[2], v[3])); }
 inline double highest(const Four& v) { return std::max(std::max(v[0], v[1]), std::max(v[2], v[3])); }

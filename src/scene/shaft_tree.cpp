@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "kernel/lanes.h"
 #include "scene/scene_data.h"
 
 namespace exactff {
@@ -28,53 +29,62 @@ int longest_axis(const Box& box) {
   return size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
 }
 
-// The largest sum of magnitudes of y - apex over the box.
-double reach(const Box& box, const Vec3& apex) {
-  return std::max(std::abs(box.low.x - apex.x), std::abs(box.high.x - apex.x)) +
-         std::max(std::abs(box.low.y - apex.y), std::abs(box.high.y - apex.y)) +
-         std::max(std::abs(box.low.z - apex.z), std::abs(box.high.z - apex.z));
-}
-
-// The largest normal . (y - apex) - offset over the box is proved negative. With u = 2^-53: each difference is
-// rounded once (u), each product carries 2u of the normal and u of its own, three additions 3u of the sum m of
-// magnitudes, the offset 2u: below 9u m in all, against a threshold of 2^-48 m = 32u m. Overflow makes m infinite
-// and underflow is excluded by m >= 2^-900; NaN fails every comparison: each keeps the box. A further error e of the
-// normal's components adds at most e times the largest differences anywhere in the box, whatever their signs.
-bool certainly_outside_one(const Box& box, const Vec3& apex, const HalfSpace& h) {
-  const double dx = (h.normal.x > 0.0 ? box.high.x : box.low.x) - apex.x;
-  const double dy = (h.normal.y > 0.0 ? box.high.y : box.low.y) - apex.y;
-  const double dz = (h.normal.z > 0.0 ? box.high.z : box.low.z) - apex.z;
-  const double x = h.normal.x * dx, y = h.normal.y * dy, z = h.normal.z * dz;
-  const double m = std::abs(x) + std::abs(y) + std::abs(z) + std::abs(h.offset);
-  const double slack = h.error == 0.0 ? 0.0 : 1.001 * h.error * reach(box, apex);
-  return x + y + z - h.offset < -0x1p-48 * m - slack && m >= 0x1p-900 && m <= 0x1p1000;
-}
-
-// The smallest normal . (y - apex) - offset over the box as computed, without proof: what is taken to be inside is
-// kept.
-bool is_inside(const Box& box, const Vec3& apex, const HalfSpace& h) {
-  const double dx = (h.normal.x > 0.0 ? box.low.x : box.high.x) - apex.x;
-  const double dy = (h.normal.y > 0.0 ? box.low.y : box.high.y) - apex.y;
-  const double dz = (h.normal.z > 0.0 ? box.low.z : box.high.z) - apex.z;
-  return h.normal.x * dx + h.normal.y * dy + h.normal.z * dz >= h.offset;
-}
-
 }  // namespace
 
-std::uint64_t ShaftTree::crossed_half_spaces(const Box& box, const Vec3& apex, std::span<const HalfSpace> shaft,
-                                             std::uint64_t asked) {
+HalfSpaceGroups::HalfSpaceGroups(std::span<const HalfSpace> half_spaces) {
+  constexpr HalfSpace kEverything{{}, -1.0};
+  for (std::size_t i = 0; i < half_spaces.size(); i += kLanes) {
+    Group& group = groups_.emplace_back();
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const HalfSpace& h = i + lane < half_spaces.size() ? half_spaces[i + lane] : kEverything;
+      group.x[lane] = h.normal.x;
+      group.y[lane] = h.normal.y;
+      group.z[lane] = h.normal.z;
+      group.offset[lane] = h.offset;
+      group.error[lane] = 1.001 * h.error;
+      group.blur[lane] = 1.001 * h.blur;
+    }
+  }
+}
+
+// Outside: the largest normal . (y - apex) - offset over the box is proved negative. Inside: the smallest is proved
+// positive. With u = 2^-53: each difference is rounded once (u), each product carries 2u of the normal and u of its
+// own, three additions 3u of the sum m of magnitudes, the offset 2u: below 9u m in all, against a threshold of 2^-48 m
+// = 32u m. Overflow makes m infinite and underflow is excluded by m >= 2^-900; NaN fails every comparison: each keeps
+// the box and takes it to be cut. A further error e of the normal's components adds at most e times the largest
+// differences anywhere in the box, whatever their signs.
+EXACTFF_CLONES std::uint64_t ShaftTree::crossed_groups(const Box& box, const Vec3& apex,
+                                                       std::span<const HalfSpaceGroups::Group> shaft,
+                                                       std::uint64_t asked) {
+  using namespace kernel::lanes;
+  const Vec3 a{box.low.x - apex.x, box.low.y - apex.y, box.low.z - apex.z};
+  const Vec3 b{box.high.x - apex.x, box.high.y - apex.y, box.high.z - apex.z};
+  const double wide = std::max(std::abs(a.x), std::abs(b.x)), deep = std::max(std::abs(a.y), std::abs(b.y)),
+               high = std::max(std::abs(a.z), std::abs(b.z)), reach = wide + deep + high;
   std::uint64_t crossed = 0;
-  for (std::size_t i = 0; i < shaft.size(); ++i) {
-    const std::uint64_t bit = std::uint64_t{1} << std::min<std::size_t>(i, 62);
-    if (i < 62 && (asked & bit) == 0) continue;
-    if (certainly_outside_one(box, apex, shaft[i])) return kOutside;
-    if (i < 62 && !is_inside(box, apex, shaft[i])) crossed |= bit;
+  for (std::size_t g = 0; g < shaft.size(); ++g) {
+    const std::uint64_t bit = g < kGroupBits ? std::uint64_t{1} << g : 0;
+    if (bit != 0 && (asked & bit) == 0) continue;
+    const HalfSpaceGroups::Group& group = shaft[g];
+    const Four x = load(group.x.data()), y = load(group.y.data()), z = load(group.z.data()),
+               offset = load(group.offset.data());
+    const Four largest = larger(x * a.x, x * b.x) + larger(y * a.y, y * b.y) + larger(z * a.z, z * b.z) - offset;
+    const Four smallest = smaller(x * a.x, x * b.x) + smaller(y * a.y, y * b.y) + smaller(z * a.z, z * b.z) - offset;
+    const Four m = absolute(x) * wide + absolute(y) * deep + absolute(z) * high + absolute(offset);
+    const Four error = 0x1p-48 * m + load(group.error.data()) * reach;
+    const FourMask usable = (m >= 0x1p-900) & (m <= 0x1p1000);
+    if (lane_bits((largest < -error) & usable) != 0) return kOutside;
+    if (!all_lanes((smallest > error + load(group.blur.data())) & usable)) crossed |= bit;
   }
   return crossed;
 }
 
 bool ShaftTree::certainly_outside(const Box& box, const Vec3& apex, std::span<const HalfSpace> shaft) {
-  return crossed_half_spaces(box, apex, shaft, kAllHalfSpaces) == kOutside;
+  return crossed_groups(box, apex, HalfSpaceGroups(shaft).groups(), kAllGroups) == kOutside;
+}
+
+bool ShaftTree::certainly_inside(const Box& box, const Vec3& apex, const HalfSpace& half_space) {
+  return crossed_groups(box, apex, HalfSpaceGroups({&half_space, 1}).groups(), kAllGroups) == 0;
 }
 
 ShaftTree::ShaftTree(std::span<const Box> boxes) : order_(boxes.size()) {
@@ -91,7 +101,7 @@ void ShaftTree::build(std::span<const Box> boxes, std::uint32_t first, std::uint
   const std::size_t self = nodes_.size();
   Box box = boxes[order_[first]];
   for (std::uint32_t i = first + 1; i < last; ++i) box = joined(box, boxes[order_[i]]);
-  nodes_.push_back({box, 0, first, last - first <= kLeafSize ? last - first : 0});
+  nodes_.push_back({box, 0, first, last - first});
   if (last - first <= kLeafSize) return;
   const int axis = longest_axis(box);
   const std::uint32_t middle = first + (last - first) / 2;

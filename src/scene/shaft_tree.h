@@ -4,6 +4,8 @@
 // outside one half-space of the shaft; what it returns is a superset of the pieces that meet the shaft.
 #pragma once
 
+#include <array>
+#include <boost/container/small_vector.hpp>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,11 +20,28 @@ struct HalfSpace {
   Vec3 normal;
   double offset = 0.0;
   double error = 0.0;  // of each component of the normal, beyond the relative one
+  double blur = 0.0;   // the offset may be too small by so much, beyond the relative error
 };
 
 struct Box {
   Vec3 low;
   Vec3 high;
+};
+
+// Half-spaces four by four, for vector registers; where one is missing, one that holds everything.
+class HalfSpaceGroups {
+ public:
+  static constexpr std::size_t kLanes = 4;
+  using Lanes = std::array<double, kLanes>;
+  struct Group {
+    Lanes x, y, z, offset, error, blur;
+  };
+
+  explicit HalfSpaceGroups(std::span<const HalfSpace> half_spaces);
+  [[nodiscard]] std::span<const Group> groups() const { return {groups_.data(), groups_.size()}; }
+
+ private:
+  boost::container::small_vector<Group, 3> groups_;
 };
 
 class ShaftTree {
@@ -32,36 +51,52 @@ class ShaftTree {
 
   // Calls visit(index) for every box not certainly outside, in a fixed order, until one call returns false.
   template <class Visit>
-  void query(const Vec3& apex, std::span<const HalfSpace> shaft, Visit&& visit) const {
+  void query(const Vec3& apex, std::span<const HalfSpace> shaft, const Visit& visit) const {
+    query_with_inside(apex, shaft, [&](std::uint32_t index, bool) { return visit(index); });
+  }
+
+  // The same by visit(index, inside). Inside: the box lies certainly inside every half-space, off its plane.
+  template <class Visit>
+  void query_with_inside(const Vec3& apex, std::span<const HalfSpace> half_spaces, const Visit& visit) const {
     if (nodes_.empty()) return;
+    const HalfSpaceGroups held(half_spaces);
+    const auto shaft = held.groups();
+    const bool may_be_inside = shaft.size() <= kGroupBits;
     Waiting stack[kDepthLimit];
     int size = 0;
-    stack[size++] = {0, kAllHalfSpaces};
+    stack[size++] = {0, kAllGroups};
     while (size > 0) {
       const Waiting at = stack[--size];
       const Node& node = nodes_[at.node];
-      const std::uint64_t crossed = crossed_half_spaces(node.box, apex, shaft, at.crossed);
+      const std::uint64_t crossed = crossed_groups(node.box, apex, shaft, at.crossed);
       if (crossed == kOutside) continue;
-      if (node.count == 0) {
+      const std::uint32_t end = node.first + node.count;
+      if (crossed == 0 && may_be_inside) {
+        for (std::uint32_t i = node.first; i < end; ++i) {
+          if (!visit(order_[i], true)) return;
+        }
+      } else if (node.count > kLeafSize) {
         stack[size++] = {node.right, crossed};
-        stack[size++] = {static_cast<std::uint32_t>(&node - nodes_.data()) + 1, crossed};
-        continue;
-      }
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        if (node.count > 1 && crossed_half_spaces(boxes_[i], apex, shaft, crossed) == kOutside) continue;
-        if (!visit(order_[i])) return;
+        stack[size++] = {at.node + 1, crossed};
+      } else {
+        for (std::uint32_t i = node.first; i < end; ++i) {
+          const std::uint64_t own = node.count > 1 ? crossed_groups(boxes_[i], apex, shaft, crossed) : crossed;
+          if (own != kOutside && !visit(order_[i], own == 0 && may_be_inside)) return;
+        }
       }
     }
   }
 
   static bool certainly_outside(const Box& box, const Vec3& apex, std::span<const HalfSpace> shaft);
+  static bool certainly_inside(const Box& box, const Vec3& apex, const HalfSpace& half_space);
 
  private:
   static constexpr int kDepthLimit = 64;  // the tree is balanced: depth <= 32 for any 32-bit count
   static constexpr std::uint32_t kLeafSize = 4;
 
-  // A set of half-spaces as bits; those beyond the 62nd are always in it.
-  static constexpr std::uint64_t kAllHalfSpaces = (std::uint64_t{1} << 62U) - 1;
+  // A set of groups of half-spaces as bits; those beyond the 62nd are always asked.
+  static constexpr std::size_t kGroupBits = 62;
+  static constexpr std::uint64_t kAllGroups = (std::uint64_t{1} << kGroupBits) - 1;
   static constexpr std::uint64_t kOutside = std::uint64_t{1} << 63U;
   struct Waiting {
     std::uint32_t node;
@@ -70,16 +105,16 @@ class ShaftTree {
 
   struct Node {  // the left child follows its parent
     Box box;
-    std::uint32_t right = 0;
-    std::uint32_t first = 0;
-    std::uint32_t count = 0;  // 0 for an inner node
+    std::uint32_t right = 0;  // of a leaf: 0
+    std::uint32_t first = 0;  // into order_
+    std::uint32_t count = 0;
   };
 
   void build(std::span<const Box> boxes, std::uint32_t first, std::uint32_t last);
-  // Of the half-spaces asked for, those that may cut the box: what lies inside need not be asked again further down.
-  // kOutside if the box lies certainly outside one of them.
-  static std::uint64_t crossed_half_spaces(const Box& box, const Vec3& apex, std::span<const HalfSpace> shaft,
-                                           std::uint64_t asked);
+  // Of the groups asked for, those with a half-space that may cut the box: inside the others it certainly lies, with
+  // all its parts. kOutside if the box lies certainly outside one half-space.
+  static std::uint64_t crossed_groups(const Box& box, const Vec3& apex, std::span<const HalfSpaceGroups::Group> shaft,
+                                      std::uint64_t asked);
 
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_;

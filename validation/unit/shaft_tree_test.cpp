@@ -56,6 +56,51 @@ TEST(ShaftTree, FindsExactlyWhatATestOfEveryBoxFinds) {
   }
 }
 
+double corner(double low, double high, unsigned bit) { return bit != 0 ? high : low; }
+
+bool all_corners_inside(const Box& b, const Vec3& apex, const HalfSpace& h) {
+  for (unsigned c = 0; c < 8; ++c) {
+    const Vec3 y{corner(b.low.x, b.high.x, c & 1U), corner(b.low.y, b.high.y, c & 2U),
+                 corner(b.low.z, b.high.z, c & 4U)};
+    const double height =
+        h.normal.x * (y.x - apex.x) + h.normal.y * (y.y - apex.y) + h.normal.z * (y.z - apex.z) - h.offset;
+    if (height <= 0.0) return false;
+  }
+  return true;
+}
+
+TEST(ShaftTree, KnowsWhatLiesInside) {
+  Random random(3);
+  const std::vector<Box> boxes = random_boxes(random, 500, 0.5);
+  const ShaftTree tree(boxes);
+  std::size_t count = 0;
+  for (int round = 0; round < 50; ++round) {
+    const Vec3 apex{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+    const std::vector<HalfSpace> shaft = random_shaft(random);
+    tree.query_with_inside(apex, shaft, [&](std::uint32_t i, bool inside) {
+      const auto holds = [&](const HalfSpace& h) { return all_corners_inside(boxes[i], apex, h); };
+      EXPECT_EQ(inside, std::ranges::all_of(shaft, holds)) << i;
+      count += inside ? 1U : 0U;
+      return true;
+    });
+  }
+  EXPECT_GT(count, 100U);
+}
+
+// Nothing is certain of what touches a half-space's plane, nor within the errors.
+TEST(ShaftTree, TakesNothingForInsideThatMayNotBe) {
+  const Box box{{1, 0, 0}, {2, 1, 1}};
+  const HalfSpace plain{{1, 0, 0}, 0.5};
+  EXPECT_TRUE(ShaftTree::certainly_inside(box, {}, plain));
+  EXPECT_FALSE(ShaftTree::certainly_inside(box, {}, {{1, 0, 0}, 1.0}));
+  EXPECT_FALSE(ShaftTree::certainly_inside(box, {1, 0, 0}, {{1, 0, 0}, 0.0}));
+  EXPECT_FALSE(ShaftTree::certainly_inside(box, {}, {{1, 0, 0}, 0.5, 0.25}));
+  EXPECT_FALSE(ShaftTree::certainly_inside(box, {}, {{1, 0, 0}, 0.5, 0.0, 0.5}));
+  EXPECT_FALSE(ShaftTree::certainly_inside(box, {}, {{std::nan(""), 0, 0}, 0.5}));
+  const Box tiny{{0x1p-1000, 0, 0}, {0x1p-999, 0, 0}};
+  EXPECT_FALSE(ShaftTree::certainly_inside(tiny, {}, {{0x1p-100, 0, 0}, 0.0}));
+}
+
 TEST(ShaftTree, LeavesOutMostOfWhatIsElsewhere) {
   Random random(2);
   const ShaftTree tree(random_boxes(random, 2000, 1.0));
