@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exactff/scene.h"
+#include "scene/closed_surfaces.h"
 #include "scene/shaft_tree.h"
 
 namespace exactff {
@@ -26,6 +27,8 @@ struct Scene::Data {
   mutable std::vector<std::uint32_t> places;
   mutable std::once_flag tree_built;  // the tree is made when first asked for: see shaft_tree()
   mutable ShaftTree tree;
+  mutable std::once_flag surfaces_found;  // see closed_surfaces()
+  mutable ClosedSurfaces surfaces;
 };
 
 }  // namespace exactff

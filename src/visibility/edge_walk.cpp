@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "scene/closed_surfaces.h"
 #include "scene/scene_data.h"
 #include "visibility/convex_clip.h"
 #include "visibility/plane_frame.h"
@@ -30,6 +31,12 @@ struct Workspace {
   std::vector<CornerId> corners, ring;
   std::vector<int> depths;             // of the corners at hand: depth_sign
   std::vector<std::uint32_t> seen_in;  // by piece: the last run that looked at it
+  // By closed surface: the last run that looked at it, and whether what faces away from x was left out there.
+  struct Surface {
+    std::uint32_t run = 0;
+    bool backs_left_out = false;
+  };
+  std::vector<Surface> surfaces;
   std::uint32_t run = 0;
 };
 
@@ -38,12 +45,21 @@ Workspace& workspace() {
   return own;
 }
 
+constexpr Sides kInside{.certain = true, .some_above_each = true, .all_above_each = true};
+
 double largest(const Approx3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 
 class EdgeWalk {
  public:
   EdgeWalk(const View& view, const SourcePlane& plane, const Request& request)
-      : view_(view), plane_(plane), request_(request), work_(workspace()), outlines_(work_.edges.outlines()) {
+      : view_(view),
+        plane_(plane),
+        request_(request),
+        pieces_(view.scene.pieces()),
+        vertices_(view.scene.vertices()),
+        surfaces_(closed_surfaces(view.scene)),
+        work_(workspace()),
+        outlines_(work_.edges.outlines()) {
     result_.record.faces = plane.faces;
   }
 
@@ -62,8 +78,13 @@ class EdgeWalk {
   bool gather_source();
   bool add_above_horizon(const Piece& piece);
   bool gather_occluders();
-  bool visit(std::uint32_t piece, OutlineId source);
   [[nodiscard]] bool culls() const { return request_.culling == ShaftCulling::kTree; }
+  void start_run();
+  bool visit(std::uint32_t piece, OutlineId source, bool inside);
+  void find_corners(std::span<const std::uint32_t> vertices);
+  [[nodiscard]] Sides sides(OutlineId source);
+  [[nodiscard]] bool is_left_out(std::uint32_t piece, int facing);
+  [[nodiscard]] bool may_leave_out_backs(std::uint32_t surface) const;
   void make_shaft(OutlineId source);
   void make_side_planes(OutlineId source);
   [[nodiscard]] Sides sides_by_filter();
@@ -79,6 +100,9 @@ class EdgeWalk {
   const View& view_;
   const SourcePlane& plane_;
   const Request& request_;
+  const std::span<const Piece> pieces_;
+  const std::span<const Vec3> vertices_;
+  const ClosedSurfaces& surfaces_;
   Workspace& work_;
   Outlines& outlines_;
   PlaneVisibility result_;
@@ -91,7 +115,7 @@ class EdgeWalk {
 Outcome EdgeWalk::find_outcome() {
   // 1. Cull.
   if (std::none_of(plane_.pieces.begin(), plane_.pieces.end(),
-                   [&](std::uint32_t p) { return !view_.on || view_.scene.pieces()[p].face != *view_.on; })) {
+                   [&](std::uint32_t p) { return !view_.on || pieces_[p].face != *view_.on; })) {
     return Outcome::kReceiverFace;
   }
   if (side_of(plane_, view_.x) <= 0) return Outcome::kBehind;
@@ -113,7 +137,7 @@ bool EdgeWalk::gather_source() {
   outlines_.start(view_.scene, view_.x, largest(kernel::approx_difference(plane_.point, view_.x)));
   outlines_.set_plane(plane_.normal, plane_.point);
   for (const std::uint32_t index : plane_.pieces) {
-    const Piece& piece = view_.scene.pieces()[index];
+    const Piece& piece = pieces_[index];
     if (view_.on && piece.face == *view_.on) {
       gathered_all_ = false;
     } else if (add_above_horizon(piece)) {
@@ -164,53 +188,91 @@ void EdgeWalk::make_shaft(OutlineId source) {
   const Approx3 s = kernel::approx_difference(plane_.point, view_.x);
   const double terms[] = {front.x * s.x, front.y * s.y, front.z * s.z};
   const double magnitude = std::abs(terms[0]) + std::abs(terms[1]) + std::abs(terms[2]);
-  work_.half_spaces.push_back({vec(front), terms[0] + terms[1] + terms[2] - 0x1p-48 * magnitude});
+  work_.half_spaces.push_back(
+      {vec(front), terms[0] + terms[1] + terms[2] - 0x1p-48 * magnitude, 0.0, 0x1p-47 * magnitude});
+}
+
+void EdgeWalk::start_run() {
+  work_.seen_in.resize(pieces_.size(), 0);
+  work_.surfaces.resize(surfaces_.surfaces().size());
+  if (++work_.run == 0) {
+    std::fill(work_.seen_in.begin(), work_.seen_in.end(), 0U);
+    std::fill(work_.surfaces.begin(), work_.surfaces.end(), Workspace::Surface{});
+    work_.run = 1;
+  }
 }
 
 // False if one occluder hides all; the others then are nobody's business.
 bool EdgeWalk::gather_occluders() {
-  work_.seen_in.resize(view_.scene.pieces().size(), 0);
-  if (++work_.run == 0) {
-    std::fill(work_.seen_in.begin(), work_.seen_in.end(), 0U);
-    work_.run = 1;
-  }
+  start_run();
   bool hidden = false;
   const OutlineId shafts = culls() ? static_cast<OutlineId>(source_count_) : 1;
   for (OutlineId source = 0; source < shafts && !hidden; ++source) {
     if (culls()) make_shaft(source);
     make_side_planes(source);
-    for_each_candidate(view_, work_.half_spaces, request_.culling, [&](std::uint32_t piece) {
-      hidden = visit(piece, source);
+    for_each_candidate(view_, work_.half_spaces, request_.culling, [&](std::uint32_t piece, bool inside) {
+      hidden = visit(piece, source, inside);
       return !hidden;
     });
   }
   return !hidden;
 }
 
-// True if the piece hides all.
-bool EdgeWalk::visit(std::uint32_t index, OutlineId source) {
+// True if the piece hides all. `inside`: it lies inside every half-space of the shaft, and so above all side planes.
+bool EdgeWalk::visit(std::uint32_t index, OutlineId source, bool inside) {
   if (work_.seen_in[index] == work_.run || !may_occlude(view_, plane_, request_, index)) return false;
-  const Piece& piece = view_.scene.pieces()[index];
+  const Piece& piece = pieces_[index];
   const auto vertices = view_.scene.corners(piece);
   ++result_.record.tree_candidates;
-  work_.corners.clear();
-  for (const std::uint32_t vertex : vertices) work_.corners.push_back(outlines_.corner_of_vertex(vertex));
-  Sides sides = sides_by_filter();
-  if (!sides.certain) sides = sides_exactly(source);
+  if (!inside) find_corners(vertices);
+  const Sides sides = inside ? kInside : this->sides(source);
   if (!sides.some_above_each) return false;
   work_.seen_in[index] = work_.run;
   const int facing = this->facing(piece);
   if (facing == 0) return false;
   ++result_.record.candidates;
+  const bool left_out = is_left_out(index, facing);
+  if (left_out && sides.all_above_each) return false;
   const bool mirrored = facing > 0;
   if (sides.some_below_first) ++result_.record.clipped;
+  if (inside) find_corners(vertices);
   const OutlineId outline = sides.some_below_first ? add_near_part(vertices, mirrored) : add_whole(mirrored);
   if (sides.all_above_each && culls()) {
     outlines_.set_inside_source(outline);
     return false;
   }
-  if (!work_.edges.hides_all(outline, source_count_)) return false;
-  result_.cutters = {piece.face};
+  if (work_.edges.hides_all(outline, source_count_)) {
+    result_.cutters = {piece.face};
+    return true;
+  }
+  if (left_out) outlines_.remove_last();
+  return false;
+}
+
+bool EdgeWalk::is_left_out(std::uint32_t piece, int facing) {
+  if (surfaces_.empty() || surfaces_.of_piece(piece) == ClosedSurfaces::kNone) return false;
+  const std::uint32_t id = surfaces_.of_piece(piece);
+  const ClosedSurface& surface = surfaces_.surfaces()[id];
+  auto& [run, backs_left_out] = work_.surfaces[id];
+  if (run != work_.run) {
+    run = work_.run;
+    backs_left_out = may_leave_out_backs(id);
+  }
+  return backs_left_out && (facing > 0) != surface.turned_inside_out;
+}
+
+// Requires the shaft: its last half-space is x's side of the source's plane.
+bool EdgeWalk::may_leave_out_backs(std::uint32_t id) const {
+  if (!culls() || request_.only_occluders != nullptr) return false;
+  const auto& [low, high] = surfaces_.surfaces()[id].box;
+  const Vec3& x = view_.x;
+  const bool outside = x.x < low.x || x.y < low.y || x.z < low.z || x.x > high.x || x.y > high.y || x.z > high.z;
+  if (!outside || !ShaftTree::certainly_inside({low, high}, x, work_.half_spaces.back())) return false;
+  if (!view_.on) return true;
+  const Face& face = view_.scene.face(*view_.on);
+  for (std::uint32_t piece = face.first_piece; piece < face.first_piece + face.piece_count; ++piece) {
+    if (surfaces_.of_piece(piece) == id) return false;
+  }
   return true;
 }
 
@@ -239,6 +301,16 @@ void EdgeWalk::make_side_planes(OutlineId source) {
     const Outlines::Edge& edge = outlines_.edge(id);
     work_.side_planes.push_back({edge.normal, 0.0, edge.error, 0.0});
   }
+}
+
+void EdgeWalk::find_corners(std::span<const std::uint32_t> vertices) {
+  work_.corners.clear();
+  for (const std::uint32_t vertex : vertices) work_.corners.push_back(outlines_.corner_of_vertex(vertex));
+}
+
+Sides EdgeWalk::sides(OutlineId source) {
+  const Sides sides = sides_by_filter();
+  return sides.certain ? sides : sides_exactly(source);
 }
 
 Sides EdgeWalk::sides_by_filter() {
@@ -283,7 +355,7 @@ void EdgeWalk::find_depths() {
 
 // +1: on x's side of the source's plane.
 int EdgeWalk::depth_sign(std::uint32_t vertex) const {
-  const Vec3& v = view_.scene.vertices()[vertex];
+  const Vec3& v = vertices_[vertex];
   const int filtered = kernel::sign_of_dot(plane_.normal.approx, kernel::approx_difference(v, plane_.point));
   if (filtered != kUncertain) return filtered;
   return sign(dot(plane_.normal.exact, kernel::exact_difference(v, plane_.point).v));
@@ -294,11 +366,10 @@ int EdgeWalk::toward_sign(CornerId corner) { return -outlines_.side(plane_.norma
 
 // The sign of det of three corners, 0 where the piece's plane holds x.
 int EdgeWalk::facing(const Piece& piece) const {
-  const auto vertices = view_.scene.vertices();
-  const auto rounded = [&](int f) { return kernel::approx_difference(vertices[piece.frame[f]], view_.x); };
+  const auto rounded = [&](int f) { return kernel::approx_difference(vertices_[piece.frame[f]], view_.x); };
   const int filtered = kernel::sign_of_det(rounded(0), rounded(1), rounded(2));
   if (filtered != kUncertain) return filtered;
-  const auto exact = [&](int f) { return kernel::exact_difference(vertices[piece.frame[f]], view_.x).v; };
+  const auto exact = [&](int f) { return kernel::exact_difference(vertices_[piece.frame[f]], view_.x).v; };
   return sign(dot(cross(exact(0), exact(1)), exact(2)));
 }
 

@@ -4,9 +4,17 @@
 //   2. clip by the receiver's horizon: only what it cuts is constructed, exactly;
 //   3. shaft: candidates from the bounding-volume tree; then signs of heights above the source's edges, once a vertex.
 //   A
-//      face that the source's plane cuts is clipped (plane_crossings.h); no face is clipped to the shaft;
+//      face that the source's plane cuts is clipped (plane_crossings.h); no face is clipped to the shaft. Of closed
+//      surfaces what faces away from x is left out, see below;
 //   4. and 5. no candidates, or one that hides all;
 //   6. and 7. what is left of every edge (visible_edges.h).
+//
+// Backs of closed surfaces. Let x lie outside the box of a closed surface (closed_surfaces.h) all of whose pieces may
+// occlude, and let the box lie on x's side of the source's plane, off it. Along almost every segment from x to a point
+// y of that plane the winding number goes up by one at each piece that is crossed from the front, down by one at each
+// that is crossed from the back, and is 0 at both ends, which lie outside the box. As many pieces are crossed from the
+// front as from the back: those that show x their backs cover what those that show their fronts do, up to nothing of
+// area, and either may be left out. All of them are candidates as before, and each may still hide all.
 #pragma once
 
 #include "visibility/visible_boundary.h"

@@ -130,6 +130,11 @@ void Outlines::add_edges(std::span<const CornerId> corners, bool whole) {
   }
 }
 
+void Outlines::remove_last() {
+  edges_.resize(outlines_.back().first);
+  outlines_.pop_back();
+}
+
 const ExactVec3& Outlines::exact(CornerId id) {
   Origin& origin = origins_[id];
   if (origin.exact != kNone) return exact_[origin.exact];

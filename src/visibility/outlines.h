@@ -76,6 +76,7 @@ class Outlines {
   // A piece of the scene. `mirrored`: its corners run clockwise as x sees them.
   OutlineId add(const Piece& piece, bool mirrored);
 
+  void remove_last();
   void set_inside_source(OutlineId id) { outlines_[id].inside_source = true; }
 
   [[nodiscard]] std::span<const Edge> edges() const { return edges_; }

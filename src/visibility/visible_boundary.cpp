@@ -162,7 +162,7 @@ bool Walk::gather_occluders() {
   PlaneRecord& record = result_.record;
   bool hidden = false;
   Occluder occluder;
-  for_each_candidate(view_, shaft.half_spaces(), request_.culling, [&](std::uint32_t piece) {
+  for_each_candidate(view_, shaft.half_spaces(), request_.culling, [&](std::uint32_t piece, bool) {
     if (!may_occlude(view_, plane_, request_, piece)) return true;
     ++record.tree_candidates;
     bool was_cut = false;

@@ -65,15 +65,16 @@ struct PlaneVisibility {
   PlaneGeometry geometry;
 };
 
-// For both engines: calls visit(piece) for every piece that may lie in the shaft, until one call returns false.
+// For both engines: calls visit(piece, inside) for every piece that may lie in the shaft, until one call returns false;
+// inside: certainly within it (shaft_tree.h).
 template <class Visit>
 void for_each_candidate(const View& view, std::span<const HalfSpace> shaft, ShaftCulling culling, Visit&& visit) {
   if (culling == ShaftCulling::kTree) {
-    shaft_tree(view.scene).query(view.x, shaft, visit);
+    shaft_tree(view.scene).query_with_inside(view.x, shaft, visit);
     return;
   }
   const auto count = static_cast<std::uint32_t>(view.scene.pieces().size());
-  for (std::uint32_t piece = 0; piece < count && visit(piece); ++piece) {
+  for (std::uint32_t piece = 0; piece < count && visit(piece, false); ++piece) {
   }
 }
 

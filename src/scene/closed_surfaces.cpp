@@ -1,0 +1,174 @@
+// Steps, each in time proportional to the scene's size but for the sorting of a vertex's edges:
+//   1. leave out pieces with a corner that no other piece has: they have an open edge;
+//   2. sort the edges of the others by their ends;
+//   3. join the pieces at each edge, and mark where an edge does not cancel;
+//   4. what hangs together without a mark is a closed surface.
+#include "scene/closed_surfaces.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "scene/places.h"
+#include "scene/scene_data.h"
+
+namespace exactff {
+
+namespace {
+
+// A piece's edge, kept with its end of the lower place.
+struct DirectedEdge {
+  std::uint32_t high;
+  std::uint32_t piece;
+  bool upwards;  // from the lower place to the higher one
+};
+
+class Finder {
+ public:
+  explicit Finder(const Scene& scene)
+      : scene_(scene), places_(places(scene)), parent_(scene.pieces().size()), open_(scene.pieces().size(), 0) {
+    std::iota(parent_.begin(), parent_.end(), 0U);
+  }
+
+  bool find() {
+    leave_out_loose_pieces();
+    if (std::all_of(open_.begin(), open_.end(), [](std::uint8_t open) { return open != 0; })) return false;
+    sort_edges();
+    join_at_edges();
+    for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
+      if (open_[piece] != 0) open_[root(piece)] = 1;
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::uint32_t root(std::uint32_t piece) {
+    while (parent_[piece] != piece) piece = parent_[piece] = parent_[parent_[piece]];
+    return piece;
+  }
+  [[nodiscard]] bool is_closed(std::uint32_t root) const { return open_[root] == 0; }
+
+ private:
+  template <class Take>
+  void for_each_edge(std::uint32_t piece, const Take& take) const {
+    const auto corners = scene_.corners(scene_.pieces()[piece]);
+    std::uint32_t from = places_[corners.back()];
+    for (const std::uint32_t corner : corners) {
+      const std::uint32_t to = places_[corner];
+      take(std::min(from, to), DirectedEdge{std::max(from, to), piece, from < to});
+      from = to;
+    }
+  }
+  void leave_out_loose_pieces();
+  void sort_edges();
+  void join_at_edges();
+  void join(std::span<const DirectedEdge> edge);
+
+  const Scene& scene_;
+  const std::span<const std::uint32_t> places_;
+  std::vector<std::uint32_t> parent_;  // by piece
+  std::vector<std::uint8_t> open_;     // by piece
+  std::vector<DirectedEdge> edges_;
+  std::vector<std::uint32_t> begin_;  // into edges_, by lower place, one more at the end
+};
+
+void Finder::leave_out_loose_pieces() {
+  std::vector<std::uint32_t> uses(places_.size(), 0);
+  const auto for_each_place = [&](const auto& take) {
+    for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
+      for (const std::uint32_t corner : scene_.corners(scene_.pieces()[piece])) take(piece, places_[corner]);
+    }
+  };
+  for_each_place([&](std::uint32_t, std::uint32_t place) { ++uses[place]; });
+  for_each_place([&](std::uint32_t piece, std::uint32_t place) {
+    if (uses[place] < 2) open_[piece] = 1;
+  });
+}
+
+void Finder::sort_edges() {
+  begin_.assign(places_.size() + 1, 0);
+  const auto for_each = [&](const auto& take) {
+    for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
+      if (open_[piece] == 0) for_each_edge(piece, take);
+    }
+  };
+  for_each([&](std::uint32_t low, const DirectedEdge&) { ++begin_[low + 1]; });
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  edges_.resize(begin_.back());
+  std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+  for_each([&](std::uint32_t low, const DirectedEdge& edge) { edges_[next[low]++] = edge; });
+}
+
+void Finder::join_at_edges() {
+  for (std::size_t place = 0; place + 1 < begin_.size(); ++place) {
+    const auto first = edges_.begin() + begin_[place], last = edges_.begin() + begin_[place + 1];
+    std::sort(first, last, [](const DirectedEdge& a, const DirectedEdge& b) { return a.high < b.high; });
+    for (auto at = first; at != last;) {
+      const auto end = std::find_if(at, last, [&](const DirectedEdge& e) { return e.high != at->high; });
+      join({at, end});
+      at = end;
+    }
+  }
+}
+
+void Finder::join(std::span<const DirectedEdge> edge) {
+  int balance = 0;
+  for (const DirectedEdge& e : edge) {
+    balance += e.upwards ? 1 : -1;
+    parent_[root(e.piece)] = root(edge.front().piece);
+  }
+  if (balance != 0) open_[edge.front().piece] = 1;
+}
+
+void include(Box& box, const Vec3& p) {
+  box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+  box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+}
+
+// Six times the volume between the piece and a point.
+double volume(const Scene& scene, const Piece& piece, const Vec3& apex) {
+  const auto corners = scene.corners(piece);
+  const auto from_apex = [&](std::size_t corner) {
+    const Vec3& p = scene.vertices()[corners[corner]];
+    return Vec3{p.x - apex.x, p.y - apex.y, p.z - apex.z};
+  };
+  double sum = 0.0;
+  const Vec3 a = from_apex(0);
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    const Vec3 b = from_apex(i - 1), c = from_apex(i);
+    sum += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
+  }
+  return sum;
+}
+
+}  // namespace
+
+ClosedSurfaces::ClosedSurfaces(const Scene& scene) {
+  Finder finder(scene);
+  if (!finder.find()) return;
+  of_piece_.assign(scene.pieces().size(), kNone);
+  std::vector<double> volumes;
+  std::vector<Vec3> apexes;  // anywhere near
+  for (std::uint32_t index = 0; index < of_piece_.size(); ++index) {
+    const std::uint32_t root = finder.root(index);
+    if (!finder.is_closed(root)) continue;
+    const Piece& piece = scene.pieces()[index];
+    const Vec3& first = scene.vertices()[scene.corners(piece).front()];
+    if (of_piece_[root] == kNone) {
+      of_piece_[root] = static_cast<std::uint32_t>(surfaces_.size());
+      surfaces_.push_back({{first, first}});
+      volumes.push_back(0.0);
+      apexes.push_back(first);
+    }
+    const std::uint32_t surface = of_piece_[index] = of_piece_[root];
+    for (const std::uint32_t corner : scene.corners(piece)) include(surfaces_[surface].box, scene.vertices()[corner]);
+    volumes[surface] += volume(scene, piece, apexes[surface]);
+  }
+  for (std::size_t s = 0; s < surfaces_.size(); ++s) surfaces_[s].turned_inside_out = volumes[s] < 0.0;
+}
+
+const ClosedSurfaces& closed_surfaces(const Scene& scene) {
+  const Scene::Data& data = scene.data();
+  std::call_once(data.surfaces_found, [&] { data.surfaces = ClosedSurfaces(scene); });
+  return data.surfaces;
+}
+
+}  // namespace exactff
