@@ -38,7 +38,7 @@ inline void store(const FourMask& v, std::int64_t* p) { std::memcpy(p, &v, sizeo
 
 inline Four next_lane(const Four& v) { return Four{v[1], v[2], v[3], v[0]}; }
 inline FourMask next_lane(const FourMask& v) { return FourMask{v[1], v[2], v[3], v[0]}; }
-inline Four absolute(const Four& v) { return v < 0.0 ? -v : v; }
+inline Four absolute(const Four& v) { return Four(FourMask(v) & 0x7FFFFFFFFFFFFFFF); }
 inline Four larger(const Four& a, const Four& b) { return a < b ? b : a; }
 inline Four smaller(const Four& a, const Four& b) { return b < a ? b : a; }
 
@@ -48,7 +48,8 @@ inline double lane_sum(const Four& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 #if defined(__SSE2__)
 inline unsigned lane_bits(const FourMask& m) {
   const __m128i low{m[0], m[1]}, high{m[2], m[3]};
-  return static_cast<unsigned>(_mm_movemask_pd(_mm_castsi128_pd(low)) | _mm_movemask_pd(_mm_castsi128_pd(high)) << 2);
+  const __m128 halves = _mm_shuffle_ps(_mm_castsi128_ps(low), _mm_castsi128_ps(high), _MM_SHUFFLE(3, 1, 3, 1));
+  return static_cast<unsigned>(_mm_movemask_ps(halves));
 }
 #else
 inline unsigned lane_bits(const FourMask& m) {

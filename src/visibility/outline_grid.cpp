@@ -48,6 +48,7 @@ void OutlineGrid::build(const Outlines& outlines, std::size_t source_count, std:
   const std::size_t count = outlines.outlines().size();
   first_ = static_cast<OutlineId>(source_count);
   everywhere_.clear();
+  all_.clear();
   single_ = count < source_count + kFewestForAGrid || !choose_projection(outlines, source_count);
   if (single_) {
     for (auto o = static_cast<OutlineId>(source_count); o < count; ++o) everywhere_.push_back(o);
@@ -63,6 +64,8 @@ void OutlineGrid::build(const Outlines& outlines, std::size_t source_count, std:
   find_covered_cells(outlines);
   find_cells(outlines);
   fill();
+  near_.resize(count + 1);
+  std::copy(everywhere_.begin(), everywhere_.end(), near_.begin());
 }
 
 // w points to the middle of the source. False where some corner of the source is not ahead.
@@ -379,41 +382,41 @@ void OutlineGrid::for_each_cell_of_edge(const Image& a, const Image& b, const Vi
   }
 }
 
-void OutlineGrid::find_near(const Outlines& outlines, EdgeId first, unsigned wanted, std::vector<OutlineId>& near) {
-  near = everywhere_;
-  if (single_) return;
+std::span<const OutlineId> OutlineGrid::all_occluders() {
+  if (all_.empty()) {
+    for (OutlineId o = first_; o < last_found_.size(); ++o) all_.push_back(o);
+  }
+  return all_;
+}
+
+std::span<const OutlineId> OutlineGrid::find_near(const Outlines& outlines, EdgeId first, unsigned wanted) {
+  if (single_) return everywhere_;
   const OutlineId own = outlines.edge(first).outline;
   const Octagon octagon = octagons_[own];
+  std::size_t count = everywhere_.size();
   const auto visit = [&](std::size_t cell) {
     if (last_seen_[cell] == first) return;
     last_seen_[cell] = first;
-    const std::uint32_t end = cell_begin_[cell + 1];
-    std::size_t count = near.size();
-    near.resize(count + (end - cell_begin_[cell]));
-    for (std::uint32_t m = cell_begin_[cell]; m < end; ++m) {  // without branches, which nobody could predict
+    for (std::uint32_t m = cell_begin_[cell]; m < cell_begin_[cell + 1]; ++m) {
       const OutlineId o = members_[m];
-      near[count] = o;
+      near_[count] = o;  // without branches, which nobody could predict
       count +=
           static_cast<std::size_t>(last_found_[o] != first) & static_cast<std::size_t>(octagon.meets(octagons_[o]));
       last_found_[o] = first;
     }
-    near.resize(count);
   };
   const std::uint32_t begin = outline_begin_[own], end = outline_begin_[own + 1];
   if (all_needed_ && begin < end && end - begin <= kMostOwnCells) {
     for (std::uint32_t at = begin; at < end; ++at) visit(cells_[at]);
-    return;
+    return std::span(near_).first(count);
   }
   for (EdgeId id = first; wanted >> (id - first) != 0; ++id) {
     if ((wanted >> (id - first) & 1U) == 0) continue;
     const Image &a = images_[outlines.edge(id).a], &b = images_[outlines.edge(id).b];
-    if (!a.ahead || !b.ahead) {  // it may be anywhere
-      near.clear();
-      for (OutlineId o = first_; o < last_found_.size(); ++o) near.push_back(o);
-      return;
-    }
+    if (!a.ahead || !b.ahead) return all_occluders();  // it may be anywhere
     for_each_cell_of_edge(a, b, visit);
   }
+  return std::span(near_).first(count);
 }
 
 }  // namespace exactff::visibility

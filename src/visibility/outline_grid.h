@@ -33,8 +33,8 @@ class OutlineGrid {
   [[nodiscard]] std::uint64_t unsorted_pairs(const Outlines& outlines) const;
 
   // Every occluder that meets one of the edges inside the source, each once, and perhaps others. The edges are those of
-  // the set bits of `wanted`, counted from `first`.
-  void find_near(const Outlines& outlines, EdgeId first, unsigned wanted, std::vector<OutlineId>& near);
+  // the set bits of `wanted`, counted from `first`. Valid until asked again.
+  [[nodiscard]] std::span<const OutlineId> find_near(const Outlines& outlines, EdgeId first, unsigned wanted);
 
  private:
   struct Image {
@@ -112,6 +112,7 @@ class OutlineGrid {
   }
   [[nodiscard]] bool is_ahead(const Outlines& outlines, const Outlines::Outline& outline) const;
   [[nodiscard]] static Range part_within(const Image& a, const Image& b, const Range& v);
+  [[nodiscard]] std::span<const OutlineId> all_occluders();
   template <class Visit>
   void for_each_cell_of_edge(const Image& a, const Image& b, const Visit& visit) const;
   template <class Visit>
@@ -136,10 +137,12 @@ class OutlineGrid {
   std::vector<OutlineId> members_;
   std::vector<OutlineId> coverer_;  // by cell: an occluder that certainly covers it; then it is the only member
   std::vector<OutlineId> everywhere_;
+  std::vector<OutlineId> all_;       // every occluder, once somebody asked for all
   std::vector<std::uint32_t> next_;  // scratch: by cell
   std::vector<EdgeId> last_found_;   // by outline: the first of the edges that found it last
   std::vector<EdgeId> last_seen_;    // by cell: the first of the edges that looked into it last
   std::vector<Range> spans_;         // scratch: by row
+  std::vector<OutlineId> near_;      // first everywhere_, then scratch: room for every occluder and one more
 };
 
 }  // namespace exactff::visibility

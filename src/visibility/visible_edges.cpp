@@ -24,6 +24,9 @@ constexpr Parameter kEnd{1.0, 0.0F, Parameter::kAtEnd};
 // Pairs cost 1 to 2 us each where nothing tells them apart; as many occluders as make this many cost the Booleans less.
 constexpr std::uint64_t kMostUnsortedPairs = 1'000'000;
 
+// Of four bits. std::popcount is a call where the processor may lack the instruction.
+constexpr std::array<std::uint8_t, 16> kBitCount{0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
+
 // Of a crossing's parameter, not less than the double.
 float rounded_up(double error) { return static_cast<float>(error * (1.0 + 0x1p-20)); }
 
@@ -116,7 +119,7 @@ void VisibleEdges::trace_outline(OutlineId id, std::size_t source_count) {
 void VisibleEdges::trace(Run& run, std::size_t source_count) {
   find_allowed(run, source_count);
   if (run.wanted == 0) return;
-  grid_.find_near(outlines_, run.first, run.wanted, near_);
+  near_ = grid_.find_near(outlines_, run.first, run.wanted);
   find_removed(run, source_count);
   // Step 4.
   for (unsigned k = 0; k < run.edges; ++k) {
@@ -127,8 +130,74 @@ void VisibleEdges::trace(Run& run, std::size_t source_count) {
   }
 }
 
+// By the filter alone, for all edges of the run at once. A line is entered or left at its crossing with the edge: where
+// the ends have heights m and l above it, of different signs, that is at the parameter |m| / (|l| + |m|).
+//
+// Its error. Let D be |l| + |m| and e the larger error of the two heights, all as computed, and u = 2^-53. The quotient
+// of the true heights differs by at most e / (D - 2e) <= 2e / D where D >= 4e. Sum, inverse and product err by u each,
+// relatively, so that the quotient, at most 1, is off by 4u more at most; 2e / D, at most 1/2 there, is computed to
+// within 4u of itself. 2e / D + 2^-50 covers it all. Where D < 4e the error is set to 2, which decides nothing; nor
+// does NaN.
+//
+// Every comparison that does not hold for all numbers within the errors makes the edge unsure, except that one line
+// with both ends below it is certainly enough for the outline to cover nothing. A line that is entered can only move
+// the beginning of what is covered, one that is left only its end, so that one comparison serves for both.
+[[gnu::always_inline]] inline VisibleEdges::Cuts VisibleEdges::cut(const Run& run, std::span<const Edge> lines,
+                                                                   EdgeId first) {
+  using namespace kernel::lanes;
+  const Four x = load(run.x.data()), y = load(run.y.data()), z = load(run.z.data()), size = load(run.size.data());
+  const Four size_of_both = larger(size, next_lane(size));
+  Four begin = four(0.0), begin_error = begin, end = four(1.0), end_error = begin;
+  FourMask begin_line = four_whole(Parameter::kAtBegin), end_line = four_whole(Parameter::kAtEnd);
+  FourMask outside = four_whole(0), sure = four_whole(-1);
+  Cuts cuts;
+  for (std::size_t f = 0; f < lines.size(); ++f) {
+    const Edge& line = lines[f];
+    const Four h = line.normal.x * x + line.normal.y * y + line.normal.z * z, e = line.error * size;
+    const FourMask above_a = h > e, below_a = -h > e, above_b = next_lane(above_a), below_b = next_lane(below_a);
+    outside |= below_a & below_b;
+    if (all_lanes(outside)) return cuts;
+    const FourMask inside = above_a & above_b;
+    const FourMask entering = below_a & above_b, leaving = above_a & below_b;
+    const Four m = absolute(h), sum = m + next_lane(m), inverse = 1.0 / sum,
+               twice_error = 2.0 * line.error * size_of_both;
+    const Four at = m * inverse;
+    const Four at_error = sum > 2.0 * twice_error ? twice_error * inverse + 0x1p-50 : four(2.0);
+    // The end of the interval that the crossing may replace.
+    const Four beyond = at - (leaving ? end : begin), beyond_error = at_error + (leaving ? end_error : begin_error);
+    const FourMask after = beyond > beyond_error, before = -beyond > beyond_error;
+    sure &= inside | ((entering | leaving) & (after | before));
+    const FourMask later = entering & after, earlier = leaving & before;
+    const FourMask id = four_whole(static_cast<std::int64_t>(first + f));
+    begin = later ? at : begin;
+    begin_error = later ? at_error : begin_error;
+    begin_line = later ? id : begin_line;
+    end = earlier ? at : end;
+    end_error = earlier ? at_error : end_error;
+    end_line = earlier ? id : end_line;
+  }
+  const FourMask some = end - begin > begin_error + end_error, none = begin - end > begin_error + end_error;
+  cuts.covered = lane_bits(~outside & sure & some);
+  cuts.unsure = lane_bits(~outside & ~(sure & (some | none)));
+  store(begin, cuts.begin.data());
+  store(begin_error, cuts.begin_error.data());
+  store(end, cuts.end.data());
+  store(end_error, cuts.end_error.data());
+  store(begin_line, cuts.begin_line.data());
+  store(end_line, cuts.end_line.data());
+  return cuts;
+}
+
+[[gnu::always_inline]] inline VisibleEdges::Cuts VisibleEdges::cut(const Run& run, OutlineId outline) {
+  const Outline& o = outlines_.outline(outline);
+  const Cuts cuts = cut(run, outlines_.edges().subspan(o.first, o.count), o.first);
+  pairs_ += kBitCount[run.wanted];
+  undecided_pairs_ += kBitCount[cuts.unsure & run.wanted];
+  return cuts;
+}
+
 // The whole of a source's edge, or of one inside it; else what has the source on both sides.
-void VisibleEdges::find_allowed(Run& run, std::size_t source_count) {
+EXACTFF_CLONES void VisibleEdges::find_allowed(Run& run, std::size_t source_count) {
   for (unsigned k = 0; k < run.edges; ++k) allowed_[k].clear();
   const bool all = run.of_source || outlines_.outline(run.outline).inside_source;
   Cuts cuts;
@@ -147,7 +216,7 @@ void VisibleEdges::find_allowed(Run& run, std::size_t source_count) {
   }
 }
 
-void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, std::size_t source_count) {
+EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, std::size_t source_count) {
   const EdgeId edge = run.first + k;
   left_.clear();
   right_.clear();
@@ -168,29 +237,32 @@ void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, std::size_t sourc
   }
 }
 
-void VisibleEdges::find_removed(Run& run, std::size_t source_count) {
-  for (unsigned k = 0; k < run.edges; ++k) removed_[k].clear();
-  for (OutlineId s = 0; run.of_source && s < source_count && run.wanted != 0; ++s) {
-    if (s != run.outline) remove(run, s, true);
-  }
-  for (const OutlineId o : near_) {
-    if (o != run.outline) remove(run, o, !run.of_source);
-    if (run.wanted == 0) return;
-  }
-}
-
 // Of an edge, what the outline covers on the side that must not be covered, or where it coincides and comes first.
 // Edges of which nothing is left are no longer wanted.
-void VisibleEdges::remove(Run& run, OutlineId by, bool same_kind) {
+[[gnu::always_inline]] inline void VisibleEdges::remove(Run& run, OutlineId by, bool same_kind) {
   const Cuts cuts = cut(run, by);
   if (((cuts.covered | cuts.unsure) & run.wanted) == 0) return;
   const bool left_matters = run.of_source && !same_kind;
   Cover found;
-  for (unsigned k = 0; k < run.edges; ++k) {
-    if ((run.wanted >> k & 1U) == 0 || !cover(run, k, by, cuts, found)) continue;
+  for (unsigned bits = (cuts.covered | cuts.unsure) & run.wanted; bits != 0; bits &= bits - 1) {
+    const auto k = static_cast<unsigned>(std::countr_zero(bits));
+    if (!cover(run, k, by, cuts, found)) continue;
     const bool double_of_earlier = same_kind && found.coincides && found.left && by < run.outline;
     if (!(left_matters ? found.left : found.right) && !double_of_earlier) continue;
     if (!take_off(run.first + k, found.interval, allowed_[k], removed_[k])) run.wanted &= ~(1U << k);
+  }
+}
+
+EXACTFF_CLONES void VisibleEdges::find_removed(Run& run, std::size_t source_count) {
+  for (unsigned k = 0; k < run.edges; ++k) removed_[k].clear();
+  for (OutlineId s = 0; run.of_source && s < source_count && run.wanted != 0; ++s) {
+    if (s != run.outline) remove(run, s, true);
+  }
+  const bool skips_inner = run.of_source && source_count == 1;  // what lies inside the source meets none of its edges
+  for (const OutlineId o : near_) {
+    if (skips_inner && outlines_.outline(o).inside_source) continue;
+    if (o != run.outline) remove(run, o, !run.of_source);
+    if (run.wanted == 0) return;
   }
 }
 
@@ -203,8 +275,9 @@ bool VisibleEdges::take_off(EdgeId edge, const Interval& interval, std::vector<I
     return true;
   }
   auto& [begin, end] = allowed.front();
-  if (compare(edge, interval.end, begin) <= 0 || compare(edge, interval.begin, end) >= 0) return true;
   const bool from_begin = compare(edge, interval.begin, begin) <= 0, to_end = compare(edge, interval.end, end) >= 0;
+  if (from_begin && compare(edge, interval.end, begin) <= 0) return true;
+  if (to_end && compare(edge, interval.begin, end) >= 0) return true;
   if (from_begin && to_end) return false;
   if (from_begin) {
     begin = interval.end;
@@ -214,67 +287,6 @@ bool VisibleEdges::take_off(EdgeId edge, const Interval& interval, std::vector<I
     removed.push_back(interval);
   }
   return true;
-}
-
-// By the filter alone, for all edges of the run at once. A line is entered or left at its crossing with the edge: where
-// the ends have heights m and l above it, of different signs, that is at the parameter |m| / (|l| + |m|).
-//
-// Its error. Let D be |l| + |m| and e the larger error of the two heights, all as computed, and u = 2^-53. The quotient
-// of the true heights differs by at most e / (D - 2e) <= 2e / D where D >= 4e. Sum, inverse and product err by u each,
-// relatively, so that the quotient, at most 1, is off by 4u more at most; 2e / D, at most 1/2 there, is computed to
-// within 4u of itself. 2e / D + 2^-50 covers it all. Where D < 4e the error is set to 2, which decides nothing; nor
-// does NaN.
-//
-// Every comparison that does not hold for all numbers within the errors makes the edge unsure, except that one line
-// with both ends below it is certainly enough for the outline to cover nothing.
-EXACTFF_CLONES VisibleEdges::Cuts VisibleEdges::cut(const Run& run, std::span<const Edge> lines, EdgeId first) {
-  using namespace kernel::lanes;
-  const Four x = load(run.x.data()), y = load(run.y.data()), z = load(run.z.data()), size = load(run.size.data());
-  Four begin = four(0.0), begin_error = begin, end = four(1.0), end_error = begin;
-  FourMask begin_line = four_whole(Parameter::kAtBegin), end_line = four_whole(Parameter::kAtEnd);
-  FourMask outside = four_whole(0), unsure = outside;
-  Cuts cuts;
-  for (std::size_t f = 0; f < lines.size(); ++f) {
-    const Edge& line = lines[f];
-    const Four h = line.normal.x * x + line.normal.y * y + line.normal.z * z, e = line.error * size;
-    const FourMask above_a = h > e, below_a = -h > e, above_b = next_lane(above_a), below_b = next_lane(below_a);
-    outside |= below_a & below_b;
-    if (all_lanes(outside)) return cuts;
-    const FourMask inside = above_a & above_b;
-    const FourMask entering = below_a & above_b, leaving = above_a & below_b;
-    const Four m = absolute(h), sum = m + next_lane(m), inverse = 1.0 / sum, error = larger(e, next_lane(e));
-    const Four at = m * inverse, at_error = sum > 4.0 * error ? 2.0 * error * inverse + 0x1p-50 : four(2.0);
-    const FourMask after_begin = at - begin > at_error + begin_error,
-                   before_begin = begin - at > at_error + begin_error;
-    const FourMask before_end = end - at > at_error + end_error, after_end = at - end > at_error + end_error;
-    unsure |= ~(inside | (entering & (after_begin | before_begin)) | (leaving & (before_end | after_end)));
-    const FourMask later = entering & after_begin, earlier = leaving & before_end;
-    const FourMask id = four_whole(static_cast<std::int64_t>(first + f));
-    begin = later ? at : begin;
-    begin_error = later ? at_error : begin_error;
-    begin_line = later ? id : begin_line;
-    end = earlier ? at : end;
-    end_error = earlier ? at_error : end_error;
-    end_line = earlier ? id : end_line;
-  }
-  const FourMask some = end - begin > begin_error + end_error, none = begin - end > begin_error + end_error;
-  cuts.covered = lane_bits(~outside & ~unsure & some);
-  cuts.unsure = lane_bits(~outside & (unsure | ~(some | none)));
-  store(begin, cuts.begin.data());
-  store(begin_error, cuts.begin_error.data());
-  store(end, cuts.end.data());
-  store(end_error, cuts.end_error.data());
-  store(begin_line, cuts.begin_line.data());
-  store(end_line, cuts.end_line.data());
-  return cuts;
-}
-
-VisibleEdges::Cuts VisibleEdges::cut(const Run& run, OutlineId outline) {
-  const Outline& o = outlines_.outline(outline);
-  const Cuts cuts = cut(run, outlines_.edges().subspan(o.first, o.count), o.first);
-  pairs_ += static_cast<unsigned>(std::popcount(run.wanted));
-  undecided_pairs_ += static_cast<unsigned>(std::popcount(cuts.unsure & run.wanted));
-  return cuts;
 }
 
 bool VisibleEdges::cover(const Run& run, unsigned k, OutlineId outline, const Cuts& cuts, Cover& result) {
@@ -359,7 +371,6 @@ EdgeParameter VisibleEdges::exact(EdgeId edge, const Parameter& p) {
 }
 
 int VisibleEdges::compare_exactly(EdgeId edge, const Parameter& p, const Parameter& q) {
-  if (p.line == q.line) return 0;
   if (p.line == Parameter::kAtBegin || q.line == Parameter::kAtEnd) return -1;
   if (p.line == Parameter::kAtEnd || q.line == Parameter::kAtBegin) return 1;
   const EdgeParameter a = exact(edge, p), b = exact(edge, q);

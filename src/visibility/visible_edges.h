@@ -124,7 +124,7 @@ class VisibleEdges {
   [[nodiscard]] int compare(EdgeId edge, const Parameter& p, const Parameter& q) {
     const double difference = p.value - q.value, error = p.error + q.error;
     if (std::abs(difference) > error) return difference > 0.0 ? 1 : -1;
-    return compare_exactly(edge, p, q);
+    return p.line == q.line ? 0 : compare_exactly(edge, p, q);
   }
   [[nodiscard]] int compare_exactly(EdgeId edge, const Parameter& p, const Parameter& q);
   [[nodiscard]] EdgeParameter exact(EdgeId edge, const Parameter& p);
@@ -138,7 +138,7 @@ class VisibleEdges {
   OutlineGrid grid_;
   std::vector<std::uint8_t> dropped_;  // by edge
   std::vector<EdgeId> line_;           // by edge: the first edge between the same two corners
-  std::vector<OutlineId> near_;        // occluders that the run at hand may meet
+  std::span<const OutlineId> near_;    // occluders that the run at hand may meet
   std::vector<Part> parts_;
   std::uint64_t pairs_ = 0, undecided_pairs_ = 0;
   std::vector<Stored> stored_;

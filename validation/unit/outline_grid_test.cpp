@@ -88,12 +88,12 @@ struct Tally {
 void expect_nothing_lost(Outlines& outlines, const std::vector<std::uint8_t>& dropped, Tally& tally) {
   OutlineGrid grid;
   grid.build(outlines, 1, dropped);
-  std::vector<OutlineId> near;
   const auto count = static_cast<OutlineId>(outlines.outlines().size());
   for (EdgeId id = 0; id < outlines.edges().size(); ++id) {
     if (dropped[id] != 0) continue;
     const Outlines::Edge edge = outlines.edge(id);
-    grid.find_near(outlines, id, 1, near);
+    const auto found = grid.find_near(outlines, id, 1);
+    std::vector<OutlineId> near(found.begin(), found.end());
     std::sort(near.begin(), near.end());
     EXPECT_EQ(std::adjacent_find(near.begin(), near.end()), near.end()) << "twice";
     tally.near += near.size();
@@ -189,9 +189,7 @@ TEST(OutlineGrid, KnowsWhatItCannotTellApart) {
   const std::uint64_t pairs = std::uint64_t{4} * kCount * kCount;
   EXPECT_GE(grid.unsorted_pairs(seen.outlines()), pairs);
   EXPECT_LE(grid.unsorted_pairs(seen.outlines()), 4 * pairs);  // few cells hold them all
-  std::vector<OutlineId> near;
-  grid.find_near(seen.outlines(), 0, 1, near);
-  EXPECT_EQ(near.size(), std::size_t{kCount});
+  EXPECT_EQ(grid.find_near(seen.outlines(), 0, 1).size(), std::size_t{kCount});
 }
 
 }  // namespace
