@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/lanes.h"
+
 namespace exactff::visibility {
 
 using kernel::Approx3;
@@ -190,27 +192,23 @@ void OutlineGrid::choose_cells(std::size_t source_count) {
 
 // What meets inside the source does so at a point of the grid, so that bounds may be clamped to just beyond it. Floats
 // then err by less than 2^-22 of the sum of both counts.
-OutlineGrid::Octagon OutlineGrid::octagon(const Outlines& outlines, OutlineId id) const {
+EXACTFF_CLONES OutlineGrid::Octagon OutlineGrid::octagon(const Outlines& outlines, OutlineId id) const {
+  using namespace kernel::lanes;
   const double wide = u_.count, high = v_.count;
-  std::array<Range, 4> bounds;
-  bounds.fill(bounds_[id].u.empty() ? Range{-kInfinity, kInfinity} : Range{kInfinity, -kInfinity});
+  const double slack = 4.0 * kSlack * (u_.per_unit + v_.per_unit) + 0x1p-18 * (wide + high);
+  Four least = four(kInfinity), most = -least;
+  if (bounds_[id].u.empty()) std::swap(least, most);
   const Outline& outline = outlines.outline(id);
   for (EdgeId edge = outline.first; edge < outline.first + outline.count && !bounds_[id].u.empty(); ++edge) {
     const Image& image = images_[outlines.edge(edge).a];
     const double u = (image.u - u_.range.low) * u_.per_unit, v = (image.v - v_.range.low) * v_.per_unit;
-    bounds[0].include(u);
-    bounds[1].include(v);
-    bounds[2].include(u + v);
-    bounds[3].include(u - v);
+    const Four at{u, v, u + v, u - v};
+    least = smaller(least, at);
+    most = larger(most, at);
   }
-  const std::array<Range, 4> whole{{{0.0, wide}, {0.0, high}, {0.0, wide + high}, {-high, wide}}};
-  const double slack = 4.0 * kSlack * (u_.per_unit + v_.per_unit) + 0x1p-18 * (wide + high);
-  Octagon result;
-  for (int i = 0; i < 4; ++i) {
-    result.low[i] = static_cast<float>(std::max(bounds[i].low - slack, whole[i].low - 1.0));
-    result.high[i] = static_cast<float>(std::min(bounds[i].high + slack, whole[i].high + 1.0));
-  }
-  return result;
+  const Four whole_low{0.0, 0.0, 0.0, -high}, whole_high{wide, high, wide + high, wide};
+  return {__builtin_convertvector(larger(least - slack, whole_low - 1.0), FourFloats),
+          __builtin_convertvector(smaller(most + slack, whole_high + 1.0), FourFloats)};
 }
 
 // The range of u of the segment's points whose v lies in the given range, widened by the slack.
