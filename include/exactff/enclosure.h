@@ -37,10 +37,10 @@ class Enclosure {
   [[nodiscard]] std::string midpoint() const;
   [[nodiscard]] std::string radius() const;
 
-  [[nodiscard]] const Ball& ball() const { return *ball_; }
+  [[nodiscard]] const Ball& ball() const;
 
  private:
-  std::unique_ptr<Ball> ball_;
+  std::unique_ptr<Ball> ball_;  // null: zero
 };
 
 }  // namespace exactff

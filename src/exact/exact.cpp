@@ -165,7 +165,7 @@ class Solver {
   void integrate() {
     const bool may_be_quick = all_by_edges_ && options_.precision_cap >= exact::QuickTier::kBits;
     if (may_be_quick && certify_quickly(quick_, options_, result_)) return;
-    contour::ContourIntegral contour(view_.normal.exact);
+    contour::ContourIntegral contour(view_.normal().exact);
     if (planes_.size() == 1) {
       add_exactly(last_, contour);
     } else {

@@ -97,7 +97,7 @@ void VisibleShare::add(const BoundaryPiece& piece) {
   if (!keeps_orientation_) std::swap(added.exact_p, added.exact_q);
   added.p = rounded(added.exact_p);
   added.q = rounded(added.exact_q);
-  const ExactVec3& normal = view_.normal.exact;
+  const ExactVec3 normal = view_.normal().exact;
   added.horizon = kernel::sign(dot(normal, piece.a)) == 0 && kernel::sign(dot(normal, piece.b)) == 0;
   pieces_.push_back(std::move(added));
 }

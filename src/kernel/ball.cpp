@@ -108,40 +108,46 @@ std::string format(const Decimals& number) {
 
 }  // namespace
 
-Enclosure::Enclosure() : ball_(std::make_unique<Ball>()) {}
+Enclosure::Enclosure() = default;
 Enclosure::Enclosure(const Ball& ball) : ball_(std::make_unique<Ball>(ball)) {}
-Enclosure::Enclosure(const Enclosure& other) : ball_(std::make_unique<Ball>(*other.ball_)) {}
+Enclosure::Enclosure(const Enclosure& other) : Enclosure(other.ball()) {}
 Enclosure& Enclosure::operator=(const Enclosure& other) {
-  if (this != &other) ball_ = std::make_unique<Ball>(*other.ball_);
+  if (this != &other) ball_ = std::make_unique<Ball>(other.ball());
   return *this;
 }
 Enclosure::Enclosure(Enclosure&&) noexcept = default;
 Enclosure& Enclosure::operator=(Enclosure&&) noexcept = default;
 Enclosure::~Enclosure() = default;
 
+const Ball& Enclosure::ball() const {
+  static const Ball kZero;
+  return ball_ ? *ball_ : kZero;
+}
+
 Enclosure& Enclosure::operator+=(const Enclosure& other) {
-  arb_add(ball_->get(), ball_->get(), other.ball_->get(), ARF_PREC_EXACT);
-  return *this;
+  Ball sum;
+  arb_add(sum.get(), ball().get(), other.ball().get(), ARF_PREC_EXACT);
+  return *this = Enclosure(sum);
 }
 
 double Enclosure::lower() const {
   End lower_end;
   End upper_end;
-  get_ends(*ball_, lower_end, upper_end);
+  get_ends(ball(), lower_end, upper_end);
   return arf_get_d(lower_end.get(), ARF_RND_FLOOR);
 }
 
 double Enclosure::upper() const {
   End lower_end;
   End upper_end;
-  get_ends(*ball_, lower_end, upper_end);
+  get_ends(ball(), lower_end, upper_end);
   return arf_get_d(upper_end.get(), ARF_RND_CEIL);
 }
 
 std::optional<double> Enclosure::nearest() const {
   End lower_end;
   End upper_end;
-  get_ends(*ball_, lower_end, upper_end);
+  get_ends(ball(), lower_end, upper_end);
   const double low = arf_get_d(lower_end.get(), ARF_RND_NEAR);
   const double high = arf_get_d(upper_end.get(), ARF_RND_NEAR);
   if (low != high) return std::nullopt;  // NaN included
@@ -151,19 +157,19 @@ std::optional<double> Enclosure::nearest() const {
 std::optional<std::string> Enclosure::decimals(int digits) const {
   End lower_end;
   End upper_end;
-  get_ends(*ball_, lower_end, upper_end);
+  get_ends(ball(), lower_end, upper_end);
   const Decimals low = decimals_of(lower_end, digits);
   if (low != decimals_of(upper_end, digits)) return std::nullopt;
   return format(low);
 }
 
-bool Enclosure::contains(const Enclosure& other) const { return arb_contains(ball_->get(), other.ball_->get()) != 0; }
-bool Enclosure::overlaps(const Enclosure& other) const { return arb_overlaps(ball_->get(), other.ball_->get()) != 0; }
+bool Enclosure::contains(const Enclosure& other) const { return arb_contains(ball().get(), other.ball().get()) != 0; }
+bool Enclosure::overlaps(const Enclosure& other) const { return arb_overlaps(ball().get(), other.ball().get()) != 0; }
 
 bool Enclosure::contains(double value) const {
   End number;
   arf_set_d(number.get(), value);
-  return arb_contains_arf(ball_->get(), number.get()) != 0;
+  return arb_contains_arf(ball().get(), number.get()) != 0;
 }
 
 namespace {
@@ -196,7 +202,7 @@ PrintedBall print(const Ball& ball) {
 
 }  // namespace
 
-std::string Enclosure::midpoint() const { return print(*ball_).midpoint; }
-std::string Enclosure::radius() const { return print(*ball_).radius; }
+std::string Enclosure::midpoint() const { return print(ball()).midpoint; }
+std::string Enclosure::radius() const { return print(ball()).radius; }
 
 }  // namespace exactff

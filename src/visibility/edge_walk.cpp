@@ -77,6 +77,8 @@ class EdgeWalk {
   Outcome find_outcome();
   bool gather_source();
   bool add_above_horizon(const Piece& piece);
+  [[nodiscard]] int horizon_side(CornerId corner);
+  const kernel::Direction& horizon();
   bool gather_occluders();
   [[nodiscard]] bool culls() const { return request_.culling == ShaftCulling::kTree; }
   void start_run();
@@ -105,6 +107,7 @@ class EdgeWalk {
   const ClosedSurfaces& surfaces_;
   Workspace& work_;
   Outlines& outlines_;
+  std::optional<kernel::Direction> horizon_;  // the receiver's normal, once needed
   PlaneVisibility result_;
   std::span<const VisibleEdges::Part> work_parts_;
   std::size_t source_count_ = 0;
@@ -147,12 +150,22 @@ bool EdgeWalk::gather_source() {
   return source_count_ > 0;
 }
 
+const kernel::Direction& EdgeWalk::horizon() {
+  if (!horizon_) horizon_ = view_.normal();
+  return *horizon_;
+}
+
+int EdgeWalk::horizon_side(CornerId corner) {
+  const int filtered = outlines_.side_by_filter({view_.n.x, view_.n.y, view_.n.z}, corner);
+  return filtered != kUncertain ? filtered : outlines_.side(horizon(), corner);
+}
+
 // False if nothing with an interior is left.
 bool EdgeWalk::add_above_horizon(const Piece& piece) {
   bool above = false, below = false;
   for (const std::uint32_t vertex : view_.scene.corners(piece)) {
     const CornerId corner = outlines_.corner_of_vertex(vertex);
-    const int side = outlines_.side(view_.normal, corner);
+    const int side = horizon_side(corner);
     above = above || side > 0;
     below = below || side < 0;
   }
@@ -166,7 +179,7 @@ bool EdgeWalk::add_above_horizon(const Piece& piece) {
   for (const std::uint32_t vertex : view_.scene.corners(piece)) {
     ring.push_back(kernel::make_direction(outlines_.exact(outlines_.corner_of_vertex(vertex))));
   }
-  clip(ring, view_.normal);
+  clip(ring, horizon());
   outlines_.add(ring);
   return true;
 }

@@ -151,9 +151,13 @@ Integer Outlines::exact_height(const Edge& edge, CornerId t) {
   return dot(cross(exact(edge.b), exact(edge.a)), exact(t));
 }
 
-int Outlines::side(const Direction& normal, CornerId t) {
+int Outlines::side_by_filter(const Approx3& normal, CornerId t) const {
   const Corner& c = corners_[t];
-  const int filtered = c.size == c.size ? kernel::sign_of_dot(normal.approx, c.t) : kernel::kUncertain;
+  return c.size == c.size ? kernel::sign_of_dot(normal, c.t) : kernel::kUncertain;
+}
+
+int Outlines::side(const Direction& normal, CornerId t) {
+  const int filtered = side_by_filter(normal.approx, t);
   return filtered != kernel::kUncertain ? filtered : kernel::sign(dot(normal.exact, exact(t)));
 }
 

@@ -105,8 +105,9 @@ class Outlines {
   }
   // -1, 0, +1: outside, on, inside the line of the edge.
   [[nodiscard]] int side(const Edge& edge, CornerId t);
-  // Sign of normal . t.
+  // Sign of normal . t; by the filter alone: or kUncertain.
   [[nodiscard]] int side(const kernel::Direction& normal, CornerId t);
+  [[nodiscard]] int side_by_filter(const kernel::Approx3& normal, CornerId t) const;
 
   [[nodiscard]] const kernel::ExactVec3& exact(CornerId id);
   // exact(id) * 2^exponent(id) is what the doubles of the corner approximate. Known once exact(id) has been asked for.

@@ -82,14 +82,14 @@ void PlaneCrossings::start(const Vec3& x, const kernel::Direction& normal, const
   point_ = point;
   scale_exponent_ = scale_exponent;
   scale_ = std::ldexp(1.0, scale_exponent);
-  prepared_ = false;
 }
 
 void PlaneCrossings::prepare_normal() {
-  if (prepared_) return;
+  const ExactVec3& n = normal_->exact;
+  if (n.x == prepared_for_.x && n.y == prepared_for_.y && n.z == prepared_for_.z) return;
   const long bits = bit_length(normal_->exact);
   for (int i = 0; i < 3; ++i) fine_normal_[i] = leading(normal_->exact[i], bits);
-  prepared_ = true;
+  prepared_for_ = n;  // receivers come by the thousand for one source
 }
 
 std::optional<PlaneCrossings::Fine> PlaneCrossings::fine(const Vec3& p, const Vec3& q) {

@@ -45,7 +45,7 @@ class PlaneCrossings {
   const kernel::Direction* normal_ = nullptr;
   int scale_exponent_ = 0;
   double scale_ = 1.0;
-  bool prepared_ = false;
+  kernel::ExactVec3 prepared_for_;                               // the normal of fine_normal_
   std::array<kernel::double_double::Bounded, 3> fine_normal_{};  // largest component in [1/2, 1)
 };
 

@@ -13,10 +13,9 @@ using kernel::Rational;
 using kernel::Ring;
 
 View::View(const Scene& scene_in, const Receiver& receiver)
-    : scene(scene_in),
-      x(receiver.point),
-      normal(kernel::make_direction(kernel::exact_vector(receiver.normal).v)),
-      on(receiver.on) {}
+    : scene(scene_in), x(receiver.point), n(receiver.normal), on(receiver.on) {}
+
+Direction View::normal() const { return kernel::make_direction(kernel::exact_vector(n).v); }
 
 bool may_occlude(const View& view, const SourcePlane& plane, const Request& request, std::uint32_t piece) {
   const FaceId face = view.scene.pieces()[piece].face;
@@ -128,9 +127,10 @@ bool Walk::gather_source() {
 }
 
 bool Walk::clip_by_horizon() {
+  const Direction normal = view_.normal();
   for (const Ring& ring : source_) {
     Ring above = ring;
-    const ClipResult clipped = clip(above, view_.normal);
+    const ClipResult clipped = clip(above, normal);
     if (clipped != ClipResult::kInside) result_.record.horizon_clipped = true;
     if (clipped != ClipResult::kEmpty) clipped_.push_back(std::move(above));
   }

@@ -32,8 +32,10 @@ struct View {
 
   const Scene& scene;
   Vec3 x;
-  kernel::Direction normal;
+  Vec3 n;  // the receiver's normal
   std::optional<FaceId> on;
+  // The same as a direction: whole numbers, which are seldom needed.
+  [[nodiscard]] kernel::Direction normal() const;
 };
 
 struct Request {

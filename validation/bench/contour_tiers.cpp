@@ -23,7 +23,7 @@ std::vector<DoubleEdge> double_boundary(const BenchScene& s) {
 }
 
 contour::ContourIntegral contour_of(const BenchScene& s, const std::vector<visibility::BoundaryPiece>& boundary) {
-  contour::ContourIntegral contour(visibility::View(s.scene, s.receiver).normal.exact);
+  contour::ContourIntegral contour(visibility::View(s.scene, s.receiver).normal().exact);
   for (const visibility::BoundaryPiece& piece : boundary) contour.add(piece);
   return contour;
 }
