@@ -57,22 +57,23 @@ void Outlines::start(const Scene& scene, const Vec3& x, double unit) {
   outlines_.clear();
 }
 
+[[gnu::always_inline]] inline CornerId Outlines::add_corner(const Approx3& t, double size, const Origin& origin) {
+  corners_.push_back({t, size});
+  origins_.push_back(origin);
+  return static_cast<CornerId>(corners_.size() - 1);
+}
+
 CornerId Outlines::corner_of_vertex(std::uint32_t any_vertex) {
   const std::uint32_t vertex = places_[any_vertex];
   auto& [run, corner] = corner_of_vertex_[vertex];
   if (run == run_) return corner;
   const Approx3 d = kernel::approx_difference(scene_->vertices()[vertex], x_);
   const Approx3 t{d.x * scale_, d.y * scale_, d.z * scale_};
-  const bool exact_scaling = scaled_safely(d.x, t.x) && scaled_safely(d.y, t.y) && scaled_safely(d.z, t.z);
+  const bool exact_scaling =  // to larger numbers it always is, or they become infinite
+      scale_ >= 1.0 || (scaled_safely(d.x, t.x) && scaled_safely(d.y, t.y) && scaled_safely(d.z, t.z));
   run = run_;
   corner = add_corner(t, exact_scaling ? size_of(t) : std::numeric_limits<double>::quiet_NaN(), {.p = vertex});
   return corner;
-}
-
-CornerId Outlines::add_corner(const Approx3& t, double size, const Origin& origin) {
-  corners_.push_back({t, size});
-  origins_.push_back(origin);
-  return static_cast<CornerId>(corners_.size() - 1);
 }
 
 const ExactVec3& Outlines::keep_exact(Origin& origin, ExactVec3 direction, long exponent) {

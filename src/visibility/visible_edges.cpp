@@ -25,7 +25,7 @@ constexpr Parameter kEnd{1.0, 0.0F, Parameter::kAtEnd};
 constexpr std::uint64_t kMostUnsortedPairs = 1'000'000;
 
 // Of four bits. std::popcount is a call where the processor may lack the instruction.
-constexpr std::array<std::uint8_t, 16> kBitCount{0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
+std::uint64_t bit_count(unsigned bits) { return (0x4332322132212110U >> (4 * bits)) & 0xFU; }
 
 // Of a crossing's parameter, not less than the double.
 float rounded_up(double error) { return static_cast<float>(error * (1.0 + 0x1p-20)); }
@@ -142,21 +142,21 @@ void VisibleEdges::trace(Run& run, std::size_t source_count) {
 // Every comparison that does not hold for all numbers within the errors makes the edge unsure, except that one line
 // with both ends below it is certainly enough for the outline to cover nothing. A line that is entered can only move
 // the beginning of what is covered, one that is left only its end, so that one comparison serves for both.
-[[gnu::always_inline]] inline VisibleEdges::Cuts VisibleEdges::cut(const Run& run, std::span<const Edge> lines,
-                                                                   EdgeId first) {
+[[gnu::always_inline]] inline void VisibleEdges::cut(const Run& run, std::span<const Edge> lines, EdgeId first,
+                                                     Cuts& cuts) {
   using namespace kernel::lanes;
   const Four x = load(run.x.data()), y = load(run.y.data()), z = load(run.z.data()), size = load(run.size.data());
   const Four size_of_both = larger(size, next_lane(size));
   Four begin = four(0.0), begin_error = begin, end = four(1.0), end_error = begin;
   FourMask begin_line = four_whole(Parameter::kAtBegin), end_line = four_whole(Parameter::kAtEnd);
   FourMask outside = four_whole(0), sure = four_whole(-1);
-  Cuts cuts;
+  cuts.covered = cuts.unsure = 0;
   for (std::size_t f = 0; f < lines.size(); ++f) {
     const Edge& line = lines[f];
     const Four h = line.normal.x * x + line.normal.y * y + line.normal.z * z, e = line.error * size;
     const FourMask above_a = h > e, below_a = -h > e, above_b = next_lane(above_a), below_b = next_lane(below_a);
     outside |= below_a & below_b;
-    if (all_lanes(outside)) return cuts;
+    if (all_lanes(outside)) return;
     const FourMask inside = above_a & above_b;
     const FourMask entering = below_a & above_b, leaving = above_a & below_b;
     const Four m = absolute(h), sum = m + next_lane(m), inverse = 1.0 / sum,
@@ -185,15 +185,13 @@ void VisibleEdges::trace(Run& run, std::size_t source_count) {
   store(end_error, cuts.end_error.data());
   store(begin_line, cuts.begin_line.data());
   store(end_line, cuts.end_line.data());
-  return cuts;
 }
 
-[[gnu::always_inline]] inline VisibleEdges::Cuts VisibleEdges::cut(const Run& run, OutlineId outline) {
+[[gnu::always_inline]] inline void VisibleEdges::cut(const Run& run, OutlineId outline, Cuts& cuts) {
   const Outline& o = outlines_.outline(outline);
-  const Cuts cuts = cut(run, outlines_.edges().subspan(o.first, o.count), o.first);
-  pairs_ += kBitCount[run.wanted];
-  undecided_pairs_ += kBitCount[cuts.unsure & run.wanted];
-  return cuts;
+  cut(run, outlines_.edges().subspan(o.first, o.count), o.first, cuts);
+  pairs_ += bit_count(run.wanted);
+  undecided_pairs_ += bit_count(cuts.unsure & run.wanted);
 }
 
 // The whole of a source's edge, or of one inside it; else what has the source on both sides.
@@ -201,7 +199,7 @@ EXACTFF_CLONES void VisibleEdges::find_allowed(Run& run, std::size_t source_coun
   for (unsigned k = 0; k < run.edges; ++k) allowed_[k].clear();
   const bool all = run.of_source || outlines_.outline(run.outline).inside_source;
   Cuts cuts;
-  if (source_count == 1 && !all) cuts = cut(run, 0);
+  if (source_count == 1 && !all) cut(run, 0, cuts);
   for (unsigned k = 0; k < run.edges; ++k) {
     if ((run.wanted >> k & 1U) == 0) continue;
     Cover found;
@@ -220,9 +218,11 @@ EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, st
   const EdgeId edge = run.first + k;
   left_.clear();
   right_.clear();
+  Cuts cuts;
   Cover found;
   for (OutlineId s = 0; s < source_count; ++s) {
-    if (!cover(run, k, s, cut(run, s), found)) continue;
+    cut(run, s, cuts);
+    if (!cover(run, k, s, cuts, found)) continue;
     if (found.left) left_.push_back(found.interval);
     if (found.right) right_.push_back(found.interval);
   }
@@ -239,9 +239,7 @@ EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, st
 
 // Of an edge, what the outline covers on the side that must not be covered, or where it coincides and comes first.
 // Edges of which nothing is left are no longer wanted.
-[[gnu::always_inline]] inline void VisibleEdges::remove(Run& run, OutlineId by, bool same_kind) {
-  const Cuts cuts = cut(run, by);
-  if (((cuts.covered | cuts.unsure) & run.wanted) == 0) return;
+[[gnu::always_inline]] inline void VisibleEdges::remove(Run& run, OutlineId by, const Cuts& cuts, bool same_kind) {
   const bool left_matters = run.of_source && !same_kind;
   Cover found;
   for (unsigned bits = (cuts.covered | cuts.unsure) & run.wanted; bits != 0; bits &= bits - 1) {
@@ -253,16 +251,28 @@ EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, st
   }
 }
 
+// A few at a time: all are cut before any is looked at, so that what hangs on the cuts need not be guessed.
 EXACTFF_CLONES void VisibleEdges::find_removed(Run& run, std::size_t source_count) {
+  constexpr std::size_t kBatch = 4;
+  std::array<Cuts, kBatch> cuts;
+  std::array<OutlineId, kBatch> by;
   for (unsigned k = 0; k < run.edges; ++k) removed_[k].clear();
   for (OutlineId s = 0; run.of_source && s < source_count && run.wanted != 0; ++s) {
-    if (s != run.outline) remove(run, s, true);
+    if (s == run.outline) continue;
+    cut(run, s, cuts.front());
+    remove(run, s, cuts.front(), true);
   }
   const bool skips_inner = run.of_source && source_count == 1;  // what lies inside the source meets none of its edges
-  for (const OutlineId o : near_) {
-    if (skips_inner && outlines_.outline(o).inside_source) continue;
-    if (o != run.outline) remove(run, o, !run.of_source);
-    if (run.wanted == 0) return;
+  for (std::size_t at = 0; at < near_.size() && run.wanted != 0;) {
+    std::size_t count = 0;
+    for (const std::size_t end = std::min(at + kBatch, near_.size()); at < end; ++at) {
+      const OutlineId o = near_[at];
+      if (o == run.outline || (skips_inner && outlines_.outline(o).inside_source)) continue;
+      by[count] = o;
+      cut(run, o, cuts[count]);
+      count += ((cuts[count].covered | cuts[count].unsure) & run.wanted) != 0 ? 1U : 0U;
+    }
+    for (std::size_t i = 0; i < count; ++i) remove(run, by[i], cuts[i], !run.of_source);
   }
 }
 

@@ -107,12 +107,12 @@ class VisibleEdges {
   void find_allowed(Run& run, std::size_t source_count);
   void find_allowed_in_union(Run& run, unsigned k, std::size_t source_count);
   void find_removed(Run& run, std::size_t source_count);
-  void remove(Run& run, OutlineId by, bool same_kind);
+  void remove(Run& run, OutlineId by, const Cuts& cuts, bool same_kind);
   [[nodiscard]] bool take_off(EdgeId edge, const Interval& interval, std::vector<Interval>& allowed,
                               std::vector<Interval>& removed);
 
-  [[nodiscard]] static Cuts cut(const Run& run, std::span<const Outlines::Edge> lines, EdgeId first);
-  [[nodiscard]] Cuts cut(const Run& run, OutlineId outline);
+  static void cut(const Run& run, std::span<const Outlines::Edge> lines, EdgeId first, Cuts& cuts);
+  void cut(const Run& run, OutlineId outline, Cuts& cuts);
   // What the outline covers of the run's k-th edge; false if nothing.
   [[nodiscard]] bool cover(const Run& run, unsigned k, OutlineId outline, const Cuts& cuts, Cover& result);
   [[nodiscard]] bool cover_exactly(EdgeId edge, OutlineId outline, Cover& result);
