@@ -246,8 +246,8 @@ struct Study {
   // where drawing that region takes long. Only these have silent and wrong leaves.
   std::vector<std::size_t> judged;
   MethodStudy methods;
-  // By receiver: its distance to the nearest place on its face where what is visible changes in kind, to the half of
-  // `edge_resolution`; empty where the receivers are no grid.
+  // By receiver: its distance to the nearest place on its face where what is visible changes in kind, to three quarters
+  // of `edge_resolution`; empty where the receivers are no grid.
   std::vector<double> edge_distance;
   double edge_resolution = 0.0;
   std::optional<Profile> profile;

@@ -12,9 +12,10 @@ struct EngineArgument {
   std::string name = "edges";
 
   void add_to(CLI::App& app) {
-    app.add_option("--engine", name,
-                   "How the visible region is found: edges (fast), boolean (the reference) or both (one checked against "
-                   "the other); values do not depend on it")
+    app.add_option(
+           "--engine", name,
+           "How the visible region is found: edges (fast), boolean (the reference) or both (one checked against "
+           "the other); values do not depend on it")
         ->capture_default_str()
         ->check(CLI::IsMember({"edges", "boolean", "both"}));
   }

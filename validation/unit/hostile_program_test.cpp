@@ -2,6 +2,7 @@
 // Whatever happens, the exit code is right and nothing half-written stays behind.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -10,6 +11,7 @@
 #include <fstream>
 #include <functional>
 #include <numbers>
+#include <set>
 #include <sstream>
 #include <thread>
 
@@ -42,7 +44,13 @@ class HostileProgram : public testing::Test {
   }
 
   std::vector<std::string> comparison(const fs::path& folder) const {
-    return {"compare", room_, "--on", "floor", "--source", "light", "--grid", "2x2", "--threads", "1", "-o", folder};
+    return {"compare",   room_, "--on",         "floor",   "--source", "light", "--grid", "2x2",
+            "--threads", "1",   "--no-methods", "--eps-b", ".1",       "-o",    folder};
+  }
+  std::vector<std::string> resumed(const fs::path& folder) const {
+    std::vector<std::string> all = comparison(folder);
+    all.emplace_back("--resume");
+    return all;
   }
   std::vector<std::string> point(std::vector<std::string> more) const {
     std::vector<std::string> all{"point",    room_, "--at", ".5", ".5",       "0",
@@ -61,16 +69,55 @@ class HostileProgram : public testing::Test {
   }
 
   void expect_nothing_in_place() const { EXPECT_TRUE(fs::is_empty(place_)); }
+  // Nothing else, and it is of use: with it the comparison comes to the bytes of an undisturbed one.
+  void expect_only_a_journal(const fs::path& folder) const {
+    EXPECT_EQ(names(folder.parent_path()), std::set<std::string>{folder.filename().string() + ".part"});
+    const auto without_gnuplot = [] { ::setenv("PATH", "/nonexistent", 1); };
+    const Running refused = start(comparison(folder), without_gnuplot);
+    EXPECT_EQ(refused.wait(), 2);
+    EXPECT_NE(refused.error().find(".part: holds the finished work of an interrupted run"), std::string::npos)
+        << refused.error();
+    const Running going_on = start(resumed(folder), without_gnuplot);
+    EXPECT_EQ(going_on.wait(), 0) << going_on.error();
+    EXPECT_NE(going_on.error().find("were taken from the interrupted run"), std::string::npos) << going_on.error();
+    EXPECT_EQ(names(folder.parent_path()), std::set<std::string>{folder.filename().string()});
+    EXPECT_EQ(start(comparison(directory_.path() / "undisturbed"), without_gnuplot).wait(), 0);
+    for (const char* file : {"values.csv", "exact.csv", "summary.csv"}) {
+      EXPECT_EQ(validation::text_of(folder / file), validation::text_of(directory_.path() / "undisturbed" / file));
+    }
+    fs::remove_all(folder);
+  }
+  static std::set<std::string> names(const fs::path& folder) {
+    std::set<std::string> found;
+    for (const auto& entry : fs::directory_iterator(folder)) found.insert(entry.path().filename().string());
+    return found;
+  }
 
   const TemporaryDirectory directory_;
   const std::string room_ = directory_.write("room.obj", kRoom).string();
   const fs::path place_ = directory_.path() / "place";  // where the results go
 };
 
-TEST_F(HostileProgram, AFullDiskLeavesNoFolder) {
-  const Running run = start(comparison(place_ / "new" / "result"), [] { limit(RLIMIT_FSIZE, 2048); });
+TEST_F(HostileProgram, AFullDiskLeavesTheJournalAlone) {
+  for (const rlim_t bytes : {600, 2048}) {  // full while values are found, and while tables are written
+    const Running run = start(comparison(place_ / "result"), [bytes] { limit(RLIMIT_FSIZE, bytes); });
+    EXPECT_EQ(run.wait(), 2);
+    EXPECT_NE(run.error().find("cannot be written"), std::string::npos) << run.error();
+    EXPECT_NE(run.error().find("result.part, and the same command with --resume goes on"), std::string::npos);
+    expect_only_a_journal(place_ / "result");
+  }
+}
+
+TEST_F(HostileProgram, ADiskFullFromTheStartIsLeftAsItWas) {
+  const Running run = start(comparison(place_ / "new" / "result"), [] { limit(RLIMIT_FSIZE, 10); });
   EXPECT_EQ(run.wait(), 2);
   expect_nothing_in_place();
+}
+
+TEST_F(HostileProgram, FoldersOnTheWayAreMade) {
+  const Running run = start(comparison(place_ / "new" / "and" / "result"));
+  EXPECT_EQ(run.wait(), 0) << run.error();
+  EXPECT_EQ(names(place_ / "new" / "and"), std::set<std::string>{"result"});
 }
 
 TEST_F(HostileProgram, AFullDiskLeavesNoPicture) {
@@ -91,20 +138,58 @@ TEST_F(HostileProgram, AFullDiskAsStandardOutputIsAnError) {
 }
 
 // While gnuplot draws, the hidden folder exists: the worst moment to be interrupted.
-TEST_F(HostileProgram, SignalsWhileItWritesLeaveNothing) {
-  const fs::path started = directory_.path() / "started";
+TEST_F(HostileProgram, SignalsWhileItWritesLeaveTheJournalAlone) {
+  const fs::path started = directory_.path() / "started", folder = place_ / "result";
   const auto gnuplot = with_gnuplot("touch '" + started.string() + "'; exec sleep 100");
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     for (const int times : {1, 2}) {
       fs::remove(started);
-      const Running run = start(comparison(place_ / "result"), gnuplot);
-      while (!fs::exists(started)) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      EXPECT_FALSE(fs::is_empty(place_));
+      const Running run = start(comparison(folder), gnuplot);
+      while (!fs::exists(started) && !run.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      EXPECT_GT(names(place_).size(), 1U);
       for (int i = 0; i < times; ++i) run.send(signal);
       EXPECT_EQ(run.wait(), 128 + signal);
-      EXPECT_EQ(run.error(), "exactff: interrupted; nothing was written\n");
-      expect_nothing_in_place();
+      EXPECT_EQ(run.error(), "exactff: interrupted; what was finished is in " + folder.string() +
+                                 ".part, and the same command with --resume goes on\n");
+      expect_only_a_journal(folder);
     }
+  }
+}
+
+TEST_F(HostileProgram, ASignalWhileItReadsLeavesNothing) {
+  const fs::path pipe = directory_.path() / "pipe.obj";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::vector<std::string> arguments = comparison(place_ / "a" / "result");
+  arguments[1] = pipe;
+  const Running run = start(arguments);
+  {
+    std::ofstream(pipe) << kRoom;  // it has begun to read
+    run.send(SIGINT);
+  }
+  EXPECT_EQ(run.wait(), 128 + SIGINT);
+  expect_nothing_in_place();
+}
+
+TEST_F(HostileProgram, AnInterruptedRunIsBegunAnewByForce) {
+  const fs::path folder = place_ / "result";
+  EXPECT_EQ(start(comparison(folder), [] { limit(RLIMIT_FSIZE, 2048); }).wait(), 2);
+  std::vector<std::string> arguments = comparison(folder);
+  arguments.emplace_back("--force");
+  const Running anew = start(arguments, [] { ::setenv("PATH", "/nonexistent", 1); });
+  EXPECT_EQ(anew.wait(), 0);
+  EXPECT_EQ(anew.error().find("were taken from"), std::string::npos) << anew.error();
+  EXPECT_EQ(names(place_), std::set<std::string>{"result"});
+}
+
+TEST_F(HostileProgram, AFileWhereTheJournalWouldBeIsNotLost) {
+  std::ofstream(place_ / "result.part") << "dear diary";
+  for (const std::string flag : {"", "--resume", "--force"}) {
+    std::vector<std::string> arguments = comparison(place_ / "result");
+    if (!flag.empty()) arguments.push_back(flag);
+    const Running run = start(arguments);
+    EXPECT_EQ(run.wait(), 2);
+    EXPECT_NE(run.error().find("result.part: is there already and is not of our making"), std::string::npos);
+    EXPECT_EQ(validation::text_of(place_ / "result.part"), "dear diary");
   }
 }
 

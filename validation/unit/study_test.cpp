@@ -22,11 +22,18 @@
 #include "study/tables.h"
 #include "study/text.h"
 #include "support/program.h"
+#include "unit/study_support.h"
 
 namespace exactff::study {
 namespace {
 
 namespace fs = std::filesystem;
+using validation::expect_same_values;
+using validation::request_with_methods;
+using validation::small_request;
+using validation::small_room;
+using validation::text_of;
+using validation::value_tables;
 
 // --- statistics --------------------------------------------------------------------------------------
 
@@ -244,57 +251,41 @@ TEST(SilentErrors, ALeafIsHeldAgainstItsOwnPlane) {
 
 // --- the whole ---------------------------------------------------------------------------------------
 
-// A floor, a lamp above it and a plate in between.
-Scene small_room(bool with_plate) {
-  SceneBuilder builder("room");
-  const MaterialId grey = builder.add_material({"grey", {0.5, 0.25, 0.5}, {}});
-  const MaterialId lamp = builder.add_material({"lamp", {1, 1, 1}, {10, 20, 30}});
-  const auto square = [&](const char* name, MaterialId material, double half, double z, bool down) {
-    const std::uint32_t first = builder.add_vertex({-half, -half, z});
-    builder.add_vertex({half, -half, z});
-    builder.add_vertex({half, half, z});
-    builder.add_vertex({-half, half, z});
-    std::vector<std::uint32_t> ring = {first, first + 1, first + 2, first + 3};
-    if (down) ring = {first + 3, first + 2, first + 1, first};
-    builder.add_face(builder.patch(name), material, {ring});
-  };
-  square("floor", grey, 2.0, 0.0, false);
-  square("lamp", lamp, 0.5, 2.0, true);
-  if (with_plate) square("plate", grey, 0.3, 1.0, false);
-  return builder.build();
-}
-
-Request small_request(const Scene& scene, int threads) {
-  Request request;
-  request.scene = &scene;
-  request.scene_name = "room <&>";
-  request.receivers = grid_receivers(scene, scene.select("floor"), {5, 4});
-  request.receivers_name = "floor, grid 5x4";
-  request.sweeps.eps_b = {0.5, 0.05};
-  request.sweeps.rays = {1, 4};
-  request.sweeps.seeds = {1, 2};
-  request.threads = threads;
-  return request;
-}
-
-std::string text_of(const Table& table, const Study& study) {
-  std::ostringstream out;
-  table.write(study, out);
-  return out.str();
-}
-
 const Study& small_study() {
   static const Scene scene = small_room(true);
   static const Study study = run(small_request(scene, 1));
   return study;
 }
 
+// All methods too.
+const Study& whole_study() {
+  static const Scene scene = small_room(true);
+  static const Study study = run(request_with_methods(scene, 1));
+  return study;
+}
+
 TEST(Study, ValueTablesAreTheSameBytesForAnyNumberOfThreads) {
-  const Study two = run(small_request(*small_study().request.scene, 2));
-  for (const std::size_t i : {0, 1, 2}) {
-    const Table& table = tables()[i];
-    EXPECT_EQ(text_of(table, small_study()), text_of(table, two)) << table.file;
-    EXPECT_EQ(text_of(table, two).find("thread"), std::string::npos) << table.file;
+  const Study two = run(request_with_methods(*whole_study().request.scene, 2));
+  expect_same_values(whole_study(), two, "");
+  for (const auto& [file, text] : value_tables(two)) EXPECT_EQ(text.find("thread"), std::string::npos) << file;
+}
+
+TEST(Study, OfAllMethodsHasAllTables) {
+  std::set<std::string_view> files;
+  for (const Table& table : tables()) {
+    EXPECT_TRUE(table.has_rows(whole_study())) << table.file;
+    EXPECT_TRUE(files.insert(table.file).second) << table.file;
+  }
+  EXPECT_EQ(value_tables(whole_study()).size(), 9U);
+}
+
+TEST(Study, WithoutMethodsHasNoTableOfThem) {
+  EXPECT_EQ(value_tables(small_study()).size(), 3U);
+  for (const Table& table : tables()) {
+    EXPECT_EQ(table.has_rows(small_study()), std::string(table.file).find("method") == std::string::npos &&
+                                                 table.file != "slopes.csv" && table.file != "receivers.csv" &&
+                                                 table.file != "profile.csv")
+        << table.file;
   }
 }
 
@@ -363,27 +354,75 @@ TEST(Study, StopsWhenItIsCancelled) {
   EXPECT_THROW((void)run(small_request(scene, 2), hooks), Cancelled);
 }
 
-TEST(Study, TheReportHoldsEveryFigureAndFetchesNothing) {
-  const Study& study = small_study();
-  Page page;
-  page.left_out = study.left_out;
-  for (Figure& figure : figures(study, page.left_out)) page.drawn.figures.push_back({std::move(figure), "<svg></svg>"});
-  ASSERT_GE(page.drawn.figures.size(), 6U);
-  const std::string text = report_page(study, page);
-  for (const DrawnFigure& drawn : page.drawn.figures) {
-    EXPECT_NE(text.find("<figure id=\"" + drawn.figure.id + "\">"), std::string::npos) << drawn.figure.id;
+// The report on a study, drawn by nobody.
+struct UndrawnReport {
+  Report report;
+  Pages pages;
+
+  void add(const std::string& name, const std::string& title, const Study& study) {
+    Page page;
+    page.left_out = study.left_out;
+    for (Figure& figure : figures(study, page.left_out)) {
+      if (!name.empty()) figure.id = name + '-' + figure.id;
+      page.drawn.figures.push_back({std::move(figure), "<svg></svg>"});
+    }
+    report.scenes.push_back({name, title, study});
+    pages.scenes.push_back(std::move(page));
   }
+  [[nodiscard]] std::string text() const { return report_page(report, pages); }
+};
+
+void expect_nothing_fetched(const std::string& text) {
   for (const char* outside : {"http:", "https:", "<script", "src=", "<link", "@import", "url("}) {
     EXPECT_EQ(text.find(outside), std::string::npos) << outside;
   }
-  EXPECT_NE(text.find("room &lt;&amp;&gt;"), std::string::npos) << "names are escaped";
-  EXPECT_EQ(text.find("room <&>"), std::string::npos);
+}
+
+TEST(Study, TheReportHoldsEveryFigureAndFetchesNothing) {
+  for (const Study* study : {&small_study(), &whole_study()}) {
+    UndrawnReport undrawn;
+    undrawn.add("", study->request.scene_name, *study);
+    const auto& drawn = undrawn.pages.scenes.front().drawn.figures;
+    ASSERT_GE(drawn.size(), study == &whole_study() ? 12U : 6U);
+    const std::string text = undrawn.text();
+    for (const DrawnFigure& one : drawn) {
+      EXPECT_NE(text.find("<figure id=\"" + one.figure.id + "\""), std::string::npos) << one.figure.id;
+    }
+    expect_nothing_fetched(text);
+    EXPECT_NE(text.find("room &lt;&amp;&gt;"), std::string::npos) << "names are escaped";
+    EXPECT_EQ(text.find("room <&>"), std::string::npos);
+  }
+}
+
+TEST(Study, AReportOnSeveralScenesAndChaptersHoldsThemAll) {
+  UndrawnReport undrawn;
+  undrawn.report.title = "Two <rooms>";
+  undrawn.add("one", "Room 1", small_study());
+  undrawn.add("two", "Room & 2", whole_study());
+  Chapter chapter{.name = "a-chapter", .title = "What was <found>"};
+  chapter.paragraphs = {"One is less than two: 1 < 2."};
+  chapter.values = {{"a-chapter.csv", "a number", "# of one\nx\n1\n"}};
+  undrawn.report.chapters.push_back(chapter);
+  undrawn.pages.chapters.emplace_back().left_out.push_back({"the rest", "it is < nothing"});
+  undrawn.report.left_out.push_back({"Room <3>", "this report is abridged"});
+  const std::string text = undrawn.text();
+  for (const char* part : {"Two &lt;rooms&gt;", "Room 1", "Room &amp; 2", "What was &lt;found&gt;", "1 &lt; 2.",
+                           "a-chapter.csv", "the rest", "it is &lt; nothing", "Room &lt;3&gt;", "SCENE_values.csv",
+                           "SCENE_profile.csv", "<code>two</code> (Room &amp; 2)"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  }
+  std::set<std::string> ids;
+  for (std::size_t at = text.find(" id=\""); at != std::string::npos; at = text.find(" id=\"", at + 1)) {
+    const std::string id = text.substr(at + 5, text.find('"', at + 5) - at - 5);
+    EXPECT_TRUE(ids.insert(id).second) << id << " occurs twice";
+  }
+  expect_nothing_fetched(text);
 }
 
 TEST(Study, EveryFigureHasItsOwnName) {
   std::vector<LeftOut> left_out;
   std::set<std::string> ids;
-  for (const Figure& figure : figures(small_study(), left_out)) EXPECT_TRUE(ids.insert(figure.id).second) << figure.id;
+  for (const Figure& figure : figures(whole_study(), left_out)) EXPECT_TRUE(ids.insert(figure.id).second) << figure.id;
 }
 
 TEST(InlinedSvg, HasItsOwnIdsAndNothingFromOutside) {
@@ -451,16 +490,37 @@ TEST_F(OutputFolder, OfAStrangerIsRefused) {
 
 TEST_F(OutputFolder, OfAnEarlierStudyMayBeReplaced) {
   fs::create_directories(root_ / "out");
-  std::ofstream(root_ / "out" / "values.csv") << "a,b\n";
-  EXPECT_THROW(check_output_folder(root_ / "out"), InputError) << "no summary.csv of ours";
-  std::ofstream(root_ / "out" / "summary.csv") << "# exactff 0.1.0 compare: summary\n";
+  std::ofstream(root_ / "out" / "report.html") << "<!doctype html>\n";
+  EXPECT_THROW(check_output_folder(root_ / "out"), InputError) << "a page of anybody's";
+  std::ofstream(root_ / "out" / "room_summary.csv") << "# exactff 0.1.0 compare: summary\n";
   EXPECT_NO_THROW(check_output_folder(root_ / "out" / ""));
+  std::ofstream(root_ / "out" / "values.csv") << "a,b\n";
+  EXPECT_THROW(check_output_folder(root_ / "out"), InputError) << "a table of somebody else's";
 }
 
 TEST_F(OutputFolder, OfACancelledStudyIsNotThere) {
   const Hooks hooks{{}, [] { return true; }};
   EXPECT_THROW((void)write(small_study(), root_ / "out", hooks), Cancelled);
   EXPECT_TRUE(names().empty());
+}
+
+TEST_F(OutputFolder, OfSeveralScenesHasTheirNamesBeforeTheFiles) {
+  Report report;
+  report.title = "rooms";
+  report.scenes.push_back({"one", "One", small_study()});
+  report.scenes.push_back({"two", "Two", small_study()});
+  report.chapters.push_back({.name = "more", .title = "More", .values = {{"more.csv", "one", "# of one\nx\n1\n"}}});
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", root_.c_str(), 1);
+  (void)write(report, root_ / "out");
+  ::setenv("PATH", path.c_str(), 1);
+  for (const char* file : {"one_values.csv", "two_values.csv", "one_timings.csv", "more.csv", "report.html"}) {
+    EXPECT_TRUE(fs::exists(root_ / "out" / file)) << file;
+  }
+  EXPECT_FALSE(fs::exists(root_ / "out" / "values.csv"));
+  const std::string table = validation::text_of(root_ / "out" / "more.csv");
+  EXPECT_TRUE(table.starts_with("# exactff ") && table.ends_with(" compare: one\n# of one\nx\n1\n")) << table;
+  EXPECT_NO_THROW(check_output_folder(root_ / "out"));
 }
 
 TEST_F(OutputFolder, WithoutGnuplotHoldsTablesAndAReportThatSaysSo) {
@@ -471,7 +531,9 @@ TEST_F(OutputFolder, WithoutGnuplotHoldsTablesAndAReportThatSaysSo) {
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_NE(messages.front().find("gnuplot"), std::string::npos);
   EXPECT_EQ(names(), std::set<std::string>{"out"});
-  for (const Table& table : tables()) EXPECT_TRUE(fs::exists(root_ / "out" / table.file)) << table.file;
+  for (const Table& table : tables()) {
+    EXPECT_EQ(fs::exists(root_ / "out" / table.file), table.has_rows(small_study())) << table.file;
+  }
   EXPECT_TRUE(fs::exists(root_ / "out" / "report.html"));
 }
 

@@ -1,0 +1,100 @@
+// The file that describes a study.
+#include "cli/study_file.h"
+
+#include <gtest/gtest.h>
+
+#include "support/program.h"
+
+namespace exactff::cli {
+namespace {
+
+using Words = std::vector<std::string>;
+
+class StudyFileReader : public ::testing::Test {
+ protected:
+  StudyFile read(const std::string& text) const { return read_study_file(directory_.write("a.study", text)); }
+  // The problems of a file, without its folder.
+  std::string complaint(const std::string& text) const {
+    try {
+      (void)read(text);
+    } catch (const InputError& error) {
+      std::string said = error.what();
+      const std::string folder = directory_.path().string() + '/';
+      for (std::size_t at; (at = said.find(folder)) != std::string::npos;) said.erase(at, folder.size());
+      return said;
+    }
+    return {};
+  }
+
+  const validation::TemporaryDirectory directory_;
+};
+
+TEST_F(StudyFileReader, TakesTitleScenesAndExperiments) {
+  const StudyFile study = read(
+      "# what this is\n"
+      "title  Form factors of \"rooms\"  \n"
+      "\n"
+      "scene room.obj --on floor --title \"A room\"   # the small one\n"
+      "\tscene\t@teapot\t--grid 2x2\r\n"
+      "experiment closure nettle-rule");
+  EXPECT_EQ(study.title, "Form factors of \"rooms\"");
+  ASSERT_EQ(study.scenes.size(), 2U);
+  EXPECT_EQ(study.scenes[0].number, 4U);
+  EXPECT_EQ(study.scenes[0].words, (Words{"room.obj", "--on", "floor", "--title", "A room"}));
+  EXPECT_EQ(study.scenes[1].words, (Words{"@teapot", "--grid", "2x2"}));
+  ASSERT_EQ(study.experiments.size(), 1U);
+  EXPECT_EQ(study.experiments[0].number, 6U);
+  EXPECT_EQ(study.experiments[0].words, (Words{"closure", "nettle-rule"}));
+}
+
+TEST_F(StudyFileReader, TellsEverythingThatIsWrongWithItsLine) {
+  const std::string said = complaint(
+      "Scene a.obj\n"
+      "title\n"
+      "scene 'a b.obj --on floor\n"
+      "scene\n"
+      "scene a.obj\n"
+      "experiment\n");
+  EXPECT_NE(said.find("a.study:1: a line begins with 'Scene'"), std::string::npos) << said;
+  EXPECT_NE(said.find("a.study:2: nothing follows the word 'title'"), std::string::npos) << said;
+  EXPECT_NE(said.find("a.study:3: a quote is not closed (where its word ends cannot be told); end the word with '"),
+            std::string::npos)
+      << said;
+  EXPECT_NE(said.find("a.study:4: nothing follows the word 'scene'"), std::string::npos) << said;
+  EXPECT_NE(said.find("a.study:6: nothing follows the word 'experiment'"), std::string::npos) << said;
+  EXPECT_EQ(said.find("a.study:5"), std::string::npos) << said;
+}
+
+TEST_F(StudyFileReader, WithNothingToDoIsRefused) {
+  for (const char* text : {"", "# only words\n", "title A title\n"}) {
+    EXPECT_NE(complaint(text).find("a.study: the study has neither a scene nor an experiment"), std::string::npos)
+        << text;
+  }
+}
+
+TEST_F(StudyFileReader, ThatIsNotThereIsNamed) {
+  EXPECT_THROW((void)read_study_file(directory_.path() / "none.study"), InputError);
+}
+
+TEST(SplitWords, TakesWhatQuotesHold) {
+  const auto split = [](const char* line) { return split_words(line, "f", 1); };
+  EXPECT_EQ(split(""), Words{});
+  EXPECT_EQ(split("  a\tb  "), (Words{"a", "b"}));
+  EXPECT_EQ(split("--title=\"two words\" 'it is \"so\"'"), (Words{"--title=two words", "it is \"so\""}));
+  EXPECT_EQ(split("\"\" ''"), (Words{"", ""}));
+  EXPECT_EQ(split("a\"b c\"d"), Words{"ab cd"});
+  EXPECT_EQ(split("it\"'\"s"), Words{"it's"});
+  EXPECT_THROW((void)split("a \"b"), InputError);
+  EXPECT_THROW((void)split("a 'b\""), InputError);
+}
+
+TEST(StudyFiles, AreToldByTheirNames) {
+  EXPECT_TRUE(is_study_file("a.study"));
+  EXPECT_TRUE(is_study_file("/b/a.b.study"));
+  EXPECT_FALSE(is_study_file("a.obj"));
+  EXPECT_FALSE(is_study_file("study"));
+  EXPECT_FALSE(is_study_file("@teapot"));
+}
+
+}  // namespace
+}  // namespace exactff::cli

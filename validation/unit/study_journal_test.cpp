@@ -1,0 +1,391 @@
+// Finished work in a file: what was added comes back, and what is torn, damaged or somebody else's does no harm.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "exactff/study.h"
+#include "study/kept_work.h"
+#include "study/report.h"
+#include "study/words.h"
+#include "support/program.h"
+#include "unit/study_support.h"
+
+namespace exactff::study {
+namespace {
+
+namespace fs = std::filesystem;
+using Existing = Journal::Existing;
+using validation::expect_same_values;
+using validation::request_with_methods;
+using validation::small_request;
+using validation::small_room;
+
+// --- the file ------------------------------------------------------------------------------------------------
+
+class StudyJournal : public ::testing::Test {
+ protected:
+  // Three pieces of work, the second of them with line ends and zeros.
+  std::string written() const {
+    Journal journal(file_, Existing::kRefuse);
+    for (const auto& [name, bytes] : pieces_) journal.add(name, bytes);
+    return validation::text_of(file_);
+  }
+  void put(const std::string& bytes) const { std::ofstream(file_, std::ios::binary) << bytes; }
+  // Every piece is right or not there, and one is there only if those before it are.
+  std::size_t sound_pieces(const Journal& journal) const {
+    std::size_t count = 0;
+    for (const auto& [name, bytes] : pieces_) {
+      const auto found = journal.find(name);
+      if (!found) break;
+      EXPECT_EQ(*found, bytes) << name;
+      ++count;
+    }
+    EXPECT_EQ(journal.size(), count);
+    return count;
+  }
+  std::string refusal(Existing existing) const {
+    try {
+      const Journal journal(file_, existing);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  }
+
+  const validation::TemporaryDirectory directory_;
+  const fs::path file_ = directory_.path() / "out.part";
+  const std::vector<std::pair<std::string, std::string>> pieces_ = {
+      {"a/0", "first"}, {"b", std::string("x\n\0y 3 00000000\n", 16)}, {"c-1", std::string()}};
+};
+
+TEST_F(StudyJournal, KeepsWhatIsAdded) {
+  {
+    Journal journal(file_, Existing::kRefuse);
+    EXPECT_EQ(journal.find("a/0"), std::nullopt);
+    for (const auto& [name, bytes] : pieces_) journal.add(name, bytes);
+    EXPECT_EQ(sound_pieces(journal), 3U);
+  }
+  EXPECT_EQ(sound_pieces(Journal(file_, Existing::kResume)), 3U);
+}
+
+TEST_F(StudyJournal, ThatIsAddedToAgainHasTheLastBytes) {
+  Journal journal(file_, Existing::kRefuse);
+  journal.add("a", "old");
+  journal.add("a", "newer");
+  EXPECT_EQ(journal.find("a"), "newer");
+  EXPECT_EQ(journal.size(), 1U);
+}
+
+TEST_F(StudyJournal, OfAnInterruptedRunIsRefusedResumedOrReplaced) {
+  const std::string bytes = written();
+  const std::string said = refusal(Existing::kRefuse);
+  EXPECT_NE(said.find("out.part: holds the finished work of an interrupted run"), std::string::npos) << said;
+  EXPECT_NE(said.find("--resume"), std::string::npos);
+  EXPECT_NE(said.find("--force"), std::string::npos);
+  EXPECT_EQ(validation::text_of(file_), bytes) << "a refusal changes nothing";
+  EXPECT_EQ(sound_pieces(Journal(file_, Existing::kResume)), 3U);
+  Journal anew(file_, Existing::kReplace);
+  EXPECT_EQ(anew.size(), 0U);
+  EXPECT_EQ(anew.find("b"), std::nullopt);
+}
+
+TEST_F(StudyJournal, CutAnywhereHasItsSoundBeginningAndGoesOn) {
+  const std::string whole = written();
+  std::set<std::size_t> counts;
+  for (std::size_t cut = 0; cut < whole.size(); ++cut) {
+    put(whole.substr(0, cut));
+    {
+      Journal journal(file_, Existing::kResume);
+      const std::size_t count = sound_pieces(journal);
+      counts.insert(count);
+      for (std::size_t k = count; k < pieces_.size(); ++k) journal.add(pieces_[k].first, pieces_[k].second);
+    }
+    EXPECT_EQ(validation::text_of(file_), whole) << "cut at " << cut;
+  }
+  EXPECT_EQ(counts, (std::set<std::size_t>{0, 1, 2}));
+}
+
+TEST_F(StudyJournal, DamagedInAnyByteHasNothingThatIsWrong) {
+  const std::string whole = written();
+  const std::size_t head = whole.find('\n') + 1;
+  for (std::size_t at = head; at < whole.size(); ++at) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] ^ 4);
+    put(damaged);
+    const std::size_t record = static_cast<std::size_t>(at >= whole.find("b 16 ")) + (at >= whole.find("c-1 0 "));
+    {
+      Journal journal(file_, Existing::kResume);
+      EXPECT_EQ(sound_pieces(journal), record) << at;
+      journal.add("new", "work");
+    }
+    Journal again(file_, Existing::kResume);
+    EXPECT_EQ(again.find("new"), "work") << at;
+  }
+}
+
+TEST_F(StudyJournal, WithNothingSoundInItIsNoReasonToRefuse) {
+  const std::string whole = written();
+  put(whole.substr(0, whole.find('\n') + 4));
+  EXPECT_EQ(refusal(Existing::kRefuse), "");
+}
+
+TEST_F(StudyJournal, OfAnotherVersionIsOnlyReplaced) {
+  const std::string theirs = "exactff journal 1, version 0.0.0\na 1 00000000\nx\n";
+  for (const Existing existing : {Existing::kRefuse, Existing::kResume}) {
+    put(theirs);
+    EXPECT_NE(refusal(existing).find("another version"), std::string::npos);
+    EXPECT_EQ(validation::text_of(file_), theirs);
+  }
+  EXPECT_EQ(refusal(Existing::kReplace), "");
+}
+
+TEST_F(StudyJournal, IsNotMadeOfAFileThatIsNone) {
+  for (const Existing existing : {Existing::kRefuse, Existing::kResume, Existing::kReplace}) {
+    put("Dear reader,\n");
+    EXPECT_NE(refusal(existing).find("not of our making"), std::string::npos);
+    EXPECT_EQ(validation::text_of(file_), "Dear reader,\n");
+  }
+}
+
+TEST_F(StudyJournal, InUseIsRefusedToOthers) {
+  Journal journal(file_, Existing::kRefuse);
+  journal.add("a", "1");
+  for (const Existing existing : {Existing::kRefuse, Existing::kResume, Existing::kReplace}) {
+    EXPECT_NE(refusal(existing).find("another process is working on it"), std::string::npos);
+  }
+  journal.add("b", "2");
+  EXPECT_EQ(journal.find("a"), "1") << "the others spoilt nothing";
+}
+
+TEST_F(StudyJournal, IsRemovedWhenEmptyOrDone) {
+  { const Journal journal(file_, Existing::kRefuse); }
+  EXPECT_FALSE(fs::exists(file_));
+  {
+    Journal journal(file_, Existing::kRefuse);
+    journal.add("a", "1");
+    journal.remove();
+  }
+  EXPECT_FALSE(fs::exists(file_));
+}
+
+TEST_F(StudyJournal, MakesTheFoldersOnTheWayAndTakesEmptyOnesWithIt) {
+  const fs::path deep = directory_.path() / "x" / "y" / "out.part";
+  { const Journal journal(deep, Existing::kRefuse); }
+  EXPECT_FALSE(fs::exists(directory_.path() / "x"));
+  {
+    Journal journal(deep, Existing::kRefuse);
+    journal.add("a", "1");
+  }
+  EXPECT_TRUE(fs::exists(deep));
+  {
+    Journal journal(directory_.path() / "z" / "out.part", Existing::kRefuse);
+    std::ofstream(directory_.path() / "z" / "result") << "x";
+  }
+  EXPECT_TRUE(fs::exists(directory_.path() / "z" / "result"));
+}
+
+TEST_F(StudyJournal, IsBesideTheFolderOfResults) {
+  EXPECT_EQ(journal_of_folder("out"), "out.part");
+  EXPECT_EQ(journal_of_folder("a/./out/"), "a/out.part");
+  EXPECT_EQ(journal_of_folder("/a/b/../out//"), "/a/out.part");
+}
+
+TEST_F(StudyJournal, GivesKeptWorkBackInsteadOfComputing) {
+  int computed = 0;
+  double result = 0.0;
+  const auto work = [&](Journal* journal, const std::string& prefix) {
+    result = 0.0;
+    KeptWork(journal, prefix)
+        .get(
+            "piece",
+            [&] {
+              ++computed;
+              result = 1.5;
+            },
+            [&](WordWriter& words) { words.put(result); }, [&](WordReader& words) { result = words.number(); });
+    EXPECT_EQ(result, 1.5);
+  };
+  Journal journal(file_, Existing::kRefuse);
+  work(nullptr, "a");
+  work(&journal, "a");
+  EXPECT_EQ(computed, 2);
+  work(&journal, "a");
+  EXPECT_EQ(computed, 2);
+  work(&journal, "b");
+  EXPECT_EQ(computed, 3) << "another study's";
+  journal.add("a/piece", "of another shape");
+  work(&journal, "a");
+  EXPECT_EQ(computed, 4);
+}
+
+// --- words ---------------------------------------------------------------------------------------------------
+
+TEST(Words, ReadBackAsTheyWereWritten) {
+  WordWriter writer;
+  writer.put(-0.0);
+  writer.put(std::numeric_limits<double>::quiet_NaN());
+  writer.put(std::uint64_t{1} << 63);
+  for (const char* text : {"", "seven77", "eight888", "nine99999"}) writer.put(std::string_view(text));
+  writer.put(std::vector<double>{1, 2, 3});
+  writer.put(std::vector<double>{});
+  WordReader reader(writer.bytes());
+  EXPECT_TRUE(std::signbit(reader.number()));
+  EXPECT_TRUE(std::isnan(reader.number()));
+  EXPECT_EQ(reader.word(), std::uint64_t{1} << 63);
+  for (const char* text : {"", "seven77", "eight888", "nine99999"}) EXPECT_EQ(reader.text(), text);
+  EXPECT_EQ(reader.numbers(), (std::vector<double>{1, 2, 3}));
+  EXPECT_FALSE(reader.complete()) << "the empty list is still there";
+  EXPECT_TRUE(reader.numbers().empty());
+  EXPECT_TRUE(reader.complete());
+}
+
+TEST(Words, CutAnywhereAreTornAndDoNoHarm) {
+  WordWriter writer;
+  writer.put(1.0);
+  writer.put(std::string_view("a text of some length"));
+  writer.put(std::vector<double>{1, 2});
+  const std::string whole = writer.bytes();
+  for (std::size_t cut = 0; cut <= whole.size(); ++cut) {
+    WordReader reader(std::string_view(whole).substr(0, cut));
+    (void)reader.number();
+    (void)reader.text();
+    (void)reader.numbers();
+    EXPECT_EQ(reader.complete(), cut == whole.size()) << cut;
+  }
+}
+
+TEST(Words, ThatPromiseMoreThanThereIsAreTorn) {
+  const std::vector<std::uint64_t> counts = {2, ~std::uint64_t{0}, std::uint64_t{1} << 61};
+  for (const std::uint64_t count : counts) {
+    WordWriter writer;
+    writer.put(count);
+    writer.put(1.0);
+    WordReader numbers(writer.bytes());
+    EXPECT_TRUE(numbers.numbers().empty());
+    EXPECT_TRUE(numbers.torn());
+    if (count == 2) continue;
+    WordReader text(writer.bytes());
+    EXPECT_EQ(text.text(), "");
+    EXPECT_TRUE(text.torn());
+  }
+}
+
+// --- chapters ------------------------------------------------------------------------------------------------
+
+Chapter a_chapter() {
+  Chapter chapter{.name = "name", .title = "A title"};
+  chapter.paragraphs = {"One.", "", "Three, with ε."};
+  chapter.figures = {{"f1", "Figure", "caption", "plot 1\n", false}, {"f2", "Map", "<b>", "plot 2\n", true}};
+  chapter.values = {{"name.csv", "what it holds", "# exactff\nx\n1\n"}};
+  chapter.times = {{"times.csv", "seconds", "s\n"}, {"t2.csv", "", ""}};
+  chapter.left_out = {{"the moon", "too far"}};
+  return chapter;
+}
+
+TEST(ChapterBytes, ReadBackAsTheyWereWritten) {
+  const Chapter chapter = a_chapter();
+  const auto back = chapter_of(to_bytes(chapter));
+  ASSERT_TRUE(back.has_value());
+  EXPECT_EQ(back->name, "name");
+  EXPECT_EQ(back->title, "A title");
+  EXPECT_EQ(back->paragraphs, chapter.paragraphs);
+  ASSERT_EQ(back->figures.size(), 2U);
+  EXPECT_EQ(back->figures[0].script, "plot 1\n");
+  EXPECT_EQ(back->figures[1].id, "f2");
+  EXPECT_EQ(back->figures[1].caption, "<b>");
+  EXPECT_TRUE(back->figures[1].map && !back->figures[0].map);
+  ASSERT_EQ(back->values.size(), 1U);
+  EXPECT_EQ(back->values[0].csv, "# exactff\nx\n1\n");
+  ASSERT_EQ(back->times.size(), 2U);
+  EXPECT_EQ(back->times[0].holds, "seconds");
+  ASSERT_EQ(back->left_out.size(), 1U);
+  EXPECT_EQ(back->left_out[0].why, "too far");
+  EXPECT_EQ(to_bytes(*back), to_bytes(chapter));
+}
+
+TEST(ChapterBytes, CutAnywhereOrTooLongAreNone) {
+  const std::string whole = to_bytes(a_chapter());
+  for (std::size_t cut = 0; cut < whole.size(); ++cut) {
+    EXPECT_FALSE(chapter_of(std::string_view(whole).substr(0, cut)).has_value()) << cut;
+  }
+  EXPECT_FALSE(chapter_of(whole + '\0').has_value());
+}
+
+// --- studies -------------------------------------------------------------------------------------------------
+
+TEST(ResumedStudy, HasTheSameValuesWhereverTheJournalWasCut) {
+  const validation::TemporaryDirectory directory;
+  const fs::path file = directory.path() / "out.part", cut_file = directory.path() / "cut.part";
+  const Scene scene = small_room(true);
+  Request request = request_with_methods(scene, 2);
+  validation::scatter(request);
+  request.methods.ladders = {parse_ladder("hemicube:resolution=8|16"), parse_ladder("area-sampling:samples=1|4|16")};
+  request.methods.seeds = 2;
+  std::size_t pieces = 0;
+  const Study whole = [&] {
+    Journal journal(file, Existing::kRefuse);
+    Study study = run(request, {}, &journal);
+    pieces = journal.size();
+    return study;
+  }();
+  EXPECT_EQ(pieces, 20U + 20U + 5U + 2U);  // exact, samples, cells, fields
+  const std::string bytes = validation::text_of(file);
+  for (std::size_t part = 0; part <= 12; ++part) {
+    const std::size_t cut = bytes.size() * part / 12;
+    std::ofstream(cut_file, std::ios::binary) << bytes.substr(0, cut);
+    Journal journal(cut_file, Existing::kResume);
+    EXPECT_EQ(journal.size() == pieces, part == 12);
+    const Study resumed = run(request, {}, &journal);
+    EXPECT_EQ(journal.size(), pieces);
+    expect_same_values(whole, resumed, " cut at " + std::to_string(cut));
+    journal.remove();
+  }
+}
+
+// Whoever takes values from a journal can be told from who computes them.
+TEST(ResumedStudy, TakesWhatTheJournalHas) {
+  const validation::TemporaryDirectory directory;
+  const fs::path file = directory.path() / "out.part";
+  const Scene scene = small_room(true);
+  Request request = small_request(scene, 1);
+  validation::scatter(request);
+  std::size_t asked = 0;
+  const Hooks until_some{{}, [&] { return ++asked > 30; }};
+  {
+    Journal journal(file, Existing::kRefuse);
+    EXPECT_THROW((void)run(request, until_some, &journal), Cancelled);
+    EXPECT_EQ(journal.size(), 30U);
+  }
+  Journal journal(file, Existing::kResume);
+  EXPECT_EQ(journal.size(), 30U);
+  const std::string before = validation::text_of(file);
+  expect_same_values(run(request), run(request, {}, &journal), "");
+  EXPECT_EQ(journal.size(), 40U);
+  EXPECT_TRUE(validation::text_of(file).starts_with(before)) << "what was there is not computed again";
+}
+
+TEST(ResumedStudy, OfAnotherRequestTakesNothing) {
+  const validation::TemporaryDirectory directory;
+  const Scene room = small_room(true), other = small_room(false);
+  Journal journal(directory.path() / "out.part", Existing::kRefuse);
+  Request request = small_request(room, 1);
+  validation::scatter(request);
+  (void)run(request, {}, &journal);
+  const std::size_t before = journal.size();
+  Request elsewhere = small_request(other, 1);
+  validation::scatter(elsewhere);
+  expect_same_values(run(elsewhere), run(elsewhere, {}, &journal), "");
+  EXPECT_EQ(journal.size(), 2 * before);
+  Request swept = request;
+  swept.sweeps.rays = {2};
+  expect_same_values(run(swept), run(swept, {}, &journal), "");
+  EXPECT_EQ(journal.size(), 2 * before + 20) << "exact values are the same, samples are not";
+}
+
+}  // namespace
+}  // namespace exactff::study

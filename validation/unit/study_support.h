@@ -1,0 +1,87 @@
+// A small room, and requests for studies of it that take no time, for the tests of the study.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exactff/study.h"
+#include "study/tables.h"
+
+namespace exactff::validation {
+
+// A floor, a lamp above it and a plate in between.
+inline Scene small_room(bool with_plate) {
+  SceneBuilder builder("room");
+  const MaterialId grey = builder.add_material({"grey", {0.5, 0.25, 0.5}, {}});
+  const MaterialId lamp = builder.add_material({"lamp", {1, 1, 1}, {10, 20, 30}});
+  const auto square = [&](const char* name, MaterialId material, double half, double z, bool down) {
+    const std::uint32_t first = builder.add_vertex({-half, -half, z});
+    builder.add_vertex({half, -half, z});
+    builder.add_vertex({half, half, z});
+    builder.add_vertex({-half, half, z});
+    std::vector<std::uint32_t> ring = {first, first + 1, first + 2, first + 3};
+    if (down) ring = {first + 3, first + 2, first + 1, first};
+    builder.add_face(builder.patch(name), material, {ring});
+  };
+  square("floor", grey, 2.0, 0.0, false);
+  square("lamp", lamp, 0.5, 2.0, true);
+  if (with_plate) square("plate", grey, 0.3, 1.0, false);
+  return builder.build();
+}
+
+// Of the adaptive algorithm only.
+inline study::Request small_request(const Scene& scene, int threads) {
+  study::Request request;
+  request.scene = &scene;
+  request.scene_name = "room <&>";
+  request.receivers = grid_receivers(scene, scene.select("floor"), {5, 4});
+  request.receivers_name = "floor, grid 5x4";
+  request.sweeps.eps_b = {0.5, 0.05};
+  request.sweeps.rays = {1, 4};
+  request.sweeps.seeds = {1, 2};
+  request.methods.enabled = false;
+  request.threads = threads;
+  request.seconds_for_a_time = 0.001;
+  return request;
+}
+
+// Of every method, a little.
+inline study::Request request_with_methods(const Scene& scene, int threads) {
+  study::Request request = small_request(scene, threads);
+  request.methods = {.enabled = true, .seeds = 3, .receivers = 6, .budget = 0.005};
+  return request;
+}
+
+// Without a grid there is neither a raster of shadow edges nor a profile, which take most of a small study's time.
+inline void scatter(study::Request& request) {
+  for (Receiver& receiver : request.receivers) receiver.id = 'r' + receiver.id;
+  request.receivers_name = "scattered";
+}
+
+inline std::string text_of(const study::Table& table, const study::Study& study) {
+  std::ostringstream out;
+  table.write(study, out);
+  return out.str();
+}
+
+// By file: the tables that hold values.
+inline std::map<std::string, std::string> value_tables(const study::Study& study) {
+  std::map<std::string, std::string> texts;
+  for (const study::Table& table : study::tables()) {
+    if (table.kind == study::Holds::kValues && table.has_rows(study)) texts.emplace(table.file, text_of(table, study));
+  }
+  return texts;
+}
+
+inline void expect_same_values(const study::Study& a, const study::Study& b, std::string_view when) {
+  const auto one = value_tables(a), other = value_tables(b);
+  EXPECT_EQ(one.size(), other.size()) << when;
+  for (const auto& [file, text] : one) EXPECT_TRUE(other.contains(file) && text == other.at(file)) << file << when;
+}
+
+}  // namespace exactff::validation
