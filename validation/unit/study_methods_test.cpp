@@ -288,6 +288,53 @@ TEST(MethodStudy, HoldsEveryRungAtTheChosenReceivers) {
   }
 }
 
+// A user's own method: the exact value plus 1 / n, joined as README tells.
+struct OffByOneOverN : methods::Evaluator {
+  std::unique_ptr<methods::Evaluator> exact;
+  double n = 1.0;
+  void look_from(const Receiver& receiver) override { exact->look_from(receiver); }
+  methods::Estimate form_factor(const methods::PreparedSource& source) override {
+    methods::Estimate estimate = exact->form_factor(source);
+    estimate.form_factor += 1.0 / n;
+    estimate.counters.add("samples", static_cast<std::uint64_t>(n));
+    return estimate;
+  }
+};
+
+struct OffOnScene : methods::PreparedScene {
+  explicit OffOnScene(const Scene& given)
+      : PreparedScene(given), exact(methods::method_named("exact").prepare(given)) {}
+  std::unique_ptr<methods::PreparedSource> prepare_source(const Selection& selection) const override {
+    return exact->prepare_source(selection);
+  }
+  std::unique_ptr<methods::Evaluator> configure(const methods::Settings& settings) const override {
+    auto evaluator = std::make_unique<OffByOneOverN>();
+    evaluator->exact = exact->configure(methods::method_named("exact").defaults());
+    evaluator->n = settings.number("n");
+    return evaluator;
+  }
+  std::unique_ptr<methods::PreparedScene> exact;
+};
+
+TEST(MethodStudy, TakesAUsersMethodLikeAnyOther) {
+  methods::add_method({.name = "off-by-one-over-n",
+                       .summary = "the exact value plus 1 / n",
+                       .source = "",
+                       .settings = {methods::number_setting("n", 1.0, 1.0, 1e6, "how little it is off")},
+                       .prepare = [](const Scene& scene) { return std::make_unique<OffOnScene>(scene); }});
+  const Scene scene = small_room(true);
+  Request request = request_with_methods(scene, 1);
+  validation::scatter(request);
+  request.methods.budget = 1.0;
+  request.methods.ladders = {parse_ladder("off-by-one-over-n:n=10|100|1000")};
+  const Study study = run(std::move(request));
+  ASSERT_EQ(study.methods.cells.size(), 3U);
+  const double rho_b = 0.5 * 30.0;  // the channel where the lamp is brightest
+  EXPECT_NEAR(study.methods.cells[1].error.rms, rho_b / 100.0, 1e-12);
+  ASSERT_TRUE(study.methods.slopes[0].partly.has_value());
+  EXPECT_NEAR(study.methods.slopes[0].partly->exponent, -1.0, 1e-9);
+}
+
 TEST(MethodStudy, EndsALadderWhereItsBudgetEnds) {
   const Scene room = small_room(true);
   const std::vector<std::string> ladders = {"area-sampling:pattern=random,samples=1|100|100000",
