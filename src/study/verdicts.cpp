@@ -130,9 +130,10 @@ std::vector<std::string> method_sentences(const Study& study) {
     if (within == nullptr || relative_error(study, cell) < relative_error(study, *within)) within = &cell;
   }
   if (within != nullptr) {
-    sentences.push_back("Exact overtakes every other method at an error of " +
+    sentences.push_back("Side by side, exact overtakes the others at an error of " +
                         rounded(100.0 * relative_error(study, *within), 2) +
-                        " % of the brightest receiver: the best that any of them reaches within its time (" +
+                        " % of the brightest receiver: the best that any setting compared there reaches within its "
+                        "time (" +
                         cell_name(study, *within) + ").");
   } else {
     sentences.emplace_back("No other method is as fast as the exact one at any setting.");

@@ -644,8 +644,8 @@ TEST_F(Verdicts, SayWhatTheOthersNeed) {
                 "On this scene the exact value takes 100 µs per receiver in the mean; the cheapest other way to be "
                 "right to 10⁻³ of the brightest receiver (RMS), hemicube, resolution 128, takes 8 times as long, and "
                 "no setting of the others that was run is right to 10⁻⁴.",
-                "Exact overtakes every other method at an error of 20 % of the brightest receiver: the best that any "
-                "of them reaches within its time (wallace, splits 1)."}));
+                "Side by side, exact overtakes the others at an error of 20 % of the brightest receiver: the best that "
+                "any setting compared there reaches within its time (wallace, splits 1)."}));
 }
 
 TEST_F(Verdicts, SayThatNoOtherIsRightOrAsFast) {
