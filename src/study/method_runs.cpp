@@ -15,6 +15,7 @@
 
 #include "study/ladders.h"
 #include "study/parallel.h"
+#include "study/prepared_method.h"
 #include "study/radiosity.h"
 #include "study/statistics.h"
 #include "study/text.h"
@@ -52,23 +53,10 @@ void take_evenly(std::vector<std::size_t>& chosen, const std::vector<std::size_t
   for (std::size_t i = 0; i < count; ++i) chosen.push_back(from[(2 * i + 1) * from.size() / (2 * count)]);
 }
 
-// A ladder's method made ready for the scene.
-struct Prepared {
-  std::unique_ptr<methods::PreparedScene> scene;
-  std::vector<std::unique_ptr<methods::PreparedSource>> owned;
-  std::vector<const methods::PreparedSource*> sources;
-
-  Prepared(const methods::Method& method, const Request& request) : scene(method.prepare(*request.scene)) {
-    for (const Selection& source : request.sources) {
-      owned.push_back(scene->prepare_source(source));
-      sources.push_back(owned.back().get());
-    }
-  }
-};
-
 class MethodRunner {
  public:
-  MethodRunner(Study& study, const KeptWork& kept, const Hooks& hooks) : study_(study), kept_(kept), hooks_(hooks) {
+  MethodRunner(Study& study, const KeptWork& kept, const Hooks& hooks)
+      : study_(study), kept_(kept), hooks_(hooks), brightest_(largest_radiosity(study)) {
     for (const Selection& source : request().sources) radiosities_.push_back(scene().source_radiosity(source));
   }
 
@@ -92,7 +80,7 @@ class MethodRunner {
   [[nodiscard]] const Request& request() const { return study_.request; }
   [[nodiscard]] const Scene& scene() const { return *request().scene; }
 
-  Outcome evaluate(methods::Evaluator& evaluator, const Prepared& prepared, std::size_t i) const {
+  Outcome evaluate(methods::Evaluator& evaluator, const PreparedMethod& prepared, std::size_t i) const {
     const Receiver& receiver = request().receivers[i];
     std::vector<methods::Estimate> estimates(prepared.sources.size());
     evaluator.look_from(receiver);
@@ -109,15 +97,9 @@ class MethodRunner {
     return outcome;
   }
 
-  [[nodiscard]] static methods::Settings seeded(const methods::Choice& choice, std::uint64_t seed) {
-    methods::Settings settings = choice.settings;
-    if (seed > 0) settings.set("seed", static_cast<std::int64_t>(seed));
-    return settings;
-  }
-
   void run_ladder(std::size_t l) {
     const Ladder& ladder = result_.ladders[l];
-    std::optional<Prepared> prepared;
+    std::optional<PreparedMethod> prepared;
     try {
       prepared.emplace(*ladder.rungs.front().method, request());
     } catch (const InputError& refusal) {
@@ -173,7 +155,7 @@ class MethodRunner {
     return result_.ladders[cell.ladder].rungs[cell.rung];
   }
 
-  [[nodiscard]] double plan(const MethodCell& cell, const Prepared& prepared) const {
+  [[nodiscard]] double plan(const MethodCell& cell, const PreparedMethod& prepared) const {
     if (result_.receivers.empty()) return 0.0;
     const auto evaluator = prepared.scene->configure(seeded(choice_of(cell), cell.seeds.front()));
     const std::size_t middle = result_.receivers[result_.receivers.size() / 2];
@@ -182,7 +164,7 @@ class MethodRunner {
     return evaluations * planned_seconds(outcome.counters, scene().faces().size());
   }
 
-  void fill(MethodCell& cell, const Prepared& prepared) {
+  void fill(MethodCell& cell, const PreparedMethod& prepared) {
     kept_.get(
         "method/" + short_hash(choice_of(cell).text()), [&] { compute(cell, prepared); },
         [&](WordWriter& words) {
@@ -201,7 +183,7 @@ class MethodRunner {
         });
   }
 
-  void compute(MethodCell& cell, const Prepared& prepared) {
+  void compute(MethodCell& cell, const PreparedMethod& prepared) {
     const std::size_t receivers = result_.receivers.size();
     cell.work = 0.0;  // a journal may have had something else
     cell.values.assign(cell.seeds.size(), std::vector<double>(receivers));
@@ -255,7 +237,7 @@ class MethodRunner {
   }
 
   // `rungs` of the ladder were run.
-  void add_field(std::size_t l, std::size_t rungs, const Prepared& prepared) {
+  void add_field(std::size_t l, std::size_t rungs, const PreparedMethod& prepared) {
     const Ladder& ladder = result_.ladders[l];
     if (rungs == 0 || ladder.rungs.front().method->name == "exact") return;
     MethodField field{l, std::min(ladder.rungs.size() / 2, rungs - 1), {}};
@@ -298,7 +280,7 @@ class MethodRunner {
         append(errors, cell->radiosity_errors[std::min(seed, cell->seeds.size() - 1)],
                [&](Sight s) { return s == sight; });
         const double rms = error_statistics(errors).rms;
-        if (rms > kRoundingError * largest_radiosity(study_)) points.emplace_back(cell->work, rms);
+        if (rms > kRoundingError * brightest_) points.emplace_back(cell->work, rms);
       }
       const auto exponent = points.size() == cells.size() ? fitted_slope(points) : std::nullopt;
       if (exponent) exponents.push_back(*exponent);
@@ -326,6 +308,7 @@ class MethodRunner {
   Study& study_;
   const KeptWork& kept_;
   const Hooks& hooks_;
+  const double brightest_;
   std::vector<Rgb> radiosities_;
   MethodStudy result_;
 };

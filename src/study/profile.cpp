@@ -7,8 +7,10 @@
 
 #include "study/ladders.h"
 #include "study/parallel.h"
+#include "study/prepared_method.h"
 #include "study/radiosity.h"
 #include "study/shadow_edges.h"
+#include "study/sight.h"
 
 namespace exactff::study {
 namespace {
@@ -88,9 +90,12 @@ class Profiler {
     parallel_for(count, request().threads, "profile", hooks_, [&](std::size_t i) {
       const Receiver& receiver = profile_.receivers[i];
       std::vector<double> values;
-      for (const ExactSource& source : sources_) values.push_back(exact_form_factor(scene(), receiver, source).value);
+      for (const ExactSource& source : sources_) {
+        const FormFactor result = exact_form_factor(scene(), receiver, source);
+        values.push_back(result.value);
+        sights_[i].push_back(sight_of(result));
+      }
       profile_.exact[i] = radiosity(receiver, values);
-      sights_[i] = sights(scene(), receiver, sources_);
     });
   }
 
@@ -128,15 +133,13 @@ class Profiler {
   void add_curve(const Ladder& ladder) {
     const std::size_t rung = ladder.rungs.size() / 2;
     const methods::Choice& choice = ladder.rungs[rung];
-    const auto on_scene = choice.method->prepare(scene());
-    std::vector<std::unique_ptr<methods::PreparedSource>> prepared;
-    for (const Selection& source : request().sources) prepared.push_back(on_scene->prepare_source(source));
-    const auto evaluator = on_scene->configure(choice.settings);
+    const PreparedMethod prepared(*choice.method, request());
+    const auto evaluator = prepared.scene->configure(choice.settings);
     Profile::Curve curve{rung_name(ladder, rung), {}};
     for (const Receiver& receiver : profile_.receivers) {
       evaluator->look_from(receiver);
       std::vector<double> values;
-      for (const auto& source : prepared) values.push_back(evaluator->form_factor(*source).form_factor);
+      for (const auto* source : prepared.sources) values.push_back(evaluator->form_factor(*source).form_factor);
       curve.radiosity.push_back(radiosity(receiver, values));
     }
     profile_.others.push_back(std::move(curve));

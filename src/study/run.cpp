@@ -166,7 +166,7 @@ class Runner {
   }
 
   [[nodiscard]] double largest_rho_b(const Receiver& receiver, std::size_t source) const {
-    return times(scene().receiver_reflectance(receiver.on), radiosities_[source]).largest();
+    return study::largest_rho_b(scene(), receiver, radiosities_[source]);
   }
 
   void find_exact_values() {

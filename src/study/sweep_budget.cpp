@@ -39,8 +39,7 @@ class SweepPlan {
     const Scene& scene = *request.scene;
     std::uint64_t edges = 0;
     for (const PlaneRecord& plane : exact_form_factor(scene, receiver, sources_[s]).planes) edges += plane.edges;
-    const double rho_b =
-        times(scene.receiver_reflectance(receiver.on), scene.source_radiosity(request.sources[s])).largest();
+    const double rho_b = largest_rho_b(scene, receiver, scene.source_radiosity(request.sources[s]));
     for (std::size_t k = 0; k < result.size(); ++k) {
       const AdaptiveResult found = solver_.form_factor(receiver, sampled_sources_[s], rho_b, study_.settings[k]);
       const auto of = [&](LeafReason reason) { return found.leaves_by_reason[static_cast<std::size_t>(reason)]; };

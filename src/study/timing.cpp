@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "study/page_files.h"
+#include "study/prepared_method.h"
 #include "study/radiosity.h"
 #include "study/statistics.h"
 
@@ -125,7 +126,7 @@ class Stopwatch {
       double form_factor = 0.0;
       row.seconds = 0.0;
       for (std::size_t s = 0; s < sampled_sources_.size(); ++s) {
-        const double rho_b = times(scene().receiver_reflectance(receiver.on), radiosities_[s]).largest();
+        const double rho_b = largest_rho_b(scene(), receiver, radiosities_[s]);
         double value = 0.0;
         row.seconds += typical_time([&] {
           value = solver_->form_factor(receiver, sampled_sources_[s], rho_b, study_.settings[k]).form_factor;
@@ -145,31 +146,23 @@ class Stopwatch {
     for (const std::size_t k : spread_order(methods.receivers.size())) order.push_back(methods.receivers[k]);
     for (std::size_t first = 0, l = 0; l < methods.ladders.size(); ++l) {
       const methods::Choice& choice = methods.ladders[l].rungs.front();
-      std::unique_ptr<methods::PreparedScene> on_scene;
-      std::vector<std::unique_ptr<methods::PreparedSource>> owned;
-      std::vector<const methods::PreparedSource*> sources;
-      methods.setup_seconds.push_back(timed([&] {
-        on_scene = choice.method->prepare(scene());
-        for (const Selection& source : request().sources) owned.push_back(on_scene->prepare_source(source));
-      }));
-      for (const auto& source : owned) sources.push_back(source.get());
+      std::optional<PreparedMethod> prepared;
+      methods.setup_seconds.push_back(timed([&] { prepared.emplace(*choice.method, request()); }));
       for (; first < methods.cells.size() && methods.cells[first].ladder == l; ++first) {
-        time_cell(methods.cells[first], *on_scene, sources, order);
+        time_cell(methods.cells[first], *prepared, order);
       }
     }
   }
 
-  void time_cell(MethodCell& cell, const methods::PreparedScene& on_scene,
-                 const std::vector<const methods::PreparedSource*>& sources, const std::vector<std::size_t>& order) {
-    methods::Settings settings = study_.methods.ladders[cell.ladder].rungs[cell.rung].settings;
-    if (cell.seeds.front() > 0) settings.set("seed", static_cast<std::int64_t>(cell.seeds.front()));
-    const auto evaluator = on_scene.configure(settings);
-    std::vector<methods::Estimate> estimates(sources.size());
+  void time_cell(MethodCell& cell, const PreparedMethod& prepared, const std::vector<std::size_t>& order) {
+    const methods::Choice& choice = study_.methods.ladders[cell.ladder].rungs[cell.rung];
+    const auto evaluator = prepared.scene->configure(seeded(choice, cell.seeds.front()));
+    std::vector<methods::Estimate> estimates(prepared.sources.size());
     std::vector<double> all, partly;
     spend(request().seconds_for_a_time, kFewestInCell, order, [&](std::size_t i) {
       all.push_back(typical_time([&] {
         evaluator->look_from(request().receivers[i]);
-        evaluator->form_factors(sources, estimates);
+        evaluator->form_factors(prepared.sources, estimates);
       }));
       if (study_.exact[i].sight == Sight::kPartly) partly.push_back(all.back());
     });

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "methods_support.h"
+#include "support/complaint.h"
 
 namespace exactff::validation {
 namespace {
@@ -13,17 +14,6 @@ namespace {
 using methods::Choice;
 using methods::Estimate;
 using methods::Method;
-
-// The messages of the InputError that `act` throws; empty where it throws none.
-template <class Act>
-std::string complaint(const Act& act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return {};
-}
 
 TEST(MethodRegistry, ListsEveryMethodOfTheLibraryOnce) {
   std::vector<std::string> names;

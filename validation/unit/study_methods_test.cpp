@@ -16,25 +16,16 @@
 #include "study/statistics.h"
 #include "study/timing.h"
 #include "study/verdicts.h"
+#include "support/complaint.h"
 #include "unit/study_support.h"
 
 namespace exactff::study {
 namespace {
 
+using validation::complaint;
 using validation::request_with_methods;
 using validation::small_request;
 using validation::small_room;
-
-// The messages of the InputError that `act` throws; empty where it throws none.
-template <class Act>
-std::string complaint(const Act& act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return {};
-}
 
 // What is left out, each with its reason.
 std::string left_out_text(const std::vector<LeftOut>& left_out) {
