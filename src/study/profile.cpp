@@ -27,21 +27,16 @@ struct Line {
 };
 
 std::optional<Line> line_through_penumbra(const Study& study) {
+  const auto grid = grid_of(study.request.receivers);
+  if (!grid || grid->size.u < 2) return std::nullopt;
   std::map<int, int> partly_by_row;
-  Line line;
   for (std::size_t i = 0; i < study.exact.size(); ++i) {
-    const auto cell = grid_cell(study.request.receivers[i]);
-    if (!cell || (i > 0 && cell->face != line.face)) return std::nullopt;
-    line.face = cell->face;
-    line.columns = std::max(line.columns, cell->column);
-    line.rows = std::max(line.rows, cell->row);
-    if (study.exact[i].sight == Sight::kPartly) ++partly_by_row[cell->row];
+    if (study.exact[i].sight == Sight::kPartly) ++partly_by_row[grid_cell(study.request.receivers[i])->row];
   }
   const auto most = std::max_element(partly_by_row.begin(), partly_by_row.end(),
                                      [](const auto& a, const auto& b) { return a.second < b.second; });
-  if (most == partly_by_row.end() || line.columns < 2) return std::nullopt;
-  line.row = most->first;
-  return line;
+  if (most == partly_by_row.end()) return std::nullopt;
+  return Line{grid->face, most->first, grid->size.u, grid->size.v};
 }
 
 class Profiler {

@@ -24,29 +24,11 @@ constexpr int kRasterCells = 16384;
 constexpr int kRasterCellsOfLargeScenes = 4096;
 constexpr std::size_t kLargeScene = 300;  // faces
 
-struct Grid {
-  FaceId face{};
-  GridSize size;
-};
-
-// The one grid that all receivers belong to.
-std::optional<Grid> grid_of(const std::vector<Receiver>& receivers) {
-  std::optional<Grid> grid;
-  for (const Receiver& receiver : receivers) {
-    const auto cell = grid_cell(receiver);
-    if (!cell || (grid && grid->face != cell->face)) return std::nullopt;
-    if (!grid) grid = Grid{cell->face, {1, 1}};
-    grid->size.u = std::max(grid->size.u, cell->column);
-    grid->size.v = std::max(grid->size.v, cell->row);
-  }
-  return grid;
-}
-
 double distance(const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
 
 class Raster {
  public:
-  Raster(const Study& study, const Grid& grid) : study_(study) {
+  Raster(const Study& study, const ReceiverGrid& grid) : study_(study) {
     const Request& request = study.request;
     const bool large = request.scene->faces().size() > kLargeScene;
     const int cells = grid.size.u * grid.size.v;
@@ -112,6 +94,18 @@ double nearest_distance(const Tree& tree, const Vec3& p) {
 }
 
 }  // namespace
+
+std::optional<ReceiverGrid> grid_of(const std::vector<Receiver>& receivers) {
+  std::optional<ReceiverGrid> grid;
+  for (const Receiver& receiver : receivers) {
+    const auto cell = grid_cell(receiver);
+    if (!cell || (grid && grid->face != cell->face)) return std::nullopt;
+    if (!grid) grid = ReceiverGrid{cell->face, {1, 1}};
+    grid->size.u = std::max(grid->size.u, cell->column);
+    grid->size.v = std::max(grid->size.v, cell->row);
+  }
+  return grid;
+}
 
 std::vector<Sight> sights(const Scene& scene, const Receiver& receiver, std::span<const ExactSource> sources) {
   std::vector<Sight> result;

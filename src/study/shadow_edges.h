@@ -7,6 +7,15 @@
 
 namespace exactff::study {
 
+// A grid of receivers on a face.
+struct ReceiverGrid {
+  FaceId face{};
+  GridSize size;
+};
+
+// The one grid that all receivers belong to, if there is one.
+[[nodiscard]] std::optional<ReceiverGrid> grid_of(const std::vector<Receiver>& receivers);
+
 // Which of the sources a receiver sees: nothing, hidden, partly or all of each.
 [[nodiscard]] std::vector<Sight> sights(const Scene& scene, const Receiver& receiver,
                                         std::span<const ExactSource> sources);
