@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "kernel/lane_types.h"
+
 #if defined(__SSE2__)
 #include <emmintrin.h>
 #endif
@@ -19,9 +21,6 @@
 #endif
 
 namespace exactff::kernel::lanes {
-
-using Four = double __attribute__((vector_size(32)));
-using FourMask = std::int64_t __attribute__((vector_size(32)));  // 0 or -1 in each lane
 
 inline Four load(const double* p) {
   Four v;
@@ -41,6 +40,10 @@ inline FourMask next_lane(const FourMask& v) { return FourMask{v[1], v[2], v[3],
 inline Four absolute(const Four& v) { return Four(FourMask(v) & 0x7FFFFFFFFFFFFFFF); }
 inline Four larger(const Four& a, const Four& b) { return a < b ? b : a; }
 inline Four smaller(const Four& a, const Four& b) { return b < a ? b : a; }
+
+// Lane by lane: `a` where the mask is negative, else `b`.
+inline Four pick(const FourMask& mask, const Four& a, const Four& b) { return mask < 0 ? a : b; }
+inline FourMask pick(const FourMask& mask, const FourMask& a, const FourMask& b) { return mask < 0 ? a : b; }
 
 inline double lowest(const Four& v) { return std::min(std::min(v[0], v[1]), std::min(v[2], v[3])); }
 inline double highest(const Four& v) { return std::max(std::max(v[0], v[1]), std::max(v[2], v[3])); }

@@ -40,10 +40,11 @@ OutlineGrid::Range OutlineGrid::Axis::extent(int cell) const {
 
 OutlineGrid::Cells OutlineGrid::Axis::cells_inside(const Range& r) const {
   if (!((r.high - r.low) * per_unit >= 1.0)) return {1, 0};
-  const double first = std::ceil((r.low - range.low) * per_unit),
-               last = std::floor((r.high - range.low) * per_unit) - 1;
-  return {static_cast<int>(std::clamp(first, 0.0, static_cast<double>(count))),
-          static_cast<int>(std::clamp(last, -1.0, count - 1.0))};
+  const double most = count;
+  const auto clamped = [&](double x) { return std::clamp((x - range.low) * per_unit, 0.0, most); };
+  const double low = clamped(r.low);
+  const int floor_of_low = static_cast<int>(low);
+  return {floor_of_low + (low > floor_of_low ? 1 : 0), static_cast<int>(clamped(r.high)) - 1};
 }
 
 void OutlineGrid::build(const Outlines& outlines, std::size_t source_count, std::span<const std::uint8_t> dropped) {
@@ -190,12 +191,12 @@ void OutlineGrid::choose_cells(std::size_t source_count) {
   set(v_, high * factor, whole_height);
 }
 
-// What meets inside the source does so at a point of the grid, so that bounds may be clamped to just beyond it. Floats
-// then err by less than 2^-22 of the sum of both counts.
+// What meets inside the source does so at a point of the grid, so that bounds may be clamped to just beyond it. Whole
+// numbers then stay below 2^15; adding or taking off one before they are truncated rounds them outwards.
 EXACTFF_CLONES OutlineGrid::Octagon OutlineGrid::octagon(const Outlines& outlines, OutlineId id) const {
   using namespace kernel::lanes;
   const double wide = u_.count, high = v_.count;
-  const double slack = 4.0 * kSlack * (u_.per_unit + v_.per_unit) + 0x1p-18 * (wide + high);
+  const double slack = 4.0 * kSlack * (u_.per_unit + v_.per_unit);
   Four least = four(kInfinity), most = -least;
   if (bounds_[id].u.empty()) std::swap(least, most);
   const Outline& outline = outlines.outline(id);
@@ -206,9 +207,19 @@ EXACTFF_CLONES OutlineGrid::Octagon OutlineGrid::octagon(const Outlines& outline
     least = smaller(least, at);
     most = larger(most, at);
   }
-  const Four whole_low{0.0, 0.0, 0.0, -high}, whole_high{wide, high, wide + high, wide};
-  return {__builtin_convertvector(larger(least - slack, whole_low - 1.0), FourFloats),
-          __builtin_convertvector(smaller(most + slack, whole_high + 1.0), FourFloats)};
+  const Four whole_low{-1.0, -1.0, -1.0, -high - 1.0},
+      whole_high{wide + 1.0, high + 1.0, wide + high + 1.0, wide + 1.0};
+  const double steps = 0x7F00 / (wide + high + 2.0);  // a cell
+  const auto down = [&](const Four& at) {
+    return __builtin_convertvector(__builtin_convertvector(at * steps - 1.0, FourInts), FourShorts);
+  };
+  const FourShorts low = down(smaller(larger(least - slack, whole_low), whole_high)),
+                   top = down(-larger(smaller(most + slack, whole_high), whole_low));
+  return __builtin_shufflevector(low, top, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+OutlineGrid::Octagon OutlineGrid::reach(const Octagon& bounds) {
+  return -__builtin_shufflevector(bounds, bounds, 4, 5, 6, 7, 0, 1, 2, 3);
 }
 
 // The range of u of the segment's points whose v lies in the given range, widened by the slack.
@@ -390,7 +401,7 @@ std::span<const OutlineId> OutlineGrid::all_occluders() {
 std::span<const OutlineId> OutlineGrid::find_near(const Outlines& outlines, EdgeId first, unsigned wanted) {
   if (single_) return everywhere_;
   const OutlineId own = outlines.edge(first).outline;
-  const Octagon octagon = octagons_[own];
+  const Octagon own_reach = reach(octagons_[own]);
   std::size_t count = everywhere_.size();
   const auto visit = [&](std::size_t cell) {
     if (last_seen_[cell] == first) return;
@@ -398,8 +409,8 @@ std::span<const OutlineId> OutlineGrid::find_near(const Outlines& outlines, Edge
     for (std::uint32_t m = cell_begin_[cell]; m < cell_begin_[cell + 1]; ++m) {
       const OutlineId o = members_[m];
       near_[count] = o;  // without branches, which nobody could predict
-      count +=
-          static_cast<std::size_t>(last_found_[o] != first) & static_cast<std::size_t>(octagon.meets(octagons_[o]));
+      count += static_cast<std::size_t>(last_found_[o] != first) &
+               static_cast<std::size_t>(kernel::lanes::nowhere_larger(octagons_[o], own_reach));
       last_found_[o] = first;
     }
   };

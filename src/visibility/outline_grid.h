@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "kernel/float_lanes.h"
+#include "kernel/lane_types.h"
 #include "visibility/outlines.h"
 
 namespace exactff::visibility {
@@ -85,14 +85,9 @@ class OutlineGrid {
   struct Bounds {
     Range u{kInfinity, -kInfinity}, v{kInfinity, -kInfinity};
   };
-  // Bounds of an outline's image within the grid, in cells, along the axes and both diagonals: rounded outwards by much
-  // more than floats err.
-  struct Octagon {
-    kernel::lanes::FourFloats low, high;
-    [[nodiscard]] bool meets(const Octagon& o) const {
-      return kernel::lanes::all_lanes((low <= o.high) & (o.low <= high));
-    }
-  };
+  // Bounds of an outline's image along the axes and both diagonals, in fine steps, rounded outwards: the four lower
+  // bounds, then the four upper ones with their signs changed, so that less is further out in all of them.
+  using Octagon = kernel::lanes::EightShorts;
 
   [[nodiscard]] bool choose_projection(const Outlines& outlines, std::size_t source_count);
   void project(const Outlines& outlines);
@@ -100,6 +95,8 @@ class OutlineGrid {
   void find_bounds(const Outlines& outlines);
   void choose_cells(std::size_t source_count);
   [[nodiscard]] Octagon octagon(const Outlines& outlines, OutlineId id) const;
+  // What another's bounds must nowhere exceed to meet these.
+  [[nodiscard]] static Octagon reach(const Octagon& bounds);
   void find_needed_cells(const Outlines& outlines, std::span<const std::uint8_t> dropped);
   [[nodiscard]] bool is_needed(const Cells& columns, const Cells& rows) const;
   void find_covered_cells(const Outlines& outlines);
