@@ -126,65 +126,65 @@ void VisibleEdges::trace(Run& run, std::size_t source_count) {
     if ((run.wanted >> k & 1U) == 0) continue;
     const EdgeId id = run.first + k;
     sort(id, removed_[k]);
-    for (const Interval& allowed : allowed_[k]) keep_rest(id, !run.of_source, allowed, removed_[k]);
+    keep_rest(id, !run.of_source, interval(run.left, k), removed_[k]);
   }
 }
 
+[[gnu::always_inline]] inline void VisibleEdges::replace(Parameters& parameters, const FourMask& where,
+                                                         const Parameters& by) {
+  using kernel::lanes::pick;
+  parameters.value = pick(where, by.value, parameters.value);
+  parameters.error = pick(where, by.error, parameters.error);
+  parameters.line = pick(where, by.line, parameters.line);
+}
+
 // By the filter alone, for all edges of the run at once. A line is entered or left at its crossing with the edge: where
-// the ends have heights m and l above it, of different signs, that is at the parameter |m| / (|l| + |m|).
+// the ends have heights m and l above it, of different signs, that is at the parameter |m| / (|l| + |m|) = m / (m - l).
 //
 // Its error. Let D be |l| + |m| and e the larger error of the two heights, all as computed, and u = 2^-53. The quotient
-// of the true heights differs by at most e / (D - 2e) <= 2e / D where D >= 4e. Sum, inverse and product err by u each,
-// relatively, so that the quotient, at most 1, is off by 4u more at most; 2e / D, at most 1/2 there, is computed to
-// within 4u of itself. 2e / D + 2^-50 covers it all. Where D < 4e the error is set to 2, which decides nothing; nor
-// does NaN.
+// of the true heights differs by at most e / (D - 2e) <= 2e / D where D >= 4e. Difference, inverse and product err by u
+// each, relatively, so that the quotient, at most 1, is off by 4u more at most; 4e / D is computed to within 4u of
+// itself. 4e / D + 2^-50 covers it all, and where D < 4e it is more than 1, more than any two parameters are apart: it
+// then decides nothing; nor does NaN.
 //
-// Every comparison that does not hold for all numbers within the errors makes the edge unsure, except that one line
-// with both ends below it is certainly enough for the outline to cover nothing. A line that is entered can only move
-// the beginning of what is covered, one that is left only its end, so that one comparison serves for both.
+// Every comparison that does not hold for all numbers within the errors makes the edge unsure, whatever is made of it
+// afterwards, except that one line with both ends certainly below it is enough for the outline to cover nothing. Which
+// side an end lies on and which of two parameters is larger can therefore be read off the signs, as masks whose other
+// bits are of no account. A line that is entered can only move the beginning of what is covered, one that is left only
+// its end, so that one comparison serves for both.
 [[gnu::always_inline]] inline void VisibleEdges::cut(const Run& run, std::span<const Edge> lines, EdgeId first,
                                                      Cuts& cuts) {
   using namespace kernel::lanes;
-  const Four x = load(run.x.data()), y = load(run.y.data()), z = load(run.z.data()), size = load(run.size.data());
-  const Four size_of_both = larger(size, next_lane(size));
-  Four begin = four(0.0), begin_error = begin, end = four(1.0), end_error = begin;
-  FourMask begin_line = four_whole(Parameter::kAtBegin), end_line = four_whole(Parameter::kAtEnd);
+  const Four x = run.x, y = run.y, z = run.z, size = run.size;
+  const Four size_of_both = size + next_lane(size);  // at least the larger one; NaN if either is
+  Parameters begin{four(0.0), four(0.0), four_whole(Parameter::kAtBegin)};
+  Parameters end{four(1.0), four(0.0), four_whole(Parameter::kAtEnd)};
+  Parameters crossing{.line = four_whole(first)};
   FourMask outside = four_whole(0), sure = four_whole(-1);
-  cuts.covered = cuts.unsure = 0;
-  for (std::size_t f = 0; f < lines.size(); ++f) {
-    const Edge& line = lines[f];
-    const Four h = line.normal.x * x + line.normal.y * y + line.normal.z * z, e = line.error * size;
-    const FourMask above_a = h > e, below_a = -h > e, above_b = next_lane(above_a), below_b = next_lane(below_a);
-    outside |= below_a & below_b;
-    if (all_lanes(outside)) return;
-    const FourMask inside = above_a & above_b;
-    const FourMask entering = below_a & above_b, leaving = above_a & below_b;
-    const Four m = absolute(h), sum = m + next_lane(m), inverse = 1.0 / sum,
-               twice_error = 2.0 * line.error * size_of_both;
-    const Four at = m * inverse;
-    const Four at_error = sum > 2.0 * twice_error ? twice_error * inverse + 0x1p-50 : four(2.0);
-    // The end of the interval that the crossing may replace.
-    const Four beyond = at - (leaving ? end : begin), beyond_error = at_error + (leaving ? end_error : begin_error);
-    const FourMask after = beyond > beyond_error, before = -beyond > beyond_error;
-    sure &= inside | ((entering | leaving) & (after | before));
-    const FourMask later = entering & after, earlier = leaving & before;
-    const FourMask id = four_whole(static_cast<std::int64_t>(first + f));
-    begin = later ? at : begin;
-    begin_error = later ? at_error : begin_error;
-    begin_line = later ? id : begin_line;
-    end = earlier ? at : end;
-    end_error = earlier ? at_error : end_error;
-    end_line = earlier ? id : end_line;
+  for (const Edge& line : lines) {
+    const Four a = line.normal.x * x + line.normal.y * y + line.normal.z * z, b = next_lane(a);
+    const Four error = line.error * size_of_both;
+    const FourMask below_a = FourMask(a), below_b = FourMask(b);  // by their signs
+    const FourMask known = (absolute(a) > error) & (absolute(b) > error);
+    const Four inverse = 1.0 / (a - b);
+    crossing.value = a * inverse;
+    crossing.error = error * absolute(inverse) * 4.0 + 0x1p-50;
+    // From the end of the interval that the crossing may replace.
+    const Four beyond = crossing.value - pick(below_b, end.value, begin.value);
+    const Four beyond_error = crossing.error + pick(below_b, end.error, begin.error);
+    const FourMask before = FourMask(beyond);
+    outside |= known & below_a & below_b;
+    sure &= known & ~((below_a ^ below_b) & ~(absolute(beyond) > beyond_error));
+    replace(begin, below_a & ~(below_b | before), crossing);
+    replace(end, below_b & ~below_a & before, crossing);
+    crossing.line += 1;
   }
-  const FourMask some = end - begin > begin_error + end_error, none = begin - end > begin_error + end_error;
-  cuts.covered = lane_bits(~outside & sure & some);
-  cuts.unsure = lane_bits(~outside & ~(sure & (some | none)));
-  store(begin, cuts.begin.data());
-  store(begin_error, cuts.begin_error.data());
-  store(end, cuts.end.data());
-  store(end_error, cuts.end_error.data());
-  store(begin_line, cuts.begin_line.data());
-  store(end_line, cuts.end_line.data());
+  outside = outside < 0;
+  sure = sure < 0;
+  const Four length = end.value - begin.value, length_error = end.error + begin.error;
+  cuts.covered = lane_bits(~outside & sure & (length > length_error));
+  cuts.unsure = lane_bits(~outside & ~(sure & (absolute(length) > length_error)));
+  cuts.intervals = {begin, end};
 }
 
 [[gnu::always_inline]] inline void VisibleEdges::cut(const Run& run, OutlineId outline, Cuts& cuts) {
@@ -194,26 +194,45 @@ void VisibleEdges::trace(Run& run, std::size_t source_count) {
   undecided_pairs_ += bit_count(cuts.unsure & run.wanted);
 }
 
-// The whole of a source's edge, or of one inside it; else what has the source on both sides.
-EXACTFF_CLONES void VisibleEdges::find_allowed(Run& run, std::size_t source_count) {
-  for (unsigned k = 0; k < run.edges; ++k) allowed_[k].clear();
-  const bool all = run.of_source || outlines_.outline(run.outline).inside_source;
-  Cuts cuts;
-  if (source_count == 1 && !all) cut(run, 0, cuts);
-  for (unsigned k = 0; k < run.edges; ++k) {
-    if ((run.wanted >> k & 1U) == 0) continue;
-    Cover found;
-    if (all) {
-      allowed_[k].push_back({kBegin, kEnd});
-    } else if (source_count > 1) {
-      find_allowed_in_union(run, k, source_count);
-    } else if (cover(run, k, 0, cuts, found) && found.left && found.right) {
-      allowed_[k].push_back(found.interval);
-    }
-    if (allowed_[k].empty()) run.wanted &= ~(1U << k);
-  }
+VisibleEdges::Parameter VisibleEdges::parameter(const Parameters& of, unsigned k) const {
+  const auto line = static_cast<EdgeId>(of.line[k]);
+  return {of.value[k], rounded_up(of.error[k]), line < Parameter::kAtBegin ? line_[line] : line};
 }
 
+void VisibleEdges::set(Parameters& parameters, unsigned k, const Parameter& parameter) {
+  parameters.value[k] = parameter.value;
+  parameters.error[k] = parameter.error;
+  parameters.line[k] = parameter.line;
+}
+
+// The whole of a source's edge, or of one inside it; else what has the source on both sides.
+EXACTFF_CLONES void VisibleEdges::find_allowed(Run& run, std::size_t source_count) {
+  using namespace kernel::lanes;
+  for (unsigned k = 0; k < run.edges; ++k) removed_[k].clear();
+  run.left = {{four(0.0), four(0.0), four_whole(Parameter::kAtBegin)},
+              {four(1.0), four(0.0), four_whole(Parameter::kAtEnd)}};
+  if (run.of_source || outlines_.outline(run.outline).inside_source) return;
+  if (source_count > 1) {
+    for (unsigned k = 0; k < run.edges; ++k) {
+      if ((run.wanted >> k & 1U) != 0) find_allowed_in_union(run, k, source_count);
+    }
+    return;
+  }
+  Cuts cuts;
+  cut(run, 0, cuts);
+  run.left = cuts.intervals;
+  for (unsigned bits = cuts.unsure & run.wanted; bits != 0; bits &= bits - 1) {
+    const auto k = static_cast<unsigned>(std::countr_zero(bits));
+    Cover found;
+    if (!cover_exactly(run.first + k, 0, found) || !found.left || !found.right) continue;
+    set(run.left.begin, k, found.interval.begin);
+    set(run.left.end, k, found.interval.end);
+    cuts.covered |= 1U << k;
+  }
+  run.wanted &= cuts.covered;
+}
+
+// The intervals between the parts that have the source on both sides count as removed.
 EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, std::size_t source_count) {
   const EdgeId edge = run.first + k;
   left_.clear();
@@ -228,13 +247,22 @@ EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, st
   }
   merge(edge, left_);
   merge(edge, right_);
+  bool some = false;
   for (const Interval& a : left_) {
     for (const Interval& b : right_) {
       const Parameter& begin = compare(edge, a.begin, b.begin) >= 0 ? a.begin : b.begin;
       const Parameter& end = compare(edge, a.end, b.end) <= 0 ? a.end : b.end;
-      if (compare(edge, begin, end) < 0) allowed_[k].push_back({begin, end});
+      if (compare(edge, begin, end) >= 0) continue;
+      if (some) {
+        removed_[k].push_back({parameter(run.left.end, k), begin});
+      } else {
+        set(run.left.begin, k, begin);
+      }
+      set(run.left.end, k, end);
+      some = true;
     }
   }
+  if (!some) run.wanted &= ~(1U << k);
 }
 
 // Of an edge, what the outline covers on the side that must not be covered, or where it coincides and comes first.
@@ -242,74 +270,81 @@ EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, st
 [[gnu::always_inline]] inline void VisibleEdges::remove(Run& run, OutlineId by, const Cuts& cuts, bool same_kind) {
   const bool left_matters = run.of_source && !same_kind;
   Cover found;
-  for (unsigned bits = (cuts.covered | cuts.unsure) & run.wanted; bits != 0; bits &= bits - 1) {
+  for (unsigned bits = (take_off_by_filter(run, cuts) | cuts.unsure) & run.wanted; bits != 0; bits &= bits - 1) {
     const auto k = static_cast<unsigned>(std::countr_zero(bits));
     if (!cover(run, k, by, cuts, found)) continue;
     const bool double_of_earlier = same_kind && found.coincides && found.left && by < run.outline;
-    if (!(left_matters ? found.left : found.right) && !double_of_earlier) continue;
-    if (!take_off(run.first + k, found.interval, allowed_[k], removed_[k])) run.wanted &= ~(1U << k);
+    if ((left_matters ? found.left : found.right) || double_of_earlier) take_off(run, k, found.interval);
   }
 }
 
-// A few at a time: all are cut before any is looked at, so that what hangs on the cuts need not be guessed.
 EXACTFF_CLONES void VisibleEdges::find_removed(Run& run, std::size_t source_count) {
-  constexpr std::size_t kBatch = 4;
-  std::array<Cuts, kBatch> cuts;
-  std::array<OutlineId, kBatch> by;
-  for (unsigned k = 0; k < run.edges; ++k) removed_[k].clear();
+  Cuts cuts;
   for (OutlineId s = 0; run.of_source && s < source_count && run.wanted != 0; ++s) {
     if (s == run.outline) continue;
-    cut(run, s, cuts.front());
-    remove(run, s, cuts.front(), true);
+    cut(run, s, cuts);
+    remove(run, s, cuts, true);
   }
   const bool skips_inner = run.of_source && source_count == 1;  // what lies inside the source meets none of its edges
-  for (std::size_t at = 0; at < near_.size() && run.wanted != 0;) {
-    std::size_t count = 0;
-    for (const std::size_t end = std::min(at + kBatch, near_.size()); at < end; ++at) {
-      const OutlineId o = near_[at];
-      if (o == run.outline || (skips_inner && outlines_.outline(o).inside_source)) continue;
-      by[count] = o;
-      cut(run, o, cuts[count]);
-      count += ((cuts[count].covered | cuts[count].unsure) & run.wanted) != 0 ? 1U : 0U;
-    }
-    for (std::size_t i = 0; i < count; ++i) remove(run, by[i], cuts[i], !run.of_source);
+  for (const OutlineId o : near_) {
+    if (o == run.outline || (skips_inner && outlines_.outline(o).inside_source)) continue;
+    cut(run, o, cuts);
+    if (((cuts.covered | cuts.unsure) & run.wanted) == 0) continue;
+    remove(run, o, cuts, !run.of_source);
+    if (run.wanted == 0) return;
   }
 }
 
-// Takes an interval off the ends of what is allowed, if that is one piece, or keeps it for the sweep where it lies
-// within. False if nothing is left.
-bool VisibleEdges::take_off(EdgeId edge, const Interval& interval, std::vector<Interval>& allowed,
-                            std::vector<Interval>& removed) {
-  if (allowed.size() != 1) {
-    removed.push_back(interval);
-    return true;
+// For all edges that are covered, as take_off does for one. Returns those for which the filter does not tell how. Equal
+// ends, such as the edge's own, differ by nothing and have no error.
+[[gnu::always_inline]] inline unsigned VisibleEdges::take_off_by_filter(Run& run, const Cuts& cuts) {
+  using namespace kernel::lanes;
+  const auto& [begin, end] = run.left;
+  const auto& [off_begin, off_end] = cuts.intervals;
+  const Four begins = off_begin.value - begin.value, begins_error = off_begin.error + begin.error;
+  const Four ends = off_end.value - end.value, ends_error = off_end.error + end.error;
+  const Four at_begin = off_end.value - begin.value, at_begin_error = off_end.error + begin.error;
+  const Four at_end = end.value - off_begin.value, at_end_error = end.error + off_begin.error;
+  const FourMask from_begin = -begins >= begins_error, after_begin = begins > begins_error;
+  const FourMask to_end = ends >= ends_error, before_end = -ends > ends_error;
+  const FourMask apart = (-at_begin >= at_begin_error) | (-at_end >= at_end_error);
+  const FourMask meets_begin = from_begin & before_end & (at_begin > at_begin_error);
+  const FourMask meets_end = to_end & after_begin & (at_end > at_end_error);
+  const FourMask all = from_begin & to_end, within = after_begin & before_end;
+  const unsigned sure = lane_bits(apart | meets_begin | meets_end | all | within);
+  const FourMask covered = (four_whole(cuts.covered) & FourMask{1, 2, 4, 8}) != 0;
+  replace(run.left.begin, covered & meets_begin, off_end);
+  replace(run.left.end, covered & meets_end, off_begin);
+  run.wanted &= ~(cuts.covered & lane_bits(all));
+  for (unsigned bits = cuts.covered & lane_bits(within) & run.wanted; bits != 0; bits &= bits - 1) {
+    const auto k = static_cast<unsigned>(std::countr_zero(bits));
+    removed_[k].push_back(interval(cuts.intervals, k));
   }
-  auto& [begin, end] = allowed.front();
-  const bool from_begin = compare(edge, interval.begin, begin) <= 0, to_end = compare(edge, interval.end, end) >= 0;
-  if (from_begin && compare(edge, interval.end, begin) <= 0) return true;
-  if (to_end && compare(edge, interval.begin, end) >= 0) return true;
-  if (from_begin && to_end) return false;
-  if (from_begin) {
-    begin = interval.end;
+  return cuts.covered & ~sure;
+}
+
+// Takes an interval off the ends of what is left, or keeps it for the sweep where it lies within.
+void VisibleEdges::take_off(Run& run, unsigned k, const Interval& off) {
+  const EdgeId edge = run.first + k;
+  const auto [begin, end] = interval(run.left, k);
+  const bool from_begin = compare(edge, off.begin, begin) <= 0, to_end = compare(edge, off.end, end) >= 0;
+  if (from_begin && compare(edge, off.end, begin) <= 0) return;
+  if (to_end && compare(edge, off.begin, end) >= 0) return;
+  if (from_begin && to_end) {
+    run.wanted &= ~(1U << k);
+  } else if (from_begin) {
+    set(run.left.begin, k, off.end);
   } else if (to_end) {
-    end = interval.begin;
+    set(run.left.end, k, off.begin);
   } else {
-    removed.push_back(interval);
+    removed_[k].push_back(off);
   }
-  return true;
 }
 
 bool VisibleEdges::cover(const Run& run, unsigned k, OutlineId outline, const Cuts& cuts, Cover& result) {
   if ((cuts.unsure >> k & 1U) != 0) return cover_exactly(run.first + k, outline, result);
   if ((cuts.covered >> k & 1U) == 0) return false;
-  result.left = result.right = true;
-  result.coincides = false;
-  const auto line = [&](std::int64_t id) {
-    const auto edge = static_cast<EdgeId>(id);
-    return edge < Parameter::kAtBegin ? line_[edge] : edge;
-  };
-  result.interval = {{cuts.begin[k], rounded_up(cuts.begin_error[k]), line(cuts.begin_line[k])},
-                     {cuts.end[k], rounded_up(cuts.end_error[k]), line(cuts.end_line[k])}};
+  result = {.left = true, .right = true, .coincides = false, .interval = interval(cuts.intervals, k)};
   return true;
 }
 

@@ -24,6 +24,7 @@
 #include <span>
 #include <vector>
 
+#include "kernel/lane_types.h"
 #include "visibility/boundary_piece.h"
 #include "visibility/outline_grid.h"
 #include "visibility/outlines.h"
@@ -65,10 +66,19 @@ class VisibleEdges {
 
  private:
   static constexpr unsigned kRunCorners = 4;
-  using Lanes = std::array<double, kRunCorners>;
+  using Four = kernel::lanes::Four;
+  using FourMask = kernel::lanes::FourMask;
 
   struct Interval {
     Parameter begin, end;
+  };
+  // One for each edge of a run; their lines as they come (line_).
+  struct Parameters {
+    Four value{}, error{};
+    FourMask line{};
+  };
+  struct Intervals {
+    Parameters begin, end;
   };
   // What an outline covers along an edge, on either side of it.
   struct Cover {
@@ -85,14 +95,14 @@ class VisibleEdges {
     EdgeId first = 0;
     unsigned edges = 0;
     unsigned wanted = 0;  // a bit for every edge of which something may be left
-    Lanes x{}, y{}, z{}, size{};
+    Intervals left{};     // where it may be, but for what is in removed_
+    Four x{}, y{}, z{}, size{};
   };
   // What an outline covers of a run, by the filter alone.
   struct Cuts {
-    unsigned covered = 0;  // a bit for every edge that crosses the outline's interior, certainly, from begin to end
+    unsigned covered = 0;  // a bit for every edge that crosses the outline's interior, certainly, in the interval
     unsigned unsure = 0;   // and for those of which nothing is certain
-    Lanes begin, begin_error, end, end_error;
-    std::array<std::int64_t, kRunCorners> begin_line, end_line;
+    Intervals intervals;
   };
   // An exact parameter, kept lest it be computed twice.
   struct Stored {
@@ -108,12 +118,18 @@ class VisibleEdges {
   void find_allowed_in_union(Run& run, unsigned k, std::size_t source_count);
   void find_removed(Run& run, std::size_t source_count);
   void remove(Run& run, OutlineId by, const Cuts& cuts, bool same_kind);
-  [[nodiscard]] bool take_off(EdgeId edge, const Interval& interval, std::vector<Interval>& allowed,
-                              std::vector<Interval>& removed);
+  [[nodiscard]] Parameter parameter(const Parameters& of, unsigned k) const;
+  [[nodiscard]] Interval interval(const Intervals& of, unsigned k) const {
+    return {parameter(of.begin, k), parameter(of.end, k)};
+  }
+  static void set(Parameters& parameters, unsigned k, const Parameter& parameter);
+  static void replace(Parameters& parameters, const FourMask& where, const Parameters& by);
+  void take_off(Run& run, unsigned k, const Interval& interval);
+  [[nodiscard]] unsigned take_off_by_filter(Run& run, const Cuts& cuts);
 
   static void cut(const Run& run, std::span<const Outlines::Edge> lines, EdgeId first, Cuts& cuts);
   void cut(const Run& run, OutlineId outline, Cuts& cuts);
-  // What the outline covers of the run's k-th edge; false if nothing.
+  // What the outline covers of an edge; false if nothing.
   [[nodiscard]] bool cover(const Run& run, unsigned k, OutlineId outline, const Cuts& cuts, Cover& result);
   [[nodiscard]] bool cover_exactly(EdgeId edge, OutlineId outline, Cover& result);
   void cut_exactly(EdgeId edge, EdgeId line, int& sign_a, int& sign_b, Parameter& crossing);
@@ -143,7 +159,7 @@ class VisibleEdges {
   std::uint64_t pairs_ = 0, undecided_pairs_ = 0;
   std::vector<Stored> stored_;
   std::vector<std::uint32_t> stored_at_;  // into stored_, for every line and four edges; what is there may be another's
-  std::array<std::vector<Interval>, kRunCorners> allowed_, removed_;  // by edge of the run
+  std::array<std::vector<Interval>, kRunCorners> removed_;  // by edge of the run
   std::vector<Interval> left_, right_;
   std::vector<EdgeId> slots_;  // of drop_inner_edges: a hash table
 };
