@@ -199,7 +199,7 @@ void warn_if_off_its_face(const Scene& scene, const Receiver& receiver) {
 void warn_of_missing_decimals(const PointArguments& args, const Scene& scene, const PointResult& point) {
   for (const SourceResult& one : point.sources) {
     if (args.digits == 0 || one.exact.status == Status::kZero || one.exact.enclosure.decimals(args.digits)) continue;
-    std::cerr << "exactff: warning: " << args.digits << " decimals of '" << scene.name_of(one.source)
+    std::cerr << "exactff: warning: " << args.digits << " significant digits of '" << scene.name_of(one.source)
               << "' are not certified (its value may be a tie there, or --precision-cap is too low); the double stands "
                  "in their place\n";
   }
@@ -449,7 +449,7 @@ void add_receiver_flags(CLI::App& app, PointArguments& args) {
 }
 
 void add_output_flags(CLI::App& app, PointArguments& args) {
-  app.add_option("--digits", args.digits, "Certified significant decimals")->check(CLI::Range(1, kMostDigits));
+  app.add_option("--digits", args.digits, "Certified significant digits")->check(CLI::Range(1, kMostDigits));
   args.engine.add_to(app);
   app.add_option("--precision-cap", args.precision_cap, "Most bits that the contour may use")
       ->check(CLI::Range(32, 1 << 24))
@@ -473,12 +473,20 @@ void add_adaptive_flags(CLI::App& app, PointArguments& args) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 20));
   app.add_option("--seed", options.seed, "Its random seed")->capture_default_str();
-  app.add_option("--pattern", args.pattern, "Its sample pattern")
+  app.add_option("--pattern", args.pattern, "Where its rays end: jittered, centre, regular or low-discrepancy")
+      ->type_name("NAME")
       ->capture_default_str()
-      ->check([](const std::string& name) { return study::pattern_named(name) ? "" : "no such pattern: " + name; });
-  app.add_option("--variant", args.variant, "mended or literal")
+      ->check([](const std::string& name) {
+        return study::pattern_named(name)
+                   ? ""
+                   : "no such pattern: " + name + "; choose jittered, centre, regular or low-discrepancy";
+      });
+  app.add_option("--variant", args.variant, "mended, or literal: the listing as it was printed")
+      ->type_name("NAME")
       ->capture_default_str()
-      ->check([](const std::string& name) { return study::variant_named(name) ? "" : "no such variant: " + name; });
+      ->check([](const std::string& name) {
+        return study::variant_named(name) ? "" : "no such variant: " + name + "; choose mended or literal";
+      });
 }
 
 }  // namespace
@@ -487,6 +495,7 @@ Command add_point(CLI::App& app) {
   auto args = std::make_shared<PointArguments>();
   CLI::App* command = app.add_subcommand("point", "Exact form factor from one receiver to one source, or to all");
   command->footer(
+      "The exit code is 3 if a value is not certified within --precision-cap.\n\n"
       "Example:\n"
       "  exactff point data/scenes/cornell_box.obj --at 300 0 300 --normal 0 1 0 --on floor --source light --explain");
   args->scene.add_to(*command);
