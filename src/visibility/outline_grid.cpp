@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "kernel/lanes.h"
 
@@ -23,6 +24,8 @@ constexpr std::uint64_t kEdgesPerOutline = 4;
 constexpr std::size_t kOutlinesToAlign = 256;
 constexpr std::size_t kFewShare = 4;  // fewer than one edge in so many are few
 constexpr std::uint32_t kMostOwnCells = 24;
+constexpr std::size_t kMostInCaches = 4096;  // outlines
+constexpr std::uint32_t kStrip = 32;         // columns
 
 double dot(const Approx3& a, const Approx3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Approx3 cross(const Approx3& a, const Approx3& b) {
@@ -363,6 +366,28 @@ void OutlineGrid::fill() {
       if (belongs(o, cells_[at])) members_[next_[cells_[at]]++] = o;
     }
   }
+}
+
+// By the first of an outline's cells, row by row in strips of some columns, by a counting sort; first of all those that
+// have none.
+std::span<const OutlineId> OutlineGrid::in_order(std::size_t count) {
+  order_.resize(count);
+  std::iota(order_.begin(), order_.end(), OutlineId{0});
+  if (single_ || count < kMostInCaches) return order_;
+  const auto columns = static_cast<std::uint32_t>(u_.count), rows = static_cast<std::uint32_t>(v_.count);
+  const std::uint32_t strip = std::min(kStrip, columns);
+  const auto place = [&](std::uint32_t cell) {
+    const std::uint32_t row = cell / columns, column = cell % columns;
+    return (column / strip * rows + row) * strip + column % strip + 1;
+  };
+  const auto key = [&](OutlineId o) {
+    return outline_begin_[o] == outline_begin_[o + 1] ? 0 : place(cells_[outline_begin_[o]]);
+  };
+  next_.assign(std::size_t{columns / strip + 1} * rows * strip + 2, 0);
+  for (OutlineId o = 0; o < count; ++o) ++next_[key(o) + 1];
+  std::partial_sum(next_.begin(), next_.end(), next_.begin());
+  for (OutlineId o = 0; o < count; ++o) order_[next_[key(o)]++] = o;
+  return order_;
 }
 
 std::uint64_t OutlineGrid::unsorted_pairs(const Outlines& outlines) const {

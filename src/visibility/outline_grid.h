@@ -32,6 +32,10 @@ class OutlineGrid {
   // apart by cells: the grid is of little use where they are many.
   [[nodiscard]] std::uint64_t unsorted_pairs(const Outlines& outlines) const;
 
+  // All outlines, in an order in which those near one another mostly follow one another where there are more than
+  // caches hold. Valid until build is called again.
+  [[nodiscard]] std::span<const OutlineId> in_order(std::size_t count);
+
   // Every occluder that meets one of the edges inside the source, each once, and perhaps others. The edges are those of
   // the set bits of `wanted`, counted from `first`. Valid until asked again.
   [[nodiscard]] std::span<const OutlineId> find_near(const Outlines& outlines, EdgeId first, unsigned wanted);
@@ -134,7 +138,8 @@ class OutlineGrid {
   std::vector<OutlineId> members_;
   std::vector<OutlineId> coverer_;  // by cell: an occluder that certainly covers it; then it is the only member
   std::vector<OutlineId> everywhere_;
-  std::vector<OutlineId> all_;       // every occluder, once somebody asked for all
+  std::vector<OutlineId> all_;  // every occluder, once somebody asked for all
+  std::vector<OutlineId> order_;
   std::vector<std::uint32_t> next_;  // scratch: by cell
   std::vector<EdgeId> last_found_;   // by outline: the first of the edges that found it last
   std::vector<EdgeId> last_seen_;    // by cell: the first of the edges that looked into it last

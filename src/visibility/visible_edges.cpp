@@ -40,7 +40,7 @@ bool VisibleEdges::find(std::size_t source_count) {
   drop_inner_edges(source_count);
   grid_.build(outlines_, source_count, dropped_);
   if (grid_.unsorted_pairs(outlines_) > kMostUnsortedPairs) return false;
-  for (OutlineId o = 0; o < outlines_.outlines().size(); ++o) trace_outline(o, source_count);
+  for (const OutlineId o : grid_.in_order(outlines_.outlines().size())) trace_outline(o, source_count);
   return true;
 }
 

@@ -192,5 +192,35 @@ TEST(OutlineGrid, KnowsWhatItCannotTellApart) {
   EXPECT_EQ(grid.find_near(seen.outlines(), 0, 1).size(), std::size_t{kCount});
 }
 
+TEST(OutlineGrid, PutsManyOutlinesInAnOrderInWhichNeighboursFollow) {
+  constexpr std::size_t kCount = 5000;
+  Random random(1);
+  Seen seen;
+  seen.add({{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}});
+  for (std::size_t i = 1; i < kCount; ++i) {  // some beyond the source, some behind
+    const Vec3 at{random.between(-1.1, 1.1), random.between(-1.1, 1.1), i % 100 == 0 ? -1.0 : 1.0};
+    seen.add({at, at + Vec3{0.01, 0, 0}, at + Vec3{0, 0.01, 0}});
+  }
+  Outlines& outlines = seen.outlines();
+  ASSERT_EQ(outlines.outlines().size(), kCount);
+  OutlineGrid grid;
+  grid.build(outlines, 1, {});
+  const auto found = grid.in_order(kCount);
+  std::vector<OutlineId> order(found.begin(), found.end());
+  const auto far_from_next = [&] {
+    int count = 0;
+    for (std::size_t i = 1; i < kCount; ++i) {
+      const auto& a = outlines.corner(outlines.edge(outlines.outline(order[i - 1]).first).a).t;
+      const auto& b = outlines.corner(outlines.edge(outlines.outline(order[i]).first).a).t;
+      count += std::hypot(a.x - b.x, a.y - b.y) > 0.2 ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_LT(far_from_next(), static_cast<int>(kCount) / 4);
+  std::sort(order.begin(), order.end());
+  EXPECT_GT(far_from_next(), static_cast<int>(kCount) * 9 / 10);
+  for (OutlineId o = 0; o < kCount; ++o) EXPECT_EQ(order[o], o);
+}
+
 }  // namespace
 }  // namespace exactff::visibility

@@ -192,5 +192,18 @@ TEST(VisibleEdges, RemembersNothingOfTheSceneBefore) {
   }
 }
 
+// Of as many as are taken up in another order than they came in.
+TEST(VisibleEdges, LosesNoneOfManyOccluders) {
+  constexpr int kSide = 64;
+  Case many{"Many", "3/4", 4 + 4 * kSide * kSide};
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const double x = -1.0 + 2.0 * (i % kSide + 0.25) / kSide, y = -1.0 + 2.0 * (i / kSide + 0.25) / kSide;
+    many.occluders.push_back(box(x, x + 1.0 / kSide, y, y + 1.0 / kSide));
+  }
+  const FormFactor result = validation::solve_by(Engine::kEdges, scene_of(many, 0, false), {.exact_fraction = true});
+  EXPECT_EQ(result.planes.at(0).exact_fraction, many.fraction);
+  EXPECT_EQ(result.planes.at(0).edges, many.parts);
+}
+
 }  // namespace
 }  // namespace exactff::visibility
