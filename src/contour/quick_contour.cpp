@@ -5,6 +5,9 @@
 //   2. p and q, corners or crossings, and w (contour.h);
 //   3. the angle atan2(w |a x b|, p . q), with the sign of w;
 //   4. its product with n . (a x b) / |a x b|, added to the sum.
+//
+// Four edges, or four pieces, at a time, a lane each. A last four that is not full repeats its last lane, and what
+// comes of that is left out. What one lane declines is nothing to the others (kernel/double_double.h).
 #include "contour/quick_contour.h"
 
 #include <algorithm>
@@ -52,70 +55,187 @@ const AngleConstants& angle_constants() {
   return instance;
 }
 
+// --- Four at a time ---
+
+namespace {
+
+constexpr std::size_t kLanes = 4;
+
+template <class T>
+using FourOf = std::array<const T*, kLanes>;  // in memory, a lane each
+
+// The i-th, lane by lane; the last where there are no more.
+template <class T, class Find>
+EXACTFF_INLINE FourOf<T> four_of(std::size_t count, const Find& find) {
+  const std::size_t last = count - 1;
+  return {&find(0), &find(std::min<std::size_t>(1, last)), &find(std::min<std::size_t>(2, last)),
+          &find(std::min<std::size_t>(3, last))};
+}
+
+// What `part` gives of each.
+template <class T, class Part>
+EXACTFF_INLINE Four gather(const FourOf<T>& from, const Part& part) {
+  return Four{part(*from[0]), part(*from[1]), part(*from[2]), part(*from[3])};
+}
+
+EXACTFF_INLINE FourBounded gather(const FourOf<QuickLine>& lines, Bounded QuickLine::*part) {
+  return {gather(lines, [=](const QuickLine& line) { return (line.*part).hi; }),
+          gather(lines, [=](const QuickLine& line) { return (line.*part).lo; }),
+          gather(lines, [=](const QuickLine& line) { return (line.*part).error; })};
+}
+
+EXACTFF_INLINE FourVector gather(const FourOf<QuickLine>& lines, Vector QuickLine::*part) {
+  const auto component = [&](int i) -> BasicDoubleDouble<Four> {
+    return {gather(lines, [=](const QuickLine& line) { return (line.*part).c[i].hi; }),
+            gather(lines, [=](const QuickLine& line) { return (line.*part).c[i].lo; })};
+  };
+  return {{component(0), component(1), component(2)},
+          gather(lines, [=](const QuickLine& line) { return (line.*part).norm; }),
+          gather(lines, [=](const QuickLine& line) { return (line.*part).error; })};
+}
+
+EXACTFF_INLINE FourVector gather(const FourOf<QuickCorner>& corners) {
+  const auto component = [&](int i) -> BasicDoubleDouble<Four> {
+    return {gather(corners, [=](const QuickCorner& corner) { return corner.hi[i]; }),
+            gather(corners, [=](const QuickCorner& corner) { return corner.lo[i]; })};
+  };
+  return vector({component(0), component(1), component(2)},
+                gather(corners, [](const QuickCorner& corner) { return corner.error; }));
+}
+
+EXACTFF_INLINE Bounded lane(const FourBounded& x, std::size_t k) { return {x.hi[k], x.lo[k], x.error[k]}; }
+
+EXACTFF_INLINE Vector lane(const FourVector& v, std::size_t k) {
+  const auto component = [&](int i) -> DoubleDouble { return {v.c[i].hi[k], v.c[i].lo[k]}; };
+  return {{component(0), component(1), component(2)}, v.norm[k], v.error[k]};
+}
+
+}  // namespace
+
+// --- Edges ---
+
+namespace {
+
+// Scaling the normal may have lost a component.
+template <class Real>
+EXACTFF_INLINE BasicVector<Real> vector_of(const std::array<double, 3>& normal) {
+  const auto component = [&](int i) -> BasicDoubleDouble<Real> { return {uniform<Real>(normal[i]), Real{}}; };
+  return vector({component(0), component(1), component(2)}, uniform<Real>(kUnderflow));
+}
+
+EXACTFF_INLINE FourMask has_moderate_size(const FourVector& v) {
+  const Four largest = larger(larger(magnitude(v.c[0].hi), magnitude(v.c[1].hi)), magnitude(v.c[2].hi));
+  return both(both(largest >= 0x1p-200, largest <= 0x1p200), v.norm <= 0x1p202);  // the last is false for NaN
+}
+
+struct FourLines {
+  FourVector a;
+  FourVector b;
+  FourVector cross;
+  FourBounded size;
+  FourBounded weight;
+};
+
+EXACTFF_INLINE QuickLine lane(const FourLines& lines, std::size_t k) {
+  return {lane(lines.a, k), lane(lines.b, k), lane(lines.cross, k), lane(lines.size, k), lane(lines.weight, k)};
+}
+
+// Step 1.
+EXACTFF_INLINE FourLines lines_between(const FourVector& normal, const FourVector& a, const FourVector& b) {
+  FourLines lines{a, b, cross_of_edge(a, b), {}, {}};
+  const FourMask usable = both(has_moderate_size(a), has_moderate_size(b));
+  lines.cross.error = where(usable, lines.cross.error, uniform<Four>(kDeclined.error));
+  lines.size = square_root(dot(lines.cross, lines.cross));
+  lines.weight = dot(normal, lines.cross) / lines.size;
+  return lines;
+}
+
+// Into as many lines.
+EXACTFF_FMA_CLONES
+void make_lines(const std::array<double, 3>& normal, std::span<const QuickCorner> corners,
+                std::span<const QuickEdge> edges, QuickLine* result) {
+  const FourVector n = vector_of<Four>(normal);
+  for (std::size_t i = 0; i < edges.size(); i += kLanes) {
+    const std::size_t count = std::min(kLanes, edges.size() - i);
+    const auto end = [&](std::uint32_t QuickEdge::*which) {
+      return gather(four_of<QuickCorner>(
+          count, [&](std::size_t k) -> const QuickCorner& { return corners[edges[i + k].*which]; }));
+    };
+    const FourLines lines = lines_between(n, end(&QuickEdge::a), end(&QuickEdge::b));
+    for (std::size_t k = 0; k < count; ++k) result[i + k] = lane(lines, k);
+  }
+}
+
+}  // namespace
+
 // --- Crossings ---
 
 namespace {
 
-EXACTFF_INLINE Vector vector_of(const QuickCorner& corner) {
-  return vector({DoubleDouble{corner.hi[0], corner.lo[0]}, {corner.hi[1], corner.lo[1]}, {corner.hi[2], corner.lo[2]}},
-                corner.error);
-}
-
-// Scaling the normal may have lost a component.
-EXACTFF_INLINE Vector vector_of(const std::array<double, 3>& normal) {
-  return vector({DoubleDouble{normal[0]}, {normal[1]}, {normal[2]}}, kUnderflow);
-}
-
-EXACTFF_INLINE bool has_moderate_size(const Vector& v) {
-  const double largest = std::max({std::abs(v.c[0].hi), std::abs(v.c[1].hi), std::abs(v.c[2].hi)});
-  return largest >= 0x1p-200 && largest <= 0x1p200 && v.norm <= 0x1p202;  // the last is false for NaN
-}
-
-// A point l a + m b of the edge, and (l : m).
-struct Point {
-  Bounded l;
-  Bounded m;
-  Vector direction;
+// Points l a + m b of an edge each, and (l : m).
+struct FourPoints {
+  FourBounded l;
+  FourBounded m;
+  FourVector direction;
 };
 
+EXACTFF_INLINE FourPoints where(const FourMask& condition, const FourPoints& p, const FourPoints& q) {
+  return {where(condition, p.l, q.l), where(condition, p.m, q.m), where(condition, p.direction, q.direction)};
+}
+
 // normal . p, the normal being that of a plane through c: loses less as normal . (p - t c) where p and t c are near.
-EXACTFF_INLINE Bounded height(const Vector& normal, const Vector& c, const Vector& p) {
-  const double t = p.norm / c.norm;
-  const double distance =
-      std::abs(p.c[0].hi - t * c.c[0].hi) + std::abs(p.c[1].hi - t * c.c[1].hi) + std::abs(p.c[2].hi - t * c.c[2].hi);
-  return distance < 0.25 * p.norm ? dot(normal, near_cancellation(p, t, c)) : dot(normal, p);
+EXACTFF_INLINE FourBounded height(const FourVector& normal, const FourVector& c, const FourVector& p) {
+  const Four t = p.norm / c.norm;
+  const Four distance = magnitude(p.c[0].hi - t * c.c[0].hi) + magnitude(p.c[1].hi - t * c.c[1].hi) +
+                        magnitude(p.c[2].hi - t * c.c[2].hi);
+  const FourMask near = distance < 0.25 * p.norm;
+  return dot(normal, in_some_lane(near) ? where(near, near_cancellation(p, t, c), p) : p);
 }
 
 // Requires scale, a power of two, to be such that nothing overflows.
-EXACTFF_INLINE Bounded scaled(const Bounded& x, double scale) {
+EXACTFF_INLINE FourBounded scaled(const FourBounded& x, const Four& scale) {
   return {x.hi * scale, x.lo * scale, x.error * scale + kUnderflow};
 }
 
 // The power of two that brings x into [1, 2). Requires that x and its inverse are normal.
-EXACTFF_INLINE double inverse_power_of_two(double x) {
-  const std::uint64_t biased = (std::bit_cast<std::uint64_t>(x) >> 52) & 0x7FF;
-  return std::bit_cast<double>((2046 - biased) << 52);
+EXACTFF_INLINE Four inverse_power_of_two(const Four& x) {
+  const FourMask biased = (FourMask(x) >> 52) & 0x7FF;
+  return Four((2046 - biased) << 52);
 }
 
-EXACTFF_FMA_CLONES
-bool cross_edge(const QuickLine& line, const QuickLine& edge, Point& result) {
-  if (!line.usable) return false;
-  const Bounded height_a = height(line.cross, line.a, edge.a);
-  const Bounded height_b = height(line.cross, line.a, edge.b);
-  if (!sign_is_certain(height_a) || !sign_is_certain(height_b)) return false;
-  if ((height_a.hi < 0.0) == (height_b.hi < 0.0)) return false;
-  const double scale = inverse_power_of_two(std::max(std::abs(height_a.hi), std::abs(height_b.hi)));
-  result.l = scaled(absolute(height_b), scale);
-  result.m = scaled(absolute(height_a), scale);
-  result.direction = combination(result.l, edge.a, result.m, edge.b);
-  return true;
+// What is common to the edges of four pieces.
+struct FourEdges {
+  FourVector a;
+  FourVector b;
+};
+
+// Where the line, through c with the given normal, crosses the edge from a to b; declined where that is not certain.
+EXACTFF_INLINE FourPoints cross_edges(const FourVector& normal, const FourVector& c, const FourEdges& edges) {
+  const FourBounded height_a = height(normal, c, edges.a), height_b = height(normal, c, edges.b);
+  const FourMask crosses =
+      both(both(sign_is_certain(height_a), sign_is_certain(height_b)), differ(height_a.hi < 0.0, height_b.hi < 0.0));
+  const Four scale = inverse_power_of_two(larger(magnitude(height_a.hi), magnitude(height_b.hi)));
+  const FourBounded l = only_where(crosses, scaled(absolute(height_b), scale));
+  const FourBounded m = only_where(crosses, scaled(absolute(height_a), scale));
+  return {l, m, combination(l, edges.a, m, edges.b)};
 }
 
-EXACTFF_INLINE bool locate(const QuickLine& edge, const QuickEnd& end, Point& result) {
-  if (end.kind == QuickEnd::Kind::kCrossing) return cross_edge(*end.line, edge, result);
-  const bool at_a = end.kind == QuickEnd::Kind::kA;
-  result = {{at_a ? 1.0 : 0.0}, {at_a ? 0.0 : 1.0}, at_a ? edge.a : edge.b};
-  return true;
+// Step 2, for one end of four pieces; `own` are their edges' lines.
+EXACTFF_INLINE FourPoints locate(const FourEdges& edges, const FourOf<QuickLine>& own, const FourOf<QuickPiece>& pieces,
+                                 std::uint32_t QuickPiece::*which, std::span<const QuickLine> lines) {
+  FourOf<QuickLine> crossing = own;
+  FourMask at_a{}, crossed{};
+  for (std::size_t k = 0; k < kLanes; ++k) {
+    const std::uint32_t end = pieces[k]->*which;
+    at_a[k] = end == QuickPiece::kAtA ? -1 : 0;
+    crossed[k] = end < QuickPiece::kAtA ? -1 : 0;
+    if (end < QuickPiece::kAtA) crossing[k] = &lines[end];
+  }
+  const FourBounded zero{}, one{uniform<Four>(1.0), {}, {}};
+  const FourPoints corner{where(at_a, one, zero), where(at_a, zero, one), where(at_a, edges.a, edges.b)};
+  if (!in_some_lane(crossed)) return corner;
+  return where(crossed, cross_edges(gather(crossing, &QuickLine::cross), gather(crossing, &QuickLine::a), edges),
+               corner);
 }
 
 }  // namespace
@@ -124,36 +244,32 @@ EXACTFF_INLINE bool locate(const QuickLine& edge, const QuickEnd& end, Point& re
 
 namespace {
 
-EXACTFF_FMA_CLONES
-QuickLine line_of(const std::array<double, 3>& normal, const QuickCorner& from, const QuickCorner& to) {
-  QuickLine line;
-  line.a = vector_of(from);
-  line.b = vector_of(to);
-  line.usable = has_moderate_size(line.a) && has_moderate_size(line.b);
-  if (!line.usable) return line;
-  line.cross = cross_of_edge(line.a, line.b);
-  line.size = square_root(dot(line.cross, line.cross));
-  line.weight = dot(vector_of(normal), line.cross) / line.size;
-  return line;
-}
-
-// The angle of the piece, with the sign of w.
-EXACTFF_FMA_CLONES
-Bounded angle_between(const QuickLine& edge, const QuickEnd& begin, const QuickEnd& end, const AngleConstants& known) {
-  Point p;
-  Point q;
-  if (!locate(edge, begin, p) || !locate(edge, end, q)) return kDeclined;
-  const Bounded w = sum_of_products(p.l, q.m, -p.m, q.l);
-  return atan2(w * edge.size, dot(p.direction, q.direction), known);
+// Steps 2 to 4 for up to four pieces; zero where there are fewer.
+EXACTFF_INLINE FourBounded terms(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines,
+                                 const AngleConstants& known) {
+  const auto piece = four_of<QuickPiece>(pieces.size(), [&](std::size_t k) -> const QuickPiece& { return pieces[k]; });
+  const auto line =
+      four_of<QuickLine>(kLanes, [&](std::size_t k) -> const QuickLine& { return lines[piece[k]->edge]; });
+  const FourEdges edges{gather(line, &QuickLine::a), gather(line, &QuickLine::b)};
+  const FourPoints p = locate(edges, line, piece, &QuickPiece::begin, lines);
+  const FourPoints q = locate(edges, line, piece, &QuickPiece::end, lines);
+  const FourBounded w = sum_of_products(p.l, q.m, -p.m, q.l);
+  const FourBounded angle = atan2(w * gather(line, &QuickLine::size), dot(p.direction, q.direction), known);
+  const FourMask present = FourMask{0, 1, 2, 3} < static_cast<std::int64_t>(pieces.size());
+  return where(present, angle * gather(line, &QuickLine::weight), FourBounded{});
 }
 
 EXACTFF_FMA_CLONES
-Bounded term(const QuickLine& edge, const QuickEnd& begin, const QuickEnd& end, const AngleConstants& known) {
-  if (!edge.usable) return kDeclined;
-  const bool is_whole = begin.kind == QuickEnd::Kind::kA && end.kind == QuickEnd::Kind::kB;
-  const Bounded angle =
-      is_whole ? atan2(edge.size, dot(edge.a, edge.b), known) : angle_between(edge, begin, end, known);
-  return angle * edge.weight;
+void add_terms(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines, const AngleConstants& known,
+               std::array<Bounded, kLanes>& sums) {
+  const auto part = [&](double Bounded::*which) {
+    return Four{sums[0].*which, sums[1].*which, sums[2].*which, sums[3].*which};
+  };
+  FourBounded sum{part(&Bounded::hi), part(&Bounded::lo), part(&Bounded::error)};
+  for (std::size_t i = 0; i < pieces.size(); i += kLanes) {
+    sum = sum + terms(pieces.subspan(i, std::min(kLanes, pieces.size() - i)), lines, known);
+  }
+  for (std::size_t k = 0; k < kLanes; ++k) sums[k] = lane(sum, k);
 }
 
 std::array<double, 3> scaled_normal(const Vec3& n) {
@@ -166,15 +282,21 @@ std::array<double, 3> scaled_normal(const Vec3& n) {
 
 QuickContour::QuickContour(const Vec3& normal) : normal_(scaled_normal(normal)) {}
 
-QuickLine QuickContour::line(const QuickCorner& a, const QuickCorner& b) const { return line_of(normal_, a, b); }
+void QuickContour::append_lines(std::span<const QuickCorner> corners, std::span<const QuickEdge> edges,
+                                std::vector<QuickLine>& lines) const {
+  const std::size_t before = lines.size();
+  lines.resize(before + edges.size());
+  make_lines(normal_, corners, edges, lines.data() + before);
+}
 
-void QuickContour::add(const QuickLine& edge, const QuickEnd& begin, const QuickEnd& end) {
-  sum_ = sum_ + term(edge, begin, end, angle_constants());
+void QuickContour::add(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines) {
+  add_terms(pieces, lines, angle_constants(), sums_);
 }
 
 QuickContour::Value QuickContour::value() const {
-  const Vector normal = vector_of(normal_);
-  const Bounded f = -sum_ / (square_root(dot(normal, normal)) * (2.0 * constant(angle_constants().pi)));
+  const Vector normal = vector_of<double>(normal_);
+  const Bounded sum = (sums_[0] + sums_[1]) + (sums_[2] + sums_[3]);
+  const Bounded f = -sum / (square_root(dot(normal, normal)) * (2.0 * constant(angle_constants().pi)));
   const double error = kInflation * f.error;
   if (!std::isfinite(f.hi) || !std::isfinite(f.lo) || !std::isfinite(error)) return {0.0, 0.0, kDeclined.error};
   return {f.hi, f.lo, error};

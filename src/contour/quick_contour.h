@@ -13,6 +13,8 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "contour/quick_vector.h"
 #include "exactff/geometry.h"
@@ -29,9 +31,15 @@ QuickCorner quick_corner(const Vec3& vertex, const Vec3& x, int scale_exponent);
 // The direction with its largest component scaled into [1/2, 1). Requires that it is not zero.
 QuickCorner quick_corner(const kernel::ExactVec3& direction);
 
-// An edge from a to b, with what all pieces of it and all that its line crosses have in common.
+// An edge from the corner a to the corner b, by their numbers.
+struct QuickEdge {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+};
+
+// An edge from a to b, with what all pieces of it and all that its line crosses have in common. Where it is declined,
+// the error of the last three is infinite.
 struct QuickLine {
-  bool usable = false;  // else nothing below is set
   Vector a;
   Vector b;
   Vector cross;                           // a x b
@@ -39,10 +47,12 @@ struct QuickLine {
   kernel::double_double::Bounded weight;  // n . (a x b) / |a x b|
 };
 
-// A point of an edge: an end of it, or where the plane through x and another edge meets it.
-struct QuickEnd {
-  enum class Kind : std::uint8_t { kA, kB, kCrossing } kind = Kind::kA;
-  const QuickLine* line = nullptr;  // of a crossing
+// A piece of an edge between two points: ends of the edge, or where the plane through x and another edge meets it. All
+// by the numbers of their lines.
+struct QuickPiece {
+  static constexpr std::uint32_t kAtA = 0xFFFFFFFEU, kAtB = 0xFFFFFFFFU;
+  std::uint32_t edge = 0;
+  std::uint32_t begin = kAtA, end = kAtB;
 };
 
 class QuickContour {
@@ -50,10 +60,12 @@ class QuickContour {
   // n: the receiver's normal, finite and not zero, of any length.
   explicit QuickContour(const Vec3& normal);
 
-  [[nodiscard]] QuickLine line(const QuickCorner& a, const QuickCorner& b) const;
+  // Appends the lines of the edges.
+  void append_lines(std::span<const QuickCorner> corners, std::span<const QuickEdge> edges,
+                    std::vector<QuickLine>& lines) const;
 
-  // The piece of an edge from begin to end, which need not be the sense from a to b. The lines are of this contour.
-  void add(const QuickLine& edge, const QuickEnd& begin, const QuickEnd& end);
+  // The pieces may run against the sense from a to b. The lines are of this contour.
+  void add(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines);
 
   // |F - (hi + lo)| <= error for the closed loops added so far, hi being the double nearest to hi + lo. The error is
   // infinite where some piece was declined: a and b, c and d, or p and q too close to one line with x, a crossing too
@@ -66,8 +78,9 @@ class QuickContour {
   [[nodiscard]] Value value() const;
 
  private:
-  std::array<double, 3> normal_{};      // largest component in [1/2, 1)
-  kernel::double_double::Bounded sum_;  // of the terms of the pieces, without the factor -1/(2 pi |n|)
+  std::array<double, 3> normal_{};  // largest component in [1/2, 1)
+  // Of the terms of the pieces, without the factor -1/(2 pi |n|): in lane k of every four the k-th.
+  std::array<kernel::double_double::Bounded, 4> sums_;
 };
 
 // The double that every number of the enclosure rounds to (nearest, ties to even), if there is one.

@@ -1,6 +1,8 @@
 #include "exact/quick_tier.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "kernel/ball.h"
@@ -9,8 +11,9 @@ namespace exactff::exact {
 
 using contour::QuickContour;
 using contour::QuickCorner;
-using contour::QuickEnd;
+using contour::QuickEdge;
 using contour::QuickLine;
+using contour::QuickPiece;
 using visibility::CornerId;
 using visibility::EdgeId;
 using visibility::Outlines;
@@ -18,36 +21,29 @@ using visibility::VisibleEdges;
 
 namespace {
 
-// What is made when first asked for, by an index, and kept until forgotten.
-template <class T>
-class Memo {
+// Numbers things in the order in which they are first asked for; what is numbered is forgotten now and then.
+class Numbers {
  public:
   void clear(std::size_t count) {
-    made_.clear();
-    first_ = 0;
+    first_ = next_ = 0;
     number_.assign(count, kNone);
   }
-  // The place of the i-th.
-  template <class Make>
-  std::uint32_t find(std::uint32_t i, const Make& make) {
-    if (number_[i] - first_ >= made_.size()) {
-      number_[i] = first_ + static_cast<std::uint32_t>(made_.size());
-      made_.push_back(make());
-    }
-    return number_[i] - first_;
+  // The number of the i-th, counted from those not forgotten, and whether it is new.
+  struct Found {
+    std::uint32_t number;
+    bool is_new;
+  };
+  Found find(std::uint32_t i) {
+    const bool is_new = number_[i] == kNone || number_[i] < first_;
+    if (is_new) number_[i] = next_++;
+    return {number_[i] - first_, is_new};
   }
-  [[nodiscard]] const T& operator[](std::uint32_t place) const { return made_[place]; }
-  [[nodiscard]] std::size_t size() const { return made_.size(); }
-  void forget() {
-    first_ += static_cast<std::uint32_t>(made_.size());
-    made_.clear();
-  }
+  void forget() { first_ = next_; }
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-  std::vector<T> made_;
-  std::uint32_t first_ = 0;            // the number of made_.front(): what was made before is forgotten
-  std::vector<std::uint32_t> number_;  // by index, in the order of making
+  std::uint32_t first_ = 0, next_ = 0;
+  std::vector<std::uint32_t> number_;
 };
 
 QuickCorner quick_corner(Outlines& outlines, CornerId id) {
@@ -61,52 +57,72 @@ QuickCorner quick_corner(Outlines& outlines, CornerId id) {
 // The corners and lines of one plane's parts.
 class Lines {
  public:
-  // The place of an edge's line.
-  std::uint32_t find(const QuickContour& contour, Outlines& outlines, EdgeId id) {
-    return lines_.find(id, [&] {
-      const Outlines::Edge edge = outlines.edge(id);
-      const std::uint32_t a = corner(outlines, edge.a), b = corner(outlines, edge.b);
-      return contour.line(corners_[a], corners_[b]);
-    });
-  }
   void clear(const Outlines& outlines) {
-    corners_.clear(outlines.corner_count());
-    lines_.clear(outlines.edges().size());
+    forget();
+    corners_.clear();
+    corner_numbers_.clear(outlines.corner_count());
+    line_numbers_.clear(outlines.edges().size());
   }
-  [[nodiscard]] const QuickLine& operator[](std::uint32_t place) const { return lines_[place]; }
+  // The number of an edge's line, which need not be made yet.
+  std::uint32_t find(Outlines& outlines, EdgeId id) {
+    const auto [number, is_new] = line_numbers_.find(id);
+    if (is_new) {
+      const Outlines::Edge& edge = outlines.edge(id);
+      edges_.push_back({corner(outlines, edge.a), corner(outlines, edge.b)});
+    }
+    return number;
+  }
+  // With all those found made.
+  [[nodiscard]] std::span<const QuickLine> lines(const QuickContour& contour) {
+    contour.append_lines(corners_, std::span(edges_).subspan(lines_.size()), lines_);
+    return lines_;
+  }
   // Parts that are near one another share lines; all lines together would not fit the cache.
   void forget_if_many() {
-    if (lines_.size() >= kMostLines) lines_.forget();
+    if (lines_.size() >= kMostLines) forget();
   }
 
  private:
   static constexpr std::size_t kMostLines = 8192;
 
+  void forget() {
+    edges_.clear();
+    lines_.clear();
+    line_numbers_.forget();
+  }
   std::uint32_t corner(Outlines& outlines, CornerId id) {
-    return corners_.find(id, [&] { return quick_corner(outlines, id); });
+    const auto [number, is_new] = corner_numbers_.find(id);
+    if (is_new) corners_.push_back(quick_corner(outlines, id));
+    return number;
   }
 
-  Memo<QuickCorner> corners_;
-  Memo<QuickLine> lines_;
+  Numbers corner_numbers_, line_numbers_;
+  std::vector<QuickCorner> corners_;
+  std::vector<QuickEdge> edges_;
+  std::vector<QuickLine> lines_;  // of the edges
 };
 
 }  // namespace
 
+// In batches, so that lines are made four at a time.
 void QuickTier::add(VisibleEdges& edges) {
   using Parameter = VisibleEdges::Parameter;
+  static_assert(Parameter::kAtBegin == QuickPiece::kAtA && Parameter::kAtEnd == QuickPiece::kAtB);
+  constexpr std::size_t kBatch = 64;
   thread_local Lines lines;  // its memory is used again
+  thread_local std::vector<QuickPiece> pieces;
   Outlines& outlines = edges.outlines();
   lines.clear(outlines);
-  const auto place = [&](EdgeId id) { return id < Parameter::kAtBegin ? lines.find(contour_, outlines, id) : 0; };
-  const auto end = [&](EdgeId id, std::uint32_t at) -> QuickEnd {
-    if (id == Parameter::kAtBegin) return {QuickEnd::Kind::kA};
-    if (id == Parameter::kAtEnd) return {QuickEnd::Kind::kB};
-    return {QuickEnd::Kind::kCrossing, &lines[at]};
-  };
-  for (const VisibleEdges::Part& part : edges.parts()) {
+  const auto end = [&](EdgeId line) { return line < Parameter::kAtBegin ? lines.find(outlines, line) : line; };
+  for (std::span<const VisibleEdges::Part> parts = edges.parts(); !parts.empty();) {
     lines.forget_if_many();
-    const std::uint32_t own = place(part.edge), first = place(part.begin.line), last = place(part.end.line);
-    contour_.add(lines[own], end(part.begin.line, first), end(part.end.line, last));
+    pieces.clear();
+    const std::size_t count = std::min(kBatch, parts.size());
+    for (const VisibleEdges::Part& part : parts.first(count)) {
+      pieces.push_back({lines.find(outlines, part.edge), end(part.begin.line), end(part.end.line)});
+    }
+    contour_.add(pieces, lines.lines(contour_));
+    parts = parts.subspan(count);
   }
 }
 

@@ -5,8 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "contour/contour.h"
@@ -30,14 +33,14 @@ constexpr long kBits = 600;
 
 // An end of an edge, or where the plane through x and the corners c, d meets it.
 struct End {
-  QuickEnd::Kind kind = QuickEnd::Kind::kA;
+  enum class Kind { kA, kB, kCrossing } kind = Kind::kA;
   std::uint32_t c = 0;
   std::uint32_t d = 0;
 };
-constexpr End kA{QuickEnd::Kind::kA};
-constexpr End kB{QuickEnd::Kind::kB};
+constexpr End kA{End::Kind::kA};
+constexpr End kB{End::Kind::kB};
 
-End crossing(std::uint32_t c, std::uint32_t d) { return {QuickEnd::Kind::kCrossing, c, d}; }
+End crossing(std::uint32_t c, std::uint32_t d) { return {End::Kind::kCrossing, c, d}; }
 
 // Of the edge between the corners a and b.
 struct Part {
@@ -71,19 +74,31 @@ struct Both {
     for (std::uint32_t i = 0; i < count; ++i) pieces.push_back({i, (i + 1) % count, kA, kB});
   }
 
+  // Every line is made anew for every piece.
   [[nodiscard]] QuickContour::Value quick() const {
     QuickContour contour(normal);
-    const auto line = [&](std::uint32_t a, std::uint32_t b) { return contour.line(corners[a], corners[b]); };
+    std::vector<QuickEdge> edges;
+    std::vector<QuickPiece> quick_pieces;
+    const auto number = [&](std::uint32_t a, std::uint32_t b) {
+      edges.push_back({a, b});
+      return static_cast<std::uint32_t>(edges.size() - 1);
+    };
+    const auto number_of_end = [&](const End& end) {
+      if (end.kind == End::Kind::kCrossing) return number(end.c, end.d);
+      return end.kind == End::Kind::kA ? QuickPiece::kAtA : QuickPiece::kAtB;
+    };
     for (const auto& [a, b, begin, end] : pieces) {
-      const QuickLine at_begin = line(begin.c, begin.d), at_end = line(end.c, end.d);
-      contour.add(line(a, b), {begin.kind, &at_begin}, {end.kind, &at_end});
+      quick_pieces.push_back({number(a, b), number_of_end(begin), number_of_end(end)});
     }
+    std::vector<QuickLine> lines;
+    contour.append_lines(corners, edges, lines);
+    contour.add(quick_pieces, lines);
     return contour.value();
   }
 
   [[nodiscard]] visibility::EdgeParameter parameter(const Part& piece, const End& end) const {
-    if (end.kind == QuickEnd::Kind::kA) return {1, 0};
-    if (end.kind == QuickEnd::Kind::kB) return {0, 1};
+    if (end.kind == End::Kind::kA) return {1, 0};
+    if (end.kind == End::Kind::kB) return {0, 1};
     const ExactVec3 plane = cross(exact[end.c], exact[end.d]);
     return {abs(dot(plane, exact[piece.b])), abs(dot(plane, exact[piece.a]))};
   }
@@ -480,8 +495,10 @@ TEST(QuickContour, DeclinesACrossingThatIsNone) {
 TEST(QuickContour, DeclinesCornersTooLargeOrTooSmall) {
   const auto with = [](const Vec3& vertex, int scale_exponent) {
     QuickContour contour({0, 0, 1});
-    const QuickLine line = contour.line(quick_corner({1, 0, 0}, {}, 0), quick_corner(vertex, {}, scale_exponent));
-    contour.add(line, {QuickEnd::Kind::kA}, {QuickEnd::Kind::kB});
+    const std::vector<QuickCorner> corners{quick_corner({1, 0, 0}, {}, 0), quick_corner(vertex, {}, scale_exponent)};
+    std::vector<QuickLine> lines;
+    contour.append_lines(corners, std::vector<QuickEdge>{{0, 1}}, lines);
+    contour.add(std::vector<QuickPiece>{{0, QuickPiece::kAtA, QuickPiece::kAtB}}, lines);
     return answers(contour.value());
   };
   EXPECT_TRUE(with({0, 1, 0}, 200));
@@ -695,7 +712,7 @@ TEST_F(Arithmetic, SumsThatCancelKeepTheirBounds) {
     const DoubleDouble y = two_sum(hi, hi * 0x1p-53 * random.between(-1, 1));
     const Rational truth = x.truth + exactly(y.hi, y.lo);
     ASSERT_LE(share(x.bounded + bounded(y, 0), truth), 1.0) << seed;
-    const DoubleDouble sum = accurate_sum({x.bounded.hi, x.bounded.lo}, y);
+    const DoubleDouble sum = accurate_sum(parts(x.bounded), y);
     ASSERT_LE(abs(Rational(exactly(sum.hi, sum.lo) - truth)), abs(truth) * kernel::to_rational(0x1p-104)) << seed;
   }
 }
@@ -747,9 +764,9 @@ TEST_F(Arithmetic, RootsKeepTheirBounds) {
 TEST_F(Arithmetic, DeclinesDivisorsThatMayBeZero) {
   EXPECT_EQ((Bounded{1} / Bounded{0}).error, kInfinity);
   EXPECT_EQ((Bounded{1} / Bounded{1, 0, 0x1p-19}).error, kInfinity);
-  EXPECT_EQ(square_root({1, 0, 0x1p-19}).error, kInfinity);
-  EXPECT_EQ(square_root({-1, 0, 0}).error, kInfinity);
-  EXPECT_EQ(square_root({0, 0, 0}).error, kInfinity);
+  EXPECT_EQ(square_root(Bounded{1, 0, 0x1p-19}).error, kInfinity);
+  EXPECT_EQ(square_root(Bounded{-1, 0, 0}).error, kInfinity);
+  EXPECT_EQ(square_root(Bounded{0, 0, 0}).error, kInfinity);
 }
 
 // --- Vectors ---
@@ -847,7 +864,7 @@ TEST_F(VectorArithmetic, NearCancellationsKeepTheirBounds) {
       p.bounded.c[i] = {sum.hi, sum.lo};
       p.truth[i] = exactly(sum.hi, sum.lo);
     }
-    p.bounded = vector(p.bounded.c, 0);
+    p.bounded = vector(p.bounded.c, 0.0);
     return worst_share(near_cancellation(p.bounded, t, q.bounded),
                        true_combination(1, p.truth, kernel::to_rational(-t), q.truth));
   });
@@ -896,11 +913,11 @@ TEST_F(Angle, AnglesKeepTheirBounds) {
 }
 
 TEST_F(Angle, ASineThatMayBeZeroIsNoHindrance) {
-  const Bounded angle = atan2({0x1p-60, 0, 0x1p-50}, {1, 0, 0}, angle_constants());
+  const Bounded angle = atan2(Bounded{0x1p-60, 0, 0x1p-50}, Bounded{1, 0, 0}, angle_constants());
   for (const double sine : {0x1p-60 + 0x1p-50, 0x1p-60 - 0x1p-50, 0.0}) {
     EXPECT_TRUE(holds(angle, true_angle(kernel::to_rational(sine), 1)));
   }
-  const Bounded right = atan2({1, 0, 0}, {0x1p-60, 0, 0x1p-50}, angle_constants());
+  const Bounded right = atan2(Bounded{1, 0, 0}, Bounded{0x1p-60, 0, 0x1p-50}, angle_constants());
   for (const double cosine : {0x1p-60 + 0x1p-50, 0x1p-60 - 0x1p-50, 0.0}) {
     EXPECT_TRUE(holds(right, true_angle(1, kernel::to_rational(cosine))));
   }
@@ -918,6 +935,251 @@ TEST_F(Angle, DeclinesTheOriginAndTheNegativeAxis) {
   EXPECT_TRUE(declined({1, 0, 0}, {std::nan(""), 0, 0}));
   EXPECT_TRUE(declined({std::nan(""), 0, 0}, {1, 0, 0}));
   EXPECT_FALSE(declined({0x1p-48, 0, 0x1p-50}, {-1, 0, 0}));
+}
+
+// --- Four at a time ---
+
+bool same(double x, double y) {
+  return std::isnan(x) ? std::isnan(y) : std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+}
+
+// Compares lane by lane what is done with four and with one.
+class Lanes : public ::testing::Test {
+ protected:
+  static constexpr std::size_t kLanes = 4;
+
+  // Of every kind: ordinary, at the ends of the range, none.
+  static double number(Random& random) {
+    constexpr std::array kHostile = {0.0,     -0.0,      5e-324,    -5e-324,    0x1p-1022, 0x1.8p-1030,
+                                     0x1p900, -0x1p1023, kInfinity, -kInfinity, 0x1p-600,  1.0};
+    if (random.one_in(12)) return std::nan("");
+    if (random.one_in(3)) return kHostile[random.below(kHostile.size())];
+    return random.between(-1, 1) * std::exp2(random.between(-30, 30));
+  }
+  static Bounded bounded_number(Random& random) {
+    const DoubleDouble x = two_sum(number(random), number(random) * 0x1p-60);
+    const double error = random.one_in(3) ? 0.0 : std::abs(number(random)) * 0x1p-70;
+    return {x.hi, random.one_in(9) ? number(random) : x.lo, random.one_in(9) ? kDeclined.error : error};
+  }
+  static Vector bounded_vector(Random& random) {
+    const Bounded x = bounded_number(random), y = bounded_number(random), z = bounded_number(random);
+    return vector({parts(x), parts(y), parts(z)}, z.error);
+  }
+
+  template <class One, class Make>
+  static std::array<One, kLanes> four_of(Random& random, Make make) {
+    return {make(random), make(random), make(random), make(random)};
+  }
+  static Four pack(const std::array<double, kLanes>& x) { return Four{x[0], x[1], x[2], x[3]}; }
+  template <class T>
+  static Four pack(const std::array<T, kLanes>& x, double T::*part) {
+    return Four{x[0].*part, x[1].*part, x[2].*part, x[3].*part};
+  }
+  static FourBounded pack(const std::array<Bounded, kLanes>& x) {
+    return {pack(x, &Bounded::hi), pack(x, &Bounded::lo), pack(x, &Bounded::error)};
+  }
+  static FourVector pack(const std::array<Vector, kLanes>& v) {
+    const auto component = [&](std::size_t i) -> BasicDoubleDouble<Four> {
+      return {Four{v[0].c[i].hi, v[1].c[i].hi, v[2].c[i].hi, v[3].c[i].hi},
+              Four{v[0].c[i].lo, v[1].c[i].lo, v[2].c[i].lo, v[3].c[i].lo}};
+    };
+    return {{component(0), component(1), component(2)}, pack(v, &Vector::norm), pack(v, &Vector::error)};
+  }
+
+  static void expect_lane(const Four& four, std::size_t k, double one) {
+    EXPECT_TRUE(same(four[k], one)) << "lane " << k << ": " << four[k] << " for " << one;
+  }
+  static void expect_lane(const FourBounded& four, std::size_t k, const Bounded& one) {
+    expect_lane(four.hi, k, one.hi);
+    expect_lane(four.lo, k, one.lo);
+    expect_lane(four.error, k, one.error);
+  }
+  static void expect_lane(const FourVector& four, std::size_t k, const Vector& one) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      expect_lane(four.c[i].hi, k, one.c[i].hi);
+      expect_lane(four.c[i].lo, k, one.c[i].lo);
+    }
+    expect_lane(four.norm, k, one.norm);
+    expect_lane(four.error, k, one.error);
+  }
+
+  // `function` of fours, and of what is in their lanes.
+  template <class Function, class... Ones>
+  static void expect_same_of(Function function, const std::array<Ones, kLanes>&... ones) {
+    const auto four = function(pack(ones)...);
+    for (std::size_t k = 0; k < kLanes; ++k) expect_lane(four, k, function(ones[k]...));
+  }
+
+  template <class Test>
+  static void for_many_seeds(Test test) {
+    for (std::uint64_t seed = 1; seed <= validation::scaled_count(500) && !HasFailure(); ++seed) {
+      SCOPED_TRACE("seed " + std::to_string(seed));
+      Random random(validation::seed_of(seed));
+      test(random);
+    }
+  }
+};
+
+TEST_F(Lanes, ArithmeticIsThatOfOne) {
+  for_many_seeds([](Random& random) {
+    const auto t = four_of<double>(random, number);
+    const auto a = four_of<Bounded>(random, bounded_number), b = four_of<Bounded>(random, bounded_number);
+    const auto c = four_of<Bounded>(random, bounded_number), d = four_of<Bounded>(random, bounded_number);
+    expect_same_of([](const auto& x, const auto& y) { return x + y; }, a, b);
+    expect_same_of([](const auto& x, const auto& y) { return x - y; }, a, b);
+    expect_same_of([](const auto& x, const auto& y) { return x * y; }, a, b);
+    expect_same_of([](const auto& x, const auto& y) { return x * y; }, t, b);
+    expect_same_of([](const auto& x, const auto& y) { return x / y; }, a, b);
+    expect_same_of([](const auto& x) { return square_root(x); }, a);
+    expect_same_of([](const auto& x) { return absolute(x); }, a);
+    expect_same_of(
+        [](const auto& w, const auto& x, const auto& y, const auto& z) { return sum_of_products(w, x, y, z); }, a, b, c,
+        d);
+  });
+}
+
+TEST_F(Lanes, VectorsAreThoseOfOne) {
+  for_many_seeds([](Random& random) {
+    const auto t = four_of<double>(random, number);
+    const auto l = four_of<Bounded>(random, bounded_number), m = four_of<Bounded>(random, bounded_number);
+    const auto p = four_of<Vector>(random, bounded_vector), q = four_of<Vector>(random, bounded_vector);
+    expect_same_of([](const auto& x, const auto& y) { return dot(x, y); }, p, q);
+    expect_same_of([](const auto& x, const auto& y) { return cross(x, y); }, p, q);
+    expect_same_of([](const auto& x, const auto& y) { return difference(x, y); }, p, q);
+    expect_same_of([](const auto& x, const auto& y) { return cross_of_edge(x, y); }, p, q);
+    expect_same_of([](const auto& x, const auto& k, const auto& y) { return near_cancellation(x, k, y); }, p, t, q);
+    expect_same_of([](const auto& j, const auto& x, const auto& k, const auto& y) { return combination(j, x, k, y); },
+                   l, p, m, q);
+  });
+}
+
+TEST_F(Lanes, AnglesAreThoseOfOne) {
+  const auto angle = [](const auto& sine, const auto& cosine) { return atan2(sine, cosine, angle_constants()); };
+  for_many_seeds([&](Random& random) {
+    const auto s = four_of<Bounded>(random, bounded_number), c = four_of<Bounded>(random, bounded_number);
+    expect_same_of(angle, s, c);
+  });
+}
+
+// Both sides of every step of the table and of every octant: each lane at a step and an octant of its own.
+TEST_F(Lanes, AnglesOfEveryStepAreThoseOfOneAndEncloseTheTruth) {
+  const auto angle = [](const auto& sine, const auto& cosine) { return atan2(sine, cosine, angle_constants()); };
+  const auto point = [](int octant, double ratio) -> std::pair<Bounded, Bounded> {
+    const double x = octant & 1 ? -1.0 : 1.0, y = octant & 2 ? -ratio : ratio;
+    return octant & 4 ? std::pair<Bounded, Bounded>{{y}, {x}} : std::pair<Bounded, Bounded>{{x}, {y}};
+  };
+  for (int k = 0; k <= 2 * kAtanSteps; ++k) {
+    const double step = static_cast<double>(k) / (2 * kAtanSteps);  // between two steps for odd k
+    for (int octant = 0; octant < 8; ++octant) {
+      std::array<Bounded, kLanes> s, c;
+      for (int i = 0; i < 4; ++i) {
+        const double ratio = i == 0   ? step
+                             : i == 1 ? std::nextafter(step, -1)
+                             : i == 2 ? std::nextafter(step, 2)
+                                      : static_cast<double>((37 * k) % 509) / 509;
+        std::tie(s[static_cast<std::size_t>(i)], c[static_cast<std::size_t>(i)]) = point((octant + i) % 8, ratio);
+      }
+      expect_same_of(angle, s, c);
+      const FourBounded found = angle(pack(s), pack(c));
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        if (s[i].hi == 0.0) continue;  // an axis; declined if it is the negative one
+        const Enclosure truth = true_angle(exactly(s[i].hi, 0), exactly(c[i].hi, 0));
+        ASSERT_TRUE(holds({found.hi[i], found.lo[i], found.error[i]}, truth)) << k << ' ' << octant << ' ' << i;
+        ASSERT_LT(found.error[i], 0x1p-99 * std::abs(found.hi[i]) + 8 * kUnderflow) << k << ' ' << octant << ' ' << i;
+      }
+    }
+  }
+}
+
+// --- Company ---
+
+bool same(const Vector& p, const Vector& q) {
+  bool result = same(p.norm, q.norm) && same(p.error, q.error);
+  for (std::size_t i = 0; i < 3; ++i) result = result && same(p.c[i].hi, q.c[i].hi) && same(p.c[i].lo, q.c[i].lo);
+  return result;
+}
+bool same(const Bounded& x, const Bounded& y) { return same(x.hi, y.hi) && same(x.lo, y.lo) && same(x.error, y.error); }
+bool same(const QuickLine& f, const QuickLine& g) {
+  return same(f.a, g.a) && same(f.b, g.b) && same(f.cross, g.cross) && same(f.size, g.size) && same(f.weight, g.weight);
+}
+
+// Corners that are declined for every reason among others.
+std::vector<QuickCorner> mixed_corners(Random& random) {
+  const double nan = std::nan("");
+  std::vector<QuickCorner> corners{{{nan, nan, nan}, {}, 0}, {{kInfinity, 1, 0}, {}, 0},
+                                   {{0, 0, 0}, {}, 0},       {{5e-324, 5e-324, 0}, {}, 0},
+                                   {{0x1p300, 1, 1}, {}, 0}, {{1, 1, 1}, {}, kInfinity}};
+  for (int i = 0; i < 6; ++i) corners.push_back(quick_corner(random_vector(random, 1), random_vector(random, 1), 0));
+  return corners;
+}
+
+TEST(QuickContourInCompany, ALineIsWhatItIsAlone) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    Random random(validation::seed_of(seed));
+    const QuickContour contour(random_vector(random, 1));
+    const std::vector<QuickCorner> corners = mixed_corners(random);
+    const auto any = [&] { return static_cast<std::uint32_t>(random.below(corners.size())); };
+    for (std::size_t count = 0; count <= 9; ++count) {
+      std::vector<QuickEdge> edges;
+      for (std::size_t i = 0; i < count; ++i) edges.push_back({any(), any()});
+      std::vector<QuickLine> lines(1);  // appended to
+      contour.append_lines(corners, edges, lines);
+      ASSERT_EQ(lines.size(), count + 1);
+      for (std::size_t i = 0; i < count; ++i) {
+        std::vector<QuickLine> alone;
+        contour.append_lines(corners, std::span(edges).subspan(i, 1), alone);
+        EXPECT_TRUE(same(lines[i + 1], alone[0])) << seed << ' ' << i << " of " << count;
+      }
+    }
+  }
+}
+
+// A piece between others from a to a, which add nothing, at any place of any number of them.
+TEST(QuickContourInCompany, APieceIsWhatItIsAlone) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    Random random(validation::seed_of(seed));
+    const Both both = cut_triangle(random, 1);
+    for (const Part& part : both.pieces) {
+      Both alone = both;
+      alone.pieces = {part};
+      const QuickContour::Value expected = alone.quick();
+      for (std::size_t count = 1; count <= 6; ++count) {
+        for (std::size_t place = 0; place < count; ++place) {
+          Both among = both;
+          among.pieces.assign(count, {1, 2, kA, kA});
+          among.pieces[place] = part;
+          EXPECT_EQ(among.quick().hi, expected.hi) << seed;
+          EXPECT_EQ(among.quick().lo, expected.lo) << seed;
+          EXPECT_LT(among.quick().error, 2 * expected.error + 0x1p-98) << seed;
+        }
+      }
+    }
+  }
+}
+
+// A piece that is declined spoils its own sum, wherever it is; lanes that repeat a piece spoil none.
+TEST(QuickContourInCompany, EveryNumberOfPiecesIsSummedWhole) {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Random random(validation::seed_of(seed));
+    Both both = cut_triangle(random, 1);
+    const std::vector<Part> loop = both.pieces;
+    both.pieces.clear();
+    for (std::size_t count = 1; count <= 13; ++count) {
+      both.pieces.push_back(loop[count % loop.size()]);
+      const QuickContour::Value value = both.quick();
+      ASSERT_TRUE(answers(value));
+      EXPECT_LT(value.error, 0x1p-94);
+      EXPECT_TRUE(enclosure_of(value).contains(both.ball())) << seed << ' ' << count;
+      Both spoilt = both;
+      spoilt.pieces[random.below(count)] = {0, 0, kA, kB};
+      EXPECT_FALSE(answers(spoilt.quick())) << seed << ' ' << count;
+    }
+  }
+}
+
+TEST(QuickContourInCompany, NothingAddedIsNothing) {
+  EXPECT_TRUE(same(Both().quick().hi, -0.0) || same(Both().quick().hi, 0.0));
+  EXPECT_LT(Both().quick().error, 0x1p-900);
 }
 
 }  // namespace
