@@ -1,6 +1,5 @@
 // Once an edge:
-//   1. a x b, as the smaller of a and b times b - a, whose error then shrinks with the edge (b x (b - a) = a x b), its
-//      length, and n . (a x b) / |a x b|.
+//   1. d = b - a, a x b as a x d, whose error then shrinks with the edge, its length, and n . (a x b) / |a x b|.
 // Once a piece:
 //   2. p and q, corners or crossings, and w (contour.h);
 //   3. the angle atan2(w |a x b|, p . q), with the sign of w;
@@ -64,43 +63,35 @@ constexpr std::size_t kLanes = 4;
 template <class T>
 using FourOf = std::array<const T*, kLanes>;  // in memory, a lane each
 
-// The i-th, lane by lane; the last where there are no more.
-template <class T, class Find>
-EXACTFF_INLINE FourOf<T> four_of(std::size_t count, const Find& find) {
-  const std::size_t last = count - 1;
-  return {&find(0), &find(std::min<std::size_t>(1, last)), &find(std::min<std::size_t>(2, last)),
-          &find(std::min<std::size_t>(3, last))};
-}
-
-// What `part` gives of each.
-template <class T, class Part>
-EXACTFF_INLINE Four gather(const FourOf<T>& from, const Part& part) {
-  return Four{part(*from[0]), part(*from[1]), part(*from[2]), part(*from[3])};
+// Of up to four: the last again where there are no more.
+template <class T>
+EXACTFF_INLINE FourOf<T> four_of(std::span<const T> some) {
+  const std::size_t last = some.size() - 1;
+  return {&some[0], &some[std::min<std::size_t>(1, last)], &some[std::min<std::size_t>(2, last)],
+          &some[std::min<std::size_t>(3, last)]};
 }
 
 EXACTFF_INLINE FourBounded gather(const FourOf<QuickLine>& lines, Bounded QuickLine::*part) {
-  return {gather(lines, [=](const QuickLine& line) { return (line.*part).hi; }),
-          gather(lines, [=](const QuickLine& line) { return (line.*part).lo; }),
-          gather(lines, [=](const QuickLine& line) { return (line.*part).error; })};
+  const Bounded &x = lines[0]->*part, &y = lines[1]->*part, &z = lines[2]->*part, &t = lines[3]->*part;
+  return {Four{x.hi, y.hi, z.hi, t.hi}, Four{x.lo, y.lo, z.lo, t.lo}, Four{x.error, y.error, z.error, t.error}};
 }
 
 EXACTFF_INLINE FourVector gather(const FourOf<QuickLine>& lines, Vector QuickLine::*part) {
+  const Vector &p = lines[0]->*part, &q = lines[1]->*part, &r = lines[2]->*part, &s = lines[3]->*part;
   const auto component = [&](int i) -> BasicDoubleDouble<Four> {
-    return {gather(lines, [=](const QuickLine& line) { return (line.*part).c[i].hi; }),
-            gather(lines, [=](const QuickLine& line) { return (line.*part).c[i].lo; })};
+    return {Four{p.c[i].hi, q.c[i].hi, r.c[i].hi, s.c[i].hi}, Four{p.c[i].lo, q.c[i].lo, r.c[i].lo, s.c[i].lo}};
   };
   return {{component(0), component(1), component(2)},
-          gather(lines, [=](const QuickLine& line) { return (line.*part).norm; }),
-          gather(lines, [=](const QuickLine& line) { return (line.*part).error; })};
+          Four{p.norm, q.norm, r.norm, s.norm},
+          Four{p.error, q.error, r.error, s.error}};
 }
 
 EXACTFF_INLINE FourVector gather(const FourOf<QuickCorner>& corners) {
+  const QuickCorner &p = *corners[0], &q = *corners[1], &r = *corners[2], &s = *corners[3];
   const auto component = [&](int i) -> BasicDoubleDouble<Four> {
-    return {gather(corners, [=](const QuickCorner& corner) { return corner.hi[i]; }),
-            gather(corners, [=](const QuickCorner& corner) { return corner.lo[i]; })};
+    return {Four{p.hi[i], q.hi[i], r.hi[i], s.hi[i]}, Four{p.lo[i], q.lo[i], r.lo[i], s.lo[i]}};
   };
-  return vector({component(0), component(1), component(2)},
-                gather(corners, [](const QuickCorner& corner) { return corner.error; }));
+  return vector({component(0), component(1), component(2)}, Four{p.error, q.error, r.error, s.error});
 }
 
 EXACTFF_INLINE Bounded lane(const FourBounded& x, std::size_t k) { return {x.hi[k], x.lo[k], x.error[k]}; }
@@ -129,25 +120,40 @@ EXACTFF_INLINE FourMask has_moderate_size(const FourVector& v) {
 }
 
 struct FourLines {
+  FourMask reversed;
   FourVector a;
   FourVector b;
+  FourVector along;
   FourVector cross;
   FourBounded size;
   FourBounded weight;
 };
 
 EXACTFF_INLINE QuickLine lane(const FourLines& lines, std::size_t k) {
-  return {lane(lines.a, k), lane(lines.b, k), lane(lines.cross, k), lane(lines.size, k), lane(lines.weight, k)};
+  return {lines.reversed[k] != 0, lane(lines.a, k),    lane(lines.b, k),     lane(lines.along, k),
+          lane(lines.cross, k),   lane(lines.size, k), lane(lines.weight, k)};
 }
 
 // Step 1.
-EXACTFF_INLINE FourLines lines_between(const FourVector& normal, const FourVector& a, const FourVector& b) {
-  FourLines lines{a, b, cross_of_edge(a, b), {}, {}};
-  const FourMask usable = both(has_moderate_size(a), has_moderate_size(b));
+EXACTFF_INLINE FourLines lines_between(const FourVector& normal, const FourVector& p, const FourVector& q) {
+  FourLines lines;
+  lines.reversed = q.norm < p.norm;
+  lines.a = where(lines.reversed, q, p);
+  lines.b = where(lines.reversed, p, q);
+  lines.along = difference(lines.b, lines.a);
+  lines.cross = cross(lines.a, lines.along);
+  const FourMask usable = both(has_moderate_size(p), has_moderate_size(q));
   lines.cross.error = where(usable, lines.cross.error, uniform<Four>(kDeclined.error));
   lines.size = square_root(dot(lines.cross, lines.cross));
   lines.weight = dot(normal, lines.cross) / lines.size;
   return lines;
+}
+
+// The corner at one end of up to four edges each.
+EXACTFF_INLINE FourVector gather(std::span<const QuickCorner> corners, const FourOf<QuickEdge>& edges,
+                                 std::uint32_t QuickEdge::*end) {
+  return gather(FourOf<QuickCorner>{&corners[edges[0]->*end], &corners[edges[1]->*end], &corners[edges[2]->*end],
+                                    &corners[edges[3]->*end]});
 }
 
 // Into as many lines.
@@ -157,11 +163,9 @@ void make_lines(const std::array<double, 3>& normal, std::span<const QuickCorner
   const FourVector n = vector_of<Four>(normal);
   for (std::size_t i = 0; i < edges.size(); i += kLanes) {
     const std::size_t count = std::min(kLanes, edges.size() - i);
-    const auto end = [&](std::uint32_t QuickEdge::*which) {
-      return gather(four_of<QuickCorner>(
-          count, [&](std::size_t k) -> const QuickCorner& { return corners[edges[i + k].*which]; }));
-    };
-    const FourLines lines = lines_between(n, end(&QuickEdge::a), end(&QuickEdge::b));
+    const FourOf<QuickEdge> edge = four_of(edges.subspan(i, count));
+    const FourLines lines =
+        lines_between(n, gather(corners, edge, &QuickEdge::a), gather(corners, edge, &QuickEdge::b));
     for (std::size_t k = 0; k < count; ++k) result[i + k] = lane(lines, k);
   }
 }
@@ -172,15 +176,15 @@ void make_lines(const std::array<double, 3>& normal, std::span<const QuickCorner
 
 namespace {
 
-// Points l a + m b of an edge each, and (l : m).
+// Points s a + m d of an edge each, and (s : m).
 struct FourPoints {
-  FourBounded l;
+  FourBounded s;
   FourBounded m;
   FourVector direction;
 };
 
 EXACTFF_INLINE FourPoints where(const FourMask& condition, const FourPoints& p, const FourPoints& q) {
-  return {where(condition, p.l, q.l), where(condition, p.m, q.m), where(condition, p.direction, q.direction)};
+  return {where(condition, p.s, q.s), where(condition, p.m, q.m), where(condition, p.direction, q.direction)};
 }
 
 // normal . p, the normal being that of a plane through c: loses less as normal . (p - t c) where p and t c are near.
@@ -203,39 +207,48 @@ EXACTFF_INLINE Four inverse_power_of_two(const Four& x) {
   return Four((2046 - biased) << 52);
 }
 
-// What is common to the edges of four pieces.
-struct FourEdges {
-  FourVector a;
-  FourVector b;
-};
-
-// Where the line, through c with the given normal, crosses the edge from a to b; declined where that is not certain.
-EXACTFF_INLINE FourPoints cross_edges(const FourVector& normal, const FourVector& c, const FourEdges& edges) {
-  const FourBounded height_a = height(normal, c, edges.a), height_b = height(normal, c, edges.b);
+// Where the line, through c with the given normal, crosses the edge from a to a + d; declined where that is not
+// certain.
+EXACTFF_INLINE FourPoints cross_edges(const FourVector& normal, const FourVector& c, const FourVector& a,
+                                      const FourVector& d) {
+  const FourBounded height_a = height(normal, c, a), rise = dot(normal, d);
+  const FourBounded height_b = height_a + rise;
   const FourMask crosses =
       both(both(sign_is_certain(height_a), sign_is_certain(height_b)), differ(height_a.hi < 0.0, height_b.hi < 0.0));
-  const Four scale = inverse_power_of_two(larger(magnitude(height_a.hi), magnitude(height_b.hi)));
-  const FourBounded l = only_where(crosses, scaled(absolute(height_b), scale));
+  const Four scale = inverse_power_of_two(magnitude(rise.hi));
+  const FourBounded s = only_where(crosses, scaled(absolute(rise), scale));
   const FourBounded m = only_where(crosses, scaled(absolute(height_a), scale));
-  return {l, m, combination(l, edges.a, m, edges.b)};
+  return {s, m, combination(s, a, m, d)};
 }
 
-// Step 2, for one end of four pieces; `own` are their edges' lines.
-EXACTFF_INLINE FourPoints locate(const FourEdges& edges, const FourOf<QuickLine>& own, const FourOf<QuickPiece>& pieces,
+// The edges of four pieces.
+struct FourEdges {
+  FourOf<QuickLine> line;
+  FourVector a;
+  FourVector along;
+};
+
+// Step 2, for one end of four pieces.
+EXACTFF_INLINE FourPoints locate(const FourEdges& edges, const FourOf<QuickPiece>& pieces,
                                  std::uint32_t QuickPiece::*which, std::span<const QuickLine> lines) {
-  FourOf<QuickLine> crossing = own;
-  FourMask at_a{}, crossed{};
+  FourOf<QuickLine> crossing = edges.line;  // a line crosses itself nowhere
+  FourMask at_a{}, at_b{};
   for (std::size_t k = 0; k < kLanes; ++k) {
     const std::uint32_t end = pieces[k]->*which;
-    at_a[k] = end == QuickPiece::kAtA ? -1 : 0;
-    crossed[k] = end < QuickPiece::kAtA ? -1 : 0;
+    const std::uint32_t end_at_a = edges.line[k]->reversed ? QuickPiece::kAtB : QuickPiece::kAtA;
+    at_a[k] = end == end_at_a ? -1 : 0;
+    at_b[k] = end >= QuickPiece::kAtA && end != end_at_a ? -1 : 0;
     if (end < QuickPiece::kAtA) crossing[k] = &lines[end];
   }
-  const FourBounded zero{}, one{uniform<Four>(1.0), {}, {}};
-  const FourPoints corner{where(at_a, one, zero), where(at_a, zero, one), where(at_a, edges.a, edges.b)};
-  if (!in_some_lane(crossed)) return corner;
-  return where(crossed, cross_edges(gather(crossing, &QuickLine::cross), gather(crossing, &QuickLine::a), edges),
-               corner);
+  const FourMask at_corner = either(at_a, at_b);
+  FourPoints corner;
+  if (in_some_lane(at_corner)) {
+    const FourBounded zero{}, one{uniform<Four>(1.0), {}, {}};
+    corner = {one, where(at_b, one, zero), where(at_b, gather(edges.line, &QuickLine::b), edges.a)};
+    if (in_every_lane(at_corner)) return corner;
+  }
+  return where(at_corner, corner,
+               cross_edges(gather(crossing, &QuickLine::cross), gather(crossing, &QuickLine::a), edges.a, edges.along));
 }
 
 }  // namespace
@@ -247,13 +260,14 @@ namespace {
 // Steps 2 to 4 for up to four pieces; zero where there are fewer.
 EXACTFF_INLINE FourBounded terms(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines,
                                  const AngleConstants& known) {
-  const auto piece = four_of<QuickPiece>(pieces.size(), [&](std::size_t k) -> const QuickPiece& { return pieces[k]; });
-  const auto line =
-      four_of<QuickLine>(kLanes, [&](std::size_t k) -> const QuickLine& { return lines[piece[k]->edge]; });
-  const FourEdges edges{gather(line, &QuickLine::a), gather(line, &QuickLine::b)};
-  const FourPoints p = locate(edges, line, piece, &QuickPiece::begin, lines);
-  const FourPoints q = locate(edges, line, piece, &QuickPiece::end, lines);
-  const FourBounded w = sum_of_products(p.l, q.m, -p.m, q.l);
+  const FourOf<QuickPiece> piece = four_of(pieces);
+  const FourOf<QuickLine> line = {&lines[piece[0]->edge], &lines[piece[1]->edge], &lines[piece[2]->edge],
+                                  &lines[piece[3]->edge]};
+  const FourVector a = gather(line, &QuickLine::a), along = gather(line, &QuickLine::along);
+  const FourEdges edges{line, a, along};
+  const FourPoints p = locate(edges, piece, &QuickPiece::begin, lines);
+  const FourPoints q = locate(edges, piece, &QuickPiece::end, lines);
+  const FourBounded w = sum_of_products(p.s, q.m, -p.m, q.s);
   const FourBounded angle = atan2(w * gather(line, &QuickLine::size), dot(p.direction, q.direction), known);
   const FourMask present = FourMask{0, 1, 2, 3} < static_cast<std::int64_t>(pieces.size());
   return where(present, angle * gather(line, &QuickLine::weight), FourBounded{});

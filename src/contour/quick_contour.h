@@ -3,8 +3,10 @@
 // whatever that is, and in proportion to the edge that of a crossing; hence F is rounded correctly unless its terms
 // cancel by some 45 bits.
 //
-// Notation: as in contour.h, with a piece of the edge from a to b given by corners alone. Where the plane through x and
-// another edge, from c to d, meets the edge, the parameter is l : m = |det(c, d, b)| : |det(c, d, a)|.
+// Notation: as in contour.h, with a piece of the edge from a to b given by corners alone, of which a is the nearer to
+// x, and d = b - a. Where the plane through x and another edge, with the normal N, meets the edge, it has the direction
+//   s a + m d,  s : m = |N . d| : |N . a|,
+// which is l a + m b with l = s - m. Hence w = s_p m_q - m_p s_q of the piece from p to q.
 //
 // Corners whose largest component is outside [2^-200, 2^200] are declined, so that no operation overflows and whatever
 // underflows is covered by kUnderflow (double_double.h).
@@ -37,11 +39,13 @@ struct QuickEdge {
   std::uint32_t b = 0;
 };
 
-// An edge from a to b, with what all pieces of it and all that its line crosses have in common. Where it is declined,
-// the error of the last three is infinite.
+// An edge with what all pieces of it and all that its line crosses have in common. Where it is declined, the error of
+// the last three is infinite.
 struct QuickLine {
+  bool reversed = false;  // a and b are exchanged, so that a is the nearer
   Vector a;
   Vector b;
+  Vector along;                           // b - a
   Vector cross;                           // a x b
   kernel::double_double::Bounded size;    // |a x b|
   kernel::double_double::Bounded weight;  // n . (a x b) / |a x b|

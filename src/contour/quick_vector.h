@@ -92,12 +92,6 @@ EXACTFF_INLINE BasicBounded<Real> dot(const BasicVector<Real>& p, const BasicVec
   return bounded(two_sum(t.hi, rest), inherited(p, q) + 0x1p-101 * size + kUnderflow);
 }
 
-// p x q, equal to p x (q - p) and q x (q - p).
-template <class Real>
-EXACTFF_INLINE BasicVector<Real> cross_of_edge(const BasicVector<Real>& p, const BasicVector<Real>& q) {
-  return cross(where(p.norm <= q.norm, p, q), difference(q, p));
-}
-
 // p - t q for an exact double t, where p and t q nearly cancel. With m = |p.hi| + |t q.hi| of a component, the parts
 // that are summed as doubles are together at most 4 u^2 m, so that summing them errs by 7 u^3 m; 8 u^3 m = 2^-156 m is
 // taken. The last sum errs by 4 u^2 of the result.

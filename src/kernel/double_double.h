@@ -38,6 +38,7 @@ using reals::either;
 using reals::Four;
 using reals::FourMask;
 using reals::fused;
+using reals::in_every_lane;
 using reals::in_some_lane;
 using reals::larger;
 using reals::magnitude;

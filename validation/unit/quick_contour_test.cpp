@@ -1046,7 +1046,6 @@ TEST_F(Lanes, VectorsAreThoseOfOne) {
     expect_same_of([](const auto& x, const auto& y) { return dot(x, y); }, p, q);
     expect_same_of([](const auto& x, const auto& y) { return cross(x, y); }, p, q);
     expect_same_of([](const auto& x, const auto& y) { return difference(x, y); }, p, q);
-    expect_same_of([](const auto& x, const auto& y) { return cross_of_edge(x, y); }, p, q);
     expect_same_of([](const auto& x, const auto& k, const auto& y) { return near_cancellation(x, k, y); }, p, t, q);
     expect_same_of([](const auto& j, const auto& x, const auto& k, const auto& y) { return combination(j, x, k, y); },
                    l, p, m, q);
@@ -1100,7 +1099,8 @@ bool same(const Vector& p, const Vector& q) {
 }
 bool same(const Bounded& x, const Bounded& y) { return same(x.hi, y.hi) && same(x.lo, y.lo) && same(x.error, y.error); }
 bool same(const QuickLine& f, const QuickLine& g) {
-  return same(f.a, g.a) && same(f.b, g.b) && same(f.cross, g.cross) && same(f.size, g.size) && same(f.weight, g.weight);
+  return f.reversed == g.reversed && same(f.a, g.a) && same(f.b, g.b) && same(f.along, g.along) &&
+         same(f.cross, g.cross) && same(f.size, g.size) && same(f.weight, g.weight);
 }
 
 // Corners that are declined for every reason among others.
