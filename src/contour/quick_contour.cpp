@@ -156,10 +156,9 @@ EXACTFF_INLINE FourVector gather(std::span<const QuickCorner> corners, const Fou
                                     &corners[edges[3]->*end]});
 }
 
-// Into as many lines.
 EXACTFF_FMA_CLONES
-void make_lines(const std::array<double, 3>& normal, std::span<const QuickCorner> corners,
-                std::span<const QuickEdge> edges, QuickLine* result) {
+void lines_of(const std::array<double, 3>& normal, std::span<const QuickCorner> corners,
+              std::span<const QuickEdge> edges, std::span<QuickLine> result) {
   const FourVector n = vector_of<Four>(normal);
   for (std::size_t i = 0; i < edges.size(); i += kLanes) {
     const std::size_t count = std::min(kLanes, edges.size() - i);
@@ -296,11 +295,9 @@ std::array<double, 3> scaled_normal(const Vec3& n) {
 
 QuickContour::QuickContour(const Vec3& normal) : normal_(scaled_normal(normal)) {}
 
-void QuickContour::append_lines(std::span<const QuickCorner> corners, std::span<const QuickEdge> edges,
-                                std::vector<QuickLine>& lines) const {
-  const std::size_t before = lines.size();
-  lines.resize(before + edges.size());
-  make_lines(normal_, corners, edges, lines.data() + before);
+void QuickContour::make_lines(std::span<const QuickCorner> corners, std::span<const QuickEdge> edges,
+                              std::span<QuickLine> lines) const {
+  lines_of(normal_, corners, edges, lines);
 }
 
 void QuickContour::add(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines) {

@@ -16,7 +16,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "contour/quick_vector.h"
 #include "exactff/geometry.h"
@@ -64,9 +63,9 @@ class QuickContour {
   // n: the receiver's normal, finite and not zero, of any length.
   explicit QuickContour(const Vec3& normal);
 
-  // Appends the lines of the edges.
-  void append_lines(std::span<const QuickCorner> corners, std::span<const QuickEdge> edges,
-                    std::vector<QuickLine>& lines) const;
+  // The lines of as many edges.
+  void make_lines(std::span<const QuickCorner> corners, std::span<const QuickEdge> edges,
+                  std::span<QuickLine> lines) const;
 
   // The pieces may run against the sense from a to b. The lines are of this contour.
   void add(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines);

@@ -74,12 +74,14 @@ class Lines {
   }
   // With all those found made.
   [[nodiscard]] std::span<const QuickLine> lines(const QuickContour& contour) {
-    contour.append_lines(corners_, std::span(edges_).subspan(lines_.size()), lines_);
+    if (lines_.size() < edges_.size()) lines_.resize(edges_.size());
+    contour.make_lines(corners_, std::span(edges_).subspan(made_), std::span(lines_).subspan(made_));
+    made_ = edges_.size();
     return lines_;
   }
   // Parts that are near one another share lines; all lines together would not fit the cache.
   void forget_if_many() {
-    if (lines_.size() >= kMostLines) forget();
+    if (edges_.size() >= kMostLines) forget();
   }
 
  private:
@@ -87,7 +89,7 @@ class Lines {
 
   void forget() {
     edges_.clear();
-    lines_.clear();
+    made_ = 0;
     line_numbers_.forget();
   }
   std::uint32_t corner(Outlines& outlines, CornerId id) {
@@ -99,7 +101,8 @@ class Lines {
   Numbers corner_numbers_, line_numbers_;
   std::vector<QuickCorner> corners_;
   std::vector<QuickEdge> edges_;
-  std::vector<QuickLine> lines_;  // of the edges
+  std::vector<QuickLine> lines_;  // of the first `made_` edges; what follows is only memory
+  std::size_t made_ = 0;
 };
 
 }  // namespace
