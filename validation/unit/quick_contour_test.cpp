@@ -74,8 +74,8 @@ struct Both {
     for (std::uint32_t i = 0; i < count; ++i) pieces.push_back({i, (i + 1) % count, kA, kB});
   }
 
-  // Every line is made anew for every piece.
-  [[nodiscard]] QuickContour::Value quick() const {
+  // Every line is made anew for every piece. At most `batch` pieces are added at a time.
+  [[nodiscard]] QuickContour::Value quick(std::size_t batch = 1000) const {
     QuickContour contour(normal);
     std::vector<QuickEdge> edges;
     std::vector<QuickPiece> quick_pieces;
@@ -92,7 +92,9 @@ struct Both {
     }
     std::vector<QuickLine> lines(edges.size());
     contour.make_lines(corners, edges, lines);
-    contour.add(quick_pieces, lines);
+    for (std::size_t i = 0; i < quick_pieces.size(); i += batch) {
+      contour.add(std::span(quick_pieces).subspan(i, std::min(batch, quick_pieces.size() - i)), lines);
+    }
     return contour.value();
   }
 
@@ -1154,6 +1156,25 @@ TEST(QuickContourInCompany, APieceIsWhatItIsAlone) {
         }
       }
     }
+  }
+}
+
+// Of two sizes, so that one may have what the other needs no steps for; the sum of two is the same in any lanes.
+TEST(QuickContourInCompany, TwoPiecesAreWhatTheyAreApart) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    Random random(validation::seed_of(seed));
+    Both both = cut_triangle(random, std::exp2(random.between(-8, 0)));
+    const Both other = cut_triangle(random, std::exp2(random.between(-2, 1)));
+    const auto first = static_cast<std::uint32_t>(both.corners.size());
+    both.corners.insert(both.corners.end(), other.corners.begin(), other.corners.end());
+    Part second = other.pieces[random.below(3)];
+    for (std::uint32_t* corner :
+         {&second.a, &second.b, &second.begin.c, &second.begin.d, &second.end.c, &second.end.d}) {
+      *corner += first;
+    }
+    both.pieces = {both.pieces[random.below(3)], second};
+    EXPECT_EQ(both.quick().hi, both.quick(1).hi) << seed;
+    EXPECT_EQ(both.quick().lo, both.quick(1).lo) << seed;
   }
 }
 
