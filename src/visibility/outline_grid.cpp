@@ -19,7 +19,7 @@ namespace {
 constexpr double kSlack = 0x1p-32;
 constexpr double kLeastAhead = 0x1p-8;
 constexpr std::size_t kFewestForAGrid = 8;
-constexpr double kCellsPerOutline = 1.0;
+constexpr double kCellsPerOutline = 0.6;
 constexpr std::uint64_t kEdgesPerOutline = 4;
 constexpr std::size_t kOutlinesToAlign = 256;
 constexpr std::size_t kFewShare = 4;  // fewer than one edge in so many are few
@@ -178,7 +178,7 @@ void OutlineGrid::choose_cells(std::size_t source_count) {
     ++count;
   }
   // Cells shaped like the mean outline, but no smaller than what the images' slack spreads over anyway.
-  const double cells = kCellsPerOutline * static_cast<double>(std::max<std::size_t>(count, 1));
+  const double cells = std::max(1.0, kCellsPerOutline * static_cast<double>(count));
   const double mean_width = std::max(width / static_cast<double>(std::max<std::size_t>(count, 1)), kSlack);
   const double mean_height = std::max(height / static_cast<double>(std::max<std::size_t>(count, 1)), kSlack);
   const double wide = whole_width / mean_width, high = whole_height / mean_height;  // in mean outlines

@@ -116,7 +116,7 @@ void VisibleEdges::trace_outline(OutlineId id, std::size_t source_count) {
   }
 }
 
-void VisibleEdges::trace(Run& run, std::size_t source_count) {
+EXACTFF_CLONES void VisibleEdges::trace(Run& run, std::size_t source_count) {
   find_allowed(run, source_count);
   if (run.wanted == 0) return;
   near_ = grid_.find_near(outlines_, run.first, run.wanted);
@@ -125,7 +125,7 @@ void VisibleEdges::trace(Run& run, std::size_t source_count) {
   for (unsigned k = 0; k < run.edges; ++k) {
     if ((run.wanted >> k & 1U) == 0) continue;
     const EdgeId id = run.first + k;
-    sort(id, removed_[k]);
+    if (removed_[k].size() > 1) sort(id, removed_[k]);
     keep_rest(id, !run.of_source, interval(run.left, k), removed_[k]);
   }
 }
@@ -206,7 +206,7 @@ void VisibleEdges::set(Parameters& parameters, unsigned k, const Parameter& para
 }
 
 // The whole of a source's edge, or of one inside it; else what has the source on both sides.
-EXACTFF_CLONES void VisibleEdges::find_allowed(Run& run, std::size_t source_count) {
+[[gnu::always_inline]] inline void VisibleEdges::find_allowed(Run& run, std::size_t source_count) {
   using namespace kernel::lanes;
   for (unsigned k = 0; k < run.edges; ++k) removed_[k].clear();
   run.left = {{four(0.0), four(0.0), four_whole(Parameter::kAtBegin)},
@@ -278,7 +278,7 @@ EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, st
   }
 }
 
-EXACTFF_CLONES void VisibleEdges::find_removed(Run& run, std::size_t source_count) {
+[[gnu::always_inline]] inline void VisibleEdges::find_removed(Run& run, std::size_t source_count) {
   Cuts cuts;
   for (OutlineId s = 0; run.of_source && s < source_count && run.wanted != 0; ++s) {
     if (s == run.outline) continue;
@@ -444,13 +444,13 @@ void VisibleEdges::merge(EdgeId edge, std::vector<Interval>& intervals) {
 
 // What the removed intervals, in order of their beginnings, leave of an allowed one.
 void VisibleEdges::keep_rest(EdgeId id, bool reversed, const Interval& allowed, std::span<const Interval> removed) {
-  Parameter reached = allowed.begin;
+  const Parameter* reached = &allowed.begin;
   for (const Interval& r : removed) {
     if (compare(id, r.begin, allowed.end) >= 0) break;
-    if (compare(id, r.begin, reached) > 0) keep(id, reversed, reached, r.begin);
-    if (compare(id, r.end, reached) > 0) reached = r.end;
+    if (compare(id, r.begin, *reached) > 0) keep(id, reversed, *reached, r.begin);
+    if (compare(id, r.end, *reached) > 0) reached = &r.end;
   }
-  if (compare(id, reached, allowed.end) < 0) keep(id, reversed, reached, allowed.end);
+  if (compare(id, *reached, allowed.end) < 0) keep(id, reversed, *reached, allowed.end);
 }
 
 void VisibleEdges::keep(EdgeId id, bool reversed, const Parameter& begin, const Parameter& end) {
