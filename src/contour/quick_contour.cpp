@@ -200,7 +200,7 @@ EXACTFF_INLINE FourBounded scaled(const FourBounded& x, const Four& scale) {
   return {x.hi * scale, x.lo * scale, x.error * scale + kUnderflow};
 }
 
-// The power of two that brings x into [1, 2). Requires that x and its inverse are normal.
+// The power of two that brings x into [1, 2), where x and its inverse are normal; else any number may come of it.
 EXACTFF_INLINE Four inverse_power_of_two(const Four& x) {
   const FourMask biased = (FourMask(x) >> 52) & 0x7FF;
   return Four((2046 - biased) << 52);
@@ -275,7 +275,7 @@ EXACTFF_INLINE FourBounded terms(std::span<const QuickPiece> pieces, std::span<c
 EXACTFF_FMA_CLONES
 void add_terms(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines, const AngleConstants& known,
                std::array<Bounded, kLanes>& sums) {
-  const auto part = [&](double Bounded::*which) {
+  const auto part = [&](double Bounded::*which) __attribute__((always_inline)) {
     return Four{sums[0].*which, sums[1].*which, sums[2].*which, sums[3].*which};
   };
   FourBounded sum{part(&Bounded::hi), part(&Bounded::lo), part(&Bounded::error)};

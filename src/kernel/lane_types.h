@@ -7,6 +7,10 @@
 #include <emmintrin.h>
 #endif
 
+// A vector of four doubles is returned in another way with AVX than without: a function that is compiled for both must
+// call none that returns one, and so whatever works on such vectors is inlined, however little is optimised.
+#define EXACTFF_INLINE [[gnu::always_inline]] inline
+
 namespace exactff::kernel::lanes {
 
 using Four = double __attribute__((vector_size(32)));
@@ -16,7 +20,7 @@ using FourShorts = std::int16_t __attribute__((vector_size(8)));
 using EightShorts = std::int16_t __attribute__((vector_size(16)));
 
 // Lane by lane.
-inline bool nowhere_larger(const EightShorts& a, const EightShorts& b) {
+EXACTFF_INLINE bool nowhere_larger(const EightShorts& a, const EightShorts& b) {
 #if defined(__SSE2__)
   return _mm_movemask_epi8(__m128i(a > b)) == 0;
 #else

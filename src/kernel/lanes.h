@@ -10,10 +10,6 @@
 
 #include "kernel/lane_types.h"
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
-
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
 #define EXACTFF_CLONES __attribute__((target_clones("avx2", "default")))
 #else
@@ -22,43 +18,40 @@
 
 namespace exactff::kernel::lanes {
 
-inline Four load(const double* p) {
+EXACTFF_INLINE Four load(const double* p) {
   Four v;
   std::memcpy(&v, p, sizeof v);
   return v;
 }
 
-inline void store(const Four& v, double* p) { std::memcpy(p, &v, sizeof v); }
+EXACTFF_INLINE void store(const Four& v, double* p) { std::memcpy(p, &v, sizeof v); }
 
-inline Four four(double a) { return Four{a, a, a, a}; }
+EXACTFF_INLINE Four four(double a) { return Four{a, a, a, a}; }
 
-inline FourMask four_whole(std::int64_t a) { return FourMask{a, a, a, a}; }
-inline void store(const FourMask& v, std::int64_t* p) { std::memcpy(p, &v, sizeof v); }
-
-inline Four next_lane(const Four& v) { return Four{v[1], v[2], v[3], v[0]}; }
-inline FourMask next_lane(const FourMask& v) { return FourMask{v[1], v[2], v[3], v[0]}; }
-inline Four absolute(const Four& v) { return Four(FourMask(v) & 0x7FFFFFFFFFFFFFFF); }
-inline Four larger(const Four& a, const Four& b) { return a < b ? b : a; }
-inline Four smaller(const Four& a, const Four& b) { return b < a ? b : a; }
+EXACTFF_INLINE FourMask four_whole(std::int64_t a) { return FourMask{a, a, a, a}; }
+EXACTFF_INLINE Four next_lane(const Four& v) { return Four{v[1], v[2], v[3], v[0]}; }
+EXACTFF_INLINE Four absolute(const Four& v) { return Four(FourMask(v) & 0x7FFFFFFFFFFFFFFF); }
+EXACTFF_INLINE Four larger(const Four& a, const Four& b) { return a < b ? b : a; }
+EXACTFF_INLINE Four smaller(const Four& a, const Four& b) { return b < a ? b : a; }
 
 // Lane by lane: `a` where the mask is negative, else `b`.
-inline Four pick(const FourMask& mask, const Four& a, const Four& b) { return mask < 0 ? a : b; }
-inline FourMask pick(const FourMask& mask, const FourMask& a, const FourMask& b) { return mask < 0 ? a : b; }
+EXACTFF_INLINE Four pick(const FourMask& mask, const Four& a, const Four& b) { return mask < 0 ? a : b; }
+EXACTFF_INLINE FourMask pick(const FourMask& mask, const FourMask& a, const FourMask& b) { return mask < 0 ? a : b; }
 
-inline double lowest(const Four& v) { return std::min(std::min(v[0], v[1]), std::min(v[2], v[3])); }
-inline double highest(const Four& v) { return std::max(std::max(v[0], v[1]), std::max(v[2], v[3])); }
-inline double lane_sum(const Four& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
+EXACTFF_INLINE double lowest(const Four& v) { return std::min(std::min(v[0], v[1]), std::min(v[2], v[3])); }
+EXACTFF_INLINE double highest(const Four& v) { return std::max(std::max(v[0], v[1]), std::max(v[2], v[3])); }
+EXACTFF_INLINE double lane_sum(const Four& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 #if defined(__SSE2__)
-inline unsigned lane_bits(const FourMask& m) {
+EXACTFF_INLINE unsigned lane_bits(const FourMask& m) {
   const __m128i low{m[0], m[1]}, high{m[2], m[3]};
   const __m128 halves = _mm_shuffle_ps(_mm_castsi128_ps(low), _mm_castsi128_ps(high), _MM_SHUFFLE(3, 1, 3, 1));
   return static_cast<unsigned>(_mm_movemask_ps(halves));
 }
 #else
-inline unsigned lane_bits(const FourMask& m) {
+EXACTFF_INLINE unsigned lane_bits(const FourMask& m) {
   return static_cast<unsigned>((m[0] & 1) | (m[1] & 2) | (m[2] & 4) | (m[3] & 8));
 }
 #endif
-inline bool all_lanes(const FourMask& m) { return lane_bits(m) == 15; }
+EXACTFF_INLINE bool all_lanes(const FourMask& m) { return lane_bits(m) == 15; }
 
 }  // namespace exactff::kernel::lanes

@@ -20,7 +20,6 @@
 #else
 #define EXACTFF_FMA_CLONES
 #endif
-#define EXACTFF_INLINE [[gnu::always_inline]] inline
 
 namespace exactff::kernel::reals {
 
@@ -37,7 +36,7 @@ EXACTFF_INLINE Real uniform(double a) {
 EXACTFF_INLINE double fused(double a, double b, double c) { return std::fma(a, b, c); }
 EXACTFF_INLINE Four fused(const Four& a, const Four& b, const Four& c) {
   Four x = a, y = b, z = c;
-#pragma GCC unroll 1
+#pragma GCC unroll 1  // one instruction is made of a loop, of four calls in a row not always
   for (int i = 0; i < 4; ++i) z[i] = std::fma(x[i], y[i], z[i]);
   return z;
 }

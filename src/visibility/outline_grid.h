@@ -125,11 +125,13 @@ class OutlineGrid {
   kernel::Approx3 e_, f_, w_;
   OutlineId first_ = 0;  // of the occluders
   Axis u_, v_;
-  bool single_ = true;             // too few outlines for a grid, or no projection: everything is near everything
-  bool too_fine_ = false;          // smaller cells were wanted than the images are good for: many may crowd into one
-  std::vector<Image> images_;      // by corner
-  std::vector<Bounds> bounds_;     // by outline
-  std::vector<Octagon> octagons_;  // by outline; of those that nobody meets, whatever was there
+  bool single_ = true;          // too few outlines for a grid, or no projection: everything is near everything
+  bool too_fine_ = false;       // smaller cells were wanted than the images are good for: many may crowd into one
+  std::vector<Image> images_;   // by corner
+  std::vector<Bounds> bounds_;  // by outline
+  // By outline. Of those without cells, whatever was there: they have no part inside the source, so that neither who
+  // finds them nor whom they find matters.
+  std::vector<Octagon> octagons_;
   bool all_needed_ = true;
   std::vector<std::uint32_t> needed_;         // cells that edges run through, before this one: sums over both axes
   std::vector<std::uint32_t> outline_begin_;  // into cells_, by outline, one more at the end

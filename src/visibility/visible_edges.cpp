@@ -10,8 +10,6 @@
 
 namespace exactff::visibility {
 
-using kernel::Integer;
-using kernel::sign;
 using Edge = Outlines::Edge;
 using Outline = Outlines::Outline;
 
@@ -144,8 +142,9 @@ EXACTFF_CLONES void VisibleEdges::trace(Run& run, std::size_t source_count) {
 // Its error. Let D be |l| + |m| and e the larger error of the two heights, all as computed, and u = 2^-53. The quotient
 // of the true heights differs by at most e / (D - 2e) <= 2e / D where D >= 4e. Difference, inverse and product err by u
 // each, relatively, so that the quotient, at most 1, is off by 4u more at most; 4e / D is computed to within 4u of
-// itself. 4e / D + 2^-50 covers it all, and where D < 4e it is more than 1, more than any two parameters are apart: it
-// then decides nothing; nor does NaN.
+// itself. 4e / D + 2^-50 covers it all, with 4u and half of 4e / D to spare for the rounding of differences of
+// parameters and of sums of errors: what is compared may be as computed. Where D < 4e the error is more than 1, more
+// than any two parameters are apart: it then decides nothing; nor does NaN.
 //
 // Every comparison that does not hold for all numbers within the errors makes the edge unsure, whatever is made of it
 // afterwards, except that one line with both ends certainly below it is enough for the outline to cover nothing. Which
@@ -270,7 +269,8 @@ EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, st
 [[gnu::always_inline]] inline void VisibleEdges::remove(Run& run, OutlineId by, const Cuts& cuts, bool same_kind) {
   const bool left_matters = run.of_source && !same_kind;
   Cover found;
-  for (unsigned bits = (take_off_by_filter(run, cuts) | cuts.unsure) & run.wanted; bits != 0; bits &= bits - 1) {
+  const unsigned unclear = take_off_by_filter(run, cuts) | cuts.unsure;
+  for (unsigned bits = unclear & run.wanted; bits != 0; bits &= bits - 1) {
     const auto k = static_cast<unsigned>(std::countr_zero(bits));
     if (!cover(run, k, by, cuts, found)) continue;
     const bool double_of_earlier = same_kind && found.coincides && found.left && by < run.outline;
@@ -295,8 +295,11 @@ EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, st
   }
 }
 
-// For all edges that are covered, as take_off does for one. Returns those for which the filter does not tell how. Equal
-// ends, such as the edge's own, differ by nothing and have no error.
+// For all edges that are covered, as take_off does for one. Returns those for which the filter does not tell how, such
+// as where crossings coincide; the edge's own ends differ by nothing and have no error.
+//
+// Begins and ends: by how much what is taken off starts and stops after what is left. At begin and at end: how far it
+// reaches over either end of what is left.
 [[gnu::always_inline]] inline unsigned VisibleEdges::take_off_by_filter(Run& run, const Cuts& cuts) {
   using namespace kernel::lanes;
   const auto& [begin, end] = run.left;

@@ -14,9 +14,9 @@
 // Steps:
 //   1. silhouettes: an edge that two occluders share, one on either side, cannot bound V; nor can its doubles;
 //   2. a grid over the source (outline_grid.h) tells which outlines an edge may meet;
-//   3. edges are taken up in runs of up to four corners, outline by outline, neighbours after one another where there are
-//      many. The heights of a run's corners above the lines of an outline give, for each of its edges, the interval that
-//      the outline covers; by the filter for all edges of the run at once, exactly for those that it is not sure of;
+//   3. edges are taken up in runs of up to four corners, outline by outline, neighbours after one another where there
+//      are many. The heights of a run's corners above the lines of an outline give, for each of its edges, the interval
+//      that the outline covers: by the filter for all edges of the run at once, exactly where it is not sure;
 //   4. for each edge one sweep over its intervals gives what is left of it.
 #pragma once
 
