@@ -21,6 +21,7 @@
 #include "cli/command.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
+#include "cli/refuse.h"
 #include "cli/text_table.h"
 #include "scene/csv_lines.h"
 #include "scene/number_text.h"
@@ -34,7 +35,7 @@ namespace {
 
 using check::short_number;
 
-constexpr const char* kFooter =
+constexpr const char* kCheckFooter =
     "Every row of the truth has to have a value, and every value a row. A value that is not a finite number is a "
     "failure\n"
     "of the candidate. Without a limit the errors are told and only that is judged. A limit is kept by an error equal "
@@ -69,10 +70,6 @@ struct CheckArguments {
   std::string plot, junit, json;
   bool github = false;
 };
-
-[[noreturn]] void refuse(std::string what, std::string why, std::string suggestion) {
-  throw InputError({.what = std::move(what), .why = std::move(why), .suggestion = std::move(suggestion)});
-}
 
 double to_limit(const std::string& text, const std::string& flag) {
   const ParsedNumber number = parse_number(text);
@@ -451,7 +448,7 @@ Command add_check(CLI::App& app) {
   add_matching(*command, *args);
   add_criteria(*command, *args);
   add_outputs(*command, *args);
-  command->footer(kFooter);
+  command->footer(kCheckFooter);
   return {command, [args] { return run(*args); }};
 }
 

@@ -14,6 +14,7 @@
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/receiver_options.h"
+#include "cli/refuse.h"
 #include "cli/scene_options.h"
 #include "cli/source_options.h"
 #include "cli/study_file.h"
@@ -31,7 +32,7 @@ namespace {
 
 constexpr int kMostRays = 1 << 20;
 
-constexpr const char* kFooter =
+constexpr const char* kCompareFooter =
     "The ray-sampled adaptive algorithm: every combination of the lists is run if there are at most 40; else every\n"
     "--eps-b with every --rays, and each other list on its own around the base (the middle --eps-b and --rays, the\n"
     "first of every other list).\n"
@@ -80,10 +81,6 @@ struct CompareArguments {
                    : study::Journal::Existing::kRefuse;
   }
 };
-
-[[noreturn]] void refuse(std::string what, std::string why, std::string suggestion) {
-  throw InputError(Problem{{}, 0, std::move(what), std::move(why), std::move(suggestion)});
-}
 
 double to_tolerance(const std::string& text, const std::string& flag) {
   const ParsedNumber number = parse_number(text);
@@ -548,7 +545,7 @@ Command add_compare(CLI::App& app) {
       ->type_name("DIR");
   CLI::Option* resume = command->add_flag("--resume", args->resume, "Go on with an interrupted run, if there is one");
   command->add_flag("--force", args->force, "Begin anew, whatever an interrupted run has left")->excludes(resume);
-  command->footer(kFooter);
+  command->footer(kCompareFooter);
   return {command, [args] { return run(*args); }};
 }
 

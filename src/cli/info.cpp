@@ -22,15 +22,15 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string short_number(double value) {
+std::string six_digits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value == 0.0 ? 0.0 : value);
   return text;
 }
 
 std::string short_colour(const Rgb& c) {
-  if (c.r == c.g && c.g == c.b) return short_number(c.r);
-  return short_number(c.r) + " " + short_number(c.g) + " " + short_number(c.b);
+  if (c.r == c.g && c.g == c.b) return six_digits(c.r);
+  return six_digits(c.r) + " " + six_digits(c.g) + " " + six_digits(c.b);
 }
 
 std::string counted(std::size_t count, const std::string& one, const std::string& many) {
@@ -116,7 +116,7 @@ double total_area(const std::vector<PatchSummary>& rows) {
 std::string front_text(const PatchSummary& row) {
   if (row.area == 0.0) return "-";
   if (!row.front) return "mixed";
-  const auto rounded = [](double c) { return short_number(std::round(c * 1e4) / 1e4); };
+  const auto rounded = [](double c) { return six_digits(std::round(c * 1e4) / 1e4); };
   return "(" + rounded(row.front->x) + ", " + rounded(row.front->y) + ", " + rounded(row.front->z) + ")";
 }
 
@@ -143,7 +143,7 @@ void print_patches(const Scene& scene, const std::vector<PatchSummary>& rows) {
   table.add_column("area", Align::kRight);
   for (const char* title : {"front", "material", "Kd", "Ke", "emits"}) table.add_column(title);
   for (const PatchSummary& row : rows) {
-    table.add_row({row.name, std::to_string(row.face_count), short_number(row.area), front_text(row),
+    table.add_row({row.name, std::to_string(row.face_count), six_digits(row.area), front_text(row),
                    material_text(scene, row), colour_text(scene, row, &Material::reflectance),
                    colour_text(scene, row, &Material::radiosity), row.emits ? "yes" : "no"});
   }
@@ -154,7 +154,7 @@ void print_totals(const Scene& scene, const std::vector<PatchSummary>& rows) {
   std::cout << counted(scene.patches().size(), "patch", "patches") << ", "
             << counted(scene.faces().size(), "face", "faces") << " in "
             << counted(scene.pieces().size(), "convex piece", "convex pieces") << ", "
-            << counted(scene.vertices().size(), "vertex", "vertices") << ", area " << short_number(total_area(rows))
+            << counted(scene.vertices().size(), "vertex", "vertices") << ", area " << six_digits(total_area(rows))
             << '\n';
 }
 
@@ -187,7 +187,7 @@ std::vector<std::string> numbered_names(const Scene& scene, FaceShape shape) {
 void print_faces(const Scene& scene) {
   std::vector<std::string> other;
   for (const FaceId face : faces_of_shape(scene, FaceShape::kTriangulated)) {
-    other.push_back(numbered_name(scene, face) + " (off by " + short_number(scene.face(face).out_of_plane) + ", " +
+    other.push_back(numbered_name(scene, face) + " (off by " + six_digits(scene.face(face).out_of_plane) + ", " +
                     counted(scene.face(face).piece_count, "triangle", "triangles") + ")");
   }
   print_list("not exactly planar, cut into triangles (largest distance over diameter)", other);

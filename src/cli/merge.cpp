@@ -13,7 +13,7 @@
 namespace exactff::cli {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kMergeFooter =
     "The shards are those that `exactff truth --shard 1/N` to `--shard N/N` wrote with the same flags, in any order. "
     "None\n"
     "may be missing, doubled, damaged, unfinished or of another request. FILE gets the bytes of one run without "
@@ -55,7 +55,7 @@ Command add_merge(CLI::App& app) {
   command->add_option("SHARD", args->shards, "Files that exactff truth --shard wrote")->required()->type_name("FILE");
   command->add_flag("--force", args->force, "Replace what is there");
   command->add_option("-o,--output", args->file, "CSV file to write")->required()->type_name("FILE");
-  command->footer(kFooter);
+  command->footer(kMergeFooter);
   return {command, [args] { return run(*args); }};
 }
 

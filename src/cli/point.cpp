@@ -288,8 +288,8 @@ void print_table(const PointArguments& args, const Scene& scene, const PointResu
             << shortest(point.radiosity.b) << "  (reflectance x Ke of the source x form factor, per channel)\n";
 }
 
-nlohmann::ordered_json to_json(const Vec3& v) { return nlohmann::ordered_json::array({v.x, v.y, v.z}); }
-nlohmann::ordered_json to_json(const Rgb& c) { return nlohmann::ordered_json::array({c.r, c.g, c.b}); }
+nlohmann::ordered_json numbers_json(const Vec3& v) { return nlohmann::ordered_json::array({v.x, v.y, v.z}); }
+nlohmann::ordered_json numbers_json(const Rgb& c) { return nlohmann::ordered_json::array({c.r, c.g, c.b}); }
 
 nlohmann::ordered_json ball_json(const Enclosure& enclosure) {
   return {{"midpoint", enclosure.midpoint()}, {"radius", enclosure.radius()}};
@@ -358,14 +358,14 @@ void print_json(const PointArguments& args, const Scene& scene, const PointResul
                                  {"scene", args.scene.path},
                                  {"scene_hash", scene.hash()},
                                  {"receiver",
-                                  {{"point", to_json(point.receiver.point)},
-                                   {"normal", to_json(point.receiver.normal)},
-                                   {"reflectance", to_json(point.reflectance)}}}};
+                                  {{"point", numbers_json(point.receiver.point)},
+                                   {"normal", numbers_json(point.receiver.normal)},
+                                   {"reflectance", numbers_json(point.reflectance)}}}};
   if (point.receiver.on) json["receiver"]["on"] = scene.name_of(*point.receiver.on);
   json["sources"] = nlohmann::ordered_json::array();
   for (const SourceResult& one : point.sources) json["sources"].push_back(source_json(args, scene, one));
   json["sum"] = {{"lower", point.sum.lower()}, {"upper", point.sum.upper()}, {"ball", ball_json(point.sum)}};
-  json["radiosity"] = to_json(point.radiosity);
+  json["radiosity"] = numbers_json(point.radiosity);
   std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
 }
 

@@ -7,15 +7,12 @@
 
 #include "cli/lists.h"
 #include "cli/long_run.h"
+#include "cli/refuse.h"
 #include "scene/text_lines.h"
 #include "study/text.h"
 
 namespace exactff::cli {
 namespace {
-
-[[noreturn]] void refuse(std::string what, std::string why, std::string suggestion) {
-  throw InputError({.what = std::move(what), .why = std::move(why), .suggestion = std::move(suggestion)});
-}
 
 // The flags given that say where on a patch the receivers are.
 std::vector<std::string> placements(const ReceiverArguments& args) {

@@ -16,7 +16,7 @@
 namespace exactff::cli {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kStressFooter =
     "Without --family every family is run; --list tells their names. Each prints a table of relative errors against "
     "the\n"
     "family's stiffness, and one table at the end tells up to which stiffness each method's error stays below 1e-3, "
@@ -66,7 +66,7 @@ void print_family(const stress::FamilyResult& result) {
   std::cout << '\n';
 }
 
-void print_summary(const stress::Report& report) {
+void print_report(const stress::Report& report) {
   std::cout << "The largest stiffness with an error below 1e-3, 1e-6, 1e-12 (all: to the end; –: not even at first)\n";
   TextTable table;
   table.add_column("family");
@@ -113,7 +113,7 @@ int run(const StressArguments& args) {
   bar.clear();
   for (const std::string& message : messages) std::cerr << "note: " << message << '\n';
   for (const stress::FamilyResult& family : report.families) print_family(family);
-  print_summary(report);
+  print_report(report);
   for (const std::string& sentence : stress::headlines(report)) std::cout << sentence << '\n';
   if (!args.folder.empty()) {
     std::cout << "Report: " << (std::filesystem::path(args.folder) / "report.html").string() << '\n';
@@ -135,7 +135,7 @@ Command add_stress(CLI::App& app) {
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
   command->add_option("-o,--output", args->folder, "Folder for the tables and the report")->type_name("DIR");
-  command->footer(kFooter);
+  command->footer(kStressFooter);
   return {command, [args] { return run(*args); }};
 }
 

@@ -26,7 +26,7 @@
 namespace exactff::cli {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kTruthFooter =
     "One row per receiver and source: point, normal, the face that it lies on, the certified value between its "
     "bounds,\n"
     "the radiosity that it brings in each channel, and the status. The bytes of FILE depend on the scene and on what "
@@ -221,7 +221,7 @@ Command add_truth(CLI::App& app) {
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
   command->add_option("-o,--output", args->file, "CSV file to write")->required()->type_name("FILE");
-  command->footer(kFooter);
+  command->footer(kTruthFooter);
   return {command, [args] { return run(*args); }};
 }
 
