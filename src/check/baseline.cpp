@@ -32,7 +32,7 @@ Ratcheted ratcheted(const Statistics& statistics, std::string_view name) {
 }
 
 // JSON knows no infinity: null stands for it.
-ordered_json to_json(const Statistics& statistics) {
+ordered_json numbers_json(const Statistics& statistics) {
   ordered_json json = ordered_json::object();
   for (const std::string_view name : kRatcheted) {
     if (const auto value = ratcheted(statistics, name).now) json[std::string(name)] = *value;
@@ -112,10 +112,10 @@ std::string baseline_text(const Report& report) {
   json["program"] = study::program_version();
   json["truth"] = {{"identity", report.identity}, {"rows", report.overall.rows}, {"column", report.column}};
   json["relative_floor"] = report.criteria.relative_floor;
-  json["overall"] = to_json(report.overall);
+  json["overall"] = numbers_json(report.overall);
   json["sources"] = ordered_json::object();
   for (std::size_t s = 0; s < report.sources.size(); ++s) {
-    json["sources"][clean_text(report.sources[s])] = to_json(report.by_source[s]);
+    json["sources"][clean_text(report.sources[s])] = numbers_json(report.by_source[s]);
   }
   return json.dump(2) + '\n';
 }

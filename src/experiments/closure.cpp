@@ -15,7 +15,7 @@ namespace {
 using study::counted;
 using study::rounded;
 
-constexpr std::string_view kStage = "closure";
+constexpr std::string_view kClosureStage = "closure";
 
 std::vector<Selection> all_patches(const Scene& scene) {
   std::vector<Selection> patches;
@@ -53,7 +53,7 @@ std::vector<Truth> truths_at(const Scene& scene, std::span<const Receiver> recei
                              std::span<const Selection> patches, int threads, const study::Hooks& hooks) {
   const std::vector<ExactSource> sources = exact_sources(scene, patches);
   std::vector<Truth> truths(receivers.size());
-  study::parallel_for(receivers.size(), threads, kStage, hooks,
+  study::parallel_for(receivers.size(), threads, kClosureStage, hooks,
                       [&](std::size_t i) { truths[i] = truth_at(scene, receivers[i], sources); });
   return truths;
 }
@@ -117,7 +117,7 @@ ClosureStudy closure_study(const ClosureSize& size, int threads, const study::Ho
     study.widest = std::max(study.widest, truth.sum.upper() - truth.sum.lower());
   }
   study.methods.resize(size.choices.size());
-  study::parallel_for(size.choices.size(), threads, kStage, hooks, [&](std::size_t i) {
+  study::parallel_for(size.choices.size(), threads, kClosureStage, hooks, [&](std::size_t i) {
     study.methods[i] = errors_of(size.choices[i], scene, receivers, patches, truths);
   });
   return study;

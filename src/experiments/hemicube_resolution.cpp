@@ -20,7 +20,7 @@ using study::Series;
 constexpr double kUsualResolution = 100;
 constexpr double kTurned = 31.7;      // degrees: its tangent is far from every simple fraction
 constexpr double kUsualDistance = 2;  // of the light
-constexpr std::string_view kStage = "hemicube-resolution";
+constexpr std::string_view kResolutionStage = "hemicube-resolution";
 
 std::string choice_text(double resolution, double rotation) {
   return "hemicube:resolution=" + study::shortest(resolution) + ",rotation=" + study::shortest(rotation);
@@ -244,7 +244,7 @@ std::vector<ErrorCurve> error_curves(std::size_t groups, std::span<const CurvePl
       for (std::size_t group = 0; group < groups; ++group) tasks.push_back({&plan, at, group, {}});
     }
   }
-  study::parallel_for(tasks.size(), threads, kStage, hooks,
+  study::parallel_for(tasks.size(), threads, kResolutionStage, hooks,
                       [&](std::size_t i) { tasks[i].found = tasks[i].plan->errors(tasks[i].group, tasks[i].at); });
   std::vector<ErrorCurve> curves;
   auto task = tasks.begin();

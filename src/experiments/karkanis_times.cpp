@@ -23,7 +23,7 @@ struct HisTime {
 };
 constexpr std::array<HisTime, 4> kHis = {{{50, 0.2}, {100, 2.8}, {200, 300.0}, {500, 8.0 * 3600.0}}};
 
-constexpr std::string_view kStage = "karkanis-times";
+constexpr std::string_view kKarkanisStage = "karkanis-times";
 
 // ------------------------------------------------------------------------------------------------------- measurements
 
@@ -326,7 +326,7 @@ Result karkanis_times(const TimesSize& size, const study::Hooks& hooks) {
     study::require_not_cancelled(hooks);
     work.push_back(work_row(triangles, triangles <= size.same_bits_up_to));
     times.push_back(time_row(size, triangles, times, hooks));
-    if (hooks.progress) hooks.progress({kStage, times.size(), size.triangles.size()});
+    if (hooks.progress) hooks.progress({kKarkanisStage, times.size(), size.triangles.size()});
   }
   const std::vector<Affordable> affordable = affordable_rays(size, hooks);
   const TimeRow* at = row_at(times, size.affordable_at);

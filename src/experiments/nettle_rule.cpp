@@ -19,7 +19,7 @@ using study::dot;
 using study::rounded;
 using study::Series;
 
-constexpr std::string_view kStage = "nettle-rule";
+constexpr std::string_view kNettleRuleStage = "nettle-rule";
 
 // ----------------------------------------------------------------------------------------------------- configurations
 
@@ -364,7 +364,7 @@ SlopeFit NettleCurve::slope() const {
 
 std::vector<NettleCurve> nettle_curves(const NettleSize& size, int threads, const study::Hooks& hooks) {
   std::vector<GroupErrors> found(size.sides.size() * size.groups);
-  study::parallel_for(found.size(), threads, kStage, hooks, [&](std::size_t i) {
+  study::parallel_for(found.size(), threads, kNettleRuleStage, hooks, [&](std::size_t i) {
     found[i] = group_errors(size, i % size.groups, size.sides[i / size.groups]);
   });
   std::vector<NettleCurve> curves;
@@ -374,7 +374,7 @@ std::vector<NettleCurve> nettle_curves(const NettleSize& size, int threads, cons
 
 std::vector<NettleLiteral> nettle_literal(const NettleSize& size, int threads, const study::Hooks& hooks) {
   std::vector<NettleLiteral> rows(size.sides.size());
-  study::parallel_for(rows.size(), threads, kStage, hooks, [&](std::size_t i) {
+  study::parallel_for(rows.size(), threads, kNettleRuleStage, hooks, [&](std::size_t i) {
     const double side = size.sides[i];
     rows[i] = {side, median_literal_ratio(size, side, "sender-over-receiver"),
                median_literal_ratio(size, side, "receiver-over-sender"),

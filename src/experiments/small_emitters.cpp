@@ -19,7 +19,7 @@ using study::duration;
 using study::rounded;
 using study::Series;
 
-constexpr std::string_view kStage = "small-emitters";
+constexpr std::string_view kSmallEmittersStage = "small-emitters";
 
 struct Hall {
   std::string name;
@@ -51,7 +51,7 @@ std::vector<std::vector<double>> radiosities(const Hall& hall, std::span<const s
   constexpr std::size_t kBlocks = 8;
   const std::size_t count = hall.receivers.size();
   std::vector<std::vector<double>> all(choices.size(), std::vector<double>(count));
-  study::parallel_for(kBlocks * choices.size(), threads, kStage, hooks, [&](std::size_t task) {
+  study::parallel_for(kBlocks * choices.size(), threads, kSmallEmittersStage, hooks, [&](std::size_t task) {
     const std::size_t choice = task / kBlocks, block = task % kBlocks;
     Bench bench(methods::parse(choices[choice]), hall.scene, hall.lamps);
     for (std::size_t i = block * count / kBlocks; i < (block + 1) * count / kBlocks; ++i) {

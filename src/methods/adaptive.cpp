@@ -11,8 +11,6 @@ namespace exactff::methods {
 
 namespace {
 
-constexpr std::int64_t kMostRays = 65536;
-
 struct AdaptivePrepared : PreparedSource {
   AdaptivePrepared(const AdaptiveSolver& solver, const Scene& scene, const Selection& chosen)
       : PreparedSource(chosen), source(solver.prepare(chosen)), radiosity(scene.source_radiosity(chosen)) {}

@@ -25,9 +25,6 @@ using namespace sampled;
 
 namespace {
 
-constexpr std::int64_t kMostSplits = 4096;
-constexpr std::int64_t kMostRays = 65536;
-
 enum class AreaFactor { kSender, kSenderOverReceiver, kReceiverOverSender };
 
 AreaFactor area_factor_of(const Settings& settings) {

@@ -17,8 +17,6 @@ using namespace sampled;
 
 namespace {
 
-constexpr std::int64_t kMostSplits = 4096;
-
 class Wallace : public Evaluator {
  public:
   Wallace(const SampledScene& scene, const Settings& settings)

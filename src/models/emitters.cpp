@@ -13,7 +13,7 @@ namespace exactff::models {
 namespace {
 
 constexpr Vec3 kHall{10.0, 3.0, 10.0};
-constexpr double kLampHeight = 2.875;
+constexpr double kEmitterHeight = 2.875;
 constexpr double kTallestBox = 2.25;
 
 // A point in the middle half of each cell, row by row.
@@ -33,11 +33,11 @@ void add_lamps(PlainScene& scene, Random& random, int count, double size) {
     const std::string name = "lamp" + std::to_string(number);
     const double half = size / 2;
     add_patch(scene, name, "lamp");
-    add_quad(scene, name, facing_down(x - half, x + half, kLampHeight, z - half, z + half));
+    add_quad(scene, name, facing_down(x - half, x + half, kEmitterHeight, z - half, z + half));
   });
 }
 
-void add_boxes(PlainScene& scene, Random& random, int count) {
+void add_hiding_boxes(PlainScene& scene, Random& random, int count) {
   for_each_cell(random, count, [&](int number, double x, double z, double cell) {
     const std::string name = "box" + std::to_string(number);
     const double largest = std::min(0.75, 0.25 * cell);
@@ -52,7 +52,7 @@ void add_boxes(PlainScene& scene, Random& random, int count) {
 // As bright as makes the floor about 1 under all of them.
 double radiosity(int count, double size) { return kHall.x * kHall.z / (count * size * size); }
 
-PlainScene make(const methods::Settings& settings) {
+PlainScene make_emitters(const methods::Settings& settings) {
   const int count = static_cast<int>(settings.whole("n"));
   const double size = settings.number("size");
   const double bright = radiosity(count, size);
@@ -68,7 +68,7 @@ PlainScene make(const methods::Settings& settings) {
   add_floor_and_walls(scene, kHall);
   add_quad(scene, "ceiling", ceiling_of(kHall));
   Random random(static_cast<std::uint64_t>(settings.whole("seed")));
-  add_boxes(scene, random, static_cast<int>(settings.whole("boxes")));
+  add_hiding_boxes(scene, random, static_cast<int>(settings.whole("boxes")));
   add_lamps(scene, random, count, size);
   scene.source = "lamp1";
   scene.point = {0.125, 0.0, 0.125};  // where no box stands
@@ -87,7 +87,7 @@ Model emitters_model() {
       .settings = {methods::whole_setting("n", 64, 1, 2500, "lamps"),
                    methods::number_setting("size", 0.03, 1e-6, 0.1, "side of a lamp; all together shine the same", "m"),
                    methods::whole_setting("boxes", 12, 0, 1000, "boxes on the floor"), methods::seed_setting()},
-      .make = &make};
+      .make = &make_emitters};
 }
 
 }  // namespace exactff::models

@@ -100,7 +100,7 @@ double leaf_radius(int n, double cover) {
   return std::min(kLongestLeaf, std::sqrt(area / (3 * std::sqrt(0.1875))));
 }
 
-PlainScene make(const methods::Settings& settings) {
+PlainScene make_forest(const methods::Settings& settings) {
   constexpr double h = kSide / 2;
   const int n = static_cast<int>(settings.whole("n"));
   Random random(static_cast<std::uint64_t>(settings.whole("seed")));
@@ -137,7 +137,7 @@ Model forest_model() {
                                                "area of all leaves over the ground's, unless they would be longer "
                                                "than a metre or so"),
                        methods::seed_setting()},
-          .make = &make};
+          .make = &make_forest};
 }
 
 }  // namespace exactff::models

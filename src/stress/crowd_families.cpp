@@ -7,9 +7,7 @@ namespace exactff::stress {
 
 namespace {
 
-constexpr Vec3 kUp{0, 0, 1};
 constexpr Vec3 kOrigin{0, 0, 0};
-constexpr Span kSide{-1, 1};
 
 // Side n of a square of n × n.
 int side_of(double count) { return static_cast<int>(std::lround(std::sqrt(count))); }

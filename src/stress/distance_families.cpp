@@ -5,8 +5,6 @@ namespace exactff::stress {
 
 namespace {
 
-constexpr Vec3 kUp{0, 0, 1};
-
 Interval relative(const Span& span, double origin) {
   return {kernel::to_rational(span.low) - kernel::to_rational(origin),
           kernel::to_rational(span.high) - kernel::to_rational(origin)};

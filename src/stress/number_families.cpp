@@ -7,8 +7,6 @@ namespace exactff::stress {
 
 namespace {
 
-constexpr Vec3 kUp{0, 0, 1};
-
 Span scaled(const Span& span, double factor) { return {span.low * factor, span.high * factor}; }
 Span moved(const Span& span, double by) { return {span.low + by, span.high + by}; }
 

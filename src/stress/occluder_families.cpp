@@ -10,8 +10,6 @@ namespace exactff::stress {
 
 namespace {
 
-constexpr Vec3 kUp{0, 0, 1};
-constexpr Span kSide{-1, 1};
 constexpr Span kWide{-4, 4};
 
 // Two level plates at half the height of the source, from the left up to `left` and from `right` on.

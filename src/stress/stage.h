@@ -26,6 +26,9 @@ struct Span {
   double high = 0.0;
 };
 
+inline constexpr Vec3 kUp{0, 0, 1};
+inline constexpr Span kSide{-1, 1};
+
 // In the xz plane.
 struct ProfilePoint {
   double x = 0.0;

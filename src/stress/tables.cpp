@@ -9,7 +9,7 @@ namespace {
 
 using study::CsvRow;
 
-constexpr int kTruthDigits = 30;
+constexpr int kPrintedDigits = 30;
 
 void write_head(std::ostream& out, std::string_view what) {
   out << "# " << study::program_version() << " stress: " << what << '\n';
@@ -46,7 +46,7 @@ void write_values(const Report& report, std::ostream& out) {
   for (const FamilyResult& family : report.families) {
     for (const Row& r : family.rows) {
       CsvRow row(out);
-      row << family.family.name << r.stiffness << r.truth.decimals(kTruthDigits).value_or(r.truth.midpoint())
+      row << family.family.name << r.stiffness << r.truth.decimals(kPrintedDigits).value_or(r.truth.midpoint())
           << to_string(family.family.evidence) << (r.agrees ? "yes" : "no") << exactff::to_string(r.status)
           << r.precision_bits << r.occluders << r.edges;
       for (Method method : kMethods) {

@@ -95,7 +95,7 @@ std::string setting_words(const methods::Method& method, const std::string& name
   return name == "rays" ? value + (value == "1" ? " ray" : " rays") : name + ' ' + value;
 }
 
-std::string name_of(const LadderText& text, const methods::Method& method, const std::string& along) {
+std::string ladder_name(const LadderText& text, const methods::Method& method, const std::string& along) {
   std::string name = method_words(method.name);
   for (const auto& [setting, values] : text.settings) {
     if (setting != along) name += ", " + setting_words(method, setting, trimmed(values.front()));
@@ -119,7 +119,7 @@ Ladder parse_ladder(std::string_view text) {
     refuse("the seed of " + taken_apart.method + " has several values", "a study runs many seeds by itself",
            "leave the seed out, and say how many with --method-seeds");
   }
-  ladder.name = name_of(taken_apart, *ladder.rungs.front().method, ladder.along);
+  ladder.name = ladder_name(taken_apart, *ladder.rungs.front().method, ladder.along);
   return ladder;
 }
 

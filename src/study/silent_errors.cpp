@@ -18,18 +18,18 @@ namespace {
 
 constexpr double kNegligible = 1e-9;
 
-struct Point {
+struct FlatPoint {
   double u = 0.0;
   double v = 0.0;
 };
-using Polygon = std::vector<Point>;
+using Polygon = std::vector<FlatPoint>;
 
 // Coordinates in the plane relative to `origin`, the axis of the longest normal component dropped.
-Point flattened(const Vec3& p, const Vec3& origin, const Vec3& normal) {
+FlatPoint flattened(const Vec3& p, const Vec3& origin, const Vec3& normal) {
   const Vec3 d = difference(p, origin);
   const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
   if (x >= y && x >= z) return {d.y, d.z};
-  return y >= z ? Point{d.z, d.x} : Point{d.x, d.y};
+  return y >= z ? FlatPoint{d.z, d.x} : FlatPoint{d.x, d.y};
 }
 
 Polygon flattened(const std::vector<Vec3>& corners, const Vec3& origin, const Vec3& normal) {
@@ -41,23 +41,23 @@ Polygon flattened(const std::vector<Vec3>& corners, const Vec3& origin, const Ve
 double signed_area(const Polygon& polygon) {
   double twice = 0.0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Point& a = polygon[i];
-    const Point& b = polygon[(i + 1) % polygon.size()];
+    const FlatPoint& a = polygon[i];
+    const FlatPoint& b = polygon[(i + 1) % polygon.size()];
     twice += a.u * b.v - a.v * b.u;
   }
   return 0.5 * twice;
 }
 
 // Positive left of the line from a to b.
-double side_of(const Point& p, const Point& a, const Point& b) {
+double side_of(const FlatPoint& p, const FlatPoint& a, const FlatPoint& b) {
   return (b.u - a.u) * (p.v - a.v) - (b.v - a.v) * (p.u - a.u);
 }
 
-Polygon left_part(const Polygon& polygon, const Point& a, const Point& b) {
+Polygon left_part(const Polygon& polygon, const FlatPoint& a, const FlatPoint& b) {
   Polygon kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Point& p = polygon[i];
-    const Point& q = polygon[(i + 1) % polygon.size()];
+    const FlatPoint& p = polygon[i];
+    const FlatPoint& q = polygon[(i + 1) % polygon.size()];
     const double side_p = side_of(p, a, b);
     const double side_q = side_of(q, a, b);
     if (side_p >= 0.0) kept.push_back(p);

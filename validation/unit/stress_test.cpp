@@ -25,8 +25,6 @@ namespace {
 using validation::run_program;
 using validation::TemporaryDirectory;
 
-constexpr Vec3 kUp{0, 0, 1};
-
 Interval between(double low, double high) { return {Rational(low), Rational(high)}; }
 
 std::string thirty_digits(const ClosedForm& form) { return form.value().decimals(30).value_or("undecided"); }
