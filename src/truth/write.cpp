@@ -137,8 +137,8 @@ void add_shard(const File& file, std::uint64_t head_bytes, Tally& tally) {
 }
 
 void add_rows(const File& file, std::uint64_t offset, Tally& tally) {
-  constexpr std::size_t kReadBytes = 1 << 20;
-  for (std::string text = file.read(offset, kReadBytes); !text.empty(); text = file.read(offset, kReadBytes)) {
+  constexpr std::size_t kPieceBytes = 1 << 20;
+  for (std::string text = file.read(offset, kPieceBytes); !text.empty(); text = file.read(offset, kReadBytes)) {
     tally.add(text);
     offset += text.size();
   }
