@@ -40,8 +40,8 @@ std::string in_quotes(std::string_view text, std::size_t shown) {
 }
 
 TextLines::TextLines(std::string_view text) : rest_(text) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";  // of the byte order
+  if (rest_.starts_with(kMark)) rest_.remove_prefix(kMark.size());
 }
 
 std::string_view TextLines::take_physical() {
