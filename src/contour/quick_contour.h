@@ -1,7 +1,7 @@
-// Tampieri's Eq. (4) in double-double arithmetic: the first attempt at what contour.h does in ball arithmetic, ten
-// times as fast. It may decline, never lie. The error of a whole edge is about 2^-100 of the angle it is seen under,
-// whatever that is, and in proportion to the edge that of a crossing; hence F is rounded correctly unless its terms
-// cancel by some 45 bits.
+// Tampieri's Eq. (4) in double-double arithmetic: the first attempt at what contour.h does in ball arithmetic, more
+// than ten times as fast. It may decline, never lie. The error of a whole edge is about 2^-100 of the angle it is seen
+// under, whatever that is, and in proportion to the edge that of a crossing; hence F is rounded correctly unless its
+// terms cancel by some 45 bits.
 //
 // Notation: as in contour.h, with a piece of the edge from a to b given by corners alone, of which a is the nearer to
 // x, and d = b - a. Where the plane through x and another edge, with the normal N, meets the edge, it has the direction
