@@ -138,7 +138,7 @@ void add_shard(const File& file, std::uint64_t head_bytes, Tally& tally) {
 
 void add_rows(const File& file, std::uint64_t offset, Tally& tally) {
   constexpr std::size_t kPieceBytes = 1 << 20;
-  for (std::string text = file.read(offset, kPieceBytes); !text.empty(); text = file.read(offset, kReadBytes)) {
+  for (std::string text = file.read(offset, kPieceBytes); !text.empty(); text = file.read(offset, kPieceBytes)) {
     tally.add(text);
     offset += text.size();
   }
