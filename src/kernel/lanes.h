@@ -11,10 +11,11 @@
 #include "kernel/lane_types.h"
 
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
-#define EXACTFF_CLONES __attribute__((target_clones("avx2", "default")))
+#define EXACTFF_CLONES_FOR(target) __attribute__((target_clones(target, "default")))
 #else
-#define EXACTFF_CLONES
+#define EXACTFF_CLONES_FOR(target)
 #endif
+#define EXACTFF_CLONES EXACTFF_CLONES_FOR("avx2")
 
 namespace exactff::kernel::lanes {
 

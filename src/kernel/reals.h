@@ -15,11 +15,7 @@
 // EXACTFF_FMA_CLONES are compiled for both and chosen at load time; they give the same bits. What they call is inlined
 // into both. With four lanes, GCC makes one instruction of four only where it may take the rounding to be to nearest
 // and need not set errno: -fno-rounding-math -fno-math-errno.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
-#define EXACTFF_FMA_CLONES __attribute__((target_clones("arch=x86-64-v3", "default")))
-#else
-#define EXACTFF_FMA_CLONES
-#endif
+#define EXACTFF_FMA_CLONES EXACTFF_CLONES_FOR("arch=x86-64-v3")
 
 namespace exactff::kernel::reals {
 
@@ -47,11 +43,11 @@ EXACTFF_INLINE Four root(const Four& a) {
 }
 
 EXACTFF_INLINE double magnitude(double a) { return std::abs(a); }
-EXACTFF_INLINE Four magnitude(const Four& a) { return Four(FourMask(a) & 0x7FFFFFFFFFFFFFFF); }
+EXACTFF_INLINE Four magnitude(const Four& a) { return lanes::absolute(a); }
 
 // b where it is the larger, else a.
 EXACTFF_INLINE double larger(double a, double b) { return a < b ? b : a; }
-EXACTFF_INLINE Four larger(const Four& a, const Four& b) { return a < b ? b : a; }
+using lanes::larger;
 
 // --- Conditions: as comparisons give them ---
 
@@ -64,7 +60,9 @@ EXACTFF_INLINE FourMask differ(const FourMask& a, const FourMask& b) { return a 
 
 // a where the condition holds, else b.
 EXACTFF_INLINE double where(bool condition, double a, double b) { return condition ? a : b; }
-EXACTFF_INLINE Four where(const FourMask& condition, const Four& a, const Four& b) { return condition ? a : b; }
+EXACTFF_INLINE Four where(const FourMask& condition, const Four& a, const Four& b) {
+  return lanes::pick(condition, a, b);
+}
 
 EXACTFF_INLINE bool in_some_lane(bool condition) { return condition; }
 EXACTFF_INLINE bool in_some_lane(const FourMask& condition) { return lanes::lane_bits(condition) != 0; }

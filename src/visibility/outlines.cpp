@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "kernel/lane_types.h"
 #include "scene/places.h"
 
 namespace exactff::visibility {
@@ -57,7 +58,7 @@ void Outlines::start(const Scene& scene, const Vec3& x, double unit) {
   outlines_.clear();
 }
 
-[[gnu::always_inline]] inline CornerId Outlines::add_corner(const Approx3& t, double size, const Origin& origin) {
+EXACTFF_INLINE CornerId Outlines::add_corner(const Approx3& t, double size, const Origin& origin) {
   corners_.push_back({t, size});
   origins_.push_back(origin);
   return static_cast<CornerId>(corners_.size() - 1);

@@ -128,8 +128,7 @@ EXACTFF_CLONES void VisibleEdges::trace(Run& run, std::size_t source_count) {
   }
 }
 
-[[gnu::always_inline]] inline void VisibleEdges::replace(Parameters& parameters, const FourMask& where,
-                                                         const Parameters& by) {
+EXACTFF_INLINE void VisibleEdges::replace(Parameters& parameters, const FourMask& where, const Parameters& by) {
   using kernel::lanes::pick;
   parameters.value = pick(where, by.value, parameters.value);
   parameters.error = pick(where, by.error, parameters.error);
@@ -151,8 +150,7 @@ EXACTFF_CLONES void VisibleEdges::trace(Run& run, std::size_t source_count) {
 // side an end lies on and which of two parameters is larger can therefore be read off the signs, as masks whose other
 // bits are of no account. A line that is entered can only move the beginning of what is covered, one that is left only
 // its end, so that one comparison serves for both.
-[[gnu::always_inline]] inline void VisibleEdges::cut(const Run& run, std::span<const Edge> lines, EdgeId first,
-                                                     Cuts& cuts) {
+EXACTFF_INLINE void VisibleEdges::cut(const Run& run, std::span<const Edge> lines, EdgeId first, Cuts& cuts) {
   using namespace kernel::lanes;
   const Four x = run.x, y = run.y, z = run.z, size = run.size;
   const Four size_of_both = size + next_lane(size);  // at least the larger one; NaN if either is
@@ -186,7 +184,7 @@ EXACTFF_CLONES void VisibleEdges::trace(Run& run, std::size_t source_count) {
   cuts.intervals = {begin, end};
 }
 
-[[gnu::always_inline]] inline void VisibleEdges::cut(const Run& run, OutlineId outline, Cuts& cuts) {
+EXACTFF_INLINE void VisibleEdges::cut(const Run& run, OutlineId outline, Cuts& cuts) {
   const Outline& o = outlines_.outline(outline);
   cut(run, outlines_.edges().subspan(o.first, o.count), o.first, cuts);
   pairs_ += bit_count(run.wanted);
@@ -205,7 +203,7 @@ void VisibleEdges::set(Parameters& parameters, unsigned k, const Parameter& para
 }
 
 // The whole of a source's edge, or of one inside it; else what has the source on both sides.
-[[gnu::always_inline]] inline void VisibleEdges::find_allowed(Run& run, std::size_t source_count) {
+EXACTFF_INLINE void VisibleEdges::find_allowed(Run& run, std::size_t source_count) {
   using namespace kernel::lanes;
   for (unsigned k = 0; k < run.edges; ++k) removed_[k].clear();
   run.left = {{four(0.0), four(0.0), four_whole(Parameter::kAtBegin)},
@@ -266,7 +264,7 @@ EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, st
 
 // Of an edge, what the outline covers on the side that must not be covered, or where it coincides and comes first.
 // Edges of which nothing is left are no longer wanted.
-[[gnu::always_inline]] inline void VisibleEdges::remove(Run& run, OutlineId by, const Cuts& cuts, bool same_kind) {
+EXACTFF_INLINE void VisibleEdges::remove(Run& run, OutlineId by, const Cuts& cuts, bool same_kind) {
   const bool left_matters = run.of_source && !same_kind;
   Cover found;
   const unsigned unclear = take_off_by_filter(run, cuts) | cuts.unsure;
@@ -278,7 +276,7 @@ EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, st
   }
 }
 
-[[gnu::always_inline]] inline void VisibleEdges::find_removed(Run& run, std::size_t source_count) {
+EXACTFF_INLINE void VisibleEdges::find_removed(Run& run, std::size_t source_count) {
   Cuts cuts;
   for (OutlineId s = 0; run.of_source && s < source_count && run.wanted != 0; ++s) {
     if (s == run.outline) continue;
@@ -300,7 +298,7 @@ EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, st
 //
 // Begins and ends: by how much what is taken off starts and stops after what is left. At begin and at end: how far it
 // reaches over either end of what is left.
-[[gnu::always_inline]] inline unsigned VisibleEdges::take_off_by_filter(Run& run, const Cuts& cuts) {
+EXACTFF_INLINE unsigned VisibleEdges::take_off_by_filter(Run& run, const Cuts& cuts) {
   using namespace kernel::lanes;
   const auto& [begin, end] = run.left;
   const auto& [off_begin, off_end] = cuts.intervals;

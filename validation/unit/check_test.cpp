@@ -8,27 +8,18 @@
 #include <string>
 #include <vector>
 
+#include "support/complaint.h"
 #include "support/program.h"
 
 namespace exactff::check {
 namespace {
 
+using validation::complaint;
 using validation::TemporaryDirectory;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-// What the call refuses, or nothing.
-template <class Call>
-std::string refusal(const Call& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return {};
-}
 
 #define EXPECT_HOLDS(text, part) EXPECT_TRUE(holds(text, part)) << "\"" << (part) << "\" is not in:\n" << (text)
 
@@ -143,7 +134,7 @@ TEST(TruthFile, FindsRhoBOfZerosFromTheirFaceElseFromTheirSource) {
 }
 
 TEST(TruthFile, IsRefusedWithEveryProblemAndItsLine) {
-  const std::string what = refusal([] {
+  const std::string what = complaint([] {
     (void)truth_of(
         "receiver,source,exact,lower,upper,status\n"
         "a,s,0.5,0.6,0.7,certified\nb,s,nan,0,1,certified\n,s,0.5,0,1,certified\nc,s,0.5,0,1,sure\nd,s,0.5\n"
@@ -158,14 +149,14 @@ TEST(TruthFile, IsRefusedWithEveryProblemAndItsLine) {
 }
 
 TEST(TruthFile, IsRefusedWithoutColumnsOrRows) {
-  EXPECT_HOLDS(refusal([] { (void)truth_of("# nothing\n"); }), "the file has no column names");
-  EXPECT_HOLDS(refusal([] { (void)truth_of("receiver,exact\n"); }), "the file has no rows");
-  const std::string what = refusal([] { (void)truth_of("x,y\n1,2\n"); });
+  EXPECT_HOLDS(complaint([] { (void)truth_of("# nothing\n"); }), "the file has no column names");
+  EXPECT_HOLDS(complaint([] { (void)truth_of("receiver,exact\n"); }), "the file has no rows");
+  const std::string what = complaint([] { (void)truth_of("x,y\n1,2\n"); });
   EXPECT_HOLDS(what, "there is no column 'receiver' or 'id' among 'x,y'");
   EXPECT_HOLDS(what, "there is no column 'exact'");
-  EXPECT_HOLDS(refusal([] { (void)truth_of("receiver,exact,exact\na,1,1\n"); }), "column 'exact' occurs twice");
-  EXPECT_HOLDS(refusal([] { (void)truth_of("receiver;exact\na;1\n"); }), "not separated by commas");
-  EXPECT_HOLDS(refusal([] { (void)truth_of("\"receiver,exact\n"); }), "a quotation mark is not closed");
+  EXPECT_HOLDS(complaint([] { (void)truth_of("receiver,exact,exact\na,1,1\n"); }), "column 'exact' occurs twice");
+  EXPECT_HOLDS(complaint([] { (void)truth_of("receiver;exact\na;1\n"); }), "not separated by commas");
+  EXPECT_HOLDS(complaint([] { (void)truth_of("\"receiver,exact\n"); }), "a quotation mark is not closed");
 }
 
 // --- Reading the candidate ---
@@ -194,17 +185,17 @@ TEST(CandidateFile, MayHoldValuesThatAreNoNumbers) {
 }
 
 TEST(CandidateFile, IsRefusedWithEveryProblemAndItsLine) {
-  const std::string what = refusal([] { (void)candidate_of("receiver,value\na,\nb,x\n,1\nc,1,2\nd,\"1\n"); });
+  const std::string what = complaint([] { (void)candidate_of("receiver,value\na,\nb,x\n,1\nc,1,2\nd,\"1\n"); });
   EXPECT_HOLDS(what, "mine.csv:2: column 'value' is empty (a number is wanted there); write nan");
   EXPECT_HOLDS(what, "mine.csv:3: 'x' is not a number in column 'value' (");
   EXPECT_HOLDS(what, "mine.csv:4: the receiver has no id (");
   EXPECT_HOLDS(what, "mine.csv:5: 3 fields where there are 2 columns (");
   EXPECT_HOLDS(what, "mine.csv:6: a quotation mark is not closed in its line");
-  EXPECT_HOLDS(refusal([] { (void)candidate_of("a,b\n1,2\n"); }),
+  EXPECT_HOLDS(complaint([] { (void)candidate_of("a,b\n1,2\n"); }),
                "there is no column 'value' or 'approximate' or 'exact' among 'a,b'");
-  EXPECT_HOLDS(refusal([] { (void)candidate_of("receiver,value\na,1\n", {.value = "ff"}); }), "no column 'ff'");
-  EXPECT_HOLDS(refusal([] { (void)candidate_of("receiver,value\na,1\n", {.source = "s"}); }), "no column 's'");
-  EXPECT_HOLDS(refusal([] { (void)candidate_of("value\n1\n", {}, MatchBy::kPosition); }), "no column 'x' among");
+  EXPECT_HOLDS(complaint([] { (void)candidate_of("receiver,value\na,1\n", {.value = "ff"}); }), "no column 'ff'");
+  EXPECT_HOLDS(complaint([] { (void)candidate_of("receiver,value\na,1\n", {.source = "s"}); }), "no column 's'");
+  EXPECT_HOLDS(complaint([] { (void)candidate_of("value\n1\n", {}, MatchBy::kPosition); }), "no column 'x' among");
 }
 
 // --- Matching ---
@@ -232,14 +223,14 @@ TEST(Match, NeedsNoSourceWhereTheTruthHasOne) {
   EXPECT_EQ(matched(truth_of("receiver,exact\na,.1\n"), candidate_of("receiver,source,value\na,s,1\n")),
             std::vector<double>{1});
   const Truth two = truth_of("receiver,source,exact\na,s,.1\na,t,.2\n");
-  EXPECT_HOLDS(refusal([&] { (void)match(two, plain); }),
+  EXPECT_HOLDS(complaint([&] { (void)match(two, plain); }),
                "has no column that names the source (the truth has 2: s and t); add a column source");
 }
 
 TEST(Match, RefusesWhatIsMissingDoubledOrUnknown) {
   const Truth truth = truth_of("receiver,source,exact\na,s,.1\nb,s,.2\nc,s,.3\n");
   const Candidate candidate = candidate_of("receiver,source,value\na,s,1\na,s,1\nd,s,1\nb,u,1\n");
-  const std::string what = refusal([&] { (void)match(truth, candidate); });
+  const std::string what = complaint([&] { (void)match(truth, candidate); });
   EXPECT_HOLDS(what,
                "mine.csv: no value for 2 of 3 rows of the truth: receiver 'b' of source 's' and 'c' of source 's' (");
   EXPECT_HOLDS(what, "add them, or give --partial");
@@ -251,9 +242,9 @@ TEST(Match, RefusesWhatIsMissingDoubledOrUnknown) {
 TEST(Match, AllowsMissingRowsOnRequestButNotNone) {
   const Truth truth = truth_of("receiver,exact\na,.1\nb,.2\n");
   EXPECT_EQ(matched(truth, candidate_of("receiver,value\nb,2\n"), {.partial = true}), std::vector<double>{2});
-  EXPECT_HOLDS(refusal([&] { (void)match(truth, candidate_of("receiver,value\nc,2\n"), {.partial = true}); }),
+  EXPECT_HOLDS(complaint([&] { (void)match(truth, candidate_of("receiver,value\nc,2\n"), {.partial = true}); }),
                "the truth has no receiver 'c'");
-  EXPECT_HOLDS(refusal([&] { (void)match(truth, candidate_of("receiver,value\n"), {.partial = true}); }),
+  EXPECT_HOLDS(complaint([&] { (void)match(truth, candidate_of("receiver,value\n"), {.partial = true}); }),
                "has no rows");
 }
 
@@ -276,13 +267,13 @@ TEST(MatchByPosition, TellsReceiversInOnePlaceByTheirNormalsOfAnyLength) {
 TEST(MatchByPosition, TakesTheToleranceAsADistance) {
   const std::string near = "x,y,z,nx,ny,nz,source,value\n1,0.003,0.004,0,0,1,s,2\n";
   EXPECT_EQ(matched_by_position(near, 0.0051), std::vector<double>{2});
-  EXPECT_HOLDS(refusal([&] { (void)matched_by_position(near, 0.0049); }),
+  EXPECT_HOLDS(complaint([&] { (void)matched_by_position(near, 0.0049); }),
                "mine.csv:2: the truth has no receiver within 0.0049 of source 's' (");
 }
 
 TEST(MatchByPosition, RefusesAChoice) {
   const std::string what =
-      refusal([] { (void)matched_by_position("x,y,z,source,value\n0.25,0,0,s,1\n0,0,0,t,2\n", 0.75); });
+      complaint([] { (void)matched_by_position("x,y,z,source,value\n0.25,0,0,s,1\n0,0,0,t,2\n", 0.75); });
   EXPECT_HOLDS(what,
                "mine.csv:2: 3 receivers of the truth match: 'a' at a distance of 0.25 and 'c' at a distance of 0.25, "
                "and more (the value could be held against either); give a smaller --tolerance");
@@ -290,7 +281,7 @@ TEST(MatchByPosition, RefusesAChoice) {
 }
 
 TEST(MatchByPosition, RefusesTwoValuesForOneRow) {
-  EXPECT_HOLDS(refusal([] { (void)matched_by_position("x,y,z,source,value\n1,0,0,s,1\n1.1,0,0,s,2\n", 0.2); }),
+  EXPECT_HOLDS(complaint([] { (void)matched_by_position("x,y,z,source,value\n1,0,0,s,1\n1.1,0,0,s,2\n", 0.2); }),
                "receiver 'b' of source 's' has a value already (line 2)");
 }
 
@@ -315,7 +306,7 @@ TEST(MatchByPosition, FindsWhatASearchOfAllFinds) {
 }
 
 TEST(MatchByPosition, NeedsCoordinatesOfTheTruth) {
-  EXPECT_HOLDS(refusal([] {
+  EXPECT_HOLDS(complaint([] {
                  (void)match(truth_of("receiver,exact\na,1\n"),
                              candidate_of("x,y,z,value\n0,0,0,1\n", {}, MatchBy::kPosition),
                              {.by = MatchBy::kPosition});
@@ -451,7 +442,7 @@ TEST(Criteria, OfAQuantileAllowForTheRest) {
 TEST(Criteria, OfEpsBBoundTheErrorTimesRhoB) {
   Truth truth = truth_with({0.5, 0.0});
   const std::vector<double> values = {0.5, 0.125};
-  EXPECT_HOLDS(refusal([&] { (void)judge(truth, values, {.eps_b = 1.0}); }), "does not tell rho B of every row");
+  EXPECT_HOLDS(complaint([&] { (void)judge(truth, values, {.eps_b = 1.0}); }), "does not tell rho B of every row");
   truth.rows[0].largest_rho_b = 100.0;
   truth.rows[1].largest_rho_b = 8.0;
   EXPECT_TRUE(judge(truth, values, {.eps_b = 1.0}).passed());
@@ -476,7 +467,9 @@ TEST(Criteria, WithARelativeFloorForgiveSmallTruths) {
 }
 
 TEST(Criteria, AreRefusedIfTheyAreNone) {
-  const auto refused = [](const Criteria& criteria) { return refusal([&] { (void)judged({1.0}, {1.0}, criteria); }); };
+  const auto refused = [](const Criteria& criteria) {
+    return complaint([&] { (void)judged({1.0}, {1.0}, criteria); });
+  };
   EXPECT_HOLDS(refused({.max_abs = -1.0}), "the limit of max-abs is -1 (");
   EXPECT_HOLDS(refused({.max_rel = std::nan("")}), "the limit of max-rel is nan");
   EXPECT_HOLDS(refused({.rms = -1.0}), "the limit of rms");
@@ -484,9 +477,9 @@ TEST(Criteria, AreRefusedIfTheyAreNone) {
   EXPECT_HOLDS(refused({.quantiles = {{0.0, 1.0}}}), "the share of a quantile is 0 (");
   EXPECT_HOLDS(refused({.quantiles = {{1.5, 1.0}}}), "the share of a quantile is 1.5");
   EXPECT_HOLDS(refused({.quantiles = {{0.5, -1.0}}}), "the limit of quantile 0.5 is -1");
-  EXPECT_HOLDS(refusal([] { (void)judge(truth_with({1.0}), std::vector<double>{}, {}); }),
+  EXPECT_HOLDS(complaint([] { (void)judge(truth_with({1.0}), std::vector<double>{}, {}); }),
                "has 1 row, but there are 0 values");
-  EXPECT_HOLDS(refusal([] { (void)judge(truth_with({1.0}), std::vector<Measured>{}, {}); }), "has no row to judge");
+  EXPECT_HOLDS(complaint([] { (void)judge(truth_with({1.0}), std::vector<Measured>{}, {}); }), "has no row to judge");
 }
 
 TEST(Criteria, TellTheWorstRowsFirst) {
@@ -584,7 +577,7 @@ TEST(Baseline, IsOfTheseRowsInAnyOrderAndNoOthers) {
   Truth turned = truth_with({0.5, 0.25});
   std::swap(turned.rows[0], turned.rows[1]);
   EXPECT_TRUE(ratchet.held(judge(turned, std::vector{0.25, 0.5}, {})).passed());
-  const auto refused = [&](const Report& report) { return refusal([&] { (void)ratchet.held(report); }); };
+  const auto refused = [&](const Report& report) { return complaint([&] { (void)ratchet.held(report); }); };
   const std::string why = "was recorded with other rows, other truths or another relative floor";
   EXPECT_HOLDS(refused(judged({0.5, std::nextafter(0.25, 1.0)}, {0.5, 0.25})), why);
   EXPECT_HOLDS(refused(judged({0.5}, {0.5})), why);
@@ -597,17 +590,17 @@ TEST(Baseline, IsRefusedIfItIsNone) {
   const auto refused = [&](const std::string& text) {
     Report report = judged({0.5}, {0.5});
     const auto file = directory.write("b.json", text);
-    return refusal([&] { hold_against_baseline(report, file); });
+    return complaint([&] { hold_against_baseline(report, file); });
   };
   for (const char* text :
        {"", "{", "[]", "{}", "3", "{\"baseline\": 2}", "{\"baseline\": 1}", "{\"baseline\": 1, \"truth\": 3}"}) {
     EXPECT_HOLDS(refused(text), "is not a baseline that this program can read") << text;
   }
   Report report = judged({0.5}, {0.5});
-  EXPECT_HOLDS(refusal([&] { hold_against_baseline(report, directory.path() / "none.json"); }),
+  EXPECT_HOLDS(complaint([&] { hold_against_baseline(report, directory.path() / "none.json"); }),
                "there is no such baseline");
   const auto file = directory.write("b.json", baseline_text(report));
-  EXPECT_HOLDS(refusal([&] { hold_against_baseline(report, file, -1.0); }), "the slack of the baseline is -1");
+  EXPECT_HOLDS(complaint([&] { hold_against_baseline(report, file, -1.0); }), "the slack of the baseline is -1");
 }
 
 // --- Histogram ---

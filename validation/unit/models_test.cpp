@@ -12,6 +12,7 @@
 #include "exactff/obj.h"
 #include "generate/families.h"
 #include "models/model_files.h"
+#include "support/complaint.h"
 #include "support/program.h"
 
 namespace exactff::validation {
@@ -30,13 +31,8 @@ const std::vector<std::string> kSmall = {"teapot:segments=2",   "forest:n=50,tre
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-std::string complaint(const std::string& text) {
-  try {
-    (void)make_scene(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return {};
+std::string complaint_about(const std::string& text) {
+  return complaint([&] { (void)make_scene(text); });
 }
 
 // --- all of them ---
@@ -54,14 +50,14 @@ TEST(Models, EachIsListedOnceAndDescribesItsSettings) {
 }
 
 TEST(Models, AnUnknownOneIsToldTheClosest) {
-  const std::string text = complaint("tepot:segments=2");
+  const std::string text = complaint_about("tepot:segments=2");
   EXPECT_TRUE(holds(text, "there is no model 'tepot' (models are teapot, ")) << text;
   EXPECT_TRUE(holds(text, "did you mean teapot")) << text;
-  EXPECT_TRUE(holds(complaint(""), "there is no model ''"));
+  EXPECT_TRUE(holds(complaint_about(""), "there is no model ''"));
 }
 
 TEST(Models, EverythingWrongWithTheSettingsIsSaidAtOnce) {
-  const std::string text = complaint("karkanis:n=0,sed=1,cover,n=2,floor=-1");
+  const std::string text = complaint_about("karkanis:n=0,sed=1,cover,n=2,floor=-1");
   for (const char* part :
        {"model 'karkanis': '0' will not do for n", "a whole number from 1 to 10000000", "there is no setting 'sed'",
         "did you mean seed?", "'cover' gives no value", "setting 'n' is given twice", "a number from 0 to 100"}) {
