@@ -156,7 +156,7 @@ EXACTFF_INLINE FourVector gather(std::span<const QuickCorner> corners, const Fou
                                     &corners[edges[3]->*end]});
 }
 
-EXACTFF_FMA_CLONES
+EXACTFF_CLONES
 void lines_of(const std::array<double, 3>& normal, std::span<const QuickCorner> corners,
               std::span<const QuickEdge> edges, std::span<QuickLine> result) {
   const FourVector n = vector_of<Four>(normal);
@@ -272,7 +272,7 @@ EXACTFF_INLINE FourBounded terms(std::span<const QuickPiece> pieces, std::span<c
   return where(present, angle * gather(line, &QuickLine::weight), FourBounded{});
 }
 
-EXACTFF_FMA_CLONES
+EXACTFF_CLONES
 void add_terms(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines, const AngleConstants& known,
                std::array<Bounded, kLanes>& sums) {
   const auto part = [&](double Bounded::*which) __attribute__((always_inline)) {

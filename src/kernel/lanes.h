@@ -1,7 +1,8 @@
 // Four doubles at a time, in the vector extension that GCC and Clang share.
 //
-// Functions marked EXACTFF_CLONES are compiled for AVX2 as well and chosen at load time. Products and sums are
-// never contracted (-ffp-contract=off), so every version gives the same bits.
+// Functions marked EXACTFF_CLONES are compiled three times, for any processor, for AVX2 and for AVX-512, and chosen at
+// load time. What they call is inlined into all. Products and sums are never contracted (-ffp-contract=off), so every
+// version gives the same bits.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +12,10 @@
 #include "kernel/lane_types.h"
 
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
-#define EXACTFF_CLONES_FOR(target) __attribute__((target_clones(target, "default")))
+#define EXACTFF_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
-#define EXACTFF_CLONES_FOR(target)
+#define EXACTFF_CLONES
 #endif
-#define EXACTFF_CLONES EXACTFF_CLONES_FOR("avx2")
 
 namespace exactff::kernel::lanes {
 

@@ -11,11 +11,9 @@
 
 #include "kernel/lanes.h"
 
-// std::fma is a function of the library without hardware FMA and one instruction with it. Functions marked
-// EXACTFF_FMA_CLONES are compiled for both and chosen at load time; they give the same bits. What they call is inlined
-// into both. With four lanes, GCC makes one instruction of four only where it may take the rounding to be to nearest
-// and need not set errno: -fno-rounding-math -fno-math-errno.
-#define EXACTFF_FMA_CLONES EXACTFF_CLONES_FOR("arch=x86-64-v3")
+// std::fma is a function of the library in a clone (lanes.h) for any processor, one instruction in the others; they
+// give the same bits. With four lanes, GCC makes one instruction of four only where it may take the rounding to be to
+// nearest and need not set errno: -fno-rounding-math -fno-math-errno.
 
 namespace exactff::kernel::reals {
 

@@ -32,7 +32,7 @@ EXACTFF_INLINE Bounded magnitude(const Bounded& x) { return x.hi < 0.0 ? -x : x;
 EXACTFF_INLINE Bounded dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // Not certain of a height's sign: nothing is known of the crossing then.
-EXACTFF_FMA_CLONES
+EXACTFF_CLONES
 bool cross(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& s, const Vector& normal, double scale,
            Vector& result) {
   const Bounded g_p = dot(normal, difference(p, s, scale)), g_q = dot(normal, difference(q, s, scale));
