@@ -45,6 +45,7 @@ Workspace& workspace() {
   return own;
 }
 
+constexpr unsigned kSidePlanesBeforeEdges = 2;
 constexpr Sides kInside{.certain = true, .some_above_each = true, .all_above_each = true};
 
 double largest(const Approx3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
@@ -218,6 +219,7 @@ void EdgeWalk::start_run() {
 // False if one occluder hides all; the others then are nobody's business.
 bool EdgeWalk::gather_occluders() {
   start_run();
+  outlines_.watch_for_shared_corners();
   bool hidden = false;
   const OutlineId shafts = culls() ? static_cast<OutlineId>(source_count_) : 1;
   for (OutlineId source = 0; source < shafts && !hidden; ++source) {
@@ -254,6 +256,7 @@ bool EdgeWalk::visit(std::uint32_t index, OutlineId source, bool inside) {
     outlines_.set_inside_source(outline);
     return false;
   }
+  outlines_.set_within_lines(outline, sides.wholly_above >> kSidePlanesBeforeEdges);
   if (work_.edges.hides_all(outline, source_count_)) {
     result_.cutters = {piece.face};
     return true;
@@ -316,10 +319,7 @@ void EdgeWalk::make_side_planes(OutlineId source) {
   }
 }
 
-void EdgeWalk::find_corners(std::span<const std::uint32_t> vertices) {
-  work_.corners.clear();
-  for (const std::uint32_t vertex : vertices) work_.corners.push_back(outlines_.corner_of_vertex(vertex));
-}
+void EdgeWalk::find_corners(std::span<const std::uint32_t> vertices) { outlines_.corners_of(vertices, work_.corners); }
 
 Sides EdgeWalk::sides(OutlineId source) {
   const Sides sides = sides_by_filter();
@@ -331,17 +331,13 @@ Sides EdgeWalk::sides_by_filter() {
   if (work_.corners.size() > kFour) return {};
   FourCorners four;
   for (std::size_t c = 0; c < kFour; ++c) {
-    const Outlines::Corner& corner = outlines_.corner(work_.corners[std::min(c, work_.corners.size() - 1)]);
-    four.x[c] = corner.t.x;
-    four.y[c] = corner.t.y;
-    four.z[c] = corner.t.z;
-    four.size[c] = corner.size;
+    four[c] = &outlines_.corner(work_.corners[std::min(c, work_.corners.size() - 1)]);
   }
   return sides_of(work_.side_planes, four);
 }
 
 Sides EdgeWalk::sides_exactly(OutlineId source) {
-  Sides sides{true, true, true, false};
+  Sides sides{true, true, true, false, 0};
   const std::size_t n = work_.corners.size();
   const auto look = [&](const auto& side) {  // the side of the c-th corner
     std::size_t above = 0;

@@ -99,14 +99,17 @@ void OutlineGrid::project(const Outlines& outlines) {
   std::size_t corners = 0;
   for (const Edge& edge : outlines.edges()) corners = std::max<std::size_t>(corners, edge.a + 1U);
   images_.resize(corners);
+  all_ahead_ = true;
   for (CornerId c = 0; c < corners; ++c) {
     const Outlines::Corner& corner = outlines.corner(c);
     const double depth = dot(w_, corner.t);
     // |t| <= sqrt(3) size
     if (depth >= 1.75 * kLeastAhead * corner.size) {
-      images_[c] = {dot(e_, corner.t) / depth, dot(f_, corner.t) / depth, true};
+      const double inverse = 1.0 / depth;
+      images_[c] = {dot(e_, corner.t) * inverse, dot(f_, corner.t) * inverse, true};
     } else {
       images_[c] = {};
+      all_ahead_ = false;
     }
   }
 }
@@ -394,7 +397,9 @@ std::uint64_t OutlineGrid::unsorted_pairs(const Outlines& outlines) const {
   const std::uint64_t edges = outlines.edges().size();
   if (single_) return edges * everywhere_.size();
   std::uint64_t not_ahead = 0;
-  for (const Edge& edge : outlines.edges()) not_ahead += images_[edge.a].ahead && images_[edge.b].ahead ? 0U : 1U;
+  if (!all_ahead_) {
+    for (const Edge& edge : outlines.edges()) not_ahead += images_[edge.a].ahead && images_[edge.b].ahead ? 0U : 1U;
+  }
   std::uint64_t in_cells = 0;
   for (std::size_t cell = 0; too_fine_ && cell < coverer_.size(); ++cell) {
     const std::uint64_t members = cell_begin_[cell + 1] - cell_begin_[cell];

@@ -127,6 +127,7 @@ class OutlineGrid {
   Axis u_, v_;
   bool single_ = true;          // too few outlines for a grid, or no projection: everything is near everything
   bool too_fine_ = false;       // smaller cells were wanted than the images are good for: many may crowd into one
+  bool all_ahead_ = true;       // every corner is
   std::vector<Image> images_;   // by corner
   std::vector<Bounds> bounds_;  // by outline
   // By outline. Of those without cells, whatever was there: they have no part inside the source, so that neither who

@@ -22,7 +22,8 @@ constexpr double kSideError = 0x1p-46;
 double size_of(const Approx3& t) {
   const double largest = std::max({std::abs(t.x), std::abs(t.y), std::abs(t.z)});
   const bool usable = largest >= 0x1p-300 && largest <= 0x1p300;  // false for NaN
-  return usable && t.x == t.x && t.y == t.y && t.z == t.z ? largest : std::numeric_limits<double>::quiet_NaN();
+  const double sum = t.x + t.y + t.z;                             // NaN if one of them is, which std::max may pass over
+  return usable && sum == sum ? largest : std::numeric_limits<double>::quiet_NaN();
 }
 
 bool scaled_safely(double from, double to) { return from == 0.0 || std::abs(to) >= std::numeric_limits<double>::min(); }
@@ -46,6 +47,7 @@ void Outlines::start(const Scene& scene, const Vec3& x, double unit) {
     run_ = 1;
   }
   scene_ = &scene;
+  vertices_ = scene.vertices();
   places_ = places(scene);
   x_ = x;
   scale_exponent_ = exponent_for(unit);
@@ -64,17 +66,27 @@ EXACTFF_INLINE CornerId Outlines::add_corner(const Approx3& t, double size, cons
   return static_cast<CornerId>(corners_.size() - 1);
 }
 
-CornerId Outlines::corner_of_vertex(std::uint32_t any_vertex) {
+EXACTFF_INLINE CornerId Outlines::find_corner(std::uint32_t any_vertex) {
   const std::uint32_t vertex = places_[any_vertex];
   auto& [run, corner] = corner_of_vertex_[vertex];
-  if (run == run_) return corner;
-  const Approx3 d = kernel::approx_difference(scene_->vertices()[vertex], x_);
+  if (run == run_) {
+    shared_corners_ = true;
+    return corner;
+  }
+  const Approx3 d = kernel::approx_difference(vertices_[vertex], x_);
   const Approx3 t{d.x * scale_, d.y * scale_, d.z * scale_};
   const bool exact_scaling =  // to larger numbers it always is, or they become infinite
       scale_ >= 1.0 || (scaled_safely(d.x, t.x) && scaled_safely(d.y, t.y) && scaled_safely(d.z, t.z));
   run = run_;
   corner = add_corner(t, exact_scaling ? size_of(t) : std::numeric_limits<double>::quiet_NaN(), {.p = vertex});
   return corner;
+}
+
+CornerId Outlines::corner_of_vertex(std::uint32_t vertex) { return find_corner(vertex); }
+
+void Outlines::corners_of(std::span<const std::uint32_t> vertices, std::vector<CornerId>& corners) {
+  corners.clear();
+  for (const std::uint32_t vertex : vertices) corners.push_back(find_corner(vertex));
 }
 
 const ExactVec3& Outlines::keep_exact(Origin& origin, ExactVec3 direction, long exponent) {
@@ -112,15 +124,15 @@ OutlineId Outlines::add(const kernel::Ring& ring) {
 }
 
 OutlineId Outlines::add(const Piece& piece, bool mirrored) {
-  ring_.clear();
-  for (const std::uint32_t vertex : scene_->corners(piece)) ring_.push_back(corner_of_vertex(vertex));
+  corners_of(scene_->corners(piece), ring_);
   if (mirrored) std::reverse(ring_.begin(), ring_.end());
   return add(ring_, true);
 }
 
 void Outlines::add_edges(std::span<const CornerId> corners, bool whole) {
   const auto outline = static_cast<OutlineId>(outlines_.size());
-  outlines_.push_back({static_cast<EdgeId>(edges_.size()), static_cast<std::uint32_t>(corners.size()), whole, false});
+  outlines_.push_back(
+      {static_cast<EdgeId>(edges_.size()), static_cast<std::uint32_t>(corners.size()), whole, false, 0});
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const CornerId a = corners[i], b = corners[i + 1 == corners.size() ? 0 : i + 1];
     const Approx3 &p = corners_[a].t, &q = corners_[b].t;

@@ -51,11 +51,14 @@ class Outlines {
     kernel::Approx3 normal;
     double error = 0.0;  // 2^-46 |a||b|
   };
+  using LineBits = std::uint32_t;  // a bit for each of an outline's first edges
+  static constexpr std::size_t kLineBits = 32;
   struct Outline {
     EdgeId first = 0;
     std::uint32_t count = 0;
     bool whole = false;          // a piece of the scene, not clipped: its corners are vertices
     bool inside_source = false;  // known to lie inside a piece of the source, off its edges
+    LineBits within_lines = 0;   // of the source, if that is one outline: known to have all of this on the inner side
   };
 
   // Forgets everything; directions are relative to x, a point of `scene`'s space. Vertices at one position are one
@@ -69,6 +72,8 @@ class Outlines {
   // Counter-clockwise as x sees it.
   OutlineId add(const kernel::Ring& ring);
   [[nodiscard]] CornerId corner_of_vertex(std::uint32_t vertex);
+  // Of each vertex, in place of what was there.
+  void corners_of(std::span<const std::uint32_t> vertices, std::vector<CornerId>& corners);
   // Where the segment between two vertices on different sides of the plane crosses it.
   [[nodiscard]] CornerId add_crossing(std::uint32_t p, std::uint32_t q);
   // `whole`: all of a piece of the scene.
@@ -78,6 +83,10 @@ class Outlines {
 
   void remove_last();
   void set_inside_source(OutlineId id) { outlines_[id].inside_source = true; }
+  void set_within_lines(OutlineId id, LineBits lines) { outlines_[id].within_lines = lines; }
+  // Outlines of vertices that are added from now on have no corner in common unless has_shared_corners().
+  void watch_for_shared_corners() { shared_corners_ = false; }
+  [[nodiscard]] bool has_shared_corners() const { return shared_corners_; }
 
   [[nodiscard]] std::span<const Edge> edges() const { return edges_; }
   [[nodiscard]] std::span<const Outline> outlines() const { return outlines_; }
@@ -124,12 +133,14 @@ class Outlines {
     long exponent = 0;            // see exponent(); of a crossing, until then, that of its Fine
     [[nodiscard]] bool is_vertex() const { return p != kNone && q == kNone; }
   };
+  CornerId find_corner(std::uint32_t any_vertex);
   CornerId add_corner(const kernel::Approx3& t, double size, const Origin& origin);
   CornerId add_exactly(kernel::Direction direction);
   const kernel::ExactVec3& keep_exact(Origin& origin, kernel::ExactVec3 direction, long exponent);
   void add_edges(std::span<const CornerId> corners, bool whole);
 
   const Scene* scene_ = nullptr;
+  std::span<const Vec3> vertices_;
   std::span<const std::uint32_t> places_;
   Vec3 x_;
   int scale_exponent_ = 0;
@@ -144,6 +155,7 @@ class Outlines {
   std::vector<CornerId> ring_;                                        // scratch
   std::vector<std::pair<std::uint32_t, CornerId>> corner_of_vertex_;  // (run, corner) for every vertex of the scene
   std::uint32_t run_ = 0;
+  bool shared_corners_ = false;
 };
 
 }  // namespace exactff::visibility

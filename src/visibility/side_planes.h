@@ -2,9 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 
-#include "kernel/filter.h"
+#include "visibility/outlines.h"
 
 namespace exactff::visibility {
 
@@ -17,15 +18,14 @@ struct SidePlane {
   double error = 0.0;
 };
 
-struct FourCorners {
-  std::array<double, 4> x{}, y{}, z{}, size{};  // a triangle's last corner repeated
-};
+using FourCorners = std::array<const Outlines::Corner*, 4>;  // a triangle's last corner repeated
 
 struct Sides {
-  bool certain = false;           // else nothing is known
-  bool some_above_each = false;   // every plane has a corner above it
-  bool all_above_each = false;    // every corner lies above every plane
-  bool some_below_first = false;  // a corner lies below the first plane
+  bool certain = false;                 // else nothing is known
+  bool some_above_each = false;         // every plane has a corner above it
+  bool all_above_each = false;          // every corner lies above every plane
+  bool some_below_first = false;        // a corner lies below the first plane
+  Outlines::LineBits wholly_above = 0;  // a bit for each of the first planes: all corners lie above it
 };
 
 Sides sides_of(std::span<const SidePlane> planes, const FourCorners& corners);

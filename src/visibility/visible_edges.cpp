@@ -22,6 +22,8 @@ constexpr Parameter kEnd{1.0, 0.0F, Parameter::kAtEnd};
 // Pairs cost 1 to 2 us each where nothing tells them apart; as many occluders as make this many cost the Booleans less.
 constexpr std::uint64_t kMostUnsortedPairs = 1'000'000;
 
+constexpr std::size_t kMostToInsert = 16;
+
 // Of four bits. std::popcount is a call where the processor may lack the instruction.
 std::uint64_t bit_count(unsigned bits) { return (0x4332322132212110U >> (4 * bits)) & 0xFU; }
 
@@ -61,6 +63,7 @@ void VisibleEdges::drop_inner_edges(std::size_t source_count) {
   dropped_.assign(edges.size(), 0);
   line_.resize(edges.size());
   std::iota(line_.begin(), line_.end(), EdgeId{0});
+  if (!outlines_.has_shared_corners()) return;
   const std::size_t mask = std::bit_ceil(2 * edges.size()) - 1;
   slots_.assign(mask + 1, kFree);
   for (OutlineId o = static_cast<OutlineId>(source_count); o < outlines_.outlines().size(); ++o) {
@@ -87,34 +90,37 @@ void VisibleEdges::drop_inner_edges(std::size_t source_count) {
   }
 }
 
-void VisibleEdges::add_corner(Run& run, unsigned lane, CornerId id) const {
-  const Outlines::Corner& corner = outlines_.corner(id);
-  run.x[lane] = corner.t.x;
-  run.y[lane] = corner.t.y;
-  run.z[lane] = corner.t.z;
-  run.size[lane] = corner.size;
-}
-
-// Step 3.
-void VisibleEdges::trace_outline(OutlineId id, std::size_t source_count) {
-  const Outline& outline = outlines_.outline(id);
-  const unsigned step = outline.count <= kRunCorners ? outline.count : kRunCorners - 1;
-  Run run{.outline = id, .of_source = id < source_count};
-  for (unsigned at = 0; at < outline.count; at += step) {
-    run.first = outline.first + at;
-    run.edges = std::min(step, outline.count - at);
-    run.wanted = 0;
-    for (unsigned k = 0; k < run.edges; ++k) run.wanted |= (dropped_[run.first + k] == 0 ? 1U : 0U) << k;
-    if (run.wanted == 0) continue;
-    for (unsigned k = 0; k < kRunCorners; ++k) {
-      const Edge& edge = outlines_.edge(run.first + std::min(k, run.edges - 1));
-      add_corner(run, k, k < run.edges ? edge.a : edge.b);
-    }
-    trace(run, source_count);
+EXACTFF_INLINE void VisibleEdges::sort(EdgeId edge, std::vector<Interval>& intervals) {
+  const auto comes_first = [&](const Interval& a, const Interval& b) { return compare(edge, a.begin, b.begin) < 0; };
+  if (intervals.size() > kMostToInsert) {
+    std::sort(intervals.begin(), intervals.end(), comes_first);
+    return;
+  }
+  for (std::size_t i = 1; i < intervals.size(); ++i) {
+    const Interval inserted = intervals[i];
+    std::size_t at = i;
+    for (; at > 0 && comes_first(inserted, intervals[at - 1]); --at) intervals[at] = intervals[at - 1];
+    intervals[at] = inserted;
   }
 }
 
-EXACTFF_CLONES void VisibleEdges::trace(Run& run, std::size_t source_count) {
+EXACTFF_INLINE void VisibleEdges::keep(EdgeId id, bool reversed, const Parameter& begin, const Parameter& end) {
+  parts_.push_back(reversed ? Part{id, end, begin} : Part{id, begin, end});
+}
+
+// What the removed intervals, in order of their beginnings, leave of an allowed one.
+EXACTFF_INLINE void VisibleEdges::keep_rest(EdgeId id, bool reversed, const Interval& allowed,
+                                            std::span<const Interval> removed) {
+  const Parameter* reached = &allowed.begin;
+  for (const Interval& r : removed) {
+    if (compare(id, r.begin, allowed.end) >= 0) break;
+    if (compare(id, r.begin, *reached) > 0) keep(id, reversed, *reached, r.begin);
+    if (compare(id, r.end, *reached) > 0) reached = &r.end;
+  }
+  if (compare(id, *reached, allowed.end) < 0) keep(id, reversed, *reached, allowed.end);
+}
+
+EXACTFF_INLINE void VisibleEdges::trace(Run& run, std::size_t source_count) {
   find_allowed(run, source_count);
   if (run.wanted == 0) return;
   near_ = grid_.find_near(outlines_, run.first, run.wanted);
@@ -125,6 +131,34 @@ EXACTFF_CLONES void VisibleEdges::trace(Run& run, std::size_t source_count) {
     const EdgeId id = run.first + k;
     if (removed_[k].size() > 1) sort(id, removed_[k]);
     keep_rest(id, !run.of_source, interval(run.left, k), removed_[k]);
+  }
+}
+
+EXACTFF_INLINE void VisibleEdges::set_corners(Run& run) const {
+  const auto corner = [&](unsigned k) -> const Outlines::Corner& {
+    const Edge& edge = outlines_.edge(run.first + std::min(k, run.edges - 1));
+    return outlines_.corner(k < run.edges ? edge.a : edge.b);
+  };
+  const Outlines::Corner &a = corner(0), &b = corner(1), &c = corner(2), &d = corner(3);
+  run.x = Four{a.t.x, b.t.x, c.t.x, d.t.x};
+  run.y = Four{a.t.y, b.t.y, c.t.y, d.t.y};
+  run.z = Four{a.t.z, b.t.z, c.t.z, d.t.z};
+  run.size = Four{a.size, b.size, c.size, d.size};
+}
+
+// Step 3.
+EXACTFF_CLONES void VisibleEdges::trace_outline(OutlineId id, std::size_t source_count) {
+  const Outline& outline = outlines_.outline(id);
+  const unsigned step = outline.count <= kRunCorners ? outline.count : kRunCorners - 1;
+  Run run{.outline = id, .of_source = id < source_count};
+  for (unsigned at = 0; at < outline.count; at += step) {
+    run.first = outline.first + at;
+    run.edges = std::min(step, outline.count - at);
+    run.wanted = 0;
+    for (unsigned k = 0; k < run.edges; ++k) run.wanted |= (dropped_[run.first + k] == 0 ? 1U : 0U) << k;
+    if (run.wanted == 0) continue;
+    set_corners(run);
+    trace(run, source_count);
   }
 }
 
@@ -149,16 +183,21 @@ EXACTFF_INLINE void VisibleEdges::replace(Parameters& parameters, const FourMask
 // afterwards, except that one line with both ends certainly below it is enough for the outline to cover nothing. Which
 // side an end lies on and which of two parameters is larger can therefore be read off the signs, as masks whose other
 // bits are of no account. A line that is entered can only move the beginning of what is covered, one that is left only
-// its end, so that one comparison serves for both.
-EXACTFF_INLINE void VisibleEdges::cut(const Run& run, std::span<const Edge> lines, EdgeId first, Cuts& cuts) {
+// its end, so that one comparison serves for both. A line that has the whole run on its inner side moves neither: it
+// may be skipped.
+EXACTFF_INLINE void VisibleEdges::cut(const Run& run, std::span<const Edge> lines, EdgeId first, LineBits skipped,
+                                      Cuts& cuts) {
   using namespace kernel::lanes;
   const Four x = run.x, y = run.y, z = run.z, size = run.size;
   const Four size_of_both = size + next_lane(size);  // at least the larger one; NaN if either is
   Parameters begin{four(0.0), four(0.0), four_whole(Parameter::kAtBegin)};
   Parameters end{four(1.0), four(0.0), four_whole(Parameter::kAtEnd)};
-  Parameters crossing{.line = four_whole(first)};
+  Parameters crossing;
   FourMask outside = four_whole(0), sure = four_whole(-1);
-  for (const Edge& line : lines) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (i < Outlines::kLineBits && (skipped >> i & 1U) != 0) continue;
+    const Edge& line = lines[i];
+    crossing.line = four_whole(static_cast<std::int64_t>(first + i));
     const Four a = line.normal.x * x + line.normal.y * y + line.normal.z * z, b = next_lane(a);
     const Four error = line.error * size_of_both;
     const FourMask below_a = FourMask(a), below_b = FourMask(b);  // by their signs
@@ -174,7 +213,6 @@ EXACTFF_INLINE void VisibleEdges::cut(const Run& run, std::span<const Edge> line
     sure &= known & ~((below_a ^ below_b) & ~(absolute(beyond) > beyond_error));
     replace(begin, below_a & ~(below_b | before), crossing);
     replace(end, below_b & ~below_a & before, crossing);
-    crossing.line += 1;
   }
   outside = outside < 0;
   sure = sure < 0;
@@ -184,9 +222,10 @@ EXACTFF_INLINE void VisibleEdges::cut(const Run& run, std::span<const Edge> line
   cuts.intervals = {begin, end};
 }
 
-EXACTFF_INLINE void VisibleEdges::cut(const Run& run, OutlineId outline, Cuts& cuts) {
+EXACTFF_INLINE void VisibleEdges::cut(const Run& run, OutlineId outline, Cuts& cuts, LineBits skipped) {
   const Outline& o = outlines_.outline(outline);
-  cut(run, outlines_.edges().subspan(o.first, o.count), o.first, cuts);
+  cut(run, outlines_.edges().subspan(o.first, o.count), o.first, skipped, cuts);
+  cuts.by = outline;
   pairs_ += bit_count(run.wanted);
   undecided_pairs_ += bit_count(cuts.unsure & run.wanted);
 }
@@ -216,7 +255,7 @@ EXACTFF_INLINE void VisibleEdges::find_allowed(Run& run, std::size_t source_coun
     return;
   }
   Cuts cuts;
-  cut(run, 0, cuts);
+  cut(run, 0, cuts, outlines_.outline(run.outline).within_lines);
   run.left = cuts.intervals;
   for (unsigned bits = cuts.unsure & run.wanted; bits != 0; bits &= bits - 1) {
     const auto k = static_cast<unsigned>(std::countr_zero(bits));
@@ -238,7 +277,7 @@ EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, st
   Cover found;
   for (OutlineId s = 0; s < source_count; ++s) {
     cut(run, s, cuts);
-    if (!cover(run, k, s, cuts, found)) continue;
+    if (!cover(run, k, cuts, found)) continue;
     if (found.left) left_.push_back(found.interval);
     if (found.right) right_.push_back(found.interval);
   }
@@ -264,32 +303,37 @@ EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, st
 
 // Of an edge, what the outline covers on the side that must not be covered, or where it coincides and comes first.
 // Edges of which nothing is left are no longer wanted.
-EXACTFF_INLINE void VisibleEdges::remove(Run& run, OutlineId by, const Cuts& cuts, bool same_kind) {
+EXACTFF_INLINE void VisibleEdges::remove(Run& run, const Cuts& cuts, bool same_kind) {
   const bool left_matters = run.of_source && !same_kind;
   Cover found;
   const unsigned unclear = take_off_by_filter(run, cuts) | cuts.unsure;
   for (unsigned bits = unclear & run.wanted; bits != 0; bits &= bits - 1) {
     const auto k = static_cast<unsigned>(std::countr_zero(bits));
-    if (!cover(run, k, by, cuts, found)) continue;
-    const bool double_of_earlier = same_kind && found.coincides && found.left && by < run.outline;
+    if (!cover(run, k, cuts, found)) continue;
+    const bool double_of_earlier = same_kind && found.coincides && found.left && cuts.by < run.outline;
     if ((left_matters ? found.left : found.right) || double_of_earlier) take_off(run, k, found.interval);
   }
 }
 
+// Occluders are taken a few at a time: the processor works on the next cut while it finds out about the one before.
 EXACTFF_INLINE void VisibleEdges::find_removed(Run& run, std::size_t source_count) {
   Cuts cuts;
   for (OutlineId s = 0; run.of_source && s < source_count && run.wanted != 0; ++s) {
     if (s == run.outline) continue;
     cut(run, s, cuts);
-    remove(run, s, cuts, true);
+    remove(run, cuts, true);
   }
   const bool skips_inner = run.of_source && source_count == 1;  // what lies inside the source meets none of its edges
-  for (const OutlineId o : near_) {
-    if (o == run.outline || (skips_inner && outlines_.outline(o).inside_source)) continue;
-    cut(run, o, cuts);
-    if (((cuts.covered | cuts.unsure) & run.wanted) == 0) continue;
-    remove(run, o, cuts, !run.of_source);
-    if (run.wanted == 0) return;
+  for (std::span<const OutlineId> rest = near_; !rest.empty() && run.wanted != 0;) {
+    const std::size_t taken = std::min(kBatch, rest.size());
+    std::size_t count = 0;
+    for (const OutlineId o : rest.first(taken)) {
+      if (o == run.outline || (skips_inner && outlines_.outline(o).inside_source)) continue;
+      cut(run, o, batch_[count]);
+      count += ((batch_[count].covered | batch_[count].unsure) & run.wanted) != 0 ? 1U : 0U;
+    }
+    for (std::size_t i = 0; i < count && run.wanted != 0; ++i) remove(run, batch_[i], !run.of_source);
+    rest = rest.subspan(taken);
   }
 }
 
@@ -342,8 +386,8 @@ void VisibleEdges::take_off(Run& run, unsigned k, const Interval& off) {
   }
 }
 
-bool VisibleEdges::cover(const Run& run, unsigned k, OutlineId outline, const Cuts& cuts, Cover& result) {
-  if ((cuts.unsure >> k & 1U) != 0) return cover_exactly(run.first + k, outline, result);
+bool VisibleEdges::cover(const Run& run, unsigned k, const Cuts& cuts, Cover& result) {
+  if ((cuts.unsure >> k & 1U) != 0) return cover_exactly(run.first + k, cuts.by, result);
   if ((cuts.covered >> k & 1U) == 0) return false;
   result = {.left = true, .right = true, .coincides = false, .interval = interval(cuts.intervals, k)};
   return true;
@@ -423,11 +467,6 @@ int VisibleEdges::compare_exactly(EdgeId edge, const Parameter& p, const Paramet
   return cmp(a.m * b.l, b.m * a.l) < 0 ? -1 : a.m * b.l == b.m * a.l ? 0 : 1;
 }
 
-void VisibleEdges::sort(EdgeId edge, std::vector<Interval>& intervals) {
-  std::sort(intervals.begin(), intervals.end(),
-            [&](const Interval& a, const Interval& b) { return compare(edge, a.begin, b.begin) < 0; });
-}
-
 // The union, as disjoint intervals in order.
 void VisibleEdges::merge(EdgeId edge, std::vector<Interval>& intervals) {
   if (intervals.size() < 2) return;
@@ -441,21 +480,6 @@ void VisibleEdges::merge(EdgeId edge, std::vector<Interval>& intervals) {
     }
   }
   intervals.resize(last + 1);
-}
-
-// What the removed intervals, in order of their beginnings, leave of an allowed one.
-void VisibleEdges::keep_rest(EdgeId id, bool reversed, const Interval& allowed, std::span<const Interval> removed) {
-  const Parameter* reached = &allowed.begin;
-  for (const Interval& r : removed) {
-    if (compare(id, r.begin, allowed.end) >= 0) break;
-    if (compare(id, r.begin, *reached) > 0) keep(id, reversed, *reached, r.begin);
-    if (compare(id, r.end, *reached) > 0) reached = &r.end;
-  }
-  if (compare(id, *reached, allowed.end) < 0) keep(id, reversed, *reached, allowed.end);
-}
-
-void VisibleEdges::keep(EdgeId id, bool reversed, const Parameter& begin, const Parameter& end) {
-  parts_.push_back(reversed ? Part{id, end, begin} : Part{id, begin, end});
 }
 
 BoundaryPiece VisibleEdges::exact(const Part& part) {

@@ -50,6 +50,7 @@ class VisibleEdges {
   };
 
   Outlines& outlines() { return outlines_; }
+  [[nodiscard]] const Outlines& outlines() const { return outlines_; }
 
   // True if the occluder covers every corner of the source, and so all of it.
   [[nodiscard]] bool hides_all(OutlineId occluder, std::size_t source_count);
@@ -67,8 +68,10 @@ class VisibleEdges {
 
  private:
   static constexpr unsigned kRunCorners = 4;
+  static constexpr std::size_t kBatch = 4;
   using Four = kernel::lanes::Four;
   using FourMask = kernel::lanes::FourMask;
+  using LineBits = Outlines::LineBits;
 
   struct Interval {
     Parameter begin, end;
@@ -101,6 +104,7 @@ class VisibleEdges {
   };
   // What an outline covers of a run, by the filter alone.
   struct Cuts {
+    OutlineId by = 0;
     unsigned covered = 0;  // a bit for every edge that crosses the outline's interior, certainly, in the interval
     unsigned unsure = 0;   // and for those of which nothing is certain
     Intervals intervals;
@@ -113,12 +117,12 @@ class VisibleEdges {
 
   void drop_inner_edges(std::size_t source_count);
   void trace_outline(OutlineId id, std::size_t source_count);
+  void set_corners(Run& run) const;
   void trace(Run& run, std::size_t source_count);
-  void add_corner(Run& run, unsigned lane, CornerId corner) const;
   void find_allowed(Run& run, std::size_t source_count);
   void find_allowed_in_union(Run& run, unsigned k, std::size_t source_count);
   void find_removed(Run& run, std::size_t source_count);
-  void remove(Run& run, OutlineId by, const Cuts& cuts, bool same_kind);
+  void remove(Run& run, const Cuts& cuts, bool same_kind);
   [[nodiscard]] Parameter parameter(const Parameters& of, unsigned k) const;
   [[nodiscard]] Interval interval(const Intervals& of, unsigned k) const {
     return {parameter(of.begin, k), parameter(of.end, k)};
@@ -128,10 +132,10 @@ class VisibleEdges {
   void take_off(Run& run, unsigned k, const Interval& interval);
   [[nodiscard]] unsigned take_off_by_filter(Run& run, const Cuts& cuts);
 
-  static void cut(const Run& run, std::span<const Outlines::Edge> lines, EdgeId first, Cuts& cuts);
-  void cut(const Run& run, OutlineId outline, Cuts& cuts);
-  // What the outline covers of an edge; false if nothing.
-  [[nodiscard]] bool cover(const Run& run, unsigned k, OutlineId outline, const Cuts& cuts, Cover& result);
+  static void cut(const Run& run, std::span<const Outlines::Edge> lines, EdgeId first, LineBits skipped, Cuts& cuts);
+  void cut(const Run& run, OutlineId outline, Cuts& cuts, LineBits skipped = 0);
+  // What is covered of an edge; false if nothing.
+  [[nodiscard]] bool cover(const Run& run, unsigned k, const Cuts& cuts, Cover& result);
   [[nodiscard]] bool cover_exactly(EdgeId edge, OutlineId outline, Cover& result);
   void cut_exactly(EdgeId edge, EdgeId line, int& sign_a, int& sign_b, Parameter& crossing);
   [[nodiscard]] bool lies_left(const Outlines::Edge& edge, OutlineId outline);
@@ -156,6 +160,7 @@ class VisibleEdges {
   std::vector<std::uint8_t> dropped_;  // by edge
   std::vector<EdgeId> line_;           // by edge: the first edge between the same two corners
   std::span<const OutlineId> near_;    // occluders that the run at hand may meet
+  std::array<Cuts, kBatch> batch_;     // by some of these
   std::vector<Part> parts_;
   std::uint64_t pairs_ = 0, undecided_pairs_ = 0;
   std::vector<Stored> stored_;
