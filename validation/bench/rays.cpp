@@ -1,12 +1,16 @@
-// The opponent, not handicapped: 10^4 shadow rays to jittered points of the source, in coherent packets of 16 that lie
-// ready, against exactly the occluders that the exact method has. Building their structure is timed apart, and reads
-// the occluders where they lie.
+// The opponent, not handicapped: 10^4 shadow rays to jittered points of the source, in packets of 16 that lie ready,
+// against exactly the occluders that the exact method has. Building their structure is timed apart, and reads the
+// occluders where they lie. The rays of a packet end in a square of 4 x 4 neighbouring cells of the source; Embree is
+// told that they are coherent, or not, since now the one is faster and now the other. Beside that, the same rays as a
+// program casts them that draws its points at random.
 #include <benchmark/benchmark.h>
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
+#include <random>
 #include <stdexcept>
 #include <vector>
 
@@ -98,27 +102,38 @@ void set_ray(RTCRay16& rays, int lane, const Vec3& x, const Vec3& end) {
   rays.flags[lane] = 0;
 }
 
+// The order of the rays: cell by cell within a tile, tile by tile; or at random.
+enum class Order { kTiles, kRandom };
+
+std::vector<int> cells_in_order(Order order) {
+  std::vector<int> cells;
+  for (int tile = 0; tile < kCells * kCells / kPacket; ++tile) {
+    const int row = tile / (kCells / kTile) * kTile, column = tile % (kCells / kTile) * kTile;
+    for (int k = 0; k < kPacket; ++k) cells.push_back((row + k / kTile) * kCells + column + k % kTile);
+  }
+  if (order == Order::kRandom) std::shuffle(cells.begin(), cells.end(), std::mt19937_64(1));
+  return cells;
+}
+
 // Requires a source that is one parallelogram.
-std::vector<RTCRay16> make_rays(const BenchScene& s) {
+std::vector<RTCRay16> make_rays(const BenchScene& s, Order order) {
   const Piece& source = s.scene.pieces_of(s.scene.faces_of(s.source.selection()).front()).front();
   const auto corners = s.scene.corners(source);
   const Vec3 origin = s.scene.vertices()[corners[0]];
   const Vec3 along_u = s.scene.vertices()[corners[1]] - origin, along_v = s.scene.vertices()[corners[3]] - origin;
   generate::Random random(1);
   const auto jittered = [&](int cell) { return (cell + random.unit()) / kCells; };
-  std::vector<RTCRay16> packets((kCells / kTile) * (kCells / kTile));
-  for (int row = 0; row < kCells; ++row) {
-    for (int column = 0; column < kCells; ++column) {
-      const double u = jittered(column), v = jittered(row);
-      RTCRay16& packet = packets[static_cast<std::size_t>(row / kTile * (kCells / kTile) + column / kTile)];
-      set_ray(packet, row % kTile * kTile + column % kTile, s.receiver.point, origin + along_u * u + along_v * v);
-    }
+  const std::vector<int> cells = cells_in_order(order);
+  std::vector<RTCRay16> packets(cells.size() / kPacket);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double u = jittered(cells[i] % kCells), v = jittered(cells[i] / kCells);
+    set_ray(packets[i / kPacket], static_cast<int>(i % kPacket), s.receiver.point, origin + along_u * u + along_v * v);
   }
   return packets;
 }
 
 // How many rays arrive.
-int cast_rays(RTCScene structure, const std::vector<RTCRay16>& packets) {
+int cast_rays(RTCScene structure, const std::vector<RTCRay16>& packets, RTCIntersectContextFlags flags) {
   alignas(64) static const std::array<int, kPacket> kAll = [] {
     std::array<int, kPacket> all{};
     all.fill(-1);
@@ -126,7 +141,7 @@ int cast_rays(RTCScene structure, const std::vector<RTCRay16>& packets) {
   }();
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context.flags = flags;
   int arrived = 0;
   for (const RTCRay16& packet : packets) {
     RTCRay16 rays = packet;
@@ -136,12 +151,12 @@ int cast_rays(RTCScene structure, const std::vector<RTCRay16>& packets) {
   return arrived;
 }
 
-void cast(benchmark::State& state, const BenchScene& s) {
+void cast(benchmark::State& state, const BenchScene& s, Order order, RTCIntersectContextFlags flags) {
   const Occluders occluders = occluders_of(s);
   const RayStructure structure = build_structure(occluders);
-  const std::vector<RTCRay16> packets = make_rays(s);
+  const std::vector<RTCRay16> packets = make_rays(s, order);
   double visible = 0.0;
-  for (auto _ : state) visible = static_cast<double>(cast_rays(structure.get(), packets)) / (kCells * kCells);
+  for (auto _ : state) visible = static_cast<double>(cast_rays(structure.get(), packets, flags)) / (kCells * kCells);
   state.counters["visible"] = visible;
   if (s.scene.pieces().size() > 2000) return;
   // Jittered rays err by less than 1/200 (one standard deviation): more would mean another scene.
@@ -157,7 +172,12 @@ void build(benchmark::State& state, const BenchScene& s) {
 }  // namespace
 
 void add_rays() {
-  add_for_every_scene("rays/cast", cast);
+  const auto in = [](Order order, RTCIntersectContextFlags flags) {
+    return [order, flags](benchmark::State& state, const BenchScene& s) { cast(state, s, order, flags); };
+  };
+  add_for_every_scene("rays/coherent", in(Order::kTiles, RTC_INTERSECT_CONTEXT_FLAG_COHERENT));
+  add_for_every_scene("rays/incoherent", in(Order::kTiles, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT));
+  add_for_every_scene("rays/scattered", in(Order::kRandom, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT));
   add_for_every_scene("rays/build", build);
 }
 

@@ -5,7 +5,7 @@ namespace exactff::bench {
 
 void add_engines();  // certified/ENGINE, visible/ENGINE, tree
 void add_contour();  // contour/terms, contour/arb96, contour/arb128, contour/arb256, contour/double, limit
-void add_rays();     // rays/cast, rays/build
+void add_rays();     // rays/coherent, rays/incoherent, rays/scattered, rays/build
 void add_memory();   // memory; meaningful only in a process of its own
 void add_cornell();  // cornell/ENGINE/CLASS, cornell/throughput
 
