@@ -5,6 +5,7 @@
 
 #include "exactff/geometry.h"
 #include "visibility/boundary_piece.h"
+#include "visibility/visible_edges.h"
 
 namespace exactff::bench {
 
@@ -17,5 +18,8 @@ struct DoubleEdge {
 
 // Estimates F. Requires a normal other than zero.
 [[nodiscard]] double form_factor(std::span<const DoubleEdge> edges, const Vec3& normal);
+
+// Estimates F by what the edge engine found of one plane, four parts at a time.
+[[nodiscard]] double form_factor(const visibility::VisibleEdges& visible, const Vec3& normal);
 
 }  // namespace exactff::bench

@@ -33,11 +33,9 @@ void certified(benchmark::State& state, const BenchScene& s, Engine engine) {
 }
 
 void visible(benchmark::State& state, const BenchScene& s, Engine engine) {
-  std::vector<DoubleEdge> edges;
   double value = 0.0;
   for (auto _ : state) {
-    find_double_boundary(s, engine, edges);
-    value = form_factor(edges, s.receiver.normal);
+    value = double_form_factor(s, engine);
     keep(value);
   }
   state.counters["value"] = value;

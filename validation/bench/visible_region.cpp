@@ -58,4 +58,16 @@ void find_double_boundary(const BenchScene& s, Engine engine, std::vector<Double
   });
 }
 
+double double_form_factor(const BenchScene& s, Engine engine) {
+  double sum = 0.0;
+  std::vector<DoubleEdge> edges;
+  for_every_plane(s, engine, [&](const visibility::PlaneVisibility& seen) {
+    edges.clear();
+    for (const visibility::BoundaryPiece& piece : seen.boundary) edges.push_back(to_double(piece));
+    sum += form_factor(edges, s.receiver.normal);
+    if (seen.edges != nullptr) sum += form_factor(*seen.edges, s.receiver.normal);
+  });
+  return sum;
+}
+
 }  // namespace exactff::bench

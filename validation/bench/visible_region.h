@@ -15,4 +15,7 @@ namespace exactff::bench {
 // In doubles; what `edges` held before is gone.
 void find_double_boundary(const BenchScene& s, Engine engine, std::vector<DoubleEdge>& edges);
 
+// Eq. (4) in double over what an engine finds.
+[[nodiscard]] double double_form_factor(const BenchScene& s, Engine engine);
+
 }  // namespace exactff::bench
