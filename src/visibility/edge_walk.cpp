@@ -139,7 +139,7 @@ Outcome EdgeWalk::find_outcome() {
 
 bool EdgeWalk::gather_source() {
   outlines_.start(view_.scene, view_.x, largest(kernel::approx_difference(plane_.point, view_.x)));
-  outlines_.set_plane(plane_.normal, plane_.point);
+  outlines_.set_plane(plane_.normal.exact, plane_.fine_normal, plane_.point);
   for (const std::uint32_t index : plane_.pieces) {
     const Piece& piece = pieces_[index];
     if (view_.on && piece.face == *view_.on) {

@@ -64,9 +64,9 @@ class Outlines {
   // Forgets everything; directions are relative to x, a point of `scene`'s space. Vertices at one position are one
   // corner. `unit`: a length of the order of the distances of what matters.
   void start(const Scene& scene, const Vec3& x, double unit);
-  // The plane that add_crossing refers to, which must live on.
-  void set_plane(const kernel::Direction& normal, const Vec3& point) {
-    crossings_.start(x_, normal, point, scale_exponent_);
+  // The plane that add_crossing refers to; both forms of its normal must live on.
+  void set_plane(const kernel::ExactVec3& normal, const FineNormal& fine_normal, const Vec3& point) {
+    crossings_.start(x_, normal, fine_normal, point, scale_exponent_);
   }
 
   // Counter-clockwise as x sees it.

@@ -76,26 +76,24 @@ Bounded leading(const Integer& number, long bits) {
 
 }  // namespace
 
-void PlaneCrossings::start(const Vec3& x, const kernel::Direction& normal, const Vec3& point, int scale_exponent) {
+FineNormal fine_normal(const ExactVec3& normal) {
+  const long bits = bit_length(normal);
+  return {leading(normal.x, bits), leading(normal.y, bits), leading(normal.z, bits)};
+}
+
+void PlaneCrossings::start(const Vec3& x, const ExactVec3& normal, const FineNormal& fine_normal, const Vec3& point,
+                           int scale_exponent) {
   x_ = x;
   normal_ = &normal;
+  fine_normal_ = &fine_normal;
   point_ = point;
   scale_exponent_ = scale_exponent;
   scale_ = std::ldexp(1.0, scale_exponent);
 }
 
-void PlaneCrossings::prepare_normal() {
-  const ExactVec3& n = normal_->exact;
-  if (n.x == prepared_for_.x && n.y == prepared_for_.y && n.z == prepared_for_.z) return;
-  const long bits = bit_length(normal_->exact);
-  for (int i = 0; i < 3; ++i) fine_normal_[i] = leading(normal_->exact[i], bits);
-  prepared_for_ = n;  // receivers come by the thousand for one source
-}
-
-std::optional<PlaneCrossings::Fine> PlaneCrossings::fine(const Vec3& p, const Vec3& q) {
-  prepare_normal();
+std::optional<PlaneCrossings::Fine> PlaneCrossings::fine(const Vec3& p, const Vec3& q) const {
   Vector c;
-  if (!cross(p, q, x_, point_, fine_normal_, scale_, c)) return std::nullopt;
+  if (!cross(p, q, x_, point_, *fine_normal_, scale_, c)) return std::nullopt;
   const double largest = std::max({std::abs(c[0].hi), std::abs(c[1].hi), std::abs(c[2].hi)});
   const bool usable = largest >= 0x1p-300 && largest <= 0x1p300;  // false for NaN
   if (!usable || !is_fine(c[0]) || !is_fine(c[1]) || !is_fine(c[2])) return std::nullopt;
@@ -120,9 +118,8 @@ PlaneCrossings::Exact PlaneCrossings::exact(const Vec3& p, const Vec3& q, int ex
   lower_exponent(t_q, t_exponent);
   lower_exponent(d_p, d_exponent);
   lower_exponent(d_q, d_exponent);
-  const Integer g_p = abs(kernel::dot(normal_->exact, d_p.v)), g_q = abs(kernel::dot(normal_->exact, d_q.v));
-  return {t_p.v * g_q + t_q.v * g_p,
-          t_exponent + d_exponent + 2L * scale_exponent_ - bit_length(normal_->exact) + exponent};
+  const Integer g_p = abs(kernel::dot(*normal_, d_p.v)), g_q = abs(kernel::dot(*normal_, d_q.v));
+  return {t_p.v * g_q + t_q.v * g_p, t_exponent + d_exponent + 2L * scale_exponent_ - bit_length(*normal_) + exponent};
 }
 
 }  // namespace exactff::visibility

@@ -10,18 +10,24 @@
 #include <optional>
 
 #include "exactff/geometry.h"
-#include "kernel/direction.h"
 #include "kernel/double_double.h"
+#include "kernel/exact_vec.h"
 #include "kernel/fine_direction.h"
 
 namespace exactff::visibility {
 
 using kernel::FineDirection;
 
+// A plane's normal over 2^bit_length(N), so that its largest component is in [1/2, 1).
+using FineNormal = std::array<kernel::double_double::Bounded, 3>;
+[[nodiscard]] FineNormal fine_normal(const kernel::ExactVec3& normal);
+
 class PlaneCrossings {
  public:
-  // Lengths are multiplied by 2^scale_exponent, which should bring them to the order of 1.
-  void start(const Vec3& x, const kernel::Direction& normal, const Vec3& point, int scale_exponent);
+  // Both forms of the normal must live on. Lengths are multiplied by 2^scale_exponent, which should bring them to the
+  // order of 1.
+  void start(const Vec3& x, const kernel::ExactVec3& normal, const FineNormal& fine_normal, const Vec3& point,
+             int scale_exponent);
 
   // Times 2^-bit_length(N) 2^exponent, so that the largest component is in [1/2, 1]. Each hi is within relative error
   // 2u of the true component and zero only where that is.
@@ -29,7 +35,7 @@ class PlaneCrossings {
     FineDirection direction;
     int exponent = 0;
   };
-  [[nodiscard]] std::optional<Fine> fine(const Vec3& p, const Vec3& q);
+  [[nodiscard]] std::optional<Fine> fine(const Vec3& p, const Vec3& q) const;
 
   // exact * 2^fine_exponent is what a Fine with the given exponent approximates.
   struct Exact {
@@ -39,14 +45,11 @@ class PlaneCrossings {
   [[nodiscard]] Exact exact(const Vec3& p, const Vec3& q, int exponent) const;
 
  private:
-  void prepare_normal();
-
   Vec3 x_, point_;
-  const kernel::Direction* normal_ = nullptr;
+  const kernel::ExactVec3* normal_ = nullptr;
+  const FineNormal* fine_normal_ = nullptr;
   int scale_exponent_ = 0;
   double scale_ = 1.0;
-  kernel::ExactVec3 prepared_for_;                               // the normal of fine_normal_
-  std::array<kernel::double_double::Bounded, 3> fine_normal_{};  // largest component in [1/2, 1)
 };
 
 }  // namespace exactff::visibility

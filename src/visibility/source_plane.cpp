@@ -52,7 +52,10 @@ std::vector<SourcePlane> group_by_plane(const Scene& scene, const std::vector<Fa
       const Vec3& point = scene.vertices()[piece.frame[0]];
       ExactVec3 normal = front_normal(scene, piece);
       const auto [entry, is_new] = index_of_key.try_emplace(plane_key(normal, point), planes.size());
-      if (is_new) planes.push_back({{}, {}, kernel::make_direction(std::move(normal)), point});
+      if (is_new) {
+        const FineNormal fine = fine_normal(normal);
+        planes.push_back({{}, {}, kernel::make_direction(std::move(normal)), fine, point});
+      }
       SourcePlane& plane = planes[entry->second];
       if (plane.faces.empty() || plane.faces.back() != id) plane.faces.push_back(id);
       plane.pieces.push_back(p);

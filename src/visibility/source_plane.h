@@ -6,6 +6,7 @@
 
 #include "exactff/scene.h"
 #include "kernel/direction.h"
+#include "visibility/plane_crossings.h"
 
 namespace exactff::visibility {
 
@@ -13,6 +14,7 @@ struct SourcePlane {
   std::vector<FaceId> faces;          // ascending
   std::vector<std::uint32_t> pieces;  // those of their pieces that lie in it, ascending; into Scene::pieces()
   kernel::Direction normal;           // front, primitive integers
+  FineNormal fine_normal;             // the same, for plane_crossings.h
   Vec3 point;                         // a vertex in the plane
 };
 

@@ -39,11 +39,11 @@ Segment random_segment(Random& random) {
   return s;
 }
 
-kernel::Direction normal_of(const Segment& s) {
+kernel::ExactVec3 normal_of(const Segment& s) {
   const kernel::ScaledVec3 ab = kernel::exact_difference(s.b, s.a), ac = kernel::exact_difference(s.c, s.a);
   kernel::ExactVec3 normal = kernel::cross(ab.v, ac.v);
   kernel::make_primitive(normal);
-  return kernel::make_direction(normal);
+  return normal;
 }
 
 int height_sign(const Segment& s, const Vec3& y) { return kernel::orientation(s.a, s.b, s.c, y); }
@@ -69,12 +69,13 @@ TEST(PlaneCrossings, HoldWhatTheyPromise) {
   for (std::uint64_t i = 0; i < validation::scaled_count(3000); ++i) {
     Random random(validation::seed_of(i));
     const Segment s = random_segment(random);
-    const kernel::Direction normal = normal_of(s);
-    if (kernel::is_zero(normal.exact) || height_sign(s, s.p) * height_sign(s, s.q) >= 0) continue;
+    const kernel::ExactVec3 normal = normal_of(s);
+    if (kernel::is_zero(normal) || height_sign(s, s.p) * height_sign(s, s.q) >= 0) continue;
     int scale = 0;
     std::frexp(std::abs(s.p.x - s.x.x) + std::abs(s.q.y - s.x.y) + std::abs(s.q.z - s.x.z), &scale);
     PlaneCrossings crossings;
-    crossings.start(s.x, normal, s.a, -scale);
+    const FineNormal fine_form = fine_normal(normal);
+    crossings.start(s.x, normal, fine_form, s.a, -scale);
     const auto fine = crossings.fine(s.p, s.q);
     if (!fine) {
       ++declined;
@@ -88,9 +89,10 @@ TEST(PlaneCrossings, HoldWhatTheyPromise) {
 }
 
 TEST(PlaneCrossings, KnowAnExactZero) {
-  const kernel::Direction normal = kernel::make_direction({0, 0, 1});
+  const kernel::ExactVec3 normal{0, 0, 1};
+  const FineNormal fine_form = fine_normal(normal);
   PlaneCrossings crossings;
-  crossings.start({0.1, 0.3, 0}, normal, {5, 5, 1}, 0);
+  crossings.start({0.1, 0.3, 0}, normal, fine_form, {5, 5, 1}, 0);
   const auto fine = crossings.fine({0.1, 0.7, 0.5}, {0.1, 0.2, 1.5});
   ASSERT_TRUE(fine);
   EXPECT_EQ(fine->direction.hi[0], 0.0);
@@ -100,10 +102,11 @@ TEST(PlaneCrossings, KnowAnExactZero) {
 
 // An x that lies on the segment's line sees the crossing within roundings of itself.
 TEST(PlaneCrossings, DeclineWhereComponentsCancel) {
-  const kernel::Direction normal = kernel::make_direction({0, 0, 1});
+  const kernel::ExactVec3 normal{0, 0, 1};
+  const FineNormal fine_form = fine_normal(normal);
   PlaneCrossings crossings;
   const Vec3 p{0, 0, 0.5}, q{1, 1, 1.5};
-  crossings.start({0.5, 0.5, 0}, normal, {0, 0, 1}, 0);  // straight below the crossing
+  crossings.start({0.5, 0.5, 0}, normal, fine_form, {0, 0, 1}, 0);  // straight below the crossing
   EXPECT_FALSE(crossings.fine(p, q));
 }
 
