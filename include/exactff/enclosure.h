@@ -20,6 +20,9 @@ class Enclosure {
   Enclosure& operator=(Enclosure&&) noexcept;
   ~Enclosure();
 
+  // As if made anew from the ball, in the memory that this has.
+  void set(const Ball& ball);
+
   Enclosure& operator+=(const Enclosure& other);
 
   // The largest double not above the number's lower bound, the smallest not below its upper bound.

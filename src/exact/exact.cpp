@@ -52,6 +52,36 @@ void check_receiver(const Receiver& receiver) {
 
 namespace {
 
+// Sources differ in their number of planes: records that one has no use for wait here, lest the next one allocate.
+void set_count(std::vector<PlaneRecord>& records, std::size_t count) {
+  constexpr std::size_t kMostWaiting = 4096;
+  thread_local std::vector<PlaneRecord> waiting;
+  for (; records.size() > count; records.pop_back()) {
+    if (waiting.size() < kMostWaiting) waiting.push_back(std::move(records.back()));
+  }
+  for (; records.size() < count && !waiting.empty(); waiting.pop_back()) records.push_back(std::move(waiting.back()));
+  records.resize(count);
+}
+
+// As a new result but for its memory; the records are still to be set.
+void reset(FormFactor& result, std::size_t planes) {
+  FormFactor fresh;
+  fresh.enclosure = std::move(result.enclosure);
+  fresh.enclosure.set(Ball());
+  fresh.cutters = std::move(result.cutters);
+  fresh.cutters.clear();
+  fresh.planes = std::move(result.planes);
+  set_count(fresh.planes, planes);
+  result = std::move(fresh);
+}
+
+// All that is found of a plane, and its faces in the memory that the record has.
+void set_record(PlaneRecord& record, PlaneRecord&& found, const std::vector<FaceId>& faces) {
+  found.faces = std::move(record.faces);
+  found.faces.assign(faces.begin(), faces.end());
+  record = std::move(found);
+}
+
 constexpr int kFirstBits = 96;  // enough for all but the near-degenerate
 
 bool has_decimals(const Enclosure& enclosure, int digits) {
@@ -63,7 +93,7 @@ bool has_decimals(const Enclosure& enclosure, int digits) {
 void certify(const contour::ContourIntegral& contour, const ExactOptions& options, FormFactor& result) {
   for (int bits = std::min(kFirstBits, options.precision_cap);; bits = std::min(2 * bits, options.precision_cap)) {
     const Ball ball = contour.evaluate(bits);
-    result.enclosure = Enclosure(ball);
+    result.enclosure.set(ball);
     result.precision_bits = bits;
     const std::optional<double> nearest = result.enclosure.nearest();
     result.value = nearest ? *nearest : std::clamp(kernel::nearest_to_midpoint(ball), 0.0, 1.0);
@@ -110,7 +140,7 @@ void sort_unique(std::vector<FaceId>& faces) {
 
 // The value from the double-double tier, if that determines it.
 bool certify_quickly(const exact::QuickTier& quick, const ExactOptions& options, FormFactor& result) {
-  result.enclosure = quick.enclosure();
+  result.enclosure.set(quick.ball());
   result.precision_bits = exact::QuickTier::kBits;
   const std::optional<double> nearest = result.enclosure.nearest();
   if (!nearest || !has_decimals(result.enclosure, options.digits)) return false;
@@ -122,13 +152,15 @@ bool certify_quickly(const exact::QuickTier& quick, const ExactOptions& options,
 // One engine at work on one receiver and one source.
 class Solver {
  public:
-  Solver(const Scene& scene, const Receiver& receiver, const ExactSource& source, const ExactOptions& options)
+  Solver(const Scene& scene, const Receiver& receiver, const ExactSource& source, const ExactOptions& options,
+         FormFactor& result)
       : scene_(scene),
         planes_(source.planes().planes),
         options_(options),
         wants_fraction_(options.visible_fraction || options.exact_fraction),
         view_(scene, receiver),
-        quick_(receiver.normal) {
+        quick_(receiver.normal),
+        result_(result) {
     request_ = {.engine = options.engine,
                 .fraction = wants_fraction_,
                 .list_cutters = options.list_cutters,
@@ -136,17 +168,17 @@ class Solver {
                 .culling = options.culling};
   }
 
-  FormFactor run() {
-    for (const SourcePlane& plane : planes_) look_at(plane);
+  void run() {
+    reset(result_, planes_.size());
+    for (std::size_t p = 0; p < planes_.size(); ++p) look_at(planes_[p], result_.planes[p]);
     sort_unique(result_.cutters);
     if (something_visible_) integrate();
     set_bounds(result_);
     if (wants_fraction_) set_fraction(shares_, result_);
-    return std::move(result_);
   }
 
  private:
-  void look_at(const SourcePlane& plane) {
+  void look_at(const SourcePlane& plane, PlaneRecord& record) {
     PlaneVisibility seen = find_visible_boundary(view_, plane, request_);
     if (!seen.boundary.empty() || seen.edges != nullptr) {
       something_visible_ = true;
@@ -158,7 +190,7 @@ class Solver {
       shares_.push_back(share_of(scene_, plane, seen));
     }
     result_.cutters.insert(result_.cutters.end(), seen.cutters.begin(), seen.cutters.end());
-    result_.planes.push_back(std::move(seen.record));
+    set_record(record, std::move(seen.record), plane.faces);
     last_ = std::move(seen);
   }
 
@@ -187,17 +219,17 @@ class Solver {
   const visibility::View view_;
   visibility::Request request_;
   exact::QuickTier quick_;
-  FormFactor result_;
+  FormFactor& result_;
   std::vector<PlaneShare> shares_;
   PlaneVisibility last_;
   bool something_visible_ = false;
   bool all_by_edges_ = true;
 };
 
-FormFactor solve_by(Engine engine, const Scene& scene, const Receiver& receiver, const ExactSource& source,
-                    ExactOptions options) {
+void solve_by(Engine engine, const Scene& scene, const Receiver& receiver, const ExactSource& source,
+              ExactOptions options, FormFactor& result) {
   options.engine = engine;
-  return Solver(scene, receiver, source, options).run();
+  Solver(scene, receiver, source, options, result).run();
 }
 
 void require_agreement(const FormFactor& a, const FormFactor& b) {
@@ -213,11 +245,20 @@ void require_agreement(const FormFactor& a, const FormFactor& b) {
 
 FormFactor exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                              const ExactOptions& options) {
-  exact::check_receiver(receiver);
-  if (options.engine != Engine::kBoth) return solve_by(options.engine, scene, receiver, source, options);
-  FormFactor result = solve_by(Engine::kEdges, scene, receiver, source, options);
-  require_agreement(result, solve_by(Engine::kBoolean, scene, receiver, source, options));
+  FormFactor result;
+  exact_form_factor(scene, receiver, source, options, result);
   return result;
+}
+
+void exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
+                       const ExactOptions& options, FormFactor& result) {
+  exact::check_receiver(receiver);
+  const bool both = options.engine == Engine::kBoth;
+  solve_by(both ? Engine::kEdges : options.engine, scene, receiver, source, options, result);
+  if (!both) return;
+  FormFactor reference;
+  solve_by(Engine::kBoolean, scene, receiver, source, options, reference);
+  require_agreement(result, reference);
 }
 
 bool behind_every_face(const FormFactor& result) {

@@ -5,8 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "kernel/ball.h"
-
 namespace exactff::exact {
 
 using contour::QuickContour;
@@ -129,7 +127,7 @@ void QuickTier::add(VisibleEdges& edges) {
   }
 }
 
-Enclosure QuickTier::enclosure() const {
+Ball QuickTier::ball() const {
   const contour::QuickContour::Value value = contour_.value();
   Ball ball, low;
   arb_set_d(ball.get(), value.hi);
@@ -140,7 +138,7 @@ Enclosure QuickTier::enclosure() const {
   mag_set_d(error, value.error);  // rounds up
   arb_add_error_mag(ball.get(), error);
   mag_clear(error);
-  return Enclosure(ball);
+  return ball;
 }
 
 }  // namespace exactff::exact

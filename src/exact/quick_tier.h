@@ -2,7 +2,7 @@
 #pragma once
 
 #include "contour/quick_contour.h"
-#include "exactff/exact.h"
+#include "kernel/ball.h"
 #include "visibility/visible_edges.h"
 
 namespace exactff::exact {
@@ -16,8 +16,8 @@ class QuickTier {
   // The parts that the engine holds now.
   void add(visibility::VisibleEdges& edges);
 
-  // The enclosure of F, at least as wide as the proved error; of every number where a piece was declined.
-  [[nodiscard]] Enclosure enclosure() const;
+  // Encloses F, at least as wide as the proved error; of every number where a piece was declined.
+  [[nodiscard]] Ball ball() const;
 
  private:
   contour::QuickContour contour_;

@@ -112,12 +112,20 @@ Enclosure::Enclosure() = default;
 Enclosure::Enclosure(const Ball& ball) : ball_(std::make_unique<Ball>(ball)) {}
 Enclosure::Enclosure(const Enclosure& other) : Enclosure(other.ball()) {}
 Enclosure& Enclosure::operator=(const Enclosure& other) {
-  if (this != &other) ball_ = std::make_unique<Ball>(other.ball());
+  set(other.ball());
   return *this;
 }
 Enclosure::Enclosure(Enclosure&&) noexcept = default;
 Enclosure& Enclosure::operator=(Enclosure&&) noexcept = default;
 Enclosure::~Enclosure() = default;
+
+void Enclosure::set(const Ball& ball) {
+  if (ball_) {
+    *ball_ = ball;
+  } else if (arb_is_zero(ball.get()) == 0) {
+    ball_ = std::make_unique<Ball>(ball);
+  }
+}
 
 const Ball& Enclosure::ball() const {
   static const Ball kZero;
@@ -127,7 +135,8 @@ const Ball& Enclosure::ball() const {
 Enclosure& Enclosure::operator+=(const Enclosure& other) {
   Ball sum;
   arb_add(sum.get(), ball().get(), other.ball().get(), ARF_PREC_EXACT);
-  return *this = Enclosure(sum);
+  set(sum);
+  return *this;
 }
 
 double Enclosure::lower() const {

@@ -25,18 +25,18 @@ class Exact : public Evaluator {
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& source) override {
     const auto& prepared = static_cast<const ExactSourcePrepared&>(source);
-    const FormFactor found = exact_form_factor(scene_, receiver_, prepared.source, options_);
+    exact_form_factor(scene_, receiver_, prepared.source, options_, found_);
     Estimate result;
-    result.form_factor = found.value;
+    result.form_factor = found_.value;
     std::uint64_t occluders = 0, edges = 0;
-    for (const PlaneRecord& plane : found.planes) {
+    for (const PlaneRecord& plane : found_.planes) {
       occluders += plane.candidates;
       edges += plane.edges;
     }
     result.counters.add("occluders", occluders);
     result.counters.add("edges", edges);
-    result.counters.add("bits", static_cast<std::uint64_t>(found.precision_bits));
-    result.counters.add("not certified", found.status == Status::kNotCertified ? 1 : 0);
+    result.counters.add("bits", static_cast<std::uint64_t>(found_.precision_bits));
+    result.counters.add("not certified", found_.status == Status::kNotCertified ? 1 : 0);
     return result;
   }
 
@@ -44,6 +44,7 @@ class Exact : public Evaluator {
   const Scene& scene_;
   ExactOptions options_;
   Receiver receiver_;
+  FormFactor found_;  // its memory is used again
 };
 
 class ExactOnScene : public PreparedScene {

@@ -31,8 +31,9 @@ int longest_axis(const Box& box) {
 
 }  // namespace
 
-HalfSpaceGroups::HalfSpaceGroups(std::span<const HalfSpace> half_spaces) {
+void HalfSpaceGroups::set(std::span<const HalfSpace> half_spaces) {
   constexpr HalfSpace kEverything{{}, -1.0};
+  groups_.clear();
   for (std::size_t i = 0; i < half_spaces.size(); i += kLanes) {
     Group& group = groups_.emplace_back();
     for (std::size_t lane = 0; lane < kLanes; ++lane) {

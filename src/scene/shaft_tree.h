@@ -37,7 +37,10 @@ class HalfSpaceGroups {
     Lanes x, y, z, offset, error, blur;
   };
 
-  explicit HalfSpaceGroups(std::span<const HalfSpace> half_spaces);
+  HalfSpaceGroups() = default;
+  explicit HalfSpaceGroups(std::span<const HalfSpace> half_spaces) { set(half_spaces); }
+  // These instead, in the memory that there is.
+  void set(std::span<const HalfSpace> half_spaces);
   [[nodiscard]] std::span<const Group> groups() const { return {groups_.data(), groups_.size()}; }
 
  private:
@@ -52,15 +55,14 @@ class ShaftTree {
   // Calls visit(index) for every box not certainly outside, in a fixed order, until one call returns false.
   template <class Visit>
   void query(const Vec3& apex, std::span<const HalfSpace> shaft, const Visit& visit) const {
-    query_with_inside(apex, shaft, [&](std::uint32_t index, bool) { return visit(index); });
+    query_with_inside(apex, HalfSpaceGroups(shaft), [&](std::uint32_t index, bool) { return visit(index); });
   }
 
   // The same by visit(index, inside). Inside: the box lies certainly inside every half-space, off its plane.
   template <class Visit>
-  void query_with_inside(const Vec3& apex, std::span<const HalfSpace> half_spaces, const Visit& visit) const {
+  void query_with_inside(const Vec3& apex, const HalfSpaceGroups& half_spaces, const Visit& visit) const {
     if (nodes_.empty()) return;
-    const HalfSpaceGroups held(half_spaces);
-    const auto shaft = held.groups();
+    const auto shaft = half_spaces.groups();
     const bool may_be_inside = shaft.size() <= kGroupBits;
     Waiting stack[kDepthLimit];
     int size = 0;

@@ -106,12 +106,13 @@ class Stopwatch {
   }
 
   void time_exact() {
+    FormFactor result;
     spend(4.0 * request().seconds_for_a_time, kFewestTimed, order_, [&](std::size_t i) {
       study_.timed.push_back(i);
       const ExactOptions options{.engine = request().engine};
       double sum = 0.0;
       for (const ExactSource& source : sources_) {
-        sum += typical_time([&] { (void)exact_form_factor(scene(), request().receivers[i], source, options); });
+        sum += typical_time([&] { exact_form_factor(scene(), request().receivers[i], source, options, result); });
       }
       study_.exact[i].seconds = sum;
     });

@@ -145,17 +145,18 @@ bool nothing_in_the_shaft(const FormFactor& result) {
 
 }  // namespace
 
-void Rows::append(std::uint64_t row, std::string& lines) const {
+void Rows::append(std::uint64_t row, std::string& lines, Results& results) const {
   const Receiver& receiver = request_.receivers[row / sources_.size()];
   const std::size_t source = row % sources_.size();
   const ExactOptions options{.engine = request_.engine, .visible_fraction = request_.visible_fraction};
-  const FormFactor f = exact_form_factor(*request_.scene, receiver, sources_[source], options);
+  const FormFactor& f = results.exact;
+  exact_form_factor(*request_.scene, receiver, sources_[source], options, results.exact);
   Status status = f.status;
   Line line(lines);
   line << id(row / sources_.size()) << (receiver.on ? request_.scene->name_of(*receiver.on) : std::string())
        << receiver.point << receiver.normal << source_names_[source] << f.value << f.lower << f.upper;
   if (request_.unoccluded) {
-    const FormFactor free = without_occluders(receiver, sources_[source], f);
+    const FormFactor& free = without_occluders(receiver, sources_[source], results);
     if (free.status == Status::kUnderflow) {
       line << "0.0";
     } else {
@@ -169,11 +170,12 @@ void Rows::append(std::uint64_t row, std::string& lines) const {
        << std::max({rho.r * b.r, rho.g * b.g, rho.b * b.b}) << to_string(status);
 }
 
-FormFactor Rows::without_occluders(const Receiver& receiver, const ExactSource& source,
-                                   const FormFactor& occluded) const {
+const FormFactor& Rows::without_occluders(const Receiver& receiver, const ExactSource& source, Results& results) const {
   static const std::vector<FaceId> kNone;
-  if (nothing_in_the_shaft(occluded)) return occluded;
-  return exact_form_factor(*request_.scene, receiver, source, {.engine = request_.engine, .only_occluders = &kNone});
+  if (nothing_in_the_shaft(results.exact)) return results.exact;
+  const ExactOptions options{.engine = request_.engine, .only_occluders = &kNone};
+  exact_form_factor(*request_.scene, receiver, source, options, results.unoccluded);
+  return results.unoccluded;
 }
 
 std::string Rows::id(std::size_t receiver) const {

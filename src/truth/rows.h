@@ -40,16 +40,20 @@ class Rows {
   // The comment lines and the column names of the truth file; of the shard's file, if it is one.
   [[nodiscard]] std::string head() const;
 
+  // What a thread keeps from one row to the next, for its memory alone.
+  struct Results {
+    FormFactor exact, unoccluded;
+  };
   // Computes a row and appends its line.
-  void append(std::uint64_t row, std::string& lines) const;
+  void append(std::uint64_t row, std::string& lines, Results& results) const;
 
   // "receiver 'a' on floor:1, source 'light'", for people.
   [[nodiscard]] std::string name(std::uint64_t row) const;
 
  private:
   [[nodiscard]] std::string id(std::size_t receiver) const;
-  [[nodiscard]] FormFactor without_occluders(const Receiver& receiver, const ExactSource& source,
-                                             const FormFactor& occluded) const;
+  [[nodiscard]] const FormFactor& without_occluders(const Receiver& receiver, const ExactSource& source,
+                                                    Results& results) const;
 
   Request request_;
   std::vector<ExactSource> sources_;

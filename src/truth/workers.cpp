@@ -114,11 +114,12 @@ class Batch {
 void Workers::compute(Range range) {
   Batch batch(range.first, deliver_);
   std::string line;
+  Rows::Results results;
   try {
     for (std::uint64_t row = range.first; row < range.end() && !must_stop(); ++row) {
       const auto start = Clock::now();
       line.clear();
-      rows_.append(row, line);
+      rows_.append(row, line, results);
       const double seconds = seconds_between(start, Clock::now());
       if (seconds >= hooks_.slow_seconds) batch.add_slow({row, seconds});
       batch.add(line);

@@ -27,6 +27,7 @@ namespace {
 struct Workspace {
   VisibleEdges edges;
   std::vector<HalfSpace> half_spaces;
+  HalfSpaceGroups shaft;  // the same
   std::vector<SidePlane> side_planes;
   std::vector<CornerId> corners, ring;
   std::vector<int> depths;             // of the corners at hand: depth_sign
@@ -60,9 +61,7 @@ class EdgeWalk {
         vertices_(view.scene.vertices()),
         surfaces_(closed_surfaces(view.scene)),
         work_(workspace()),
-        outlines_(work_.edges.outlines()) {
-    result_.record.faces = plane.faces;
-  }
+        outlines_(work_.edges.outlines()) {}
 
   std::optional<PlaneVisibility> run() {
     PlaneRecord& record = result_.record;
@@ -204,6 +203,7 @@ void EdgeWalk::make_shaft(OutlineId source) {
   const double magnitude = std::abs(terms[0]) + std::abs(terms[1]) + std::abs(terms[2]);
   work_.half_spaces.push_back(
       {vec(front), terms[0] + terms[1] + terms[2] - 0x1p-48 * magnitude, 0.0, 0x1p-47 * magnitude});
+  work_.shaft.set(work_.half_spaces);
 }
 
 void EdgeWalk::start_run() {
@@ -225,7 +225,7 @@ bool EdgeWalk::gather_occluders() {
   for (OutlineId source = 0; source < shafts && !hidden; ++source) {
     if (culls()) make_shaft(source);
     make_side_planes(source);
-    for_each_candidate(view_, work_.half_spaces, request_.culling, [&](std::uint32_t piece, bool inside) {
+    for_each_candidate(view_, work_.shaft, request_.culling, [&](std::uint32_t piece, bool inside) {
       hidden = visit(piece, source, inside);
       return !hidden;
     });

@@ -39,12 +39,11 @@ class Walk {
  public:
   Walk(const View& view, const SourcePlane& plane, const Request& request)
       : view_(view), plane_(plane), request_(request) {
-    result_.record.faces = plane.faces;
     result_.record.engine = Engine::kBoolean;
   }
 
   // Steps 1 to 3 alone.
-  std::vector<FaceId> find_cutters() {
+  Cutters find_cutters() {
     if (!gather_source() || side_of(plane_, view_.x) <= 0 || !clip_by_horizon()) return {};
     make_hull();
     if (gather_occluders()) list_cutters();
@@ -162,7 +161,8 @@ bool Walk::gather_occluders() {
   PlaneRecord& record = result_.record;
   bool hidden = false;
   Occluder occluder;
-  for_each_candidate(view_, shaft.half_spaces(), request_.culling, [&](std::uint32_t piece, bool) {
+  const HalfSpaceGroups half_spaces(shaft.half_spaces());
+  for_each_candidate(view_, half_spaces, request_.culling, [&](std::uint32_t piece, bool) {
     if (!may_occlude(view_, plane_, request_, piece)) return true;
     ++record.tree_candidates;
     bool was_cut = false;
@@ -224,7 +224,7 @@ void Walk::list_cutters() {
     return std::none_of(sides.begin(), sides.end(),
                         [&](const Direction& plane) { return clip(shadow, plane) == ClipResult::kEmpty; });
   };
-  std::vector<FaceId>& cutters = result_.cutters;
+  Cutters& cutters = result_.cutters;
   for (const Occluder& occluder : occluders_) {
     const auto cuts = [&](const std::vector<Direction>& sides) { return cuts_piece(occluder, sides); };
     if (pieces.empty() || std::any_of(pieces.begin(), pieces.end(), cuts)) cutters.push_back(occluder.face);

@@ -11,6 +11,7 @@
 // Knows nothing of radiometry.
 #pragma once
 
+#include <boost/container/small_vector.hpp>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -58,19 +59,22 @@ struct PlaneGeometry {
 
 class VisibleEdges;
 
+// One occluder that hides all needs no memory.
+using Cutters = boost::container::small_vector<FaceId, 1>;
+
 struct PlaneVisibility {
-  PlaneRecord record;
+  PlaneRecord record;                   // but for its faces, which are the plane's
   std::vector<BoundaryPiece> boundary;  // by the Booleans
   VisibleEdges* edges = nullptr;  // by the edge engine: valid until this thread asks it again; null if nothing is seen
   std::optional<kernel::Rational> fraction;  // visible over whole unclipped area of the union, in [0, 1]
-  std::vector<FaceId> cutters;               // ascending
+  Cutters cutters;                           // ascending
   PlaneGeometry geometry;
 };
 
 // For both engines: calls visit(piece, inside) for every piece that may lie in the shaft, until one call returns false;
 // inside: certainly within it (shaft_tree.h).
 template <class Visit>
-void for_each_candidate(const View& view, std::span<const HalfSpace> shaft, ShaftCulling culling, Visit&& visit) {
+void for_each_candidate(const View& view, const HalfSpaceGroups& shaft, ShaftCulling culling, Visit&& visit) {
   if (culling == ShaftCulling::kTree) {
     shaft_tree(view.scene).query_with_inside(view.x, shaft, visit);
     return;

@@ -29,29 +29,33 @@ const Cornell& cornell() {
   return the_box;
 }
 
-FormFactor solve(const Receiver& receiver, Engine engine) {
-  return exact_form_factor(cornell().scene, receiver, cornell().light, {.engine = engine});
+void solve(const Receiver& receiver, Engine engine, FormFactor& result) {
+  exact_form_factor(cornell().scene, receiver, cornell().light, {.engine = engine}, result);
 }
 
 std::vector<Receiver> receivers_with(const std::function<bool(Outcome)>& chosen) {
   std::vector<Receiver> receivers;
+  FormFactor result;
   for (const Receiver& receiver : cornell().receivers) {
-    if (chosen(solve(receiver, Engine::kEdges).planes.front().outcome)) receivers.push_back(receiver);
+    solve(receiver, Engine::kEdges, result);
+    if (chosen(result.planes.front().outcome)) receivers.push_back(receiver);
   }
   return receivers;
 }
 
-double seconds_of(const Receiver& receiver, Engine engine) {
+double seconds_of(const Receiver& receiver, Engine engine, FormFactor& result) {
   const auto begin = std::chrono::steady_clock::now();
-  keep(solve(receiver, engine));
+  solve(receiver, engine, result);
+  keep(result.value);
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 // One iteration asks every receiver once; its time is the median over them.
 void median_receiver(benchmark::State& state, const std::vector<Receiver>& receivers, Engine engine) {
   std::vector<double> seconds(receivers.size());
+  FormFactor result;
   for (auto _ : state) {
-    for (std::size_t i = 0; i < receivers.size(); ++i) seconds[i] = seconds_of(receivers[i], engine);
+    for (std::size_t i = 0; i < receivers.size(); ++i) seconds[i] = seconds_of(receivers[i], engine, result);
     const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
     std::nth_element(seconds.begin(), middle, seconds.end());
     state.SetIterationTime(*middle);
@@ -63,8 +67,10 @@ void median_receiver(benchmark::State& state, const std::vector<Receiver>& recei
 void throughput(benchmark::State& state) {
   const std::vector<Receiver>& receivers = cornell().receivers;
   auto i = static_cast<std::size_t>(state.thread_index());
+  FormFactor result;
   for (auto _ : state) {
-    keep(solve(receivers[i], Engine::kEdges));
+    solve(receivers[i], Engine::kEdges, result);
+    keep(result.value);
     i = (i + static_cast<std::size_t>(state.threads())) % receivers.size();
   }
   state.SetItemsProcessed(state.iterations());

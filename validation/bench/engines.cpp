@@ -19,7 +19,7 @@ namespace {
 void certified(benchmark::State& state, const BenchScene& s, Engine engine) {
   FormFactor result;
   for (auto _ : state) {
-    result = exact_form_factor(s.scene, s.receiver, s.source, {.engine = engine});
+    exact_form_factor(s.scene, s.receiver, s.source, {.engine = engine}, result);
     keep(result.value);
   }
   if (result.status == Status::kNotCertified) state.SkipWithError("the value is not certified");

@@ -77,7 +77,7 @@ TEST(ShaftTree, KnowsWhatLiesInside) {
   for (int round = 0; round < 50; ++round) {
     const Vec3 apex{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
     const std::vector<HalfSpace> shaft = random_shaft(random);
-    tree.query_with_inside(apex, shaft, [&](std::uint32_t i, bool inside) {
+    tree.query_with_inside(apex, HalfSpaceGroups(shaft), [&](std::uint32_t i, bool inside) {
       const auto holds = [&](const HalfSpace& h) { return all_corners_inside(boxes[i], apex, h); };
       EXPECT_EQ(inside, std::ranges::all_of(shaft, holds)) << i;
       count += inside ? 1U : 0U;

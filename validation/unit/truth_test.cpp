@@ -155,9 +155,10 @@ TEST_F(Truth, EveryRowIsTheExactValueOfItsReceiverAndSource) {
   const Rows rows(asked);
   const std::vector<FaceId> none;
   int hidden = 0;
+  Rows::Results results;
   for (std::uint64_t row = 0; row < rows.count(); ++row) {
     std::string line;
-    rows.append(row, line);
+    rows.append(row, line, results);
     ASSERT_EQ(line.back(), '\n');
     line.pop_back();
     const std::vector<std::string> fields = fields_of(line);
@@ -281,9 +282,10 @@ TEST_F(Truth, ARunThatFinishedNoRowLeavesNothing) {
 // Blocks of few rows, not in order, so that there is much to tear in few bytes.
 std::string small_journal(const Rows& rows, const fs::path& file) {
   Journal journal(file, rows, Existing::kReplace, {});
+  Rows::Results results;
   for (const Range range : {Range{5, 2}, Range{0, 1}, Range{3, 2}, Range{1, 1}}) {
     std::string lines;
-    for (std::uint64_t row = range.first; row < range.end(); ++row) rows.append(row, lines);
+    for (std::uint64_t row = range.first; row < range.end(); ++row) rows.append(row, lines, results);
     journal.append(range, lines);
   }
   return text_of(journal.path());
@@ -329,7 +331,8 @@ TEST_F(Truth, ADamagedBlockIsComputedAgainAndTheOthersAreNot) {
 TEST_F(Truth, BlocksThatDoNotBelongAreLeftOut) {
   const Rows rows(shard(10, 2, 3));
   std::string line;
-  rows.append(64, line);
+  Rows::Results results;
+  rows.append(64, line, results);
   write_text(file_, "");
   {
     Journal journal(file_, rows, Existing::kResume, {});
