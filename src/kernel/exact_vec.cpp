@@ -1,5 +1,7 @@
 #include "kernel/exact_vec.h"
 
+#include <CGAL/Mpzf.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -70,12 +72,26 @@ void lower_exponent(ScaledVec3& a, long exponent) {
   a.exponent = exponent;
 }
 
-int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  // Each row may keep its own exponent: a positive factor does not change the sign.
-  const ExactVec3 ab = exact_difference(b, a).v;
-  const ExactVec3 ac = exact_difference(c, a).v;
-  const ExactVec3 ad = exact_difference(d, a).v;
-  return sign(dot(cross(ab, ac), ad));
+namespace {
+
+using CGAL::Mpzf;
+
+struct Terms {
+  explicit Terms(const Arrow& a)
+      : x(Mpzf(a.to.x) - Mpzf(a.from.x)), y(Mpzf(a.to.y) - Mpzf(a.from.y)), z(Mpzf(a.to.z) - Mpzf(a.from.z)) {}
+  Mpzf x, y, z;
+};
+
+}  // namespace
+
+int exact_sign_of_dot(const Vec3& n, const Arrow& a) {
+  const Terms t(a);
+  return (Mpzf(n.x) * t.x + Mpzf(n.y) * t.y + Mpzf(n.z) * t.z).sign();
+}
+
+int exact_sign_of_det(const Arrow& a, const Arrow& b, const Arrow& c) {
+  const Terms p(a), q(b), r(c);
+  return (p.x * (q.y * r.z - q.z * r.y) + p.y * (q.z * r.x - q.x * r.z) + p.z * (q.x * r.y - q.y * r.x)).sign();
 }
 
 }  // namespace exactff::kernel

@@ -42,7 +42,19 @@ ScaledVec3 exact_vector(const Vec3& p);
 // The same vector with a smaller exponent.
 void lower_exponent(ScaledVec3& a, long exponent);
 
-// Sign of det(b - a, c - a, d - a), exactly.
-int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+// --- Signs, exactly, in whole numbers that allocate nothing while they are short ---
+
+struct Arrow {
+  const Vec3& from;
+  const Vec3& to;
+};
+// Of n . (to - from).
+int exact_sign_of_dot(const Vec3& n, const Arrow& a);
+// Of the determinant of three arrows.
+int exact_sign_of_det(const Arrow& a, const Arrow& b, const Arrow& c);
+// Of det(b - a, c - a, d - a).
+inline int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return exact_sign_of_det({a, b}, {a, c}, {a, d});
+}
 
 }  // namespace exactff::kernel

@@ -157,7 +157,8 @@ const kernel::Direction& EdgeWalk::horizon() {
 
 int EdgeWalk::horizon_side(CornerId corner) {
   const int filtered = outlines_.side_by_filter({view_.n.x, view_.n.y, view_.n.z}, corner);
-  return filtered != kUncertain ? filtered : outlines_.side(horizon(), corner);
+  if (filtered != kUncertain) return filtered;
+  return kernel::exact_sign_of_dot(view_.n, {view_.x, vertices_[*outlines_.vertex(corner)]});
 }
 
 // False if nothing with an interior is left.
@@ -366,20 +367,23 @@ void EdgeWalk::find_depths() {
 int EdgeWalk::depth_sign(std::uint32_t vertex) const {
   const Vec3& v = vertices_[vertex];
   const int filtered = kernel::sign_of_dot(plane_.normal.approx, kernel::approx_difference(v, plane_.point));
-  if (filtered != kUncertain) return filtered;
-  return sign(dot(plane_.normal.exact, kernel::exact_difference(v, plane_.point).v));
+  return filtered != kUncertain ? filtered : kernel::orientation(plane_.point, plane_.second, plane_.third, v);
 }
 
 // +1: ahead of the plane through x that is parallel to the source's.
-int EdgeWalk::toward_sign(CornerId corner) { return -outlines_.side(plane_.normal, corner); }
+int EdgeWalk::toward_sign(CornerId corner) {
+  const int filtered = outlines_.side_by_filter(plane_.normal.approx, corner);
+  if (filtered != kUncertain) return -filtered;
+  const Vec3& v = vertices_[*outlines_.vertex(corner)];
+  return -kernel::exact_sign_of_det({plane_.point, plane_.second}, {plane_.point, plane_.third}, {view_.x, v});
+}
 
 // The sign of det of three corners, 0 where the piece's plane holds x.
 int EdgeWalk::facing(const Piece& piece) const {
-  const auto rounded = [&](int f) { return kernel::approx_difference(vertices_[piece.frame[f]], view_.x); };
+  const auto vertex = [&](int f) -> const Vec3& { return vertices_[piece.frame[f]]; };
+  const auto rounded = [&](int f) { return kernel::approx_difference(vertex(f), view_.x); };
   const int filtered = kernel::sign_of_det(rounded(0), rounded(1), rounded(2));
-  if (filtered != kUncertain) return filtered;
-  const auto exact = [&](int f) { return kernel::exact_difference(vertices_[piece.frame[f]], view_.x).v; };
-  return sign(dot(cross(exact(0), exact(1)), exact(2)));
+  return filtered != kUncertain ? filtered : kernel::orientation(view_.x, vertex(0), vertex(1), vertex(2));
 }
 
 OutlineId EdgeWalk::add_whole(bool mirrored) {

@@ -170,17 +170,14 @@ int Outlines::side_by_filter(const Approx3& normal, CornerId t) const {
   return c.size == c.size ? kernel::sign_of_dot(normal, c.t) : kernel::kUncertain;
 }
 
-int Outlines::side(const Direction& normal, CornerId t) {
-  const int filtered = side_by_filter(normal.approx, t);
-  return filtered != kernel::kUncertain ? filtered : kernel::sign(dot(normal.exact, exact(t)));
-}
-
 int Outlines::side(const Edge& edge, CornerId t) {
   const Height h = height(edge, t);
   if (h.value > h.error) return 1;
   if (h.value < -h.error) return -1;
   if (t == edge.a || t == edge.b) return 0;
-  return kernel::sign(exact_height(edge, t));
+  const Origin &a = origins_[edge.a], &b = origins_[edge.b], &c = origins_[t];
+  if (!a.is_vertex() || !b.is_vertex() || !c.is_vertex()) return kernel::sign(exact_height(edge, t));
+  return kernel::orientation(x_, position(b.p), position(a.p), position(c.p));
 }
 
 }  // namespace exactff::visibility

@@ -114,8 +114,7 @@ class Outlines {
   }
   // -1, 0, +1: outside, on, inside the line of the edge.
   [[nodiscard]] int side(const Edge& edge, CornerId t);
-  // Sign of normal . t; by the filter alone: or kUncertain.
-  [[nodiscard]] int side(const kernel::Direction& normal, CornerId t);
+  // Sign of normal . t, or kUncertain.
   [[nodiscard]] int side_by_filter(const kernel::Approx3& normal, CornerId t) const;
 
   [[nodiscard]] const kernel::ExactVec3& exact(CornerId id);

@@ -54,7 +54,8 @@ std::vector<SourcePlane> group_by_plane(const Scene& scene, const std::vector<Fa
       const auto [entry, is_new] = index_of_key.try_emplace(plane_key(normal, point), planes.size());
       if (is_new) {
         const FineNormal fine = fine_normal(normal);
-        planes.push_back({{}, {}, kernel::make_direction(std::move(normal)), fine, point});
+        const Vec3 &second = scene.vertices()[piece.frame[1]], &third = scene.vertices()[piece.frame[2]];
+        planes.push_back({{}, {}, kernel::make_direction(std::move(normal)), fine, point, second, third});
       }
       SourcePlane& plane = planes[entry->second];
       if (plane.faces.empty() || plane.faces.back() != id) plane.faces.push_back(id);
@@ -66,8 +67,7 @@ std::vector<SourcePlane> group_by_plane(const Scene& scene, const std::vector<Fa
 
 int side_of(const SourcePlane& plane, const Vec3& x) {
   const int filtered = sign_of_dot(plane.normal.approx, kernel::approx_difference(x, plane.point));
-  if (filtered != kernel::kUncertain) return filtered;
-  return sign(dot(plane.normal.exact, kernel::exact_difference(x, plane.point).v));
+  return filtered != kernel::kUncertain ? filtered : kernel::orientation(plane.point, plane.second, plane.third, x);
 }
 
 namespace {

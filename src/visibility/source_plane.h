@@ -16,6 +16,7 @@ struct SourcePlane {
   kernel::Direction normal;           // front, primitive integers
   FineNormal fine_normal;             // the same, for plane_crossings.h
   Vec3 point;                         // a vertex in the plane
+  Vec3 second, third;                 // with it, three vertices that run counter-clockwise as the front sees them
 };
 
 // Groups faces by exact equality of their oriented planes, in order of first appearance.
