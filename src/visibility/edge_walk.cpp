@@ -30,7 +30,7 @@ struct Workspace {
   HalfSpaceGroups shaft;  // the same
   std::vector<SidePlane> side_planes;
   std::vector<CornerId> corners, ring;
-  std::vector<int> depths;             // of the corners at hand: depth_sign
+  std::vector<int> depths;             // of the corners at hand: on which side of the plane that may cut them
   std::vector<std::uint32_t> seen_in;  // by piece: the last run that looked at it
   // By closed surface: the last run that looked at it, and whether what faces away from x was left out there.
   struct Surface {
@@ -78,7 +78,6 @@ class EdgeWalk {
   bool gather_source();
   bool add_above_horizon(const Piece& piece);
   [[nodiscard]] int horizon_side(CornerId corner);
-  const kernel::Direction& horizon();
   bool gather_occluders();
   [[nodiscard]] bool culls() const { return request_.culling == ShaftCulling::kTree; }
   void start_run();
@@ -97,6 +96,7 @@ class EdgeWalk {
   OutlineId add_whole(bool mirrored);
   void find_depths();
   OutlineId add_near_part(std::span<const std::uint32_t> vertices, bool mirrored);
+  OutlineId add_part_above(Outlines::Plane plane, std::span<const std::uint32_t> vertices, bool mirrored);
   [[nodiscard]] Rational fraction();
 
   const View& view_;
@@ -107,7 +107,6 @@ class EdgeWalk {
   const ClosedSurfaces& surfaces_;
   Workspace& work_;
   Outlines& outlines_;
-  std::optional<kernel::Direction> horizon_;  // the receiver's normal, once needed
   PlaneVisibility result_;
   std::span<const VisibleEdges::Part> work_parts_;
   std::size_t source_count_ = 0;
@@ -138,7 +137,7 @@ Outcome EdgeWalk::find_outcome() {
 
 bool EdgeWalk::gather_source() {
   outlines_.start(view_.scene, view_.x, largest(kernel::approx_difference(plane_.point, view_.x)));
-  outlines_.set_plane(plane_.normal.exact, plane_.fine_normal, plane_.point);
+  outlines_.set_source_plane(plane_.normal.exact, plane_.fine_normal, plane_.point);
   for (const std::uint32_t index : plane_.pieces) {
     const Piece& piece = pieces_[index];
     if (view_.on && piece.face == *view_.on) {
@@ -150,11 +149,6 @@ bool EdgeWalk::gather_source() {
   return source_count_ > 0;
 }
 
-const kernel::Direction& EdgeWalk::horizon() {
-  if (!horizon_) horizon_ = view_.normal();
-  return *horizon_;
-}
-
 int EdgeWalk::horizon_side(CornerId corner) {
   const int filtered = outlines_.side_by_filter({view_.n.x, view_.n.y, view_.n.z}, corner);
   if (filtered != kUncertain) return filtered;
@@ -163,25 +157,20 @@ int EdgeWalk::horizon_side(CornerId corner) {
 
 // False if nothing with an interior is left.
 bool EdgeWalk::add_above_horizon(const Piece& piece) {
-  bool above = false, below = false;
-  for (const std::uint32_t vertex : view_.scene.corners(piece)) {
-    const CornerId corner = outlines_.corner_of_vertex(vertex);
-    const int side = horizon_side(corner);
-    above = above || side > 0;
-    below = below || side < 0;
-  }
+  const auto vertices = view_.scene.corners(piece);
+  find_corners(vertices);
+  work_.depths.clear();
+  for (const CornerId corner : work_.corners) work_.depths.push_back(horizon_side(corner));
+  const auto some = [&](const auto& is_so) { return std::any_of(work_.depths.begin(), work_.depths.end(), is_so); };
+  const bool above = some([](int depth) { return depth > 0; }), below = some([](int depth) { return depth < 0; });
   if (below || !above) result_.record.horizon_clipped = true;
   if (!above) return false;
-  if (!below) {
-    outlines_.add(piece, false);
-    return true;
+  if (below) {
+    outlines_.set_horizon(view_.n);
+    add_part_above(Outlines::Plane::kHorizon, vertices, false);
+  } else {
+    outlines_.add(work_.corners, true);
   }
-  Ring ring;
-  for (const std::uint32_t vertex : view_.scene.corners(piece)) {
-    ring.push_back(kernel::make_direction(outlines_.exact(outlines_.corner_of_vertex(vertex))));
-  }
-  clip(ring, horizon());
-  outlines_.add(ring);
   return true;
 }
 
@@ -393,14 +382,19 @@ OutlineId EdgeWalk::add_whole(bool mirrored) {
 
 // The part on x's side of the source's plane.
 OutlineId EdgeWalk::add_near_part(std::span<const std::uint32_t> vertices, bool mirrored) {
-  const std::size_t n = vertices.size();
   find_depths();
+  return add_part_above(Outlines::Plane::kSource, vertices, mirrored);
+}
+
+// The part where depths are not negative.
+OutlineId EdgeWalk::add_part_above(Outlines::Plane plane, std::span<const std::uint32_t> vertices, bool mirrored) {
+  const std::size_t n = vertices.size();
   work_.ring.clear();
   for (std::size_t c = 0; c < n; ++c) {
     const std::size_t next = (c + 1) % n;
     if (work_.depths[c] >= 0) work_.ring.push_back(work_.corners[c]);
     if (work_.depths[c] * work_.depths[next] < 0) {
-      work_.ring.push_back(outlines_.add_crossing(vertices[c], vertices[next]));
+      work_.ring.push_back(outlines_.add_crossing(plane, vertices[c], vertices[next]));
     }
   }
   if (mirrored) std::reverse(work_.ring.begin(), work_.ring.end());

@@ -102,14 +102,38 @@ CornerId Outlines::add_exactly(Direction direction) {
   return add_corner(direction.approx, size_of(direction.approx), origin);
 }
 
-CornerId Outlines::add_crossing(std::uint32_t p, std::uint32_t q) {
-  const auto fine = crossings_.fine(position(p), position(q));
-  if (!fine) return add_exactly(kernel::make_direction(crossings_.exact(position(p), position(q), 0).direction));
+void Outlines::set_source_plane(const ExactVec3& normal, const FineNormal& fine_normal, const Vec3& point) {
+  crossings_[std::size_t(Plane::kSource)].start(x_, fine_normal, point, scale_exponent_);
+  normal_ = &normal;
+}
+
+void Outlines::set_horizon(const Vec3& normal) {
+  crossings_[std::size_t(Plane::kHorizon)].start(x_, fine_normal(normal), x_, scale_exponent_);
+  horizon_ = normal;
+  exact_horizon_.reset();
+}
+
+const ExactVec3& Outlines::exact_normal(Plane plane) {
+  if (plane == Plane::kSource) return *normal_;
+  if (!exact_horizon_) exact_horizon_ = kernel::exact_vector(horizon_).v;
+  return *exact_horizon_;
+}
+
+CornerId Outlines::add_crossing(Plane plane, std::uint32_t p, std::uint32_t q) {
+  const auto fine = crossings(plane).fine(position(p), position(q));
+  if (!fine) {
+    return add_exactly(
+        kernel::make_direction(crossings(plane).exact(position(p), position(q), 0, exact_normal(plane)).direction));
+  }
   const auto& [hi, lo, error] = fine->direction;
   fine_.push_back(fine->direction);
   const Approx3 t{hi[0], hi[1], hi[2]};
   return add_corner(t, size_of(t),
-                    {.p = p, .q = q, .fine = static_cast<std::uint32_t>(fine_.size() - 1), .exponent = fine->exponent});
+                    {.p = p,
+                     .q = q,
+                     .fine = static_cast<std::uint32_t>(fine_.size() - 1),
+                     .plane = plane,
+                     .exponent = fine->exponent});
 }
 
 OutlineId Outlines::add(std::span<const CornerId> corners, bool whole) {
@@ -157,7 +181,8 @@ const ExactVec3& Outlines::exact(CornerId id) {
     return keep_exact(origin, std::move(difference.v), difference.exponent + scale_exponent_);
   }
   PlaneCrossings::Exact crossing =
-      crossings_.exact(position(origin.p), position(origin.q), static_cast<int>(origin.exponent));
+      crossings(origin.plane)
+          .exact(position(origin.p), position(origin.q), static_cast<int>(origin.exponent), exact_normal(origin.plane));
   return keep_exact(origin, std::move(crossing.direction), crossing.fine_exponent);
 }
 

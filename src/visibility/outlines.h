@@ -16,6 +16,7 @@
 // underflow is of no account.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -64,10 +65,10 @@ class Outlines {
   // Forgets everything; directions are relative to x, a point of `scene`'s space. Vertices at one position are one
   // corner. `unit`: a length of the order of the distances of what matters.
   void start(const Scene& scene, const Vec3& x, double unit);
-  // The plane that add_crossing refers to; both forms of its normal must live on.
-  void set_plane(const kernel::ExactVec3& normal, const FineNormal& fine_normal, const Vec3& point) {
-    crossings_.start(x_, normal, fine_normal, point, scale_exponent_);
-  }
+  // The planes that add_crossing refers to. The exact normal of the source's must live on.
+  enum class Plane : std::uint8_t { kSource, kHorizon };
+  void set_source_plane(const kernel::ExactVec3& normal, const FineNormal& fine_normal, const Vec3& point);
+  void set_horizon(const Vec3& normal);
 
   // Counter-clockwise as x sees it.
   OutlineId add(const kernel::Ring& ring);
@@ -75,8 +76,8 @@ class Outlines {
   // Of each vertex, in place of what was there.
   void corners_of(std::span<const std::uint32_t> vertices, std::vector<CornerId>& corners);
   // Where the segment between two vertices on different sides of the plane crosses it.
-  [[nodiscard]] CornerId add_crossing(std::uint32_t p, std::uint32_t q);
-  // `whole`: all of a piece of the scene.
+  [[nodiscard]] CornerId add_crossing(Plane plane, std::uint32_t p, std::uint32_t q);
+  // Counter-clockwise as x sees it. `whole`: all of a piece of the scene.
   OutlineId add(std::span<const CornerId> corners, bool whole);
   // A piece of the scene. `mirrored`: its corners run clockwise as x sees them.
   OutlineId add(const Piece& piece, bool mirrored);
@@ -124,17 +125,20 @@ class Outlines {
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-  // Where a corner comes from: the vertex p, the crossing of the segment from p to q, or an exact direction.
+  // Where a corner comes from: the vertex p, where the segment from p to q crosses a plane, or an exact direction.
   struct Origin {
     std::uint32_t p = kNone, q = kNone;
     std::uint32_t exact = kNone;  // into exact_
     std::uint32_t fine = kNone;   // into fine_
-    long exponent = 0;            // see exponent(); of a crossing, until then, that of its Fine
+    Plane plane = Plane::kSource;
+    long exponent = 0;  // see exponent(); of a crossing, until then, that of its Fine
     [[nodiscard]] bool is_vertex() const { return p != kNone && q == kNone; }
   };
   CornerId find_corner(std::uint32_t any_vertex);
   CornerId add_corner(const kernel::Approx3& t, double size, const Origin& origin);
   CornerId add_exactly(kernel::Direction direction);
+  [[nodiscard]] const PlaneCrossings& crossings(Plane plane) const { return crossings_[std::size_t(plane)]; }
+  [[nodiscard]] const kernel::ExactVec3& exact_normal(Plane plane);
   const kernel::ExactVec3& keep_exact(Origin& origin, kernel::ExactVec3 direction, long exponent);
   void add_edges(std::span<const CornerId> corners, bool whole);
 
@@ -148,7 +152,10 @@ class Outlines {
   std::vector<Origin> origins_;  // by corner
   std::deque<kernel::ExactVec3> exact_;
   std::vector<FineDirection> fine_;
-  PlaneCrossings crossings_;
+  std::array<PlaneCrossings, 2> crossings_;         // by plane
+  const kernel::ExactVec3* normal_ = nullptr;       // of the source's plane
+  Vec3 horizon_;                                    // the horizon's normal, and exactly,
+  std::optional<kernel::ExactVec3> exact_horizon_;  // once needed
   std::vector<Edge> edges_;
   std::vector<Outline> outlines_;
   std::vector<CornerId> ring_;                                        // scratch

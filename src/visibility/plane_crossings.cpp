@@ -31,26 +31,35 @@ EXACTFF_INLINE Bounded magnitude(const Bounded& x) { return x.hi < 0.0 ? -x : x;
 
 EXACTFF_INLINE Bounded dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+bool is_zero(const Bounded& c) { return c.hi == 0.0 && c.lo == 0.0 && c.error == 0.0; }
+
+// The axis, if any, that is normal to the plane, where that holds x: along it, crossings are exactly nowhere.
+int zero_axis(const Vec3& x, const Vec3& s, const Vector& normal) {
+  const std::array<double, 3> xc = components(x), sc = components(s);
+  for (int i = 0; i < 3; ++i) {
+    if (xc[i] == sc[i] && is_zero(normal[(i + 1) % 3]) && is_zero(normal[(i + 2) % 3])) return i;
+  }
+  return -1;
+}
+
 // Not certain of a height's sign: nothing is known of the crossing then.
 EXACTFF_CLONES
-bool cross(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& s, const Vector& normal, double scale,
-           Vector& result) {
+bool cross(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& s, const Vector& normal, int zero_axis,
+           double scale, Vector& result) {
   const Bounded g_p = dot(normal, difference(p, s, scale)), g_q = dot(normal, difference(q, s, scale));
   if (!sign_is_certain(g_p) || !sign_is_certain(g_q)) return false;
   const Vector t_p = difference(p, x, scale), t_q = difference(q, x, scale);
   const Bounded l = magnitude(g_q), m = magnitude(g_p);
   const std::array<double, 3> pc = components(p), qc = components(q), xc = components(x);
   for (int i = 0; i < 3; ++i) {
-    const bool zero = pc[i] == xc[i] && qc[i] == xc[i];
+    const bool zero = i == zero_axis || (pc[i] == xc[i] && qc[i] == xc[i]);
     result[i] = zero ? Bounded{} : sum_of_products(t_p[i], l, t_q[i], m);
   }
   return true;
 }
 
 // |c - hi| <= |lo| + error <= u |hi| + error.
-bool is_fine(const Bounded& c) {
-  return (c.hi == 0.0 && c.lo == 0.0 && c.error == 0.0) || kInflation * c.error <= 0x1p-54 * std::abs(c.hi);
-}
+bool is_fine(const Bounded& c) { return is_zero(c) || kInflation * c.error <= 0x1p-54 * std::abs(c.hi); }
 
 // The two leading doubles of a number over 2^bits.
 Bounded leading(const Integer& number, long bits) {
@@ -81,19 +90,27 @@ FineNormal fine_normal(const ExactVec3& normal) {
   return {leading(normal.x, bits), leading(normal.y, bits), leading(normal.z, bits)};
 }
 
-void PlaneCrossings::start(const Vec3& x, const ExactVec3& normal, const FineNormal& fine_normal, const Vec3& point,
-                           int scale_exponent) {
+FineNormal fine_normal(const Vec3& normal) {
+  int exponent = 0;
+  static_cast<void>(std::frexp(std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)}), &exponent));
+  const auto scaled = [&](double c) {
+    return c == 0.0 ? Bounded{} : Bounded{std::ldexp(c, -exponent), 0.0, kUnderflow};
+  };
+  return {scaled(normal.x), scaled(normal.y), scaled(normal.z)};
+}
+
+void PlaneCrossings::start(const Vec3& x, const FineNormal& normal, const Vec3& point, int scale_exponent) {
   x_ = x;
-  normal_ = &normal;
-  fine_normal_ = &fine_normal;
+  normal_ = normal;
   point_ = point;
+  zero_axis_ = zero_axis(x, point, normal);
   scale_exponent_ = scale_exponent;
   scale_ = std::ldexp(1.0, scale_exponent);
 }
 
 std::optional<PlaneCrossings::Fine> PlaneCrossings::fine(const Vec3& p, const Vec3& q) const {
   Vector c;
-  if (!cross(p, q, x_, point_, *fine_normal_, scale_, c)) return std::nullopt;
+  if (!cross(p, q, x_, point_, normal_, zero_axis_, scale_, c)) return std::nullopt;
   const double largest = std::max({std::abs(c[0].hi), std::abs(c[1].hi), std::abs(c[2].hi)});
   const bool usable = largest >= 0x1p-300 && largest <= 0x1p300;  // false for NaN
   if (!usable || !is_fine(c[0]) || !is_fine(c[1]) || !is_fine(c[2])) return std::nullopt;
@@ -110,7 +127,7 @@ std::optional<PlaneCrossings::Fine> PlaneCrossings::fine(const Vec3& p, const Ve
   return result;
 }
 
-PlaneCrossings::Exact PlaneCrossings::exact(const Vec3& p, const Vec3& q, int exponent) const {
+PlaneCrossings::Exact PlaneCrossings::exact(const Vec3& p, const Vec3& q, int exponent, const ExactVec3& normal) const {
   ScaledVec3 t_p = kernel::exact_difference(p, x_), t_q = kernel::exact_difference(q, x_);
   ScaledVec3 d_p = kernel::exact_difference(p, point_), d_q = kernel::exact_difference(q, point_);
   const long t_exponent = std::min(t_p.exponent, t_q.exponent), d_exponent = std::min(d_p.exponent, d_q.exponent);
@@ -118,8 +135,8 @@ PlaneCrossings::Exact PlaneCrossings::exact(const Vec3& p, const Vec3& q, int ex
   lower_exponent(t_q, t_exponent);
   lower_exponent(d_p, d_exponent);
   lower_exponent(d_q, d_exponent);
-  const Integer g_p = abs(kernel::dot(*normal_, d_p.v)), g_q = abs(kernel::dot(*normal_, d_q.v));
-  return {t_p.v * g_q + t_q.v * g_p, t_exponent + d_exponent + 2L * scale_exponent_ - bit_length(*normal_) + exponent};
+  const Integer g_p = abs(kernel::dot(normal, d_p.v)), g_q = abs(kernel::dot(normal, d_q.v));
+  return {t_p.v * g_q + t_q.v * g_p, t_exponent + d_exponent + 2L * scale_exponent_ - bit_length(normal) + exponent};
 }
 
 }  // namespace exactff::visibility

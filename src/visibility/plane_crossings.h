@@ -1,4 +1,4 @@
-// Where the segment between two vertices crosses the plane of the source, as a direction from x.
+// Where the segment between two vertices crosses a plane, that of the source or the horizon, as a direction from x.
 //
 // With g(y) = N . (y - s), s a point of the plane, N its normal, and g(p), g(q) of different signs, it lies in
 // direction
@@ -21,13 +21,13 @@ using kernel::FineDirection;
 // A plane's normal over 2^bit_length(N), so that its largest component is in [1/2, 1).
 using FineNormal = std::array<kernel::double_double::Bounded, 3>;
 [[nodiscard]] FineNormal fine_normal(const kernel::ExactVec3& normal);
+// The same for the integers of exact_vector(normal).
+[[nodiscard]] FineNormal fine_normal(const Vec3& normal);
 
 class PlaneCrossings {
  public:
-  // Both forms of the normal must live on. Lengths are multiplied by 2^scale_exponent, which should bring them to the
-  // order of 1.
-  void start(const Vec3& x, const kernel::ExactVec3& normal, const FineNormal& fine_normal, const Vec3& point,
-             int scale_exponent);
+  // Lengths are multiplied by 2^scale_exponent, which should bring them to the order of 1.
+  void start(const Vec3& x, const FineNormal& normal, const Vec3& point, int scale_exponent);
 
   // Times 2^-bit_length(N) 2^exponent, so that the largest component is in [1/2, 1]. Each hi is within relative error
   // 2u of the true component and zero only where that is.
@@ -42,12 +42,12 @@ class PlaneCrossings {
     kernel::ExactVec3 direction;
     long fine_exponent = 0;
   };
-  [[nodiscard]] Exact exact(const Vec3& p, const Vec3& q, int exponent) const;
+  [[nodiscard]] Exact exact(const Vec3& p, const Vec3& q, int exponent, const kernel::ExactVec3& normal) const;
 
  private:
   Vec3 x_, point_;
-  const kernel::ExactVec3* normal_ = nullptr;
-  const FineNormal* fine_normal_ = nullptr;
+  FineNormal normal_{};
+  int zero_axis_ = -1;  // along which all crossings are 0; or none
   int scale_exponent_ = 0;
   double scale_ = 1.0;
 };

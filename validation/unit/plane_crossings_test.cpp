@@ -74,39 +74,60 @@ TEST(PlaneCrossings, HoldWhatTheyPromise) {
     int scale = 0;
     std::frexp(std::abs(s.p.x - s.x.x) + std::abs(s.q.y - s.x.y) + std::abs(s.q.z - s.x.z), &scale);
     PlaneCrossings crossings;
-    const FineNormal fine_form = fine_normal(normal);
-    crossings.start(s.x, normal, fine_form, s.a, -scale);
+    crossings.start(s.x, fine_normal(normal), s.a, -scale);
     const auto fine = crossings.fine(s.p, s.q);
     if (!fine) {
       ++declined;
       continue;
     }
     ++fine_ones;
-    expect_holds(*fine, crossings.exact(s.p, s.q, fine->exponent));
+    expect_holds(*fine, crossings.exact(s.p, s.q, fine->exponent, normal));
   }
   EXPECT_GT(fine_ones, 500);
   EXPECT_GT(declined, 20);
 }
 
+// The horizon's normal comes as three doubles, of any length, and its plane holds x.
+TEST(PlaneCrossings, HoldWhatTheyPromiseOnTheHorizon) {
+  int fine_ones = 0, fine_along_z = 0;
+  for (std::uint64_t i = 0; i < validation::scaled_count(3000); ++i) {
+    Random random(validation::seed_of(i));
+    const Segment s = random_segment(random);
+    const double length = std::ldexp(1.0, static_cast<int>(i % 1900) - 950);
+    const bool along_z = i % 5 == 0;
+    const Vec3 n{along_z ? 0.0 : (random.unit() - 0.5) * length, along_z ? 0.0 : (random.unit() - 0.5) * length,
+                 i % 5 == 1 ? 0.0 : length};
+    if (kernel::exact_sign_of_dot(n, {s.x, s.p}) * kernel::exact_sign_of_dot(n, {s.x, s.q}) >= 0) continue;
+    int scale = 0;
+    std::frexp(std::abs(s.p.x - s.x.x) + std::abs(s.q.y - s.x.y) + std::abs(s.q.z - s.x.z), &scale);
+    PlaneCrossings crossings;
+    crossings.start(s.x, fine_normal(n), s.x, -scale);
+    const auto fine = crossings.fine(s.p, s.q);
+    if (!fine) continue;
+    ++(along_z ? fine_along_z : fine_ones);
+    expect_holds(*fine, crossings.exact(s.p, s.q, fine->exponent, kernel::exact_vector(n).v));
+  }
+  EXPECT_GT(fine_ones, 300);
+  EXPECT_GT(fine_along_z, 100);
+}
+
 TEST(PlaneCrossings, KnowAnExactZero) {
   const kernel::ExactVec3 normal{0, 0, 1};
-  const FineNormal fine_form = fine_normal(normal);
   PlaneCrossings crossings;
-  crossings.start({0.1, 0.3, 0}, normal, fine_form, {5, 5, 1}, 0);
+  crossings.start({0.1, 0.3, 0}, fine_normal(normal), {5, 5, 1}, 0);
   const auto fine = crossings.fine({0.1, 0.7, 0.5}, {0.1, 0.2, 1.5});
   ASSERT_TRUE(fine);
   EXPECT_EQ(fine->direction.hi[0], 0.0);
   EXPECT_EQ(fine->direction.lo[0], 0.0);
-  expect_holds(*fine, crossings.exact({0.1, 0.7, 0.5}, {0.1, 0.2, 1.5}, fine->exponent));
+  expect_holds(*fine, crossings.exact({0.1, 0.7, 0.5}, {0.1, 0.2, 1.5}, fine->exponent, normal));
 }
 
 // An x that lies on the segment's line sees the crossing within roundings of itself.
 TEST(PlaneCrossings, DeclineWhereComponentsCancel) {
   const kernel::ExactVec3 normal{0, 0, 1};
-  const FineNormal fine_form = fine_normal(normal);
   PlaneCrossings crossings;
   const Vec3 p{0, 0, 0.5}, q{1, 1, 1.5};
-  crossings.start({0.5, 0.5, 0}, normal, fine_form, {0, 0, 1}, 0);  // straight below the crossing
+  crossings.start({0.5, 0.5, 0}, fine_normal(normal), {0, 0, 1}, 0);  // straight below the crossing
   EXPECT_FALSE(crossings.fine(p, q));
 }
 
