@@ -42,7 +42,7 @@ ScaledVec3 exact_vector(const Vec3& p);
 // The same vector with a smaller exponent.
 void lower_exponent(ScaledVec3& a, long exponent);
 
-// --- Signs, exactly, in whole numbers that allocate nothing while they are short ---
+// --- Signs, exactly, in binary numbers that allocate nothing while they are short ---
 
 struct Arrow {
   const Vec3& from;

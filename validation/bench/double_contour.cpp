@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "kernel/filter.h"
-#include "kernel/lanes.h"
+#include "kernel/reals.h"
 #include "sampled/vec.h"
 
 namespace exactff::bench {
@@ -47,10 +47,7 @@ Vec3 point_at(const Rounded& a, const Rounded& b, const visibility::EdgeParamete
 
 using kernel::lanes::Four;
 using kernel::lanes::four;
-
-EXACTFF_INLINE Four root(const Four& a) {
-  return Four{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
-}
+using kernel::reals::root;
 
 // The angle of (cosine, sine) for sine >= 0, within some units in the last place. With y / x at most 1, the tangent of
 // an angle from 0 to pi / 4 or, where it is more than tan(pi / 8), of one from -pi / 8 to 0 beyond pi / 4:
