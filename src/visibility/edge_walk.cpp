@@ -6,7 +6,6 @@
 
 #include "scene/closed_surfaces.h"
 #include "scene/scene_data.h"
-#include "visibility/convex_clip.h"
 #include "visibility/plane_frame.h"
 #include "visibility/side_planes.h"
 #include "visibility/visible_edges.h"
@@ -14,12 +13,9 @@
 namespace exactff::visibility {
 
 using kernel::Approx3;
-using kernel::Integer;
 using kernel::kUncertain;
 using kernel::Rational;
 using kernel::Ring;
-using kernel::ScaledVec3;
-using kernel::sign;
 
 namespace {
 

@@ -66,14 +66,14 @@ EXACTFF_INLINE CornerId Outlines::add_corner(const Approx3& t, double size, cons
   return static_cast<CornerId>(corners_.size() - 1);
 }
 
-EXACTFF_INLINE CornerId Outlines::find_corner(std::uint32_t any_vertex) {
+EXACTFF_INLINE CornerId Outlines::corner_of_vertex(std::uint32_t any_vertex) {
   const std::uint32_t vertex = places_[any_vertex];
   auto& [run, corner] = corner_of_vertex_[vertex];
   if (run == run_) {
     shared_corners_ = true;
     return corner;
   }
-  const Approx3 d = kernel::approx_difference(vertices_[vertex], x_);
+  const Approx3 d = kernel::approx_difference(position(vertex), x_);
   const Approx3 t{d.x * scale_, d.y * scale_, d.z * scale_};
   const bool exact_scaling =  // to larger numbers it always is, or they become infinite
       scale_ >= 1.0 || (scaled_safely(d.x, t.x) && scaled_safely(d.y, t.y) && scaled_safely(d.z, t.z));
@@ -82,11 +82,9 @@ EXACTFF_INLINE CornerId Outlines::find_corner(std::uint32_t any_vertex) {
   return corner;
 }
 
-CornerId Outlines::corner_of_vertex(std::uint32_t vertex) { return find_corner(vertex); }
-
 void Outlines::corners_of(std::span<const std::uint32_t> vertices, std::vector<CornerId>& corners) {
   corners.clear();
-  for (const std::uint32_t vertex : vertices) corners.push_back(find_corner(vertex));
+  for (const std::uint32_t vertex : vertices) corners.push_back(corner_of_vertex(vertex));
 }
 
 const ExactVec3& Outlines::keep_exact(Origin& origin, ExactVec3 direction, long exponent) {
@@ -119,12 +117,13 @@ const ExactVec3& Outlines::exact_normal(Plane plane) {
   return *exact_horizon_;
 }
 
+PlaneCrossings::Exact Outlines::exact_crossing(Plane plane, std::uint32_t p, std::uint32_t q, long exponent) {
+  return crossings(plane).exact(position(p), position(q), static_cast<int>(exponent), exact_normal(plane));
+}
+
 CornerId Outlines::add_crossing(Plane plane, std::uint32_t p, std::uint32_t q) {
   const auto fine = crossings(plane).fine(position(p), position(q));
-  if (!fine) {
-    return add_exactly(
-        kernel::make_direction(crossings(plane).exact(position(p), position(q), 0, exact_normal(plane)).direction));
-  }
+  if (!fine) return add_exactly(kernel::make_direction(exact_crossing(plane, p, q, 0).direction));
   const auto& [hi, lo, error] = fine->direction;
   fine_.push_back(fine->direction);
   const Approx3 t{hi[0], hi[1], hi[2]};
@@ -180,9 +179,7 @@ const ExactVec3& Outlines::exact(CornerId id) {
     kernel::ScaledVec3 difference = kernel::exact_difference(position(origin.p), x_);
     return keep_exact(origin, std::move(difference.v), difference.exponent + scale_exponent_);
   }
-  PlaneCrossings::Exact crossing =
-      crossings(origin.plane)
-          .exact(position(origin.p), position(origin.q), static_cast<int>(origin.exponent), exact_normal(origin.plane));
+  PlaneCrossings::Exact crossing = exact_crossing(origin.plane, origin.p, origin.q, origin.exponent);
   return keep_exact(origin, std::move(crossing.direction), crossing.fine_exponent);
 }
 

@@ -72,8 +72,7 @@ class Outlines {
 
   // Counter-clockwise as x sees it.
   OutlineId add(const kernel::Ring& ring);
-  [[nodiscard]] CornerId corner_of_vertex(std::uint32_t vertex);
-  // Of each vertex, in place of what was there.
+  // The corners that the vertices are, in place of what was there.
   void corners_of(std::span<const std::uint32_t> vertices, std::vector<CornerId>& corners);
   // Where the segment between two vertices on different sides of the plane crosses it.
   [[nodiscard]] CornerId add_crossing(Plane plane, std::uint32_t p, std::uint32_t q);
@@ -103,7 +102,7 @@ class Outlines {
   [[nodiscard]] const FineDirection* fine(CornerId id) const {
     return origins_[id].fine == kNone ? nullptr : &fine_[origins_[id].fine];
   }
-  [[nodiscard]] const Vec3& position(std::uint32_t vertex) const { return scene_->vertices()[vertex]; }
+  [[nodiscard]] const Vec3& position(std::uint32_t vertex) const { return vertices_[vertex]; }
   [[nodiscard]] const Vec3& x() const { return x_; }
   [[nodiscard]] int scale_exponent() const { return scale_exponent_; }
 
@@ -134,11 +133,12 @@ class Outlines {
     long exponent = 0;  // see exponent(); of a crossing, until then, that of its Fine
     [[nodiscard]] bool is_vertex() const { return p != kNone && q == kNone; }
   };
-  CornerId find_corner(std::uint32_t any_vertex);
+  CornerId corner_of_vertex(std::uint32_t any_vertex);
   CornerId add_corner(const kernel::Approx3& t, double size, const Origin& origin);
   CornerId add_exactly(kernel::Direction direction);
   [[nodiscard]] const PlaneCrossings& crossings(Plane plane) const { return crossings_[std::size_t(plane)]; }
   [[nodiscard]] const kernel::ExactVec3& exact_normal(Plane plane);
+  [[nodiscard]] PlaneCrossings::Exact exact_crossing(Plane plane, std::uint32_t p, std::uint32_t q, long exponent);
   const kernel::ExactVec3& keep_exact(Origin& origin, kernel::ExactVec3 direction, long exponent);
   void add_edges(std::span<const CornerId> corners, bool whole);
 

@@ -109,9 +109,8 @@ void print_ratios(const Results& results) {
   constexpr int n = 1000;
   print_head(
       "n = 1000. Engine: the visible edges, with Eq. (4) in double. Limit: Eq. (4) in double over the visible "
-      "edges, one after another, every occluder read once. Rays: 10,000 in packets of 16 that end near one another, "
-      "told "
-      "to be coherent or not, whichever is faster. Scattered rays: the same in random order.",
+      "edges, one after another, every occluder read once. Rays: 10,000 in packets of 16 that end near one "
+      "another, told to be coherent or not, whichever is faster. Scattered rays: the same in random order.",
       {"scene", "engine ms", "Boolean ms", "Boolean / engine", "engine / limit", "engine / rays",
        "both with their builds", "engine / scattered rays", "certified ms", "certified / engine"});
   for (const char* scene : kScenes) {
