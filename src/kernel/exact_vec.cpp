@@ -1,17 +1,41 @@
 #include "kernel/exact_vec.h"
 
-#include <CGAL/Mpzf.h>
-
 #include <algorithm>
-#include <array>
-#include <limits>
 
 namespace exactff::kernel {
 
-Integer dot(const ExactVec3& a, const ExactVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+namespace {
+
+// a b - c d
+void set_det(Integer& result, const Integer& a, const Integer& b, const Integer& c, const Integer& d) {
+  result = a * b;
+  mpz_submul(result.get_mpz_t(), c.get_mpz_t(), d.get_mpz_t());
+}
+
+}  // namespace
+
+void set_dot(Integer& result, const ExactVec3& a, const ExactVec3& b) {
+  result = a.x * b.x;
+  mpz_addmul(result.get_mpz_t(), a.y.get_mpz_t(), b.y.get_mpz_t());
+  mpz_addmul(result.get_mpz_t(), a.z.get_mpz_t(), b.z.get_mpz_t());
+}
+
+void set_cross(ExactVec3& result, const ExactVec3& a, const ExactVec3& b) {
+  set_det(result.x, a.y, b.z, a.z, b.y);
+  set_det(result.y, a.z, b.x, a.x, b.z);
+  set_det(result.z, a.x, b.y, a.y, b.x);
+}
+
+Integer dot(const ExactVec3& a, const ExactVec3& b) {
+  Integer result;
+  set_dot(result, a, b);
+  return result;
+}
 
 ExactVec3 cross(const ExactVec3& a, const ExactVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  ExactVec3 result;
+  set_cross(result, a, b);
+  return result;
 }
 
 ExactVec3 operator-(const ExactVec3& a, const ExactVec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -42,26 +66,40 @@ void make_primitive(ExactVec3& a) {
 
 namespace {
 
-Integer shifted(const BinaryDouble& number, long exponent) {
-  Integer result(number.mantissa);
-  if (number.mantissa != 0.0) result <<= static_cast<mp_bitcnt_t>(number.exponent - exponent);
-  return result;
+// (a - b) 2^-exponent; neither's exponent is below that.
+void set_scaled_difference(Integer& result, const BinaryDouble& a, const BinaryDouble& b, long exponent) {
+  constexpr int kSpareBits = 9;  // of a long beside a mantissa, a carry and the sign
+  const bool a_is_finer = a.exponent < b.exponent;
+  const BinaryDouble &fine = a_is_finer ? a : b, &coarse = a_is_finer ? b : a;
+  const int shift = coarse.exponent - fine.exponent;
+  if (shift <= kSpareBits) {
+    result = (coarse.mantissa << shift) - fine.mantissa;
+  } else {
+    result = coarse.mantissa;
+    result <<= static_cast<mp_bitcnt_t>(shift);
+    result -= fine.mantissa;
+  }
+  result <<= static_cast<mp_bitcnt_t>(fine.exponent - exponent);
+  if (a_is_finer) mpz_neg(result.get_mpz_t(), result.get_mpz_t());
 }
 
 }  // namespace
 
+void set_difference(ScaledVec3& result, const Vec3& p, const Vec3& q) {
+  const BinaryDouble numbers[] = {decompose(p.x), decompose(p.y), decompose(p.z),
+                                  decompose(q.x), decompose(q.y), decompose(q.z)};
+  int exponent = BinaryDouble::kExponentOfZero;
+  for (const BinaryDouble& number : numbers) exponent = std::min(exponent, number.exponent);
+  set_scaled_difference(result.v.x, numbers[0], numbers[3], exponent);
+  set_scaled_difference(result.v.y, numbers[1], numbers[4], exponent);
+  set_scaled_difference(result.v.z, numbers[2], numbers[5], exponent);
+  result.exponent = exponent;
+}
+
 ScaledVec3 exact_difference(const Vec3& p, const Vec3& q) {
-  const std::array<BinaryDouble, 6> numbers = {decompose(p.x), decompose(p.y), decompose(p.z),
-                                               decompose(q.x), decompose(q.y), decompose(q.z)};
-  long exponent = std::numeric_limits<long>::max();
-  for (const BinaryDouble& number : numbers) {
-    if (number.mantissa != 0.0) exponent = std::min<long>(exponent, number.exponent);
-  }
-  if (exponent == std::numeric_limits<long>::max()) return {};
-  const auto difference = [&](int axis) -> Integer {
-    return shifted(numbers[axis], exponent) - shifted(numbers[axis + 3], exponent);
-  };
-  return {{difference(0), difference(1), difference(2)}, exponent};
+  ScaledVec3 result;
+  set_difference(result, p, q);
+  return result;
 }
 
 ScaledVec3 exact_vector(const Vec3& p) { return exact_difference(p, Vec3{}); }
@@ -74,24 +112,36 @@ void lower_exponent(ScaledVec3& a, long exponent) {
 
 namespace {
 
-using CGAL::Mpzf;
-
-struct Terms {
-  explicit Terms(const Arrow& a)
-      : x(Mpzf(a.to.x) - Mpzf(a.from.x)), y(Mpzf(a.to.y) - Mpzf(a.from.y)), z(Mpzf(a.to.z) - Mpzf(a.from.z)) {}
-  Mpzf x, y, z;
+// For their memory. What scales a vector does not change a sign.
+struct Scratch {
+  ScaledVec3 n, a, b, c;
+  ExactVec3 cross;
+  Integer result;
 };
+
+Scratch& scratch() {
+  thread_local Scratch own;
+  return own;
+}
 
 }  // namespace
 
 int exact_sign_of_dot(const Vec3& n, const Arrow& a) {
-  const Terms t(a);
-  return (Mpzf(n.x) * t.x + Mpzf(n.y) * t.y + Mpzf(n.z) * t.z).sign();
+  Scratch& s = scratch();
+  set_difference(s.n, n, Vec3{});
+  set_difference(s.a, a.to, a.from);
+  set_dot(s.result, s.n.v, s.a.v);
+  return sign(s.result);
 }
 
 int exact_sign_of_det(const Arrow& a, const Arrow& b, const Arrow& c) {
-  const Terms p(a), q(b), r(c);
-  return (p.x * (q.y * r.z - q.z * r.y) + p.y * (q.z * r.x - q.x * r.z) + p.z * (q.x * r.y - q.y * r.x)).sign();
+  Scratch& s = scratch();
+  set_difference(s.a, a.to, a.from);
+  set_difference(s.b, b.to, b.from);
+  set_difference(s.c, c.to, c.from);
+  set_cross(s.cross, s.b.v, s.c.v);
+  set_dot(s.result, s.a.v, s.cross);
+  return sign(s.result);
 }
 
 }  // namespace exactff::kernel

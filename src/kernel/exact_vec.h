@@ -42,7 +42,13 @@ ScaledVec3 exact_vector(const Vec3& p);
 // The same vector with a smaller exponent.
 void lower_exponent(ScaledVec3& a, long exponent);
 
-// --- Signs, exactly, in binary numbers that allocate nothing while they are short ---
+// --- In the memory of a result, which is none of the operands: once it has held as much, nothing is allocated ---
+
+void set_dot(Integer& result, const ExactVec3& a, const ExactVec3& b);
+void set_cross(ExactVec3& result, const ExactVec3& a, const ExactVec3& b);
+void set_difference(ScaledVec3& result, const Vec3& p, const Vec3& q);  // p - q
+
+// --- Signs, exactly; after the first few nothing is allocated here either ---
 
 struct Arrow {
   const Vec3& from;

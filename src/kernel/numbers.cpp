@@ -74,11 +74,4 @@ Rational times_power_of_two(Rational value, long exponent) {
 
 std::string to_string(const Rational& value) { return value.get_str(); }
 
-BinaryDouble decompose(double value) {
-  if (value == 0.0) return {};
-  int exponent = 0;
-  const double fraction = std::frexp(value, &exponent);
-  return {std::ldexp(fraction, kMantissaBits), exponent - static_cast<int>(kMantissaBits)};
-}
-
 }  // namespace exactff::kernel

@@ -3,6 +3,10 @@
 
 #include <gmpxx.h>
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <string>
 
 namespace exactff::kernel {
@@ -37,11 +41,23 @@ double nearest_double(const Integer& a, long exponent);
 // "p/q" in lowest terms, or "p".
 std::string to_string(const Rational& value);
 
-// A finite double as mantissa * 2^exponent with a whole mantissa of magnitude below 2^53; zero has exponent 0.
+// A finite double as mantissa * 2^exponent, the mantissa odd and of magnitude below 2^53; or zero, whose exponent is
+// larger than any other double's.
 struct BinaryDouble {
-  double mantissa = 0.0;
-  int exponent = 0;
+  static constexpr int kExponentOfZero = 1024;
+  long mantissa = 0;
+  int exponent = kExponentOfZero;
 };
-BinaryDouble decompose(double value);
+inline BinaryDouble decompose(double value) {
+  constexpr int kStoredBits = 52, kBias = 1075;
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  const std::uint64_t stored = bits & ((std::uint64_t{1} << kStoredBits) - 1);
+  const int exponent = static_cast<int>(bits >> kStoredBits & 0x7FFU);
+  const std::uint64_t magnitude = exponent == 0 ? stored : stored | std::uint64_t{1} << kStoredBits;
+  if (magnitude == 0) return {};
+  const int zeros = std::countr_zero(magnitude);
+  const auto odd = static_cast<long>(magnitude >> zeros);
+  return {std::signbit(value) ? -odd : odd, std::max(exponent, 1) - kBias + zeros};
+}
 
 }  // namespace exactff::kernel

@@ -13,7 +13,6 @@
 //      u + v = 1 does not occur. The point is (1 - u - v) p + u q + v r, strictly inside the triangle, rounded once.
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <optional>
 #include <random>
 
@@ -137,15 +136,14 @@ std::array<Integer, 3> random_weights(RandomNumbers& numbers) {
 // One coordinate of the weighted mean of the corners.
 double rounded_mean(const std::array<double, 3>& corners, const std::array<Integer, 3>& weights) {
   std::array<kernel::BinaryDouble, 3> numbers;
-  int exponent = std::numeric_limits<int>::max();
+  int exponent = kernel::BinaryDouble::kExponentOfZero;
   for (std::size_t i = 0; i < 3; ++i) {
     numbers[i] = kernel::decompose(corners[i]);
-    if (corners[i] != 0.0) exponent = std::min(exponent, numbers[i].exponent);
+    exponent = std::min(exponent, numbers[i].exponent);
   }
   Integer sum = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (corners[i] == 0.0) continue;
-    const Integer term = weights[i] * Integer(numbers[i].mantissa);
+    const Integer term = weights[i] * numbers[i].mantissa;
     sum += term << static_cast<mp_bitcnt_t>(numbers[i].exponent - exponent);
   }
   return kernel::sign(sum) == 0 ? 0.0 : kernel::nearest_double(sum, exponent - kWeightBits);

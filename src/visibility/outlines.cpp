@@ -11,9 +11,9 @@
 namespace exactff::visibility {
 
 using kernel::Approx3;
-using kernel::Direction;
 using kernel::ExactVec3;
 using kernel::Integer;
+using kernel::ScaledVec3;
 
 namespace {
 
@@ -54,7 +54,8 @@ void Outlines::start(const Scene& scene, const Vec3& x, double unit) {
   scale_ = std::ldexp(1.0, scale_exponent_);
   corners_.clear();
   origins_.clear();
-  if (!exact_.empty()) exact_.clear();
+  exact_count_ = 0;
+  normal_a_ = normal_b_ = kNone;
   fine_.clear();
   edges_.clear();
   outlines_.clear();
@@ -87,19 +88,6 @@ void Outlines::corners_of(std::span<const std::uint32_t> vertices, std::vector<C
   for (const std::uint32_t vertex : vertices) corners.push_back(corner_of_vertex(vertex));
 }
 
-const ExactVec3& Outlines::keep_exact(Origin& origin, ExactVec3 direction, long exponent) {
-  origin.exact = static_cast<std::uint32_t>(exact_.size());
-  origin.exponent = exponent;
-  return exact_.emplace_back(std::move(direction));
-}
-
-CornerId Outlines::add_exactly(Direction direction) {
-  Origin origin;
-  const long bits = bit_length(direction.exact);
-  keep_exact(origin, std::move(direction.exact), -bits);
-  return add_corner(direction.approx, size_of(direction.approx), origin);
-}
-
 void Outlines::set_source_plane(const ExactVec3& normal, const FineNormal& fine_normal, const Vec3& point) {
   crossings_[std::size_t(Plane::kSource)].start(x_, fine_normal, point, scale_exponent_);
   normal_ = &normal;
@@ -108,42 +96,36 @@ void Outlines::set_source_plane(const ExactVec3& normal, const FineNormal& fine_
 void Outlines::set_horizon(const Vec3& normal) {
   crossings_[std::size_t(Plane::kHorizon)].start(x_, fine_normal(normal), x_, scale_exponent_);
   horizon_ = normal;
-  exact_horizon_.reset();
+  has_exact_horizon_ = false;
 }
 
 const ExactVec3& Outlines::exact_normal(Plane plane) {
   if (plane == Plane::kSource) return *normal_;
-  if (!exact_horizon_) exact_horizon_ = kernel::exact_vector(horizon_).v;
-  return *exact_horizon_;
-}
-
-PlaneCrossings::Exact Outlines::exact_crossing(Plane plane, std::uint32_t p, std::uint32_t q, long exponent) {
-  return crossings(plane).exact(position(p), position(q), static_cast<int>(exponent), exact_normal(plane));
+  if (!has_exact_horizon_) kernel::set_difference(exact_horizon_, horizon_, Vec3{});
+  has_exact_horizon_ = true;
+  return exact_horizon_.v;
 }
 
 CornerId Outlines::add_crossing(Plane plane, std::uint32_t p, std::uint32_t q) {
-  const auto fine = crossings(plane).fine(position(p), position(q));
-  if (!fine) return add_exactly(kernel::make_direction(exact_crossing(plane, p, q, 0).direction));
-  const auto& [hi, lo, error] = fine->direction;
-  fine_.push_back(fine->direction);
-  const Approx3 t{hi[0], hi[1], hi[2]};
-  return add_corner(t, size_of(t),
-                    {.p = p,
-                     .q = q,
-                     .fine = static_cast<std::uint32_t>(fine_.size() - 1),
-                     .plane = plane,
-                     .exponent = fine->exponent});
+  Origin origin{.p = p, .q = q, .plane = plane};
+  if (const auto fine = crossings(plane).fine(position(p), position(q))) {
+    const std::array<double, 3>& hi = fine->direction.hi;
+    const Approx3 t{hi[0], hi[1], hi[2]};
+    origin.fine = static_cast<std::uint32_t>(fine_.size());
+    origin.fine_exponent = fine->exponent;
+    fine_.push_back(fine->direction);
+    return add_corner(t, size_of(t), origin);
+  }
+  const CornerId corner = add_corner({}, 0.0, origin);
+  Corner& c = corners_[corner];
+  c.t = kernel::approx(exact(corner));
+  c.size = size_of(c.t);
+  return corner;
 }
 
 OutlineId Outlines::add(std::span<const CornerId> corners, bool whole) {
   add_edges(corners, whole);
   return static_cast<OutlineId>(outlines_.size() - 1);
-}
-
-OutlineId Outlines::add(const kernel::Ring& ring) {
-  ring_.clear();
-  for (const Direction& direction : ring) ring_.push_back(add_exactly(direction));
-  return add(ring_, false);
 }
 
 OutlineId Outlines::add(const Piece& piece, bool mirrored) {
@@ -172,19 +154,30 @@ void Outlines::remove_last() {
   outlines_.pop_back();
 }
 
-const ExactVec3& Outlines::exact(CornerId id) {
+const ScaledVec3& Outlines::scaled(CornerId id) {
   Origin& origin = origins_[id];
   if (origin.exact != kNone) return exact_[origin.exact];
+  origin.exact = static_cast<std::uint32_t>(exact_count_++);
+  if (exact_.size() < exact_count_) exact_.emplace_back();
+  ScaledVec3& result = exact_[origin.exact];
   if (origin.is_vertex()) {
-    kernel::ScaledVec3 difference = kernel::exact_difference(position(origin.p), x_);
-    return keep_exact(origin, std::move(difference.v), difference.exponent + scale_exponent_);
+    kernel::set_difference(result, position(origin.p), x_);
+    result.exponent += scale_exponent_;
+  } else {
+    crossings(origin.plane)
+        .set_exact(result, position(origin.p), position(origin.q), exact_normal(origin.plane), origin.fine_exponent);
+    if (origin.fine == kNone) result.exponent = -bit_length(result.v);  // the scale of approx()
   }
-  PlaneCrossings::Exact crossing = exact_crossing(origin.plane, origin.p, origin.q, origin.exponent);
-  return keep_exact(origin, std::move(crossing.direction), crossing.fine_exponent);
+  return result;
 }
 
-Integer Outlines::exact_height(const Edge& edge, CornerId t) {
-  return dot(cross(exact(edge.b), exact(edge.a)), exact(t));
+void Outlines::set_exact_height(Integer& result, const Edge& edge, CornerId t) {
+  if (edge.a != normal_a_ || edge.b != normal_b_) {
+    set_cross(edge_normal_, exact(edge.b), exact(edge.a));
+    normal_a_ = edge.a;
+    normal_b_ = edge.b;
+  }
+  set_dot(result, edge_normal_, exact(t));
 }
 
 int Outlines::side_by_filter(const Approx3& normal, CornerId t) const {
@@ -197,9 +190,8 @@ int Outlines::side(const Edge& edge, CornerId t) {
   if (h.value > h.error) return 1;
   if (h.value < -h.error) return -1;
   if (t == edge.a || t == edge.b) return 0;
-  const Origin &a = origins_[edge.a], &b = origins_[edge.b], &c = origins_[t];
-  if (!a.is_vertex() || !b.is_vertex() || !c.is_vertex()) return kernel::sign(exact_height(edge, t));
-  return kernel::orientation(x_, position(b.p), position(a.p), position(c.p));
+  set_exact_height(height_, edge, t);
+  return kernel::sign(height_);
 }
 
 }  // namespace exactff::visibility

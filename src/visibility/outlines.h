@@ -24,7 +24,8 @@
 #include <vector>
 
 #include "exactff/scene.h"
-#include "kernel/direction.h"
+#include "kernel/exact_vec.h"
+#include "kernel/filter.h"
 #include "visibility/boundary_piece.h"
 #include "visibility/plane_crossings.h"
 
@@ -70,8 +71,6 @@ class Outlines {
   void set_source_plane(const kernel::ExactVec3& normal, const FineNormal& fine_normal, const Vec3& point);
   void set_horizon(const Vec3& normal);
 
-  // Counter-clockwise as x sees it.
-  OutlineId add(const kernel::Ring& ring);
   // The corners that the vertices are, in place of what was there.
   void corners_of(std::span<const std::uint32_t> vertices, std::vector<CornerId>& corners);
   // Where the segment between two vertices on different sides of the plane crosses it.
@@ -117,10 +116,11 @@ class Outlines {
   // Sign of normal . t, or kUncertain.
   [[nodiscard]] int side_by_filter(const kernel::Approx3& normal, CornerId t) const;
 
-  [[nodiscard]] const kernel::ExactVec3& exact(CornerId id);
-  // exact(id) * 2^exponent(id) is what the doubles of the corner approximate. Known once exact(id) has been asked for.
-  [[nodiscard]] long exponent(CornerId id) const { return origins_[id].exponent; }
-  [[nodiscard]] kernel::Integer exact_height(const Edge& edge, CornerId t);
+  [[nodiscard]] const kernel::ExactVec3& exact(CornerId id) { return scaled(id).v; }
+  // exact(id) * 2^exponent(id) is what the doubles of the corner approximate.
+  [[nodiscard]] long exponent(CornerId id) { return scaled(id).exponent; }
+  // Of a corner above an edge's line, exactly, in the memory that the result has.
+  void set_exact_height(kernel::Integer& result, const Edge& edge, CornerId t);
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
@@ -130,16 +130,15 @@ class Outlines {
     std::uint32_t exact = kNone;  // into exact_
     std::uint32_t fine = kNone;   // into fine_
     Plane plane = Plane::kSource;
-    long exponent = 0;  // see exponent(); of a crossing, until then, that of its Fine
+    int fine_exponent = 0;
     [[nodiscard]] bool is_vertex() const { return p != kNone && q == kNone; }
   };
   CornerId corner_of_vertex(std::uint32_t any_vertex);
   CornerId add_corner(const kernel::Approx3& t, double size, const Origin& origin);
-  CornerId add_exactly(kernel::Direction direction);
   [[nodiscard]] const PlaneCrossings& crossings(Plane plane) const { return crossings_[std::size_t(plane)]; }
   [[nodiscard]] const kernel::ExactVec3& exact_normal(Plane plane);
-  [[nodiscard]] PlaneCrossings::Exact exact_crossing(Plane plane, std::uint32_t p, std::uint32_t q, long exponent);
-  const kernel::ExactVec3& keep_exact(Origin& origin, kernel::ExactVec3 direction, long exponent);
+  // Kept in exact_, once it has been made.
+  [[nodiscard]] const kernel::ScaledVec3& scaled(CornerId id);
   void add_edges(std::span<const CornerId> corners, bool whole);
 
   const Scene* scene_ = nullptr;
@@ -149,19 +148,25 @@ class Outlines {
   int scale_exponent_ = 0;
   double scale_ = 1.0;
   std::vector<Corner> corners_;
-  std::vector<Origin> origins_;  // by corner
-  std::deque<kernel::ExactVec3> exact_;
+  std::vector<Origin> origins_;           // by corner
+  std::deque<kernel::ScaledVec3> exact_;  // the first exact_count_; what follows is only memory
+  std::size_t exact_count_ = 0;
+  kernel::ExactVec3 edge_normal_;                 // of the edge that was last asked for exactly,
+  CornerId normal_a_ = kNone, normal_b_ = kNone;  // from a to b
   std::vector<FineDirection> fine_;
-  std::array<PlaneCrossings, 2> crossings_;         // by plane
-  const kernel::ExactVec3* normal_ = nullptr;       // of the source's plane
-  Vec3 horizon_;                                    // the horizon's normal, and exactly,
-  std::optional<kernel::ExactVec3> exact_horizon_;  // once needed
+  std::array<PlaneCrossings, 2> crossings_;    // by plane
+  const kernel::ExactVec3* normal_ = nullptr;  // of the source's plane
+  Vec3 horizon_;                               // the horizon's normal, and exactly,
+  kernel::ScaledVec3 exact_horizon_;           // once needed
+  bool has_exact_horizon_ = false;
   std::vector<Edge> edges_;
   std::vector<Outline> outlines_;
-  std::vector<CornerId> ring_;                                        // scratch
   std::vector<std::pair<std::uint32_t, CornerId>> corner_of_vertex_;  // (run, corner) for every vertex of the scene
   std::uint32_t run_ = 0;
   bool shared_corners_ = false;
+  // Scratch.
+  std::vector<CornerId> ring_;
+  kernel::Integer height_;
 };
 
 }  // namespace exactff::visibility

@@ -127,16 +127,46 @@ std::optional<PlaneCrossings::Fine> PlaneCrossings::fine(const Vec3& p, const Ve
   return result;
 }
 
-PlaneCrossings::Exact PlaneCrossings::exact(const Vec3& p, const Vec3& q, int exponent, const ExactVec3& normal) const {
-  ScaledVec3 t_p = kernel::exact_difference(p, x_), t_q = kernel::exact_difference(q, x_);
-  ScaledVec3 d_p = kernel::exact_difference(p, point_), d_q = kernel::exact_difference(q, point_);
+namespace {
+
+// Of set_exact, for its memory.
+struct Scratch {
+  ScaledVec3 t_p, t_q, d_p, d_q;
+  Integer g_p, g_q;
+};
+
+void set_magnitude_of_dot(Integer& result, const ExactVec3& a, const ExactVec3& b) {
+  kernel::set_dot(result, a, b);
+  mpz_abs(result.get_mpz_t(), result.get_mpz_t());
+}
+
+// a b + c d
+void set_sum_of_products(Integer& result, const Integer& a, const Integer& b, const Integer& c, const Integer& d) {
+  result = a * b;
+  mpz_addmul(result.get_mpz_t(), c.get_mpz_t(), d.get_mpz_t());
+}
+
+}  // namespace
+
+void PlaneCrossings::set_exact(ScaledVec3& result, const Vec3& p, const Vec3& q, const ExactVec3& normal,
+                               long fine_exponent) const {
+  thread_local Scratch scratch;
+  auto& [t_p, t_q, d_p, d_q, g_p, g_q] = scratch;
+  kernel::set_difference(t_p, p, x_);
+  kernel::set_difference(t_q, q, x_);
+  kernel::set_difference(d_p, p, point_);
+  kernel::set_difference(d_q, q, point_);
   const long t_exponent = std::min(t_p.exponent, t_q.exponent), d_exponent = std::min(d_p.exponent, d_q.exponent);
   lower_exponent(t_p, t_exponent);
   lower_exponent(t_q, t_exponent);
   lower_exponent(d_p, d_exponent);
   lower_exponent(d_q, d_exponent);
-  const Integer g_p = abs(kernel::dot(normal, d_p.v)), g_q = abs(kernel::dot(normal, d_q.v));
-  return {t_p.v * g_q + t_q.v * g_p, t_exponent + d_exponent + 2L * scale_exponent_ - bit_length(normal) + exponent};
+  set_magnitude_of_dot(g_p, normal, d_p.v);
+  set_magnitude_of_dot(g_q, normal, d_q.v);
+  set_sum_of_products(result.v.x, t_p.v.x, g_q, t_q.v.x, g_p);
+  set_sum_of_products(result.v.y, t_p.v.y, g_q, t_q.v.y, g_p);
+  set_sum_of_products(result.v.z, t_p.v.z, g_q, t_q.v.z, g_p);
+  result.exponent = t_exponent + d_exponent + 2L * scale_exponent_ - bit_length(normal) + fine_exponent;
 }
 
 }  // namespace exactff::visibility

@@ -37,12 +37,9 @@ class PlaneCrossings {
   };
   [[nodiscard]] std::optional<Fine> fine(const Vec3& p, const Vec3& q) const;
 
-  // exact * 2^fine_exponent is what a Fine with the given exponent approximates.
-  struct Exact {
-    kernel::ExactVec3 direction;
-    long fine_exponent = 0;
-  };
-  [[nodiscard]] Exact exact(const Vec3& p, const Vec3& q, int exponent, const kernel::ExactVec3& normal) const;
+  // The crossing, in the memory that the result has; v 2^exponent is what a Fine with `fine_exponent` approximates.
+  void set_exact(kernel::ScaledVec3& result, const Vec3& p, const Vec3& q, const kernel::ExactVec3& normal,
+                 long fine_exponent) const;
 
  private:
   Vec3 x_, point_;

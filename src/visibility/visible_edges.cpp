@@ -34,7 +34,7 @@ float rounded_up(double error) { return static_cast<float>(error * (1.0 + 0x1p-2
 
 bool VisibleEdges::find(std::size_t source_count) {
   parts_.clear();
-  stored_.clear();
+  stored_count_ = 0;
   pairs_ = undecided_pairs_ = 0;
   stored_at_.resize(4 * outlines_.edges().size());
   drop_inner_edges(source_count);
@@ -405,7 +405,7 @@ void VisibleEdges::cut_exactly(EdgeId edge_id, EdgeId line, int& sign_a, int& si
     crossing = {std::abs(a.value) / sum, rounded_up(2.0 * error / sum + 0x1p-50), line};
     return;
   }
-  const EdgeParameter at = exact(edge_id, {0.0, 0.0F, line});
+  const EdgeParameter& at = exact_crossing(edge_id, line);
   long l_exponent = 0, m_exponent = 0;
   const double l_mantissa = mpz_get_d_2exp(&l_exponent, at.l.get_mpz_t());
   const double m_mantissa = mpz_get_d_2exp(&m_exponent, at.m.get_mpz_t());
@@ -449,22 +449,35 @@ bool VisibleEdges::cover_exactly(EdgeId edge, OutlineId outline, Cover& result) 
   return true;
 }
 
-EdgeParameter VisibleEdges::exact(EdgeId edge, const Parameter& p) {
-  if (p.line == Parameter::kAtBegin) return {1, 0};
-  if (p.line == Parameter::kAtEnd) return {0, 1};
-  std::uint32_t& at = stored_at(edge, p.line);
-  if (at < stored_.size() && stored_[at].edge == edge && stored_[at].line == p.line) return stored_[at].parameter;
-  const Edge e = outlines_.edge(edge), f = outlines_.edge(p.line);
-  at = static_cast<std::uint32_t>(stored_.size());
-  stored_.push_back({edge, p.line, {abs(outlines_.exact_height(f, e.b)), abs(outlines_.exact_height(f, e.a))}});
-  return stored_.back().parameter;
+const EdgeParameter& VisibleEdges::exact(EdgeId edge, const Parameter& p) {
+  static const EdgeParameter begin{1, 0}, end{0, 1};
+  return p.line == Parameter::kAtBegin ? begin : p.line == Parameter::kAtEnd ? end : exact_crossing(edge, p.line);
+}
+
+const EdgeParameter& VisibleEdges::exact_crossing(EdgeId edge, EdgeId line) {
+  std::uint32_t& at = stored_at(edge, line);
+  if (at < stored_count_ && stored_[at].edge == edge && stored_[at].line == line) return stored_[at].parameter;
+  at = static_cast<std::uint32_t>(stored_count_++);
+  if (stored_.size() < stored_count_) stored_.emplace_back();
+  Stored& stored = stored_[at];
+  stored.edge = edge;
+  stored.line = line;
+  auto& [l, m] = stored.parameter;
+  outlines_.set_exact_height(l, outlines_.edge(line), outlines_.edge(edge).b);
+  outlines_.set_exact_height(m, outlines_.edge(line), outlines_.edge(edge).a);
+  mpz_abs(l.get_mpz_t(), l.get_mpz_t());
+  mpz_abs(m.get_mpz_t(), m.get_mpz_t());
+  return stored.parameter;
 }
 
 int VisibleEdges::compare_exactly(EdgeId edge, const Parameter& p, const Parameter& q) {
   if (p.line == Parameter::kAtBegin || q.line == Parameter::kAtEnd) return -1;
   if (p.line == Parameter::kAtEnd || q.line == Parameter::kAtBegin) return 1;
-  const EdgeParameter a = exact(edge, p), b = exact(edge, q);
-  return cmp(a.m * b.l, b.m * a.l) < 0 ? -1 : a.m * b.l == b.m * a.l ? 0 : 1;
+  const EdgeParameter &a = exact_crossing(edge, p.line), &b = exact_crossing(edge, q.line);
+  product_p_ = a.m * b.l;
+  product_q_ = b.m * a.l;
+  const int order = cmp(product_p_, product_q_);
+  return order < 0 ? -1 : order > 0 ? 1 : 0;
 }
 
 // The union, as disjoint intervals in order.

@@ -22,6 +22,7 @@
 
 #include <array>
 #include <cmath>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -111,7 +112,7 @@ class VisibleEdges {
   };
   // An exact parameter, kept lest it be computed twice.
   struct Stored {
-    EdgeId edge, line;
+    EdgeId edge = 0, line = 0;
     EdgeParameter parameter;
   };
 
@@ -148,7 +149,8 @@ class VisibleEdges {
     return p.line == q.line ? 0 : compare_exactly(edge, p, q);
   }
   [[nodiscard]] int compare_exactly(EdgeId edge, const Parameter& p, const Parameter& q);
-  [[nodiscard]] EdgeParameter exact(EdgeId edge, const Parameter& p);
+  [[nodiscard]] const EdgeParameter& exact(EdgeId edge, const Parameter& p);
+  [[nodiscard]] const EdgeParameter& exact_crossing(EdgeId edge, EdgeId line);
   [[nodiscard]] std::uint32_t& stored_at(EdgeId edge, EdgeId line) {
     return stored_at_[4 * std::size_t{line} + edge % 4];
   }
@@ -163,7 +165,9 @@ class VisibleEdges {
   std::array<Cuts, kBatch> batch_;     // by some of these
   std::vector<Part> parts_;
   std::uint64_t pairs_ = 0, undecided_pairs_ = 0;
-  std::vector<Stored> stored_;
+  std::deque<Stored> stored_;  // the first stored_count_; what follows is only memory
+  std::size_t stored_count_ = 0;
+  kernel::Integer product_p_, product_q_;  // scratch
   std::vector<std::uint32_t> stored_at_;  // into stored_, for every line and four edges; what is there may be another's
   std::array<std::vector<Interval>, kRunCorners> removed_;  // by edge of the run
   std::vector<Interval> left_, right_;

@@ -61,9 +61,11 @@ TEST(Numbers, TiesGoToTheEvenMantissa) {
 }
 
 TEST(Numbers, DecomposeIsExact) {
-  for (const double value : {0.0, 1.0, -0.1, kDenormal, -3 * kDenormal, kLargest, 552.8}) {
+  for (const double value : {0.0, -0.0, 1.0, -0.1, 96.0, kDenormal, -3 * kDenormal, kLargest, -kLargest, 552.8}) {
     const BinaryDouble parts = decompose(value);
     EXPECT_EQ(Rational(parts.mantissa) * power_of_two(parts.exponent), to_rational(value)) << value;
+    EXPECT_EQ(parts.mantissa % 2 == 0, value == 0.0) << value;
+    EXPECT_LE(parts.exponent, BinaryDouble::kExponentOfZero) << value;
   }
 }
 
@@ -79,6 +81,25 @@ TEST(ExactVec, DifferenceIsExactAtAnyScale) {
     ASSERT_EQ(d.v.x * unit, to_rational(p.x) - to_rational(q.x));
     ASSERT_EQ(d.v.y * unit, to_rational(p.y) - to_rational(q.y));
     ASSERT_EQ(d.v.z * unit, to_rational(p.z) - to_rational(q.z));
+  }
+}
+
+TEST(ExactVec, ResultsDoNotDependOnWhatTheirMemoryHeld) {
+  Random random(4);
+  ScaledVec3 used;
+  ExactVec3 used_cross;
+  Integer used_dot;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p = any_vec(random), q = random.one_in(4) ? p : any_vec(random);
+    set_difference(used, p, q);
+    const ScaledVec3 fresh = exact_difference(p, q);
+    EXPECT_EQ(used.exponent, fresh.exponent);
+    EXPECT_TRUE(is_zero(used.v - fresh.v));
+    const ExactVec3 other = exact_vector(q).v;
+    set_cross(used_cross, fresh.v, other);
+    EXPECT_TRUE(is_zero(used_cross - cross(fresh.v, other)));
+    set_dot(used_dot, fresh.v, other);
+    EXPECT_EQ(used_dot, dot(fresh.v, other));
   }
 }
 

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 #include "generate/plain_scene.h"
 #include "generate/random.h"
@@ -27,28 +29,49 @@ Vec3 operator*(const Vec3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 // Outlines of directions from the origin.
 class Seen {
  public:
-  Seen() : scene_(generate::build(triangle())) { outlines_.start(scene_, {}, 1.0); }
-
   // Nothing is added where the origin sees no area.
-  void add(const Corners& corners) {
-    kernel::Ring ring;
-    for (const Vec3& c : corners) ring.push_back(kernel::make_direction(kernel::exact_vector(c).v));
-    const int turn = kernel::orientation(ring[0], ring[1], ring[2]);
+  void add(Corners corners) {
+    const int turn = kernel::orientation({}, corners[0], corners[1], corners[2]);
     if (turn == 0) return;
-    if (turn > 0) std::reverse(ring.begin(), ring.end());
-    static_cast<void>(outlines_.add(ring));
+    if (turn > 0) std::reverse(corners.begin(), corners.end());
+    rings_.push_back(std::move(corners));
   }
-  Outlines& outlines() { return outlines_; }
+  // Of all that was added before.
+  Outlines& outlines() {
+    if (scene_) return outlines_;
+    scene_ = generate::build(with_all_vertices());
+    outlines_.start(*scene_, {}, 1.0);
+    std::uint32_t vertex = 0;
+    std::vector<std::uint32_t> vertices;
+    std::vector<CornerId> corners;
+    for (const Corners& ring : rings_) {
+      vertices.resize(ring.size());
+      std::iota(vertices.begin(), vertices.end(), vertex);
+      vertex += static_cast<std::uint32_t>(ring.size());
+      outlines_.corners_of(vertices, corners);
+      static_cast<void>(outlines_.add(corners, false));
+    }
+    return outlines_;
+  }
 
  private:
-  static generate::PlainScene triangle() {
+  // Rings of four corners need not lie in a plane: the scene has a triangle of one of them alone.
+  [[nodiscard]] generate::PlainScene with_all_vertices() const {
     generate::PlainScene plain;
-    plain.add_ring(plain.patch("source"), {{0, 0, 1}, {0, 1, 1}, {1, 0, 1}});
+    for (const Corners& ring : rings_) plain.vertices.insert(plain.vertices.end(), ring.begin(), ring.end());
+    plain.patch("source").faces.push_back({{{0, 1, 2}}});
     return plain;
   }
-  Scene scene_;
+  std::vector<Corners> rings_;
+  std::optional<Scene> scene_;
   Outlines outlines_;
 };
+
+Integer exact_height(Outlines& outlines, EdgeId line, CornerId corner) {
+  Integer height;
+  outlines.set_exact_height(height, outlines.edge(line), corner);
+  return height;
+}
 
 struct Interval {
   Rational low = 0, high = 1;  // of m / (l + m)
@@ -58,8 +81,7 @@ struct Interval {
 void cut(Outlines& outlines, const Outlines::Edge& edge, OutlineId by, Interval& interval) {
   const Outlines::Outline o = outlines.outline(by);
   for (EdgeId id = o.first; id < o.first + o.count; ++id) {
-    const Integer a = outlines.exact_height(outlines.edge(id), edge.a);
-    const Integer b = outlines.exact_height(outlines.edge(id), edge.b);
+    const Integer a = exact_height(outlines, id, edge.a), b = exact_height(outlines, id, edge.b);
     if (sgn(a) < 0 && sgn(b) < 0) interval.high = -1;
     if (sgn(a) * sgn(b) >= 0 && !(sgn(a) < 0 || sgn(b) < 0)) continue;
     if (a == b) continue;
@@ -72,8 +94,7 @@ void cut(Outlines& outlines, const Outlines::Edge& edge, OutlineId by, Interval&
 bool holds_inside(Outlines& outlines, OutlineId by, const Outlines::Edge& edge, const Rational& at) {
   const Outlines::Outline o = outlines.outline(by);
   for (EdgeId id = o.first; id < o.first + o.count; ++id) {
-    const Rational a = outlines.exact_height(outlines.edge(id), edge.a);
-    const Rational b = outlines.exact_height(outlines.edge(id), edge.b);
+    const Rational a = exact_height(outlines, id, edge.a), b = exact_height(outlines, id, edge.b);
     if (a * (1 - at) + b * at <= 0) return false;
   }
   return true;

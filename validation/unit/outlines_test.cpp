@@ -49,10 +49,11 @@ void expect_true_heights(const PlainScene& plain, double unit, Tally& tally) {
   Outlines outlines;
   outlines.start(scene, plain.point, unit);
   for (const Piece& piece : scene.pieces()) static_cast<void>(outlines.add(piece, false));
+  kernel::Integer exact;
   for (const Outlines::Edge& edge : outlines.edges()) {
     for (CornerId t = 0; t < outlines.corner_count(); ++t) {
       const Height height = outlines.height(edge, t);
-      const kernel::Integer exact = outlines.exact_height(edge, t);
+      outlines.set_exact_height(exact, edge, t);
       EXPECT_EQ(outlines.side(edge, t), kernel::sign(exact));
       EXPECT_EQ(kernel::sign(exact), kernel::orientation(plain.point, outlines.position(*outlines.vertex(edge.b)),
                                                          outlines.position(*outlines.vertex(edge.a)),

@@ -48,15 +48,14 @@ kernel::ExactVec3 normal_of(const Segment& s) {
 
 int height_sign(const Segment& s, const Vec3& y) { return kernel::orientation(s.a, s.b, s.c, y); }
 
-// The true component, in the scale of the doubles.
-Rational truth(const PlaneCrossings::Exact& exact, int axis) {
-  return kernel::times_power_of_two(Rational(exact.direction[axis]), exact.fine_exponent);
-}
-
-void expect_holds(const PlaneCrossings::Fine& fine, const PlaneCrossings::Exact& exact) {
+// Where the segment pq crosses the plane of that normal.
+void expect_holds(const PlaneCrossings::Fine& fine, const PlaneCrossings& crossings, const Vec3& p, const Vec3& q,
+                  const kernel::ExactVec3& normal) {
+  kernel::ScaledVec3 exact;
+  crossings.set_exact(exact, p, q, normal, fine.exponent);
   const Rational u = kernel::to_rational(0x1p-53);
   for (int axis = 0; axis < 3; ++axis) {
-    const Rational t = truth(exact, axis);
+    const Rational t = kernel::times_power_of_two(Rational(exact.v[axis]), exact.exponent);
     const Rational hi = kernel::to_rational(fine.direction.hi[axis]), lo = kernel::to_rational(fine.direction.lo[axis]);
     EXPECT_LE(abs(t - hi - lo), kernel::to_rational(fine.direction.error));
     EXPECT_LE(abs(t - hi), 2 * u * abs(t));
@@ -81,7 +80,7 @@ TEST(PlaneCrossings, HoldWhatTheyPromise) {
       continue;
     }
     ++fine_ones;
-    expect_holds(*fine, crossings.exact(s.p, s.q, fine->exponent, normal));
+    expect_holds(*fine, crossings, s.p, s.q, normal);
   }
   EXPECT_GT(fine_ones, 500);
   EXPECT_GT(declined, 20);
@@ -105,7 +104,7 @@ TEST(PlaneCrossings, HoldWhatTheyPromiseOnTheHorizon) {
     const auto fine = crossings.fine(s.p, s.q);
     if (!fine) continue;
     ++(along_z ? fine_along_z : fine_ones);
-    expect_holds(*fine, crossings.exact(s.p, s.q, fine->exponent, kernel::exact_vector(n).v));
+    expect_holds(*fine, crossings, s.p, s.q, kernel::exact_vector(n).v);
   }
   EXPECT_GT(fine_ones, 300);
   EXPECT_GT(fine_along_z, 100);
@@ -119,7 +118,7 @@ TEST(PlaneCrossings, KnowAnExactZero) {
   ASSERT_TRUE(fine);
   EXPECT_EQ(fine->direction.hi[0], 0.0);
   EXPECT_EQ(fine->direction.lo[0], 0.0);
-  expect_holds(*fine, crossings.exact({0.1, 0.7, 0.5}, {0.1, 0.2, 1.5}, fine->exponent, normal));
+  expect_holds(*fine, crossings, {0.1, 0.7, 0.5}, {0.1, 0.2, 1.5}, normal);
 }
 
 // An x that lies on the segment's line sees the crossing within roundings of itself.
