@@ -62,13 +62,13 @@ struct PlaneRecord {
   Outcome outcome = Outcome::kBehind;
   bool horizon_clipped = false;               // the horizon cut the faces
   bool source_joined = false;                 // more than one convex piece had to be joined
-  std::uint64_t tree_candidates = 0;          // pieces the bounding-volume tree could not rule out
-  std::uint64_t candidates = 0;               // pieces left by the exact predicates and the exact clip
-  std::uint64_t clipped = 0;                  // candidates that an exact clip cut
-  std::uint64_t pairs = 0;                    // of an edge and an occluder, looked at by the edge engine
+  std::uint64_t tree_candidates = 0;          // pieces the bounding-volume tree could not rule out, in each shaft
+  std::uint64_t candidates = 0;               // pieces left by the exact predicates
+  std::uint64_t clipped = 0;                  // candidates that the source's plane, or the Booleans' shaft, cuts
+  std::uint64_t pairs = 0;                    // of an edge and another face, looked at by the edge engine
   std::uint64_t undecided_pairs = 0;          // those that the floating-point filter left to exact predicates
   std::uint64_t loops = 0;                    // boundary loops integrated; the edge engine does not count them
-  std::uint64_t edges = 0;                    // boundary pieces integrated, after merging collinear ones
+  std::uint64_t edges = 0;                    // boundary pieces integrated; the Booleans merge collinear ones
   std::optional<double> visible_fraction;     // on request, correctly rounded
   std::optional<std::string> exact_fraction;  // on request: "p/q"
 };
@@ -129,7 +129,7 @@ class ExactSource {
 
 // Exact (value), encloses (enclosure). `source` must have been made from `scene`. Requires finite coordinates and a
 // normal other than zero (else InputError). Safe to call from several threads at once; the result depends on nothing
-// but the arguments.
+// but the arguments, also where the thread rounds otherwise than to nearest or flushes small numbers to zero.
 [[nodiscard]] FormFactor exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                                            const ExactOptions& options = {});
 // The same into a result that the caller keeps: every field is set anew in the memory that there is. From the second

@@ -3,6 +3,7 @@
 
 #include "exact/source_planes.h"
 #include "exactff/exact.h"
+#include "kernel/float_environment.h"
 #include "visibility/visible_boundary.h"
 
 namespace exactff {
@@ -66,6 +67,7 @@ PlaneDrawing draw(const visibility::View& view, const visibility::SourcePlane& p
 }  // namespace
 
 std::vector<PlaneDrawing> draw_visibility(const Scene& scene, const Receiver& receiver, const ExactSource& source) {
+  const kernel::StandardArithmetic arithmetic;
   exact::check_receiver(receiver);
   const visibility::View view(scene, receiver);
   std::vector<PlaneDrawing> drawings;

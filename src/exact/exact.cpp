@@ -9,13 +9,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "contour/contour.h"
 #include "exact/fraction.h"
 #include "exact/quick_tier.h"
 #include "exact/source_planes.h"
+#include "kernel/float_environment.h"
 #include "visibility/visible_boundary.h"
 #include "visibility/visible_edges.h"
 
@@ -25,8 +25,10 @@ using exact::PlaneShare;
 using visibility::PlaneVisibility;
 using visibility::SourcePlane;
 
-ExactSource::ExactSource(const Scene& scene, const Selection& selection)
-    : planes_(new Planes{selection, visibility::group_by_plane(scene, scene.faces_of(selection))}) {}
+ExactSource::ExactSource(const Scene& scene, const Selection& selection) {
+  const kernel::StandardArithmetic arithmetic;
+  planes_.reset(new Planes{selection, visibility::group_by_plane(scene, scene.faces_of(selection))});
+}
 ExactSource::ExactSource(ExactSource&&) noexcept = default;
 ExactSource& ExactSource::operator=(ExactSource&&) noexcept = default;
 ExactSource::~ExactSource() = default;
@@ -252,6 +254,7 @@ FormFactor exact_form_factor(const Scene& scene, const Receiver& receiver, const
 
 void exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                        const ExactOptions& options, FormFactor& result) {
+  const kernel::StandardArithmetic arithmetic;
   exact::check_receiver(receiver);
   const bool both = options.engine == Engine::kBoth;
   solve_by(both ? Engine::kEdges : options.engine, scene, receiver, source, options, result);

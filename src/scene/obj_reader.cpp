@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "exactff/obj.h"
+#include "kernel/float_environment.h"
 #include "scene/mtl_reader.h"
 #include "scene/number_text.h"
 #include "scene/text_file.h"
@@ -406,6 +407,7 @@ void ObjReader::add_faces() {
 constexpr const char* kPurpose = "a Wavefront OBJ file";
 
 Scene read(const std::string& text, const fs::path& path, const SceneOptions& options) {
+  const kernel::StandardArithmetic arithmetic;
   if (text.empty())
     throw InputError({path.string(), 0, "is empty", "there is nothing to compute with", "give a Wavefront OBJ file"});
   return ObjReader(text, path, options).run();

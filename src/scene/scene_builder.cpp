@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "kernel/float_environment.h"
 #include "scene/numbered_name.h"
 #include "scene/scene_data.h"
 #include "scene/text_lines.h"
@@ -51,6 +52,7 @@ SceneBuilder& SceneBuilder::operator=(SceneBuilder&&) noexcept = default;
 SceneBuilder::~SceneBuilder() = default;
 
 std::uint32_t SceneBuilder::add_vertex(const Vec3& position) {
+  const kernel::StandardArithmetic arithmetic;
   auto& vertices = state_->data->vertices;
   assert(vertices.size() < std::numeric_limits<std::uint32_t>::max());
   vertices.push_back({position.x + 0.0, position.y + 0.0, position.z + 0.0});  // turns -0 into +0
@@ -91,6 +93,7 @@ void SceneBuilder::add_face(PatchId patch, MaterialId material, std::vector<std:
 void SceneBuilder::warn(Problem warning) { state_->warnings.add(std::move(warning)); }
 
 Scene SceneBuilder::build() {
+  const kernel::StandardArithmetic arithmetic;
   const std::unique_ptr<State> taken = std::exchange(state_, std::make_unique<State>());
   State& state = *taken;
   state.check_vertices();
