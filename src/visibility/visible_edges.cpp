@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 #include "kernel/lanes.h"
 
@@ -27,7 +26,8 @@ constexpr std::size_t kMostToInsert = 16;
 // Of four bits. std::popcount is a call where the processor may lack the instruction.
 std::uint64_t bit_count(unsigned bits) { return (0x4332322132212110U >> (4 * bits)) & 0xFU; }
 
-// Of a crossing's parameter, not less than the double.
+// Of a crossing's parameter: more than the double by enough that the sum of two, rounded as floats are, is no less than
+// that of the doubles. 2^-50 or more, it is a normal float; where it would be infinite it decides nothing either way.
 float rounded_up(double error) { return static_cast<float>(error * (1.0 + 0x1p-20)); }
 
 }  // namespace
@@ -169,8 +169,9 @@ EXACTFF_INLINE void VisibleEdges::replace(Parameters& parameters, const FourMask
   parameters.line = pick(where, by.line, parameters.line);
 }
 
-// By the filter alone, for all edges of the run at once. A line is entered or left at its crossing with the edge: where
-// the ends have heights m and l above it, of different signs, that is at the parameter |m| / (|l| + |m|) = m / (m - l).
+// By the filter alone, for all edges of the run at once. The edge enters or leaves a line's inner side where it
+// crosses the line: where the ends have heights m and l above it, of different signs, that is at the parameter |m| /
+// (|l| + |m|) = m / (m - l).
 //
 // Its error. Let D be |l| + |m| and e the larger error of the two heights, all as computed, and u = 2^-53. The quotient
 // of the true heights differs by at most e / (D - 2e) <= 2e / D where D >= 4e. Difference, inverse and product err by u
@@ -182,9 +183,9 @@ EXACTFF_INLINE void VisibleEdges::replace(Parameters& parameters, const FourMask
 // Every comparison that does not hold for all numbers within the errors makes the edge unsure, whatever is made of it
 // afterwards, except that one line with both ends certainly below it is enough for the outline to cover nothing. Which
 // side an end lies on and which of two parameters is larger can therefore be read off the signs, as masks whose other
-// bits are of no account. A line that is entered can only move the beginning of what is covered, one that is left only
-// its end, so that one comparison serves for both. A line that has the whole run on its inner side moves neither: it
-// may be skipped.
+// bits are of no account. A line whose inner side is entered can only move the beginning of what is covered, one whose
+// inner side is left only its end, so that one comparison serves for both. A line that has the whole run on its inner
+// side moves neither: it may be skipped.
 EXACTFF_INLINE void VisibleEdges::cut(const Run& run, std::span<const Edge> lines, EdgeId first, LineBits skipped,
                                       Cuts& cuts) {
   using namespace kernel::lanes;
@@ -249,9 +250,7 @@ EXACTFF_INLINE void VisibleEdges::find_allowed(Run& run, std::size_t source_coun
               {four(1.0), four(0.0), four_whole(Parameter::kAtEnd)}};
   if (run.of_source || outlines_.outline(run.outline).inside_source) return;
   if (source_count > 1) {
-    for (unsigned k = 0; k < run.edges; ++k) {
-      if ((run.wanted >> k & 1U) != 0) find_allowed_in_union(run, k, source_count);
-    }
+    find_allowed_in_union(run, source_count);
     return;
   }
   Cuts cuts;
@@ -268,24 +267,34 @@ EXACTFF_INLINE void VisibleEdges::find_allowed(Run& run, std::size_t source_coun
   run.wanted &= cuts.covered;
 }
 
-// The intervals between the parts that have the source on both sides count as removed.
-EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, unsigned k, std::size_t source_count) {
-  const EdgeId edge = run.first + k;
-  left_.clear();
-  right_.clear();
+EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, std::size_t source_count) {
+  for (unsigned k = 0; k < run.edges; ++k) {
+    left_[k].clear();
+    right_[k].clear();
+  }
   Cuts cuts;
   Cover found;
   for (OutlineId s = 0; s < source_count; ++s) {
     cut(run, s, cuts);
-    if (!cover(run, k, cuts, found)) continue;
-    if (found.left) left_.push_back(found.interval);
-    if (found.right) right_.push_back(found.interval);
+    for (unsigned k = 0; k < run.edges; ++k) {
+      if ((run.wanted >> k & 1U) == 0 || !cover(run, k, cuts, found)) continue;
+      if (found.left) left_[k].push_back(found.interval);
+      if (found.right) right_[k].push_back(found.interval);
+    }
   }
-  merge(edge, left_);
-  merge(edge, right_);
+  for (unsigned k = 0; k < run.edges; ++k) {
+    if ((run.wanted >> k & 1U) != 0) allow_common(run, k);
+  }
+}
+
+// What has the source on its left and on its right. The intervals between such parts count as removed.
+void VisibleEdges::allow_common(Run& run, unsigned k) {
+  const EdgeId edge = run.first + k;
+  merge(edge, left_[k]);
+  merge(edge, right_[k]);
   bool some = false;
-  for (const Interval& a : left_) {
-    for (const Interval& b : right_) {
+  for (const Interval& a : left_[k]) {
+    for (const Interval& b : right_[k]) {
       const Parameter& begin = compare(edge, a.begin, b.begin) >= 0 ? a.begin : b.begin;
       const Parameter& end = compare(edge, a.end, b.end) <= 0 ? a.end : b.end;
       if (compare(edge, begin, end) >= 0) continue;
@@ -394,6 +403,12 @@ bool VisibleEdges::cover(const Run& run, unsigned k, const Cuts& cuts, Cover& re
 }
 
 // The signs of the line's heights at both ends of the edge, exactly, and where they differ the crossing.
+//
+// Its error, in the terms of the proof above. By heights of doubles: D >= 4e, so that the quotient differs by at most
+// 2e / D; sum and division err by 2u, and 2^-50 is 8u, which leaves some for the test of D and for differences of
+// parameters. By exact heights: two mantissas cut off at 53 bits and their quotient err by 5u of l / m, which moves
+// m / (l + m) by less than 2u; two more roundings make 4u of at most 1, and 2^-49 is 16u. An exponent that is clamped
+// moves it by less than 2^-1000.
 void VisibleEdges::cut_exactly(EdgeId edge_id, EdgeId line, int& sign_a, int& sign_b, Parameter& crossing) {
   const Edge edge = outlines_.edge(edge_id), f = outlines_.edge(line);
   sign_a = outlines_.side(f, edge.a);
@@ -402,17 +417,17 @@ void VisibleEdges::cut_exactly(EdgeId edge_id, EdgeId line, int& sign_a, int& si
   const Height a = outlines_.height(f, edge.a), b = outlines_.height(f, edge.b);
   const double sum = std::abs(a.value) + std::abs(b.value), error = std::max(a.error, b.error);
   if (std::abs(a.value) > a.error && std::abs(b.value) > b.error && sum > 4.0 * error) {
-    crossing = {std::abs(a.value) / sum, rounded_up(2.0 * error / sum + 0x1p-50), line};
+    crossing = {std::abs(a.value) / sum, rounded_up(2.0 * error / sum + 0x1p-50), line_[line]};
     return;
   }
-  const EdgeParameter& at = exact_crossing(edge_id, line);
+  const EdgeParameter& at = exact_crossing(edge_id, line_[line]);
   long l_exponent = 0, m_exponent = 0;
   const double l_mantissa = mpz_get_d_2exp(&l_exponent, at.l.get_mpz_t());
   const double m_mantissa = mpz_get_d_2exp(&m_exponent, at.m.get_mpz_t());
   // In the scale of the doubles, which is that of the other crossings.
   const long exponent = l_exponent + outlines_.exponent(edge.b) - m_exponent - outlines_.exponent(edge.a);
   const double l_over_m = std::ldexp(l_mantissa / m_mantissa, static_cast<int>(std::clamp(exponent, -2000L, 2000L)));
-  crossing = {1.0 / (1.0 + l_over_m), 0x1p-49F, line};
+  crossing = {1.0 / (1.0 + l_over_m), 0x1p-49F, line_[line]};
 }
 
 bool VisibleEdges::lies_left(const Edge& edge, OutlineId outline) {
@@ -433,7 +448,6 @@ bool VisibleEdges::cover_exactly(EdgeId edge, OutlineId outline, Cover& result) 
     int sign_a = 0, sign_b = 0;
     Parameter crossing;
     cut_exactly(edge, line, sign_a, sign_b, crossing);
-    crossing.line = line_[line];
     if (sign_a <= 0 && sign_b <= 0) {
       if (sign_a < 0 || sign_b < 0) return false;
       result.coincides = true;

@@ -36,8 +36,8 @@ namespace exactff::visibility {
 // A workspace: what it holds is reused from one call to the next.
 class VisibleEdges {
  public:
-  // A parameter of an edge: one of its ends, or where the line of another edge crosses it. Within `error` of `value`,
-  // m / (l + m).
+  // A parameter (l : m) of an edge (outlines.h), with a and b as long as their doubles are: one of its ends, or where
+  // the line of another edge crosses it. m / (l + m) lies within `error` of `value`.
   struct Parameter {
     static constexpr EdgeId kAtBegin = 0xFFFFFFFEU, kAtEnd = 0xFFFFFFFFU;
     double value = 0.0;
@@ -77,7 +77,7 @@ class VisibleEdges {
   struct Interval {
     Parameter begin, end;
   };
-  // One for each edge of a run; their lines as they come (line_).
+  // One for each edge of a run; their lines are not replaced by the first of their name yet (line_).
   struct Parameters {
     Four value{}, error{};
     FourMask line{};
@@ -121,7 +121,8 @@ class VisibleEdges {
   void set_corners(Run& run) const;
   void trace(Run& run, std::size_t source_count);
   void find_allowed(Run& run, std::size_t source_count);
-  void find_allowed_in_union(Run& run, unsigned k, std::size_t source_count);
+  void find_allowed_in_union(Run& run, std::size_t source_count);
+  void allow_common(Run& run, unsigned k);
   void find_removed(Run& run, std::size_t source_count);
   void remove(Run& run, const Cuts& cuts, bool same_kind);
   [[nodiscard]] Parameter parameter(const Parameters& of, unsigned k) const;
@@ -169,8 +170,8 @@ class VisibleEdges {
   std::size_t stored_count_ = 0;
   kernel::Integer product_p_, product_q_;  // scratch
   std::vector<std::uint32_t> stored_at_;  // into stored_, for every line and four edges; what is there may be another's
-  std::array<std::vector<Interval>, kRunCorners> removed_;  // by edge of the run
-  std::vector<Interval> left_, right_;
+  // By edge of the run: what is removed of it, and what of it has the source on its left and on its right.
+  std::array<std::vector<Interval>, kRunCorners> removed_, left_, right_;
   std::vector<EdgeId> slots_;  // of drop_inner_edges: a hash table
 };
 
