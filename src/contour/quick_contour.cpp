@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 
 #include "contour/quick_angle.h"
 #include "contour/quick_vector.h"
@@ -311,16 +313,6 @@ QuickContour::Value QuickContour::value() const {
   const double error = kInflation * f.error;
   if (!std::isfinite(f.hi) || !std::isfinite(f.lo) || !std::isfinite(error)) return {0.0, 0.0, kDeclined.error};
   return {f.hi, f.lo, error};
-}
-
-// The ends of the enclosure are hi and one more double each, taken outward, so that one rounding finds the nearest
-// double of either; rounding never reverses an order.
-std::optional<double> nearest(const QuickContour::Value& value) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const double low = value.hi + std::nextafter(value.lo - value.error, -kInfinity);
-  const double high = value.hi + std::nextafter(value.lo + value.error, kInfinity);
-  if (low != high || !std::isfinite(high)) return std::nullopt;  // NaN included
-  return high == 0.0 ? 0.0 : high;                               // never -0
 }
 
 // --- Corners ---

@@ -14,7 +14,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include "contour/quick_vector.h"
@@ -85,8 +84,5 @@ class QuickContour {
   // Of the terms of the pieces, without the factor -1/(2 pi |n|): in lane k of every four the k-th.
   std::array<kernel::double_double::Bounded, 4> sums_;
 };
-
-// The double that every number of the enclosure rounds to (nearest, ties to even), if there is one.
-std::optional<double> nearest(const QuickContour::Value& value);
 
 }  // namespace exactff::contour

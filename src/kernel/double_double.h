@@ -9,16 +9,16 @@
 // x.hi alone, which loses u of it; division and square root take the divisor for exact, which by their requirement
 // loses 2^-19. Whoever uses a bound in the end makes it larger by kInflation, more than all of this together.
 //
-// Underflow. A product of two numbers, or the error of it, that underflows is off by 2^-1074 at most. Each bound of a
-// product has kUnderflow added, which is more, also where the product has several terms. No operation may overflow: the
-// caller sees to that, or to a result that is not finite.
+// Underflow is gradual. A product of two numbers, or the error of it, that underflows is off by 2^-1074 at most. Each
+// bound of a product has kUnderflow added, which is more, also where the product has several terms; a square root, of
+// numbers from 2^-900 on, has so much to spare. No operation may overflow: the caller sees to that, or to a result that
+// is not finite.
 //
-// Rounding is to nearest, and products and sums are never contracted; std::fma is correctly rounded with or without
-// hardware for it. The results are the same bits on every machine.
+// Rounding is to nearest (float_environment.h), and products and sums are never contracted; std::fma is correctly
+// rounded with or without hardware for it. The results are the same bits on every machine.
 //
 // Real is a double, or four of them (reals.h): what is said of a number here is said of each lane. What is declined has
-// an infinite error, and so has, or one that is not a number, whatever is made of it: no condition here holds for
-// either.
+// an infinite error; whatever is made of it has an error that is infinite or NaN, and meets no condition here.
 //
 // Source of the operations: M. Joldes, J.-M. Muller, V. Popescu, "Tight and rigorous error bounds for basic building
 // blocks of double-word arithmetic", ACM TOMS 44 (2017); T. Ogita, S. M. Rump, S. Oishi, "Accurate sum and dot

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "exactff/geometry.h"
 #include "kernel/exact_vec.h"
@@ -56,11 +55,11 @@ inline int sign_of_dot(const Approx3& a, const Approx3& b) {
 }
 
 // Sign of det(a, b, c). Each of its six products carries (1 + 2u)^3 (1 + u)^2, the five sums add 5u of the sum m of
-// magnitudes: below 14u m in all, well within certified_sign's 16u m, m being computed to within 8u. A product of two that
-// underflows errs by 2^-1075, times at most 2^300, which is nothing beside 2^-49 * 2^-700.
+// magnitudes: below 14u m in all, well within certified_sign's 16u m, m being computed to within 8u. A product of two
+// that underflows errs by 2^-1075, times at most 2^300, which is nothing beside 2^-49 * 2^-700.
 inline int sign_of_det(const Approx3& a, const Approx3& b, const Approx3& c) {
-  const double terms[] = {a.x * (b.y * c.z), -a.x * (b.z * c.y), a.y * (b.z * c.x),
-                          -a.y * (b.x * c.z), a.z * (b.x * c.y), -a.z * (b.y * c.x)};
+  const double terms[] = {a.x * (b.y * c.z),  -a.x * (b.z * c.y), a.y * (b.z * c.x),
+                          -a.y * (b.x * c.z), a.z * (b.x * c.y),  -a.z * (b.y * c.x)};
   double sum = 0.0;
   double magnitude = 0.0;
   for (const double term : terms) {

@@ -43,8 +43,6 @@ EXACTFF_INLINE Four root(const Four& a) {
 EXACTFF_INLINE double magnitude(double a) { return std::abs(a); }
 EXACTFF_INLINE Four magnitude(const Four& a) { return lanes::absolute(a); }
 
-// b where it is the larger, else a.
-EXACTFF_INLINE double larger(double a, double b) { return a < b ? b : a; }
 using lanes::larger;
 
 // --- Conditions: as comparisons give them ---
@@ -62,9 +60,7 @@ EXACTFF_INLINE Four where(const FourMask& condition, const Four& a, const Four& 
   return lanes::pick(condition, a, b);
 }
 
-EXACTFF_INLINE bool in_some_lane(bool condition) { return condition; }
 EXACTFF_INLINE bool in_some_lane(const FourMask& condition) { return lanes::lane_bits(condition) != 0; }
-EXACTFF_INLINE bool in_every_lane(bool condition) { return condition; }
 EXACTFF_INLINE bool in_every_lane(const FourMask& condition) { return lanes::all_lanes(condition); }
 
 }  // namespace exactff::kernel::reals

@@ -173,13 +173,12 @@ bool EdgeWalk::add_above_horizon(const Piece& piece) {
 // Half-spaces for the tree. The components of an edge's normal err by less than 12u |a||b| = 2^-49.4 |a||b|
 // (outlines.h).
 void EdgeWalk::make_shaft(OutlineId source) {
-  const auto vec = [](const Approx3& a) { return Vec3{a.x, a.y, a.z}; };
   work_.half_spaces.clear();
   const Outlines::Outline& outline = outlines_.outline(source);
   for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
     const Outlines::Edge& edge = outlines_.edge(id);
     work_.half_spaces.push_back(
-        {vec(edge.normal), 0.0, 0x1p-49 * outlines_.corner(edge.a).size * outlines_.corner(edge.b).size});
+        {edge.normal, 0.0, 0x1p-49 * outlines_.corner(edge.a).size * outlines_.corner(edge.b).size});
   }
   const Approx3& front = plane_.normal.approx;
   work_.half_spaces.push_back({{-front.x, -front.y, -front.z}, 0.0});
@@ -188,7 +187,7 @@ void EdgeWalk::make_shaft(OutlineId source) {
   const double terms[] = {front.x * s.x, front.y * s.y, front.z * s.z};
   const double magnitude = std::abs(terms[0]) + std::abs(terms[1]) + std::abs(terms[2]);
   work_.half_spaces.push_back(
-      {vec(front), terms[0] + terms[1] + terms[2] - 0x1p-48 * magnitude, 0.0, 0x1p-47 * magnitude});
+      {{front.x, front.y, front.z}, terms[0] + terms[1] + terms[2] - 0x1p-48 * magnitude, 0.0, 0x1p-47 * magnitude});
   work_.shaft.set(work_.half_spaces);
 }
 
@@ -278,13 +277,14 @@ bool EdgeWalk::may_leave_out_backs(std::uint32_t id) const {
   return true;
 }
 
-// What an occluder must have something above of: the source's plane, as its front sees it, the plane through x that is
-// parallel to it, as the source sees it, and every edge of the source. Without culling the first two alone, which its
-// outline relies on: who is out of the shaft then is found out edge by edge.
+// The planes above each of which an occluder must have some part: the source's, as its front sees it, the one through x
+// that is parallel to it, as the source sees it, and those through x and the edges of the source. Without culling the
+// first two alone, on which outlines rely: who is out of the shaft then is found out edge by edge.
 //
-// With N and s the normal and a point of the source's plane, as seen from x, the height N . t - N . s has components of
-// relative error 2u each, |N| <= 1; the two sums err by less than 6u of the magnitudes of their terms, at most 3 |t|
-// and 3 |s|, and their difference by u more: 2^-48 (|t| + |s|) bounds it all.
+// With N and s the normal and a point of the source's plane, as seen from x, the components of N, s and t are known to
+// within 2u of themselves, u = 2^-53, |N| <= 1. The two sums N . t and N . s err by 7u of the magnitudes of their
+// terms, at most 3 |t| and 3 |s|, and their difference by u of at most 3 (|t| + |s|) more: in all by
+// 24u (|t| + |s|) < 2^-48 (|t| + |s|).
 void EdgeWalk::make_side_planes(OutlineId source) {
   work_.side_planes.clear();
   const Approx3& front = plane_.normal.approx;
@@ -294,8 +294,10 @@ void EdgeWalk::make_side_planes(OutlineId source) {
   const double size = largest(s);
   const bool usable = size >= 0x1p-300 && size <= 0x1p300;
   const double offset = front.x * s.x + front.y * s.y + front.z * s.z;
-  work_.side_planes.push_back(
-      {front, offset, 0x1p-48, usable ? 0x1p-48 * size : std::numeric_limits<double>::infinity()});
+  work_.side_planes.push_back({{front.x, front.y, front.z},
+                               offset,
+                               0x1p-48,
+                               usable ? 0x1p-48 * size : std::numeric_limits<double>::infinity()});
   work_.side_planes.push_back({{-front.x, -front.y, -front.z}, 0.0, 0x1p-48, 0.0});
   if (!culls()) return;
   const Outlines::Outline& outline = outlines_.outline(source);

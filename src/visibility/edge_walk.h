@@ -1,11 +1,12 @@
-// The visible boundary by the edge engine: the steps of visible_boundary.h with nothing constructed.
+// The visible boundary by the edge engine: the steps of visible_boundary.h, by predicates. No corner is constructed but
+// where an edge crosses the horizon or the source's plane (plane_crossings.h).
 //
 //   1. cull: x behind or in the plane, or nothing above the horizon;
-//   2. clip by the receiver's horizon: only what it cuts is constructed, exactly;
-//   3. shaft: candidates from the bounding-volume tree; then signs of heights above the source's edges, once a vertex.
+//   2. clip by the receiver's horizon what it cuts;
+//   3. shaft: candidates from the bounding-volume tree; then signs of their corners' heights above the source's edges.
 //   A
-//      face that the source's plane cuts is clipped (plane_crossings.h); no face is clipped to the shaft. Of closed
-//      surfaces what faces away from x is left out, see below;
+//      face that the source's plane cuts is clipped; none is clipped to the shaft. Of closed surfaces what faces away
+//      from x is left out, see below;
 //   4. and 5. no candidates, or one that hides all;
 //   6. and 7. what is left of every edge (visible_edges.h).
 //

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "kernel/lanes.h"
@@ -26,13 +25,15 @@ constexpr std::uint32_t kMostOwnCells = 24;
 constexpr std::size_t kMostInCaches = 4096;  // outlines
 constexpr std::uint32_t kStrip = 32;         // columns
 
-double dot(const Approx3& a, const Approx3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Approx3 cross(const Approx3& a, const Approx3& b) {
+double dot(const Vec3& a, const Approx3& t) { return a.x * t.x + a.y * t.y + a.z * t.z; }
+Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-Approx3 times(const Approx3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 // Of length 1, or no more than a hair less.
-Approx3 unit(const Approx3& a) { return times(a, (1.0 - 0x1p-40) / std::sqrt(dot(a, a))); }
+Vec3 unit(const Vec3& a) {
+  const double s = (1.0 - 0x1p-40) / std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
+  return {a.x * s, a.y * s, a.z * s};
+}
 
 }  // namespace
 
@@ -77,15 +78,15 @@ void OutlineGrid::build(const Outlines& outlines, std::size_t source_count, std:
 bool OutlineGrid::choose_projection(const Outlines& outlines, std::size_t source_count) {
   const auto corner = [&](EdgeId id) -> const Outlines::Corner& { return outlines.corner(outlines.edge(id).a); };
   const Outline& last = outlines.outline(static_cast<OutlineId>(source_count - 1));
-  Approx3 sum;
+  Vec3 sum;
   for (EdgeId id = 0; id < last.first + last.count; ++id) {
-    const Outlines::Corner& c = corner(id);
-    const Approx3 t = times(c.t, 1.0 / c.size);
-    sum = {sum.x + t.x, sum.y + t.y, sum.z + t.z};
+    const auto& [t, size] = corner(id);
+    const double s = 1.0 / size;
+    sum = {sum.x + t.x * s, sum.y + t.y * s, sum.z + t.z * s};
   }
   w_ = unit(sum);
   const double x = std::abs(w_.x), y = std::abs(w_.y), z = std::abs(w_.z);
-  const Approx3 axis = x <= y && x <= z ? Approx3{1, 0, 0} : y <= z ? Approx3{0, 1, 0} : Approx3{0, 0, 1};
+  const Vec3 axis = x <= y && x <= z ? Vec3{1, 0, 0} : y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
   e_ = unit(cross(axis, w_));
   f_ = unit(cross(w_, e_));
   for (EdgeId id = 0; id < last.first + last.count; ++id) {
@@ -198,7 +199,13 @@ void OutlineGrid::choose_cells(std::size_t source_count) {
 
 // What meets inside the source does so at a point of the grid, so that bounds may be clamped to just beyond it. Whole
 // numbers then stay below 2^15. Taking off one before truncation rounds downwards, which is outwards for upper bounds
-// too, whose signs are changed; doubles err by less than 2^-37 of a step, and the slack is more than 2^-27 of one.
+// too, whose signs are changed.
+//
+// Let there be p cells in a unit of u and q in one of v. Images are known to within kSlack, which is at most
+// kSlack (p + q) in cells; none is further off than 2^9, so that what is computed before clamping errs by less than
+// 2^-41 (p + q). Of the slack, 4 kSlack (p + q), more than 2^-31 (p + q) is left. That is more than 2^-28 of a step,
+// since a cell has 0x7F00 / (columns + rows + 2) steps and the grid is no wider or higher than 2^10, so that p + q is
+// at least (columns + rows) / 2^10; what is computed after clamping errs by less than 2^-35 of a step.
 EXACTFF_CLONES OutlineGrid::Octagon OutlineGrid::octagon(const Outlines& outlines, OutlineId id) const {
   using namespace kernel::lanes;
   const double wide = u_.count, high = v_.count;

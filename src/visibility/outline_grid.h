@@ -36,8 +36,8 @@ class OutlineGrid {
   // caches hold. Valid until build is called again.
   [[nodiscard]] std::span<const OutlineId> in_order(std::size_t count);
 
-  // Every occluder that meets one of the edges inside the source, each once, and perhaps others. The edges are those of
-  // the set bits of `wanted`, counted from `first`. Valid until asked again.
+  // Every occluder that it takes to tell what is left of the edges inside the source, each once, and perhaps others.
+  // The edges are those of the set bits of `wanted`, counted from `first`. Valid until asked again.
   [[nodiscard]] std::span<const OutlineId> find_near(const Outlines& outlines, EdgeId first, unsigned wanted);
 
  private:
@@ -122,7 +122,7 @@ class OutlineGrid {
   template <class Visit>
   bool for_few_cells(const Cells& columns, const Cells& rows, const Visit& visit) const;
 
-  kernel::Approx3 e_, f_, w_;
+  Vec3 e_, f_, w_;
   OutlineId first_ = 0;  // of the occluders
   Axis u_, v_;
   bool single_ = true;          // too few outlines for a grid, or no projection: everything is near everything
@@ -130,8 +130,8 @@ class OutlineGrid {
   bool all_ahead_ = true;       // every corner is
   std::vector<Image> images_;   // by corner
   std::vector<Bounds> bounds_;  // by outline
-  // By outline. Of those without cells, whatever was there: they have no part inside the source, so that neither who
-  // finds them nor whom they find matters.
+  // By outline. Of those without cells, whatever was there: they have no part inside the source, or none near an edge
+  // that somebody may ask for, so that neither who finds them nor whom they find matters.
   std::vector<Octagon> octagons_;
   bool all_needed_ = true;
   std::vector<std::uint32_t> needed_;         // cells that edges run through, before this one: sums over both axes

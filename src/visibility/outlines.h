@@ -35,7 +35,7 @@ using CornerId = std::uint32_t;
 using EdgeId = std::uint32_t;
 using OutlineId = std::uint32_t;
 
-// The value of N . t with what is known of it: its sign is certain where |value| > error, or where it is exact.
+// The value of N . t with what is known of it: its sign is certain where |value| > error, or where both are 0.
 struct Height {
   double value = 0.0;
   double error = 0.0;
@@ -50,7 +50,7 @@ class Outlines {
   struct Edge {
     CornerId a = 0, b = 0;
     OutlineId outline = 0;
-    kernel::Approx3 normal;
+    Vec3 normal;         // N within 2^-49 |a||b|: no component's sign is certain
     double error = 0.0;  // 2^-46 |a||b|
   };
   using LineBits = std::uint32_t;  // a bit for each of an outline's first edges
@@ -97,7 +97,7 @@ class Outlines {
   [[nodiscard]] std::optional<std::uint32_t> vertex(CornerId id) const {
     return origins_[id].is_vertex() ? std::optional(origins_[id].p) : std::nullopt;
   }
-  // What is known of a corner that was constructed, if it is not known exactly: its doubles are those of `hi`.
+  // A corner that was constructed in double-double, if it is one: its doubles are those of `hi`.
   [[nodiscard]] const FineDirection* fine(CornerId id) const {
     return origins_[id].fine == kNone ? nullptr : &fine_[origins_[id].fine];
   }

@@ -33,7 +33,7 @@ EXACTFF_INLINE Bounded dot(const Vector& a, const Vector& b) { return a[0] * b[0
 
 bool is_zero(const Bounded& c) { return c.hi == 0.0 && c.lo == 0.0 && c.error == 0.0; }
 
-// The axis, if any, that is normal to the plane, where that holds x: along it, crossings are exactly nowhere.
+// The axis, if any, that is normal to the plane, where that holds x: the component of crossings along it is exactly 0.
 int zero_axis(const Vec3& x, const Vec3& s, const Vector& normal) {
   const std::array<double, 3> xc = components(x), sc = components(s);
   for (int i = 0; i < 3; ++i) {
@@ -42,26 +42,30 @@ int zero_axis(const Vec3& x, const Vec3& s, const Vector& normal) {
   return -1;
 }
 
-// Not certain of a height's sign: nothing is known of the crossing then.
+// False where the sign of a height is not certain: nothing is known of the crossing then. Along `axis` it is 0.
 EXACTFF_CLONES
-bool cross(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& s, const Vector& normal, int zero_axis,
-           double scale, Vector& result) {
+bool cross(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& s, const Vector& normal, int axis, double scale,
+           Vector& result) {
   const Bounded g_p = dot(normal, difference(p, s, scale)), g_q = dot(normal, difference(q, s, scale));
   if (!sign_is_certain(g_p) || !sign_is_certain(g_q)) return false;
   const Vector t_p = difference(p, x, scale), t_q = difference(q, x, scale);
   const Bounded l = magnitude(g_q), m = magnitude(g_p);
   const std::array<double, 3> pc = components(p), qc = components(q), xc = components(x);
   for (int i = 0; i < 3; ++i) {
-    const bool zero = i == zero_axis || (pc[i] == xc[i] && qc[i] == xc[i]);
+    const bool zero = i == axis || (pc[i] == xc[i] && qc[i] == xc[i]);
     result[i] = zero ? Bounded{} : sum_of_products(t_p[i], l, t_q[i], m);
   }
   return true;
 }
 
-// |c - hi| <= |lo| + error <= u |hi| + error.
-bool is_fine(const Bounded& c) { return is_zero(c) || kInflation * c.error <= 0x1p-54 * std::abs(c.hi); }
+// With u = 2^-53, |c - hi| <= |lo| + error <= 1.5 u |hi|, less than 2u |c|. Of a size that stays normal when the
+// largest of them, which is no larger than 2^300, is brought to 1. False for NaN.
+bool is_fine(const Bounded& c) {
+  return is_zero(c) || (std::abs(c.hi) >= 0x1p-600 && kInflation * c.error <= 0x1p-54 * std::abs(c.hi));
+}
 
-// The two leading doubles of a number over 2^bits.
+// The two leading doubles of a number over 2^bits. Either is cut off at 53 bits: the rest after the first is below
+// 2^-52 of the number, what the second leaves of it below 2^-104.
 Bounded leading(const Integer& number, long bits) {
   if (kernel::sign(number) == 0) return {};
   long exponent = 0;
@@ -112,7 +116,7 @@ std::optional<PlaneCrossings::Fine> PlaneCrossings::fine(const Vec3& p, const Ve
   Vector c;
   if (!cross(p, q, x_, point_, normal_, zero_axis_, scale_, c)) return std::nullopt;
   const double largest = std::max({std::abs(c[0].hi), std::abs(c[1].hi), std::abs(c[2].hi)});
-  const bool usable = largest >= 0x1p-300 && largest <= 0x1p300;  // false for NaN
+  const bool usable = largest >= 0x1p-300 && largest <= 0x1p300;
   if (!usable || !is_fine(c[0]) || !is_fine(c[1]) || !is_fine(c[2])) return std::nullopt;
   Fine result;
   static_cast<void>(std::frexp(largest, &result.exponent));

@@ -30,7 +30,7 @@ class PlaneCrossings {
   void start(const Vec3& x, const FineNormal& normal, const Vec3& point, int scale_exponent);
 
   // Times 2^-bit_length(N) 2^exponent, so that the largest component is in [1/2, 1]. Each hi is within relative error
-  // 2u of the true component and zero only where that is.
+  // 2u, u = 2^-53, of the true component and zero only where that is.
   struct Fine {
     FineDirection direction;
     int exponent = 0;

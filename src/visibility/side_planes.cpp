@@ -13,7 +13,7 @@ EXACTFF_CLONES Sides sides_of(std::span<const SidePlane> planes, const FourCorne
       size{a->size, b->size, c->size, d->size};
   Sides sides{true, true, true, false, 0};
   bool is_first = true;
-  Outlines::LineBits bit = 1;  // 0 after the last one
+  Outlines::LineBits bit = 1;  // 0 after the 32nd plane
   for (const SidePlane& plane : planes) {
     const Four height = plane.normal.x * x + plane.normal.y * y + plane.normal.z * z - plane.offset;
     const Four error = plane.error_per_size * size + plane.error;

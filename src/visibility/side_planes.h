@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <span>
 
 #include "visibility/outlines.h"
@@ -12,7 +11,7 @@ namespace exactff::visibility {
 // A corner t, a direction from x, lies above the plane where normal . t > offset, which is certain where the two differ
 // by more than error_per_size |t| + error, |t| being the largest component.
 struct SidePlane {
-  kernel::Approx3 normal;
+  Vec3 normal;
   double offset = 0.0;
   double error_per_size = 0.0;
   double error = 0.0;

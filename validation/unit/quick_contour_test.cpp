@@ -136,7 +136,7 @@ bool expect_the_truth(const Both& both) {
   const Enclosure truth = both.ball();
   EXPECT_TRUE(enclosure_of(value).contains(truth))
       << value.hi << " + " << value.lo << " +/- " << value.error << ", but " << truth.midpoint();
-  const std::optional<double> found = nearest(value);
+  const std::optional<double> found = enclosure_of(value).nearest();
   if (found) {
     EXPECT_EQ(found, truth.nearest());
   }
@@ -389,7 +389,7 @@ TEST(QuickContour, AgreesWithTheClosedFormBelowACorner) {
   Both both;
   for (const ExactVec3& corner : {ExactVec3{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}) both.add(corner);
   both.close_loop();
-  EXPECT_EQ(nearest(both.quick()), 0.138531605994892996780769708634);
+  EXPECT_EQ(enclosure_of(both.quick()).nearest(), 0.138531605994892996780769708634);
   EXPECT_LT(both.quick().error, 0x1p-96);
 }
 
@@ -472,7 +472,7 @@ TEST(QuickContour, StaysDeclined) {
   both.add(ExactVec3{1, 5, 2});
   both.pieces.push_back({1, 2, kA, kB});
   EXPECT_FALSE(answers(both.quick()));
-  EXPECT_FALSE(nearest(both.quick()).has_value());
+  EXPECT_FALSE(enclosure_of(both.quick()).nearest().has_value());
 }
 
 TEST(QuickContour, DeclinesACrossingThatIsNone) {
@@ -518,7 +518,7 @@ TEST(QuickContour, ALoopWithoutAreaIsNotRounded) {
   Both both = one_piece({1, 2, 3}, {1, 2, 4});
   both.pieces.push_back({1, 0, kA, kB});
   EXPECT_TRUE(answers(both.quick()));
-  EXPECT_FALSE(nearest(both.quick()).has_value());
+  EXPECT_FALSE(enclosure_of(both.quick()).nearest().has_value());
   EXPECT_TRUE(enclosure_of(both.quick()).contains(0.0));
 }
 
@@ -596,65 +596,6 @@ TEST(QuickCorner, OfAFewBitsIsExact) {
   EXPECT_EQ(corner.hi[2], 0.5);
   EXPECT_EQ(corner.lo[2], 0x1p-101);
   EXPECT_EQ(corner.hi[1], -5 * 0x1p-101);
-}
-
-// --- The nearest double ---
-
-TEST(QuickNearest, DecidesOnEitherSideOfAMidpoint) {
-  const double half = 0x1p-53;  // the midpoint between 1 and its successor
-  EXPECT_EQ(nearest({1, 0, 0x1p-60}), 1.0);
-  EXPECT_EQ(nearest({1, half * 0.75, half * 0.2}), 1.0);
-  EXPECT_EQ(nearest({1, half * 0.75, half * 0.3}), std::nullopt);
-  EXPECT_EQ(nearest({1 + 0x1p-52, -half * 0.75, half * 0.2}), 1 + 0x1p-52);
-  EXPECT_EQ(nearest({1 + 0x1p-52, -half * 0.75, half * 0.3}), std::nullopt);
-}
-
-TEST(QuickNearest, KnowsThatDoublesAreDenserBelowAPowerOfTwo) {
-  EXPECT_EQ(nearest({1, 0, 0x1p-54}), std::nullopt);  // the midpoint below 1 is that near
-  EXPECT_EQ(nearest({1, 0, 0x1p-55}), 1.0);
-  EXPECT_EQ(nearest({1, 0x1p-54, 0x1p-55}), 1.0);
-}
-
-TEST(QuickNearest, DoesNotDecideTies) {
-  EXPECT_EQ(nearest({1, 0x1p-53, 0x1p-100}), std::nullopt);
-  EXPECT_EQ(nearest({1, 0x1p-53, 0}), std::nullopt);
-  EXPECT_EQ(nearest({3, 0x1p-52, 0x1p-110}), std::nullopt);
-}
-
-TEST(QuickNearest, DecidesDenormals) {
-  EXPECT_EQ(nearest({0x1p-1074, 0, 0}), std::nullopt);  // a double beside it might be meant: bounds go outward by one
-  EXPECT_EQ(nearest({0x1p-1000, 0, 0x1p-1060}), 0x1p-1000);
-  EXPECT_EQ(nearest({0x1p-1000, 0, 0x1p-1050}), std::nullopt);
-  EXPECT_EQ(nearest({0x1p-1030, 0, 0x1p-1074}), std::nullopt);
-}
-
-TEST(QuickNearest, DeclinesWhatIsNotFinite) {
-  EXPECT_EQ(nearest({0, 0, kInfinity}), std::nullopt);
-  EXPECT_EQ(nearest({0, 0, std::nan("")}), std::nullopt);
-  EXPECT_EQ(nearest({std::nan(""), 0, 0}), std::nullopt);
-  EXPECT_EQ(nearest({kInfinity, 0, 0}), std::nullopt);
-  EXPECT_EQ(nearest({std::numeric_limits<double>::max(), 0x1p969, 0x1p990}), std::nullopt);
-}
-
-// Every answer is that of the ball, and near midpoints both change their mind within a few units of error.
-TEST(QuickNearest, AgreesWithTheBall) {
-  for (std::uint64_t seed = 1; seed <= validation::scaled_count(2000); ++seed) {
-    Random random(validation::seed_of(seed));
-    const double hi =
-        std::ldexp(1 + static_cast<double>(random.below(4)) * 0x1p-52, static_cast<int>(random.below(60)) - 30);
-    const double half_gap = (std::nextafter(hi, kInfinity) - hi) / 2;
-    const double lo = half_gap * (random.one_in(2) ? random.between(-1, 1) : 1 - std::exp2(random.between(-50, 0)));
-    const QuickContour::Value value{hi, lo, half_gap * std::exp2(random.between(-50, 0))};
-    const std::optional<double> found = nearest(value);
-    const std::optional<double> truth = enclosure_of(value).nearest();
-    if (found) {
-      EXPECT_EQ(found, truth) << seed;
-    }
-    if (truth && !found) {
-      const QuickContour::Value wider{hi, lo, value.error * (1 + 0x1p-40) + half_gap * 0x1p-51};
-      EXPECT_FALSE(enclosure_of(wider).nearest().has_value()) << seed;
-    }
-  }
 }
 
 // --- Arithmetic ---
