@@ -29,7 +29,8 @@ class OutlineGrid {
   void build(const Outlines& outlines, std::size_t source_count, std::span<const std::uint8_t> dropped);
 
   // About how many pairs of an edge and an occluder find_near would return for all edges because they cannot be told
-  // apart by cells: the grid is of little use where they are many.
+  // apart by cells: the grid is of little use where they are many. Pairs too close together for any cells are so for
+  // the filter too: each counts for the many that take as long as its exact comparison.
   [[nodiscard]] std::uint64_t unsorted_pairs(const Outlines& outlines) const;
 
   // All outlines, in an order in which those near one another mostly follow one another where there are more than

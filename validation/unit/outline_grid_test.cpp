@@ -207,7 +207,7 @@ TEST(OutlineGrid, KnowsWhatItCannotTellApart) {
   }
   OutlineGrid grid;
   grid.build(seen.outlines(), 1, {});
-  const std::uint64_t pairs = std::uint64_t{4} * kCount * kCount;
+  const std::uint64_t pairs = std::uint64_t{40} * 4 * kCount * kCount;
   EXPECT_GE(grid.unsorted_pairs(seen.outlines()), pairs);
   EXPECT_LE(grid.unsorted_pairs(seen.outlines()), 4 * pairs);  // few cells hold them all
   EXPECT_EQ(grid.find_near(seen.outlines(), 0, 1).size(), std::size_t{kCount});
