@@ -56,7 +56,7 @@ copy_sources() {
     cmp --silent "$top/$file" "$source/$file" && continue
     mkdir -p "$source/$(dirname "$file")"
     cp "$top/$file" "$source/$file"
-  done < <(cd "$top" && find CMakeLists.txt README.md src include validation data -type f -print0)
+  done < <(cd "$top" && find CMakeLists.txt README.md LICENSE src include validation data -type f -print0)
 }
 
 configure() {
