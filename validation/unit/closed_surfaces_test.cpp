@@ -141,14 +141,15 @@ TEST(ClosedSurfaces, HideByBacksWhereFrontsAreLeftOut) {
   add_solid(plain, kCorners, kTetrahedron);
   const Scene scene = generate::build(plain);
   const ExactSource source(scene, scene.select("source"));
-  Receiver receiver = generate::receiver_of(plain);
+  const Receiver receiver = generate::receiver_of(plain);
   const double whole = exact_form_factor(scene, receiver, source).value;
   for (std::uint32_t face = 1; face < 5; ++face) {
     const std::vector<FaceId> only{FaceId{face}};
     expect_agreement(plain, receiver, {.only_occluders = &only});
-    receiver.on = FaceId{face};
-    expect_agreement(plain, receiver);
-    EXPECT_GE(exact_form_factor(scene, receiver, source).value, whole);
+    Receiver on_face = receiver;
+    on_face.on = FaceId{face};
+    expect_agreement(plain, on_face);
+    EXPECT_GE(exact_form_factor(scene, on_face, source).value, whole);
   }
 }
 
