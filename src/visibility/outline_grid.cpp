@@ -19,7 +19,7 @@ constexpr double kLeastAhead = 0x1p-8;
 constexpr std::size_t kFewestForAGrid = 8;
 constexpr double kCellsPerOutline = 0.6;
 constexpr std::uint64_t kEdgesPerOutline = 4;
-constexpr std::uint64_t kExactPair = 40;  // pairs that the filter decides take as long
+constexpr std::uint64_t kPairsPerExactOne = 40;  // that the filter decides in its time
 constexpr std::size_t kOutlinesToAlign = 256;
 constexpr std::size_t kFewShare = 4;  // fewer than one edge in so many are few
 constexpr std::uint32_t kMostOwnCells = 24;
@@ -411,7 +411,7 @@ std::uint64_t OutlineGrid::unsorted_pairs(const Outlines& outlines) const {
   std::uint64_t in_cells = 0;
   for (std::size_t cell = 0; too_fine_ && cell < coverer_.size(); ++cell) {
     const std::uint64_t members = cell_begin_[cell + 1] - cell_begin_[cell];
-    in_cells += kExactPair * kEdgesPerOutline * members * members;
+    in_cells += kPairsPerExactOne * kEdgesPerOutline * members * members;
   }
   return edges * everywhere_.size() + not_ahead * outlines.outlines().size() + in_cells;
 }

@@ -18,8 +18,8 @@ using Parameter = VisibleEdges::Parameter;
 constexpr Parameter kBegin{0.0, 0.0F, Parameter::kAtBegin};
 constexpr Parameter kEnd{1.0, 0.0F, Parameter::kAtEnd};
 
-// For every outline. Of about 8 ns each, they take as long as the Booleans take for an outline.
-constexpr std::uint64_t kMostUnsortedPairs = 20'000;
+// For every edge. Of about 8 ns each, they take as long as the Booleans take for an edge.
+constexpr std::uint64_t kMostUnsortedPairs = 6'000;
 
 constexpr std::size_t kMostToInsert = 16;
 
@@ -39,7 +39,7 @@ bool VisibleEdges::find(std::size_t source_count) {
   stored_at_.resize(4 * outlines_.edges().size());
   drop_inner_edges(source_count);
   grid_.build(outlines_, source_count, dropped_);
-  if (grid_.unsorted_pairs(outlines_) > kMostUnsortedPairs * outlines_.outlines().size()) return false;
+  if (grid_.unsorted_pairs(outlines_) > kMostUnsortedPairs * outlines_.edges().size()) return false;
   for (const OutlineId o : grid_.in_order(outlines_.outlines().size())) trace_outline(o, source_count);
   return true;
 }
