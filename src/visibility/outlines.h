@@ -124,14 +124,14 @@ class Outlines {
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-  // Where a corner comes from: the vertex p, where the segment from p to q crosses a plane, or an exact direction.
+  // Where a corner comes from: the vertex p, or where the segment from p to q crosses a plane.
   struct Origin {
-    std::uint32_t p = kNone, q = kNone;
+    std::uint32_t p, q = kNone;
     std::uint32_t exact = kNone;  // into exact_
     std::uint32_t fine = kNone;   // into fine_
     Plane plane = Plane::kSource;
     int fine_exponent = 0;
-    [[nodiscard]] bool is_vertex() const { return p != kNone && q == kNone; }
+    [[nodiscard]] bool is_vertex() const { return q == kNone; }
   };
   CornerId corner_of_vertex(std::uint32_t any_vertex);
   CornerId add_corner(const kernel::Approx3& t, double size, const Origin& origin);

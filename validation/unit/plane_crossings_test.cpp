@@ -121,6 +121,25 @@ TEST(PlaneCrossings, KnowAnExactZero) {
   expect_holds(*fine, crossings, {0.1, 0.7, 0.5}, {0.1, 0.2, 1.5}, normal);
 }
 
+// Beside a component of 2^128, brought to 1, one of 2^-900 is no longer normal.
+TEST(PlaneCrossings, HoldWhatTheyPromiseOfTheSmallestComponents) {
+  const kernel::ExactVec3 normal{0, 0, 1};
+  constexpr double kFar = 0x1p128;
+  PlaneCrossings crossings;
+  crossings.start({0, 0, 0}, fine_normal(normal), {0, 0, kFar}, 0);
+  int fine_ones = 0, declined = 0;
+  for (int exponent = -1020; exponent < -400; ++exponent) {
+    Random random(static_cast<std::uint64_t>(-exponent));
+    const double y = std::ldexp(random.between(1, 2), exponent);
+    const Vec3 p{1.3 * kFar, y, 1.7 * kFar}, q{1.1 * kFar, 0.7 * y, 0.3 * kFar};
+    const auto fine = crossings.fine(p, q);
+    ++(fine ? fine_ones : declined);
+    if (fine) expect_holds(*fine, crossings, p, q, normal);
+  }
+  EXPECT_GT(fine_ones, 100);
+  EXPECT_GT(declined, 100);
+}
+
 // An x that lies on the segment's line sees the crossing within roundings of itself.
 TEST(PlaneCrossings, DeclineWhereComponentsCancel) {
   const kernel::ExactVec3 normal{0, 0, 1};

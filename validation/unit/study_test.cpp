@@ -441,7 +441,8 @@ TEST(InlinedSvg, HasItsOwnIdsAndNothingFromOutside) {
 }
 
 TEST(InlinedSvg, ComesFromEveryFigureThatGnuplotDraws) {
-  ::setenv("LC_ALL", "C", 1);  // as on a bare machine: the scripts are UTF-8 all the same
+  const validation::EnvironmentVariable locale("LC_ALL",
+                                               "C");  // as on a bare machine: the scripts are UTF-8 all the same
   const validation::TemporaryDirectory scratch;
   std::vector<LeftOut> left_out;
   std::vector<Figure> all = figures(small_study(), left_out);
@@ -510,10 +511,10 @@ TEST_F(OutputFolder, OfSeveralScenesHasTheirNamesBeforeTheFiles) {
   report.scenes.push_back({"one", "One", small_study()});
   report.scenes.push_back({"two", "Two", small_study()});
   report.chapters.push_back({.name = "more", .title = "More", .values = {{"more.csv", "one", "# of one\nx\n1\n"}}});
-  const std::string path = std::getenv("PATH");
-  ::setenv("PATH", root_.c_str(), 1);
-  (void)write(report, root_ / "out");
-  ::setenv("PATH", path.c_str(), 1);
+  {
+    const validation::EnvironmentVariable path("PATH", root_);
+    (void)write(report, root_ / "out");
+  }
   for (const char* file : {"one_values.csv", "two_values.csv", "one_timings.csv", "more.csv", "report.html"}) {
     EXPECT_TRUE(fs::exists(root_ / "out" / file)) << file;
   }
@@ -524,10 +525,8 @@ TEST_F(OutputFolder, OfSeveralScenesHasTheirNamesBeforeTheFiles) {
 }
 
 TEST_F(OutputFolder, WithoutGnuplotHoldsTablesAndAReportThatSaysSo) {
-  const std::string path = std::getenv("PATH");
-  ::setenv("PATH", root_.c_str(), 1);
+  const validation::EnvironmentVariable path("PATH", root_);
   const auto messages = write(small_study(), root_ / "out");
-  ::setenv("PATH", path.c_str(), 1);
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_NE(messages.front().find("gnuplot"), std::string::npos);
   EXPECT_EQ(names(), std::set<std::string>{"out"});
