@@ -133,9 +133,9 @@ class ExactSource {
 [[nodiscard]] FormFactor exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                                            const ExactOptions& options = {});
 // The same into a result that the caller keeps: every field is set anew in the memory that there is. From the second
-// time on nothing is allocated, unless the value takes more than double-double, edges are so many and so close that the
-// Booleans take over, or options ask for more. These must not point into `result`, of which an exception leaves nothing
-// to rely on.
+// time on nothing is allocated, unless the value takes more than double-double, the Booleans take over (`engine` of a
+// plane's record), or options ask for more. These must not point into `result`, of which an exception leaves nothing to
+// rely on.
 void exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                        const ExactOptions& options, FormFactor& result);
 

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cfenv>
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
 
 namespace exactff::kernel {
 
-// While it lives the thread computes so; then as before. A program may have set the thread otherwise: ray tracers have
-// numbers flushed to zero that are small.
+// While one lives, its thread computes that way; afterwards as before. Programs may have chosen otherwise: ray tracers
+// often have small numbers flushed to zero.
 class StandardArithmetic {
  public:
   StandardArithmetic() {
@@ -22,11 +25,15 @@ class StandardArithmetic {
   StandardArithmetic& operator=(const StandardArithmetic&) = delete;
 
  private:
-  // Small numbers are neither taken for zero nor made zero, and 1 + 2^-60 is 1, whatever its sign.
   [[nodiscard]] static bool is_set() {
-    const volatile double least_normal = 0x1p-1022, half = 0.5, one = 1.0, little = 0x1p-60;
+#ifdef __SSE2__
+    constexpr unsigned kRounding = 0x6000, kFlushToZero = 0x8000, kDenormalsAreZero = 0x0040;
+    return (_mm_getcsr() & (kRounding | kFlushToZero | kDenormalsAreZero)) == 0;
+#else
+    const volatile double least_normal = 0x1p-1022, half = 0.5;
     const volatile double below_normal = least_normal * half;
-    return below_normal + below_normal == least_normal && one + little == one && one - little == one;
+    return std::fegetround() == FE_TONEAREST && below_normal + below_normal == least_normal;
+#endif
   }
   std::fenv_t before_{};
   bool has_changed_ = false;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -50,6 +51,7 @@ struct BinaryDouble {
 };
 inline BinaryDouble decompose(double value) {
   constexpr int kStoredBits = 52, kBias = 1075;
+  assert(std::isfinite(value));
   const auto bits = std::bit_cast<std::uint64_t>(value);
   const std::uint64_t stored = bits & ((std::uint64_t{1} << kStoredBits) - 1);
   const int exponent = static_cast<int>(bits >> kStoredBits & 0x7FFU);

@@ -16,6 +16,7 @@
 
 #include "exact/source_planes.h"
 #include "exact/visible_share.h"
+#include "kernel/float_environment.h"
 #include "methods/adaptive_settings.h"
 #include "methods/method_files.h"
 #include "sampled/patch_visibility.h"
@@ -93,6 +94,7 @@ class Control : public Evaluator {
 
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
+    const kernel::StandardArithmetic arithmetic;
     const auto& source = static_cast<const ControlSource&>(prepared);
     const double rho_b = largest_rho_b(scene_, receiver_, source.radiosity);
     ExactVisibility visibility(scene_, receiver_, source.exact);

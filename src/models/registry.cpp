@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "kernel/float_environment.h"
 #include "methods/choice_text.h"
 #include "models/model_files.h"
 
@@ -49,6 +50,7 @@ std::vector<const Model*> all_models() {
 }
 
 PlainScene make_plain(std::string_view text) {
+  const kernel::StandardArithmetic arithmetic;
   const Choice choice = parse(text);
   PlainScene scene = choice.model.make(choice.settings);
   scene.comments.insert(scene.comments.begin(), "exactff model " + choice.text());

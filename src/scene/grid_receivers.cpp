@@ -12,6 +12,7 @@
 
 #include "exactff/error.h"
 #include "exactff/receiver.h"
+#include "kernel/float_environment.h"
 #include "scene/face_plane.h"
 #include "scene/numbered_name.h"
 
@@ -137,6 +138,7 @@ std::string_view without_face(std::string_view id) {
 }  // namespace
 
 std::vector<Receiver> grid_receivers(const Scene& scene, std::span<const FaceId> on, GridSize size, GridIds ids) {
+  const kernel::StandardArithmetic arithmetic;
   const auto faces = static_cast<std::size_t>(
       std::count_if(on.begin(), on.end(), [&](FaceId face) { return scene.face(face).piece_count > 0; }));
   check_grid_size(size, faces);

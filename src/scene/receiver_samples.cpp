@@ -18,6 +18,7 @@
 
 #include "exactff/error.h"
 #include "exactff/receiver.h"
+#include "kernel/float_environment.h"
 #include "scene/face_points.h"
 
 namespace exactff {
@@ -168,6 +169,7 @@ void check_sample_count(std::uint64_t count) {
 
 std::vector<Receiver> sample_receivers(const Scene& scene, std::span<const FaceId> on, std::uint64_t count,
                                        std::uint64_t seed) {
+  const kernel::StandardArithmetic arithmetic;
   check_sample_count(count);
   const std::vector<Triangle> triangles = triangles_of(scene, on);
   const std::vector<Integer> sums = cumulated_shares(scene, triangles);

@@ -10,6 +10,7 @@
 
 #include "exactff/error.h"
 #include "exactff/receiver.h"
+#include "kernel/float_environment.h"
 #include "scene/face_plane.h"
 #include "scene/places.h"
 
@@ -149,6 +150,7 @@ void check_face_count(std::size_t faces) {
 }  // namespace
 
 std::vector<Receiver> vertex_receivers(const Scene& scene, std::span<const FaceId> on) {
+  const kernel::StandardArithmetic arithmetic;
   check_corner_count(scene, on);
   std::vector<Receiver> receivers;
   for (const FaceId face : on) {
@@ -158,6 +160,7 @@ std::vector<Receiver> vertex_receivers(const Scene& scene, std::span<const FaceI
 }
 
 std::vector<Receiver> centre_receivers(const Scene& scene, std::span<const FaceId> on) {
+  const kernel::StandardArithmetic arithmetic;
   check_face_count(on.size());
   std::vector<Receiver> receivers;
   for (const FaceId face : on) {

@@ -6,6 +6,7 @@
 
 #include "exactff/error.h"
 #include "exactff/receiver.h"
+#include "kernel/float_environment.h"
 #include "scene/csv_lines.h"
 #include "scene/number_text.h"
 #include "scene/scene_data.h"
@@ -154,6 +155,7 @@ class ReceiverTable {
 }  // namespace
 
 std::vector<Receiver> read_receivers(const std::filesystem::path& path, const Scene& scene) {
+  const kernel::StandardArithmetic arithmetic;
   return ReceiverTable(path, scene).read();
 }
 

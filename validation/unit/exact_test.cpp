@@ -3,16 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cfenv>
 #include <cmath>
 #include <limits>
 #include <sstream>
-#include <tuple>
-#ifdef __SSE2__
-#include <xmmintrin.h>
-#endif
 
-#include "exactff/obj.h"
 #include "generate/families.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
@@ -467,58 +461,6 @@ TEST(Enclosure, IsItsOwnAfterACopy) {
 }
 
 // Twice the signed area along the drawing's front normal.
-// --- The thread's arithmetic ---
-
-struct Setting {
-  const char* name;
-  void (*set)();
-};
-std::vector<Setting> other_settings() {
-  std::vector<Setting> settings = {{"upward", [] { std::fesetround(FE_UPWARD); }},
-                                   {"downward", [] { std::fesetround(FE_DOWNWARD); }},
-                                   {"toward zero", [] { std::fesetround(FE_TOWARDZERO); }}};
-#ifdef __SSE2__
-  settings.push_back({"flush to zero", [] { _mm_setcsr(_mm_getcsr() | 0x8000U); }});
-  settings.push_back({"denormals are zero", [] { _mm_setcsr(_mm_getcsr() | 0x0040U); }});
-#endif
-  return settings;
-}
-
-// How it rounds, and whether it makes small numbers zero or takes them for zero.
-std::tuple<int, bool, bool> arithmetic_of_thread() {
-  const volatile double least_normal = 0x1p-1022, half = 0.5, denormal = 0x1p-1023, twice = 2.0;
-  return {std::fegetround(), least_normal * half == 0.0, denormal * twice == 0.0};
-}
-
-FormFactor solve_text(const std::string& obj, const PlainScene& plain) {
-  std::istringstream text(obj);
-  const Scene scene = read_obj(text, "scene.obj");
-  return exact_form_factor(scene, generate::receiver_of(plain), ExactSource(scene, scene.select(plain.source)));
-}
-
-TEST(ExactFormFactor, DoesNotDependOnTheThreadsArithmeticAndLeavesItAsItWas) {
-  for (std::uint64_t i = 0; i < validation::scaled_count(200); ++i) {
-    generate::Random random(validation::seed_of(i));
-    PlainScene plain = i % 2 == 0 ? validation::nudged_scene(random) : validation::generic_scene(random);
-    generate::scale(plain, std::ldexp(1.0, -1050 + static_cast<int>(i)));
-    const std::string obj = generate::to_obj(plain, {}, generate::Digits::kSeventeen);
-    const std::string expected = text_of(solve_text(obj, plain));
-    for (const Setting& setting : other_settings()) {
-      std::fenv_t standard;
-      std::fegetenv(&standard);
-      const auto usual = arithmetic_of_thread();
-      setting.set();
-      const auto before = arithmetic_of_thread();
-      const FormFactor result = solve_text(obj, plain);
-      const auto after = arithmetic_of_thread();
-      std::fesetenv(&standard);
-      EXPECT_EQ(text_of(result), expected) << setting.name << ", seed " << validation::seed_of(i);
-      EXPECT_NE(before, usual) << setting.name;
-      EXPECT_EQ(before, after) << setting.name;
-    }
-  }
-}
-
 double signed_area(const Loop& loop, const Vec3& n) {
   double sum = 0.0;
   for (std::size_t i = 0; i < loop.corners.size(); ++i) {
