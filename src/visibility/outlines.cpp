@@ -95,15 +95,7 @@ void Outlines::set_source_plane(const ExactVec3& normal, const FineNormal& fine_
 
 void Outlines::set_horizon(const Vec3& normal) {
   crossings_[std::size_t(Plane::kHorizon)].start(x_, fine_normal(normal), x_, scale_exponent_);
-  horizon_ = normal;
-  has_exact_horizon_ = false;
-}
-
-const ExactVec3& Outlines::exact_normal(Plane plane) {
-  if (plane == Plane::kSource) return *normal_;
-  if (!has_exact_horizon_) kernel::set_difference(exact_horizon_, horizon_, Vec3{});
-  has_exact_horizon_ = true;
-  return exact_horizon_.v;
+  kernel::set_difference(horizon_, normal, Vec3{});
 }
 
 CornerId Outlines::add_crossing(Plane plane, std::uint32_t p, std::uint32_t q) {

@@ -136,7 +136,9 @@ class Outlines {
   CornerId corner_of_vertex(std::uint32_t any_vertex);
   CornerId add_corner(const kernel::Approx3& t, double size, const Origin& origin);
   [[nodiscard]] const PlaneCrossings& crossings(Plane plane) const { return crossings_[std::size_t(plane)]; }
-  [[nodiscard]] const kernel::ExactVec3& exact_normal(Plane plane);
+  [[nodiscard]] const kernel::ExactVec3& exact_normal(Plane plane) const {
+    return plane == Plane::kSource ? *normal_ : horizon_.v;
+  }
   // Kept in exact_, once it has been made.
   [[nodiscard]] const kernel::ScaledVec3& scaled(CornerId id);
   void add_edges(std::span<const CornerId> corners, bool whole);
@@ -156,9 +158,7 @@ class Outlines {
   std::vector<FineDirection> fine_;
   std::array<PlaneCrossings, 2> crossings_;    // by plane
   const kernel::ExactVec3* normal_ = nullptr;  // of the source's plane
-  Vec3 horizon_;                               // the horizon's normal, and exactly,
-  kernel::ScaledVec3 exact_horizon_;           // once needed
-  bool has_exact_horizon_ = false;
+  kernel::ScaledVec3 horizon_;                 // its normal
   std::vector<Edge> edges_;
   std::vector<Outline> outlines_;
   std::vector<std::pair<std::uint32_t, CornerId>> corner_of_vertex_;  // (run, corner) for every vertex of the scene
