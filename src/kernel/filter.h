@@ -23,6 +23,8 @@ struct Approx3 {
   double z = 0.0;
 };
 
+inline Vec3 to_vec3(const Approx3& a) { return {a.x, a.y, a.z}; }
+
 inline constexpr int kUncertain = 2;
 inline constexpr double kLeastMagnitude = 0x1p-900;
 inline constexpr double kLargestMagnitude = 0x1p900;

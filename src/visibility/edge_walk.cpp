@@ -187,7 +187,7 @@ void EdgeWalk::make_shaft(OutlineId source) {
   const double terms[] = {front.x * s.x, front.y * s.y, front.z * s.z};
   const double magnitude = std::abs(terms[0]) + std::abs(terms[1]) + std::abs(terms[2]);
   work_.half_spaces.push_back(
-      {{front.x, front.y, front.z}, terms[0] + terms[1] + terms[2] - 0x1p-48 * magnitude, 0.0, 0x1p-47 * magnitude});
+      {to_vec3(front), terms[0] + terms[1] + terms[2] - 0x1p-48 * magnitude, 0.0, 0x1p-47 * magnitude});
   work_.shaft.set(work_.half_spaces);
 }
 
@@ -294,10 +294,8 @@ void EdgeWalk::make_side_planes(OutlineId source) {
   const double size = largest(s);
   const bool usable = size >= 0x1p-300 && size <= 0x1p300;
   const double offset = front.x * s.x + front.y * s.y + front.z * s.z;
-  work_.side_planes.push_back({{front.x, front.y, front.z},
-                               offset,
-                               0x1p-48,
-                               usable ? 0x1p-48 * size : std::numeric_limits<double>::infinity()});
+  work_.side_planes.push_back(
+      {to_vec3(front), offset, 0x1p-48, usable ? 0x1p-48 * size : std::numeric_limits<double>::infinity()});
   work_.side_planes.push_back({{-front.x, -front.y, -front.z}, 0.0, 0x1p-48, 0.0});
   if (!culls()) return;
   const Outlines::Outline& outline = outlines_.outline(source);

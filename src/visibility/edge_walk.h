@@ -3,10 +3,9 @@
 //
 //   1. cull: x behind or in the plane, or nothing above the horizon;
 //   2. clip by the receiver's horizon what it cuts;
-//   3. shaft: candidates from the bounding-volume tree; then signs of their corners' heights above the source's edges.
-//   A
-//      face that the source's plane cuts is clipped; none is clipped to the shaft. Of closed surfaces what faces away
-//      from x is left out, see below;
+//   3. shaft: candidates from the bounding-volume tree; then signs of their corners' heights above the source's edges;
+//      a face that the source's plane cuts is clipped, none is clipped to the shaft, and of closed surfaces what faces
+//      away from x is left out, see below;
 //   4. and 5. no candidates, or one that hides all;
 //   6. and 7. what is left of every edge (visible_edges.h).
 //

@@ -28,8 +28,6 @@ double approximate(const Integer& value, long exponent) {
   return std::ldexp(mantissa, static_cast<int>(own + exponent));
 }
 
-Vec3 to_vec3(const Approx3& a) { return {a.x, a.y, a.z}; }
-
 }  // namespace
 
 Shaft::Shaft(const Scene& scene, const Vec3& x, const Ring& hull, const ExactVec3& front, const Vec3& point)
@@ -43,8 +41,8 @@ Shaft::Shaft(const Scene& scene, const Vec3& x, const Ring& hull, const ExactVec
   offset_.approx = approximate(offset_.value, offset_.exponent - bit_length(away));
   toward_ = kernel::make_direction(std::move(away));
 
-  for (const Direction& side_plane : sides_) half_spaces_.push_back({to_vec3(side_plane.approx), 0.0});
-  const Vec3 m = to_vec3(toward_.approx);
+  for (const Direction& side_plane : sides_) half_spaces_.push_back({kernel::to_vec3(side_plane.approx), 0.0});
+  const Vec3 m = kernel::to_vec3(toward_.approx);
   half_spaces_.push_back({m, 0.0});
   half_spaces_.push_back({{-m.x, -m.y, -m.z}, -offset_.approx});
 }

@@ -169,9 +169,9 @@ EXACTFF_INLINE void VisibleEdges::replace(Parameters& parameters, const FourMask
   parameters.line = pick(where, by.line, parameters.line);
 }
 
-// By the filter alone, for all edges of the run at once. The edge enters or leaves a line's inner side where it
-// crosses the line: where the ends have heights m and l above it, of different signs, that is at the parameter |m| /
-// (|l| + |m|) = m / (m - l).
+// By the filter alone, for all edges of the run at once. The edge enters or leaves a line's inner side where it crosses
+// the line: where the ends have heights m and l above it, of different signs, that is at the parameter
+// |m| / (|l| + |m|) = m / (m - l).
 //
 // Its error. Let D be |l| + |m| and e the larger error of the two heights, all as computed, and u = 2^-53. The quotient
 // of the true heights differs by at most e / (D - 2e) <= 2e / D where D >= 4e. Difference, inverse and product err by u
