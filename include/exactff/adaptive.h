@@ -77,7 +77,7 @@ class AdaptiveSource {
   ~AdaptiveSource();
 
   struct Data;
-  [[nodiscard]] const Data& data() const { return *data_; }  // for the library's own modules
+  [[nodiscard]] const Data& data() const;  // for the library's own modules
 
  private:
   friend class AdaptiveSolver;
@@ -99,7 +99,8 @@ class AdaptiveSolver {
   // one source that overlap otherwise count each fully here, and as their union in the exact method.
   [[nodiscard]] AdaptiveSource prepare(const Selection& source) const;
 
-  // Estimates F. `largest_rho_b` is the largest rho_r B_s over the channels; where it is 0 the result is 0
+  // Estimates F. `source` must have been prepared by a solver of the same scene (else std::invalid_argument).
+  // `largest_rho_b` is the largest rho_r B_s over the channels; where it is 0 the result is 0
   // at once. Depends on nothing but the arguments and, in long candidate lists, on the instruction set that Embree
   // finds (rays are seeded from options.seed, the receiver and the source). Throws InputError where the receiver is
   // not finite or has no normal, or an option is out of range. With eps_b = eps_a = 0 the recursion goes on to the
@@ -119,6 +120,7 @@ class AdaptiveSolver {
 
  private:
   struct Impl;
+  [[nodiscard]] const Impl& impl() const;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -386,8 +386,7 @@ void write_svg(const PointArguments& args, const Scene& scene, const PointResult
 Scene load_scene(const PointArguments& args) {
   Scene scene = args.scene.load();
   if (!args.flip) return scene;
-  for (const Selection& source : make_sources(args, scene)) scene = scene.with_flipped(source);
-  return scene;
+  return scene.with_flipped(make_sources(args, scene));
 }
 
 int run(const PointArguments& args) {

@@ -16,7 +16,7 @@ std::size_t longest_list(std::size_t points) { return std::clamp(points / 2, kSh
 }  // namespace
 
 void RaySum::look_from(const Receiver& receiver) {
-  view_ = view_from(receiver, scene_.scene.scale);
+  view_ = view_from(receiver, scene_.scene);
   ends_.resize(kBlock);
   ends_.count = 0;
   weights_.resize(kBlock);

@@ -13,6 +13,7 @@
 
 #include "exactff/version.h"
 #include "scene/fnv1a.h"
+#include "scene/misuse.h"
 #include "study/text.h"
 
 namespace exactff::truth {
@@ -34,6 +35,7 @@ std::string hash_of(const std::vector<Receiver>& receivers) {
 }
 
 void complete(Request& request) {
+  require_scene(request.scene);
   const auto refuse = [](std::string file, std::string what, std::string why, std::string suggestion) {
     throw InputError(Problem{std::move(file), 0, std::move(what), std::move(why), std::move(suggestion)});
   };
