@@ -6,6 +6,7 @@
 
 #include "check/words.h"
 #include "exactff/check.h"
+#include "kernel/float_environment.h"
 #include "scene/text_file.h"
 #include "study/tables.h"
 #include "study/text.h"
@@ -107,6 +108,7 @@ void compare(Report& report, const Baseline& baseline, const std::string& source
 }  // namespace
 
 std::string baseline_text(const Report& report) {
+  const kernel::StandardArithmetic arithmetic;
   ordered_json json;
   json["baseline"] = kFormat;
   json["program"] = study::program_version();
@@ -121,6 +123,7 @@ std::string baseline_text(const Report& report) {
 }
 
 void hold_against_baseline(Report& report, const std::filesystem::path& path, double slack) {
+  const kernel::StandardArithmetic arithmetic;
   if (!(slack >= 0.0) || std::isinf(slack)) {
     throw InputError({.what = "the slack of the baseline is " + study::shortest(slack),
                       .why = "it is a share of what was recorded",

@@ -3,6 +3,7 @@
 
 #include "check/words.h"
 #include "exactff/check.h"
+#include "kernel/float_environment.h"
 
 namespace exactff::check {
 namespace {
@@ -43,6 +44,7 @@ std::string command(std::string_view kind, const Place& place, const std::string
 }  // namespace
 
 std::string github_annotations(const Report& report) {
+  const kernel::StandardArithmetic arithmetic;
   std::string text;
   const std::size_t own = report.worst.empty() ? 0 : report.worst.front().line;
   for (const Verdict& verdict : report.verdicts) {
@@ -59,6 +61,7 @@ std::string github_annotations(const Report& report) {
 }
 
 std::string github_annotations(const InputError& error) {
+  const kernel::StandardArithmetic arithmetic;
   constexpr std::size_t kShown = 10;  // what the runner shows of one step
   std::string text;
   for (const Problem& problem : error.problems()) {

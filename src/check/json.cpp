@@ -4,6 +4,7 @@
 
 #include "check/words.h"
 #include "exactff/check.h"
+#include "kernel/float_environment.h"
 #include "study/tables.h"
 
 namespace exactff::check {
@@ -73,6 +74,7 @@ ordered_json list(const List& items) {
 }  // namespace
 
 std::string json_text(const Report& report) {
+  const kernel::StandardArithmetic arithmetic;
   ordered_json json;
   json["program"] = study::program_version();
   json["truth"] = {{"file", clean_text(report.truth_file)},

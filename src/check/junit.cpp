@@ -3,6 +3,7 @@
 
 #include "check/words.h"
 #include "exactff/check.h"
+#include "kernel/float_environment.h"
 #include "study/text.h"
 
 namespace exactff::check {
@@ -32,6 +33,7 @@ std::string property(const std::string& name, const std::string& value) {
 }  // namespace
 
 std::string junit_xml(const Report& report) {
+  const kernel::StandardArithmetic arithmetic;
   const auto failures = std::count_if(report.verdicts.begin(), report.verdicts.end(),
                                       [](const Verdict& verdict) { return !verdict.passed; });
   const std::string counts = " tests=\"" + std::to_string(report.verdicts.size()) + "\" failures=\"" +

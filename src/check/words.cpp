@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "kernel/float_environment.h"
 #include "scene/printable.h"
 #include "scene/text_lines.h"
 #include "study/text.h"
@@ -102,6 +103,7 @@ std::vector<std::string> warnings(const Report& report) {
 }
 
 std::string failure_message(const Report& report) {
+  const kernel::StandardArithmetic arithmetic;
   std::string text;
   for (const Verdict& verdict : report.verdicts) {
     if (!verdict.passed) text += sentence(verdict) + '\n';

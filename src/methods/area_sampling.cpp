@@ -36,10 +36,14 @@ class AreaSampling : public Evaluator {
         points_(point_set_named(settings.word("pattern")), static_cast<int>(settings.whole("samples"))),
         seed_(static_cast<std::uint64_t>(settings.whole("seed"))) {}
 
-  void look_from(const Receiver& receiver) override { rays_.look_from(receiver); }
+  void look_from(const Receiver& receiver) override {
+    const kernel::StandardArithmetic arithmetic;
+    rays_.look_from(receiver);
+  }
 
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
+    const kernel::StandardArithmetic arithmetic;
     const auto& source = static_cast<const RaySource&>(prepared);
     Estimate result;
     if (source.roots.empty()) return result;
@@ -93,6 +97,7 @@ class AreaSamplingOnScene : public RaysOnScene {
  public:
   using RaysOnScene::RaysOnScene;
   [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
+    const kernel::StandardArithmetic arithmetic;
     return std::make_unique<AreaSampling>(sampled(), settings);
   }
 };
@@ -108,7 +113,7 @@ Method area_sampling_method() {
                                     "independent points, one in each of as many cells, or the first of a "
                                     "low-discrepancy sequence, shifted at random"),
                        seed_setting()},
-          .prepare = [](const Scene& scene) { return std::make_unique<AreaSamplingOnScene>(scene); }};
+          .prepare = prepare_as<AreaSamplingOnScene>};
 }
 
 }  // namespace exactff::methods

@@ -48,6 +48,7 @@ class Nettle : public Evaluator {
   }
 
   void look_from(const Receiver& receiver) override {
+    const kernel::StandardArithmetic arithmetic;
     rays_.look_from(receiver);
     receiver_area_ = given_receiver_area_ > 0.0 ? given_receiver_area_
                      : receiver.on              ? scene_.face(*receiver.on).area
@@ -56,6 +57,7 @@ class Nettle : public Evaluator {
 
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
+    const kernel::StandardArithmetic arithmetic;
     const auto& source = static_cast<const RaySource&>(prepared);
     const std::uint64_t key = stream_key(rays_.view(), source.selection(), seed_);
     const Reach reach = literal() ? Reach::kEverything : Reach::kVisible;
@@ -111,6 +113,7 @@ class NettleOnScene : public RaysOnScene {
  public:
   using RaysOnScene::RaysOnScene;
   [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
+    const kernel::StandardArithmetic arithmetic;
     return std::make_unique<Nettle>(scene(), sampled(), settings);
   }
 };
@@ -137,7 +140,7 @@ Method nettle_method() {
                    number_setting("receiver_area", 0.0, 0.0, std::numeric_limits<double>::max(),
                                   "of the literal variant; 0: that of the face the receiver lies on, else 1", "area"),
                    seed_setting()},
-      .prepare = [](const Scene& scene) { return std::make_unique<NettleOnScene>(scene); },
+      .prepare = prepare_as<NettleOnScene>,
       .uses = nettle_uses};
 }
 

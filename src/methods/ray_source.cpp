@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "kernel/float_environment.h"
 #include "methods/ray_sum.h"
 #include "sampled/plane_side.h"
 
@@ -63,6 +64,7 @@ RaysOnScene::RaysOnScene(const Scene& scene) : PreparedScene(scene), sampled_(sc
 }
 
 std::unique_ptr<PreparedSource> RaysOnScene::prepare_source(const Selection& selection) const {
+  const kernel::StandardArithmetic arithmetic;
   return std::make_unique<RaySource>(sampled_, selection);
 }
 

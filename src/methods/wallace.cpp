@@ -28,10 +28,14 @@ class Wallace : public Evaluator {
     end_.resize(1);
   }
 
-  void look_from(const Receiver& receiver) override { rays_.look_from(receiver); }
+  void look_from(const Receiver& receiver) override {
+    const kernel::StandardArithmetic arithmetic;
+    rays_.look_from(receiver);
+  }
 
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
+    const kernel::StandardArithmetic arithmetic;
     const auto& source = static_cast<const RaySource&>(prepared);
     const std::uint64_t key = stream_key(rays_.view(), source.selection(), seed_);
     const std::uint64_t samples =
@@ -64,6 +68,7 @@ class WallaceOnScene : public RaysOnScene {
  public:
   using RaysOnScene::RaysOnScene;
   [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
+    const kernel::StandardArithmetic arithmetic;
     return std::make_unique<Wallace>(sampled(), settings);
   }
 };
@@ -84,7 +89,7 @@ Method wallace_method() {
                        word_setting("pattern", {"centre", "jittered"},
                                     "where in its sub-patch a sample lies: in the middle or anywhere"),
                        seed_setting()},
-          .prepare = [](const Scene& scene) { return std::make_unique<WallaceOnScene>(scene); },
+          .prepare = prepare_as<WallaceOnScene>,
           .uses = wallace_uses};
 }
 
