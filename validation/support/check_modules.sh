@@ -37,7 +37,7 @@ done
 
 while read -r line; do
   complain "a public header names a library: $line"
-done < <(grep -rnE '\b(CGAL|gmp|gmpxx|mpfr|flint|arb_|embree|CLI)\b' include || true)
+done < <(grep -rnE --include='*.h' '\b(CGAL|gmp|gmpxx|mpfr|flint|arb_|embree|CLI)\b' include || true)
 
 [ "$failures" -eq 0 ] || exit 1
 echo "includes point one way"

@@ -279,7 +279,7 @@ TEST(MethodStudy, HoldsEveryRungAtTheChosenReceivers) {
   }
 }
 
-// A user's own method: the exact value plus 1 / n, joined as README tells.
+// A user's own method: the exact value plus 1 / n, added as include/README.md explains.
 struct OffByOneOverN : methods::Evaluator {
   std::unique_ptr<methods::Evaluator> exact;
   double n = 1.0;
