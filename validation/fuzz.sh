@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Fuzzes the readers of OBJ, MTL and receivers and the exact solver: fuzz.sh [SECONDS], for each target, default 60.
+# Fuzzes every reader, the journals, the exact solver and the whole program: fuzz.sh [SECONDS], for each target, default 60.
 #
 # Builds build/clang: Clang, AddressSanitizer, UndefinedBehaviorSanitizer and libFuzzer. Each target starts from
 # data/fuzz/TARGET and a fresh working corpus; fuzz_solver also from the reference and regression cases. Two targets run
 # at a time. Ends with a summary; the exit code is 1 if there is a finding. A finding of fuzz_solver is shrunk to a case
-# that becomes a test when it is moved into data/regression. EXACTFF_BUILD names another build folder.
+# that becomes a test when it is moved into data/regression. The whole program is no libFuzzer target: fuzz_program draws its
+# own cases, and keeps one of each kind of find. EXACTFF_SEED, default 1, numbers them. EXACTFF_BUILD names another build folder.
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -35,8 +36,17 @@ run() {
 export -f run
 export seconds build work findings
 
-echo "Fuzzing for $seconds s each: solver, obj, receivers"
-printf '%s\n' solver obj receivers | xargs -P 2 -I TARGET bash -c 'run TARGET'
+targets=(solver obj receivers check study truth_journal study_journal)
+run_program() {
+  mkdir "$work/program"
+  rm -rf "$findings"/program-*
+  "$build/fuzz_program" --seconds "$seconds" --seed "${EXACTFF_SEED:-1}" --keep "$findings" > "$work/program.log" 2>&1 ||
+    touch "$work/program.failed"
+}
+export -f run_program
+
+echo "Fuzzing for $seconds s each: program ${targets[*]}"
+printf '%s\n' program "${targets[@]}" | xargs -P 2 -I TARGET bash -c 'if [ TARGET = program ]; then run_program; else run TARGET; fi'
 
 replay() {
   local target=$1 file
@@ -48,17 +58,24 @@ replay() {
 }
 
 status=0
-printf '%-10s %10s %10s %10s   %s\n' target runs coverage corpus result
-for target in solver obj receivers; do
+printf '%-14s %10s %10s %10s   %s\n' target runs coverage corpus result
+for target in "${targets[@]}"; do
   log=$work/$target.log
   runs=$(awk '/^stat::number_of_executed_units/ { print $2 }' "$log")
   coverage=$(grep -o 'cov: [0-9]*' "$log" | tail -n 1 | cut -d ' ' -f 2 || true)
   result=clean
   [ ! -e "$work/$target.failed" ] || result="FINDING: see $log"
-  printf '%-10s %10s %10s %10s   %s\n' "$target" "${runs:-?}" "${coverage:-?}" "$(ls "$work/$target" | wc -l)" "$result"
+  printf '%-14s %10s %10s %10s   %s\n' "$target" "${runs:-?}" "${coverage:-?}" "$(ls "$work/$target" | wc -l)" "$result"
   if [ -e "$work/$target.failed" ]; then
     status=1
     replay "$target"
   fi
 done
+result=clean
+if [ -e "$work/program.failed" ]; then
+  result="FINDING: see $work/program.log"
+  status=1
+fi
+printf '%-14s %10s %10s %10s   %s\n' program "$(awk '/cases of seed/ { print $1 }' "$work/program.log")" - - "$result"
+grep -A 2 FINDING "$work/program.log" || true
 exit "$status"

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <vector>
 
 namespace exactff::cli {
 
@@ -22,5 +23,8 @@ Command add_check(CLI::App& app);
 Command add_stress(CLI::App& app);
 Command add_completion(CLI::App& app);
 Command add_manual(CLI::App& app);
+
+// All of them, in the order of the help.
+std::vector<Command> add_commands(CLI::App& app);
 
 }  // namespace exactff::cli

@@ -1,11 +1,11 @@
 // The program: parse, call, print. Exit codes: 0 done, 1 a check failed, 2 bad input, 3 not certified, 4 internal.
 #include <CLI/CLI.hpp>
-#include <array>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/exit_code.h"
@@ -46,10 +46,7 @@ int main(int argc, char** argv) {
   app.formatter(exactff::cli::help_formatter());
   app.set_version_flag("--version", std::string("exactff ") + exactff::kVersion);
   app.require_subcommand(0, 1);
-  const std::array commands = {
-      exactff::cli::add_info(app),   exactff::cli::add_point(app),      exactff::cli::add_compare(app),
-      exactff::cli::add_truth(app),  exactff::cli::add_merge(app),      exactff::cli::add_check(app),
-      exactff::cli::add_stress(app), exactff::cli::add_completion(app), exactff::cli::add_manual(app)};
+  const std::vector<exactff::cli::Command> commands = exactff::cli::add_commands(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

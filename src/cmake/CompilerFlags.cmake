@@ -17,6 +17,13 @@ if(EXACTFF_SANITIZE)
     target_compile_options(exactff_flags INTERFACE -Wno-maybe-uninitialized)  # instrumentation hides initialisations
   endif()
 endif()
+if(EXACTFF_SANITIZE_THREADS)
+  target_compile_options(exactff_flags INTERFACE -fsanitize=thread -fno-omit-frame-pointer)
+  target_link_options(exactff_flags INTERFACE -fsanitize=thread)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(exactff_flags INTERFACE -Wno-tsan -Wno-maybe-uninitialized)  # CGAL's and Boost's fences
+  endif()
+endif()
 if(EXACTFF_FUZZ)
   target_compile_options(exactff_flags INTERFACE -fsanitize=fuzzer-no-link)  # coverage; libFuzzer comes with its targets
 endif()

@@ -4,8 +4,6 @@
 // own text is read again, and form factors in [0, 1]. Both modes of the reader's options are tried.
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -13,6 +11,7 @@
 
 #include "exactff/exact.h"
 #include "exactff/obj.h"
+#include "fuzz/complaints.h"
 #include "fuzz/scene_promises.h"
 #include "support/program.h"
 
@@ -22,11 +21,6 @@ namespace {
 constexpr char kSeparator = '\x1e';
 constexpr const char* kMtlName = "m";
 
-[[noreturn]] void fail(const std::string& what) {
-  std::fprintf(stderr, "%s\n", what.c_str());
-  std::abort();
-}
-
 std::optional<Scene> read(const SceneText& text, const SceneOptions& options) {
   static const TemporaryDirectory directory;
   (void)directory.write(kMtlName, text.mtl);
@@ -34,8 +28,7 @@ std::optional<Scene> read(const SceneText& text, const SceneOptions& options) {
   try {
     return read_obj(in, directory.path() / "scene.obj", options);
   } catch (const InputError& error) {
-    const auto silent = [](const Problem& problem) { return problem.what.empty(); };
-    if (error.problems().empty() || std::ranges::any_of(error.problems(), silent)) fail("an error that says nothing");
+    require_words(error);
     return std::nullopt;
   }
 }

@@ -1,26 +1,19 @@
 // Arbitrary bytes as a CSV of receivers for a fixed small scene: either an InputError that says something, or receivers
 // that the solver can use.
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "exactff/exact.h"
+#include "fuzz/complaints.h"
 #include "generate/plain_scene.h"
 #include "support/program.h"
 
 namespace exactff::validation {
 namespace {
-
-[[noreturn]] void fail(const char* what) {
-  std::fprintf(stderr, "%s\n", what);
-  std::abort();
-}
 
 // A light, a plate before part of it and a floor of two faces.
 Scene room() {
@@ -61,8 +54,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     check(scene, read_receivers(directory.write("receivers.csv", text), scene));
   } catch (const InputError& error) {
-    const auto silent = [](const Problem& problem) { return problem.what.empty(); };
-    if (error.problems().empty() || std::ranges::any_of(error.problems(), silent)) fail("an error that says nothing");
+    require_words(error);
   }
   return 0;
 }

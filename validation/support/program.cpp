@@ -119,6 +119,11 @@ ProgramRun run_point_plain(const std::string& program, const std::string& name, 
   return run_program(program, arguments);
 }
 
+std::filesystem::path memory_folder() {
+  const std::filesystem::path memory = "/dev/shm";
+  return ::access(memory.c_str(), W_OK) == 0 ? memory : std::filesystem::temp_directory_path();
+}
+
 std::string text_of(const std::filesystem::path& path) {
   std::ostringstream text;
   text << std::ifstream(path, std::ios::binary).rdbuf();

@@ -69,6 +69,9 @@ class EnvironmentVariable {
   std::optional<std::string> before_;
 };
 
+// Where syncing costs nothing, if there is such a place; else where temporary files are.
+[[nodiscard]] std::filesystem::path memory_folder();
+
 // What a file holds; its size, 0 where there is none.
 [[nodiscard]] std::string text_of(const std::filesystem::path& path);
 [[nodiscard]] std::uintmax_t size_of(const std::filesystem::path& path);

@@ -43,7 +43,7 @@ inline FormFactor solve_by(Engine engine, const generate::PlainScene& plain, con
 
 // By both engines, one checked against the other, unless the options name one that is not the default: a test that
 // asked the default engine alone would be blind to faults of the reference. Where a cap ends the search for a double,
-// each engine has a ball of its own and nothing to agree on: there ask solve_by.
+// each engine has a ball of its own and these need only overlap: there ask solve_by.
 inline FormFactor solve(const Scene& scene, const generate::PlainScene& plain, const ExactOptions& options = {}) {
   const bool engine_named = options.engine != ExactOptions{}.engine;
   return solve_by(engine_named ? options.engine : Engine::kBoth, scene, plain, options);

@@ -1,12 +1,12 @@
-// Whether address sanitizing is on: it needs terabytes of addresses, a large stack and several times the time.
+// Whether addresses or threads are sanitized, which needs terabytes of addresses, a large stack and several times the time.
 #pragma once
 
 namespace exactff {
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kSanitized = true;
 #elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;

@@ -39,12 +39,6 @@ Scene room() {
 
 void write_text(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 
-// Where syncing costs nothing, if there is such a place: most of these tests do little else.
-fs::path scratch() {
-  const fs::path memory = "/dev/shm";
-  return ::access(memory.c_str(), W_OK) == 0 ? memory : fs::temp_directory_path();
-}
-
 std::vector<std::string> fields_of(const std::string& line) {
   std::vector<std::string> fields(1);
   bool quoted = false;
@@ -111,7 +105,7 @@ class Truth : public testing::Test {
   }
 
   const Scene scene_ = room();
-  const validation::TemporaryDirectory directory_{scratch()};
+  const validation::TemporaryDirectory directory_{validation::memory_folder()};
   const fs::path file_ = directory_.path() / "truth.csv";
   const fs::path journal_ = journal_of(file_);
 };

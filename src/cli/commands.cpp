@@ -1,0 +1,11 @@
+// The commands of the program, in the order in which its help lists them.
+#include "cli/command.h"
+
+namespace exactff::cli {
+
+std::vector<Command> add_commands(CLI::App& app) {
+  return {add_info(app),  add_point(app),  add_compare(app),    add_truth(app), add_merge(app),
+          add_check(app), add_stress(app), add_completion(app), add_manual(app)};
+}
+
+}  // namespace exactff::cli

@@ -1,0 +1,29 @@
+// A fuzzer's input as edits of a text that is made anew in every version, such as a journal: what the input means does
+// not depend on the numbers in it.
+#pragma once
+
+#include <string>
+
+#include "fuzz/bytes.h"
+
+namespace exactff::validation {
+
+// One byte changed, some left out, doubled or moved, or the end cut off; again and again until the choices end.
+inline std::string edited(std::string text, Bytes& bytes) {
+  constexpr std::size_t kMostBytes = 1 << 16;
+  while (!bytes.done() && text.size() < kMostBytes) {
+    const std::size_t action = bytes.below(6);
+    const std::size_t at = (bytes.next() + std::size_t{256} * bytes.next()) % (text.size() + 1);
+    const std::uint8_t amount = bytes.next();
+    const std::string part = text.substr(at, amount);
+    if (action == 0) text.insert(at, 1, static_cast<char>(amount));
+    if (action == 1 && at < text.size()) text[at] = static_cast<char>(amount);
+    if (action == 2) text.erase(at, amount);
+    if (action == 3) text.insert(at, part);
+    if (action == 4) text = text.substr(0, at) + text.substr(at + part.size()) + part;
+    if (action == 5) text.resize(at);
+  }
+  return text;
+}
+
+}  // namespace exactff::validation

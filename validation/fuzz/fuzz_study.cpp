@@ -1,0 +1,54 @@
+// Arbitrary bytes as a study file: either an InputError that says something, or lines that hold what the reader
+// promises, and are read again from their own words.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "cli/long_run.h"
+#include "cli/study_file.h"
+#include "fuzz/complaints.h"
+#include "support/program.h"
+
+namespace exactff::validation {
+namespace {
+
+// Between double quotes a word ends at the next one, and the other way round.
+bool can_be_quoted(const std::string& word) {
+  return word.find('"') == std::string::npos && word.find_first_of("\n\r") == std::string::npos;
+}
+
+void check_words(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) {
+    if (!can_be_quoted(word)) return;
+    line += (line.empty() ? "\"" : " \"") + word + '"';
+  }
+  if (cli::split_words(line, "line", 1) != words) fail("words that are read in another way when they are quoted");
+}
+
+void check(const cli::StudyFile& study) {
+  if (study.scenes.empty() && study.experiments.empty()) fail("a study of nothing is accepted");
+  for (const auto* lines : {&study.scenes, &study.experiments}) {
+    std::size_t before = 0;
+    for (const cli::StudyLine& line : *lines) {
+      if (line.words.empty() || line.number <= before) fail("a line without words, or out of order");
+      before = line.number;
+      check_words(line.words);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace exactff::validation
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace exactff::validation;
+  static const TemporaryDirectory directory;
+  try {
+    check(exactff::cli::read_study_file(
+        directory.write("run.study", std::string(reinterpret_cast<const char*>(data), size))));
+  } catch (const exactff::InputError& error) {
+    require_words(error);
+  }
+  return 0;
+}

@@ -1,0 +1,118 @@
+// Arbitrary bytes as the journal of an interrupted study: what follows the first byte is the journal itself or, if that
+// byte is odd, edits of a true one (edits.h). If its second bit is set, the edits are those of its records, each under
+// a checksum that holds: what they guard is then reached, too.
+//
+// A journal whose checksums hold as they are gives the values of an undisturbed run, or is refused with a message. One
+// with forged checksums may hold wrong values, which nothing can tell from right ones; it must do no other harm.
+#include <algorithm>
+#include <boost/crc.hpp>
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "exactff/study.h"
+#include "fuzz/complaints.h"
+#include "fuzz/edits.h"
+#include "scene/fnv1a.h"
+#include "study/report.h"
+#include "support/program.h"
+#include "unit/study_support.h"
+
+namespace exactff::validation {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string record(std::string_view name, std::string_view bytes) {
+  boost::crc_32_type crc;
+  crc.process_bytes(name.data(), name.size());
+  crc.process_bytes(bytes.data(), bytes.size());
+  return std::string(name) + ' ' + std::to_string(bytes.size()) + ' ' + hexadecimal(crc.checksum(), 8) + '\n' +
+         std::string(bytes) + '\n';
+}
+
+study::Request request_of(const Scene& scene) {
+  study::Request request = small_request(scene, 1);
+  request.receivers.resize(2);
+  request.sweeps.eps_b = {0.5};
+  request.sweeps.seeds = {1};
+  request.sweeps.patterns = {SamplePattern::kJittered};
+  request.sweeps.variants = {Variant::kMended};
+  scatter(request);
+  return request;
+}
+
+using Tables = std::map<std::string, std::string>;
+
+fs::path file() {
+  static const TemporaryDirectory directory(memory_folder());
+  return directory.path() / "study.part";
+}
+
+// What an undisturbed run finds, and the journal that it would leave if it were interrupted at its end.
+struct Truth {
+  Tables tables;
+  std::string journal;
+};
+
+Truth make_truth(const Scene& scene) {
+  study::Journal journal(file(), study::Journal::Existing::kReplace);
+  Tables tables = value_tables(study::run(request_of(scene), {}, &journal));
+  const std::string text = text_of(file());
+  journal.remove();
+  if (text.find('\n') + 1 >= text.size()) fail("no journal to begin with");
+  return {std::move(tables), text};
+}
+
+// Every record of a sound journal edited, under a checksum of its own.
+std::string with_edited_records(const std::string& journal, Bytes& bytes) {
+  std::size_t at = journal.find('\n') + 1;
+  std::string out = journal.substr(0, at);
+  while (at < journal.size()) {
+    const std::size_t line = journal.find('\n', at), blank = journal.find(' ', at);
+    const std::size_t length = std::strtoull(journal.c_str() + blank, nullptr, 10);
+    const std::uint8_t edits = bytes.next();
+    std::string content = journal.substr(line + 1, length);
+    if (edits % 4 == 0) content = edited(content, bytes);
+    out += record(journal.substr(at, blank - at), content);
+    at = line + 1 + length + 1;
+  }
+  return out;
+}
+
+void check(const std::string& text, const Scene& scene, const Tables* expected) {
+  std::ofstream(file(), std::ios::binary) << text;
+  try {
+    study::Journal journal(file(), study::Journal::Existing::kResume);
+    const Tables found = value_tables(study::run(request_of(scene), {}, &journal));
+    if (expected != nullptr && found != *expected) fail("resumed to other values");
+    journal.remove();
+  } catch (const InputError& error) {
+    require_words(error);
+    if (text_of(file()) != text) fail("refused, and changed");
+  }
+}
+
+}  // namespace
+}  // namespace exactff::validation
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace exactff;
+  using namespace exactff::validation;
+  static const Scene scene = small_room(true);
+  static const Truth truth = make_truth(scene);
+  Bytes bytes({data, size});
+  const std::uint8_t mode = bytes.next();
+  const std::string raw(reinterpret_cast<const char*>(data) + std::min<std::size_t>(size, 1),
+                        size - std::min<std::size_t>(size, 1));
+  const bool forged = (mode & 2) != 0;
+  const std::string journal = forged            ? with_edited_records(truth.journal, bytes)
+                              : (mode & 1) != 0 ? edited(truth.journal, bytes)
+                                                : raw;
+  check(journal, scene, forged ? nullptr : &truth.tables);
+  (void)study::chapter_of(raw);
+  return 0;
+}

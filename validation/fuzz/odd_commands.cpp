@@ -1,0 +1,316 @@
+#include "fuzz/odd_commands.h"
+
+#include <algorithm>
+#include <cctype>
+#include <regex>
+#include <span>
+#include <string_view>
+
+#include "cli/command.h"
+#include "exactff/methods.h"
+#include "exactff/models.h"
+#include "exactff/stress.h"
+
+namespace exactff::validation {
+
+using cli::CommandTable;
+using cli::OptionRow;
+using generate::Random;
+
+namespace {
+
+// Within limits, but small: the work grows with it.
+std::string small_setting(const methods::SettingSpec& spec, Random& random) {
+  if (random.one_in(20)) return odd_number(random);
+  if (!spec.words.empty()) return one_of(random, spec.words);
+  const double high = std::min(spec.highest, std::max(spec.lowest, 1.0) * 8.0);
+  if (std::holds_alternative<double>(spec.fallback)) {
+    return generate::to_text(random.one_in(4) ? spec.lowest : random.between(spec.lowest, high));
+  }
+  const auto multiple = static_cast<double>(spec.multiple_of);
+  const double steps = std::max(0.0, (high - spec.lowest) / multiple);
+  return generate::to_text(spec.lowest +
+                           multiple * static_cast<double>(random.below(static_cast<std::size_t>(steps) + 1)));
+}
+
+// NAME or NAME:SETTING=VALUE,...
+std::string with_settings(const std::string& name, std::span<const methods::SettingSpec> specs, bool all,
+                          Random& random) {
+  std::string text = name;
+  for (const methods::SettingSpec& spec : specs) {
+    if (!all && random.one_in(2)) continue;
+    text += (text.find(':') == std::string::npos ? ':' : ',') + spec.name + '=' + small_setting(spec, random);
+  }
+  return text;
+}
+
+std::string odd_method(Random& random) {
+  const methods::Method* method = one_of(random, methods::all_methods());
+  return with_settings(method->name, method->settings, true, random);
+}
+
+// Every setting given: the defaults are for large scenes.
+std::string odd_model(Random& random) {
+  const models::Model* model = one_of(random, models::all_models());
+  return '@' + with_settings(model->name, model->settings, true, random);
+}
+
+std::string small_whole(Random& random, int low, int high) {
+  return random.one_in(25) ? odd_number(random) : std::to_string(random.integer(low, high));
+}
+
+std::vector<std::string> words_in(const std::string& text) {
+  std::vector<std::string> words(1);
+  for (const char c : text) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-') {
+      words.back() += c;
+    } else if (!words.back().empty()) {
+      words.emplace_back();
+    }
+  }
+  std::erase(words, "");
+  return words;
+}
+
+bool contains_any(const std::string& text, std::initializer_list<std::string_view> words) {
+  return std::ranges::any_of(words, [&](std::string_view word) { return text.find(word) != std::string::npos; });
+}
+
+// Draws the words of one command.
+class CommandWriter {
+ public:
+  CommandWriter(const CommandTable& table, const OddInputs& inputs, Random& random)
+      : table_(table), inputs_(inputs), random_(random) {}
+
+  Words write() {
+    words_.push_back(table_.name);
+    for (const OptionRow& row : table_.positionals) {
+      if (!random_.one_in(60)) add_values(row);
+    }
+    if (random_.one_in(8)) shuffle_later_ = true;
+    add_receivers();
+    for (const OptionRow& row : table_.options) add_option(row);
+    if (shuffle_later_)
+      std::rotate(words_.begin() + 1, words_.begin() + 1 + (table_.positionals.empty() ? 0 : 1), words_.end());
+    if (random_.one_in(80))
+      words_.push_back(one_of<std::string>(random_, {"--help", "--version", "--nonsense", "-x", "--", ""}));
+    return std::move(words_);
+  }
+
+ private:
+  // Where a command wants receivers they are told by one of these; together they are refused.
+  static bool places_receivers(const OptionRow& row) {
+    return contains_any(row.names.back(), {"--grid", "--vertices", "--centres", "--samples", "--receivers"});
+  }
+  // Without these a command takes seconds.
+  static bool keeps_work_small(const OptionRow& row) {
+    static const std::vector<std::string> kFrugal = {"--family",        "--eps-b",        "--rays",
+                                                     "--seeds",         "--method-seeds", "--method-receivers",
+                                                     "--method-budget", "--sweep-budget", "--threads"};
+    return std::ranges::find(kFrugal, row.names.back()) != kFrugal.end();
+  }
+
+  void add_receivers() {
+    std::vector<const OptionRow*> places;
+    for (const OptionRow& row : table_.options) {
+      if (places_receivers(row)) places.push_back(&row);
+    }
+    if (places.empty() || random_.one_in(30)) return;
+    const OptionRow& chosen = *one_of(random_, places);
+    give(chosen);
+    if (chosen.names.back() == "--receivers") return;
+    for (const OptionRow& row : table_.options) {
+      if (row.names.back() == "--on") give(row);
+    }
+  }
+
+  void add_option(const OptionRow& row) {
+    const std::string& name = row.names.back();
+    if (contains_any(name, {"--help", "--experiment"})) return;  // an experiment takes half a minute
+    const bool told = places_receivers(row) || (name == "--on" && words_.front() != "point");
+    const std::size_t rarity = row.required ? 1 : keeps_work_small(row) ? 1 : told ? 40 : row.value.empty() ? 5 : 7;
+    const bool wanted = row.required || keeps_work_small(row) ? !random_.one_in(100) : random_.one_in(rarity);
+    if (wanted) give(row);
+  }
+
+  void give(const OptionRow& row) {
+    words_.push_back(one_of(random_, row.names));
+    add_values(row);
+    if (row.repeats && random_.one_in(4)) {
+      words_.push_back(row.names.back());
+      add_values(row);
+    }
+  }
+
+  // Rarely one too few.
+  void add_values(const OptionRow& row) {
+    int count = row.most_values > row.least_values ? random_.integer(row.least_values, std::min(3, row.most_values))
+                                                   : row.least_values;
+    if (count > 0 && random_.one_in(100)) --count;
+    for (int i = 0; i < count; ++i) words_.push_back(value_of(row, i));
+  }
+
+  std::string value_of(const OptionRow& row, int place) {
+    const std::string& kind = row.value;
+    if (!row.choices.empty()) return random_.one_in(40) ? odd_name(random_) : one_of(random_, row.choices);
+    if (kind.starts_with("SCENE")) return scene();
+    if (kind == "X Y Z") return coordinate(inputs_.scene.point, place);
+    if (kind == "NX NY NZ") return coordinate(inputs_.scene.normal, place);
+    if (kind.starts_with("NAME[:K]")) return patch();
+    if (kind.starts_with("UxV")) return grid();
+    if (kind.starts_with("METHOD")) return random_.one_in(20) ? odd_name(random_) : odd_method(random_);
+    if (kind == "DIR") return random_.one_in(20) ? odd_place() : "out/folder";
+    if (row.completion == cli::Completion::kFiles && kind != "TEXT") return file(row);
+    if (kind == "SHARE=LIMIT") return number() + (random_.one_in(30) ? "" : "=") + number();
+    if (kind == "I/N")
+      return one_of<std::string>(
+          random_, {"1/1", "1/2", "2/2", "2/3", "0/1", "3/2", "1/", "/", "x/y", "1/18446744073709551616"});
+    if (kind == "X,Y,Z" || kind == "NX,NY,NZ")
+      return one_of<std::string>(random_, {"x,y,z", "x,y", "nx,ny,nz", "\"x\",y,z", "\"", "x,x,x"});
+    if (kind == "N" || kind == "S" || kind == "INT" || kind == "UINT") return whole(row);
+    if (contains_any(kind, {"SECONDS", "LIMIT", "DISTANCE", "NUMBER", "SHARE", "FLOAT"})) return number();
+    return word(row);
+  }
+
+  std::string scene() {
+    if (random_.one_in(6)) return odd_model(random_);
+    if (table_.name == "compare" && random_.one_in(6)) return "in/run.study";
+    return random_.one_in(40) ? odd_place() : "in/scene.obj";
+  }
+
+  // Where no file can be read or written, or where one should not be.
+  std::string odd_place() {
+    return one_of<std::string>(random_, {"in", "/dev/null", "/dev/full", "nowhere/at/all", "", ".", "in/scene.obj/x",
+                                         "out/" + odd_name(random_), "@", "@nothing", "in/truth.csv", "out"});
+  }
+
+  std::string coordinate(const Vec3& v, int place) {
+    if (random_.one_in(25)) return odd_number(random_);
+    return generate::to_text(place == 0 ? v.x : place == 1 ? v.y : v.z);
+  }
+
+  std::string patch() {
+    if (random_.one_in(25)) return odd_name(random_);
+    if (random_.one_in(8)) return "all";
+    const std::string name = random_.one_in(2) ? inputs_.scene.source : one_of(random_, inputs_.scene.patches).name;
+    return name + (random_.one_in(6) ? ":" + small_whole(random_, 1, 2) : "");
+  }
+
+  std::string grid() {
+    if (random_.one_in(15)) return odd_number(random_) + "x" + odd_number(random_);
+    return std::to_string(random_.integer(1, 4)) + 'x' + std::to_string(random_.integer(1, 4));
+  }
+
+  // An output where the description says what is written there.
+  std::string file(const OptionRow& row) {
+    static const std::regex kWritten(R"(\b([Ww]rite|[Dd]raw|[Rr]ecord)\b)");
+    if (random_.one_in(30)) return odd_place();
+    if (std::regex_search(row.description, kWritten)) return "out/" + extension_named(row.names.back());
+    if (row.names.back() == "TRUTH") return "in/truth.csv";
+    if (row.names.back() == "CANDIDATE") return "in/candidate.csv";
+    if (row.names.back() == "SHARD") return "in/shard" + std::to_string(++shards_) + ".csv";
+    if (row.names.back() == "--baseline") return "in/baseline.json";
+    return "in/receivers.csv";
+  }
+
+  static std::string extension_named(const std::string& option) {
+    if (option == "--junit") return "junit.xml";
+    if (option == "--json" || option == "--write-baseline") return option.substr(2) + ".json";
+    return option == "--svg" || option == "--plot" ? option.substr(2) + ".svg" : "table.csv";
+  }
+
+  std::string number() {
+    if (random_.one_in(10)) return odd_number(random_);
+    return one_of<std::string>(random_, {"0", "1e-3", "0.01", "0.02", "1e-12", "0.5", "0.99", "1"});
+  }
+
+  // "(1 to 4096)" in the description.
+  std::string whole(const OptionRow& row) {
+    static const std::regex kRange(R"(\((-?\d{1,9}) to (-?\d{1,9})\))");
+    std::smatch range;
+    if (!std::regex_search(row.description, range, kRange)) return small_whole(random_, row.value == "S" ? 0 : 1, 4);
+    const int low = std::stoi(range[1]), high = std::stoi(range[2]);
+    if (random_.one_in(40)) return std::to_string(low - 1);
+    if (random_.one_in(40)) return std::to_string(high + 1);
+    return small_whole(random_, low, std::min(high, std::max(low * 4, 4)));
+  }
+
+  // Lists and names: what the description names, numbers, and families.
+  std::string word(const OptionRow& row) {
+    if (row.names.back() == "--family") return std::string(one_of(random_, stress::families()).name);
+    if (row.names.back() == "--rays" || row.names.back() == "--seeds")
+      return random_.one_in(4) ? "1,4" : small_whole(random_, 1, 4);
+    if (row.names.back() == "--title") return odd_name(random_);
+    if (contains_any(row.names.back(), {"column"}))
+      return one_of<std::string>(random_, {"value", "receiver", "exact", "source", "other", odd_name(random_)});
+    const std::vector<std::string> words = words_in(row.description);
+    if (row.names.back().starts_with("--eps") || words.empty())
+      return number() + (random_.one_in(4) ? "," + number() : "");
+    return random_.one_in(20) ? odd_name(random_) : one_of(random_, words);
+  }
+
+  const CommandTable& table_;
+  const OddInputs& inputs_;
+  Random& random_;
+  Words words_;
+  int shards_ = 0;
+  bool shuffle_later_ = false;
+};
+
+const CommandTable& table_of(const cli::ProgramTable& program, std::string_view name) {
+  return *std::ranges::find(program.commands, name, &CommandTable::name);
+}
+
+// What `truth` writes, for merge and check.
+Words truth_into(const std::string& file, const OddInputs& inputs, Words more) {
+  Words words = {
+      "truth", "in/scene.obj", "--on", inputs.scene.source, "--centres", "--source", inputs.scene.source, "--threads",
+      "1",     "-o",           file};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+std::vector<Words> preparation(const Words& command, const OddInputs& inputs, Random& random) {
+  std::vector<Words> steps;
+  if (command.front() == "merge" && !random.one_in(8)) {
+    const long count =
+        std::ranges::count_if(command, [](const std::string& word) { return word.starts_with("in/shard"); });
+    for (long k = 1; k <= count; ++k) {
+      steps.push_back(truth_into("in/shard" + std::to_string(k) + ".csv", inputs,
+                                 {"--shard", std::to_string(k) + '/' + std::to_string(count)}));
+    }
+  }
+  if (command.front() == "check" && random.one_in(4)) {
+    steps.push_back(truth_into("in/truth.csv", inputs, {"--force", "--unoccluded"}));
+    steps.push_back(truth_into("in/candidate.csv", inputs, {"--force"}));
+  }
+  if (command.front() == "check" && std::ranges::find(command, "--baseline") != command.end() && !random.one_in(8)) {
+    steps.push_back({"check", "in/truth.csv", "in/candidate.csv", "--write-baseline", "in/baseline.json"});
+  }
+  return steps;
+}
+
+}  // namespace
+
+cli::ProgramTable own_table() {
+  CLI::App app("", "exactff");
+  (void)cli::add_commands(app);
+  return cli::program_table(app);
+}
+
+std::vector<Words> odd_commands(const cli::ProgramTable& program, const OddInputs& inputs, Random& random) {
+  // stress works on scenes of its own, merge on little.
+  const std::vector<std::string> often = {"point", "point", "point", "compare", "compare",
+                                          "truth", "truth", "check", "check",   "info"};
+  const std::string name =
+      random.one_in(6) ? program.commands[random.below(program.commands.size())].name : one_of(random, often);
+  if (random.one_in(150))
+    return {one_of<Words>(
+        random, {{"completion", "bash"}, {"completion", "fish"}, {"manual"}, {"--help"}, {}, {name, "--help"}})};
+  const Words command = CommandWriter(table_of(program, name), inputs, random).write();
+  std::vector<Words> steps = preparation(command, inputs, random);
+  steps.push_back(command);
+  return steps;
+}
+
+}  // namespace exactff::validation

@@ -1,0 +1,208 @@
+#!/usr/bin/env python3
+"""Judges what a run of the program has left behind, by parsers that share nothing with it: Python's standard library.
+
+Reads requests from standard input, one a line, and answers each with one line: what is wrong, or nothing. A request is
+FOLDER, FORM and EXIT CODE with tabs between: FOLDER holds stdout, stderr and the folder out; FORM says what standard
+output is: json, plain, text, or cut where it may end anywhere. Every file below out is judged by its extension.
+"""
+
+import csv
+import html.parser
+import io
+import json
+import pathlib
+import re
+import sys
+import xml.parsers.expat
+from decimal import Decimal, InvalidOperation
+
+csv.field_size_limit(1 << 30)
+
+CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f]")
+# A number that is none, as printf, iostreams and JavaScript write it; not within a word.
+NO_NUMBER = re.compile(r"(?<![\w.])[-+]?(nan|inf|infinity)(?![\w.])", re.IGNORECASE)
+# What a judged method came to, and its error: in a stress table, of formulas that have no answer there.
+MAY_BE_NO_NUMBER = re.compile(r"_(value|error)$")
+LEFTOVER = re.compile(r"\.partial|\.whole$|^\.")
+GEOMETRY = {"x", "y", "x1", "y1", "x2", "y2", "cx", "cy", "r", "rx", "ry", "width", "height", "d", "points", "viewBox",
+            "transform", "stroke-width", "font-size"}
+VOID = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
+RAW_TEXT = {"script", "style"}
+
+
+class Wrong(Exception):
+    pass
+
+
+def text_of(data):
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise Wrong(f"not UTF-8 ({error.reason})") from None
+    found = CONTROL.search(text)
+    if found:
+        raise Wrong(f"control character {ord(found.group()):#04x}")
+    return text
+
+
+def refuse_constant(name):
+    raise Wrong(f"{name} is not JSON")
+
+
+def refuse_twice(pairs):
+    if len({key for key, _ in pairs}) < len(pairs):
+        raise Wrong("a key twice")
+    return dict(pairs)
+
+
+# Where a number may be missing: patches without a common front, and errors that JSON cannot tell (README, check).
+MAY_BE_NULL = {"front", "relative", "max", "max-rel", "measured", "median", "p90", "p99", "p999", "rms", "value", "limit",
+               "found", "error", "now", "recorded", "bias"}
+
+
+def refuse_nulls(item, key, may_be_null):
+    if item is None and key not in may_be_null:
+        raise Wrong(f"no number: '{key}' is null")
+    for name, part in item.items() if isinstance(item, dict) else ():
+        refuse_nulls(part, name, may_be_null)
+    for part in item if isinstance(item, list) else ():
+        refuse_nulls(part, key, may_be_null)
+
+
+def judge_json(data, may_be_null=MAY_BE_NULL):
+    try:
+        item = json.loads(text_of(data), parse_constant=refuse_constant, object_pairs_hook=refuse_twice)
+    except json.JSONDecodeError as error:
+        raise Wrong(f"not JSON: {error.msg}") from None
+    refuse_nulls(item, "", may_be_null)
+
+
+def judge_geometry(name, attributes):
+    for key, value in attributes:
+        if key in GEOMETRY and value is not None and NO_NUMBER.search(value):
+            raise Wrong(f"<{name}> with {key} that is no number")
+
+
+def judge_xml(data):
+    text_of(data)
+    parser = xml.parsers.expat.ParserCreate()
+    parser.StartElementHandler = lambda name, attributes: judge_geometry(name, attributes.items())
+    try:
+        parser.Parse(data, True)
+    except xml.parsers.expat.ExpatError as error:
+        raise Wrong(f"not XML: {xml.parsers.expat.ErrorString(error.code)}") from None
+
+
+class Page(html.parser.HTMLParser):
+    """A page whose every element is closed where it has to be, without what HTML lets one leave out."""
+
+    def __init__(self):
+        super().__init__(convert_charrefs=False)
+        self.open = []
+
+    def handle_starttag(self, tag, attributes):
+        judge_geometry(tag, attributes)
+        if len({key for key, _ in attributes}) < len(attributes):
+            raise Wrong(f"<{tag}> with an attribute twice")
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attributes):
+        judge_geometry(tag, attributes)
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            raise Wrong(f"</{tag}> closes nothing")
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] not in RAW_TEXT and "<" in data:
+            raise Wrong("a bare < in text")
+
+
+def judge_html(data):
+    page = Page()
+    page.feed(text_of(data))
+    page.close()
+    if page.open:
+        raise Wrong(f"<{page.open[-1]}> is not closed")
+
+
+def judge_csv(data):
+    lines = data.decode("utf-8", "surrogateescape").split("\n")  # names are the bytes of the scene's file
+    if lines.pop() != "":
+        raise Wrong("the last line has no end")
+    rows = csv.reader(io.StringIO("\n".join(line for line in lines if not line.startswith("#"))), strict=True)
+    try:
+        names = next(rows)
+        for row in rows:
+            if len(row) != len(names):
+                raise Wrong(f"a row of {len(row)} fields under {len(names)} names")
+            for name, field in zip(names, row):
+                if NO_NUMBER.fullmatch(field) and not MAY_BE_NO_NUMBER.search(name):
+                    raise Wrong(f"column {name} has {field}")
+    except csv.Error as error:
+        raise Wrong(f"not CSV: {error}") from None
+    except StopIteration:
+        raise Wrong("no names of columns") from None
+
+
+def judge_plain(data):
+    word = data.decode("ascii", "replace").removesuffix("\n")
+    try:
+        value = Decimal(word)
+    except InvalidOperation:
+        raise Wrong("--plain prints no number") from None
+    if not (value.is_finite() and 0 <= value <= 1):
+        raise Wrong("--plain prints a number outside [0, 1]")
+
+
+# A terminal gets names as they are in the files, which need not be UTF-8; nothing in them may steer it.
+def judge_words(data):
+    found = CONTROL.search(data.decode("latin-1"))
+    if found:
+        raise Wrong(f"control character {ord(found.group()):#04x}")
+
+
+JUDGES = {".csv": judge_csv, ".json": judge_json, ".svg": judge_xml, ".xml": judge_xml, ".html": judge_html,
+          ".part": lambda data: None}
+FORMS = {"json": lambda data: judge_json(data, {"front"}), "plain": judge_plain, "text": judge_words}
+
+
+def judge_file(path, code):
+    if LEFTOVER.search(path.name):
+        raise Wrong("half-written, left behind")
+    if path.suffix == ".part" and code == 0:
+        raise Wrong("a journal left behind by a finished run")
+    if path.is_file():
+        JUDGES.get(path.suffix, text_of)(path.read_bytes())
+
+
+def judge(folder, form, code):
+    where = "stdout"
+    try:
+        if form in FORMS and code in (0, 1, 3) and (folder / "stdout").exists():
+            FORMS[form]((folder / "stdout").read_bytes())
+        where = "stderr"
+        if not (folder / "stderr").exists():
+            raise Wrong("the folder of the run is gone")
+        judge_words((folder / "stderr").read_bytes())
+        if code == 2 and not (folder / "stderr").read_bytes().strip():
+            raise Wrong("bad input, and nothing is said")
+        for path in sorted((folder / "out").rglob("*")):
+            where = str(path.relative_to(folder))
+            judge_file(path, code)
+    except Wrong as wrong:
+        return f"{where}: {wrong}"
+    return ""
+
+
+def main():
+    for line in sys.stdin.buffer:
+        folder, form, code = line.decode("utf-8").rstrip("\n").split("\t")
+        answer = judge(pathlib.Path(folder), form, int(code))
+        sys.stdout.write(answer.encode("ascii", "backslashreplace").decode("ascii").replace("\n", " ") + "\n")
+        sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main()

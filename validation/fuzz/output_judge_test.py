@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""The judge of outputs finds a fault of every kind, and none where there is none."""
+
+import pathlib
+import tempfile
+import unittest
+
+import output_judge
+
+
+class Judge(unittest.TestCase):
+    def setUp(self):
+        self.place = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.place.name)
+        (self.folder / "out").mkdir()
+        self.write("stdout", "")
+        self.write("stderr", "")
+
+    def tearDown(self):
+        self.place.cleanup()
+
+    def write(self, name, text):
+        (self.folder / name).write_bytes(text if isinstance(text, bytes) else text.encode("utf-8"))
+
+    def expect(self, fragment, form="text", code=0):
+        answer = output_judge.judge(self.folder, form, code)
+        if fragment:
+            self.assertIn(fragment, answer)
+        else:
+            self.assertEqual(answer, "")
+
+    def expect_file(self, fragment, name, text, code=0):
+        self.write("out/" + name, text)
+        self.expect(fragment, code=code)
+        (self.folder / "out" / name).unlink()
+
+    def test_words(self):
+        self.write("stdout", "a caf\u00e9 and its \u00b5\n")
+        self.expect("")
+        self.write("stdout", b"Latin-1: caf\xe9\n")
+        self.expect("")
+        self.write("stdout", "\x1b[31m")
+        self.expect("stdout: control character 0x1b")
+
+    def test_bad_input_is_told(self):
+        self.expect("nothing is said", code=2)
+        self.write("stderr", "exactff: a b (c); d\n")
+        self.expect("", code=2)
+
+    def test_plain(self):
+        for text, fragment in (("0\n", ""), ("4.9e-324\n", ""), ("1.5\n", "outside"), ("nan\n", "outside"), ("x\n", "no number")):
+            self.write("stdout", text)
+            self.expect(fragment, form="plain")
+
+    def test_json(self):
+        self.expect_file("", "a.json", '{"a": [1, 2e-300]}\n')
+        self.expect_file("not JSON", "a.json", '{"a": 1,}')
+        self.expect_file("NaN is not JSON", "a.json", '{"a": NaN}')
+        self.expect_file("a key twice", "a.json", '{"a": 1, "a": 2}')
+        self.expect_file("'a' is null", "a.json", '{"a": null}')
+        self.expect_file("not UTF-8", "a.json", b'{"a": "\xe9"}')
+
+    def test_xml(self):
+        self.expect_file("", "a.svg", '<svg width="3"><text>inf</text></svg>')
+        self.expect_file("not XML", "a.xml", "<a><b></a>")
+        self.expect_file("control character", "a.xml", "<a>\x01</a>")
+        self.expect_file("no number", "a.svg", '<svg><path d="M 0 nan"/></svg>')
+
+    def test_html(self):
+        self.expect_file("", "a.html", "<html><body><p>a &lt; b<br>c</p><script>1 < 2</script></body></html>")
+        self.expect_file("closes nothing", "a.html", "<p><b>a</p></b>")
+        self.expect_file("not closed", "a.html", "<p>a")
+        self.expect_file("a bare <", "a.html", "<p>1 < 2</p>")
+
+    def test_csv(self):
+        self.expect_file("", "a.csv", '# c\na,b_error\n1,"x ""y"""\n1,nan\n')
+        self.expect_file("a row of 3 fields", "a.csv", "a,b\n1,2,3\n")
+        self.expect_file("column a has nan", "a.csv", "a,b\nnan,2\n")
+        self.expect_file("no end", "a.csv", "a,b\n1,2")
+        self.expect_file("not CSV", "a.csv", 'a,b\n"1"x,2\n')
+
+    def test_leftovers(self):
+        self.expect_file("half-written", "a.svg.partial-12", "")
+        self.expect_file("half-written", ".folder.partial-12", "", code=130)
+        self.expect_file("a journal left behind", "a.part", "")
+        self.write("stderr", "exactff: interrupted\n")
+        self.expect_file("", "a.part", "", code=130)
+
+
+if __name__ == "__main__":
+    unittest.main()
