@@ -25,10 +25,10 @@
 #include "cli/text_table.h"
 #include "scene/csv_lines.h"
 #include "scene/number_text.h"
-#include "scene/printable.h"
 #include "scene/text_lines.h"
 #include "study/gnuplot.h"
 #include "study/text.h"
+#include "text/escape.h"
 
 namespace exactff::cli {
 namespace {
@@ -245,7 +245,7 @@ void print_verdicts(const check::Report& report) {
 void print_improvements(const check::Report& report) {
   for (const check::Improvement& better : report.improvements) {
     std::cout << "Better than " << better.criterion
-              << (better.source.empty() ? "" : ", source " + printable(better.source)) << ": "
+              << (better.source.empty() ? "" : ", source " + text::printable(better.source)) << ": "
               << short_number(better.recorded) << " -> " << short_number(better.now);
     if (better.recorded > 0.0 && std::isfinite(better.recorded)) {
       std::cout << ", " << short_number(100.0 * (1.0 - better.now / better.recorded)) << " % less";
@@ -264,13 +264,13 @@ void print_end(const CheckArguments& args, const check::Report& report) {
     std::cout << "Passed\n";
   }
   const bool suggests = failed == 0 && !report.improvements.empty() && args.write_baseline.empty();
-  if (suggests) std::cout << "Hold on to it: --write-baseline " << printable(args.baseline) << '\n';
+  if (suggests) std::cout << "Hold on to it: --write-baseline " << text::printable(args.baseline) << '\n';
 }
 
 void print(const CheckArguments& args, const check::Report& report) {
-  std::cout << "truth      " << printable(report.truth_file) << " (" << printable(report.column) << ", "
+  std::cout << "truth      " << text::printable(report.truth_file) << " (" << text::printable(report.column) << ", "
             << study::counted(report.truth_rows, "row") << ")\n"
-            << "candidate  " << printable(report.candidate_file) << " (" << study::counted(report.overall.rows, "row")
+            << "candidate  " << text::printable(report.candidate_file) << " (" << study::counted(report.overall.rows, "row")
             << " judged)\n\n";
   print_distribution(report);
   print_histogram(report);
@@ -318,14 +318,16 @@ study::PlotResult run_plot(const std::string& script) {
 void draw(const check::Report& report, const std::string& file) {
   const std::string script = check::histogram_script(report);
   if (script.empty()) {
-    std::cerr << "note: " << file << " is not drawn: every error is 0, which a logarithmic axis cannot show\n";
+    std::cerr << "note: " << text::printable(file)
+              << " is not drawn: every error is 0, which a logarithmic axis cannot show\n";
     return;
   }
   const study::PlotResult result = run_plot(script);
   if (result.outcome == study::PlotResult::Outcome::kDrawn) return write_whole_file(file, result.svg);
   const bool missing = result.outcome == study::PlotResult::Outcome::kNoProgram;
-  std::cerr << "note: " << file << " is not drawn: "
-            << (missing ? "there is no gnuplot; install it" : "gnuplot failed: " + printable(result.message)) << '\n';
+  std::cerr << "note: " << text::printable(file) << " is not drawn: "
+            << (missing ? "there is no gnuplot; install it" : "gnuplot failed: " + text::printable(result.message))
+            << '\n';
 }
 
 void write_files(const CheckArguments& args, const check::Report& report) {
@@ -341,12 +343,12 @@ void record(const CheckArguments& args, const check::Report& report) {
     return !verdict.passed && (verdict.criterion == "finite" || verdict.criterion.starts_with("baseline "));
   };
   if (std::any_of(report.verdicts.begin(), report.verdicts.end(), is_worse)) {
-    std::cerr << "note: " << args.write_baseline << " is not written: "
+    std::cerr << "note: " << text::printable(args.write_baseline) << " is not written: "
               << (report.overall.not_finite > 0 ? "not every value is a number\n" : "errors got worse\n");
     return;
   }
   write_whole_file(args.write_baseline, check::baseline_text(report));
-  std::cout << "Baseline: " << printable(args.write_baseline) << '\n';
+  std::cout << "Baseline: " << text::printable(args.write_baseline) << '\n';
 }
 
 int run_check(const CheckArguments& args) {
@@ -355,7 +357,8 @@ int run_check(const CheckArguments& args) {
   print(args, report);
   record(args, report);
   if (args.github) std::cout << check::github_annotations(report);
-  for (const std::string& warning : check::warnings(report)) std::cerr << "warning: " << warning << '\n';
+  for (const std::string& warning : check::warnings(report))
+    std::cerr << "warning: " << text::printable(warning) << '\n';
   check_output(std::cout);
   return report.passed() ? 0 : 1;
 }
