@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -58,6 +59,11 @@ class HostileProgram : public testing::Test {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
+
+  std::vector<std::string> truth_file(const fs::path& file) const {
+    return {"truth", room_, "--on", "floor", "--source", "light", "--grid", "2x2", "--threads", "1", "-o", file};
+  }
+  std::vector<std::vector<std::string>> printing() const;
 
   // A gnuplot of our own, found before any other.
   std::function<void()> with_gnuplot(const std::string& script) const {
@@ -123,18 +129,80 @@ TEST_F(HostileProgram, FoldersOnTheWayAreMade) {
 TEST_F(HostileProgram, AFullDiskLeavesNoPicture) {
   const Running run = start(point({"--svg", place_ / "a.svg"}), [] { limit(RLIMIT_FSIZE, 512); });
   EXPECT_EQ(run.wait(), 2);
-  EXPECT_NE(run.error().find("a.svg: cannot write the file: File too large (nothing was written); "),
-            std::string::npos);
+  EXPECT_NE(run.error().find("a.svg: cannot write the file: File too large (nothing was written); "), std::string::npos);
   expect_nothing_in_place();
 }
 
-TEST_F(HostileProgram, AFullDiskAsStandardOutputIsAnError) {
-  const auto full = [] {
-    if (std::freopen("/dev/full", "w", stdout) == nullptr) ::_exit(125);
+void to_a_full_disk() {
+  if (std::freopen("/dev/full", "w", stdout) == nullptr) ::_exit(125);
+}
+void to_nowhere() { ::close(STDOUT_FILENO); }
+void to_a_pipe_without_reader() {
+  std::array<int, 2> ends{};
+  if (::pipe(ends.data()) != 0 || ::dup2(ends[1], STDOUT_FILENO) < 0) ::_exit(125);
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+// Everything that prints.
+std::vector<std::vector<std::string>> HostileProgram::printing() const {
+  const std::string truth = (directory_.path() / "truth.csv").string();
+  EXPECT_EQ(start(truth_file(truth)).wait(), 0);
+  return {{"--help"},
+          {"--version"},
+          {"info", "--help"},
+          {"compare", "--help"},
+          {"info", "@"},
+          {"info", "@", "--json"},
+          {"info", room_},
+          {"info", room_, "--json"},
+          {"completion", "bash"},
+          {"manual"},
+          {"stress", "--list"},
+          {"check", truth, truth},
+          {"check", truth, truth, "--github"},
+          truth_file(truth + ".2"),
+          point({}),
+          point({"--plain"}),
+          point({"--json"})};
+}
+
+TEST_F(HostileProgram, AFullDiskOrNoPlaceAsStandardOutputIsAnError) {
+  for (const auto& arguments : printing()) {
+    for (const auto& stdout_of : {to_a_full_disk, to_nowhere}) {
+      fs::remove(directory_.path() / "truth.csv.2");
+      const Running run = start(arguments, stdout_of);
+      EXPECT_EQ(run.wait(), 2) << arguments[0] << ' ' << arguments.back();
+      EXPECT_NE(run.error().find("the result could not be written to standard output (what was printed is incomplete)"),
+                std::string::npos)
+          << run.error();
+    }
+  }
+}
+
+// As programs of Unix do: a pager that was left is no error, but nothing more can be told.
+TEST_F(HostileProgram, APipeThatNobodyReadsEndsItAsItEndsOthers) {
+  const auto ignoring = [] {
+    std::signal(SIGPIPE, SIG_IGN);
+    to_a_pipe_without_reader();
   };
-  EXPECT_EQ(start({"info", room_}, full).wait(), 2);
-  EXPECT_EQ(start({"info", room_, "--json"}, full).wait(), 2);
-  EXPECT_EQ(start(point({"--plain"}), full).wait(), 2);
+  for (const auto& arguments : {std::vector<std::string>{"--help"}, {"info", room_}, point({"--json"})}) {
+    EXPECT_EQ(start(arguments, to_a_pipe_without_reader).wait(), 128 + SIGPIPE);
+    EXPECT_EQ(start(arguments, ignoring).wait(), 2);
+  }
+}
+
+// The file would otherwise be opened under the number of standard output, and take what is printed.
+TEST_F(HostileProgram, WithoutStandardStreamsFilesHoldWhatTheyShould) {
+  EXPECT_EQ(start(truth_file(place_ / "a.csv")).wait(), 0);
+  const auto all_closed = [] {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::close(stream);
+  };
+  EXPECT_EQ(start(truth_file(place_ / "b.csv"), all_closed).wait(), 2);
+  EXPECT_EQ(start(point({"--svg", place_ / "c.svg"}), all_closed).wait(), 2);
+  EXPECT_EQ(validation::text_of(place_ / "b.csv"), validation::text_of(place_ / "a.csv"));
+  EXPECT_TRUE(validation::text_of(place_ / "c.svg").ends_with("</svg>\n"));
+  EXPECT_EQ(names(place_), (std::set<std::string>{"a.csv", "b.csv", "c.svg"}));
 }
 
 // While gnuplot draws, the hidden folder exists: the worst moment to be interrupted.
