@@ -2,9 +2,6 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <csignal>
-#include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <iostream>
 #include <sstream>
 #include <string>
@@ -30,15 +27,7 @@ constexpr const char* kDescription =
     "  exactff truth SCENE --on NAME --grid 32x32 -o truth.csv\n"
     "  exactff check truth.csv CANDIDATE.csv --max-abs 1e-4";
 
-// Memory may also end where no exception may pass.
-[[noreturn]] void end_at_once() {
-  std::fputs("exactff: ended by an error that nothing could handle, such as the end of memory; no result was written\n",
-             stderr);
-  std::_Exit(exactff::cli::kInternalFailure);
-}
-
 void prepare_for_the_worst() {
-  std::set_terminate(end_at_once);
   exactff::cli::occupy_closed_streams();
   exactff::cli::throw_when_out_of_memory();
   std::signal(SIGXFSZ, SIG_IGN);  // writing beyond a limit on the size of files then fails, as on a full disk

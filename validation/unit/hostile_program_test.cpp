@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -306,6 +307,52 @@ TEST_F(HostileProgram, TheEndOfMemoryIsToldByExactNumbersToo) {
   }
   EXPECT_GT(told, 0);
 }
+
+// Nothing is left to be allocated at some point before main(), in it or in a thread: it ends with a code of its own, or
+// of the loader's where that cannot map the libraries, but never by a signal.
+class LittleMemory : public HostileProgram, public testing::WithParamInterface<const char*> {
+ protected:
+  std::vector<std::string> arguments() const {
+    const std::string command = GetParam();
+    if (command == "info") return {"info", room_};
+    if (command == "point") return point({});
+    if (command == "compare") return comparison(place_ / "result");
+    std::vector<std::string> truth = truth_file(place_ / "truth.csv");
+    *(std::ranges::find(truth, "--threads") + 1) = "2";
+    return truth;
+  }
+
+  bool works_with(rlim_t kilobytes) const {
+    const Running run = start(arguments(), [kilobytes] {
+      limit(RLIMIT_AS, kilobytes << 10);
+      ::setenv("PATH", "/nonexistent", 1);  // no gnuplot, which has limits of its own
+    });
+    const int code = run.wait();
+    const bool loaded = code != 127;
+    EXPECT_TRUE(code == 0 || code == 4 || !loaded) << kilobytes << " kB: " << code << '\n' << run.error();
+    EXPECT_EQ(code == 0 || !run.error().empty(), true) << kilobytes << " kB";
+    EXPECT_TRUE(code != 4 || run.error().find("exactff: ") != std::string::npos) << run.error();
+    fs::remove_all(place_);
+    fs::create_directory(place_);
+    return code == 0;
+  }
+};
+
+TEST_P(LittleMemory, EndsItByNoSignal) {
+  if (kSanitized) GTEST_SKIP() << "address space cannot be limited here";
+  constexpr rlim_t kFine = 512;
+  rlim_t fails = 20'000, works = 600'000;
+  EXPECT_FALSE(works_with(fails));
+  EXPECT_TRUE(works_with(works));
+  while (works - fails > kFine) {
+    const rlim_t middle = (fails + works) / 2;
+    (works_with(middle) ? works : fails) = middle;
+  }
+  for (rlim_t less = kFine; less <= 24 * kFine; less += kFine) (void)works_with(works - less);
+  for (rlim_t more = 1; more <= 4; ++more) (void)works_with(works + more * 10 * kFine);
+}
+INSTANTIATE_TEST_SUITE_P(All, LittleMemory, testing::Values("info", "point", "truth", "compare"),
+                         [](const auto& test) { return std::string(test.param); });
 
 TEST_F(HostileProgram, ASmallStackIsEnough) {
   if (kSanitized) GTEST_SKIP() << "sanitized code needs a large stack";
