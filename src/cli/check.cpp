@@ -1,13 +1,9 @@
 // exactff check: the values of another program held against a truth file.
 #include "exactff/check.h"
 
-#include <stdlib.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <csignal>
-#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -28,6 +24,7 @@
 #include "scene/text_lines.h"
 #include "study/gnuplot.h"
 #include "study/text.h"
+#include "study/work_folder.h"
 #include "text/escape.h"
 
 namespace exactff::cli {
@@ -270,8 +267,8 @@ void print_end(const CheckArguments& args, const check::Report& report) {
 void print(const CheckArguments& args, const check::Report& report) {
   std::cout << "truth      " << text::printable(report.truth_file) << " (" << text::printable(report.column) << ", "
             << study::counted(report.truth_rows, "row") << ")\n"
-            << "candidate  " << text::printable(report.candidate_file) << " (" << study::counted(report.overall.rows, "row")
-            << " judged)\n\n";
+            << "candidate  " << text::printable(report.candidate_file) << " ("
+            << study::counted(report.overall.rows, "row") << " judged)\n\n";
   print_distribution(report);
   print_histogram(report);
   print_worst(report);
@@ -280,35 +277,21 @@ void print(const CheckArguments& args, const check::Report& report) {
   print_end(args, report);
 }
 
-// A folder of its own that disappears with the object.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "exactff-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      refuse("no temporary folder can be made: " + std::string(std::strerror(errno)), "gnuplot draws in one",
-             "set TMPDIR to a folder that can be written to, or leave --plot out");
-    }
-    path_ = name;
+// Beside nothing: the picture may go to a pipe.
+study::WorkFolder scratch_folder() {
+  try {
+    return study::WorkFolder(std::filesystem::temp_directory_path() / "exactff-plot");
+  } catch (const std::filesystem::filesystem_error& error) {
+    refuse("no temporary folder can be made: " + error.code().message(), "gnuplot draws in one",
+           "set TMPDIR to a folder that can be written to, or leave --plot out");
   }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+}
 
 study::PlotResult run_plot(const std::string& script) {
   study::PlotResult result;
   {
     const InterruptWatch watch;  // a signal waits until the folder is gone
-    const ScratchFolder scratch;
+    const study::WorkFolder scratch = scratch_folder();
     result = study::run_gnuplot(script, scratch.path(), is_interrupted);
   }
   if (is_interrupted()) ::raise(interrupting_signal());

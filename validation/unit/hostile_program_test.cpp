@@ -130,7 +130,7 @@ TEST_F(HostileProgram, FoldersOnTheWayAreMade) {
 TEST_F(HostileProgram, AFullDiskLeavesNoPicture) {
   const Running run = start(point({"--svg", place_ / "a.svg"}), [] { limit(RLIMIT_FSIZE, 512); });
   EXPECT_EQ(run.wait(), 2);
-  EXPECT_NE(run.error().find("a.svg: cannot write the file: File too large (nothing was written); "), std::string::npos);
+  EXPECT_NE(run.error().find("a.svg: cannot be written: File too large (nothing was written); "), std::string::npos);
   expect_nothing_in_place();
 }
 
@@ -223,6 +223,30 @@ TEST_F(HostileProgram, SignalsWhileItWritesLeaveTheJournalAlone) {
       expect_only_a_journal(folder);
     }
   }
+}
+
+// A killed process cannot clear up; the next one does, and leaves alone what a living one is at.
+TEST_F(HostileProgram, WhatAKilledRunLeavesTheNextClears) {
+  const fs::path started = directory_.path() / "started", folder = place_ / "result";
+  const auto gnuplot = with_gnuplot("touch '" + started.string() + "'; exec sleep 3");
+  const auto begin = [&](const std::vector<std::string>& arguments) {
+    fs::remove(started);
+    const Running run = start(arguments, gnuplot);
+    while (!fs::exists(started) && !run.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return run;
+  };
+  const Running killed = begin(comparison(folder));
+  killed.send(SIGKILL);
+  EXPECT_EQ(killed.wait(), 128 + SIGKILL);
+  EXPECT_EQ(names(place_).size(), 2U);  // the journal, the hidden folder
+  const Running stress = begin({"stress", "--family", "crack", "-o", folder});
+  EXPECT_EQ(names(place_).size(), 2U);  // the journal, its own hidden folder
+  const Running other = start(resumed(folder), [] { ::setenv("PATH", "/nonexistent", 1); });
+  EXPECT_EQ(other.wait(), 0) << other.error();
+  EXPECT_EQ(names(place_).size(), 2U);  // the result, the hidden folder of the one that lives
+  stress.send(SIGINT);
+  EXPECT_EQ(stress.wait(), 128 + SIGINT);
+  EXPECT_EQ(names(place_), std::set<std::string>{"result"});
 }
 
 TEST_F(HostileProgram, ASignalWhileItReadsLeavesNothing) {
