@@ -4,30 +4,10 @@
 #include "check/words.h"
 #include "exactff/check.h"
 #include "kernel/float_environment.h"
+#include "text/escape.h"
 
 namespace exactff::check {
 namespace {
-
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-    text.replace(at, from.size(), to);
-  }
-}
-
-std::string data(std::string text) {
-  replace_all(text, "%", "%25");
-  replace_all(text, "\r", "%0D");
-  replace_all(text, "\n", "%0A");
-  return text;
-}
-
-// Of a property, which ends at a comma or colon.
-std::string property(std::string text) {
-  text = data(std::move(text));
-  replace_all(text, ":", "%3A");
-  replace_all(text, ",", "%2C");
-  return text;
-}
 
 struct Place {
   std::string file = {};
@@ -36,9 +16,9 @@ struct Place {
 
 std::string command(std::string_view kind, const Place& place, const std::string& title, const std::string& message) {
   std::string text = "::" + std::string(kind) + ' ';
-  if (!place.file.empty()) text += "file=" + property(place.file) + ',';
+  if (!place.file.empty()) text += "file=" + text::github_property(place.file) + ',';
   if (!place.file.empty() && place.line > 0) text += "line=" + std::to_string(place.line) + ',';
-  return text + "title=" + property(title) + "::" + data(message) + '\n';
+  return text + "title=" + text::github_property(title) + "::" + text::github_message(message) + '\n';
 }
 
 }  // namespace

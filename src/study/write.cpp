@@ -27,7 +27,7 @@ void write_tables(const Chapter& chapter, const fs::path& folder) {
   for (const auto* list : {&chapter.values, &chapter.times}) {
     for (const TextTable& table : *list) {
       write_file(folder / table.file, [&](std::ostream& out) {
-        out << "# " << program_version() << " compare: " << one_line(table.holds) << '\n' << table.csv;
+        out << "# " << program_version() << " compare: " << csv_comment(table.holds) << '\n' << table.csv;
       });
     }
   }

@@ -91,11 +91,11 @@ bool Rows::may_be_one_block(Range range) const {
 std::string Rows::head() const {
   std::ostringstream out;
   out << "# exactff " << kVersion << " truth: form factors, correctly rounded, between proved bounds\n"
-      << "# scene: " << study::one_line(request_.scene_name) << ", hash " << request_.scene->hash() << '\n'
-      << "# receivers: " << study::one_line(request_.receivers_name) << ", hash " << receivers_hash_ << '\n'
+      << "# scene: " << study::csv_comment(request_.scene_name) << ", hash " << request_.scene->hash() << '\n'
+      << "# receivers: " << study::csv_comment(request_.receivers_name) << ", hash " << receivers_hash_ << '\n'
       << "# sources: ";
   for (std::size_t s = 0; s < source_names_.size(); ++s)
-    out << (s > 0 ? " + " : "") << study::one_line(source_names_[s]);
+    out << (s > 0 ? " + " : "") << study::csv_comment(source_names_[s]);
   out << '\n'
       << "# rows: " << count() << '\n'
       << "# units: form factors are pure numbers, radiosity is in the unit of Ke, lengths are in the unit of the "
