@@ -256,17 +256,26 @@ double VisibleShare::of(std::span<const Vec3> directions) {
   return in_part ? proper_share(share) : share > 0.5 ? 1.0 : 0.0;
 }
 
+// Rounding can turn a direction away from the plane.
+bool VisibleShare::all_meet_plane(std::span<const Vec3> directions) const {
+  return std::all_of(directions.begin(), directions.end(), [this](const Vec3& direction) {
+    return kernel::sign(dot(away_, kernel::exact_vector(direction).v)) > 0;
+  });
+}
+
 double VisibleShare::of_exactly(std::span<const Vec3> directions) {
   if (all_) return 1.0;
-  if (pieces_.empty()) return 0.0;
+  if (pieces_.empty() || !all_meet_plane(directions)) return 0.0;
   const SmallPolygon<Rational> window = exact_window(directions);
+  const Rational whole = doubled_area(window);
+  if (whole <= 0) return 0.0;
   const bool in_part = std::any_of(pieces_.begin(), pieces_.end(), [&](const Piece& piece) {
     return !piece.outline && meets_exactly(window, piece.exact_p, piece.exact_q);
   });
   const Point<Rational> c = middle_of(window);
   Rational visible(0);
   for (const Piece& piece : pieces_) visible += wedge(window, c, piece.exact_p, piece.exact_q);
-  const double share = kernel::nearest_double(visible / doubled_area(window));
+  const double share = kernel::nearest_double(visible / whole);
   return in_part ? proper_share(share) : share > 0.5 ? 1.0 : 0.0;
 }
 
