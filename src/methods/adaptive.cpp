@@ -83,7 +83,8 @@ Method adaptive_method() {
           .settings = std::move(settings),
           .prepare = [](const Scene& scene) { return std::make_unique<AdaptiveOnScene>(scene); },
           .uses = pattern_uses,
-          .check = check_tolerances};
+          .check = check_tolerances,
+          .can_leave_unit = [](const Settings&) { return true; }};  // the sum over a source of several faces
 }
 
 }  // namespace exactff::methods
