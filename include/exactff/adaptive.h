@@ -59,6 +59,8 @@ struct Leaf {
 };
 
 struct AdaptiveResult {
+  // Finite. In [0, 1] for a source of one face; never negative, and above 1 only where faces of the source that
+  // overlap, or errors of V, add up to more. The literal variant can leave [0, 1] on both sides.
   double form_factor = 0.0;
   std::uint64_t leaves = 0;
   std::uint64_t rays = 0;
@@ -89,7 +91,9 @@ class AdaptiveSource {
 // scene it was made from.
 class AdaptiveSolver {
  public:
-  // Throws InputError where single precision would merge distinct vertices or collapse or flip a face.
+  // Throws InputError where single precision would merge distinct vertices or collapse or flip a face, and where a
+  // scene of more than 16 pieces is too thin for the ray structure: not flat, but thinner than about 2^-75 (2.6e-23) of
+  // its size along some axis.
   explicit AdaptiveSolver(const Scene& scene);
   AdaptiveSolver(AdaptiveSolver&&) noexcept;
   AdaptiveSolver& operator=(AdaptiveSolver&&) noexcept;

@@ -159,11 +159,7 @@ void VisibleShare::set_window(std::span<const Vec3> directions) {
 
 SmallPolygon<Rational> VisibleShare::exact_window(std::span<const Vec3> directions) const {
   SmallPolygon<Rational> corners;
-  for (const Vec3& direction : directions) {
-    const ExactVec3 exact = kernel::exact_vector(direction).v;
-    if (kernel::sign(dot(away_, exact)) <= 0) return {};
-    corners.push_back(flat(exact));
-  }
+  for (const Vec3& direction : directions) corners.push_back(flat(kernel::exact_vector(direction).v));
   if (!keeps_orientation_) corners.reverse();
   return corners;
 }
@@ -262,30 +258,19 @@ double VisibleShare::of(std::span<const Vec3> directions) {
   return in_part ? proper_share(share) : share > 0.5 ? 1.0 : 0.0;
 }
 
-// The winding number of the region's boundary: 1 inside, 0 outside.
-bool VisibleShare::sees_middle(std::span<const Vec3> directions) const {
-  Vec3 sum{};
-  for (const Vec3& d : directions) sum = {sum.x + d.x, sum.y + d.y, sum.z + d.z};
-  const ExactVec3 middle = kernel::exact_vector(sum).v;
-  if (kernel::sign(dot(away_, middle)) <= 0) return false;
-  const Point<Rational> m = flat(middle);
-  int winding = 0;
-  for (const Piece& piece : pieces_) {
-    const bool from_below = piece.exact_p.v <= m.v, to_below = piece.exact_q.v <= m.v;
-    if (from_below == to_below) continue;
-    const Rational side = turn(piece.exact_p, piece.exact_q, m);
-    if (from_below && side > 0) ++winding;
-    if (to_below && side < 0) --winding;
-  }
-  return winding != 0;
+// Rounding can turn a direction away from the plane.
+bool VisibleShare::all_meet_plane(std::span<const Vec3> directions) const {
+  return std::all_of(directions.begin(), directions.end(), [this](const Vec3& direction) {
+    return kernel::sign(dot(away_, kernel::exact_vector(direction).v)) > 0;
+  });
 }
 
 double VisibleShare::of_exactly(std::span<const Vec3> directions) {
   if (all_) return 1.0;
-  if (pieces_.empty()) return 0.0;
+  if (pieces_.empty() || !all_meet_plane(directions)) return 0.0;
   const SmallPolygon<Rational> window = exact_window(directions);
   const Rational whole = doubled_area(window);
-  if (whole == 0) return sees_middle(directions) ? 1.0 : 0.0;
+  if (whole <= 0) return 0.0;
   const bool in_part = std::any_of(pieces_.begin(), pieces_.end(), [&](const Piece& piece) {
     return !piece.outline && meets_exactly(window, piece.exact_p, piece.exact_q);
   });

@@ -84,7 +84,8 @@ Method adaptive_method() {
           .settings = std::move(settings),
           .prepare = prepare_as<AdaptiveOnScene>,
           .uses = pattern_uses,
-          .check = check_tolerances};
+          .check = check_tolerances,
+          .can_leave_unit = [](const Settings&) { return true; }};  // the sum over a source of several faces
 }
 
 }  // namespace exactff::methods

@@ -135,7 +135,8 @@ Method adaptive_exact_visibility_method() {
           .source = "F. Tampieri, Accurate Form-Factor Computation (1992), with V computed exactly",
           .settings = tolerance_settings(),
           .prepare = prepare_as<ControlOnScene>,
-          .check = check_tolerances};
+          .check = check_tolerances,
+          .can_leave_unit = [](const Settings&) { return true; }};  // the sum over a source of several faces
 }
 
 }  // namespace exactff::methods

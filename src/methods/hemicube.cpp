@@ -16,6 +16,7 @@
 #include "methods/method_files.h"
 #include "sampled/plane_side.h"
 #include "sampled/sampled_scene.h"
+#include "sampled/value_range.h"
 
 namespace exactff::methods {
 
@@ -221,6 +222,7 @@ Estimate Hemicube::form_factor(const PreparedSource& source) {
     result.form_factor += shares_[index_of(face)].form_factor;
     pixels += shares_[index_of(face)].pixels;
   }
+  result.form_factor = settled(result.form_factor, Formula::kUnit);
   result.counters.add("pixels", pixels);
   result.counters.add("pixels drawn", pixels_.count());
   result.counters.add("polygons", drawn_);

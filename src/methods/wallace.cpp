@@ -10,6 +10,7 @@
 #include "methods/even_split.h"
 #include "methods/method_files.h"
 #include "methods/ray_sum.h"
+#include "sampled/value_range.h"
 
 namespace exactff::methods {
 
@@ -42,7 +43,7 @@ class Wallace : public Evaluator {
         rays_.for_each_part(source, Reach::kVisible, splits_, key, 1,
                             [this](const SubPatch& part, std::uint64_t part_key) { add_part(part, part_key); });
     Estimate result;
-    result.form_factor = rays_.take();
+    result.form_factor = settled(rays_.take(), Formula::kNotNegative);
     result.counters.add("samples", samples);
     result.counters.add("rays", rays_.take_rays());
     return result;
@@ -54,6 +55,7 @@ class Wallace : public Evaluator {
     const Vec3 point{end_.x[0], end_.y[0], end_.z[0]};
     const double size = area(part);
     const double disc = std::numbers::pi * dot(point, point);
+    if (!(disc + size > 0.0)) return;
     rays_.add(point, rays_.kernel(point) * size * (disc / (disc + size)));
   }
 
@@ -90,7 +92,8 @@ Method wallace_method() {
                                     "where in its sub-patch a sample lies: in the middle or anywhere"),
                        seed_setting()},
           .prepare = prepare_as<WallaceOnScene>,
-          .uses = wallace_uses};
+          .uses = wallace_uses,
+          .can_leave_unit = [](const Settings&) { return true; }};
 }
 
 }  // namespace exactff::methods

@@ -20,6 +20,7 @@
 #include "sampled/closed_form.h"
 #include "sampled/patch_visibility.h"
 #include "sampled/sampled_scene.h"
+#include "sampled/value_range.h"
 #include "scene/misuse.h"
 
 namespace exactff {
@@ -285,7 +286,8 @@ AdaptiveResult estimate(const SampledScene& solver, const Receiver& receiver, co
   if ((largest_rho_b == 0.0 && !divides_by_zero) || max_norm(view.point) > kFarthest) return result;
   thread_local Workspace work;
   Recursion recursion(solver, view, options, largest_rho_b, visibility, work, result);
-  result.form_factor = recursion.compute_contribution(source.source, stream_key(view, source.selection, options.seed));
+  const double sum = recursion.compute_contribution(source.source, stream_key(view, source.selection, options.seed));
+  result.form_factor = settled(sum, options.variant == Variant::kLiteral ? Formula::kAny : Formula::kNotNegative);
   return result;
 }
 
