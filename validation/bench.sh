@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# bench.sh [--quick]: builds and runs the benchmarks, then prints README's tables. Times are CPU times, medians of
-# repetitions in random order within one run; what was measured stays as JSON beside the build, in build/bench (EXACTFF_BUILD
-# names another folder). Google Benchmark's warning that it is a debug build means Debian's package, not this code.
+# bench.sh [--quick]: builds and runs the benchmarks, then prints the tables of validation/README.md. Times are CPU
+# times, medians of repetitions in random order within one run. The results stay as JSON beside the build, in
+# build/bench (EXACTFF_BUILD names another folder). Google Benchmark warns of a debug build: it means Debian's package.
 # Takes some ten minutes on an idle machine; with --quick, smaller scenes and fewer repetitions, less than two.
 set -euo pipefail
 

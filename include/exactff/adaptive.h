@@ -59,6 +59,8 @@ struct Leaf {
 };
 
 struct AdaptiveResult {
+  // Finite. In [0, 1] for a source of one face; never negative, and above 1 only where faces of the source that
+  // overlap, or errors of V, add up to more. The literal variant can leave [0, 1] on both sides.
   double form_factor = 0.0;
   std::uint64_t leaves = 0;
   std::uint64_t rays = 0;
@@ -77,7 +79,7 @@ class AdaptiveSource {
   ~AdaptiveSource();
 
   struct Data;
-  [[nodiscard]] const Data& data() const { return *data_; }  // for the library's own modules
+  [[nodiscard]] const Data& data() const;  // for the library's own modules
 
  private:
   friend class AdaptiveSolver;
@@ -89,7 +91,9 @@ class AdaptiveSource {
 // scene it was made from.
 class AdaptiveSolver {
  public:
-  // Throws InputError where single precision would merge distinct vertices or collapse or flip a face.
+  // Throws InputError where single precision would merge distinct vertices or collapse or flip a face, and where a
+  // scene of more than 16 pieces is too thin for the ray structure: not flat, but thinner than about 2^-75 (2.6e-23) of
+  // its size along some axis.
   explicit AdaptiveSolver(const Scene& scene);
   AdaptiveSolver(AdaptiveSolver&&) noexcept;
   AdaptiveSolver& operator=(AdaptiveSolver&&) noexcept;
@@ -99,7 +103,8 @@ class AdaptiveSolver {
   // one source that overlap otherwise count each fully here, and as their union in the exact method.
   [[nodiscard]] AdaptiveSource prepare(const Selection& source) const;
 
-  // Estimates F. `largest_rho_b` is the largest rho_r B_s over the channels; where it is 0 the result is 0
+  // Estimates F. `source` must have been prepared by a solver of the same scene (else std::invalid_argument).
+  // `largest_rho_b` is the largest rho_r B_s over the channels; where it is 0 the result is 0
   // at once. Depends on nothing but the arguments and, in long candidate lists, on the instruction set that Embree
   // finds (rays are seeded from options.seed, the receiver and the source). Throws InputError where the receiver is
   // not finite or has no normal, or an option is out of range. With eps_b = eps_a = 0 the recursion goes on to the
@@ -119,6 +124,7 @@ class AdaptiveSolver {
 
  private:
   struct Impl;
+  [[nodiscard]] const Impl& impl() const;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -1,5 +1,6 @@
-// The user's mistakes. Broken contracts are assertions and numerical outcomes are statuses; neither is
-// ever an InputError.
+// The user's mistakes. Numerical outcomes are statuses, never exceptions. A program's own mistakes are std::logic_error
+// with words: an object used after it was moved from; and, as std::invalid_argument, an id that does not exist or a
+// source or selection of another scene.
 #pragma once
 
 #include <cstddef>

@@ -106,7 +106,7 @@ struct ExactOptions {
   bool exact_fraction = false;  // implies visible_fraction
   bool list_cutters = false;
   int digits = 0;             // raise the precision until so many decimals are certified, if they can be
-  int precision_cap = 65536;  // bits
+  int precision_cap = 65536;  // bits, at least 1 (else InputError)
   const std::vector<FaceId>* only_occluders = nullptr;  // ascending; every other face is ignored
   ShaftCulling culling = ShaftCulling::kTree;
 };
@@ -121,14 +121,14 @@ class ExactSource {
 
   [[nodiscard]] const Selection& selection() const;
   struct Planes;
-  [[nodiscard]] const Planes& planes() const { return *planes_; }
+  [[nodiscard]] const Planes& planes() const;
 
  private:
   std::unique_ptr<Planes> planes_;
 };
 
-// Exact (value), encloses (enclosure). `source` must have been made from `scene`. Requires finite coordinates and a
-// normal other than zero (else InputError). Safe to call from several threads at once; the result depends on nothing
+// Exact (value), encloses (enclosure). `source` must have been made from `scene` (else std::invalid_argument). Requires
+// finite coordinates and a normal other than zero (else InputError). Safe to call from several threads at once; the result depends on nothing
 // but the arguments, also where the thread rounds otherwise than to nearest or flushes small numbers to zero.
 [[nodiscard]] FormFactor exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                                            const ExactOptions& options = {});

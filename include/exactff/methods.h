@@ -162,6 +162,11 @@ class PreparedSource {
 
 // One choice of settings, with the memory that one thread works in. Values depend on the scene, the settings, the
 // receiver and the source alone: never on what was evaluated before, or on other threads.
+//
+// Of the library's methods every form factor is finite, whatever the scene. It lies in [0, 1] unless the method's own
+// formula leaves it (Method::can_leave_unit): what rounding moves out of the range is brought back to its end, what the
+// formula moves out is kept, and beyond the largest double it is the largest double. Only literal variants can be
+// negative. Of a method of your own the study counts what is not finite, and leaves it out of error statistics.
 class Evaluator {
  public:
   virtual ~Evaluator() = default;
@@ -213,6 +218,8 @@ struct Method {
   std::function<bool(const Settings&, std::string_view setting)> uses = {};
   // Throws InputError where settings do not go together; empty: all do.
   std::function<void(const Settings&)> check = {};
+  // Whether the formula itself, without any rounding, can give a value outside [0, 1]; empty: it cannot.
+  std::function<bool(const Settings&)> can_leave_unit = {};
 
   [[nodiscard]] Settings defaults() const { return Settings(settings); }
   // True if the values depend on the seed.

@@ -21,6 +21,9 @@ namespace exactff {
 enum class PatchId : std::uint32_t {};
 enum class FaceId : std::uint32_t {};
 enum class MaterialId : std::uint32_t {};
+// Every scene made in a process has a number of its own, from 1; a scene that is moved keeps it.
+enum class SceneId : std::uint64_t {};
+inline constexpr SceneId kAnyScene{0};
 
 template <class Id>
 requires std::is_enum_v<Id>
@@ -75,12 +78,14 @@ struct Piece {
   std::uint32_t frame[3] = {0, 0, 0};  // vertex indices of three corners not on a line, in order
 };
 
-// What a name selects: a whole patch, or one of its faces (NAME:k).
+// What a name selects: a whole patch, or one of its faces (NAME:k). Wherever a selection is taken, one that a scene made
+// is refused for another scene, and so are ids that the scene does not have (std::invalid_argument).
 struct Selection {
   PatchId patch{};
   std::optional<FaceId> face;
+  SceneId scene = kAnyScene;  // that made it; not compared
 
-  friend bool operator==(const Selection&, const Selection&) = default;
+  friend bool operator==(const Selection& a, const Selection& b) { return a.patch == b.patch && a.face == b.face; }
 };
 
 class Scene {
@@ -89,6 +94,7 @@ class Scene {
   Scene& operator=(Scene&&) noexcept;
   ~Scene();
 
+  [[nodiscard]] SceneId id() const;
   [[nodiscard]] std::span<const Vec3> vertices() const;
   [[nodiscard]] std::span<const Material> materials() const;
   [[nodiscard]] std::span<const Patch> patches() const;
@@ -115,11 +121,14 @@ class Scene {
   // B_s of a source: its Ke, or 1 in each channel where it emits nothing. Throws InputError if faces
   // of the selection differ in Ke.
   [[nodiscard]] Rgb source_radiosity(const Selection& source) const;
-  // rho_r of a receiver on `face`: Kd of that face; (1,1,1) for a free receiver.
+  // rho_r of a receiver on `face`: Kd of that face; (1,1,1) for a free receiver. A face that the scene does not have is
+  // refused (std::invalid_argument).
   [[nodiscard]] Rgb receiver_reflectance(std::optional<FaceId> face) const;
 
-  // The same scene with the faces of the selection turned round: their fronts become their backs.
-  [[nodiscard]] Scene with_flipped(const Selection& selection) const;
+  // The same scene with the faces of the selections turned round: their fronts become their backs. A face that several
+  // of them name is turned once.
+  [[nodiscard]] Scene with_flipped(std::span<const Selection> selections) const;
+  [[nodiscard]] Scene with_flipped(const Selection& selection) const { return with_flipped(std::span(&selection, 1)); }
 
   // What the builder found worth saying, in file order.
   [[nodiscard]] std::span<const Problem> warnings() const;
@@ -132,7 +141,7 @@ class Scene {
   [[nodiscard]] std::size_t open_edge_count() const;
 
   struct Data;
-  [[nodiscard]] const Data& data() const { return *data_; }  // for the library's own modules
+  [[nodiscard]] const Data& data() const;  // for the library's own modules
 
  private:
   friend class SceneBuilder;
@@ -161,7 +170,8 @@ class SceneBuilder {
   [[nodiscard]] std::size_t vertex_count() const;
   MaterialId add_material(Material material);
   PatchId patch(std::string_view name);  // the patch of that name, made if it is new
-  // Rings of vertex indices, the outer one first; orientation of holes is irrelevant (even-odd).
+  // Rings of vertex indices, the outer one first; orientation of holes is irrelevant (even-odd). The vertices may follow
+  // later. Throws std::invalid_argument for a patch or material that this builder has not made.
   void add_face(PatchId patch, MaterialId material, std::vector<std::vector<std::uint32_t>> rings,
                 std::size_t line = 0);
   void warn(Problem warning);
@@ -172,6 +182,7 @@ class SceneBuilder {
 
  private:
   struct State;
+  [[nodiscard]] State& state() const;
   std::unique_ptr<State> state_;
 };
 

@@ -6,9 +6,12 @@
 
 #include "check/words.h"
 #include "exactff/check.h"
+#include "kernel/float_environment.h"
 #include "scene/text_file.h"
 #include "study/tables.h"
 #include "study/text.h"
+#include "text/escape.h"
+#include "text/json_document.h"
 
 namespace exactff::check {
 namespace {
@@ -61,7 +64,7 @@ class Baseline {
 
   // Nothing where it was not known.
   [[nodiscard]] std::optional<double> recorded(const std::string& source, std::string_view name) const {
-    const ordered_json& statistics = source.empty() ? at({"overall"}) : at({"sources", clean_text(source)});
+    const ordered_json& statistics = source.empty() ? at({"overall"}) : at({"sources", text::utf8(source)});
     if (!statistics.is_object()) refuse_format();
     const auto found = statistics.find(std::string(name));
     if (found == statistics.end()) return std::nullopt;
@@ -107,6 +110,7 @@ void compare(Report& report, const Baseline& baseline, const std::string& source
 }  // namespace
 
 std::string baseline_text(const Report& report) {
+  const kernel::StandardArithmetic arithmetic;
   ordered_json json;
   json["baseline"] = kFormat;
   json["program"] = study::program_version();
@@ -115,12 +119,13 @@ std::string baseline_text(const Report& report) {
   json["overall"] = numbers_json(report.overall);
   json["sources"] = ordered_json::object();
   for (std::size_t s = 0; s < report.sources.size(); ++s) {
-    json["sources"][clean_text(report.sources[s])] = numbers_json(report.by_source[s]);
+    json["sources"][report.sources[s]] = numbers_json(report.by_source[s]);
   }
-  return json.dump(2) + '\n';
+  return text::json_document(json) + '\n';
 }
 
 void hold_against_baseline(Report& report, const std::filesystem::path& path, double slack) {
+  const kernel::StandardArithmetic arithmetic;
   if (!(slack >= 0.0) || std::isinf(slack)) {
     throw InputError({.what = "the slack of the baseline is " + study::shortest(slack),
                       .why = "it is a share of what was recorded",

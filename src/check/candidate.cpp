@@ -4,6 +4,7 @@
 
 #include "check/table.h"
 #include "exactff/check.h"
+#include "kernel/float_environment.h"
 
 namespace exactff::check {
 namespace {
@@ -90,6 +91,7 @@ class CandidateReader {
 }  // namespace
 
 Candidate read_candidate(const std::filesystem::path& path, const CandidateColumns& columns, MatchBy by) {
+  const kernel::StandardArithmetic arithmetic;
   return CandidateReader(path, columns, by).read();
 }
 

@@ -7,6 +7,7 @@
 #include "check/errors.h"
 #include "check/words.h"
 #include "exactff/check.h"
+#include "kernel/float_environment.h"
 #include "study/text.h"
 
 namespace exactff::check {
@@ -51,17 +52,20 @@ double relative_error(double error, double reference, double floor) {
 }
 
 Difference difference(double actual, const Expected& expected) {
+  const kernel::StandardArithmetic arithmetic;
   const double reference = reference_of(actual, expected);
   const double error = actual - reference;
   return {error, relative_error(error, reference, 0.0), ulps_between(actual, reference)};
 }
 
 bool is_near(double actual, const Expected& expected, const Tolerance& tolerance) {
+  const kernel::StandardArithmetic arithmetic;
   const Difference d = difference(actual, expected);
   return std::abs(d.error) <= tolerance.absolute || d.relative <= tolerance.relative;
 }
 
 std::string describe_difference(double actual, const Expected& expected, const Tolerance& tolerance) {
+  const kernel::StandardArithmetic arithmetic;
   const Difference d = difference(actual, expected);
   std::string text = "  actual    " + study::shortest(actual) + "\n  expected  " + bounds_of(expected) + "\n";
   if (!std::isfinite(actual)) return text + "  the actual value is not a finite number";

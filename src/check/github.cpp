@@ -3,30 +3,11 @@
 
 #include "check/words.h"
 #include "exactff/check.h"
+#include "kernel/float_environment.h"
+#include "text/escape.h"
 
 namespace exactff::check {
 namespace {
-
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-    text.replace(at, from.size(), to);
-  }
-}
-
-std::string data(std::string text) {
-  replace_all(text, "%", "%25");
-  replace_all(text, "\r", "%0D");
-  replace_all(text, "\n", "%0A");
-  return text;
-}
-
-// Of a property, which ends at a comma or colon.
-std::string property(std::string text) {
-  text = data(std::move(text));
-  replace_all(text, ":", "%3A");
-  replace_all(text, ",", "%2C");
-  return text;
-}
 
 struct Place {
   std::string file = {};
@@ -35,14 +16,15 @@ struct Place {
 
 std::string command(std::string_view kind, const Place& place, const std::string& title, const std::string& message) {
   std::string text = "::" + std::string(kind) + ' ';
-  if (!place.file.empty()) text += "file=" + property(place.file) + ',';
+  if (!place.file.empty()) text += "file=" + text::github_property(place.file) + ',';
   if (!place.file.empty() && place.line > 0) text += "line=" + std::to_string(place.line) + ',';
-  return text + "title=" + property(title) + "::" + data(message) + '\n';
+  return text + "title=" + text::github_property(title) + "::" + text::github_message(message) + '\n';
 }
 
 }  // namespace
 
 std::string github_annotations(const Report& report) {
+  const kernel::StandardArithmetic arithmetic;
   std::string text;
   const std::size_t own = report.worst.empty() ? 0 : report.worst.front().line;
   for (const Verdict& verdict : report.verdicts) {
@@ -59,6 +41,7 @@ std::string github_annotations(const Report& report) {
 }
 
 std::string github_annotations(const InputError& error) {
+  const kernel::StandardArithmetic arithmetic;
   constexpr std::size_t kShown = 10;  // what the runner shows of one step
   std::string text;
   for (const Problem& problem : error.problems()) {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "exactff/check.h"
+#include "kernel/float_environment.h"
 #include "study/plot_script.h"
 #include "study/text.h"
 
@@ -37,6 +38,7 @@ std::vector<study::Mark> limits(const Report& report) {
 }  // namespace
 
 Histogram histogram(const Report& report, int bins_per_decade, std::size_t most_bins) {
+  const kernel::StandardArithmetic arithmetic;
   Histogram result;
   const std::vector<double>& errors = report.magnitudes;
   const auto nonzero = std::upper_bound(errors.begin(), errors.end(), 0.0);
@@ -55,6 +57,7 @@ Histogram histogram(const Report& report, int bins_per_decade, std::size_t most_
 }
 
 std::string histogram_script(const Report& report) {
+  const kernel::StandardArithmetic arithmetic;
   constexpr int kBinsPerDecade = 4;
   constexpr std::size_t kMostBins = 120;
   const Histogram shown = histogram(report, kBinsPerDecade, kMostBins);

@@ -4,7 +4,9 @@
 
 #include "check/words.h"
 #include "exactff/check.h"
+#include "kernel/float_environment.h"
 #include "study/tables.h"
+#include "text/json_document.h"
 
 namespace exactff::check {
 namespace {
@@ -30,17 +32,22 @@ ordered_json to_json(const Statistics& s) {
 }
 
 ordered_json to_json(const RowError& row) {
-  ordered_json json = {
-      {"receiver", clean_text(row.receiver)}, {"source", clean_text(row.source)}, {"line", row.line},
-      {"truth_line", row.truth_line},         {"status", to_string(row.status)},  {"truth", number(row.truth)},
-      {"value", number(row.value)},           {"error", number(row.error)},       {"relative", number(row.relative)}};
+  ordered_json json = {{"receiver", row.receiver},
+                       {"source", row.source},
+                       {"line", row.line},
+                       {"truth_line", row.truth_line},
+                       {"status", to_string(row.status)},
+                       {"truth", number(row.truth)},
+                       {"value", number(row.value)},
+                       {"error", number(row.error)},
+                       {"relative", number(row.relative)}};
   if (row.radiosity) json["radiosity"] = number(*row.radiosity);
   return json;
 }
 
 ordered_json to_json(const Verdict& verdict) {
   ordered_json json = {{"criterion", verdict.criterion},
-                       {"source", clean_text(verdict.source)},
+                       {"source", verdict.source},
                        {"measured", number(verdict.measured)},
                        {"limit", number(verdict.limit)},
                        {"passed", verdict.passed}};
@@ -50,7 +57,7 @@ ordered_json to_json(const Verdict& verdict) {
 
 ordered_json to_json(const Improvement& improvement) {
   return {{"criterion", improvement.criterion},
-          {"source", clean_text(improvement.source)},
+          {"source", improvement.source},
           {"recorded", number(improvement.recorded)},
           {"now", number(improvement.now)}};
 }
@@ -73,13 +80,14 @@ ordered_json list(const List& items) {
 }  // namespace
 
 std::string json_text(const Report& report) {
+  const kernel::StandardArithmetic arithmetic;
   ordered_json json;
   json["program"] = study::program_version();
-  json["truth"] = {{"file", clean_text(report.truth_file)},
-                   {"column", clean_text(report.column)},
+  json["truth"] = {{"file", report.truth_file},
+                   {"column", report.column},
                    {"rows", report.truth_rows},
                    {"identity", report.identity}};
-  json["candidate"] = clean_text(report.candidate_file);
+  json["candidate"] = report.candidate_file;
   json["passed"] = report.passed();
   json["warnings"] = warnings(report);
   json["verdicts"] = list(report.verdicts);
@@ -88,12 +96,12 @@ std::string json_text(const Report& report) {
   json["overall"] = to_json(report.overall);
   json["sources"] = ordered_json::object();
   for (std::size_t s = 0; s < report.sources.size(); ++s) {
-    json["sources"][clean_text(report.sources[s])] = to_json(report.by_source[s]);
+    json["sources"][report.sources[s]] = to_json(report.by_source[s]);
   }
   json["worst_by"] = to_string(report.worst_by);
   json["worst"] = list(report.worst);
   json["histogram"] = to_json(histogram(report));
-  return json.dump(2) + '\n';
+  return text::json_document(json) + '\n';
 }
 
 }  // namespace exactff::check

@@ -8,6 +8,7 @@
 #include "check/errors.h"
 #include "check/words.h"
 #include "exactff/check.h"
+#include "kernel/float_environment.h"
 #include "scene/fnv1a.h"
 #include "study/text.h"
 
@@ -167,6 +168,7 @@ bool Report::passed() const {
 
 Report judge(const Truth& truth, const std::vector<Measured>& values, const Criteria& criteria,
              const std::string& candidate_file) {
+  const kernel::StandardArithmetic arithmetic;
   check_criteria(criteria);
   if (values.empty()) {
     throw InputError({truth.file, 0, "has no row to judge", "a check that judges nothing would always pass",

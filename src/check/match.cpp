@@ -13,6 +13,7 @@
 #include "check/row_keys.h"
 #include "check/words.h"
 #include "exactff/check.h"
+#include "kernel/float_environment.h"
 #include "scene/text_lines.h"
 #include "study/text.h"
 
@@ -198,6 +199,7 @@ class Matcher {
 }  // namespace
 
 std::vector<Measured> match(const Truth& truth, const Candidate& candidate, const MatchOptions& options) {
+  const kernel::StandardArithmetic arithmetic;
   return Matcher(truth, candidate, options).match();
 }
 

@@ -7,6 +7,7 @@
 #include "check/row_keys.h"
 #include "check/table.h"
 #include "exactff/check.h"
+#include "kernel/float_environment.h"
 
 namespace exactff::check {
 namespace {
@@ -186,6 +187,7 @@ void fill_in_rho_b(Truth& truth) {
 }  // namespace
 
 Truth read_truth(const std::filesystem::path& path, const std::string& column) {
+  const kernel::StandardArithmetic arithmetic;
   Truth truth = TruthReader(path, column).read();
   fill_in_rho_b(truth);
   return truth;

@@ -5,34 +5,15 @@
 #include <charconv>
 #include <cmath>
 
-#include "scene/printable.h"
+#include "kernel/float_environment.h"
 #include "scene/text_lines.h"
 #include "study/text.h"
+#include "text/escape.h"
 
 namespace exactff::check {
 namespace {
 
 using study::shortest;
-
-// How many bytes the character of UTF-8 has that begins at `at`; 0 if there is none.
-std::size_t character_length(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
-  const unsigned first = byte(at);
-  const std::size_t length = first < 0x80   ? 1
-                             : first < 0xC2 ? 0
-                             : first < 0xE0 ? 2
-                             : first < 0xF0 ? 3
-                             : first < 0xF5 ? 4
-                                            : 0;
-  unsigned code = length < 2 ? first : first & (0x7FU >> length);
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(at + i) & 0xC0U) != 0x80U) return 0;
-    code = (code << 6U) | (byte(at + i) & 0x3FU);
-  }
-  const bool too_long = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
-  const bool no_character = (code >= 0xD800 && code < 0xE000) || code == 0xFFFE || code == 0xFFFF || code > 0x10FFFF;
-  return too_long || no_character ? 0 : length;
-}
 
 }  // namespace
 
@@ -102,26 +83,15 @@ std::vector<std::string> warnings(const Report& report) {
 }
 
 std::string failure_message(const Report& report) {
+  const kernel::StandardArithmetic arithmetic;
   std::string text;
   for (const Verdict& verdict : report.verdicts) {
     if (!verdict.passed) text += sentence(verdict) + '\n';
   }
   if (report.worst.empty()) return text;
   text += "worst rows by " + std::string(to_string(report.worst_by)) + ":\n";
-  for (const RowError& row : report.worst) text += "  " + printable(name_of(row) + ": " + describe(row)) + '\n';
+  for (const RowError& row : report.worst) text += "  " + text::printable(name_of(row) + ": " + describe(row)) + '\n';
   return text;
-}
-
-std::string clean_text(std::string_view text) {
-  std::string clean;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = character_length(text, at);
-    const bool control = length == 1 && static_cast<unsigned char>(text[at]) < 0x20 && text[at] != '\n';
-    const bool keep = length > 0 && !control && text[at] != '\x7f';
-    clean += keep ? std::string(text.substr(at, length)) : "?";
-    at += std::max<std::size_t>(length, 1);
-  }
-  return clean;
 }
 
 }  // namespace exactff::check

@@ -22,7 +22,4 @@ namespace exactff::check {
 // What a person should know about the result, passed or not.
 [[nodiscard]] std::vector<std::string> warnings(const Report& report);
 
-// Bytes that are no UTF-8 and control characters as question marks: XML and JSON have no way to hold them.
-[[nodiscard]] std::string clean_text(std::string_view text);
-
 }  // namespace exactff::check

@@ -1,13 +1,9 @@
 // exactff check: the values of another program held against a truth file.
 #include "exactff/check.h"
 
-#include <stdlib.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <csignal>
-#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -25,10 +21,11 @@
 #include "cli/text_table.h"
 #include "scene/csv_lines.h"
 #include "scene/number_text.h"
-#include "scene/printable.h"
 #include "scene/text_lines.h"
 #include "study/gnuplot.h"
 #include "study/text.h"
+#include "study/work_folder.h"
+#include "text/escape.h"
 
 namespace exactff::cli {
 namespace {
@@ -245,7 +242,7 @@ void print_verdicts(const check::Report& report) {
 void print_improvements(const check::Report& report) {
   for (const check::Improvement& better : report.improvements) {
     std::cout << "Better than " << better.criterion
-              << (better.source.empty() ? "" : ", source " + printable(better.source)) << ": "
+              << (better.source.empty() ? "" : ", source " + text::printable(better.source)) << ": "
               << short_number(better.recorded) << " -> " << short_number(better.now);
     if (better.recorded > 0.0 && std::isfinite(better.recorded)) {
       std::cout << ", " << short_number(100.0 * (1.0 - better.now / better.recorded)) << " % less";
@@ -264,14 +261,14 @@ void print_end(const CheckArguments& args, const check::Report& report) {
     std::cout << "Passed\n";
   }
   const bool suggests = failed == 0 && !report.improvements.empty() && args.write_baseline.empty();
-  if (suggests) std::cout << "Hold on to it: --write-baseline " << printable(args.baseline) << '\n';
+  if (suggests) std::cout << "Hold on to it: --write-baseline " << text::printable(args.baseline) << '\n';
 }
 
 void print(const CheckArguments& args, const check::Report& report) {
-  std::cout << "truth      " << printable(report.truth_file) << " (" << printable(report.column) << ", "
+  std::cout << "truth      " << text::printable(report.truth_file) << " (" << text::printable(report.column) << ", "
             << study::counted(report.truth_rows, "row") << ")\n"
-            << "candidate  " << printable(report.candidate_file) << " (" << study::counted(report.overall.rows, "row")
-            << " judged)\n\n";
+            << "candidate  " << text::printable(report.candidate_file) << " ("
+            << study::counted(report.overall.rows, "row") << " judged)\n\n";
   print_distribution(report);
   print_histogram(report);
   print_worst(report);
@@ -280,35 +277,21 @@ void print(const CheckArguments& args, const check::Report& report) {
   print_end(args, report);
 }
 
-// A folder of its own that disappears with the object.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "exactff-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      refuse("no temporary folder can be made: " + std::string(std::strerror(errno)), "gnuplot draws in one",
-             "set TMPDIR to a folder that can be written to, or leave --plot out");
-    }
-    path_ = name;
+// Beside nothing: the picture may go to a pipe.
+study::WorkFolder scratch_folder() {
+  try {
+    return study::WorkFolder(std::filesystem::temp_directory_path() / "exactff-plot");
+  } catch (const std::filesystem::filesystem_error& error) {
+    refuse("no temporary folder can be made: " + error.code().message(), "gnuplot draws in one",
+           "set TMPDIR to a folder that can be written to, or leave --plot out");
   }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+}
 
 study::PlotResult run_plot(const std::string& script) {
   study::PlotResult result;
   {
     const InterruptWatch watch;  // a signal waits until the folder is gone
-    const ScratchFolder scratch;
+    const study::WorkFolder scratch = scratch_folder();
     result = study::run_gnuplot(script, scratch.path(), is_interrupted);
   }
   if (is_interrupted()) ::raise(interrupting_signal());
@@ -318,14 +301,16 @@ study::PlotResult run_plot(const std::string& script) {
 void draw(const check::Report& report, const std::string& file) {
   const std::string script = check::histogram_script(report);
   if (script.empty()) {
-    std::cerr << "note: " << file << " is not drawn: every error is 0, which a logarithmic axis cannot show\n";
+    std::cerr << "note: " << text::printable(file)
+              << " is not drawn: every error is 0, which a logarithmic axis cannot show\n";
     return;
   }
   const study::PlotResult result = run_plot(script);
   if (result.outcome == study::PlotResult::Outcome::kDrawn) return write_whole_file(file, result.svg);
   const bool missing = result.outcome == study::PlotResult::Outcome::kNoProgram;
-  std::cerr << "note: " << file << " is not drawn: "
-            << (missing ? "there is no gnuplot; install it" : "gnuplot failed: " + printable(result.message)) << '\n';
+  std::cerr << "note: " << text::printable(file) << " is not drawn: "
+            << (missing ? "there is no gnuplot; install it" : "gnuplot failed: " + text::printable(result.message))
+            << '\n';
 }
 
 void write_files(const CheckArguments& args, const check::Report& report) {
@@ -341,12 +326,12 @@ void record(const CheckArguments& args, const check::Report& report) {
     return !verdict.passed && (verdict.criterion == "finite" || verdict.criterion.starts_with("baseline "));
   };
   if (std::any_of(report.verdicts.begin(), report.verdicts.end(), is_worse)) {
-    std::cerr << "note: " << args.write_baseline << " is not written: "
+    std::cerr << "note: " << text::printable(args.write_baseline) << " is not written: "
               << (report.overall.not_finite > 0 ? "not every value is a number\n" : "errors got worse\n");
     return;
   }
   write_whole_file(args.write_baseline, check::baseline_text(report));
-  std::cout << "Baseline: " << printable(args.write_baseline) << '\n';
+  std::cout << "Baseline: " << text::printable(args.write_baseline) << '\n';
 }
 
 int run_check(const CheckArguments& args) {
@@ -355,7 +340,8 @@ int run_check(const CheckArguments& args) {
   print(args, report);
   record(args, report);
   if (args.github) std::cout << check::github_annotations(report);
-  for (const std::string& warning : check::warnings(report)) std::cerr << "warning: " << warning << '\n';
+  for (const std::string& warning : check::warnings(report))
+    std::cerr << "warning: " << text::printable(warning) << '\n';
   check_output(std::cout);
   return report.passed() ? 0 : 1;
 }

@@ -21,11 +21,11 @@
 #include "exactff/study.h"
 #include "experiments/experiment.h"
 #include "scene/number_text.h"
-#include "scene/printable.h"
 #include "scene/text_lines.h"
 #include "study/report.h"
 #include "study/text.h"
 #include "study/verdicts.h"
+#include "text/escape.h"
 
 namespace exactff::cli {
 namespace {
@@ -172,7 +172,7 @@ study::MethodSweep methods_of(const SceneWords& words) {
 std::string words_of(const SceneWords& words) {
   std::string line;
   const auto add = [&](const char* flag, const std::string& value) {
-    if (!value.empty()) line += std::string(" ") + flag + ' ' + shell_word(value);
+    if (!value.empty()) line += std::string(" ") + flag + ' ' + text::shell_word(value);
   };
   if (words.scene.patches != "groups") add("--patches", words.scene.patches);
   if (words.scene.skip_bad_faces) line += " --skip-bad-faces";
@@ -196,11 +196,11 @@ std::string words_of(const SceneWords& words) {
 }
 
 std::string command_line(const CompareArguments& args) {
-  std::string line = "exactff compare " + shell_word(args.scene.scene.path) + words_of(args.scene);
-  for (const std::string& name : args.experiments) line += " --experiment " + shell_word(name);
+  std::string line = "exactff compare " + text::shell_word(args.scene.scene.path) + words_of(args.scene);
+  for (const std::string& name : args.experiments) line += " --experiment " + text::shell_word(name);
   if (args.abridged) line += " --abridged";
   if (args.threads > 0) line += " --threads " + std::to_string(args.threads);
-  return line + " -o " + shell_word(args.folder);
+  return line + " -o " + text::shell_word(args.folder);
 }
 
 void add_scene_flags(CLI::App& app, SceneWords& words) {
@@ -458,13 +458,13 @@ study::Report carry_out(Plan plan, const CompareArguments& args, study::Journal&
 
 void print(const study::Report& report) {
   for (const study::SceneChapter& scene : report.scenes) {
-    if (report.scenes.size() > 1) std::cout << printable(scene.title) << '\n';
+    if (report.scenes.size() > 1) std::cout << text::printable(scene.title) << '\n';
     std::vector<std::string> sentences = study::method_sentences(scene.study);
     if (report.scenes.size() == 1) {
       for (std::string& sentence : study::headlines(scene.study)) sentences.push_back(std::move(sentence));
     }
     for (const std::string& sentence : sentences) {
-      std::cout << (report.scenes.size() > 1 ? "  " : "") << printable(sentence) << '\n';
+      std::cout << (report.scenes.size() > 1 ? "  " : "") << text::printable(sentence) << '\n';
     }
   }
 }
@@ -485,13 +485,13 @@ int run(const CompareArguments& args) {
     bar.clear();
     journal.remove();
     if (resumed > 0) std::cerr << "note: " << resumed << " pieces of work were taken from the interrupted run\n";
-    for (const std::string& message : messages) std::cerr << "note: " << printable(message) << '\n';
+    for (const std::string& message : messages) std::cerr << "note: " << text::printable(message) << '\n';
     print(report);
   } catch (const study::Cancelled&) {
     bar.clear();
     std::cerr << "exactff: interrupted";
     if (journal.size() > 0) {
-      std::cerr << "; what was finished is in " << journal.path().string()
+      std::cerr << "; what was finished is in " << text::printable(journal.path().string())
                 << ", and the same command with --resume goes on\n";
     } else {
       std::cerr << "; nothing was written\n";
@@ -500,12 +500,12 @@ int run(const CompareArguments& args) {
   } catch (const InputError&) {  // a full disk
     bar.clear();
     if (journal.size() > 0) {
-      std::cerr << "note: what was finished is in " << journal.path().string()
+      std::cerr << "note: what was finished is in " << text::printable(journal.path().string())
                 << ", and the same command with --resume goes on\n";
     }
     throw;
   }
-  std::cout << "Report: " << (std::filesystem::path(args.folder) / "report.html").string() << '\n';
+  std::cout << "Report: " << text::printable((std::filesystem::path(args.folder) / "report.html").string()) << '\n';
   check_output(std::cout);
   return 0;
 }

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "exactff/error.h"
+#include "text/escape.h"
 
 namespace exactff::cli {
 namespace {
@@ -28,11 +29,11 @@ int exit_code_of(const std::function<int()>& command) {
   } catch (const std::length_error&) {  // more than any memory could hold
     std::cerr << kOutOfMemory;
   } catch (const std::system_error& error) {
-    std::cerr << "exactff: the system refused: " << error.what()
+    std::cerr << "exactff: the system refused: " << text::printable(error.what())
               << " (a thread could not be started or a file not be reached); nothing was written; try --threads 1, or "
                  "raise the limits\n";
   } catch (const std::exception& error) {
-    std::cerr << "exactff: internal failure: " << error.what()
+    std::cerr << "exactff: internal failure: " << text::printable(error.what())
               << " (this is a fault of the program); please report it with the scene and the command line\n";
   }
   return kInternalFailure;

@@ -14,7 +14,8 @@
 #include "cli/text_table.h"
 #include "exactff/models.h"
 #include "exactff/version.h"
-#include "scene/printable.h"
+#include "text/escape.h"
+#include "text/json_document.h"
 
 namespace exactff::cli {
 
@@ -163,7 +164,7 @@ void print_list(const std::string& title, const std::vector<std::string>& items)
   constexpr std::size_t kShown = 12;
   std::cout << title << ": ";
   for (std::size_t i = 0; i < std::min(kShown, items.size()); ++i)
-    std::cout << (i > 0 ? ", " : "") << printable(items[i]);
+    std::cout << (i > 0 ? ", " : "") << text::printable(items[i]);
   if (items.empty()) std::cout << "none";
   if (items.size() > kShown) std::cout << " and " << items.size() - kShown << " more";
   std::cout << '\n';
@@ -209,8 +210,9 @@ const PatchSummary& suggested_receiver(const std::vector<PatchSummary>& rows) {
 void print_suggestion(const Scene& scene, const std::vector<PatchSummary>& rows, const std::string& path) {
   if (rows.empty()) return;
   const std::vector<std::string> emitters = emitter_names(scene);
-  std::cout << "next: exactff compare " << shell_word(path) << " --on " << shell_word(suggested_receiver(rows).name)
-            << " --source " << shell_word(emitters.empty() ? rows.front().name : emitters.front())
+  std::cout << "next: exactff compare " << text::shell_word(path) << " --on "
+            << text::shell_word(suggested_receiver(rows).name) << " --source "
+            << text::shell_word(emitters.empty() ? rows.front().name : emitters.front())
             << " --grid 16x16 -o DIR (--source and --on take a patch of the table, or PATCH:k for its k-th face)\n";
 }
 
@@ -276,7 +278,7 @@ void print_json(const Scene& scene, const std::string& path) {
   json["left_out"] = numbered_names(scene, FaceShape::kSkipped);
   json["warnings"] = ordered_json::array();
   for (const Problem& warning : scene.warnings()) json["warnings"].push_back(warning.message());
-  std::cout << json.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+  std::cout << text::json_document(json) << '\n';
 }
 
 // --- the scenes that the program makes itself ---
@@ -302,7 +304,7 @@ void print_models_json() {
     json.push_back({{"name", model->name}, {"summary", model->summary}, {"settings", ordered_json::array()}});
     for (const methods::SettingSpec& setting : model->settings) json.back()["settings"].push_back(to_json(setting));
   }
-  std::cout << ordered_json{{"version", kVersion}, {"models", json}}.dump(2) << '\n';
+  std::cout << text::json_document({{"version", kVersion}, {"models", json}}) << '\n';
 }
 
 struct InfoArguments {

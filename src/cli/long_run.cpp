@@ -9,6 +9,7 @@
 
 #include "study/output_folder.h"
 #include "study/text.h"
+#include "text/escape.h"
 
 namespace exactff::cli {
 
@@ -35,8 +36,8 @@ void ProgressBar::clear() const {
 void ProgressBar::draw(const study::Progress& progress, double elapsed) const {
   constexpr std::size_t kWidth = 30;
   const std::size_t filled = kWidth * progress.done / std::max<std::size_t>(progress.total, 1);
-  std::cerr << "\r\033[K" << progress.stage << " [" << std::string(filled, '#') << std::string(kWidth - filled, '.')
-            << "] " << progress.done << '/' << progress.total;
+  std::cerr << "\r\033[K" << text::printable(progress.stage) << " [" << std::string(filled, '#')
+            << std::string(kWidth - filled, '.') << "] " << progress.done << '/' << progress.total;
   if (progress.done > done_before_ && elapsed > 0.0) {
     const double pace = static_cast<double>(progress.done - done_before_) / elapsed;
     std::cerr << ", " << study::duration(static_cast<double>(progress.total - progress.done) / pace) << " left, "
@@ -76,15 +77,5 @@ InterruptWatch::~InterruptWatch() {
 
 bool is_interrupted() { return interrupted_by != 0; }
 int interrupting_signal() { return interrupted_by; }
-
-std::string shell_word(const std::string& text) {
-  const bool plain = !text.empty() && text.find_first_not_of(
-                                          "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
-                                          "0123456789_-+=:,./@%") == std::string::npos;
-  if (plain) return text;
-  std::string word = "'";
-  for (char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
 
 }  // namespace exactff::cli

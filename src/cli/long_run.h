@@ -49,7 +49,4 @@ class InterruptWatch {
 [[nodiscard]] bool is_interrupted();
 [[nodiscard]] int interrupting_signal();  // 0 if none came
 
-// One word of a command line, quoted for the shell where it must be.
-[[nodiscard]] std::string shell_word(const std::string& text);
-
 }  // namespace exactff::cli

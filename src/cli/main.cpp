@@ -1,10 +1,9 @@
 // The program: parse, call, print. Exit codes: 0 done, 1 a check failed, 2 bad input, 3 not certified, 4 internal.
 #include <CLI/CLI.hpp>
 #include <csignal>
-#include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <iostream>
+#include <sstream>
+#include <string>
 #include <vector>
 
 #include "cli/command.h"
@@ -12,7 +11,10 @@
 #include "cli/help.h"
 #include "cli/launch.h"
 #include "cli/memory.h"
+#include "cli/output.h"
+#include "cli/streams.h"
 #include "exactff/version.h"
+#include "text/escape.h"
 
 namespace {
 
@@ -25,23 +27,22 @@ constexpr const char* kDescription =
     "  exactff truth SCENE --on NAME --grid 32x32 -o truth.csv\n"
     "  exactff check truth.csv CANDIDATE.csv --max-abs 1e-4";
 
-// Memory may also end where no exception may pass.
-[[noreturn]] void end_at_once() {
-  std::fputs("exactff: ended by an error that nothing could handle, such as the end of memory; no result was written\n",
-             stderr);
-  std::_Exit(exactff::cli::kInternalFailure);
-}
-
 void prepare_for_the_worst() {
-  std::set_terminate(end_at_once);
+  exactff::cli::occupy_closed_streams();
   exactff::cli::throw_when_out_of_memory();
   std::signal(SIGXFSZ, SIG_IGN);  // writing beyond a limit on the size of files then fails, as on a full disk
 }
 
-}  // namespace
+int end_of_parsing(const CLI::App& app, const CLI::ParseError& error) {
+  if (exactff::cli::launched_rank() > 0) return 0;  // under mpirun it is told once
+  std::ostringstream out, err;
+  const bool done = app.exit(error, out, err) == 0;  // --help, --version
+  std::cerr << exactff::text::printable(err.str(), "\n");
+  std::cout << out.str();
+  return done ? 0 : exactff::cli::kBadInput;
+}
 
-int main(int argc, char** argv) {
-  prepare_for_the_worst();
+int parse_and_run(int argc, char** argv) {
   CLI::App app(kDescription, "exactff");
   app.formatter(exactff::cli::help_formatter());
   app.set_version_flag("--version", std::string("exactff ") + exactff::kVersion);
@@ -50,12 +51,22 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (exactff::cli::launched_rank() > 0) return 0;  // under mpirun it is told once
-    return app.exit(error, std::cout, std::cerr) == 0 ? 0 : exactff::cli::kBadInput;
+    return end_of_parsing(app, error);
   }
   for (const exactff::cli::Command& command : commands) {
-    if (command.app->parsed()) return exactff::cli::exit_code_of(command.run);
+    if (command.app->parsed()) return command.run();
   }
   std::cerr << app.help() << "\nName one of the commands.\n";
   return exactff::cli::kBadInput;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  prepare_for_the_worst();
+  return exactff::cli::exit_code_of([&] {
+    const int exit_code = parse_and_run(argc, argv);
+    exactff::cli::check_output(std::cout);
+    return exit_code;
+  });
 }

@@ -1,4 +1,5 @@
-// What happens where memory ends.
+// What happens where memory ends: exit code 4 and a message, wherever it is. Before main() begins, and before the first
+// allocation, memory.cpp has what nobody catches end the program so, and jemalloc kept from crashing.
 #pragma once
 
 namespace exactff::cli {

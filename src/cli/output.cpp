@@ -1,7 +1,5 @@
 #include "cli/output.h"
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -11,6 +9,7 @@
 #include "cli/long_run.h"
 #include "scene/number_text.h"
 #include "scene/text_file.h"
+#include "study/file.h"
 #include "study/text.h"
 
 namespace exactff::cli {
@@ -46,33 +45,24 @@ namespace {
 
 [[noreturn]] void cannot_write(const fs::path& path, const std::string& reason) {
   throw InputError({.file = path.string(),
-                    .what = "cannot write the file: " + reason,
+                    .what = "cannot be written: " + reason,
                     .why = "nothing was written",
                     .suggestion = "name a file in a folder that exists, is writable and has room"});
 }
 
-void write_to(const fs::path& target, const fs::path& path, const std::string& text) {
+// Nothing can take the place of a pipe or device.
+void write_through(const fs::path& path, const std::string& text) {
   errno = 0;
-  std::ofstream file(target, std::ios::binary);
+  std::ofstream file(path, std::ios::binary);
   file << text;
   file.close();
-  if (file) return;
-  const std::string reason = errno != 0 ? std::strerror(errno) : "opening or writing failed";
-  std::error_code ignored;
-  if (target != path) fs::remove(target, ignored);
-  cannot_write(path, reason);
+  if (!file) cannot_write(path, errno != 0 ? std::strerror(errno) : "opening or writing failed");
 }
 
 void replace_file(const fs::path& path, const std::string& text) {
-  const fs::path final = destination(path);
-  fs::path partial = final;
-  partial += ".partial-" + std::to_string(::getpid());
-  write_to(partial, path, text);
-  std::error_code error, ignored;
-  fs::rename(partial, final, error);
-  if (!error) return;
-  fs::remove(partial, ignored);
-  cannot_write(path, error.message());
+  study::WholeFile file(path, {}, study::WholeFile::WhenBusy::kWait);
+  file.append(text);
+  file.commit();
 }
 
 }  // namespace
@@ -80,7 +70,7 @@ void replace_file(const fs::path& path, const std::string& text) {
 void write_whole_file(const fs::path& path, const std::string& text) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) cannot_write(path, "it is a folder");
-  if (fs::is_other(path, ignored)) return write_to(path, path, text);  // a pipe or device: nothing can replace it
+  if (fs::is_other(path, ignored)) return write_through(path, text);
   {
     const InterruptWatch watch;  // a signal waits for the moment that it takes: nothing partial shall stay behind
     replace_file(path, text);

@@ -16,10 +16,11 @@
 #include "exactff/study.h"
 #include "exactff/version.h"
 #include "scene/number_text.h"
-#include "scene/printable.h"
 #include "scene/receiver_distance.h"
 #include "study/text.h"
 #include "study/visibility_svg.h"
+#include "text/escape.h"
+#include "text/json_document.h"
 
 namespace exactff::cli {
 
@@ -175,10 +176,15 @@ PointResult compute(const PointArguments& args, const Scene& scene) {
   return result;
 }
 
+template <class Named>
+std::string shown_name(const Scene& scene, const Named& named) {
+  return text::printable(scene.name_of(named));
+}
+
 void warn_if_flipped(const Scene& scene, const PointResult& point) {
   for (const SourceResult& one : point.sources) {
     if (!behind_every_face(one.exact)) continue;
-    std::cerr << "exactff: warning: the receiver is behind every face of '" << scene.name_of(one.source)
+    std::cerr << "exactff: warning: the receiver is behind every face of '" << shown_name(scene, one.source)
               << "' (a source emits from its front only, so the form factor is 0); is it flipped? --flip turns it\n";
   }
 }
@@ -191,7 +197,7 @@ void warn_if_off_its_face(const Scene& scene, const Receiver& receiver) {
   if (distance <= kFar) return;
   std::cerr
       << "exactff: warning: --at is " << percent(distance) << " of the size of face '"
-      << printable(scene.name_of(*receiver.on))
+      << shown_name(scene, *receiver.on)
       << "' away from it (that face neither occludes nor illuminates a receiver that lies on it); is it the right "
          "one?\n";
 }
@@ -199,7 +205,7 @@ void warn_if_off_its_face(const Scene& scene, const Receiver& receiver) {
 void warn_of_missing_decimals(const PointArguments& args, const Scene& scene, const PointResult& point) {
   for (const SourceResult& one : point.sources) {
     if (args.digits == 0 || one.exact.status == Status::kZero || one.exact.enclosure.decimals(args.digits)) continue;
-    std::cerr << "exactff: warning: " << args.digits << " significant digits of '" << scene.name_of(one.source)
+    std::cerr << "exactff: warning: " << args.digits << " significant digits of '" << shown_name(scene, one.source)
               << "' are not certified (its value may be a tie there, or --precision-cap is too low); the double stands "
                  "in their place\n";
   }
@@ -226,7 +232,7 @@ void print_stages(const Scene& scene, const SourceResult& one) {
   constexpr std::size_t kMostPlanes = 12;
   for (std::size_t p = 0; p < one.exact.planes.size() && p < kMostPlanes; ++p) {
     const PlaneRecord& plane = one.exact.planes[p];
-    std::cout << "\n  plane of " << scene.name_of(plane.faces.front());
+    std::cout << "\n  plane of " << shown_name(scene, plane.faces.front());
     if (plane.faces.size() > 1) std::cout << " and " << plane.faces.size() - 1 << " more faces";
     std::cout << ": " << to_string(plane.outcome) << '\n';
     for (const StageNote& note : stages(plane)) {
@@ -243,7 +249,7 @@ void print_shares(const Scene& scene, const SourceResult& one) {
   const std::size_t cutters = one.exact.cutters.size();
   std::cout << "\n  occluders that cut it: " << cutters << '\n';
   for (std::size_t i = 0; i < one.shares.size() && i < kMostSharesShown; ++i) {
-    std::cout << "    " << pad(scene.name_of(one.shares[i].face), 28) << "takes " << percent(one.shares[i].alone)
+    std::cout << "    " << pad(shown_name(scene, one.shares[i].face), 28) << "takes " << percent(one.shares[i].alone)
               << " alone\n";
   }
   if (cutters > kMostSharesShown) std::cout << "    ... and " << cutters - kMostSharesShown << " more\n";
@@ -260,7 +266,7 @@ void print_adaptive(const SourceResult& one) {
 }
 
 void print_source(const PointArguments& args, const Scene& scene, const SourceResult& one) {
-  std::cout << "source " << scene.name_of(one.source) << '\n'
+  std::cout << "source " << shown_name(scene, one.source) << '\n'
             << "  form factor  " << value_text(one.exact, args.digits) << "  (" << to_string(one.exact.status) << ")\n"
             << "  enclosure    [" << shortest(one.exact.lower) << ", " << shortest(one.exact.upper) << "]\n";
   if (one.exact.visible_fraction) {
@@ -275,7 +281,7 @@ void print_source(const PointArguments& args, const Scene& scene, const SourceRe
 
 void print_table(const PointArguments& args, const Scene& scene, const PointResult& point) {
   std::cout << "receiver " << vec_text(point.receiver.point) << ", normal " << vec_text(point.receiver.normal);
-  if (point.receiver.on) std::cout << ", on " << scene.name_of(*point.receiver.on);
+  if (point.receiver.on) std::cout << ", on " << shown_name(scene, *point.receiver.on);
   std::cout << "\n\n";
   for (const SourceResult& one : point.sources) print_source(args, scene, one);
   if (point.sources.size() > 1) {
@@ -366,7 +372,7 @@ void print_json(const PointArguments& args, const Scene& scene, const PointResul
   for (const SourceResult& one : point.sources) json["sources"].push_back(source_json(args, scene, one));
   json["sum"] = {{"lower", point.sum.lower()}, {"upper", point.sum.upper()}, {"ball", ball_json(point.sum)}};
   json["radiosity"] = numbers_json(point.radiosity);
-  std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  std::cout << text::json_document(json) << '\n';
 }
 
 void write_svg(const PointArguments& args, const Scene& scene, const PointResult& point) {
@@ -386,8 +392,7 @@ void write_svg(const PointArguments& args, const Scene& scene, const PointResult
 Scene load_scene(const PointArguments& args) {
   Scene scene = args.scene.load();
   if (!args.flip) return scene;
-  for (const Selection& source : make_sources(args, scene)) scene = scene.with_flipped(source);
-  return scene;
+  return scene.with_flipped(make_sources(args, scene));
 }
 
 int run(const PointArguments& args) {

@@ -10,6 +10,7 @@
 #include "cli/refuse.h"
 #include "scene/text_lines.h"
 #include "study/text.h"
+#include "text/escape.h"
 
 namespace exactff::cli {
 namespace {
@@ -163,7 +164,7 @@ ChosenReceivers receivers_of(const ReceiverArguments& args, const Scene& scene, 
 std::string command_words(const ReceiverArguments& args) {
   std::string words;
   const auto add = [&](const char* flag, const std::string& value) {
-    if (!value.empty()) words += std::string(" ") + flag + ' ' + shell_word(value);
+    if (!value.empty()) words += std::string(" ") + flag + ' ' + text::shell_word(value);
   };
   for (const std::string& name : args.on) add("--on", name);
   add("--grid", args.grid);

@@ -6,6 +6,7 @@
 
 #include "cli/lists.h"
 #include "cli/long_run.h"
+#include "text/escape.h"
 
 namespace exactff::cli {
 
@@ -31,7 +32,7 @@ std::vector<Selection> sources_of(const SourceArguments& args, const Scene& scen
 
 std::string command_words(const SourceArguments& args) {
   std::string words;
-  for (const std::string& name : args.names) words += " --source " + shell_word(name);
+  for (const std::string& name : args.names) words += " --source " + text::shell_word(name);
   return words;
 }
 

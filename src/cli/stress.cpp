@@ -12,6 +12,7 @@
 #include "stress/tables.h"
 #include "stress/words.h"
 #include "study/text.h"
+#include "text/escape.h"
 
 namespace exactff::cli {
 namespace {
@@ -86,7 +87,7 @@ std::string command_line(const StressArguments& args) {
   std::string line = "exactff stress";
   for (std::size_t i = 0; i < args.families.size(); ++i) line += (i == 0 ? " --family " : ",") + args.families[i];
   if (args.threads > 0) line += " --threads " + std::to_string(args.threads);
-  return line + " -o " + shell_word(args.folder);
+  return line + " -o " + text::shell_word(args.folder);
 }
 
 int run(const StressArguments& args) {
@@ -111,12 +112,12 @@ int run(const StressArguments& args) {
     return 128 + interrupting_signal();
   }
   bar.clear();
-  for (const std::string& message : messages) std::cerr << "note: " << message << '\n';
+  for (const std::string& message : messages) std::cerr << "note: " << text::printable(message) << '\n';
   for (const stress::FamilyResult& family : report.families) print_family(family);
   print_report(report);
   for (const std::string& sentence : stress::headlines(report)) std::cout << sentence << '\n';
   if (!args.folder.empty()) {
-    std::cout << "Report: " << (std::filesystem::path(args.folder) / "report.html").string() << '\n';
+    std::cout << "Report: " << text::printable((std::filesystem::path(args.folder) / "report.html").string()) << '\n';
   }
   check_output(std::cout);
   return report.sound() ? 0 : 1;

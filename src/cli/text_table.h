@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "scene/printable.h"
+#include "text/escape.h"
 
 namespace exactff::cli {
 
@@ -22,7 +22,7 @@ class TextTable {
   }
   // One cell a column.
   void add_row(std::vector<std::string> cells) {
-    for (std::string& cell : cells) cell = printable(cell);
+    for (std::string& cell : cells) cell = text::printable(cell);
     rows_.push_back(std::move(cells));
   }
 

@@ -18,9 +18,9 @@
 #include "cli/scene_options.h"
 #include "cli/source_options.h"
 #include "cli/truth_summary.h"
-#include "scene/printable.h"
 #include "scene/text_lines.h"
 #include "study/text.h"
+#include "text/escape.h"
 #include "truth/journal.h"
 
 namespace exactff::cli {
@@ -106,7 +106,7 @@ class Narrator {
   [[nodiscard]] truth::Hooks hooks(double slow_seconds) {
     return {.progress = [this](const study::Progress& progress) { show(progress); },
             .cancelled = is_interrupted,
-            .note = [this](const std::string& text) { tell("warning: " + printable(text)); },
+            .note = [this](const std::string& text) { tell("warning: " + text::printable(text)); },
             .slow_row = [this](const std::string& row, double seconds) { tell_slow(row, seconds); },
             .slow_seconds = slow_seconds};
   }
@@ -121,7 +121,7 @@ class Narrator {
       std::cerr << "no row was finished, nothing is left behind\n";
     } else {
       std::cerr << rows_.done << " of " << study::counted(rows_.total, "row") << " are kept in "
-                << truth::journal_of(file).string() << "; the same command with --resume goes on\n";
+                << text::printable(truth::journal_of(file).string()) << "; the same command with --resume goes on\n";
     }
   }
 
@@ -137,7 +137,7 @@ class Narrator {
   void tell_slow(const std::string& row, double seconds) {
     constexpr int kMostTold = 50;
     if (++slow_ > kMostTold) return;
-    tell("slow: " + printable(row) + " took " + study::duration(seconds));
+    tell("slow: " + text::printable(row) + " took " + study::duration(seconds));
     if (slow_ == kMostTold) tell("slow: further rows are only counted");
   }
 

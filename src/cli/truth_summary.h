@@ -7,6 +7,7 @@
 #include "cli/output.h"
 #include "exactff/truth.h"
 #include "study/text.h"
+#include "text/escape.h"
 
 namespace exactff::cli {
 
@@ -31,7 +32,7 @@ inline int print_summary(const truth::Summary& summary, const std::string& file)
   } else if (summary.resumed > 0) {
     std::cout << "all were there already\n";
   }
-  std::cout << "Truth file: " << file << '\n';
+  std::cout << "Truth file: " << text::printable(file) << '\n';
   check_output(std::cout);
   if (uncertified == 0) return 0;
   std::cerr << "exactff: " << study::counted(uncertified, "row")

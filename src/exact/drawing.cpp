@@ -40,13 +40,19 @@ class Lift {
   Rational distance_;
 };
 
+// Scaled so that the largest component is about 1; the filters' form of a direction has no value for small ones.
+Vec3 rounded(const ExactVec3& direction) {
+  const long bits = bit_length(direction);
+  const auto scaled = [bits](const kernel::Integer& component) { return kernel::nearest_double(component, -bits); };
+  return {scaled(direction.x), scaled(direction.y), scaled(direction.z)};
+}
+
 PlaneDrawing draw(const visibility::View& view, const visibility::SourcePlane& plane) {
   const visibility::Request request{.keep_geometry = true};
   const visibility::PlaneVisibility seen = find_visible_boundary(view, plane, request);
   const Lift lift(plane, view.x);
   PlaneDrawing drawing;
-  const kernel::Approx3& n = plane.normal.approx;
-  drawing.normal = {n.x, n.y, n.z};
+  drawing.normal = rounded(plane.normal.exact);
   if (side_of(plane, view.x) <= 0) return drawing;
   for (const kernel::Ring& ring : seen.geometry.source) drawing.source.push_back(lift(ring));
   for (const kernel::Ring& ring : seen.geometry.clipped) drawing.clipped_source.push_back(lift(ring));
@@ -68,7 +74,7 @@ PlaneDrawing draw(const visibility::View& view, const visibility::SourcePlane& p
 
 std::vector<PlaneDrawing> draw_visibility(const Scene& scene, const Receiver& receiver, const ExactSource& source) {
   const kernel::StandardArithmetic arithmetic;
-  exact::check_receiver(receiver);
+  exact::check_arguments(scene, receiver, source);
   const visibility::View view(scene, receiver);
   std::vector<PlaneDrawing> drawings;
   for (const visibility::SourcePlane& plane : source.planes().planes) drawings.push_back(draw(view, plane));

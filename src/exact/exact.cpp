@@ -16,6 +16,7 @@
 #include "exact/quick_tier.h"
 #include "exact/source_planes.h"
 #include "kernel/float_environment.h"
+#include "scene/misuse.h"
 #include "visibility/visible_boundary.h"
 #include "visibility/visible_edges.h"
 
@@ -27,14 +28,15 @@ using visibility::SourcePlane;
 
 ExactSource::ExactSource(const Scene& scene, const Selection& selection) {
   const kernel::StandardArithmetic arithmetic;
-  planes_.reset(new Planes{selection, visibility::group_by_plane(scene, scene.faces_of(selection))});
+  planes_.reset(new Planes{scene.id(), selection, visibility::group_by_plane(scene, scene.faces_of(selection))});
 }
 ExactSource::ExactSource(ExactSource&&) noexcept = default;
 ExactSource& ExactSource::operator=(ExactSource&&) noexcept = default;
 ExactSource::~ExactSource() = default;
-const Selection& ExactSource::selection() const { return planes_->selection; }
+const ExactSource::Planes& ExactSource::planes() const { return owned_by(planes_, "ExactSource"); }
+const Selection& ExactSource::selection() const { return planes().selection; }
 
-namespace exact {
+namespace {
 
 void check_receiver(const Receiver& receiver) {
   for (const Vec3& v : {receiver.point, receiver.normal}) {
@@ -50,9 +52,26 @@ void check_receiver(const Receiver& receiver) {
   }
 }
 
+}  // namespace
+
+namespace exact {
+
+void check_arguments(const Scene& scene, const Receiver& receiver, const ExactSource& source) {
+  require_of_scene(scene, source.planes().scene, "source");
+  check_receiver(receiver);
+  if (receiver.on) require_face(scene, *receiver.on);
+}
+
 }  // namespace exact
 
 namespace {
+
+void check_options(const ExactOptions& options) {
+  if (options.precision_cap >= 1) return;
+  throw InputError({.what = "the precision cap is " + std::to_string(options.precision_cap) + " bits",
+                    .why = "a ball needs at least one",
+                    .suggestion = "give a cap of at least 1; the default is 65536"});
+}
 
 // Sources differ in their number of planes: records that one has no use for wait here, lest the next one allocate.
 void set_count(std::vector<PlaneRecord>& records, std::size_t count) {
@@ -261,7 +280,8 @@ FormFactor exact_form_factor(const Scene& scene, const Receiver& receiver, const
 void exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                        const ExactOptions& options, FormFactor& result) {
   const kernel::StandardArithmetic arithmetic;
-  exact::check_receiver(receiver);
+  check_options(options);
+  exact::check_arguments(scene, receiver, source);
   const bool both = options.engine == Engine::kBoth;
   solve_by(both ? Engine::kEdges : options.engine, scene, receiver, source, options, result);
   if (!both) return;

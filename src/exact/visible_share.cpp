@@ -130,7 +130,8 @@ bool VisibleShare::on_edge(const Piece& piece, const Point<Rational>& a, const P
 
 // With u = 2^-53: the depth's terms, of relative error 3u each, make it wrong by less than 6u of the sum of their
 // magnitudes S; the quotient p by that over the depth and u more; the box by 2u of its own numbers. 16u covers what
-// follows, and as much again the division.
+// follows, and as much again the division. All of this holds, and the depth is certainly positive, while S is below
+// 2^48 times the depth.
 Point<double> VisibleShare::flat(const Vec3& t, double& error) const {
   const std::array<double, 3> d{t.x, t.y, t.z};
   double depth = 0.0, magnitude = 0.0;
@@ -144,7 +145,8 @@ Point<double> VisibleShare::flat(const Vec3& t, double& error) const {
     return 0x1p-48 * (std::abs(value) * (worst + 1.0) + std::abs(low) + size) / size;
   };
   const double here = std::max(bound(p, low_approx_.u, size_approx_.u), bound(q, low_approx_.v, size_approx_.v));
-  error = depth > 0.0 && here >= 0.0 ? std::max(error, here) : std::numeric_limits<double>::infinity();
+  const bool holds = depth > 0.0 && worst < 0x1p48 && here >= 0.0;
+  error = holds ? std::max(error, here) : std::numeric_limits<double>::infinity();
   return {(p - low_approx_.u) / size_approx_.u, (q - low_approx_.v) / size_approx_.v};
 }
 
@@ -256,17 +258,26 @@ double VisibleShare::of(std::span<const Vec3> directions) {
   return in_part ? proper_share(share) : share > 0.5 ? 1.0 : 0.0;
 }
 
+// Rounding can turn a direction away from the plane.
+bool VisibleShare::all_meet_plane(std::span<const Vec3> directions) const {
+  return std::all_of(directions.begin(), directions.end(), [this](const Vec3& direction) {
+    return kernel::sign(dot(away_, kernel::exact_vector(direction).v)) > 0;
+  });
+}
+
 double VisibleShare::of_exactly(std::span<const Vec3> directions) {
   if (all_) return 1.0;
-  if (pieces_.empty()) return 0.0;
+  if (pieces_.empty() || !all_meet_plane(directions)) return 0.0;
   const SmallPolygon<Rational> window = exact_window(directions);
+  const Rational whole = doubled_area(window);
+  if (whole <= 0) return 0.0;
   const bool in_part = std::any_of(pieces_.begin(), pieces_.end(), [&](const Piece& piece) {
     return !piece.outline && meets_exactly(window, piece.exact_p, piece.exact_q);
   });
   const Point<Rational> c = middle_of(window);
   Rational visible(0);
   for (const Piece& piece : pieces_) visible += wedge(window, c, piece.exact_p, piece.exact_q);
-  const double share = kernel::nearest_double(visible / doubled_area(window));
+  const double share = kernel::nearest_double(visible / whole);
   return in_part ? proper_share(share) : share > 0.5 ? 1.0 : 0.0;
 }
 

@@ -37,7 +37,8 @@ class VisibleShare {
   static constexpr double kAccuracy = 0x1p-30;
   // Visible over whole area of the window: exactly 0 or exactly 1, or strictly in between and then within kAccuracy of
   // the truth, mostly far less.
-  // Three or four corners, convex, counter-clockwise as x sees them, not all on a line.
+  // Three or four corners, convex, counter-clockwise as x sees them. 0 where rounding of the corners has left no
+  // window: all on a line, the wrong way round, or some that do not meet the plane.
   [[nodiscard]] double of(std::span<const Vec3> directions);
   // The same in rational numbers throughout, rounded once.
   [[nodiscard]] double of_exactly(std::span<const Vec3> directions);
@@ -70,6 +71,7 @@ class VisibleShare {
   [[nodiscard]] SmallPolygon<Rational> exact_window(std::span<const Vec3> directions) const;
   [[nodiscard]] bool partly(std::span<const Vec3> directions);
   [[nodiscard]] Meeting meets(const Piece& piece) const;
+  [[nodiscard]] bool all_meet_plane(std::span<const Vec3> directions) const;
   [[nodiscard]] double window_blur(double doubled_area_of_window) const;
 
   const visibility::View view_;

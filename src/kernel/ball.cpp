@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "exactff/enclosure.h"
+#include "kernel/float_environment.h"
 
 namespace exactff {
 
@@ -140,6 +141,7 @@ Enclosure& Enclosure::operator+=(const Enclosure& other) {
 }
 
 double Enclosure::lower() const {
+  const kernel::StandardArithmetic arithmetic;
   End lower_end;
   End upper_end;
   get_ends(ball(), lower_end, upper_end);
@@ -147,6 +149,7 @@ double Enclosure::lower() const {
 }
 
 double Enclosure::upper() const {
+  const kernel::StandardArithmetic arithmetic;
   End lower_end;
   End upper_end;
   get_ends(ball(), lower_end, upper_end);
@@ -154,6 +157,7 @@ double Enclosure::upper() const {
 }
 
 std::optional<double> Enclosure::nearest() const {
+  const kernel::StandardArithmetic arithmetic;
   End lower_end;
   End upper_end;
   get_ends(ball(), lower_end, upper_end);
@@ -164,6 +168,7 @@ std::optional<double> Enclosure::nearest() const {
 }
 
 std::optional<std::string> Enclosure::decimals(int digits) const {
+  const kernel::StandardArithmetic arithmetic;
   End lower_end;
   End upper_end;
   get_ends(ball(), lower_end, upper_end);
@@ -176,6 +181,7 @@ bool Enclosure::contains(const Enclosure& other) const { return arb_contains(bal
 bool Enclosure::overlaps(const Enclosure& other) const { return arb_overlaps(ball().get(), other.ball().get()) != 0; }
 
 bool Enclosure::contains(double value) const {
+  const kernel::StandardArithmetic arithmetic;
   End number;
   arf_set_d(number.get(), value);
   return arb_contains_arf(ball().get(), number.get()) != 0;
@@ -198,6 +204,7 @@ slong meaningful_bits(const Ball& ball) {
 }
 
 PrintedBall print(const Ball& ball) {
+  const kernel::StandardArithmetic arithmetic;
   constexpr double kDecimalsPerBit = 0.30103;
   const auto digits = static_cast<slong>(static_cast<double>(meaningful_bits(ball)) * kDecimalsPerBit) + 5;
   char* raw = arb_get_str(ball.get(), digits, ARB_STR_MORE);

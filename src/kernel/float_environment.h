@@ -1,4 +1,4 @@
-// The arithmetic that every proof in this library assumes: rounding to nearest, gradual underflow.
+// The arithmetic that every proof in this library assumes: rounding to nearest, gradual underflow, no traps.
 #pragma once
 
 #include <cfenv>
@@ -8,8 +8,10 @@
 
 namespace exactff::kernel {
 
-// While one lives, its thread computes that way; afterwards as before. Programs may have chosen otherwise: ray tracers
-// often have small numbers flushed to zero.
+// While one lives, its thread computes that way, and so do threads that it starts; afterwards as before. Programs may
+// have chosen otherwise: ray tracers often flush small numbers to zero, and debuggers trap divisions by zero or
+// inexact results. Every public function whose values or bytes are promised to depend on its arguments alone begins
+// with one of these.
 class StandardArithmetic {
  public:
   StandardArithmetic() {
@@ -27,11 +29,14 @@ class StandardArithmetic {
  private:
   [[nodiscard]] static bool is_set() {
 #ifdef __SSE2__
-    constexpr unsigned kRounding = 0x6000, kFlushToZero = 0x8000, kDenormalsAreZero = 0x0040;
-    return (_mm_getcsr() & (kRounding | kFlushToZero | kDenormalsAreZero)) == 0;
+    constexpr unsigned kRounding = 0x6000, kFlushToZero = 0x8000, kDenormalsAreZero = 0x0040, kTrapsMasked = 0x1F80;
+    return (_mm_getcsr() & (kRounding | kFlushToZero | kDenormalsAreZero | kTrapsMasked)) == kTrapsMasked;
 #else
     const volatile double least_normal = 0x1p-1022, half = 0.5;
     const volatile double below_normal = least_normal * half;
+#ifdef __GLIBC__
+    if (fegetexcept() != 0) return false;
+#endif
     return std::fegetround() == FE_TONEAREST && below_normal + below_normal == least_normal;
 #endif
   }

@@ -27,6 +27,7 @@ class Adaptive : public Evaluator {
 
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
+    const kernel::StandardArithmetic arithmetic;
     const auto& source = static_cast<const AdaptivePrepared&>(prepared);
     const double rho_b = largest_rho_b(scene_, receiver_, source.radiosity);
     const AdaptiveResult found = solver_.form_factor(receiver_, source.source, rho_b, options_);
@@ -81,9 +82,10 @@ Method adaptive_method() {
           .summary = "recursive splitting until visibility is certain or the form factor small, V from shadow rays",
           .source = "F. Tampieri, Accurate Form-Factor Computation (1992)",
           .settings = std::move(settings),
-          .prepare = [](const Scene& scene) { return std::make_unique<AdaptiveOnScene>(scene); },
+          .prepare = prepare_as<AdaptiveOnScene>,
           .uses = pattern_uses,
-          .check = check_tolerances};
+          .check = check_tolerances,
+          .can_leave_unit = [](const Settings&) { return true; }};  // the sum over a source of several faces
 }
 
 }  // namespace exactff::methods

@@ -134,8 +134,9 @@ Method adaptive_exact_visibility_method() {
           .summary = "the adaptive recursion with the exact visible fraction of every sub-patch: the control",
           .source = "F. Tampieri, Accurate Form-Factor Computation (1992), with V computed exactly",
           .settings = tolerance_settings(),
-          .prepare = [](const Scene& scene) { return std::make_unique<ControlOnScene>(scene); },
-          .check = check_tolerances};
+          .prepare = prepare_as<ControlOnScene>,
+          .check = check_tolerances,
+          .can_leave_unit = [](const Settings&) { return true; }};  // the sum over a source of several faces
 }
 
 }  // namespace exactff::methods

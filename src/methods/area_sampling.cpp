@@ -11,6 +11,7 @@
 #include "methods/method_files.h"
 #include "methods/ray_sum.h"
 #include "methods/unit_points.h"
+#include "sampled/value_range.h"
 
 namespace exactff::methods {
 
@@ -36,17 +37,22 @@ class AreaSampling : public Evaluator {
         points_(point_set_named(settings.word("pattern")), static_cast<int>(settings.whole("samples"))),
         seed_(static_cast<std::uint64_t>(settings.whole("seed"))) {}
 
-  void look_from(const Receiver& receiver) override { rays_.look_from(receiver); }
+  void look_from(const Receiver& receiver) override {
+    const kernel::StandardArithmetic arithmetic;
+    rays_.look_from(receiver);
+  }
 
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
+    const kernel::StandardArithmetic arithmetic;
     const auto& source = static_cast<const RaySource&>(prepared);
     Estimate result;
-    if (source.roots.empty()) return result;
+    if (!(source.area() > 0.0)) return result;  // nothing to sample, or too small for a double
     points_.place(stream_key(rays_.view(), source.selection(), seed_), square_);
     share_out(source);
     for (std::size_t root = 0; root < source.roots.size(); ++root) add_root(source, root);
-    result.form_factor = rays_.take() * (source.area() / static_cast<double>(square_.size()));
+    const double mean = rays_.take() * (source.area() / static_cast<double>(square_.size()));
+    result.form_factor = settled(mean, Formula::kNotNegative);
     result.counters.add("samples", square_.size());
     result.counters.add("rays", rays_.take_rays());
     return result;
@@ -66,7 +72,8 @@ class AreaSampling : public Evaluator {
       const double area = p.u * source.area();
       const auto after = std::upper_bound(up_to.begin() + 1, up_to.end() - 1, area);
       const auto root = static_cast<std::size_t>(after - up_to.begin()) - 1;
-      const double u = (area - up_to[root]) / (up_to[root + 1] - up_to[root]);
+      const double width = up_to[root + 1] - up_to[root];
+      const double u = width > 0.0 ? (area - up_to[root]) / width : 0.0;
       by_root_[root].push_back({std::clamp(u, 0.0, 1.0), p.v});
     }
   }
@@ -93,6 +100,7 @@ class AreaSamplingOnScene : public RaysOnScene {
  public:
   using RaysOnScene::RaysOnScene;
   [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
+    const kernel::StandardArithmetic arithmetic;
     return std::make_unique<AreaSampling>(sampled(), settings);
   }
 };
@@ -108,7 +116,8 @@ Method area_sampling_method() {
                                     "independent points, one in each of as many cells, or the first of a "
                                     "low-discrepancy sequence, shifted at random"),
                        seed_setting()},
-          .prepare = [](const Scene& scene) { return std::make_unique<AreaSamplingOnScene>(scene); }};
+          .prepare = prepare_as<AreaSamplingOnScene>,
+          .can_leave_unit = [](const Settings&) { return true; }};
 }
 
 }  // namespace exactff::methods

@@ -70,7 +70,7 @@ Method exact_method() {
           .source = "",
           .settings = {word_setting("engine", {"edges", "boolean", "both"},
                                     "how the visible region is found; the values are the same bits")},
-          .prepare = [](const Scene& scene) { return std::make_unique<ExactOnScene>(scene); },
+          .prepare = prepare_as<ExactOnScene>,
           .uses = exact_uses};
 }
 

@@ -16,6 +16,7 @@
 #include "methods/method_files.h"
 #include "sampled/plane_side.h"
 #include "sampled/sampled_scene.h"
+#include "sampled/value_range.h"
 
 namespace exactff::methods {
 
@@ -121,6 +122,7 @@ class HemicubeOnScene : public PreparedScene {
   }
 
   [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
+    const kernel::StandardArithmetic arithmetic;
     return std::make_unique<Hemicube>(*this, pixels(static_cast<int>(settings.whole("resolution"))),
                                       settings.number("rotation"));
   }
@@ -140,7 +142,8 @@ class HemicubeOnScene : public PreparedScene {
 };
 
 void Hemicube::look_from(const Receiver& receiver) {
-  const ReceiverView view = view_from(receiver, on_scene_.scaled.scale);
+  const kernel::StandardArithmetic arithmetic;
+  const ReceiverView view = view_from(receiver, on_scene_.scaled);
   shares_.assign(on_scene_.scene().faces().size(), {});
   drawn_ = 0;
   if (max_norm(view.point) > kFarthest) return;
@@ -212,12 +215,14 @@ void Hemicube::add_up() {
 }
 
 Estimate Hemicube::form_factor(const PreparedSource& source) {
+  const kernel::StandardArithmetic arithmetic;
   Estimate result;
   std::uint64_t pixels = 0;
   for (const FaceId face : static_cast<const HemicubeSource&>(source).faces) {
     result.form_factor += shares_[index_of(face)].form_factor;
     pixels += shares_[index_of(face)].pixels;
   }
+  result.form_factor = settled(result.form_factor, Formula::kUnit);
   result.counters.add("pixels", pixels);
   result.counters.add("pixels drawn", pixels_.count());
   result.counters.add("polygons", drawn_);
@@ -236,7 +241,7 @@ Method hemicube_method() {
                        number_setting("rotation", 0.0, -360.0, 360.0, "angle by which it is turned about the normal",
                                       "degrees")},
           .all_sources_at_once = true,
-          .prepare = [](const Scene& scene) { return std::make_unique<HemicubeOnScene>(scene); }};
+          .prepare = prepare_as<HemicubeOnScene>};
 }
 
 }  // namespace exactff::methods

@@ -10,7 +10,9 @@
 // The literal variant does as the text says where that goes wrong: cosines are made positive, so that surfaces shine on
 // what lies behind them and light what faces away; and in the place of A stands the ratio of the two areas, which the
 // text gives once as the sender's over the receiver's and at last as the receiver's over the sender's.
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <numbers>
 
@@ -18,6 +20,7 @@
 #include "methods/method_files.h"
 #include "methods/ray_sum.h"
 #include "methods/sample_pattern.h"
+#include "sampled/value_range.h"
 
 namespace exactff::methods {
 
@@ -48,6 +51,7 @@ class Nettle : public Evaluator {
   }
 
   void look_from(const Receiver& receiver) override {
+    const kernel::StandardArithmetic arithmetic;
     rays_.look_from(receiver);
     receiver_area_ = given_receiver_area_ > 0.0 ? given_receiver_area_
                      : receiver.on              ? scene_.face(*receiver.on).area
@@ -56,6 +60,7 @@ class Nettle : public Evaluator {
 
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
+    const kernel::StandardArithmetic arithmetic;
     const auto& source = static_cast<const RaySource&>(prepared);
     const std::uint64_t key = stream_key(rays_.view(), source.selection(), seed_);
     const Reach reach = literal() ? Reach::kEverything : Reach::kVisible;
@@ -63,7 +68,7 @@ class Nettle : public Evaluator {
         rays_.for_each_part(source, reach, splits_, key, plan_.ray_count(),
                             [this](const SubPatch& part, std::uint64_t part_key) { add_part(part, part_key); });
     Estimate result;
-    result.form_factor = rays_.take();
+    result.form_factor = settled(rays_.take(), literal() ? Formula::kAny : Formula::kNotNegative);
     result.counters.add("sub-patches", sub_patches);
     result.counters.add("rays", rays_.take_rays());
     return result;
@@ -88,11 +93,38 @@ class Nettle : public Evaluator {
   [[nodiscard]] double literal_form_factor(const SubPatch& part) const {
     const Vec3 centre = centre_of(part);
     const double squared_distance = dot(centre, centre);
+    const double square_scale = scale_ * scale_;
+    if (!is_moderate({squared_distance, square_scale, area(part), receiver_area_})) return literal_by_logarithms(part);
     const double cosines = std::abs(dot(rays_.view().unit_normal, centre) * rays_.height()) / squared_distance;
-    const double sender_area = area(part) / (scale_ * scale_);
+    const double sender_area = area(part) / square_scale;
     const double ratio =
         area_factor_ == AreaFactor::kSenderOverReceiver ? sender_area / receiver_area_ : receiver_area_ / sender_area;
-    return cosines / (std::numbers::pi * squared_distance / (scale_ * scale_)) * ratio;
+    return cosines / (std::numbers::pi * squared_distance / square_scale) * ratio;
+  }
+
+  // Whose products and quotients, four at a time, neither overflow nor underflow.
+  static bool is_moderate(std::initializer_list<double> values) {
+    return std::all_of(values.begin(), values.end(), [](double v) { return v > 0x1p-160 && v < 0x1p160; });
+  }
+
+  // The same where a factor or a product of some is beyond the range of doubles; infinite where the result is.
+  [[nodiscard]] double literal_by_logarithms(const SubPatch& part) const {
+    const Vec3 centre = centre_of(part);
+    const double distance = length(centre);
+    if (distance == 0.0) return 0.0;
+    int exponent = 0;
+    const Vec3 direction = normalised(centre, exponent);
+    const double receiver_cosine = std::abs(dot(rays_.view().unit_normal, direction)) / length(direction);
+    const double cosines = receiver_cosine * std::min(1.0, std::abs(rays_.height()) / distance);
+    if (cosines == 0.0) return 0.0;
+    const double log_scale = std::log2(scale_);
+    const double log_distance = std::log2(distance) - log_scale;
+    const double log_sender = std::log2(area(part)) - 2.0 * log_scale;
+    const double log_receiver = std::log2(receiver_area_);
+    const double log_ratio =
+        area_factor_ == AreaFactor::kSenderOverReceiver ? log_sender - log_receiver : log_receiver - log_sender;
+    const double log_kernel = std::log2(cosines * std::numbers::inv_pi) - 2.0 * log_distance;
+    return std::exp2(log_kernel + log_ratio);
   }
 
   const Scene& scene_;
@@ -111,6 +143,7 @@ class NettleOnScene : public RaysOnScene {
  public:
   using RaysOnScene::RaysOnScene;
   [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
+    const kernel::StandardArithmetic arithmetic;
     return std::make_unique<Nettle>(scene(), sampled(), settings);
   }
 };
@@ -137,8 +170,9 @@ Method nettle_method() {
                    number_setting("receiver_area", 0.0, 0.0, std::numeric_limits<double>::max(),
                                   "of the literal variant; 0: that of the face the receiver lies on, else 1", "area"),
                    seed_setting()},
-      .prepare = [](const Scene& scene) { return std::make_unique<NettleOnScene>(scene); },
-      .uses = nettle_uses};
+      .prepare = prepare_as<NettleOnScene>,
+      .uses = nettle_uses,
+      .can_leave_unit = [](const Settings&) { return true; }};
 }
 
 }  // namespace exactff::methods

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "kernel/float_environment.h"
 #include "methods/ray_sum.h"
 #include "sampled/plane_side.h"
 
@@ -32,11 +33,24 @@ std::vector<std::uint32_t> close_pieces(const SampledScene& scene, const SourceP
   return close;
 }
 
+// 0 where rounding leaves no normal. Edges are brought to a length of about 1 where their product would underflow.
+Vec3 unit_normal_of(const SourcePlane& plane) {
+  Vec3 normal = plane_normal(plane.frame[0], plane.frame[1], plane.frame[2]).value;
+  if (max_norm(normal) < kLeastSquare) {
+    const Vec3 p = plane.frame[1] - plane.frame[0], q = plane.frame[2] - plane.frame[0];
+    if (p == Vec3{} || q == Vec3{}) return {};
+    int exponent = 0;
+    normal = cross(normalised(p, exponent), normalised(q, exponent));
+    if (normal == Vec3{}) return {};
+    normal = normalised(normal, exponent);
+  }
+  const Vec3 unit = normal * (1.0 / max_norm(normal));  // so that no square underflows
+  return unit * (1.0 / length(unit));
+}
+
 RayPlane make_plane(const SampledScene& scene, SourcePlane plane) {
-  const Vec3 normal = plane_normal(plane.frame[0], plane.frame[1], plane.frame[2]).value;
-  const Vec3 unit = normal * (1.0 / max_norm(normal));  // lest a square underflow
   RayPlane result;
-  result.unit_normal = unit * (1.0 / length(unit));
+  result.unit_normal = unit_normal_of(plane);
   result.close = close_pieces(scene, plane, result.unit_normal);
   result.back = seen_from_behind(plane);
   result.front = std::move(plane);
@@ -59,10 +73,11 @@ RaySource::RaySource(const SampledScene& scene, const Selection& chosen) : Prepa
 
 // The ray structure is built here, so that no call that is timed pays for it, but only where a list can get long.
 RaysOnScene::RaysOnScene(const Scene& scene) : PreparedScene(scene), sampled_(scene) {
-  if (scene.pieces().size() > kShortestLimit) (void)sampled_.ray_scene();
+  if (scene.pieces().size() > kMostPiecesWithoutEmbree) (void)sampled_.ray_scene();
 }
 
 std::unique_ptr<PreparedSource> RaysOnScene::prepare_source(const Selection& selection) const {
+  const kernel::StandardArithmetic arithmetic;
   return std::make_unique<RaySource>(sampled_, selection);
 }
 

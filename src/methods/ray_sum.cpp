@@ -11,12 +11,14 @@ using namespace sampled;
 namespace {
 
 // The longest list worth gathering: a piece in the shaft costs about as much as two rays that Embree traces.
-std::size_t longest_list(std::size_t points) { return std::clamp(points / 2, kShortestLimit, kLongestDirectList); }
+std::size_t longest_list(std::size_t points) {
+  return std::clamp(points / 2, kMostPiecesWithoutEmbree, kLongestDirectList);
+}
 
 }  // namespace
 
 void RaySum::look_from(const Receiver& receiver) {
-  view_ = view_from(receiver, scene_.scene.scale);
+  view_ = view_from(receiver, scene_.scene);
   ends_.resize(kBlock);
   ends_.count = 0;
   weights_.resize(kBlock);
@@ -36,6 +38,7 @@ bool RaySum::aim(const RaySource& source, std::size_t index, Reach reach, std::s
   }
   patch_ = make_sub_patch(polygon_);
   height_ = dot(plane.unit_normal, view_.point - plane.front.frame[0]);
+  if (reach == Reach::kVisible) height_ = std::max(0.0, height_);  // x is in front: a negative one is rounding
   if (!clip(reach)) return false;
   gather(plane, reach, points);
   return true;
@@ -79,8 +82,22 @@ void RaySum::gather_from_all(const RayPlane& plane, const SourcePlane& seen, Hor
 
 double RaySum::kernel(const Vec3& point) const {
   const double squared_distance = dot(point, point);
+  if (squared_distance < kLeastSquare || height_ * height_ > 2.0 * squared_distance) return kernel_near_x(point);
   const double above = std::max(0.0, dot(view_.unit_normal, point));
   return std::numbers::inv_pi * (above / squared_distance) * (height_ / squared_distance);
+}
+
+// Where squares underflow, or x is so near that rounding makes its height above the plane more than its distance from
+// a point of it.
+double RaySum::kernel_near_x(const Vec3& point) const {
+  const double distance = length(point);
+  if (distance == 0.0) return 0.0;
+  int exponent = 0;
+  const Vec3 direction = normalised(point, exponent);
+  const double receiver_cosine = std::max(0.0, dot(view_.unit_normal, direction)) / length(direction);
+  const double source_cosine = std::min(1.0, height_ / distance);
+  const double kernel = std::numbers::inv_pi * receiver_cosine * source_cosine / distance / distance;
+  return std::min(kernel, kLargestKernel);
 }
 
 void RaySum::add(const Vec3& point, double weight) {

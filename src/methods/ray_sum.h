@@ -15,14 +15,13 @@
 
 namespace exactff::methods {
 
-// Scenes of no more pieces never need Embree.
-inline constexpr std::size_t kShortestLimit = 16;
-
 // Which points count: as the definition has it; or all, on both sides of the source and below the horizon too.
 enum class Reach { kVisible, kEverything };
 
 class RaySum {
  public:
+  static constexpr double kLargestKernel = 0x1p900;
+
   explicit RaySum(const sampled::SampledScene& scene) : scene_(scene) {}
 
   void look_from(const Receiver& receiver);
@@ -33,7 +32,8 @@ class RaySum {
   [[nodiscard]] const sampled::SubPatch& patch() const { return patch_; }  // the root, relative to x, unclipped
   [[nodiscard]] double height() const { return height_; }                  // of x above its plane; negative behind
 
-  // cos th_r cos th_s / (pi r^2) at a point of the root, 0 below the horizon; signed where x is behind.
+  // cos th_r cos th_s / (pi r^2) at a point of the root, 0 below the horizon; requires Reach::kVisible. At most
+  // kLargestKernel, so that no sum of it overflows.
   [[nodiscard]] double kernel(const Vec3& point) const;
 
   // Cuts every root of the source that counts into splits x splits parts and calls add(part, key) for each, with a key
@@ -55,7 +55,7 @@ class RaySum {
 
   // Adds `weight` to the sum if x sees the point.
   void add(const Vec3& point, double weight);
-  // The sum since the last call.
+  // The sum since the last call; infinite where its terms are too large.
   [[nodiscard]] double take();
   // Rays traced since the last call.
   [[nodiscard]] std::uint64_t take_rays();
@@ -63,6 +63,7 @@ class RaySum {
  private:
   static constexpr int kBlock = 256;
 
+  [[nodiscard]] double kernel_near_x(const Vec3& point) const;
   [[nodiscard]] bool clip(Reach reach);
   void gather(const RayPlane& plane, Reach reach, std::size_t points);
   void gather_from_all(const RayPlane& plane, const sampled::SourcePlane& seen, sampled::Horizon horizon);

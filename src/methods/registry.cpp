@@ -84,17 +84,20 @@ const Method& method_named(std::string_view name) {
 
 const Method& add_method(Method method) { return Registry::get().add(std::move(method)); }
 
-std::string Choice::text() const {
-  const std::string values = settings.text();
+namespace {
+
+std::string text_of(const Method* method, const std::string& values) {
+  if (method == nullptr) throw std::logic_error("this choice names no method; parse() makes one that does");
   return values.empty() ? method->name : method->name + ":" + values;
 }
 
-std::string Choice::short_text() const {
-  const std::string values = settings.short_text();
-  return values.empty() ? method->name : method->name + ":" + values;
-}
+}  // namespace
+
+std::string Choice::text() const { return text_of(method, settings.text()); }
+std::string Choice::short_text() const { return text_of(method, settings.short_text()); }
 
 Choice parse(std::string_view text) {
+  const kernel::StandardArithmetic arithmetic;
   const auto [name, assignments] = take_apart(text);
   const Method& method = method_named(name);
   Choice choice{&method, method.defaults()};

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "exactff/methods.h"
+#include "kernel/float_environment.h"
 #include "scene/nearest_names.h"
 #include "scene/number_text.h"
 
@@ -169,6 +170,7 @@ std::size_t Settings::must_find(std::string_view name) const {
 }
 
 void Settings::set(std::string_view name, const SettingValue& value) {
+  const kernel::StandardArithmetic arithmetic;
   const std::size_t place = must_find(name);
   const SettingSpec& spec = specs()[place];
   std::optional<SettingValue> fits = fitting(spec, value);
@@ -177,6 +179,7 @@ void Settings::set(std::string_view name, const SettingValue& value) {
 }
 
 void Settings::set_text(std::string_view name, std::string_view text) {
+  const kernel::StandardArithmetic arithmetic;
   const std::size_t place = must_find(name);
   const SettingSpec& spec = specs()[place];
   std::optional<SettingValue> value = read(spec, text);

@@ -10,6 +10,7 @@
 #include "methods/even_split.h"
 #include "methods/method_files.h"
 #include "methods/ray_sum.h"
+#include "sampled/value_range.h"
 
 namespace exactff::methods {
 
@@ -28,17 +29,21 @@ class Wallace : public Evaluator {
     end_.resize(1);
   }
 
-  void look_from(const Receiver& receiver) override { rays_.look_from(receiver); }
+  void look_from(const Receiver& receiver) override {
+    const kernel::StandardArithmetic arithmetic;
+    rays_.look_from(receiver);
+  }
 
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
+    const kernel::StandardArithmetic arithmetic;
     const auto& source = static_cast<const RaySource&>(prepared);
     const std::uint64_t key = stream_key(rays_.view(), source.selection(), seed_);
     const std::uint64_t samples =
         rays_.for_each_part(source, Reach::kVisible, splits_, key, 1,
                             [this](const SubPatch& part, std::uint64_t part_key) { add_part(part, part_key); });
     Estimate result;
-    result.form_factor = rays_.take();
+    result.form_factor = settled(rays_.take(), Formula::kNotNegative);
     result.counters.add("samples", samples);
     result.counters.add("rays", rays_.take_rays());
     return result;
@@ -50,6 +55,7 @@ class Wallace : public Evaluator {
     const Vec3 point{end_.x[0], end_.y[0], end_.z[0]};
     const double size = area(part);
     const double disc = std::numbers::pi * dot(point, point);
+    if (!(disc + size > 0.0)) return;
     rays_.add(point, rays_.kernel(point) * size * (disc / (disc + size)));
   }
 
@@ -64,6 +70,7 @@ class WallaceOnScene : public RaysOnScene {
  public:
   using RaysOnScene::RaysOnScene;
   [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
+    const kernel::StandardArithmetic arithmetic;
     return std::make_unique<Wallace>(sampled(), settings);
   }
 };
@@ -84,8 +91,9 @@ Method wallace_method() {
                        word_setting("pattern", {"centre", "jittered"},
                                     "where in its sub-patch a sample lies: in the middle or anywhere"),
                        seed_setting()},
-          .prepare = [](const Scene& scene) { return std::make_unique<WallaceOnScene>(scene); },
-          .uses = wallace_uses};
+          .prepare = prepare_as<WallaceOnScene>,
+          .uses = wallace_uses,
+          .can_leave_unit = [](const Settings&) { return true; }};
 }
 
 }  // namespace exactff::methods

@@ -16,15 +16,19 @@
 #include <optional>
 #include <string>
 
+#include "kernel/float_environment.h"
 #include "sampled/closed_form.h"
 #include "sampled/patch_visibility.h"
 #include "sampled/sampled_scene.h"
+#include "sampled/value_range.h"
+#include "scene/misuse.h"
 
 namespace exactff {
 
 using namespace sampled;
 
 struct AdaptiveSource::Data {
+  SceneId scene;
   Selection selection;
   SourceRoots source;
 };
@@ -245,36 +249,45 @@ AdaptiveSource::AdaptiveSource(std::unique_ptr<Data> data) : data_(std::move(dat
 AdaptiveSource::AdaptiveSource(AdaptiveSource&&) noexcept = default;
 AdaptiveSource& AdaptiveSource::operator=(AdaptiveSource&&) noexcept = default;
 AdaptiveSource::~AdaptiveSource() = default;
+const AdaptiveSource::Data& AdaptiveSource::data() const { return owned_by(data_, "AdaptiveSource"); }
 
 struct AdaptiveSolver::Impl : SampledScene {
   using SampledScene::SampledScene;
 };
 
-AdaptiveSolver::AdaptiveSolver(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
+AdaptiveSolver::AdaptiveSolver(const Scene& scene) {
+  const kernel::StandardArithmetic arithmetic;
+  impl_ = std::make_unique<Impl>(scene);
+}
 AdaptiveSolver::AdaptiveSolver(AdaptiveSolver&&) noexcept = default;
 AdaptiveSolver& AdaptiveSolver::operator=(AdaptiveSolver&&) noexcept = default;
 AdaptiveSolver::~AdaptiveSolver() = default;
 
-double AdaptiveSolver::build_seconds() const { return impl_->build_seconds; }
+const AdaptiveSolver::Impl& AdaptiveSolver::impl() const { return owned_by(impl_, "AdaptiveSolver"); }
+double AdaptiveSolver::build_seconds() const { return impl().build_seconds; }
 
 AdaptiveSource AdaptiveSolver::prepare(const Selection& source) const {
-  const ScaledScene& scene = impl_->scene;
+  const kernel::StandardArithmetic arithmetic;
+  const ScaledScene& scene = impl().scene;
   return AdaptiveSource(std::make_unique<AdaptiveSource::Data>(
-      AdaptiveSource::Data{source, make_source_roots(*scene.scene, scene.points, source)}));
+      AdaptiveSource::Data{scene.scene->id(), source, make_source_roots(*scene.scene, scene.points, source)}));
 }
 
 namespace {
 
 AdaptiveResult estimate(const SampledScene& solver, const Receiver& receiver, const AdaptiveSource::Data& source,
                         double largest_rho_b, const AdaptiveOptions& options, PatchVisibility* visibility) {
+  const kernel::StandardArithmetic arithmetic;
   check(options, largest_rho_b);
+  require_of_scene(*solver.scene.scene, source.scene, "source");
   AdaptiveResult result;
-  const ReceiverView view = view_from(receiver, solver.scene.scale);
+  const ReceiverView view = view_from(receiver, solver.scene);
   const bool divides_by_zero = options.variant == Variant::kLiteral && options.eps_b > 0.0;
   if ((largest_rho_b == 0.0 && !divides_by_zero) || max_norm(view.point) > kFarthest) return result;
   thread_local Workspace work;
   Recursion recursion(solver, view, options, largest_rho_b, visibility, work, result);
-  result.form_factor = recursion.compute_contribution(source.source, stream_key(view, source.selection, options.seed));
+  const double sum = recursion.compute_contribution(source.source, stream_key(view, source.selection, options.seed));
+  result.form_factor = settled(sum, options.variant == Variant::kLiteral ? Formula::kAny : Formula::kNotNegative);
   return result;
 }
 
@@ -282,12 +295,12 @@ AdaptiveResult estimate(const SampledScene& solver, const Receiver& receiver, co
 
 AdaptiveResult AdaptiveSolver::form_factor(const Receiver& receiver, const AdaptiveSource& source, double largest_rho_b,
                                            const AdaptiveOptions& options) const {
-  return estimate(*impl_, receiver, source.data(), largest_rho_b, options, nullptr);
+  return estimate(impl(), receiver, source.data(), largest_rho_b, options, nullptr);
 }
 
 AdaptiveResult AdaptiveSolver::form_factor(const Receiver& receiver, const AdaptiveSource& source, double largest_rho_b,
                                            const AdaptiveOptions& options, PatchVisibility& visibility) const {
-  return estimate(*impl_, receiver, source.data(), largest_rho_b, options, &visibility);
+  return estimate(impl(), receiver, source.data(), largest_rho_b, options, &visibility);
 }
 
 AdaptiveResult AdaptiveSolver::form_factor(const Receiver& receiver, const Selection& source, double largest_rho_b,

@@ -56,15 +56,38 @@ double atan2_sum(const Edges& e) {
   return sum;
 }
 
+// Cosines' squares and sines' fourth powers of patches this small underflow, or lose digits. The formula is
+// homogeneous: such a patch is brought to a size of about 1 first. Corners that are that much nearer than others stay
+// so.
+constexpr double kLeastSize = 0x1p-200;
+constexpr double kLeastCosine = 0x1p-400;
+
+inline double size_of(const SubPatch& s) {
+  return highest(larger(larger(absolute(load(s.x)), absolute(load(s.y))), absolute(load(s.z))));
+}
+
+SubPatch scaled(const SubPatch& s, int exponent) {
+  SubPatch result = s;
+  for (double* axis : {result.x, result.y, result.z}) {
+    for (int i = 0; i < 4; ++i) axis[i] = std::scalbn(axis[i], -exponent);
+  }
+  return result;
+}
+
 }  // namespace
 
 EXACTFF_CLONES
 double unoccluded_form_factor(const SubPatch& s, const Vec3& unit_normal) {
   Edges e;
   make_edges(s, unit_normal, e);
-  const FourMask small = (e.squared_sine <= kLargestSeriesArgument * e.cosine * e.cosine) & (e.cosine > 0.0);
+  const Four least = four(kLeastCosine);
+  if (!all_lanes((e.cosine >= least) | (e.cosine <= -least))) {  // in a room many edges are seen at a right angle, too
+    const double size = size_of(s);
+    if (size > 0.0 && size < kLeastSize) make_edges(scaled(s, std::ilogb(size)), unit_normal, e);
+  }
+  const FourMask small = (e.squared_sine <= kLargestSeriesArgument * e.cosine * e.cosine) & (e.cosine >= least);
   const double sum = all_lanes(small) ? series_sum(e) : atan2_sum(e);
-  return std::max(0.0, sum * (-0.5 * std::numbers::inv_pi));
+  return std::min(1.0, std::max(0.0, sum * (-0.5 * std::numbers::inv_pi)));
 }
 
 namespace {
@@ -79,10 +102,22 @@ Float3 cross(const Float3& a, const Float3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+// Directions alone matter below: a corner whose squares floats could not hold is brought to a length of about 1.
+Vec3 within_floats(const Vec3& v) {
+  constexpr double kLeast = 0x1p-50, kLargest = 0x1p50;
+  const double size = max_norm(v);
+  if (size == 0.0 || (size >= kLeast && size <= kLargest)) return v;
+  int exponent = 0;
+  return normalised(v, exponent);
+}
+
 Float3 to_float(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
 
-Float3 unit(const Float3& v) {
-  const float reciprocal = 1.0F / std::sqrt(dot(v, v));
+Float3 unit(const Vec3& corner) {
+  const Float3 v = to_float(within_floats(corner));
+  const float square = dot(v, v);
+  if (square == 0.0F) return v;
+  const float reciprocal = 1.0F / std::sqrt(square);
   return {v.x * reciprocal, v.y * reciprocal, v.z * reciprocal};
 }
 
@@ -94,8 +129,8 @@ double literal_unoccluded_form_factor(const SubPatch& s, const Vec3& unit_normal
   float sum = 0.0F;
   const int n = s.corner_count();
   for (int i = 0; i < n; ++i) {
-    const Float3 a = unit(to_float(s.corner(i)));
-    const Float3 b = unit(to_float(s.corner(i + 1 == n ? 0 : i + 1)));
+    const Float3 a = unit(s.corner(i));
+    const Float3 b = unit(s.corner(i + 1 == n ? 0 : i + 1));
     const Float3 c = cross(a, b);
     const float sine = std::sqrt(dot(c, c));
     const float angle = std::acos(std::clamp(dot(a, b), -1.0F, 1.0F));

@@ -3,6 +3,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -13,10 +14,22 @@
 
 namespace exactff::sampled {
 
+// Scenes of no more pieces never need Embree: their lists of occluders are short and tested in double.
+inline constexpr std::size_t kMostPiecesWithoutEmbree = 16;
+
+// The smallest coordinate, but for 0, that Embree is given in the unit box.
+//
+// Embree's builder flushes subnormal floats to 0. Floats that are 0 or at least 2^-103 differ by 0 or at least 2^-126,
+// the smallest normal float: no difference of corners is lost, and the builder meets no two corners that compare as
+// different but are 0 apart, of which its triangle splitter dies by an assertion (Debian's build has them on). 2^-100
+// leaves a margin of 2^3.
+inline constexpr double kLeastInEmbree = 0x1p-100;
+
 // The move and power-of-two scale that bring the scene's pieces into the unit box.
 struct UnitBox {
   Vec3 centre;
   double scale = 1.0;
+  double least = 0.0;  // smaller coordinates in the box become 0
 
   // In scaled coordinates: of two points closer than this, single precision cannot be trusted to say which is in
   // front. 2^-18 of the box, well above the 2^-22 that rounding both ends of a ray can add up to.
@@ -40,6 +53,11 @@ class Blockers {
 
 // Throws InputError where rounding to single precision merges vertices or collapses or flips a piece. `points` are the
 // scene's vertices, scaled to about 1.
+//
+// In a scene that may need Embree, coordinates below kLeastInEmbree in the box become 0. InputError where that moves a
+// vertex by more than 2^-24 of the scene's half extent along the axis, which is more than single precision does to the
+// outermost vertices: a scene that is thinner than 2^-75 (2.6e-23) of its size along some axis may be refused, and one
+// thinner than 2^-99 (1.6e-30), but not flat, is.
 [[nodiscard]] UnitBox checked_unit_box(const Scene& scene, const std::vector<Vec3>& points);
 
 // Immutable; safe to use from several threads at once.

@@ -7,6 +7,7 @@
 
 #include "kernel/exact_vec.h"
 #include "sampled/plane_side.h"
+#include "scene/misuse.h"
 
 namespace exactff::sampled {
 
@@ -155,7 +156,8 @@ ScaledScene::ScaledScene(const Scene& scene_given) : scene(&scene_given) {
   tree = ShaftTree(boxes);
 }
 
-ReceiverView view_from(const Receiver& receiver, double scale) {
+ReceiverView view_from(const Receiver& receiver, const ScaledScene& scene) {
+  if (receiver.on) require_face(*scene.scene, *receiver.on);
   if (!finite(receiver.point) || !finite(receiver.normal)) {
     throw InputError(Problem{{},
                              0,
@@ -170,7 +172,7 @@ ReceiverView view_from(const Receiver& receiver, double scale) {
                              "it has no horizon",
                              "give a normal of any other length"});
   }
-  ReceiverView view{receiver.point, receiver.point * scale, {}, {}, receiver.on};
+  ReceiverView view{receiver.point, receiver.point * scene.scale, {}, {}, receiver.on};
   view.normal = receiver.normal * normalising_scale(max_norm(receiver.normal));
   view.unit_normal = view.normal * (1.0 / length(view.normal));
   return view;

@@ -17,7 +17,26 @@ inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y +
 inline Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 inline double max_norm(const Vec3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
+
+// Squares at least this large are accurate, and so is what is left of them when a product loses 2^-100.
+inline constexpr double kLeastSquare = 0x1p-900;
+
+// `a` times the power of two that brings its max norm into [1, 2); `exponent` undoes it. Requires a finite a other
+// than 0.
+inline Vec3 normalised(const Vec3& a, int& exponent) {
+  exponent = std::ilogb(max_norm(a));
+  return {std::scalbn(a.x, -exponent), std::scalbn(a.y, -exponent), std::scalbn(a.z, -exponent)};
+}
+
+// Also where squares underflow. Requires components below 2^511.
+inline double length(const Vec3& a) {
+  const double square = dot(a, a);
+  if (square >= kLeastSquare) return std::sqrt(square);
+  if (a == Vec3{}) return 0.0;
+  int exponent = 0;
+  const Vec3 near_one = normalised(a, exponent);
+  return std::scalbn(std::sqrt(dot(near_one, near_one)), exponent);
+}
 
 }  // namespace exactff::sampled

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "scene/printable.h"
 #include "scene/text_lines.h"
+#include "text/escape.h"
 
 namespace exactff {
 
@@ -38,7 +38,7 @@ std::string Problem::message() const {
   text += what;
   if (!why.empty()) text += " (" + why + ")";
   if (!suggestion.empty()) text += "; " + suggestion;
-  return printable(text);
+  return text::printable(text);
 }
 
 InputError::InputError(std::vector<Problem> problems)

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <utility>
 
+#include "kernel/float_environment.h"
 #include "scene/scene_data.h"
 
 namespace exactff {
@@ -21,18 +23,24 @@ void flip(Piece& piece, std::vector<std::uint32_t>& corners) {
 
 }  // namespace
 
-Scene Scene::with_flipped(const Selection& selection) const {
+Scene Scene::with_flipped(std::span<const Selection> selections) const {
+  const kernel::StandardArithmetic arithmetic;
   auto copy = std::make_unique<Data>();
-  copy->file = data_->file;
-  copy->vertices = data_->vertices;
-  copy->materials = data_->materials;
-  copy->patches = data_->patches;
-  copy->patch_by_name = data_->patch_by_name;
-  copy->faces = data_->faces;
-  copy->pieces = data_->pieces;
-  copy->corners = data_->corners;
-  copy->warnings = data_->warnings;
-  for (const FaceId id : faces_of(selection)) {
+  copy->file = data().file;
+  copy->vertices = data().vertices;
+  copy->materials = data().materials;
+  copy->patches = data().patches;
+  copy->patch_by_name = data().patch_by_name;
+  copy->faces = data().faces;
+  copy->pieces = data().pieces;
+  copy->corners = data().corners;
+  copy->warnings = data().warnings;
+  std::set<FaceId> flipped;
+  for (const Selection& selection : selections) {
+    const std::vector<FaceId> faces = faces_of(selection);
+    flipped.insert(faces.begin(), faces.end());
+  }
+  for (const FaceId id : flipped) {
     Face& face = copy->faces[index_of(id)];
     flip(face);
     for (std::uint32_t p = 0; p < face.piece_count; ++p) flip(copy->pieces[face.first_piece + p], copy->corners);

@@ -1,11 +1,14 @@
 #include "exactff/scene.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
+#include "kernel/float_environment.h"
 #include "scene/fnv1a.h"
+#include "scene/misuse.h"
 #include "scene/nearest_names.h"
 #include "scene/numbered_name.h"
 #include "scene/places.h"
@@ -19,15 +22,22 @@ Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 Scene::~Scene() = default;
 
-std::span<const Vec3> Scene::vertices() const { return data_->vertices; }
-std::span<const Material> Scene::materials() const { return data_->materials; }
-std::span<const Patch> Scene::patches() const { return data_->patches; }
-std::span<const Face> Scene::faces() const { return data_->faces; }
-std::span<const Piece> Scene::pieces() const { return data_->pieces; }
-std::span<const Problem> Scene::warnings() const { return data_->warnings; }
+SceneId Scene::Data::next_id() {
+  static std::atomic<std::uint64_t> last = 0;
+  return SceneId{++last};
+}
+
+const Scene::Data& Scene::data() const { return owned_by(data_, "Scene"); }
+SceneId Scene::id() const { return data().id; }
+std::span<const Vec3> Scene::vertices() const { return data().vertices; }
+std::span<const Material> Scene::materials() const { return data().materials; }
+std::span<const Patch> Scene::patches() const { return data().patches; }
+std::span<const Face> Scene::faces() const { return data().faces; }
+std::span<const Piece> Scene::pieces() const { return data().pieces; }
+std::span<const Problem> Scene::warnings() const { return data().warnings; }
 
 std::span<const std::uint32_t> Scene::corners(const Piece& piece) const {
-  return std::span(data_->corners).subspan(piece.first_corner, piece.corner_count);
+  return std::span(data().corners).subspan(piece.first_corner, piece.corner_count);
 }
 
 std::span<const Piece> Scene::pieces_of(FaceId id) const {
@@ -35,6 +45,7 @@ std::span<const Piece> Scene::pieces_of(FaceId id) const {
 }
 
 std::vector<FaceId> Scene::faces_of(const Selection& selection) const {
+  require_of_scene(*this, selection);
   std::vector<FaceId> candidates;
   if (selection.face) {
     candidates.push_back(*selection.face);
@@ -68,29 +79,30 @@ std::string count_of_faces(std::size_t count) { return std::to_string(count) + (
 }  // namespace
 
 Selection Scene::select(std::string_view name) const {
-  const auto& by_name = data_->patch_by_name;
-  if (const auto exact = by_name.find(std::string(name)); exact != by_name.end()) return {exact->second, {}};
+  const auto& by_name = data().patch_by_name;
+  if (const auto exact = by_name.find(std::string(name)); exact != by_name.end()) return {exact->second, {}, id()};
   const auto parts = numbered_name(name);
   const auto owner = parts ? by_name.find(parts->patch) : by_name.end();
   if (owner == by_name.end()) {
-    throw InputError({data_->file, 0, "there is no patch named " + in_quotes(name, kShownName),
+    throw InputError({data().file, 0, "there is no patch named " + in_quotes(name, kShownName),
                       "names are matched letter by letter", choice_of_names(*this, parts ? parts->patch : name)});
   }
   const std::vector<FaceId>& faces = patch(owner->second).faces;
   if (parts->number < 1 || parts->number > faces.size()) {
-    throw InputError({data_->file, 0, "there is no face " + in_quotes(name, kShownName),
+    throw InputError({data().file, 0, "there is no face " + in_quotes(name, kShownName),
                       "patch " + in_quotes(parts->patch, kShownName) + " has " + count_of_faces(faces.size()),
                       "faces count from 1"});
   }
-  const FaceId id = faces[parts->number - 1];
-  if (face(id).shape == FaceShape::kSkipped) {
-    throw InputError({data_->file, face(id).line, "face " + in_quotes(name, kShownName) + " cannot be used",
+  const FaceId face_id = faces[parts->number - 1];
+  if (face(face_id).shape == FaceShape::kSkipped) {
+    throw InputError({data().file, face(face_id).line, "face " + in_quotes(name, kShownName) + " cannot be used",
                       "it was dropped as a bad face", "see the warning about it"});
   }
-  return {owner->second, id};
+  return {owner->second, face_id, this->id()};
 }
 
 std::string Scene::name_of(const Selection& selection) const {
+  require_of_scene(*this, selection);
   return selection.face ? patch(selection.patch).name + ":" + std::to_string(face(*selection.face).number)
                         : patch(selection.patch).name;
 }
@@ -102,9 +114,10 @@ std::string Scene::name_of(FaceId id) const {
 }
 
 std::vector<Selection> Scene::emitters() const {
+  const kernel::StandardArithmetic arithmetic;
   std::vector<Selection> result;
   for (std::size_t p = 0; p < patches().size(); ++p) {
-    const Selection whole{PatchId(static_cast<std::uint32_t>(p)), {}};
+    const Selection whole{PatchId(static_cast<std::uint32_t>(p)), {}, id()};
     const std::vector<FaceId> faces = faces_of(whole);
     const auto emits = [&](FaceId id) { return material(face(id).material).emits(); };
     if (std::any_of(faces.begin(), faces.end(), emits)) result.push_back(whole);
@@ -113,6 +126,7 @@ std::vector<Selection> Scene::emitters() const {
 }
 
 Rgb Scene::source_radiosity(const Selection& source) const {
+  const kernel::StandardArithmetic arithmetic;
   const std::vector<FaceId> faces = faces_of(source);
   const Rgb unit{1.0, 1.0, 1.0};
   if (faces.empty()) return unit;
@@ -120,7 +134,7 @@ Rgb Scene::source_radiosity(const Selection& source) const {
   for (const FaceId id : faces) {
     const Material& other = material(face(id).material);
     if (other.radiosity == first.radiosity) continue;
-    throw InputError({data_->file, face(id).line, "the faces of source '" + name_of(source) + "' differ in Ke",
+    throw InputError({data().file, face(id).line, "the faces of source '" + name_of(source) + "' differ in Ke",
                       "'" + name_of(faces.front()) + "' has material '" + first.name + "', '" + name_of(id) +
                           "' has '" + other.name + "'; a source has one radiosity",
                       "name one face, or give the faces groups of their own"});
@@ -129,7 +143,9 @@ Rgb Scene::source_radiosity(const Selection& source) const {
 }
 
 Rgb Scene::receiver_reflectance(std::optional<FaceId> id) const {
-  return id ? material(face(*id).material).reflectance : Rgb{1.0, 1.0, 1.0};
+  if (!id) return {1.0, 1.0, 1.0};
+  require_face(*this, *id);
+  return material(face(*id).material).reflectance;
 }
 
 namespace {
@@ -198,6 +214,7 @@ std::span<const std::uint32_t> places(const Scene& scene) {
 }
 
 std::size_t Scene::open_edge_count() const {
+  const kernel::StandardArithmetic arithmetic;
   const std::span<const std::uint32_t> id = places(*this);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (const Face& face : faces()) {

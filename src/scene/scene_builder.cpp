@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "kernel/float_environment.h"
+#include "scene/misuse.h"
 #include "scene/numbered_name.h"
 #include "scene/scene_data.h"
 #include "scene/text_lines.h"
@@ -51,24 +52,26 @@ SceneBuilder::SceneBuilder(SceneBuilder&&) noexcept = default;
 SceneBuilder& SceneBuilder::operator=(SceneBuilder&&) noexcept = default;
 SceneBuilder::~SceneBuilder() = default;
 
+SceneBuilder::State& SceneBuilder::state() const { return owned_by(state_, "SceneBuilder"); }
+
 std::uint32_t SceneBuilder::add_vertex(const Vec3& position) {
   const kernel::StandardArithmetic arithmetic;
-  auto& vertices = state_->data->vertices;
+  auto& vertices = state().data->vertices;
   assert(vertices.size() < std::numeric_limits<std::uint32_t>::max());
   vertices.push_back({position.x + 0.0, position.y + 0.0, position.z + 0.0});  // turns -0 into +0
   return static_cast<std::uint32_t>(vertices.size() - 1);
 }
 
-std::size_t SceneBuilder::vertex_count() const { return state_->data->vertices.size(); }
+std::size_t SceneBuilder::vertex_count() const { return state().data->vertices.size(); }
 
 MaterialId SceneBuilder::add_material(Material material) {
-  auto& materials = state_->data->materials;
+  auto& materials = state().data->materials;
   materials.push_back(std::move(material));
   return MaterialId(static_cast<std::uint32_t>(materials.size() - 1));
 }
 
 PatchId SceneBuilder::patch(std::string_view name) {
-  Scene::Data& data = *state_->data;
+  Scene::Data& data = *state().data;
   const auto next = static_cast<PatchId>(data.patches.size());
   const auto [place, is_new] = data.patch_by_name.emplace(name, next);
   if (is_new) data.patches.push_back({std::string(name), {}});
@@ -77,8 +80,13 @@ PatchId SceneBuilder::patch(std::string_view name) {
 
 void SceneBuilder::add_face(PatchId patch, MaterialId material, std::vector<std::vector<std::uint32_t>> rings,
                             std::size_t line) {
-  Scene::Data& data = *state_->data;
-  assert(index_of(patch) < data.patches.size() && index_of(material) < data.materials.size());
+  Scene::Data& data = *state().data;
+  if (index_of(patch) >= data.patches.size()) {
+    refuse_argument("there is no patch " + std::to_string(index_of(patch)), "SceneBuilder::patch() makes them");
+  }
+  if (index_of(material) >= data.materials.size()) {
+    refuse_argument("there is no material " + std::to_string(index_of(material)), "add_material() makes them");
+  }
   std::vector<FaceId>& siblings = data.patches[index_of(patch)].faces;
   siblings.push_back(FaceId(static_cast<std::uint32_t>(data.faces.size())));
   Face face;
@@ -90,10 +98,11 @@ void SceneBuilder::add_face(PatchId patch, MaterialId material, std::vector<std:
   data.faces.push_back(std::move(face));
 }
 
-void SceneBuilder::warn(Problem warning) { state_->warnings.add(std::move(warning)); }
+void SceneBuilder::warn(Problem warning) { state().warnings.add(std::move(warning)); }
 
 Scene SceneBuilder::build() {
   const kernel::StandardArithmetic arithmetic;
+  static_cast<void>(state());
   const std::unique_ptr<State> taken = std::exchange(state_, std::make_unique<State>());
   State& state = *taken;
   state.check_vertices();

@@ -13,6 +13,7 @@
 namespace exactff {
 
 struct Scene::Data {
+  const SceneId id = next_id();
   std::string file;
   std::vector<Vec3> vertices;  // finite, no negative zero
   std::vector<Material> materials;
@@ -29,6 +30,9 @@ struct Scene::Data {
   mutable ShaftTree tree;
   mutable std::once_flag surfaces_found;  // see closed_surfaces()
   mutable ClosedSurfaces surfaces;
+
+ private:
+  static SceneId next_id();
 };
 
 }  // namespace exactff

@@ -1,6 +1,7 @@
 #include "scene/text_lines.h"
 
-#include "scene/printable.h"
+#include "text/characters.h"
+#include "text/escape.h"
 
 namespace exactff {
 
@@ -36,7 +37,7 @@ std::vector<std::string_view> words(std::string_view text) {
 }
 
 std::string in_quotes(std::string_view text, std::size_t shown) {
-  return "'" + printable(text.substr(0, shown)) + (text.size() > shown ? "...'" : "'");
+  return "'" + text::printable(text::beginning(text, shown)) + (text.size() > shown ? "...'" : "'");
 }
 
 TextLines::TextLines(std::string_view text) : rest_(text) {

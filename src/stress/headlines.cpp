@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "exactff/stress.h"
+#include "kernel/float_environment.h"
 #include "stress/tables.h"
 #include "stress/words.h"
 #include "study/text.h"
@@ -90,6 +91,7 @@ std::string method_sentence(const Report& report, Method method) {
 }  // namespace
 
 std::vector<std::string> headlines(const Report& report) {
+  const kernel::StandardArithmetic arithmetic;
   std::vector<std::string> sentences = {exact_sentence(report)};
   for (Method method : kMethods) {
     if (method != Method::kExact) sentences.push_back(method_sentence(report, method));

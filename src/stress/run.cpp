@@ -16,6 +16,7 @@
 
 #include "exactff/adaptive.h"
 #include "kernel/ball.h"
+#include "kernel/float_environment.h"
 #include "stress/double_formulas.h"
 #include "stress/family.h"
 #include "study/parallel.h"
@@ -195,6 +196,7 @@ std::vector<const Family*> selected(const std::vector<std::string>& names) {
 }  // namespace
 
 Report run(Request request, const study::Hooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
   if (request.threads <= 0) request.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   Report report{std::move(request), {}};
   struct Place {

@@ -1,6 +1,7 @@
 #include <iterator>
 
 #include "exactff/stress.h"
+#include "kernel/float_environment.h"
 #include "stress/figures.h"
 #include "stress/report_page.h"
 #include "stress/tables.h"
@@ -10,6 +11,7 @@
 namespace exactff::stress {
 
 std::vector<std::string> write(const Report& report, const std::filesystem::path& folder, const study::Hooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
   study::StagedFolder staged(folder);
   std::vector<std::string> messages;
   for (const Table& table : tables()) {

@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "exactff/error.h"
@@ -17,8 +19,10 @@ namespace exactff::study {
 
 namespace fs = std::filesystem;
 
-File::File(fs::path path, Mode mode, Consolation consolation)
-    : path_(std::move(path)), consolation_(std::move(consolation)) {
+File::File(fs::path path, Mode mode, Consolation consolation, fs::path called)
+    : path_(std::move(path)),
+      called_(called.empty() ? path_ : std::move(called)),
+      consolation_(std::move(consolation)) {
   const int flags = mode == Mode::kRead ? O_RDONLY : O_RDWR | O_CREAT;
   descriptor_ = ::open(path_.c_str(), flags | O_CLOEXEC, 0666);
   if (descriptor_ >= 0) return;
@@ -30,6 +34,7 @@ File::File(fs::path path, Mode mode, Consolation consolation)
 
 File::File(File&& other) noexcept
     : path_(std::move(other.path_)),
+      called_(std::move(other.called_)),
       consolation_(std::move(other.consolation_)),
       descriptor_(std::exchange(other.descriptor_, -1)) {}
 
@@ -38,7 +43,7 @@ File::~File() {
 }
 
 void File::fail(int error) const {
-  throw InputError({.file = path_.string(),
+  throw InputError({.file = called_.string(),
                     .what = std::string("cannot be written: ") + std::strerror(error),
                     .why = consolation_.why,
                     .suggestion = consolation_.suggestion});
@@ -112,19 +117,31 @@ namespace {
 fs::path with_suffix(fs::path path, const char* suffix) { return path += suffix; }
 
 constexpr std::size_t kBufferBytes = 1 << 20;
+constexpr auto kPatience = std::chrono::seconds(10);
+constexpr auto kPause = std::chrono::milliseconds(5);
+
+// Locked. The process that had the lock may have renamed the file in between: then it is the other's result.
+File opened(const fs::path& path, const fs::path& target, const Consolation& consolation, WholeFile::WhenBusy busy) {
+  const auto start = std::chrono::steady_clock::now();
+  for (;;) {
+    File file(with_suffix(target, ".whole"), File::Mode::kReadWrite, consolation, path);
+    const bool in_use = file.lock() == File::Lock::kInUse;
+    if (!in_use && file.is_in_place()) return file;
+    if (!in_use) continue;
+    if (busy == WholeFile::WhenBusy::kRefuse || std::chrono::steady_clock::now() - start > kPatience) {
+      throw InputError({.file = path.string(),
+                        .what = "another process is writing the file",
+                        .why = "two would spoil it",
+                        .suggestion = "wait for the other one, or name another file"});
+    }
+    std::this_thread::sleep_for(kPause);
+  }
+}
 
 }  // namespace
 
-WholeFile::WholeFile(const fs::path& path, Consolation consolation)
-    : target_(destination(path)),
-      file_(with_suffix(target_, ".whole"), File::Mode::kReadWrite, std::move(consolation)) {
-  if (file_.lock() == File::Lock::kInUse) {
-    committed_ = true;  // it is not ours to remove
-    throw InputError({.file = path.string(),
-                      .what = "another process is writing the file",
-                      .why = "two would spoil it",
-                      .suggestion = "wait for the other one, or name another file"});
-  }
+WholeFile::WholeFile(const fs::path& path, Consolation consolation, WhenBusy when_busy)
+    : target_(destination(path)), file_(opened(path, target_, consolation, when_busy)) {
   file_.truncate(0);
 }
 

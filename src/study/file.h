@@ -19,8 +19,8 @@ class File {
  public:
   enum class Mode { kRead, kReadWrite };  // kReadWrite makes the file where there is none
 
-  // Throws InputError where it cannot be opened.
-  File(std::filesystem::path path, Mode mode, Consolation consolation = {});
+  // Throws InputError where it cannot be opened. Messages speak of `called`, where it is given, instead of the path.
+  File(std::filesystem::path path, Mode mode, Consolation consolation = {}, std::filesystem::path called = {});
   File(File&& other) noexcept;
   ~File();
   File& operator=(File&&) = delete;
@@ -45,6 +45,7 @@ class File {
 
  private:
   std::filesystem::path path_;
+  std::filesystem::path called_;
   Consolation consolation_;
   int descriptor_ = -1;
 };
@@ -55,9 +56,11 @@ void sync_folder_of(const std::filesystem::path& path);
 // A file that appears whole or not at all, written from start to end.
 class WholeFile {
  public:
+  enum class WhenBusy { kRefuse, kWait };  // kWait: some seconds
+
   // Written as `path`.whole; what a killed process left there is overwritten. Throws InputError where another process
   // is at it. A symbolic link is followed.
-  WholeFile(const std::filesystem::path& path, Consolation consolation = {});
+  WholeFile(const std::filesystem::path& path, Consolation consolation = {}, WhenBusy when_busy = WhenBusy::kRefuse);
   ~WholeFile();
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "study/text.h"
+#include "text/characters.h"
 
 namespace exactff::study {
 namespace {
@@ -138,7 +139,7 @@ std::string complaint(const Child& child, const fs::path& err) {
   constexpr std::size_t kShown = 500;
   if (child.error != 0) return std::strerror(child.error);
   if (!child.given_up.empty()) return child.given_up;
-  return contents(err).substr(0, kShown);
+  return std::string(text::beginning(contents(err), kShown));
 }
 
 void replace_all(std::string& text, std::string_view from, std::string_view to) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "exactff/study.h"
+#include "kernel/float_environment.h"
 #include "study/figures.h"
 #include "study/settings.h"
 #include "study/statistics.h"
@@ -151,6 +152,7 @@ std::string no_work_sentence(const Study& study) {
 }  // namespace
 
 std::vector<std::string> headlines(const Study& study) {
+  const kernel::StandardArithmetic arithmetic;
   std::vector<std::string> sentences;
   for (std::string sentence : {exact_sentence(study), base_sentence(study), tolerance_sentence(study),
                                seeds_sentence(study), violations_sentence(study), crossover_sentence(study),

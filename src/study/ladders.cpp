@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/float_environment.h"
 #include "study/text.h"
 
 namespace exactff::study {
@@ -106,6 +107,7 @@ std::string ladder_name(const LadderText& text, const methods::Method& method, c
 }  // namespace
 
 Ladder parse_ladder(std::string_view text) {
+  const kernel::StandardArithmetic arithmetic;
   const LadderText taken_apart(text);
   Ladder ladder;
   ladder.along = taken_apart.along();

@@ -103,7 +103,7 @@ class MethodRunner {
     try {
       prepared.emplace(*ladder.rungs.front().method, request());
     } catch (const InputError& refusal) {
-      study_.left_out.push_back({"method " + ladder.name, one_line(refusal.what())});
+      study_.left_out.push_back({"method " + ladder.name, csv_comment(refusal.what())});
       return;
     }
     double left = request().methods.budget;

@@ -32,9 +32,10 @@ bool begins_like_ours(const fs::path& file) {
   return std::getline(in, line) && line.starts_with("# exactff ");
 }
 
-// The report, or a table: those say in their first line whose they are.
+// The report, a lock, or a table: those say in their first line whose they are.
 bool is_our_file(const fs::path& path) {
-  return path.filename() == kReportFile || (path.extension() == ".csv" && begins_like_ours(path));
+  return path.filename() == kReportFile || path.filename() == kLockFile ||
+         (path.extension() == ".csv" && begins_like_ours(path));
 }
 
 void require_replaceable(const fs::path& folder) {
@@ -99,12 +100,6 @@ void require_free_or_ours(const fs::path& folder, const fs::path& target) {
   require_replaceable(target);
 }
 
-fs::path sibling(const fs::path& folder, const std::string& suffix) {
-  std::string name = ".";
-  name += folder.filename().string() + '.' + suffix + '-' + std::to_string(::getpid());
-  return folder.parent_path() / name;
-}
-
 // The path itself or the highest folder above it that does not exist.
 fs::path outermost_missing(fs::path path) {
   while (path.has_relative_path() && !is_there(path.parent_path())) path = path.parent_path();
@@ -120,27 +115,31 @@ void check_output_folder(const fs::path& folder) { const StagedFolder attempt(fo
 
 bool StagedFolder::any() { return staged_count > 0; }
 
-StagedFolder::StagedFolder(const fs::path& target) : target_(normalised(target)), staged_(sibling(target_, "partial")) {
+StagedFolder::StagedFolder(const fs::path& target) : target_(normalised(target)) {
   require_free_or_ours(target, target_);
-  std::error_code error;
   ++staged_count;
-  fs::remove_all(staged_, error);
-  outermost_made_ = outermost_missing(staged_);
-  fs::create_directories(staged_, error);
-  if (!error) return;
-  remove_made();
-  refuse(target, "cannot be made: " + error.message(), "the results need a place", "name another folder");
+  try {
+    outermost_made_ = outermost_missing(target_);
+    fs::create_directories(target_.parent_path());
+    work_.emplace(target_);
+  } catch (const fs::filesystem_error& error) {
+    remove_made();
+    refuse(target, "cannot be made: " + error.code().message(), "the results need a place", "name another folder");
+  } catch (...) {
+    remove_made();
+    throw;
+  }
 }
 
 StagedFolder::~StagedFolder() {
-  if (!staged_.empty()) remove_made();
+  if (work_) remove_made();
 }
 
 void StagedFolder::remove_made() {
+  work_.reset();
   std::error_code error;
-  fs::remove_all(staged_, error);
   // Only what is empty is removed, so that nobody else's files can be lost.
-  for (fs::path made = staged_; made != outermost_made_ && !error;) {
+  for (fs::path made = target_; made != outermost_made_ && !error;) {
     made = made.parent_path();
     fs::remove(made, error);
   }
@@ -149,18 +148,13 @@ void StagedFolder::remove_made() {
 
 void StagedFolder::commit() {
   require_free_or_ours(target_, target_);
-  const fs::path old = sibling(target_, "old");
-  const bool replace = is_there(target_);
-  std::error_code error;
-  if (replace) fs::rename(target_, old, error);
-  if (!error) fs::rename(staged_, target_, error);
-  std::error_code ignored;
-  if (error) {
-    if (replace && !is_there(target_)) fs::rename(old, target_, ignored);
-    refuse(target_, "cannot be put in place: " + error.message(), "the results need a place", "name another folder");
+  try {
+    work_->put_in_place();
+  } catch (const fs::filesystem_error& error) {
+    refuse(target_, "cannot be put in place: " + error.code().message(), "the results need a place",
+           "name another folder");
   }
-  staged_.clear();
-  if (replace) fs::remove_all(old, ignored);
+  work_.reset();
   --staged_count;
 }
 

@@ -2,13 +2,16 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+
+#include "study/work_folder.h"
 
 namespace exactff::study {
 
 inline constexpr const char* kReportFile = "report.html";
 
 // A hidden sibling of the target in which files are prepared; removed again, with the folders made on the way to it,
-// unless commit() was called.
+// unless commit() was called. What killed processes left there is removed first.
 class StagedFolder {
  public:
   // Throws InputError where check_output_folder does, or where nothing can be written.
@@ -17,7 +20,7 @@ class StagedFolder {
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;
 
-  [[nodiscard]] const std::filesystem::path& path() const { return staged_; }
+  [[nodiscard]] const std::filesystem::path& path() const { return work_->path(); }
 
   // Whether there is one anywhere in the program; safe to ask in a signal handler.
   [[nodiscard]] static bool any();
@@ -29,8 +32,8 @@ class StagedFolder {
   void remove_made();
 
   std::filesystem::path target_;
-  std::filesystem::path staged_;
-  std::filesystem::path outermost_made_;  // staged_ or the folder above it that did not exist before
+  std::filesystem::path outermost_made_;  // the target or the highest folder above it that did not exist before
+  std::optional<WorkFolder> work_;
 };
 
 }  // namespace exactff::study

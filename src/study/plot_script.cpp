@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "study/text.h"
+#include "text/escape.h"
 
 namespace exactff::study {
 namespace {
@@ -37,15 +38,6 @@ std::string head(int width, int height, Background background = Background::kOfP
   return "set encoding utf8\nset terminal svg size " + std::to_string(width) + ',' + std::to_string(height) +
          " dynamic enhanced font 'sans-serif,15' linewidth 1.2" +
          (background == Background::kWhite ? " background rgb 'white'" : "") + "\n";
-}
-
-std::string in_quotes(std::string_view text) {
-  std::string safe = "'";
-  for (char c : text) {
-    if (c == '\'') safe += '\'';
-    safe += c == '\n' ? ' ' : c;
-  }
-  return safe + '\'';
 }
 
 Points drawable(const Points& points, const Axes& axes) {
@@ -100,7 +92,7 @@ std::string plot_head(const Key& key, Background background = Background::kOfPag
 }
 
 std::string axis_commands(const Axes& axes, const Key& key) {
-  std::string text = "set xlabel " + in_quotes(axes.x) + "\nset ylabel " + in_quotes(axes.y) +
+  std::string text = "set xlabel " + text::gnuplot_string(axes.x) + "\nset ylabel " + text::gnuplot_string(axes.y) +
                      "\nset grid lw 0.5 lc rgb '#8A8A8A' dt 3\nset minussign\nset bmargin 3.3\n"
                      "set key tmargin center horizontal samplen 2.4 font '," +
                      std::to_string(kKeyFont) + "' width -" + std::to_string(key.spare) + " maxcols " +
@@ -156,7 +148,7 @@ constexpr const char* kOverCloudStyle = "with linespoints lw 1.6 ps 1.1 lc black
 std::string cloud_command(const std::string& name, const Series& cloud, const Axes& axes, double width) {
   const CloudLook look = cloud_look(cloud.style);
   const std::string colour = " lc rgb '" + std::string(look.colour) + '\'';
-  const std::string title = cloud.title.empty() ? " notitle" : " title " + in_quotes(cloud.title);
+  const std::string title = cloud.title.empty() ? " notitle" : " title " + text::gnuplot_string(cloud.title);
   if (!look.dots) return name + " using 1:2 with points pt 2 ps 0.6 lw 1.5" + colour + title;
   const std::string length = axes.log_x ? "$1*0.003" : shortest(0.0003 * width);
   return name + " using 1:2:(" + length + "):(0) with vectors nohead lw 2.6" + colour +
@@ -204,7 +196,7 @@ std::string colour_commands(const Map& map) {
   if (map.colours == MapColours::kClasses) {
     std::string marks;
     for (std::size_t i = 0; i < map.classes.size(); ++i) {
-      marks += (i > 0 ? ", " : "") + in_quotes(map.classes[i]) + ' ' + std::to_string(i);
+      marks += (i > 0 ? ", " : "") + text::gnuplot_string(map.classes[i]) + ' ' + std::to_string(i);
     }
     return std::string(kViridis) + "set cbrange [0:" + std::to_string(map.classes.size() - 1) + "]\nset cbtics (" +
            marks + ") offset 0,2.1 nomirror scale 0\n";
@@ -228,7 +220,7 @@ std::string line_plot(const Axes& axes, const std::vector<Series>& series) {
     const std::string name = "series" + std::to_string(drawn.size());
     data += data_block(name, points);
     plot += (plot.empty() ? "plot " : ", \\\n     ") + ('$' + name) + " using 1:2 " + style_of(line) +
-            (line.title.empty() ? " notitle" : " title " + in_quotes(line.title));
+            (line.title.empty() ? " notitle" : " title " + text::gnuplot_string(line.title));
     titles.push_back(line.title);
     drawn.push_back(std::move(points));
   }
@@ -247,7 +239,7 @@ std::string scatter_plot(const Axes& axes, const std::vector<Series>& series) {
     const std::string name = "$series" + std::to_string(drawn.size());
     data += cloud_block(name, points);
     const std::string style = cloud.style == kOverlay ? kOverCloudStyle : style_of(cloud);
-    const std::string line = name + " using 1:2 " + style + " title " + in_quotes(cloud.title);
+    const std::string line = name + " using 1:2 " + style + " title " + text::gnuplot_string(cloud.title);
     plot += (plot.empty() ? "plot " : ", \\\n     ") +
             (cloud.style > 0 ? cloud_command(name, cloud, axes, points.back().first - points.front().first) : line);
     titles.push_back(cloud.title);
@@ -277,7 +269,7 @@ std::string bar_plot(const Axes& axes, const std::vector<Bar>& bars, const std::
     ends.emplace_back(marks[i].x, 0.0);
     titles.push_back(marks[i].title);
     arrows += "set arrow from " + at + ", graph 0 to " + at + ", graph 1 nohead front " + style + '\n';
-    keys += ", \\\n     keyentry with lines " + style + " title " + in_quotes(marks[i].title);
+    keys += ", \\\n     keyentry with lines " + style + " title " + text::gnuplot_string(marks[i].title);
   }
   const Key key = key_of(titles);
   return plot_head(key, Background::kWhite) + axis_commands(axes, key) + x_range(axes, {ends}) + "set yrange [0:*]\n" +
@@ -296,7 +288,7 @@ std::string map_plot(const Map& map) {
   text +=
       "set colorbox horizontal user origin graph 0, graph 1.06 size graph 1, graph 0.04\n"
       "set cblabel " +
-      in_quotes(map.quantity) +
+      text::gnuplot_string(map.quantity) +
       " offset 0,4.9\n"
       "set lmargin at screen 0.18\nset rmargin at screen 0.94\n"
       "set tmargin at screen 0.83\nset bmargin at screen 0.17\n";

@@ -46,6 +46,7 @@ class ScenePart {
     tiles();
     figures();
     needs();
+    for (const std::string& sentence : range_sentences(study())) text_ += paragraph(html(sentence));
     methods_table();
     settings_table();
     left_out();
@@ -137,7 +138,7 @@ class ScenePart {
     for (const MethodCell& c : study().methods.cells) {
       if (c.ladder == l) best = std::min(best, relative_error(study(), c));
     }
-    cell(rounded(best, 2));
+    cell(std::isfinite(best) ? rounded(best, 2) : "–");
     text_ += "</tr>\n";
   }
 

@@ -13,6 +13,8 @@
 #include <thread>
 
 #include "exactff/study.h"
+#include "kernel/float_environment.h"
+#include "scene/misuse.h"
 #include "study/kept_work.h"
 #include "study/ladders.h"
 #include "study/method_runs.h"
@@ -32,6 +34,7 @@ namespace exactff::study {
 namespace {
 
 void complete(Request& request) {
+  require_scene(request.scene);
   if (request.receivers.empty()) {
     throw InputError(Problem{{},
                              0,
@@ -349,6 +352,7 @@ class Runner {
 }  // namespace
 
 Study run(Request request, const Hooks& hooks, Journal* journal) {
+  const kernel::StandardArithmetic arithmetic;
   return Runner(std::move(request), hooks, journal).run();
 }
 

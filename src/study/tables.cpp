@@ -24,10 +24,10 @@ void write_head(const Study& study, std::ostream& out, std::string_view what) {
   const Sweeps& sweeps = study.request.sweeps;
   const auto number = [](double v) { return shortest(v); };
   const auto name = [](auto v) { return name_of(v); };
-  out << "# " << program_version() << " compare: " << what << '\n'
-      << "# scene: " << one_line(study.request.scene_name) << ", hash " << study.request.scene->hash() << '\n'
-      << "# receivers: " << one_line(study.request.receivers_name) << '\n'
-      << "# sources: " << one_line(source_names(study)) << '\n';
+  out << "# " << program_version() << " compare: " << csv_comment(std::string(what)) << '\n'
+      << "# scene: " << csv_comment(study.request.scene_name) << ", hash " << study.request.scene->hash() << '\n'
+      << "# receivers: " << csv_comment(study.request.receivers_name) << '\n'
+      << "# sources: " << csv_comment(source_names(study)) << '\n';
   write_list(out, "eps_B", sweeps.eps_b, number);
   write_list(out, "eps_A", sweeps.eps_a, number);
   write_list(out, "rays", sweeps.rays, [](int v) { return v; });

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "text/escape.h"
+
 namespace exactff::study {
 
 // The shortest decimal that reads back to the same double; "nan", "inf", "-inf".
@@ -20,14 +22,9 @@ namespace exactff::study {
 // "31.2 %"; "0 %" only for none and "100 %" only for all.
 [[nodiscard]] std::string share(std::size_t part, std::size_t whole);
 
-// One field of a CSV row, quoted where it must be (RFC 4180).
-[[nodiscard]] std::string csv_field(std::string_view text);
-
-// With blanks for line breaks, which would end a comment: names from the input may hold anything.
-[[nodiscard]] std::string one_line(std::string text);
-
-// Text for HTML, attributes included.
-[[nodiscard]] std::string html(std::string_view text);
+using text::csv_comment;
+using text::csv_field;
+using text::html;
 
 // "a, b and c".
 [[nodiscard]] std::string enumerate(std::span<const std::string> items);

@@ -50,7 +50,8 @@ const char* why_steeper(Sight sight) {
 
 double relative_error(const Study& study, const MethodCell& cell) {
   const double brightest = largest_radiosity(study);
-  if (!(brightest > 0.0) || cell.error.not_a_number > 0) return cell.error.rms == 0.0 ? 0.0 : INFINITY;
+  if (cell.error.not_a_number > 0) return INFINITY;  // whatever the other values are
+  if (!(brightest > 0.0)) return cell.error.rms == 0.0 ? 0.0 : INFINITY;
   return cell.error.rms / brightest;
 }
 
@@ -83,7 +84,8 @@ const MethodCell* cheapest(const Study& study, double wanted, std::optional<std:
 std::vector<const MethodCell*> pareto_front(const Study& study) {
   std::vector<const MethodCell*> cells;
   for (const MethodCell& cell : study.methods.cells) {
-    if (is_timed(cell) && (is_rival(study, cell) || is_exact(study, cell))) cells.push_back(&cell);
+    if (!is_timed(cell) || !std::isfinite(relative_error(study, cell))) continue;
+    if (is_rival(study, cell) || is_exact(study, cell)) cells.push_back(&cell);
   }
   std::stable_sort(cells.begin(), cells.end(),
                    [](const MethodCell* a, const MethodCell* b) { return a->seconds < b->seconds; });
@@ -127,6 +129,7 @@ std::vector<std::string> method_sentences(const Study& study) {
   const MethodCell* within = nullptr;
   for (const MethodCell& cell : study.methods.cells) {
     if (!is_rival(study, cell) || !is_timed(cell) || cell.seconds > exact->seconds) continue;
+    if (!std::isfinite(relative_error(study, cell))) continue;
     if (within == nullptr || relative_error(study, cell) < relative_error(study, *within)) within = &cell;
   }
   if (within != nullptr) {
@@ -137,6 +140,72 @@ std::vector<std::string> method_sentences(const Study& study) {
                         cell_name(study, *within) + ").");
   } else {
     sentences.emplace_back("No other method is as fast as the exact one at any setting.");
+  }
+  return sentences;
+}
+
+namespace {
+
+// Of values that should lie in [0, 1].
+struct RangeCount {
+  std::size_t values = 0;
+  std::size_t not_finite = 0;
+  std::size_t outside = 0;
+  double farthest = 0.0;
+
+  void add(double value) {
+    ++values;
+    if (!std::isfinite(value)) {
+      ++not_finite;
+      return;
+    }
+    const double beyond = std::max(-value, value - 1.0);
+    if (beyond <= kRoundingOfSums) return;
+    ++outside;
+    farthest = std::max(farthest, beyond);
+  }
+
+  static constexpr double kRoundingOfSums = 1e-12;
+};
+
+void add_range_sentences(const std::string& name, const RangeCount& count, std::vector<std::string>& sentences) {
+  const auto of = [&](std::size_t part) {
+    return std::to_string(part) + " of " + counted(count.values, "value") + " of " + name;
+  };
+  if (count.outside > 0) {
+    sentences.push_back(of(count.outside) + (count.outside == 1 ? " lies" : " lie") + " outside [0, 1], by at most " +
+                        rounded(count.farthest) + ": the formula of the method, not rounding.");
+  }
+  if (count.not_finite > 0) {
+    sentences.push_back(of(count.not_finite) +
+                        (count.not_finite == 1 ? " is no finite number" : " are no finite numbers") +
+                        ": errors are those of the other values, and a setting with such a value counts as right to "
+                        "no wanted error.");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> range_sentences(const Study& study) {
+  std::vector<RangeCount> of_ladder(study.methods.ladders.size());
+  for (const MethodCell& cell : study.methods.cells) {
+    for (const std::vector<double>& of_seed : cell.values) {
+      for (const double value : of_seed) of_ladder[cell.ladder].add(value);
+    }
+  }
+  std::array<RangeCount, 2> of_variant;
+  for (std::size_t k = 0; k < study.samples.size(); ++k) {
+    const auto variant = static_cast<std::size_t>(study.settings[k].variant == Variant::kLiteral);
+    for (const SampleRow& row : study.samples[k]) of_variant[variant].add(row.form_factor);
+  }
+  std::vector<std::string> sentences;
+  for (const Variant variant : {Variant::kMended, Variant::kLiteral}) {
+    const auto place = static_cast<std::size_t>(variant == Variant::kLiteral);
+    add_range_sentences("the ray-sampled algorithm (" + std::string(name_of(variant)) + " variant)", of_variant[place],
+                        sentences);
+  }
+  for (std::size_t l = 0; l < of_ladder.size(); ++l) {
+    add_range_sentences(study.methods.ladders[l].name, of_ladder[l], sentences);
   }
   return sentences;
 }

@@ -39,6 +39,10 @@ inline constexpr std::array kWantedErrors = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
 // One or two sentences that can be quoted: what the exact value costs, and what the others need to come near it.
 [[nodiscard]] std::vector<std::string> method_sentences(const Study& study);
 
+// How many values of each method, and of each variant of the sweeps, are not finite, and how many lie outside [0, 1] by
+// more than rounding: a sentence for each where there are any. Values are sums over the sources.
+[[nodiscard]] std::vector<std::string> range_sentences(const Study& study);
+
 // A fitted slope in words, with what theory expects where it does.
 [[nodiscard]] std::string slope_words(const Slope& slope, const Ladder& ladder, Sight sight);
 

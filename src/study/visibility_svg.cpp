@@ -34,24 +34,36 @@ std::string number(double value) {
   return text.data();
 }
 
-Vec3 scaled_difference(const Vec3& a, const Vec3& b, double scale) {
-  return {a.x / scale - b.x / scale, a.y / scale - b.y / scale, a.z / scale - b.z / scale};
+// (a - b) * 2^-exponent, where a - b may overflow.
+double scaled_difference(double a, double b, int exponent) {
+  const double difference = a - b;
+  return std::isfinite(difference) ? std::ldexp(difference, -exponent) : std::ldexp(0.5 * a - 0.5 * b, 1 - exponent);
 }
+Vec3 scaled_difference(const Vec3& a, const Vec3& b, int exponent) {
+  return {scaled_difference(a.x, b.x, exponent), scaled_difference(a.y, b.y, exponent),
+          scaled_difference(a.z, b.z, exponent)};
+}
+double max_norm(const Vec3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
+// Squares of very small components would be lost.
 Vec3 unit(const Vec3& a) {
-  const double length = std::sqrt(dot(a, a));
-  return {a.x / length, a.y / length, a.z / length};
+  const double largest = max_norm(a);
+  const Vec3 b{a.x / largest, a.y / largest, a.z / largest};
+  const double length = std::sqrt(dot(b, b));
+  return {b.x / length, b.y / length, b.z / length};
 }
 
 // Takes points of one plane to pixels: u along the first side of the source, v counter-clockwise from it as x sees it.
 class PanelMap {
  public:
   explicit PanelMap(const PlaneDrawing& drawing) : origin_(drawing.source.front().corners.front()) {
+    double size = 0.0;
     for (const Loop& loop : drawing.source) {
-      for (const Vec3& p : loop.corners) {
-        scale_ = std::max({scale_, std::abs(p.x - origin_.x), std::abs(p.y - origin_.y), std::abs(p.z - origin_.z)});
-      }
+      for (const Vec3& p : loop.corners) size = std::max(size, max_norm(scaled_difference(p, origin_, 0)));
     }
-    u_ = unit(scaled_difference(drawing.source.front().corners[1], origin_, scale_));
+    exponent_ = std::isfinite(size) ? std::ilogb(size) : std::numeric_limits<double>::max_exponent;
+    const Vec3 side = scaled_difference(drawing.source.front().corners[1], origin_, 0);  // may be far shorter
+    u_ = unit(std::isfinite(max_norm(side)) ? side
+                                            : scaled_difference(drawing.source.front().corners[1], origin_, exponent_));
     v_ = unit(cross(unit(drawing.normal), u_));
     fit(drawing);
   }
@@ -69,7 +81,7 @@ class PanelMap {
 
  private:
   [[nodiscard]] Pixel flatten(const Vec3& p) const {
-    const Vec3 relative = scaled_difference(p, origin_, scale_);
+    const Vec3 relative = scaled_difference(p, origin_, exponent_);
     return {dot(relative, u_), dot(relative, v_)};
   }
 
@@ -88,7 +100,7 @@ class PanelMap {
   }
 
   Vec3 origin_;
-  double scale_ = 0.0;
+  int exponent_ = 0;  // of the source's size
   Vec3 u_;
   Vec3 v_;
   Pixel low_;

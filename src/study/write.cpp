@@ -1,6 +1,7 @@
 #include <iterator>
 
 #include "exactff/study.h"
+#include "kernel/float_environment.h"
 #include "study/figures.h"
 #include "study/output_folder.h"
 #include "study/page_files.h"
@@ -26,7 +27,7 @@ void write_tables(const Chapter& chapter, const fs::path& folder) {
   for (const auto* list : {&chapter.values, &chapter.times}) {
     for (const TextTable& table : *list) {
       write_file(folder / table.file, [&](std::ostream& out) {
-        out << "# " << program_version() << " compare: " << one_line(table.holds) << '\n' << table.csv;
+        out << "# " << program_version() << " compare: " << csv_comment(table.holds) << '\n' << table.csv;
       });
     }
   }
@@ -64,6 +65,7 @@ std::string file_name(const SceneChapter& scene, const Table& table) {
 }
 
 std::vector<std::string> write(const Report& report, const fs::path& folder, const Hooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
   StagedFolder staged(folder);
   std::vector<std::string> messages;
   PageDrawer drawer(staged.path(), messages, hooks);

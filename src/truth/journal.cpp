@@ -4,8 +4,9 @@
 #include <system_error>
 
 #include "exactff/error.h"
-#include "scene/printable.h"
 #include "study/text.h"
+#include "text/characters.h"
+#include "text/escape.h"
 
 namespace exactff::truth {
 
@@ -33,7 +34,7 @@ std::string_view line_at(std::string_view text, std::size_t at) {
 
 std::string shortened(std::string_view line) {
   constexpr std::size_t kMost = 200;
-  return printable(line.size() <= kMost ? std::string(line) : std::string(line.substr(0, kMost)) + "...");
+  return text::printable(text::beginning(line, kMost)) + (line.size() > kMost ? "..." : "");
 }
 
 File opened(const fs::path& path, const Hooks& hooks) {

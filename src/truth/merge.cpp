@@ -5,10 +5,11 @@
 #include <map>
 #include <system_error>
 
+#include "kernel/float_environment.h"
+#include "study/file.h"
 #include "study/text.h"
 #include "truth/assemble.h"
 #include "truth/blocks.h"
-#include "study/file.h"
 #include "truth/journal.h"
 
 namespace exactff::truth {
@@ -150,6 +151,7 @@ void require_all(const Shards& shards) {
 }  // namespace
 
 Summary merge(const std::vector<fs::path>& paths, const fs::path& file, Existing existing, const Hooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
   require_free(file, existing == Existing::kReplace ? existing : Existing::kRefuse);
   Pace reading("reading shards", paths.size(), hooks);
   const Shards shards = read_all(paths, reading);

@@ -13,6 +13,7 @@
 
 #include "exactff/version.h"
 #include "scene/fnv1a.h"
+#include "scene/misuse.h"
 #include "study/text.h"
 
 namespace exactff::truth {
@@ -34,6 +35,7 @@ std::string hash_of(const std::vector<Receiver>& receivers) {
 }
 
 void complete(Request& request) {
+  require_scene(request.scene);
   const auto refuse = [](std::string file, std::string what, std::string why, std::string suggestion) {
     throw InputError(Problem{std::move(file), 0, std::move(what), std::move(why), std::move(suggestion)});
   };
@@ -89,11 +91,11 @@ bool Rows::may_be_one_block(Range range) const {
 std::string Rows::head() const {
   std::ostringstream out;
   out << "# exactff " << kVersion << " truth: form factors, correctly rounded, between proved bounds\n"
-      << "# scene: " << study::one_line(request_.scene_name) << ", hash " << request_.scene->hash() << '\n'
-      << "# receivers: " << study::one_line(request_.receivers_name) << ", hash " << receivers_hash_ << '\n'
+      << "# scene: " << study::csv_comment(request_.scene_name) << ", hash " << request_.scene->hash() << '\n'
+      << "# receivers: " << study::csv_comment(request_.receivers_name) << ", hash " << receivers_hash_ << '\n'
       << "# sources: ";
   for (std::size_t s = 0; s < source_names_.size(); ++s)
-    out << (s > 0 ? " + " : "") << study::one_line(source_names_[s]);
+    out << (s > 0 ? " + " : "") << study::csv_comment(source_names_[s]);
   out << '\n'
       << "# rows: " << count() << '\n'
       << "# units: form factors are pure numbers, radiosity is in the unit of Ke, lengths are in the unit of the "

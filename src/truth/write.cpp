@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "exactff/truth.h"
+#include "kernel/float_environment.h"
 #include "study/text.h"
 #include "truth/assemble.h"
 #include "truth/journal.h"
@@ -167,6 +168,7 @@ Summary account_of(const fs::path& path, const Rows& rows) {
 }  // namespace
 
 Summary write(Request request, const fs::path& file, Existing existing, const Hooks& hooks, Team* team) {
+  const kernel::StandardArithmetic arithmetic;
   const Rows rows(std::move(request));
   require_free(file, existing);
   if (existing == Existing::kResume && is_there(file) && !is_there(journal_of(file))) return account_of(file, rows);

@@ -158,7 +158,10 @@ Fate Shaft::test(std::uint32_t piece_index, ShaftCulling culling, Occluder& occl
     for (std::size_t c = 0; c < corners_.size(); ++c) ring.push_back(kernel::make_direction(exact_corner(c).v));
   }
   if (facing > 0) std::reverse(ring.begin(), ring.end());
-  if (hides_all(ring)) return Fate::kHidesAll;
+  if (hides_all(ring)) {
+    ring = hull_;
+    return Fate::kHidesAll;
+  }
 
   for (const Direction& side_plane : sides_) {
     const ClipResult result = clip(ring, side_plane);

@@ -10,7 +10,8 @@
 //      plane: out (conservative; most pieces end here);
 //   2. its plane holds x: out, it is seen edge-on;
 //   3. exact clip by the source's plane;
-//   4. every s_i inside or on every plane (x, t_j, t_j+1): it hides the whole source;
+//   4. every s_i inside or on every plane (x, t_j, t_j+1): it hides the whole source, and the hull is its part in the
+//      shaft;
 //   5. exact clip by the side planes: nothing left, out. A clip keeps an interior as long as one corner lies strictly
 //      inside, so no area needs to be computed.
 #pragma once
@@ -42,7 +43,8 @@ class Shaft {
   // For the bounding-volume tree.
   [[nodiscard]] std::span<const HalfSpace> half_spaces() const { return half_spaces_; }
 
-  // What becomes of a piece; on kInShaft `occluder` holds its visible part, `was_cut` whether that is less than all.
+  // What becomes of a piece; unless it is outside, `occluder` holds its part in the shaft. `was_cut`: that is less than
+  // all of it; where it hides everything, only the cut by the source's plane counts.
   // Without culling, step 1 looks at the source's plane alone, which step 3 relies on; step 5 finds out the rest.
   Fate test(std::uint32_t piece, ShaftCulling culling, Occluder& occluder, bool& was_cut);
 

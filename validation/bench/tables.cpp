@@ -1,5 +1,5 @@
-// exactff_bench_tables FILE...: README's tables, in Markdown, from what exactff_bench wrote (JSON). Of repetitions the
-// median counts. Exits with 1 if a benchmark failed or the engines differ.
+// exactff_bench_tables FILE...: the tables of validation/README.md, in Markdown, from the JSON output of exactff_bench.
+// The median of the repetitions counts. Exits with 1 if a benchmark failed or the engines differ.
 #include <algorithm>
 #include <array>
 #include <cmath>

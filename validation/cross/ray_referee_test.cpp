@@ -44,7 +44,7 @@ class Witnesses {
   explicit Witnesses(const PlainScene& plain)
       : scene_(generate::build(plain)),
         scaled_(scene_),
-        view_(view_from(generate::receiver_of(plain), scaled_.scale)),
+        view_(view_from(generate::receiver_of(plain), scaled_)),
         source_(make_source_roots(scene_, scaled_.points, scene_.select(plain.source))),
         embree_(scene_, scaled_.points, checked_unit_box(scene_, scaled_.points)),
         triangles_(triangles_of(scaled_, source_.planes.at(0).coplanar)),

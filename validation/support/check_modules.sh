@@ -6,19 +6,20 @@ cd "$1"
 
 declare -A allowed=(
   [kernel]="kernel"
-  [scene]="scene kernel"
+  [text]="text kernel"
+  [scene]="scene text kernel"
   [visibility]="visibility scene kernel"
   [contour]="contour visibility kernel"
   [exact]="exact contour visibility scene kernel"
   [sampled]="sampled scene kernel"
-  [methods]="methods sampled exact scene kernel"
-  [models]="models methods scene kernel"
-  [study]="study scene kernel"
-  [experiments]="experiments study models methods scene kernel"
-  [check]="check study scene kernel"
-  [stress]="stress study scene kernel"
-  [truth]="truth study scene kernel"
-  [cli]="cli experiments check stress truth study scene"
+  [methods]="methods sampled exact scene text kernel"
+  [models]="models methods scene text kernel"
+  [study]="study scene text kernel"
+  [experiments]="experiments study models methods scene text kernel"
+  [check]="check study scene text kernel"
+  [stress]="stress study scene text kernel"
+  [truth]="truth study scene text kernel"
+  [cli]="cli experiments check stress truth study scene text"
 )
 
 failures=0
@@ -37,7 +38,7 @@ done
 
 while read -r line; do
   complain "a public header names a library: $line"
-done < <(grep -rnE '\b(CGAL|gmp|gmpxx|mpfr|flint|arb_|embree|CLI)\b' include || true)
+done < <(grep -rnE --include='*.h' '\b(CGAL|gmp|gmpxx|mpfr|flint|arb_|embree|CLI)\b' include || true)
 
 [ "$failures" -eq 0 ] || exit 1
 echo "includes point one way"

@@ -302,6 +302,22 @@ PlainScene scene_of_all_magnitudes(Random& random) {
   return slid_along_rays(scene, random.one_in(2) ? 1000 : 60, random);
 }
 
+std::span<const RandomFamily> random_families() {
+  static const std::vector<RandomFamily> kAll = [] {
+    std::vector<RandomFamily> all = {{"Degenerate", 250, &degenerate_scene},
+                                     {"Generic", 60, &generic_scene},
+                                     {"Nudged", 150, &nudged_scene},
+                                     {"Sheared", 100, &sheared_scene},
+                                     {"Crowded", 20, &crowded_scene},
+                                     {"Triangles", 100, &triangles_scene},
+                                     {"Magnitudes", 60, &scene_of_all_magnitudes}};
+    const std::span<const RandomFamily> on_rays = families_on_rays();
+    all.insert(all.end(), on_rays.begin(), on_rays.end());
+    return all;
+  }();
+  return kAll;
+}
+
 std::uint64_t scaled_count(std::uint64_t count) {
   const char* text = std::getenv("EXACTFF_TEST_SCALE");
   const double factor = text == nullptr ? 1.0 : std::strtod(text, nullptr);

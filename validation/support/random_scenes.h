@@ -42,6 +42,8 @@ struct RandomFamily {
   generate::PlainScene (*make)(generate::Random&);
 };
 [[nodiscard]] std::span<const RandomFamily> families_on_rays();
+// All of the above: what everything that the program computes, draws or writes is driven by.
+[[nodiscard]] std::span<const RandomFamily> random_families();
 
 // How many scenes a test looks at: `count` times the environment's EXACTFF_TEST_SCALE (1 if unset).
 [[nodiscard]] std::uint64_t scaled_count(std::uint64_t count);

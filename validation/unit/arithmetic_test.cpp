@@ -1,5 +1,6 @@
-// What is read, made and computed exactly does not depend on the arithmetic that the calling thread has set, and leaves
-// that as it was. EXACTFF_TEST_SCALE multiplies the number of scenes.
+// What is promised to depend on its arguments alone does not depend on the arithmetic that the calling thread has set,
+// and leaves that as it was: every public function that computes, under every way of rounding, with small numbers
+// flushed to zero or read as zero, and with floating-point traps. EXACTFF_TEST_SCALE multiplies the number of scenes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,19 +8,26 @@
 #include <cfenv>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <sstream>
 #include <tuple>
 #ifdef __SSE2__
 #include <xmmintrin.h>
 #endif
 
+#include "exactff/adaptive.h"
+#include "exactff/check.h"
 #include "exactff/exact.h"
 #include "exactff/methods.h"
 #include "exactff/models.h"
 #include "exactff/obj.h"
 #include "exactff/receiver.h"
+#include "exactff/stress.h"
+#include "exactff/study.h"
+#include "exactff/truth.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
+#include "study_support.h"
 #include "support/program.h"
 #include "support/random_scenes.h"
 
@@ -31,9 +39,11 @@ using generate::Random;
 
 struct Setting {
   const char* name;
-  void (*set)();
+  std::function<void()> set;
 };
-std::vector<Setting> other_settings() {
+
+// What a name calls, one kind at a time.
+std::vector<Setting> single_settings() {
   std::vector<Setting> settings = {{"upward", [] { std::fesetround(FE_UPWARD); }},
                                    {"downward", [] { std::fesetround(FE_DOWNWARD); }},
                                    {"toward zero", [] { std::fesetround(FE_TOWARDZERO); }}};
@@ -41,13 +51,44 @@ std::vector<Setting> other_settings() {
   settings.push_back({"flush to zero", [] { _mm_setcsr(_mm_getcsr() | 0x8000U); }});
   settings.push_back({"denormals are zero", [] { _mm_setcsr(_mm_getcsr() | 0x0040U); }});
 #endif
+#ifdef __GLIBC__
+  settings.push_back({"trapped divisions by zero", [] { feenableexcept(FE_DIVBYZERO); }});
+  settings.push_back({"trapped invalid operations", [] { feenableexcept(FE_INVALID); }});
+  settings.push_back({"trapped overflows", [] { feenableexcept(FE_OVERFLOW); }});
+  settings.push_back({"trapped underflows", [] { feenableexcept(FE_UNDERFLOW); }});
+  settings.push_back({"trapped inexact results", [] { feenableexcept(FE_INEXACT); }});
+#endif
   return settings;
 }
 
-// How it rounds, and whether it makes small numbers zero or takes them for zero.
-std::tuple<int, bool, bool> arithmetic_of_thread() {
-  const volatile double least_normal = 0x1p-1022, half = 0.5, denormal = 0x1p-1023, twice = 2.0;
-  return {std::fegetround(), least_normal * half == 0.0, denormal * twice == 0.0};
+// Everything at once.
+std::vector<Setting> joint_settings() {
+  std::vector<Setting> settings;
+  for (const int rounding : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+    settings.push_back({"all at once", [rounding] {
+#ifdef __SSE2__
+                          _mm_setcsr(_mm_getcsr() | 0x8040U);
+#endif
+                          std::fesetround(rounding);
+#ifdef __GLIBC__
+                          feenableexcept(FE_ALL_EXCEPT);
+#endif
+                        }});
+  }
+  return settings;
+}
+
+// How it rounds, what it traps, and whether it makes small numbers zero or reads them as zero.
+std::tuple<int, int, unsigned> arithmetic_of_thread() {
+  int traps = 0;
+  unsigned flushes = 0;
+#ifdef __GLIBC__
+  traps = fegetexcept();
+#endif
+#ifdef __SSE2__
+  flushes = _mm_getcsr() & 0x8040U;
+#endif
+  return {std::fegetround(), traps, flushes};
 }
 
 // Numbers by their bits: printing them as decimals rounds.
@@ -57,6 +98,7 @@ class Record {
   void add(const Vec3& v) {
     for (const double number : {v.x, v.y, v.z}) add(number);
   }
+  void add(const std::string& text) { text_ << text << ' '; }
   void add(const std::vector<Receiver>& receivers) {
     for (const Receiver& receiver : receivers) add(receiver.point);
   }
@@ -114,53 +156,231 @@ std::string all_of(const Task& task) {
   return record.text();
 }
 
-// Under every other setting as under the usual one.
-template <class Call>
-void expect_the_same(const Call& call) {
-  const std::string expected = call();
-  for (const Setting& setting : other_settings()) {
+using Call = std::function<std::string()>;
+
+// The call's text under each setting is that under the usual one, with what is read from files afterwards. Standard
+// libraries compute with traps too: files have their names before.
+void expect_the_same(
+    const std::vector<Setting>& settings, const Call& call, const Call& read = [] { return std::string(); }) {
+  std::string expected = call();
+  expected += read();
+  EXPECT_NE(expected, "");
+  for (const Setting& setting : settings) {
     std::fenv_t standard;
     std::fegetenv(&standard);
     const auto usual = arithmetic_of_thread();
+    std::feclearexcept(FE_ALL_EXCEPT);  // what has been raised already would trap at once
     setting.set();
     const auto before = arithmetic_of_thread();
-    const std::string found = call();
+    std::string found = call();
     const auto after = arithmetic_of_thread();
     std::fesetenv(&standard);
+    found += read();
     EXPECT_EQ(found, expected) << setting.name;
     EXPECT_NE(before, usual) << setting.name;
     EXPECT_EQ(before, after) << setting.name;
   }
 }
 
+void expect_the_same(const Call& call) {
+  expect_the_same(single_settings(), call);
+  expect_the_same(joint_settings(), call);
+}
+
 TEST(ThreadsArithmetic, ChangesNoSceneAndNoExactValue) {
   const validation::TemporaryDirectory directory;
   const auto receivers =
       directory.write("receivers.csv", "id,x,y,z,nx,ny,nz\na,0.7,0.3,1e-310,0.1,0.2,0.3\nb,-0,0.1,2,0,0,1\n");
-  for (std::uint64_t i = 0; i < validation::scaled_count(100); ++i) {
+  for (std::uint64_t i = 0; i < validation::scaled_count(50); ++i) {
     SCOPED_TRACE("seed " + std::to_string(validation::seed_of(i)));
     Random random(validation::seed_of(i));
     Task task{i % 2 == 0 ? validation::nudged_scene(random) : validation::generic_scene(random), {}, receivers};
-    generate::scale(task.plain, std::ldexp(1.0, -1050 + 2 * static_cast<int>(i)));
+    generate::scale(task.plain, std::ldexp(1.0, -1050 + 4 * static_cast<int>(i)));
     task.obj = generate::to_obj(task.plain, {}, generate::Digits::kSeventeen);
     expect_the_same([&] { return all_of(task); });
   }
 }
 
-// The control asks for exact visibilities in the middle of sampling.
-TEST(ThreadsArithmetic, ChangesNoExactVisibility) {
+// A lamp that emits the smallest number, which some threads read as nothing.
+TEST(ThreadsArithmetic, ChangesNothingThatASceneSaysOfItself) {
+  expect_the_same([] {
+    SceneBuilder builder;
+    const MaterialId faint = builder.add_material({"faint", {0.5, 0.5, 0.5}, {0x1p-1074, 0.0, 0.0}});
+    for (const Vec3& corner : {Vec3{0, 0, 0x1p-1074}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 0}}) {
+      builder.add_vertex(corner);
+    }
+    builder.add_face(builder.patch("lamp"), faint, {{0, 1, 2}});
+    builder.add_face(builder.patch("other"), faint, {{1, 3, 2}});
+    const Scene scene = builder.build();
+    Record record;
+    record.add(scene);
+    record.add(scene.with_flipped(scene.select("lamp")));
+    record.add(scene.source_radiosity(scene.select("lamp")).r);
+    return record.text() + std::to_string(scene.emitters().size()) + ' ' + std::to_string(scene.open_edge_count());
+  });
+}
+
+TEST(ThreadsArithmetic, ChangesNoEnclosure) {
+  const Scene scene = validation::small_room(true);
+  const ExactSource lamp(scene, scene.select("lamp"));
+  const Receiver receiver{.point = {0.25, 0.1, 0.0}, .normal = {0, 0, 0x1p-1060}, .on = {}, .id = {}};
+  const FormFactor f = exact_form_factor(scene, receiver, lamp);
+  const FormFactor tiny =
+      exact_form_factor(scene, {.point = {0x1p+343, 0, 1.5}, .normal = {-1, 0, 0}, .on = {}, .id = {}}, lamp);
+  ASSERT_GT(tiny.value, 0.0);
+  ASSERT_LT(tiny.value, 0x1p-1022);
+  expect_the_same([&] {
+    Record record;
+    for (const FormFactor* one : {&f, &tiny}) {
+      const Enclosure& e = one->enclosure;
+      for (const double number : {e.lower(), e.upper(), e.nearest().value_or(-1.0)}) record.add(number);
+      record.add(e.contains(one->value) ? 1.0 : 0.0);
+      record.add(e.contains(one->upper) ? 1.0 : 0.0);
+      Enclosure sum = e;
+      sum += e;
+      record.add(sum.lower());
+      record.add(e.decimals(12).value_or("none") + ' ' + sum.midpoint() + ' ' + sum.radius() + ' ');
+    }
+    return record.text();
+  });
+}
+
+// Every method, prepared and configured anew each time.
+TEST(ThreadsArithmetic, ChangesNoMethodsValue) {
   Random random(1);
   PlainScene plain = validation::generic_scene(random);
   const Scene scene = generate::build(plain);
-  const methods::Choice choice = methods::parse("adaptive-exact-visibility");
-  const auto prepared = choice.method->prepare(scene);
-  const auto source = prepared->prepare_source(scene.select(plain.source));
-  const auto evaluator = prepared->configure(choice.settings);
+  const Receiver receiver = generate::receiver_of(plain);
+  std::vector<std::string> texts = {"adaptive:variant=literal", "hemicube:rotation=30,resolution=20",
+                                    "nettle:variant=literal", "area-sampling:pattern=r2",
+                                    "wallace:pattern=jittered,splits=3"};
+  for (const methods::Method* method : methods::all_methods()) texts.push_back(method->name);
+  for (const std::string& text : texts) {
+    SCOPED_TRACE(text);
+    expect_the_same([&] {
+      const methods::Choice choice = methods::parse(text);
+      const auto prepared = choice.method->prepare(scene);
+      const auto source = prepared->prepare_source(scene.select(plain.source));
+      const auto evaluator = prepared->configure(choice.settings);
+      Record record;
+      record.add(evaluator->form_factor(receiver, *source).form_factor);
+      return record.text() + choice.text() + methods::description(*choice.method);
+    });
+  }
   expect_the_same([&] {
+    const AdaptiveSolver solver(scene);
     Record record;
-    record.add(evaluator->form_factor(generate::receiver_of(plain), *source).form_factor);
+    record.add(solver.form_factor(receiver, scene.select(plain.source), 1.0, {.eps_b = 1e-3}).form_factor);
+    record.add(study::parse_ladder("hemicube:rotation=0.1,resolution=10|20").name);
     return record.text();
   });
+}
+
+TEST(ThreadsArithmetic, ChangesNoModel) {
+  for (const models::Model* model : models::all_models()) {
+    if (model->name == "forest") continue;  // takes long, and computes as the others do
+    const std::string text = model->name == "teapot" ? "teapot:segments=2" : model->name;
+    SCOPED_TRACE(text);
+    expect_the_same(joint_settings(), [&] {
+      Record record;
+      record.add(models::make_scene(text));
+      return record.text() + models::make_obj(text, "a.mtl") + models::make_mtl(text) + models::description(*model);
+    });
+  }
+}
+
+TEST(ThreadsArithmetic, ChangesNoTruthFile) {
+  const validation::TemporaryDirectory directory;
+  const Scene scene = validation::small_room(true);
+  const auto file = [&](const char* name) { return directory.path() / name; };
+  const std::filesystem::path whole = file("truth.csv"), merged = file("merged.csv");
+  const std::vector<std::filesystem::path> parts = {file("1.csv"), file("2.csv")};
+  truth::Request request;
+  request.scene = &scene;
+  request.scene_name = "room";
+  request.receivers = grid_receivers(scene, scene.select("floor"), {9, 9});
+  request.unoccluded = request.visible_fraction = true;
+  request.threads = 2;
+  const auto write = [&] {
+    truth::write(request, whole, truth::Existing::kReplace);
+    for (std::size_t part = 0; part < 2; ++part) {
+      truth::Request shard = request;
+      shard.shard = {part + 1, 2};
+      truth::write(shard, parts[part], truth::Existing::kReplace);
+    }
+    truth::merge(parts, merged, truth::Existing::kReplace);
+    return std::string();
+  };
+  expect_the_same(joint_settings(), write, [&] { return validation::text_of(whole) + validation::text_of(merged); });
+}
+
+TEST(ThreadsArithmetic, ChangesNoCheck) {
+  const validation::TemporaryDirectory directory;
+  const auto truth_file = directory.write(
+      "truth.csv",
+      "receiver,x,y,z,nx,ny,nz,exact,largest_rho_b\na,0.1,1e-310,0,0,0,1,0.3,2\nb,0.7,0,0,0,0,1,1e-320,1\n");
+  const auto mine = directory.write("mine.csv", "x,y,z,value\n0.1,0,0,0.31\n0.7,1e-9,0,3e-320\n");
+  const auto judged = [&] {
+    const check::Truth truth = check::read_truth(truth_file);
+    const check::Candidate candidate = check::read_candidate(mine, {}, check::MatchBy::kPosition);
+    const auto matched = check::match(truth, candidate, {.by = check::MatchBy::kPosition, .tolerance = 1e-8});
+    return check::judge(truth, matched, {.max_abs = 1e-3, .rms = 1e-3, .eps_b = 1e-3});
+  };
+  const auto baseline = directory.write("baseline.json", check::baseline_text(judged()));
+  expect_the_same([&] {
+    check::Report report = judged();
+    std::string text = check::baseline_text(report);
+    check::hold_against_baseline(report, baseline);
+    text += check::failure_message(report) + check::junit_xml(report) + check::json_text(report) +
+            check::github_annotations(report) + check::histogram_script(report);
+    Record record;
+    for (const check::HistogramBin& bin : check::histogram(report).bins) record.add(bin.low);
+    record.add(check::difference(0.1, 0.3).relative);
+    text += check::is_near(0.3, 0.1, check::relative(2.0)) ? "near" : "far";
+    return text + check::describe_difference(0.1, 0.3, {1e-3, 1e-3}) + record.text();
+  });
+}
+
+// What studies write but times, without gnuplot, which computes elsewhere.
+std::string value_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename();
+    if (name.ends_with(".csv") && name.find("timings") == std::string::npos) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  std::string text;
+  for (const auto& file : files) text += file.filename().string() + '\n' + validation::text_of(file);
+  return text;
+}
+
+TEST(ThreadsArithmetic, ChangesNoStudy) {
+  const validation::TemporaryDirectory directory;
+  const validation::EnvironmentVariable nowhere("PATH", "");
+  const Scene scene = validation::small_room(true);
+  const study::Request request = validation::request_with_methods(scene, 2);
+  const std::filesystem::path folder = directory.path() / "study";
+  const auto write = [&] {
+    const study::Study study = study::run(request);
+    study::write(study, folder);
+    EXPECT_FALSE(study::headlines(study).empty());  // which tell of times
+    return std::string();
+  };
+  expect_the_same(joint_settings(), write, [&] { return value_files(folder); });
+}
+
+TEST(ThreadsArithmetic, ChangesNoStressReport) {
+  const validation::TemporaryDirectory directory;
+  const validation::EnvironmentVariable nowhere("PATH", "");
+  const stress::Request request{.families = {"approach-interior"}, .threads = 2, .command_line = {}};
+  const std::filesystem::path folder = directory.path() / "stress";
+  const auto write = [&] {
+    const stress::Report report = stress::run(request);
+    stress::write(report, folder);
+    EXPECT_FALSE(stress::headlines(report).empty());
+    return std::string();
+  };
+  expect_the_same(joint_settings(), write, [&] { return value_files(folder); });
 }
 
 }  // namespace

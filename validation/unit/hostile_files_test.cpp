@@ -69,7 +69,7 @@ TEST(HostileFiles, ACutOffLastLineIsWarnedAbout) {
 
 TEST(HostileFiles, ControlCharactersDoNotReachTheTerminal) {
   const Problem problem{"a\nb\x1b[31m.obj", 3, "face '\x07' is bad", "", ""};
-  EXPECT_EQ(problem.message(), "a?b?[31m.obj:3: face '?' is bad");
+  EXPECT_EQ(problem.message(), "a\\x0ab\\x1b[31m.obj:3: face '\\x07' is bad");
 }
 
 TEST(HostileFiles, ThousandsOfProblemsGiveTwentyLinesAndACount) {

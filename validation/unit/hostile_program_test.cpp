@@ -5,6 +5,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -58,6 +60,11 @@ class HostileProgram : public testing::Test {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
+
+  std::vector<std::string> truth_file(const fs::path& file) const {
+    return {"truth", room_, "--on", "floor", "--source", "light", "--grid", "2x2", "--threads", "1", "-o", file};
+  }
+  std::vector<std::vector<std::string>> printing() const;
 
   // A gnuplot of our own, found before any other.
   std::function<void()> with_gnuplot(const std::string& script) const {
@@ -123,18 +130,80 @@ TEST_F(HostileProgram, FoldersOnTheWayAreMade) {
 TEST_F(HostileProgram, AFullDiskLeavesNoPicture) {
   const Running run = start(point({"--svg", place_ / "a.svg"}), [] { limit(RLIMIT_FSIZE, 512); });
   EXPECT_EQ(run.wait(), 2);
-  EXPECT_NE(run.error().find("a.svg: cannot write the file: File too large (nothing was written); "),
-            std::string::npos);
+  EXPECT_NE(run.error().find("a.svg: cannot be written: File too large (nothing was written); "), std::string::npos);
   expect_nothing_in_place();
 }
 
-TEST_F(HostileProgram, AFullDiskAsStandardOutputIsAnError) {
-  const auto full = [] {
-    if (std::freopen("/dev/full", "w", stdout) == nullptr) ::_exit(125);
+void to_a_full_disk() {
+  if (std::freopen("/dev/full", "w", stdout) == nullptr) ::_exit(125);
+}
+void to_nowhere() { ::close(STDOUT_FILENO); }
+void to_a_pipe_without_reader() {
+  std::array<int, 2> ends{};
+  if (::pipe(ends.data()) != 0 || ::dup2(ends[1], STDOUT_FILENO) < 0) ::_exit(125);
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+// Everything that prints.
+std::vector<std::vector<std::string>> HostileProgram::printing() const {
+  const std::string truth = (directory_.path() / "truth.csv").string();
+  EXPECT_EQ(start(truth_file(truth)).wait(), 0);
+  return {{"--help"},
+          {"--version"},
+          {"info", "--help"},
+          {"compare", "--help"},
+          {"info", "@"},
+          {"info", "@", "--json"},
+          {"info", room_},
+          {"info", room_, "--json"},
+          {"completion", "bash"},
+          {"manual"},
+          {"stress", "--list"},
+          {"check", truth, truth},
+          {"check", truth, truth, "--github"},
+          truth_file(truth + ".2"),
+          point({}),
+          point({"--plain"}),
+          point({"--json"})};
+}
+
+TEST_F(HostileProgram, AFullDiskOrNoPlaceAsStandardOutputIsAnError) {
+  for (const auto& arguments : printing()) {
+    for (const auto& stdout_of : {to_a_full_disk, to_nowhere}) {
+      fs::remove(directory_.path() / "truth.csv.2");
+      const Running run = start(arguments, stdout_of);
+      EXPECT_EQ(run.wait(), 2) << arguments[0] << ' ' << arguments.back();
+      EXPECT_NE(run.error().find("the result could not be written to standard output (what was printed is incomplete)"),
+                std::string::npos)
+          << run.error();
+    }
+  }
+}
+
+// As programs of Unix do: a pager that was left is no error, but nothing more can be told.
+TEST_F(HostileProgram, APipeThatNobodyReadsEndsItAsItEndsOthers) {
+  const auto ignoring = [] {
+    std::signal(SIGPIPE, SIG_IGN);
+    to_a_pipe_without_reader();
   };
-  EXPECT_EQ(start({"info", room_}, full).wait(), 2);
-  EXPECT_EQ(start({"info", room_, "--json"}, full).wait(), 2);
-  EXPECT_EQ(start(point({"--plain"}), full).wait(), 2);
+  for (const auto& arguments : {std::vector<std::string>{"--help"}, {"info", room_}, point({"--json"})}) {
+    EXPECT_EQ(start(arguments, to_a_pipe_without_reader).wait(), 128 + SIGPIPE);
+    EXPECT_EQ(start(arguments, ignoring).wait(), 2);
+  }
+}
+
+// The file would otherwise be opened under the number of standard output, and take what is printed.
+TEST_F(HostileProgram, WithoutStandardStreamsFilesHoldWhatTheyShould) {
+  EXPECT_EQ(start(truth_file(place_ / "a.csv")).wait(), 0);
+  const auto all_closed = [] {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::close(stream);
+  };
+  EXPECT_EQ(start(truth_file(place_ / "b.csv"), all_closed).wait(), 2);
+  EXPECT_EQ(start(point({"--svg", place_ / "c.svg"}), all_closed).wait(), 2);
+  EXPECT_EQ(validation::text_of(place_ / "b.csv"), validation::text_of(place_ / "a.csv"));
+  EXPECT_TRUE(validation::text_of(place_ / "c.svg").ends_with("</svg>\n"));
+  EXPECT_EQ(names(place_), (std::set<std::string>{"a.csv", "b.csv", "c.svg"}));
 }
 
 // While gnuplot draws, the hidden folder exists: the worst moment to be interrupted.
@@ -154,6 +223,30 @@ TEST_F(HostileProgram, SignalsWhileItWritesLeaveTheJournalAlone) {
       expect_only_a_journal(folder);
     }
   }
+}
+
+// A killed process cannot clear up; the next one does, and leaves alone what a living one is at.
+TEST_F(HostileProgram, WhatAKilledRunLeavesTheNextClears) {
+  const fs::path started = directory_.path() / "started", folder = place_ / "result";
+  const auto gnuplot = with_gnuplot("touch '" + started.string() + "'; exec sleep 3");
+  const auto begin = [&](const std::vector<std::string>& arguments) {
+    fs::remove(started);
+    const Running run = start(arguments, gnuplot);
+    while (!fs::exists(started) && !run.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return run;
+  };
+  const Running killed = begin(comparison(folder));
+  killed.send(SIGKILL);
+  EXPECT_EQ(killed.wait(), 128 + SIGKILL);
+  EXPECT_EQ(names(place_).size(), 2U);  // the journal, the hidden folder
+  const Running stress = begin({"stress", "--family", "crack", "-o", folder});
+  EXPECT_EQ(names(place_).size(), 2U);  // the journal, its own hidden folder
+  const Running other = start(resumed(folder), [] { ::setenv("PATH", "/nonexistent", 1); });
+  EXPECT_EQ(other.wait(), 0) << other.error();
+  EXPECT_EQ(names(place_).size(), 2U);  // the result, the hidden folder of the one that lives
+  stress.send(SIGINT);
+  EXPECT_EQ(stress.wait(), 128 + SIGINT);
+  EXPECT_EQ(names(place_), std::set<std::string>{"result"});
 }
 
 TEST_F(HostileProgram, ASignalWhileItReadsLeavesNothing) {
@@ -238,6 +331,52 @@ TEST_F(HostileProgram, TheEndOfMemoryIsToldByExactNumbersToo) {
   }
   EXPECT_GT(told, 0);
 }
+
+// Nothing is left to be allocated at some point before main(), in it or in a thread: it ends with a code of its own, or
+// of the loader's where that cannot map the libraries, but never by a signal.
+class LittleMemory : public HostileProgram, public testing::WithParamInterface<const char*> {
+ protected:
+  std::vector<std::string> arguments() const {
+    const std::string command = GetParam();
+    if (command == "info") return {"info", room_};
+    if (command == "point") return point({});
+    if (command == "compare") return comparison(place_ / "result");
+    std::vector<std::string> truth = truth_file(place_ / "truth.csv");
+    *(std::ranges::find(truth, "--threads") + 1) = "2";
+    return truth;
+  }
+
+  bool works_with(rlim_t kilobytes) const {
+    const Running run = start(arguments(), [kilobytes] {
+      limit(RLIMIT_AS, kilobytes << 10);
+      ::setenv("PATH", "/nonexistent", 1);  // no gnuplot, which has limits of its own
+    });
+    const int code = run.wait();
+    const bool loaded = code != 127;
+    EXPECT_TRUE(code == 0 || code == 4 || !loaded) << kilobytes << " kB: " << code << '\n' << run.error();
+    EXPECT_EQ(code == 0 || !run.error().empty(), true) << kilobytes << " kB";
+    EXPECT_TRUE(code != 4 || run.error().find("exactff: ") != std::string::npos) << run.error();
+    fs::remove_all(place_);
+    fs::create_directory(place_);
+    return code == 0;
+  }
+};
+
+TEST_P(LittleMemory, EndsItByNoSignal) {
+  if (kSanitized) GTEST_SKIP() << "address space cannot be limited here";
+  constexpr rlim_t kFine = 512;
+  rlim_t fails = 20'000, works = 600'000;
+  EXPECT_FALSE(works_with(fails));
+  EXPECT_TRUE(works_with(works));
+  while (works - fails > kFine) {
+    const rlim_t middle = (fails + works) / 2;
+    (works_with(middle) ? works : fails) = middle;
+  }
+  for (rlim_t less = kFine; less <= 24 * kFine; less += kFine) (void)works_with(works - less);
+  for (rlim_t more = 1; more <= 4; ++more) (void)works_with(works + more * 10 * kFine);
+}
+INSTANTIATE_TEST_SUITE_P(All, LittleMemory, testing::Values("info", "point", "truth", "compare"),
+                         [](const auto& test) { return std::string(test.param); });
 
 TEST_F(HostileProgram, ASmallStackIsEnough) {
   if (kSanitized) GTEST_SKIP() << "sanitized code needs a large stack";

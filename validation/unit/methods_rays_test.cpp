@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "methods/even_split.h"
@@ -245,6 +246,59 @@ TEST(UnitPoints, SobolsPointsAreANet) {
     }
     for (const int count : hits) EXPECT_EQ(count, 1) << columns;
   }
+}
+
+// A lamp of 2^-400 by 2^-400 at a distance of 1: squares of its area underflow.
+PlainScene speck() {
+  PlainScene plain = open_scene();
+  for (Vec3& v : plain.vertices) v = {v.x * 0x1p-400, v.y * 0x1p-400, v.z};
+  return plain;
+}
+
+TEST(RayMethods, AreRightWhereTheSquareOfAnAreaUnderflows) {
+  const PlainScene plain = speck();
+  const double f = truth(plain);
+  ASSERT_NEAR(f * 0x1p800, 4.0 * std::numbers::inv_pi, 1e-12);
+  for (const char* choice :
+       {"area-sampling:pattern=random", "area-sampling:pattern=stratified", "area-sampling:pattern=sobol",
+        "area-sampling:pattern=halton", "area-sampling:pattern=r2", "wallace", "nettle"}) {
+    EXPECT_NEAR(value(plain, choice) / f, 1.0, 1e-12) << choice;
+  }
+}
+
+// Two faces, so that points are shared out by area.
+TEST(RayMethods, AreNumbersWhereAreasThemselvesAreSubnormal) {
+  PlainScene plain = open_scene();
+  for (Vec3& v : plain.vertices) v = {v.x * 0x1p-530, v.y * 0x1p-530, v.z};
+  add(plain, "source", {{0, 0, 1}, {0, 0x1p-530, 1}, {0x1p-530, 0, 1}});
+  for (const char* choice : {"area-sampling", "area-sampling:pattern=sobol", "wallace", "nettle"}) {
+    const double found = value(plain, choice);
+    EXPECT_TRUE(found >= 0.0 && found < 0x1p-1000) << choice;
+  }
+}
+
+// x stands 2^-530 below a speck of a lamp; a vertex that no face uses gives the scene its scale.
+TEST(RayMethods, AreNumbersWhereDistancesSquaredUnderflow) {
+  PlainScene plain = open_scene();
+  for (Vec3& v : plain.vertices) v = {v.x * 0x1p-530, v.y * 0x1p-530, v.z * 0x1p-530};
+  plain.vertices.push_back({1, 1, 1});
+  for (const char* choice : {"area-sampling", "area-sampling:pattern=r2", "wallace", "nettle", "nettle:variant=literal",
+                             "nettle:variant=literal,area_ratio=sender-over-receiver", "adaptive:variant=literal"}) {
+    EXPECT_TRUE(std::isfinite(value(plain, choice))) << choice;
+  }
+  EXPECT_NEAR(value(plain, "adaptive"), truth(plain), 1e-12);
+}
+
+// The text's ratio of areas over a squared distance goes with the fourth power of the unit of length.
+TEST(LiteralNettle, IsTheLargestDoubleWhereItsNumberIsLarger) {
+  PlainScene plain = open_scene();
+  const double f = value(plain, "nettle:variant=literal");
+  generate::scale(plain, 0x1p-100);
+  EXPECT_NEAR(value(plain, "nettle:variant=literal") / f, 0x1p400, 0x1p360);
+  generate::scale(plain, 0x1p-300);
+  EXPECT_EQ(value(plain, "nettle:variant=literal"), std::numeric_limits<double>::max());
+  generate::scale(plain, 0x1p800);
+  EXPECT_EQ(value(plain, "nettle:variant=literal"), 0.0);
 }
 
 }  // namespace

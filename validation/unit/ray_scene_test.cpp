@@ -153,5 +153,43 @@ TEST(SinglePrecision, AnOffsetThatLeavesTheDetailIsFine) {
   EXPECT_EQ(refusal(plain), "");  // the box is moved to the origin first
 }
 
+// Twenty triangles before the source, in a box that is `thickness` thick along z and 1 along the other axes.
+PlainScene thin_scene(double thickness) {
+  PlainScene plain;
+  validation::add(plain, "source", {{-0.5, -0.5, thickness}, {-0.5, 0.5, thickness}, {0.5, 0.5, thickness}});
+  for (int i = 0; i < 20; ++i) {
+    const double x = -0.5 + i / 20.0, z = thickness * (i % 5) / 5.0;
+    validation::add(plain, "slats", {{x, -0.5, z}, {x + 0.04, -0.5, z + thickness / 9.0}, {x, 0.5, z}});
+  }
+  return plain;
+}
+
+TEST(SinglePrecision, ScenesTooThinForEmbreeAreRefusedByName) {
+  EXPECT_EQ(refusal(thin_scene(0x1p-70)), "");
+  for (const double thickness : {0x1p-100, 0x1p-110, 0x1p-125, 0x1p-140}) {
+    const std::string message = refusal(thin_scene(thickness));
+    EXPECT_NE(message.find("face 's"), std::string::npos) << message;
+    EXPECT_NE(message.find("along z is below 2^-100 (7.9e-31) of the scene's size"), std::string::npos) << message;
+    EXPECT_NE(message.find("the sampled methods refuse"), std::string::npos) << message;
+  }
+}
+
+TEST(SinglePrecision, FewFacesMayBeAsThinAsFloatsAre) {
+  PlainScene plain = thin_scene(0x1p-110);
+  plain.patches[1].faces.resize(kMostPiecesWithoutEmbree - 1);
+  EXPECT_EQ(refusal(plain), "");
+}
+
+// As cos(pi / 2) times itself is on the pole of a sphere.
+TEST(SinglePrecision, NoiseBesideTheMiddleIsTakenForTheMiddle) {
+  PlainScene plain = thin_scene(0.5);
+  for (Vec3& v : plain.vertices) {
+    if (std::abs(v.x) < 1e-9) v.x = 1e-35;
+  }
+  EXPECT_EQ(refusal(plain), "");
+  const Built built(plain);
+  EXPECT_EQ(built.hidden({{0, 0, 0.1}}, {}), 0U);
+}
+
 }  // namespace
 }  // namespace exactff::sampled

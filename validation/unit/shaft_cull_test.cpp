@@ -182,7 +182,7 @@ TEST(ShaftCull, APatchCoveredExactlyIsNotDeclaredCut) {
 void expect_nothing_lost(const PlainScene& plain, std::uint64_t seed) {
   const Scene scene = generate::build(plain);
   const ScaledScene scaled(scene);
-  const ReceiverView view = view_from(generate::receiver_of(plain), scaled.scale);
+  const ReceiverView view = view_from(generate::receiver_of(plain), scaled);
   const SourceRoots source = make_source_roots(scene, scaled.points, scene.select(plain.source));
   for (const SourceRoot& root : source.roots) {
     const SourcePlane& plane = source.planes[root.plane];
@@ -228,7 +228,7 @@ TEST(GatherOccluders, LooksOnlyWhereTheShaftIs) {
   }
   const Scene scene = generate::build(plain);
   const ScaledScene scaled(scene);
-  const ReceiverView view = view_from(generate::receiver_of(plain), scaled.scale);
+  const ReceiverView view = view_from(generate::receiver_of(plain), scaled);
   const SourceRoots source = make_source_roots(scene, scaled.points, scene.select("source"));
   std::vector<Vec3> polygon;
   for (int i = 0; i < 4; ++i) polygon.push_back(source.roots.at(0).corners[i] - view.point);

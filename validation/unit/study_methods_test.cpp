@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 
@@ -10,10 +11,12 @@
 #include "study/ladders.h"
 #include "study/method_runs.h"
 #include "study/profile.h"
+#include "study/report_page.h"
 #include "study/settings.h"
 #include "study/shadow_edges.h"
 #include "study/silent_errors.h"
 #include "study/statistics.h"
+#include "study/text.h"
 #include "study/timing.h"
 #include "study/verdicts.h"
 #include "support/complaint.h"
@@ -279,7 +282,7 @@ TEST(MethodStudy, HoldsEveryRungAtTheChosenReceivers) {
   }
 }
 
-// A user's own method: the exact value plus 1 / n, joined as README tells.
+// A user's own method: the exact value plus 1 / n, added as include/README.md explains.
 struct OffByOneOverN : methods::Evaluator {
   std::unique_ptr<methods::Evaluator> exact;
   double n = 1.0;
@@ -324,6 +327,66 @@ TEST(MethodStudy, TakesAUsersMethodLikeAnyOther) {
   EXPECT_NEAR(study.methods.cells[1].error.rms, rho_b / 100.0, 1e-12);
   ASSERT_TRUE(study.methods.slopes[0].partly.has_value());
   EXPECT_NEAR(study.methods.slopes[0].partly->exponent, -1.0, 1e-9);
+}
+
+// A value of `value` everywhere.
+struct Constant : methods::Evaluator {
+  double value = 0.0;
+  void look_from(const Receiver&) override {}
+  using Evaluator::form_factor;
+  methods::Estimate form_factor(const methods::PreparedSource&) override {
+    methods::Estimate estimate{value, {}};
+    estimate.counters.add("samples", 1);
+    return estimate;
+  }
+};
+
+struct ConstantOnScene : methods::PreparedScene {
+  using PreparedScene::PreparedScene;
+  std::unique_ptr<methods::Evaluator> configure(const methods::Settings& settings) const override {
+    auto evaluator = std::make_unique<Constant>();
+    evaluator->value = 1.5;
+    if (settings.word("of") == "nan") evaluator->value = std::numeric_limits<double>::quiet_NaN();
+    if (settings.word("of") == "inf") evaluator->value = std::numeric_limits<double>::infinity();
+    return evaluator;
+  }
+};
+
+TEST(MethodStudy, CountsValuesThatAreNoNumbersOrLeaveTheRange) {
+  methods::add_method({.name = "constant",
+                       .summary = "the same everywhere",
+                       .source = "",
+                       .settings = {methods::word_setting("of", {"one-and-a-half", "nan", "inf"}, "which value")},
+                       .prepare = [](const Scene& scene) { return std::make_unique<ConstantOnScene>(scene); }});
+  const Scene scene = small_room(true);
+  const auto study_with = [&](const std::vector<std::string>& ladders) {
+    Request request = request_with_methods(scene, 1);
+    validation::scatter(request);
+    request.methods.budget = 1.0;
+    for (const std::string& ladder : ladders) request.methods.ladders.push_back(parse_ladder(ladder));
+    return run(std::move(request));
+  };
+  const Study sound = study_with({"exact", "hemicube:resolution=16"});
+  EXPECT_TRUE(range_sentences(sound).empty()) << range_sentences(sound).front();
+  const Study study = study_with({"exact", "constant:of=nan", "constant:of=inf", "constant"});
+  const std::vector<std::string> sentences = range_sentences(study);
+  ASSERT_EQ(sentences.size(), 3U);
+  EXPECT_TRUE(sentences[0].starts_with("6 of 6 values of constant, nan are no finite numbers: ")) << sentences[0];
+  EXPECT_TRUE(sentences[1].starts_with("6 of 6 values of constant, inf are no finite numbers: ")) << sentences[1];
+  EXPECT_EQ(sentences[2],
+            "6 of 6 values of constant lie outside [0, 1], by at most 0.5: the formula of the method, not rounding.");
+  for (const MethodCell& cell : study.methods.cells) {
+    const bool is_number = is_exact(study, cell) || cell.ladder == 3;
+    EXPECT_EQ(std::isfinite(relative_error(study, cell)), is_number);
+  }
+  EXPECT_EQ(cheapest(study, 1e-2), nullptr) << "a method without numbers is right to nothing";
+  for (const MethodCell* cell : pareto_front(study)) EXPECT_TRUE(std::isfinite(relative_error(study, *cell)));
+  Report report;
+  report.scenes.push_back({"", "room", study});
+  Pages pages;
+  pages.scenes.emplace_back();
+  const std::string page = report_page(report, pages);
+  for (const std::string& sentence : sentences) EXPECT_NE(page.find("<p>" + html(sentence)), std::string::npos);
 }
 
 TEST(MethodStudy, EndsALadderWhereItsBudgetEnds) {

@@ -1,0 +1,16 @@
+// The one place where a sampled value is brought back into the range that its method promises.
+#pragma once
+
+namespace exactff::sampled {
+
+enum class Formula {
+  kUnit,         // all its values lie in [0, 1]: what does not is rounding
+  kNotNegative,  // its values may exceed 1
+  kAny,
+};
+
+// Requires a number, perhaps infinite: a formula may exceed the largest double. Returns the nearest finite double that
+// the formula could have had without rounding errors.
+[[nodiscard]] double settled(double value, Formula formula);
+
+}  // namespace exactff::sampled

@@ -1,0 +1,135 @@
+#include "text/escape.h"
+
+#include <algorithm>
+
+#include "text/characters.h"
+
+namespace exactff::text {
+
+namespace {
+
+std::string hexadecimal(char32_t code, int digits) {
+  std::string written;
+  for (int shift = 4 * (digits - 1); shift >= 0; shift -= 4) written += "0123456789abcdef"[(code >> shift) & 0xFU];
+  return written;
+}
+
+std::string visible_escape(const Character& c) {
+  const bool byte = !c.well_formed || c.code < 0x80;
+  return byte ? "\\x" + hexadecimal(c.code, 2) : "\\u" + hexadecimal(c.code, 4);  // no control is beyond U+FFFF
+}
+
+// Calls put(character, its bytes) from the first to the last.
+template <class Put>
+void for_each_character(std::string_view text, const Put& put) {
+  for (std::size_t at = 0; at < text.size();) {
+    const Character c = character_at(text, at);
+    put(c, text.substr(at, c.bytes));
+    at += c.bytes;
+  }
+}
+
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+}
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+
+bool is_one_word(std::string_view text) {
+  return !text.empty() && text.find_first_not_of(
+                              "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                              "0123456789_-+=:,./@%") == std::string_view::npos;
+}
+
+// $'...', where what cannot be seen is written byte by byte.
+std::string ansi_c_quoted(std::string_view text) {
+  std::string word = "$'";
+  for_each_character(text, [&](const Character& c, std::string_view bytes) {
+    if (!c.well_formed || is_control(c.code)) {
+      for (const char byte : bytes) word += "\\x" + hexadecimal(static_cast<unsigned char>(byte), 2);
+    } else {
+      if (bytes == "'" || bytes == "\\") word += '\\';
+      word += bytes;
+    }
+  });
+  return word + '\'';
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, std::string_view kept) {
+  std::string shown;
+  shown.reserve(text.size());
+  for_each_character(text, [&](const Character& c, std::string_view bytes) {
+    const bool stays = c.well_formed && (!is_control(c.code) || kept.find(bytes) != std::string_view::npos);
+    shown += stays ? std::string(bytes) : visible_escape(c);
+  });
+  return shown;
+}
+
+std::string html(std::string_view text) {
+  std::string safe = printable(text, "\n\t");
+  replace_all(safe, "&", "&amp;");
+  replace_all(safe, "<", "&lt;");
+  replace_all(safe, ">", "&gt;");
+  replace_all(safe, "\"", "&quot;");
+  return safe;
+}
+
+std::string utf8(std::string_view text) {
+  std::string well_formed;
+  for_each_character(text, [&](const Character& c, std::string_view bytes) {
+    well_formed += c.well_formed ? std::string(bytes) : visible_escape(c);
+  });
+  return well_formed;
+}
+
+std::string csv_field(std::string_view text) {
+  std::string field(text);
+  replace_all(field, "\n", "\\x0a");
+  replace_all(field, "\r", "\\x0d");
+  const bool stripped = !field.empty() && (is_blank(field.front()) || is_blank(field.back()));  // by readers
+  if (!stripped && field.find_first_of(",\"#") == std::string::npos) return field;
+  replace_all(field, "\"", "\"\"");
+  return '"' + field + '"';
+}
+
+std::string csv_comment(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return text;
+}
+
+std::string github_message(std::string_view text) {
+  std::string safe = printable(text, "\n");
+  replace_all(safe, "%", "%25");
+  replace_all(safe, "\n", "%0A");
+  return safe;
+}
+
+// A property ends at a comma or colon.
+std::string github_property(std::string_view text) {
+  std::string safe = github_message(text);
+  replace_all(safe, ":", "%3A");
+  replace_all(safe, ",", "%2C");
+  return safe;
+}
+
+std::string gnuplot_string(std::string_view text) {
+  std::string safe = printable(text, "\n");
+  replace_all(safe, "\n", " ");
+  replace_all(safe, "'", "''");
+  return '\'' + safe + '\'';
+}
+
+std::string shell_word(std::string_view text) {
+  if (is_one_word(text)) return std::string(text);
+  if (printable(text) != text) return ansi_c_quoted(text);
+  std::string word(text);
+  replace_all(word, "'", "'\\''");
+  return '\'' + word + '\'';
+}
+
+}  // namespace exactff::text
