@@ -32,7 +32,7 @@ enum class Status {
 enum class Engine {
   kEdges,    // what is left of every edge, by signs of determinants alone
   kBoolean,  // polygon Booleans: the reference
-  kBoth,     // both, one checked against the other: std::logic_error where value, status or fraction differ
+  kBoth,     // both, one checked against the other: std::logic_error where they differ by more than the cap explains
 };
 [[nodiscard]] std::string_view to_string(Engine engine);
 

@@ -117,10 +117,12 @@ class Fuzzer {
               << disturbance_words(one) << "\n  replay: fuzz_program --replay " << folder.string() << std::endl;
   }
 
-  // Without what the problem does not need: the disturbance, steps, words, files.
+  // Without what the problem does not need: the disturbance, steps, words, files. Ends where that takes long.
   ProgramCase shortened(ProgramCase one, const std::string& kind) {
     const auto still = [&](const ProgramCase& smaller) { return kind_of(problem_of(smaller, bench_, judge_)) == kind; };
+    const auto start = Clock::now();
     const auto attempt = [&](const auto& change) {
+      if (Clock::now() - start > std::chrono::seconds(30)) return;
       ProgramCase smaller = one;
       change(smaller);
       if (still(smaller)) one = std::move(smaller);
