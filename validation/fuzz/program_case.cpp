@@ -6,8 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "cli/long_run.h"
 #include "support/program.h"
+#include "text/escape.h"
 
 namespace exactff::validation {
 
@@ -90,7 +90,7 @@ std::string disturbance_words(const ProgramCase& one) {
 
 std::string command_line(const Words& words) {
   std::string line = "exactff";
-  for (const std::string& word : words) line += ' ' + cli::shell_word(word);
+  for (const std::string& word : words) line += ' ' + text::shell_word(word);
   return line;
 }
 
