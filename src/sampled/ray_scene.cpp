@@ -209,8 +209,10 @@ UnitBox checked_unit_box(const Scene& scene, const std::vector<Vec3>& points) {
   const UnitBox box = unit_box(bounds, scene.pieces().size());
   std::vector<Problem> problems;
   find_lost_vertices(scene, points, bounds, box, used, problems);
-  find_merged_vertices(scene, points, box, used, problems);
-  find_spoiled_pieces(scene, points, box, problems);
+  if (problems.empty()) {  // what is lost merges and collapses, too
+    find_merged_vertices(scene, points, box, used, problems);
+    find_spoiled_pieces(scene, points, box, problems);
+  }
   if (!problems.empty()) throw InputError(std::move(problems));
   return box;
 }
