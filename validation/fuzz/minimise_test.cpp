@@ -87,10 +87,9 @@ TEST(Minimise, EveryCaseFileReadsBack) {
     const CaseFile read = read_case(directory.write("case.json", to_json(written, "for a test")));
     ASSERT_EQ(read.scene.vertices, written.scene.vertices);
     ASSERT_EQ(read.expected.nearest, written.expected.nearest);
-    const Scene built = generate::build(read.scene);
-    EXPECT_EQ(
-        oracle(built, generate::receiver_of(read.scene), built.select("source")).value,
-        oracle(generate::build(scene), generate::receiver_of(scene), generate::build(scene).select("source")).value)
+    const Scene built = generate::build(read.scene), original = generate::build(scene);
+    EXPECT_EQ(oracle(built, generate::receiver_of(read.scene), built.select("source")).value,
+              oracle(original, generate::receiver_of(scene), original.select("source")).value)
         << "seed " << seed_of(i);
   }
 }

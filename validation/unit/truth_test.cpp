@@ -390,7 +390,11 @@ TEST_F(Truth, AForeignFileIsNoJournal) {
 TEST_F(Truth, AJournalOfAnotherRequestIsNamedWithItsDifference) {
   Scene other = scene_.with_flipped(scene_.select("board"));
   const std::pair<std::string, std::function<void(Request&)>> table[] = {
-      {"'# scene: room.obj, hash ", [&](Request& r) { r.scene = &other; }},
+      {"'# scene: room.obj, hash ",
+       [&](Request& r) {
+         r.scene = &other;
+         r.sources = {other.select("light"), other.select("lamp")};
+       }},
       {"now it would be '# scene: hall.obj, ", [](Request& r) { r.scene_name = "hall.obj"; }},
       {"now it would be '# receivers: floor, grid, hash ", [](Request& r) { r.receivers[0].point.x += 0.5; }},
       {"now it would be '# receivers: other, hash ", [](Request& r) { r.receivers_name = "other"; }},
