@@ -2,8 +2,9 @@
 //
 //   F(x -> s) = integral over the visible part of s of max(0, cos th_r) max(0, cos th_s) / (pi r^2) dA
 //
-// A pure number in [0, 1]. The visible region is found in exact rational arithmetic; Tampieri's Eq. (4)
-// over its boundary is evaluated in ball arithmetic of rising precision until the ball rounds to one double.
+// A pure number in [0, 1]. The boundary of the visible region is found exactly. Tampieri's Eq. (4) over it is evaluated
+// in double-double arithmetic with a proved error bound, and where that does not determine the nearest double, in ball
+// arithmetic of rising precision.
 // Source: F. Tampieri, "Accurate Form-Factor Computation", Graphics Gems III (1992).
 #pragma once
 
@@ -50,8 +51,8 @@ enum class Outcome {
   kBelowHorizon,   // no part lies above the receiver's horizon
   kUnoccluded,     // nothing in the shaft
   kHiddenByOne,    // one occluder hides all
-  kPartlyHidden,   // the Booleans left something
-  kHiddenByUnion,  // the Booleans left nothing
+  kPartlyHidden,   // the occluders leave a part visible
+  kHiddenByUnion,  // the occluders hide all of it together, none of them alone
 };
 [[nodiscard]] std::string_view to_string(Outcome outcome);
 
@@ -128,8 +129,9 @@ class ExactSource {
 };
 
 // Exact (value), encloses (enclosure). `source` must have been made from `scene` (else std::invalid_argument). Requires
-// finite coordinates and a normal other than zero (else InputError). Safe to call from several threads at once; the result depends on nothing
-// but the arguments, also where the thread rounds otherwise than to nearest or flushes small numbers to zero.
+// finite coordinates and a normal other than zero (else InputError). Safe to call from several threads at once; the
+// result depends on nothing but the arguments, also where the thread rounds otherwise than to nearest or flushes small
+// numbers to zero.
 [[nodiscard]] FormFactor exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                                            const ExactOptions& options = {});
 // The same into a result that the caller keeps: every field is set anew in the memory that there is. From the second

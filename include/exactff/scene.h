@@ -78,8 +78,8 @@ struct Piece {
   std::uint32_t frame[3] = {0, 0, 0};  // vertex indices of three corners not on a line, in order
 };
 
-// What a name selects: a whole patch, or one of its faces (NAME:k). Wherever a selection is taken, one that a scene made
-// is refused for another scene, and so are ids that the scene does not have (std::invalid_argument).
+// What a name selects: a whole patch, or one of its faces (NAME:k). Wherever a selection is taken, one that a scene
+// made is refused for another scene, and so are ids that the scene does not have (std::invalid_argument).
 struct Selection {
   PatchId patch{};
   std::optional<FaceId> face;
@@ -170,8 +170,8 @@ class SceneBuilder {
   [[nodiscard]] std::size_t vertex_count() const;
   MaterialId add_material(Material material);
   PatchId patch(std::string_view name);  // the patch of that name, made if it is new
-  // Rings of vertex indices, the outer one first; orientation of holes is irrelevant (even-odd). The vertices may follow
-  // later. Throws std::invalid_argument for a patch or material that this builder has not made.
+  // Rings of vertex indices, the outer one first; orientation of holes is irrelevant (even-odd). The vertices may
+  // follow later. Throws std::invalid_argument for a patch or material that this builder has not made.
   void add_face(PatchId patch, MaterialId material, std::vector<std::vector<std::uint32_t>> rings,
                 std::size_t line = 0);
   void warn(Problem warning);

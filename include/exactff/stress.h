@@ -92,7 +92,7 @@ inline constexpr std::array<double, 3> kThresholds = {1e-3, 1e-6, 1e-12};
 
 struct Request {
   std::vector<std::string> families;  // empty: all
-  int threads = 0;                    // 0: as many as the machine has
+  int threads = 0;                    // 0: as many as this process may use
   std::string command_line;           // for the report's last section
 };
 

@@ -79,7 +79,7 @@ struct Request {
   Sweeps sweeps;
   MethodSweep methods;
   Engine engine = Engine::kEdges;
-  int threads = 0;                  // 0: as many as the machine has; times are measured on one, alone
+  int threads = 0;                  // 0: as many as this process may use; times are measured on one, alone
   std::string command_line;         // for the report's last section
   double sweep_budget = 15.0;       // seconds for all settings of the adaptive algorithm, as MethodSweep::budget
   double seconds_for_a_time = 0.1;  // spent on the times of one setting, about

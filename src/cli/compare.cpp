@@ -5,7 +5,6 @@
 #include <iostream>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "cli/command.h"
@@ -22,6 +21,7 @@
 #include "experiments/experiment.h"
 #include "scene/number_text.h"
 #include "scene/text_lines.h"
+#include "study/parallel.h"
 #include "study/report.h"
 #include "study/text.h"
 #include "study/verdicts.h"
@@ -429,8 +429,8 @@ study::Chapter run_experiment(const experiments::Experiment& experiment, const C
   if (const auto bytes = journal.find(key)) {
     if (auto chapter = study::chapter_of(*bytes)) return std::move(*chapter);
   }
-  const int all = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  study::Chapter chapter = experiment.run({args.abridged, args.threads > 0 ? args.threads : all}, hooks);
+  const int threads = args.threads > 0 ? args.threads : study::usable_threads();
+  study::Chapter chapter = experiment.run({args.abridged, threads}, hooks);
   journal.add(key, study::to_bytes(chapter));
   return chapter;
 }
@@ -472,10 +472,12 @@ void print(const study::Report& report) {
 int run(const CompareArguments& args) {
   study::check_output_folder(args.folder);
   Plan plan = plan_of(args);
-  const InterruptWatch watch;
+  study::Journal journal(study::journal_of_folder(args.folder), args.existing());
+  const std::string kept = "what was finished is in " + text::printable(journal.path().string()) +
+                           ", and the same command with --resume goes on\n";
+  const InterruptWatch watch("exactff: interrupted; " + kept);
   ProgressBar bar;
   const study::Hooks hooks{[&](const study::Progress& progress) { bar.show(progress); }, is_interrupted};
-  study::Journal journal(study::journal_of_folder(args.folder), args.existing());
   const std::size_t resumed = journal.size();
   std::vector<std::unique_ptr<Scene>> scenes;  // studies refer to them
   for (SceneWork& work : plan.scenes) scenes.push_back(std::move(work.scene));
@@ -489,20 +491,11 @@ int run(const CompareArguments& args) {
     print(report);
   } catch (const study::Cancelled&) {
     bar.clear();
-    std::cerr << "exactff: interrupted";
-    if (journal.size() > 0) {
-      std::cerr << "; what was finished is in " << text::printable(journal.path().string())
-                << ", and the same command with --resume goes on\n";
-    } else {
-      std::cerr << "; nothing was written\n";
-    }
+    std::cerr << "exactff: interrupted; " << (journal.size() > 0 ? kept : "nothing was written\n");
     return 128 + interrupting_signal();
   } catch (const InputError&) {  // a full disk
     bar.clear();
-    if (journal.size() > 0) {
-      std::cerr << "note: what was finished is in " << text::printable(journal.path().string())
-                << ", and the same command with --resume goes on\n";
-    }
+    if (journal.size() > 0) std::cerr << "note: " << kept;
     throw;
   }
   std::cout << "Report: " << text::printable((std::filesystem::path(args.folder) / "report.html").string()) << '\n';

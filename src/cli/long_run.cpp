@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <cstring>
+#include <ctime>
 #include <iostream>
 
+#include "study/file.h"
 #include "study/output_folder.h"
 #include "study/text.h"
 #include "text/escape.h"
@@ -51,14 +54,58 @@ namespace {
 std::atomic<int> interrupted_by = 0;
 static_assert(std::atomic<int>::is_always_lock_free);  // or no signal handler could use it
 
+bool is_writing() { return study::StagedFolder::any() || study::WholeFile::any(); }
+
+// What signal handlers may use: set before they are installed, and plain.
+struct Patience {
+  bool ends = false;
+  timer_t timer{};
+  std::array<char, 4096> last_words{};
+};
+Patience patience;
+
+void wait_for(long milliseconds) {
+  itimerspec time{};
+  time.it_value.tv_nsec = milliseconds * 1'000'000;
+  ::timer_settime(patience.timer, 0, &time, nullptr);
+}
+
 void take_note(int signal) {
+  constexpr long kPatience = 400;
   const bool again = interrupted_by.exchange(signal) != 0;
-  if (!again || study::StagedFolder::any()) return;
+  if (!again && patience.ends) wait_for(kPatience);
+  if (!again || is_writing()) return;
   std::signal(signal, SIG_DFL);
   ::raise(signal);  // takes effect on return from here
 }
 
+void lose_patience(int /*signal*/) {
+  constexpr long kMoment = 20;
+  if (is_writing()) return wait_for(kMoment);
+  const char* words = patience.last_words.data();
+  static_cast<void>(!::write(STDERR_FILENO, words, std::strlen(words)));
+  ::_exit(128 + interrupted_by);
+}
+
+void make_timer() {
+  sigevent event{};
+  event.sigev_notify = SIGEV_SIGNAL;
+  event.sigev_signo = SIGALRM;
+  patience.ends = ::timer_create(CLOCK_MONOTONIC, &event, &patience.timer) == 0;
+}
+
 }  // namespace
+
+InterruptWatch::InterruptWatch(const std::string& last_words) : InterruptWatch() {
+  const std::string clear_line = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
+  const std::string words = (clear_line + last_words).substr(0, patience.last_words.size() - 1);
+  std::copy(words.begin(), words.end(), patience.last_words.begin());
+  struct sigaction action {};
+  action.sa_handler = lose_patience;
+  action.sa_flags = SA_RESTART;
+  ::sigaction(SIGALRM, &action, &alarm_before_);
+  make_timer();
+}
 
 InterruptWatch::InterruptWatch() {
   struct sigaction action {};
@@ -72,6 +119,11 @@ InterruptWatch::InterruptWatch() {
 }
 
 InterruptWatch::~InterruptWatch() {
+  if (patience.ends) {
+    patience.ends = false;
+    ::timer_delete(patience.timer);
+    ::sigaction(SIGALRM, &alarm_before_, nullptr);
+  }
   for (std::size_t i = 0; i < kSignals.size(); ++i) ::sigaction(kSignals[i], &before_[i], nullptr);
 }
 

@@ -38,6 +38,10 @@ class ProgressBar {
 class InterruptWatch {
  public:
   InterruptWatch();
+  // The work looks at the flag between its pieces, and one of them may take long. If it has not ended 0.4 s after the
+  // signal, the program prints `last_words` and ends with the exit code of the signal: for work that survives being
+  // killed.
+  explicit InterruptWatch(const std::string& last_words);
   ~InterruptWatch();
   InterruptWatch(const InterruptWatch&) = delete;
   InterruptWatch& operator=(const InterruptWatch&) = delete;
@@ -45,6 +49,7 @@ class InterruptWatch {
  private:
   static constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP};
   std::array<struct sigaction, kSignals.size()> before_{};
+  struct sigaction alarm_before_ {};
 };
 [[nodiscard]] bool is_interrupted();
 [[nodiscard]] int interrupting_signal();  // 0 if none came

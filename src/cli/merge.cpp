@@ -30,7 +30,8 @@ struct MergeArguments {
 };
 
 int run(const MergeArguments& args) {
-  const InterruptWatch watch;
+  const std::string given_up = "exactff: interrupted; nothing was written\n";
+  const InterruptWatch watch(given_up);
   ProgressBar bar;
   const truth::Hooks hooks{.progress = [&](const study::Progress& progress) { bar.show(progress); },
                            .cancelled = is_interrupted};
@@ -40,7 +41,7 @@ int run(const MergeArguments& args) {
                            args.force ? truth::Existing::kReplace : truth::Existing::kRefuse, hooks);
   } catch (const study::Cancelled&) {
     bar.clear();
-    std::cerr << "exactff: interrupted; nothing was written\n";
+    std::cerr << given_up;
     return 128 + interrupting_signal();
   }
   bar.clear();

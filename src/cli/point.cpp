@@ -9,6 +9,7 @@
 
 #include "cli/command.h"
 #include "cli/engine_option.h"
+#include "cli/exit_code.h"
 #include "cli/output.h"
 #include "cli/scene_options.h"
 #include "exactff/adaptive.h"
@@ -28,7 +29,6 @@ namespace {
 
 using study::shortest;
 
-constexpr int kNotCertified = 3;
 constexpr int kMostDigits = 10000;
 constexpr std::size_t kMostSharesComputed = 200;
 constexpr std::size_t kMostSharesShown = 20;

@@ -97,7 +97,8 @@ int run(const StressArguments& args) {
     return 0;
   }
   if (!args.folder.empty()) study::check_output_folder(args.folder);
-  const InterruptWatch watch;
+  const std::string given_up = "exactff: interrupted; nothing was written\n";
+  const InterruptWatch watch(given_up);
   ProgressBar bar;
   const study::Hooks hooks{[&](const study::Progress& progress) { bar.show(progress); }, is_interrupted};
   stress::Report report;
@@ -108,7 +109,7 @@ int run(const StressArguments& args) {
     if (!args.folder.empty()) messages = stress::write(report, args.folder, hooks);
   } catch (const study::Cancelled&) {
     bar.clear();
-    std::cerr << "exactff: interrupted; nothing was written\n";
+    std::cerr << given_up;
     return 128 + interrupting_signal();
   }
   bar.clear();

@@ -191,7 +191,9 @@ int run(const TruthArguments& args) {
     if (launched_rank() > 0) return 0;  // told by the first
     throw;
   }
-  const InterruptWatch watch;
+  const InterruptWatch watch("exactff: interrupted; all finished rows are kept in " +
+                             text::printable(truth::journal_of(args.file).string()) +
+                             "; the same command with --resume goes on\n");
   if (team == nullptr) return write(args, nullptr);
   return team->rank() == 0 ? lead(args, *team) : follow(args, *team);
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cli/output.h"
+#include "cli/exit_code.h"
 #include "exactff/truth.h"
 #include "study/text.h"
 #include "text/escape.h"
@@ -38,7 +39,7 @@ inline int print_summary(const truth::Summary& summary, const std::string& file)
   std::cerr << "exactff: " << study::counted(uncertified, "row")
             << " met the cap on precision and could not be certified (their bounds are valid, their values estimates); "
                "look for the status 'not certified'\n";
-  return 3;
+  return kNotCertified;
 }
 
 }  // namespace exactff::cli

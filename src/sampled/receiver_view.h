@@ -33,8 +33,8 @@ struct ReceiverView {
   std::optional<FaceId> on;
 };
 
-// Throws InputError where a coordinate is not finite or the normal is zero, std::invalid_argument where the scene has no
-// such face.
+// Throws InputError where a coordinate is not finite or the normal is zero, std::invalid_argument where the scene has
+// no such face.
 [[nodiscard]] ReceiverView view_from(const Receiver& receiver, const ScaledScene& scene);
 
 // The stream of random numbers that a seed, a receiver and a source have to themselves.

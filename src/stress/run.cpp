@@ -12,7 +12,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <thread>
 
 #include "exactff/adaptive.h"
 #include "kernel/ball.h"
@@ -197,7 +196,7 @@ std::vector<const Family*> selected(const std::vector<std::string>& names) {
 
 Report run(Request request, const study::Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
-  if (request.threads <= 0) request.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  if (request.threads <= 0) request.threads = study::usable_threads();
   Report report{std::move(request), {}};
   struct Place {
     const Family* family;

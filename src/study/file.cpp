@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -25,11 +26,22 @@ File::File(fs::path path, Mode mode, Consolation consolation, fs::path called)
       consolation_(std::move(consolation)) {
   const int flags = mode == Mode::kRead ? O_RDONLY : O_RDWR | O_CREAT;
   descriptor_ = ::open(path_.c_str(), flags | O_CLOEXEC, 0666);
-  if (descriptor_ >= 0) return;
+  if (descriptor_ >= 0) return require_regular();
   if (mode == Mode::kReadWrite) fail(errno);
   throw InputError({.file = path_.string(),
                     .what = std::string("cannot be read: ") + std::strerror(errno),
                     .suggestion = "check the name and the file's permissions"});
+}
+
+// Offsets mean nothing in a pipe, and a device may never end.
+void File::require_regular() {
+  struct stat status {};
+  if (::fstat(descriptor_, &status) != 0 || S_ISREG(status.st_mode)) return;
+  ::close(std::exchange(descriptor_, -1));
+  throw InputError({.file = path_.string(),
+                    .what = "is no regular file",
+                    .why = "it is read and written at any place, not from start to end",
+                    .suggestion = "name a file on a disk"});
 }
 
 File::File(File&& other) noexcept
@@ -139,6 +151,18 @@ File opened(const fs::path& path, const fs::path& target, const Consolation& con
 }
 
 }  // namespace
+
+namespace {
+
+std::atomic<int> whole_files = 0;
+static_assert(std::atomic<int>::is_always_lock_free);  // or no signal handler could ask
+
+}  // namespace
+
+bool WholeFile::any() { return whole_files > 0; }
+
+WholeFile::Counted::Counted() { ++whole_files; }
+WholeFile::Counted::~Counted() { --whole_files; }
 
 WholeFile::WholeFile(const fs::path& path, Consolation consolation, WhenBusy when_busy)
     : target_(destination(path)), file_(opened(path, target_, consolation, when_busy)) {

@@ -19,7 +19,8 @@ class File {
  public:
   enum class Mode { kRead, kReadWrite };  // kReadWrite makes the file where there is none
 
-  // Throws InputError where it cannot be opened. Messages speak of `called`, where it is given, instead of the path.
+  // Throws InputError where it cannot be opened, or is no regular file. Messages speak of `called`, where it is given,
+  // instead of the path.
   File(std::filesystem::path path, Mode mode, Consolation consolation = {}, std::filesystem::path called = {});
   File(File&& other) noexcept;
   ~File();
@@ -44,6 +45,8 @@ class File {
   void console(Consolation consolation) { consolation_ = std::move(consolation); }
 
  private:
+  void require_regular();
+
   std::filesystem::path path_;
   std::filesystem::path called_;
   Consolation consolation_;
@@ -69,9 +72,19 @@ class WholeFile {
   // On the disk, then in its place.
   void commit();
 
+  // Whether the process has such a file at hand: not a moment to end it. For signal handlers, too.
+  [[nodiscard]] static bool any();
+
  private:
   void flush();
 
+  // Before the file is made, and until it is renamed or removed.
+  struct Counted {
+    Counted();
+    ~Counted();
+  };
+
+  Counted counted_;
   std::filesystem::path target_;
   File file_;
   std::string buffer_;

@@ -1,5 +1,7 @@
 #include "study/parallel.h"
 
+#include <sched.h>
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -59,6 +61,13 @@ class SharedLoop {
 };
 
 }  // namespace
+
+int usable_threads() {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  if (::sched_getaffinity(0, sizeof allowed, &allowed) == 0) return std::max(1, CPU_COUNT(&allowed));
+  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
 
 void parallel_for(std::size_t count, int threads, std::string_view stage, const Hooks& hooks,
                   const std::function<void(std::size_t)>& body) {

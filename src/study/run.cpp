@@ -10,7 +10,6 @@
 // Receivers are shared out between threads; a result's place is its index, so nothing depends on their number.
 #include <algorithm>
 #include <limits>
-#include <thread>
 
 #include "exactff/study.h"
 #include "kernel/float_environment.h"
@@ -47,7 +46,7 @@ void complete(Request& request) {
     throw InputError(Problem{request.scene_name, 0, "no patch emits", "without a source there is nothing to compare",
                              "name one with --source"});
   }
-  if (request.threads <= 0) request.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  if (request.threads <= 0) request.threads = usable_threads();
 }
 
 double mean_face_area(const Request& request) {

@@ -14,9 +14,9 @@ void Pace::add(std::uint64_t rows) {
 
 void assemble(const Rows& rows, Journal& journal, const std::filesystem::path& file, const Hooks& hooks,
               Summary& summary) {
-  study::WholeFile whole(file,
-                  {"every row is done and kept in " + journal.path().string() + "; the file needs as much room again",
-                   "make room, then go on with --resume"});
+  study::WholeFile whole(
+      file, {"every row is done and kept in " + journal.path().string() + "; the file needs as much room again",
+             "make room, then go on with --resume"});
   const bool in_blocks = rows.request().shard.count > 1;
   Pace pace("writing the file", rows.shard_rows(), hooks);
   Tally tally;

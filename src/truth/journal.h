@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "exactff/truth.h"
-#include "truth/blocks.h"
 #include "study/file.h"
+#include "truth/blocks.h"
 
 namespace exactff::truth {
 

@@ -1,7 +1,5 @@
 #include "truth/rows.h"
 
-#include <sched.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -9,11 +7,11 @@
 #include <numeric>
 #include <sstream>
 #include <string_view>
-#include <thread>
 
 #include "exactff/version.h"
 #include "scene/fnv1a.h"
 #include "scene/misuse.h"
+#include "study/parallel.h"
 #include "study/text.h"
 
 namespace exactff::truth {
@@ -52,17 +50,10 @@ void complete(Request& request) {
     refuse({}, "there is no shard " + std::to_string(shard.number) + " of " + std::to_string(shard.count),
            "shards are counted from 1", "write --shard 1/4 for the first of four");
   }
-  if (request.threads <= 0) request.threads = usable_threads();
+  if (request.threads <= 0) request.threads = study::usable_threads();
 }
 
 }  // namespace
-
-int usable_threads() {
-  cpu_set_t allowed;
-  CPU_ZERO(&allowed);
-  if (::sched_getaffinity(0, sizeof allowed, &allowed) == 0) return std::max(1, CPU_COUNT(&allowed));
-  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-}
 
 Rows::Rows(Request request) : request_(std::move(request)) {
   complete(request_);

@@ -20,9 +20,6 @@ struct Range {
   friend bool operator==(const Range&, const Range&) = default;
 };
 
-// Cores that this process may use: a batch system or mpirun may have given it less than the machine has.
-[[nodiscard]] int usable_threads();
-
 // A request that was found sound, with what depends on its sources alone computed once. Safe to share between threads.
 class Rows {
  public:

@@ -1,4 +1,5 @@
 #include "truth/team.h"
+#include "study/parallel.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -107,7 +108,7 @@ std::string trouble(Blame blame, const std::string& place, const std::string& wh
 
 int fair_threads(const Team& team) {
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  return std::clamp(cores / team.ranks_on_this_machine(), 1, usable_threads());
+  return std::clamp(cores / team.ranks_on_this_machine(), 1, study::usable_threads());
 }
 
 // --- the leader ---------------------------------------------------------------------------------------------------

@@ -1,4 +1,5 @@
-// Whether addresses or threads are sanitized, which needs terabytes of addresses, a large stack and several times the time.
+// Whether addresses or threads are sanitized, which needs terabytes of addresses, a large stack and several times the
+// time.
 #pragma once
 
 namespace exactff {

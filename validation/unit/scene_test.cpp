@@ -113,7 +113,8 @@ TEST(SceneNames, NamesReadBack) {
 TEST(SceneNames, UnknownNamesListTheClosest) {
   const Scene scene = rooms().build();
   EXPECT_EQ(message_of([&] { (void)scene.select("Lamb"); }),
-            "rooms.obj: there is no patch named 'Lamb' (names are matched letter by letter); the patches are: 'lamp', 'wall', 'wall:1', 'mixed'");
+            "rooms.obj: there is no patch named 'Lamb' (names are matched letter by letter); the patches are: 'lamp', "
+            "'wall', 'wall:1', 'mixed'");
   EXPECT_EQ(message_of([&] { (void)scene.select("wall:4"); }),
             "rooms.obj: there is no face 'wall:4' (patch 'wall' has 3 faces); faces count from 1");
   EXPECT_EQ(message_of([&] { (void)scene.select("lamp:0"); }),
@@ -128,7 +129,8 @@ TEST(SceneNames, ManyPatchesAreNotAllListed) {
   for (int i = 0; i < 50; ++i) (void)builder.patch("patch" + std::to_string(i));
   const Scene scene = builder.build();
   EXPECT_EQ(message_of([&] { (void)scene.select("patch77"); }),
-            "there is no patch named 'patch77' (names are matched letter by letter); the closest of its 50 patches are: 'patch7', 'patch17', 'patch27', "
+            "there is no patch named 'patch77' (names are matched letter by letter); the closest of its 50 patches "
+            "are: 'patch7', 'patch17', 'patch27', "
             "'patch37', 'patch47', 'patch0'");
 }
 
