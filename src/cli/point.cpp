@@ -133,7 +133,7 @@ AdaptiveOptions adaptive_options(const PointArguments& args) {
   AdaptiveOptions options = args.adaptive_options;
   options.pattern = *study::pattern_named(args.pattern);
   options.variant = *study::variant_named(args.variant);
-  options.record_leaves = true;
+  options.record_leaves = !args.svg.empty();  // for the drawing alone: there can be millions
   return options;
 }
 

@@ -75,17 +75,19 @@ void put(WordWriter& words, const ExactRow& row) {
   words.put(std::uint64_t{row.sampled});
 }
 
+constexpr std::uint64_t kStatuses = 4, kSights = 4;
+
 void take(WordReader& words, ExactRow& row, std::size_t sources) {
   row.terms.assign(sources, {});
   for (ExactTerm& term : row.terms) {
     for (double* v : {&term.value, &term.lower, &term.upper, &term.visible_fraction}) *v = words.number();
-    term.status = static_cast<Status>(words.word());
-    term.sight = static_cast<Sight>(words.word());
+    term.status = static_cast<Status>(words.below(kStatuses));
+    term.sight = static_cast<Sight>(words.below(kSights));
   }
   for (double* v : {&row.form_factor, &row.radiosity.r, &row.radiosity.g, &row.radiosity.b, &row.visible_fraction}) {
     *v = words.number();
   }
-  row.sight = static_cast<Sight>(words.word());
+  row.sight = static_cast<Sight>(words.below(kSights));
   row.certified = words.word() != 0;
   row.sampled = words.word() != 0;
 }

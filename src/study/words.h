@@ -50,6 +50,13 @@ class WordReader {
     bytes_.remove_prefix(sizeof result);
     return result;
   }
+  // One of 0 .. count - 1, such as an enumerator; any other word counts as torn.
+  [[nodiscard]] std::uint64_t below(std::uint64_t count) {
+    const std::uint64_t result = word();
+    if (result < count) return result;
+    torn_ = true;
+    return 0;
+  }
   [[nodiscard]] double number() { return std::bit_cast<double>(word()); }
   [[nodiscard]] std::string text() {
     const std::uint64_t size = word();

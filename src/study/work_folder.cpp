@@ -30,7 +30,8 @@ fs::path sibling(const fs::path& target, std::string_view kind, int attempt) {
   return target.parent_path() / (prefix(target, kind) + std::to_string(::getpid()) + '-' + std::to_string(attempt));
 }
 
-bool is_there(const fs::path& path) {
+// By whatever, a link to nothing included.
+bool is_taken(const fs::path& path) {
   std::error_code ignored;
   return fs::exists(fs::symlink_status(path, ignored));
 }
@@ -76,7 +77,7 @@ void clear_abandoned(const fs::path& target) {
   for (const fs::path& folder : siblings(target, kPartial)) remove_if_abandoned(folder);
   for (const fs::path& folder : siblings(target, kOld)) {
     std::error_code ignored;
-    if (is_there(target)) {
+    if (is_taken(target)) {
       remove_files_and_folder(folder);
     } else {
       fs::rename(folder, target, ignored);
@@ -138,7 +139,7 @@ WorkFolder::~WorkFolder() {
 }
 
 void WorkFolder::put_in_place() {
-  if (!is_there(target_)) {
+  if (!is_taken(target_)) {
     fs::rename(path_, target_);
   } else if (!exchanged(path_, target_)) {
     replace_in_two_steps(path_, target_);

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -93,6 +94,8 @@ void check(const std::string& text, const Scene& scene, const Tables* expected) 
   } catch (const InputError& error) {
     require_words(error);
     if (text_of(file()) != text) fail("refused, and changed");
+  } catch (const std::logic_error&) {
+    if (expected != nullptr) throw;  // forged values may contradict those that are computed, which is noticed
   }
 }
 

@@ -21,8 +21,9 @@ csv.field_size_limit(1 << 30)
 CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f]")
 # A number that is none, as printf, iostreams and JavaScript write it; not within a word.
 NO_NUMBER = re.compile(r"(?<![\w.])[-+]?(nan|inf|infinity)(?![\w.])", re.IGNORECASE)
-# What a judged method came to, and its error: in a stress table, of formulas that have no answer there.
-MAY_BE_NO_NUMBER = re.compile(r"_(value|error)$")
+# What a judged method came to, and its error: in a stress table, of formulas that have no answer there. And times that
+# were not measured, such as those of receivers that see the source partly, where there are none (exactff/study.h).
+MAY_BE_NO_NUMBER = re.compile(r"_(value|error)$|^seconds")
 LEFTOVER = re.compile(r"\.partial|\.whole$|^\.")
 GEOMETRY = {"x", "y", "x1", "y1", "x2", "y2", "cx", "cy", "r", "rx", "ry", "width", "height", "d", "points", "viewBox",
             "transform", "stroke-width", "font-size"}
