@@ -33,6 +33,7 @@ struct AdaptiveOptions {
   std::uint64_t seed = 1;
   Variant variant = Variant::kMended;
   int depth_cap = 48;
+  std::uint64_t most_leaves = 0;  // once there are so many, nothing is split any more; 0: no bound
   bool record_leaves = false;
 };
 
@@ -44,7 +45,7 @@ enum class LeafReason {
   kSampledHidden,   // no ray got through: V = 0
   kEpsF,            // F <= eps_F
   kEpsA,            // A <= eps_A
-  kDepthCap,
+  kDepthCap,        // or there are most_leaves
 };
 inline constexpr std::size_t kLeafReasonCount = 7;
 [[nodiscard]] std::string_view to_string(LeafReason reason);

@@ -130,7 +130,7 @@ class Recursion {
     if (v.value >= 1.0) return leaf(s, v, f, depth, LeafReason::kSampledVisible);
     if (f <= eps_f_) return leaf(s, v, f, depth, LeafReason::kEpsF);
     if (eps_a_ > 0.0 && area(s) <= eps_a_) return leaf(s, v, f, depth, LeafReason::kEpsA);
-    if (depth >= options_.depth_cap) return leaf(s, v, f, depth, LeafReason::kDepthCap);
+    if (depth >= options_.depth_cap || has_most_leaves()) return leaf(s, v, f, depth, LeafReason::kDepthCap);
     double sum = 0.0;
     std::uint64_t child = 0;
     for (const SubPatch& part : split_patch(s)) {
@@ -138,6 +138,10 @@ class Recursion {
     }
     occluders_.drop(v.candidates);
     return sum;
+  }
+
+  [[nodiscard]] bool has_most_leaves() const {
+    return options_.most_leaves > 0 && result_.leaves >= options_.most_leaves;
   }
 
   // Pushes the shrunk candidate list; whoever calls drops it.

@@ -26,7 +26,10 @@ File::File(fs::path path, Mode mode, Consolation consolation, fs::path called)
       consolation_(std::move(consolation)) {
   const int flags = mode == Mode::kRead ? O_RDONLY : O_RDWR | O_CREAT;
   descriptor_ = ::open(path_.c_str(), flags | O_CLOEXEC, 0666);
-  if (descriptor_ >= 0) return require_regular();
+  if (descriptor_ >= 0) {
+    require_regular();
+    return;
+  }
   if (mode == Mode::kReadWrite) fail(errno);
   throw InputError({.file = path_.string(),
                     .what = std::string("cannot be read: ") + std::strerror(errno),

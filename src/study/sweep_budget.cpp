@@ -12,6 +12,9 @@ namespace exactff::study {
 namespace {
 
 constexpr std::size_t kProbes = 3;
+constexpr double kLeafNanoseconds = 300.0;
+// The base setting, where the sweeps cross, is run even if it takes longer than the budget, but not longer than this.
+double most_seconds_of_base(const Study& study) { return std::max(10.0, 20.0 * study.request.sweep_budget); }
 
 class SweepPlan {
  public:
@@ -19,7 +22,7 @@ class SweepPlan {
             std::span<const AdaptiveSource> sampled_sources)
       : study_(study), sources_(sources), solver_(solver), sampled_sources_(sampled_sources) {}
 
-  // By setting, over all receivers, in seconds.
+  // By setting, over all receivers, in seconds. What takes longer than it may is not followed to its end.
   std::vector<double> costs() const {
     const std::vector<std::size_t> probes = choose_receivers(study_.exact, kProbes);
     std::vector<double> result(study_.settings.size(), 0.0);
@@ -41,14 +44,23 @@ class SweepPlan {
     for (const PlaneRecord& plane : exact_form_factor(scene, receiver, sources_[s]).planes) edges += plane.edges;
     const double rho_b = largest_rho_b(scene, receiver, scene.source_radiosity(request.sources[s]));
     for (std::size_t k = 0; k < result.size(); ++k) {
-      const AdaptiveResult found = solver_.form_factor(receiver, sampled_sources_[s], rho_b, study_.settings[k]);
+      if (result[k] > most_seconds(k)) continue;
+      AdaptiveOptions options = study_.settings[k];
+      const double most_leaves = most_seconds(k) / (1e-9 * scale * kLeafNanoseconds);
+      options.most_leaves = 1 + static_cast<std::uint64_t>(std::min(most_leaves, 1e18));
+      const AdaptiveResult found = solver_.form_factor(receiver, sampled_sources_[s], rho_b, options);
       const auto of = [&](LeafReason reason) { return found.leaves_by_reason[static_cast<std::size_t>(reason)]; };
       const std::uint64_t judged = of(LeafReason::kSampledVisible) + of(LeafReason::kSampledHidden);
-      const double nanoseconds = 60.0 * static_cast<double>(found.rays) + 300.0 * static_cast<double>(found.leaves) +
+      const double nanoseconds = 60.0 * static_cast<double>(found.rays) +
+                                 kLeafNanoseconds * static_cast<double>(found.leaves) +
                                  10.0 * static_cast<double>(found.shaft_tests) +
                                  20.0 * static_cast<double>(judged) * static_cast<double>(edges);
       result[k] += 1e-9 * scale * nanoseconds;
     }
+  }
+
+  [[nodiscard]] double most_seconds(std::size_t k) const {
+    return k == study_.base ? most_seconds_of_base(study_) : study_.request.sweep_budget;
   }
 
   Study& study_;
@@ -57,11 +69,22 @@ class SweepPlan {
   std::span<const AdaptiveSource> sampled_sources_;
 };
 
+void require_possible(const Study& study, double base_seconds) {
+  const double most = most_seconds_of_base(study);
+  if (base_seconds <= most) return;
+  throw InputError(
+      {.file = study.request.scene_name,
+       .what = "the ray-sampled algorithm at " + label(study, study.base) + " would take more than " + duration(most),
+       .why = "the sweeps cross at this setting, so it is always run",
+       .suggestion = "give a larger --eps-b, fewer --rays or receivers, or a larger --sweep-budget"});
+}
+
 }  // namespace
 
 void keep_to_budget(Study& study, std::span<const ExactSource> sources, const AdaptiveSolver& solver,
                     std::span<const AdaptiveSource> sampled_sources) {
   const std::vector<double> costs = SweepPlan(study, sources, solver, sampled_sources).costs();
+  require_possible(study, costs[study.base]);
   std::vector<std::size_t> order(costs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return costs[a] > costs[b]; });

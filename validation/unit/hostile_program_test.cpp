@@ -225,6 +225,24 @@ TEST_F(HostileProgram, SignalsWhileItWritesLeaveTheJournalAlone) {
   }
 }
 
+// One piece of work may take hours, such as a method with a billion rays.
+TEST_F(HostileProgram, ASignalInAPieceOfWorkEndsItInHalfASecond) {
+  const fs::path folder = place_ / "result";
+  std::vector<std::string> arguments = comparison(folder);
+  std::erase(arguments, "--no-methods");
+  arguments.insert(arguments.end(), {"--method", "nettle:splits=4096,rays=65536", "--method-budget", "1e9"});
+  const Running run = start(arguments);
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  ASSERT_FALSE(run.has_ended()) << run.error();
+  const auto sent = std::chrono::steady_clock::now();
+  run.send(SIGINT);
+  EXPECT_EQ(run.wait(), 128 + SIGINT);
+  EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(kSanitized ? 10 : 2));  // others work, too
+  EXPECT_EQ(run.error(), "exactff: interrupted; what was finished is in " + folder.string() +
+                             ".part, and the same command with --resume goes on\n");
+  EXPECT_FALSE(fs::exists(folder));
+}
+
 // A killed process cannot clear up; the next one does, and leaves alone what a living one is at.
 TEST_F(HostileProgram, WhatAKilledRunLeavesTheNextClears) {
   const fs::path started = directory_.path() / "started", folder = place_ / "result";

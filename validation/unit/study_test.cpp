@@ -536,5 +536,20 @@ TEST_F(OutputFolder, WithoutGnuplotHoldsTablesAndAReportThatSaysSo) {
   EXPECT_TRUE(fs::exists(root_ / "out" / "report.html"));
 }
 
+// Its recursion would take years: the probes of the budget end, and say so.
+TEST(Study, RefusesABaseSettingThatWouldNotEnd) {
+  const Scene scene = validation::small_room(true);
+  study::Request request = validation::small_request(scene, 1);
+  request.receivers = grid_receivers(scene, scene.select("floor"), {40, 40});
+  request.sweeps = {.eps_b = {1e-14}, .rays = {1}, .seeds = {1}};
+  try {
+    static_cast<void>(study::run(request));
+    FAIL() << "it ended";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("would take more than"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("give a larger --eps-b"), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace exactff::study
