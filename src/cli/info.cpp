@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -81,12 +82,15 @@ std::optional<Vec3> common_front(const Scene& scene, const std::vector<FaceId>& 
   return faces.empty() ? std::nullopt : std::optional(mean);
 }
 
+// An estimate, clamped to finite numbers as the areas of faces are.
+double sum_of_areas(double a, double b) { return std::min(a + b, std::numeric_limits<double>::max()); }
+
 PatchSummary summarise(const Scene& scene, PatchId id) {
   const Patch& patch = scene.patch(id);
   const std::vector<FaceId> faces = scene.faces_of({id, {}});
   PatchSummary summary{patch.name, patch.faces.size(), 0.0, common_front(scene, faces), materials_of(scene, patch)};
   for (const FaceId face : faces) {
-    summary.area += scene.face(face).area;
+    summary.area = sum_of_areas(summary.area, scene.face(face).area);
     summary.emits = summary.emits || scene.material(scene.face(face).material).emits();
   }
   return summary;
@@ -108,7 +112,7 @@ std::vector<FaceId> faces_of_shape(const Scene& scene, FaceShape shape) {
 
 double total_area(const std::vector<PatchSummary>& rows) {
   double area = 0.0;
-  for (const PatchSummary& row : rows) area += row.area;
+  for (const PatchSummary& row : rows) area = sum_of_areas(area, row.area);
   return area;
 }
 

@@ -30,6 +30,7 @@ namespace {
 using study::shortest;
 
 constexpr int kMostDigits = 10000;
+constexpr std::uint64_t kMostLeaves = 10'000'000;  // some seconds
 constexpr std::size_t kMostSharesComputed = 200;
 constexpr std::size_t kMostSharesShown = 20;
 
@@ -119,6 +120,7 @@ void add_shares(const Scene& scene, const Receiver& receiver, const ExactSource&
   ExactOptions options{.only_occluders = &none};
   const double open = exact_form_factor(scene, receiver, source, options).value;
   result.unoccluded = open;
+  if (open == 0.0) return;  // an underflow: there is nothing to compare with
   for (const FaceId face : result.exact.cutters) {
     if (result.shares.size() == kMostSharesComputed) break;
     const std::vector<FaceId> only{face};
@@ -134,6 +136,7 @@ AdaptiveOptions adaptive_options(const PointArguments& args) {
   options.pattern = *study::pattern_named(args.pattern);
   options.variant = *study::variant_named(args.variant);
   options.record_leaves = !args.svg.empty();  // for the drawing alone: there can be millions
+  options.most_leaves = kMostLeaves;
   return options;
 }
 
@@ -208,6 +211,15 @@ void warn_of_missing_decimals(const PointArguments& args, const Scene& scene, co
     std::cerr << "exactff: warning: " << args.digits << " significant digits of '" << shown_name(scene, one.source)
               << "' are not certified (its value may be a tie there, or --precision-cap is too low); the double stands "
                  "in their place\n";
+  }
+}
+
+void warn_of_stopped_recursion(const Scene& scene, const PointResult& point) {
+  for (const SourceResult& one : point.sources) {
+    if (!one.adaptive || one.adaptive->leaves < kMostLeaves) continue;
+    std::cerr << "exactff: warning: the adaptive recursion on '" << shown_name(scene, one.source) << "' stopped at "
+              << one.adaptive->leaves << " leaves (its estimate is rougher than the tolerance asks for); give a larger "
+              << "--eps-b\n";
   }
 }
 
@@ -401,6 +413,7 @@ int run(const PointArguments& args) {
   warn_if_off_its_face(scene, point.receiver);
   warn_if_flipped(scene, point);
   warn_of_missing_decimals(args, scene, point);
+  warn_of_stopped_recursion(scene, point);
   if (!args.svg.empty()) write_svg(args, scene, point);
   if (args.plain) {
     std::cout << (args.digits > 0 ? value_text(point.sources.front().exact, args.digits)

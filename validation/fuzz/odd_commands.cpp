@@ -224,6 +224,11 @@ class CommandWriter {
     return one_of<std::string>(random_, {"0", "1e-3", "0.01", "0.02", "1e-12", "0.5", "0.99", "1"});
   }
 
+  // Below, the adaptive algorithm may need hours and all memory, as it was asked to.
+  std::string tolerance() {
+    return one_of<std::string>(random_, {"1e-3", "0.01", "0.02", "0.5", "0.99", "1", "1e300"});
+  }
+
   // "(1 to 4096)" in the description.
   std::string whole(const OptionRow& row) {
     static const std::regex kRange(R"(\((-?\d{1,9}) to (-?\d{1,9})\))");
@@ -244,8 +249,8 @@ class CommandWriter {
     if (contains_any(row.names.back(), {"column"}))
       return one_of<std::string>(random_, {"value", "receiver", "exact", "source", "other", odd_name(random_)});
     const std::vector<std::string> words = words_in(row.description);
-    if (row.names.back().starts_with("--eps") || words.empty())
-      return number() + (random_.one_in(4) ? "," + number() : "");
+    if (row.names.back().starts_with("--eps")) return tolerance() + (random_.one_in(4) ? "," + tolerance() : "");
+    if (words.empty()) return number() + (random_.one_in(4) ? "," + number() : "");
     return random_.one_in(20) ? odd_name(random_) : one_of(random_, words);
   }
 
