@@ -209,7 +209,7 @@ std::string odd_name(Random& random) {
                                                   "del\x7f",
                                                   "=1+2",
                                                   "-5",
-                                                  "--json",
+                                                  "--out",
                                                   "tab\tx",
                                                   "nel\xc2\x85",
                                                   "\xe2\x80\xaertl",
