@@ -90,8 +90,9 @@ class CommandWriter {
     if (random_.one_in(8)) shuffle_later_ = true;
     add_receivers();
     for (const OptionRow& row : table_.options) add_option(row);
-    if (shuffle_later_)
-      std::rotate(words_.begin() + 1, words_.begin() + 1 + (table_.positionals.empty() ? 0 : 1), words_.end());
+    if (shuffle_later_ && !table_.positionals.empty() && words_.size() > 1) {
+      std::rotate(words_.begin() + 1, words_.begin() + 2, words_.end());  // the first of them last
+    }
     if (random_.one_in(80))
       words_.push_back(one_of<std::string>(random_, {"--help", "--version", "--nonsense", "-x", "--", ""}));
     return std::move(words_);
