@@ -14,7 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "exactff/exact.h"
 #include "exactff/methods.h"
+#include "support/oracle_check.h"
 #include "support/random_scenes.h"
 
 namespace exactff::validation {
@@ -188,6 +190,40 @@ TEST(MethodValues, AreAsPromisedOnScenesOnRays) {
     judge_scenes(4, family.make);
   }
 }
+
+// The control alone, to greater depth. V is exact and in [0, 1], so a leaf that eps_F stops is wrong by no more than
+// eps_F, and no other leaf is wrong beyond rounding.
+class ControlValues : public testing::TestWithParam<RandomFamily> {};
+
+TEST_P(ControlValues, AreWithinTheirBound) {
+  const methods::Choice choice = methods::parse("adaptive-exact-visibility:eps_B=0.01,depth_cap=10");
+  for (std::uint64_t i = 0; i < scaled_count(1 + GetParam().count / 20); ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed_of(i)));
+    Random random(seed_of(i));
+    const PlainScene plain = GetParam().make(random);
+    const Scene scene = generate::build(plain);
+    const Receiver receiver = validation::receiver_in(scene, plain);
+    const Selection selection = scene.select(plain.source);
+    std::unique_ptr<methods::PreparedScene> on_scene;
+    try {
+      on_scene = choice.method->prepare(scene);
+    } catch (const InputError&) {
+      continue;
+    }
+    const auto source = on_scene->prepare_source(selection);
+    const methods::Estimate found = on_scene->configure(choice.settings)->form_factor(receiver, *source);
+    ASSERT_TRUE(std::isfinite(found.form_factor));
+    ASSERT_GE(found.form_factor, 0.0);
+    const std::string family = GetParam().name;
+    const bool moderate = family == "Degenerate" || family == "Generic" || family == "Triangles";
+    if (!moderate || scene.faces_of(selection).size() > 1 || found.counters["leaves: depth cap"] > 0) continue;
+    const double truth = exact_form_factor(scene, receiver, ExactSource(scene, selection)).value;
+    ASSERT_NEAR(found.form_factor, truth, 0.01 * static_cast<double>(found.counters["leaves: eps_F"]) + 1e-9);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(RandomScenes, ControlValues, testing::ValuesIn(random_families()),
+                         [](const auto& family) { return family.param.name; });
 
 }  // namespace
 }  // namespace exactff::validation
