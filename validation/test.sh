@@ -1,21 +1,33 @@
 #!/usr/bin/env bash
-# All tests: first a part of the suite under AddressSanitizer and UndefinedBehaviorSanitizer, with GCC and with Clang, and
-# a short fuzzing run in the latter build; then the whole suite on the optimised build. Warnings are errors in all three.
-# The first two builds take less time by EXACTFF_QUICK_BUILD; the third compiles every source for itself.
-# Ends with ctest's own summary.
+# All tests. Installs packages, builds with warnings as errors, and ends with ctest's own summary.
+#
+#   test.sh               the whole suite on the optimised build
+#   test.sh --sanitizers  instead, a part of the suite under AddressSanitizer and UndefinedBehaviorSanitizer, with GCC and
+#                         with Clang, and a short fuzzing run in the latter build
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$top"
-validation/setup.sh libboost-mpi-dev libopenmpi-dev openmpi-bin \
-  chromium chromium-driver python3-selenium  # an option of the build, and the reports in a browser: both tested
 
-validation/build.sh build/sanitize -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON -DEXACTFF_SANITIZE=ON -DEXACTFF_QUICK_BUILD=ON \
-  -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
-ctest --test-dir build/sanitize --output-on-failure --parallel 2
+test_optimised() {
+  validation/setup.sh libboost-mpi-dev libopenmpi-dev openmpi-bin \
+    chromium chromium-driver python3-selenium  # an option of the build, and the reports in a browser: both tested
+  validation/build.sh build -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON
+  ctest --test-dir build --output-on-failure --parallel 2
+}
 
-validation/fuzz.sh 30  # builds build/clang
-ctest --test-dir build/clang --output-on-failure --parallel 2
+# EXACTFF_QUICK_BUILD saves time; the optimised build compiles every source for itself.
+test_sanitized() {
+  validation/setup.sh
+  validation/build.sh build/sanitize -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON -DEXACTFF_SANITIZE=ON \
+    -DEXACTFF_QUICK_BUILD=ON -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
+  ctest --test-dir build/sanitize --output-on-failure --parallel 2
+  validation/fuzz.sh 30  # builds build/clang
+  ctest --test-dir build/clang --output-on-failure --parallel 2
+}
 
-validation/build.sh build -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON
-ctest --test-dir build --output-on-failure --parallel 2
+case "$*" in
+  "") test_optimised ;;
+  --sanitizers) test_sanitized ;;
+  *) echo "usage: test.sh [--sanitizers]" >&2; exit 2 ;;
+esac

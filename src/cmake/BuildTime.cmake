@@ -2,7 +2,7 @@
 #
 # EXACTFF_QUICK_BUILD is for builds that nobody edits in: sources that instantiate the same templates are compiled
 # together, and the standard headers of the unit tests are parsed once. That every source includes what it uses, and what
-# is seen of it alone, a build without the option checks: test.sh's last is one.
+# is seen of it alone, a build without the option checks: test.sh without flags makes one.
 
 # exactff_compile_together(TARGET): the sources of every folder as one; those with options of their own by themselves.
 # What a folder's sources define for themselves therefore needs different names.
