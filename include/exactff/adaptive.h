@@ -1,6 +1,9 @@
-// The ray-sampled adaptive algorithm: F. Tampieri, "Accurate Form-Factor Computation", Graphics Gems III
-// (1992), with shaft culling after E. Haines and J. Wallace (1991). Estimates; plain double, shadow rays by
-// Embree in single precision.
+// Tampieri's adaptive algorithm, which estimates a form factor with ray-sampled visibility. It splits the source until
+// a limit in AdaptiveOptions is met. The parts that it does not split further are the leaves. Shaft culling or shadow
+// rays give each leaf a visibility V in [0, 1].
+// Estimates only. Arithmetic is in plain double; Embree traces the shadow rays in single precision.
+// Source: F. Tampieri, "Accurate Form-Factor Computation", Graphics Gems III (1992); shaft culling after E. Haines and
+// J. Wallace (1991).
 #pragma once
 
 #include <array>
@@ -21,19 +24,19 @@ class PatchVisibility;
 enum class SamplePattern { kCentre, kRegular, kJittered, kLowDiscrepancy };
 
 enum class Variant {
-  kMended,   // horizon clip, sound cull, double precision
+  kMended,   // with a horizon clip, a sound shaft cull and double precision
   kLiteral,  // as printed: drops perpendicular pairs, no horizon clip, Eq. (4) by acos in float
 };
 
 struct AdaptiveOptions {
-  double eps_b = 1e-3;  // radiosity; eps_F = eps_B / max(rho_r B_s)
-  double eps_a = 0.0;   // area, square of the scene's unit of length
+  double eps_b = 1e-3;  // a radiosity: leaves with F <= eps_F are not split, eps_F = eps_B / max(rho_r B_s)
+  double eps_a = 0.0;   // an area, in the square of the scene's unit of length: leaves with A <= eps_A are not split
   int rays = 16;        // shadow rays per undecided sub-patch; kCentre traces one
   SamplePattern pattern = SamplePattern::kJittered;
   std::uint64_t seed = 1;
   Variant variant = Variant::kMended;
   int depth_cap = 48;
-  std::uint64_t most_leaves = 0;  // once there are so many, nothing is split any more; 0: no bound
+  std::uint64_t most_leaves = 0;  // splitting stops at this number of leaves; 0: no bound
   bool record_leaves = false;
 };
 
@@ -45,13 +48,13 @@ enum class LeafReason {
   kSampledHidden,   // no ray got through: V = 0
   kEpsF,            // F <= eps_F
   kEpsA,            // A <= eps_A
-  kDepthCap,        // or there are most_leaves
+  kDepthCap,        // depth_cap or most_leaves was reached
 };
 inline constexpr std::size_t kLeafReasonCount = 7;
 [[nodiscard]] std::string_view to_string(LeafReason reason);
 
 struct Leaf {
-  std::array<Vec3, 4> corners{};  // counter-clockwise seen from the source's front
+  std::array<Vec3, 4> corners{};  // counter-clockwise as seen from the source's front
   int corner_count = 0;           // 3 or 4
   double visibility = 0.0;        // V
   double form_factor = 0.0;       // unoccluded
@@ -60,19 +63,20 @@ struct Leaf {
 };
 
 struct AdaptiveResult {
-  // Finite. In [0, 1] for a source of one face; never negative, and above 1 only where faces of the source that
-  // overlap, or errors of V, add up to more. The literal variant can leave [0, 1] on both sides.
+  // Always finite. In [0, 1] for a source of one face. For several faces it is never negative, and it exceeds 1 only
+  // where overlapping faces of the source, or errors of V, add up to more. The literal variant can leave [0, 1] on both
+  // sides.
   double form_factor = 0.0;
   std::uint64_t leaves = 0;
   std::uint64_t rays = 0;
-  std::uint64_t shaft_tests = 0;  // piece against sub-shaft
+  std::uint64_t shaft_tests = 0;  // tests of one piece of the scene against one sub-shaft
   std::array<std::uint64_t, kLeafReasonCount> leaves_by_reason{};
   std::vector<std::uint64_t> leaves_by_depth;
   std::vector<Leaf> leaf_list;  // if record_leaves
 };
 
-// What depends on the source alone: its faces as triangles and quadrilaterals, and which faces lie in their planes.
-// Made by AdaptiveSolver::prepare, for that solver. Immutable, shared between threads.
+// The data that depend on the source alone: its faces as triangles and quadrilaterals, and the faces that lie in their
+// planes. Made by AdaptiveSolver::prepare, and valid for solvers of the same scene. Immutable; threads may share it.
 class AdaptiveSource {
  public:
   AdaptiveSource(AdaptiveSource&&) noexcept;
@@ -88,39 +92,40 @@ class AdaptiveSource {
   std::unique_ptr<Data> data_;
 };
 
-// What depends on the scene alone: packed pieces, ray structure. Immutable, shared between threads. Refers to the
-// scene it was made from.
+// The data that depend on the scene alone: packed pieces and the ray-tracing structure. Immutable; threads may share
+// it. Keeps a reference to the scene it was made from.
 class AdaptiveSolver {
  public:
-  // Throws InputError where single precision would merge distinct vertices or collapse or flip a face, and where a
-  // scene of more than 16 pieces is too thin for the ray structure: not flat, but thinner than about 2^-75 (2.6e-23) of
-  // its size along some axis.
+  // Throws InputError if single precision would merge distinct vertices or collapse or flip a face. Also throws it if a
+  // scene of more than 16 pieces is too thin for the ray-tracing structure: not flat, but thinner along some axis than
+  // about 2^-75 (2.6e-23) of its size.
   explicit AdaptiveSolver(const Scene& scene);
   AdaptiveSolver(AdaptiveSolver&&) noexcept;
   AdaptiveSolver& operator=(AdaptiveSolver&&) noexcept;
   ~AdaptiveSolver();
 
-  // Faces of the selection that coincide (the same corners, whichever comes first) are taken once; coplanar faces of
-  // one source that overlap otherwise count each fully here, and as their union in the exact method.
+  // Faces of the selection with the same corners in the same order (starting at any of them) count once. Coplanar faces
+  // of one source that overlap in any other way each count in full here; the exact method counts their union.
   [[nodiscard]] AdaptiveSource prepare(const Selection& source) const;
 
   // Estimates F. `source` must have been prepared by a solver of the same scene (else std::invalid_argument).
-  // `largest_rho_b` is the largest rho_r B_s over the channels; where it is 0 the result is 0
-  // at once. Depends on nothing but the arguments and, in long candidate lists, on the instruction set that Embree
-  // finds (rays are seeded from options.seed, the receiver and the source). Throws InputError where the receiver is
-  // not finite or has no normal, or an option is out of range. With eps_b = eps_a = 0 the recursion goes on to the
-  // depth cap wherever a shadow's edge is seen: 2^depth leaves or more.
+  // `largest_rho_b` is the largest rho_r B_s over the channels; if it is 0, the result is 0 and no work is done, except
+  // for the literal variant with eps_b > 0. Throws InputError if the receiver is not finite or has no normal, or if an
+  // option is out of range.
+  // The result depends on the arguments alone and, for long candidate lists, on the instruction set that Embree
+  // detects. (Rays are seeded from options.seed, the receiver and the source.) With eps_b = eps_a = 0 the recursion
+  // goes down to the depth cap wherever it sees the edge of a shadow: 2^depth leaves or more.
   [[nodiscard]] AdaptiveResult form_factor(const Receiver& receiver, const AdaptiveSource& source, double largest_rho_b,
                                            const AdaptiveOptions& options) const;
-  // For the library's own modules: where shaft culling leaves V in doubt, `visibility` is asked instead of rays.
+  // For the library's own modules: where shaft culling leaves V undecided, `visibility` computes V instead of rays.
   [[nodiscard]] AdaptiveResult form_factor(const Receiver& receiver, const AdaptiveSource& source, double largest_rho_b,
                                            const AdaptiveOptions& options, sampled::PatchVisibility& visibility) const;
-  // The same with prepare(source) each time, which looks at every face of the scene.
+  // As above, but calls prepare(source) each time, which visits every face of the scene.
   [[nodiscard]] AdaptiveResult form_factor(const Receiver& receiver, const Selection& source, double largest_rho_b,
                                            const AdaptiveOptions& options) const;
 
-  // Seconds spent building the ray structure, apart from everything else. It is built when a candidate list is first
-  // too long to be tested directly; 0 until then.
+  // Seconds spent building the ray-tracing structure, measured on its own. It is built when a candidate list is first
+  // too long to test directly; 0 before that.
   [[nodiscard]] double build_seconds() const;
 
  private:

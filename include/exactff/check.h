@@ -1,14 +1,16 @@
-// Accuracy checks: the values of any other program, method or function held against certified truth.
+// Accuracy checks: compares the values of any other program, method or function with certified true values (a truth
+// file, truth.h).
 //
 //   const check::Truth truth = check::read_truth("truth.csv");
 //   const check::Candidate mine = check::read_candidate("mine.csv");
 //   const check::Report report = check::judge(truth, check::match(truth, mine), {.max_abs = 1e-6});
 //   report.passed(); report.worst; report.verdicts;
 //
-// The error of a value c is c - F*, F* being the truth, correctly rounded. Where a row of the truth is not certified,
-// F* is the nearest point of its enclosure: nobody is blamed for what is not known. The relative error is taken of F*;
-// where F* is 0 it is 0 for c = 0 and infinite otherwise. The error in radiosity is the error times the largest rho_r
-// B_s of the colour channels, which is what eps_B bounds, row by row.
+// The error of a value c is c - F*, where F* is the truth: the true form factor, correctly rounded. If a row of the
+// truth is not certified, F* is the point of its enclosure nearest to c, so that no candidate is blamed for what is not
+// known. The relative error is relative to F*; for F* = 0 it is 0 if c = 0 and infinite otherwise. The error in
+// radiosity is the error times the largest rho_r B_s over the colour channels. This is the quantity that eps_B bounds,
+// row by row.
 #pragma once
 
 #include <array>
@@ -31,8 +33,8 @@ namespace exactff::check {
 
 struct TruthRow {
   std::string receiver;
-  std::uint32_t source = 0;  // into Truth::sources
-  std::uint32_t on = 0;      // into Truth::faces
+  std::uint32_t source = 0;  // index into Truth::sources
+  std::uint32_t on = 0;      // index into Truth::faces
   std::uint32_t line = 0;    // of the file
   Status status = Status::kCertified;
   Vec3 point;   // if Truth::has_points
@@ -40,15 +42,15 @@ struct TruthRow {
   double value = 0.0;
   double lower = 0.0;
   double upper = 0.0;
-  std::optional<double> largest_rho_b;  // over the colour channels; nothing where the file does not tell
+  std::optional<double> largest_rho_b;  // over the colour channels; empty if the file does not give it
 };
 
 struct Truth {
   std::string file;
-  std::string column;                // that the values are of
-  std::vector<std::string> header;   // the comment lines, without their '#'
-  std::vector<std::string> sources;  // by first appearance; one empty name in a file without that column
-  std::vector<std::string> faces;    // that rows lie on; the first name is empty and stands for none
+  std::string column;                // the column that `value` was read from
+  std::vector<std::string> header;   // the comment lines of the file, without their '#'
+  std::vector<std::string> sources;  // in order of first appearance; one empty name if the file has no such column
+  std::vector<std::string> faces;    // faces that receivers lie on; the first name is empty and stands for none
   bool has_points = false;
   bool has_normals = false;
   std::vector<TruthRow> rows;
@@ -57,35 +59,35 @@ struct Truth {
   [[nodiscard]] const std::string& face_of(const TruthRow& row) const { return faces[row.on]; }
 };
 
-// A file of `exactff truth`, the exact.csv of `exactff compare`, or any CSV with the columns receiver (or id) and
-// exact; source, on, x,y,z, nx,ny,nz, lower, upper, status, largest_rho_b and radiosity_r, _g, _b are used where they
-// are. `column` names another column to be held against, such as unoccluded or radiosity_g. Throws one InputError with
-// file:line for everything wrong, rows that occur twice included.
+// Reads a file of `exactff truth`, the exact.csv of `exactff compare`, or any CSV with the columns receiver (or id) and
+// exact. Optional columns: source, on, x,y,z, nx,ny,nz, lower, upper, status, largest_rho_b and radiosity_r, _g, _b.
+// `column` names the column with the true values if it is not `exact`, such as unoccluded or radiosity_g. Throws one
+// InputError with file:line for every problem, including rows that occur twice.
 [[nodiscard]] Truth read_truth(const std::filesystem::path& path, const std::string& column = "exact");
 
 // --- Candidate -----------------------------------------------------------------------------------------------------
 
 enum class MatchBy {
-  kReceiver,  // the receiver's id
-  kPosition,  // its coordinates
+  kReceiver,  // by the id of the receiver
+  kPosition,  // by its coordinates
 };
 
-// An empty name stands for the default.
+// Column names. An empty name stands for the default.
 struct CandidateColumns {
-  std::string value = {};     // default: value, approximate or exact, whichever is there first
+  std::string value = {};     // default: the first of value, approximate and exact that exists
   std::string receiver = {};  // default: receiver or id
-  std::string source = {};    // default: source, which may be absent where the truth has one source only
+  std::string source = {};    // default: source, which may be absent if the truth has only one source
   std::array<std::string, 3> position = {"x", "y", "z"};
   std::array<std::string, 3> normal = {"nx", "ny", "nz"};
 };
 
 struct CandidateRow {
   std::string receiver;
-  std::uint32_t source = 0;  // into Candidate::sources
+  std::uint32_t source = 0;  // index into Candidate::sources
   std::uint32_t line = 0;
   Vec3 point;
   Vec3 normal;
-  double value = 0.0;  // may be infinite or not a number: a failure of the candidate, not of the file
+  double value = 0.0;  // may be infinite or NaN: that is a failure of the candidate, not of the file
 };
 
 struct Candidate {
@@ -96,7 +98,7 @@ struct Candidate {
   std::vector<CandidateRow> rows;
 };
 
-// Reads the columns that matching `by` needs. Throws one InputError with file:line for everything wrong.
+// Reads the columns that matching `by` needs. Throws one InputError with file:line for every problem.
 [[nodiscard]] Candidate read_candidate(const std::filesystem::path& path, const CandidateColumns& columns = {},
                                        MatchBy by = MatchBy::kReceiver);
 
@@ -104,8 +106,8 @@ struct Candidate {
 
 struct MatchOptions {
   MatchBy by = MatchBy::kReceiver;
-  // By position: the largest distance between two points that count as one, in the scene's unit of length, and, where
-  // both sides have normals, between their unit vectors.
+  // For matching by position: the largest distance between two points that count as equal, in the scene's unit of
+  // length. `normal_tolerance`: if both sides have normals, the largest distance between their unit vectors.
   double tolerance = 0.0;
   double normal_tolerance = 1e-3;
   bool partial = false;  // rows of the truth may be missing
@@ -113,13 +115,14 @@ struct MatchOptions {
 
 // A value for one row of the truth.
 struct Measured {
-  std::uint32_t row = 0;   // into Truth::rows
-  std::uint32_t line = 0;  // of the candidate's file; 0 where there is none
+  std::uint32_t row = 0;   // index into Truth::rows
+  std::uint32_t line = 0;  // in the candidate's file; 0 if there is no file
   double value = 0.0;
 };
 
-// In the order of the truth. Throws one InputError with every row of the candidate that is not in the truth, that
-// matches several of its rows, or matches one that another row has matched; and with the rows that are missing.
+// The matched values, in the order of the truth. Throws one InputError that lists every row of the candidate that is
+// not in the truth, matches several of its rows, or matches a row that another row has already matched; and every row
+// of the truth without a match, unless options.partial.
 [[nodiscard]] std::vector<Measured> match(const Truth& truth, const Candidate& candidate,
                                           const MatchOptions& options = {});
 
@@ -128,25 +131,26 @@ struct Measured {
 enum class Measure { kAbsolute, kRelative, kRadiosity };
 [[nodiscard]] std::string_view to_string(Measure measure);  // "absolute error", ...
 
-// At least the given share of the rows has an absolute error of at most `limit`.
+// At least this share of the rows must have an absolute error of at most `limit`.
 struct Quantile {
   double share = 0.99;  // in (0, 1]
   double limit = 0.0;
 };
 
-// What is asked for; without any of it nothing but finiteness is judged. A limit is kept by an error equal to it.
+// The limits to check. Without any limit, only finiteness is checked. An error equal to its limit passes.
 struct Criteria {
   std::optional<double> max_abs = {};
   std::optional<double> max_rel = {};
   std::optional<double> rms = {};    // of the absolute errors
-  std::optional<double> eps_b = {};  // on the error in radiosity
+  std::optional<double> eps_b = {};  // bound on the error in radiosity
   std::vector<Quantile> quantiles = {};
-  bool per_source = false;      // every source has to keep every limit; then all together do
-  double relative_floor = 0.0;  // relative errors are taken of the truth or of this, whichever is larger
+  bool per_source = false;      // every source must meet every limit, which implies that all together do
+  double relative_floor = 0.0;  // relative errors are relative to the truth or to this, whichever is larger
   std::size_t worst = 10;       // rows to report
 };
 
-// Of magnitudes. A quantile is by nearest rank: the smallest magnitude that so many rows do not exceed.
+// Statistics of error magnitudes. A quantile is by nearest rank: the smallest magnitude that at least this share of the
+// rows does not exceed.
 struct Distribution {
   double median = 0.0;
   double p90 = 0.0;
@@ -156,15 +160,15 @@ struct Distribution {
   double rms = 0.0;
 };
 
-// Over the rows whose value is finite.
+// Statistics over the rows with a finite value.
 struct Statistics {
-  std::size_t rows = 0;        // all
-  std::size_t not_finite = 0;  // of these: no number, or infinite
-  std::size_t leaks = 0;       // the truth is 0, the value is not
-  double bias = 0.0;           // mean error, with its sign
+  std::size_t rows = 0;        // all rows
+  std::size_t not_finite = 0;  // rows whose value is NaN or infinite
+  std::size_t leaks = 0;       // rows where the truth is 0 and the value is not
+  double bias = 0.0;           // signed mean error
   Distribution absolute;
   Distribution relative;
-  std::optional<Distribution> radiosity;  // where rho B is known for every row
+  std::optional<Distribution> radiosity;  // if rho B is known for every row
   double largest_value = 0.0;             // of the truth
   double largest_radiosity = 0.0;
 };
@@ -184,14 +188,14 @@ struct RowError {
 
 struct Verdict {
   std::string criterion;  // "finite", "max-abs", "max-rel", "rms", "eps-b", "quantile 0.99", "baseline rms"
-  std::string source;     // empty: all together
+  std::string source;     // empty: all sources together
   double measured = 0.0;
   double limit = 0.0;
   bool passed = false;
-  std::optional<RowError> worst;  // where a single row decides
+  std::optional<RowError> worst;  // set if a single row decides
 };
 
-// What became better than the baseline, by more than its slack.
+// A statistic that is better than the baseline by more than the slack.
 struct Improvement {
   std::string criterion;
   std::string source;
@@ -201,81 +205,81 @@ struct Improvement {
 
 struct Report {
   std::string truth_file;
-  std::string candidate_file;  // empty for values that are of no file
+  std::string candidate_file;  // empty for values that come from no file
   std::string column;          // of the truth
-  std::string identity;        // of the rows judged and their truths, whatever their order: 16 hexadecimal digits
+  std::string identity;        // 16 hexadecimal digits that identify the rows judged and their truths, in any order
   Criteria criteria;
   std::size_t truth_rows = 0;
   std::size_t not_certified = 0;  // rows judged by their enclosures
   Statistics overall;
   std::vector<std::string> sources;
   std::vector<Statistics> by_source;  // of each
-  std::vector<Verdict> verdicts;      // the first is on finiteness
+  std::vector<Verdict> verdicts;      // the first one is about finiteness
   std::vector<Improvement> improvements;
-  Measure worst_by = Measure::kAbsolute;  // of the first limit that is broken
-  std::vector<RowError> worst;            // the worst first; values that are not finite before all others
-  std::vector<double> magnitudes;         // of the errors, ascending
+  Measure worst_by = Measure::kAbsolute;  // the measure of the first limit that is exceeded
+  std::vector<RowError> worst;            // worst first; values that are not finite come before all others
+  std::vector<double> magnitudes;         // magnitudes of the errors, ascending
 
   [[nodiscard]] bool passed() const;
 };
 
-// Holds values against the truth. Throws InputError where there is nothing to judge, where a limit is no limit (not a
-// number, negative), and where eps_b is asked for and rho B is not known.
+// Compares values with the truth. Throws InputError if there are no values to judge, if a limit is invalid (NaN or
+// negative), or if eps_b is given but rho B is not known.
 [[nodiscard]] Report judge(const Truth& truth, const std::vector<Measured>& values, const Criteria& criteria,
                            const std::string& candidate_file = {});
 
-// The same for one value for each row of the truth, in its order.
+// As above, with one value for each row of the truth, in its order.
 [[nodiscard]] Report judge(const Truth& truth, std::span<const double> values, const Criteria& criteria);
 
 // --- Ratchet -------------------------------------------------------------------------------------------------------
 
-// What a baseline file holds: the statistics that must not get worse.
+// The statistics in a baseline file. They must not get worse.
 inline constexpr std::array<std::string_view, 5> kRatcheted = {"max-abs", "max-rel", "rms", "quantile 0.99", "eps-b"};
-// Default slack: far above the noise that rounding makes in an error, far below any change of a method.
+// Default slack: far above the noise that rounding adds to an error, far below the effect of any change of a method.
 inline constexpr double kDefaultSlack = 1e-9;
 
-// Today's statistics as JSON.
+// The statistics of the report as JSON, for a baseline file.
 [[nodiscard]] std::string baseline_text(const Report& report);
 
-// Adds to the report a verdict on every statistic of the baseline and what has improved. Worse is: larger than
-// recorded by more than the share `slack` of it and by more than 4 units in the last place of the largest truth, since
-// no two compilers agree on more. Throws InputError where the file cannot be read, or was recorded with other rows,
-// other truths or another relative floor.
+// Adds to the report a verdict on every statistic of the baseline, and the improvements. A statistic is worse if it
+// exceeds the recorded one by more than the share `slack` of it and also by more than 4 units in the last place of the
+// largest truth, because different compilers do not agree more closely. Throws InputError if the file cannot be read,
+// or if it was recorded with other rows, other truths or another relative floor.
 void hold_against_baseline(Report& report, const std::filesystem::path& baseline, double slack = kDefaultSlack);
 
 // --- Output --------------------------------------------------------------------------------------------------------
 
-// Lines of text: every limit that is broken, then the worst rows.
+// Lines of text: every limit that is exceeded, then the worst rows.
 [[nodiscard]] std::string failure_message(const Report& report);
 
 // JUnit XML: one test case per verdict.
 [[nodiscard]] std::string junit_xml(const Report& report);
 
-// Workflow commands of GitHub Actions: an ::error for every verdict that failed, a ::warning for what is doubtful.
+// Workflow commands of GitHub Actions: an ::error for every verdict that failed, a ::warning for anything doubtful.
 [[nodiscard]] std::string github_annotations(const Report& report);
 [[nodiscard]] std::string github_annotations(const InputError& error);
 
-// Everything in the report.
+// The whole report as JSON.
 [[nodiscard]] std::string json_text(const Report& report);
 
-// A histogram of the magnitudes of the errors. The bins of a decade are equally wide on a logarithmic axis.
+// A histogram of the magnitudes of the errors. The bins within a decade have equal width on a logarithmic axis.
 struct HistogramBin {
-  double low = 0.0;  // not within, but for the first bin, which holds what is below it as well
+  double low = 0.0;  // exclusive, except in the first bin, which also holds everything below it
   double high = 0.0;
   std::size_t count = 0;
 };
 struct Histogram {
-  std::size_t exact = 0;  // errors of 0
+  std::size_t exact = 0;  // number of errors equal to 0
   std::vector<HistogramBin> bins;
 };
 [[nodiscard]] Histogram histogram(const Report& report, int bins_per_decade = 1, std::size_t most_bins = 24);
 
-// The same as a gnuplot script that plots an SVG to standard output; empty where every error is 0.
+// A gnuplot script that plots the histogram as SVG to standard output; empty if every error is 0.
 [[nodiscard]] std::string histogram_script(const Report& report);
 
 // --- Single values -------------------------------------------------------------------------------------------------
 
-// What a value is held against: a form factor, a row of a truth file, or a plain number.
+// The expected value: a form factor, a row of a truth file, or a plain number.
 struct Expected {
   Expected(double number);                  // NOLINT(google-explicit-constructor): an assertion takes any of them
   Expected(const FormFactor& form_factor);  // NOLINT(google-explicit-constructor)
@@ -287,7 +291,7 @@ struct Expected {
   std::optional<Status> status;
 };
 
-// Kept if either part is. A plain number is an absolute tolerance.
+// Met if either part is met. A plain number is an absolute tolerance.
 struct Tolerance {
   Tolerance(double absolute_error) : absolute(absolute_error) {}  // NOLINT(google-explicit-constructor)
   Tolerance(double absolute_error, double relative_error) : absolute(absolute_error), relative(relative_error) {}
@@ -300,11 +304,11 @@ struct Tolerance {
 struct Difference {
   double error = 0.0;  // with its sign
   double relative = 0.0;
-  double ulps = 0.0;  // doubles passed on the way from the truth to the value
+  double ulps = 0.0;  // distance from the truth to the value, counted in doubles
 };
 [[nodiscard]] Difference difference(double actual, const Expected& expected);
 [[nodiscard]] bool is_near(double actual, const Expected& expected, const Tolerance& tolerance);
-// What a failed assertion tells: both values, the bounds and status of the truth, the error, the tolerance.
+// The text of a failed assertion: both values, the bounds and status of the truth, the error and the tolerance.
 [[nodiscard]] std::string describe_difference(double actual, const Expected& expected, const Tolerance& tolerance);
 
 }  // namespace exactff::check

@@ -1,4 +1,4 @@
-// A ball that is proved to hold a real number.
+// Enclosures: balls that provably contain a real number. A ball is an interval given by its midpoint and radius.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,8 @@ namespace exactff {
 
 class Ball;  // kernel/ball.h: midpoint and radius in arbitrary precision
 
-// Value semantics; adding two enclosures encloses the sum (balls add, rounded values do not).
+// An enclosure of one real number. Copies are independent. The sum of two enclosures encloses the sum of the two
+// numbers (balls can be added; rounded values cannot).
 class Enclosure {
  public:
   Enclosure();  // exactly zero
@@ -20,23 +21,24 @@ class Enclosure {
   Enclosure& operator=(Enclosure&&) noexcept;
   ~Enclosure();
 
-  // As if made anew from the ball, in the memory that this has.
+  // Sets this to the ball, reusing the memory of this object.
   void set(const Ball& ball);
 
   Enclosure& operator+=(const Enclosure& other);
 
-  // The largest double not above the number's lower bound, the smallest not below its upper bound.
+  // The largest double that is not above the ball's lower end, and the smallest that is not below its upper end.
   [[nodiscard]] double lower() const;
   [[nodiscard]] double upper() const;
-  // The nearest double (ties to even) of every number in the ball, if that is one and the same.
+  // The double to which every number in the ball rounds (to nearest, ties to even); empty if they do not all round to
+  // the same one.
   [[nodiscard]] std::optional<double> nearest() const;
-  // `digits` significant decimals, correctly rounded, if the ball determines them.
+  // The number to `digits` significant decimals, correctly rounded; empty if the ball does not determine them.
   [[nodiscard]] std::optional<std::string> decimals(int digits) const;
-  // True if every number in `other` is in this ball; if the two balls share a number.
+  // contains: true if every number in `other` lies in this ball. overlaps: true if the two balls share a number.
   [[nodiscard]] bool contains(const Enclosure& other) const;
   [[nodiscard]] bool overlaps(const Enclosure& other) const;
   [[nodiscard]] bool contains(double value) const;
-  // Decimal midpoint and radius; every number in the ball lies within radius of midpoint.
+  // Midpoint and radius in decimals; every number in the ball lies within this radius of this midpoint.
   [[nodiscard]] std::string midpoint() const;
   [[nodiscard]] std::string radius() const;
 

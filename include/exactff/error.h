@@ -1,6 +1,6 @@
-// The user's mistakes. Numerical outcomes are statuses, never exceptions. A program's own mistakes are std::logic_error
-// with words: an object used after it was moved from; and, as std::invalid_argument, an id that does not exist or a
-// source or selection of another scene.
+// Errors in the input. Numerical outcomes are statuses, never exceptions. Programming errors are reported as
+// std::logic_error with a message, for example for an object used after it was moved from. Its subclass
+// std::invalid_argument is thrown for an id that does not exist and for a source or selection of another scene.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,11 @@
 
 namespace exactff {
 
-// One thing wrong with the input (or worth a warning), in the fixed wording
-// "FILE:LINE: problem (why it matters); suggestion". Empty parts are left out.
+// One problem in the input, or one warning. The wording is always "FILE:LINE: problem (why it matters); suggestion".
+// Empty parts are left out.
 struct Problem {
   std::string file = {};
-  std::size_t line = 0;  // from 1; 0 where no line applies
+  std::size_t line = 0;  // counted from 1; 0 if no line applies
   std::string what = {};
   std::string why = {};
   std::string suggestion = {};
@@ -22,7 +22,7 @@ struct Problem {
   [[nodiscard]] std::string message() const;
 };
 
-// Bad input: every problem found, in the order of the input. what() holds one message a line.
+// Bad input: all problems found, in the order of the input. what() has one message per line.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(std::vector<Problem> problems);

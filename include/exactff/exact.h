@@ -1,10 +1,12 @@
-// The exact form factor from a point to a polygonal source with occluders in between.
+// The exact form factor from a point x (the receiver) to a polygonal source s, with occluders in between. An occluder
+// is a face between x and s that hides part of s.
 //
 //   F(x -> s) = integral over the visible part of s of max(0, cos th_r) max(0, cos th_s) / (pi r^2) dA
 //
-// A pure number in [0, 1]. The boundary of the visible region is found exactly. Tampieri's Eq. (4) over it is evaluated
-// in double-double arithmetic with a proved error bound, and where that does not determine the nearest double, in ball
-// arithmetic of rising precision.
+// F is a pure number in [0, 1]; r is the distance, th_r and th_s are the angles to the normals at x and on s. The
+// boundary of the visible region is found exactly. Tampieri's Eq. (4) over this boundary is evaluated in double-double
+// arithmetic with a proved error bound. If that does not determine the nearest double, it is evaluated in ball
+// arithmetic of increasing precision.
 // Source: F. Tampieri, "Accurate Form-Factor Computation", Graphics Gems III (1992).
 #pragma once
 
@@ -25,80 +27,82 @@ enum class Status {
   kCertified,     // value is the correctly rounded F > 0
   kZero,          // F is proved to be exactly 0
   kUnderflow,     // F is positive and rounds to 0
-  kNotCertified,  // the precision cap was met; the enclosure is valid, value is its midpoint rounded
+  kNotCertified,  // the precision cap was reached; the enclosure is valid, value is its rounded midpoint
 };
 [[nodiscard]] std::string_view to_string(Status status);
 
-// How the visible region is found. Both ways give the same bits.
+// How the visible region is found. All engines give the same bits.
 enum class Engine {
-  kEdges,    // what is left of every edge, by signs of determinants alone
-  kBoolean,  // polygon Booleans: the reference
-  kBoth,     // both, one checked against the other: std::logic_error where they differ by more than the cap explains
+  kEdges,    // finds the visible parts of every edge, using only signs of determinants
+  kBoolean,  // polygon Booleans: the reference engine
+  kBoth,     // runs both and compares: std::logic_error if they differ by more than the cap explains
 };
 [[nodiscard]] std::string_view to_string(Engine engine);
 
-// Who is looked at as a possible occluder. Both ways give the same bits of values and fractions; the records tell of
-// the work that was done.
+// Which faces are considered as occluders. Both settings give the same bits of values and fractions; the records
+// describe the work that was actually done. The shaft is the pyramid from x to the convex hull of the part of the
+// source above the horizon; nothing outside it can hide any of the source.
 enum class ShaftCulling {
-  kTree,  // what the bounding-volume tree and the half-spaces of the shaft do not rule out
-  kNone,  // every face of the scene, as if there were no shaft: to measure what it saves
+  kTree,  // those that the bounding-volume tree and the half-spaces of the shaft do not rule out
+  kNone,  // every face of the scene, to measure what culling saves
 };
 
-// How far one plane of the source had to be followed; every later stage had no work.
+// The result for one plane of the source. Processing stops as soon as this is known; the later stages are skipped.
 enum class Outcome {
-  kReceiverFace,   // the receiver lies on this face by construction
-  kBehind,         // x is behind or in the plane of the faces
-  kBelowHorizon,   // no part lies above the receiver's horizon
-  kUnoccluded,     // nothing in the shaft
-  kHiddenByOne,    // one occluder hides all
-  kPartlyHidden,   // the occluders leave a part visible
-  kHiddenByUnion,  // the occluders hide all of it together, none of them alone
+  kReceiverFace,   // the receiver was made on this face (Receiver::on)
+  kBehind,         // x is behind the faces or in their plane
+  kBelowHorizon,   // no part lies above the receiver's horizon, the plane through x perpendicular to its normal
+  kUnoccluded,     // no occluder in the shaft
+  kHiddenByOne,    // a single occluder hides everything
+  kPartlyHidden,   // the occluders leave part of the faces visible
+  kHiddenByUnion,  // the occluders together hide everything, but none of them alone
 };
 [[nodiscard]] std::string_view to_string(Outcome outcome);
 
-// What was done for the faces of the source that lie in one oriented plane.
+// The work done for those faces of the source that lie in one oriented plane.
 struct PlaneRecord {
   std::vector<FaceId> faces;
-  Engine engine = Engine::kEdges;  // that did the work
+  Engine engine = Engine::kEdges;  // the engine that did the work
   Outcome outcome = Outcome::kBehind;
   bool horizon_clipped = false;               // the horizon cut the faces
-  bool source_joined = false;                 // more than one convex piece had to be joined
-  std::uint64_t tree_candidates = 0;          // pieces the bounding-volume tree could not rule out, in each shaft
-  std::uint64_t candidates = 0;               // pieces left by the exact predicates
-  std::uint64_t clipped = 0;                  // candidates that the source's plane, or the Booleans' shaft, cuts
-  std::uint64_t pairs = 0;                    // of an edge and another face, looked at by the edge engine
-  std::uint64_t undecided_pairs = 0;          // those that the floating-point filter left to exact predicates
+  bool source_joined = false;                 // the faces consist of several convex pieces that had to be joined
+  std::uint64_t tree_candidates = 0;          // pieces that the bounding-volume tree did not rule out, for all shafts
+  std::uint64_t candidates = 0;               // pieces that remain after the exact predicates
+  std::uint64_t clipped = 0;                  // candidates cut by the source's plane, or by the Booleans' shaft
+  std::uint64_t pairs = 0;                    // pairs of an edge and another face that the edge engine examined
+  std::uint64_t undecided_pairs = 0;          // pairs that the floating-point filter left to exact predicates
   std::uint64_t loops = 0;                    // boundary loops integrated; the edge engine does not count them
   std::uint64_t edges = 0;                    // boundary pieces integrated; the Booleans merge collinear ones
   std::optional<double> visible_fraction;     // on request, correctly rounded
   std::optional<std::string> exact_fraction;  // on request: "p/q"
 };
 
-// One line of the account that a result gives of itself.
+// One line of the explanation of a result: one stage.
 struct StageNote {
   std::string stage;
   bool ran = false;
-  std::string note;  // what it did, or why it was left out
+  std::string note;  // what it did, or why it was skipped
 };
 [[nodiscard]] std::vector<StageNote> stages(const PlaneRecord& plane);
 
-// How much of the source is visible, decided exactly: the fraction itself may round to 0 or 1.
+// Which part of the source is visible, decided exactly. (The fraction may round to 0 or 1 although a part is visible or
+// hidden.)
 enum class VisiblePart { kNothing, kSome, kAll };
 [[nodiscard]] std::string_view to_string(VisiblePart part);
 
 struct FormFactor {
   double value = 0.0;
-  double lower = 0.0;  // when certified: the neighbouring doubles of value, clamped to [0, 1]
+  double lower = 0.0;  // if certified: the neighbouring doubles of value, clamped to [0, 1]
   double upper = 0.0;
   Status status = Status::kZero;
-  Enclosure enclosure;                      // holds F
-  std::optional<double> visible_fraction;   // on request: visible over whole unclipped area, correctly rounded
-  std::optional<VisiblePart> visible_part;  // with it
-  // On request: faces whose shadow overlaps the clipped source, ascending. Where one face hides a whole plane, it alone
-  // is listed for that plane: the search ends there.
+  Enclosure enclosure;                      // contains F
+  std::optional<double> visible_fraction;   // on request: visible area over whole unclipped area, correctly rounded
+  std::optional<VisiblePart> visible_part;  // set if visible_fraction is set
+  // On request: the faces whose shadow overlaps the clipped source, in ascending order. If one face hides a whole
+  // plane, it is the only one listed for that plane, because the search stops there.
   std::vector<FaceId> cutters;
   std::vector<PlaneRecord> planes;
-  int precision_bits = 0;  // of the last contour evaluation; 0 if none was needed
+  int precision_bits = 0;  // precision of the last contour evaluation; 0 if none was needed
 };
 
 struct ExactOptions {
@@ -106,13 +110,13 @@ struct ExactOptions {
   bool visible_fraction = false;
   bool exact_fraction = false;  // implies visible_fraction
   bool list_cutters = false;
-  int digits = 0;             // raise the precision until so many decimals are certified, if they can be
+  int digits = 0;             // raises the precision until this many decimals are certified, if possible
   int precision_cap = 65536;  // bits, at least 1 (else InputError)
-  const std::vector<FaceId>* only_occluders = nullptr;  // ascending; every other face is ignored
+  const std::vector<FaceId>* only_occluders = nullptr;  // ascending; all other faces are ignored
   ShaftCulling culling = ShaftCulling::kTree;
 };
 
-// What depends on the source alone, computed once. Refers to the scene it was made from.
+// The data that depend on the source alone, computed once for many receivers. Keeps a reference to the scene.
 class ExactSource {
  public:
   ExactSource(const Scene& scene, const Selection& selection);
@@ -128,25 +132,25 @@ class ExactSource {
   std::unique_ptr<Planes> planes_;
 };
 
-// Exact (value), encloses (enclosure). `source` must have been made from `scene` (else std::invalid_argument). Requires
-// finite coordinates and a normal other than zero (else InputError). Safe to call from several threads at once; the
-// result depends on nothing but the arguments, also where the thread rounds otherwise than to nearest or flushes small
-// numbers to zero.
+// The form factor from `receiver` to `source`. If certified, `value` is the true F, correctly rounded; `enclosure`
+// always contains F. Requires a source and a receiver face of this scene (else std::invalid_argument), and finite
+// coordinates, a normal other than zero and a precision cap of at least one bit (else InputError). Threads may call it
+// concurrently. The result depends on the arguments alone, even if the thread uses another rounding mode or flushes
+// small numbers to zero.
 [[nodiscard]] FormFactor exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                                            const ExactOptions& options = {});
-// The same into a result that the caller keeps: every field is set anew in the memory that there is. From the second
-// time on nothing is allocated, unless the value takes more than double-double, the Booleans take over (`engine` of a
-// plane's record), or options ask for more. These must not point into `result`, of which an exception leaves nothing to
-// rely on.
+// As above, into a result that the caller keeps. Every field is set again, in the existing memory. From the second call
+// on nothing is allocated, unless the value needs more than double-double precision, the Booleans take over (`engine`
+// in a plane's record), or the options request additional output. The options must not point into `result`. After an
+// exception the content of `result` is unspecified.
 void exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                        const ExactOptions& options, FormFactor& result);
 
-// True where x is behind or in the plane of every face of the source: F is 0 for a reason that is
-// often a flipped normal.
+// True if x is behind every face of the source or in its plane. Then F is 0, often because of a flipped normal.
 [[nodiscard]] bool behind_every_face(const FormFactor& result);
 
-// The exact geometry rounded to doubles, for pictures and for counting silent errors. No value depends on it. Loops run
-// counter-clockwise as x sees them, holes clockwise.
+// The exact geometry rounded to doubles, for pictures and for counting silent errors. No value depends on it. Loops are
+// counter-clockwise as seen from x, holes clockwise.
 struct Loop {
   std::vector<Vec3> corners;
   bool hole = false;
@@ -154,12 +158,12 @@ struct Loop {
 struct PlaneDrawing {
   Vec3 normal;                       // front, not normalised
   std::vector<Loop> source;          // whole faces, unclipped
-  std::vector<Loop> clipped_source;  // above the horizon
+  std::vector<Loop> clipped_source;  // the part above the horizon
   struct Shadow {
     FaceId face{};
     Loop outline;  // convex
   };
-  std::vector<Shadow> shadows;  // of each candidate, clipped to the source's hull
+  std::vector<Shadow> shadows;  // the shadow of each candidate, clipped to the convex hull of the source
   std::vector<Loop> visible;
 };
 [[nodiscard]] std::vector<PlaneDrawing> draw_visibility(const Scene& scene, const Receiver& receiver,

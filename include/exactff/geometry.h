@@ -1,5 +1,5 @@
-// Plain value types that every public header shares. Coordinates are IEEE doubles; on the exact path
-// each stands for exactly the rational number it is.
+// Plain value types that all public headers share. Coordinates are IEEE doubles; on the exact path each means exactly
+// the value of its double.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ struct Vec3 {
   friend bool operator==(const Vec3&, const Vec3&) = default;
 };
 
-// One value per colour channel: a reflectance (pure number) or a radiosity (not a radiance: no pi).
+// One value per colour channel: a reflectance (a pure number) or a radiosity (not a radiance: no factor pi).
 struct Rgb {
   double r = 0.0;
   double g = 0.0;

@@ -1,11 +1,12 @@
-// Every method of computing form factors behind one interface: the exact one, and those that it judges.
+// One interface for every method of computing form factors: the exact method and the approximate methods that it
+// judges.
 //
-// A method is named, with its settings, by a text such as
+// A text names a method and its settings, for example
 //
 //   hemicube:resolution=200,rotation=15
 //
-// and works in stages that can be timed apart: per scene, per source, per choice of settings and thread, per receiver,
-// per receiver and source. Five lines from a scene to a value:
+// A method works in stages that can be timed separately: per scene, per source, per choice of settings and thread, per
+// receiver, and per receiver and source. Five lines lead from a scene to a value:
 //
 //   const methods::Choice choice = methods::parse("wallace:splits=8");
 //   const auto on_scene = choice.method->prepare(scene);                                 // shared between threads
@@ -13,9 +14,9 @@
 //   const auto evaluator = on_scene->configure(choice.settings);                         // one for each thread
 //   const double f = evaluator->form_factor(receiver, *light).form_factor;
 //
-// Your own algorithm joins by the same interface: derive from PreparedScene and Evaluator, describe the method and its
-// settings in a Method, and hand that to add_method(). From then on parse() knows its name, and whatever takes a Choice
-// takes it. All of it:
+// Your own algorithm can use the same interface: derive from PreparedScene and Evaluator, describe the method and its
+// settings in a Method, and pass it to add_method(). From then on parse() knows its name, and every function that takes
+// a Choice accepts it. The complete code:
 //
 //   using namespace exactff;
 //   struct Guess : methods::Evaluator {                     // F of a small source, no shadows
@@ -63,9 +64,9 @@ struct SettingSpec {
   std::string meaning;
   std::string unit;       // "degrees", "radiosity", "area"; empty: a pure number or a word
   SettingValue fallback;  // the default; its type is the setting's
-  double lowest = 0.0;    // of numbers, both ends included
+  double lowest = 0.0;    // for numbers: the allowed range, both ends included
   double highest = 0.0;
-  std::int64_t multiple_of = 1;  // of whole numbers
+  std::int64_t multiple_of = 1;  // for whole numbers: the value must be a multiple of this
   std::vector<std::string> words = {};
 };
 
@@ -76,15 +77,16 @@ struct SettingSpec {
                                          std::string meaning, std::string unit = {});
 // The first word is the default.
 [[nodiscard]] SettingSpec word_setting(std::string name, std::vector<std::string> words, std::string meaning);
-// "seed": what stochastic methods draw their random numbers from.
+// The setting "seed", from which stochastic methods generate their random numbers.
 [[nodiscard]] SettingSpec seed_setting();
 
-// "an even whole number from 2 to 8192", "a number of at least 0", "one of random, stratified".
+// The allowed values in words: "an even whole number from 2 to 8192", "a number of at least 0", "one of random,
+// stratified".
 [[nodiscard]] std::string allowed(const SettingSpec& spec);
 // The shortest text that reads back to the same value.
 [[nodiscard]] std::string to_string(const SettingValue& value);
 
-// A value for every setting of a method; those not set have their defaults.
+// A value for every setting of a method; settings that are not set have their defaults.
 class Settings {
  public:
   Settings() = default;
@@ -93,25 +95,26 @@ class Settings {
   [[nodiscard]] std::span<const SettingSpec> specs() const { return specs_ ? *specs_ : std::span<const SettingSpec>(); }
   [[nodiscard]] std::span<const SettingValue> values() const { return values_; }
 
-  // Throw InputError where there is no such setting or it does not allow the value. A whole number will do for a
-  // number.
+  // Throw InputError if there is no such setting or if it does not allow the value. A setting of type number also
+  // accepts a whole number.
   void set(std::string_view name, const SettingValue& value);
   void set_text(std::string_view name, std::string_view text);
 
-  // Throw std::logic_error where there is no such setting of that type: names in a program are the programmer's.
+  // Throw std::logic_error if there is no such setting of that type: names in a program are the programmer's
+  // responsibility.
   [[nodiscard]] std::int64_t whole(std::string_view name) const;
   [[nodiscard]] double number(std::string_view name) const;
   [[nodiscard]] const std::string& word(std::string_view name) const;
   [[nodiscard]] bool has(std::string_view name) const;
 
-  // "resolution=100,rotation=0"; the short text leaves out what has its default value, and may be empty.
+  // "resolution=100,rotation=0". The short text omits settings with their default values and may be empty.
   [[nodiscard]] std::string text() const;
   [[nodiscard]] std::string short_text() const;
 
   friend bool operator==(const Settings& a, const Settings& b) { return a.values_ == b.values_ && a.names_equal(b); }
 
  private:
-  [[nodiscard]] std::size_t place_of(std::string_view name) const;  // specs().size() if there is none
+  [[nodiscard]] std::size_t place_of(std::string_view name) const;  // specs().size() if there is no such setting
   [[nodiscard]] std::size_t must_find(std::string_view name) const;
   [[nodiscard]] std::string text_of(bool all) const;
   [[nodiscard]] bool names_equal(const Settings& other) const;
@@ -122,7 +125,7 @@ class Settings {
 
 // ----------------------------------------------------------------------------------------------------------- results
 
-// How much work was done, by name: "rays", "leaves", "pixels". A few named numbers without allocation.
+// Amounts of work by name: "rays", "leaves", "pixels". Holds a few named numbers without allocating memory.
 class Counters {
  public:
   struct Counter {
@@ -131,10 +134,10 @@ class Counters {
   };
   static constexpr std::size_t kMost = 16;
 
-  // Adds to the counter of that name, which is made if it is new. `name` must live as long as the program. Throws
-  // std::logic_error beyond kMost names.
+  // Adds to the counter of that name and creates it if it is new. `name` must remain valid as long as the program runs.
+  // Throws std::logic_error for more than kMost names.
   void add(std::string_view name, std::uint64_t count);
-  [[nodiscard]] std::uint64_t operator[](std::string_view name) const;  // 0 where there is none
+  [[nodiscard]] std::uint64_t operator[](std::string_view name) const;  // 0 if there is no such counter
   [[nodiscard]] std::span<const Counter> list() const { return {counters_.data(), size_}; }
 
  private:
@@ -149,7 +152,7 @@ struct Estimate {
 
 // ------------------------------------------------------------------------------------------------------------ stages
 
-// What depends on the source alone. Immutable, shared between threads.
+// The data of a method that depend on the source alone. Immutable; threads may share it.
 class PreparedSource {
  public:
   explicit PreparedSource(const Selection& selection) : selection_(selection) {}
@@ -160,24 +163,28 @@ class PreparedSource {
   Selection selection_;
 };
 
-// One choice of settings, with the memory that one thread works in. Values depend on the scene, the settings, the
-// receiver and the source alone: never on what was evaluated before, or on other threads.
+// One choice of settings, with the working memory of one thread. Values depend on the scene, the settings, the receiver
+// and the source alone, never on earlier evaluations or other threads.
 //
-// Of the library's methods every form factor is finite, whatever the scene. It lies in [0, 1] unless the method's own
-// formula leaves it (Method::can_leave_unit): what rounding moves out of the range is brought back to its end, what the
-// formula moves out is kept, and beyond the largest double it is the largest double. Only literal variants can be
-// negative. Of a method of your own the study counts what is not finite, and leaves it out of error statistics.
+// The library's own methods return a finite form factor for every scene. It lies in [0, 1] unless the method's own
+// formula can leave this range (Method::can_leave_unit). A value outside [0, 1] because of rounding is set to the
+// nearer end; a value outside because of the formula is kept, and one beyond the largest double becomes the largest
+// double. Only literal variants can be negative. For a method of your own, the study counts values that are not finite
+// and leaves them out of error statistics.
 class Evaluator {
  public:
   virtual ~Evaluator() = default;
 
-  // What depends on the receiver alone, such as a hemicube's item buffer; the values asked for next are seen from
-  // there. A receiver that is not finite or has a zero normal is an InputError, here or at the first value.
+  // Computes the data that depend on the receiver alone, such as the item buffer of a hemicube. The values requested
+  // next are for this receiver. Throws InputError, here or at the first value, if the receiver is not finite or has a
+  // zero normal.
   virtual void look_from(const Receiver& receiver) = 0;
-  // Requires look_from, and a source prepared by the PreparedScene that made this.
+  // The form factor to one source. Requires a call of look_from before, and a source prepared by the PreparedScene that
+  // made this evaluator.
   [[nodiscard]] virtual Estimate form_factor(const PreparedSource& source) = 0;
 
-  // Many sources from where it looks: the same values as one by one. `estimates` is as long as `sources`.
+  // The form factors to many sources from the current receiver: the same values as one by one. `estimates` has the same
+  // length as `sources`.
   virtual void form_factors(std::span<const PreparedSource* const> sources, std::span<Estimate> estimates);
 
   [[nodiscard]] Estimate form_factor(const Receiver& receiver, const PreparedSource& source) {
@@ -186,7 +193,7 @@ class Evaluator {
   }
 };
 
-// What depends on the scene alone. Immutable, shared between threads; refers to the scene.
+// The data of a method that depend on the scene alone. Immutable; threads may share it. Keeps a reference to the scene.
 class PreparedScene {
  public:
   explicit PreparedScene(const Scene& scene) : scene_(scene) {}
@@ -196,7 +203,7 @@ class PreparedScene {
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] virtual std::unique_ptr<PreparedSource> prepare_source(const Selection& selection) const;
-  // An evaluator for one thread; it refers to this. `settings` are the method's.
+  // An evaluator for one thread. It keeps a reference to this object. `settings` must be those of the method.
   [[nodiscard]] virtual std::unique_ptr<Evaluator> configure(const Settings& settings) const = 0;
 
  private:
@@ -210,29 +217,30 @@ struct Method {
   std::string summary;  // one sentence
   std::string source;   // where it was published; may be empty
   std::vector<SettingSpec> settings;
-  // One look from a receiver gives all sources: its cost does not grow with their number.
+  // One pass from a receiver gives the values of all sources: its cost does not grow with their number.
   bool all_sources_at_once = false;
-  // Throws InputError where the scene is not fit for the method.
+  // Throws InputError if the method cannot handle the scene.
   std::function<std::unique_ptr<PreparedScene>(const Scene&)> prepare;
-  // Whether a setting can change a value, given the others; empty: all can.
+  // True if a setting can change a value, given the other settings. Empty: all settings can.
   std::function<bool(const Settings&, std::string_view setting)> uses = {};
-  // Throws InputError where settings do not go together; empty: all do.
+  // Throws InputError if settings are incompatible. Empty: all combinations are allowed.
   std::function<void(const Settings&)> check = {};
-  // Whether the formula itself, without any rounding, can give a value outside [0, 1]; empty: it cannot.
+  // True if the formula itself, without any rounding, can give a value outside [0, 1]. Empty: it cannot.
   std::function<bool(const Settings&)> can_leave_unit = {};
 
   [[nodiscard]] Settings defaults() const { return Settings(settings); }
   // True if the values depend on the seed.
   [[nodiscard]] bool stochastic(const Settings& chosen) const;
-  // Settings that cannot change a value put to their defaults: equal results then compare equal.
+  // The settings, with those that cannot change a value set to their defaults, so that equal results compare equal.
   [[nodiscard]] Settings normalised(const Settings& chosen) const;
 };
 
-// In the order of registration. Methods stay where they are as long as the program runs.
+// All methods in the order of registration. The pointers stay valid as long as the program runs.
 [[nodiscard]] std::vector<const Method*> all_methods();
-// Throws InputError that names the closest ones.
+// Throws InputError that lists the closest names if there is no such method.
 [[nodiscard]] const Method& method_named(std::string_view name);
-// Throws std::logic_error where the name is taken or not made of letters, digits and hyphens, or `prepare` is empty.
+// Throws std::logic_error if the name is already used or contains anything but letters, digits and hyphens, or if
+// `prepare` is empty.
 const Method& add_method(Method method);
 
 // A method and its settings.
@@ -245,11 +253,11 @@ struct Choice {
   friend bool operator==(const Choice&, const Choice&) = default;
 };
 
-// NAME or NAME:SETTING=VALUE,... with blanks anywhere between. Throws one InputError with everything that is wrong, and
-// says what is allowed.
+// Parses NAME or NAME:SETTING=VALUE,...; blanks are allowed anywhere between. Throws one InputError that lists all
+// errors and the allowed values.
 [[nodiscard]] Choice parse(std::string_view text);
 
-// Name, summary and every setting with its meaning, unit, default and range, a setting a line.
+// Name, summary and every setting with its meaning, unit, default and range, one setting per line.
 [[nodiscard]] std::string description(const Method& method);
 
 }  // namespace exactff::methods

@@ -1,4 +1,4 @@
-// A scene: named patches of planar polygonal faces with materials, held exactly as they were given.
+// A scene: named patches of planar polygonal faces with materials. Coordinates are kept exactly as given.
 //
 // A Scene is immutable and safe to share between threads. SceneBuilder makes one from vertices and
 // faces; read_obj (obj.h) makes one from a Wavefront file.
@@ -21,7 +21,7 @@ namespace exactff {
 enum class PatchId : std::uint32_t {};
 enum class FaceId : std::uint32_t {};
 enum class MaterialId : std::uint32_t {};
-// Every scene made in a process has a number of its own, from 1; a scene that is moved keeps it.
+// Every scene made in a process has its own number, counted from 1. A scene that is moved keeps it.
 enum class SceneId : std::uint64_t {};
 inline constexpr SceneId kAnyScene{0};
 
@@ -48,19 +48,20 @@ enum class FaceShape {
 struct Face {
   PatchId patch{};
   MaterialId material{};
-  std::uint32_t number = 0;  // k of NAME:k: from 1 within its patch in file order, ignored ones counted
+  std::uint32_t number = 0;  // k of NAME:k: counted from 1 within its patch in file order, ignored faces included
   FaceShape shape = FaceShape::kPlanar;
-  std::size_t line = 0;  // where the file defines it; 0 if made by the API
-  // Vertex indices; the first ring is the outer one, the others are holes. The front is the side from
-  // which the outer ring runs counter-clockwise.
+  std::size_t line = 0;  // line of its definition in the file; 0 if made by the API
+  // Vertex indices. The first ring is the outer one, the others are holes. The front is the side from which the outer
+  // ring runs counter-clockwise.
   std::vector<std::vector<std::uint32_t>> rings;
-  std::uint32_t first_piece = 0;  // into Scene::pieces()
+  std::uint32_t first_piece = 0;  // index into Scene::pieces()
   std::uint32_t piece_count = 0;
-  // Half the outer ring's Newell vector, correctly rounded: the front normal, as long as the ring's area. Where the
-  // largest component is not within [2^-900, 2^1000) the vector is first scaled into [1/2, 1) by a power of two.
+  // Half the outer ring's Newell vector, correctly rounded: it points to the front, and its length is the area of the
+  // outer ring. If its largest component is not within [2^-900, 2^1000), the vector is first scaled by a power of two
+  // so that this component lies in [1/2, 1).
   Vec3 newell;
-  double area = 0.0;          // square of the scene's unit of length; an estimate, clamped to positive doubles
-  double out_of_plane = 0.0;  // largest distance of a vertex from the mean plane over the diameter (estimate)
+  double area = 0.0;          // in the square of the scene's unit of length; an estimate, clamped to positive doubles
+  double out_of_plane = 0.0;  // largest distance of a vertex from the mean plane, divided by the diameter (estimate)
 };
 
 struct Patch {
@@ -68,9 +69,9 @@ struct Patch {
   std::vector<FaceId> faces;
 };
 
-// A convex, exactly planar part of a face with at least three corners and positive area. Corners run
-// counter-clockwise seen from the face's front; corners in the middle of a straight side are possible.
-// The pieces of a face do not overlap and together make up the face exactly.
+// A convex, exactly planar part of a face, with at least three corners and positive area. Corners run counter-clockwise
+// as seen from the face's front; some may lie in the middle of a straight side. The pieces of a face do not overlap and
+// together cover the face exactly.
 struct Piece {
   FaceId face{};
   std::uint32_t first_corner = 0;
@@ -78,12 +79,12 @@ struct Piece {
   std::uint32_t frame[3] = {0, 0, 0};  // vertex indices of three corners not on a line, in order
 };
 
-// What a name selects: a whole patch, or one of its faces (NAME:k). Wherever a selection is taken, one that a scene
-// made is refused for another scene, and so are ids that the scene does not have (std::invalid_argument).
+// The object that a name selects: a whole patch, or one of its faces (NAME:k). Functions that take a selection throw
+// std::invalid_argument if it was made by another scene or has ids that the scene does not have.
 struct Selection {
   PatchId patch{};
   std::optional<FaceId> face;
-  SceneId scene = kAnyScene;  // that made it; not compared
+  SceneId scene = kAnyScene;  // the scene that made it; not compared
 
   friend bool operator==(const Selection& a, const Selection& b) { return a.patch == b.patch && a.face == b.face; }
 };
@@ -107,37 +108,38 @@ class Scene {
   [[nodiscard]] const Material& material(MaterialId id) const { return materials()[index_of(id)]; }
   [[nodiscard]] std::span<const Piece> pieces_of(FaceId id) const;
 
-  // The faces that a selection stands for (ignored and skipped ones left out).
+  // The faces of a selection, without ignored and skipped ones.
   [[nodiscard]] std::vector<FaceId> faces_of(const Selection& selection) const;
 
-  // "NAME" or "NAME:k"; an exact patch name wins. Throws InputError that names the closest patches.
+  // Selects "NAME" or "NAME:k". A patch whose name is exactly the text has priority. Throws InputError that lists the
+  // closest patch names if nothing matches.
   [[nodiscard]] Selection select(std::string_view name) const;
   [[nodiscard]] std::string name_of(const Selection& selection) const;
   [[nodiscard]] std::string name_of(FaceId face) const;  // "NAME:k", or "NAME" for a patch of one face
 
-  // Every patch with a face that emits, in file order.
+  // Every patch that has an emitting face, in file order.
   [[nodiscard]] std::vector<Selection> emitters() const;
 
-  // B_s of a source: its Ke, or 1 in each channel where it emits nothing. Throws InputError if faces
-  // of the selection differ in Ke.
+  // B_s of a source: its Ke, or 1 in each channel if it emits nothing. Throws InputError if faces of the selection
+  // differ in Ke.
   [[nodiscard]] Rgb source_radiosity(const Selection& source) const;
-  // rho_r of a receiver on `face`: Kd of that face; (1,1,1) for a free receiver. A face that the scene does not have is
-  // refused (std::invalid_argument).
+  // rho_r of a receiver on `face`: Kd of that face; (1,1,1) for a receiver that lies on no face. Throws
+  // std::invalid_argument if the scene does not have the face.
   [[nodiscard]] Rgb receiver_reflectance(std::optional<FaceId> face) const;
 
-  // The same scene with the faces of the selections turned round: their fronts become their backs. A face that several
-  // of them name is turned once.
+  // The same scene with the faces of the selections turned round: their fronts become their backs. A face in several
+  // selections is turned once.
   [[nodiscard]] Scene with_flipped(std::span<const Selection> selections) const;
   [[nodiscard]] Scene with_flipped(const Selection& selection) const { return with_flipped(std::span(&selection, 1)); }
 
-  // What the builder found worth saying, in file order.
+  // Warnings of the builder, in file order.
   [[nodiscard]] std::span<const Problem> warnings() const;
 
-  // 64-bit FNV-1a hash over everything that affects values: vertices, rings, names,
-  // materials; 16 lower-case hexadecimal digits.
+  // 64-bit FNV-1a hash over everything that affects values: vertices, rings, names, materials. 16 lower-case
+  // hexadecimal digits.
   [[nodiscard]] std::string hash() const;
 
-  // Edges that an odd number of faces use, by vertex position: none in a closed solid.
+  // Number of edges that an odd number of faces use, matched by vertex positions. A closed solid has none.
   [[nodiscard]] std::size_t open_edge_count() const;
 
   struct Data;
@@ -169,14 +171,14 @@ class SceneBuilder {
   std::uint32_t add_vertex(const Vec3& position);
   [[nodiscard]] std::size_t vertex_count() const;
   MaterialId add_material(Material material);
-  PatchId patch(std::string_view name);  // the patch of that name, made if it is new
-  // Rings of vertex indices, the outer one first; orientation of holes is irrelevant (even-odd). The vertices may
-  // follow later. Throws std::invalid_argument for a patch or material that this builder has not made.
+  PatchId patch(std::string_view name);  // the patch of this name, created if it is new
+  // Rings of vertex indices, the outer ring first. The orientation of holes is irrelevant (even-odd rule). The vertices
+  // may be added later. Throws std::invalid_argument for a patch or material that this builder has not made.
   void add_face(PatchId patch, MaterialId material, std::vector<std::vector<std::uint32_t>> rings,
                 std::size_t line = 0);
   void warn(Problem warning);
 
-  // Checks every face, triangulates what is not planar or not convex, and freezes the scene. Throws one
+  // Checks every face, triangulates faces that are not planar or not convex, and freezes the scene. Throws one
   // InputError with all problems found. The builder is empty afterwards.
   [[nodiscard]] Scene build();
 

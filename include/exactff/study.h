@@ -1,10 +1,10 @@
-// A study of one scene: approximate methods judged by the exact form factor, over many receivers. Tampieri's
-// ray-sampled adaptive algorithm is swept over all its parameters at every receiver; all methods are run against one
-// another, with rising effort and many seeds, at a choice of the receivers. With its tables and its report.
+// A study of one scene: approximate methods compared with the exact form factor over many receivers, with tables and a
+// report. Tampieri's ray-sampled adaptive algorithm is run at every receiver, for values of all its parameters. All
+// methods are compared with each other, with increasing effort and many seeds, at some of the receivers.
 //
-// Errors are approximate minus exact. The error in F is a pure number; the error in radiosity is, over the
-// colour channels c, the rho_c * sum over sources of B_c (F~ - F) of largest magnitude, with its sign. eps_B
-// is judged on the radiosity error, summed over the sources.
+// Errors are approximate minus exact. The error in F is a pure number. The error in radiosity is the value of rho_c *
+// sum over sources of B_c (F~ - F) that has the largest magnitude over the colour channels c, with its sign. eps_B is
+// compared with the error in radiosity, summed over the sources.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@
 
 namespace exactff::study {
 
-// The values that each parameter of the adaptive algorithm takes. An empty list stands for the default.
+// The values of each parameter of the adaptive algorithm. An empty list means the default.
 struct Sweeps {
   std::vector<double> eps_b = {};            // default: max(rho B) times 10^-1 .. 10^-5
   std::vector<double> eps_a = {};            // default: 0 and the sources' mean face area times 10^-1 .. 10^-4
@@ -37,8 +37,8 @@ struct Sweeps {
   std::vector<Variant> variants = {};        // default: mended, then literal
 };
 
-// Every combination of the lists where there are at most this many; else the plane eps_B x rays, and every
-// other list on its own around the base.
+// All combinations of the lists are run if there are at most this many. Otherwise the plane eps_B x rays is run, and
+// every other list on its own with the other parameters at the base.
 inline constexpr std::size_t kFullProductLimit = 40;
 
 enum class Parameter { kEpsB, kEpsA, kRays, kSeed, kPattern, kVariant };
@@ -49,27 +49,27 @@ inline constexpr std::size_t kParameterCount = 6;
 [[nodiscard]] std::optional<SamplePattern> pattern_named(std::string_view name);
 [[nodiscard]] std::optional<Variant> variant_named(std::string_view name);
 
-// A method with rising effort: its rungs differ in one setting.
+// A method with increasing effort. Its rungs differ in one setting.
 struct Ladder {
   std::string name;                    // "area sampling, stratified"
-  std::string along;                   // the setting that differs; empty where there is one rung only
-  std::vector<methods::Choice> rungs;  // by rising effort
+  std::string along;                   // the setting that differs; empty if there is only one rung
+  std::vector<methods::Choice> rungs;  // in order of increasing effort
 };
 
-// "area-sampling:pattern=stratified,samples=4|16|64": a method's text as methods::parse takes it, where one setting may
-// have several values. Throws InputError.
+// Parses "area-sampling:pattern=stratified,samples=4|16|64": the text of a method as for methods::parse, where one
+// setting may have several values. Throws InputError.
 [[nodiscard]] Ladder parse_ladder(std::string_view text);
 
-// How the methods are run against one another.
+// How the methods are compared with each other.
 struct MethodSweep {
   bool enabled = true;
   std::vector<Ladder> ladders = {};  // default: every method of the library
-  std::size_t seeds = 30;            // 1 .. seeds, of stochastic methods
-  std::size_t receivers = 48;        // at most, chosen evenly among those that see something
-  double budget = 2.0;  // seconds for a ladder by its counted work, on no machine in particular; see MethodStudy
+  std::size_t seeds = 30;            // stochastic methods run with the seeds 1 .. seeds
+  std::size_t receivers = 48;        // at most this many, chosen evenly among those that see something
+  double budget = 2.0;  // seconds per ladder, estimated from counted work, for no particular machine; see MethodStudy
 };
 
-// What is compared. Refers to the scene.
+// The input of a study. Keeps a reference to the scene.
 struct Request {
   const Scene* scene = nullptr;
   std::string scene_name;  // for titles and headers
@@ -79,10 +79,10 @@ struct Request {
   Sweeps sweeps;
   MethodSweep methods;
   Engine engine = Engine::kEdges;
-  int threads = 0;                  // 0: as many as this process may use; times are measured on one, alone
-  std::string command_line;         // for the report's last section
-  double sweep_budget = 15.0;       // seconds for all settings of the adaptive algorithm, as MethodSweep::budget
-  double seconds_for_a_time = 0.1;  // spent on the times of one setting, about
+  int threads = 0;                  // 0: as many as this process may use; times are always measured on a single thread
+  std::string command_line;         // shown in the last section of the report
+  double sweep_budget = 15.0;       // seconds for all settings of the adaptive algorithm, as for MethodSweep::budget
+  double seconds_for_a_time = 0.1;  // approximate seconds spent on timing one setting
 };
 
 inline constexpr double kNotTimed = std::numeric_limits<double>::quiet_NaN();
@@ -91,7 +91,7 @@ inline constexpr double kNotTimed = std::numeric_limits<double>::quiet_NaN();
 enum class Sight { kNothing, kHidden, kPartly, kVisible };  // kNothing: behind it or below the horizon
 [[nodiscard]] std::string_view name_of(Sight sight);
 
-// One receiver and one source.
+// The exact result for one receiver and one source.
 struct ExactTerm {
   double value = 0.0;
   double lower = 0.0;
@@ -100,21 +100,21 @@ struct ExactTerm {
   Sight sight = Sight::kNothing;
   double visible_fraction = 0.0;  // NaN in scenes of more than kMostFacesForFractions faces
 };
-inline constexpr std::size_t kMostFacesForFractions = 5000;  // beyond, an exact fraction takes long
+inline constexpr std::size_t kMostFacesForFractions = 5000;  // for more faces an exact fraction takes long
 
-// One receiver and all sources.
+// The exact result for one receiver and all sources.
 struct ExactRow {
   std::vector<ExactTerm> terms;  // in the order of the sources
   double form_factor = 0.0;      // their sum, added as balls and rounded once
   Rgb radiosity;                 // rho * sum of B_s F_s
   Sight sight = Sight::kNothing;
   bool certified = true;
-  bool sampled = false;           // nothing but rays can tell the adaptive algorithm what is seen
+  bool sampled = false;           // the adaptive algorithm can find the visibility only by tracing rays
   double visible_fraction = 0.0;  // mean over the sources, weighted by their areas
   double seconds = kNotTimed;
 };
 
-// One receiver and one setting, summed over the sources.
+// The result of the adaptive algorithm for one receiver and one setting, summed over the sources.
 struct SampleRow {
   double form_factor = 0.0;
   double error = 0.0;
@@ -123,14 +123,14 @@ struct SampleRow {
   std::uint64_t rays = 0;
   std::uint64_t shaft_tests = 0;
   std::array<std::uint64_t, kLeafReasonCount> leaves_by_reason{};
-  std::uint64_t silent_leaves = 0;  // sampled V = 0 or 1 while part of the leaf is visible and part is not
-  std::uint64_t wrong_leaves = 0;   // sampled V = 0 while all is visible, or V = 1 while nothing is
-  double silent_error = 0.0;        // what silent and wrong leaves add to the form factor beyond what they should
+  std::uint64_t silent_leaves = 0;  // sampled V = 0 or 1, but part of the leaf is visible and part is hidden
+  std::uint64_t wrong_leaves = 0;   // sampled V = 0 but all is visible, or V = 1 but nothing is
+  double silent_error = 0.0;        // the form factor that silent and wrong leaves add beyond the correct amount
   double seconds = kNotTimed;
 };
 
-// Over the receivers of one setting. p99 is the nearest-rank percentile of |error|: the smallest magnitude
-// that at least 99 % of the receivers do not exceed. Errors that are no numbers are counted apart.
+// Error statistics over the receivers of one setting. p99 is the nearest-rank percentile of |error|: the smallest
+// magnitude that at least 99 % of the receivers do not exceed. NaN errors are only counted.
 struct ErrorStatistics {
   double rms = 0.0;
   double mean = 0.0;  // signed
@@ -143,16 +143,16 @@ struct Summary {
   ErrorStatistics form_factor;
   ErrorStatistics radiosity;
   ErrorStatistics radiosity_partly;  // over the receivers that see the source partly
-  std::size_t violations = 0;        // receivers with |radiosity error| > eps_B, or no number
+  std::size_t violations = 0;        // receivers with |radiosity error| > eps_B or NaN
   std::uint64_t leaves = 0;
   std::uint64_t rays = 0;
   std::uint64_t silent_leaves = 0;
   std::uint64_t wrong_leaves = 0;
-  std::size_t silent_receivers = 0;  // those with a silent or wrong leaf
+  std::size_t silent_receivers = 0;  // receivers with a silent or wrong leaf
   ErrorStatistics silent;            // of SampleRow::silent_error, over the judged receivers
 };
 
-// Seconds per receiver. `partly`: over the receivers that see the source partly, if any.
+// Seconds per receiver. The `_partly` fields are over the receivers that see the source partly, if any.
 struct TimeSummary {
   double median = 0.0;
   double mean = 0.0;
@@ -160,24 +160,24 @@ struct TimeSummary {
   double mean_partly = 0.0;
 };
 
-// One rung of a ladder at the chosen receivers.
+// The results of one rung of a ladder at the chosen receivers.
 struct MethodCell {
   std::size_t ladder = 0;
   std::size_t rung = 0;
-  std::vector<std::uint64_t> seeds;                   // one, 0, where the method draws nothing at random
-  std::vector<std::vector<double>> values;            // F by seed, then chosen receiver
+  std::vector<std::uint64_t> seeds;                   // a single 0 if the method uses no random numbers
+  std::vector<std::vector<double>> values;            // F, by seed, then by chosen receiver
   std::vector<std::vector<double>> radiosity_errors;  // the same
-  ErrorStatistics error;                              // of the radiosity, over seeds and receivers
+  ErrorStatistics error;                              // errors in radiosity, over seeds and receivers
   ErrorStatistics error_partly;                       // where the source is partly hidden
   ErrorStatistics error_visible;                      // where it is wholly visible
-  double work = 0.0;  // samples or pixels, else leaves and rays, of a receiver in the mean
-  // Per receiver and all sources, by the median over repetitions and then the mean over receivers; NaN if not timed.
+  double work = 0.0;  // samples or pixels, or else leaves and rays, per receiver on average
+  // Seconds per receiver for all sources: the median over repetitions, then the mean over receivers. NaN if not timed.
   double seconds = kNotTimed;
   double seconds_partly = kNotTimed;
 };
 
-// error = c * work^exponent, fitted over the rungs for each seed; the mean over the seeds with its 95 % confidence
-// interval by Student's t, which a single seed has not.
+// The exponent of error = c * work^exponent, fitted over the rungs for each seed: the mean over the seeds, with its
+// 95 % confidence interval by Student's t. A single seed has no interval.
 struct Slope {
   double exponent = 0.0;
   double low = 0.0;
@@ -188,34 +188,35 @@ struct Slope {
 
 struct LadderSlopes {
   std::optional<Slope> partly;   // over the receivers that see the source partly
-  std::optional<Slope> visible;  // over those that see all of it
+  std::optional<Slope> visible;  // over the receivers that see all of it
 };
 
-// The middle rung of a ladder at every receiver, with its first seed.
+// The results of the middle rung of a ladder at every receiver, with its first seed.
 struct MethodField {
   std::size_t ladder = 0;
   std::size_t rung = 0;
   std::vector<double> radiosity_errors;
 };
 
-// A ladder ends before the rung that would take its counted work (rays, pixels, ...), at a fixed price for each, over
-// the budget: what is run depends on the request alone, never on a clock.
+// The comparison of the methods. A ladder stops before the rung whose counted work (rays, pixels, ...), at a fixed
+// price per unit, would exceed the budget. The set of rungs run therefore depends on the request alone, never on a
+// clock.
 struct MethodStudy {
   std::vector<Ladder> ladders;
-  std::vector<std::size_t> receivers;  // chosen: indices into Study::exact, ascending
+  std::vector<std::size_t> receivers;  // the chosen receivers: indices into Study::exact, ascending
   std::vector<MethodCell> cells;       // by ladder, then rung
   std::vector<LadderSlopes> slopes;    // by ladder
-  std::vector<MethodField> fields;     // of those ladders whose middle rung was run
+  std::vector<MethodField> fields;     // for the ladders whose middle rung was run
   std::vector<double> setup_seconds;   // by ladder: once per scene and source
 };
 
-// The exact radiosity along the line of receivers where most see the source partly, with what others make of it.
+// The exact radiosity, and the values of other methods, along the line of receivers where most see the source partly.
 struct Profile {
   std::string where;                // "row 12 of floor"
   std::vector<Receiver> receivers;  // in order
-  std::vector<double> position;     // of each, distance from the first, in the scene's unit
+  std::vector<double> position;     // distance of each from the first, in the scene's unit of length
   std::vector<double> exact;        // radiosity, largest channel
-  std::vector<double> kinks;        // positions where what is visible changes in kind, to 2^-20 of the length
+  std::vector<double> kinks;        // positions where Sight changes for some source, to 2^-20 of the length
   struct Curve {
     std::string name;
     std::vector<double> radiosity;
@@ -223,7 +224,7 @@ struct Profile {
   std::vector<Curve> others;
 };
 
-// What the scene gave no work to.
+// A part of the study that was left out because the scene has nothing for it.
 struct LeftOut {
   std::string what;
   std::string why;
@@ -233,7 +234,7 @@ struct Study {
   Request request;  // sources, sweeps and threads filled in
   double largest_rho_b = 0.0;
   std::vector<AdaptiveOptions> settings;
-  std::size_t base = 0;  // into settings: where sweeps cross
+  std::size_t base = 0;  // index into settings: the point where the sweeps cross
   bool full_product = false;
   std::vector<ExactRow> exact;                  // by receiver
   std::vector<std::vector<SampleRow>> samples;  // by setting, then receiver
@@ -241,13 +242,13 @@ struct Study {
   TimeSummary exact_time;
   std::vector<TimeSummary> times;  // by setting
   std::array<std::size_t, 4> receivers_by_sight{};
-  std::vector<std::size_t> timed;  // the receivers whose times were measured
-  // The receivers whose leaves were held against the exact visible region, ascending: all, or a choice in large scenes,
-  // where drawing that region takes long. Only these have silent and wrong leaves.
+  std::vector<std::size_t> timed;  // the receivers that were timed
+  // The receivers whose leaves were compared with the exact visible region, in ascending order: all of them, or some of
+  // them in large scenes, where drawing that region takes long. Only these have silent and wrong leaves.
   std::vector<std::size_t> judged;
   MethodStudy methods;
-  // By receiver: its distance to the nearest place on its face where what is visible changes in kind, to three quarters
-  // of `edge_resolution`; empty where the receivers are no grid.
+  // By receiver: the distance to the nearest position on its face where Sight changes for some source, accurate to
+  // three quarters of `edge_resolution`. Empty if the receivers do not form a grid.
   std::vector<double> edge_distance;
   double edge_resolution = 0.0;
   std::optional<Profile> profile;
@@ -256,7 +257,7 @@ struct Study {
   double ray_setup_seconds = 0.0;    // once per scene
 };
 
-// How far the work is; called from one thread at a time.
+// The progress of the work. Hooks are called with it from one thread at a time.
 struct Progress {
   std::string_view stage;
   std::size_t done = 0;
@@ -265,54 +266,55 @@ struct Progress {
 
 struct Hooks {
   std::function<void(const Progress&)> progress;
-  std::function<bool()> cancelled;  // asked between receivers, from any thread
+  std::function<bool()> cancelled;  // called between receivers, from any thread
 };
 
-// Finished work in a file beside the result, so that what was interrupted can go on where it was. Pieces of work have
-// names; what is damaged in the file counts as not done. From any thread.
+// Finished work, stored in a file beside the result so that an interrupted run can be resumed. Each piece of work has a
+// name. Damaged pieces in the file count as not done. All functions may be called from any thread.
 class Journal {
  public:
-  enum class Existing { kRefuse, kResume, kReplace };  // where there is one already
+  enum class Existing { kRefuse, kResume, kReplace };  // what to do if the file already exists
 
-  // Throws InputError where the file cannot be written, another process is at it, or it is only to be refused.
+  // Throws InputError if the file cannot be written, if another process uses it, or if it holds finished work and
+  // `existing` is kRefuse.
   Journal(const std::filesystem::path& file, Existing existing);
-  ~Journal();  // a journal with nothing in it is removed
+  ~Journal();  // removes a journal without content
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
   [[nodiscard]] std::optional<std::string> find(const std::string& name) const;
   void add(const std::string& name, std::string_view bytes);
-  [[nodiscard]] std::size_t size() const;  // pieces of work
+  [[nodiscard]] std::size_t size() const;  // number of pieces of work
   [[nodiscard]] const std::filesystem::path& path() const;
-  void remove();  // all is done
+  void remove();  // call when all work is done
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-// Where the journal of a folder of results is: beside it.
+// The path of the journal for a folder of results: beside the folder.
 [[nodiscard]] std::filesystem::path journal_of_folder(const std::filesystem::path& folder);
 
-// The work was given up because Hooks::cancelled said so.
+// Thrown if Hooks::cancelled returned true.
 class Cancelled : public std::runtime_error {
  public:
   Cancelled() : std::runtime_error("cancelled") {}
 };
 
-// Computes everything. All but the times depends on the request alone, never on the number of threads. Times are
-// measured afterwards, one thread at work and nothing else: the median of three calls by a steady clock, after a first
-// call with the same arguments. Values that `journal` has are taken from it, and those found are kept there. Throws
-// InputError where there is no receiver or no source, and where the sampled methods refuse the scene.
+// Runs the study. Everything except the times depends on the request alone, not on the number of threads. Times are
+// measured afterwards with one thread and no other work: the median of three calls by a steady clock, after a first
+// call with the same arguments. Values in `journal` are taken from it, and new values are stored there. Throws
+// InputError if there is no receiver or no source, or if the sampled methods do not accept the scene.
 [[nodiscard]] Study run(Request request, const Hooks& hooks = {}, Journal* journal = nullptr);
 
-// Throws InputError unless `folder` can be written and replaced: it does not exist, is empty, or holds
-// nothing but files of an earlier study.
+// Throws InputError unless `folder` can be written and replaced: it does not exist, is empty, or contains only files of
+// an earlier study.
 void check_output_folder(const std::filesystem::path& folder);
 
-// Writes the tables and the report into a hidden sibling of `folder` and renames that at the end. Value files
-// (values, exact, summary) hold no times and are the same bytes for any number of threads. Returns
-// what is worth telling, such as a missing gnuplot.
+// Writes the tables and the report into a hidden folder beside `folder`, and renames it at the end. The value files
+// (values, exact, summary) contain no times and have the same bytes for any number of threads. Returns notes for the
+// user, such as a missing gnuplot.
 std::vector<std::string> write(const Study& study, const std::filesystem::path& folder, const Hooks& hooks = {});
 
 // The main result in a few sentences.

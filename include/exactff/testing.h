@@ -4,8 +4,8 @@
 //   EXPECT_FORM_FACTOR_NEAR(mine, row, exactff::check::relative(1e-3));
 //   EXPECT_FORM_FACTORS_NEAR("truth.csv", my_form_factor, exactff::check::Criteria{.max_abs = 1e-3, .rms = 1e-4});
 //
-// The last one calls the function for every row of a truth file and reports the limits it breaks and its worst rows.
-// The function takes (point, normal), (point, normal, source's name) or (row), and returns a number.
+// The last one calls the function for every row of a truth file and reports the limits that are exceeded and the worst
+// rows. The function takes (point, normal), (point, normal, name of the source) or (row), and returns a number.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -67,7 +67,7 @@ template <class Function>
 
 }  // namespace exactff::check
 
-// The tolerance and the criteria come last and may hold commas.
+// The tolerance and the criteria are the last argument, so that they may contain commas.
 #define EXPECT_FORM_FACTOR_NEAR(actual, expected, ...) \
   EXPECT_PRED_FORMAT3(::exactff::check::form_factor_near, actual, expected, (__VA_ARGS__))
 #define ASSERT_FORM_FACTOR_NEAR(actual, expected, ...) \
