@@ -25,9 +25,9 @@ ExactVec3 point_at(const BoundaryPiece& piece, const EdgeParameter& t) {
 void ContourIntegral::add(const BoundaryPiece& piece) {
   const ExactVec3 a_cross_b = cross(piece.a, piece.b);
   const Integer w = piece.begin.l * piece.end.m - piece.begin.m * piece.end.l;
-  if (sign(w) == 0) return;  // begins where it ends
+  if (sign(w) == 0) return;  // the piece begins where it ends
   const Integer normal_dot = dot(normal_, a_cross_b);
-  if (sign(normal_dot) == 0) return;  // its plane holds the normal: nothing to add
+  if (sign(normal_dot) == 0) return;  // the normal lies in the plane of the edge and x: the term is 0
   terms_.push_back({dot(a_cross_b, a_cross_b), sign(w) > 0 ? normal_dot : Integer(-normal_dot), abs(w),
                     dot(point_at(piece, piece.begin), point_at(piece, piece.end))});
 }

@@ -1,16 +1,17 @@
-// Tampieri's Eq. (4) over the boundary of a visible region, in ball arithmetic. Owns every transcendental function.
+// Tampieri's Eq. (4) over the boundary of a visible region, in ball arithmetic. This module contains every
+// transcendental function.
 //
 //   F = -1/(2 pi |n|) sum over boundary pieces of  angle(p, q) n . (a x b) / |a x b|
 //
-// p and q being the ends of the piece and a, b those of its supporting edge. (The printed equation lacks the minus
-// sign that its vertex order needs: erratum.) Source: F. Tampieri, Graphics Gems III (1992), after H. C. Hottel and
-// A. F. Sarofim (1967).
+// p and q are the ends of the piece, a and b those of its supporting edge, n is the receiver's normal. (The printed
+// equation lacks the minus sign that its vertex order needs: erratum.) Source: F. Tampieri, Graphics Gems III (1992),
+// after H. C. Hottel and A. F. Sarofim (1967).
 //
 // With p = l0 a + m0 b and q = l1 a + m1 b,  p x q = w a x b  where w = l0 m1 - m0 l1, so
-//   angle = atan2(|w| |a x b|, p . q),  its term counted with the sign of w.
-// a x b, p . q, n . (a x b), |a x b|^2 and w are formed exactly, once; balls begin where they are rounded. Each term
-// therefore has full relative precision whatever the geometry, and what is lost is lost in the sum alone: raising
-// the precision by the bits lost there gives any accuracy wanted.
+//   angle = atan2(|w| |a x b|, p . q),  and its term takes the sign of w.
+// a x b, p . q, n . (a x b), |a x b|^2 and w are computed exactly, once; balls start where these are rounded. Each term
+// therefore has full relative precision for any geometry. Accuracy is lost only by cancellation in the sum, so raising
+// the precision by the number of bits lost there gives any desired accuracy.
 #pragma once
 
 #include <span>
@@ -24,13 +25,13 @@ namespace exactff::contour {
 
 class ContourIntegral {
  public:
-  // n: the receiver's normal, any positive multiple, not zero.
+  // `normal`: any positive multiple of the receiver's normal; not zero.
   explicit ContourIntegral(kernel::ExactVec3 normal);
 
   // Requires that a x b is not zero.
   void add(const visibility::BoundaryPiece& piece);
 
-  // Encloses F of the closed loops added so far.
+  // Encloses F of the closed loops added so far, computed with `bits` bits.
   [[nodiscard]] Ball evaluate(long bits) const;
 
  private:

@@ -9,21 +9,21 @@ namespace exactff::contour {
 
 using namespace kernel::double_double;
 
-inline constexpr int kAtanSteps = 256;  // of the table from 0 to 1
+inline constexpr int kAtanSteps = 256;  // intervals of the table from 0 to 1
 
-// Each within 2^-106 of itself.
+// Each has a relative error of at most 2^-106.
 struct AngleConstants {
-  std::array<DoubleDouble, kAtanSteps + 1> atan;  // of k / kAtanSteps; 0 exactly for k = 0
+  std::array<DoubleDouble, kAtanSteps + 1> atan;  // atan of k / kAtanSteps; exactly 0 for k = 0
   DoubleDouble half_pi;
   DoubleDouble pi;
 };
 
-// Computed in ball arithmetic when first asked for.
+// Computed in ball arithmetic on first use.
 const AngleConstants& angle_constants();
 
 EXACTFF_INLINE Bounded constant(const DoubleDouble& x) { return {x.hi, x.lo, 0x1p-106 * x.hi}; }
 
-// The k-th of the table, k being a whole number from 0 to kAtanSteps.
+// Entry k of the table. Requires a whole number k from 0 to kAtanSteps.
 EXACTFF_INLINE Bounded tabulated_atan(double k, const AngleConstants& known) {
   return constant(known.atan[static_cast<std::size_t>(k)]);
 }
@@ -35,10 +35,11 @@ EXACTFF_INLINE FourBounded tabulated_atan(const Four& k, const AngleConstants& k
 }
 
 // atan(z) for |z| < 2^-8.9, where w = z^2 < 2^-17.8:  z (1 + w (-1/3 + w (1/5 - w (1/7 - w (1/9 - w / 11))))).
-// What the series leaves out is below w^6 / 13 < 2^-92 w of |z|. The bracket of 1/7 and w times it are left to doubles,
-// with the high part of w alone: the product is off by less than 2^-53 w, whence 2^-53 w^3 < 2^-88 w of |z|. With low
-// parts of up to 8 u, double-double operations before the last sum err by less than 2^-100 w of |z|, that sum by 3.1
-// u^2 of it. With w < 2^-17.8 all this is less than (2^-103 + 2^-87 w) |z|.
+// All errors here are relative to |z|. The omitted rest of the series is below w^6 / 13 < 2^-92 w. The bracket that
+// starts with 1/7, and its product with w, are computed in doubles, from the high part of w alone: the product is wrong
+// by less than 2^-53 w, which gives 2^-53 w^3 < 2^-88 w. With low parts of up to 8 u, the double-double operations
+// before the last sum are wrong by less than 2^-100 w, and that sum by 3.1 u^2. With w < 2^-17.8 the total is below
+// (2^-103 + 2^-87 w).
 template <class Real>
 EXACTFF_INLINE BasicBounded<Real> atan_near_zero(const BasicBounded<Real>& z) {
   constexpr DoubleDouble kMinusThird{-0x1.5555555555555p-2, -0x1.5555555555555p-56};
@@ -62,15 +63,14 @@ EXACTFF_INLINE Real nearest_whole(const Real& a) {
   return (a + 0x1p52) - 0x1p52;
 }
 
-// atan(y / x) for 0 <= y <= x, all but for their errors; declined where that is not so. With t = k / kAtanSteps nearest
-// to y / x,
+// atan(y / x) for 0 <= y <= x, up to their errors; declined otherwise. With t = k / kAtanSteps nearest to y / x,
 //   atan(y / x) = atan(t) + atan(z),  z = (y - t x) / (x + t y),
-// where |z| <= (1 / 2 kAtanSteps) (1 + 2^-40), but for the errors, which are negligible beside x.
+// where |z| <= (1 / 2 kAtanSteps) (1 + 2^-40), up to errors that are negligible beside x.
 template <class Real>
 EXACTFF_INLINE BasicBounded<Real> atan_of_ratio(const BasicBounded<Real>& y, const BasicBounded<Real>& x,
                                                 const AngleConstants& known) {
   const Real ratio = y.hi / x.hi;
-  const auto is_proper = both(ratio >= 0.0, ratio <= 1.0);  // not so for NaN
+  const auto is_proper = both(ratio >= 0.0, ratio <= 1.0);  // false for NaN
   const Real k = nearest_whole(Real(kAtanSteps * where(is_proper, ratio, Real{})));
   const Real t = k * (1.0 / kAtanSteps);
   return only_where(is_proper, tabulated_atan(k, known) + atan_near_zero((y - t * x) / (x + t * y)));
@@ -86,9 +86,10 @@ EXACTFF_INLINE BasicBounded<Real> absolute(const BasicBounded<Real>& x) {
   return negated_where(x.hi < 0.0, x);
 }
 
-// The angle of the point (cosine, sine) from the first axis, in (-pi, pi). Declined where the point may be the origin
-// or on the negative axis. With x the larger of |cosine| and |sine| and y the other, it is, up to the sign of the sine,
-//   0 + atan(y / x), pi / 2 - atan(y / x), pi / 2 + atan(y / x) or pi - atan(y / x),  from octant to octant.
+// The angle of the point (cosine, sine) from the first axis, in (-pi, pi). Declined if the point may be the origin or
+// on the negative axis. Let x be the larger of |cosine| and |sine|, and y the other. Up to the sign of the sine, the
+// angle is
+//   0 + atan(y / x), pi / 2 - atan(y / x), pi / 2 + atan(y / x) or pi - atan(y / x),  depending on the octant.
 template <class Real>
 EXACTFF_INLINE BasicBounded<Real> atan2(const BasicBounded<Real>& sine, const BasicBounded<Real>& cosine,
                                         const AngleConstants& known) {

@@ -1,12 +1,12 @@
-// Once an edge:
-//   1. d = b - a, a x b as a x d, whose error then shrinks with the edge, its length, and n . (a x b) / |a x b|.
-// Once a piece:
+// Once per edge:
+//   1. d = b - a; a x b as a x d, whose error then shrinks with the edge; its length; and n . (a x b) / |a x b|.
+// Once per piece:
 //   2. p and q, corners or crossings, and w (contour.h);
 //   3. the angle atan2(w |a x b|, p . q), with the sign of w;
 //   4. its product with n . (a x b) / |a x b|, added to the sum.
 //
-// Four edges, or four pieces, at a time, a lane each. A last four that is not full repeats its last lane, and what
-// comes of that is left out. What one lane declines is nothing to the others (kernel/double_double.h).
+// Four edges or four pieces are processed at a time, one per lane. An incomplete group of four repeats its last item,
+// and the results of the repeats are dropped. A lane that declines does not affect the others (kernel/double_double.h).
 #include "contour/quick_contour.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ namespace {
 
 constexpr long kBits = 160;
 
-// Within 2^-106 of itself: two roundings to nearest.
+// The relative error is at most 2^-106: two roundings to nearest.
 DoubleDouble rounded(const Ball& ball) {
   const double hi = kernel::nearest_to_midpoint(ball);
   Ball rest;
@@ -63,9 +63,9 @@ namespace {
 constexpr std::size_t kLanes = 4;
 
 template <class T>
-using FourOf = std::array<const T*, kLanes>;  // in memory, a lane each
+using FourOf = std::array<const T*, kLanes>;  // pointers into memory, one per lane
 
-// Of up to four: the last again where there are no more.
+// Pointers to up to four items; the last item is repeated if there are fewer.
 template <class T>
 EXACTFF_INLINE FourOf<T> four_of(std::span<const T> some) {
   const std::size_t last = some.size() - 1;
@@ -109,7 +109,7 @@ EXACTFF_INLINE Vector lane(const FourVector& v, std::size_t k) {
 
 namespace {
 
-// Scaling the normal may have lost a component.
+// The receiver's normal with an error, because scaling it may have lost a component to underflow.
 template <class Real>
 EXACTFF_INLINE BasicVector<Real> vector_of(const std::array<double, 3>& normal) {
   const auto component = [&](int i) -> BasicDoubleDouble<Real> { return {uniform<Real>(normal[i]), Real{}}; };
@@ -118,7 +118,7 @@ EXACTFF_INLINE BasicVector<Real> vector_of(const std::array<double, 3>& normal) 
 
 EXACTFF_INLINE FourMask has_moderate_size(const FourVector& v) {
   const Four largest = larger(larger(magnitude(v.c[0].hi), magnitude(v.c[1].hi)), magnitude(v.c[2].hi));
-  return both(both(largest >= 0x1p-200, largest <= 0x1p200), v.norm <= 0x1p202);  // the last is false for NaN
+  return both(both(largest >= 0x1p-200, largest <= 0x1p200), v.norm <= 0x1p202);  // the last condition is false for NaN
 }
 
 struct FourLines {
@@ -151,7 +151,7 @@ EXACTFF_INLINE FourLines lines_between(const FourVector& normal, const FourVecto
   return lines;
 }
 
-// The corner at one end of up to four edges each.
+// The corner at one end of each of up to four edges.
 EXACTFF_INLINE FourVector gather(std::span<const QuickCorner> corners, const FourOf<QuickEdge>& edges,
                                  std::uint32_t QuickEdge::*end) {
   return gather(FourOf<QuickCorner>{&corners[edges[0]->*end], &corners[edges[1]->*end], &corners[edges[2]->*end],
@@ -177,7 +177,7 @@ void lines_of(const std::array<double, 3>& normal, std::span<const QuickCorner> 
 
 namespace {
 
-// Points s a + m d of an edge each, and (s : m).
+// Four points s a + m d, each of one edge, and their (s : m).
 struct FourPoints {
   FourBounded s;
   FourBounded m;
@@ -188,7 +188,8 @@ EXACTFF_INLINE FourPoints where(const FourMask& condition, const FourPoints& p, 
   return {where(condition, p.s, q.s), where(condition, p.m, q.m), where(condition, p.direction, q.direction)};
 }
 
-// normal . p, the normal being that of a plane through c: loses less as normal . (p - t c) where p and t c are near.
+// normal . p, where `normal` is that of a plane through c. normal . (p - t c) loses less accuracy if p and t c are near
+// each other.
 EXACTFF_INLINE FourBounded height(const FourVector& normal, const FourVector& c, const FourVector& p) {
   const Four t = p.norm / c.norm;
   const Four distance = magnitude(p.c[0].hi - t * c.c[0].hi) + magnitude(p.c[1].hi - t * c.c[1].hi) +
@@ -197,19 +198,19 @@ EXACTFF_INLINE FourBounded height(const FourVector& normal, const FourVector& c,
   return dot(normal, in_some_lane(near) ? where(near, near_cancellation(p, t, c), p) : p);
 }
 
-// Requires scale, a power of two, to be such that nothing overflows.
+// x times a power of two. Requires that nothing overflows.
 EXACTFF_INLINE FourBounded scaled(const FourBounded& x, const Four& scale) {
   return {x.hi * scale, x.lo * scale, x.error * scale + kUnderflow};
 }
 
-// The power of two that brings x into [1, 2), where x and its inverse are normal; else any number may come of it.
+// The power of two that scales x into [1, 2), if x and its inverse are normal; otherwise an arbitrary number.
 EXACTFF_INLINE Four inverse_power_of_two(const Four& x) {
   const FourMask biased = (FourMask(x) >> 52) & 0x7FF;
   return Four((2046 - biased) << 52);
 }
 
-// Where the line, through c with the given normal, crosses the edge from a to a + d; declined where that is not
-// certain.
+// The point where the plane with the given normal, through x and c, crosses the edge from a to a + d. Declined unless
+// the crossing is certain.
 EXACTFF_INLINE FourPoints cross_edges(const FourVector& normal, const FourVector& c, const FourVector& a,
                                       const FourVector& d) {
   const FourBounded height_a = height(normal, c, a), rise = dot(normal, d);
@@ -232,7 +233,7 @@ struct FourEdges {
 // Step 2, for one end of four pieces.
 EXACTFF_INLINE FourPoints locate(const FourEdges& edges, const FourOf<QuickPiece>& pieces,
                                  std::uint32_t QuickPiece::*which, std::span<const QuickLine> lines) {
-  FourOf<QuickLine> crossing = edges.line;  // a line crosses itself nowhere
+  FourOf<QuickLine> crossing = edges.line;  // the default: a line does not cross itself, so this declines
   FourMask at_a{}, at_b{};
   for (std::size_t k = 0; k < kLanes; ++k) {
     const std::uint32_t end = pieces[k]->*which;
@@ -258,7 +259,7 @@ EXACTFF_INLINE FourPoints locate(const FourEdges& edges, const FourOf<QuickPiece
 
 namespace {
 
-// Steps 2 to 4 for up to four pieces; zero where there are fewer.
+// Steps 2 to 4 for up to four pieces; zero in lanes without a piece.
 EXACTFF_INLINE FourBounded terms(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines,
                                  const AngleConstants& known) {
   const FourOf<QuickPiece> piece = four_of(pieces);
@@ -319,11 +320,11 @@ QuickContour::Value QuickContour::value() const {
 
 namespace {
 
-// Below this nothing is kept, so that what is kept is normal, the low parts too.
+// Smaller parts are dropped, so that all parts that are kept, including low parts, are normal numbers.
 constexpr double kLeastKept = 0x1p-960;
 constexpr double kNothingKept = 0x1p-959;
 
-// Sets the component, of which |lo| <= u |hi|, times 2^exponent.
+// Sets a component to value * 2^exponent. Requires |lo| <= u |hi|.
 void set_component(QuickCorner& corner, int axis, const DoubleDouble& value, int exponent) {
   const bool plain = exponent >= -1000 && exponent <= 1000;
   const double scale = plain ? std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52) : 0.0;
@@ -354,7 +355,7 @@ namespace {
 
 constexpr int kKeptBits = 106;
 
-// The first 106 bits of the number after the point, over 2^bit_length. Requires that it is not zero.
+// The first 106 bits of number / 2^bit_length. Requires that the number is not zero.
 DoubleDouble leading_bits(const kernel::Integer& number) {
   static_assert(GMP_NUMB_BITS == 64);
   const auto size = static_cast<mp_size_t>(mpz_size(number.get_mpz_t()));
@@ -369,7 +370,7 @@ DoubleDouble leading_bits(const kernel::Integer& number) {
   return two_sum(sign * 0x1p-53 * static_cast<double>(first), sign * 0x1p-106 * static_cast<double>(second));
 }
 
-// True if no bit is left out.
+// True if these 106 bits contain all bits of the number.
 bool is_kept_whole(const kernel::Integer& number, long bits) {
   return bits <= kKeptBits || static_cast<long>(mpz_scan1(number.get_mpz_t(), 0)) >= bits - kKeptBits;
 }

@@ -1,15 +1,16 @@
-// Tampieri's Eq. (4) in double-double arithmetic: the first attempt at what contour.h does in ball arithmetic, more
-// than ten times as fast. It may decline, never lie. The error of a whole edge is about 2^-100 of the angle it is seen
-// under, whatever that is, and in proportion to the edge that of a crossing; hence F is rounded correctly unless its
-// terms cancel by some 45 bits.
+// Tampieri's Eq. (4) in double-double arithmetic: tried first, before the ball arithmetic of contour.h, and more than
+// ten times as fast. It may decline, but a bound that it gives is always valid. For a whole edge the error is about
+// 2^-100 of the angle under which x sees the edge, however large that is. The error of a crossing is proportional to
+// the edge. Hence F is rounded correctly unless its terms cancel by some 45 bits.
 //
-// Notation: as in contour.h, with a piece of the edge from a to b given by corners alone, of which a is the nearer to
-// x, and d = b - a. Where the plane through x and another edge, with the normal N, meets the edge, it has the direction
+// Notation: as in contour.h, except that a piece of the edge from a to b is given by corners alone. a is the corner
+// nearer to x, and d = b - a. If the plane through x and another edge, with the normal N, crosses the edge, the
+// direction of the crossing is
 //   s a + m d,  s : m = |N . d| : |N . a|,
-// which is l a + m b with l = s - m. Hence w = s_p m_q - m_p s_q of the piece from p to q.
+// which is l a + m b with l = s - m. Hence w = s_p m_q - m_p s_q for the piece from p to q.
 //
-// Corners whose largest component is outside [2^-200, 2^200] are declined, so that no operation overflows and whatever
-// underflows is covered by kUnderflow (double_double.h).
+// Corners whose largest component is outside [2^-200, 2^200] are declined. So no operation overflows, and kUnderflow
+// covers every underflow (double_double.h).
 #pragma once
 
 #include <array>
@@ -26,21 +27,21 @@ namespace exactff::contour {
 
 using QuickCorner = kernel::FineDirection;
 
-// (vertex - x) * 2^scale_exponent, exactly but for underflow; NaN where it overflows.
+// (vertex - x) * 2^scale_exponent, exact except for underflow; NaN if it overflows.
 QuickCorner quick_corner(const Vec3& vertex, const Vec3& x, int scale_exponent);
-// The direction with its largest component scaled into [1/2, 1). Requires that it is not zero.
+// The direction, scaled so that its largest component is in [1/2, 1). Must not be zero.
 QuickCorner quick_corner(const kernel::ExactVec3& direction);
 
-// An edge from the corner a to the corner b, by their numbers.
+// An edge from corner a to corner b, given by their indices.
 struct QuickEdge {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
 };
 
-// An edge with what all pieces of it and all that its line crosses have in common. Where it is declined, the error of
-// the last three is infinite.
+// An edge with the quantities that all its pieces, and all edges crossed by its line, share. If the edge is declined,
+// the errors of the last three members are infinite.
 struct QuickLine {
-  bool reversed = false;  // a and b are exchanged, so that a is the nearer
+  bool reversed = false;  // a and b were exchanged, so that a is the nearer one
   Vector a;
   Vector b;
   Vector along;                           // b - a
@@ -49,8 +50,8 @@ struct QuickLine {
   kernel::double_double::Bounded weight;  // n . (a x b) / |a x b|
 };
 
-// A piece of an edge between two points: ends of the edge, or where the plane through x and another edge meets it. All
-// by the numbers of their lines.
+// A piece of an edge between two points: ends of the edge, or points where the plane through x and another edge crosses
+// it. Edges are given by the indices of their lines.
 struct QuickPiece {
   static constexpr std::uint32_t kAtA = 0xFFFFFFFEU, kAtB = 0xFFFFFFFFU;
   std::uint32_t edge = 0;
@@ -59,19 +60,19 @@ struct QuickPiece {
 
 class QuickContour {
  public:
-  // n: the receiver's normal, finite and not zero, of any length.
+  // `normal`: the receiver's normal, finite and not zero, of any length.
   explicit QuickContour(const Vec3& normal);
 
-  // The lines of as many edges.
+  // Computes the line of each edge; `lines` has the same length as `edges`.
   void make_lines(std::span<const QuickCorner> corners, std::span<const QuickEdge> edges,
                   std::span<QuickLine> lines) const;
 
-  // The pieces may run against the sense from a to b. The lines are of this contour.
+  // Adds pieces. They may run from b towards a. `lines` must have been made by this contour.
   void add(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines);
 
-  // |F - (hi + lo)| <= error for the closed loops added so far, hi being the double nearest to hi + lo. The error is
-  // infinite where some piece was declined: a and b, c and d, or p and q too close to one line with x, a crossing too
-  // close to a or b, or corners too large or too small.
+  // |F - (hi + lo)| <= error for the closed loops added so far, where hi is the double nearest to hi + lo. The error is
+  // infinite if a piece was declined: a and b, c and d, or p and q are too close to one line with x, a crossing is too
+  // close to a or b, or corners are too large or too small.
   struct Value {
     double hi = 0.0;
     double lo = 0.0;
@@ -81,7 +82,7 @@ class QuickContour {
 
  private:
   std::array<double, 3> normal_{};  // largest component in [1/2, 1)
-  // Of the terms of the pieces, without the factor -1/(2 pi |n|): in lane k of every four the k-th.
+  // Sums of the terms of the pieces, without the factor -1/(2 pi |n|): lane k has the k-th of every four.
   std::array<kernel::double_double::Bounded, 4> sums_;
 };
 

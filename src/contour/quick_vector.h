@@ -18,7 +18,7 @@ template <class Real>
 struct BasicVector {
   Components<Real> c;
   Real norm{};   // sum of the magnitudes of the components
-  Real error{};  // of each component
+  Real error{};  // bound on the error of each component
 };
 
 using Vector = BasicVector<double>;
@@ -52,7 +52,7 @@ EXACTFF_INLINE BasicVector<Real> difference(const BasicVector<Real>& p, const Ba
   return vector(c, p.error + q.error + 0x1p-104 * norm(c) + kUnderflow);
 }
 
-// What is inherited by a sum of products of one component of p and one of q each.
+// The error that a sum of products of a component of p and a component of q inherits from p and q.
 template <class Real>
 EXACTFF_INLINE Real inherited(const BasicVector<Real>& p, const BasicVector<Real>& q) {
   return (p.norm + 3.0 * p.error) * q.error + q.norm * p.error;
@@ -77,9 +77,9 @@ EXACTFF_INLINE BasicVector<Real> combination(const BasicBounded<Real>& l, const 
                 inherited + 0x1p-102 * (magnitude(l.hi) * p.norm + magnitude(m.hi) * q.norm) + kUnderflow);
 }
 
-// With m the sum of the magnitudes of the three products, the raw products err by 6.1 u^2 m, high parts in the sums
-// leave 2.1 u m to the low ones, which are 3.1 u m themselves; adding these errs by (3.1 + 3.1 + 2.1 + 5.2) u^2 m. In
-// all below 20 u^2 m; 32 u^2 m is taken.
+// Let m be the sum of the magnitudes of the three products. The raw products are wrong by 6.1 u^2 m. The sums of high
+// parts leave 2.1 u m to the low parts, which are 3.1 u m themselves. Adding these low parts is wrong by (3.1 + 3.1 +
+// 2.1 + 5.2) u^2 m. The total is below 20 u^2 m; 32 u^2 m is used.
 template <class Real>
 EXACTFF_INLINE BasicBounded<Real> dot(const BasicVector<Real>& p, const BasicVector<Real>& q) {
   const auto x = raw_product(p.c[0], q.c[0]);
@@ -92,9 +92,9 @@ EXACTFF_INLINE BasicBounded<Real> dot(const BasicVector<Real>& p, const BasicVec
   return bounded(two_sum(t.hi, rest), inherited(p, q) + 0x1p-101 * size + kUnderflow);
 }
 
-// p - t q for an exact double t, where p and t q nearly cancel. With m = |p.hi| + |t q.hi| of a component, the parts
-// that are summed as doubles are together at most 4 u^2 m, so that summing them errs by 7 u^3 m; 8 u^3 m = 2^-156 m is
-// taken. The last sum errs by 4 u^2 of the result.
+// p - t q for an exact double t, for the case that p and t q nearly cancel. Let m = |p.hi| + |t q.hi| for a component.
+// The parts that are added as doubles are together at most 4 u^2 m, so adding them is wrong by 7 u^3 m; 8 u^3 m =
+// 2^-156 m is used. The last sum is wrong by 4 u^2 of the result.
 template <class Real>
 EXACTFF_INLINE BasicDoubleDouble<Real> near_cancellation(const BasicDoubleDouble<Real>& p, const Real& t,
                                                          const BasicDoubleDouble<Real>& q) {

@@ -13,7 +13,7 @@ namespace {
 using kernel::ExactVec3;
 using kernel::Rational;
 
-// Where directions from x meet the plane of the source.
+// Maps directions from x to points: where they meet the plane of the source.
 class Lift {
  public:
   Lift(const visibility::SourcePlane& plane, const Vec3& x)
@@ -40,7 +40,8 @@ class Lift {
   Rational distance_;
 };
 
-// Scaled so that the largest component is about 1; the filters' form of a direction has no value for small ones.
+// Scaled so that the largest component is about 1. The filters' form of a direction (Approx3) is not used because it
+// has no value for small components.
 Vec3 rounded(const ExactVec3& direction) {
   const long bits = bit_length(direction);
   const auto scaled = [bits](const kernel::Integer& component) { return kernel::nearest_double(component, -bits); };

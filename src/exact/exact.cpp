@@ -1,10 +1,11 @@
-// Puts the exact method together: for each plane of the source the visible boundary, over all of them one contour
-// integral, and its precision raised until the ball rounds to one double.
+// The exact method: finds the visible boundary for each plane of the source, adds up one contour integral over all
+// planes, and raises the precision until the whole ball rounds to one double.
 //
-// A contour F > 0 is never a midpoint of two doubles unless it is rational. By Baker's theorem a rational F comes from
-// rational relations among the angles and pi, and the factors n . (a x b) / (|n| |a x b|), where rational, have 2-adic
-// valuation >= -1 (primitive integer vectors have squared lengths not divisible by 4). That no such combination has
-// the 54 or more binary places of a midpoint is our belief, not a theorem; the cap on the precision makes it harmless.
+// Why this ends: an irrational F > 0 is never the midpoint of two doubles. By Baker's theorem a rational F comes from
+// rational relations among the angles and pi, and the factors n . (a x b) / (|n| |a x b|), if rational, have 2-adic
+// valuation >= -1 (primitive integer vectors have squared lengths not divisible by 4). We believe, but have not proved,
+// that no such combination has the 54 or more binary places of a midpoint. If one had, the cap on the precision would
+// end the loop.
 #include "exactff/exact.h"
 
 #include <algorithm>
@@ -73,7 +74,8 @@ void check_options(const ExactOptions& options) {
                     .suggestion = "give a cap of at least 1; the default is 65536"});
 }
 
-// Sources differ in their number of planes: records that one has no use for wait here, lest the next one allocate.
+// Sources differ in their number of planes. Records that one source does not need are kept here, to avoid reallocation
+// for the next one.
 void set_count(std::vector<PlaneRecord>& records, std::size_t count) {
   constexpr std::size_t kMostWaiting = 4096;
   thread_local std::vector<PlaneRecord> waiting;
@@ -84,7 +86,7 @@ void set_count(std::vector<PlaneRecord>& records, std::size_t count) {
   records.resize(count);
 }
 
-// As a new result but for its memory; the records are still to be set.
+// Resets the result but keeps its memory; the records are still to be set.
 void reset(FormFactor& result, std::size_t planes) {
   FormFactor fresh;
   fresh.enclosure = std::move(result.enclosure);
@@ -96,7 +98,7 @@ void reset(FormFactor& result, std::size_t planes) {
   result = std::move(fresh);
 }
 
-// All that is found of a plane, and its faces in the memory that the record has.
+// Moves everything found for a plane into the record; the faces are copied into the record's existing memory.
 void set_record(PlaneRecord& record, PlaneRecord&& found, const std::vector<FaceId>& faces) {
   found.faces = std::move(record.faces);
   found.faces.assign(faces.begin(), faces.end());
@@ -109,8 +111,8 @@ bool has_decimals(const Enclosure& enclosure, int digits) {
   return digits <= 0 || enclosure.decimals(digits).has_value();
 }
 
-// Raises the precision until the ball determines the double and the decimals asked for, or the cap is met. The status
-// speaks of the double: decimals may stay undecided where F is a decimal tie, such as 1/8 to two digits.
+// Raises the precision until the ball determines the double and the requested decimals, or the cap is reached. The
+// status refers to the double: decimals may stay undecided if F is a decimal tie, such as 1/8 to two digits.
 void certify(const contour::ContourIntegral& contour, const ExactOptions& options, FormFactor& result) {
   for (int bits = std::min(kFirstBits, options.precision_cap);; bits = std::min(2 * bits, options.precision_cap)) {
     const Ball ball = contour.evaluate(bits);
@@ -124,7 +126,7 @@ void certify(const contour::ContourIntegral& contour, const ExactOptions& option
   }
 }
 
-// At very few bits a ball may hold every number; its midpoint and ends then are none.
+// With very few bits a ball may contain every number; its midpoint and ends are then NaN.
 void set_bounds(FormFactor& result) {
   if (result.status == Status::kZero) return;  // [0, 0]
   const bool certified = result.status != Status::kNotCertified;
@@ -145,7 +147,7 @@ PlaneShare share_of(const Scene& scene, const SourcePlane& plane, const PlaneVis
   return {*seen.fraction, std::move(area.area), plane.normal.exact, area.axis};
 }
 
-// A source without area shows nothing of it.
+// A source without area has no shares: nothing of it is visible.
 void set_fraction(const std::vector<PlaneShare>& shares, FormFactor& result) {
   const auto all_are = [&](int whole) {
     return std::all_of(shares.begin(), shares.end(), [&](const PlaneShare& share) { return share.fraction == whole; });
@@ -159,7 +161,7 @@ void sort_unique(std::vector<FaceId>& faces) {
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
 }
 
-// The value from the double-double tier, if that determines it.
+// Takes the value from the double-double tier. False if that tier does not determine it.
 bool certify_quickly(const exact::QuickTier& quick, const ExactOptions& options, FormFactor& result) {
   result.enclosure.set(quick.ball());
   result.precision_bits = exact::QuickTier::kBits;
@@ -170,7 +172,7 @@ bool certify_quickly(const exact::QuickTier& quick, const ExactOptions& options,
   return true;
 }
 
-// One engine at work on one receiver and one source.
+// Runs one engine on one receiver and one source.
 class Solver {
  public:
   Solver(const Scene& scene, const Receiver& receiver, const ExactSource& source, const ExactOptions& options,
@@ -253,7 +255,8 @@ void solve_by(Engine engine, const Scene& scene, const Receiver& receiver, const
   Solver(scene, receiver, source, options, result).run();
 }
 
-// Each engine sums its own edges: below a cap on precision, either may come to an estimate of its own, or to none.
+// Each engine sums its own edges, so with a low precision cap one engine may find a value that the other does not, or
+// their estimates may differ.
 bool same_value(const FormFactor& a, const FormFactor& b) {
   if (a.status == Status::kNotCertified || b.status == Status::kNotCertified) return true;
   return a.value == b.value && a.status == b.status;

@@ -1,7 +1,8 @@
-// Each area is r sqrt(q) with r rational and q = |normal|^2. One plane: the ratio is rational. Several: balls of rising
-// precision decide unless the ratio is the midpoint of two doubles, and then it is rational. Square roots of integers
-// whose product is no square are linearly independent over the rationals (Besicovitch 1940), so the ratio is rational
-// only if it is the same within every class of commensurable planes; that is tested exactly before balls could fail.
+// Each area is r sqrt(q) with r rational and q = |normal|^2. For one plane the ratio is rational. For several planes,
+// balls of increasing precision decide unless the ratio is the midpoint of two doubles, which is rational. Square roots
+// of integers are linearly independent over the rationals if no product of two of them is a square (Besicovitch 1940).
+// So the ratio is rational only if it is the same for every class of commensurable planes. That is tested exactly,
+// because balls would never decide a midpoint.
 #include "exact/fraction.h"
 
 #include <algorithm>
@@ -63,7 +64,7 @@ void add_to_classes(std::vector<CommensurableClass>& classes, const PlaneShare& 
   classes.push_back({area.radicand, area.coefficient * plane.fraction, area.coefficient});
 }
 
-// The ratio if it is rational.
+// The ratio if it is rational, else empty.
 std::optional<Rational> rational_ratio(std::span<const PlaneShare> planes) {
   std::vector<CommensurableClass> classes;
   for (const PlaneShare& plane : planes) add_to_classes(classes, plane);

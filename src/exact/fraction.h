@@ -15,7 +15,8 @@ struct PlaneShare {
   int axis = 0;
 };
 
-// Sum of fraction * area over the sum of areas, rounded to the nearest double, ties to even. Requires a plane.
+// Sum of fraction * area over the sum of areas, rounded to the nearest double, ties to even. Requires at least one
+// plane.
 double visible_fraction(std::span<const PlaneShare> planes);
 
 }  // namespace exactff::exact

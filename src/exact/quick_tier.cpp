@@ -19,14 +19,15 @@ using visibility::VisibleEdges;
 
 namespace {
 
-// Numbers things in the order in which they are first asked for; what is numbered is forgotten now and then.
+// Numbers items in the order in which they are first requested. forget() starts a new numbering from 0 without clearing
+// the table.
 class Numbers {
  public:
   void clear(std::size_t count) {
     first_ = next_ = 0;
     number_.assign(count, kNone);
   }
-  // The number of the i-th, counted from those not forgotten, and whether it is new.
+  // The number of item i, counted from the last forget(), and whether it is new.
   struct Found {
     std::uint32_t number;
     bool is_new;
@@ -61,7 +62,7 @@ class Lines {
     corner_numbers_.clear(outlines.corner_count());
     line_numbers_.clear(outlines.edges().size());
   }
-  // The number of an edge's line, which need not be made yet.
+  // The number of an edge's line. The line itself is made later, by lines().
   std::uint32_t find(Outlines& outlines, EdgeId id) {
     const auto [number, is_new] = line_numbers_.find(id);
     if (is_new) {
@@ -70,14 +71,14 @@ class Lines {
     }
     return number;
   }
-  // With all those found made.
+  // All lines found so far; makes those that are missing.
   [[nodiscard]] std::span<const QuickLine> lines(const QuickContour& contour) {
     if (lines_.size() < edges_.size()) lines_.resize(edges_.size());
     contour.make_lines(corners_, std::span(edges_).subspan(made_), std::span(lines_).subspan(made_));
     made_ = edges_.size();
     return lines_;
   }
-  // Parts that are near one another share lines; all lines together would not fit the cache.
+  // Neighbouring parts share lines, so recent lines are worth keeping; all lines together would not fit into the cache.
   void forget_if_many() {
     if (edges_.size() >= kMostLines) forget();
   }
@@ -99,18 +100,18 @@ class Lines {
   Numbers corner_numbers_, line_numbers_;
   std::vector<QuickCorner> corners_;
   std::vector<QuickEdge> edges_;
-  std::vector<QuickLine> lines_;  // of the first `made_` edges; what follows is only memory
+  std::vector<QuickLine> lines_;  // valid for the first `made_` edges; the rest is only memory
   std::size_t made_ = 0;
 };
 
 }  // namespace
 
-// In batches, so that lines are made four at a time.
+// Works in batches, so that lines are made four at a time.
 void QuickTier::add(VisibleEdges& edges) {
   using Parameter = VisibleEdges::Parameter;
   static_assert(Parameter::kAtBegin == QuickPiece::kAtA && Parameter::kAtEnd == QuickPiece::kAtB);
   constexpr std::size_t kBatch = 64;
-  thread_local Lines lines;  // its memory is used again
+  thread_local Lines lines;  // static so that its memory is reused
   thread_local std::vector<QuickPiece> pieces;
   Outlines& outlines = edges.outlines();
   lines.clear(outlines);

@@ -1,4 +1,5 @@
-// The first attempt at a certified value: the boundary that the edge engine found, integrated in double-double.
+// The first attempt at a certified value: integrates the boundary that the edge engine found in double-double
+// arithmetic.
 #pragma once
 
 #include "contour/quick_contour.h"
@@ -9,14 +10,14 @@ namespace exactff::exact {
 
 class QuickTier {
  public:
-  static constexpr int kBits = 106;  // of a double-double
+  static constexpr int kBits = 106;  // precision of a double-double
 
   explicit QuickTier(const Vec3& normal) : contour_(normal) {}
 
-  // The parts that the engine holds now.
+  // Adds the parts that the edge engine currently holds.
   void add(visibility::VisibleEdges& edges);
 
-  // Encloses F, at least as wide as the proved error; of every number where a piece was declined.
+  // Encloses F; its radius is at least the proved error. The ball contains every number if a piece was declined.
   [[nodiscard]] Ball ball() const;
 
  private:

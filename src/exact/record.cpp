@@ -1,4 +1,4 @@
-// The account that a result gives of itself: which stages ran, and why the others did not.
+// The explanation of a result: which stages ran, and why the others were skipped.
 #include <string>
 
 #include "exactff/exact.h"

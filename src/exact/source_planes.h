@@ -1,4 +1,4 @@
-// What an ExactSource holds.
+// The data of an ExactSource.
 #pragma once
 
 #include <vector>
@@ -16,8 +16,8 @@ struct ExactSource::Planes {
 
 namespace exact {
 
-// Throws InputError unless the point is finite and the normal finite and not zero; std::invalid_argument where the
-// receiver's face or the source is not the scene's.
+// Throws InputError unless the point is finite and the normal is finite and not zero. Throws std::invalid_argument if
+// the receiver's face or the source does not belong to the scene.
 void check_arguments(const Scene& scene, const Receiver& receiver, const ExactSource& source);
 
 }  // namespace exact

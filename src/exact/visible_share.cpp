@@ -17,7 +17,7 @@ namespace {
 
 Point<double> rounded(const Point<Rational>& p) { return {kernel::nearest_double(p.u), kernel::nearest_double(p.v)}; }
 
-// Whether the open segment pq meets the interior of a convex polygon.
+// True if the open segment pq meets the interior of a convex polygon.
 bool meets_exactly(const SmallPolygon<Rational>& polygon, const Point<Rational>& p, const Point<Rational>& q) {
   Rational from = 0, to = 1;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -79,10 +79,10 @@ void VisibleShare::make_frame() {
     }
   }
   size_ = {high.u - low_.u, high.v - low_.v};
-  // The double form of `away` has a scale of its own, and so has what is divided by it.
+  // The double form of `away` has its own scale, and so has everything divided by it.
   const double longest = away_approx_[static_cast<std::size_t>(k)];
   if (!std::isfinite(away.x + away.y + away.z)) {
-    away_approx_ = {};  // a window's error is then infinite
+    away_approx_ = {};  // the error of every window is then infinite
     return;
   }
   const Rational scale = Rational(away_[k]) / kernel::to_rational(longest);
@@ -102,7 +102,8 @@ void VisibleShare::add(const BoundaryPiece& piece) {
   pieces_.push_back(std::move(added));
 }
 
-// Other outlines of the source do not run through this piece's interior: there they bound nothing.
+// The outlines of other pieces of the source do not run through the interior of this piece, so they bound nothing
+// there.
 void VisibleShare::start(std::uint32_t index) {
   if (pieces_.empty()) return;
   std::vector<Point<Rational>> ring;
@@ -117,8 +118,8 @@ void VisibleShare::start(std::uint32_t index) {
   }
 }
 
-// Both ends on the line: the region's boundary lies in the source, so between a and b then. Coordinates in the unit
-// square, each within 2^-54, leave a turn within 2^-50.
+// Tests whether both ends lie on the line ab. That is enough: the region's boundary lies in the source, so the piece
+// then lies between a and b. Coordinates are in the unit square, each within 2^-54, so a turn is within 2^-50.
 bool VisibleShare::on_edge(const Piece& piece, const Point<Rational>& a, const Point<Rational>& b) const {
   constexpr double kBound = 0x1p-50;
   const Point<double> from = rounded(a), to = rounded(b);
@@ -128,10 +129,10 @@ bool VisibleShare::on_edge(const Piece& piece, const Point<Rational>& a, const P
   return turn(a, b, piece.exact_p) == 0 && turn(a, b, piece.exact_q) == 0;
 }
 
-// With u = 2^-53: the depth's terms, of relative error 3u each, make it wrong by less than 6u of the sum of their
-// magnitudes S; the quotient p by that over the depth and u more; the box by 2u of its own numbers. 16u covers what
-// follows, and as much again the division. All of this holds, and the depth is certainly positive, while S is below
-// 2^48 times the depth.
+// With u = 2^-53: the terms of the depth have a relative error of 3u each, so the depth is wrong by less than 6u times
+// the sum S of their magnitudes. The quotient p is then wrong by 6u S over the depth, relatively, and by u more; the
+// box by 2u of its own numbers. 16u covers the following operations, and another 16u the division. All of this holds,
+// and the depth is certainly positive, while S is below 2^48 times the depth.
 Point<double> VisibleShare::flat(const Vec3& t, double& error) const {
   const std::array<double, 3> d{t.x, t.y, t.z};
   double depth = 0.0, magnitude = 0.0;
@@ -164,9 +165,9 @@ SmallPolygon<Rational> VisibleShare::exact_window(std::span<const Vec3> directio
   return corners;
 }
 
-// Clips the piece by the window's sides as meets_exactly does. A turn with a side e and an offset f, whose coordinates
-// err by E and G, errs by less than |e| G + |f| E + 2 E G and 2^-51 of its products' magnitudes, |.| the sums of
-// magnitudes of the two coordinates.
+// Clips the piece by the window's sides in the same way as meets_exactly. Write |.| for the sum of the magnitudes of
+// two coordinates. A turn of a side e and an offset f, whose coordinates have errors of at most E and G, is wrong by
+// less than |e| G + |f| E + 2 E G, plus 2^-51 of the magnitudes of its products.
 VisibleShare::Meeting VisibleShare::meets(const Piece& piece) const {
   constexpr double kPieceError = 0x1p-53;
   const std::size_t n = window_.corners.size();
@@ -229,7 +230,7 @@ double proper_share(double share) { return std::clamp(share, std::numeric_limits
 
 }  // namespace
 
-// Moving the sides by the error of their corners changes the share by no more than this.
+// A bound on the change of the share when the sides move by the error of their corners.
 double VisibleShare::window_blur(double doubled_area_of_window) const {
   double around = 0.0;
   const SmallPolygon<double>& corners = window_.corners;
@@ -258,7 +259,7 @@ double VisibleShare::of(std::span<const Vec3> directions) {
   return in_part ? proper_share(share) : share > 0.5 ? 1.0 : 0.0;
 }
 
-// Rounding can turn a direction away from the plane.
+// False if rounding has turned a direction away from the plane.
 bool VisibleShare::all_meet_plane(std::span<const Vec3> directions) const {
   return std::all_of(directions.begin(), directions.end(), [this](const Vec3& direction) {
     return kernel::sign(dot(away_, kernel::exact_vector(direction).v)) > 0;

@@ -1,15 +1,16 @@
-// How much of a small convex window x sees, where the window lies in a plane of a source: for the control of the
-// sampled algorithm, which asks this of every sub-patch instead of tracing rays.
+// The visible share, seen from x, of a small convex window in a plane of a source. The control of the sampled algorithm
+// uses it for every sub-patch instead of tracing rays.
 //
-// The visible region of the whole plane is found once for a receiver, exactly, by the exact method's own machinery. A
-// window is given by directions from x: it is where they meet the plane, so that no rounding can take its corners out
-// of it. With c a point of the window and p_i q_i the oriented pieces of the region's boundary, in any order,
+// The visible region of the whole plane is found exactly, once per receiver, with the code of the exact method. A
+// window is given by directions from x: its corners are the points where they meet the plane, so rounding cannot move
+// them out of the plane. Let c be a point of the window and p_i q_i the oriented pieces of the region's boundary, in
+// any order. Then
 //
 //   visible area = sum_i +- area( triangle(c, p_i, q_i) n window ).
 //
-// Whether the answer is 0, 1 or in between is decided exactly: it is in between just where a piece, other than of the
-// source's own outline, runs through the window's interior. That is a filter in double with a proved bound, and
-// rational numbers where it is not certain. The share itself is then a sum in double.
+// Whether the answer is 0, 1 or in between is decided exactly. It is in between if and only if a piece that is not part
+// of the source's own outline runs through the interior of the window. A filter in double with a proved bound decides
+// this, or rational numbers if the filter is uncertain. The share itself is then a sum in double.
 #pragma once
 
 #include <array>
@@ -28,36 +29,36 @@ namespace exactff::exact {
 
 class VisibleShare {
  public:
-  // Requires x in front of the plane, and a receiver as exact_form_factor does.
+  // Requires x in front of the plane, and a receiver as for exact_form_factor.
   VisibleShare(const Scene& scene, const Receiver& receiver, const visibility::SourcePlane& plane);
 
-  // The windows asked about next lie in this piece of the plane, but for roundings.
+  // Selects the piece of the plane in which the next windows lie, up to rounding errors.
   void start(std::uint32_t piece);
 
   static constexpr double kAccuracy = 0x1p-30;
-  // Visible over whole area of the window: exactly 0 or exactly 1, or strictly in between and then within kAccuracy of
-  // the truth, mostly far less.
-  // Three or four corners, convex, counter-clockwise as x sees them. 0 where rounding of the corners has left no
-  // window: all on a line, the wrong way round, or some that do not meet the plane.
+  // Visible area over whole area of the window: exactly 0, exactly 1, or strictly in between and then within kAccuracy
+  // of the true value, usually much closer.
+  // Requires three or four corners, convex, counter-clockwise as seen from x. Returns 0 if rounding of the corners has
+  // left no window: all on one line, clockwise, or some directions that do not meet the plane.
   [[nodiscard]] double of(std::span<const Vec3> directions);
-  // The same in rational numbers throughout, rounded once.
+  // The same, computed in rational numbers and rounded once.
   [[nodiscard]] double of_exactly(std::span<const Vec3> directions);
 
-  // Pieces and windows that the filter left to rational numbers.
+  // Number of pieces and windows that the filter left to rational numbers.
   [[nodiscard]] std::uint64_t undecided() const { return undecided_; }
 
  private:
   using Rational = kernel::Rational;
   struct Piece {
-    Point<Rational> exact_p, exact_q;  // the region to the left of pq
+    Point<Rational> exact_p, exact_q;  // the region lies to the left of pq
     Point<double> p, q;
-    bool outline = false;  // of the source
+    bool outline = false;  // part of the outline of the source
     bool horizon = false;
   };
   // A window, counter-clockwise in (u, v).
   struct Window {
     SmallPolygon<double> corners;
-    double error = 0.0;  // of each coordinate
+    double error = 0.0;  // bound on the error of each coordinate
   };
   enum class Meeting { kNo, kYes, kUnsure };
 
@@ -76,7 +77,7 @@ class VisibleShare {
 
   const visibility::View view_;
   const visibility::SourcePlane& plane_;
-  bool all_ = false;  // of the source is visible
+  bool all_ = false;  // the whole source is visible
   std::vector<Piece> pieces_;
   kernel::ExactVec3 away_;  // the plane's normal turned away from x
   std::array<double, 3> away_approx_{};

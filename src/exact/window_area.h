@@ -1,5 +1,5 @@
-// Small convex polygons in a plane, in doubles or in rational numbers alike: what of a window lies in a region given by
-// the pieces of its boundary.
+// Small convex polygons in a plane, in doubles or in rational numbers: the area of a window within a region that is
+// given by the pieces of its boundary.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,8 @@ struct Point {
   Number v;
 };
 
-// A triangle or quadrilateral clipped by three lines has at most seven corners; roundings may repeat some.
+// A polygon of at most kMost corners. A triangle or quadrilateral clipped by three lines has at most seven corners;
+// rounding may repeat some.
 template <class Number>
 class SmallPolygon {
  public:
@@ -35,7 +36,7 @@ class SmallPolygon {
   std::size_t size_ = 0;
 };
 
-// Positive where a, b, p run counter-clockwise: twice the triangle's signed area.
+// Twice the signed area of the triangle abp; positive if a, b, p run counter-clockwise.
 template <class Number>
 Number turn(const Point<Number>& a, const Point<Number>& b, const Point<Number>& p) {
   return Number((b.u - a.u) * (p.v - a.v) - (b.v - a.v) * (p.u - a.u));
@@ -76,8 +77,8 @@ SmallPolygon<Number> left_part(const SmallPolygon<Number>& polygon, const Point<
   return kept;
 }
 
-// Twice the area of triangle(c, p, q) within the window, negative where it runs clockwise. Over the boundary pieces pq
-// of a region, each with the region to its left, this adds up to twice the area of the region within the window.
+// Twice the area of triangle(c, p, q) within the window, negative if the triangle is clockwise. The sum over the
+// boundary pieces pq of a region, each with the region to its left, is twice the area of the region within the window.
 template <class Number>
 Number wedge(const SmallPolygon<Number>& window, const Point<Number>& c, const Point<Number>& p,
              const Point<Number>& q) {

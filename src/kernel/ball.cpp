@@ -15,7 +15,7 @@ namespace kernel {
 
 namespace {
 
-// FLINT keeps memory and constants for each thread; it is given back when the thread ends.
+// FLINT keeps memory and constants for each thread. They are freed when the thread ends.
 struct ThreadCache {
   ~ThreadCache() { flint_cleanup(); }
   void touch() const {}
@@ -25,7 +25,7 @@ thread_local const ThreadCache thread_cache;
 }  // namespace
 
 Ball to_ball(const Integer& value, long bits) {
-  thread_cache.touch();  // makes it, and so has it destroyed, in every thread that works with balls
+  thread_cache.touch();  // constructs it, and so schedules its destructor, in every thread that works with balls
   fmpz_t copy;
   fmpz_init(copy);
   fmpz_set_mpz(copy, value.get_mpz_t());
@@ -62,8 +62,8 @@ class End {
   arf_t x_;
 };
 
-// The two ends, rounded outward to more bits than the midpoint has: rounding them again loses nothing that
-// matters.
+// The two ends, rounded outward to more bits than the midpoint has, so that rounding them again loses no relevant
+// accuracy.
 void get_ends(const Ball& ball, End& lower, End& upper) {
   constexpr long kSpareBits = 128;
   const long bits = std::max(arb_bits(ball.get()), 0L) + kSpareBits;
@@ -84,7 +84,7 @@ struct Decimals {
 Decimals decimals_of(const End& end, int count) {
   mpfr_t x;
   mpfr_init2(x, std::max(2L, arf_bits(end.get())));
-  arf_get_mpfr(x, end.get(), MPFR_RNDN);  // exact: x has as many bits
+  arf_get_mpfr(x, end.get(), MPFR_RNDN);  // exact: x has as many bits as the end
   mpfr_exp_t exponent = 0;
   char* text = mpfr_get_str(nullptr, &exponent, 10, static_cast<std::size_t>(count), x, MPFR_RNDN);
   Decimals result{text[0] == '-', text[0] == '-' ? text + 1 : text, exponent};
@@ -189,15 +189,15 @@ bool Enclosure::contains(double value) const {
 
 namespace {
 
-// Arb prints "[midpoint +/- radius]", the number alone where the radius is 0, or "[+/- radius]" where the midpoint is
-// 0; the printed ball holds the ball.
+// Arb prints "[midpoint +/- radius]", only the number if the radius is 0, or "[+/- radius]" if the midpoint is 0. The
+// printed ball contains the ball.
 struct PrintedBall {
   std::string midpoint;
   std::string radius;
 };
 
-// As many bits as the radius leaves meaning to, even if the midpoint itself needs fewer: Arb adds to the radius what it
-// may have lost by rounding to decimals.
+// The number of bits that are significant for this radius, even if the midpoint itself needs fewer: Arb adds to the
+// radius the error of rounding to decimals.
 slong meaningful_bits(const Ball& ball) {
   const slong bits = arb_bits(ball.get());
   return arb_is_exact(ball.get()) != 0 ? bits : std::max(bits, arb_rel_accuracy_bits(ball.get()));

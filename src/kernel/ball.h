@@ -1,4 +1,5 @@
-// A ball of arbitrary precision: owns an Arb number. Every operation that takes one encloses.
+// A ball (an interval given by midpoint and radius) of arbitrary precision. Owns an Arb number. Every operation on
+// balls encloses the true result.
 #pragma once
 
 #include <arb.h>
@@ -35,7 +36,7 @@ namespace kernel {
 Ball to_ball(const Integer& value, long bits);
 Ball to_ball(const Rational& value, long bits);
 
-// The double nearest to the ball's midpoint, which is an estimate of what it holds.
+// The double nearest to the midpoint of the ball: an estimate of the enclosed number.
 double nearest_to_midpoint(const Ball& ball);
 
 }  // namespace kernel

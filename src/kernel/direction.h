@@ -1,7 +1,7 @@
 // Exact directions from the receiving point, each with its floating-point approximation.
 //
-// A direction stands for the ray x + t v, t > 0; a positive factor means nothing. A plane through x is given by its
-// normal, also a Direction.
+// A direction stands for the ray x + t v, t > 0; a positive factor does not change it. A plane through x is given by
+// its normal, which is also a Direction.
 #pragma once
 
 #include <utility>
@@ -21,7 +21,7 @@ inline Direction make_direction(ExactVec3 exact) {
   return {std::move(exact), rounded};
 }
 
-// Sign of normal . t: filter first, the exact product last.
+// Sign of normal . t: by the filter if it is certain, else by the exact product.
 inline int side(const Direction& normal, const Direction& t) {
   const int filtered = sign_of_dot(normal.approx, t.approx);
   return filtered != kUncertain ? filtered : sign(dot(normal.exact, t.exact));
@@ -32,7 +32,7 @@ inline int orientation(const Direction& a, const Direction& b, const Direction& 
   return sign(dot(cross(a.exact, b.exact), c.exact));
 }
 
-// A convex polygon seen from x. Unless said otherwise its corners run counter-clockwise as x sees them, that is
+// A convex polygon seen from x. Unless stated otherwise its corners are counter-clockwise as seen from x, that is,
 // det(a, b, c) < 0 for three corners in order.
 using Ring = std::vector<Direction>;
 

@@ -1,24 +1,27 @@
 // Double-double arithmetic with a running bound on its error.
 //
-// Notation: u = 2^-53; x.hi + x.lo is the value at hand, x.hi the double nearest to it, so that |x.lo| <= u |x.hi|; the
-// number it stands for lies within x.error of it. Every operation adds to the bounds that it inherits one of its own,
-// derived beside it, in multiples of u^2 = 2^-106. Since the bounds are absolute, they stay true whatever cancels.
+// Notation: u = 2^-53. x.hi + x.lo is the computed value, where x.hi is the double nearest to it, so that
+// |x.lo| <= u |x.hi|. The exact number that it represents lies within x.error of it. Every operation adds its own error
+// bound to the bounds that it inherits. Its own bound is derived beside it, in multiples of u^2 = 2^-106. Since the
+// bounds are absolute, they stay valid under any cancellation.
 //
-// Rounding of the bounds. A bound is made of magnitudes and bounds by sums and products alone, so its relative error is
-// that of the longest chain of operations on it: below 2^-20 even for a sum of 2^32 terms. A magnitude is taken from
-// x.hi alone, which loses u of it; division and square root take the divisor for exact, which by their requirement
-// loses 2^-19. Whoever uses a bound in the end makes it larger by kInflation, more than all of this together.
+// Rounding of the bounds. A bound is computed from magnitudes and bounds by sums and products alone, so its relative
+// error is that of the longest chain of operations on it: below 2^-20 even for a sum of 2^32 terms. A magnitude is
+// taken from x.hi alone, which loses u of it. Division and square root treat the divisor as exact, which by their
+// requirement loses 2^-19. At the end, the user of a bound multiplies it by kInflation, which exceeds all of this
+// together.
 //
-// Underflow is gradual. A product of two numbers, or the error of it, that underflows is off by 2^-1074 at most. Each
-// bound of a product has kUnderflow added, which is more, also where the product has several terms; a square root, of
-// numbers from 2^-900 on, has so much to spare. No operation may overflow: the caller sees to that, or to a result that
-// is not finite.
+// Underflow is gradual. If a product of two numbers, or its error term, underflows, it is wrong by at most 2^-1074.
+// Each bound of a product has kUnderflow added, which is larger, also if the product has several terms. The bound of a
+// square root, of numbers from 2^-900 on, has enough margin for this. No operation may overflow: the caller must
+// prevent this, or check that the result is finite.
 //
-// Rounding is to nearest (float_environment.h), and products and sums are never contracted; std::fma is correctly
-// rounded with or without hardware for it. The results are the same bits on every machine.
+// Rounding is to nearest (float_environment.h), and products and sums are never contracted. std::fma is correctly
+// rounded with or without hardware support. The results have the same bits on every machine.
 //
-// Real is a double, or four of them (reals.h): what is said of a number here is said of each lane. What is declined has
-// an infinite error; whatever is made of it has an error that is infinite or NaN, and meets no condition here.
+// Real is a double or four doubles (reals.h). With four, every statement about a number holds for each lane. A declined
+// result has an infinite error. Everything computed from it has an error that is infinite or NaN, and fails every
+// condition here.
 //
 // Source of the operations: M. Joldes, J.-M. Muller, V. Popescu, "Tight and rigorous error bounds for basic building
 // blocks of double-word arithmetic", ACM TOMS 44 (2017); T. Ogita, S. M. Rump, S. Oishi, "Accurate sum and dot
@@ -68,7 +71,7 @@ inline constexpr double kInflation = 1.001;
 inline constexpr double kNegligible = 0x1p-20;
 inline constexpr Bounded kDeclined{0.0, 0.0, std::numeric_limits<double>::infinity()};
 
-// The same in every lane.
+// The same number in every lane.
 template <class Real>
 EXACTFF_INLINE BasicBounded<Real> uniform(const Bounded& x) {
   return {uniform<Real>(x.hi), uniform<Real>(x.lo), uniform<Real>(x.error)};
@@ -99,14 +102,14 @@ EXACTFF_INLINE BasicDoubleDouble<Real> two_sum(const Real& a, const Real& b) {
   return {sum, (a - (sum - b_part)) + (b - b_part)};
 }
 
-// The same where |a| >= |b|, or a is a multiple of the last place of b.
+// a + b, exactly. Requires |a| >= |b|, or that a is a multiple of the last place of b.
 template <class Real>
 EXACTFF_INLINE BasicDoubleDouble<Real> fast_two_sum(const Real& a, const Real& b) {
   const Real sum = a + b;
   return {sum, b - (sum - a)};
 }
 
-// a * b, exactly but for underflow.
+// a * b, exact except for underflow.
 template <class Real>
 EXACTFF_INLINE BasicDoubleDouble<Real> two_product(const Real& a, const Real& b) {
   const Real product = a * b;
@@ -127,13 +130,13 @@ EXACTFF_INLINE BasicBounded<Real> bounded(const BasicDoubleDouble<Real>& x, cons
   return {x.hi, x.lo, error};
 }
 
-// True where the sign of x is that of x.hi.
+// True if the sign of x is certainly that of x.hi.
 template <class Real>
 EXACTFF_INLINE auto sign_is_certain(const BasicBounded<Real>& x) {
   return magnitude(x.hi) > 2.0 * x.error;
 }
 
-// x + y within 4 u^2 |x + y|, however much cancels (Joldes et al., algorithm 6: 3 u^2 + 13 u^3).
+// x + y with an error of at most 4 u^2 |x + y| under any cancellation (Joldes et al., algorithm 6: 3 u^2 + 13 u^3).
 template <class Real>
 EXACTFF_INLINE BasicDoubleDouble<Real> accurate_sum(const BasicDoubleDouble<Real>& x,
                                                     const BasicDoubleDouble<Real>& y) {
@@ -143,9 +146,10 @@ EXACTFF_INLINE BasicDoubleDouble<Real> accurate_sum(const BasicDoubleDouble<Real
   return fast_two_sum(v.hi, t.lo + v.lo);
 }
 
-// Let m = |x.hi| + |y.hi|. The sum of the low parts errs by u (u m), the one after it by u (2 u m): in all below 3.1
-// u^2 m; 4 u^2 m is taken. The last step is exact: if x and y cancel by more than half of the larger, x.hi + y.hi is
-// exact and a multiple of the last place of what remains, which is at most u m; otherwise it is larger than that.
+// Let m = |x.hi| + |y.hi|. The sum of the low parts is wrong by u (u m), the next one by u (2 u m). The total is below
+// 3.1 u^2 m; 4 u^2 m is used. The last step is exact: if x and y cancel by more than half of the larger one,
+// x.hi + y.hi is exact and a multiple of the last place of the rest, which is at most u m; otherwise it is larger than
+// the rest.
 template <class Real>
 EXACTFF_INLINE BasicBounded<Real> operator+(const BasicBounded<Real>& x, const BasicBounded<Real>& y) {
   const auto s = two_sum(x.hi, y.hi);
@@ -157,15 +161,15 @@ EXACTFF_INLINE BasicBounded<Real> operator-(const BasicBounded<Real>& x, const B
   return x + -y;
 }
 
-// x y as far as doubles see it: a product and what it lacks, the product of the low parts (u^2 |x.hi y.hi|) apart. With
-// m = |x.hi y.hi| the first FMA errs by 2 u^2 m, the second by 3 u^2 m (and u^3 m more in both); |lo| <= 3.1 u m.
+// x y without the product of the low parts (u^2 |x.hi y.hi|): a rounded product and its rest. Let m = |x.hi y.hi|. The
+// first FMA is wrong by 2 u^2 m, the second by 3 u^2 m (and both by another u^3 m); |lo| <= 3.1 u m.
 template <class Real>
 EXACTFF_INLINE BasicDoubleDouble<Real> raw_product(const BasicDoubleDouble<Real>& x, const BasicDoubleDouble<Real>& y) {
   const auto p = two_product(x.hi, y.hi);
   return {p.hi, fused(x.hi, y.lo, fused(x.lo, y.hi, p.lo))};
 }
 
-// By raw_product within 6.1 u^2 |x.hi y.hi|; 8 u^2 is taken.
+// By raw_product, within 6.1 u^2 |x.hi y.hi|; 8 u^2 is used.
 template <class Real>
 EXACTFF_INLINE BasicBounded<Real> operator*(const BasicBounded<Real>& x, const BasicBounded<Real>& y) {
   const auto p = raw_product(parts(x), parts(y));
@@ -173,7 +177,7 @@ EXACTFF_INLINE BasicBounded<Real> operator*(const BasicBounded<Real>& x, const B
   return bounded(fast_two_sum(p.hi, p.lo), inherited + 0x1p-103 * magnitude(p.hi) + kUnderflow);
 }
 
-// t y for an exact double t. The FMA errs by 2 u^2 |t y|; 4 u^2 is taken.
+// t y for an exact double t. The FMA is wrong by 2 u^2 |t y|; 4 u^2 is used.
 template <class Real>
 EXACTFF_INLINE BasicBounded<Real> operator*(const Real& t, const BasicBounded<Real>& y) {
   const auto p = two_product(t, y.hi);
@@ -181,9 +185,9 @@ EXACTFF_INLINE BasicBounded<Real> operator*(const Real& t, const BasicBounded<Re
                  magnitude(t) * y.error + 0x1p-104 * magnitude(p.hi) + kUnderflow);
 }
 
-// a b + c d. With m = |a.hi b.hi| + |c.hi d.hi| the two raw products err by 6.1 u^2 m together, what the sum of their
-// high parts loses and the sum of the low parts are at most u m and 3.1 u m, so that adding these errs by
-// (3.1 + 4.1) u^2 m: 13.3 u^2 m in all; 16 u^2 m = 2^-102 m is left to the caller, and what underflows.
+// a b + c d. Let m = |a.hi b.hi| + |c.hi d.hi|. The two raw products together are wrong by 6.1 u^2 m. The rounding
+// error of the sum of their high parts and the sum of their low parts are at most u m and 3.1 u m, so adding these is
+// wrong by (3.1 + 4.1) u^2 m. The total is 13.3 u^2 m. The caller must add 16 u^2 m = 2^-102 m, and the underflow.
 template <class Real>
 EXACTFF_INLINE BasicDoubleDouble<Real> sum_of_products(const BasicDoubleDouble<Real>& a,
                                                        const BasicDoubleDouble<Real>& b,
@@ -204,10 +208,10 @@ EXACTFF_INLINE BasicBounded<Real> sum_of_products(const BasicBounded<Real>& a, c
   return bounded(sum, inherited + 0x1p-102 * (magnitude(a.hi * b.hi) + magnitude(c.hi * d.hi)) + kUnderflow);
 }
 
-// x / y, declined unless |y| >= 2^-900 and y.error is negligible beside y. Let q = x.hi / y.hi rounded. Its remainder
-// x.hi - q y.hi is a double, at most u |q y|, and x - q y is at most 3.1 u |q y|. Computed, it errs by 2.1 u^2 |q y| in
-// what the low parts add to it and by 3.1 u^2 |q y| in the sum. Then 1 / y.hi for 1 / y, its rounding and that of the
-// product err by 3.1 u^2 |q| each. In all below 14.6 u^2 |q|; 16 u^2 |q| is taken.
+// x / y. Declined unless |y| >= 2^-900 and y.error is negligible beside y. Let q = x.hi / y.hi, rounded. Its remainder
+// x.hi - q y.hi is a double of at most u |q y|, and x - q y is at most 3.1 u |q y|. The computed remainder is wrong by
+// 2.1 u^2 |q y| in the contribution of the low parts and by 3.1 u^2 |q y| in the sum. Using 1 / y.hi for 1 / y, its
+// rounding and that of the product are each wrong by 3.1 u^2 |q|. The total is below 14.6 u^2 |q|; 16 u^2 |q| is used.
 template <class Real>
 EXACTFF_INLINE BasicBounded<Real> operator/(const BasicBounded<Real>& x, const BasicBounded<Real>& y) {
   const Real size = magnitude(y.hi);
@@ -219,10 +223,10 @@ EXACTFF_INLINE BasicBounded<Real> operator/(const BasicBounded<Real>& x, const B
                     bounded(fast_two_sum(q, remainder * inverse), inherited + 0x1p-102 * magnitude(q) + kUnderflow));
 }
 
-// Declined unless x >= 2^-900 and x.error is negligible beside x. Let s be the root of x.hi, rounded, and x = s^2 (1 +
-// d), |d| <= 3.1 u. The remainder x.hi - s^2 is a double; adding x.lo to it errs by 3.1 u^2 s^2, of which the factor
-// 1 / 2 s leaves half; that factor and the product with it err by 1.6 u^2 s each; the term -d^2 / 8 left out is below
-// 1.3 u^2. In all below 6.1 u^2 s; 8 u^2 s is taken.
+// The square root of x. Declined unless x >= 2^-900 and x.error is negligible beside x. Let s be the root of x.hi,
+// rounded, and x = s^2 (1 + d), |d| <= 3.1 u. The remainder x.hi - s^2 is a double. Adding x.lo to it is wrong by
+// 3.1 u^2 s^2, of which the factor 1 / 2 s leaves half. That factor and the product with it are wrong by 1.6 u^2 s
+// each. The omitted term -d^2 / 8 is below 1.3 u^2. The total is below 6.1 u^2 s; 8 u^2 s is used.
 template <class Real>
 EXACTFF_INLINE BasicBounded<Real> square_root(const BasicBounded<Real>& x) {
   const Real s = root(x.hi);

@@ -66,9 +66,9 @@ void make_primitive(ExactVec3& a) {
 
 namespace {
 
-// (a - b) 2^-exponent; neither's exponent is below that.
+// (a - b) 2^-exponent. Requires that neither a nor b has a smaller exponent.
 void set_scaled_difference(Integer& result, const BinaryDouble& a, const BinaryDouble& b, long exponent) {
-  constexpr int kSpareBits = 9;  // of a long beside a mantissa, a carry and the sign
+  constexpr int kSpareBits = 9;  // bits of a long that remain beside a mantissa, a carry and the sign
   const bool a_is_finer = a.exponent < b.exponent;
   const BinaryDouble &fine = a_is_finer ? a : b, &coarse = a_is_finer ? b : a;
   const int shift = coarse.exponent - fine.exponent;
@@ -112,7 +112,7 @@ void lower_exponent(ScaledVec3& a, long exponent) {
 
 namespace {
 
-// For their memory. What scales a vector does not change a sign.
+// Kept for its memory. Exponents are ignored, since a positive scale does not change a sign.
 struct Scratch {
   ScaledVec3 n, a, b, c;
   ExactVec3 cross;

@@ -1,7 +1,7 @@
 // Exact vectors with a common binary exponent: the vector is (x, y, z) * 2^exponent.
 //
-// Everything on the exact path that is a direction or a sign needs only the integers; the exponent keeps
-// integers short where coordinates are of one magnitude, whatever that magnitude is.
+// Directions and signs on the exact path need only the integers. The exponent keeps the integers short if all
+// coordinates have a similar magnitude, however large or small it is.
 #pragma once
 
 #include "exactff/geometry.h"
@@ -29,36 +29,36 @@ ExactVec3 operator+(const ExactVec3& a, const ExactVec3& b);
 ExactVec3 operator*(const ExactVec3& a, const Integer& s);
 bool is_zero(const ExactVec3& a);
 long bit_length(const ExactVec3& a);   // of the largest component
-int longest_axis(const ExactVec3& a);  // that of the largest component, the first of equals
+int longest_axis(const ExactVec3& a);  // axis of the largest component, the first of equal ones
 void negate(ExactVec3& a);
 
-// Divides by the greatest common divisor; the direction stays.
+// Divides by the greatest common divisor of the components. The direction does not change.
 void make_primitive(ExactVec3& a);
 
 // p - q, exactly.
 ScaledVec3 exact_difference(const Vec3& p, const Vec3& q);
 ScaledVec3 exact_vector(const Vec3& p);
 
-// The same vector with a smaller exponent.
+// Rewrites the vector with a smaller exponent; its value does not change.
 void lower_exponent(ScaledVec3& a, long exponent);
 
-// --- In the memory of a result, which is none of the operands: once it has held as much, nothing is allocated ---
+// --- Results in existing memory. `result` must not be an operand. Nothing is allocated once it is large enough. ---
 
 void set_dot(Integer& result, const ExactVec3& a, const ExactVec3& b);
 void set_cross(ExactVec3& result, const ExactVec3& a, const ExactVec3& b);
 void set_difference(ScaledVec3& result, const Vec3& p, const Vec3& q);  // p - q
 
-// --- Signs, exactly; after the first few nothing is allocated here either ---
+// --- Exact signs. Nothing is allocated after the first few calls. ---
 
 struct Arrow {
   const Vec3& from;
   const Vec3& to;
 };
-// Of n . (to - from).
+// Sign of n . (to - from).
 int exact_sign_of_dot(const Vec3& n, const Arrow& a);
-// Of the determinant of three arrows.
+// Sign of the determinant of three arrows.
 int exact_sign_of_det(const Arrow& a, const Arrow& b, const Arrow& c);
-// Of det(b - a, c - a, d - a).
+// Sign of det(b - a, c - a, d - a).
 inline int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return exact_sign_of_det({a, b}, {a, c}, {a, d});
 }

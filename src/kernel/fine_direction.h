@@ -1,4 +1,4 @@
-// A direction from x in double-double, for those who only keep it.
+// A direction from x in double-double form, for code that only stores it.
 #pragma once
 
 #include <array>

@@ -8,10 +8,10 @@
 
 namespace exactff::kernel {
 
-// While one lives, its thread computes that way, and so do threads that it starts; afterwards as before. Programs may
-// have chosen otherwise: ray tracers often flush small numbers to zero, and debuggers trap divisions by zero or
-// inexact results. Every public function whose values or bytes are promised to depend on its arguments alone begins
-// with one of these.
+// While an object of this class exists, its thread and the threads that it starts compute with this arithmetic. The
+// destructor restores the previous settings. Programs may use other settings: ray tracers often flush small numbers to
+// zero, and debuggers trap divisions by zero or inexact results. Every public function that guarantees that its values
+// or bytes depend on its arguments alone creates such an object first.
 class StandardArithmetic {
  public:
   StandardArithmetic() {

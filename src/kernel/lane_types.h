@@ -1,4 +1,4 @@
-// Vectors of four numbers, in the vector extension that GCC and Clang share: all that a header needs of lanes.h.
+// Vectors of four numbers, in the vector extension that GCC and Clang share: the part of lanes.h that headers need.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,9 @@
 #include <emmintrin.h>
 #endif
 
-// A vector of four doubles is returned in another way with AVX than without: a function that is compiled for both must
-// call none that returns one, and so whatever works on such vectors is inlined, however little is optimised.
+// AVX changes how a function returns a vector of four doubles. A function that is compiled with and without AVX must
+// therefore not call any function that returns one. So all functions on such vectors are inlined, at every optimisation
+// level.
 #define EXACTFF_INLINE [[gnu::always_inline]] inline
 
 namespace exactff::kernel::lanes {
@@ -19,7 +20,7 @@ using FourInts = std::int32_t __attribute__((vector_size(16)));
 using FourShorts = std::int16_t __attribute__((vector_size(8)));
 using EightShorts = std::int16_t __attribute__((vector_size(16)));
 
-// Lane by lane.
+// True if a <= b in every lane.
 EXACTFF_INLINE bool nowhere_larger(const EightShorts& a, const EightShorts& b) {
 #if defined(__SSE2__)
   return _mm_movemask_epi8(__m128i(a > b)) == 0;

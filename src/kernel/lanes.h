@@ -1,8 +1,8 @@
-// Four doubles at a time, in the vector extension that GCC and Clang share.
+// Operations on four doubles at a time, in the vector extension that GCC and Clang share.
 //
-// Functions marked EXACTFF_CLONES are compiled three times, for any processor, for AVX2 and for AVX-512, and chosen at
-// load time. What they call is inlined into all. Products and sums are never contracted (-ffp-contract=off), so every
-// version gives the same bits.
+// Functions marked EXACTFF_CLONES are compiled three times: for any processor, for AVX2 and for AVX-512. The version is
+// chosen at load time. The functions that they call are inlined into all versions. Products and sums are never
+// contracted (-ffp-contract=off), so every version gives the same bits.
 #pragma once
 
 #include <algorithm>

@@ -12,7 +12,7 @@ namespace {
 constexpr long kMantissaBits = std::numeric_limits<double>::digits;
 constexpr long kLowestExponent = std::numeric_limits<double>::min_exponent - kMantissaBits;  // of a denormal's last bit
 
-// floor(numerator * 2^-exponent / denominator) and whether anything was cut off.
+// floor(positive * 2^-exponent). Sets `compare_rest_with_half` to the sign of (the fraction cut off - 1/2).
 Integer scaled_quotient(const Rational& positive, long exponent, int& compare_rest_with_half) {
   Integer numerator = positive.get_num();
   Integer denominator = positive.get_den();

@@ -1,4 +1,4 @@
-// Exact numbers. Every double is converted without rounding; the only rounding back is nearest_double.
+// Exact numbers. Every double is converted without rounding; only nearest_double rounds back.
 #pragma once
 
 #include <gmpxx.h>
@@ -36,14 +36,14 @@ inline Rational to_rational(double value) { return Rational(value); }
 
 // Correctly rounded, ties to even, gradual underflow; overflow gives an infinity.
 double nearest_double(const Rational& value);
-// The same of a * 2^exponent; it must not overflow.
+// The same for a * 2^exponent, which must not overflow.
 double nearest_double(const Integer& a, long exponent);
 
 // "p/q" in lowest terms, or "p".
 std::string to_string(const Rational& value);
 
-// A finite double as mantissa * 2^exponent, the mantissa odd and of magnitude below 2^53; or zero, whose exponent is
-// larger than any other double's.
+// A finite double as mantissa * 2^exponent, with an odd mantissa of magnitude below 2^53; or zero, with an exponent
+// larger than that of any other double.
 struct BinaryDouble {
   static constexpr int kExponentOfZero = 1024;
   long mantissa = 0;

@@ -1,19 +1,20 @@
-// What arithmetic that is written once for one double and for four at a time (lanes.h) asks of its numbers. Each lane
-// does what the double does, operation by operation: it gets the same bits whatever the other lanes hold. Hence no
-// branches: what may be wrong in some lane is computed all the same and then replaced, by `where`.
+// Operations for arithmetic that is written once for one double and for four at a time (lanes.h). Each lane does the
+// same operations as a single double, so it gets the same bits whatever the other lanes contain. Hence there are no
+// branches: a value that may be invalid in some lane is computed all the same and then replaced by `where`.
 #pragma once
 
 #include <cmath>
 
-// Warns of vectors passed between functions: those here are all inlined. Whoever uses four lanes turns it off as well.
+// GCC warns of vectors passed between functions; the functions here are all inlined. Code that uses four lanes must
+// disable the warning as well.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 #include "kernel/lanes.h"
 
-// std::fma is a function of the library in a clone (lanes.h) for any processor, one instruction in the others; they
-// give the same bits. With four lanes, GCC makes one instruction of four only where it may take the rounding to be to
-// nearest and need not set errno: -fno-rounding-math -fno-math-errno.
+// In a clone (lanes.h) for any processor, std::fma is a library function; in the other clones it is one instruction.
+// Both give the same bits. With four lanes, GCC makes a single instruction for all four only if it may assume rounding
+// to nearest and need not set errno: -fno-rounding-math -fno-math-errno.
 
 namespace exactff::kernel::reals {
 
@@ -30,7 +31,7 @@ EXACTFF_INLINE Real uniform(double a) {
 EXACTFF_INLINE double fused(double a, double b, double c) { return std::fma(a, b, c); }
 EXACTFF_INLINE Four fused(const Four& a, const Four& b, const Four& c) {
   Four x = a, y = b, z = c;
-#pragma GCC unroll 1  // one instruction is made of a loop, of four calls in a row not always
+#pragma GCC unroll 1  // GCC makes one instruction of a loop, but not always of four calls in a row
   for (int i = 0; i < 4; ++i) z[i] = std::fma(x[i], y[i], z[i]);
   return z;
 }
@@ -45,7 +46,7 @@ EXACTFF_INLINE Four magnitude(const Four& a) { return lanes::absolute(a); }
 
 using lanes::larger;
 
-// --- Conditions: as comparisons give them ---
+// --- Conditions, as comparisons return them ---
 
 EXACTFF_INLINE bool both(bool a, bool b) { return a && b; }
 EXACTFF_INLINE FourMask both(const FourMask& a, const FourMask& b) { return a & b; }
