@@ -128,7 +128,7 @@ void check_grid_size(GridSize size, std::size_t faces) {
                     .suggestion = "use fewer, or a smaller patch"});
 }
 
-// The text after "NAME:k/", or the whole id without this prefix.
+// The text after "NAME:k/", or the whole id if it has no such prefix.
 std::string_view without_face(std::string_view id) {
   const std::size_t slash = id.rfind('/');
   if (slash == std::string_view::npos || !numbered_name(id.substr(0, slash))) return id;
