@@ -1,4 +1,4 @@
-// Tampieri's ray-sampled adaptive algorithm (adaptive.h), as one method among the others.
+// Tampieri's ray-sampled adaptive algorithm (adaptive.h), as one of the methods.
 #include "exactff/adaptive.h"
 
 #include <limits>

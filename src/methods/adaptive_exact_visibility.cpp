@@ -1,14 +1,15 @@
-// The control: Tampieri's recursion with the exact V of every sub-patch that shaft culling leaves in doubt, in the
-// place of shadow rays.
+// The control: Tampieri's recursion with exact V instead of shadow rays, for every sub-patch that shaft culling leaves
+// in doubt.
 //
-// What error is left is that of "constant visibility per leaf", which eps_B and eps_A govern: a leaf that is visible in
-// part and stops, by its F or its area, is credited with V F, as if what is seen of it were spread evenly. What the
-// sampled algorithm errs beyond that comes from sampling V. There are no silent errors here: V is 0 or 1 only where the
-// sub-patch is hidden or visible altogether, decided exactly (exact/visible_share.h).
+// The remaining error is that of "constant visibility per leaf", which eps_B and eps_A control: a partly visible leaf
+// that is not split further, because of its F or its area, contributes V F, as if its visible part were spread evenly.
+// Any further error of the sampled algorithm comes from sampling V. There are no silent errors here: V is 0 or 1 only
+// if the sub-patch is wholly hidden or wholly visible, which is decided exactly (exact/visible_share.h).
 //
-// The recursion, its shaft culling, its arithmetic and its sub-patches are the sampled algorithm's own. A sub-patch is
-// taken for the window of the directions from x to its corners, which are doubles: off the source's plane by roundings,
-// but the directions meet it all the same, so that nothing needs to be planar and neighbours share their corners.
+// The recursion, its shaft culling, its arithmetic and its sub-patches are those of the sampled algorithm. A sub-patch
+// is represented by the window of the directions from x to its corners, which are doubles. Rounding moves the corners
+// off the source's plane, but the directions still meet the plane, so that corners need not be planar and neighbours
+// share them.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -36,7 +37,8 @@ struct ControlSource : PreparedSource {
   Rgb radiosity;
 };
 
-// What the recursion asks, for one receiver and one source. The visible region of a plane is found when first needed.
+// Answers the recursion's queries, for one receiver and one source. The visible region of a plane is found when first
+// needed.
 class ExactVisibility : public sampled::PatchVisibility {
  public:
   ExactVisibility(const Scene& scene, const Receiver& receiver, const ExactSource& source)

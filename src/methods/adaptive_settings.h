@@ -1,4 +1,4 @@
-// What Tampieri's algorithm and its control with exact visibility have in common.
+// The code shared by Tampieri's algorithm and its control with exact visibility.
 #pragma once
 
 #include "exactff/adaptive.h"
@@ -9,7 +9,7 @@ namespace exactff::methods {
 // eps_B, eps_A and depth_cap.
 [[nodiscard]] std::vector<SettingSpec> tolerance_settings();
 void take_tolerances(const Settings& settings, AdaptiveOptions& options);
-// Throws InputError where nothing but the depth cap would end the recursion.
+// Throws InputError if only the depth cap would end the recursion.
 void check_tolerances(const Settings& settings);
 
 // The largest rho_r B_s over the channels.

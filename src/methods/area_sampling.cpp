@@ -2,8 +2,8 @@
 //
 //   F ~ A/n sum_i V(x, y_i) cos th_r cos th_s / (pi r_i^2).
 //
-// The unit square is mapped to the source by area, one face beside the other along u and each by a map of its own that
-// keeps ratios of areas, so that one point set serves for random, stratified and low-discrepancy sampling alike.
+// The unit square is mapped to the source by area, the faces side by side along u, each by its own map that preserves
+// ratios of areas. So one point set serves for random, stratified and low-discrepancy sampling.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -59,7 +59,7 @@ class AreaSampling : public Evaluator {
   }
 
  private:
-  // Sorts the points by the root that they fall on, and stretches them to its own unit square.
+  // Sorts the points by the root that they fall on, and maps them to the unit square of that root.
   void share_out(const RaySource& source) {
     by_root_.resize(source.roots.size());
     if (by_root_.size() == 1) {

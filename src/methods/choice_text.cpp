@@ -16,7 +16,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-// The part before `mark`, which is taken off `rest` with it; the whole rest where there is none.
+// The part before `mark`, which is removed from `rest` together with the mark; the whole rest if there is no mark.
 std::string_view take_until(std::string_view& rest, char mark) {
   const std::size_t end = std::min(rest.find(mark), rest.size());
   const std::string_view part = rest.substr(0, end);
@@ -24,7 +24,7 @@ std::string_view take_until(std::string_view& rest, char mark) {
   return trimmed(part);
 }
 
-// Takes up one SETTING=VALUE.
+// Reads one SETTING=VALUE.
 void read_assignment(std::string_view text, Settings& settings, std::vector<std::string>& seen) {
   std::string_view value = text;
   const std::string name(take_until(value, '='));

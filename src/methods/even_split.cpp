@@ -8,7 +8,7 @@ using namespace sampled;
 
 namespace {
 
-// i of m parts of the way from a to b; the ends exactly.
+// The point at i/m of the way from a to b; exact at the ends.
 Vec3 between(const Vec3& a, const Vec3& b, int i, int m) {
   if (i == 0) return a;
   if (i == m) return b;

@@ -1,4 +1,4 @@
-// A patch cut into m x m parts.
+// Cuts a patch into m x m parts.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace exactff::methods {
 
-// m^2 parts of the patch's own shape that tile it: triangles similar to a triangle; the cells of the bilinear map of a
+// m^2 parts of the patch's shape that tile it: triangles similar to a triangle; the cells of the bilinear map of a
 // quadrilateral.
 void split_evenly(const sampled::SubPatch& s, int m, std::vector<sampled::SubPatch>& parts);
 

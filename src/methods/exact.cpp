@@ -1,4 +1,4 @@
-// The exact method, as one among the others: correctly rounded values.
+// The exact method, as one of the methods: correctly rounded values.
 #include "exactff/exact.h"
 
 #include "methods/method_files.h"
@@ -44,7 +44,7 @@ class Exact : public Evaluator {
   const Scene& scene_;
   ExactOptions options_;
   Receiver receiver_;
-  FormFactor found_;  // its memory is used again
+  FormFactor found_;  // its memory is reused
 };
 
 class ExactOnScene : public PreparedScene {

@@ -1,10 +1,10 @@
 // The hemicube: M. F. Cohen and D. P. Greenberg, "The Hemi-Cube: A Radiosity Solution for Complex Environments" (1985).
 //
-//   1. half a cube is set upon x, its top at right angles to the normal, turned about it by an angle;
-//   2. every face of the scene but the receiver's own is drawn into the item buffers of its five faces;
+//   1. half a cube is placed on x, its top perpendicular to the normal, turned about the normal by an angle;
+//   2. every face of the scene except the receiver's own is drawn into the item buffers of the cube's five faces;
 //   3. the form factor of a face is the sum of the delta form factors of the pixels that show its front.
-// One item buffer serves all sources. Coplanar faces hide each other here as everything in front does: see
-// item_buffer.h for who wins.
+// One item buffer serves all sources. Here coplanar faces hide each other like any face in front: see item_buffer.h for
+// which one wins.
 #include <cmath>
 #include <limits>
 #include <map>
@@ -45,11 +45,11 @@ Frame frame_about(const Vec3& n, double degrees) {
   return {turned, cross(n, turned), n};
 }
 
-// How many items from the first on are equal to it.
+// The number of items at the beginning that are equal to the first one.
 std::size_t run_length(std::span<const std::uint32_t> items) {
   const std::uint32_t item = items[0];
   std::size_t length = 1;
-  // Four at a time without a branch among them.
+  // Four at a time without a branch between them.
   while (length + 4 <= items.size() && ((items[length] ^ item) | (items[length + 1] ^ item) |
                                         (items[length + 2] ^ item) | (items[length + 3] ^ item)) == 0) {
     length += 4;
@@ -58,7 +58,7 @@ std::size_t run_length(std::span<const std::uint32_t> items) {
   return length;
 }
 
-// By four sums side by side: one addition waits for the one before it.
+// Four sums in parallel, because each addition waits for the previous one.
 double sum_of(std::span<const double> values) {
   double sums[4] = {};
   std::size_t k = 0;
@@ -96,7 +96,7 @@ class Hemicube : public Evaluator {
   double rotation_;
   Frame frame_;
   std::vector<Vec3> points_;   // of the scene, in the frame
-  std::vector<Vec3> corners_;  // of the piece at hand
+  std::vector<Vec3> corners_;  // of the current piece
   std::vector<char> front_;    // by piece: x is in front of it
   ItemBuffer buffer_;
   std::vector<Share> shares_;  // by face
@@ -131,7 +131,7 @@ class HemicubeOnScene : public PreparedScene {
   std::vector<Normal> normals;  // by piece
 
  private:
-  // Made once for a resolution.
+  // Made once per resolution.
   const HemicubePixels& pixels(int resolution) const {
     const std::scoped_lock lock(mutex_);
     return pixels_.try_emplace(resolution, resolution).first->second;
@@ -163,8 +163,8 @@ void Hemicube::render(const ReceiverView& view) {
   }
 }
 
-// The plane's form is made in the scene's coordinates and with a normal whose largest component is 1, so that planes
-// that are parallel to two axes have the same one to the last bit whatever piece they are taken from.
+// The plane's form is computed in the scene's coordinates, with a normal whose largest component is 1. So a plane
+// parallel to two axes has the same form to the last bit, whichever of its pieces it is computed from.
 void Hemicube::draw(std::uint32_t index, const ReceiverView& view) {
   const Piece& piece = on_scene_.scene().pieces()[index];
   corners_.clear();
@@ -200,7 +200,7 @@ int Hemicube::side_of_x(std::uint32_t index, const ReceiverView& view) const {
                              view.exact_point);
 }
 
-// Pixels that show the same piece are added up run by run.
+// Adds up pixels in runs that show the same piece.
 void Hemicube::add_up() {
   const auto pieces = on_scene_.scene().pieces();
   const std::vector<std::uint32_t>& items = buffer_.items();

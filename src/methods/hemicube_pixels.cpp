@@ -19,7 +19,7 @@ std::size_t HemicubePixels::first(int face) const {
   return face == 0 ? 0 : n * n + static_cast<std::size_t>(face - 1) * (n / 2 * n);
 }
 
-// One of each eight that mirrors make equal is computed.
+// Of each eight pixels that are equal by mirror symmetry, one is computed.
 void HemicubePixels::set_top() {
   const int n = resolution_, half = n / 2;
   const auto line = [n](int i) { return static_cast<double>(2 * i - n) / n; };
@@ -41,7 +41,7 @@ void HemicubePixels::set_top() {
   }
 }
 
-// One of each two of the first side; the other sides are alike.
+// Of each two pixels of the first side, one is computed; the other sides are equal to the first.
 void HemicubePixels::set_sides() {
   const int n = resolution_, half = n / 2;
   double* const side = form_factors_.data() + first(1);

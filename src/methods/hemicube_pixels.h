@@ -2,7 +2,7 @@
 //
 // Notation: x is the origin, (u, v, n) its frame. The top face is n = 1 with n x n pixels over u, v in [-1, 1]; the
 // sides are u = 1, u = -1, v = 1, v = -1 with n columns over [-1, 1] and n/2 rows from the horizon up. A pixel's delta
-// form factor is F(x -> pixel), by Eq. (4) and not by the integrand at its centre, so that all of them sum to 1.
+// form factor is F(x -> pixel), by Eq. (4) and not by the integrand at its centre, so that they all sum to 1.
 #pragma once
 
 #include <cstddef>

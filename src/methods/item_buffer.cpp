@@ -12,7 +12,7 @@ using namespace sampled;
 
 namespace {
 
-// (column, row, depth) axes of each face in terms of (u, v, n). A form and a point turn alike.
+// (column, row, depth) axes of each face in terms of (u, v, n). Forms and points are turned in the same way.
 Vec3 turned_to(int face, const Vec3& p) {
   switch (face) {
     case 1:
@@ -28,7 +28,7 @@ Vec3 turned_to(int face, const Vec3& p) {
   }
 }
 
-// How far inside the frustum a point is on each of its four sides; the side faces end at the horizon.
+// The depth of a point inside each of the four sides of the frustum; the side faces end at the horizon.
 std::array<double, 4> depths_inside(int face, const Vec3& p) {
   return {p.z - p.x, p.z + p.x, p.z - p.y, face == 0 ? p.z + p.y : p.y};
 }
@@ -45,7 +45,7 @@ void clip_by(int face, std::size_t side, const std::vector<Vec3>& polygon, std::
   }
 }
 
-// Sides that all corners are outside of (some bit set) or some are (some bit clear in the second).
+// A bit for each side. `all`: all corners are outside it. `any`: some corner is.
 struct Outcodes {
   unsigned all = 15;
   unsigned any = 0;
@@ -66,7 +66,7 @@ Outcodes outcodes(int face, const std::vector<Vec3>& polygon) {
 using kernel::lanes::Four;
 using FourItems = std::uint32_t __attribute__((vector_size(16)));
 
-// Pixels of a row, the nearness of the k-th being slope (first + 2 k) + rest; four at a time.
+// Fills pixels of a row, four at a time. The nearness of the k-th is slope (first + 2 k) + rest.
 EXACTFF_CLONES
 void fill(double slope, double first, double rest, int count, std::uint32_t item, double* nearness,
           std::uint32_t* items) {
@@ -109,7 +109,7 @@ void ItemBuffer::draw(const SeenItem& seen) {
   }
 }
 
-// The pixels to look at: those around the clipped polygon, one more on every side for roundings.
+// The pixels to test: those around the clipped polygon, and one more on every side for rounding errors.
 bool ItemBuffer::clip_to_frustum(const SeenItem& seen, int face, Span& columns, Span& rows) {
   polygon_.clear();
   for (const Vec3& p : seen.corners) polygon_.push_back(turned_to(face, p));
@@ -155,8 +155,8 @@ void ItemBuffer::draw_on(int face, const SeenItem& seen, const Span& columns, co
   }
 }
 
-// A form is monotone in the column, in floating point too: a division finds about where it changes its sign, and the
-// form itself decides.
+// A form is monotone in the column, in floating point too: a division finds the approximate column of its sign change,
+// and the form itself decides.
 ItemBuffer::Span ItemBuffer::inside(double row, Span columns) const {
   for (const Form& form : forms_) {
     const double rest = form.row * row + form.depth;

@@ -1,15 +1,17 @@
-// Which face of a scene each pixel of a hemicube sees: an item buffer by depth.
+// Finds the face of a scene that each pixel of a hemicube sees: an item buffer by depth.
 //
-// A pixel belongs to what the ray from x through its centre meets first. A polygon with corners p_k is seen there if
-//   E_k(D) = s D . (p_k x p_k+1) > 0  for every side k, D = (column, row, n) of the centre in whole numbers, s = +-1 so
+// A pixel belongs to the polygon that the ray from x through its centre meets first. A polygon with corners p_k is seen
+// there if
+//   E_k(D) = s D . (p_k x p_k+1) > 0  for every side k, D = (column, row, n) of the centre in integers, s = +-1 so
 // that E is positive within. Its nearness along D is N . D / d, with the plane N . p = d. No corner is projected, so
-// what reaches behind x needs no care; the polygon is clipped to a face's frustum for the rows and columns to look at.
+// polygons that reach behind x are no special case; the polygon is clipped to a face's frustum only to find the rows
+// and columns to test.
 //
-// Ties: a centre on a side belongs to the polygon on the one side of it that lies towards greater columns, or for a
-// side that runs along the row, greater rows; two polygons that share the side form it from the same two corners, so
-// that E differs by the sign alone and exactly one of them has the pixel. Of equal nearness the polygon drawn first
-// stays; polygons in one plane that is parallel to two axes of the scene are equally near to the last bit, those in
-// another one may differ by roundings.
+// Ties: a centre on a side belongs to the polygon that lies towards greater columns from it, or, if the side runs along
+// the row, towards greater rows. Two polygons that share the side compute it from the same two corners, so that E
+// differs only by the sign and exactly one of them has the pixel. Of polygons with equal nearness the one drawn first
+// stays. Polygons in one plane parallel to two axes of the scene have equal nearness to the last bit; in other planes
+// it may differ by rounding errors.
 #pragma once
 
 #include <array>
@@ -59,8 +61,8 @@ class ItemBuffer {
   const HemicubePixels* pixels_ = nullptr;
   std::vector<std::uint32_t> items_;
   std::vector<double> nearness_;
-  std::vector<Vec3> sides_;  // s p_k x p_k+1 of the polygon at hand
-  std::vector<Form> forms_;  // the same on the face at hand
+  std::vector<Vec3> sides_;  // s p_k x p_k+1 of the current polygon
+  std::vector<Form> forms_;  // the same on the current face
   std::vector<Vec3> polygon_, clipped_;
 };
 

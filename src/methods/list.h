@@ -1,5 +1,5 @@
-// The library's methods, in the order in which they are listed: one line for each. Every one has a file that defines
-// `Method NAME_method()`. No include guard: whoever includes this says what to make of a line.
+// The library's methods, in the order in which they are listed: one line for each. Each has a file that defines
+// `Method NAME_method()`. No include guard: each including file defines the macro EXACTFF_METHOD.
 EXACTFF_METHOD(exact)
 EXACTFF_METHOD(adaptive)
 EXACTFF_METHOD(adaptive_exact_visibility)

@@ -1,4 +1,4 @@
-// What every file of a method defines.
+// Declarations shared by the files of the methods.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@ namespace exactff::methods {
 #include "methods/list.h"
 #undef EXACTFF_METHOD
 
-// Of one setting, so that a slip of the keyboard is told and not waited for.
+// Upper limits for a single setting, so that a typing error is reported at once and does not cost a long wait.
 inline constexpr std::int64_t kMostSplits = 4096;
 inline constexpr std::int64_t kMostRays = 65536;
 
-// Method::prepare, in the arithmetic that every method computes in, whatever the calling thread has set. look_from,
-// form_factor and configure see to that themselves.
+// Method::prepare in the standard arithmetic of all methods, whatever arithmetic the calling thread has set. look_from,
+// form_factor and configure set it themselves.
 template <class OnScene>
 std::unique_ptr<PreparedScene> prepare_as(const Scene& scene) {
   const kernel::StandardArithmetic arithmetic;

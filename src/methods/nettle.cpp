@@ -4,12 +4,12 @@
 //   F ~ sum over m x m sub-patches of  H A cos th_r cos th_s / (pi r^2),
 //
 // with the angles and r at the sub-patch's centre, A its area and H, the visibility scalar, the share of k rays to its
-// points that meet nothing. m = 1 is the article's; its rule that patches be "relatively small, when compared to the
-// distance between them" is what m is for.
+// points that meet nothing. The article has m = 1; its rule that patches be "relatively small, when compared to the
+// distance between them" is the reason for m.
 //
-// The literal variant does as the text says where that goes wrong: cosines are made positive, so that surfaces shine on
-// what lies behind them and light what faces away; and in the place of A stands the ratio of the two areas, which the
-// text gives once as the sender's over the receiver's and at last as the receiver's over the sender's.
+// The literal variant follows the text where the text is wrong. Cosines are made positive, so that surfaces illuminate
+// faces behind them and faces that face away. And A is replaced by the ratio of the two areas, which the text gives
+// first as the sender's over the receiver's and finally as the receiver's over the sender's.
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -89,7 +89,7 @@ class Nettle : public Evaluator {
     }
   }
 
-  // Not a pure number: one over an area, as the text has it.
+  // Not dimensionless: its unit is one over an area, as in the text.
   [[nodiscard]] double literal_form_factor(const SubPatch& part) const {
     const Vec3 centre = centre_of(part);
     const double squared_distance = dot(centre, centre);
@@ -102,12 +102,12 @@ class Nettle : public Evaluator {
     return cosines / (std::numbers::pi * squared_distance / square_scale) * ratio;
   }
 
-  // Whose products and quotients, four at a time, neither overflow nor underflow.
+  // True if products and quotients of four of these values neither overflow nor underflow.
   static bool is_moderate(std::initializer_list<double> values) {
     return std::all_of(values.begin(), values.end(), [](double v) { return v > 0x1p-160 && v < 0x1p160; });
   }
 
-  // The same where a factor or a product of some is beyond the range of doubles; infinite where the result is.
+  // The same where a factor or a product of factors is outside the range of doubles; infinite where the result is.
   [[nodiscard]] double literal_by_logarithms(const SubPatch& part) const {
     const Vec3 centre = centre_of(part);
     const double distance = length(centre);

@@ -33,7 +33,7 @@ std::vector<std::uint32_t> close_pieces(const SampledScene& scene, const SourceP
   return close;
 }
 
-// 0 where rounding leaves no normal. Edges are brought to a length of about 1 where their product would underflow.
+// 0 where rounding leaves no normal. Edges are scaled to a length of about 1 where their product would underflow.
 Vec3 unit_normal_of(const SourcePlane& plane) {
   Vec3 normal = plane_normal(plane.frame[0], plane.frame[1], plane.frame[2]).value;
   if (max_norm(normal) < kLeastSquare) {
@@ -71,7 +71,7 @@ RaySource::RaySource(const SampledScene& scene, const Selection& chosen) : Prepa
   for (const SourceRoot& root : roots) area_up_to.push_back(area_up_to.back() + area_of(root));
 }
 
-// The ray structure is built here, so that no call that is timed pays for it, but only where a list can get long.
+// The ray structure is built here, so that its time is not part of a timed call, but only if a list can get long.
 RaysOnScene::RaysOnScene(const Scene& scene) : PreparedScene(scene), sampled_(scene) {
   if (scene.pieces().size() > kMostPiecesWithoutEmbree) (void)sampled_.ray_scene();
 }

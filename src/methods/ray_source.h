@@ -1,4 +1,4 @@
-// Scene and source as the methods see them that trace rays to points of the source.
+// Scene and source in the form used by methods that trace rays to points of the source.
 #pragma once
 
 #include <vector>
@@ -9,12 +9,12 @@
 
 namespace exactff::methods {
 
-// One plane of a source, and the same as seen from behind.
+// One plane of a source, seen from the front and from behind.
 struct RayPlane {
   sampled::SourcePlane front;
   sampled::SourcePlane back;
   Vec3 unit_normal;                  // front
-  std::vector<std::uint32_t> close;  // pieces that single precision cannot tell from the plane, but for those in it
+  std::vector<std::uint32_t> close;  // pieces not in the plane that single precision cannot separate from it
 };
 
 struct RaySource : PreparedSource {
@@ -22,7 +22,7 @@ struct RaySource : PreparedSource {
 
   std::vector<sampled::SourceRoot> roots;
   std::vector<RayPlane> planes;
-  std::vector<double> area_up_to;  // of the roots before the k-th, and at the end of all; scaled
+  std::vector<double> area_up_to;  // total area of the roots before the k-th; the last entry is that of all; scaled
 
   [[nodiscard]] double area() const { return area_up_to.back(); }
 };

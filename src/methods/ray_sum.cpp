@@ -62,7 +62,7 @@ void RaySum::gather(const RayPlane& plane, Reach reach, std::size_t points) {
   list_ = gathered_.occluders.push_all();
 }
 
-// Rays pass through the source's plane and the receiver's face; what is too near either for single precision is tested
+// Rays pass through the source's plane and the receiver's face. Pieces too near either for single precision are tested
 // directly.
 void RaySum::gather_from_all(const RayPlane& plane, const SourcePlane& seen, Horizon horizon) {
   const Scene& scene = *scene_.scene.scene;
@@ -87,8 +87,8 @@ double RaySum::kernel(const Vec3& point) const {
   return std::numbers::inv_pi * (above / squared_distance) * (height_ / squared_distance);
 }
 
-// Where squares underflow, or x is so near that rounding makes its height above the plane more than its distance from
-// a point of it.
+// For cases where squares underflow, or where x is so near that, by rounding, its height above the plane exceeds its
+// distance from a point of the plane.
 double RaySum::kernel_near_x(const Vec3& point) const {
   const double distance = length(point);
   if (distance == 0.0) return 0.0;
@@ -114,7 +114,7 @@ void RaySum::add(const Vec3& point, double weight) {
   if (ends_.count == kBlock) trace();
 }
 
-// Ends that are left over from before serve as padding: their lanes are not looked at.
+// Old ends serve as padding: their lanes are ignored.
 void RaySum::trace() {
   rays_ += static_cast<std::uint64_t>(ends_.count);
   for (int first = 0; first < ends_.count; first += RayScene::kPacket) {

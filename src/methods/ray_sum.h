@@ -1,8 +1,8 @@
-// Sums of weights over the points of a source that x sees: what every method comes to that traces single rays.
+// Sums of weights over the points of a source that x sees: the common core of all methods that trace single rays.
 //
-// For one root of the source at a time, either a short list of occluders is gathered from its shaft and tested
-// directly in double, or Embree is asked about the whole scene. Gathering costs as much as some rays, so the list may
-// be about as long as there are rays to trace, and is given up beyond.
+// For one root of the source at a time, either a short list of occluders is gathered from its shaft and tested directly
+// in double, or Embree tests the whole scene. Gathering costs as much as some rays, so the list may be about as long as
+// the number of rays to trace, and is given up beyond that.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,8 @@
 
 namespace exactff::methods {
 
-// Which points count: as the definition has it; or all, on both sides of the source and below the horizon too.
+// The points that count. kVisible: those of the definition. kEverything: all, on both sides of the source and also
+// below the horizon.
 enum class Reach { kVisible, kEverything };
 
 class RaySum {
@@ -27,7 +28,7 @@ class RaySum {
   void look_from(const Receiver& receiver);
   [[nodiscard]] const sampled::ReceiverView& view() const { return view_; }
 
-  // Turns to a root, of which about so many points will be asked about. False if nothing of it counts.
+  // Selects a root, for about `points` visibility queries. False if no part of it counts.
   [[nodiscard]] bool aim(const RaySource& source, std::size_t root, Reach reach, std::size_t points);
   [[nodiscard]] const sampled::SubPatch& patch() const { return patch_; }  // the root, relative to x, unclipped
   [[nodiscard]] double height() const { return height_; }                  // of x above its plane; negative behind
@@ -36,8 +37,8 @@ class RaySum {
   // kLargestKernel, so that no sum of it overflows.
   [[nodiscard]] double kernel(const Vec3& point) const;
 
-  // Cuts every root of the source that counts into splits x splits parts and calls add(part, key) for each, with a key
-  // of its own for random numbers. So many points will be asked about in each part. Returns how many parts there were.
+  // Cuts every root of the source that counts into splits x splits parts and calls add(part, key) for each, with its
+  // own key for random numbers. `points` is the number of queries in each part. Returns the number of parts.
   template <class Add>
   std::uint64_t for_each_part(const RaySource& source, Reach reach, int splits, std::uint64_t key, int points,
                               const Add& add) {

@@ -57,7 +57,7 @@ class Registry {
   }
 
   std::mutex mutex_;
-  std::deque<Method> methods_;  // whose elements stay where they are
+  std::deque<Method> methods_;  // a deque, so that elements are never moved
 };
 
 }  // namespace

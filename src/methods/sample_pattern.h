@@ -9,7 +9,7 @@ namespace exactff::methods {
 [[nodiscard]] SettingSpec pattern_setting();
 [[nodiscard]] SamplePattern pattern_named(std::string_view name);  // one of the setting's words
 
-// The centre pattern has one ray and no seed, the regular one no seed.
+// True if a pattern uses the setting: the centre pattern has one ray and no seed, the regular one no seed.
 [[nodiscard]] bool pattern_uses(const Settings& settings, std::string_view setting);
 
 }  // namespace exactff::methods

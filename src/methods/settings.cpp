@@ -51,7 +51,7 @@ bool allows(const SettingSpec& spec, const std::string& value) {
   return std::find(spec.words.begin(), spec.words.end(), value) != spec.words.end();
 }
 
-// The value in the setting's own type, if it is one and allowed.
+// The value in the setting's type; nullopt if the type does not fit or the value is not allowed.
 std::optional<SettingValue> fitting(const SettingSpec& spec, SettingValue value) {
   const bool wants_number = std::holds_alternative<double>(spec.fallback);
   if (const auto* whole = std::get_if<std::int64_t>(&value); whole != nullptr && wants_number) {

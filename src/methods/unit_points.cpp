@@ -76,7 +76,7 @@ void UnitPoints::place(std::uint64_t key, std::vector<UnitPoint>& points) {
   }
 }
 
-// The plan's map of the unit square to itself changes no bit.
+// The plan maps the unit square to itself without changing a bit.
 void UnitPoints::place_stratified(std::uint64_t key, std::vector<UnitPoint>& points) {
   static const SubPatch kSquare = make_sub_patch(std::array<Vec3, 4>{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}});
   cells_.place(kSquare, key, ends_);

@@ -21,7 +21,7 @@ class UnitPoints {
  public:
   UnitPoints(PointSet set, int count);
 
-  // The points that the stream `key` makes of the set.
+  // The points of the set, with the random numbers of the stream `key`.
   void place(std::uint64_t key, std::vector<sampled::UnitPoint>& points);
 
  private:

@@ -1,10 +1,10 @@
 // Wallace's ray-traced form factor: J. R. Wallace, K. A. Elmquist and E. A. Haines, "A Ray Tracing Algorithm for
-// Progressive Radiosity" (1989). The source is cut into sub-patches of area dA, each is taken for a disc that faces the
-// line to its sample point at distance r, and one ray tells whether x sees it:
+// Progressive Radiosity" (1989). The source is cut into sub-patches of area dA, each is approximated by a disc
+// perpendicular to the line to its sample point at distance r, and one ray decides whether x sees it:
 //
 //   F ~ sum V dA cos th_r cos th_s / (pi r^2 + dA).
 //
-// The disc keeps the value finite where dA is large beside r^2.
+// The disc keeps the value finite where dA is large compared with r^2.
 #include <numbers>
 
 #include "methods/even_split.h"

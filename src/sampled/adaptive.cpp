@@ -35,7 +35,7 @@ struct AdaptiveSource::Data {
 
 namespace {
 
-// Memory that one thread uses again for each receiver.
+// Memory that one thread reuses for each receiver.
 struct Workspace {
   Gathered gathered;
   Blockers blockers;
@@ -47,14 +47,14 @@ struct Workspace {
 
 struct VisibilityFactor {
   double value = 0.0;
-  std::optional<LeafReason> certain;  // where shaft culling settled it
+  std::optional<LeafReason> certain;  // set if shaft culling decided
   CandidateRange candidates;
 };
 
 // One receiver and one source.
 class Recursion {
  public:
-  // `visibility`: asked instead of rays, unless null.
+  // `visibility`: used instead of rays unless null.
   Recursion(const SampledScene& solver, const ReceiverView& view, const AdaptiveOptions& options, double largest_rho_b,
             PatchVisibility* visibility, Workspace& work, AdaptiveResult& result)
       : solver_(solver),
@@ -82,7 +82,7 @@ class Recursion {
  private:
   [[nodiscard]] bool literal() const { return options_.variant == Variant::kLiteral; }
 
-  // The published test also drops a wall at right angles to the receiver's floor.
+  // The published test also culls a wall at right angles to the receiver's floor.
   [[nodiscard]] bool can_cull(const SourcePlane& plane) const {
     if (literal()) {
       const Vec3 source_normal = plane_normal(plane.frame[0], plane.frame[1], plane.frame[2]).value;
@@ -115,7 +115,7 @@ class Recursion {
     return sum;
   }
 
-  // If a list can be long: what single precision cannot tell apart is tested directly, the rest by Embree.
+  // If a list can be long: pieces too close for single precision are tested directly, the others by Embree.
   void prepare_rays() {
     blurred_ = {};
     if (occluders_.size() <= kLongestDirectList) return;
@@ -144,7 +144,7 @@ class Recursion {
     return options_.most_leaves > 0 && result_.leaves >= options_.most_leaves;
   }
 
-  // Pushes the shrunk candidate list; whoever calls drops it.
+  // Pushes the reduced candidate list; the caller must drop it.
   VisibilityFactor compute_visibility_factor(const SubPatch& s, CandidateRange inherited, std::uint64_t key) {
     if (inherited.empty()) return {1.0, LeafReason::kShaftEmpty, inherited};
     result_.shaft_tests += inherited.size();

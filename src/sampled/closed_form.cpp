@@ -1,12 +1,13 @@
 // F = -1/(2 pi) sum_i angle(R_i, R_i+1) / |R_i x R_i+1| * (R_i x R_i+1) . N_r
 //
 // Notation of F. Tampieri, "Accurate Form-Factor Computation" (1992), Eq. (4), which prints no minus: that is an
-// erratum for vertices that run counter-clockwise as x sees them, and both variants below mend it. The formula is
+// erratum for vertices that run counter-clockwise as x sees them, and both variants below correct it. The formula is
 // homogeneous in every R_i, so R_i need not be a unit vector.
-//   1. a x b is formed as a x (b - a): the plain product loses r/h to cancellation twice over;
-//   2. the angle is atan2(|a x b|, a . b), since acos is blind below 1e-8. Where all angles are small, as they are
-//      after a split or two, angle / |a x b| = g(q^2) / (a . b) with q = |a x b| / (a . b) and g(z) = atan(sqrt z) /
-//      sqrt z = 1 - z/3 + z^2/5 - ..., which needs no root and no atan2: four edges at a time.
+//   1. a x b is computed as a x (b - a): the plain product loses a factor r/h of accuracy to cancellation twice;
+//   2. the angle is atan2(|a x b|, a . b), since acos cannot resolve angles below 1e-8. Where all angles are small, as
+//      they are after a split or two, angle / |a x b| = g(q^2) / (a . b) with q = |a x b| / (a . b) and g(z) =
+//      atan(sqrt z) / sqrt z = 1 - z/3 + z^2/5 - ..., which needs no root and no atan2. It is computed for four edges
+//      at a time.
 #include "sampled/closed_form.h"
 
 #include <numbers>
@@ -19,7 +20,7 @@ using namespace kernel::lanes;
 
 namespace {
 
-// Edge i runs from corner i to corner i + 1; a triangle's third edge is void and adds 0.
+// Edge i runs from corner i to corner i + 1; a triangle's third edge is degenerate and adds 0.
 struct Edges {
   Four height;        // (a x b) . N_r
   Four cosine;        // a . b
@@ -56,9 +57,9 @@ double atan2_sum(const Edges& e) {
   return sum;
 }
 
-// Cosines' squares and sines' fourth powers of patches this small underflow, or lose digits. The formula is
-// homogeneous: such a patch is brought to a size of about 1 first. Corners that are that much nearer than others stay
-// so.
+// For patches this small, squares of cosines and fourth powers of sines underflow or lose digits. The formula is
+// homogeneous, so such a patch is scaled to a size of about 1 first. Corners that are nearer than others by this factor
+// stay so.
 constexpr double kLeastSize = 0x1p-200;
 constexpr double kLeastCosine = 0x1p-400;
 
@@ -102,7 +103,7 @@ Float3 cross(const Float3& a, const Float3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// Directions alone matter below: a corner whose squares floats could not hold is brought to a length of about 1.
+// Only directions matter below: a corner whose squares are outside the range of floats is scaled to about length 1.
 Vec3 within_floats(const Vec3& v) {
   constexpr double kLeast = 0x1p-50, kLargest = 0x1p50;
   const double size = max_norm(v);
@@ -123,7 +124,7 @@ Float3 unit(const Vec3& corner) {
 
 }  // namespace
 
-// The cosine is clamped to [-1, 1] and a vanishing cross product skipped, where the print would give NaN.
+// The cosine is clamped to [-1, 1] and a vanishing cross product skipped, where the printed formula would give NaN.
 double literal_unoccluded_form_factor(const SubPatch& s, const Vec3& unit_normal) {
   const Float3 normal = to_float(unit_normal);
   float sum = 0.0F;

@@ -1,4 +1,4 @@
-// Where the recursion takes V of a sub-patch from, if not from shadow rays.
+// A source of the visible fraction V of a sub-patch, used by the recursion in place of shadow rays.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace exactff::sampled {
 class PatchVisibility {
  public:
   virtual ~PatchVisibility() = default;
-  // The sub-patches asked about next are parts of this piece of the scene.
+  // The sub-patches in the following calls are parts of this piece of the scene.
   virtual void start(std::uint32_t piece) = 0;
   // V in [0, 1]; the recursion ends at 0 and at 1. Corners are relative to x, in scaled coordinates.
   virtual double fraction(const SubPatch& s) = 0;

@@ -1,10 +1,10 @@
-// Sides of planes for the set-up of one receiver: sums of products with a bound on their rounding error.
+// Tests for sides of planes, used to set up one receiver: sums of products with a bound on their rounding error.
 //
 // Notation: u = 2^-53. Inputs are differences of points, within relative error u a component. A component of a cross
-// product errs by at most 4u of its magnitude (the sum of the magnitudes of its two products), a dot product with it
-// by less than 9u of its own; the bound taken is 32u. Every product with a zero factor has magnitude 0, and every
-// other at least 2^-400, far above what underflow can spoil in coordinates of about 1: so an axis-parallel plane gets
-// the bound 0 and is decided like the rest, without an exact sign.
+// product errs by at most 4u of its magnitude (the sum of the magnitudes of its two products), a dot product with it by
+// less than 9u of its own magnitude; the bound used is 32u. Every product with a zero factor has magnitude 0, and every
+// other at least 2^-400, far above the effect of underflow in coordinates of about 1. So an axis-parallel plane gets
+// the bound 0 and is decided like the others, without an exact sign.
 #pragma once
 
 #include "sampled/vec.h"
@@ -21,15 +21,15 @@ struct Bounded {
   [[nodiscard]] bool certainly_zero() const { return value == 0.0 && error == 0.0; }
 };
 
-// A normal and the magnitudes its components were made of.
+// A normal and the magnitudes of its components' terms.
 struct Normal {
   Vec3 value;
   Vec3 magnitude;
 };
 
-// (b - a) x (c - a): towards those who see a, b, c counter-clockwise.
+// (b - a) x (c - a): points to the side from which a, b, c run counter-clockwise.
 [[nodiscard]] Normal plane_normal(const Vec3& a, const Vec3& b, const Vec3& c);
-// A vector that is a normal as it is.
+// The given vector as a normal, without error.
 [[nodiscard]] Normal exact_normal(const Vec3& n);
 
 [[nodiscard]] Bounded bounded_dot(const Normal& n, const Vec3& d);

@@ -24,7 +24,7 @@ Float3 in_unit_box(const UnitBox& box, const Vec3& p) {
   return {rounded(q.x), rounded(q.y), rounded(q.z)};
 }
 
-// Vertices that some piece uses, ascending.
+// The vertices that pieces use, ascending.
 std::vector<std::uint32_t> used_vertices(const Scene& scene) {
   std::vector<std::uint32_t> used;
   for (const Piece& piece : scene.pieces()) {
@@ -87,11 +87,12 @@ void find_merged_vertices(const Scene& scene, const std::vector<Vec3>& points, c
     problems.push_back(
         refusal(scene, face_with_vertex(scene, used[i]),
                 "has the vertex " + position(q) + ", which single precision merges with " + position(p)));
-    return;  // one is enough: there may be very many
+    return;  // report one only: there may be very many
   }
 }
 
-// An axis along which Embree would lose more of a vertex than single precision loses of the outermost ones; or nothing.
+// An axis along which Embree would move a vertex by more than single precision moves the outermost ones; nullopt if
+// none.
 std::optional<int> axis_lost_to_embree(const UnitBox& box, const Vec3& half_extent, const Vec3& p) {
   constexpr double kRoundingOfFloats = 0x1p-24;
   const Vec3 q = (p - box.centre) * box.scale;
@@ -145,7 +146,7 @@ void find_spoiled_pieces(const Scene& scene, const std::vector<Vec3>& points, co
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-// Embree owns the buffer.
+// The buffer belongs to Embree.
 template <class Element>
 Element* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count) {
   void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Element), std::max<std::size_t>(1, count));
@@ -153,7 +154,7 @@ Element* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, 
   return static_cast<Element*>(buffer);
 }
 
-// Per call of rtcOccluded16: what the filter needs. The context must come first.
+// The data that the filter needs in one call of rtcOccluded16. The context must come first.
 struct FilterContext {
   RTCIntersectContext context;
   const Blockers* blockers;
@@ -169,14 +170,14 @@ void pass_through_others(const RTCFilterFunctionNArguments* args) {
   }
 }
 
-// The scene lies in the unit box, so nothing further than 1 (max norm) from a ray's end can be met, and a ray from far
-// away need not start there: it would lose its digits.
+// The scene lies in the unit box, so a ray can hit nothing further than 1 (max norm) from its end. A ray from far away
+// therefore need not start at its origin, where it would lose digits.
 constexpr double kLongestRay = 2.0;
 
-// Every ray ends in the unit box. What lies beyond is rounding of a receiver that is very far away; Embree asserts that
+// Every ray ends in the unit box. Ends outside it are rounding errors of a very distant receiver. Embree asserts that
 // coordinates are below 2^60.
 Vec3 brought_into_box(const Vec3& end) {
-  const auto within = [](double t) { return t >= -1.0 ? std::min(t, 1.0) : -1.0; };  // what is no number too
+  const auto within = [](double t) { return t >= -1.0 ? std::min(t, 1.0) : -1.0; };  // also for NaN
   return {within(end.x), within(end.y), within(end.z)};
 }
 
@@ -209,7 +210,7 @@ UnitBox checked_unit_box(const Scene& scene, const std::vector<Vec3>& points) {
   const UnitBox box = unit_box(bounds, scene.pieces().size());
   std::vector<Problem> problems;
   find_lost_vertices(scene, points, bounds, box, used, problems);
-  if (problems.empty()) {  // what is lost merges and collapses, too
+  if (problems.empty()) {  // lost vertices would also be found merged or collapsed
     find_merged_vertices(scene, points, box, used, problems);
     find_spoiled_pieces(scene, points, box, problems);
   }

@@ -31,7 +31,7 @@ Box box_of(const Scene& scene, const Piece& piece, const std::vector<Vec3>& poin
   return box;
 }
 
-// One polygon's shaft: the half-spaces that the tree is asked about, then the same questions to each piece.
+// The shaft of one polygon: half-spaces for the query of the tree, then the same tests for each piece.
 class Gatherer {
  public:
   Gatherer(const ScaledScene& scene, const ReceiverView& view, const SourcePlane& plane, Horizon horizon,
@@ -61,7 +61,8 @@ class Gatherer {
     return half_spaces_;
   }
 
-  // The piece that was seen last is too near x's or the source's plane for single precision.
+  // True if the plane of the last seen piece is too near x, or that piece too near the source's plane, for single
+  // precision.
   [[nodiscard]] bool blurred(double blur) const {
     const Vec3& normal = seen_.normal.value;
     if (std::abs(dot(normal, seen_.corners[0])) <= blur * length(normal)) return true;
@@ -71,7 +72,7 @@ class Gatherer {
     });
   }
 
-  // The piece as x sees it, or nothing if it certainly hides nothing.
+  // The piece as x sees it, or null if it certainly hides nothing.
   const SeenPolygon* see(std::uint32_t index) {
     const Piece& piece = scene_.scene->pieces()[index];
     if (view_.on == piece.face) return nullptr;
@@ -89,8 +90,8 @@ class Gatherer {
   }
 
  private:
-  // A rounded normal n' stands for an n within 2^-50 of its magnitude, so n . d >= 0 implies only
-  // n' . d >= -3 * 2^-50 * magnitude * |d|: the offset gives way by more than that.
+  // A rounded normal n' represents an n within 2^-50 of its magnitude, so n . d >= 0 implies only
+  // n' . d >= -3 * 2^-50 * magnitude * |d|: the offset is relaxed by more than that.
   void add(const Vec3& normal, double magnitude, double offset) {
     half_spaces_.push_back({normal, offset - 0x1p-47 * magnitude * extent_});
   }
@@ -101,7 +102,7 @@ class Gatherer {
                         [&](std::uint32_t v) { return !height(scene_.points[v]).certainly_not_positive(); });
   }
 
-  // All of it on or behind the source's plane, on or behind the plane through x, or on or below the horizon.
+  // The whole piece lies on or behind the source's plane, on or behind the plane through x, or on or below the horizon.
   [[nodiscard]] bool outside_slab() const {
     return no_corner_above([&](const Vec3& p) { return bounded_dot(front_, p - plane_.frame[0]); }) ||
            no_corner_above([&](const Vec3& p) { return bounded_dot(front_, view_.point - p); }) ||

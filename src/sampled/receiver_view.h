@@ -1,4 +1,4 @@
-// One receiver's view of a scene: what faces it, and what may lie between it and a source.
+// One receiver's view of a scene: which planes face it, and which pieces may lie between it and a source.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 namespace exactff::sampled {
 
 // The scene in coordinates multiplied by the power of two that brings the largest into [1/2, 1). Products of a few
-// lengths then neither overflow nor underflow, whatever the unit of length.
+// lengths then neither overflow nor underflow, for any unit of length.
 struct ScaledScene {
   const Scene* scene = nullptr;
   double scale = 1.0;
@@ -33,11 +33,11 @@ struct ReceiverView {
   std::optional<FaceId> on;
 };
 
-// Throws InputError where a coordinate is not finite or the normal is zero, std::invalid_argument where the scene has
-// no such face.
+// Throws InputError if a coordinate is not finite or the normal is zero, std::invalid_argument if the scene has no such
+// face.
 [[nodiscard]] ReceiverView view_from(const Receiver& receiver, const ScaledScene& scene);
 
-// The stream of random numbers that a seed, a receiver and a source have to themselves.
+// The key of the random-number stream for this combination of seed, receiver and source.
 [[nodiscard]] std::uint64_t stream_key(const ReceiverView& view, const Selection& source, std::uint64_t seed);
 
 // Exact: x is strictly in front of the plane.
@@ -45,25 +45,25 @@ struct ReceiverView {
 
 enum class Horizon { kClips, kIgnored };
 
-// What gather_occluders finds.
+// The result of gather_occluders.
 struct Gathered {
   OccluderSet occluders;
-  std::vector<std::uint32_t> sharp_pieces;  // of the occluders that single precision can place
+  std::vector<std::uint32_t> sharp_pieces;  // of the occluders that single precision can locate
   std::vector<std::uint32_t> blurred;       // the other occluders' indices
-  std::size_t looked_at = 0;                // pieces that the tree could not rule out
+  std::size_t looked_at = 0;                // pieces that the tree could not exclude
   std::vector<HalfSpace> half_spaces;       // scratch space
   SeenPolygon seen;                         // scratch space
 };
 
-// Finds every piece that may hide from x some of a convex polygon of the source, given by its corners relative to x
-// (all above the horizon, if it clips). An occluder is blurred if its plane passes x, or it lies before the source's
-// plane, at less than `blur`. Gives up, with a list cut short and false, where the tree cannot rule out more than
-// `most`.
+// Finds every piece that may hide from x a part of a convex polygon of the source, given by its corners relative to x
+// (all above the horizon, if it clips). An occluder is blurred if its plane passes x at a distance below `blur`, or if
+// it lies closer than `blur` to the source's plane. Returns false with an incomplete list if more than `most` pieces
+// remain that the tree cannot exclude.
 bool gather_occluders(const ScaledScene& scene, const ReceiverView& view, const SourcePlane& plane,
                       std::span<const Vec3> polygon, Horizon horizon, double blur, Gathered& gathered,
                       std::size_t most = std::numeric_limits<std::size_t>::max());
 
-// The same among the pieces given, whose occluders all count as blurred.
+// The same among the given pieces; all occluders count as blurred.
 void gather_blurred(const ScaledScene& scene, const ReceiverView& view, const SourcePlane& plane,
                     std::span<const Vec3> polygon, Horizon horizon, std::span<const std::uint32_t> pieces,
                     Gathered& gathered);

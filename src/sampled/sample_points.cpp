@@ -17,7 +17,7 @@ double radical_inverse_base2(std::uint32_t i) {
 
 double wrapped(double u) { return u >= 1.0 ? u - 1.0 : u; }
 
-// Each map is kept as an origin and directions, so that a point costs a few multiplications.
+// Each map is stored as an origin and directions, so that a point costs a few multiplications.
 struct ParallelogramMap {
   Vec3 origin, along_u, along_v;
   explicit ParallelogramMap(const SubPatch& s)
@@ -54,7 +54,7 @@ struct QuadrilateralMap {
     jv = dot(cross(twist, along_v), whole);
   }
 
-  // The t in [0, 1] at which a density proportional to d0 + slope t has collected the share r of its mass.
+  // The t in [0, 1] at which the share r of the mass of a density proportional to d0 + slope t lies below t.
   static double inverse(double d0, double slope, double r) {
     const double low = std::max(d0, 0.0);
     const double high = std::max(d0 + slope, 0.0);

@@ -1,4 +1,4 @@
-// Where shadow rays end: points of a sub-patch, uniform over its area.
+// The ends of shadow rays: points of a sub-patch, uniform over its area.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ inline std::uint64_t mixed(std::uint64_t z) {
 }
 inline constexpr std::uint64_t kGoldenGamma = 0x9e3779b97f4a7c15ULL;
 
-// The key of a stream derived from another one; keys of different `index` are as good as independent.
+// The key of a stream derived from another one; keys with different `index` are practically independent.
 inline std::uint64_t derived_key(std::uint64_t key, std::uint64_t index) {
   return mixed(key + (index + 1) * kGoldenGamma);
 }
@@ -49,15 +49,15 @@ inline UnitPoint random_point(std::uint64_t key, std::uint64_t index) {
           static_cast<double>(static_cast<std::int64_t>(bits & 0xffffffffU)) * kUnit32};
 }
 
-// The images of the points under a map to the sub-patch that keeps ratios of areas. Fills `ends`, padding included.
+// The images of the points under a map to the sub-patch that preserves ratios of areas. Fills `ends`, padding included.
 void place_by_area(const SubPatch& s, std::span<const UnitPoint> points, RayEnds& ends);
 
 // The points of the unit square that a pattern prescribes for n rays, and their images on sub-patches.
 class SamplePlan {
  public:
-  // kCentre makes one ray, whatever `rays` says. Any number of jittered or regular cells of area 1/n: about sqrt(n)
-  // rows, each as high as its share of the cells. kLowDiscrepancy: Hammersley's points, shifted modulo 1 by a random
-  // vector per sub-patch (Cranley and Patterson 1976).
+  // kCentre makes one ray and ignores `rays`. Any number of jittered or regular cells of area 1/n: about sqrt(n) rows,
+  // each as high as its share of the cells. kLowDiscrepancy: Hammersley's points, shifted modulo 1 by a random vector
+  // per sub-patch (Cranley and Patterson 1976).
   void prepare(SamplePattern pattern, int rays);
 
   [[nodiscard]] int ray_count() const { return static_cast<int>(cells_.size()); }

@@ -1,4 +1,4 @@
-// A scene prepared for shadow rays, shared by every method that traces some.
+// A scene prepared for shadow rays, shared by all methods that trace rays.
 #pragma once
 
 #include <atomic>
@@ -11,7 +11,7 @@
 
 namespace exactff::sampled {
 
-// Longer lists are left to Embree. Measured for 16 rays: a candidate costs 25 ns, a packet of rays 1 to 6 us in scenes
+// Embree is used for longer lists. Measured for 16 rays: a candidate costs 25 ns, a packet of rays 1 to 6 us in scenes
 // of 100 to 10,000 triangles, so that both cost the same at 50 (blinds) to 300 (soup).
 inline constexpr std::size_t kLongestDirectList = 128;
 
@@ -19,10 +19,10 @@ inline constexpr std::size_t kLongestDirectList = 128;
 inline constexpr double kFarthest = 0x1p200;
 
 struct SampledScene {
-  // Throws InputError where single precision would spoil the scene.
+  // Throws InputError if single precision would distort the scene (see checked_unit_box).
   explicit SampledScene(const Scene& given) : scene(given), unit_box(checked_unit_box(given, scene.points)) {}
 
-  // Built when first asked for.
+  // Built at the first call.
   const RayScene& ray_scene() const {
     std::call_once(rays_built, [this] {
       const auto start = std::chrono::steady_clock::now();

@@ -1,12 +1,13 @@
 // Shaft culling (E. Haines and J. Wallace 1991) from a point to a convex patch, and the occluders in the shaft.
 //
-// Notation: x is the origin; s_i the corners of a sub-patch, t_j those of an occluder, both relative to x;
-// u = 2^-53. The shaft is the pyramid over s_i, cut off by the plane of the source. An occluder is kept as linear
-// forms L(d) = a . d - b, one per edge of its pyramid (b = 0) and one for its plane: the segment from x to d meets it
-// exactly if every L(d) >= 0. So the same forms say
+// Notation: x is the origin; s_i the corners of a sub-patch, t_j those of an occluder, both relative to x; u = 2^-53.
+// The shaft is the pyramid over s_i, cut off by the plane of the source. An occluder is kept as linear forms
+// L(d) = a . d - b, one per edge of its pyramid (b = 0) and one for its plane: the segment from x to d meets it exactly
+// if every L(d) >= 0. So the same forms decide
 //   outside   some L is negative at every s_i, or every t_j is beyond one side plane of the shaft;
-//   cuts      every L is positive at every s_i: the patch is convex, so x sees nothing of it;
-// and test shadow rays. Only certain signs count: a culled occluder meets no ray to the patch, and a cut is a cut.
+//   cuts      every L is positive at every s_i: the patch is convex, so x sees no part of it;
+// and test shadow rays. Only certain signs count: a culled occluder certainly meets no ray to the patch, and a cut is
+// certain.
 //
 // Error of L: a = e x t with an edge e and a corner t, each within u a component, errs by at most 8u E T (E, T max
 // norms) a component, and is at most 2 E T; with d exact and at most D, three products and their sum add less than
@@ -54,7 +55,7 @@ struct SeenBox {
 
 enum class ShaftRelation { kOutside, kInDoubt, kCuts };
 
-// A run of the stack of candidate lists.
+// A range of the stack of candidate lists.
 struct CandidateRange {
   std::size_t first = 0;
   std::size_t last = 0;
@@ -69,7 +70,7 @@ class OccluderSet {
  public:
   void clear();
 
-  // `reach` bounds the max norm of every sub-patch that will be asked about.
+  // `reach` must bound the max norm of every sub-patch in later calls.
   void add(const SeenPolygon& polygon, double reach);
   [[nodiscard]] std::size_t size() const { return occluders_.size(); }
 
@@ -77,13 +78,15 @@ class OccluderSet {
   CandidateRange push_all();
   CandidateRange push(std::span<const std::uint32_t> indices);
 
-  // Pushes the part of the parent's list that may lie in the shaft; nothing if one candidate cuts it.
+  // Pushes the part of the parent's list that may lie in the shaft. Returns nullopt and pushes nothing if one candidate
+  // cuts it.
   std::optional<CandidateRange> inherit(CandidateRange parent, const SubPatch& s, const ShaftSides& sides);
   void drop(CandidateRange list) { stack_.resize(list.first); }
 
-  // How many of the rays from x to `ends` meet none of the listed occluders.
+  // The number of rays from x to `ends` that meet none of the listed occluders.
   [[nodiscard]] int count_visible(CandidateRange list, const RayEnds& ends) const;
-  // Bit k: the ray to end first + k meets one, for k < RayEnds::kLanes. `first` is a multiple of that.
+  // Bit k: the ray to end first + k meets one, for k < RayEnds::kLanes. Requires a `first` that is a multiple of
+  // kLanes.
   [[nodiscard]] unsigned hidden_lanes(CandidateRange list, const RayEnds& ends, int first) const;
 
  private:

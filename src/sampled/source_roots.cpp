@@ -28,7 +28,7 @@ class RootMaker {
  private:
   using Key = std::vector<std::array<double, 3>>;
 
-  // The corners, in order, from the least one on.
+  // The corners in order, starting at the least one.
   bool is_new(std::uint32_t piece) {
     Key key;
     for (const std::uint32_t v : scene_.corners(scene_.pieces()[piece])) {
@@ -91,7 +91,7 @@ class RootMaker {
     });
   }
 
-  // Two faces in one plane may look opposite ways.
+  // Two faces in one plane may face opposite sides.
   bool same_front(std::uint32_t index, const SourcePlane& plane) const {
     const std::uint32_t* f = scene_.pieces()[index].frame;
     const Vec3 normal = plane_normal(points_[f[0]], points_[f[1]], points_[f[2]]).value;

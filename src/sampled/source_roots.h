@@ -12,7 +12,7 @@ namespace exactff::sampled {
 
 struct SourcePlane {
   std::array<Vec3, 3> frame;            // scaled; counter-clockwise seen from the front
-  std::array<Vec3, 3> exact_frame;      // as the scene has it
+  std::array<Vec3, 3> exact_frame;      // not scaled
   std::vector<std::uint32_t> coplanar;  // pieces exactly in this plane, ascending
 };
 
@@ -29,9 +29,9 @@ struct SourceRoots {
   std::vector<SourceRoot> roots;
 };
 
-// `points` are the scene's vertices scaled to about 1. A piece with three or four corners is a root, any other a fan
-// of triangles. A piece with the same corners as an earlier one of the source is left out; other overlaps of coplanar
-// faces are not noticed.
+// `points` are the scene's vertices scaled to about 1. A piece with three or four corners is a root, any other a fan of
+// triangles. A piece with the same corners as an earlier one of the source is left out; other overlaps of coplanar
+// faces are not detected.
 [[nodiscard]] SourceRoots make_source_roots(const Scene& scene, const std::vector<Vec3>& points,
                                             const Selection& selection);
 

@@ -31,7 +31,7 @@ SubPatch quadrilateral(PatchShape shape, const Vec3& a, const Vec3& b, const Vec
   return s;
 }
 
-// Only the choice of the sampling map hangs on this: an area density within 1e-12 of constant counts as constant.
+// This affects only the choice of the sampling map: an area density within 1e-12 of constant counts as constant.
 PatchShape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const double gap = max_norm((a - b) + (c - d));
   const double size = std::max(max_norm(c - a), max_norm(d - b));

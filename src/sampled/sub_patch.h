@@ -11,8 +11,8 @@ namespace exactff::sampled {
 
 enum class PatchShape { kTriangle, kParallelogram, kQuadrilateral };
 
-// A convex planar patch; corners are relative to the receiving point and run counter-clockwise as it sees them.
-// Kept by coordinate, and a triangle repeats its last corner, so that loops over four corners vectorise.
+// A convex planar patch; corners are relative to the receiving point and run counter-clockwise as it sees them. Stored
+// by coordinate, and a triangle repeats its last corner, so that loops over four corners vectorise.
 struct SubPatch {
   alignas(32) double x[4];
   double y[4];

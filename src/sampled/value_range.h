@@ -1,10 +1,10 @@
-// The one place where a sampled value is brought back into the range that its method promises.
+// Only this function clamps a sampled value to the range that its method promises.
 #pragma once
 
 namespace exactff::sampled {
 
 enum class Formula {
-  kUnit,         // all its values lie in [0, 1]: what does not is rounding
+  kUnit,         // all its values lie in [0, 1]; others are rounding errors
   kNotNegative,  // its values may exceed 1
   kAny,
 };

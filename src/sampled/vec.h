@@ -19,7 +19,7 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
 }
 inline double max_norm(const Vec3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 
-// Squares at least this large are accurate, and so is what is left of them when a product loses 2^-100.
+// Squares at least this large are accurate, and remain accurate if a product loses 2^-100.
 inline constexpr double kLeastSquare = 0x1p-900;
 
 // `a` times the power of two that brings its max norm into [1, 2); `exponent` undoes it. Requires a finite a other
@@ -29,7 +29,7 @@ inline Vec3 normalised(const Vec3& a, int& exponent) {
   return {std::scalbn(a.x, -exponent), std::scalbn(a.y, -exponent), std::scalbn(a.z, -exponent)};
 }
 
-// Also where squares underflow. Requires components below 2^511.
+// Also correct where squares underflow. Requires components below 2^511.
 inline double length(const Vec3& a) {
   const double square = dot(a, a);
   if (square >= kLeastSquare) return std::sqrt(square);

@@ -1,8 +1,8 @@
-// Steps, each in time proportional to the scene's size but for the sorting of a vertex's edges:
+// Steps, each in time proportional to the scene's size except for the sorting of a vertex's edges:
 //   1. leave out pieces with a corner that no other piece has: they have an open edge;
 //   2. sort the edges of the others by their ends;
 //   3. join the pieces at each edge, and mark where an edge does not cancel;
-//   4. what hangs together without a mark is a closed surface.
+//   4. each connected set of pieces without a mark is a closed surface.
 #include "scene/closed_surfaces.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace exactff {
 
 namespace {
 
-// A piece's edge, kept with its end of the lower place.
+// A piece's edge, stored at the end with the lower place.
 struct DirectedEdge {
   std::uint32_t high;
   std::uint32_t piece;
@@ -146,7 +146,7 @@ ClosedSurfaces::ClosedSurfaces(const Scene& scene) {
   if (!finder.find()) return;
   of_piece_.assign(scene.pieces().size(), kNone);
   std::vector<double> volumes;
-  std::vector<Vec3> apexes;  // anywhere near
+  std::vector<Vec3> apexes;  // any point near the surface
   for (std::uint32_t index = 0; index < of_piece_.size(); ++index) {
     const std::uint32_t root = finder.root(index);
     if (!finder.is_closed(root)) continue;

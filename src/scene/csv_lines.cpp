@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-// Appends to `field` what stands between the quotes that begin at line[at]; false where they are not closed.
+// Appends to `field` the text between the quotes that begin at line[at]; false if they are not closed.
 bool take_quoted(std::string_view line, std::size_t& at, std::string& field) {
   for (++at; at < line.size(); ++at) {
     if (line[at] != '"') {
@@ -47,7 +47,7 @@ bool CsvLines::fill() {
   return end_ > 0;
 }
 
-// At the character that ends a line: passes it, and the second of CR LF.
+// Requires that the position is at a line end. Skips it; CR LF is one line end.
 void CsvLines::pass_line_end() {
   const char ended_by = block_[at_++];
   if (ended_by == '\r' && (at_ < end_ || fill()) && block_[at_] == '\n') ++at_;

@@ -1,4 +1,5 @@
-// The lines and fields of CSV files, read as they come: a file of a million rows is never held whole.
+// The lines and fields of CSV files, read one after another: a file of a million rows is never held in memory as a
+// whole.
 #pragma once
 
 #include <array>
@@ -12,8 +13,8 @@
 
 namespace exactff {
 
-// Lines that end in LF, CRLF or CR; a UTF-8 byte order mark at the start is passed over. The file is refused with an
-// InputError where read_text_file would refuse it: not there, a directory, unreadable, or binary.
+// Lines that end in LF, CRLF or CR; a UTF-8 byte order mark at the start is skipped. Throws InputError where
+// read_text_file would: the file is missing, a directory, unreadable, or binary.
 class CsvLines {
  public:
   // `purpose` completes "give ...": "a CSV file of values".
@@ -42,8 +43,8 @@ class CsvLines {
 // Blank, or a comment: one that begins with '#'.
 [[nodiscard]] bool is_csv_comment(std::string_view line);
 
-// The fields of one line, without outer blanks unless quoted; a quotation mark within quotes is written twice. False
-// where a quote is not closed within its line, or text follows a closing one. Reuses the memory of `fields`.
+// The fields of one line, without outer blanks unless quoted; a quotation mark within quotes is written twice. Returns
+// false if a quote is not closed within its line, or text follows a closing quote. Reuses the memory of `fields`.
 [[nodiscard]] bool split_csv_line(std::string_view line, std::vector<std::string>& fields);
 
 }  // namespace exactff

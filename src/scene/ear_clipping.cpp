@@ -1,12 +1,13 @@
 // Ear clipping by the lowest index, exactly.
 //
-// The ring is a linked list; `valid_` holds the tips of all valid ears in the order in which they are to be
-// clipped. Clipping a tip changes the ears of its two neighbours. Any other ear can only become valid, and only
-// where what was found to block it goes; each blocked ear therefore waits in the list of that position. Blockers are
-// found in a tree of positions; of several, one far from the ear's base, which stays longest.
-// Only vertices that are not strictly convex need to be looked at as blockers: of the vertices in an ear, the one
-// farthest from its base is reflex or straight, or else touches the ear's side from outside the polygon, where it
-// does no harm.
+// The ring is a linked list; `valid_` holds the tips of all valid ears in the order in which they are to be clipped.
+// Clipping a tip changes the ears of its two neighbours. Any other ear can only become valid, and only when the
+// position that was found to block it disappears; each blocked ear therefore waits in the list of that position.
+// Blockers are found in a tree of positions. Of several blockers, one far from the ear's base is chosen, since it stays
+// longest.
+// Only vertices that are not strictly convex need to be considered as blockers: of the vertices in an ear, the one
+// farthest from its base is reflex or straight, or else it touches the ear's side from outside the polygon and does not
+// block.
 // Source: G. H. Meisters, "Polygons have ears" (1975); H. ElGindy, H. Everett and G. Toussaint (1993).
 #include "scene/ear_clipping.h"
 
@@ -73,7 +74,7 @@ EarClipper::EarClipper(const PlanePoints& plane, std::span<const std::uint32_t> 
   for (std::size_t v = 0; v < n; ++v) examine(v);
 }
 
-// A vertex that the ring visits twice is told apart by its neighbours, so that the start does not matter.
+// Two visits of the ring to one vertex are distinguished by the neighbours, so that the start does not matter.
 EarClipper::Order EarClipper::order_of(std::size_t tip) const {
   const auto [low, high] = std::minmax(index_[previous_[tip]], index_[next_[tip]]);
   return {index_[tip], low, high, tip};
@@ -88,7 +89,7 @@ void EarClipper::examine(std::size_t tip) {
   }
 }
 
-// To be called once a vertex has new neighbours.
+// Must be called when a vertex has new neighbours.
 void EarClipper::refresh(std::size_t vertex) {
   if (is_convex(vertex)) {
     stop_blocking(vertex);
@@ -112,7 +113,7 @@ void EarClipper::stop_blocking(std::size_t vertex) {
   }
 }
 
-// Leaves the two neighbours to be refreshed.
+// The caller must refresh the two neighbours.
 void EarClipper::remove(std::size_t vertex) {
   const std::size_t a = previous_[vertex], c = next_[vertex];
   for (const std::size_t v : {a, vertex, c}) valid_.erase(order_of(v));

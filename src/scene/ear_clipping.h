@@ -1,4 +1,4 @@
-// Triangles for a polygon that is not exactly planar, by a rule that depends on nothing but the polygon.
+// Triangles for a polygon that is not exactly planar, by a rule that depends only on the polygon.
 #pragma once
 
 #include <array>

@@ -1,12 +1,12 @@
-// Whether any two edges cross, by a sweep.
+// Finds out by a sweep whether any two edges cross.
 //
-// A line sweeps over the plane in the order of positions (by x, then y; so it leans a little and no edge is
-// parallel to it). `status_` holds the edges that meet it from bottom to top. Of the crossing that the sweep comes
-// to first, the two edges are neighbours in that order before it is reached, so neighbours are all that is looked
-// at: when an edge begins, it and its two neighbours; when one ends, the two that become neighbours. At one
-// position edges end before others begin: what touches a crossing from the left no longer keeps its edges apart.
+// A line sweeps over the plane in the order of positions (by x, then y; so it leans a little and no edge is parallel to
+// it). `status_` holds the edges that meet it from bottom to top. The two edges of the crossing that the sweep reaches
+// first are neighbours in that order before it is reached. So only neighbours are tested: when an edge begins, it and
+// its two neighbours; when one ends, the two that become neighbours. At one position edges end before others begin: an
+// edge that touches a crossing from the left then no longer separates the crossing edges.
 //
-// Contacts that are no proper crossings do no harm: one of the two edges begins or ends there, so their order never
+// Contacts that are not proper crossings do no harm: one of the two edges begins or ends there, so their order never
 // changes. Edges that overlap on a line are ordered by index.
 // Source: M. I. Shamos and D. Hoey, "Geometric intersection problems" (1976).
 #include "scene/edge_crossing.h"

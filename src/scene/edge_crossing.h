@@ -1,4 +1,4 @@
-// Edges of rings that cross.
+// Finds edges of rings that cross.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace exactff {
 
-// Two edges of `points` that cross in their interiors, the one of lower index first, if there are any; which ones
-// does not matter. Edges may touch, overlap and have no length. O(n log n), exact.
+// Two edges of `points` that cross in their interiors, the one of lower index first; any such pair, or nullopt if there
+// is none. Edges may touch, overlap and have no length. O(n log n), exact.
 std::optional<std::pair<EdgeIndex, EdgeIndex>> find_crossing(const FacePoints& points, const PlanePoints& plane);
 
 }  // namespace exactff

@@ -20,7 +20,7 @@ std::string joined(const std::vector<Problem>& problems) {
     text += problems[i].message();
   }
   const std::size_t others = problems.size() - printed;
-  const bool at_least = problems.size() > ProblemList::kKept;  // the last one then counts those that were dropped
+  const bool at_least = problems.size() > ProblemList::kKept;  // the last one then gives the number of dropped problems
   if (others > 0) {
     text += std::string("\n... and ") + (at_least ? "more than " : "") + std::to_string(others) +
             (others == 1 ? " more problem" : " more problems");

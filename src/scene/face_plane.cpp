@@ -73,7 +73,7 @@ bool FaceFrame::strictly_inside(const Coordinate& a, const Coordinate& b) const 
 }
 
 // 1 if the ray from (a, b) towards larger a crosses the edge from corner i, 0 if not, -1 if (a, b) lies on the edge. An
-// edge owns its lower end, so that a ray through a corner counts the two edges there as one passing does.
+// edge includes its lower end and excludes its upper end, so that a ray through a corner gets the correct parity.
 int FaceFrame::crosses(std::size_t i, const Coordinate& a, const Coordinate& b) const {
   const std::size_t j = next_in_ring(plane_.points(), i);
   const Integer ai = a_[i] * a.denominator - a.numerator, bi = b_[i] * b.denominator - b.numerator;

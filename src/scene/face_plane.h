@@ -1,4 +1,4 @@
-// A face as seen along its Newell vector, exactly: what is inside, and points of it rounded once.
+// A face as seen along its Newell vector: exact tests for inside, and points of the face rounded once.
 #pragma once
 
 #include <array>
@@ -30,8 +30,8 @@ class FacePlane {
 };
 
 // The frame of the plane is e, the first edge cleared of its component along the normal n, and f = n x e. Neither is
-// normalised, since their lengths are irrational: a point p, relative to the first corner, is described by the numbers
-// a = e.p and b = f.p and is found again as a/(e.e) e + b/(f.f) f.
+// normalised, since their lengths are irrational. A point p, relative to the first corner, has the coordinates a = e.p
+// and b = f.p; it equals a/(e.e) e + b/(f.f) f.
 class FaceFrame {
  public:
   // In units of 2^exponent; the denominator is positive.
@@ -45,7 +45,7 @@ class FaceFrame {
 
   [[nodiscard]] const kernel::ExactVec3& e() const { return e_; }
   [[nodiscard]] const kernel::ExactVec3& f() const { return f_; }
-  // Of every corner: whole numbers.
+  // Coordinates of every corner: integers.
   [[nodiscard]] const std::vector<kernel::Integer>& a() const { return a_; }
   [[nodiscard]] const std::vector<kernel::Integer>& b() const { return b_; }
 

@@ -140,7 +140,8 @@ std::pair<std::size_t, double> farthest(const std::vector<Vec3>& points, std::si
   return best;
 }
 
-// From each of a few points to the farthest one, and on from there: the diameter itself for all but contrived faces.
+// Goes from each of a few points to the farthest one, and on from there. This gives the true diameter except for
+// contrived faces.
 double diameter(const std::vector<Vec3>& points) {
   constexpr std::size_t kStarts = 64;
   double best = 0.0;

@@ -38,8 +38,8 @@ kernel::ExactVec3 newell(const FacePoints& points, std::span<const std::size_t> 
 kernel::ExactVec3 some_normal(const FacePoints& points);
 bool all_in_plane(const FacePoints& points, const kernel::ExactVec3& normal);
 
-// v * 2^exponent, correctly rounded. Where the largest component is not within [2^-900, 2^1000) the vector is
-// first multiplied by the power of two that brings it into [1/2, 1).
+// v * 2^exponent, correctly rounded. If the largest component is not within [2^-900, 2^1000), the vector is first
+// multiplied by the power of two that brings this component into [1/2, 1).
 Vec3 nearest_vector(const kernel::ExactVec3& v, long exponent);
 
 // The length of a vector as mantissa * 2^exponent: an estimate to about 15 digits that cannot overflow.
@@ -60,9 +60,9 @@ double out_of_plane(const FacePoints& points, const kernel::ExactVec3& normal);
 // Points of a plane with exact integer coordinates and double approximations for filters.
 class PlanePoints {
  public:
-  // kAlongNormal: the projection along `normal` (not zero). kDropAxis: the same orientations where all points lie
-  // in one plane with that normal, from shorter numbers. What runs counter-clockwise seen from the tip of the
-  // normal has orientation +1 here.
+  // kAlongNormal: the projection along `normal` (not zero). kDropAxis: the same orientations if all points lie in one
+  // plane with that normal, computed from shorter numbers. Points that run counter-clockwise seen from the tip of the
+  // normal have orientation +1 here.
   enum class Projection { kAlongNormal, kDropAxis };
   PlanePoints(const FacePoints& points, const kernel::ExactVec3& normal, Projection projection);
 
@@ -76,7 +76,7 @@ class PlanePoints {
   double x(std::size_t i) const { return near_x_[i]; }
   double y(std::size_t i) const { return near_y_[i]; }
   static constexpr double kApproximation = 0x1p-52;
-  // What the orientation of three points is off by at most where it is computed from those approximations. They are
+  // A bound on the error of the orientation of three points computed from those approximations. They are
   // at most 1 and off by 2^-52, differences by 2^-50, products (at most 4) by 20 * 2^-52 and the determinant by
   // 48 * 2^-52, whatever the rounding mode.
   static constexpr double kOrientationError = 0x1p-46;

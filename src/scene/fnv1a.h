@@ -1,4 +1,4 @@
-// 64-bit FNV-1a over bytes in a fixed order, whatever the machine's: tells one input from another.
+// 64-bit FNV-1a, a hash that distinguishes inputs. The byte order is the same on every machine.
 #pragma once
 
 #include <bit>
@@ -11,7 +11,7 @@
 
 namespace exactff {
 
-// The low bits of a number as so many hexadecimal digits.
+// The low bits of a number as `digits` hexadecimal digits.
 inline std::string hexadecimal(std::uint64_t value, std::size_t digits) {
   std::string text(digits, '0');
   for (std::size_t i = digits; i-- > 0; value >>= 4U) text[i] = "0123456789abcdef"[value & 15U];
@@ -27,7 +27,7 @@ class Fnv1a {
   void add(const Vec3& p) {
     for (const double c : {p.x, p.y, p.z}) add(c);
   }
-  // Without an end: what follows must tell where it was.
+  // Adds no terminator: later input must make clear where the text ended.
   void add_bytes(std::string_view text) {
     for (const char c : text) add_byte(static_cast<unsigned char>(c));
   }

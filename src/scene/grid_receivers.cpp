@@ -1,10 +1,10 @@
 // Grids of receivers on faces.
 //
-// Of u x v cells on a face, in exact arithmetic, each centre rounded once at the end. Corners are p_i relative to the
-// first one, n is the Newell vector.
+// The centres of u x v cells on a face, in exact arithmetic, each rounded once at the end. Corners are p_i relative to
+// the first one, n is the Newell vector.
 //   1. A convex quadrilateral (no holes; convex seen along n): the bilinear map at ((2i+1)/2u, (2j+1)/2v).
 //   2. Any other face: its bounding rectangle along e and f, the frame of face_plane.h.
-//   3. Of these keep the centres strictly inside.
+//   3. Of the centres of step 2, keep those strictly inside.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -63,7 +63,7 @@ class FaceGrid {
     const auto [a_min, a_max] = std::minmax_element(frame.a().begin(), frame.a().end());
     const auto [b_min, b_max] = std::minmax_element(frame.b().begin(), frame.b().end());
     for (int row = 1; row <= size_.v; ++row) {
-      // All of (a, b) times 2u and 2v: the centres are then integers.
+      // Multiplies (a, b) by 2u and 2v: the centres are then integers.
       const FaceFrame::Coordinate b{*b_min * (2 * size_.v) + (*b_max - *b_min) * (2 * row - 1), 2 * size_.v};
       for (int column = 1; column <= size_.u; ++column) {
         const FaceFrame::Coordinate a{*a_min * (2 * size_.u) + (*a_max - *a_min) * (2 * column - 1), 2 * size_.u};
@@ -89,7 +89,7 @@ class FaceGrid {
     return mean;
   }
 
-  // mean + (a - a_mean)/(e.e) e + (b - b_mean)/(f.f) f. In the plane of a planar face the mean drops out.
+  // mean + (a - a_mean)/(e.e) e + (b - b_mean)/(f.f) f. For a planar face the mean cancels.
   static std::array<Rational, 3> point_at(const FaceFrame& frame, const Mean& mean, const FaceFrame::Coordinate& a,
                                           const FaceFrame::Coordinate& b) {
     const auto along = [&](const ExactVec3& axis, const FaceFrame::Coordinate& c, const Integer& sum) {
@@ -128,7 +128,7 @@ void check_grid_size(GridSize size, std::size_t faces) {
                     .suggestion = "use fewer, or a smaller patch"});
 }
 
-// What follows "NAME:k/", if that is there.
+// The text after "NAME:k/", or the whole id if it has no such prefix.
 std::string_view without_face(std::string_view id) {
   const std::size_t slash = id.rfind('/');
   if (slash == std::string_view::npos || !numbered_name(id.substr(0, slash))) return id;

@@ -1,4 +1,4 @@
-// What a program that uses the library can get wrong without the compiler seeing it: exceptions with words.
+// Checks for misuse of the library that the compiler cannot find: exceptions with a message.
 #pragma once
 
 #include <stdexcept>
@@ -8,7 +8,7 @@
 
 namespace exactff {
 
-// For objects that hold what they own by a pointer, null once they have been moved from: std::logic_error.
+// For objects that own their data by a pointer, which is null after a move. Throws std::logic_error if it is null.
 template <class Owner>
 auto& owned_by(const Owner& owner, const char* what) {
   if (!owner) throw std::logic_error(std::string("this ") + what + " was moved from: only assign to it or destroy it");
@@ -18,7 +18,7 @@ auto& owned_by(const Owner& owner, const char* what) {
 // The following throw std::invalid_argument.
 [[noreturn]] void refuse_argument(const std::string& what, const std::string& why);
 void require_face(const Scene& scene, FaceId face);
-// A selection by its ids, too.
+// Also checks the ids of the selection.
 void require_of_scene(const Scene& scene, const Selection& selection);
 // `what`: "source"
 void require_of_scene(const Scene& scene, SceneId made_by, const char* what);

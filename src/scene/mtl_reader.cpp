@@ -39,7 +39,7 @@ class MtlReader {
   ProblemList& problems_;
   ProblemList& warnings_;
   TextLine line_;
-  Material current_;     // what the lines being read belong to
+  Material current_;     // the material that the current lines belong to
   bool counts_ = false;  // false before any newmtl and in a repeated material
   bool started_ = false;
   std::vector<Material> materials_;

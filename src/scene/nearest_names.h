@@ -1,4 +1,4 @@
-// Which names somebody may have meant.
+// Suggestions for a misspelt name.
 #pragma once
 
 #include <algorithm>
@@ -36,8 +36,8 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b, std::si
   return row.back();
 }
 
-// The `count` names closest to `wanted`, case apart, the closest first, equals in the order given. Long names are
-// compared by their beginnings, so that the time is linear in the number of names.
+// The `count` names closest to `wanted`, ignoring case, the closest first, ties in the given order. Only the beginnings
+// of long names are compared, so that the time is linear in the number of names.
 inline std::vector<std::string_view> nearest_names(const std::vector<std::string_view>& names, std::string_view wanted,
                                                    std::size_t count) {
   constexpr std::size_t kLongestCompared = 64;

@@ -1,5 +1,5 @@
 // std::from_chars rounds correctly, but rejects a plus sign, accepts "nan" and leaves the value unset where it
-// underflows. So: check the grammar, strip the plus, and where from_chars reports "out of range" tell overflow
+// underflows. So: check the grammar, strip the plus, and where from_chars reports "out of range", distinguish overflow
 // from underflow exactly, with rational numbers.
 #include "scene/number_text.h"
 
@@ -65,7 +65,7 @@ Decimal split(std::string_view text) {
   return number;
 }
 
-// Clamped to +-10^9, far beyond what any file can balance with digits.
+// Clamped to +-10^9: no file has enough digits to compensate for such an exponent.
 long exponent_value(std::string_view text) {
   constexpr long kLimit = 1'000'000'000;
   std::string_view digits = text;
@@ -75,7 +75,7 @@ long exponent_value(std::string_view text) {
   return text.starts_with('-') ? -value : value;
 }
 
-// The number as digits * 10^exponent with the leading and trailing zeros gone.
+// The number as digits * 10^exponent without leading and trailing zeros.
 struct Digits {
   std::string text;
   long exponent = 0;
@@ -91,7 +91,7 @@ Digits significant(const Decimal& number) {
   return digits;
 }
 
-// What from_chars could not represent: far below or above the doubles' range, or near its ends.
+// The values that from_chars could not represent: far outside the range of doubles, or near its ends.
 double rounded_exactly(const Digits& digits) {
   const long magnitude = digits.exponent + static_cast<long>(digits.text.size());  // value < 10^magnitude
   if (digits.text.empty() || magnitude < -400) return 0.0;

@@ -1,4 +1,4 @@
-// Decimal text to doubles, whatever the locale.
+// Decimal text to doubles, independent of the locale.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ enum class NumberFault {
   kNotANumber,  // anything but [+-] digits [. digits] [e [+-] digits] with at least one digit before the exponent
   kNotFinite,   // nan, inf, infinity in any case
   kHexadecimal,
-  kComma,     // a number but for a decimal comma
+  kComma,     // a number except for a decimal comma
   kTooLarge,  // rounds to infinity
 };
 
@@ -20,7 +20,7 @@ struct ParsedNumber {
   NumberFault fault = NumberFault::kNone;
 };
 
-// Correctly rounded to nearest, ties to even, gradual underflow included: 1e-400 is 0, as -1e-400 and -0 are.
+// Correctly rounded to nearest, ties to even, gradual underflow included: 1e-400, -1e-400 and -0 give 0.
 ParsedNumber parse_number(std::string_view text);
 
 // "'1e400' is too large for a double": completes "FILE:LINE: ".

@@ -9,7 +9,7 @@
 
 namespace exactff {
 
-// Taken apart at the last colon.
+// Split at the last colon.
 struct NumberedName {
   std::string patch;
   std::uint64_t number = 0;

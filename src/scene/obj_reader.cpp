@@ -1,8 +1,8 @@
 // Wavefront OBJ.
 //
-// 1. Lines are read once, in order; vertices go to the builder, faces are kept with the group, object and material
-//    that are current. A positive index may refer to a vertex further down, so the indices are checked at the end.
-// 2. Groups make the patches if the file has any, else objects.
+// 1. Lines are read once, in order; vertices go to the builder, faces are kept with the current group, object and
+//    material. A positive index may refer to a vertex further down, so the indices are checked at the end.
+// 2. The patches are the groups if the file has any, otherwise the objects.
 // 3. The MTL files are read, materials get their values, the faces go to the builder.
 // Problems are collected throughout; those found so far are thrown before the builder looks at the faces.
 #include <algorithm>
@@ -57,7 +57,7 @@ struct ObjFace {
   std::size_t corner_count = 0;
 };
 
-// Lines of one kind that deserve one warning together.
+// Lines of one kind, reported in one warning together.
 struct Tally {
   std::size_t count = 0;
   std::size_t first_line = 0;
@@ -190,12 +190,12 @@ void ObjReader::read_vertex(std::string_view values) {
   if (builder_.vertex_count() == kMostIndices) {
     throw InputError({file_, line_.number, "more than 4294967295 vertices", "indices have 32 bits", "split the scene"});
   }
-  // A faulty vertex still counts, so that the faces below keep their indices.
+  // A faulty vertex still counts, so that the indices in the faces below stay correct.
   const auto [x, y, z] = read_coordinates(before_comment(values));
   builder_.add_vertex({x, y, z});
 }
 
-// What follows x, y and z (a weight or a colour) is not looked at.
+// Text after x, y and z (a weight or a colour) is ignored.
 std::array<double, 3> ObjReader::read_coordinates(std::string_view values) {
   std::array<double, 3> xyz{};
   for (double& coordinate : xyz) {
@@ -262,7 +262,7 @@ bool well_formed_tail(std::string_view tail) {
 
 }  // namespace
 
-// From 0; not yet checked against the end of the vertex list.
+// Counted from 0; not yet checked against the end of the vertex list.
 std::optional<std::uint32_t> ObjReader::read_corner(std::string_view corner) {
   const std::size_t slash = std::min(corner.find('/'), corner.size());
   const auto count = static_cast<long>(builder_.vertex_count());
@@ -326,7 +326,7 @@ void ObjReader::warn_tallies() {
   }
 }
 
-// A name may hold blanks; several names may stand on one line. Backslashes are taken for slashes if need be.
+// A name may contain blanks; one line may hold several names. Backslashes are read as slashes if necessary.
 std::vector<fs::path> ObjReader::library_paths(std::string_view names) const {
   const auto beside = [&](std::string_view name) {
     const fs::path as_written = path_.parent_path() / name;
@@ -360,7 +360,7 @@ void ObjReader::read_library(const fs::path& path, std::size_t line) {
   std::optional<std::string> text;
   std::string why;
   try {
-    // Nothing but a plain file: a device or a pipe named in a scene could keep the reader waiting for ever.
+    // Only a plain file: a device or a pipe named in a scene could keep the reader waiting for ever.
     if (fs::is_regular_file(path, error)) text = read_text_file(path, "a Wavefront MTL file");
   } catch (const InputError& unreadable) {
     const Problem& problem = unreadable.problems().front();

@@ -1,4 +1,4 @@
-// Which vertices lie at one and the same point.
+// Finds the vertices that lie at one position. A vertex index that identifies a position is called a place.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace exactff {
 
-// For every vertex one vertex at its position, the same for all that lie there. Found when first asked for; safe to
-// call from several threads.
+// For every vertex the index of one vertex at its position, the same for all vertices there. Computed at the first
+// call; safe to call from several threads.
 [[nodiscard]] std::span<const std::uint32_t> places(const Scene& scene);
 
 }  // namespace exactff

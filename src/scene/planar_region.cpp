@@ -30,7 +30,7 @@ namespace {
 
 constexpr int kUnknown = -1;
 
-// What lies at a triangle.
+// The position of a triangle relative to the rings.
 struct Label {
   int winding = 0;    // of the outer ring
   bool hole = false;  // inside an odd number of hole rings
@@ -38,7 +38,7 @@ struct Label {
   int id = kUnknown;  // of triangles inside
 };
 
-// What changes from the right to the left of an edge from its lower to its higher vertex.
+// The change from the right to the left side of an edge that runs from its lower to its higher vertex.
 struct Step {
   int winding = 0;
   bool hole = false;
@@ -134,8 +134,8 @@ void Builder::insert_points(std::span<const Vec3> vertices, const kernel::ExactV
   }
 }
 
-// In random order (a fixed one) where there are many: an edge then crosses few triangles, whatever the polygon, since
-// those before it have cut the way (J. Shewchuk and B. Brown, "Fast segment insertion and incremental construction of
+// In random order (a fixed one) where there are many: an edge then crosses few triangles for any polygon, since earlier
+// edges have cut its path (J. Shewchuk and B. Brown, "Fast segment insertion and incremental construction of
 // constrained Delaunay triangulations", 2015). In ring order a slanting comb takes quadratic time.
 std::vector<EdgeIndex> insertion_order(std::size_t count) {
   constexpr std::size_t kMany = 1000;
@@ -147,7 +147,8 @@ std::vector<EdgeIndex> insertion_order(std::size_t count) {
   return order;
 }
 
-// Both ends of an edge. The triangulation looks for it all around the first, so that is the one the rings visit less.
+// Both ends of an edge. The triangulation searches around the first end, so the first is the end that the rings visit
+// less.
 Builder::Ends Builder::ends_of(EdgeIndex edge) const {
   const std::size_t end = next_in_ring(points_, edge);
   if (visits_[edge] <= visits_[end]) return {handle_[edge], handle_[end], 1};
@@ -242,8 +243,8 @@ struct HalfEdges {
 
   std::size_t target(std::size_t h) const { return origin[next[h]]; }
 
-  // Whether the corner that removing h and its twin leaves at the origin of h is convex or straight. Where only one
-  // other edge would be left there, the part would keep it as a spike: walked to its end and back.
+  // True if removing h and its twin leaves a convex or straight corner at the origin of h. False if only one other edge
+  // would be left there, since the part would keep it as a spike: walked to its end and back.
   bool convex_without(const PlanePoints& plane, std::size_t h, std::size_t twin) const {
     if (origin[previous[h]] == target(next[twin])) return false;
     return plane.orientation(origin[previous[h]], origin[h], target(next[twin])) >= 0;

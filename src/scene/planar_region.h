@@ -1,4 +1,4 @@
-// The inside of a planar polygon with holes as convex parts.
+// The inside of a planar polygon with holes, as convex parts.
 #pragma once
 
 #include <span>
@@ -19,13 +19,13 @@ enum class RegionFault {
 struct PlanarRegion {
   RegionFault fault = RegionFault::kNone;
   std::pair<EdgeIndex, EdgeIndex> edges;
-  bool encloses_something = false;              // some part lies inside the outer ring, whichever way it runs
+  bool encloses_something = false;              // some part lies inside the outer ring, in either direction of the ring
   std::vector<std::vector<std::size_t>> parts;  // point indices, counter-clockwise in the plane
 };
 
-// Inside is what the outer ring winds around once counter-clockwise and the other rings leave out by even-odd
-// parity. Exact. `plane` holds the points projected with a normal of their plane, `vertices` the same points as
-// they were given; `normal` has any length.
+// A point is inside if the outer ring winds around it once counter-clockwise and the other rings, by even-odd parity,
+// do not contain it. Exact. `plane` holds the points projected with a normal of their plane, `vertices` the same points
+// as they were given; `normal` has any length.
 PlanarRegion planar_region(std::span<const Vec3> vertices, const FacePoints& points, const PlanePoints& plane,
                            const kernel::ExactVec3& normal);
 

@@ -49,15 +49,15 @@ void PositionTree::build(std::uint32_t first, std::uint32_t last, std::uint32_t 
 }
 
 void PositionTree::change(Position position, int by) {
-  const auto step = static_cast<std::uint32_t>(by);  // a mark less is 2^32 - 1 more
+  const auto step = static_cast<std::uint32_t>(by);  // subtracting one mark adds 2^32 - 1
   marks_[position] += step;
   std::uint32_t node = leaf_of_[position];
   for (; node != 0; node = nodes_[node].parent) nodes_[node].marks += step;
   nodes_[0].marks += step;
 }
 
-// Proved by the bound of PlanePoints::orientation, which holds for the box's corner farthest to the left of a side
-// as it does for a point, or by the bounding box.
+// Proved by the bound of PlanePoints::orientation, which also holds for the box's corner farthest to the left of a
+// side, or by the bounding box.
 bool PositionTree::certainly_outside(const Node& node, const Triangle& triangle) const {
   constexpr double kMargin = 4 * PlanePoints::kApproximation;
   if (node.low_x > triangle.high_x + kMargin || node.high_x < triangle.low_x - kMargin ||

@@ -1,4 +1,4 @@
-// The positions of a polygon's points in a tree, asked which marked one lies in a triangle.
+// The positions of a polygon's points in a tree, which finds a marked position in a triangle.
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 
 namespace exactff {
 
-// A position stands for all points at one place. A tree of boxes over them (median splits; the depth is
-// logarithmic whatever the points) counts the marks below each node, so that a search passes by what has none.
-// Searches and marks take about O(log n).
+// A position stands for all points at one place. A tree of boxes over them (median splits; the depth is logarithmic
+// whatever the points) counts the marks below each node, so that a search skips nodes without marks. Searches and marks
+// take about O(log n).
 class PositionTree {
  public:
   using Position = std::uint32_t;
@@ -29,8 +29,8 @@ class PositionTree {
     return marks_[position_of_[point]] == 0;
   }
 
-  // A marked position in the closed triangle a, b, c (counter-clockwise) other than its corners; where there are
-  // several, one about as far from the side c-a as any. Exact.
+  // A marked position in the closed triangle a, b, c (counter-clockwise) other than its corners; of several, one that
+  // is about the farthest from the side c-a. Exact.
   [[nodiscard]] std::optional<Position> find_marked(std::size_t a, std::size_t b, std::size_t c) const;
 
  private:

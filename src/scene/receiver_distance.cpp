@@ -8,7 +8,7 @@ namespace exactff {
 
 namespace {
 
-// Everything is taken times this power of two first, so that no difference of large coordinates overflows.
+// All coordinates are multiplied by this power of two first, so that no difference of large coordinates overflows.
 constexpr double kScale = 0x1p-3;
 
 Vec3 difference(const Vec3& p, const Vec3& q) {

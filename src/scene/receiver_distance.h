@@ -1,4 +1,4 @@
-// How far a receiver is from the face that it is said to lie on.
+// The distance of a receiver from the face that it is declared to lie on.
 #pragma once
 
 #include "exactff/scene.h"
@@ -6,7 +6,7 @@
 namespace exactff {
 
 // The distance of a point from a face's bounding box or from its plane, whichever is larger, over the box's diagonal:
-// an estimate, to find what was mistyped. A face that is not planar gets its own deviation forgiven.
+// an estimate, to find mistyped coordinates. For a face that is not planar, its own deviation is subtracted.
 [[nodiscard]] double relative_distance_from_face(const Scene& scene, FaceId face, const Vec3& point);
 
 }  // namespace exactff

@@ -4,13 +4,12 @@
 // and not used.
 //   1. The convex pieces of the faces are fans of triangles p, q, r. A triangle's area is half the length of
 //      (q - p) x (r - p), which is irrational; its share is the whole number w = floor(that length / unit), with a unit
-//      of at most 2^-129 of the longest. No share is then off by more than 2^-129 of the sum.
-//   2. A whole number below the sum of all w, of as many words as it needs and drawn again while it is too large,
-//   selects
-//      the triangle.
-//   3. Two words more, k and l: u = (4k + 2) / 2^66 and v = (4l + 1) / 2^66. Where u + v > 1 they become 1 - u and 1 -
-//   v;
-//      u + v = 1 does not occur. The point is (1 - u - v) p + u q + v r, strictly inside the triangle, rounded once.
+//      of at most 2^-129 of the longest. The error of each share is then at most 2^-129 of the sum.
+//   2. A random integer below the sum of all w selects the triangle. It has as many words as needed and is drawn again
+//      while it is too large.
+//   3. Two words more, k and l: u = (4k + 2) / 2^66 and v = (4l + 1) / 2^66. Where u + v > 1 they become 1 - u and
+//      1 - v; u + v = 1 does not occur. The point is (1 - u - v) p + u q + v r, strictly inside the triangle, rounded
+//      once.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -74,7 +73,7 @@ Integer whole_units(const SquaredArea& a, long exponent) {
   return sqrt(scaled);
 }
 
-// The sums of the triangles' shares up to each one.
+// The cumulative sums of the triangles' shares.
 std::vector<Integer> cumulated_shares(const Scene& scene, const std::vector<Triangle>& triangles) {
   constexpr long kShareBits = 130;
   std::vector<SquaredArea> areas;
@@ -95,7 +94,7 @@ class RandomNumbers {
  public:
   explicit RandomNumbers(std::uint64_t seed) : engine_(seed) {}
 
-  // So many words, the first one on top.
+  // `count` words, the first one most significant.
   Integer words(std::size_t count) {
     words_.resize(count);
     for (std::uint64_t& word : words_) word = engine_();
@@ -122,7 +121,7 @@ class RandomNumbers {
 
 constexpr long kWeightBits = 66;
 
-// Those of the corners, in units of 2^-kWeightBits; they sum to one.
+// Weights of the corners, in units of 2^-kWeightBits; they sum to one.
 std::array<Integer, 3> random_weights(RandomNumbers& numbers) {
   const Integer whole = Integer(1) << kWeightBits;
   Integer u = 4 * numbers.words(1) + 2;

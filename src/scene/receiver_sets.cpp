@@ -1,11 +1,11 @@
-// Receivers at the corners and in the middle of faces.
+// Receivers at the corners and centres of faces.
 //
 // The centroid of a face, in exact arithmetic and rounded once at the end. The face's convex pieces are fans of
 // triangles p, q, r with the vectors N_t = (q - p) x (r - p); N is the face's Newell vector.
-//   1. Each triangle weighs w_t = N.N_t: twice its area as seen along N, but for a factor that is common to all.
+//   1. Each triangle weighs w_t = N.N_t: twice its area as seen along N, up to a factor that is common to all.
 //   2. The centroid is the sum of w_t (p + q + r) over 3 times the sum of w_t.
-//   3. Is it strictly inside the rings, as seen along N? If not, the mean of the corners of the piece that weighs most
-//   is.
+//   3. Is it strictly inside the rings, as seen along N? If not, the receiver is at the mean of the
+//      corners of the piece that weighs most.
 #include <unordered_set>
 
 #include "exactff/error.h"
@@ -72,7 +72,7 @@ class FaceCentre {
   }
 
  private:
-  // Of a convex planar face the one piece is the face.
+  // The single piece of a convex planar face is the face itself.
   [[nodiscard]] bool is_convex() const {
     if (plane_.is_convex_quadrilateral()) return true;
     const auto pieces = scene_.pieces_of(id_);
@@ -80,7 +80,7 @@ class FaceCentre {
            pieces.front().corner_count == plane_.points().size();
   }
 
-  // The centroid; `largest` becomes the mean of the corners of the heaviest piece, the first of equals.
+  // The centroid. Sets `largest` to the mean of the corners of the heaviest piece, the first of equals.
   Fraction weigh_pieces(Fraction& largest) const {
     Fraction centroid;
     Integer largest_weight = 0;

@@ -95,7 +95,7 @@ class ReceiverTable {
     receivers_.push_back(std::move(receiver));
   }
 
-  // A row without an id is called by its number.
+  // The id of a row without an id is its number.
   void take_id(std::string& id) {
     if (id.empty()) id = std::to_string(receivers_.size() + 1);
     if (!ids_.insert(id).second) {
@@ -117,7 +117,7 @@ class ReceiverTable {
     return 0.0;
   }
 
-  // Looking for names like an unknown one takes time; where it would be told to nobody, it is not done.
+  // Searching for similar names takes time; it is skipped if the message would not be shown.
   std::optional<FaceId> face_named(const std::string& name) {
     constexpr std::size_t kExplained = 20;
     const auto& patches = scene_.data().patch_by_name;

@@ -191,7 +191,7 @@ std::string Scene::hash() const {
 
 namespace {
 
-// For each vertex the first one, in some order, at its position.
+// For each vertex the first vertex, in some order, at its position.
 std::vector<std::uint32_t> position_ids(std::span<const Vec3> vertices) {
   const auto key = [&](std::uint32_t v) { return std::tuple(vertices[v].x, vertices[v].y, vertices[v].z); };
   std::vector<std::uint32_t> order(vertices.size());

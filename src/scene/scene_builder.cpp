@@ -140,8 +140,8 @@ void SceneBuilder::State::check_materials() {
   }
 }
 
-// A face is called by its patch's name and its number in messages, tables and, on request, patches of its own. Were
-// a long name the name of many faces, their names would take far more memory than the file.
+// A face is named by its patch's name and its number in messages, tables and, on request, as a patch of its own. If
+// many faces shared a long name, their names would take far more memory than the file.
 void SceneBuilder::State::check_names() {
   constexpr std::size_t kLongName = 255;
   constexpr std::size_t kMostBytes = std::size_t{1} << 26;
@@ -252,7 +252,7 @@ void SceneBuilder::State::warn_hidden_names() {
   }
 }
 
-// Names stay distinct: what follows the last colon tells the face, what comes before it the group.
+// Names stay distinct: the text after the last colon identifies the face, the text before it the group.
 void SceneBuilder::State::split_patches() {
   std::vector<Patch> split;
   for (std::size_t i = 0; i < data->faces.size(); ++i) {

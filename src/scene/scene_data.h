@@ -26,7 +26,7 @@ struct Scene::Data {
 
   mutable std::once_flag places_found;  // see places()
   mutable std::vector<std::uint32_t> places;
-  mutable std::once_flag tree_built;  // the tree is made when first asked for: see shaft_tree()
+  mutable std::once_flag tree_built;  // the tree is built at first use: see shaft_tree()
   mutable ShaftTree tree;
   mutable std::once_flag surfaces_found;  // see closed_surfaces()
   mutable ClosedSurfaces surfaces;

@@ -51,8 +51,8 @@ void HalfSpaceGroups::set(std::span<const HalfSpace> half_spaces) {
 // Outside: the largest normal . (y - apex) - offset over the box is proved negative. Inside: the smallest is proved
 // positive. With u = 2^-53: each difference is rounded once (u), each product carries 2u of the normal and u of its
 // own, three additions 3u of the sum m of magnitudes, the offset 2u: below 9u m in all, against a threshold of 2^-48 m
-// = 32u m. Overflow makes m infinite and underflow is excluded by m >= 2^-900; NaN fails every comparison: each keeps
-// the box and takes it to be cut. A further error e of the normal's components adds at most e times the largest
+// = 32u m. Overflow makes m infinite and underflow is excluded by m >= 2^-900; NaN fails every comparison. All these
+// cases keep the box and treat it as cut. A further error e of the normal's components adds at most e times the largest
 // differences anywhere in the box, whatever their signs.
 EXACTFF_CLONES std::uint64_t ShaftTree::crossed_groups(const Box& box, const Vec3& apex,
                                                        std::span<const HalfSpaceGroups::Group> shaft,
@@ -97,7 +97,7 @@ ShaftTree::ShaftTree(std::span<const Box> boxes) : order_(boxes.size()) {
   for (const std::uint32_t index : order_) boxes_.push_back(boxes[index]);
 }
 
-// Median split along the longest axis; ties by index, so that the tree is one and the same everywhere.
+// Median split along the longest axis; ties by index, so that the tree is the same on every machine.
 void ShaftTree::build(std::span<const Box> boxes, std::uint32_t first, std::uint32_t last) {
   const std::size_t self = nodes_.size();
   Box box = boxes[order_[first]];

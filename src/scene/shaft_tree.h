@@ -1,7 +1,7 @@
-// A bounding-volume tree over the pieces of a scene, asked for what may lie in a shaft.
+// A bounding-volume tree over the pieces of a scene. A query finds the pieces that may lie in a shaft.
 //
-// Boxes are exact (their sides are coordinates of the scene). A query drops a box only if it is proved to lie
-// outside one half-space of the shaft; what it returns is a superset of the pieces that meet the shaft.
+// Boxes are exact (their sides are coordinates of the scene). A query drops a box only if it is proved to lie outside
+// one half-space of the shaft; the result is a superset of the pieces that meet the shaft.
 #pragma once
 
 #include <array>
@@ -15,12 +15,12 @@
 namespace exactff {
 
 // The points y with normal . (y - apex) >= offset. Each component of the normal, and the offset, within relative
-// error 2^-52 of an exact value, zero exactly where that is zero. NaN anywhere: the half-space drops nothing.
+// error 2^-52 of an exact value, zero exactly where that value is zero. A half-space with a NaN drops nothing.
 struct HalfSpace {
   Vec3 normal;
   double offset = 0.0;
   double error = 0.0;  // of each component of the normal, beyond the relative one
-  double blur = 0.0;   // the offset may be too small by so much, beyond the relative error
+  double blur = 0.0;   // the offset may be too small by this much, beyond the relative error
 };
 
 struct Box {
@@ -28,7 +28,8 @@ struct Box {
   Vec3 high;
 };
 
-// Half-spaces four by four, for vector registers; where one is missing, one that holds everything.
+// Half-spaces in groups of four, for vector registers. A missing one is replaced by a half-space that contains
+// everything.
 class HalfSpaceGroups {
  public:
   static constexpr std::size_t kLanes = 4;
@@ -39,7 +40,7 @@ class HalfSpaceGroups {
 
   HalfSpaceGroups() = default;
   explicit HalfSpaceGroups(std::span<const HalfSpace> half_spaces) { set(half_spaces); }
-  // These instead, in the memory that there is.
+  // Replaces the half-spaces. Reuses the memory.
   void set(std::span<const HalfSpace> half_spaces);
   [[nodiscard]] std::span<const Group> groups() const { return {groups_.data(), groups_.size()}; }
 
@@ -58,7 +59,7 @@ class ShaftTree {
     query_with_inside(apex, HalfSpaceGroups(shaft), [&](std::uint32_t index, bool) { return visit(index); });
   }
 
-  // The same by visit(index, inside). Inside: the box lies certainly inside every half-space, off its plane.
+  // The same, but calls visit(index, inside). `inside`: the box lies certainly inside every half-space, off its plane.
   template <class Visit>
   void query_with_inside(const Vec3& apex, const HalfSpaceGroups& half_spaces, const Visit& visit) const {
     if (nodes_.empty()) return;
@@ -96,7 +97,7 @@ class ShaftTree {
   static constexpr int kDepthLimit = 64;  // the tree is balanced: depth <= 32 for any 32-bit count
   static constexpr std::uint32_t kLeafSize = 4;
 
-  // A set of groups of half-spaces as bits; those beyond the 62nd are always asked.
+  // A set of groups of half-spaces as bits; groups beyond the 62nd are always tested.
   static constexpr std::size_t kGroupBits = 62;
   static constexpr std::uint64_t kAllGroups = (std::uint64_t{1} << kGroupBits) - 1;
   static constexpr std::uint64_t kOutside = std::uint64_t{1} << 63U;
@@ -113,8 +114,8 @@ class ShaftTree {
   };
 
   void build(std::span<const Box> boxes, std::uint32_t first, std::uint32_t last);
-  // Of the groups asked for, those with a half-space that may cut the box: inside the others it certainly lies, with
-  // all its parts. kOutside if the box lies certainly outside one half-space.
+  // Of the groups in `asked`, those with a half-space that may cut the box. The box, and so every part of it, certainly
+  // lies inside the other groups. kOutside if the box lies certainly outside one half-space.
   static std::uint64_t crossed_groups(const Box& box, const Vec3& apex, std::span<const HalfSpaceGroups::Group> shaft,
                                       std::uint64_t asked);
 
@@ -125,7 +126,7 @@ class ShaftTree {
 
 class Scene;
 
-// The tree over the scene's pieces, built when first asked for; safe to call from several threads.
+// The tree over the scene's pieces, built at the first call; safe to call from several threads.
 const ShaftTree& shaft_tree(const Scene& scene);
 
 }  // namespace exactff

@@ -68,7 +68,7 @@ std::filesystem::path destination(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::path resolved = std::filesystem::canonical(path, error);
   if (!error) return resolved;
-  const std::filesystem::path leads_to = std::filesystem::read_symlink(path, error);  // to what does not exist yet
+  const std::filesystem::path leads_to = std::filesystem::read_symlink(path, error);  // a dangling link
   return error ? path : path.parent_path() / leads_to;
 }
 

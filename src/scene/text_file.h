@@ -1,4 +1,4 @@
-// Files: input as text, read whole or refused with a message that says why; and where output belongs.
+// Input files as text, read as a whole or refused with the reason; and the destination of output files.
 #pragma once
 
 #include <cstddef>
@@ -10,19 +10,20 @@
 
 namespace exactff {
 
-// Throws InputError where there is no such file, it is a directory, cannot be read to its end, or holds zero bytes
+// Throws InputError if the file does not exist, is a directory, cannot be read to its end, or contains NUL bytes
 // (binary data, UTF-16, a device that never ends). `purpose` completes "give ...": "a Wavefront OBJ file".
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& path, const std::string& purpose);
 
 // The same from an open stream, called `file` in messages.
 [[nodiscard]] std::string read_text(std::istream& in, const std::string& file, const std::string& purpose);
 
-// The same in two steps, for what need not be held whole. A block is full unless the file ends in it; 0 at its end.
+// The same in two steps, for files that need not be held as a whole. A block is full unless the file ends in it;
+// returns 0 at the end.
 [[nodiscard]] std::ifstream open_text_file(const std::filesystem::path& path, const std::string& purpose);
 [[nodiscard]] std::size_t read_text_block(std::istream& in, std::span<char> block, const std::string& file,
                                           const std::string& purpose);
 
-// Where a file that takes the place of `path` belongs: where a symbolic link leads to, else the path itself.
+// The path at which to write a file that replaces `path`: the target of a symbolic link, otherwise the path itself.
 [[nodiscard]] std::filesystem::path destination(const std::filesystem::path& path);
 
 }  // namespace exactff

@@ -53,7 +53,7 @@ std::string_view TextLines::take_physical() {
   rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : std::min<std::size_t>(rest_.size(), 1));
   ++number_;
   const std::string_view data = without_comment(line);
-  // A backslash before a comment joins nothing; keep a mark that it is not the last character.
+  // A backslash before a comment joins nothing. It is removed, since it would otherwise be the last character.
   return data.size() < line.size() && trimmed(data).ends_with('\\') ? data.substr(0, data.rfind('\\')) : trimmed(data);
 }
 

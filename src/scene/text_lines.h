@@ -1,4 +1,4 @@
-// The lines and words of OBJ and MTL files, and the collecting of what is wrong with them.
+// The lines and words of OBJ and MTL files, and a list that collects their problems.
 #pragma once
 
 #include <algorithm>
@@ -18,12 +18,12 @@ struct TextLine {
 };
 
 // Reads lines that end in LF, CRLF, CR or the end of the text. A comment starts with a '#' at the start of a word
-// and ends with its line, backslash or not. A UTF-8 byte order mark at the start is passed over.
+// and ends with its line, backslash or not. A UTF-8 byte order mark at the start is skipped.
 class TextLines {
  public:
   explicit TextLines(std::string_view text);
   bool next(TextLine& line);
-  // Once all lines are read: whether the last one, with something on it, lacks its line end.
+  // After all lines are read: true if the last line is not blank and lacks its line end.
   bool is_cut_off() const { return cut_off_; }
 
  private:
@@ -40,12 +40,12 @@ std::string_view trimmed(std::string_view text);
 std::string_view take_word(std::string_view& text);
 std::vector<std::string_view> words(std::string_view text);
 
-// At most the first characters in quotes, unprintable ones replaced.
+// At most the first `shown` bytes in quotes, unprintable ones replaced.
 std::string in_quotes(std::string_view text, std::size_t shown = 40);
 
-inline constexpr std::size_t kShownName = 200;  // of a name that somebody may want to copy
+inline constexpr std::size_t kShownName = 200;  // bytes of a name that a user may want to copy
 
-// Every problem of a file in its order; beyond a cap they are only counted, so that memory stays bounded.
+// Every problem of a file in file order; beyond a cap they are only counted, so that memory stays bounded.
 class ProblemList {
  public:
   static constexpr std::size_t kKept = 1000;
@@ -56,7 +56,7 @@ class ProblemList {
   void count_dropped() { ++dropped_; }  // as add() does once the list is full
   // Throws an InputError if there are any.
   void throw_if_any();
-  // All of them; the last one counts those dropped, called `noun`.
+  // Returns all of them; the last one gives the number dropped, called `noun`.
   std::vector<Problem> take(const std::string& noun);
 
  private:

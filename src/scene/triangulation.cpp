@@ -39,7 +39,7 @@ Ring without_repetitions(std::span<const Vec3> vertices, const Ring& ring) {
   return kept;
 }
 
-// Works on one face; `face_` is what it hands back.
+// Works on one face; `face_` is the result.
 class FaceCutter {
  public:
   FaceCutter(std::span<const Vec3> vertices, const std::vector<Ring>& rings) : vertices_(vertices) {
@@ -97,7 +97,7 @@ void FaceCutter::cut() {
   face_.area = to_double({twice_area_.mantissa, twice_area_.exponent + 2 * points_.exponent - 1});
 }
 
-// The commonest face by far, and always planar and convex.
+// By far the most common face, always planar and convex.
 void FaceCutter::take_triangle() {
   const std::vector<std::uint32_t>& v = points_.vertex;
   face_.parts.push_back({v, {v[0], v[1], v[2]}});
@@ -131,7 +131,7 @@ void FaceCutter::cut_region(const PlanePoints& plane) {
   const PlanarRegion region = planar_region(vertices_, points_, plane, newell_);
   report(region);
   for (const auto& part : region.parts) add_part(plane, part);
-  if (!face_.fault && face_.parts.empty()) face_.shape = FaceShape::kZeroArea;  // the holes leave nothing
+  if (!face_.fault && face_.parts.empty()) face_.shape = FaceShape::kZeroArea;  // the holes remove everything
 }
 
 // Planar, with corners not on one line: a tree of edges walked there and back, or two lobes of opposite sense.
@@ -175,7 +175,7 @@ void FaceCutter::cut_other() {
   for (const TriangleIndices& triangle : *triangles) add_part(plane, triangle);
 }
 
-// Whether the triangles are bounded by anything but the ring: in space, not only as seen along the Newell vector.
+// True if anything but the ring bounds the triangles in space, not only as seen along the Newell vector.
 bool FaceCutter::leaves_gap(const std::vector<TriangleIndices>& triangles) const {
   using Place = std::tuple<double, double, double>;
   std::vector<std::pair<Place, Place>> sides, reversed;

@@ -1,4 +1,4 @@
-// One face, exactly: is it planar, is it convex, and which convex pieces make it up.
+// Exact classification of one face: is it planar, is it convex, and what are its convex pieces?
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace exactff {
 
 using Ring = std::vector<std::uint32_t>;
 
-// Why a face cannot be used; completes a sentence that begins with the face's name.
+// The reason why a face cannot be used; completes a sentence that begins with the face's name.
 struct FaceFault {
   std::string what;
   std::string why;
@@ -36,9 +36,9 @@ struct CutFace {
   std::optional<FaceFault> fault;  // then shape is kSkipped
 };
 
-// Exact in every decision. An exactly planar face keeps its shape and is cut into as few convex parts as
-// merging a constrained triangulation gives; one that is not planar is cut into triangles by the rule of
-// `ear_clipping.h`. Requires valid indices and finite coordinates; any rings otherwise.
+// Exact in every decision. An exactly planar face keeps its shape and is cut into convex parts, as few as merging a
+// constrained triangulation gives. A face that is not planar is cut into triangles by the rule of `ear_clipping.h`.
+// Requires valid indices and finite coordinates; the rings are otherwise arbitrary.
 CutFace cut_face(std::span<const Vec3> vertices, const std::vector<Ring>& rings);
 
 }  // namespace exactff

@@ -5,8 +5,8 @@ namespace exactff::text {
 namespace {
 
 struct Lead {
-  std::size_t bytes = 0;  // 0: begins no character
-  char32_t least = 0;     // shorter forms exist for smaller codes
+  std::size_t bytes = 0;  // 0: not the beginning of a character
+  char32_t least = 0;     // smaller codes have shorter forms
 };
 
 Lead lead_of(unsigned char byte) {

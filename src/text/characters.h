@@ -7,9 +7,9 @@
 namespace exactff::text {
 
 // A well-formed character (Unicode 15, table 3-7: neither overlong nor a surrogate nor beyond U+10FFFF), or one byte
-// that is part of none.
+// that is not part of such a character.
 struct Character {
-  char32_t code = 0;  // the byte itself where it is not well-formed
+  char32_t code = 0;  // the byte itself if it is not well-formed
   std::size_t bytes = 1;
   bool well_formed = false;
 };
@@ -17,11 +17,12 @@ struct Character {
 // The character that begins at text[at]; at < text.size().
 [[nodiscard]] Character character_at(std::string_view text, std::size_t at);
 
-// The longest beginning of at most `bytes` bytes that cuts no character in two.
+// The longest prefix of at most `bytes` bytes that does not split a character.
 [[nodiscard]] std::string_view beginning(std::string_view text, std::size_t bytes);
 
-// Characters that act instead of being seen: C0 and C1 controls, DEL, line and paragraph separators, those that turn
-// the direction of what follows (U+202A to U+202E, U+2066 to U+2069), and the two that XML forbids (U+FFFE, U+FFFF).
+// Characters that control the output instead of being visible: C0 and C1 controls, DEL, line and paragraph separators,
+// those that change the direction of the following text (U+202A to U+202E, U+2066 to U+2069), and the two that XML
+// forbids (U+FFFE, U+FFFF).
 [[nodiscard]] bool is_control(char32_t code);
 
 }  // namespace exactff::text

@@ -19,7 +19,7 @@ std::string visible_escape(const Character& c) {
   return byte ? "\\x" + hexadecimal(c.code, 2) : "\\u" + hexadecimal(c.code, 4);  // no control is beyond U+FFFF
 }
 
-// Calls put(character, its bytes) from the first to the last.
+// Calls put(character, its bytes) for each character in order.
 template <class Put>
 void for_each_character(std::string_view text, const Put& put) {
   for (std::size_t at = 0; at < text.size();) {
@@ -43,7 +43,7 @@ bool is_one_word(std::string_view text) {
                               "0123456789_-+=:,./@%") == std::string_view::npos;
 }
 
-// $'...', where what cannot be seen is written byte by byte.
+// $'...', in which invisible characters are written byte by byte.
 std::string ansi_c_quoted(std::string_view text) {
   std::string word = "$'";
   for_each_character(text, [&](const Character& c, std::string_view bytes) {
@@ -109,7 +109,7 @@ std::string github_message(std::string_view text) {
   return safe;
 }
 
-// A property ends at a comma or colon.
+// Commas and colons end a property.
 std::string github_property(std::string_view text) {
   std::string safe = github_message(text);
   replace_all(safe, ":", "%3A");

@@ -1,11 +1,11 @@
-// Text from files and command lines on its way out: one function for each language that it is written in.
+// Escapes text from files and command lines for output: one function for each output language.
 //
-// Names and paths may hold any bytes. Those that are UTF-8 without control characters stay as they are, up to the
-// quoting of the language. A control character becomes a visible escape, and so does a byte that is not UTF-8: \x1b
-// and \xe9 for a byte, \u202e for a character beyond ASCII. Not a question mark or U+FFFD, so that two names stay two
-// names and a person sees what is in them. A name that holds a backslash already is not changed, so the escapes are for
-// people, not for reading back. CSV and JSON have to be read back: CSV keeps every byte but line breaks, JSON every
-// character.
+// Names and paths may hold any bytes. Valid UTF-8 without control characters is not changed, except for the quoting of
+// the language. A control character becomes a visible escape, and so does a byte that is not UTF-8: \x1b and \xe9 for a
+// byte, \u202e for a character beyond ASCII. It does not become a question mark or U+FFFD, so that different names stay
+// different and a reader sees their content. A backslash that is already in a name is not changed, so the escapes are
+// for human readers and cannot be reversed. CSV and JSON must be read back: CSV keeps every byte except line breaks,
+// JSON every character.
 #pragma once
 
 #include <string>
@@ -13,29 +13,30 @@
 
 namespace exactff::text {
 
-// For a terminal or a log: a name in a hostile file could otherwise steer the terminal, turn the reading direction of
-// what follows, or make two lines of one. Control characters among `kept` (ASCII) stay.
+// For a terminal or a log: a name in a hostile file could otherwise steer the terminal, change the reading direction of
+// the following text, or split one line in two. Control characters among `kept` (ASCII) stay.
 [[nodiscard]] std::string printable(std::string_view text, std::string_view kept = {});
 
 // For HTML, SVG and other XML, as content or within double quotes. Line feeds and tabs stay.
 [[nodiscard]] std::string html(std::string_view text);
 
-// Well-formed UTF-8, as JSON requires; characters stay, since JSON can hold them all. See text/json_document.h.
+// Well-formed UTF-8, as JSON requires; characters are not changed, since JSON can hold them all. See
+// text/json_document.h.
 [[nodiscard]] std::string utf8(std::string_view text);
 
-// One field of a CSV row, quoted where it must be (RFC 4180). Reads back as the same bytes, but for line breaks,
-// which become visible: a row is one line.
+// One field of a CSV row, quoted where it must be (RFC 4180). Reads back as the same bytes, except for line breaks,
+// which become visible escapes: a row is one line.
 [[nodiscard]] std::string csv_field(std::string_view text);
 
-// In a comment line of a CSV file, which a line break would end: blanks stand for line breaks.
+// For a comment line of a CSV file, which a line break would end: line breaks become blanks.
 [[nodiscard]] std::string csv_comment(std::string text);
 
-// Message and property of a workflow command of GitHub Actions. Line feeds stay, as the runner wants them written.
+// Message and property of a workflow command of GitHub Actions. Line feeds stay, in the form that the runner expects.
 [[nodiscard]] std::string github_message(std::string_view text);
 [[nodiscard]] std::string github_property(std::string_view text);
 
 // A string of a gnuplot script, quotes included. Line breaks become blanks: they would end the command. The terminal's
-// enhanced mode still reads its marks in it.
+// enhanced mode still interprets its markup in the string.
 [[nodiscard]] std::string gnuplot_string(std::string_view text);
 
 // One word of a command line, quoted for the shell where it must be. Control characters and bytes that are not UTF-8

@@ -25,7 +25,7 @@ ordered_json well_formed(const ordered_json& json) {
   return copy;
 }
 
-// What JSON escapes anyway is escaped; what is left above ASCII can only be within a string.
+// The characters that JSON must escape are already escaped. Other characters above ASCII can only be within a string.
 std::string with_escaped_controls(const std::string& document) {
   std::string safe;
   for (std::size_t at = 0; at < document.size();) {

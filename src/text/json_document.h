@@ -1,4 +1,4 @@
-// JSON as it leaves the program.
+// The JSON output of the program.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -6,9 +6,9 @@
 
 namespace exactff::text {
 
-// Indented by two. Every string and key may hold any bytes: what is not UTF-8 becomes visible (text/escape.h), since
-// JSON cannot hold it. Control characters stay in the string and are written as \u001b, \u0085 or \u202e, so that the
-// document can be printed to a terminal.
+// Indented by two. Every string and key may hold any bytes: bytes that are not UTF-8 become visible escapes
+// (text/escape.h), since JSON cannot hold them. Control characters stay in the string and are written as \u001b, \u0085
+// or \u202e, so that the document can be printed to a terminal.
 [[nodiscard]] std::string json_document(const nlohmann::ordered_json& json);
 
 }  // namespace exactff::text

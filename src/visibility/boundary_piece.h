@@ -1,9 +1,9 @@
-// The boundary of the visible region, as the contour integral wants it.
+// The boundary of the visible region, in the form that the contour integral takes.
 //
-// A piece lies on a supporting edge from a to b (exact directions from x, each up to a positive factor of its own);
-// the point with the homogeneous parameter (l : m) lies in direction l a + m b. A piece runs from `begin` to `end`.
-// Together the pieces of a plane form closed loops with the visible region to their left as x sees it.
-// Eq. (4) depends on nothing else, so whoever finds the pieces, by whatever method, can hand them over.
+// A piece lies on a supporting edge from a to b (exact directions from x, each known up to its own positive factor);
+// the point with the homogeneous parameter (l : m) lies in direction l a + m b. A piece runs from `begin` to `end`. The
+// pieces of one plane form closed loops. Seen from x, the visible region is on their left.
+// Eq. (4) depends on nothing else, so any method that finds the pieces can supply them.
 #pragma once
 
 #include "kernel/exact_vec.h"

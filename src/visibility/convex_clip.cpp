@@ -20,7 +20,8 @@ std::vector<int> sides_of(const Ring& ring, const Direction& normal) {
 
 }  // namespace
 
-// Many clips in a row make corners from corners: without the division their size would grow with every one.
+// Repeated clips construct corners from constructed corners: without the division the numbers would grow with each
+// clip.
 Direction crossing(const ExactVec3& a, const Integer& da, const ExactVec3& b, const Integer& db) {
   ExactVec3 direction = a * abs(db) + b * abs(da);
   make_primitive(direction);

@@ -11,12 +11,12 @@ enum class ClipResult {
   kEmpty,  // no corner strictly inside: nothing with an interior is left; the ring is cleared
 };
 
-// Keeps the part of `ring` with normal . t >= 0. The corners that the cut makes are directions only: positive
-// combinations of two corners, whatever scale these have.
+// Keeps the part of `ring` with normal . t >= 0. Corners constructed by the cut are directions only: positive
+// combinations of two corners, at any scale.
 ClipResult clip(kernel::Ring& ring, const kernel::Direction& normal);
 
 // The direction in which the segment from a (at signed distance da) to b (at db, of the other sign) meets the plane:
-// a |db| + b |da|, without common factor.
+// a |db| + b |da|, with common factors divided out.
 kernel::Direction crossing(const kernel::ExactVec3& a, const kernel::Integer& da, const kernel::ExactVec3& b,
                            const kernel::Integer& db);
 

@@ -19,16 +19,16 @@ using kernel::Ring;
 
 namespace {
 
-// What a thread keeps from one call to the next.
+// Memory that each thread keeps from one call to the next.
 struct Workspace {
   VisibleEdges edges;
   std::vector<HalfSpace> half_spaces;
   HalfSpaceGroups shaft;  // the same
   std::vector<SidePlane> side_planes;
   std::vector<CornerId> corners, ring;
-  std::vector<int> depths;             // of the corners at hand: on which side of the plane that may cut them
+  std::vector<int> depths;             // of the current corners: on which side of the plane that may cut them
   std::vector<std::uint32_t> seen_in;  // by piece: the last run that looked at it
-  // By closed surface: the last run that looked at it, and whether what faces away from x was left out there.
+  // By closed surface: the last run that looked at it, and whether its pieces that face away from x were left out.
   struct Surface {
     std::uint32_t run = 0;
     bool backs_left_out = false;
@@ -121,7 +121,7 @@ Outcome EdgeWalk::find_outcome() {
   if (!gather_source()) return Outcome::kBelowHorizon;
   // 3. and 5. Candidates in the shaft.
   if (!gather_occluders()) return Outcome::kHiddenByOne;
-  // 4., 6. and 7. What is left of every edge.
+  // 4., 6. and 7. Find the visible parts of every edge.
   gave_up_ = !work_.edges.find(source_count_);
   work_parts_ = work_.edges.parts();
   result_.record.pairs = work_.edges.pairs();
@@ -201,7 +201,7 @@ void EdgeWalk::start_run() {
   }
 }
 
-// False if one occluder hides all; the others then are nobody's business.
+// False if one occluder hides all; the other occluders are then not needed.
 bool EdgeWalk::gather_occluders() {
   start_run();
   outlines_.watch_for_shared_corners();
@@ -218,7 +218,8 @@ bool EdgeWalk::gather_occluders() {
   return !hidden;
 }
 
-// True if the piece hides all. `inside`: it lies inside every half-space of the shaft, and so above all side planes.
+// True if the piece hides all. `inside`: it lies inside every half-space of the shaft, and therefore above all side
+// planes.
 bool EdgeWalk::visit(std::uint32_t index, OutlineId source, bool inside) {
   if (work_.seen_in[index] == work_.run || !may_occlude(view_, plane_, request_, index)) return false;
   const Piece& piece = pieces_[index];
@@ -277,12 +278,12 @@ bool EdgeWalk::may_leave_out_backs(std::uint32_t id) const {
   return true;
 }
 
-// The planes above each of which an occluder must have some part: the source's, as its front sees it, the one through x
-// that is parallel to it, as the source sees it, and those through x and the edges of the source. Without culling the
-// first two alone, on which outlines rely: who is out of the shaft then is found out edge by edge.
+// An occluder must have some part above each of these planes: the source's plane (above is its front), the parallel
+// plane through x (above is towards the source), and the planes through x and the edges of the source. Without culling,
+// only the first two are used, because outlines rely on them; pieces outside the shaft are then found edge by edge.
 //
 // With N and s the normal and a point of the source's plane, as seen from x, the components of N, s and t are known to
-// within 2u of themselves, u = 2^-53, |N| <= 1. The two sums N . t and N . s err by 7u of the magnitudes of their
+// within a relative error of 2u, u = 2^-53, |N| <= 1. The two sums N . t and N . s err by 7u of the magnitudes of their
 // terms, at most 3 |t| and 3 |s|, and their difference by u of at most 3 (|t| + |s|) more: in all by
 // 24u (|t| + |s|) < 2^-48 (|t| + |s|).
 void EdgeWalk::make_side_planes(OutlineId source) {
@@ -290,7 +291,7 @@ void EdgeWalk::make_side_planes(OutlineId source) {
   const Approx3& front = plane_.normal.approx;
   const double scale = std::ldexp(1.0, outlines_.scale_exponent());
   const Approx3 d = kernel::approx_difference(plane_.point, view_.x);
-  const Approx3 s{scale * d.x, scale * d.y, scale * d.z};  // first: products of what is not scaled may underflow
+  const Approx3 s{scale * d.x, scale * d.y, scale * d.z};  // scaled first: products of unscaled numbers may underflow
   const double size = largest(s);
   const bool usable = size >= 0x1p-300 && size <= 0x1p300;
   const double offset = front.x * s.x + front.y * s.y + front.z * s.z;

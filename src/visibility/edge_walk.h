@@ -1,20 +1,21 @@
-// The visible boundary by the edge engine: the steps of visible_boundary.h, by predicates. No corner is constructed but
+// The visible boundary by the edge engine: the steps of visible_boundary.h, by predicates. A corner is constructed only
 // where an edge crosses the horizon or the source's plane (plane_crossings.h).
 //
 //   1. cull: x behind or in the plane, or nothing above the horizon;
-//   2. clip by the receiver's horizon what it cuts;
+//   2. clip the pieces that the receiver's horizon cuts;
 //   3. shaft: candidates from the bounding-volume tree; then signs of their corners' heights above the source's edges;
-//      a face that the source's plane cuts is clipped, none is clipped to the shaft, and of closed surfaces what faces
-//      away from x is left out, see below;
+//      a face that the source's plane cuts is clipped, no face is clipped to the shaft, and pieces of closed surfaces
+//      that face away from x are left out (see below);
 //   4. and 5. no candidates, or one that hides all;
-//   6. and 7. what is left of every edge (visible_edges.h).
+//   6. and 7. the visible parts of every edge (visible_edges.h).
 //
 // Backs of closed surfaces. Let x lie outside the box of a closed surface (closed_surfaces.h) all of whose pieces may
 // occlude, and let the box lie on x's side of the source's plane, off it. Along almost every segment from x to a point
 // y of that plane the winding number goes up by one at each piece that is crossed from the front, down by one at each
-// that is crossed from the back, and is 0 at both ends, which lie outside the box. As many pieces are crossed from the
-// front as from the back: those that show x their backs cover what those that show their fronts do, up to nothing of
-// area, and either may be left out. All of them are candidates as before, and each may still hide all.
+// that is crossed from the back, and is 0 at both ends, which lie outside the box. So as many pieces are crossed from
+// the front as from the back. The pieces that show x their backs cover the same region as the pieces that show x their
+// fronts, up to a set of area zero, and either set may be left out. All pieces remain candidates, and each may still
+// hide all.
 #pragma once
 
 #include "visibility/visible_boundary.h"
@@ -22,7 +23,7 @@
 namespace exactff::visibility {
 
 // Lists a cutter only where one occluder hides all, and keeps no geometry.
-// Nothing where the Booleans are the better way (visible_edges.h).
+// Returns nullopt where the Booleans are the better method (visible_edges.h).
 std::optional<PlaneVisibility> find_by_edges(const View& view, const SourcePlane& plane, const Request& request);
 
 }  // namespace exactff::visibility

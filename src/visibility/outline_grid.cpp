@@ -19,9 +19,9 @@ constexpr double kLeastAhead = 0x1p-8;
 constexpr std::size_t kFewestForAGrid = 8;
 constexpr double kCellsPerOutline = 0.6;
 constexpr std::uint64_t kEdgesPerOutline = 4;
-constexpr std::uint64_t kPairsPerExactOne = 40;  // that the filter decides in its time
+constexpr std::uint64_t kPairsPerExactOne = 40;  // pairs that the filter decides in the time of one exact comparison
 constexpr std::size_t kOutlinesToAlign = 256;
-constexpr std::size_t kFewShare = 4;  // fewer than one edge in so many are few
+constexpr std::size_t kFewShare = 4;  // fewer than one edge in this many counts as few
 constexpr std::uint32_t kMostOwnCells = 24;
 constexpr std::size_t kMostInCaches = 4096;  // outlines
 constexpr std::uint32_t kStrip = 32;         // columns
@@ -30,7 +30,7 @@ double dot(const Vec3& a, const Approx3& t) { return a.x * t.x + a.y * t.y + a.z
 Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-// Of length 1, or no more than a hair less.
+// Of length 1 or very slightly less.
 Vec3 unit(const Vec3& a) {
   const double s = (1.0 - 0x1p-40) / std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
   return {a.x * s, a.y * s, a.z * s};
@@ -143,8 +143,8 @@ void OutlineGrid::find_bounds(const Outlines& outlines) {
   }
 }
 
-// Turns the image so that the occluders' edges, on the whole, run along u: slats then share few cells. Some hundreds of
-// occluders tell as well as all.
+// Turns the image so that the occluders' edges, on the whole, run along u: slats then share few cells. A few hundred
+// occluders suffice.
 void OutlineGrid::align(const Outlines& outlines, std::size_t source_count) {
   double along = 0.0, across = 0.0;  // sums of length cos 2 phi, length sin 2 phi
   const std::size_t count = outlines.outlines().size();
@@ -181,7 +181,7 @@ void OutlineGrid::choose_cells(std::size_t source_count) {
     height += std::min(v.high - v.low, whole_height);
     ++count;
   }
-  // Cells shaped like the mean outline, but no smaller than what the images' slack spreads over anyway.
+  // Cells have the shape of the mean outline, but are no smaller than the region over which the images' slack spreads.
   const double cells = std::max(1.0, kCellsPerOutline * static_cast<double>(count));
   const double mean_width = std::max(width / static_cast<double>(std::max<std::size_t>(count, 1)), kSlack);
   const double mean_height = std::max(height / static_cast<double>(std::max<std::size_t>(count, 1)), kSlack);
@@ -198,12 +198,12 @@ void OutlineGrid::choose_cells(std::size_t source_count) {
   set(v_, high * factor, whole_height);
 }
 
-// What meets inside the source does so at a point of the grid, so that bounds may be clamped to just beyond it. Whole
-// numbers then stay below 2^15. Taking off one before truncation rounds downwards, which is outwards for upper bounds
-// too, whose signs are changed.
+// Outlines that meet inside the source meet at a point of the grid, so bounds may be clamped to just beyond the grid.
+// The integers then stay below 2^15. Subtracting one before truncation rounds downwards. This is also outwards for
+// upper bounds, since their signs are changed.
 //
 // Let there be p cells in a unit of u and q in one of v. Images are known to within kSlack, which is at most
-// kSlack (p + q) in cells; none is further off than 2^9, so that what is computed before clamping errs by less than
+// kSlack (p + q) in cells; none is further away than 2^9, so that what is computed before clamping errs by less than
 // 2^-41 (p + q). Of the slack, 4 kSlack (p + q), more than 2^-31 (p + q) is left. That is more than 2^-28 of a step,
 // since a cell has 0x7F00 / (columns + rows + 2) steps and the grid is no wider or higher than 2^10, so that p + q is
 // at least (columns + rows) / 2^10; what is computed after clamping errs by less than 2^-35 of a step.
@@ -287,8 +287,8 @@ void OutlineGrid::for_each_cell_of(const Outlines& outlines, OutlineId id, const
   }
 }
 
-// Every corner of the cell lies on the inner side of every edge, further from it than the edge's line can be off: by
-// the slack at the edge's own ends, by more in proportion beyond them.
+// Every corner of the cell lies on the inner side of every edge, further from it than the error of the edge's line.
+// That error is the slack at the edge's ends, and proportionally more beyond them.
 bool OutlineGrid::covers(const Outlines& outlines, const Outline& outline, const Range& u, const Range& v) const {
   double orientation = 0.0;
   for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
@@ -379,8 +379,8 @@ void OutlineGrid::fill() {
   }
 }
 
-// By the first of an outline's cells, row by row in strips of some columns, by a counting sort; first of all those that
-// have none.
+// A counting sort by each outline's first cell, row by row in strips of some columns. Outlines without cells come
+// first.
 std::span<const OutlineId> OutlineGrid::in_order(std::size_t count) {
   order_.resize(count);
   std::iota(order_.begin(), order_.end(), OutlineId{0});
@@ -446,7 +446,7 @@ std::span<const OutlineId> OutlineGrid::find_near(const Outlines& outlines, Edge
     last_seen_[cell] = first;
     for (std::uint32_t m = cell_begin_[cell]; m < cell_begin_[cell + 1]; ++m) {
       const OutlineId o = members_[m];
-      near_[count] = o;  // without branches, which nobody could predict
+      near_[count] = o;  // without branches, which would be unpredictable
       count += static_cast<std::size_t>(last_found_[o] != first) &
                static_cast<std::size_t>(kernel::lanes::nowhere_larger(octagons_[o], own_reach));
       last_found_[o] = first;

@@ -22,13 +22,13 @@ constexpr double kSideError = 0x1p-46;
 double size_of(const Approx3& t) {
   const double largest = std::max({std::abs(t.x), std::abs(t.y), std::abs(t.z)});
   const bool usable = largest >= 0x1p-300 && largest <= 0x1p300;  // false for NaN
-  const double sum = t.x + t.y + t.z;                             // NaN if one of them is, which std::max may pass over
+  const double sum = t.x + t.y + t.z;                             // NaN if a component is; std::max may miss it
   return usable && sum == sum ? largest : std::numeric_limits<double>::quiet_NaN();
 }
 
 bool scaled_safely(double from, double to) { return from == 0.0 || std::abs(to) >= std::numeric_limits<double>::min(); }
 
-// Of the power of two nearest below 1 / length, within the range of normal doubles.
+// The exponent of the largest power of two below 1 / length, within the range of normal doubles.
 int exponent_for(double length) {
   int exponent = 0;
   if (std::isfinite(length) && length > 0.0) std::frexp(length, &exponent);
@@ -76,7 +76,7 @@ EXACTFF_INLINE CornerId Outlines::corner_of_vertex(std::uint32_t any_vertex) {
   }
   const Approx3 d = kernel::approx_difference(position(vertex), x_);
   const Approx3 t{d.x * scale_, d.y * scale_, d.z * scale_};
-  const bool exact_scaling =  // to larger numbers it always is, or they become infinite
+  const bool exact_scaling =  // scaling up always is, unless numbers become infinite
       scale_ >= 1.0 || (scaled_safely(d.x, t.x) && scaled_safely(d.y, t.y) && scaled_safely(d.z, t.z));
   run = run_;
   corner = add_corner(t, exact_scaling ? size_of(t) : std::numeric_limits<double>::quiet_NaN(), {.p = vertex});

@@ -1,5 +1,5 @@
-// Convex outlines as x sees them, their edges as planes through x, and where these meet: the geometry of the edge
-// engine.
+// The geometry of the edge engine: convex outlines as x sees them, their edges as planes through x, and the crossings
+// of these planes.
 //
 // Notation: an edge runs from a to b, two directions from x less than a half turn apart, with the inside of its outline
 // on its left as x sees it. The plane through x and the edge has the inward normal N = b x a, so that a direction t
@@ -7,13 +7,13 @@
 // parameter (l : m), l, m >= 0, and lies in direction l a + m b. Where the line of another edge f crosses it,
 //   l : m = |F . b| : |F . a|,   F the inward normal of f.
 //
-// Filters. A corner is known as a triple of doubles, each within relative error 2u, u = 2^-53, and by the largest
+// Filters. A corner is represented by a triple of doubles, each within relative error 2u, u = 2^-53, and by the largest
 // magnitude |t| among them. With c_i = b_j a_k - b_k a_j in doubles, each product errs by 5u and their difference by u
 // more of its magnitude: in all by 12u |a||b|; |c_i| <= 2 |a||b|. Then N . t is a sum of three products, each of which
 // errs by (12u + 2 (2u + u)) |a||b||t| = 18u |a||b||t|, and two sums of at most 6 |a||b||t|, so that the total is below
 // 54u + 12u = 66u < 2^-46 |a||b||t|. Corners are scaled so that those of the source are of order 1; a corner whose |t|
 // is not within [2^-300, 2^300], or whose components do not survive the scaling, makes every filter decline, so that
-// underflow is of no account.
+// underflow does not matter.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ using CornerId = std::uint32_t;
 using EdgeId = std::uint32_t;
 using OutlineId = std::uint32_t;
 
-// The value of N . t with what is known of it: its sign is certain where |value| > error, or where both are 0.
+// The value of N . t with an error bound. The sign is certain where |value| > error, or where both are 0.
 struct Height {
   double value = 0.0;
   double error = 0.0;
@@ -63,15 +63,15 @@ class Outlines {
     LineBits within_lines = 0;   // of the source, if that is one outline: known to have all of this on the inner side
   };
 
-  // Forgets everything; directions are relative to x, a point of `scene`'s space. Vertices at one position are one
-  // corner. `unit`: a length of the order of the distances of what matters.
+  // Discards all corners, edges and outlines. Directions are relative to x, a point of `scene`'s space. Vertices at one
+  // position are one corner. `unit`: a length of the order of the distances that matter.
   void start(const Scene& scene, const Vec3& x, double unit);
-  // The planes that add_crossing refers to. The exact normal of the source's must live on.
+  // The planes that add_crossing refers to. The exact normal of the source's plane must outlive their use.
   enum class Plane : std::uint8_t { kSource, kHorizon };
   void set_source_plane(const kernel::ExactVec3& normal, const FineNormal& fine_normal, const Vec3& point);
   void set_horizon(const Vec3& normal);
 
-  // The corners that the vertices are, in place of what was there.
+  // Replaces the contents of `corners` by the corners at these vertices.
   void corners_of(std::span<const std::uint32_t> vertices, std::vector<CornerId>& corners);
   // Where the segment between two vertices on different sides of the plane crosses it.
   [[nodiscard]] CornerId add_crossing(Plane plane, std::uint32_t p, std::uint32_t q);
@@ -83,7 +83,8 @@ class Outlines {
   void remove_last();
   void set_inside_source(OutlineId id) { outlines_[id].inside_source = true; }
   void set_within_lines(OutlineId id, LineBits lines) { outlines_[id].within_lines = lines; }
-  // Outlines of vertices that are added from now on have no corner in common unless has_shared_corners().
+  // Starts the check for shared corners: outlines of vertices added from now on have no corner in common unless
+  // has_shared_corners() is true.
   void watch_for_shared_corners() { shared_corners_ = false; }
   [[nodiscard]] bool has_shared_corners() const { return shared_corners_; }
 
@@ -93,11 +94,12 @@ class Outlines {
   [[nodiscard]] const Outline& outline(OutlineId id) const { return outlines_[id]; }
   [[nodiscard]] const Corner& corner(CornerId id) const { return corners_[id]; }
   [[nodiscard]] std::size_t corner_count() const { return corners_.size(); }
-  // The scene's vertex that a corner is, if it is one; its doubles are those of (position - x) * 2^scale_exponent.
+  // The scene's vertex at this corner, if the corner is a vertex; its doubles are those of (position - x) *
+  // 2^scale_exponent.
   [[nodiscard]] std::optional<std::uint32_t> vertex(CornerId id) const {
     return origins_[id].is_vertex() ? std::optional(origins_[id].p) : std::nullopt;
   }
-  // A corner that was constructed in double-double, if it is one: its doubles are those of `hi`.
+  // Not null if the corner was constructed in double-double arithmetic: its doubles are those of `hi`.
   [[nodiscard]] const FineDirection* fine(CornerId id) const {
     return origins_[id].fine == kNone ? nullptr : &fine_[origins_[id].fine];
   }
@@ -119,7 +121,7 @@ class Outlines {
   [[nodiscard]] const kernel::ExactVec3& exact(CornerId id) { return scaled(id).v; }
   // exact(id) * 2^exponent(id) is what the doubles of the corner approximate.
   [[nodiscard]] long exponent(CornerId id) { return scaled(id).exponent; }
-  // Of a corner above an edge's line, exactly, in the memory that the result has.
+  // The exact height of a corner above an edge's line. Reuses the memory of `result`.
   void set_exact_height(kernel::Integer& result, const Edge& edge, CornerId t);
 
  private:
@@ -139,7 +141,7 @@ class Outlines {
   [[nodiscard]] const kernel::ExactVec3& exact_normal(Plane plane) const {
     return plane == Plane::kSource ? *normal_ : horizon_.v;
   }
-  // Kept in exact_, once it has been made.
+  // Computed at first use and kept in exact_.
   [[nodiscard]] const kernel::ScaledVec3& scaled(CornerId id);
   void add_edges(std::span<const CornerId> corners, bool whole);
 
@@ -151,9 +153,9 @@ class Outlines {
   double scale_ = 1.0;
   std::vector<Corner> corners_;
   std::vector<Origin> origins_;           // by corner
-  std::deque<kernel::ScaledVec3> exact_;  // the first exact_count_; what follows is only memory
+  std::deque<kernel::ScaledVec3> exact_;  // the first exact_count_; the rest is spare memory
   std::size_t exact_count_ = 0;
-  kernel::ExactVec3 edge_normal_;                 // of the edge that was last asked for exactly,
+  kernel::ExactVec3 edge_normal_;                 // of the edge last queried exactly,
   CornerId normal_a_ = kNone, normal_b_ = kNone;  // from a to b
   std::vector<FineDirection> fine_;
   std::array<PlaneCrossings, 2> crossings_;    // by plane

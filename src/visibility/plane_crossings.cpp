@@ -16,7 +16,7 @@ using Vector = std::array<Bounded, 3>;
 
 std::array<double, 3> components(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-// (p - q) * scale, exactly but for underflow.
+// (p - q) * scale, exact except for underflow.
 EXACTFF_INLINE Vector difference(const Vec3& p, const Vec3& q, double scale) {
   const std::array<double, 3> from = components(q), to = components(p);
   Vector d;
@@ -33,7 +33,8 @@ EXACTFF_INLINE Bounded dot(const Vector& a, const Vector& b) { return a[0] * b[0
 
 bool is_zero(const Bounded& c) { return c.hi == 0.0 && c.lo == 0.0 && c.error == 0.0; }
 
-// The axis, if any, that is normal to the plane, where that holds x: the component of crossings along it is exactly 0.
+// The axis normal to the plane, if there is one and the plane contains x: the component of crossings along it is
+// exactly 0.
 int zero_axis(const Vec3& x, const Vec3& s, const Vector& normal) {
   const std::array<double, 3> xc = components(x), sc = components(s);
   for (int i = 0; i < 3; ++i) {
@@ -42,7 +43,7 @@ int zero_axis(const Vec3& x, const Vec3& s, const Vector& normal) {
   return -1;
 }
 
-// False where the sign of a height is not certain: nothing is known of the crossing then. Along `axis` it is 0.
+// False where the sign of a height is not certain: the crossing is then unknown. Its component along `axis` is 0.
 EXACTFF_CLONES
 bool cross(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& s, const Vector& normal, int axis, double scale,
            Vector& result) {
@@ -58,14 +59,14 @@ bool cross(const Vec3& p, const Vec3& q, const Vec3& x, const Vec3& s, const Vec
   return true;
 }
 
-// With u = 2^-53, |c - hi| <= |lo| + error <= 1.5 u |hi|, less than 2u |c|. Of a size that stays normal when the
-// largest of them, which is no larger than 2^300, is brought to 1. False for NaN.
+// With u = 2^-53, |c - hi| <= |lo| + error <= 1.5 u |hi|, less than 2u |c|. It stays normal when the largest component,
+// which is at most 2^300, is scaled to 1. False for NaN.
 bool is_fine(const Bounded& c) {
   return is_zero(c) || (std::abs(c.hi) >= 0x1p-600 && kInflation * c.error <= 0x1p-54 * std::abs(c.hi));
 }
 
-// The two leading doubles of a number over 2^bits. Either is cut off at 53 bits: the rest after the first is below
-// 2^-52 of the number, what the second leaves of it below 2^-104.
+// The two leading doubles of a number divided by 2^bits. Each is truncated to 53 bits: the rest after the first is
+// below 2^-52 of the number, and the rest after the second is below 2^-104.
 Bounded leading(const Integer& number, long bits) {
   if (kernel::sign(number) == 0) return {};
   long exponent = 0;
@@ -75,7 +76,7 @@ Bounded leading(const Integer& number, long bits) {
   if (exponent >= 53) {
     head <<= static_cast<unsigned long>(exponent - 53);
   } else {
-    head >>= static_cast<unsigned long>(53 - exponent);  // whole: the number has no more than `exponent` bits
+    head >>= static_cast<unsigned long>(53 - exponent);  // no fraction: the number has at most `exponent` bits
   }
   rest -= head;
   long rest_exponent = 0;
@@ -133,7 +134,7 @@ std::optional<PlaneCrossings::Fine> PlaneCrossings::fine(const Vec3& p, const Ve
 
 namespace {
 
-// Of set_exact, for its memory.
+// Scratch of set_exact, kept to avoid reallocation.
 struct Scratch {
   ScaledVec3 t_p, t_q, d_p, d_q;
   Integer g_p, g_q;

@@ -1,9 +1,10 @@
-// Where the segment between two vertices crosses a plane, that of the source or the horizon, as a direction from x.
+// The point where the segment between two vertices crosses a plane (the source's plane or the horizon), as a direction
+// from x.
 //
-// With g(y) = N . (y - s), s a point of the plane, N its normal, and g(p), g(q) of different signs, it lies in
+// With g(y) = N . (y - s), s a point of the plane, N its normal, and g(p), g(q) of different signs, the point lies in
 // direction
 //   (p - x) |g(q)| + (q - x) |g(p)|.
-// First in double-double arithmetic with a bound on its error; exactly where that declines, or where somebody asks.
+// It is computed in double-double arithmetic with an error bound first, and exactly where that declines or on request.
 #pragma once
 
 #include <array>
@@ -18,7 +19,7 @@ namespace exactff::visibility {
 
 using kernel::FineDirection;
 
-// A plane's normal over 2^bit_length(N), so that its largest component is in [1/2, 1).
+// A plane's normal N divided by 2^bit_length(N), so that its largest component is in [1/2, 1).
 using FineNormal = std::array<kernel::double_double::Bounded, 3>;
 [[nodiscard]] FineNormal fine_normal(const kernel::ExactVec3& normal);
 // The same for the integers of exact_vector(normal).
@@ -30,21 +31,22 @@ class PlaneCrossings {
   void start(const Vec3& x, const FineNormal& normal, const Vec3& point, int scale_exponent);
 
   // Times 2^-bit_length(N) 2^exponent, so that the largest component is in [1/2, 1]. Each hi is within relative error
-  // 2u, u = 2^-53, of the true component and zero only where that is.
+  // 2u, u = 2^-53, of the true component and zero only where that component is zero.
   struct Fine {
     FineDirection direction;
     int exponent = 0;
   };
   [[nodiscard]] std::optional<Fine> fine(const Vec3& p, const Vec3& q) const;
 
-  // The crossing, in the memory that the result has; v 2^exponent is what a Fine with `fine_exponent` approximates.
+  // The exact crossing. Reuses the memory of `result`. v 2^exponent is the value that a Fine with `fine_exponent`
+  // approximates.
   void set_exact(kernel::ScaledVec3& result, const Vec3& p, const Vec3& q, const kernel::ExactVec3& normal,
                  long fine_exponent) const;
 
  private:
   Vec3 x_, point_;
   FineNormal normal_{};
-  int zero_axis_ = -1;  // along which all crossings are 0; or none
+  int zero_axis_ = -1;  // along which all crossings are 0; -1: none
   int scale_exponent_ = 0;
   double scale_ = 1.0;
 };

@@ -3,7 +3,7 @@
 // The plane is { t : m . t = h } relative to x, with m pointing away from x (h > 0). A direction t meets it where
 // its multiple has m . t = h, so (p, q) = (t_i, t_j) / (m . t) are affine coordinates of the plane, i and j being
 // the axes other than k, the axis of m's largest component. (u, v) maps a bounding box of (p, q) to the unit
-// square: CGAL's filters need moderate numbers, and affine maps keep everything that the Booleans ask about.
+// square: CGAL's filters need numbers of moderate size, and affine maps preserve everything that the Booleans test.
 #pragma once
 
 #include <span>
@@ -21,8 +21,8 @@ using Polygon2 = std::vector<Point2>;
 
 class PlaneFrame {
  public:
-  // `front` is the plane's front normal, x in front of it; the unit square is the bounding box of `rings`, whose
-  // directions all meet the plane.
+  // `front` is the plane's front normal, and x is in front of the plane. The unit square is the bounding box of
+  // `rings`, whose directions all meet the plane.
   PlaneFrame(const kernel::ExactVec3& front, std::span<const kernel::Ring> rings);
 
   [[nodiscard]] Point2 to_plane(const kernel::ExactVec3& direction) const;

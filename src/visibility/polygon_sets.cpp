@@ -22,7 +22,7 @@ using PolygonSet = CGAL::Polygon_set_2<Kernel>;
 static_assert(std::is_same_v<Kernel::Exact_kernel::FT, kernel::Rational>,
               "CGAL's exact number and ours must be one type, so that nothing is converted");
 
-// Explicit rationals: the lazy kernel starts from leaves and its expression trees stay shallow.
+// Explicit rationals: the lazy kernel starts from evaluated numbers, so its expression trees stay shallow.
 Point to_point(const Point2& p) { return {Kernel::FT(p.u), Kernel::FT(p.v)}; }
 Point2 from_point(const Point& p) { return {p.x().exact(), p.y().exact()}; }
 

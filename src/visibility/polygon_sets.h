@@ -1,7 +1,7 @@
-// Polygon Booleans in exact rational arithmetic: the one place that knows CGAL's polygon sets.
+// Polygon Booleans in exact rational arithmetic. Only this module uses CGAL's polygon sets.
 //
-// All polygons are given counter-clockwise, simple, of positive area, with coordinates of moderate size (PlaneFrame
-// sees to that: the sets fail once a coordinate or a difference reaches 2^1024).
+// Requires polygons that are counter-clockwise, simple, of positive area, with coordinates of moderate size. PlaneFrame
+// ensures the last: the sets fail once a coordinate or a difference reaches 2^1024.
 #pragma once
 
 #include <span>
@@ -21,7 +21,7 @@ struct RegionLoop {
 // The union of the polygons.
 std::vector<RegionLoop> join(std::span<const Polygon2> polygons);
 
-// The union of `source` minus the union of `occluders`, aggregated: one join of each, one difference.
+// The union of `source` minus the union of `occluders`, computed by one join of each and one difference.
 std::vector<RegionLoop> difference(std::span<const Polygon2> source, std::span<const Polygon2> occluders);
 
 // The convex hull, counter-clockwise, without collinear corners.

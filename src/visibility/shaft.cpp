@@ -58,8 +58,8 @@ int Shaft::side_sign(const Direction& normal, std::size_t corner) {
   return filtered != kUncertain ? filtered : sign(dot(normal.exact, exact_corner(corner).v));
 }
 
-// M . t - h: the dot product errs by less than 8u m, the offset by 2u of itself, the last subtraction by u m: all
-// within certified_sign's 16u m.
+// M . t - h: the dot product errs by less than 8u m, the offset by a relative error of 2u, the last subtraction by u m:
+// in all within certified_sign's 16u m.
 int Shaft::depth_sign(std::size_t corner) {
   const Approx3& m = toward_.approx;
   const Approx3& t = approx_corners_[corner];

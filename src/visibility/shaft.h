@@ -1,19 +1,20 @@
-// The open pyramid from x to the convex hull of the clipped source: who may hide something, and which part of it.
+// The shaft is the open pyramid from x to the convex hull of the clipped source. Only pieces that enter it can hide a
+// part of the source. This class tests pieces against it and finds their part in it.
 //
 // Notation: s_i corners of the hull, t_j corners of an occluding piece, both relative to x; M the source's normal
 // turned away from x, h = M . s > 0. A piece hides a part of positive area exactly if its intersection with
 //   { t : M . t < h }  and  { t : (s_i+1 x s_i) . t > 0 for every side i }
-// has an interior in the piece's own plane and that plane does not hold x.
+// has an interior in the piece's own plane and that plane does not contain x.
 //
 // Steps for one piece, each a sign with a filter first and an exact product last:
 //   1. nothing strictly on x's side of the source's plane, nothing ahead of x, or everything on or outside one side
-//      plane: out (conservative; most pieces end here);
-//   2. its plane holds x: out, it is seen edge-on;
+//      plane: outside (conservative; most pieces end here);
+//   2. its plane contains x: outside, since x sees it edge-on;
 //   3. exact clip by the source's plane;
-//   4. every s_i inside or on every plane (x, t_j, t_j+1): it hides the whole source, and the hull is its part in the
-//      shaft;
-//   5. exact clip by the side planes: nothing left, out. A clip keeps an interior as long as one corner lies strictly
-//      inside, so no area needs to be computed.
+//   4. every s_i inside or on every plane (x, t_j, t_j+1): the piece hides the whole source, and the hull is its part
+//      in the shaft;
+//   5. exact clip by the side planes: outside if nothing is left. A clip keeps an interior as long as one corner lies
+//      strictly inside, so no area needs to be computed.
 #pragma once
 
 #include <cstdint>
@@ -37,15 +38,16 @@ enum class Fate { kOutside, kInShaft, kHidesAll };
 
 class Shaft {
  public:
-  // `hull`: strictly convex, as x sees it; `front`: the source's front normal, x in front; `point`: in its plane.
+  // `hull`: strictly convex, as x sees it. `front`: the source's front normal; x is in front. `point`: any point in its
+  // plane.
   Shaft(const Scene& scene, const Vec3& x, const kernel::Ring& hull, const kernel::ExactVec3& front, const Vec3& point);
 
   // For the bounding-volume tree.
   [[nodiscard]] std::span<const HalfSpace> half_spaces() const { return half_spaces_; }
 
-  // What becomes of a piece; unless it is outside, `occluder` holds its part in the shaft. `was_cut`: that is less than
-  // all of it; where it hides everything, only the cut by the source's plane counts.
-  // Without culling, step 1 looks at the source's plane alone, which step 3 relies on; step 5 finds out the rest.
+  // Classifies a piece. Unless it is outside, `occluder` receives its part in the shaft. `was_cut`: that part is less
+  // than the whole piece; if the piece hides everything, only the cut by the source's plane counts.
+  // Without culling, step 1 tests only the source's plane, since step 3 relies on it; step 5 decides the rest.
   Fate test(std::uint32_t piece, ShaftCulling culling, Occluder& occluder, bool& was_cut);
 
  private:
@@ -70,7 +72,7 @@ class Shaft {
   Offset offset_;
   std::vector<HalfSpace> half_spaces_;
 
-  // The piece at hand.
+  // The current piece.
   std::span<const std::uint32_t> corners_;
   std::vector<kernel::Approx3> approx_corners_;
   std::vector<std::optional<kernel::ScaledVec3>> exact_corners_;

@@ -1,4 +1,5 @@
-// On which sides of a few planes a piece of up to four corners lies, by the filter alone and for all corners at once.
+// Decides on which sides of a few planes a piece of up to four corners lies, by the filter alone and for all corners at
+// once.
 #pragma once
 
 #include <array>
@@ -8,8 +9,8 @@
 
 namespace exactff::visibility {
 
-// A corner t, a direction from x, lies above the plane where normal . t > offset, which is certain where the two differ
-// by more than error_per_size |t| + error, |t| being the largest component.
+// A corner t, a direction from x, lies above the plane if normal . t > offset. This is certain if the two sides differ
+// by more than error_per_size |t| + error, where |t| is the largest component.
 struct SidePlane {
   Vec3 normal;
   double offset = 0.0;
@@ -20,7 +21,7 @@ struct SidePlane {
 using FourCorners = std::array<const Outlines::Corner*, 4>;  // a triangle's last corner repeated
 
 struct Sides {
-  bool certain = false;                 // else nothing is known
+  bool certain = false;                 // if false, the other members mean nothing
   bool some_above_each = false;         // every plane has a corner above it
   bool all_above_each = false;          // every corner lies above every plane
   bool some_below_first = false;        // a corner lies below the first plane

@@ -1,4 +1,4 @@
-// The faces of a source that lie in one oriented plane: they are treated together, as their union.
+// The faces of a source that lie in one oriented plane. They are treated together, as their union.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@ namespace exactff::visibility {
 
 struct SourcePlane {
   std::vector<FaceId> faces;          // ascending
-  std::vector<std::uint32_t> pieces;  // those of their pieces that lie in it, ascending; into Scene::pieces()
+  std::vector<std::uint32_t> pieces;  // their pieces that lie in it, ascending; into Scene::pieces()
   kernel::Direction normal;           // front, primitive integers
   FineNormal fine_normal;             // the same, for plane_crossings.h
   Vec3 point;                         // a vertex in the plane
-  Vec3 second, third;                 // with it, three vertices that run counter-clockwise as the front sees them
+  Vec3 second, third;                 // with `point`, three vertices that run counter-clockwise seen from the front
 };
 
 // Groups faces by exact equality of their oriented planes, in order of first appearance.

@@ -25,7 +25,8 @@ bool may_occlude(const View& view, const SourcePlane& plane, const Request& requ
   return only == nullptr || std::binary_search(only->begin(), only->end(), face);
 }
 
-// The frame's (p, q) are the projected coordinates over h, so areas compare once they are multiplied by h^2.
+// The frame's (p, q) are the projected coordinates divided by h, so areas must be multiplied by h^2 before they are
+// compared.
 Rational share_of_source(const View& view, const SourcePlane& plane, const PlaneFrame& frame, const Rational& doubled) {
   const kernel::ScaledVec3 s = kernel::exact_difference(plane.point, view.x);
   const Rational h = kernel::times_power_of_two(dot(plane.normal.exact, s.v), s.exponent);
@@ -34,7 +35,7 @@ Rational share_of_source(const View& view, const SourcePlane& plane, const Plane
 
 namespace {
 
-// Carries one plane through the steps; the first step that leaves no work ends the walk.
+// Takes one plane through the steps, stopping as soon as nothing is left.
 class Walk {
  public:
   Walk(const View& view, const SourcePlane& plane, const Request& request)
@@ -94,7 +95,7 @@ Outcome Walk::find_outcome() {
   make_hull();
   if (!gather_occluders()) return Outcome::kHiddenByOne;
   if (request_.list_cutters) list_cutters();
-  // 4. Nothing in the way.
+  // 4. No candidates.
   if (occluders_.empty()) {
     trace_source();
     return Outcome::kUnoccluded;
@@ -105,12 +106,12 @@ Outcome Walk::find_outcome() {
   for (const Ring& ring : clipped_) source.push_back(frame().to_polygon(ring));
   for (const Occluder& occluder : occluders_) shadows.push_back(frame().to_polygon(occluder.ring));
   loops_ = difference(source, shadows);
-  // 7. What is left.
+  // 7. Boundary loops of the visible region.
   trace_loops();
   return loops_.empty() ? Outcome::kHiddenByUnion : Outcome::kPartlyHidden;
 }
 
-// The pieces as x sees them, but for the face that the receiver lies on. False if none is left.
+// The pieces as x sees them, without the face that the receiver lies on. False if none is left.
 bool Walk::gather_source() {
   const auto vertices = view_.scene.vertices();
   for (const std::uint32_t index : plane_.pieces) {
@@ -155,7 +156,7 @@ void Walk::make_hull() {
   drop_collinear_corners(hull_);
 }
 
-// False if one occluder hides all; the others then are nobody's business.
+// False if one occluder hides all; the other occluders are then not needed.
 bool Walk::gather_occluders() {
   Shaft shaft(view_.scene, view_.x, hull_, plane_.normal.exact, plane_.point);
   PlaneRecord& record = result_.record;

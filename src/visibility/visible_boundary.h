@@ -1,14 +1,14 @@
-// From a receiving point, one plane of a source and the scene to the boundary of what is visible of it.
+// Finds the boundary of the region of one source plane that is visible from a receiving point.
 //
-// Each step runs only if the one before left it work:
+// Steps, stopping as soon as nothing is left:
 //   1. cull: x behind or in the plane, or nothing above the horizon;
 //   2. exact clip by the receiver's horizon;
 //   3. shaft: candidates from the bounding-volume tree, exact predicates, exact clip (shaft.h);
 //   4. no candidates: the boundary of the clipped source itself;
-//   5. one candidate hides all: nothing;
+//   5. one candidate hides all: nothing is visible;
 //   6. projection to the source's plane and polygon Booleans (plane_frame.h, polygon_sets.h);
-//   7. boundary loops of what is left, collinear pieces merged.
-// Knows nothing of radiometry.
+//   7. boundary loops of the visible region, collinear pieces merged.
+// This module contains no radiometry.
 #pragma once
 
 #include <boost/container/small_vector.hpp>
@@ -35,7 +35,7 @@ struct View {
   Vec3 x;
   Vec3 n;  // the receiver's normal
   std::optional<FaceId> on;
-  // The same as a direction: whole numbers, which are seldom needed.
+  // The normal as a direction in integers, which are seldom needed.
   [[nodiscard]] kernel::Direction normal() const;
 };
 
@@ -59,14 +59,14 @@ struct PlaneGeometry {
 
 class VisibleEdges;
 
-// One occluder that hides all needs no memory.
+// One occluder that hides all needs no allocation.
 using Cutters = boost::container::small_vector<FaceId, 1>;
 
 struct PlaneVisibility {
-  PlaneRecord record;                   // but for its faces, which are the plane's
+  PlaneRecord record;                   // without its faces, which are the plane's
   std::vector<BoundaryPiece> boundary;  // by the Booleans
-  VisibleEdges* edges = nullptr;  // by the edge engine: valid until this thread asks it again; null if nothing is seen
-  std::optional<kernel::Rational> fraction;  // visible over whole unclipped area of the union, in [0, 1]
+  VisibleEdges* edges = nullptr;  // by the edge engine: valid until this thread's next call; null if nothing is visible
+  std::optional<kernel::Rational> fraction;  // visible area / whole unclipped area of the union, in [0, 1]
   Cutters cutters;                           // ascending
   PlaneGeometry geometry;
 };
@@ -84,14 +84,14 @@ void for_each_candidate(const View& view, const HalfSpaceGroups& shaft, ShaftCul
   }
 }
 
-// For both engines: whether a piece of the scene may occlude the plane. The source's own pieces in this plane cannot;
-// those in other planes can.
+// For both engines: true if a piece of the scene may occlude the plane. The source's own pieces in this plane cannot;
+// its pieces in other planes can.
 [[nodiscard]] bool may_occlude(const View& view, const SourcePlane& plane, const Request& request, std::uint32_t piece);
 // Twice an area in the frame's unit square, as a share of the whole unclipped source in the plane.
 [[nodiscard]] kernel::Rational share_of_source(const View& view, const SourcePlane& plane, const PlaneFrame& frame,
                                                const kernel::Rational& doubled);
 
-// Exact. Requires a receiver normal other than zero.
+// Exact. Requires a receiver normal that is not zero.
 PlaneVisibility find_visible_boundary(const View& view, const SourcePlane& plane, const Request& request);
 
 }  // namespace exactff::visibility

@@ -18,16 +18,17 @@ using Parameter = VisibleEdges::Parameter;
 constexpr Parameter kBegin{0.0, 0.0F, Parameter::kAtBegin};
 constexpr Parameter kEnd{1.0, 0.0F, Parameter::kAtEnd};
 
-// For every edge. Of about 8 ns each, they take as long as the Booleans take for an edge.
+// Pairs per edge. At about 8 ns each, they take as long as the Booleans take for an edge.
 constexpr std::uint64_t kMostUnsortedPairs = 6'000;
 
 constexpr std::size_t kMostToInsert = 16;
 
-// Of four bits. std::popcount is a call where the processor may lack the instruction.
+// Counts four bits. std::popcount is a function call where the processor may lack the instruction.
 std::uint64_t bit_count(unsigned bits) { return (0x4332322132212110U >> (4 * bits)) & 0xFU; }
 
-// Of a crossing's parameter: more than the double by enough that the sum of two, rounded as floats are, is no less than
-// that of the doubles. 2^-50 or more, it is a normal float; where it would be infinite it decides nothing either way.
+// The error of a crossing's parameter as a float. It exceeds the double by enough that the sum of two, rounded as
+// floats, is no less than the sum of the doubles. It is at least 2^-50 and so a normal float; an infinite error decides
+// nothing in either case.
 float rounded_up(double error) { return static_cast<float>(error * (1.0 + 0x1p-20)); }
 
 }  // namespace
@@ -55,8 +56,8 @@ bool VisibleEdges::hides_all(OutlineId occluder, std::size_t source_count) {
   return true;
 }
 
-// Step 1. Of edges with the same two corners the first is kept, and only if none runs the other way. It stands for the
-// line of all, so that crossings with it need no arithmetic to be found equal.
+// Step 1. Of edges with the same two corners the first is kept, and only if none runs the other way. It represents the
+// line of all of them, so that no arithmetic is needed to see that crossings with it are equal.
 void VisibleEdges::drop_inner_edges(std::size_t source_count) {
   constexpr EdgeId kFree = 0xFFFFFFFFU;
   const auto edges = outlines_.edges();
@@ -108,7 +109,7 @@ EXACTFF_INLINE void VisibleEdges::keep(EdgeId id, bool reversed, const Parameter
   parts_.push_back(reversed ? Part{id, end, begin} : Part{id, begin, end});
 }
 
-// What the removed intervals, in order of their beginnings, leave of an allowed one.
+// Keeps what is left of an allowed interval without the removed intervals, which are in order of their beginnings.
 EXACTFF_INLINE void VisibleEdges::keep_rest(EdgeId id, bool reversed, const Interval& allowed,
                                             std::span<const Interval> removed) {
   const Parameter* reached = &allowed.begin;
@@ -170,22 +171,22 @@ EXACTFF_INLINE void VisibleEdges::replace(Parameters& parameters, const FourMask
 }
 
 // By the filter alone, for all edges of the run at once. The edge enters or leaves a line's inner side where it crosses
-// the line: where the ends have heights m and l above it, of different signs, that is at the parameter
+// the line: if its ends have heights m and l above the line, of different signs, the crossing is at the parameter
 // |m| / (|l| + |m|) = m / (m - l).
 //
 // Its error. Let D be |l| + |m| and e the larger error of the two heights, all as computed, and u = 2^-53. The quotient
 // of the true heights differs by at most e / (D - 2e) <= 2e / D where D >= 4e. Difference, inverse and product err by u
-// each, relatively, so that the quotient, at most 1, is off by 4u more at most; 4e / D is computed to within 4u of
-// itself. 4e / D + 2^-50 covers it all, with 4u and half of 4e / D to spare for the rounding of differences of
-// parameters and of sums of errors: what is compared may be as computed. Where D < 4e the error is more than 1, more
-// than any two parameters are apart: it then decides nothing; nor does NaN.
+// each, relatively, so that the quotient, at most 1, has an additional error of at most 4u; 4e / D is computed within a
+// relative error of 4u. 4e / D + 2^-50 covers all of this, with 4u and half of 4e / D to spare for the rounding of
+// differences of parameters and of sums of errors: computed values may be compared directly. Where D < 4e the error is
+// more than 1, which is more than the distance of any two parameters: it then decides nothing; nor does NaN.
 //
-// Every comparison that does not hold for all numbers within the errors makes the edge unsure, whatever is made of it
-// afterwards, except that one line with both ends certainly below it is enough for the outline to cover nothing. Which
-// side an end lies on and which of two parameters is larger can therefore be read off the signs, as masks whose other
-// bits are of no account. A line whose inner side is entered can only move the beginning of what is covered, one whose
-// inner side is left only its end, so that one comparison serves for both. A line that has the whole run on its inner
-// side moves neither: it may be skipped.
+// Every comparison that does not hold for all numbers within the errors makes the edge unsure, whatever is computed
+// from it afterwards, except that one line with both ends certainly below it is enough for the outline to cover
+// nothing. The side that an end lies on, and which of two parameters is larger, can therefore be read from the signs,
+// as masks whose other bits do not matter. A line whose inner side the edge enters can only move the beginning of the
+// covered interval; a line whose inner side it leaves can only move the end. So one comparison serves for both. A line
+// that has the whole run on its inner side moves neither and may be skipped.
 EXACTFF_INLINE void VisibleEdges::cut(const Run& run, std::span<const Edge> lines, EdgeId first, LineBits skipped,
                                       Cuts& cuts) {
   using namespace kernel::lanes;
@@ -242,7 +243,7 @@ void VisibleEdges::set(Parameters& parameters, unsigned k, const Parameter& para
   parameters.line[k] = parameter.line;
 }
 
-// The whole of a source's edge, or of one inside it; else what has the source on both sides.
+// The whole edge if it belongs to the source or lies inside it; otherwise the part with the source on both sides.
 EXACTFF_INLINE void VisibleEdges::find_allowed(Run& run, std::size_t source_count) {
   using namespace kernel::lanes;
   for (unsigned k = 0; k < run.edges; ++k) removed_[k].clear();
@@ -287,7 +288,7 @@ EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, std::size_t so
   }
 }
 
-// What has the source on its left and on its right. The intervals between such parts count as removed.
+// The parts with the source on the left and on the right. The intervals between such parts count as removed.
 void VisibleEdges::allow_common(Run& run, unsigned k) {
   const EdgeId edge = run.first + k;
   merge(edge, left_[k]);
@@ -310,8 +311,8 @@ void VisibleEdges::allow_common(Run& run, unsigned k) {
   if (!some) run.wanted &= ~(1U << k);
 }
 
-// Of an edge, what the outline covers on the side that must not be covered, or where it coincides and comes first.
-// Edges of which nothing is left are no longer wanted.
+// Removes from each edge the part that the outline covers on the side that must not be covered, or where the outline
+// coincides with it and comes first. Edges with nothing left are no longer wanted.
 EXACTFF_INLINE void VisibleEdges::remove(Run& run, const Cuts& cuts, bool same_kind) {
   const bool left_matters = run.of_source && !same_kind;
   Cover found;
@@ -324,7 +325,8 @@ EXACTFF_INLINE void VisibleEdges::remove(Run& run, const Cuts& cuts, bool same_k
   }
 }
 
-// Occluders are taken a few at a time: the processor works on the next cut while it finds out about the one before.
+// Occluders are processed a few at a time, so that the processor can work on the next cut while it resolves the
+// previous one.
 EXACTFF_INLINE void VisibleEdges::find_removed(Run& run, std::size_t source_count) {
   Cuts cuts;
   for (OutlineId s = 0; run.of_source && s < source_count && run.wanted != 0; ++s) {
@@ -332,7 +334,7 @@ EXACTFF_INLINE void VisibleEdges::find_removed(Run& run, std::size_t source_coun
     cut(run, s, cuts);
     remove(run, cuts, true);
   }
-  const bool skips_inner = run.of_source && source_count == 1;  // what lies inside the source meets none of its edges
+  const bool skips_inner = run.of_source && source_count == 1;  // outlines inside the source meet none of its edges
   for (std::span<const OutlineId> rest = near_; !rest.empty() && run.wanted != 0;) {
     const std::size_t taken = std::min(kBatch, rest.size());
     std::size_t count = 0;
@@ -346,11 +348,11 @@ EXACTFF_INLINE void VisibleEdges::find_removed(Run& run, std::size_t source_coun
   }
 }
 
-// For all edges that are covered, as take_off does for one. Returns those for which the filter does not tell how, such
-// as where crossings coincide; the edge's own ends differ by nothing and have no error.
+// Does for all covered edges what take_off does for one. Returns the edges for which the filter cannot decide, such as
+// where crossings coincide. An edge's own ends have difference 0 and error 0.
 //
-// Begins and ends: by how much what is taken off starts and stops after what is left. At begin and at end: how far it
-// reaches over either end of what is left.
+// Begins and ends: by how much the removed interval starts and stops after the remaining one. At begin and at end: how
+// far the removed interval extends over each end of the remaining one.
 EXACTFF_INLINE unsigned VisibleEdges::take_off_by_filter(Run& run, const Cuts& cuts) {
   using namespace kernel::lanes;
   const auto& [begin, end] = run.left;
@@ -377,7 +379,7 @@ EXACTFF_INLINE unsigned VisibleEdges::take_off_by_filter(Run& run, const Cuts& c
   return cuts.covered & ~sure;
 }
 
-// Takes an interval off the ends of what is left, or keeps it for the sweep where it lies within.
+// Removes an interval from an end of the remaining one, or keeps it for the sweep if it lies within.
 void VisibleEdges::take_off(Run& run, unsigned k, const Interval& off) {
   const EdgeId edge = run.first + k;
   const auto [begin, end] = interval(run.left, k);
@@ -402,11 +404,12 @@ bool VisibleEdges::cover(const Run& run, unsigned k, const Cuts& cuts, Cover& re
   return true;
 }
 
-// The signs of the line's heights at both ends of the edge, exactly, and where they differ the crossing.
+// The exact signs of the heights of the edge's ends above the line, and the crossing if the signs differ.
 //
-// Its error, in the terms of the proof above. By heights of doubles: D >= 4e, so that the quotient differs by at most
-// 2e / D; sum and division err by 2u, and 2^-50 is 8u, which leaves some for the test of D and for differences of
-// parameters. By exact heights: two mantissas cut off at 53 bits and their quotient err by 5u of l / m, which moves
+// The crossing's error, in the notation of the proof above. With heights in doubles: D >= 4e, so that the quotient
+// differs by at most 2e / D; sum and division err by 2u, and 2^-50 is 8u, which leaves a margin for the test of D and
+// for differences of parameters. With exact heights: two mantissas truncated to 53 bits and their quotient err by 5u of
+// l / m, which moves
 // m / (l + m) by less than 2u; two more roundings make 4u of at most 1, and 2^-49 is 16u. An exponent that is clamped
 // moves it by less than 2^-1000.
 void VisibleEdges::cut_exactly(EdgeId edge_id, EdgeId line, int& sign_a, int& sign_b, Parameter& crossing) {
@@ -436,7 +439,7 @@ bool VisibleEdges::lies_left(const Edge& edge, OutlineId outline) {
     const int side = outlines_.side(edge, outlines_.edge(f).a);
     if (side != 0) return side > 0;
   }
-  return true;  // an outline without area: cannot be
+  return true;  // an outline without area: impossible
 }
 
 bool VisibleEdges::cover_exactly(EdgeId edge, OutlineId outline, Cover& result) {

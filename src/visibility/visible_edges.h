@@ -1,23 +1,25 @@
-// The boundary of the visible region without its faces: the parts of every edge that no outline hides.
+// Finds the boundary of the visible region without constructing the region: the parts of every edge that no outline
+// hides.
 //
 // V is the union of the source's outlines S_k less the union of the occluders' O_i, all convex and open. A point of an
-// edge lies on the boundary of V where V is on one side of it and not on the other. What lies on a side of an edge, at
-// its very line, is told by intervals of its parameter: an outline whose interior the edge's line crosses covers both
-// sides along an interval; an outline with an edge of its own on that line covers, along that edge, the side it lies
-// on; any other outline covers nothing. Hence, with "left" and "right" sides as x sees the edge,
+// edge lies on the boundary of V where V is on one side of it and not on the other. Intervals of the edge's parameter
+// describe what covers each side of the edge, next to its line. An outline whose interior the edge's line crosses
+// covers both sides along an interval. An outline with an edge on that line covers, along that edge, the side that it
+// lies on. Any other outline covers nothing. Hence, with "left" and "right" sides as x sees the edge,
 //   an edge of S_k (S_k left) bounds V where no O covers its left and no S_l its right; of S-edges that coincide with
 //     the same side, the one with the lowest index keeps it;
 //   an edge of O_i (O_i left) bounds V where S covers both its sides, no O_j covers its right; of O-edges that coincide
 //     with the same side, the one with the lowest index keeps it.
-// Where an O-edge falls upon the outer boundary of S, it has S on one side only and the S-edge speaks for both.
+// Where an O-edge lies on the outer boundary of S, it has S on one side only, and the S-edge represents both.
 //
 // Steps:
-//   1. silhouettes: an edge that two occluders share, one on either side, cannot bound V; nor can its doubles;
-//   2. a grid over the source (outline_grid.h) tells which outlines an edge may meet;
-//   3. edges are taken up in runs of up to four corners, outline by outline, neighbours after one another where there
-//      are many. The heights of a run's corners above the lines of an outline give, for each of its edges, the interval
-//      that the outline covers: by the filter for all edges of the run at once, exactly where it is not sure;
-//   4. for each edge one sweep over its intervals gives what is left of it.
+//   1. silhouettes: an edge that two occluders share, one on each side, cannot bound V; nor can its duplicates;
+//   2. a grid over the source (outline_grid.h) finds the outlines that an edge may meet;
+//   3. edges are processed in runs of up to four corners, outline by outline; where there are many outlines, neighbours
+//      follow one another. The heights of a run's corners above the lines of an outline give, for each edge of the run,
+//      the interval that the outline covers: by the filter for all edges of the run at once, and exactly where the
+//      filter is not certain;
+//   4. for each edge, one sweep over its intervals gives its visible parts.
 #pragma once
 
 #include <array>
@@ -33,16 +35,16 @@
 
 namespace exactff::visibility {
 
-// A workspace: what it holds is reused from one call to the next.
+// A workspace: its memory is reused from one call to the next.
 class VisibleEdges {
  public:
-  // A parameter (l : m) of an edge (outlines.h), with a and b as long as their doubles are: one of its ends, or where
-  // the line of another edge crosses it. m / (l + m) lies within `error` of `value`.
+  // A parameter (l : m) of an edge (outlines.h), with a and b scaled like their doubles: one of the edge's ends, or the
+  // crossing with the line of another edge. m / (l + m) lies within `error` of `value`.
   struct Parameter {
     static constexpr EdgeId kAtBegin = 0xFFFFFFFEU, kAtEnd = 0xFFFFFFFFU;
     double value = 0.0;
     float error = 0.0F;
-    EdgeId line = kAtBegin;  // that crosses
+    EdgeId line = kAtBegin;  // the line that crosses
   };
   // A part of the boundary of V, V to its left.
   struct Part {
@@ -53,16 +55,16 @@ class VisibleEdges {
   Outlines& outlines() { return outlines_; }
   [[nodiscard]] const Outlines& outlines() const { return outlines_; }
 
-  // True if the occluder covers every corner of the source, and so all of it.
+  // True if the occluder covers every corner of the source, and therefore all of it.
   [[nodiscard]] bool hides_all(OutlineId occluder, std::size_t source_count);
 
-  // Requires that the first `source_count` outlines are the source's and the others the occluders', all of positive
+  // Requires that the first `source_count` outlines are the source's and the others are the occluders', all of positive
   // area.
-  // False, with nothing found, where so many occluders and edges cannot be told apart by the grid that the Booleans are
-  // the better way.
+  // Returns false, with nothing found, if the grid fails to separate so many occluders and edges that the Booleans are
+  // the better method.
   [[nodiscard]] bool find(std::size_t source_count);
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
-  // Of an edge and an outline: those looked at, and those of which the filter was not certain.
+  // Pairs of an edge and an outline: those examined, and those for which the filter was not certain.
   [[nodiscard]] std::uint64_t pairs() const { return pairs_; }
   [[nodiscard]] std::uint64_t undecided_pairs() const { return undecided_pairs_; }
   [[nodiscard]] BoundaryPiece exact(const Part& part);
@@ -77,7 +79,7 @@ class VisibleEdges {
   struct Interval {
     Parameter begin, end;
   };
-  // One for each edge of a run; their lines are not replaced by the first of their name yet (line_).
+  // One parameter for each edge of a run. Equal lines are not yet replaced by their representative (line_).
   struct Parameters {
     Four value{}, error{};
     FourMask line{};
@@ -85,32 +87,32 @@ class VisibleEdges {
   struct Intervals {
     Parameters begin, end;
   };
-  // What an outline covers along an edge, on either side of it.
+  // What an outline covers along an edge, on each side of it.
   struct Cover {
     bool left = false, right = false;
     bool coincides = false;  // it has an edge on the line
     Interval interval;
   };
   // Consecutive edges of an outline with up to four corners between them: all edges of a triangle or a quadrilateral,
-  // else three. Edge k runs from the corner in lane k to that in the next lane, lane 0 after the last; lanes that are
-  // left over repeat a corner.
+  // otherwise three. Edge k runs from the corner in lane k to that in the next lane, lane 0 after the last; unused
+  // lanes repeat a corner.
   struct Run {
     OutlineId outline = 0;
     bool of_source = false;
     EdgeId first = 0;
     unsigned edges = 0;
     unsigned wanted = 0;  // a bit for every edge of which something may be left
-    Intervals left{};     // where it may be, but for what is in removed_
+    Intervals left{};     // where it may be, except for the intervals in removed_
     Four x{}, y{}, z{}, size{};
   };
   // What an outline covers of a run, by the filter alone.
   struct Cuts {
     OutlineId by = 0;
-    unsigned covered = 0;  // a bit for every edge that crosses the outline's interior, certainly, in the interval
-    unsigned unsure = 0;   // and for those of which nothing is certain
+    unsigned covered = 0;  // a bit for every edge that certainly crosses the outline's interior, in the interval
+    unsigned unsure = 0;   // a bit for every edge where nothing is certain
     Intervals intervals;
   };
-  // An exact parameter, kept lest it be computed twice.
+  // An exact parameter, kept so that it is not computed twice.
   struct Stored {
     EdgeId edge = 0, line = 0;
     EdgeParameter parameter;
@@ -136,7 +138,7 @@ class VisibleEdges {
 
   static void cut(const Run& run, std::span<const Outlines::Edge> lines, EdgeId first, LineBits skipped, Cuts& cuts);
   void cut(const Run& run, OutlineId outline, Cuts& cuts, LineBits skipped = 0);
-  // What is covered of an edge; false if nothing.
+  // The part of an edge that is covered; false if none.
   [[nodiscard]] bool cover(const Run& run, unsigned k, const Cuts& cuts, Cover& result);
   [[nodiscard]] bool cover_exactly(EdgeId edge, OutlineId outline, Cover& result);
   void cut_exactly(EdgeId edge, EdgeId line, int& sign_a, int& sign_b, Parameter& crossing);
@@ -162,17 +164,17 @@ class VisibleEdges {
   OutlineGrid grid_;
   std::vector<std::uint8_t> dropped_;  // by edge
   std::vector<EdgeId> line_;           // by edge: the first edge between the same two corners
-  std::span<const OutlineId> near_;    // occluders that the run at hand may meet
+  std::span<const OutlineId> near_;    // occluders that the current run may meet
   std::array<Cuts, kBatch> batch_;     // by some of these
   std::vector<Part> parts_;
   std::uint64_t pairs_ = 0, undecided_pairs_ = 0;
-  std::deque<Stored> stored_;  // the first stored_count_; what follows is only memory
+  std::deque<Stored> stored_;  // the first stored_count_; the rest is spare memory
   std::size_t stored_count_ = 0;
   kernel::Integer product_p_, product_q_;  // scratch
-  std::vector<std::uint32_t> stored_at_;  // into stored_, for every line and four edges; what is there may be another's
-  // By edge of the run: what is removed of it, and what of it has the source on its left and on its right.
+  std::vector<std::uint32_t> stored_at_;  // into stored_, for every line and four edges; may be stale or another edge's
+  // By edge of the run: the intervals removed, and the intervals with the source on the left and on the right.
   std::array<std::vector<Interval>, kRunCorners> removed_, left_, right_;
-  std::vector<EdgeId> slots_;  // of drop_inner_edges: a hash table
+  std::vector<EdgeId> slots_;  // a hash table of drop_inner_edges
 };
 
 }  // namespace exactff::visibility
