@@ -10,7 +10,7 @@ namespace exactff::study {
 
 struct PlotResult {
   enum class Outcome { kDrawn, kNoProgram, kFailed } outcome = Outcome::kFailed;
-  std::string svg;      // empty if it failed
+  std::string svg;      // if drawn
   std::string message;  // gnuplot's messages if it failed
 };
 

@@ -155,7 +155,7 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
     } else {
       line << free.value;
     }
-    if (free.status == Status::kNotCertified) status = free.status;  // a row has the status of its worst value
+    if (free.status == Status::kNotCertified) status = free.status;  // a row is only as good as its worst value
   }
   if (request_.visible_fraction) line << f.visible_fraction.value_or(0.0);
   const Rgb rho = request_.scene->receiver_reflectance(receiver.on), b = radiosities_[source];
