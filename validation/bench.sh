@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # bench.sh [--quick]: builds and runs the benchmarks, then prints the tables of validation/README.md. Times are CPU
-# times, medians of repetitions in random order within one run. The results stay as JSON beside the build, in
-# build/bench (EXACTFF_BUILD names another folder). Google Benchmark warns of a debug build: it means Debian's package.
-# Takes some ten minutes on an idle machine; with --quick, smaller scenes and fewer repetitions, less than two.
+# times: medians of repetitions in random order within one run. The results are kept as JSON in build/bench
+# (EXACTFF_BUILD names another folder). Google Benchmark warns about a debug build: this is about Debian's package, not
+# about exactff. Takes about ten minutes on an idle machine; with --quick (smaller scenes, fewer repetitions) less than
+# two.
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -22,14 +23,14 @@ esac
 validation/setup.sh libbenchmark-dev
 validation/build.sh "$folder" -DEXACTFF_TESTS=OFF -DEXACTFF_BENCH=ON
 
-# measure NAME FILTER [OPTION...]: one run, into NAME.json; what it prints repeats that and goes into NAME.log.
+# measure NAME FILTER [OPTION...]: one run, into NAME.json; its printed output, which repeats that, goes into NAME.log.
 measure() {
   echo "measuring $1" >&2
   "$folder/exactff_bench" --benchmark_filter="$2" --benchmark_out="$folder/results/$1.json" \
     --benchmark_repetitions="$repetitions" --benchmark_min_time="$seconds" --benchmark_enable_random_interleaving=true \
     --benchmark_report_aggregates_only=true "${@:3}" \
     > "$folder/results/$1.log" 2>&1 || { tail "$folder/results/$1.log" >&2; exit 1; }
-  # The coefficient of variation of a count that is 0 is written as NaN, which JSON does not know.
+  # The coefficient of variation of a count of 0 is written as NaN, which JSON does not allow.
   sed -i -E 's/: -?NaN(,?)$/: null\1/' "$folder/results/$1.json"
 }
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# build.sh FOLDER [CMAKE-OPTION...]: configures and builds with 2 jobs; a second call builds only what has changed.
+# build.sh FOLDER [CMAKE-OPTION...]: configures and builds with 2 jobs. A second call builds only what has changed.
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 folder=$1
 shift
 
-# A folder configured for another copy of the sources would build those.
+# A folder that was configured for another copy of the sources would build that copy.
 if [ -f "$folder/CMakeCache.txt" ] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$top" "$folder/CMakeCache.txt"; then
   rm -rf "$folder"
 fi

@@ -1,11 +1,15 @@
 #!/usr/bin/env bash
-# Fuzzes every reader, the journals, the exact solver and the whole program: fuzz.sh [SECONDS], for each target, default 60.
+# Fuzzes every reader, the journals, the exact solver and the whole program.
 #
-# Builds build/clang: Clang, AddressSanitizer, UndefinedBehaviorSanitizer and libFuzzer. Each target starts from
-# data/fuzz/TARGET and a fresh working corpus; fuzz_solver also from the reference and regression cases. Two targets run
-# at a time. Ends with a summary; the exit code is 1 if there is a finding. A finding of fuzz_solver is shrunk to a case
-# that becomes a test when it is moved into data/regression. The whole program is no libFuzzer target: fuzz_program draws its
-# own cases, and keeps one of each kind of find. EXACTFF_SEED, default 1, numbers them. EXACTFF_BUILD names another build folder.
+#   fuzz.sh [SECONDS]  for each target, default 60
+#
+# Builds build/clang: Clang, AddressSanitizer, UndefinedBehaviorSanitizer and libFuzzer. EXACTFF_BUILD names another
+# build folder. Each target starts from data/fuzz/TARGET and a fresh working corpus; fuzz_solver also from the reference
+# and regression cases. Two targets run at a time. Ends with a summary; the exit code is 1 if there is a finding. A
+# finding of fuzz_solver is shrunk to a case that becomes a test when it is moved into data/regression.
+#
+# For the whole program there is no libFuzzer target: fuzz_program generates its own cases and keeps one of each kind of
+# finding. EXACTFF_SEED, default 1, numbers them.
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

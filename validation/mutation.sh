@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The mutation check: plants known faults one at a time in a copy of the sources and shows that the test suite catches
-# each. A fault is a patch in validation/mutation, which says what it breaks and what a user would see.
+# The mutation check: plants known faults, one at a time, in a copy of the sources, and checks that the test suite
+# detects each. A fault is a patch in validation/mutation. The patch says what it breaks and what a user would see.
 #
 #   mutation.sh [NAME...]          all faults, or those named
 #   mutation.sh --count [NAME...]  runs the whole suite for each, to count the tests that fail
@@ -19,7 +19,7 @@ log=$folder/log
 test_seconds=120   # a test that takes longer hangs
 suite_seconds=900  # and so does a suite
 
-# apply FAULT FOLDER [OPTION...]: exactly, with lines moved at most.
+# apply FAULT FOLDER [OPTION...]: applies the patch without fuzz; only line numbers may have changed.
 apply() {
   patch --silent --strip=1 --fuzz=0 --no-backup-if-mismatch --force --directory="$2" "${@:3}" < "$patches/$1.patch"
 }
@@ -45,7 +45,7 @@ check() {
   echo "every patch applies"
 }
 
-# By content: a file gets a new time exactly if it differs from what the last build saw.
+# Compares contents: a file gets a new time only if it differs from what the last build saw.
 copy_sources() {
   local file
   mkdir -p "$source"
@@ -71,9 +71,9 @@ compile() {
   cmake --build "$build" --parallel 2 ${2:+--target "${@:2}"} > "$1" 2>&1
 }
 
-# suite LOG [OPTION...]: without the check of the patches, which fails where one is planted.
+# suite LOG [OPTION...]: leaves out the check of the patches, which fails while one is planted.
 suite() {
-  rm -rf "$build/Testing"  # or ctest would begin with what failed last
+  rm -rf "$build/Testing"  # otherwise ctest starts with the tests that failed last
   timeout "$suite_seconds" ctest --test-dir "$build" --parallel 2 --timeout "$test_seconds" \
     --exclude-regex '^Mutation\.' "${@:2}" > "$1" 2>&1
 }
@@ -84,12 +84,12 @@ first_failure() {
     sed -E 's/ Timeout$/ (hangs)/; s/ $//'
 }
 
-# What becomes of the fault that is planted: the text for the table. Returns 1 unless it is caught.
+# The result for the planted fault, as text for the table. Returns 1 unless the fault was detected.
 verdict() {
   local name=$1 status=0
   compile "$log/$name.build" exactff exactff_program || { echo "DOES NOT COMPILE, see $log/$name.build"; return 1; }
   if ! compile "$log/$name.build"; then
-    # CMake asks each test program for its tests; one that dies of the fault is a catch.
+    # CMake asks each test program for its tests. If the fault makes a program die there, it counts as detected.
     grep -q '^ *Error running test executable' "$log/$name.build" && { echo "a test program dies before its first test"; return 0; }
     echo "TESTS DO NOT BUILD, see $log/$name.build"
     return 1
@@ -112,7 +112,7 @@ caught_by() {
   echo "$first"
 }
 
-# Plants one fault, prints its line, takes it out again.
+# Plants one fault, prints its line, removes the fault.
 try_fault() {
   local name=$1 start=$SECONDS text caught=0
   if ! apply "$name" "$source" --dry-run > "$log/$name.patch" 2>&1; then

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The main job: builds the program and compares Tampieri's ray-sampled adaptive algorithm, and every other method, with
-# the exact form factors on the Cornell box. Ends with the path of a report to open in a browser; after an interruption it
-# goes on where it was. Further arguments go to `exactff compare`.
+# the exact form factors on the Cornell box. Ends with the path of a report to open in a browser. After an interruption,
+# the next run continues where it stopped. Further arguments go to `exactff compare`.
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# setup.sh [PACKAGE...]: installs the Debian 12 packages that exactff is built from, and those named, as root or through
-# sudo. Does nothing where they are already there.
+# setup.sh [PACKAGE...]: installs the Debian 12 packages that exactff is built from, and those named, as root or with
+# sudo. Does nothing if they are already installed.
 set -euo pipefail
 
 packages=(

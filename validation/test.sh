@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# All tests. Installs packages, builds with warnings as errors, and ends with ctest's own summary.
+# All tests. Installs packages, builds with warnings as errors, and ends with the summary of ctest.
 #
 #   test.sh               the whole suite on the optimised build
-#   test.sh --sanitizers  instead, a part of the suite under AddressSanitizer and UndefinedBehaviorSanitizer, with GCC and
-#                         with Clang, and a short fuzzing run in the latter build
+#   test.sh --sanitizers  instead, a part of the suite under AddressSanitizer and UndefinedBehaviorSanitizer, with GCC
+#                         and with Clang, and a short fuzzing run in the Clang build
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -11,12 +11,12 @@ cd "$top"
 
 test_optimised() {
   validation/setup.sh libboost-mpi-dev libopenmpi-dev openmpi-bin \
-    chromium chromium-driver python3-selenium  # an option of the build, and the reports in a browser: both tested
+    chromium chromium-driver python3-selenium  # tests of a build option and of the reports in a browser
   validation/build.sh build -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON
   ctest --test-dir build --output-on-failure --parallel 2
 }
 
-# EXACTFF_QUICK_BUILD saves time; the optimised build compiles every source for itself.
+# EXACTFF_QUICK_BUILD saves time here. The optimised build still compiles every source by itself.
 test_sanitized() {
   validation/setup.sh
   validation/build.sh build/sanitize -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON -DEXACTFF_SANITIZE=ON \

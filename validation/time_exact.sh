@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Times of the exact form factor on generated scenes: median wall time of whole runs of `exactff point`, reading the
-# scene included, and the largest memory. Usage: time_exact.sh [RUNS], after validation/test.sh has built everything.
-# EXACTFF_BUILD names another build folder.
+# Times the exact form factor on generated scenes: median wall time of whole runs of `exactff point`, including reading
+# the scene, and peak memory. Usage: time_exact.sh [RUNS], after validation/test.sh has built everything. EXACTFF_BUILD
+# names another build folder.
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -20,7 +20,7 @@ for spec in 'soup 1000' 'karkanis 1000' 'blinds 1000' 'mesh 1000' 'soup 10000' '
   done
   median=$(sort -n "$folder/times" | sed -n "$(((runs + 1) / 2))p")
   rm "$folder/times"
-  # The peak of one more run, from the kernel's account of it.
+  # The peak memory of one more run, as the kernel counts it.
   "$build/exactff" point "$folder/scene.obj" --at 0 0 0 --normal 0 0 1 --source source --plain > /dev/null &
   pid=$!
   peak=0

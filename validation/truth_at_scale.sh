@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# A truth file of a million rows on the Cornell box: killed five times at random, on one thread, in four shards, and
-# under MPI with one of four processes killed. Every way must give the bytes of an undisturbed run, and no row that was
-# in the journal may be computed again. Prints what it measured.
+# Computes a truth file of a million rows on the Cornell box in several ways: killed five times at random, on one
+# thread, in four shards, and under MPI with one of four processes killed. Every way must give the bytes of an
+# undisturbed run, and no row that was in the journal may be computed again. Prints what it measured.
 # Usage: truth_at_scale.sh [SIDE [SEED]], SIDE x SIDE receivers (1000), after validation/test.sh has built everything.
 # EXACTFF_BUILD names another build folder.
 set -euo pipefail
@@ -14,7 +14,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
-# Not functions: a function in the background is a shell of its own, and signals would reach that alone.
+# Arrays, not functions: a function in the background runs in its own shell, and signals would reach only that shell.
 truth=("$program" truth "$top/data/scenes/cornell_box.obj" --on floor --grid "${side}x$side")
 mpi=(mpirun --oversubscribe -n 4 "${truth[@]}")
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1

@@ -1,4 +1,4 @@
-// The ratchet: today's statistics, recorded in a file, are the limits of tomorrow.
+// The baseline works as a ratchet: the statistics recorded in a file are the limits of later checks.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,7 +22,7 @@ constexpr int kFormat = 1;
 
 struct Ratcheted {
   std::optional<double> now;
-  double scale = 0.0;  // what its roundings are relative to
+  double scale = 0.0;  // the magnitude that rounding errors are relative to
 };
 
 Ratcheted ratcheted(const Statistics& statistics, std::string_view name) {
@@ -34,7 +34,7 @@ Ratcheted ratcheted(const Statistics& statistics, std::string_view name) {
   return {statistics.radiosity->max, statistics.largest_radiosity};
 }
 
-// JSON knows no infinity: null stands for it.
+// JSON has no infinity: null stands for it.
 ordered_json numbers_json(const Statistics& statistics) {
   ordered_json json = ordered_json::object();
   for (const std::string_view name : kRatcheted) {
@@ -62,7 +62,7 @@ class Baseline {
                       "its errors would not be comparable", "record a new one by --write-baseline"});
   }
 
-  // Nothing where it was not known.
+  // Nothing if the baseline does not have the statistic.
   [[nodiscard]] std::optional<double> recorded(const std::string& source, std::string_view name) const {
     const ordered_json& statistics = source.empty() ? at({"overall"}) : at({"sources", text::utf8(source)});
     if (!statistics.is_object()) refuse_format();

@@ -1,4 +1,4 @@
-// Values of another program.
+// Reads the values of another program.
 #include <initializer_list>
 #include <limits>
 

@@ -13,7 +13,7 @@
 namespace exactff::check {
 namespace {
 
-// Neighbouring doubles have neighbouring numbers; both zeros have 0.
+// Numbers the doubles so that neighbours have neighbouring numbers. Both zeros have 0.
 std::int64_t ordinal(double value) {
   const auto bits = std::bit_cast<std::int64_t>(value);
   return bits >= 0 ? bits : std::numeric_limits<std::int64_t>::min() - bits;

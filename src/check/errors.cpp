@@ -8,7 +8,7 @@
 namespace exactff::check {
 namespace {
 
-// Scaled by the largest: squares of small errors would vanish.
+// Scaled by the largest value, because squares of small errors would underflow.
 double root_mean_square(const std::vector<double>& ascending) {
   if (ascending.empty() || ascending.back() == 0.0) return 0.0;
   const double largest = ascending.back();
@@ -34,7 +34,7 @@ double nearest_rank(const std::vector<double>& ascending, double share) {
   if (ascending.empty()) return 0.0;
   const auto n = static_cast<double>(ascending.size());
   double rank = std::floor(share * n);
-  // k / n is compared with the share as written: both are rounded from the same fraction.
+  // Compares k / n with the share as written: both are rounded from the same fraction.
   while (rank < n && rank / n < share) ++rank;
   return ascending[static_cast<std::size_t>(std::clamp(rank, 1.0, n)) - 1];
 }
@@ -85,7 +85,7 @@ Errors::Index Errors::worst(const std::vector<Index>& among, Measure measure) co
 std::vector<RowError> Errors::worst_rows(Measure measure, std::size_t count) const {
   std::vector<Index> order(size());
   std::iota(order.begin(), order.end(), Index{0});
-  // What is not finite comes before errors that are infinite by division alone.
+  // Values that are not finite come before errors that are infinite only because of the division.
   const auto worse = [&](Index a, Index b) {
     if (is_finite(a) != is_finite(b)) return !is_finite(a);
     const double of_a = magnitude(a, measure), of_b = magnitude(b, measure);

@@ -1,4 +1,4 @@
-// The errors of many values, and what there is to say of them.
+// The errors of many values and their statistics.
 #pragma once
 
 #include <cstdint>
@@ -9,34 +9,35 @@
 
 namespace exactff::check {
 
-// F*: the truth, or, where it is not certified, the point of its enclosure nearest to the value.
+// F*: the true value; if it is not certified, the point of its enclosure nearest to `actual`.
 [[nodiscard]] double reference_of(double actual, const Expected& expected);
-// Of max(|reference|, floor); 0 for no error, else infinite where both are 0.
+// The error divided by max(|reference|, floor). 0 if the error is 0; otherwise infinite if both are 0.
 [[nodiscard]] double relative_error(double error, double reference, double floor);
 
-// The errors of values, one after the other. Refers to the truth and the values.
+// The errors of all values, in the order of the values. Keeps references to the truth and the values.
 class Errors {
  public:
   Errors(const Truth& truth, const std::vector<Measured>& values, double relative_floor);
 
-  using Index = std::uint32_t;  // into the values
+  using Index = std::uint32_t;  // index into the values
   [[nodiscard]] std::size_t size() const { return values_.size(); }
   [[nodiscard]] bool is_finite(Index i) const;
   [[nodiscard]] double error(Index i) const { return error_[i]; }
   [[nodiscard]] double relative(Index i) const { return relative_[i]; }
   [[nodiscard]] std::optional<double> radiosity(Index i) const;
-  // A magnitude: infinite for values that are not finite, 0 where rho B is not known.
+  // The magnitude of the error: infinite for values that are not finite, 0 if rho B is not known.
   [[nodiscard]] double magnitude(Index i, Measure measure) const;
   [[nodiscard]] const TruthRow& truth_row(Index i) const { return truth_.rows[values_[i].row]; }
   [[nodiscard]] RowError row(Index i) const;
 
-  // The largest by the measure; the first of equals. Requires at least one.
+  // The value with the largest magnitude; the first one if several are equal. Requires at least one.
   [[nodiscard]] Index worst(const std::vector<Index>& among, Measure measure) const;
-  // The `count` largest, the worst first; equals in the order of the truth. None without error.
+  // The `count` largest errors, the worst first; equal ones in the order of the truth. Values without error are left
+  // out.
   [[nodiscard]] std::vector<RowError> worst_rows(Measure measure, std::size_t count) const;
 
   [[nodiscard]] Statistics statistics(const std::vector<Index>& among) const;
-  // Ascending, of the finite values.
+  // The magnitudes of the finite values, ascending.
   [[nodiscard]] std::vector<double> sorted_magnitudes(const std::vector<Index>& among, Measure measure) const;
 
  private:
@@ -45,7 +46,7 @@ class Errors {
   std::vector<double> error_, relative_;
 };
 
-// The smallest of these that at least the given share of them does not exceed; 0 for none.
+// The smallest of these values that at least the given share of them does not exceed; 0 if there are none.
 [[nodiscard]] double nearest_rank(const std::vector<double>& ascending, double share);
 
 }  // namespace exactff::check

@@ -1,4 +1,4 @@
-// Workflow commands of GitHub Actions: lines that the runner turns into annotations of files.
+// Workflow commands of GitHub Actions: lines that the runner turns into annotations on files.
 #include <string_view>
 
 #include "check/words.h"
@@ -42,7 +42,7 @@ std::string github_annotations(const Report& report) {
 
 std::string github_annotations(const InputError& error) {
   const kernel::StandardArithmetic arithmetic;
-  constexpr std::size_t kShown = 10;  // what the runner shows of one step
+  constexpr std::size_t kShown = 10;  // the runner shows no more for one step
   std::string text;
   for (const Problem& problem : error.problems()) {
     if (&problem - error.problems().data() == kShown) break;

@@ -1,4 +1,4 @@
-// Histograms over the logarithm of the error.
+// Histograms of errors on a logarithmic axis.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,11 +19,11 @@ double edge(long index, int bins_per_decade) {
 long bin_of(double value, int bins_per_decade) {
   const double finite = std::min(value, std::numeric_limits<double>::max());
   auto k = static_cast<long>(std::ceil(std::log10(finite) * bins_per_decade));
-  if (edge(k, bins_per_decade) < finite) ++k;  // where the logarithm was rounded down onto an edge
+  if (edge(k, bins_per_decade) < finite) ++k;  // the logarithm was rounded down onto an edge
   return k;
 }
 
-// The limits of single errors, each once however many sources have to keep it.
+// The limits of single errors. Each is listed once, even if it applies to several sources.
 std::vector<study::Mark> limits(const Report& report) {
   std::vector<study::Mark> marks;
   for (const Verdict& verdict : report.verdicts) {

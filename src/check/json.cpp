@@ -1,4 +1,4 @@
-// The report for programs.
+// The report as JSON, for other programs.
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// JSON knows neither infinity nor NaN: they are told as words.
+// JSON has neither infinity nor NaN: they are written as words.
 ordered_json number(double value) {
   if (std::isfinite(value)) return value;
   return std::isnan(value) ? "nan" : value > 0.0 ? "inf" : "-inf";

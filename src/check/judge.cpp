@@ -1,4 +1,4 @@
-// Verdicts on the errors.
+// Decides whether the errors keep to the limits.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -81,7 +81,7 @@ class Judge {
     }
   }
 
-  // A sum, so that the order of the rows does not matter.
+  // A sum, so that the order of the rows has no effect.
   [[nodiscard]] std::string identity() const {
     std::uint64_t sum = 0;
     for (const Measured& one : values_) {
@@ -133,7 +133,7 @@ class Judge {
     if (!verdict.passed) verdict.worst = errors_.row(worst_finite(rows, measure));
   }
 
-  // Rows that are not finite are told about by the first verdict.
+  // Only finite rows: the first verdict reports the others.
   [[nodiscard]] Errors::Index worst_finite(const Rows& rows, Measure measure) const {
     Rows finite;
     std::copy_if(rows.begin(), rows.end(), std::back_inserter(finite),
@@ -156,7 +156,7 @@ class Judge {
   const Errors errors_;
   Report report_;
   Rows all_;
-  std::vector<Rows> rows_of_;  // of each source of the report
+  std::vector<Rows> rows_of_;  // one list for each source of the report
   bool broken_ = false;
 };
 

@@ -1,4 +1,4 @@
-// JUnit XML as Jenkins, GitLab and others read it: a test suite with a test case per verdict.
+// JUnit XML as Jenkins, GitLab and others read it: one test suite with one test case per verdict.
 #include <algorithm>
 
 #include "check/words.h"

@@ -1,8 +1,8 @@
-// Which row of the truth a value is held against.
+// Which row of the truth a value is compared with.
 //
-//   1. The candidate's sources are looked up among the truth's; without such a column the truth must have one only.
-//   2. Every row of the candidate finds its row by receiver and source, or by position and source.
-//   3. No row of the truth may be found twice, and, unless asked for, none may be left.
+//   1. Look up the candidate's sources among those of the truth. Without a source column the truth must have only one.
+//   2. Match every row of the candidate by receiver and source, or by position and source.
+//   3. No row of the truth may be matched twice. Unless the options allow it, none may be left unmatched.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -85,7 +85,7 @@ class Matcher {
     return study::enumerate(names);
   }
 
-  // False, with a complaint, where the truth does not know the row's source.
+  // Returns false, and complains, if the truth does not have the source of the row.
   bool has_known_source(const CandidateRow& row) {
     if (source_[row.source] != kNothing) return true;
     complain(row.line, "the truth has no source " + in_quotes(candidate_.sources[row.source]),
@@ -158,7 +158,7 @@ class Matcher {
              "only one can be judged", "keep one of them");
   }
 
-  // Told last: rows that were found under a wrong name are missing, too.
+  // Called last: rows that were matched under a wrong name are missing, too.
   void complain_about_missing() {
     const auto missing = static_cast<std::size_t>(std::count(found_.begin(), found_.end(), kNothing));
     if (missing == 0 || (options_.partial && missing < found_.size())) return;
@@ -191,8 +191,8 @@ class Matcher {
   const Truth& truth_;
   const Candidate& candidate_;
   const MatchOptions& options_;
-  std::vector<std::uint32_t> source_;  // of the truth, by source of the candidate
-  std::vector<std::uint32_t> found_;   // row of the candidate, by row of the truth
+  std::vector<std::uint32_t> source_;  // source of the truth, indexed by source of the candidate
+  std::vector<std::uint32_t> found_;   // row of the candidate, indexed by row of the truth
   ProblemList problems_;
 };
 

@@ -1,5 +1,5 @@
-// An R-tree, packed at once; a query takes the box around the point and keeps what is within the ball. Unlike a grid of
-// cells, it does not mind a tolerance of 0 or coordinates of any size.
+// An R-tree, built in one step. A query takes the box around the point and keeps what is within the ball. Unlike a grid
+// of cells, it works with a tolerance of 0 and with coordinates of any size.
 #include "check/position_index.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using Point = bg::model::point<double, 3, bg::cs::cartesian>;
 using Box = bg::model::box<Point>;
 using Entry = std::pair<Point, std::uint32_t>;
 
-// Of a length near 1, whatever the vector's; zero stays zero.
+// Normalises v without overflow or underflow, so that its length is near 1. Zero stays zero.
 Vec3 unit(const Vec3& v) {
   const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
   if (largest == 0.0) return v;

@@ -1,4 +1,4 @@
-// Rows of a truth file found by their place.
+// Finds rows of a truth file by their position.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,14 @@ namespace exactff::check {
 
 class PositionIndex {
  public:
-  // With `normals`, unit normals must be near as well. Refers to the truth.
+  // With `normals`, the unit normals must be near as well. Keeps a reference to the truth.
   PositionIndex(const Truth& truth, const MatchOptions& options, bool normals);
   ~PositionIndex();
   PositionIndex(const PositionIndex&) = delete;
   PositionIndex& operator=(const PositionIndex&) = delete;
 
-  // All rows of the source that are near enough to the point, the nearest first; equals in the order of the truth.
+  // All rows of the source that are near enough to the point, the nearest first; equally near rows in the order of the
+  // truth.
   [[nodiscard]] std::vector<std::uint32_t> near(const Vec3& point, const Vec3& normal, std::uint32_t source) const;
 
  private:

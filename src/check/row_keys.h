@@ -1,4 +1,4 @@
-// Rows found by their receiver and source.
+// Finds rows by their receiver and source.
 #pragma once
 
 #include <cstddef>
@@ -11,19 +11,19 @@
 
 namespace exactff::check {
 
-// " of source 'light'", or nothing where sources have no names.
+// " of source 'light'", or empty if sources have no names.
 inline std::string of_source(const std::string& source) { return source.empty() ? "" : " of source '" + source + "'"; }
 
-// A set of indices into a list of rows that is not copied.
+// A set of indices into a list of rows, which is not copied.
 template <class Row>
 class RowKeys {
  public:
   explicit RowKeys(const std::vector<Row>& rows) : rows_(rows), set_(rows.size(), Hash{&rows}, Equal{&rows}) {}
 
-  // The index of the row with this receiver and source: the one given, if it is the first.
+  // The index of the first row with the same receiver and source: `index` itself if it is the first.
   std::uint32_t insert(std::uint32_t index) { return *set_.insert(index).first; }
 
-  // The number of rows if there is none.
+  // The index of the row; the number of rows if there is none.
   [[nodiscard]] std::size_t find(std::string_view receiver, std::uint32_t source) const {
     const auto found = set_.find(Key{receiver, source});
     return found == set_.end() ? rows_.size() : *found;

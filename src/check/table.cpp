@@ -18,7 +18,7 @@ std::string listed(const std::vector<std::string>& names) {
   return in_quotes(text + (names.size() > kShown ? ",..." : ""), kShownName);
 }
 
-// What a text that is no finite number stands for. "nan" has no sign worth keeping.
+// The value of a text that is not a finite number. The sign of "nan" is not kept.
 double not_finite_value(std::string_view text, NumberFault fault) {
   const std::string word = in_lower_case(text);
   const double infinity =
@@ -71,7 +71,7 @@ std::optional<std::size_t> Table::first_column(std::initializer_list<std::string
 std::size_t Table::needed_column(std::initializer_list<std::string_view> names, const std::string& why,
                                  const std::string& suggestion) {
   if (const auto found = first_column(names)) return *found;
-  if (names_.empty()) return 0;  // complained about already
+  if (names_.empty()) return 0;  // a complaint was already made
   std::string wanted;
   for (const std::string_view name : names) wanted += (wanted.empty() ? "" : " or ") + in_quotes(name);
   complain("there is no column " + wanted + " among " + listed(names_), why, suggestion);

@@ -1,4 +1,4 @@
-// A CSV file with a row of column names, read row by row; what is wrong with it is collected.
+// A CSV file with a row of column names, read row by row. Problems are collected.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace exactff::check {
 
-// Names to numbers from 0, in the order in which they come up.
+// Numbers names from 0 in the order of their first use.
 class NameList {
  public:
   std::uint32_t number_of(const std::string& name) {
@@ -38,7 +38,7 @@ enum class NotFinite { kRefuse, kAccept };
 
 class Table {
  public:
-  // Reads up to the column names. `purpose` completes "give ...".
+  // Reads the file up to and including the column names. `purpose` completes "give ...".
   Table(const std::filesystem::path& path, const std::string& purpose);
 
   [[nodiscard]] const std::string& file() const { return lines_.file(); }
@@ -46,14 +46,14 @@ class Table {
   [[nodiscard]] std::vector<std::string>& comments() { return comments_; }  // above the column names, without '#'
 
   [[nodiscard]] std::optional<std::size_t> column(std::string_view name) const;
-  // The first of these that there is.
+  // The first of these columns that exists.
   [[nodiscard]] std::optional<std::size_t> first_column(std::initializer_list<std::string_view> names) const;
-  // The same, or a complaint.
+  // The same; makes a complaint if there is none.
   [[nodiscard]] std::size_t needed_column(std::initializer_list<std::string_view> names, const std::string& why,
                                           const std::string& suggestion);
   [[nodiscard]] const std::string& name_of(std::size_t column) const { return names_[column]; }
 
-  // The next row with as many fields as there are names; the others are complained about.
+  // Reads the next row with as many fields as there are column names. Complains about other rows and skips them.
   [[nodiscard]] bool next();
   [[nodiscard]] const std::string& field(std::size_t column) const { return fields_[column]; }
   [[nodiscard]] double number(std::size_t column, NotFinite not_finite = NotFinite::kRefuse);

@@ -1,4 +1,4 @@
-// Truth files.
+// Reads truth files.
 #include <algorithm>
 #include <cmath>
 #include <string_view>
@@ -58,7 +58,7 @@ class TruthReader {
     return std::find(columns.begin(), columns.end(), kNoColumn) == columns.end();
   }
 
-  // They are those of the form factor, and of no other column.
+  // The bounds are those of the form factor, and of no other column.
   void find_bounds() {
     if (truth_.column != "exact") return;
     lower_ = table_.column("lower").value_or(kNoColumn);
@@ -66,7 +66,7 @@ class TruthReader {
     if (lower_ == kNoColumn || upper_ == kNoColumn) lower_ = upper_ = kNoColumn;
   }
 
-  // An error in a radiosity is one already; an error in a fraction is none.
+  // An error in a radiosity needs no conversion to a radiosity error; an error in a fraction has none.
   void find_radiosity() {
     const bool is_form_factor = truth_.column == "exact" || truth_.column == "unoccluded";
     is_radiosity_ = std::find(kChannels.begin(), kChannels.end(), truth_.column) != kChannels.end();
@@ -118,7 +118,7 @@ class TruthReader {
     return has_channels_ ? quotient() : std::nullopt;
   }
 
-  // The largest radiosity over the form factor, where dividing loses nothing but roundings.
+  // The largest radiosity divided by the form factor, if the division loses nothing but rounding errors.
   std::optional<double> quotient() {
     constexpr double kNormal = 1e-290;
     const double exact = table_.number(exact_);
@@ -151,8 +151,8 @@ class TruthReader {
   bool has_channels_ = false;
 };
 
-// Where the truth is 0, nothing can be divided: the largest rho B of the rows on the same face with the same source
-// stands in; else the largest with the same source.
+// Where the truth is 0, rho B cannot be found by division. Then the largest rho B of the rows with the same face and
+// source is used; if there is none, the largest with the same source.
 class RhoB {
  public:
   explicit RhoB(const Truth& truth) : of_source_(truth.sources.size()) {

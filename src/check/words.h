@@ -1,4 +1,4 @@
-// Words that the outputs of a check share.
+// Texts that several outputs of a check use.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace exactff::check {
 
-// So many significant digits in plain characters, fit to be given to a flag: "0.0123", "1.2e-07".
+// `digits` significant digits in plain characters, suitable as the value of a flag: "0.0123", "1.2e-07".
 [[nodiscard]] std::string short_number(double value, int digits = 3);
 [[nodiscard]] std::string name_of(const Quantile& quantile);  // "quantile 0.99"
 [[nodiscard]] std::string name_of(const Verdict& verdict);    // "max-abs, source light"
@@ -19,7 +19,7 @@ namespace exactff::check {
 [[nodiscard]] std::string name_of(const RowError& row);
 // "exact 0.25, found 0.26, error 0.01, relative 0.04"
 [[nodiscard]] std::string describe(const RowError& row);
-// What a person should know about the result, passed or not.
+// What the user should know about the result, whether it passed or not.
 [[nodiscard]] std::vector<std::string> warnings(const Report& report);
 
 }  // namespace exactff::check

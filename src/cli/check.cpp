@@ -1,4 +1,4 @@
-// exactff check: the values of another program held against a truth file.
+// exactff check: compares the values of another program with a truth file.
 #include "exactff/check.h"
 
 #include <algorithm>
@@ -129,7 +129,7 @@ check::CandidateColumns columns_of(const CheckArguments& args) {
   return columns;
 }
 
-// Both files are read before either is complained about.
+// Reads both files before it reports the problems of either.
 template <class First, class Second>
 auto both(const First& first, const Second& second) {
   std::optional<decltype(first())> a;
@@ -210,7 +210,7 @@ void print_histogram(const check::Report& report) {
   std::cout << '\n';
 }
 
-// The first column is ours: no line can begin with what a file holds.
+// The first column is always our own text, so that no line can begin with text from a file.
 void print_worst(const check::Report& report) {
   if (report.worst.empty()) return;
   std::cout << "Worst rows by " << to_string(report.worst_by) << '\n';
@@ -277,7 +277,7 @@ void print(const CheckArguments& args, const check::Report& report) {
   print_end(args, report);
 }
 
-// Beside nothing: the picture may go to a pipe.
+// A temporary folder, not one beside the output: the picture may go to a pipe.
 study::WorkFolder scratch_folder() {
   try {
     return study::WorkFolder(std::filesystem::temp_directory_path() / "exactff-plot");
@@ -290,7 +290,7 @@ study::WorkFolder scratch_folder() {
 study::PlotResult run_plot(const std::string& script) {
   study::PlotResult result;
   {
-    const InterruptWatch watch;  // a signal waits until the folder is gone
+    const InterruptWatch watch;  // a signal waits until the folder is removed
     const study::WorkFolder scratch = scratch_folder();
     result = study::run_gnuplot(script, scratch.path(), is_interrupted);
   }
@@ -319,7 +319,7 @@ void write_files(const CheckArguments& args, const check::Report& report) {
   if (!args.plot.empty()) draw(report, args.plot);
 }
 
-// A ratchet goes one way: without a baseline to hold on to, whatever there is gets recorded.
+// The ratchet never loosens. Without an existing baseline, the present statistics are recorded whatever they are.
 void record(const CheckArguments& args, const check::Report& report) {
   if (args.write_baseline.empty()) return;
   const auto is_worse = [](const check::Verdict& verdict) {

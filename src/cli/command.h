@@ -7,8 +7,8 @@
 
 namespace exactff::cli {
 
-// Registers the command with `app`; returns what runs it. The exit code is the return value: 0 done, 1 a check
-// failed, 2 bad input (by InputError), 3 not certified, 4 internal.
+// Registers the command with `app` and returns the function that runs it. That function returns the exit code: 0 done,
+// 1 a check failed, 2 bad input (by InputError), 3 not certified, 4 internal.
 struct Command {
   CLI::App* app = nullptr;
   std::function<int()> run;
@@ -24,7 +24,7 @@ Command add_stress(CLI::App& app);
 Command add_completion(CLI::App& app);
 Command add_manual(CLI::App& app);
 
-// All of them, in the order of the help.
+// All commands, in the order of the help.
 std::vector<Command> add_commands(CLI::App& app);
 
 }  // namespace exactff::cli

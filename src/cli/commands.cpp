@@ -1,4 +1,4 @@
-// The commands of the program, in the order in which its help lists them.
+// All commands of the program, in the order of the help.
 #include "cli/command.h"
 
 namespace exactff::cli {

@@ -1,4 +1,4 @@
-// exactff compare: approximate methods held against the exact values, as tables and a report.
+// exactff compare: compares approximate methods with the exact values, as tables and a report.
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -52,7 +52,7 @@ constexpr const char* kCompareFooter =
     "  exactff compare data/scenes/cornell_box.obj --on floor --grid 32x32 -o cornell-report\n"
     "  exactff compare data/studies/default.study --abridged -o report";
 
-// What a scene line of a study has, and the command itself where it is about one scene.
+// The arguments of a scene line in a study file, or of the command itself if it is about one scene.
 struct SceneWords {
   SceneArguments scene;
   ReceiverArguments receivers;
@@ -99,7 +99,7 @@ Whole to_whole(const std::string& text, const std::string& flag) {
          "separate several by commas only, such as " + flag + " 1,4,16");
 }
 
-// An option that was not given is an empty list, which stands for the default.
+// The text of an option that was not given is empty, and so is its list, which stands for the default.
 template <class T, class Convert>
 std::vector<T> list_of(const std::string& text, const std::string& flag, const Convert& convert) {
   std::vector<T> values;
@@ -238,7 +238,7 @@ void add_scene_flags(CLI::App& app, SceneWords& words) {
   app.add_flag("--unless-abridged", words.unless_abridged, "Leave the scene out with --abridged");
 }
 
-// At most so many cells along a side.
+// The most cells along a side.
 constexpr int kAbridgedGrid = 12;
 
 std::string abridged_grid(const std::string& grid) {
@@ -250,7 +250,7 @@ std::string abridged_grid(const std::string& grid) {
   return std::to_string(std::min(*u, kAbridgedGrid)) + 'x' + std::to_string(std::min(*v, kAbridgedGrid));
 }
 
-// What was not asked for is cut down.
+// Reduces settings that the user did not give.
 void abridge(study::Request& request) {
   if (request.sweeps.rays.empty()) request.sweeps.rays = {1, 16, 64};
   if (request.sweeps.seeds.empty()) request.sweeps.seeds = {1, 2, 3};
@@ -262,9 +262,9 @@ void abridge(study::Request& request) {
   request.seconds_for_a_time = 0.02;
 }
 
-// A scene and all that is asked of it. The scene stays where it is.
+// A scene and everything requested for it. The address of the scene does not change.
 struct SceneWork {
-  std::string name;  // of files; empty where there is one scene
+  std::string name;  // used for files; empty if there is only one scene
   std::string title;
   std::unique_ptr<Scene> scene;
   study::Request request;
@@ -296,7 +296,7 @@ SceneWork work_of(SceneWords words, bool abridged, int threads) {
   return work;
 }
 
-// Lower-case letters, digits and hyphens; told apart by numbers where two would be the same.
+// Lower-case letters, digits and hyphens. A number is appended if two names would be the same.
 std::string file_word(const std::string& title, const std::vector<SceneWork>& others) {
   std::string word;
   for (const char c : title) {
@@ -316,7 +316,7 @@ std::string file_word(const std::string& title, const std::vector<SceneWork>& ot
   }
 }
 
-// All that a run has to do.
+// Everything that a run has to do.
 struct Plan {
   std::string title;
   std::vector<SceneWork> scenes;
@@ -324,7 +324,7 @@ struct Plan {
   std::vector<study::LeftOut> left_out;
 };
 
-// None twice.
+// Drops repetitions.
 void add_experiments(Plan& plan, const std::vector<std::string>& names) {
   const auto add = [&](const experiments::Experiment& one) {
     if (std::ranges::find(plan.experiments, &one) == plan.experiments.end()) plan.experiments.push_back(&one);
@@ -358,7 +358,7 @@ SceneWords scene_words(const StudyLine& line, const std::string& file) {
   return words;
 }
 
-// What is wrong with a line, or in the files that it names, is told with the line's place.
+// Problems with a line, or with the files that it names, are reported with the place of the line.
 template <class Do>
 void at_line(const std::string& file, std::size_t number, const Do& act) {
   try {
@@ -479,7 +479,7 @@ int run(const CompareArguments& args) {
   ProgressBar bar;
   const study::Hooks hooks{[&](const study::Progress& progress) { bar.show(progress); }, is_interrupted};
   const std::size_t resumed = journal.size();
-  std::vector<std::unique_ptr<Scene>> scenes;  // studies refer to them
+  std::vector<std::unique_ptr<Scene>> scenes;  // studies hold pointers to them
   for (SceneWork& work : plan.scenes) scenes.push_back(std::move(work.scene));
   try {
     const study::Report report = carry_out(std::move(plan), args, journal, hooks);
@@ -493,7 +493,7 @@ int run(const CompareArguments& args) {
     bar.clear();
     std::cerr << "exactff: interrupted; " << (journal.size() > 0 ? kept : "nothing was written\n");
     return 128 + interrupting_signal();
-  } catch (const InputError&) {  // a full disk
+  } catch (const InputError&) {  // for example a full disk
     bar.clear();
     if (journal.size() > 0) std::cerr << "note: " << kept;
     throw;

@@ -1,5 +1,5 @@
-// Bash gets tables as `case` statements and a function that finds out which value the cursor is at; zsh and fish have
-// languages of their own for that, so for these there are only tables.
+// Bash gets tables as `case` statements and a function that finds out which value the cursor is at. zsh and fish have
+// their own languages for this, so for these there are only tables.
 #include "cli/completion.h"
 
 namespace exactff::cli {
@@ -40,9 +40,9 @@ std::string option_names(const CommandTable& command) {
 
 // --- bash ---
 
-// What the cursor is at follows from the words before it: the last option, and how many values it already has. Bash
-// makes three words of "--engine=edges". A word such as -0.5 is a value. Files are left to readline, which knows about
-// quotes.
+// The words before the cursor determine what it is at: the last option, and how many values it already has. Bash splits
+// "--engine=edges" into three words. A word such as -0.5 is a value. Completion of files is left to readline, which
+// knows about quotes.
 constexpr const char* kBashFunction = R"(
 _exactff() {
   local cur=${COMP_WORDS[COMP_CWORD]} command='' option='' values=0 most=0 offer='' options='' index word
@@ -134,7 +134,7 @@ std::string zsh_values(const OptionRow& row) {
   return text;
 }
 
-// (NAMES)'NAME[description]:value:action', once for each name.
+// (NAMES)'NAME[description]:value:action', once for each name of the option.
 std::string zsh_option(const OptionRow& option) {
   std::string lines;
   const std::string others = option.repeats ? "'*'" : single_quoted("(" + spaced(option.names) + ")");

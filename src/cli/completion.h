@@ -1,4 +1,4 @@
-// Completion of command lines by the shells, written from the program's own options.
+// Completion of command lines in shells, generated from the program's own options.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace exactff::cli {
 
-// Each is a file to be sourced, or to be put where the shell looks for completions.
+// Each result is a file to be sourced, or to be put where the shell looks for completions.
 [[nodiscard]] std::string bash_completion(const ProgramTable& program);
 [[nodiscard]] std::string zsh_completion(const ProgramTable& program);
 [[nodiscard]] std::string fish_completion(const ProgramTable& program);

@@ -1,4 +1,4 @@
-// --engine, as every command that computes exact values has it.
+// The flag --engine, shared by all commands that compute exact values.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// From what a command throws to what the user reads, and the exit code.
+// Converts what a command throws into a message to the user and an exit code.
 #pragma once
 
 #include <functional>
@@ -6,10 +6,10 @@
 namespace exactff::cli {
 
 inline constexpr int kBadInput = 2;
-inline constexpr int kNotCertified = 3;  // a value is not, within the cap on precision
+inline constexpr int kNotCertified = 3;  // a value is not certified within the cap on precision
 inline constexpr int kInternalFailure = 4;
 
-// What the command returns; 2 or 4 where it throws, after telling why.
+// The return value of the command. If it throws, prints why and returns 2 or 4.
 [[nodiscard]] int exit_code_of(const std::function<int()>& command);
 
 }  // namespace exactff::cli

@@ -23,7 +23,7 @@ std::string wrapped(const std::string& text, std::size_t width) {
   return result;
 }
 
-// CLI11's own would tell "TEXT:{edges,boolean,both}=edges" and leave long lines to the terminal.
+// CLI11's own formatter would print "TEXT:{edges,boolean,both}=edges" and not wrap long lines.
 class HelpFormatter : public CLI::Formatter {
  public:
   HelpFormatter() { column_width(kIndent); }

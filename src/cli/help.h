@@ -1,4 +1,4 @@
-// The texts of --help, laid out from the option tables.
+// Formats the texts of --help from the option tables.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -6,7 +6,7 @@
 
 namespace exactff::cli {
 
-// For App::formatter, before commands are added: these inherit it.
+// For App::formatter. Set it before commands are added, because they inherit it.
 [[nodiscard]] std::shared_ptr<CLI::Formatter> help_formatter();
 
 }  // namespace exactff::cli

@@ -1,4 +1,4 @@
-// exactff info: what a scene holds, so that a person knows what to pass to --source and --on.
+// exactff info: lists the contents of a scene, so that the user knows what to pass to --source and --on.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -42,7 +42,7 @@ std::string counted(std::size_t count, const std::string& one, const std::string
 Vec3 scaled(const Vec3& v, double factor) { return {v.x * factor, v.y * factor, v.z * factor}; }
 Vec3 sum(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 
-// Zero stays zero. The largest component is brought near 1 first, so that nothing over- or underflows.
+// Zero stays zero. First scales the largest component to about 1, so that nothing overflows or underflows.
 Vec3 unit(const Vec3& v) {
   const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
   if (largest == 0.0) return v;
@@ -53,10 +53,10 @@ Vec3 unit(const Vec3& v) {
 // One row of the table.
 struct PatchSummary {
   std::string name;
-  std::size_t face_count = 0;  // with ignored ones
+  std::size_t face_count = 0;  // including ignored faces
   double area = 0.0;
-  std::optional<Vec3> front;          // mean unit normal; empty if the faces look different ways
-  std::vector<MaterialId> materials;  // in the order of their first use
+  std::optional<Vec3> front;          // mean unit normal; empty if the faces have different directions
+  std::vector<MaterialId> materials;  // in the order of first use
   bool emits = false;
 };
 
@@ -82,7 +82,7 @@ std::optional<Vec3> common_front(const Scene& scene, const std::vector<FaceId>& 
   return faces.empty() ? std::nullopt : std::optional(mean);
 }
 
-// An estimate, clamped to finite numbers as the areas of faces are.
+// An estimate. Clamped to finite numbers, as the areas of faces are.
 double sum_of_areas(double a, double b) { return std::min(a + b, std::numeric_limits<double>::max()); }
 
 PatchSummary summarise(const Scene& scene, PatchId id) {
@@ -180,7 +180,7 @@ std::vector<std::string> emitter_names(const Scene& scene) {
   return names;
 }
 
-// NAME:k even where the patch has one face: these lists are about faces.
+// NAME:k even if the patch has only one face: these lists are about faces.
 std::string numbered_name(const Scene& scene, FaceId face) { return scene.name_of({scene.face(face).patch, face}); }
 
 std::vector<std::string> numbered_names(const Scene& scene, FaceShape shape) {
@@ -202,7 +202,7 @@ void print_faces(const Scene& scene) {
   std::cout << "open edges: " << open << (open == 0 ? " (the surface is closed)" : "") << '\n';
 }
 
-// The patch of the largest faces that does not emit, else of the largest.
+// Of the patches that do not emit, the one with the largest faces; if all emit, the one with the largest faces.
 const PatchSummary& suggested_receiver(const std::vector<PatchSummary>& rows) {
   const auto rank = [](const PatchSummary& row) {
     return std::pair(!row.emits, row.area / static_cast<double>(std::max<std::size_t>(1, row.face_count)));
@@ -285,7 +285,7 @@ void print_json(const Scene& scene, const std::string& path) {
   std::cout << text::json_document(json) << '\n';
 }
 
-// --- the scenes that the program makes itself ---
+// --- generated scenes ---
 
 void print_models() {
   for (const models::Model* model : models::all_models()) std::cout << models::description(*model) << '\n';

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What launchers set: Open MPI's mpirun, those of the MPICH family and srun --mpi=pmi2, srun --mpi=pmix.
+// The variables that launchers set: Open MPI's mpirun; the MPICH family and srun --mpi=pmi2; srun --mpi=pmix.
 constexpr std::array kRanks = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK"};
 constexpr std::array kSizes = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"};
 
@@ -41,7 +41,7 @@ bool launched_with_others() {
                                   "libopenmpi-dev are installed"});
 }
 
-// Beside the program where it was built, or where it is installed.
+// The module is beside the program in the build folder, or where it is installed.
 fs::path module_path() {
   std::error_code error;
   const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
@@ -57,7 +57,7 @@ int launched_rank() { return number_in_environment(kRanks).value_or(0); }
 
 std::unique_ptr<truth::Team> join_team() {
   if (!launched_with_others()) return nullptr;
-  // Global: Open MPI loads components of its own, which look for its symbols. Never closed.
+  // RTLD_GLOBAL: Open MPI loads its own components, which need its symbols. The module is never closed.
   void* module = ::dlopen(module_path().c_str(), RTLD_NOW | RTLD_GLOBAL);
   if (module == nullptr) refuse(::dlerror());
   using Join = truth::Team*();

@@ -1,4 +1,4 @@
-// The processes that mpirun or srun has started together.
+// The processes that one mpirun or srun started together.
 #pragma once
 
 #include <memory>
@@ -7,12 +7,12 @@
 
 namespace exactff::cli {
 
-// This process's rank as its launcher tells it in the environment: 0 alone.
+// The rank of this process, read from the environment that the launcher sets; 0 if it was started alone.
 [[nodiscard]] int launched_rank();
 
-// Null where this process was started alone; only else is MPI loaded, which the program neither needs nor waits for.
-// Throws InputError where several were started and MPI cannot be had: each would do all the work. Call it once, before
-// the first thread is started.
+// Returns null if this process was started alone; the program then neither needs MPI nor waits until it is loaded.
+// Throws InputError if several processes were started and MPI is not available: each would do all the work. Call it
+// once, before the first thread is started.
 [[nodiscard]] std::unique_ptr<truth::Team> join_team();
 
 }  // namespace exactff::cli

@@ -1,4 +1,4 @@
-// Lists and whole numbers as flags take them, and the patches that they name.
+// Parses the lists and whole numbers of flags, and the patch names in them.
 #pragma once
 
 #include <charconv>
@@ -11,10 +11,10 @@
 
 namespace exactff::cli {
 
-// The parts between the commas; one empty part of an empty text.
+// The parts between the commas. An empty text has one empty part.
 std::vector<std::string> split_list(const std::string& text);
 
-// The whole text, in decimal digits; nothing where it is anything else or out of range.
+// Parses the whole text as decimal digits. Returns nothing for any other text or a value out of range.
 template <class Whole>
 std::optional<Whole> whole_number(std::string_view text) {
   Whole value{};
@@ -23,9 +23,9 @@ std::optional<Whole> whole_number(std::string_view text) {
   return value;
 }
 
-// In the order of `texts`, each of which is a name, a comma list of names, or "all": every patch with area, in the
-// order of the file. A patch of that very name wins, whether it is called "all" or has a comma. Throws InputError for a
-// name that is unknown.
+// In the order of `texts`. Each of them is a name, a comma list of names, or "all": every patch with area, in the order
+// of the file. A patch with exactly the given name has priority, even if its name is "all" or contains a comma. Throws
+// InputError for an unknown name.
 std::vector<Selection> selections_named(const Scene& scene, const std::vector<std::string>& texts);
 
 }  // namespace exactff::cli

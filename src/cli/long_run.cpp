@@ -52,11 +52,11 @@ void ProgressBar::draw(const study::Progress& progress, double elapsed) const {
 namespace {
 
 std::atomic<int> interrupted_by = 0;
-static_assert(std::atomic<int>::is_always_lock_free);  // or no signal handler could use it
+static_assert(std::atomic<int>::is_always_lock_free);  // a signal handler uses it
 
 bool is_writing() { return study::StagedFolder::any() || study::WholeFile::any(); }
 
-// What signal handlers may use: set before they are installed, and plain.
+// The data for signal handlers: plain, and set before the handlers are installed.
 struct Patience {
   bool ends = false;
   timer_t timer{};
@@ -76,7 +76,7 @@ void take_note(int signal) {
   if (!again && patience.ends) wait_for(kPatience);
   if (!again || is_writing()) return;
   std::signal(signal, SIG_DFL);
-  ::raise(signal);  // takes effect on return from here
+  ::raise(signal);  // takes effect when this handler returns
 }
 
 void lose_patience(int /*signal*/) {
@@ -113,7 +113,7 @@ InterruptWatch::InterruptWatch() {
   action.sa_flags = SA_RESTART;
   for (std::size_t i = 0; i < kSignals.size(); ++i) {
     ::sigaction(kSignals[i], nullptr, &before_[i]);
-    // What the caller has the program ignore (nohup) stays ignored.
+    // Signals that the caller has set to be ignored (nohup) stay ignored.
     if (before_[i].sa_handler != SIG_IGN) ::sigaction(kSignals[i], &action, nullptr);
   }
 }

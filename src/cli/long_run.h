@@ -1,4 +1,4 @@
-// What commands that work for long have in common: a progress bar, an ear for Ctrl-C.
+// Shared by all commands that run long: a progress bar and the handling of Ctrl-C.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace exactff::cli {
 
-// A bar with the time left and the pace, on a terminal only; at most ten times a second. What was done when a stage
-// was first shown, such as the resumed part of a run, counts for neither.
+// A bar with the remaining time and the rate. Drawn on a terminal only, at most ten times a second. Work that was
+// already done when a stage is first shown, such as the resumed part of a run, counts for neither.
 class ProgressBar {
  public:
   ProgressBar();
@@ -33,14 +33,14 @@ class ProgressBar {
   Clock::time_point drawn_;
 };
 
-// While it lives, Ctrl-C (SIGINT), SIGTERM and SIGHUP set a flag instead of ending the program. A second one ends it
-// at once, unless files are being written, which is soon given up.
+// During its lifetime, Ctrl-C (SIGINT), SIGTERM and SIGHUP set a flag instead of ending the program. A second signal
+// ends it at once, unless files are being written; the program soon gives that up.
 class InterruptWatch {
  public:
   InterruptWatch();
-  // The work looks at the flag between its pieces, and one of them may take long. If it has not ended 0.4 s after the
-  // signal, the program prints `last_words` and ends with the exit code of the signal: for work that survives being
-  // killed.
+  // The work checks the flag between its pieces, and one piece may take long. If the work has not ended 0.4 s after the
+  // signal, the program prints `last_words` and ends with the exit code of the signal. Use this only for work that
+  // survives being killed.
   explicit InterruptWatch(const std::string& last_words);
   ~InterruptWatch();
   InterruptWatch(const InterruptWatch&) = delete;

@@ -30,11 +30,11 @@ constexpr const char* kDescription =
 void prepare_for_the_worst() {
   exactff::cli::occupy_closed_streams();
   exactff::cli::throw_when_out_of_memory();
-  std::signal(SIGXFSZ, SIG_IGN);  // writing beyond a limit on the size of files then fails, as on a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // writing beyond a limit on file sizes then fails, as on a full disk
 }
 
 int end_of_parsing(const CLI::App& app, const CLI::ParseError& error) {
-  if (exactff::cli::launched_rank() > 0) return 0;  // under mpirun it is told once
+  if (exactff::cli::launched_rank() > 0) return 0;  // under mpirun only rank 0 prints it
   std::ostringstream out, err;
   const bool done = app.exit(error, out, err) == 0;  // --help, --version
   std::cerr << exactff::text::printable(err.str(), "\n");

@@ -42,7 +42,7 @@ teach the running shell to complete command lines. An installed program has done
 which draws the figures of the reports where it is installed.
 )";
 
-// Characters that roff would take for its own.
+// Escapes characters that have a meaning in roff.
 std::string roff(const std::string& text) {
   std::string result;
   for (const char c : text) {
@@ -75,7 +75,7 @@ std::string roff(const std::string& text) {
 std::string bold(const std::string& text) { return "\\fB" + roff(text) + "\\fR"; }
 std::string italic(const std::string& text) { return "\\fI" + roff(text) + "\\fR"; }
 
-// Lines that are indented are examples and stay as they are; the others flow.
+// Indented lines are examples and stay as they are; other lines are filled.
 std::string prose(const std::string& text) {
   std::istringstream lines(text);
   std::string page, line;
@@ -107,7 +107,7 @@ std::string options(const CommandTable& command) {
   return page;
 }
 
-// The program, the command and what it cannot do without.
+// The program, the command and its required arguments.
 std::string synopsis(const CommandTable& command) {
   std::string line = bold("exactff " + command.name);
   for (const OptionRow& positional : command.positionals) line += " " + italic(positional.value);
@@ -127,7 +127,7 @@ std::string section(const CommandTable& command) {
   return command.footer.empty() ? page : page + ".PP\n" + prose(command.footer);
 }
 
-// "exactff: what it is for", then lines on how to begin.
+// The first line "exactff: purpose", then the lines on how to begin.
 struct Purpose {
   std::string first;
   std::string rest;

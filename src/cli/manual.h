@@ -1,4 +1,4 @@
-// The manual page, written from the program's own options.
+// The manual page, generated from the program's own options.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace exactff::cli {
 
-// In the language of man(7).
+// A page in the language of man(7).
 [[nodiscard]] std::string manual_page(const ProgramTable& program);
 
 }  // namespace exactff::cli

@@ -30,11 +30,11 @@ namespace exactff::cli {
 
 namespace {
 
-// Some functions of GMP give back what a number has before they ask for more: when that fails, the number still points
-// to what is gone. Its destructor must not give it back again, so from then on nothing is.
+// Some functions of GMP free the memory of a number before they allocate more. If that allocation fails, the number
+// still points to freed memory, and its destructor must not free it again. So after a failure nothing is freed.
 std::atomic<bool> has_failed = false;
 
-// The libraries never ask for nothing, where null would be no failure.
+// The libraries never allocate zero bytes, for which null would not be a failure.
 void* or_throw(void* memory) {
   if (memory != nullptr) return memory;
   has_failed = true;
@@ -50,7 +50,7 @@ void release(void* memory) {
 }
 void release_known(void* memory, std::size_t /*size*/) { release(memory); }
 
-// Without allocating, and before any stream is made.
+// Does not allocate, and works before any stream is constructed.
 [[noreturn]] void end_at_once() {
   constexpr std::string_view kMessage =
       "exactff: out of memory, or ended by another error that nothing could handle (no result was written); raise the "
@@ -64,7 +64,7 @@ bool is_limited(__rlimit_resource resource) {
   return ::getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
 }
 
-// Linux then refuses memory that it might not have.
+// In mode 2, Linux refuses memory that it might not have.
 bool never_overcommits() {
   const int file = ::open("/proc/sys/vm/overcommit_memory", O_RDONLY | O_CLOEXEC);
   if (file < 0) return false;
@@ -74,19 +74,19 @@ bool never_overcommits() {
   return read && mode == '2';
 }
 
-// Whether the system refuses memory at some point, instead of ending whoever has too much.
+// Whether the system refuses memory at some point, instead of ending a process that uses too much.
 bool memory_may_end() { return is_limited(RLIMIT_AS) || is_limited(RLIMIT_DATA) || never_overcommits(); }
 
 #ifdef EXACTFF_HAS_JEMALLOC
-// If there is no memory for a thread's cache, jemalloc 5.3.0 does not notice, and the thread's first allocation goes
-// through a null pointer. Nothing outside jemalloc could tell, so threads have none where memory may end. Elsewhere
-// they have, since the caches are much of what makes it fast.
+// If there is no memory for a thread's cache, jemalloc 5.3.0 does not notice, and the thread's first allocation
+// dereferences a null pointer. Code outside jemalloc cannot detect this. So threads have no caches if memory may end.
+// Otherwise they have them, since the caches are a large part of jemalloc's speed.
 void do_without_caches() { malloc_conf = "tcache:false"; }
 
-// The only thread may have its cache after all: what it has just freed, a hundred times what a cache takes, no other
-// can take away before the cache is made of it.
+// As long as there is only one thread, it may have its cache after all: it has just freed a hundred times the memory
+// that a cache takes, and no other thread can take that memory before the cache is made.
 void give_the_only_thread_its_cache() {
-  if (malloc_conf == nullptr) return;  // it has it
+  if (malloc_conf == nullptr) return;  // caches are on
   std::array<void*, 32> pieces{};
   constexpr std::size_t kBytes = 64 << 10;
   for (void*& piece : pieces) piece = ::mallocx(kBytes, 0);
@@ -98,11 +98,11 @@ void give_the_only_thread_its_cache() {
 }
 #endif
 
-// glibc calls abort() where it cannot note down the destructor of a thread_local variable.
+// glibc calls abort() if it cannot register the destructor of a thread_local variable.
 void end_where_a_library_aborts(int /*signal*/) { end_at_once(); }
 
 void prepare_before_the_first_allocation(int /*count*/, char** /*arguments*/, char** /*environment*/) {
-  std::set_terminate(end_at_once);  // the libraries' constructors allocate, too
+  std::set_terminate(end_at_once);  // the constructors of the libraries allocate, too
   if (!memory_may_end()) return;
   std::signal(SIGABRT, end_where_a_library_aborts);
 #ifdef EXACTFF_HAS_JEMALLOC
@@ -110,7 +110,7 @@ void prepare_before_the_first_allocation(int /*count*/, char** /*arguments*/, ch
 #endif
 }
 
-// The loader calls it before it initialises any library.
+// The loader calls this function before it initialises any library.
 __attribute__((section(".preinit_array"), used)) void (*const kBeforeAll)(int, char**,
                                                                           char**) = prepare_before_the_first_allocation;
 

@@ -1,4 +1,4 @@
-// exactff merge: the shards of a truth file put together.
+// exactff merge: joins the shards of a truth file.
 #include <filesystem>
 #include <iostream>
 #include <memory>

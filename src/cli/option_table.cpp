@@ -7,14 +7,14 @@
 namespace exactff::cli {
 namespace {
 
-// More than this is without limit: CLI11 has a large number for that.
+// Larger values mean "no limit": CLI11 uses a large number for it.
 constexpr int kManyValues = 1 << 20;
 
 // CLI11 writes a type and its checks as one text: "TEXT:{groups,faces}", "INT:INT in [1 - 4096]", "TEXT:FILE". A colon
-// alone does not end the type, which may be "NAME[:K]".
+// alone does not end the type, since the type may be "NAME[:K]".
 struct TypeText {
   std::string type;
-  std::string check;  // of these, if there is one
+  std::string check;  // one of the checks, if there are any
 };
 
 TypeText parse_type(const std::string& text) {
@@ -49,7 +49,7 @@ std::string joined(const std::vector<std::string>& parts, char separator) {
   return text;
 }
 
-// What the option takes, as far as its type tells. A type that says nothing ("TEXT") may be a file.
+// The kind of value that the option takes, as far as its type says. An unspecific type ("TEXT") may be a file.
 Completion completion_of(const TypeText& type) {
   for (const std::string& text : {type.check, type.type}) {
     if (text.starts_with("{")) return Completion::kChoices;
@@ -59,7 +59,7 @@ Completion completion_of(const TypeText& type) {
   return type.type == "TEXT" ? Completion::kFiles : Completion::kNothing;
 }
 
-// "[1 - 4096]" as " (1 to 4096)".
+// Converts "[1 - 4096]" to " (1 to 4096)".
 std::string range_note(const std::string& check) {
   const std::string range = between(check, " in [", ']');
   const std::size_t dash = range.find(" - ");
@@ -77,7 +77,7 @@ std::string described(const CLI::Option& option, const TypeText& type) {
 
 std::string ellipsis(const OptionRow& row) { return row.most_values == kManyValues ? "..." : ""; }
 
-// Its name says what it is, and its type nothing more.
+// The name of a positional argument says what it is; its type adds nothing.
 OptionRow positional_row(const CLI::Option& option) {
   OptionRow row = option_row(option);
   row.names = {option.get_name(true, false)};

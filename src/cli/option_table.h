@@ -1,5 +1,5 @@
-// What CLI11 knows of the program, as plain tables. Help, manual page and completions are all written from these, so
-// that none of them can fall behind the options that are parsed.
+// CLI11's description of the program as plain tables. The help, the manual page and the completions are all generated
+// from these tables, so that they always agree with the options that are parsed.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,15 +11,15 @@ namespace exactff::cli {
 enum class Completion { kNothing, kChoices, kFiles, kFolders };
 
 struct OptionRow {
-  std::vector<std::string> names;    // "-o", "--output"; of a positional argument its name
-  std::string value;                 // what stands for it: "NAME[:K]...", "edges|boolean|both"; empty of a flag
+  std::vector<std::string> names;    // "-o", "--output"; for a positional argument its name
+  std::string value;                 // placeholder: "NAME[:K]...", "edges|boolean|both"; empty for a flag
   std::vector<std::string> choices;  // if the value is one of a few
   Completion completion = Completion::kNothing;
-  int least_values = 0;  // words that follow each time it is given
+  int least_values = 0;  // words that follow each time the option is given
   int most_values = 0;
   bool repeats = false;
   bool required = false;
-  std::string description;  // with range and default
+  std::string description;  // including range and default
 };
 
 struct CommandTable {
@@ -31,11 +31,11 @@ struct CommandTable {
 };
 
 struct ProgramTable {
-  CommandTable top;  // what is given without a command
+  CommandTable top;  // the program without a command
   std::vector<CommandTable> commands;
 };
 
-// Hidden options and commands (of an empty group) are left out.
+// Hidden options and commands (those with an empty group) are left out.
 [[nodiscard]] ProgramTable program_table(const CLI::App& app);
 [[nodiscard]] OptionRow option_row(const CLI::Option& option);
 

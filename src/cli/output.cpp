@@ -50,7 +50,7 @@ namespace {
                     .suggestion = "name a file in a folder that exists, is writable and has room"});
 }
 
-// Nothing can take the place of a pipe or device.
+// A pipe or device cannot be replaced by a file, so it is written directly.
 void write_through(const fs::path& path, const std::string& text) {
   errno = 0;
   std::ofstream file(path, std::ios::binary);
@@ -72,7 +72,7 @@ void write_whole_file(const fs::path& path, const std::string& text) {
   if (fs::is_directory(path, ignored)) cannot_write(path, "it is a folder");
   if (fs::is_other(path, ignored)) return write_through(path, text);
   {
-    const InterruptWatch watch;  // a signal waits for the moment that it takes: nothing partial shall stay behind
+    const InterruptWatch watch;  // signals wait for a moment, so that no partial file is left behind
     replace_file(path, text);
   }
   if (is_interrupted()) ::raise(interrupting_signal());

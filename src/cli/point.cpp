@@ -30,7 +30,7 @@ namespace {
 using study::shortest;
 
 constexpr int kMostDigits = 10000;
-constexpr std::uint64_t kMostLeaves = 10'000'000;  // some seconds
+constexpr std::uint64_t kMostLeaves = 10'000'000;  // takes some seconds
 constexpr std::size_t kMostSharesComputed = 200;
 constexpr std::size_t kMostSharesShown = 20;
 
@@ -61,7 +61,7 @@ struct PointArguments {
 
 struct Share {
   FaceId face{};
-  double alone = 0.0;  // of the unoccluded form factor, taken by this occluder alone
+  double alone = 0.0;  // the part of the unoccluded form factor that this occluder alone hides
 };
 
 struct SourceResult {
@@ -135,7 +135,7 @@ AdaptiveOptions adaptive_options(const PointArguments& args) {
   AdaptiveOptions options = args.adaptive_options;
   options.pattern = *study::pattern_named(args.pattern);
   options.variant = *study::variant_named(args.variant);
-  options.record_leaves = !args.svg.empty();  // for the drawing alone: there can be millions
+  options.record_leaves = !args.svg.empty();  // for the drawing only: there can be millions
   options.most_leaves = kMostLeaves;
   return options;
 }
@@ -430,12 +430,12 @@ int run(const PointArguments& args) {
   return certified ? 0 : kNotCertified;
 }
 
-// Else a flag after too few numbers would be taken for one of them.
+// Otherwise, if numbers are missing, the flag that follows would be read as one of them.
 std::string is_no_flag(const std::string& text) {
   return text.starts_with("--") ? "takes three numbers; found '" + text + "' among them" : "";
 }
 
-// A NaN is within every range, since it compares as nothing.
+// A NaN passes every range check, since all its comparisons are false.
 std::string is_a_number(const std::string& text) {
   return parse_number(text).fault == NumberFault::kNone ? "" : "'" + text + "' is not a finite decimal number";
 }

@@ -15,7 +15,7 @@
 namespace exactff::cli {
 namespace {
 
-// The flags given that say where on a patch the receivers are.
+// The given flags that say where on a patch the receivers are.
 std::vector<std::string> placements(const ReceiverArguments& args) {
   std::vector<std::string> flags;
   if (!args.grid.empty()) flags.emplace_back("--grid");

@@ -1,4 +1,4 @@
-// Where values are asked for, as every command over many receivers has it: --receivers FILE, or --on NAME with one of
+// The flags for receivers, shared by all commands over many receivers: --receivers FILE, or --on NAME with one of
 // --grid, --vertices, --centres, --samples.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace exactff::cli {
 
-// As given; empty where a flag was not.
+// The flags as given; empty if a flag was not given.
 struct ReceiverArguments {
   std::vector<std::string> on;
   std::string grid;
@@ -28,13 +28,13 @@ struct ChosenReceivers {
 
 void add_receiver_options(CLI::App& app, ReceiverArguments& args);
 
-// Throws InputError where flags are missing or contradict one another, which can be told before a scene is read.
+// Throws InputError if flags are missing or contradict each other. Needs no scene.
 void check_receiver_options(const ReceiverArguments& args);
 
-// Checks the flags, too. Throws InputError, also where there is no receiver in what was named.
+// Checks the flags, too. Throws InputError, also if the named receivers are none.
 ChosenReceivers receivers_of(const ReceiverArguments& args, const Scene& scene, GridIds grid_ids = GridIds::kUnique);
 
-// The flags again, each preceded by a blank, in words that a shell takes.
+// The flags again, each preceded by a blank and quoted for a shell.
 std::string command_words(const ReceiverArguments& args);
 
 }  // namespace exactff::cli

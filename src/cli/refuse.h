@@ -1,4 +1,4 @@
-// Flags that contradict one another or mean nothing.
+// Refuses flags that contradict each other or have no meaning.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// The flags that every command which reads a scene has.
+// The flags of every command that reads a scene.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace exactff::cli {
 
-// Writes "warning: ..." to stderr for each, the first 20 and a count of the others.
+// Writes "warning: ..." to stderr for the first 20 warnings, then the number of the others.
 void print_warnings(std::span<const Problem> warnings);
 
-// SCENE, --patches groups|faces, --skip-bad-faces. SCENE is a file, or @MODEL[:SETTING=VALUE,...] (exactff/models.h),
-// whatever files there are: one of that name is reached as ./@NAME.
+// SCENE, --patches groups|faces, --skip-bad-faces. SCENE is a file, or @MODEL[:SETTING=VALUE,...] (exactff/models.h). A
+// name that begins with @ always means a model; write ./@NAME for a file of that name.
 struct SceneArguments {
   std::string path;
   std::string patches = "groups";
@@ -21,7 +21,7 @@ struct SceneArguments {
   void add_to(CLI::App& app);
 
   [[nodiscard]] SceneOptions options() const;
-  // Reads or makes the scene; its warnings go to stderr. Throws InputError.
+  // Reads or generates the scene. Its warnings go to stderr. Throws InputError.
   [[nodiscard]] Scene load() const;
 };
 

@@ -1,5 +1,5 @@
 // exactff completion, exactff manual: the program's description of itself, for shells and for man(1). Hidden from
-// --help, since the installation has called them.
+// --help, since only the installation calls them.
 #include <iostream>
 #include <memory>
 #include <string>

@@ -1,4 +1,4 @@
-// --source, as every command over many receivers has it.
+// The flag --source, shared by all commands over many receivers.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -15,11 +15,11 @@ struct SourceArguments {
 
 void add_source_options(CLI::App& app, SourceArguments& args);
 
-// In the order given; empty, which stands for every patch that emits, where the flag was not. Throws InputError where a
-// name is unknown or comes twice.
+// In the given order. Empty if the flag was not given, which stands for every patch that emits. Throws InputError if a
+// name is unknown or occurs twice.
 std::vector<Selection> sources_of(const SourceArguments& args, const Scene& scene);
 
-// The flags again, each preceded by a blank, in words that a shell takes.
+// The flags again, each preceded by a blank and quoted for a shell.
 std::string command_words(const SourceArguments& args);
 
 }  // namespace exactff::cli

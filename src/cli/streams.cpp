@@ -7,7 +7,7 @@
 
 namespace exactff::cli {
 
-// open() gives the lowest number that is free, so ascending order matters.
+// open() returns the lowest free number, so ascending order matters.
 void occupy_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) != -1) continue;

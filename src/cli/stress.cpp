@@ -1,4 +1,4 @@
-// exactff stress: scenes driven from benign to extreme, and where each method stops being usable.
+// exactff stress: makes scenes more and more extreme and shows where each method stops being usable.
 #include "exactff/stress.h"
 
 #include <iostream>

@@ -6,7 +6,8 @@
 //   scene @karkanis:n=200 --on ... --unless-abridged
 //   experiment karkanis-times nettle-rule
 //
-// A scene line has the words and flags that `exactff compare` has for one scene; files are looked for beside the study.
+// A scene line has the words and flags that `exactff compare` takes for one scene. Files are looked up in the folder of
+// the study.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +20,7 @@ namespace exactff::cli {
 
 struct StudyLine {
   std::size_t number = 0;
-  std::vector<std::string> words;  // without the first one
+  std::vector<std::string> words;  // without the keyword
 };
 
 struct StudyFile {
@@ -30,11 +31,12 @@ struct StudyFile {
 
 [[nodiscard]] bool is_study_file(const std::string& path);
 
-// Throws InputError with everything that is wrong in the file's own words; flags are looked at by who takes them.
+// Throws InputError with everything that is wrong in the syntax of the file. Flags are checked later, by the code that
+// parses them.
 [[nodiscard]] StudyFile read_study_file(const std::filesystem::path& path);
 
-// The words of a line: separated by blanks, with "..." or '...' around what holds blanks. Throws InputError where a
-// quote is not closed.
+// The words of a line. Blanks separate words; "..." or '...' encloses text with blanks. Throws InputError if a quote is
+// not closed.
 [[nodiscard]] std::vector<std::string> split_words(std::string_view line, const std::string& file, std::size_t number);
 
 }  // namespace exactff::cli

@@ -1,5 +1,5 @@
-// A table for people: columns as wide as their widest cell, numbers to the right. Cells beyond a limit stick out
-// instead of widening every row.
+// A table to be read by people: columns as wide as their widest cell, numbers aligned right. Cells wider than a limit
+// stick out instead of widening every row.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ class TextTable {
     titles_.push_back(std::move(title));
     aligns_.push_back(align);
   }
-  // One cell a column.
+  // One cell per column.
   void add_row(std::vector<std::string> cells) {
     for (std::string& cell : cells) cell = text::printable(cell);
     rows_.push_back(std::move(cells));
@@ -37,7 +37,7 @@ class TextTable {
  private:
   static constexpr std::size_t kWidest = 80;
 
-  // Bytes that begin a character of UTF-8.
+  // Counts the bytes that begin a UTF-8 character.
   static std::size_t width(const std::string& text) {
     return static_cast<std::size_t>(std::count_if(
         text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));

@@ -1,4 +1,4 @@
-// exactff truth: a file of certified values that other programs are held against.
+// exactff truth: writes a file of certified values, for comparison with other programs.
 #include "exactff/truth.h"
 
 #include <charconv>
@@ -75,7 +75,7 @@ truth::Shard shard_of(const std::string& text) {
                     .suggestion = "write number/count: --shard 1/4 to --shard 4/4"});
 }
 
-// What is asked for, and the scene that it refers to.
+// A request and the scene that it refers to.
 struct Job {
   Scene scene;
   truth::Request request;
@@ -100,7 +100,7 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const truth::Team* team)
   return job;
 }
 
-// What is told while rows are computed.
+// Prints progress and messages while rows are computed.
 class Narrator {
  public:
   [[nodiscard]] truth::Hooks hooks(double slow_seconds) {
@@ -112,7 +112,7 @@ class Narrator {
   }
   void clear() const { bar_.clear(); }
 
-  // Where the work was given up.
+  // Called when the work has been given up.
   void tell_what_is_kept(const std::string& reason, const std::string& file) const {
     bar_.clear();
     if (rows_.total == 0) return;  // it had not begun
@@ -147,7 +147,7 @@ class Narrator {
 };
 
 int write(const TruthArguments& args, truth::Team* team) {
-  truth::require_free(args.file, args.existing());  // before anything that takes time
+  truth::require_free(args.file, args.existing());  // checked before anything that takes time
   const std::unique_ptr<Job> job = job_of(args, team);
   Narrator narrator;
   truth::Summary summary;
@@ -165,14 +165,14 @@ int write(const TruthArguments& args, truth::Team* team) {
   return print_summary(summary, args.file);
 }
 
-// What is wrong is told before the others end: mpirun may then end this process, too.
+// Errors are printed before the followers are dismissed: mpirun may then end this process, too.
 int lead(const TruthArguments& args, truth::Team& team) {
   const int exit_code = exit_code_of([&] { return write(args, &team); });
   truth::dismiss(team, exit_code);
   return exit_code;
 }
 
-// What is wrong is told by the leader.
+// Prints nothing: the leader reports all errors.
 int follow(const TruthArguments& args, truth::Team& team) {
   std::cerr.rdbuf(nullptr);
   std::unique_ptr<Job> job;
@@ -188,7 +188,7 @@ int run(const TruthArguments& args) {
   try {
     team = join_team();
   } catch (const InputError&) {
-    if (launched_rank() > 0) return 0;  // told by the first
+    if (launched_rank() > 0) return 0;  // rank 0 reports it
     throw;
   }
   const InterruptWatch watch("exactff: interrupted; all finished rows are kept in " +

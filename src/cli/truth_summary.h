@@ -1,18 +1,18 @@
-// What truth and merge tell at their end.
+// The summary that `truth` and `merge` print at their end.
 #pragma once
 
 #include <iostream>
 #include <string>
 
-#include "cli/output.h"
 #include "cli/exit_code.h"
+#include "cli/output.h"
 #include "exactff/truth.h"
 #include "study/text.h"
 #include "text/escape.h"
 
 namespace exactff::cli {
 
-// Prints the summary; returns the exit code: 3 where a row is not certified.
+// Prints the summary. Returns the exit code: 3 if a row is not certified.
 inline int print_summary(const truth::Summary& summary, const std::string& file) {
   const std::uint64_t uncertified = summary.with(Status::kNotCertified);
   std::cout << study::counted(summary.rows, "row") << ':';

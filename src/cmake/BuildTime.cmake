@@ -1,11 +1,12 @@
-# What makes a build from scratch take less time. It changes nothing of what is built or tested.
+# Shortens builds from scratch. Does not change what is built or tested.
 #
-# EXACTFF_QUICK_BUILD is for builds that nobody edits in: sources that instantiate the same templates are compiled
-# together, and the standard headers of the unit tests are parsed once. That every source includes what it uses, and what
-# is seen of it alone, a build without the option checks: test.sh without flags makes one.
+# EXACTFF_QUICK_BUILD is for builds in which nobody edits sources. Sources that instantiate the same templates are
+# compiled together, and the standard headers of the unit tests are parsed once. Such a build does not check that every
+# source includes what it uses, and misses warnings that appear only when a source is compiled by itself. A build
+# without the option checks both: test.sh without flags makes one.
 
-# exactff_compile_together(TARGET): the sources of every folder as one; those with options of their own by themselves.
-# What a folder's sources define for themselves therefore needs different names.
+# exactff_compile_together(TARGET): compiles the sources of each folder as one source. Sources with their own compile
+# options stay separate. Names that the sources of a folder define locally must therefore differ.
 function(exactff_compile_together target)
   if(NOT EXACTFF_QUICK_BUILD)
     return()
@@ -19,20 +20,21 @@ function(exactff_compile_together target)
     set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP "${module}")
   endforeach()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # takes every source but the first for a header
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # GCC treats all sources but the first as headers
   endif()
 endfunction()
 
-# exactff_precompile(TARGET HEADER...). Optimising, GCC 12 warns of what it inlines from precompiled standard headers:
-# for targets of exactff_save_compile_time.
+# exactff_precompile(TARGET HEADER...). When optimising, GCC 12 gives warnings about code that it inlines from
+# precompiled standard headers. So use it for targets of exactff_save_compile_time only.
 function(exactff_precompile target)
   if(EXACTFF_QUICK_BUILD AND EXACTFF_SANITIZE)
     target_precompile_headers(${target} PRIVATE ${ARGN})
   endif()
 endfunction()
 
-# exactff_save_compile_time(TARGET): under sanitizers, optimising the program and the tests takes minutes and saves their
-# runs seconds, which are spent in the library: that is compiled as the build says.
+# exactff_save_compile_time(TARGET): compiles the target without optimisation under sanitizers. Optimising the program
+# and the tests would take minutes and save seconds of their runs. The runs spend their time in the library, which is
+# compiled with the options of the build.
 function(exactff_save_compile_time target)
   if(EXACTFF_SANITIZE)
     target_compile_options(${target} PRIVATE -O0)

@@ -1,10 +1,10 @@
-# Flags of every target of ours. -frounding-math and -ffp-contract=off keep CGAL's interval arithmetic and
-# our own error bounds true.
+# The flags of all our targets. CGAL's interval arithmetic and our own error bounds are only valid with -frounding-math
+# and -ffp-contract=off.
 add_library(exactff_flags INTERFACE)
 target_compile_options(exactff_flags INTERFACE -frounding-math -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
                                                -Wconversion -Wno-sign-conversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  target_compile_options(exactff_flags INTERFACE -Wno-restrict)  # GCC 12 warns of every "text" + std::string
+  target_compile_options(exactff_flags INTERFACE -Wno-restrict)  # GCC 12 warns about every "text" + std::string
 endif()
 if(EXACTFF_WERROR)
   target_compile_options(exactff_flags INTERFACE -Werror)

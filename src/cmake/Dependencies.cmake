@@ -10,8 +10,9 @@ if(EXACTFF_PROGRAM)
 endif()
 include(ImportLibrary)
 
-# The Booleans allocate and free millions of small numbers. jemalloc is faster at that (src/README.md has the figure). A
-# library must not choose its user's allocator, so only the program is linked with it; sanitizers bring their own.
+# The Booleans allocate and free millions of small numbers, and jemalloc is faster at that (src/README.md has the
+# figure). Only the program is linked with it, because a library must not choose its user's allocator. Sanitizers have
+# their own.
 if(EXACTFF_PROGRAM AND EXACTFF_JEMALLOC AND NOT EXACTFF_SANITIZE)
   exactff_import_library(jemalloc jemalloc/jemalloc.h jemalloc)
 endif()

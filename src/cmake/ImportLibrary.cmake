@@ -1,7 +1,7 @@
-# Libraries that bring no package configuration in Debian 12. The build and the installed package share this file.
+# Libraries without a package configuration in Debian 12. The build and the installed package share this file.
 
-# exactff_import_library(NAME HEADER LIBRARY [LINKED...]): exactff_dep::NAME; one that is not there goes into
-# exactff_missing.
+# exactff_import_library(NAME HEADER LIBRARY [LINKED...]): defines exactff_dep::NAME. A library that is not found is
+# added to exactff_missing.
 function(exactff_import_library name header library)
   if(TARGET exactff_dep::${name})
     return()

@@ -1,6 +1,6 @@
-# cmake --install. Everything is found relative to its own place, so that an installed tree may be moved.
-# Components: program, mpi (what it loads under mpirun), library (what a program linked with the shared library needs to
-# run), development.
+# cmake --install. All installed paths are relative, so that an installed tree may be moved. Components: program, mpi
+# (what the program loads under mpirun), library (what a program linked with the shared library needs to run),
+# development.
 include(CMakePackageConfigHelpers)
 
 set(exactff_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/exactff)
@@ -24,8 +24,8 @@ install(FILES ${exactff_generated}/exactff-config.cmake ${exactff_generated}/exa
   DESTINATION ${exactff_cmake_dir} COMPONENT development)
 
 # --- pkg-config ---
-# Where there is a static library alone, plain `pkg-config --libs` has to name what it needs. FLINT, Arb and Embree bring
-# no file of their own in Debian 12.
+# If there is only a static library, plain `pkg-config --libs` has to name its dependencies. FLINT, Arb and Embree have
+# no .pc file in Debian 12.
 if(library_type STREQUAL "STATIC_LIBRARY")
   set(pc_requires "mpfr gmpxx gmp")
   set(pc_libraries " -lflint-arb -lflint -lembree3 -pthread")

@@ -1,6 +1,6 @@
-# Debian packages: `cpack -G DEB` in a build folder. The program is one package, what other programs are compiled with
-# another; so is what it needs to run under mpirun, if that was built, and with BUILD_SHARED_LIBS the library. Tests and
-# benchmarks are not installed, hence in none.
+# Debian packages: `cpack -G DEB` in a build folder. There is one package for the program and one for compiling other
+# programs. If they were built, there is also one for running under mpirun, and with BUILD_SHARED_LIBS one for the
+# library. Tests and benchmarks are not installed, so no package has them.
 set(EXACTFF_PACKAGE_CONTACT "exactff developers <exactff@example.org>" CACHE STRING
     "Whom the Debian packages name as their maintainer: NAME <ADDRESS>")
 
@@ -13,7 +13,7 @@ set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_COMPONENTS_ALL development)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # dependencies as dpkg-shlibdeps finds them in the program
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # dpkg-shlibdeps finds the dependencies of the program
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/src/cmake/debian/finish.cmake)
 set(CPACK_EXACTFF_COPYRIGHT ${PROJECT_SOURCE_DIR}/src/cmake/debian/copyright)
@@ -58,6 +58,6 @@ if(library_type STREQUAL "SHARED_LIBRARY")
   set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libexactff${soversion} (= ${PROJECT_VERSION})")
 else()
   set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-      "libgmp-dev, libmpfr-dev, libflint-dev, libflint-arb-dev, libembree-dev")  # a static library's own
+      "libgmp-dev, libmpfr-dev, libflint-dev, libflint-arb-dev, libembree-dev")  # dependencies of a static library
 endif()
 include(CPack)

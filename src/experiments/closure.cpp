@@ -23,8 +23,8 @@ std::vector<Selection> all_patches(const Scene& scene) {
   return patches;
 }
 
-// Nothing stands against walls and ceiling; on the floor a receiver might lie inside a box, whose back sides send
-// nothing.
+// Receivers lie on walls and ceiling, which no box touches. A receiver on the floor might lie inside a box, whose back
+// sides emit nothing.
 std::vector<Receiver> receivers_in(const Scene& scene, std::uint64_t count) {
   std::vector<FaceId> faces;
   for (const char* name : {"wall_left", "wall_right", "wall_back", "wall_front", "ceiling"}) {
@@ -35,7 +35,7 @@ std::vector<Receiver> receivers_in(const Scene& scene, std::uint64_t count) {
 }
 
 struct Truth {
-  std::vector<double> values;  // by patch
+  std::vector<double> values;  // indexed by patch
   Enclosure sum;
 };
 

@@ -1,9 +1,9 @@
-// The experiments of the report that are not about one scene with its grid of receivers: what Karkanis and Nettle
-// measured or claimed, done again against exact values.
+// The experiments of the report that do not concern one scene with its grid of receivers: they repeat what Karkanis and
+// Nettle measured or claimed, with exact values.
 //
-// An experiment is one pair of files and one line of list.h. It draws its scenes from fixed seeds and gives sentences,
-// figures and tables. Tables of values are the same bytes on every run and for any number of threads; whatever depends
-// on the clock is in tables of times and in sentences.
+// An experiment is one pair of files and one line of list.h. It generates its scenes from fixed seeds and returns
+// sentences, figures and tables. Tables of values are the same bytes on every run and for any number of threads.
+// Results that depend on the clock are in tables of times and in sentences.
 #pragma once
 
 #include <span>
@@ -17,8 +17,8 @@
 namespace exactff::experiments {
 
 struct Effort {
-  bool abridged = false;  // a second each, for a first look; else half a minute at most
-  int threads = 1;        // for values; times are always of one thread
+  bool abridged = false;  // a second each, for a first look; otherwise at most half a minute
+  int threads = 1;        // for values; times are always measured with one thread
 };
 
 using study::TextTable;
@@ -26,14 +26,14 @@ using Result = study::Chapter;
 
 struct Experiment {
   std::string_view name;     // letters, digits and hyphens
-  std::string_view summary;  // a line
+  std::string_view summary;  // one line
   Result (*run)(const Effort&, const study::Hooks&) = nullptr;
 };
 
-// In the order in which a report shows them.
+// In the order of the report.
 [[nodiscard]] std::span<const Experiment> all_experiments();
 
-// Throws InputError that names the closest ones.
+// Throws an InputError that names the closest existing names.
 [[nodiscard]] const Experiment& experiment_named(std::string_view name);
 
 }  // namespace exactff::experiments

@@ -16,10 +16,10 @@ using study::Axes;
 using study::rounded;
 using study::Series;
 
-// Where rotation and distance do not vary.
+// The values where rotation and distance do not vary.
 constexpr double kUsualResolution = 100;
 constexpr double kTurned = 31.7;      // degrees: its tangent is far from every simple fraction
-constexpr double kUsualDistance = 2;  // of the light
+constexpr double kUsualDistance = 2;  // from the light
 constexpr std::string_view kResolutionStage = "hemicube-resolution";
 
 std::string choice_text(double resolution, double rotation) {
@@ -41,7 +41,7 @@ Subject make_subject(std::size_t group, int triangles) {
   return subject;
 }
 
-// In F, of the triangles that can be seen.
+// Errors in F, for the visible triangles.
 std::vector<double> triangle_errors(const Subject& subject, const std::string& choice) {
   const auto values = values_of(choice, subject.scene.scene, subject.scene.receiver, subject.scene.triangles);
   std::vector<double> errors;
@@ -60,13 +60,14 @@ Scene light_scene() {
   return small.build();
 }
 
-// So far below it, up to 0.8 of that to either side: it is within the top face.
+// A receiver at this distance below the light, displaced sideways by up to 0.8 of the distance: the light is within the
+// top face.
 Receiver place_below(models::Random& random, double distance) {
   const double x = distance * random.between(-0.8, 0.8), y = distance * random.between(-0.8, 0.8);
   return {.point = {x, y, -distance}, .normal = {0, 0, 1}, .on = {}, .id = {}};
 }
 
-// Relative. The places of a group are the same for every choice.
+// Relative errors. The places of a group are the same for every choice.
 std::vector<double> light_errors(std::size_t group, int places, double distance, const std::string& choice) {
   const Scene scene = light_scene();
   const Selection light = scene.select("light");
@@ -82,10 +83,10 @@ std::vector<double> light_errors(std::size_t group, int places, double distance,
   return errors;
 }
 
-// ------------------------------------------------------------------------------------------------------- what is told
+// ---------------------------------------------------------------------------------------------------------- sentences
 
 constexpr double kAll = 1e300;
-// Up to here the light is larger than ten pixels everywhere.
+// Up to this distance the light is larger than ten pixels at every place.
 constexpr double kLastLarge = 12;
 
 std::string resolution_sentence(const ResolutionCurves& c) {
@@ -146,7 +147,7 @@ Series line(std::string title, const ErrorCurve& curve, int style) {
   return series;
 }
 
-// Through the first point of a curve.
+// A power law through the first point of a curve.
 Series theory(const ErrorCurve& curve, double power, std::string title) {
   const double x = curve.at.front(), y = curve.rms.front(), last = curve.at.back();
   return {std::move(title), {{x, y}, {last, y * std::pow(last / x, power)}}, 0};
@@ -212,7 +213,7 @@ struct Task {
   std::vector<double> found;
 };
 
-// From the tasks of all groups at one place.
+// Combines the tasks of all groups at one place.
 void add_place(ErrorCurve& curve, std::span<const Task> groups) {
   std::vector<double> all;
   for (const Task& task : groups) {

@@ -1,10 +1,11 @@
-// The hemicube's error against its resolution, its rotation about the normal, and the distance of a source.
+// The error of the hemicube against its resolution, its rotation about the normal, and the distance of a source.
 //
-// Two subjects. The triangles of Karkanis' scenes have edges in every direction. A square light, parallel to the
-// hemicube's top with its edges along the rows of pixels, is the worst there is: an edge that moves across a row of
-// pixel centres gains or loses the whole row. Turned by an angle, the same light has edges like any other.
+// There are two subjects. The triangles of Karkanis' scenes have edges in every direction. A square light that is
+// parallel to the hemicube's top, with its edges along the rows of pixels, is the worst case: an edge that moves across
+// a row of pixel centres gains or loses the whole row. If the same light is rotated by an angle, its edges are like any
+// others.
 //
-// Everything is measured in groups that are independent of each other, so that a slope has a confidence interval.
+// Everything is measured in independent groups, so that slopes have confidence intervals.
 #pragma once
 
 #include "experiments/support.h"
@@ -14,24 +15,24 @@ namespace exactff::experiments {
 struct ResolutionSize {
   std::vector<double> resolutions = {32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024};
   std::vector<double> rotations = {0, 5, 10, 15, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 75, 80, 85};  // degrees
-  std::vector<double> distances = geometric(1.0, 128.0, 15);  // of a light with sides of 1
-  std::size_t groups = 8;  // a scene of Karkanis, seeds 1, 2, ..., or some places of the light
+  std::vector<double> distances = geometric(1.0, 128.0, 15);  // of a light of side 1
+  std::size_t groups = 8;  // a group is one scene of Karkanis (seeds 1, 2, ...) or several places below the light
   int triangles = 200;     // of each scene
-  int places = 12;         // of the light, in each group
+  int places = 12;         // of the receiver below the light, in each group
 };
 
-// Errors of one group at one place along a curve.
+// The errors of one group at one place along a curve.
 using ErrorsAt = std::function<std::vector<double>(std::size_t group, double at)>;
 
 struct ErrorCurve {
   std::vector<double> at;
   std::vector<double> rms;                        // over all groups
-  std::vector<double> median;                     // of magnitudes, over all groups
-  std::vector<std::vector<double>> rms_by_group;  // by group, then place
-  // Of the log-log line through the places up to `last`.
+  std::vector<double> median;                     // of the magnitudes, over all groups
+  std::vector<std::vector<double>> rms_by_group;  // indexed by group, then place
+  // The slope of the log-log line through the places up to `last`.
   [[nodiscard]] SlopeFit slope(double last) const;
 };
-// What is to be measured along a curve.
+// What to measure along a curve.
 struct CurvePlan {
   std::vector<double> at;
   ErrorsAt errors;
@@ -39,7 +40,7 @@ struct CurvePlan {
 [[nodiscard]] std::vector<ErrorCurve> error_curves(std::size_t groups, std::span<const CurvePlan> plans, int threads,
                                                    const study::Hooks& hooks);
 
-// All curves. Errors of the triangles are in F; those of the light are relative to its exact value.
+// All curves. Errors of the triangles are in F; those of the light are relative to the exact value.
 struct ResolutionCurves {
   ErrorCurve triangles_by_resolution, aligned_by_resolution, turned_by_resolution;
   ErrorCurve triangles_by_rotation, light_by_rotation;

@@ -67,7 +67,7 @@ std::string power_of_ten(int exponent) {
   return text;
 }
 
-// ------------------------------------------------------------------------------------------------------- what is told
+// ---------------------------------------------------------------------------------------------------------- sentences
 
 std::string scene_sentence(std::span<const ScatterPoint> points, const ScatterSize& size) {
   const std::size_t visible = count(points, 0).visible;
@@ -217,7 +217,7 @@ std::vector<ScatterDecade> scatter_decades(std::span<const ScatterPoint> points,
   return decades;
 }
 
-// A pixel of side 2 / n at distance 1.
+// The form factor of a pixel of side 2 / n at distance 1.
 double largest_pixel(int resolution) { return 4.0 / (std::numbers::pi * resolution * resolution); }
 
 std::vector<double> scatter_slopes(std::span<const ScatterPoint> points, const ScatterSize& size,

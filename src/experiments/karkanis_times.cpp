@@ -43,7 +43,7 @@ double exact_seconds(const KarkanisScene& scene, const std::vector<ExactSource>&
   return seconds_of([&] { (void)all_patches(scene, sources, culling, hooks); });
 }
 
-// Of every k-th source; the time is that of all, if all take as long.
+// Measures every k-th source and scales the time to all sources.
 double sampled_seconds(const std::string& choice, const KarkanisScene& scene, std::size_t most) {
   std::vector<Selection> some;
   const std::size_t step = std::max<std::size_t>(1, scene.triangles.size() / most);
@@ -60,7 +60,8 @@ double hemicube_seconds(const KarkanisScene& scene) {
 
 std::string rays_choice(int rays) { return "area-sampling:pattern=stratified,samples=" + std::to_string(rays); }
 
-// What it would take, from the two times before; nothing is known of the first two.
+// Extrapolates from the two previous times. For the first two numbers of triangles there is nothing to extrapolate
+// from.
 double predicted(const std::vector<TimeRow>& rows, int triangles) {
   const TimeRow& last = rows.back();
   if (rows.size() < 2 || !last.without_shaft) return last.without_shaft.value_or(INFINITY);
@@ -87,11 +88,11 @@ TimeRow time_row(const TimesSize& size, int triangles, const std::vector<TimeRow
   return row;
 }
 
-// How far rays are from the truth, and what they cost, on one scene.
+// The error and the cost of rays on one scene.
 struct Affordable {
   int rays = 0;
   double seconds = 0.0;
-  double error = 0.0;  // RMS over the patches, over the RMS form factor
+  double error = 0.0;  // RMS over the patches, divided by the RMS form factor
 };
 
 std::vector<Affordable> affordable_rays(const TimesSize& size, const study::Hooks& hooks) {
@@ -115,7 +116,7 @@ std::vector<Affordable> affordable_rays(const TimesSize& size, const study::Hook
   return rows;
 }
 
-// ------------------------------------------------------------------------------------------------------- what is told
+// ---------------------------------------------------------------------------------------------------------- sentences
 
 std::string his_list() {
   std::string text;
@@ -132,7 +133,7 @@ const TimeRow* row_at(const std::vector<TimeRow>& rows, int triangles) {
   return found == rows.end() ? nullptr : &*found;
 }
 
-// Over the last four-fold growth or so, where a start-up no longer counts.
+// The exponent over about the last factor of four, where start-up costs no longer matter.
 std::string exponent_between(const std::vector<TimeRow>& rows, const auto& seconds) {
   std::vector<const TimeRow*> measured;
   for (const TimeRow& row : rows) {

@@ -1,5 +1,5 @@
-// The experiments, in the order in which a report shows them: one line for each. Every one has files that define
-// `Result NAME(const Effort&, const study::Hooks&)`. No include guard: whoever includes this says what to make of it.
+// The experiments in the order of the report, one line for each. Each has files that define `Result NAME(const Effort&,
+// const study::Hooks&)`. There is no include guard: the including file defines the macro that expands each line.
 EXACTFF_EXPERIMENT(hemicube_scatter, "hemicube-scatter",
                    "Karkanis' two plots: hemicube against exact values, triangle by triangle")
 EXACTFF_EXPERIMENT(hemicube_resolution, "hemicube-resolution",

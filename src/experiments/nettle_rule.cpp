@@ -35,7 +35,7 @@ Vec3 random_direction(Random& random) {
   }
 }
 
-// With a cosine of at least `least` to the other direction.
+// A random direction with a cosine of at least `least` to `other`.
 Vec3 random_towards(Random& random, const Vec3& other, double least) {
   while (true) {
     const Vec3 v = random_direction(random);
@@ -43,14 +43,14 @@ Vec3 random_towards(Random& random, const Vec3& other, double least) {
   }
 }
 
-// The patch's centre at the origin, its sides along x and y, its front towards +z: it is planar to the last bit. The
-// receiver is at distance 1.
+// The patch has its centre at the origin, its sides along x and y, and its front towards +z, so it is exactly planar.
+// The receiver is at distance 1.
 struct Configuration {
   Vec3 receiver;
   Vec3 receiver_normal;
-  Vec3 along;     // of the occluder's edge
+  Vec3 along;     // direction of the occluder's edge
   Vec3 across;    // from the edge into the occluder
-  double offset;  // of the edge from the line of centres, over half the patch's side
+  double offset;  // distance of the edge from the line of centres, divided by half the patch's side
 };
 
 Configuration make_configuration(Random& random, double least_cosine) {
@@ -65,7 +65,7 @@ Configuration make_configuration(Random& random, double least_cosine) {
   return c;
 }
 
-// Of the numbered group, the same whatever else is measured.
+// The configurations of this group. They do not depend on what else is measured.
 std::vector<Configuration> configurations(const NettleSize& size, std::size_t group) {
   constexpr double kWellTowards = 0.3;
   Random random(2000 + group);
@@ -84,8 +84,8 @@ std::vector<Vec3> rectangle(const Vec3& centre, const Vec3& a, double a_low, dou
 
 enum class With { kNothing, kOccluder };
 
-// The occluder lies halfway, parallel to the patch, and reaches far beyond it on one side. Halfway the patch looks half
-// as large.
+// The occluder lies halfway between receiver and patch, parallel to the patch, and extends far beyond it on one side.
+// At half the distance the patch appears half as large.
 Scene make_scene(const Configuration& c, double side, With with, double scale = 1.0) {
   SmallScene small;
   const double h = scale * side / 2;
@@ -127,7 +127,7 @@ std::vector<Way> ways(const NettleSize& size) {
 
 std::string splits_text(int splits) { return "splits=" + std::to_string(splits); }
 
-// Relative errors of every way, for one configuration and side.
+// The relative errors of all ways, for one configuration and side.
 std::vector<double> errors_of(const Configuration& c, double side, const NettleSize& size) {
   const Scene free = make_scene(c, side, With::kNothing), occluded = make_scene(c, side, With::kOccluder);
   const Receiver receiver = receiver_of(c);
@@ -147,7 +147,7 @@ std::vector<double> errors_of(const Configuration& c, double side, const NettleS
   return errors;
 }
 
-// By way, then configuration.
+// Indexed by way, then configuration.
 using GroupErrors = std::vector<std::vector<double>>;
 
 GroupErrors group_errors(const NettleSize& size, std::size_t group, double side) {
@@ -176,7 +176,7 @@ NettleCurve curve_of(const NettleSize& size, const std::vector<GroupErrors>& fou
   return curve;
 }
 
-// ------------------------------------------------------------------------------------------------------- what is told
+// ---------------------------------------------------------------------------------------------------------- sentences
 
 const NettleCurve& curve_at(const std::vector<NettleCurve>& curves, NettleCase kind, int splits) {
   return *std::ranges::find_if(curves, [&](const NettleCurve& c) { return c.kind == kind && c.splits == splits; });

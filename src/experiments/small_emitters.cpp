@@ -36,7 +36,7 @@ Hall make_hall(const EmittersSize& size) {
   return {std::move(name), std::move(scene), std::move(lamps), std::move(receivers)};
 }
 
-// What all lamps bring to the receiver; they are all alike, and grey.
+// The radiosity from all lamps. The lamps are equal, and grey.
 double radiosity(const Hall& hall, const Receiver& receiver, std::span<const methods::Estimate> estimates) {
   double sum = 0.0;
   for (std::size_t i = 0; i < estimates.size(); ++i) {
@@ -45,7 +45,7 @@ double radiosity(const Hall& hall, const Receiver& receiver, std::span<const met
   return hall.scene.receiver_reflectance(receiver.on).r * sum;
 }
 
-// By choice, then receiver; each thread takes blocks of receivers.
+// Indexed by choice, then receiver. Each thread takes blocks of receivers.
 std::vector<std::vector<double>> radiosities(const Hall& hall, std::span<const std::string> choices, int threads,
                                              const study::Hooks& hooks) {
   constexpr std::size_t kBlocks = 8;
@@ -78,7 +78,7 @@ struct Timed {
   double seconds = 0.0;
 };
 
-// ------------------------------------------------------------------------------------------------------- what is told
+// ---------------------------------------------------------------------------------------------------------- sentences
 
 std::string in_words(const Timed& t) {
   return t.errors->choice + " in " + duration(t.seconds) + " with an RMS error of " + percent(t.errors->rms) + " and " +

@@ -1,8 +1,8 @@
 // Karkanis' conclusion: "Clearly the extra cost of the accurate algorithm pays off when the form factor is small. This
 // could be important in a radiosity solution, for example when a scene contains small, bright emitters."
 //
-// A hall with many small bright lamps, the radiosity that they all bring to receivers on its floor, and what every
-// method errs by in what time per receiver.
+// A hall with many small bright lamps: the radiosity that all lamps together give receivers on its floor, and the error
+// and the time per receiver of every method.
 #pragma once
 
 #include "experiments/support.h"
@@ -12,7 +12,7 @@ namespace exactff::experiments {
 struct EmittersSize {
   int lamps = 256;
   int grid = 16;   // receivers along a side of the floor
-  int timed = 12;  // receivers that times are of
+  int timed = 12;  // receivers used for timing
   std::vector<std::string> choices = {"hemicube:resolution=100",
                                       "hemicube:resolution=200",
                                       "hemicube:resolution=400",
@@ -34,17 +34,17 @@ struct EmittersSize {
                                       "adaptive:eps_B=0.000001"};
 };
 
-// Radiosity errors over the mean exact radiosity.
+// Radiosity errors divided by the mean exact radiosity.
 struct EmitterErrors {
   std::string choice;
   double rms = 0.0;
   double worst = 0.0;
-  std::vector<double> radiosity;  // by receiver
+  std::vector<double> radiosity;  // indexed by receiver
 };
 
 struct EmitterStudy {
   std::vector<Receiver> receivers;
-  std::vector<double> exact;  // radiosity, by receiver
+  std::vector<double> exact;  // radiosity, indexed by receiver
   double mean = 0.0;
   std::vector<EmitterErrors> methods;
 };

@@ -1,4 +1,4 @@
-// What several experiments share: Karkanis' scenes, values of many sources from one point, times, tables, slopes.
+// Shared by several experiments: Karkanis' scenes, values of many sources from one point, times, tables, slopes.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@ namespace exactff::experiments {
 
 // ------------------------------------------------------------------------------------------------------------ scenes
 
-// Triangles of one normal that face the receiver, each of them a source.
+// Triangles with a common normal that all face the receiver. Each is a source.
 struct KarkanisScene {
   Scene scene;
   Receiver receiver;
@@ -27,10 +27,10 @@ struct KarkanisScene {
 };
 [[nodiscard]] KarkanisScene karkanis_scene(int triangles, std::uint64_t seed);
 
-// A scene of a few polygons, each a patch of its own.
+// A scene of a few polygons, each of which is a patch.
 class SmallScene {
  public:
-  // Counter-clockwise seen from the front.
+  // The ring is counter-clockwise as seen from the front.
   void add(std::string_view patch, const std::vector<Vec3>& ring);
   [[nodiscard]] Scene build() { return builder_.build(); }
 
@@ -41,11 +41,11 @@ class SmallScene {
 
 // ------------------------------------------------------------------------------------------------------------ values
 
-// A method on a scene with its sources, for one thread at a time.
+// A method prepared for a scene and its sources. For one thread at a time.
 class Bench {
  public:
   Bench(const methods::Choice& choice, const Scene& scene, std::span<const Selection> sources);
-  // Of every source, in their order.
+  // The values of all sources, in their order.
   [[nodiscard]] std::span<const methods::Estimate> look_from(const Receiver& receiver);
 
  private:
@@ -65,8 +65,8 @@ class Bench {
 
 // ------------------------------------------------------------------------------------------------------------- times
 
-// Seconds of one call on a steady clock: after a first call that warms up, the median of up to `repeats` more, as long
-// as they take less than a second together. A first call longer than that is not repeated.
+// The time of one call in seconds, on a steady clock: the median of up to `repeats` calls after a warm-up call, as long
+// as they take less than a second together. If the first call takes longer than that, its time is the result.
 [[nodiscard]] double seconds_of(const std::function<void()>& call, int repeats = 5);
 
 // ------------------------------------------------------------------------------------------------------------ slopes
@@ -76,17 +76,17 @@ using study::Points;
 struct SlopeFit {
   double slope = 0.0;
   double half_width = 0.0;  // of the 95 % confidence interval
-  std::size_t count = 0;    // of independent slopes that it is the mean of
+  std::size_t count = 0;    // number of independent slopes averaged
 };
-// The mean of independent slopes, by Student's t. Requires two of them or more.
+// The mean of independent slopes, with its confidence interval by Student's t. Requires at least two slopes.
 [[nodiscard]] SlopeFit mean_slope(std::span<const double> slopes);
 // "-0.81 ± 0.03"
 [[nodiscard]] std::string to_text(const SlopeFit& fit);
 // A slope with two decimals and a true minus sign.
 [[nodiscard]] std::string slope_text(double slope);
 
-// Where the broken line through the points, in order of x, first has the value y from below; log-log. Nothing if it
-// never does.
+// The x at which the polyline through the points, sorted by x, first reaches the value y from below; on log-log axes.
+// Nothing if it never does.
 [[nodiscard]] std::optional<double> reaches(const Points& points, double y);
 
 // "1.5 %"
@@ -94,7 +94,7 @@ struct SlopeFit {
 
 // ------------------------------------------------------------------------------------------------------------ tables
 
-// A CSV being written: `#` lines that tell what it is, the names of the columns, rows.
+// Writes a CSV file: comment lines (#) that describe it, the column names, rows.
 class Table {
  public:
   Table(std::string_view about, std::initializer_list<std::string_view> columns);
@@ -105,7 +105,7 @@ class Table {
   std::ostringstream out_;
 };
 
-// n values from first to last, each the same multiple of the one before.
+// `count` values from first to last in geometric progression.
 [[nodiscard]] std::vector<double> geometric(double first, double last, int count);
 
 }  // namespace exactff::experiments

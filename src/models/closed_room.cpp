@@ -1,5 +1,5 @@
-// A room without a gap, with things in it. Metres; x to the right, y up, z into the room. The table stands in the
-// middle, the boxes in two rows along the walls at low and at high z, one in each of equal slots.
+// A closed room with objects in it. Metres; x to the right, y up, z into the room. The table stands in the middle, the
+// boxes in two rows along the walls at low and at high z, one in each of equal slots.
 #include <algorithm>
 
 #include "models/model_files.h"
@@ -16,7 +16,7 @@ constexpr double kSlotDepth = 1.0;  // along z
 constexpr double kWidestBox = 1.25;
 
 constexpr double kLampLeft = 2.25, kLampRight = 3.75, kLampNear = 1.625, kLampFar = 2.375;
-constexpr double kLampHeight = 2.5, kHousingTop = 2.625;  // of a lamp that hangs
+constexpr double kLampHeight = 2.5, kHousingTop = 2.625;  // of a hanging lamp
 
 constexpr Box kTableTop{{2.25, 0.71875, 1.5}, {3.75, 0.75, 2.5}};
 
@@ -26,7 +26,7 @@ void add_flush_lamp(PlainScene& scene) {
   add_quad(scene, "lamp", lamp);
 }
 
-// A closed box of which the underside alone shines.
+// A closed box whose underside alone emits.
 void add_hanging_lamp(PlainScene& scene) {
   add_quad(scene, "ceiling", ceiling_of(kRoom));
   add_quad(scene, "lamp", facing_down(kLampLeft, kLampRight, kLampHeight, kLampNear, kLampFar));

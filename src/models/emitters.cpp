@@ -1,6 +1,6 @@
-// A hall with many small bright lamps below its ceiling and boxes on its floor: each lamp is smaller than a pixel of a
-// usual hemicube on the floor, and casts shadows with hardly a penumbra. Metres; y up. Lamps and boxes stand each in a
-// cell of a square grid, off its middle.
+// A hall with many small bright lamps below its ceiling and boxes on its floor. Seen from the floor, each lamp is
+// smaller than a pixel of a usual hemicube, and its shadows have hardly any penumbra. Metres; y up. Each lamp and each
+// box stands in its own cell of a square grid, off the middle of the cell.
 #include <algorithm>
 
 #include "models/model_files.h"
@@ -49,7 +49,7 @@ void add_hiding_boxes(PlainScene& scene, Random& random, int count) {
   });
 }
 
-// As bright as makes the floor about 1 under all of them.
+// The radiosity of a lamp at which all lamps together give the floor about 1.
 double radiosity(int count, double size) { return kHall.x * kHall.z / (count * size * size); }
 
 PlainScene make_emitters(const methods::Settings& settings) {
@@ -71,7 +71,7 @@ PlainScene make_emitters(const methods::Settings& settings) {
   add_hiding_boxes(scene, random, static_cast<int>(settings.whole("boxes")));
   add_lamps(scene, random, count, size);
   scene.source = "lamp1";
-  scene.point = {0.125, 0.0, 0.125};  // where no box stands
+  scene.point = {0.125, 0.0, 0.125};  // no box stands here
   scene.normal = {0, 1, 0};
   return scene;
 }

@@ -17,8 +17,8 @@ PlainScene with_square_source() {
   return scene;
 }
 
-// Half the side of a square about each triangle, seen at distance 1, so that n of them cover as asked: a random
-// triangle in a square has 11/144 of its area on average, and the source's shadow area is 4.
+// Half the side of the square about each triangle, as seen at distance 1, for which n triangles have the requested
+// cover: a random triangle in a square has 11/144 of its area on average, and the source's shadow area is 4.
 double reach(const FamilyOptions& options) { return std::sqrt(options.cover * (144.0 / 11.0) / options.n); }
 
 Vec3 near_by(Random& random, const Vec3& centre, double half_side) {
@@ -66,7 +66,7 @@ PlainScene blinds(const FamilyOptions& options) {
   for (int i = 0; i < options.n; ++i) {
     const double low = -0.5 + pitch * i;
     const double high = low + pitch / 2;
-    const double back = 0.5 + pitch / 4;  // the slat leans by as much as half its height
+    const double back = 0.5 + pitch / 4;  // the slat is as deep as half its height
     scene.add_ring(scene.patch("occ"), {{-0.75, low, 0.5}, {0.75, low, 0.5}, {0.75, high, back}, {-0.75, high, back}});
   }
   return scene;
@@ -100,12 +100,12 @@ Vec3 on_sphere(const std::array<int, 3>& direction) {
   return {0.125 + 0.375 * x / length, 0.0625 + 0.375 * y / length, 0.5 + 0.375 * z / length};
 }
 
-// Lattice points of an octahedron's surface |x| + |y| + |z| = steps, pushed out to the sphere and shared.
+// The lattice points of the octahedron's surface |x| + |y| + |z| = steps, projected onto the sphere. Faces share them.
 class Sphere {
  public:
   Sphere(PlainScene& scene, int steps) : scene_(scene), steps_(steps) {}
 
-  // The face of the octahedron in the octant of the three signs, cut into steps^2 triangles.
+  // The face of the octahedron in the octant with the three signs, divided into steps^2 triangles.
   void add_octant(int sx, int sy, int sz) {
     for (int i = 0; i < steps_; ++i) {
       for (int j = 0; i + j < steps_; ++j) {
@@ -149,7 +149,7 @@ PlainScene mesh(const FamilyOptions& options) {
 
 namespace {
 
-// Draws faces whose corners are multiples of 1/64, about as large as `cover` asks for.
+// Generates faces whose corners are multiples of 1/64, about as large as `cover` requires.
 class LatticeFaces {
  public:
   LatticeFaces(PlainScene& scene, const FamilyOptions& options)
@@ -165,7 +165,7 @@ class LatticeFaces {
  private:
   static double rounded(double value) { return std::floor(value * 64.0 + 0.5) / 64.0; }
 
-  // Now and then in the plane of the source or beyond, or level with the receiver or behind it.
+  // Sometimes in the plane of the source or beyond it, or level with the receiver or behind it.
   Vec3 centre() {
     const double z = random_.integer(-2, 18) / 16.0;
     const double x = rounded(std::abs(z) * random_.between(-1, 1));
@@ -191,7 +191,7 @@ class LatticeFaces {
     return {c, {c.x + side, c.y, c.z}, {c.x + side, c.y + side, c.z}, {c.x, c.y + side, c.z}};
   }
 
-  // Shares the first edge of a face that is there.
+  // Shares the first edge of an existing face.
   std::vector<Vec3> neighbour() {
     const Vec3 a = first_corner_of_some_face();
     return {a, scene_.vertices[chosen_ + 1], beside(a)};

@@ -1,5 +1,5 @@
-// The families (families.h) as models. Each gets materials, so that the source emits, and a square `floor` about the
-// receiver, facing the source, for receivers beside the one at the origin.
+// The families (families.h) as models. Each gets materials, so that the source emits, and a square `floor` around the
+// receiver, facing the source, for receivers other than the origin.
 #include "models/families.h"
 #include "models/model_files.h"
 
@@ -36,7 +36,8 @@ PlainScene make_family(const Settings& settings) {
   return scene;
 }
 
-// As sources all of Karkanis' triangles are seen: the family leaves it to chance which side is the front.
+// Turns all of Karkanis' triangles towards the receiver, so that they can be sources: the family leaves their front to
+// chance.
 void turn_down(PlainScene& scene, PlainPatch& patch) {
   for (PlainFace& face : patch.faces) {
     Ring& ring = face.rings.front();

@@ -1,10 +1,10 @@
-// A soup of triangles that hangs in clusters, as leaves do: ellipsoids of leaves above trunks, between the ground and
-// the sky. Metres; z up.
+// Triangles in clusters, like the leaves of trees: ellipsoids of leaves above trunks, between the ground and the sky.
+// Metres; z up.
 //
-// 1. The ground is divided into a square grid; each tree stands in a cell, off its middle, with a crown about as wide
-//    as the cell.
-// 2. Leaves go to the trees in turn: an equilateral triangle of any orientation about a point drawn uniformly in the
-//    crown. Their area follows from their number and the leaf area asked for.
+// 1. The ground is divided into a square grid. Each tree stands in a cell, off its middle, and its crown is about as
+//    wide as the cell.
+// 2. Leaves are distributed to the trees in turn. A leaf is an equilateral triangle of any orientation about a point
+//    chosen uniformly in the crown. The area of the leaves follows from their number and the requested leaf area.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,15 +17,15 @@ namespace exactff::models {
 
 namespace {
 
-constexpr double kSide = 40.0;  // of ground and sky
+constexpr double kSide = 40.0;  // side of ground and sky
 constexpr double kSkyHeight = 16.0;
-constexpr double kLongestLeaf = 1.0;  // from its middle to a corner
+constexpr double kLongestLeaf = 1.0;  // from the centre of a leaf to a corner
 constexpr int kMostLeaves = 10'000'000;
 
 struct Tree {
-  Vec3 middle;  // of the crown
+  Vec3 middle;  // centre of the crown
   double across = 0.0;
-  double upward = 0.0;  // the crown's half axes
+  double upward = 0.0;  // half axes of the crown
   double trunk = 0.0;   // half its width
 };
 
@@ -46,7 +46,7 @@ std::vector<Tree> plant(Random& random, int count) {
   return trees;
 }
 
-// Uniform in the unit ball.
+// A uniformly distributed point in the unit ball.
 Vec3 in_ball(Random& random) {
   for (;;) {
     const double x = random.between(-1, 1);
@@ -63,7 +63,7 @@ Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// Two unit vectors at right angles, in any plane.
+// Two random perpendicular unit vectors.
 std::array<Vec3, 2> frame(Random& random) {
   for (;;) {
     const Vec3 a = in_ball(random);
@@ -82,7 +82,7 @@ std::vector<Vec3> leaf(Random& random, const Tree& tree, double radius) {
   return {plus(middle, times(u, radius)), plus(low, side), plus(low, times(side, -1.0))};
 }
 
-// The sides of a prism from the ground up into the crown.
+// The sides of a prism that extends from the ground up into the crown.
 void add_trunk(PlainScene& scene, const Tree& tree) {
   const auto& [x, y, top] = tree.middle;
   const double t = tree.trunk;
@@ -94,7 +94,7 @@ void add_trunk(PlainScene& scene, const Tree& tree) {
   }
 }
 
-// From the middle of a leaf to its corners, so that n of them have `cover` times the area of the ground.
+// The distance from the centre of a leaf to its corners for which n leaves have `cover` times the area of the ground.
 double leaf_radius(int n, double cover) {
   const double area = cover * kSide * kSide / n;
   return std::min(kLongestLeaf, std::sqrt(area / (3 * std::sqrt(0.1875))));

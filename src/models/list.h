@@ -1,5 +1,6 @@
-// The library's models, in the order in which they are listed: one line for each. Every one has a function
-// `Model NAME_model()` in a file of this folder. No include guard: whoever includes this says what to make of a line.
+// The models of the library in the order in which they are listed, one line for each. Each has a function `Model
+// NAME_model()` in a file of this folder. There is no include guard: the including file defines the macro that expands
+// each line.
 EXACTFF_MODEL(teapot)
 EXACTFF_MODEL(forest)
 EXACTFF_MODEL(closed_room)

@@ -1,4 +1,4 @@
-// What every file of a model defines.
+// Declares the functions that the files of the models define.
 #pragma once
 
 #include "exactff/models.h"
@@ -10,7 +10,8 @@ namespace exactff::models {
 #include "models/list.h"
 #undef EXACTFF_MODEL
 
-// The scene of a text such as "teapot:segments=4", with a comment that says how to make it again. Throws InputError.
+// The scene for a text such as "teapot:segments=4", with a comment that says how to generate it again. Throws
+// InputError.
 [[nodiscard]] PlainScene make_plain(std::string_view text);
 
 }  // namespace exactff::models

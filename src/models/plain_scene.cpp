@@ -113,7 +113,7 @@ Rational twice_area(const std::vector<Flat>& points, const Ring& ring) {
   return sum;
 }
 
-// Drops the first axis in whose direction the outer ring has any area.
+// Drops the first axis for which the projected outer ring has nonzero area.
 std::vector<Flat> flatten(const std::vector<Vec3>& vertices, const Ring& outer) {
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<Flat> points;
@@ -140,7 +140,7 @@ bool blocks(const std::vector<Flat>& points, const Ring& ring, std::uint32_t a, 
 std::array<std::size_t, 3> find_bridge(const std::vector<Flat>& points, const Ring& ring,
                                        const std::vector<Ring>& holes) {
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    if (std::ranges::count(ring, ring[i]) != 1) continue;  // where an earlier bridge ends the sector is ambiguous
+    if (std::ranges::count(ring, ring[i]) != 1) continue;  // at the end of an earlier bridge the sector is ambiguous
     for (std::size_t h = 0; h < holes.size(); ++h) {
       for (std::size_t j = 0; j < holes[h].size(); ++j) {
         const auto hit = [&](const Ring& other) { return blocks(points, other, ring[i], holes[h][j]); };
@@ -178,7 +178,7 @@ Ring keyhole(const std::vector<Vec3>& vertices, const PlainFace& face) {
 
 namespace {
 
-// As read_obj() numbers them: first the one of faces without any, then each at its first use.
+// Numbers materials as read_obj() does: first the one of faces without a material, then each at its first use.
 class Materials {
  public:
   Materials(const PlainScene& scene, SceneBuilder& builder) : scene_(scene), builder_(builder) {

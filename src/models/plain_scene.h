@@ -1,5 +1,5 @@
-// A scene as plain data that can be turned over, cut up and written out, with the receiver and source it is
-// meant for. Nothing is checked here: SceneBuilder and the readers do that.
+// A scene as plain data that can be transformed, divided and written, with the receiver and source that it is intended
+// for. Nothing is checked here: SceneBuilder and the readers check.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct PlainFace {
 
 struct PlainPatch {
   std::string name;
-  std::string material;  // of PlainScene::materials; empty: none
+  std::string material;  // name in PlainScene::materials; empty: none
   std::vector<PlainFace> faces;
 };
 
@@ -35,32 +35,33 @@ struct PlainScene {
   Vec3 point;
   Vec3 normal{0.0, 0.0, 1.0};
 
-  // Each adds its corners as new vertices.
+  // Adds a face. Its corners become new vertices.
   void add_ring(PlainPatch& patch, const std::vector<Vec3>& corners);
   void add_rings(PlainPatch& patch, const std::vector<std::vector<Vec3>>& rings);
-  [[nodiscard]] PlainPatch& patch(std::string_view name);  // of that name, made if it is new
+  [[nodiscard]] PlainPatch& patch(std::string_view name);  // the patch of that name; created if it does not exist
 };
 
 // The shortest decimal that reads back to the same double, or 17 significant digits.
 enum class Digits { kShortest, kSeventeen };
 
-// Wavefront text. Comment lines state receiver and source. A face with holes becomes one keyhole ring, for OBJ
-// has no holes. `mtl` is the file named after mtllib; empty: none.
+// Returns Wavefront OBJ text. Comment lines state receiver and source. A face with holes becomes one keyhole ring,
+// because OBJ has no holes. `mtl` is the file name after mtllib; empty: none.
 [[nodiscard]] std::string to_obj(const PlainScene& scene, const std::string& mtl = {},
                                  Digits digits = Digits::kShortest);
 [[nodiscard]] std::string to_mtl(const PlainScene& scene);
 [[nodiscard]] std::string to_text(double value, Digits digits = Digits::kShortest);
 
-// The rings of one face joined along bridges into a single ring that bounds the same region. Requires rings that
-// meet nowhere, in one plane.
+// Joins the rings of one face along bridges into a single ring that bounds the same region. Requires that the rings lie
+// in one plane and do not meet.
 [[nodiscard]] Ring keyhole(const std::vector<Vec3>& vertices, const PlainFace& face);
 
-// Through SceneBuilder; throws what it throws. Without holes it has the hash that to_obj() and to_mtl() read back to.
-// `name` stands for the file in messages.
+// Builds the scene with SceneBuilder, and throws what it throws. For a scene without holes the hash is the same as
+// after writing with to_obj() and to_mtl() and reading. `name` stands for the file in messages.
 [[nodiscard]] Scene build(const PlainScene& scene, const std::string& name = {}, const SceneOptions& options = {});
 [[nodiscard]] Receiver receiver_of(const PlainScene& scene);
 
-// Every coordinate times `factor` (the normal stays); exact for powers of two short of under- and overflow.
+// Multiplies every coordinate by `factor`; the normal stays. Exact for powers of two unless a value overflows or
+// underflows.
 void scale(PlainScene& scene, double factor);
 
 }  // namespace exactff::models

@@ -1,5 +1,5 @@
-// Random numbers that are the same on every machine: SplitMix64 (Steele, Lea and Flood 2014) and nothing
-// from <random>, whose distributions differ between libraries.
+// Random numbers that are the same on every machine: SplitMix64 (Steele, Lea and Flood 2014). Nothing from <random> is
+// used, because its distributions differ between libraries.
 #pragma once
 
 #include <cstddef>

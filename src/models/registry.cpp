@@ -29,7 +29,7 @@ struct Choice {
   const Model& model;
   methods::Settings settings;
 
-  // In full, so that it stays the same when a default changes.
+  // Includes all settings, so that the text stays valid when a default changes.
   [[nodiscard]] std::string text() const { return model.name + ":" + settings.text(); }
 };
 
@@ -64,7 +64,7 @@ Scene make_scene(std::string_view text, const SceneOptions& options) {
 std::string make_obj(std::string_view text, const std::string& mtl) {
   PlainScene scene = make_plain(text);
   if (mtl.empty()) {
-    for (PlainPatch& patch : scene.patches) patch.material.clear();  // else readers miss their definition
+    for (PlainPatch& patch : scene.patches) patch.material.clear();  // readers would miss their definition
   }
   return to_obj(scene, mtl);
 }

@@ -1,4 +1,4 @@
-// What rooms are made of. y is up; every quadrilateral lies in a coordinate plane and is exactly planar.
+// Parts of rooms. y is up; every quadrilateral lies in a coordinate plane and is exactly planar.
 #pragma once
 
 #include <array>
@@ -15,23 +15,24 @@ struct Box {
 
 using Quad = std::array<Vec3, 4>;
 
-// A patch without faces yet.
+// Adds a patch that has no faces yet.
 void add_patch(PlainScene& scene, std::string name, std::string material);
 
 // The six faces of a box, fronts outward: low x, high x, low y, high y, low z, high z.
 void add_box(PlainScene& scene, std::string_view name, const Box& box);
 
-// Patch `table_top`, a box, and under its corners four legs down to y = 0, patch `table_legs`.
+// The patch `table_top`, a box, and the patch `table_legs`: four legs under its corners, down to y = 0.
 void add_table(PlainScene& scene, const Box& top);
 
-// What is between two quadrilaterals in one plane, as four trapezoids that share every corner with them.
+// The region between two quadrilaterals in one plane, as four trapezoids that share all corners with them.
 void add_frame(PlainScene& scene, std::string_view name, const Quad& outer, const Quad& inner);
 
-// The room between the origin and `size`, fronts inward: patches `floor` and `wall_left`, `wall_right`, `wall_back` (at
-// high z), `wall_front`. The ceiling is the caller's, with the corners of ceiling_of(), as the front sees them.
+// The room between the origin and `size`, with fronts inward: patches `floor` and `wall_left`, `wall_right`,
+// `wall_back` (at high z), `wall_front`. The caller adds the ceiling, with the corners of ceiling_of(), in the order
+// seen from its front.
 void add_floor_and_walls(PlainScene& scene, const Vec3& size);
 [[nodiscard]] Quad ceiling_of(const Vec3& size);
-// A rectangle at a height, its front down.
+// A level rectangle whose front faces down.
 [[nodiscard]] Quad facing_down(double left, double right, double y, double near, double far);
 
 void add_quad(PlainScene& scene, std::string_view name, const Quad& quad);

@@ -16,15 +16,15 @@ constexpr double kWindowRight = 3.0;
 constexpr double kSill = 0.875;
 constexpr double kLintel = 2.25;
 
-constexpr double kBlindGap = 0.125;    // from the window to the blind's middle
-constexpr double kBlindMargin = 0.05;  // by which the blind overlaps the window left and right
-constexpr double kSlatDepth = 1.0;     // of a slat, over the pitch
-constexpr double kSlatHeight = 0.75;   // of a slat, over the pitch: it slopes down towards the room, 3 in 4
+constexpr double kBlindGap = 0.125;    // from the window to the middle of the blind
+constexpr double kBlindMargin = 0.05;  // overlap of the blind over the window at left and right
+constexpr double kSlatDepth = 1.0;     // depth of a slat / pitch
+constexpr double kSlatHeight = 0.75;   // height of a slat / pitch: it slopes down towards the room, 3 in 4
 
 constexpr double kTableHeight = 0.75;
 constexpr double kTopThickness = 0.03125;
 
-// Floor, ceiling and three walls, fronts into the room.
+// Floor, ceiling and three walls. Their fronts face the room.
 void add_shell(PlainScene& scene) {
   const double w = kWidth;
   const double h = kHeight;
@@ -36,7 +36,7 @@ void add_shell(PlainScene& scene) {
   scene.add_ring(scene.patch("wall_back"), {{0, 0, d}, {0, h, d}, {w, h, d}, {w, 0, d}});
 }
 
-// The window and, about it, its wall.
+// The window and the wall around it.
 void add_window_wall(PlainScene& scene) {
   const Quad outer{{{0, 0, 0}, {kWidth, 0, 0}, {kWidth, kHeight, 0}, {0, kHeight, 0}}};
   const Quad inner{

@@ -1,18 +1,18 @@
 // The Utah teapot between a square light and a floor, from its published Bezier control points.
 //
 // Source: M. Newell, "The Utilization of Procedure Models in Digital Image Synthesis" (1975); F. Crow, "The Origins of
-// the Teapot" (IEEE Computer Graphics and Applications, January 1987), whose table has 306 points: the pot a quarter
-// lower than Newell's, and with a bottom. z up.
+// the Teapot" (IEEE Computer Graphics and Applications, January 1987). Crow's table has 306 points: the pot is a
+// quarter lower than Newell's, and has a bottom. z is up.
 //
-// All 32 bicubic patches follow from 10 by mirroring. A part is a row of sections, each half a loop or a quarter of a
-// circle in four control points; every fourth section begins a new patch and ends the one before:
-// 1. Body and lid are nearly solids of revolution: a section is a quarter circle of some radius at some height, and the
-//    others are its mirror images in x and y.
+// All 32 bicubic patches follow from 10 by mirroring. A part is a row of sections. A section is half a loop or a
+// quarter of a circle in four control points. Every fourth section ends a patch and begins the next one.
+// 1. Body and lid are nearly solids of revolution: a section is a quarter circle of some radius at some height. The
+//    other quarters are its mirror images in x and y.
 // 2. Handle and spout are symmetric about y = 0: a section is a half loop from its inner to its outer end.
-// 3. A patch is evaluated at segments + 1 values of each parameter. On its border all but the border's control points
-//    have a weight of zero, so that patches which share these share the points, to the bit.
-// 4. Quadrilaterals are cut in two; where a side is a point, as at the lid's pole, one triangle is left. With one
-//    segment the spout's lip would have no area: two are the least.
+// 3. A patch is evaluated at segments + 1 values of each parameter. On its border, all control points except those of
+//    the border have weight zero, so patches that share border control points share the points exactly, bit for bit.
+// 4. Quadrilaterals are cut in two. Where one side is a point, as at the lid's pole, one triangle is left. With one
+//    segment the spout's lip would have no area: at least two segments are required.
 #include <array>
 #include <map>
 #include <span>
@@ -28,7 +28,7 @@ using Section = std::array<Vec3, 4>;
 
 struct Circle {
   double radius;
-  double bend;  // how far the inner control points are from the axes: 0.56 of the radius, but for the knob
+  double bend;  // distance of the inner control points from the axes: 0.56 of the radius, except for the knob
   double height;
 };
 
@@ -38,7 +38,7 @@ struct HalfLoop {
   double half_width;
 };
 
-// From the rim down to the middle of the bottom.
+// From the rim down to the centre of the bottom.
 constexpr std::array<Circle, 13> kBody{{{1.4, 0.784, 2.4},
                                         {1.3375, 0.749, 2.53125},
                                         {1.4375, 0.805, 2.53125},
@@ -60,7 +60,7 @@ constexpr std::array<Circle, 7> kLid{{{0.0, 0.0, 3.15},
                                       {0.4, 0.224, 2.55},
                                       {1.3, 0.728, 2.55},
                                       {1.3, 0.728, 2.4}}};
-// From the top to where it meets the body again.
+// From the top to where it rejoins the body.
 constexpr std::array<HalfLoop, 7> kHandle{{{-1.6, 2.025, -1.5, 2.25, 0.3},
                                            {-2.3, 2.025, -2.5, 2.25, 0.3},
                                            {-2.7, 2.025, -3.0, 2.25, 0.3},
@@ -68,7 +68,7 @@ constexpr std::array<HalfLoop, 7> kHandle{{{-1.6, 2.025, -1.5, 2.25, 0.3},
                                            {-2.7, 1.575, -3.0, 1.35, 0.3},
                                            {-2.5, 1.125, -2.65, 0.9375, 0.3},
                                            {-2.0, 0.9, -1.9, 0.6, 0.3}}};
-// From the body to the tip and a little way back inside.
+// From the body to the tip and a little back inside.
 constexpr std::array<HalfLoop, 7> kSpout{{{1.7, 1.425, 1.7, 0.6, 0.66},
                                           {2.6, 1.425, 3.1, 0.825, 0.66},
                                           {2.3, 2.1, 2.4, 2.025, 0.25},
@@ -100,7 +100,7 @@ Weights weights(int step, int steps) {
   return {q * q * q, 3.0 * q * q * t, 3.0 * q * t * t, t * t * t};
 }
 
-// What four points have in common they keep to the bit, so that circles stay level and poles points.
+// A coordinate that all four points share is kept exactly, so that circles stay level and poles stay points.
 Vec3 combined(const std::array<Vec3, 4>& p, const Weights& w) {
   const auto sum = [&](double Vec3::*c) {
     if (p[0].*c == p[1].*c && p[1].*c == p[2].*c && p[2].*c == p[3].*c) return p[0].*c;
@@ -115,7 +115,7 @@ Vec3 point(std::span<const Section, 4> patch, const Weights& along, const Weight
   return combined(crossing, along);
 }
 
-// Signs of x and y of a mirror image.
+// The signs of x and y in a mirror image.
 struct Mirror {
   double x = 1.0;
   double y = 1.0;
@@ -125,7 +125,8 @@ class Tessellation {
  public:
   Tessellation(PlainScene& scene, int segments) : scene_(scene), segments_(segments) {}
 
-  // A part of whole patches and its mirror images. Along the part and then across it turn about the outer normal.
+  // Adds a part, which consists of whole patches, and its mirror images. Turning from the direction along the part to
+  // the direction across it is counter-clockwise about the outer normal.
   template <class Part>
   void add(const char* name, const Part& part, std::span<const Mirror> mirrors) {
     std::vector<Section> sections;
@@ -137,7 +138,7 @@ class Tessellation {
   }
 
  private:
-  // Corners that lie in one place are one vertex. A zero has no sign, so that mirror images meet.
+  // Corners at the same place are one vertex. Negative zeros become positive, so that mirror images meet.
   std::uint32_t vertex(const Vec3& p, const Mirror& mirror) {
     const Vec3 image{mirror.x * p.x + 0.0, mirror.y * p.y + 0.0, p.z};
     const auto next = static_cast<std::uint32_t>(scene_.vertices.size());

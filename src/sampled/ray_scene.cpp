@@ -201,6 +201,11 @@ void set_ray(RTCRay16& rays, int lane, const Vec3& end, const Vec3& from_x, doub
   rays.flags[lane] = 0;
 }
 
+[[noreturn]] void fail(RTCError error, const char* what) {
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  throw std::runtime_error(what);
+}
+
 }  // namespace
 
 UnitBox checked_unit_box(const Scene& scene, const std::vector<Vec3>& points) {
@@ -237,7 +242,7 @@ void Blockers::assign_all_but(std::size_t piece_count, std::span<const std::uint
 
 RayScene::RayScene(const Scene& scene, const std::vector<Vec3>& points, const UnitBox& box)
     : box_(box), device_(rtcNewDevice("threads=1,set_affinity=0")) {
-  if (!device_) throw std::runtime_error("Embree gives no device");
+  if (!device_) fail(rtcGetDeviceError(nullptr), "Embree gives no device");
   scene_.reset(rtcNewScene(device_.get()));
   add_mesh(scene, points);
   rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
@@ -246,7 +251,8 @@ RayScene::RayScene(const Scene& scene, const std::vector<Vec3>& points, const Un
   // rays were not faster (and saw the same), and it took four times as long to build.
   rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_MEDIUM);
   rtcCommitScene(scene_.get());
-  if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot build its structure");
+  const RTCError error = rtcGetDeviceError(device_.get());
+  if (error != RTC_ERROR_NONE) fail(error, "Embree cannot build its structure");
 }
 
 // All pieces as one mesh, each a fan of triangles.

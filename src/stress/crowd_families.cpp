@@ -1,4 +1,4 @@
-// Many occluders, many shared edges, many edges through one point. The stiffness is a count.
+// Many occluders, many shared edges, or many edges through one point. The stiffness is their number.
 #include <cmath>
 
 #include "stress/family.h"
@@ -9,10 +9,10 @@ namespace {
 
 constexpr Vec3 kOrigin{0, 0, 0};
 
-// Side n of a square of n × n.
+// The side n of a square of n × n.
 int side_of(double count) { return static_cast<int>(std::lround(std::sqrt(count))); }
 
-// Tile k of n across [-1/2, 1/2]: exactly abutting, since both neighbours round the same quotient.
+// Tile k of n across [-1/2, 1/2]. Neighbours abut exactly, since both round the same quotient.
 Span tile(int k, int n) { return {static_cast<double>(k) / n - 0.5, static_cast<double>(k + 1) / n - 0.5}; }
 
 template <class Keep>
@@ -73,8 +73,8 @@ Case blinds(double s) {
   return stage.finish(s, left_by_strips(kUp, view.shadow(kSide, kSide, 1), std::move(shadows)));
 }
 
-// Triangles from the point (0, 0, 1/2) outwards, between directions that run counter-clockwise through one quadrant;
-// every other sector is hidden, and a quarter turn exchanges hidden and visible ones. Requires an even number of
+// Triangles from the point (0, 0, 1/2) outwards, between directions that run counter-clockwise through one quadrant.
+// Every other sector is hidden, and a quarter turn exchanges hidden and visible sectors. Requires an even number of
 // directions, the last a quarter turn from the first.
 struct Direction {
   double x = 1.0;
@@ -107,7 +107,7 @@ Case fan(double s) {
 
 Case thin_fan(double s) { return fan_of(s, {{1, 0}, {1, 1 / s}, {0.5, 1}, {0, 1}}); }
 
-// Plates that leave between them a polygon about as wide as 1/s: the lines of their edges all but meet.
+// Plates that leave a polygon about as wide as 1/s between them: the lines of their edges almost meet in one point.
 Case concurrent(double s) {
   constexpr int kSteps = 8;  // directions per half quadrant
   Stage stage({0.0625, 0.03125, 0}, kUp);

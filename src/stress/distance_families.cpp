@@ -1,4 +1,4 @@
-// Nothing hides anything here: the source is near, far, small, thin, or hardly above the horizon.
+// No occluder hides anything here: the source is near, far, small, thin, or barely above the horizon.
 #include "stress/family.h"
 
 namespace exactff::stress {
@@ -38,7 +38,7 @@ Case foot_of_wall(double s) {
   return stage.finish(s, std::move(truth));
 }
 
-// A wall in the plane y = 1 of which only the part from the receiver's height `z` up to `top` is above the horizon.
+// A wall in the plane y = 1. Only its part from the receiver's height `z` up to `top` is above the horizon.
 Case wall_over_horizon(double s, double z, double top) {
   const Vec3 point{0, 0, z};
   const Span x{-0.5, 0.75};

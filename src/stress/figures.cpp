@@ -18,11 +18,11 @@ using study::Axes;
 using study::Points;
 using study::Series;
 
-// Errors beyond these are drawn at them.
+// Errors outside this range are drawn at its ends.
 constexpr double kSmallestDrawn = 1e-18;
 constexpr double kLargestDrawn = 1e3;
 
-// In the order of Method.
+// Indexed by Method.
 struct LineLook {
   const char* label;
   int style;
@@ -30,7 +30,7 @@ struct LineLook {
 constexpr std::array<LineLook, kMethodCount> kLooks = {
     {{"exact", 1}, {"acos", 2}, {"atan2", 3}, {"a×(b−a)", study::kOverlay}, {"Tampieri", 5}, {"as printed", 6}}};
 
-// Up to 10^16 a decade is a unit of the axis, beyond it an eighteenth: both ends can be read.
+// Up to 10^16 a decade is one unit of the axis, beyond it 1/18 of a unit, so that both ends are readable.
 constexpr double kBend = 16.0;
 constexpr double kBeyond = 18.0;
 
@@ -64,7 +64,7 @@ Series series_of(const FamilyResult& result, Method method, const std::function<
   return {look.label, points(result, [&](const Row& row) { return y(row.of(method)); }), look.style};
 }
 
-// What is no number or refused is not drawn.
+// An answer that is refused or not a number is not drawn.
 double drawn_error(const Answer& answer) {
   return std::isfinite(answer.error) ? std::clamp(answer.error, kSmallestDrawn, kLargestDrawn) : -1.0;
 }

@@ -16,11 +16,11 @@ using study::counted;
 using study::counted_of;
 
 struct Tally {
-  std::size_t independent = 0;  // judged by a closed form or a symmetry
+  std::size_t independent = 0;  // compared with a closed form or a symmetry
   std::size_t agreeing = 0;     // of these
-  std::size_t certified = 0;    // judged by the exact method's own enclosure
+  std::size_t certified = 0;    // compared with the exact method's own enclosure
   int most_bits = 0;
-  double smallest = std::numeric_limits<double>::infinity();  // positive form factor judged independently
+  double smallest = std::numeric_limits<double>::infinity();  // smallest positive form factor with an independent truth
 };
 
 Tally tally(const Report& report) {

@@ -25,7 +25,7 @@ namespace {
 struct MethodNames {
   std::string_view name, short_name;
 };
-// In the order of Method.
+// Indexed by Method.
 constexpr std::array<MethodNames, kMethodCount> kMethodNames = {
     {{"exact", "exact"},
      {"Eq. (4) in double on the exact region, acos", "acos"},
@@ -51,7 +51,7 @@ const std::vector<FamilyInfo>& families() {
 double usable_up_to(const FamilyResult& result, Method method, double threshold) {
   double last = 0.0;
   for (const Row& row : result.rows) {
-    if (!(row.of(method).error < threshold)) break;  // NaN too
+    if (!(row.of(method).error < threshold)) break;  // also for NaN
     last = row.stiffness;
   }
   return last;

@@ -1,4 +1,4 @@
-// One harmless scene, a plate before a square, written in numbers of every size: the answer hardly changes.
+// One simple scene, a plate before a square, in numbers of every size: the result hardly changes.
 #include <cmath>
 
 #include "stress/family.h"
@@ -30,7 +30,7 @@ Case plate_before_square(double s, const Boxed& b) {
   return stage.finish(s, std::move(truth));
 }
 
-// Source and plate each scaled by a factor of its own about the receiver.
+// Scales source and plate about the receiver, each by its own factor.
 Case with_factors(double s, double source_factor, double plate_factor) {
   const Span side = scaled({-1, 1}, source_factor);
   return plate_before_square(s, {{0, 0, 0},
@@ -47,14 +47,14 @@ Case tiny(double s) { return with_factors(s, 1 / s, 1 / s); }
 Case huge(double s) { return with_factors(s, s, s); }
 Case mixed(double s) { return with_factors(s, s, 1 / s); }
 
-// Multiples of 1/64 moved by a power of two: every coordinate of the moved scene is exact.
+// Multiples of 1/64, translated by a power of two: every coordinate of the translated scene is exact.
 Case moved_away(double s) {
   const Span side{-1, 1}, plate{-0.265625, 0.296875};
   return plate_before_square(
       s, {{s, -s, s}, kUp, moved(side, s), moved(side, -s), 1 + s, moved(plate, s), moved(plate, -s), 0.5 + s});
 }
 
-// Of the direction (1, 2, 3) throughout; the last normals are denormal numbers.
+// All normals have the direction (1, 2, 3); the last of them are denormal numbers.
 Case short_normal(double s) {
   const double unit = std::ldexp(1.0, -74) / s;
   const Vec3 normal{unit, 2 * unit, 3 * unit};

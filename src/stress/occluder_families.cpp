@@ -1,7 +1,7 @@
-// Occluders that all but touch: one another, the receiver, the source, or a plane through either.
+// Occluders that almost touch each other, the receiver, the source, or the plane of the receiver or source.
 //
-// The source is the square [-1,1]^2 or near it, level, facing down; plates are wider than it is wherever only their
-// profile in the xz plane matters.
+// The source is a level square, [-1,1]^2 or similar, that faces down. Where only the profile of the plates in the xz
+// plane matters, the plates are wider than the source.
 #include <cmath>
 
 #include "stress/family.h"
@@ -12,7 +12,8 @@ namespace {
 
 constexpr Span kWide{-4, 4};
 
-// Two level plates at half the height of the source, from the left up to `left` and from `right` on.
+// Two level plates at half the height of the source: one extends to the left from `left`, the other to the right from
+// `right`.
 Case two_plates(double s, double left, double right) {
   const Vec3 point{0.3, 0.2, 0};
   Stage stage(point, kUp);
@@ -28,7 +29,7 @@ Case crack(double s) { return two_plates(s, 0, 1 / s); }
 Case crack_ulp(double s) { return two_plates(s, 0.25, 0.25 + 1 / s); }
 Case overlap(double s) { return two_plates(s, 0.25 + 1 / s, 0.25); }
 
-// One level plate between receiver and source, both given.
+// One level plate between the given receiver and the given source.
 Case one_plate(double s, const Vec3& point, double source_z, const Span& x, const Span& y, double z) {
   Stage stage(point, kUp);
   stage.add_level_source(kSide, kSide, source_z);
@@ -45,7 +46,7 @@ Case near_receiver(double s) { return one_plate(s, {0, 0, 0}, 1, {-0.25 / s, 0.3
 
 Case near_source(double s) { return one_plate(s, {0.1, 0.2, -1}, 0, {-0.3, 0.4}, {-0.2, 0.5}, -0.5 / s); }
 
-// Plates of the given profiles before a source at `source_z`.
+// Plates with the given profiles before a source at `source_z`.
 struct Slat {
   ProfilePoint from, to;
 };
@@ -69,7 +70,8 @@ Case crossing(double s) {
   return slats(s, {0, 0, -1}, 1, {{{-0.25, -0.25 * t}, {0.5, 0.5 * t}}, {{-0.375, 0.375 * t}, {0.5, -0.5 * t}}});
 }
 
-// From the receiver's own plane up to half the height of the source: its shadow reaches from the wall to infinity.
+// A wall from the receiver's own plane up to half the height of the source: its shadow extends from the wall to
+// infinity.
 Case wall_beside(double s) {
   const double d = 0.25 / s;
   const Span x{-1, 1.3};
@@ -81,13 +83,14 @@ Case wall_beside(double s) {
   return stage.finish(s, left_by_strips(kUp, view.shadow(x, kSide, 1), {{view.along_x(d, 0.5), Rational(8)}}));
 }
 
-// Two plates leave a crack of width 2 d; a third stands in it, its plane at the distance d from the receiver.
+// Two plates leave a crack of width 2 d. A third plate stands in it, seen edge-on: the receiver is at the distance d
+// from its plane.
 Case edge_on(double s) {
   const double d = 0.25 / s;
   return slats(s, {0, 0.2, 0}, 1, {{{d, 0.25}, {d, 0.5}}, {{-1, 0.5}, {0, 0.5}}, {{2 * d, 0.5}, {1, 0.5}}});
 }
 
-// A bar along x, low at one end and high at the other, and its rotations by quarter turns: each lies over the next.
+// A bar along x, low at one end and high at the other, and its rotations by quarter turns: each bar lies over the next.
 Case pinwheel(double s) {
   const double t = 0.25 / s;
   Stage stage({0.0625, 0.03125, -1}, kUp);

@@ -1,4 +1,4 @@
-// The stress report as one HTML page that fetches nothing and runs nothing.
+// The stress report as one HTML page that loads nothing and has no scripts.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace exactff::stress {
 
-// `drawn` holds the figures of every family, in order.
+// `drawn` holds the figures of all families, in order.
 [[nodiscard]] std::string report_page(const Report& report, const study::DrawnFigures& drawn);
 
 }  // namespace exactff::stress

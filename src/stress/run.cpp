@@ -1,13 +1,12 @@
-// Every family at every stiffness, by every method.
+// Runs every family at every stiffness with every method.
 //
-//   1. make the scene and its truth;
-//   2. the exact method; its value must be what the truth rounds to;
-//   3. the exact visible region with its corners rounded to doubles, and Eq. (4) over it in three ways;
-//   4. Tampieri's algorithm, mended and literal. Its tolerance eps_B is a ten-thousandth of the unoccluded form factor:
-//   what
-//      one asks for who knows roughly what to expect;
-//   5. times: the median of several calls within a time limit.
-// A scene's place in the report is its index, so that nothing but the times depends on the number of threads.
+//   1. Make the scene and its true value.
+//   2. Run the exact method. Its value must be what the true value rounds to.
+//   3. Take the exact visible region with its corners rounded to doubles, and evaluate Eq. (4) over it in three ways.
+//   4. Run Tampieri's algorithm, mended and literal. Its tolerance eps_B is a ten-thousandth of the unoccluded form
+//      factor: the choice of a user who knows roughly what to expect.
+//   5. Measure times: the median of several calls within a time limit.
+// The place of a scene in the report is its index, so that nothing but the times depends on the number of threads.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -41,7 +40,7 @@ double relative_difference(double value, const Enclosure& truth, const Enclosure
   return error < kTruthIsGoodTo ? 0.0 : error;
 }
 
-// Calls compute() until its median time is worth telling: at most kMostCalls times, and no longer than the limit.
+// Calls compute() several times and returns the median time. Stops at kMostCalls calls or when the limit is exceeded.
 template <class Compute>
 double median_seconds(const Compute& compute) {
   using Clock = std::chrono::steady_clock;
@@ -98,7 +97,7 @@ class Trial {
     const std::vector<FaceId> none;
     unoccluded_ = exact({.digits = kTruthDigits, .only_occluders = &none}).enclosure;
     row_.truth = case_.truth ? case_.truth->value() : exact({.digits = kTruthDigits}).enclosure;
-    // A ball about 0 of no width is a proved zero.
+    // A ball of radius 0 about 0 is a proved zero.
     zero_ = row_.truth.lower() == 0.0 && row_.truth.upper() == 0.0;
     row_.agrees = row_.truth.nearest() == result.value && row_.truth.overlaps(result.enclosure) &&
                   (result.status == Status::kZero) == zero_;
@@ -107,7 +106,7 @@ class Trial {
 
   void record(Method method, double value, double seconds) {
     const double error = relative_difference(value, row_.truth, zero_ ? unoccluded_ : row_.truth);
-    const double number = std::isnan(value) ? std::numeric_limits<double>::quiet_NaN() : value;  // never -nan
+    const double number = std::isnan(value) ? std::numeric_limits<double>::quiet_NaN() : value;  // avoids -nan
     answer(method) = {.refused = false, .value = number, .error = error, .seconds = seconds};
   }
 
@@ -124,7 +123,7 @@ class Trial {
     const auto compute = [&] {
       return form_factor_in_double(polygons_, case_.receiver.point, case_.receiver.normal, formula_of(method));
     };
-    constexpr int kCalls = 32;  // a single one is shorter than the clock's steps
+    constexpr int kCalls = 32;  // a single call is shorter than the resolution of the clock
     const double value = compute();
     const double seconds = median_seconds([&] {
       volatile double kept = 0.0;

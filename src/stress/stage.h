@@ -1,5 +1,5 @@
-// A stiff scene being put together: one receiver, one patch `source`, one patch `occluder`, and the closed form that
-// the answer must agree with.
+// Builds a stiff scene: one receiver, one patch `source`, one patch `occluder`, and the closed form that the result
+// must agree with.
 #pragma once
 
 #include <optional>
@@ -12,12 +12,12 @@
 
 namespace exactff::stress {
 
-// What is asked, and what is known of the answer.
+// A scene with its receiver and source, and what is known about the result.
 struct Case {
   double stiffness = 1.0;
   Scene scene;
   Receiver receiver;
-  std::optional<ClosedForm> truth;  // none: the exact method's enclosure is all there is
+  std::optional<ClosedForm> truth;  // none: compared with the exact method's own enclosure
 };
 
 // low < high
@@ -39,7 +39,7 @@ class Stage {
  public:
   Stage(const Vec3& point, const Vec3& normal) : point_(point), normal_(normal), material_(builder_.add_material({})) {}
 
-  // Counter-clockwise seen from the front.
+  // The ring is counter-clockwise as seen from the front.
   void add_source(const std::vector<Vec3>& ring) { add("source", {ring}); }
   void add_occluder(const std::vector<Vec3>& ring) { add("occluder", {ring}); }
   void add_occluder_with_hole(const std::vector<Vec3>& ring, const std::vector<Vec3>& hole) {
@@ -49,7 +49,7 @@ class Stage {
   [[nodiscard]] static std::vector<Vec3> level_ring(const Span& x, const Span& y, double z);
   void add_level_source(const Span& x, const Span& y, double z);
   void add_level_occluder(const Span& x, const Span& y, double z);
-  // The plate whose profile in the xz plane runs from one point to the other, as wide as `y`.
+  // A plate whose profile in the xz plane is the segment between the two points, with the extent `y` along y.
   void add_slat(const ProfilePoint& from, const ProfilePoint& to, const Span& y);
 
   [[nodiscard]] const Vec3& normal() const { return normal_; }
@@ -63,17 +63,17 @@ class Stage {
   MaterialId material_;
 };
 
-// Where the receiver at x sees things in the level plane z = `level`: rational coordinates relative to x.
+// Projects from the receiver at x onto the level plane z = `level`. Results are rational coordinates relative to x.
 class LevelView {
  public:
   LevelView(const Vec3& x, double level) : x_(x), distance_(kernel::to_rational(level) - kernel::to_rational(x.z)) {}
 
-  // The shadow of the profile point (u, z), u along the first axis or the second.
+  // The shadow of the profile point (u, z), with u along x or along y.
   [[nodiscard]] Rational along_x(double u, double z) const { return project(u, x_.x, z); }
   [[nodiscard]] Rational along_y(double u, double z) const { return project(u, x_.y, z); }
-  // The shadow along x of the plate between two profile points.
+  // The shadow along x of a plate with this profile.
   [[nodiscard]] Interval shadow(const ProfilePoint& from, const ProfilePoint& to) const;
-  // The shadow of a level rectangle; at z = level it is the rectangle itself.
+  // The shadow of a level rectangle. For z = level it is the rectangle itself.
   [[nodiscard]] Rectangle shadow(const Span& x, const Span& y, double z) const;
 
  private:
@@ -83,10 +83,10 @@ class LevelView {
   Rational distance_;
 };
 
-[[nodiscard]] Rectangle intersection(const Rectangle& a, const Rectangle& b);  // of one plane
+[[nodiscard]] Rectangle intersection(const Rectangle& a, const Rectangle& b);  // both in the same plane
 
-// The closed form of a source behind plates that are as wide as it is (along v) or wider: what the union of their
-// shadows along u leaves of it.
+// The closed form of a source behind plates that, along v, are at least as wide as the source: the source minus the
+// union of their shadows along u.
 [[nodiscard]] ClosedForm left_by_strips(const Vec3& normal, const Rectangle& source, std::vector<Interval> shadows);
 
 }  // namespace exactff::stress

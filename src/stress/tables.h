@@ -15,7 +15,7 @@ struct Table {
   void (*write)(const Report& report, std::ostream& out);
 };
 
-// In the order in which the report lists them. Only timings.csv holds times.
+// In the order of the report's list. Only timings.csv holds times.
 [[nodiscard]] const std::array<Table, 3>& tables();
 
 inline constexpr std::array<Method, kMethodCount> kMethods = {Method::kExact,    Method::kAcos,

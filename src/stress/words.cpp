@@ -43,7 +43,7 @@ std::string reach_text(const FamilyResult& result, Method method, double thresho
 
 namespace {
 
-// Where the method stops keeping the first threshold it does so by refusing the scene.
+// Whether the method stops keeping to the first threshold because it refuses the scene.
 bool next_is_refused(const FamilyResult& result, Method method) {
   const double reach = usable_up_to(result, method, kThresholds.front());
   for (const Row& row : result.rows) {

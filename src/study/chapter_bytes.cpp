@@ -11,7 +11,7 @@ void put(WordWriter& words, const std::vector<TextTable>& tables) {
   }
 }
 
-// A count that the bytes cannot hold makes the rest torn.
+// If the bytes left cannot hold the stated number of items, the rest counts as torn.
 template <class Take>
 void take_list(WordReader& words, const Take& take) {
   for (std::uint64_t count = words.word(); count > 0 && !words.torn(); --count) take();

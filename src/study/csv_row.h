@@ -11,7 +11,7 @@
 
 namespace exactff::study {
 
-// A comma-separated row, one field after the other.
+// A comma-separated row. Fields are appended from left to right.
 class CsvRow {
  public:
   explicit CsvRow(std::ostream& out) : out_(out) {}

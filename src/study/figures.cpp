@@ -77,7 +77,7 @@ class FigureMaker {
 
   void leave_out(std::string what, std::string why) { left_out_.push_back({std::move(what), std::move(why)}); }
 
-  // An empty script is a figure without a point.
+  // An empty script means that the figure has no point.
   void add(Figure figure) {
     if (figure.script.empty()) {
       leave_out("figure: " + figure.title, "every error is 0, which a logarithmic axis cannot show");
@@ -86,7 +86,8 @@ class FigureMaker {
     }
   }
 
-  // The settings along a parameter from the base; nothing, with the reason, where there are fewer than two.
+  // The settings that differ from `from` in this parameter only. If there are fewer than two: nothing, and the reason
+  // is recorded.
   std::optional<std::vector<std::size_t>> sweep(std::size_t from, Parameter parameter, const std::string& title) {
     std::vector<std::size_t> line = line_through(study_.settings, from, parameter);
     if (line.size() >= 2) return line;
@@ -120,7 +121,7 @@ class FigureMaker {
          line_plot({kEpsB, kError, true, true, {}}, series)});
   }
 
-  // One line of settings over eps_B per number of rays, all else as in the base.
+  // One series per number of rays: the settings along eps_B, all other parameters as in the base.
   template <class PointOf>
   [[nodiscard]] std::vector<Series> series_by_rays(const PointOf& point_of) const {
     std::vector<Series> series;
@@ -146,7 +147,7 @@ class FigureMaker {
          line_plot({kEpsB, "receivers with |error| > ε_B, %", true, false, {"set yrange [0:*<100]"}}, series)});
   }
 
-  // Of all receivers, per receiver.
+  // Mean counts per receiver, over all receivers.
   [[nodiscard]] std::vector<Series> work_series(const std::vector<std::size_t>& line, Parameter x) const {
     const auto count = static_cast<double>(study_.exact.size());
     Series leaves{"leaves", {}, 1}, rays{"rays", {}, 2};
@@ -206,7 +207,7 @@ class FigureMaker {
     axes.extra = {"set arrow from " + at + ", graph 0 to " + at + ", graph 1 nohead lw 2.5 lc rgb '#D55E00'",
                   "set label 'exact: error 0' at " + at +
                       ", graph 0.98 rotate by 90 right offset character -0.8,0 tc rgb '#D55E00'"};
-    // The exact line's colour is not used for a series here.
+    // The exact method's line has a colour of its own; no series here uses it.
     for (Series& one : series) one.style = one.style == 1 ? 1 : one.style + 1;
     add({"time", "Error against run time",
          std::string("Both over the receivers that ") + (partly ? "see the source partly hidden" : "were compared") +
@@ -284,7 +285,7 @@ class FigureMaker {
                    work_series(*line, Parameter::kEpsA))});
   }
 
-  // The receivers of the face with the most grid cells.
+  // The receivers on the face with the most grid cells.
   struct Grid {
     FaceId face{};
     std::vector<std::pair<std::size_t, GridCell>> cells;
@@ -312,7 +313,7 @@ class FigureMaker {
     return largest->second;
   }
 
-  // Of a quadrilateral's first two edges; else of the grid.
+  // The ratio of the first two edges of a quadrilateral; 1 for any other face.
   [[nodiscard]] double height_over_width(const Grid& grid) const {
     const auto& ring = study_.request.scene->face(grid.face).rings.front();
     if (ring.size() != 4) return 1.0;
@@ -363,7 +364,7 @@ class FigureMaker {
 
   void add_approximate_map(const Grid& grid) {
     const auto& samples = study_.samples[study_.base];
-    // The exact radiosity plus the error of the channel where that is largest: grey scenes have but one.
+    // The exact radiosity plus the error of the channel with the largest error: grey scenes have only one channel.
     const Map map = map_of(grid, "radiosity", MapColours::kSequential, [&](std::size_t i) {
       return std::max(0.0, study_.exact[i].radiosity.largest() + samples[i].radiosity_error);
     });

@@ -1,4 +1,4 @@
-// The figures of the report, as gnuplot scripts with their data inside.
+// The figures of the report, as gnuplot scripts that contain their data.
 #pragma once
 
 #include <string>
@@ -16,10 +16,10 @@ struct Figure {
   bool map = false;     // a false-colour map over the grid
 };
 
-// Only those the study has data for; what is missing is added to `left_out`.
+// Returns only the figures that the study has data for. The missing ones are added to `left_out`.
 [[nodiscard]] std::vector<Figure> figures(const Study& study, std::vector<LeftOut>& left_out);
 
-// "ε_B = 0.0123, 16 jittered rays"; the parameters that tell it from the base are named.
+// "ε_B = 0.0123, 16 jittered rays": names the parameters that differ from the base.
 [[nodiscard]] std::string label(const Study& study, std::size_t setting);
 
 }  // namespace exactff::study

@@ -36,7 +36,7 @@ File::File(fs::path path, Mode mode, Consolation consolation, fs::path called)
                     .suggestion = "check the name and the file's permissions"});
 }
 
-// Offsets mean nothing in a pipe, and a device may never end.
+// A pipe has no offsets, and a device may never end.
 void File::require_regular() {
   struct stat status {};
   if (::fstat(descriptor_, &status) != 0 || S_ISREG(status.st_mode)) return;
@@ -103,7 +103,7 @@ void File::truncate(std::uint64_t size) {
 }
 
 void File::sync() {
-  // EINVAL: what cannot be synced at all, such as a special file.
+  // EINVAL: the file cannot be synced at all, for example a special file.
   if (::fdatasync(descriptor_) != 0 && errno != EINVAL) fail(errno);
 }
 
@@ -135,7 +135,8 @@ constexpr std::size_t kBufferBytes = 1 << 20;
 constexpr auto kPatience = std::chrono::seconds(10);
 constexpr auto kPause = std::chrono::milliseconds(5);
 
-// Locked. The process that had the lock may have renamed the file in between: then it is the other's result.
+// Returns the file, locked. The process that held the lock may meanwhile have renamed the file: it is then the result
+// of that process, so the file is opened again.
 File opened(const fs::path& path, const fs::path& target, const Consolation& consolation, WholeFile::WhenBusy busy) {
   const auto start = std::chrono::steady_clock::now();
   for (;;) {
@@ -158,7 +159,7 @@ File opened(const fs::path& path, const fs::path& target, const Consolation& con
 namespace {
 
 std::atomic<int> whole_files = 0;
-static_assert(std::atomic<int>::is_always_lock_free);  // or no signal handler could ask
+static_assert(std::atomic<int>::is_always_lock_free);  // a signal handler reads it
 
 }  // namespace
 

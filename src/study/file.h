@@ -1,4 +1,5 @@
-// Files of which every byte is accounted for: what cannot be written is an InputError that says what is still safe.
+// Files in which every byte is accounted for. A failed write throws InputError with a message that says what is still
+// safe.
 #pragma once
 
 #include <cstdint>
@@ -8,19 +9,19 @@
 
 namespace exactff::study {
 
-// What to tell where writing fails: what is kept, and what to do.
+// What the message of a failed write says: what is kept, and what to do.
 struct Consolation {
   std::string why = "nothing was written";
   std::string suggestion = "name a file in a folder that exists, is writable and has room";
 };
 
-// An open file; closed by the destructor. Offsets are of bytes from the file's start.
+// An open file; the destructor closes it. Offsets are bytes from the start of the file.
 class File {
  public:
-  enum class Mode { kRead, kReadWrite };  // kReadWrite makes the file where there is none
+  enum class Mode { kRead, kReadWrite };  // kReadWrite creates a missing file
 
-  // Throws InputError where it cannot be opened, or is no regular file. Messages speak of `called`, where it is given,
-  // instead of the path.
+  // Throws InputError if the file cannot be opened or is not a regular file. Messages name `called`, if given, instead
+  // of the path.
   File(std::filesystem::path path, Mode mode, Consolation consolation = {}, std::filesystem::path called = {});
   File(File&& other) noexcept;
   ~File();
@@ -29,16 +30,16 @@ class File {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] std::uint64_t size() const;
 
-  // At most `count` bytes, fewer only at the end of the file.
+  // Reads at most `count` bytes; fewer only at the end of the file.
   [[nodiscard]] std::string read(std::uint64_t offset, std::size_t count) const;
   void write(std::uint64_t offset, std::string_view bytes);
   void truncate(std::uint64_t size);
   void sync();
 
-  enum class Lock { kTaken, kInUse, kUnsupported };  // some network file systems have none
-  // Until the file is closed, even if the process dies.
+  enum class Lock { kTaken, kInUse, kUnsupported };  // kUnsupported: some network file systems have no locks
+  // The lock lasts until the file is closed, even if the process dies.
   [[nodiscard]] Lock lock();
-  // Whether the path still leads to this file.
+  // Whether the path still leads to this file: it may have been renamed, removed or replaced.
   [[nodiscard]] bool is_in_place() const;
 
   [[noreturn]] void fail(int error) const;
@@ -53,32 +54,32 @@ class File {
   int descriptor_ = -1;
 };
 
-// Makes renaming and removing in the folder of `path` last, as far as the file system can.
+// Makes renames and removals in the folder of `path` durable, as far as the file system can.
 void sync_folder_of(const std::filesystem::path& path);
 
-// A file that appears whole or not at all, written from start to end.
+// A file that appears complete or not at all. It is written from start to end.
 class WholeFile {
  public:
   enum class WhenBusy { kRefuse, kWait };  // kWait: some seconds
 
-  // Written as `path`.whole; what a killed process left there is overwritten. Throws InputError where another process
-  // is at it. A symbolic link is followed.
+  // Writes to `path`.whole first, and overwrites what a killed process left there. Throws InputError if another process
+  // is writing the file. Follows a symbolic link.
   WholeFile(const std::filesystem::path& path, Consolation consolation = {}, WhenBusy when_busy = WhenBusy::kRefuse);
   ~WholeFile();
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
 
   void append(std::string_view bytes);
-  // On the disk, then in its place.
+  // Flushes the file to disk, then renames it to its final name.
   void commit();
 
-  // Whether the process has such a file at hand: not a moment to end it. For signal handlers, too.
+  // Whether the process is writing such a file now, so that it should not be ended. Safe in signal handlers.
   [[nodiscard]] static bool any();
 
  private:
   void flush();
 
-  // Before the file is made, and until it is renamed or removed.
+  // Counts the file from before it is created until it is renamed or removed.
   struct Counted {
     Counted();
     ~Counted();

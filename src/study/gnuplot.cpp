@@ -48,7 +48,7 @@ class SpawnActions {
   posix_spawn_file_actions_t actions_{};
 };
 
-// Our environment but for the locale: the scripts are UTF-8 wherever they run.
+// Our environment with another locale: the scripts are UTF-8 on every machine.
 class Utf8Environment {
  public:
   Utf8Environment() {
@@ -65,7 +65,7 @@ class Utf8Environment {
   std::vector<char*> entries_;
 };
 
-// Has the child take limits on the size of files as programs usually do, whatever ours does.
+// Restores the default action of SIGXFSZ (file size limit exceeded) in the child, whatever this process does.
 class SpawnAttributes {
  public:
   SpawnAttributes() {
@@ -86,9 +86,9 @@ class SpawnAttributes {
 };
 
 struct Child {
-  int error = 0;  // why it could not be started, if so
+  int error = 0;  // why it could not be started; 0 if it was
   int status = 0;
-  std::string given_up;  // why it was ended, if so
+  std::string given_up;  // why it was ended early; empty if it was not
 };
 
 bool has_ended(pid_t child, int& status) {
@@ -113,7 +113,7 @@ void wait_for(pid_t pid, const std::function<bool()>& cancelled, Child& child) {
   }
 }
 
-// No shell: no name needs quoting.
+// Started without a shell, so no name needs quoting.
 Child run(const fs::path& script, const fs::path& out, const fs::path& err, const std::function<bool()>& cancelled) {
   SpawnActions actions;
   actions.open(STDIN_FILENO, "/dev/null", O_RDONLY);
@@ -196,8 +196,8 @@ std::string inlined(std::string_view svg, std::string_view prefix, std::string_v
   replace_all(text, " color=\"black\"", "");
   replace_all(text, "'black'", "'currentColor'");
   replace_all(text, "\"black\"", "\"currentColor\"");
-  replace_all(text, "fill=\"#ffffff\"", "fill=\"none\"");  // a sheet of its own; the page has one for every figure
-  replace_all(text, "stroke-width='0.178'", "stroke-width='0.3'");  // of open marks, which are thin on a phone
+  replace_all(text, "fill=\"#ffffff\"", "fill=\"none\"");  // a background of its own; the page has one for every figure
+  replace_all(text, "stroke-width='0.178'", "stroke-width='0.3'");  // open marks, which are thin on a phone
   text.insert(4, " role=\"img\" aria-label=\"" + html(title) + "\"");
   return text;
 }

@@ -16,7 +16,7 @@ std::size_t sight_count(const Study& study, Sight sight) {
   return study.receivers_by_sight[static_cast<std::size_t>(sight)];
 }
 
-// The time that settings are compared by: where the source is partly hidden if that occurs.
+// The time used to compare settings: over the receivers that see the source partly hidden, if there are any.
 double typical(const Study& study, const TimeSummary& t) {
   return sight_count(study, Sight::kPartly) > 0 ? t.median_partly : t.median;
 }
@@ -48,7 +48,7 @@ std::string base_sentence(const Study& study) {
   return text + ".";
 }
 
-// What lowering eps_B alone achieves.
+// What a smaller eps_B alone achieves.
 std::string tolerance_sentence(const Study& study) {
   const std::vector<std::size_t> line = line_through(study.settings, study.base, Parameter::kEpsB);
   const auto smaller = [&](std::size_t a, std::size_t b) { return study.settings[a].eps_b < study.settings[b].eps_b; };
@@ -83,7 +83,8 @@ std::string violations_sentence(const Study& study) {
          " settings broke their own tolerance at one receiver or more.";
 }
 
-// Where the exact method overtakes: the best that sampling reaches in its time, and what the best of all costs.
+// Where the exact method wins: the best that sampling reaches in the same time, and what the most accurate setting
+// costs.
 std::string crossover_sentence(const Study& study) {
   const double exact = typical(study, study.exact_time);
   const auto rms = [&](std::size_t k) { return study.summaries[k].radiosity.rms; };
@@ -112,7 +113,7 @@ std::string crossover_sentence(const Study& study) {
          size_of(rms(best)) + " and takes " + rounded(ratio, 2) + " times as long as the exact method.";
 }
 
-// The base setting in the other variant, where that makes a difference.
+// The base setting in the other variant, if the variant makes a difference.
 std::string variant_sentence(const Study& study) {
   AdaptiveOptions literal = study.settings[study.base];
   if (literal.variant == Variant::kLiteral) return {};

@@ -1,11 +1,11 @@
-// A file of records, appended as pieces of work are finished:
+// A file of records. A record is appended when a piece of work is finished:
 //
 //   exactff journal 1, version 0.1.0\n
 //   NAME BYTES CRC32\n  and then BYTES bytes and a line end, again and again
 //
-// The CRC-32 is of name and bytes. Reading stops at the first record that is torn or damaged, and what follows is
-// overwritten: a journal is as good as its sound beginning. Another version's journal is of no use, since its values
-// may differ; a file that is no journal is never touched.
+// The CRC-32 covers name and bytes. Reading stops at the first record that is torn or damaged, and new records
+// overwrite everything from there on: only the sound beginning of a journal is used. A journal of another version is
+// not used, since its values may differ. A file that is not a journal is never touched.
 #include <boost/crc.hpp>
 #include <charconv>
 #include <map>
@@ -44,7 +44,7 @@ struct RecordHead {
   std::string name;
   std::uint64_t bytes = 0;
   std::string checksum;
-  std::uint64_t length = 0;  // of the head, its line end included
+  std::uint64_t length = 0;  // of the head, including its line end
 };
 
 std::optional<RecordHead> head_at(std::string_view text) {
@@ -77,17 +77,17 @@ struct Journal::Impl {
     if (removed) remove_made();
   }
 
-  // The file may be in a folder that is not there yet: gives the highest one that was made.
+  // Creates the folder of the file if necessary. Returns the topmost folder that was created.
   static fs::path made_for(const fs::path& path) {
     const fs::path folder = fs::absolute(path).parent_path();
     fs::path made;
     for (fs::path f = folder; f.has_relative_path() && !is_there(f); f = f.parent_path()) made = f;
-    std::error_code ignored;  // opening the file will fail
+    std::error_code ignored;  // opening the file will fail, too
     fs::create_directories(folder, ignored);
     return made;
   }
 
-  // Folders that were made and are empty.
+  // Removes the created folders, as far as they are empty.
   void remove_made() const {
     std::error_code error;
     fs::path folder = fs::absolute(file.path()).parent_path();
@@ -102,7 +102,7 @@ struct Journal::Impl {
     return fs::exists(path, ignored);
   }
 
-  // The process that had the lock may have finished and removed the file in between.
+  // The process that held the lock may meanwhile have finished and removed the file.
   static File opened(const fs::path& path) {
     for (;;) {
       File file(path, File::Mode::kReadWrite, kConsolation);
@@ -116,7 +116,7 @@ struct Journal::Impl {
     }
   }
 
-  // A first line that is cut off has nothing after it.
+  // If the first line is cut off, nothing follows it.
   void require_ours(Existing existing) const {
     const std::string ours = first_line(), theirs = file.read(0, ours.size());
     if (ours.starts_with(theirs)) return;
@@ -140,7 +140,7 @@ struct Journal::Impl {
     while (const auto next = record_at(end)) end = *next;
   }
 
-  // The end of the sound record there; nothing if it is torn, damaged or not there.
+  // The end of the sound record at this offset; nothing if the record is torn, damaged or missing.
   std::optional<std::uint64_t> record_at(std::uint64_t offset) {
     const auto head = head_at(file.read(offset, kLongestHead));
     const std::uint64_t start = offset + (head ? head->length : 0);
@@ -159,7 +159,7 @@ struct Journal::Impl {
     end = first_line().size();
   }
 
-  fs::path outermost_made;  // empty: none
+  fs::path outermost_made;  // the topmost folder that was created; empty: none
   File file;
   mutable std::mutex mutex;
   std::map<std::string, Place> places;

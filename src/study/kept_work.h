@@ -1,4 +1,4 @@
-// What is found in a journal instead of being computed again.
+// Results that are read from a journal instead of being computed again.
 #pragma once
 
 #include <string>
@@ -10,20 +10,21 @@
 
 namespace exactff::study {
 
-// Tells one text from another: for the names of pieces of work, which hold no blanks.
+// A hash that distinguishes texts, without blanks: for the names of pieces of work.
 [[nodiscard]] inline std::string short_hash(std::string_view text) {
   Fnv1a hash;
   hash.add_bytes(text);
   return hash.digits();
 }
 
-// Names of this study's pieces of work begin with `prefix`, which tells it from others by all that its values depend
-// on.
+// The names of this study's pieces of work begin with `prefix`, which differs if anything differs that the values
+// depend on.
 class KeptWork {
  public:
   KeptWork(Journal* journal, std::string prefix) : journal_(journal), prefix_(std::move(prefix)) {}
 
-  // By read(WordReader&) from the journal, else by compute(), which write(WordWriter&) then keeps. From any thread.
+  // Calls read(WordReader&) if the journal has the result; otherwise calls compute() and keeps what write(WordWriter&)
+  // writes. Safe from any thread.
   template <class Compute, class Write, class Read>
   void get(const std::string& name, const Compute& compute, const Write& write, const Read& read) const {
     if (journal_ == nullptr) return compute();

@@ -29,7 +29,7 @@ std::string trimmed(std::string_view text) {
   throw InputError(Problem{{}, 0, what, why, suggestion});
 }
 
-// A ladder's text, taken apart.
+// A parsed ladder.
 struct LadderText {
   std::string method;
   std::vector<std::pair<std::string, std::vector<std::string>>> settings;  // name and values

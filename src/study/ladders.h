@@ -1,4 +1,5 @@
-// Which methods a study runs against one another, and what a scene gives no work to.
+// Which methods a study compares, and which of them cannot show anything in a scene. A ladder is one method with
+// settings of rising effort; a rung is one of these settings.
 #pragma once
 
 #include <vector>
@@ -8,20 +9,20 @@
 
 namespace exactff::study {
 
-// Every method of the library over its range of effort; eps_B in tenths of the largest rho B.
+// Every method of the library over its range of effort. The values of eps_B are tenths of the largest rho B.
 [[nodiscard]] std::vector<Ladder> default_ladders(double largest_rho_b);
 
-// What the exact values say there is to compare.
+// What the exact values show about the work that sampling has in the scene.
 struct Sightings {
   bool any = true;      // some receiver sees something
   bool sampled = true;  // some receiver has a source hidden in part, or by several occluders together
   double largest_rho_b = 0.0;
 };
 
-// Takes the ladders out that cannot show anything, and says why.
+// Removes the ladders that cannot show anything, and returns the reasons.
 [[nodiscard]] std::vector<LeftOut> leave_out(std::vector<Ladder>& ladders, const Sightings& sightings);
 
-// The value that a rung has of the setting along which its ladder goes: "64"; empty where there is none.
+// The value of the setting that varies along the ladder, at this rung: "64". Empty if no setting varies.
 [[nodiscard]] std::string rung_text(const Ladder& ladder, std::size_t rung);
 // "area sampling, stratified, samples 64".
 [[nodiscard]] std::string rung_name(const Ladder& ladder, std::size_t rung);

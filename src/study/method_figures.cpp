@@ -13,12 +13,12 @@
 namespace exactff::study {
 namespace {
 
-constexpr std::size_t kMostLines = 8;  // that can be told apart in one figure
-// Errors of rounding alone are below the axis.
+constexpr std::size_t kMostLines = 8;  // more cannot be told apart in one figure
+// Pure rounding errors are below the axis.
 constexpr const char* kFloor = "set yrange [1e-9<*:]";
 constexpr const char* kRelative = "RMS error / brightest receiver";
 
-// Variants are in the tables; the figures show each method once.
+// Figures show each method once; its variants are in the tables.
 bool is_variant(const Ladder& ladder) {
   const methods::Choice& choice = ladder.rungs.front();
   if (choice.method->name == "adaptive" && choice.settings.whole("rays") > 16) return true;
@@ -93,7 +93,7 @@ class MethodFigures {
         "no method has an error that a logarithmic axis can show");
   }
 
-  // Exponents of error = c time^p, by least squares over the settings of a method.
+  // Exponents p of error = c time^p for each method, fitted by least squares over its settings.
   [[nodiscard]] std::string time_slopes() const {
     std::vector<std::string> words;
     for (const std::size_t l : shown_) {
@@ -158,7 +158,8 @@ class MethodFigures {
     return list;
   }
 
-  // RMS over the receivers of each bin, against the bin's place on the axis. A bin of fewer than three is left out.
+  // RMS over the receivers of each bin, against the position of the bin on the axis. Bins with fewer than three
+  // receivers are left out.
   template <class BinOf>
   [[nodiscard]] std::vector<Series> binned(const BinOf& bin_of) const {
     constexpr std::size_t kFewest = 3;
@@ -210,7 +211,7 @@ class MethodFigures {
 
   void add_by_distance() {
     const std::string title = "Error by distance to the nearest shadow edge";
-    if (study_.edge_distance.empty()) return;  // left out already, with its reason
+    if (study_.edge_distance.empty()) return;  // already in the list of what is left out
     const double unit = 0.5 * study_.edge_resolution;
     const auto bin_of = [&](std::size_t i) -> std::optional<double> {
       if (study_.exact[i].sight == Sight::kNothing) return std::nullopt;
@@ -264,7 +265,7 @@ class MethodFigures {
   std::vector<Figure>& figures_;
   std::vector<LeftOut>& left_out_;
   double brightest_;
-  std::vector<std::size_t> shown_;  // ladders
+  std::vector<std::size_t> shown_;  // indices of ladders
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Figures about the methods against one another, and about where their errors are.
+// Figures that compare the methods and show where their errors are.
 #pragma once
 
 #include <vector>

@@ -1,11 +1,11 @@
-// Methods against one another, ladder by ladder.
+// Runs the methods to be compared, ladder by ladder.
 //
-//   1. choose receivers;
-//   2. for every rung: evaluate it once, price the counted work of all receivers and seeds, and end the ladder where
-//      that exceeds what is left of its budget;
-//   3. evaluate it for every seed and receiver: tasks of one seed and a few receivers, shared out between threads;
-//   4. fit error = c * work^exponent over the rungs, for every seed apart;
-//   5. evaluate the middle rung at every receiver.
+//   1. Choose receivers.
+//   2. For each rung: evaluate it once and price the counted work of all receivers and seeds. End the ladder if the
+//      price exceeds what is left of its budget.
+//   3. Evaluate the rung for every seed and receiver. A task is one seed and a few receivers; threads share the tasks.
+//   4. Fit error = c * work^exponent over the rungs, for each seed separately.
+//   5. Evaluate the middle rung at every receiver.
 #include "study/method_runs.h"
 
 #include <algorithm>
@@ -24,21 +24,22 @@ namespace exactff::study {
 namespace {
 
 constexpr std::size_t kReceiversPerTask = 8;
-constexpr double kRoundingError = 1e-12;  // relative; what is below says nothing of a method
+constexpr double kRoundingError = 1e-12;  // relative; smaller errors say nothing about a method
 
-// Nanoseconds of a counted piece of work on a processor of 2020 or so, rounded: for planning only.
+// Nanoseconds of a counted piece of work on a processor of about 2020, rounded. Used for planning only.
 double price(std::string_view counter, std::size_t faces) {
   static const std::map<std::string_view, double> kPrices = {
       {"rays", 150.0},       {"leaves", 300.0},    {"shaft tests", 10.0}, {"samples", 20.0},
       {"sub-patches", 50.0}, {"pixels", 0.0},      {"pixels drawn", 1.5}, {"polygons", 100.0},
       {"edges", 400.0},      {"occluders", 300.0}, {"bits", 0.0},         {"not certified", 0.0}};
   if (counter == "exact V") return 2e4 + 400.0 * static_cast<double>(faces);
-  if (counter.starts_with("leaves:")) return 0.0;  // counted among the leaves
+  if (counter.starts_with("leaves:")) return 0.0;  // already counted as leaves
   const auto found = kPrices.find(counter);
   return found == kPrices.end() ? 100.0 : found->second;
 }
 
-// What an error is plotted and fitted against: samples or pixels, else what a recursion or a splitting did.
+// The work that errors are plotted and fitted against: samples or pixels, otherwise the work of a recursion or a
+// splitting.
 double main_work(const methods::Counters& counters) {
   for (const char* name : {"samples", "pixels drawn"}) {
     if (counters[name] > 0) return static_cast<double>(counters[name]);
@@ -121,7 +122,7 @@ class MethodRunner {
     add_field(l, rung, *prepared);
   }
 
-  // Ladders that were refused, or beyond the budget from the first rung on; the numbers of those after them move up.
+  // Drops ladders that were refused, or over the budget from the first rung on. The ladders after them move up.
   void drop_idle_ladders() {
     std::vector<Ladder> kept;
     std::vector<std::size_t> place(result_.ladders.size(), 0);
@@ -185,7 +186,7 @@ class MethodRunner {
 
   void compute(MethodCell& cell, const PreparedMethod& prepared) {
     const std::size_t receivers = result_.receivers.size();
-    cell.work = 0.0;  // a journal may have had something else
+    cell.work = 0.0;  // a journal may have had another value
     cell.values.assign(cell.seeds.size(), std::vector<double>(receivers));
     cell.radiosity_errors = cell.values;
     const std::size_t chunks = (receivers + kReceiversPerTask - 1) / kReceiversPerTask;
@@ -236,7 +237,7 @@ class MethodRunner {
              " for a method on this scene (--method-budget)"});
   }
 
-  // `rungs` of the ladder were run.
+  // `rungs`: how many rungs of the ladder were run.
   void add_field(std::size_t l, std::size_t rungs, const PreparedMethod& prepared) {
     const Ladder& ladder = result_.ladders[l];
     if (rungs == 0 || ladder.rungs.front().method->name == "exact") return;

@@ -1,4 +1,4 @@
-// The methods of a study against one another.
+// Runs the methods of a study that are compared.
 #pragma once
 
 #include "exactff/study.h"
@@ -6,15 +6,15 @@
 
 namespace exactff::study {
 
-// Values of every ladder at a choice of receivers, and of its middle rung at all of them. `study` has its exact values;
-// what is left out is added to it.
+// Values of every ladder at chosen receivers, and of its middle rung at all receivers. `study` must have its exact
+// values. What is left out is added to it.
 [[nodiscard]] MethodStudy run_methods(Study& study, const KeptWork& kept, const Hooks& hooks);
 
-// The receivers that a study looks at more closely: evenly spaced among those that see the source partly, a third of
-// them among those that see all of it; others where there are too few. Ascending.
+// The receivers that a study examines in detail: evenly spaced among those that see the source partly, and for one
+// third among those that see all of it; other receivers if there are too few. Ascending.
 [[nodiscard]] std::vector<std::size_t> choose_receivers(const std::vector<ExactRow>& exact, std::size_t count);
 
-// What a method's counted work is planned to take, in seconds: fixed prices, so that no plan depends on a clock.
+// The planned time for a method's counted work, in seconds. Uses fixed prices, so that no plan depends on a clock.
 [[nodiscard]] double planned_seconds(const methods::Counters& counters, std::size_t faces);
 
 }  // namespace exactff::study

@@ -1,4 +1,4 @@
-// The CSV files about the methods against one another.
+// The CSV files that compare the methods.
 #pragma once
 
 #include <vector>

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Absolute, without a trailing separator, so that it has a parent and a name.
+// The absolute path without a trailing separator, so that it has a parent and a name.
 fs::path normalised(const fs::path& folder) {
   if (folder.empty()) return {};
   fs::path path = fs::absolute(folder).lexically_normal();
@@ -32,7 +32,7 @@ bool begins_like_ours(const fs::path& file) {
   return std::getline(in, line) && line.starts_with("# exactff ");
 }
 
-// The report, a lock, or a table: those say in their first line whose they are.
+// The report, a lock, or a table. The first line of a table says which program wrote it.
 bool is_our_file(const fs::path& path) {
   return path.filename() == kReportFile || path.filename() == kLockFile ||
          (path.extension() == ".csv" && begins_like_ours(path));
@@ -64,7 +64,7 @@ bool is_there(const fs::path& path) {
   return fs::exists(path, ignored);
 }
 
-// The folder will be made in the nearest ancestor that exists.
+// The folder will be created in the nearest ancestor that exists.
 void require_writable_place(const fs::path& folder, const fs::path& target) {
   fs::path place = target.parent_path();
   while (place.has_relative_path() && !is_there(place)) place = place.parent_path();
@@ -74,7 +74,7 @@ void require_writable_place(const fs::path& folder, const fs::path& target) {
          "the results need a place", "name another folder");
 }
 
-// Replacing the folder that a shell stands in would leave the shell in a folder that is gone.
+// A shell whose current folder is replaced would be left in a deleted folder.
 void require_elsewhere(const fs::path& folder, const fs::path& target) {
   std::error_code error;
   const fs::path here = fs::current_path(error);
@@ -100,14 +100,14 @@ void require_free_or_ours(const fs::path& folder, const fs::path& target) {
   require_replaceable(target);
 }
 
-// The path itself or the highest folder above it that does not exist.
+// The topmost folder on the path that does not exist; it may be the path itself.
 fs::path outermost_missing(fs::path path) {
   while (path.has_relative_path() && !is_there(path.parent_path())) path = path.parent_path();
   return path;
 }
 
 std::atomic<int> staged_count = 0;
-static_assert(std::atomic<int>::is_always_lock_free);  // or no signal handler could ask
+static_assert(std::atomic<int>::is_always_lock_free);  // a signal handler reads it
 
 }  // namespace
 
@@ -138,7 +138,7 @@ StagedFolder::~StagedFolder() {
 void StagedFolder::remove_made() {
   work_.reset();
   std::error_code error;
-  // Only what is empty is removed, so that nobody else's files can be lost.
+  // Only empty folders are removed, so that files of others cannot be lost.
   for (fs::path made = target_; made != outermost_made_ && !error;) {
     made = made.parent_path();
     fs::remove(made, error);

@@ -1,4 +1,4 @@
-// A folder that appears whole or not at all.
+// A folder that appears complete or not at all.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,12 @@ namespace exactff::study {
 
 inline constexpr const char* kReportFile = "report.html";
 
-// A hidden sibling of the target in which files are prepared; removed again, with the folders made on the way to it,
-// unless commit() was called. What killed processes left there is removed first.
+// A hidden sibling of the target, in which files are prepared. Unless commit() was called, the destructor removes it
+// together with the folders that were created on the way to it. The constructor first removes what killed processes
+// left there.
 class StagedFolder {
  public:
-  // Throws InputError where check_output_folder does, or where nothing can be written.
+  // Throws InputError if check_output_folder does, or if nothing can be written.
   explicit StagedFolder(const std::filesystem::path& target);
   ~StagedFolder();
   StagedFolder(const StagedFolder&) = delete;
@@ -22,17 +23,17 @@ class StagedFolder {
 
   [[nodiscard]] const std::filesystem::path& path() const { return work_->path(); }
 
-  // Whether there is one anywhere in the program; safe to ask in a signal handler.
+  // Whether the program has any staged folder now. Safe in signal handlers.
   [[nodiscard]] static bool any();
 
-  // Puts the prepared folder in the target's place; an earlier study there is removed.
+  // Puts the prepared folder in the place of the target. Removes an earlier study there.
   void commit();
 
  private:
   void remove_made();
 
   std::filesystem::path target_;
-  std::filesystem::path outermost_made_;  // the target or the highest folder above it that did not exist before
+  std::filesystem::path outermost_made_;  // the topmost folder of the target's path that did not exist before
   std::optional<WorkFolder> work_;
 };
 

@@ -1,4 +1,4 @@
-// Figures drawn for a report, and files written whole.
+// Draws the figures of a report, and writes complete files.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace exactff::study {
 
-// Throws Cancelled if the hooks say so.
+// Throws Cancelled if the hooks request it.
 void require_not_cancelled(const Hooks& hooks);
 
 // Calls put(stream); throws InputError unless every byte was written.
@@ -25,11 +25,11 @@ struct DrawnFigure {
 
 struct DrawnFigures {
   std::vector<DrawnFigure> figures;
-  std::vector<LeftOut> left_out;  // what gnuplot could not draw
-  std::string none;               // why there are no figures, if so
+  std::vector<LeftOut> left_out;  // figures that gnuplot could not draw
+  std::string none;               // why there are no figures; empty if there are
 };
 
-// By gnuplot, with its files in `scratch`. Adds to `messages` what is worth telling.
+// Runs gnuplot, with its files in `scratch`. Adds notes for the user to `messages`.
 [[nodiscard]] DrawnFigures draw_figures(std::vector<Figure> figures, const std::filesystem::path& scratch,
                                         std::vector<std::string>& messages, const Hooks& hooks);
 

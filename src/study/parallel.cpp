@@ -18,7 +18,7 @@ class SharedLoop {
              const std::function<void(std::size_t)>& body)
       : count_(count), stage_(stage), hooks_(hooks), body_(body) {}
 
-  // One thread's share: takes the next index until there is none, or until something was thrown anywhere.
+  // The loop of one thread: takes the next index until none is left or any thread has thrown.
   void work() {
     try {
       for (std::size_t i = next_++; i < count_ && !stop_; i = next_++) {
@@ -31,7 +31,7 @@ class SharedLoop {
     }
   }
 
-  // Ends every thread's share.
+  // Keeps the exception and ends the loops of all threads.
   void keep(std::exception_ptr failure) {
     stop_ = true;
     const std::lock_guard lock(mutex_);
@@ -77,7 +77,7 @@ void parallel_for(std::size_t count, int threads, std::string_view stage, const 
     const auto wanted = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
     try {
       for (std::size_t i = 1; i < wanted; ++i) helpers.emplace_back([&loop] { loop.work(); });
-    } catch (...) {  // a thread could not be started: the others need not go on
+    } catch (...) {  // a thread could not be started: the others stop, too
       loop.keep(std::current_exception());
     }
     loop.work();

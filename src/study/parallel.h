@@ -1,4 +1,4 @@
-// How many threads to use, and a loop over independent indices on several of them.
+// The number of threads to use, and a parallel loop over independent indices.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,12 @@
 
 namespace exactff::study {
 
-// Processors that this process may use: a batch system, taskset or mpirun may have given it fewer than the machine has.
+// The number of processors that this process may use. A batch system, taskset or mpirun may have given it fewer than
+// the machine has.
 [[nodiscard]] int usable_threads();
 
-// Calls body(i) once for every i below count. Progress is told under a lock; the first exception of a body is
-// thrown again when all threads have ended; so is Cancelled.
+// Calls body(i) once for every i below count. Progress is reported under a lock. When all threads have ended, the first
+// exception of a body is rethrown; so is Cancelled.
 void parallel_for(std::size_t count, int threads, std::string_view stage, const Hooks& hooks,
                   const std::function<void(std::size_t)>& body);
 

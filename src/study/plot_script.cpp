@@ -12,14 +12,15 @@
 namespace exactff::study {
 namespace {
 
-// Okabe and Ito's colours, told apart with every common colour blindness, then the ink of the page and a grey; marks
-// and dashes differ as well, for print. Their yellow is left out: it cannot be seen on white. The light ones come late,
-// and the last four are dashed, so that the eighth line is not taken for the first.
+// The colours of Okabe and Ito, which can be distinguished with every common colour blindness, then the page's text
+// colour and a grey. Marks and dashes differ as well, for print. Their yellow is left out: it cannot be seen on white.
+// The light colours come late, and the last four lines are dashed, so that the eighth line is not mistaken for the
+// first.
 constexpr std::array<std::string_view, 8> kLineStyles = {
     "lc rgb '#0072B2' pt 7 dt 1",  "lc rgb '#D55E00' pt 5 dt 1",       "lc rgb '#009E73' pt 9 dt 1",
     "lc rgb '#CC79A7' pt 13 dt 1", "lc rgb '#E69F00' pt 11 dt (16,4)", "lc rgb '#56B4E9' pt 6 dt (8,3)",
     "lc black pt 4 dt (12,3,2,3)", "lc rgb '#8A8A8A' pt 2 dt (4,3)"};
-// For a line that may lie upon another: its open marks leave the other's to be seen.
+// For a line that may coincide with another: the other line stays visible through its open marks.
 constexpr std::string_view kOverlayStyle = "with linespoints lw 1.2 ps 1.3 lc rgb '#CC79A7' pt 12 dt 3";
 
 // Ten samples of viridis; a diverging scale that is light grey in the middle.
@@ -29,9 +30,9 @@ constexpr std::string_view kViridis =
 constexpr std::string_view kDiverging =
     "set palette defined (0 '#2166ac', 1 '#67a9cf', 2 '#d1e5f0', 3 '#f7f7f7', 4 '#fddbc7', 5 '#ef8a62', 6 '#b2182b')\n";
 
-// Figures of a page have its background; those that stand alone are white everywhere.
+// Figures on a page use its background; separate figures have a white background.
 enum class Background { kOfPage, kWhite };
-constexpr int kPlotWidth = 520;  // small enough for lettering that can be read on a phone
+constexpr int kPlotWidth = 520;  // small enough that the lettering is readable on a phone
 constexpr int kKeyFont = 13;
 
 std::string head(int width, int height, Background background = Background::kOfPage) {
@@ -57,11 +58,11 @@ std::string data_block(const std::string& name, const Points& points) {
   return text + "END\n";
 }
 
-// Above the plot, in as many equally full columns as its words leave room for.
+// The legend above the plot: as many equally full columns as fit.
 struct Key {
   std::size_t rows = 0;
   std::size_t columns = 1;
-  std::size_t spare = 0;  // characters by which gnuplot takes the words for longer than they are
+  std::size_t spare = 0;  // how many characters gnuplot overestimates the longest entry by
 };
 
 std::size_t characters(std::string_view text) {
@@ -69,7 +70,7 @@ std::size_t characters(std::string_view text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins));
 }
 
-// Room and widths as gnuplot's SVG terminal takes them.
+// The room and the widths are those that gnuplot's SVG terminal assumes.
 Key key_of(const std::vector<std::string>& titles) {
   constexpr double kRoom = kPlotWidth - 40, kCharacter = 0.7 * kKeyFont, kSample = 5.7 * kCharacter;
   std::size_t entries = 0, longest = 0;
@@ -86,7 +87,7 @@ Key key_of(const std::vector<std::string>& titles) {
   return {rows, (entries + rows - 1) / rows, spare};
 }
 
-// The axes have the same room whatever the key takes.
+// The axes get the same room however large the legend is.
 std::string plot_head(const Key& key, Background background = Background::kOfPage) {
   return head(kPlotWidth, 360 + 20 * static_cast<int>(key.rows), background);
 }
@@ -103,7 +104,7 @@ std::string axis_commands(const Axes& axes, const Key& key) {
   return text;
 }
 
-// A logarithmic axis would otherwise reach to the next power of ten.
+// Otherwise a logarithmic axis would extend to the next power of ten.
 std::string x_range(const Axes& axes, const std::vector<Points>& drawn) {
   if (!axes.log_x) return {};
   std::vector<double> all = axes.marks;
@@ -123,14 +124,14 @@ std::string style_of(const Series& series) {
   return "with linespoints lw 1.8 ps 0.8 " + style;
 }
 
-// Of a mark over bars, which have the first colour.
+// The style of a mark over bars. Bars use the first colour.
 std::string mark_style(std::size_t i) {
   constexpr std::array<std::string_view, 4> kColours = {"#D55E00", "#CC79A7", "#009E73", "#E69F00"};
   return "lw 2 dt " + std::to_string(1 + i % 5) + " lc rgb '" + std::string(kColours[i % kColours.size()]) + '\'';
 }
 
-// Dots for a crowd, crosses for what must not be overlooked in it. A dot is a line of no length to speak of with round
-// ends: as a mark it would take three times the bytes.
+// Large sets are drawn as dots, and points that must not be overlooked among them as crosses. A dot is a very short
+// line with round ends: as a mark it would take three times the bytes.
 struct CloudLook {
   bool dots = true;
   std::string_view colour;
@@ -141,10 +142,10 @@ CloudLook cloud_look(int style) {
   return kClouds[static_cast<std::size_t>(style - 1) % kClouds.size()];
 }
 
-// For a line that must be seen within a crowd; plain black becomes the page's ink.
+// For a line that must be visible over a cloud of points. Plain black becomes the page's text colour.
 constexpr const char* kOverCloudStyle = "with linespoints lw 1.6 ps 1.1 lc black pt 6 dt 1";
 
-// `width`: of the points' range in x.
+// `width`: the range of the points in x.
 std::string cloud_command(const std::string& name, const Series& cloud, const Axes& axes, double width) {
   const CloudLook look = cloud_look(cloud.style);
   const std::string colour = " lc rgb '" + std::string(look.colour) + '\'';
@@ -162,7 +163,7 @@ std::string four_digits(double value) {
   return {text.data(), end.ptr};
 }
 
-// Marks that fall upon the one before are drawn once.
+// A mark that coincides with the one before is drawn once.
 std::string cloud_block(const std::string& name, const Points& points) {
   std::string text = name + " << END\n", last;
   for (const auto& [x, y] : points) {
@@ -180,7 +181,7 @@ double largest_value(const Map& map) {
   return largest;
 }
 
-// A few marks, so that their numbers do not run into one another on a narrow bar.
+// Only a few tick marks, so that their numbers do not overlap on a narrow bar.
 std::string colour_range(double low, double middle, double high) {
   const auto mark = [](double value) {
     return std::string(value < 0.0 ? "'−" : "'") + rounded(std::abs(value), 2) + "' " + shortest(value);

@@ -1,4 +1,4 @@
-// Pieces of gnuplot scripts that all figures share.
+// Pieces of gnuplot scripts that all figures use.
 #pragma once
 
 #include <string>
@@ -7,17 +7,17 @@
 
 namespace exactff::study {
 
-// A value and another, in that order along the axes.
+// Pairs (x, y).
 using Points = std::vector<std::pair<double, double>>;
 
 // One line of a plot. `style` numbers the colours and marks, from 1; 0 draws a grey dashed line.
-inline constexpr int kOverlay = -1;  // dashed with open marks, for a line that may lie upon another
+inline constexpr int kOverlay = -1;  // dashed with open marks, for a line that may coincide with another
 enum class Drawn { kLineAndMarks, kLine, kMarks };
 struct Series {
   std::string title;
   Points points;
   int style = 1;
-  Drawn drawn = Drawn::kLineAndMarks;  // where the style is a number from 1
+  Drawn drawn = Drawn::kLineAndMarks;  // used if the style is 1 or more
 };
 
 struct Axes {
@@ -26,14 +26,15 @@ struct Axes {
   bool log_x = true;
   bool log_y = true;
   std::vector<std::string> extra = {};  // further commands
-  std::vector<double> marks = {};       // values on the x axis that are to be seen as well
+  std::vector<double> marks = {};       // values that the x axis must include
 };
 
-// Lines with marks. Points that a logarithmic axis cannot show are left out; so are series without points.
-// Empty if nothing remains.
+// Lines with marks. Points that a logarithmic axis cannot show are left out, and so are series without points. Empty if
+// nothing remains.
 [[nodiscard]] std::string line_plot(const Axes& axes, const std::vector<Series>& series);
 
-// Points alone, thousands of them, small and half transparent; series of style 0 and kOverlay are lines, as above.
+// Points only, for thousands of them: small and half transparent. Series of style 0 and kOverlay are drawn as lines, as
+// above.
 [[nodiscard]] std::string scatter_plot(const Axes& axes, const std::vector<Series>& series);
 
 // A bar of a histogram over the x axis.
@@ -49,7 +50,8 @@ struct Mark {
   double x = 0.0;
 };
 
-// Bars from 0, with marks over them. What a logarithmic x axis cannot show is left out. Empty if no bar remains.
+// Bars from 0, with marks over them. Values that a logarithmic x axis cannot show are left out. Empty if no bar
+// remains.
 [[nodiscard]] std::string bar_plot(const Axes& axes, const std::vector<Bar>& bars, const std::vector<Mark>& marks);
 
 struct MapCell {
@@ -61,14 +63,14 @@ struct MapCell {
 enum class MapColours { kSequential, kDiverging, kLogarithmic, kClasses };
 
 struct Map {
-  std::string quantity;  // of the colour bar
+  std::string quantity;  // label of the colour bar
   int columns = 1;
   int rows = 1;
   double height_over_width = 1.0;
   MapColours colours = MapColours::kSequential;
-  double largest = 0.0;  // ends of a diverging scale; larger magnitudes take the colours of its ends
+  double largest = 0.0;  // the ends of a diverging scale are +-largest; larger magnitudes get the colours of the ends
   std::vector<MapCell> cells;
-  std::vector<std::string> classes = {};  // names of the values 0, 1, ... where the colours are of classes
+  std::vector<std::string> classes = {};  // names of the values 0, 1, ... if the colours stand for classes
 };
 
 [[nodiscard]] std::string map_plot(const Map& map);

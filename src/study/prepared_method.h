@@ -1,4 +1,4 @@
-// A method made ready for a study's scene and sources.
+// A method prepared for the scene and the sources of a study.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct PreparedMethod {
   }
 };
 
-// A choice's settings with this seed; 0 leaves them as they are.
+// The settings of a choice with this seed; seed 0 leaves them unchanged.
 [[nodiscard]] inline methods::Settings seeded(const methods::Choice& choice, std::uint64_t seed) {
   methods::Settings settings = choice.settings;
   if (seed > 0) settings.set("seed", static_cast<std::int64_t>(seed));

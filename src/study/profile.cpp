@@ -101,7 +101,7 @@ class Profiler {
     return receiver;
   }
 
-  // A kink between two points whose sights differ, by bisection.
+  // Finds by bisection a kink between two points whose sights differ.
   void find_kinks() {
     for (std::size_t i = 0; i + 1 < profile_.receivers.size(); ++i) {
       if (sights_[i] == sights_[i + 1]) continue;
@@ -114,7 +114,7 @@ class Profiler {
     }
   }
 
-  // The middle rungs of the methods that people use most.
+  // The middle rungs of the most common methods.
   void add_curves() {
     for (const char* wanted : {"adaptive", "hemicube", "area-sampling"}) {
       const auto& ladders = study_.methods.ladders;

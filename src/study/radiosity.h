@@ -17,13 +17,13 @@ inline void add(Rgb& sum, const Rgb& term) {
   sum.b += term.b;
 }
 
-// With its sign.
+// The component of largest magnitude, with its sign.
 [[nodiscard]] inline double largest_in_magnitude(const Rgb& c) {
   const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
   return std::max({c.r, c.g, c.b}, smaller);
 }
 
-// The largest rho_r B_s over the channels: what a form factor of 1 brings to the receiver.
+// The largest rho_r B_s over the channels: the radiosity that a form factor of 1 would give the receiver.
 [[nodiscard]] inline double largest_rho_b(const Scene& scene, const Receiver& receiver, const Rgb& source_radiosity) {
   return times(scene.receiver_reflectance(receiver.on), source_radiosity).largest();
 }

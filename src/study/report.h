@@ -1,4 +1,4 @@
-// A report on several studies, and on what is not about one scene.
+// A report on several studies, and on experiments that do not concern one scene.
 #pragma once
 
 #include <filesystem>
@@ -11,18 +11,18 @@
 
 namespace exactff::study {
 
-// A CSV file as text, `#` lines first.
+// A CSV file as text. The comment lines (#) come first.
 struct TextTable {
   std::string file;
-  std::string holds;  // what it holds, in a line
+  std::string holds;  // description in one line
   std::string csv;
 };
 
-// What was found apart from any one scene and its receivers.
+// Results that do not concern one scene and its receivers.
 struct Chapter {
   std::string name;                          // letters, digits and hyphens
   std::string title;                         // a heading
-  std::vector<std::string> paragraphs = {};  // what was done and found, plain text that can be quoted
+  std::vector<std::string> paragraphs = {};  // what was done and found; plain text that can be quoted
   std::vector<Figure> figures = {};
   std::vector<TextTable> values = {};  // the same bytes on every run
   std::vector<TextTable> times = {};
@@ -30,27 +30,28 @@ struct Chapter {
 };
 
 struct SceneChapter {
-  std::string name;   // letters, digits and hyphens: of files and figures; empty in a report on one scene
+  std::string name;   // letters, digits and hyphens: used for files and figures; empty in a report on one scene
   std::string title;  // "Cornell box"
   Study study;
 };
 
 struct Report {
-  std::string title;  // empty: that of its one scene
+  std::string title;  // empty: the title of the only scene
   std::vector<SceneChapter> scenes;
   std::vector<Chapter> chapters;
   std::string command_line;
   std::vector<LeftOut> left_out;  // scenes and chapters
 };
 
-// A chapter as bytes for a journal of this machine, and back; nothing where it is torn.
+// Converts a chapter to bytes for a journal of this machine, and back. The way back returns nothing if the bytes are
+// torn.
 [[nodiscard]] std::string to_bytes(const Chapter& chapter);
 [[nodiscard]] std::optional<Chapter> chapter_of(std::string_view bytes);
 
-// As write(Study): the files of a scene begin with its name and an underscore.
+// Like write(Study), but the files of a scene begin with its name and an underscore.
 std::vector<std::string> write(const Report& report, const std::filesystem::path& folder, const Hooks& hooks = {});
 
-// What a scene's file is called.
+// The file name of a scene's table.
 [[nodiscard]] std::string file_name(const SceneChapter& scene, const Table& table);
 
 }  // namespace exactff::study

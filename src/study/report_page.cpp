@@ -108,7 +108,7 @@ class ScenePart {
     text_ += std::string("<th") + (words ? " class=\"text\"" : "") + ">" + prose(name) + "</th>";
   }
 
-  // A row for each method: its least time for every wanted error, in times of the exact method.
+  // One row per method: its least time for every wanted error, as a multiple of the exact method's time.
   void needs() {
     const MethodCell* exact = exact_cell(study());
     if (exact == nullptr || study().methods.cells.size() < 2) return;
@@ -328,7 +328,7 @@ class PageWriter {
              left_out_list(report_.left_out) + "</section>\n";
   }
 
-  // A row for each scene: the cheapest method for every wanted error, the exact one among them.
+  // One row per scene: the cheapest method for every wanted error, the exact method included.
   void recommendations() {
     text_ += paragraph(
         "The cheapest method and setting for a wanted error on each scene, and how long it takes per receiver. The "

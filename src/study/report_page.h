@@ -1,4 +1,4 @@
-// The report as one HTML page that fetches nothing and runs nothing.
+// The report as one HTML page that loads nothing and has no scripts.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace exactff::study {
 
-// What goes with each scene and each chapter of a report, in their order.
+// What belongs to each scene and each chapter of a report, in their order.
 struct Page {
   DrawnFigures drawn;
-  std::vector<LeftOut> left_out;  // of the study or chapter, and of its figures
+  std::vector<LeftOut> left_out;  // from the study or chapter, and from its figures
 };
 
 struct Pages {

@@ -1,5 +1,5 @@
-// The report's style sheet: one column on a phone, two figures side by side on a screen, light or dark as the
-// reader's system is, and black on white in print.
+// The report's style sheet: one column on a phone, two figures side by side on a screen, light or dark as the reader's
+// system is set, black on white in print.
 #pragma once
 
 namespace exactff::study {

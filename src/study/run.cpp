@@ -1,13 +1,14 @@
 // A study, step by step.
 //
-//   1. complete the request: sources, threads; refuse what has no receiver or no source;
-//   2. exact values of every receiver and source: they also tell what there is to sample;
-//   3. sweeps and ladders: defaults, what the scene gives no work to, the list of settings;
-//   4. every setting of the adaptive algorithm for every receiver, its leaves held against the exact visible region;
-//   5. every method at a choice of the receivers; where what is visible changes in kind; a profile along a line;
-//   6. times, with nothing else at work;
-//   7. statistics.
-// Receivers are shared out between threads; a result's place is its index, so nothing depends on their number.
+//   1. Complete the request: sources, threads. Refuse a request without receivers or sources.
+//   2. Compute the exact values of every receiver and source. They also show what there is to sample.
+//   3. Choose sweeps and ladders: defaults, without those that cannot affect the scene; list the settings.
+//   4. Run every setting of the adaptive algorithm for every receiver. Compare its leaves with the exact visible
+//      region.
+//   5. Run every method at chosen receivers; find where visibility changes in kind; compute a profile along a line.
+//   6. Measure times, with nothing else running.
+//   7. Compute statistics.
+// Threads share the receivers. The place of a result is its index, so nothing depends on the number of threads.
 #include <algorithm>
 #include <limits>
 
@@ -106,7 +107,7 @@ void take(WordReader& words, SampleRow& row) {
   for (std::uint64_t* n : {&row.silent_leaves, &row.wrong_leaves}) *n = words.word();
 }
 
-// Everything that exact values depend on.
+// Everything that the exact values depend on.
 std::string request_text(const Request& request) {
   std::string text = request.scene->hash();
   const auto put = [&](const std::string& part) { text += '\n' + part; };
@@ -279,7 +280,7 @@ class Runner {
     for (std::size_t k = 0; k < study_.settings.size(); ++k) finish_sample(i, k, errors[k]);
   }
 
-  // `truth` is drawn where the first setting asks for it.
+  // `truth` is drawn when the first setting needs it.
   void add_sample(std::size_t i, std::size_t s, std::size_t k, std::optional<std::vector<PlaneDrawing>>& truth,
                   Rgb& error) {
     const Receiver& receiver = request().receivers[i];

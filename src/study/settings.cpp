@@ -1,13 +1,13 @@
 // The sweeps of a study.
 //
-// The base takes the middle of the lists for eps_B and rays and the first of every other list. Where the full
-// product is small, it is run. Otherwise
+//   The base setting takes the middle of the lists for eps_B and rays, and the first of every other list. If the full
+//   product is small, it is run. Otherwise these are run:
 //   1. the plane eps_B x rays through the base: error against eps_B, against rays and against time;
-//   2. eps_A at the smallest eps_B and the most rays, where it is eps_A that stops the recursion;
-//   3. the variants over eps_B, the patterns over rays;
+//   2. eps_A at the smallest eps_B and the most rays, where eps_A is what stops the recursion;
+//   3. the variants over eps_B, and the patterns over rays;
 //   4. the seeds at the base.
-// The centre pattern has one ray and no seed, the regular one no seed: settings that differ only in what their
-// pattern ignores are one setting.
+//   The centre pattern has one ray and no seed, the regular pattern no seed. Settings that differ only in what their
+//   pattern ignores are one setting.
 #include "study/settings.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ const T& middle(const std::vector<T>& list) {
 
 std::vector<double> powers_of_ten(double unit, int first, int last) {
   std::vector<double> values;
-  // Division by an exact power of ten rounds once, so that 1 becomes 0.1 and not a neighbour of it.
+  // Dividing by an exact power of ten rounds once, so that 1 becomes 0.1 and not a neighbouring double.
   for (int power = first; power <= last; ++power) values.push_back(unit / std::pow(10.0, power));
   return values;
 }
@@ -61,7 +61,7 @@ void check_ranges(const Sweeps& sweeps) {
   if (unbounded) refuse("eps_B and eps_A are both 0", "nothing but the depth cap would end the recursion");
 }
 
-// What the pattern ignores takes one value.
+// A parameter that the pattern ignores gets one fixed value.
 AdaptiveOptions normalised(AdaptiveOptions setting, const Sweeps& sweeps) {
   const bool seeded = setting.pattern == SamplePattern::kJittered || setting.pattern == SamplePattern::kLowDiscrepancy;
   if (!seeded) setting.seed = sweeps.seeds.front();

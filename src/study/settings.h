@@ -14,7 +14,7 @@ struct Plan {
   bool full_product = false;
 };
 
-// What the scene has work for; decided by the exact values before any sampling.
+// What the scene lets a sweep show. Derived from the exact values before any sampling.
 struct Work {
   double largest_rho_b = 0.0;     // over receivers and sources
   double mean_source_area = 0.0;  // of a face
@@ -24,19 +24,19 @@ struct Work {
 // Fills empty lists with the defaults, drops repetitions, checks ranges. Throws InputError.
 void complete(Sweeps& sweeps, const Work& work);
 
-// Shortens to one value every list that cannot matter, and says why.
+// Shortens every list that cannot affect the results to one value, and returns the reasons.
 [[nodiscard]] std::vector<LeftOut> leave_out(Sweeps& sweeps, const Work& work);
 
-// Requires completed sweeps. No setting occurs twice; the order depends on the lists alone.
+// Requires completed sweeps. No setting occurs twice. The order depends on the lists alone.
 [[nodiscard]] Plan combine(const Sweeps& sweeps);
 
-// Equal in everything that can change a value.
+// Whether the two agree in everything that can change a value.
 [[nodiscard]] bool same_setting(const AdaptiveOptions& a, const AdaptiveOptions& b);
 
-// The settings that differ from `from` in the one parameter only, `from` included.
+// The settings that differ from `from` in this one parameter only, including `from`.
 [[nodiscard]] std::vector<std::size_t> line_through(const std::vector<AdaptiveOptions>& settings, std::size_t from,
                                                     Parameter parameter);
-// Where in the list the setting stands.
+// The index of the setting in the list.
 [[nodiscard]] std::optional<std::size_t> find_setting(const std::vector<AdaptiveOptions>& settings,
                                                       const AdaptiveOptions& wanted);
 

@@ -1,6 +1,6 @@
-// The raster is a grid on the same face, some times finer, whose every cell is classified exactly. Wherever two cells
-// beside each other differ, an edge runs between their centres; it is taken to be half-way. A receiver's distance is
-// that to the nearest such place.
+// The raster is a grid on the same face, several times finer. Every cell is classified exactly. Where two adjacent
+// cells differ, an edge runs between their centres; it is assumed to be half-way. The distance of a receiver is that to
+// the nearest such place.
 #include "study/shadow_edges.h"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ class Raster {
     receivers_ = grid_receivers(*request.scene, on, size_);
   }
 
-  // Faces that are no quadrilaterals have cells left out.
+  // On faces that are not quadrilaterals, some cells are missing.
   [[nodiscard]] bool complete() const {
     return receivers_.size() == static_cast<std::size_t>(size_.u) * static_cast<std::size_t>(size_.v);
   }

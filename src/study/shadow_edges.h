@@ -1,4 +1,4 @@
-// Where on a face what is visible of the sources changes in kind: the edges of umbra and penumbra.
+// Where on a face the visibility of the sources changes in kind: the edges of umbra and penumbra.
 #pragma once
 
 #include <span>
@@ -16,11 +16,11 @@ struct ReceiverGrid {
 // The one grid that all receivers belong to, if there is one.
 [[nodiscard]] std::optional<ReceiverGrid> grid_of(const std::vector<Receiver>& receivers);
 
-// Which of the sources a receiver sees: nothing, hidden, partly or all of each.
+// How a receiver sees each source: not at all, hidden, partly hidden or fully visible.
 [[nodiscard]] std::vector<Sight> sights(const Scene& scene, const Receiver& receiver,
                                         std::span<const ExactSource> sources);
 
-// Fills Study::edge_distance from a raster finer than the grid of receivers; else says why not.
+// Fills Study::edge_distance from a raster finer than the grid of receivers; otherwise records the reason.
 void find_shadow_edges(Study& study, std::span<const ExactSource> sources, const Hooks& hooks);
 
 }  // namespace exactff::study

@@ -1,4 +1,4 @@
-// What a receiver sees of a source, from the record of the exact method.
+// How a receiver sees a source, taken from the record of the exact method.
 #pragma once
 
 #include "exactff/study.h"
@@ -6,10 +6,10 @@
 namespace exactff::study {
 
 [[nodiscard]] Sight sight_of(const FormFactor& result);
-// Of several planes or sources together.
+// For several planes or sources together.
 [[nodiscard]] Sight joined(Sight a, Sight b);
 
-// True where nothing but rays can tell the adaptive algorithm what is seen.
+// True if the adaptive algorithm needs rays to decide what is visible.
 [[nodiscard]] bool needs_rays(const FormFactor& result);
 
 }  // namespace exactff::study

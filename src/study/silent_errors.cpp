@@ -1,11 +1,12 @@
-// Silent errors of sampling: leaves whose rays all agreed although the leaf is visible in part.
+// Silent errors of sampling: leaves whose rays all agreed although the leaf is partly visible.
 //
-//   1. find the plane of the source that holds the leaf;
-//   2. drop the axis along which that plane's normal is longest: ratios of areas stay;
-//   3. clip every loop of the visible region by the leaf's sides, one after the other (Sutherland and Hodgman
-//      1974); the clipped loop may run back along a side of the leaf, which adds no area;
-//   4. V = area of the visible part over area of the part above the horizon; strictly between 0 and 1: silent.
-// These are counts for a report, made from rounded coordinates; no value depends on them.
+//   1. Find the plane of the source that holds the leaf.
+//   2. Drop the axis along which that plane's normal is longest: ratios of areas are preserved.
+//   3. Clip every loop of the visible region by the leaf's sides, one after the other (Sutherland and Hodgman 1974).
+//      The clipped loop may run back along a side of the leaf, which adds no area.
+//   4. V = area of the visible part / area of the part above the horizon. If V is strictly between 0 and 1, the leaf is
+//      a silent error.
+// These counts are for a report and use rounded coordinates. No value depends on them.
 #include "study/silent_errors.h"
 
 #include <cmath>
@@ -24,7 +25,7 @@ struct FlatPoint {
 };
 using Polygon = std::vector<FlatPoint>;
 
-// Coordinates in the plane relative to `origin`, the axis of the longest normal component dropped.
+// Coordinates in the plane, relative to `origin`; the axis of the largest normal component is dropped.
 FlatPoint flattened(const Vec3& p, const Vec3& origin, const Vec3& normal) {
   const Vec3 d = difference(p, origin);
   const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
@@ -48,7 +49,7 @@ double signed_area(const Polygon& polygon) {
   return 0.5 * twice;
 }
 
-// Positive left of the line from a to b.
+// Positive if p is to the left of the line from a to b.
 double side_of(const FlatPoint& p, const FlatPoint& a, const FlatPoint& b) {
   return (b.u - a.u) * (p.v - a.v) - (b.v - a.v) * (p.u - a.u);
 }
@@ -80,7 +81,7 @@ std::vector<Vec3> corners_of(const Leaf& leaf) {
   return {leaf.corners.begin(), leaf.corners.begin() + leaf.corner_count};
 }
 
-// How far the leaf is from the plane, in units of the normal; infinite if it faces the other way.
+// The distance of the leaf from the plane, in units of the normal; infinite if the leaf faces the other way.
 double misfit(const std::vector<Vec3>& leaf, const PlaneDrawing& plane) {
   const Vec3 front = cross(difference(leaf[1], leaf[0]), difference(leaf[2], leaf[0]));
   if (plane.source.empty() || dot(front, plane.normal) <= 0.0) return std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// Sampled decisions held against the exact visible region.
+// Compares the decisions of sampling with the exact visible region.
 #pragma once
 
 #include <vector>
@@ -9,21 +9,21 @@
 namespace exactff::study {
 
 struct SampledVerdict {
-  std::uint64_t silent = 0;  // sampled as 0 or 1, in truth in between
-  std::uint64_t wrong = 0;   // sampled as 0 where the truth is 1, or the other way round
-  // What these leaves add to the form factor, minus what they should: each leaf's unoccluded form factor times the
-  // error of its visible fraction, taken by area.
+  std::uint64_t silent = 0;  // sampled as 0 or 1, the truth is in between
+  std::uint64_t wrong = 0;   // sampled as 0 where the truth is 1, or vice versa
+  // The error of these leaves in the form factor: the sum over the leaves of the unoccluded form factor times the error
+  // of the visible fraction (by area).
   double error = 0.0;
 };
 
-// Looks at the leaves that sampling decided (kSampledVisible, kSampledHidden) and at no other. The region is
-// the exact one rounded to doubles, so parts below 1e-9 of a leaf's area are not told from nothing.
+// Examines only the leaves that sampling decided (kSampledVisible, kSampledHidden). The region is the exact one rounded
+// to doubles, so parts below 1e-9 of a leaf's area count as nothing.
 [[nodiscard]] SampledVerdict judge_leaves(const std::vector<Leaf>& leaves, const std::vector<PlaneDrawing>& truth);
 
-// The plane that a leaf lies in: the nearest of those that face its way; null if none does.
+// The plane that contains the leaf: the nearest of those that face the same way; null if there is none.
 [[nodiscard]] const PlaneDrawing* plane_of(const Leaf& leaf, const std::vector<PlaneDrawing>& planes);
 
-// Area of the part of the loops (outer ones minus holes) inside a convex polygon of the same plane.
+// The area that the loops (outer ones minus holes) share with a convex polygon of the same plane.
 [[nodiscard]] double area_inside(const std::vector<Loop>& loops, const std::vector<Vec3>& convex, const Vec3& normal);
 
 }  // namespace exactff::study

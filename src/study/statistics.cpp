@@ -12,7 +12,7 @@ std::vector<double> finite_only(std::span<const double> values) {
   return kept;
 }
 
-// Scaled by the largest magnitude, so that neither tiny nor huge errors lose their squares.
+// Scaled by the largest magnitude, so that squares neither underflow nor overflow.
 double root_mean_square(std::span<const double> values, double largest) {
   if (largest == 0.0) return 0.0;
   double sum = 0.0;
@@ -43,7 +43,7 @@ ErrorStatistics error_statistics(std::span<const double> errors) {
 }
 
 double percentile(std::vector<double> values, double percent) {
-  // percent * n before the division: for whole percents the rank is then exact.
+  // Multiplies percent * n before dividing: the rank is then exact for whole percents.
   const double rank = std::ceil(percent * static_cast<double>(values.size()) / 100.0);
   const auto index = static_cast<std::ptrdiff_t>(std::max(rank, 1.0)) - 1;
   std::nth_element(values.begin(), values.begin() + index, values.end());

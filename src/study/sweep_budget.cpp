@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kProbes = 3;
 constexpr double kLeafNanoseconds = 300.0;
-// The base setting, where the sweeps cross, is run even if it takes longer than the budget, but not longer than this.
+// The base setting, where the sweeps cross, is run even if it exceeds the budget, up to this limit.
 double most_seconds_of_base(const Study& study) { return std::max(10.0, 20.0 * study.request.sweep_budget); }
 
 class SweepPlan {
@@ -22,7 +22,8 @@ class SweepPlan {
             std::span<const AdaptiveSource> sampled_sources)
       : study_(study), sources_(sources), solver_(solver), sampled_sources_(sampled_sources) {}
 
-  // By setting, over all receivers, in seconds. What takes longer than it may is not followed to its end.
+  // Planned seconds of each setting over all receivers. A setting is not followed to its end once it exceeds what it
+  // may take.
   std::vector<double> costs() const {
     const std::vector<std::size_t> probes = choose_receivers(study_.exact, kProbes);
     std::vector<double> result(study_.settings.size(), 0.0);
@@ -35,7 +36,8 @@ class SweepPlan {
   }
 
  private:
-  // The leaves are held against the visible region, which takes its edges times the leaves that sampling decided.
+  // Comparing the leaves with the visible region costs the number of its edges times the number of leaves that sampling
+  // decided.
   void add_costs(std::size_t i, std::size_t s, double scale, std::vector<double>& result) const {
     const Request& request = study_.request;
     const Receiver& receiver = request.receivers[i];

@@ -1,4 +1,4 @@
-// Which settings of the sweeps are too much work for a scene.
+// Which settings of the sweeps are too expensive for a scene.
 #pragma once
 
 #include <span>
@@ -7,9 +7,9 @@
 
 namespace exactff::study {
 
-// Leaves out the settings with the most planned work, the base excepted, until all together keep to
-// Request::sweep_budget; says which. Work is counted at a few receivers and taken at fixed prices, so that the choice
-// depends on the request alone.
+// Leaves out the settings with the most planned work, but not the base, until the rest fits into Request::sweep_budget;
+// records which. Work is counted at a few receivers and multiplied by fixed prices, so that the choice depends on the
+// request alone.
 void keep_to_budget(Study& study, std::span<const ExactSource> sources, const AdaptiveSolver& solver,
                     std::span<const AdaptiveSource> sampled_sources);
 

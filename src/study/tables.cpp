@@ -52,7 +52,7 @@ std::string column_name(std::string_view words) {
 
 constexpr std::string_view kSettingColumns = "setting,variant,pattern,seed,eps_b,eps_a,rays_per_leaf";
 
-// Settings are numbered from 1.
+// Setting numbers start at 1.
 void put_setting(CsvRow& row, const Study& study, std::size_t k) {
   const AdaptiveOptions& s = study.settings[k];
   row << std::uint64_t{k + 1} << name_of(s.variant) << name_of(s.pattern) << s.seed << s.eps_b << s.eps_a << s.rays;

@@ -1,4 +1,4 @@
-// Words and numbers for the tables and the report. Nothing here depends on the locale.
+// Formats words and numbers for the tables and the report. Nothing here depends on the locale.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ namespace exactff::study {
 // The shortest decimal that reads back to the same double; "nan", "inf", "-inf".
 [[nodiscard]] std::string shortest(double value);
 
-// For people: so many significant digits, "0.0123", "1.2·10⁻⁷"; numbers from 100 to 10^7 to the unit.
+// For readers: `digits` significant digits, "0.0123", "1.2·10⁻⁷"; numbers from 100 to 10^7 are rounded to units.
 [[nodiscard]] std::string rounded(double value, int digits = 3);
 
 // "312 ns", "4.51 µs", "1.2 ms", "3.4 s", "2 min 5 s".
 [[nodiscard]] std::string duration(double seconds);
 
-// "31.2 %"; "0 %" only for none and "100 %" only for all.
+// "31.2 %". Gives "0 %" only for none and "100 %" only for all.
 [[nodiscard]] std::string share(std::size_t part, std::size_t whole);
 
 using text::csv_comment;
@@ -29,7 +29,7 @@ using text::html;
 // "a, b and c".
 [[nodiscard]] std::string enumerate(std::span<const std::string> items);
 
-// "1 receiver", "12 receivers"; `plural` where it is not the noun with an s.
+// "1 receiver", "12 receivers". Pass `plural` if it is not the noun with an s.
 [[nodiscard]] std::string counted(std::uint64_t count, std::string_view noun, std::string_view plural = {});
 
 // "{c} of {whole} {noun}s", or "every one of ...".

@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kLongCallSeconds = 0.02;  // such a first call has warmed itself up
+constexpr double kLongCallSeconds = 0.02;  // a first call this long needs no warm-up
 constexpr std::size_t kMostTimed = 256;    // receivers
 constexpr std::size_t kFewestTimed = 12;
 constexpr std::size_t kFewestInCell = 4;
@@ -51,7 +51,7 @@ class Stopwatch {
     choose();
     time_exact();
     for (std::size_t k = 0; k < study_.settings.size(); ++k) time_setting(k);
-    study_.ray_setup_seconds = solver_->build_seconds();  // built where a candidate list first was long
+    study_.ray_setup_seconds = solver_->build_seconds();  // built at the first long candidate list
     time_methods();
   }
 
@@ -87,7 +87,8 @@ class Stopwatch {
     if (hooks_.progress) hooks_.progress({"times", ++done_, total_});
   }
 
-  // Calls measure(i) for receivers until the time is used up; some that see the source partly are always among them.
+  // Calls measure(i) for receivers until the time is used up. Always includes some that see the source partly, if there
+  // are any.
   template <class Measure>
   void spend(double seconds, std::size_t fewest, const std::vector<std::size_t>& order, const Measure& measure) {
     const auto start = Clock::now();
@@ -185,7 +186,7 @@ class Stopwatch {
 
 }  // namespace
 
-// Multiples of about the golden section of the count, modulo it.
+// Multiples, modulo the count, of about the golden section of the count.
 std::vector<std::size_t> spread_order(std::size_t count) {
   std::vector<std::size_t> order;
   if (count == 0) return order;

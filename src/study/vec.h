@@ -1,4 +1,4 @@
-// Vectors in double, for pictures and counts alone.
+// Vectors of doubles, only for pictures and counts.
 #pragma once
 
 #include "exactff/geometry.h"

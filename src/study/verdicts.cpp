@@ -14,7 +14,7 @@ const Ladder& ladder_of(const Study& study, const MethodCell& cell) { return stu
 
 bool is_timed(const MethodCell& cell) { return !std::isnan(cell.seconds); }
 
-// What R. Mitchell's and the classical results say of the RMS error against the number of samples.
+// What R. Mitchell's and the classical results predict for the RMS error against the number of samples.
 struct Expectation {
   double exponent = 0.0;
   const char* words = "";
@@ -146,7 +146,7 @@ std::vector<std::string> method_sentences(const Study& study) {
 
 namespace {
 
-// Of values that should lie in [0, 1].
+// Counts values that are not finite or not in [0, 1].
 struct RangeCount {
   std::size_t values = 0;
   std::size_t not_finite = 0;

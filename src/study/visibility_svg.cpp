@@ -44,7 +44,7 @@ Vec3 scaled_difference(const Vec3& a, const Vec3& b, int exponent) {
           scaled_difference(a.z, b.z, exponent)};
 }
 double max_norm(const Vec3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
-// Squares of very small components would be lost.
+// Scales first, because squares of very small components would underflow.
 Vec3 unit(const Vec3& a) {
   const double largest = max_norm(a);
   const Vec3 b{a.x / largest, a.y / largest, a.z / largest};
@@ -52,7 +52,7 @@ Vec3 unit(const Vec3& a) {
   return {b.x / length, b.y / length, b.z / length};
 }
 
-// Takes points of one plane to pixels: u along the first side of the source, v counter-clockwise from it as x sees it.
+// Maps points of one plane to pixels: u along the first side of the source, v counter-clockwise from it as seen from x.
 class PanelMap {
  public:
   explicit PanelMap(const PlaneDrawing& drawing) : origin_(drawing.source.front().corners.front()) {
@@ -128,7 +128,7 @@ std::string element(const std::string& path, const std::string& attributes) {
   return path.empty() ? "" : "<path d=\"" + path + "\" " + attributes + "/>\n";
 }
 
-// V = 0 dark blue, V = 1 yellow; distinguishable in grey and for the colour-blind.
+// V = 0 is dark blue, V = 1 yellow; distinguishable in grey and with colour blindness.
 std::string colour_of_visibility(double visibility) {
   const double t = std::clamp(visibility, 0.0, 1.0);
   const auto mix = [t](double from, double to) { return static_cast<int>(std::lround(from + t * (to - from))); };

@@ -1,5 +1,5 @@
-// A picture of one receiver's view of one source: each plane of the source seen from x's side, the projected
-// occluders, the exact visible region, and the leaves of the adaptive recursion if there are any.
+// A picture of one receiver's view of one source: each plane of the source as seen from x, the projected occluders, the
+// exact visible region and, if present, the leaves of the adaptive recursion.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace exactff::study {
 
-// A self-contained SVG document. `leaves` may be empty. Planes that x does not face are left out, and said to be.
+// Returns a self-contained SVG document. `leaves` may be empty. Planes that x does not face are left out, with a note.
 [[nodiscard]] std::string visibility_svg(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                                          const FormFactor& result, std::span<const Leaf> leaves);
 

@@ -35,7 +35,7 @@ class WordWriter {
   std::string bytes_;
 };
 
-// What is missing at the end reads as 0, and `complete` tells of it; so does it of what was not read.
+// Missing words at the end read as 0. `complete` is false if words were missing or were left unread.
 class WordReader {
  public:
   explicit WordReader(std::string_view bytes) : bytes_(bytes) {}
@@ -50,7 +50,7 @@ class WordReader {
     bytes_.remove_prefix(sizeof result);
     return result;
   }
-  // One of 0 .. count - 1, such as an enumerator; any other word counts as torn.
+  // Reads a value in 0 .. count - 1, such as an enumerator. Any other word counts as torn.
   [[nodiscard]] std::uint64_t below(std::uint64_t count) {
     const std::uint64_t result = word();
     if (result < count) return result;

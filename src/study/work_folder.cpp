@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kPartial = "partial";
-constexpr std::string_view kOld = "old";  // the target's former content, where two folders cannot change places
+constexpr std::string_view kOld = "old";  // the former content of the target, where two folders cannot be exchanged
 
 std::string prefix(const fs::path& target, std::string_view kind) {
   return '.' + target.filename().string() + '.' + std::string(kind) + '-';
@@ -30,7 +30,7 @@ fs::path sibling(const fs::path& target, std::string_view kind, int attempt) {
   return target.parent_path() / (prefix(target, kind) + std::to_string(::getpid()) + '-' + std::to_string(attempt));
 }
 
-// By whatever, a link to nothing included.
+// Whether anything has this name, including a broken symbolic link.
 bool is_taken(const fs::path& path) {
   std::error_code ignored;
   return fs::exists(fs::symlink_status(path, ignored));
@@ -41,7 +41,7 @@ bool is_own_folder(const fs::path& path) {
   return ::lstat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode) && status.st_uid == ::geteuid();
 }
 
-// Folders of that kind beside the target, of whatever process.
+// Folders of that kind beside the target, of any process.
 std::vector<fs::path> siblings(const fs::path& target, std::string_view kind) {
   std::vector<fs::path> found;
   const std::string beginning = prefix(target, kind);
@@ -55,7 +55,7 @@ std::vector<fs::path> siblings(const fs::path& target, std::string_view kind) {
   return found;
 }
 
-// Files were all that was ever put there; whatever else it holds is somebody's, and stays.
+// Removes only files, since we put nothing else there. If the folder holds anything else, both stay.
 void remove_files_and_folder(const fs::path& folder) {
   std::error_code error, ignored;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
@@ -64,7 +64,8 @@ void remove_files_and_folder(const fs::path& folder) {
   fs::remove(folder, ignored);
 }
 
-// The lock is kept while the folder goes: who makes one of the same name then sees that it is not in place.
+// The lock is held while the folder is removed: a process that creates one of the same name then sees that its file is
+// not in place.
 void remove_if_abandoned(const fs::path& folder) {
   try {
     File lock(folder / kLockFile, File::Mode::kReadWrite);
@@ -93,8 +94,8 @@ bool exchanged(const fs::path& one, const fs::path& other) {
 #endif
 }
 
-// For file systems without an exchange. A process killed in between leaves the former content, which the next brings
-// back.
+// For file systems without an exchange. If the process is killed in between, the former content remains, and the next
+// run restores it.
 void replace_in_two_steps(const fs::path& folder, const fs::path& target) {
   const fs::path old = sibling(target, kOld, 0);
   fs::rename(target, old);
@@ -118,7 +119,7 @@ WorkFolder::WorkFolder(const fs::path& target) : target_(target) {
   throw fs::filesystem_error("no free name", target, std::make_error_code(std::errc::file_exists));
 }
 
-// False where the name is another process's, or another one cleared the folder before it was locked.
+// False if the name belongs to another process, or if another process cleared the folder before it was locked.
 bool WorkFolder::take(const fs::path& folder) {
   if (!fs::create_directory(folder)) return false;
   try {

@@ -22,7 +22,7 @@ void assemble(const Rows& rows, Journal& journal, const std::filesystem::path& f
   Tally tally;
   whole.append(rows.head());
   const std::vector<Block> blocks = journal.blocks();
-  // A chunk may have been done in several blocks; where they were cut must not show.
+  // A chunk may have been computed in several blocks. The result must not depend on where it was divided.
   for (std::size_t i = 0; i < blocks.size();) {
     Range range{blocks[i].range.first, 0};
     std::string lines;

@@ -1,4 +1,4 @@
-// The last step: finished blocks, put in order, become the file.
+// The last step: puts the finished blocks in order and writes the file.
 #pragma once
 
 #include <filesystem>
@@ -9,11 +9,11 @@
 
 namespace exactff::truth {
 
-// Writes the truth file, or the shard, of which every row is in the journal, and removes the journal.
+// Writes the truth file, or the shard, then removes the journal. Requires every row to be in the journal.
 void assemble(const Rows& rows, Journal& journal, const std::filesystem::path& file, const Hooks& hooks,
               Summary& summary);
 
-// Tells progress in rows, and throws study::Cancelled where the hooks say so.
+// Reports progress in rows. Throws study::Cancelled if the hooks request it.
 class Pace {
  public:
   Pace(std::string_view stage, std::uint64_t total, const Hooks& hooks) : stage_(stage), total_(total), hooks_(hooks) {}

@@ -25,7 +25,7 @@ std::string opening_of(Range range, std::uint64_t bytes) {
          std::to_string(bytes) + " bytes, crc ";
 }
 
-// Reads what block_text wrote, from left to right.
+// Parses the text that block_text wrote, from left to right.
 class Scanner {
  public:
   explicit Scanner(std::string_view text) : text_(text) {}
@@ -53,7 +53,7 @@ class Scanner {
   std::size_t at_ = 0;
 };
 
-// The block whose comment line is at `offset`, if it is sound.
+// The block whose comment line is at `offset`; nothing if the block is damaged.
 std::optional<Block> block_at(const File& file, std::uint64_t offset) {
   const std::string line = file.read(offset, kLongestLine);
   Scanner scan(line);
@@ -71,13 +71,14 @@ std::optional<Block> block_at(const File& file, std::uint64_t offset) {
   return block;
 }
 
-// Where the next comment line of a block may begin, after `offset`: the line break before it may be damaged, too.
+// Where the next comment line of a block may begin, after `offset`. Does not require a line break before it: that may
+// be damaged, too.
 std::optional<std::uint64_t> next_opening(const File& file, std::uint64_t offset) {
   for (++offset;;) {
     const std::string bytes = file.read(offset, kReadBytes);
     if (const std::size_t found = bytes.find(kOpening); found != std::string::npos) return offset + found;
     if (bytes.size() < kReadBytes) return std::nullopt;
-    offset += bytes.size() - kOpening.size();  // it may lie across two reads
+    offset += bytes.size() - kOpening.size();  // the text may lie across two reads
   }
 }
 

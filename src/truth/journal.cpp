@@ -22,7 +22,7 @@ namespace {
 constexpr std::string_view kUnfinished =
     "# unfinished: rows in the order in which they were done; exactff truth with --resume goes on\n";
 
-// The head of the truth file with one comment line more.
+// The head of the truth file with one additional comment line.
 std::string journal_head(const std::string& head) {
   const std::size_t columns = head.rfind('\n', head.size() - 2) + 1;
   return head.substr(0, columns) + std::string(kUnfinished) + head.substr(columns);
@@ -51,7 +51,7 @@ File opened(const fs::path& path, const Hooks& hooks) {
     if (lock == File::Lock::kUnsupported && hooks.note) {
       hooks.note(path.string() + ": this file system cannot lock files; see to it that no other process uses it");
     }
-    // The process that had the lock may have finished and removed the file in between.
+    // The process that held the lock may meanwhile have finished and removed the file.
     if (file.is_in_place()) return file;
   }
 }
@@ -105,7 +105,7 @@ Journal::~Journal() {
 void Journal::take_over(const Rows& rows, Existing existing, const Hooks& hooks) {
   const std::string head = journal_head(rows.head());
   const std::optional<std::string> found = read_head(file_);
-  // A journal cut off within its head holds no row.
+  // A journal that is cut off within its head holds no rows.
   const bool nothing = !found && head.starts_with(file_.read(0, head.size()));
   if (existing == Existing::kReplace || nothing) return begin(head);
   require_same_head(file_.path(), found.value_or(file_.read(0, 4096)), head);
@@ -135,7 +135,7 @@ void Journal::begin(const std::string& head) {
   file_.write(0, head);
 }
 
-// The request's own rows, each once. Nothing else is ever appended, but files can be tampered with.
+// Keeps the rows of this request, each once. Nothing else is ever appended, but the file may have been tampered with.
 void Journal::keep_usable(std::vector<Block> found, const Rows& rows, const Hooks& hooks) {
   std::stable_sort(found.begin(), found.end(),
                    [](const Block& a, const Block& b) { return a.range.first < b.range.first; });
@@ -178,7 +178,7 @@ void Journal::sync() {
   }
   if (end == synced_) return;
   file_.sync();
-  if (synced_ == 0) study::sync_folder_of(file_.path());  // so that the file is there at all
+  if (synced_ == 0) study::sync_folder_of(file_.path());  // makes the directory entry of the file durable
   synced_ = end;
 }
 

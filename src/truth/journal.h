@@ -1,6 +1,5 @@
-// The journal of a truth file in the making: every finished block, appended whatever the order, so that nothing that
-// was finished is lost or waits in memory for a slower row. It is a CSV of its own, with comment lines between the
-// blocks.
+// The journal of an unfinished truth file. Every finished block is appended, in any order, so that no finished row is
+// lost or waits in memory for a slower one. The journal is a CSV file with comment lines between the blocks.
 #pragma once
 
 #include <chrono>
@@ -17,11 +16,11 @@
 
 namespace exactff::truth {
 
-// Throws InputError where no truth file can be made of `file`: it is a folder or a device, or it is there already and
-// only to be refused.
+// Throws InputError if no truth file can be made at `file`: if it is a folder or a device, or if it exists already and
+// `existing` says to refuse.
 void require_free(const std::filesystem::path& file, Existing existing);
 
-// Throws InputError that names the first line in which the head of `file` differs from another one.
+// Throws an InputError that names the first line in which the head of `file` differs from the expected head.
 void require_same_head(
     const std::filesystem::path& file, std::string_view head, std::string_view other,
     const std::string& whose = "now it would be",
@@ -29,25 +28,27 @@ void require_same_head(
 
 class Journal {
  public:
-  // Opens and locks the journal of `file` for rows under this head. Throws InputError where there are rows of another
-  // request, where another process is at it, and, unless it may go on with them or replace them, where there are rows.
+  // Opens and locks the journal of `file` for rows under this head. Throws InputError if another process is using the
+  // journal, if it holds rows of another request, or if it holds rows and `existing` allows neither to continue with
+  // them nor to replace them.
   Journal(const std::filesystem::path& file, const Rows& rows, Existing existing, const Hooks& hooks);
-  // A journal without rows is of no use to anybody, and removed.
+  // Removes a journal without rows, since it has no use.
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  // From any thread. All or nothing of the block is in the journal; throws InputError where the disk is full.
+  // From any thread. Appends the whole block or nothing of it. Throws InputError if the disk is full.
   void append(Range range, std::string_view lines);
-  // What was appended before survives the end of the machine, too. Called by one thread while others append.
+  // Makes everything that was appended before durable, even if the machine crashes. Called by one thread while others
+  // append.
   void sync();
 
-  // By their first row; none overlap.
+  // In the order of their first rows. They do not overlap.
   [[nodiscard]] std::vector<Block> blocks() const;
   [[nodiscard]] std::string read(const Block& block) const { return read_lines(file_, block); }
   [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
 
-  // The truth file is complete: the journal is not needed any more.
+  // Removes the journal. Called when the truth file is complete.
   void remove();
 
  private:

@@ -1,4 +1,4 @@
-// Shards to one truth file: every shard holds its chunks in order, so that reading all of them side by side gives the
+// Merges shards into one truth file. Every shard holds its chunks in order, so reading all shards in parallel gives the
 // rows in order.
 #include <algorithm>
 #include <charconv>
@@ -22,13 +22,13 @@ constexpr std::string_view kRowsLine = "# rows: ";
 
 struct ShardFile {
   File file;
-  std::string head;  // without the line that tells the shard
+  std::string head;  // without the line that identifies the shard
   Shard shard;
   std::uint64_t rows = 0;  // of all shards together
   std::vector<Block> blocks;
 };
 
-// The line of the head that begins so, without its beginning; empty if there is none.
+// The line of the head that begins with `beginning`, without that beginning; empty if there is none.
 std::string_view line_of(std::string_view head, std::string_view beginning) {
   for (std::size_t at = 0; at < head.size(); at = head.find('\n', at) + 1) {
     const std::string_view line = head.substr(at, head.find('\n', at) - at);
@@ -98,7 +98,7 @@ ShardFile read_shard_file(const fs::path& path) {
   return shard;
 }
 
-// By the shard's number.
+// By shard number.
 using Shards = std::map<std::uint64_t, ShardFile>;
 
 void add(Shards& shards, ShardFile shard) {

@@ -1,5 +1,5 @@
-// A team under MPI, by Boost.MPI. A module of its own that the program loads where it was started by mpirun: MPI takes
-// milliseconds to load, and most who use the program have no need of it.
+// A team under MPI, by Boost.MPI. It is a separate module that the program loads only if mpirun started it: loading MPI
+// takes milliseconds, and most runs do not need it.
 #include <boost/mpi/communicator.hpp>
 #include <boost/mpi/environment.hpp>
 #include <list>
@@ -18,7 +18,7 @@ constexpr int kTag = 0;
 
 class MpiTeam : public Team {
  public:
-  // Only the thread that makes it speaks. Exceptions end in a dismissal, not in an abort.
+  // Only the thread that constructs the team uses MPI. Exceptions end in a dismissal, not in an abort.
   MpiTeam() : environment_(mpi::threading::funneled, false) {
     MPI_Comm here = MPI_COMM_NULL;
     MPI_Comm_split_type(world_, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
@@ -52,7 +52,7 @@ class MpiTeam : public Team {
   }
 
  private:
-  // Memory that MPI reads until the message has gone.
+  // Memory that MPI reads until the message has been sent.
   struct Sent {
     std::string text;
     mpi::request request;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::array kStatuses = {Status::kCertified, Status::kZero, Status::kUnderflow, Status::kNotCertified};
 
-// Of all that the rows tell of the receivers: a file of the same name may have changed.
+// A hash of everything that the rows state about the receivers: a file of the same name may have changed.
 std::string hash_of(const std::vector<Receiver>& receivers) {
   Fnv1a hash;
   for (const Receiver& receiver : receivers) {
@@ -70,7 +70,7 @@ std::uint64_t Rows::shard_rows() const {
   const std::uint64_t chunks = (count() + kChunkRows - 1) / kChunkRows;
   const std::uint64_t rows = (chunks + shard.count - shard.number) / shard.count * kChunkRows;
   const bool has_last = (chunks - 1) % shard.count == shard.number - 1;
-  return has_last ? rows - (chunks * kChunkRows - count()) : rows;  // the last chunk may be a short one
+  return has_last ? rows - (chunks * kChunkRows - count()) : rows;  // the last chunk may be shorter
 }
 
 bool Rows::may_be_one_block(Range range) const {
@@ -103,7 +103,7 @@ std::string Rows::head() const {
 
 namespace {
 
-// The fields of one row, appended one after the other.
+// One row. Fields are appended from left to right.
 class Line {
  public:
   explicit Line(std::string& text) : text_(text) {}
@@ -128,7 +128,7 @@ class Line {
   std::string& text_;
 };
 
-// True where nothing stood in the way of what is above the horizon: F is then what it is without occluders.
+// True if no occluder hides anything of what is above the horizon: F is then the same as without occluders.
 bool nothing_in_the_shaft(const FormFactor& result) {
   return std::all_of(result.planes.begin(), result.planes.end(), [](const PlaneRecord& plane) {
     return plane.outcome == Outcome::kUnoccluded || plane.outcome == Outcome::kReceiverFace ||
@@ -155,7 +155,7 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
     } else {
       line << free.value;
     }
-    if (free.status == Status::kNotCertified) status = free.status;  // a row is as good as its worst value
+    if (free.status == Status::kNotCertified) status = free.status;  // a row is only as good as its worst value
   }
   if (request_.visible_fraction) line << f.visible_fraction.value_or(0.0);
   const Rgb rho = request_.scene->receiver_reflectance(receiver.on), b = radiosities_[source];
@@ -184,8 +184,8 @@ std::string Rows::name(std::uint64_t row) const {
 }
 
 void Tally::add(std::string_view text) {
-  constexpr std::size_t kLongestKept = 64;  // no status is as long
-  std::size_t field = 0;                    // where the last field begins
+  constexpr std::size_t kLongestKept = 64;  // every status is shorter
+  std::size_t field = 0;                    // start of the last field
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (c == '"') quoted_ = !quoted_;

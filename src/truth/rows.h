@@ -1,4 +1,4 @@
-// What a row of a truth file is, and the head above the rows.
+// The rows of a truth file, and the head above them.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace exactff::truth {
 
-// Consecutive rows, counted from 0, all of one chunk.
+// Consecutive rows of one chunk, numbered from 0.
 struct Range {
   std::uint64_t first = 0;
   std::uint32_t rows = 0;
@@ -20,31 +20,31 @@ struct Range {
   friend bool operator==(const Range&, const Range&) = default;
 };
 
-// A request that was found sound, with what depends on its sources alone computed once. Safe to share between threads.
+// A checked request, with everything precomputed that depends on its sources alone. Threads may share it.
 class Rows {
  public:
-  // Throws InputError where there is nothing to compute, or no such shard.
+  // Throws InputError if there is nothing to compute, or if the shard does not exist.
   explicit Rows(Request request);
 
   [[nodiscard]] const Request& request() const { return request_; }
   [[nodiscard]] std::uint64_t count() const { return request_.receivers.size() * request_.sources.size(); }
 
-  // How many of them belong to the shard.
+  // The number of rows that belong to the shard.
   [[nodiscard]] std::uint64_t shard_rows() const;
-  // Whether these rows lie in one chunk, and that belongs to the shard.
+  // Whether these rows lie in one chunk that belongs to the shard.
   [[nodiscard]] bool may_be_one_block(Range range) const;
 
-  // The comment lines and the column names of the truth file; of the shard's file, if it is one.
+  // The comment lines and the column names: of the truth file, or of the shard's file if the request is for a shard.
   [[nodiscard]] std::string head() const;
 
-  // What a thread keeps from one row to the next, for its memory alone.
+  // Objects that a thread reuses from row to row, only to avoid reallocation.
   struct Results {
     FormFactor exact, unoccluded;
   };
   // Computes a row and appends its line.
   void append(std::uint64_t row, std::string& lines, Results& results) const;
 
-  // "receiver 'a' on floor:1, source 'light'", for people.
+  // "receiver 'a' on floor:1, source 'light'", for messages.
   [[nodiscard]] std::string name(std::uint64_t row) const;
 
  private:
@@ -55,20 +55,20 @@ class Rows {
   Request request_;
   std::vector<ExactSource> sources_;
   std::vector<std::string> source_names_;
-  std::vector<Rgb> radiosities_;  // by source
+  std::vector<Rgb> radiosities_;  // indexed by source
   std::string receivers_hash_;
 };
 
-// Rows counted by their status, which is the last field of each.
+// Counts rows by their status, which is the last field of each row.
 class Tally {
  public:
-  // Text that may begin and end anywhere.
+  // Adds text that may begin and end anywhere, even within a row.
   void add(std::string_view text);
-  // The same for whole rows; false unless they are so many.
+  // The same for whole rows. Returns false unless there are exactly `expected` of them.
   bool add_rows(std::string_view text, std::uint64_t expected);
 
   [[nodiscard]] std::uint64_t rows() const;
-  // All was rows of a truth file, and whole ones.
+  // Whether the text so far consists of whole rows of a truth file only.
   [[nodiscard]] bool whole() const { return sound_ && !row_open_; }
   [[nodiscard]] const std::array<std::uint64_t, 4>& by_status() const { return by_status_; }
 
@@ -76,7 +76,7 @@ class Tally {
   void end_row(std::string_view status);
 
   std::array<std::uint64_t, 4> by_status_{};
-  std::string field_;  // what earlier text held of the last field
+  std::string field_;  // the beginning of the last field, from earlier text
   bool quoted_ = false;
   bool row_open_ = false;
   bool sound_ = true;

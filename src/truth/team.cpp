@@ -1,5 +1,4 @@
 #include "truth/team.h"
-#include "study/parallel.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -11,6 +10,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "study/parallel.h"
+
 namespace exactff::truth {
 namespace {
 
@@ -18,11 +19,11 @@ using Clock = std::chrono::steady_clock;
 
 enum class Word : char { kHello, kAsk, kRows, kTrouble, kCeased, kBye, kWork, kCease, kDismiss };
 
-constexpr auto kPause = std::chrono::milliseconds(1);  // between looks at messages
+constexpr auto kPause = std::chrono::milliseconds(1);  // between checks for messages
 constexpr double kWorkAhead = 0.02;                    // seconds that the rows waiting at a follower should last
-constexpr std::uint64_t kMostPieces = 64;              // of them for each thread
+constexpr std::uint64_t kMostPieces = 64;              // the limit of waiting pieces for each thread
 
-// A message is a word and what goes with it.
+// A message is a word followed by its data.
 class Writer {
  public:
   explicit Writer(Word word) : text_(1, static_cast<char>(word)) {}
@@ -185,7 +186,7 @@ void dismiss(Team& team, int exit_code) {
 
 namespace {
 
-// What the threads of a follower work on: ranges come in, finished rows go out.
+// The queue of a follower's threads: ranges come in, finished rows go out.
 class Desk {
  public:
   void put(Range range) {
@@ -214,7 +215,7 @@ class Desk {
     finished_.push_back(std::move(finished));
     out_changed_.notify_all();
   }
-  // Waits a moment for something finished or taken.
+  // Waits a moment until something was finished or taken.
   std::vector<Finished> collect() {
     std::unique_lock lock(mutex_);
     if (finished_.empty()) out_changed_.wait_for(lock, kPause);
@@ -305,8 +306,8 @@ class Follower {
     if (reader.word() == Word::kDismiss) exit_code_ = reader.read<int>();
   }
 
-  // Enough for the threads to be busy until the next answer, and no more: rows differ in cost by a thousand, and what
-  // waits here nobody else can do.
+  // Asks for enough pieces to keep the threads busy until the next answer, and for no more: the cost of rows differs by
+  // a factor of a thousand, and no other process can do what waits here.
   void ask(Desk& desk) {
     if (asked_ || no_more_) return;
     const double seconds = std::chrono::duration<double>(Clock::now() - started_).count();

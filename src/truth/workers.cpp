@@ -55,7 +55,7 @@ Workers::Workers(const Rows& rows, int threads, const Hooks& hooks, Take take, D
       }
       threads_.emplace_back([this] { work(); });
     }
-  } catch (...) {  // a thread could not be started: the others need not go on
+  } catch (...) {  // a thread could not be started: the others stop, too
     stop();
     threads_.clear();
     throw;
@@ -85,7 +85,7 @@ bool Workers::must_stop() {
 
 namespace {
 
-// Rows done and not yet delivered.
+// Rows that are finished and not yet delivered.
 class Batch {
  public:
   Batch(std::uint64_t first, const Workers::Deliver& deliver) : deliver_(deliver) { finished_.range.first = first; }

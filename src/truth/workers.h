@@ -1,4 +1,4 @@
-// Threads that compute rows: which rows, and what becomes of them, is their owner's business.
+// Threads that compute rows. Their owner decides which rows, and what happens with the results.
 #pragma once
 
 #include <atomic>
@@ -23,22 +23,22 @@ struct SlowRow {
   double seconds = 0.0;
 };
 
-// Rows done, as lines.
+// Finished rows, as lines.
 struct Finished {
   Range range;
   std::string lines;
   std::vector<SlowRow> slow;
 };
 
-// The rows that are still to be done, in order, in pieces of a chunk at most.
+// Hands out the rows that remain to be computed, in order, in pieces of at most a chunk.
 class Schedule {
  public:
-  // `done` by rising row, none across the bounds of a chunk.
+  // `done` must be sorted by row, and no block may cross the bounds of a chunk.
   Schedule(const Rows& rows, std::span<const Block> done);
 
-  // From any thread; nothing when all have been given out.
+  // From any thread. Nothing if all rows have been handed out.
   [[nodiscard]] std::optional<Range> next();
-  // Rows that were not done at first.
+  // How many rows remained at the start.
   [[nodiscard]] std::uint64_t rows() const { return rows_; }
 
  private:
@@ -55,22 +55,22 @@ class Schedule {
 
 class Workers {
  public:
-  using Take = std::function<std::optional<Range>()>;  // may wait; nothing when there is no more
+  using Take = std::function<std::optional<Range>()>;  // may wait; nothing if no more are left
   using Deliver = std::function<void(Finished)>;
 
-  // Starts the threads. `take`, `deliver` and `hooks.cancelled` are called from them; what is finished is delivered
-  // every second at least. `rows` and `hooks` must outlive this.
+  // Starts the threads. They call `take`, `deliver` and `hooks.cancelled`. Finished rows are delivered at least every
+  // second. `rows` and `hooks` must outlive this object.
   Workers(const Rows& rows, int threads, const Hooks& hooks, Take take, Deliver deliver);
   ~Workers();
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
 
-  // Every thread delivers what it has after the row in hand, and ends.
+  // Makes every thread finish the row in hand, deliver what it has, and end.
   void stop() { stop_ = true; }
   [[nodiscard]] bool stopped() const { return stop_; }
   // True once every thread has ended.
   [[nodiscard]] bool wait_for(std::chrono::milliseconds time);
-  // Throws what was thrown in a thread, or study::Cancelled if the hooks said so.
+  // Rethrows what was thrown in a thread. Throws study::Cancelled if the hooks requested it.
   void rethrow() const;
 
  private:

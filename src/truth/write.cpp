@@ -1,10 +1,11 @@
 // From a request to its truth file.
 //
-// 1. What is asked must be sound, and nobody's work destroyed: the file, its journal.
-// 2. The journal tells which rows are done. The schedule deals out the others, by chunks, to whoever is free: threads
-//    here, and other processes where there is a team.
-// 3. What is finished is appended to the journal at once, in whatever order; every second it is made to last.
-// 4. When every row is there the file is put together in order beside its place, and renamed; the journal goes.
+// 1. Check the request, and that no other work would be destroyed: the file and its journal.
+// 2. Read from the journal which rows are done. Distribute the others by chunks to any idle worker: threads of this
+//    process, and other processes if there is a team.
+// 3. Append finished rows to the journal at once, in any order. Make it durable every second.
+// 4. When every row is in the journal, write the file in order under a temporary name and rename it. Then remove the
+//    journal.
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -28,11 +29,11 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kAlone = std::chrono::milliseconds(100);   // between looks at progress and signals
+constexpr auto kAlone = std::chrono::milliseconds(100);   // between checks of progress and signals
 constexpr auto kWithTeam = std::chrono::milliseconds(1);  // and at messages
 constexpr auto kSyncEvery = std::chrono::seconds(1);
 
-// The rows that are not in the journal, computed and appended to it.
+// Computes the rows that are not in the journal and appends them to it.
 class Computation {
  public:
   Computation(const Rows& rows, Journal& journal, Team* team, const Hooks& hooks)
@@ -67,11 +68,11 @@ class Computation {
     tell(summary);
   }
 
-  // While threads work: progress, slow rows, other processes, the disk.
+  // While threads work: handles progress, slow rows, other processes and the disk.
   void attend(Workers& workers, Summary& summary) {
     auto synced = Clock::now();
     for (bool ended = false; !ended || !all_done() || (leader_ && !leader_->all_here());) {
-      if (ended) std::this_thread::sleep_for(kWithTeam);  // others have not
+      if (ended) std::this_thread::sleep_for(kWithTeam);  // other processes have not ended
       ended = workers.wait_for(leader_ ? kWithTeam : kAlone);
       if (ended) workers.rethrow();
       if (leader_) leader_->attend([this] { return schedule_.next(); }, [this](Finished f) { keep(std::move(f)); });
@@ -84,7 +85,7 @@ class Computation {
     journal_.sync();
   }
 
-  // Given up: what others have finished is kept all the same.
+  // After the work was given up: still keeps what other processes have finished.
   void collect_the_rest() {
     if (leader_) leader_->cease([this](Finished f) { keep(std::move(f)); });
     journal_.sync();
@@ -145,7 +146,7 @@ void add_rows(const File& file, std::uint64_t offset, Tally& tally) {
   }
 }
 
-// A file without a journal is complete, for it appeared whole.
+// A file without a journal is complete, since files appear only when complete.
 Summary account_of(const fs::path& path, const Rows& rows) {
   const File file(path, File::Mode::kRead);
   const std::string head = rows.head();

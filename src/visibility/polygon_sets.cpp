@@ -6,8 +6,10 @@
 #include <CGAL/Polygon_with_holes_2.h>
 #include <CGAL/convex_hull_2.h>
 
+#include <exception>
 #include <iterator>
 #include <list>
+#include <memory>
 
 namespace exactff::visibility {
 
@@ -32,14 +34,31 @@ Polygon to_polygon(const Polygon2& polygon) {
   return result;
 }
 
-PolygonSet joined(std::span<const Polygon2> polygons) {
-  if (polygons.size() == 1) return PolygonSet(to_polygon(polygons.front()));
+// If memory ends in the middle of an operation, CGAL leaves a set whose destructor may crash or not end. Such a set is
+// leaked.
+class SafeSet {
+ public:
+  SafeSet() = default;
+  SafeSet(const SafeSet&) = delete;
+  SafeSet& operator=(const SafeSet&) = delete;
+  ~SafeSet() {
+    if (std::uncaught_exceptions() > exceptions_before_) static_cast<void>(set_.release());
+  }
+
+  PolygonSet* operator->() { return set_.get(); }
+  PolygonSet& operator*() { return *set_; }
+
+ private:
+  int exceptions_before_ = std::uncaught_exceptions();
+  std::unique_ptr<PolygonSet> set_ = std::make_unique<PolygonSet>();
+};
+
+void join_into(SafeSet& set, std::span<const Polygon2> polygons) {
+  if (polygons.size() == 1) return set->insert(to_polygon(polygons.front()));
   std::vector<Polygon> converted;
   converted.reserve(polygons.size());
   for (const Polygon2& polygon : polygons) converted.push_back(to_polygon(polygon));
-  PolygonSet set;
-  set.join(converted.begin(), converted.end());
-  return set;
+  set->join(converted.begin(), converted.end());
 }
 
 // Collinear corners are dropped here: pieces of one edge become one again.
@@ -69,12 +88,18 @@ std::vector<RegionLoop> loops_of(const PolygonSet& set) {
 
 }  // namespace
 
-std::vector<RegionLoop> join(std::span<const Polygon2> polygons) { return loops_of(joined(polygons)); }
+std::vector<RegionLoop> join(std::span<const Polygon2> polygons) {
+  SafeSet set;
+  join_into(set, polygons);
+  return loops_of(*set);
+}
 
 std::vector<RegionLoop> difference(std::span<const Polygon2> source, std::span<const Polygon2> occluders) {
-  PolygonSet visible = joined(source);
-  visible.difference(joined(occluders));
-  return loops_of(visible);
+  SafeSet visible, hidden;
+  join_into(visible, source);
+  join_into(hidden, occluders);
+  visible->difference(*hidden);
+  return loops_of(*visible);
 }
 
 Polygon2 convex_hull(std::span<const Polygon2> polygons) {

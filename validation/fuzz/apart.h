@@ -1,4 +1,4 @@
-// Runs a check in a process of its own, so that a crash or a hang is one of its outcomes.
+// Runs a check in a separate process, so that a crash or a hang is just another outcome.
 #pragma once
 
 #include <functional>
@@ -10,10 +10,10 @@ enum class Ending { kFine, kProblem, kCrash, kHang };
 
 struct Outcome {
   Ending ending = Ending::kFine;
-  std::string problem;  // what the check returned
+  std::string problem;  // the result of the check
 };
 
-// `check` returns what is wrong, or nothing. What it prints is lost.
+// `check` returns a description of the problem, empty if there is none. Its output is discarded.
 [[nodiscard]] Outcome run_apart(const std::function<std::string()>& check, unsigned seconds);
 
 }  // namespace exactff::validation

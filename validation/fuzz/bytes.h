@@ -1,4 +1,4 @@
-// A fuzzer's input as a list of choices, read front to back.
+// Reads the input of a fuzzer as a list of choices, from front to back.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace exactff::validation {
 
-// Past the end every choice is 0, so that each prefix of an input means something too.
+// Past the end every choice is 0, so that each prefix of an input is also a valid input.
 class Bytes {
  public:
   explicit Bytes(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
@@ -26,7 +26,7 @@ class Bytes {
   // 0 .. count - 1; requires 0 < count <= 256.
   std::size_t below(std::size_t count) { return next() % count; }
 
-  // Eight bytes as the double they are, lowest first; 0 for what is no number.
+  // The next eight bytes as a double, lowest byte first; 0 if they encode no number.
   double raw_double() {
     std::uint64_t bits = 0;
     for (int shift = 0; shift < 64; shift += 8) bits |= static_cast<std::uint64_t>(next()) << shift;

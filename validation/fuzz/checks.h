@@ -1,5 +1,5 @@
-// What must hold for a fuzzed scene: the solver agrees with the oracle, and with itself after a change that may not
-// matter. Every function returns what is wrong in a few words, and nothing where all is well.
+// What must hold for a fuzzed scene: the solver agrees with the oracle, and with itself after a change that must not
+// matter. The check functions return a short description of the problem, or an empty string if there is none.
 #pragma once
 
 #include <optional>
@@ -10,16 +10,16 @@
 
 namespace exactff::validation {
 
-// support/oracle_check.h: equal doubles, zero flags and exact visible fractions.
+// Checks what support/oracle_check.h checks: equal doubles, zero flags and exact visible fractions.
 [[nodiscard]] std::string oracle_problem(const generate::PlainScene& scene);
 
-// The scene that the case's identity turns its scene into; nothing where the identity compares no two scenes, or
+// The scene after the change of the case's identity. Nothing if the identity does not compare two scenes, or if it
 // cannot be applied to this one.
 [[nodiscard]] std::optional<generate::PlainScene> changed(const FuzzCase& fuzz_case);
 
 [[nodiscard]] std::string identity_problem(const FuzzCase& fuzz_case);
 
-// Both, and no exception either.
+// Runs both checks. An exception is a problem, too.
 [[nodiscard]] std::string problem(const FuzzCase& fuzz_case);
 
 [[nodiscard]] std::string name_of(Identity identity);

@@ -1,4 +1,4 @@
-// What every fuzz target of a reader does where a file is refused.
+// What every fuzz target of a reader checks if a file is refused.
 #pragma once
 
 #include <algorithm>

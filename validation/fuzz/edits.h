@@ -1,5 +1,5 @@
-// A fuzzer's input as edits of a text that is made anew in every version, such as a journal: what the input means does
-// not depend on the numbers in it.
+// Interprets the input of a fuzzer as edits of a text, such as a journal, that is generated anew in every version. So
+// the meaning of an input does not depend on the numbers in the text.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@
 
 namespace exactff::validation {
 
-// One byte changed, some left out, doubled or moved, or the end cut off; again and again until the choices end.
+// Each edit inserts or changes a byte, removes, doubles or moves a part, or cuts off the end. Repeated until the
+// choices end.
 inline std::string edited(std::string text, Bytes& bytes) {
   constexpr std::size_t kMostBytes = 1 << 16;
   while (!bytes.done() && text.size() < kMostBytes) {

@@ -1,6 +1,5 @@
-// Random command lines made of the program's own option tables: an option that is added is fuzzed from then on. A value
-// is drawn by what the table says that it is, mostly a usable one, so that most commands do some work, and little of
-// it.
+// Random command lines, generated from the program's own option tables, so that a new option is fuzzed at once. A value
+// is chosen by its type in the table. Most values are usable, so that most commands do some work, but little.
 #pragma once
 
 #include <string>
@@ -12,12 +11,12 @@
 
 namespace exactff::validation {
 
-using Words = std::vector<std::string>;  // without the program
+using Words = std::vector<std::string>;  // without the name of the program
 
-// What the program says of itself.
+// The option table of the program.
 [[nodiscard]] cli::ProgramTable own_table();
 
-// To be run one after the other; all but the last make files for it.
+// Commands to run one after the other. All but the last make input files for the last.
 [[nodiscard]] std::vector<Words> odd_commands(const cli::ProgramTable& program, const OddInputs& inputs,
                                               generate::Random& random);
 

@@ -1,5 +1,6 @@
-// Random input files of the whole program, written by somebody careless or hostile: scenes of the random families under
-// names that some reader of the outputs may choke on, receivers, truth and candidate tables, baselines, study files.
+// Random input files for the whole program, as a careless or hostile user might write them: scenes of the random
+// families with names that may break a reader of the outputs, receivers, truth and candidate tables, baselines, study
+// files.
 #pragma once
 
 #include <map>
@@ -11,19 +12,19 @@
 
 namespace exactff::validation {
 
-// By their paths relative to the folder of a case.
+// Contents by path. Paths are relative to the folder of a case.
 using Files = std::map<std::string, std::string>;
 
 struct OddInputs {
   Files files;
-  generate::PlainScene scene;  // as in/scene.obj has it, unless that was spoilt
+  generate::PlainScene scene;  // as in in/scene.obj, unless that file was damaged
 };
 
 [[nodiscard]] OddInputs odd_inputs(generate::Random& random);
 
-// Control characters, quotes, markup, Latin-1, blanks, what looks like an option or a face's name; no line end, no NUL.
+// Control characters, quotes, markup, Latin-1, blanks, texts like an option or the name of a face; no line end, no NUL.
 [[nodiscard]] std::string odd_name(generate::Random& random);
-// Mostly a usable number; else an extreme one, one out of range, or none at all.
+// Mostly a usable number; otherwise an extreme one, one out of range, or not a number.
 [[nodiscard]] std::string odd_number(generate::Random& random);
 
 template <class T>

@@ -1,5 +1,5 @@
-// One run of the whole program, as a case that can be kept and replayed: input files, command lines, and what happens
-// to the last of them while it runs.
+// One run of the whole program as a case that can be kept and replayed: input files, command lines, and a disturbance
+// of the last command while it runs.
 #pragma once
 
 #include <filesystem>
@@ -13,8 +13,8 @@ namespace exactff::validation {
 
 enum class Disturbance {
   kNone,
-  kTwice,         // run again elsewhere, with `amount` threads where the command has them: the same bytes
-  kSignal,        // `signal` after `amount` ms, then, where the command can be resumed, it is
+  kTwice,         // run again elsewhere, with `amount` threads if the command has them: must give the same bytes
+  kSignal,        // `signal` after `amount` ms; then the command is resumed, if it can be
   kLittleMemory,  // `amount` MB of address space
   kFullDisk,      // no file beyond `amount` bytes
   kFullOutput,    // standard output cannot be written
@@ -29,14 +29,14 @@ struct ProgramCase {
   int signal = 0;
 };
 
-// A folder from which read_case() makes the same case: the files, and a file `case` of one word a line.
+// Writes a folder from which read_case() makes the same case: the files, and a file `case` with one word per line.
 void keep_case(const ProgramCase& one, const std::filesystem::path& folder);
 [[nodiscard]] ProgramCase read_case_folder(const std::filesystem::path& folder);
 
-// What happens to the last command, such as "signal 12 2".
+// The disturbance of the last command in words, such as "signal 12 2".
 [[nodiscard]] std::string disturbance_words(const ProgramCase& one);
 
-// For a shell.
+// The words quoted for a shell.
 [[nodiscard]] std::string command_line(const Words& words);
 
 }  // namespace exactff::validation

@@ -1,4 +1,4 @@
-// Runs a ProgramCase and judges all that comes of it: how the program ends, what it says, and every file it leaves.
+// Runs a ProgramCase and checks all its results: how the program ends, what it prints, and every file that it leaves.
 #pragma once
 
 #include <sys/types.h>
@@ -11,7 +11,7 @@
 
 namespace exactff::validation {
 
-// output_judge.py, kept running: an interpreter takes longer to start than most commands to run.
+// Keeps output_judge.py running: starting the interpreter takes longer than most commands.
 class OutputJudge {
  public:
   OutputJudge();
@@ -19,7 +19,7 @@ class OutputJudge {
   OutputJudge(const OutputJudge&) = delete;
   OutputJudge& operator=(const OutputJudge&) = delete;
 
-  // What is wrong; empty where nothing is.
+  // A description of the problem; empty if there is none.
   [[nodiscard]] std::string judge(const std::filesystem::path& folder, const std::string& form, int exit_code);
 
  private:
@@ -28,16 +28,16 @@ class OutputJudge {
   std::FILE* answers_ = nullptr;
 };
 
-// What is run, and where: folders below `scratch` are made and removed.
+// The program and the place to run it: folders below `scratch` are created and removed.
 struct Bench {
   std::string program;
   std::filesystem::path scratch;
 };
 
-// What is wrong, in a line that begins with the command; empty where nothing is.
+// A description of the problem in one line that begins with the command; empty if there is none.
 [[nodiscard]] std::string problem_of(const ProgramCase& one, const Bench& bench, OutputJudge& judge);
 
-// The least address space in MB in which the program starts.
+// The smallest address space in MB in which the program starts.
 [[nodiscard]] int least_megabytes(const Bench& bench);
 
 }  // namespace exactff::validation

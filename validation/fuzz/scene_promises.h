@@ -1,4 +1,4 @@
-// What a Scene promises to whoever reads it from a file, and the file that gives it back.
+// What a Scene read from a file promises to its users, and the text that reads back to the same scene.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace exactff::validation {
 
-// What is wrong, in a few words; nothing if all promises hold: indices in range, pieces convex, planar, not empty
-// and together their face, names that select what they name.
+// A short description of a broken promise; empty if all promises hold: indices are in range; pieces are convex, planar,
+// not empty and together form their face; names select what they name.
 [[nodiscard]] std::string broken_promise(const Scene& scene);
 
-// Reading the texts gives a scene with the same hash. `mtl_name` is what the OBJ text calls the other.
+// Texts that read back to a scene with the same hash. `mtl_name` is the name of the material file in the OBJ text.
 struct SceneText {
   std::string obj;
   std::string mtl;

@@ -1,4 +1,4 @@
-// Case files (format ffcase-1, see data/reference/README.md): a scene, a receiver and the value it must give.
+// Case files (format ffcase-1, see data/reference/README.md): a scene, a receiver and the expected value.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ struct Expected {
   std::string decimals;  // of F, 30 significant digits; "0" if exact_zero
   bool exact_zero = false;
   double nearest = 0.0;
-  std::vector<double> visible_fractions;  // one a source plane, each within 2 ulp
+  std::vector<double> visible_fractions;  // one per source plane, each within 2 ulp
 };
 
 struct CaseFile {
@@ -24,7 +24,7 @@ struct CaseFile {
   Expected expected;
 };
 
-// Throws std::runtime_error for a file that is not such a case, or whose decimal and hexadecimal numbers differ.
+// Throws std::runtime_error if the file is not a case file, or if its decimal and hexadecimal numbers differ.
 [[nodiscard]] CaseFile read_case(const std::filesystem::path& path);
 
 // The text of a case file.
@@ -33,7 +33,7 @@ struct CaseFile {
 // Every .json file of a directory, sorted by name; none if there is no such directory.
 [[nodiscard]] std::vector<std::filesystem::path> case_paths(const std::filesystem::path& directory);
 
-// A name for GoogleTest: letters, digits and underscores.
+// Converts `name` to a valid name for GoogleTest: letters, digits and underscores.
 [[nodiscard]] std::string test_name(const std::string& name);
 
 }  // namespace exactff::validation

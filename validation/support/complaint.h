@@ -1,4 +1,4 @@
-// What bad input is told.
+// The messages that bad input causes.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace exactff::validation {
 
-// The messages of the InputError that `act` throws; empty where it throws none.
+// The messages of the InputError that `act` throws; empty if it throws none.
 template <class Act>
 std::string complaint(const Act& act) {
   try {

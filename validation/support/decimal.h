@@ -9,7 +9,7 @@ namespace exactff::validation {
 
 struct Decimal {
   mpq_class value;
-  mpq_class half_unit;  // half a unit of the last digit printed: how far rounding may have moved the value
+  mpq_class half_unit;  // half a unit of the last printed digit: how far rounding may have moved the value
 };
 
 // Reads [-]digits[.digits][e[+-]digits]. Throws std::invalid_argument for anything else.

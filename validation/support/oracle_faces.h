@@ -1,4 +1,4 @@
-// The faces of a scene as the oracle reads them: from vertices and rings alone, by its own judgement of what has no
+// The faces of a scene as the oracle reads them: from vertices and rings alone. It decides independently what has no
 // area, what is planar, and how a face that is not planar is cut.
 #pragma once
 
@@ -9,19 +9,19 @@
 
 namespace exactff::validation {
 
-// A planar polygon: inside is what an odd number of rings go round.
+// A planar polygon. A point is inside if an odd number of rings enclose it.
 struct Polygon {
   FaceId face{};
   std::vector<Corners> rings;
   Vector normal;    // Newell vector of the first ring
-  Rational offset;  // of its plane: normal . y = offset
+  Rational offset;  // the plane is normal . y = offset
 };
 
-// A face in coordinates whose origin is `origin`: one polygon, the triangles that the rule for faces out of plane
-// gives, or nothing if it has no area.
+// The face in coordinates relative to `origin`: one polygon; the triangles that the rule for non-planar faces gives; or
+// nothing if the face has no area.
 [[nodiscard]] std::vector<Polygon> polygons_of(const Scene& scene, FaceId face, const Vector& origin);
 
-// The same polygon seen from elsewhere.
+// The same polygon relative to another origin.
 [[nodiscard]] Polygon shifted(const Polygon& polygon, const Vector& by);
 
 [[nodiscard]] Vector exact(const Vec3& v);

@@ -24,22 +24,23 @@ inline bool is_zero(const Vector& a) { return sgn(a[0]) == 0 && sgn(a[1]) == 0 &
 struct RoundedSum {
   double value = 0.0;    // nearest double
   std::string decimals;  // 30 significant digits, correctly rounded
-  Rational low = 0;      // the sum lies between these
+  Rational low = 0;      // low <= sum <= high
   Rational high = 0;
 };
 
-// The form factors of the polygons together, for a receiver at the origin with normal n. Each must be convex, above
-// the horizon of n and in a plane that does not hold the origin; their direction does not matter.
+// The sum of the form factors of the polygons, for a receiver at the origin with normal n. Each polygon must be convex,
+// above the horizon of n and in a plane that does not contain the origin. Its orientation does not matter.
 [[nodiscard]] RoundedSum lambert_sum(const std::vector<Corners>& polygons, const Vector& n);
 
-// Of one plane: areas seen along an axis, and the square of what makes true areas of them.
+// For one plane: areas seen along an axis, and the square of the factor that converts them to true areas.
 struct Share {
   Rational visible;
   Rational whole;
   Rational squared_factor;
 };
 
-// All visible area over all area, rounded to the nearest double, ties to even; 0 without planes.
+// The visible area of all planes divided by the area of all planes, rounded to the nearest double, ties to even; 0 if
+// there are no planes.
 [[nodiscard]] double rounded_share(const std::vector<Share>& shares);
 
 }  // namespace exactff::validation

@@ -1,4 +1,4 @@
-// Runs the program under test the way a script would.
+// Runs the tested program as a script would.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@ struct ProgramRun {
   int exit_code = -1;
 };
 
-// Standard error goes to the test's own.
+// Standard error goes to the standard error of the test.
 [[nodiscard]] ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments);
 
-// The program with its standard error in a file, its standard output nowhere, and whatever `prepare` does to the new
-// process first. Whoever starts it waits for it.
+// The running program. Its standard error goes to a file, its standard output is discarded, and `prepare` is called in
+// the new process first. The owner must wait for it.
 class RunningProgram {
  public:
   RunningProgram(
@@ -29,9 +29,9 @@ class RunningProgram {
       const std::function<void()>& prepare = [] {});
 
   void send(int signal) const;
-  // As a shell tells it: 128 + the signal where one ended the program.
+  // The exit code as a shell reports it: 128 + the signal if a signal ended the program.
   int wait() const;
-  [[nodiscard]] bool has_ended() const;  // does not wait; wait() tells how
+  [[nodiscard]] bool has_ended() const;  // does not wait; wait() returns the exit code
   [[nodiscard]] int process() const { return child_; }
   [[nodiscard]] std::string error() const;
 
@@ -40,7 +40,7 @@ class RunningProgram {
   int child_ = 0;
 };
 
-// A directory of its own that disappears with the object.
+// A new directory that is removed with the object.
 class TemporaryDirectory {
  public:
   explicit TemporaryDirectory(const std::filesystem::path& parent = std::filesystem::temp_directory_path());
@@ -49,14 +49,14 @@ class TemporaryDirectory {
   TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  // Writes a file and returns where it is.
+  // Writes a file and returns its path.
   [[nodiscard]] std::filesystem::path write(const std::string& name, const std::string& text) const;
 
  private:
   std::filesystem::path path_;
 };
 
-// A variable of this process's environment that has another value while the object lives.
+// Sets a variable of this process's environment during the lifetime of the object.
 class EnvironmentVariable {
  public:
   EnvironmentVariable(std::string name, const std::string& value);
@@ -69,14 +69,14 @@ class EnvironmentVariable {
   std::optional<std::string> before_;
 };
 
-// Where syncing costs nothing, if there is such a place; else where temporary files are.
+// A folder in memory, where syncing is free, if there is one; otherwise the folder for temporary files.
 [[nodiscard]] std::filesystem::path memory_folder();
 
-// What a file holds; its size, 0 where there is none.
+// The contents of a file; its size, which is 0 if there is no such file.
 [[nodiscard]] std::string text_of(const std::filesystem::path& path);
 [[nodiscard]] std::uintmax_t size_of(const std::filesystem::path& path);
 
-// `point FILE --at ... --normal ... --source ... --plain` for a scene written as OBJ with 17 digits.
+// Runs `point FILE --at ... --normal ... --source ... --plain` for a scene written as OBJ with 17 digits.
 [[nodiscard]] ProgramRun run_point_plain(const std::string& program, const std::string& name,
                                          const generate::PlainScene& scene);
 

@@ -1,4 +1,4 @@
-// The exact solver on a plain scene, and what two results must share.
+// Runs the exact solver on a plain scene, and compares two results.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace exactff::validation {
 
-// Everything that spec and header promise to be independent of order, thread, machine and symmetry.
+// Everything that specification and header promise to be independent of order, thread, machine and symmetry.
 struct Answer {
   std::uint64_t value_bits = 0;
   Status status = Status::kZero;
@@ -41,9 +41,9 @@ inline FormFactor solve_by(Engine engine, const generate::PlainScene& plain, con
   return solve_by(engine, generate::build(plain), plain, options);
 }
 
-// By both engines, one checked against the other, unless the options name one that is not the default: a test that
-// asked the default engine alone would be blind to faults of the reference. Where a cap ends the search for a double,
-// each engine has a ball of its own and these need only overlap: there ask solve_by.
+// Solves with both engines and checks one against the other, unless the options name an engine that is not the default.
+// A test that used the default engine alone would not detect faults of the reference. If a cap ends the search for a
+// double, each engine has its own ball, and the two need only overlap: use solve_by in that case.
 inline FormFactor solve(const Scene& scene, const generate::PlainScene& plain, const ExactOptions& options = {}) {
   const bool engine_named = options.engine != ExactOptions{}.engine;
   return solve_by(engine_named ? options.engine : Engine::kBoth, scene, plain, options);
