@@ -134,8 +134,8 @@ class Fuzzer {
       attempt([i](ProgramCase& c) { c.commands.erase(c.commands.begin() + static_cast<std::ptrdiff_t>(i)); });
     }
     for (const std::size_t length : {2U, 1U, 4U}) shorten_words(attempt, one, length);
-    for (const auto& [path, text] : Files(one.files)) {
-      attempt([&path](ProgramCase& c) { c.files.erase(path); });
+    for (const auto& file : Files(one.files)) {
+      attempt([&file](ProgramCase& c) { c.files.erase(file.first); });
     }
     return one;
   }
