@@ -13,8 +13,9 @@ namespace {
 
 constexpr std::size_t kProbes = 3;
 constexpr double kLeafNanoseconds = 300.0;
+constexpr double kMostBudgets = 20.0;  // that a probe may find a setting to take, before it is stopped
 // The base setting, where the sweeps cross, is run even if it exceeds the budget, up to this limit.
-double most_seconds_of_base(const Study& study) { return std::max(10.0, 20.0 * study.request.sweep_budget); }
+double most_seconds_of_base(const Study& study) { return std::max(10.0, kMostBudgets * study.request.sweep_budget); }
 
 class SweepPlan {
  public:
@@ -62,7 +63,7 @@ class SweepPlan {
   }
 
   [[nodiscard]] double most_seconds(std::size_t k) const {
-    return k == study_.base ? most_seconds_of_base(study_) : study_.request.sweep_budget;
+    return k == study_.base ? most_seconds_of_base(study_) : kMostBudgets * study_.request.sweep_budget;
   }
 
   Study& study_;
