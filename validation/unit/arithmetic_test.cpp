@@ -42,7 +42,7 @@ struct Setting {
   std::function<void()> set;
 };
 
-// What a name calls, one kind at a time.
+// One kind of setting at a time.
 std::vector<Setting> single_settings() {
   std::vector<Setting> settings = {{"upward", [] { std::fesetround(FE_UPWARD); }},
                                    {"downward", [] { std::fesetround(FE_DOWNWARD); }},

@@ -101,7 +101,7 @@ TEST(Misuse, WhatAnotherSceneMadeIsRefused) {
                  [&] { (void)other_solver.form_factor(kBelow, prepared, 1.0, {}); });
   const Scene flipped = scene.with_flipped(lamp);
   expect_refused("the source belongs to another scene", [&] { (void)exact_form_factor(flipped, kBelow, source); });
-  EXPECT_NO_THROW((void)ExactSource(other, {lamp.patch, lamp.face}));  // ids of nobody in particular
+  EXPECT_NO_THROW((void)ExactSource(other, {lamp.patch, lamp.face}));  // ids that name no scene
 }
 
 TEST(Misuse, ASceneThatWasMovedIsStillTheSame) {

@@ -80,7 +80,7 @@ TEST(Threads, ShareASceneForDrawings) {
   });
 }
 
-// Long lists of candidates: the ray structure is built by whoever is first.
+// Long lists of candidates: the first thread that needs the ray structure builds it.
 TEST(Threads, ShareAnAdaptiveSolver) {
   const generate::PlainScene plain = generate::karkanis({.n = 60});
   const Scene scene = generate::build(plain);
