@@ -1,4 +1,5 @@
-// Names of any bytes in every language that they are written in: every byte, every character, and bytes that are not UTF-8.
+// Names of any bytes in every language that they are written in: every byte, every character, and bytes that are not
+// UTF-8.
 #include <gtest/gtest.h>
 
 #include <array>
