@@ -305,7 +305,8 @@ class Cancelled : public std::runtime_error {
 // Runs the study. Everything except the times depends on the request alone, not on the number of threads. Times are
 // measured afterwards with one thread and no other work: the median of three calls by a steady clock, after a first
 // call with the same arguments. Values in `journal` are taken from it, and new values are stored there. Throws
-// InputError if there is no receiver or no source, or if the sampled methods do not accept the scene.
+// InputError if there is no receiver or no source, if the sources' radiosities are too large to be added (beyond 1e290),
+// or if the sampled methods do not accept the scene.
 [[nodiscard]] Study run(Request request, const Hooks& hooks = {}, Journal* journal = nullptr);
 
 // Throws InputError unless `folder` can be written and replaced: it does not exist, is empty, or contains only files of

@@ -50,6 +50,20 @@ void complete(Request& request) {
   if (request.threads <= 0) request.threads = usable_threads();
 }
 
+// Sums and means of radiosities below this bound do not overflow, whatever the number of receivers.
+constexpr double kMostRadiosity = 1e290;
+
+void require_moderate(double radiosity, const Request& request) {
+  if (radiosity <= kMostRadiosity) return;
+  throw InputError(Problem{request.scene_name,
+                           0,
+                           "the sources would give a receiver that sees nothing else a radiosity of " +
+                               shortest(radiosity),
+                           "a comparison adds and averages radiosities, which overflows beyond " +
+                               shortest(kMostRadiosity),
+                           "scale the emissions (Ke) down; form factors do not depend on them"});
+}
+
 double mean_face_area(const Request& request) {
   double sum = 0.0;
   std::size_t count = 0;
@@ -163,9 +177,13 @@ class Runner {
     solver_.emplace(scene());
     for (const Selection& source : request().sources) sampled_sources_.push_back(solver_->prepare(source));
     for (const Receiver& receiver : request().receivers) {
+      double of_all_sources = 0.0;
       for (std::size_t s = 0; s < sources_.size(); ++s) {
-        study_.largest_rho_b = std::max(study_.largest_rho_b, largest_rho_b(receiver, s));
+        const double rho_b = largest_rho_b(receiver, s);
+        study_.largest_rho_b = std::max(study_.largest_rho_b, rho_b);
+        of_all_sources += rho_b;
       }
+      require_moderate(of_all_sources, request());
     }
     request_hash_ = short_hash(request_text(request()));
   }

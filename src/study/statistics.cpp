@@ -59,13 +59,9 @@ double median(std::vector<double> values) {
 
 double mean(std::span<const double> values) {
   if (values.empty()) return 0.0;
-  const auto count = static_cast<double>(values.size());
   double sum = 0.0;
   for (double v : values) sum += v;
-  if (std::isfinite(sum)) return sum / count;
-  double mean = 0.0;  // a sum of huge values may overflow
-  for (double v : values) mean += v / count;
-  return mean;
+  return sum / static_cast<double>(values.size());
 }
 
 std::optional<double> fitted_slope(std::span<const std::pair<double, double>> points) {

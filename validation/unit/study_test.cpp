@@ -348,6 +348,23 @@ TEST(Study, NeedsAReceiverAndASource) {
   EXPECT_THROW((void)run(small_request(unlit, 1)), InputError);
 }
 
+// Sums and means of such radiosities would overflow, and the tables would have no numbers.
+TEST(Study, RefusesSourcesNearTheLargestDouble) {
+  SceneBuilder builder("blinding");
+  for (const Vec3& v : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) builder.add_vertex(v);
+  const MaterialId grey = builder.add_material({"grey", {0.5, 0.5, 0.5}, {}});
+  const MaterialId blinding = builder.add_material({"blinding", {}, {1e308, 1e308, 1e308}});
+  builder.add_face(builder.patch("floor"), grey, {{0, 1, 2}});
+  builder.add_face(builder.patch("lamp"), blinding, {{0, 3, 1}});
+  const Scene scene = builder.build();
+  try {
+    (void)run(small_request(scene, 1));
+    FAIL() << "a radiosity of 5e307 was accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("scale the emissions"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Study, StopsWhenItIsCancelled) {
   const Scene scene = small_room(true);
   const Hooks hooks{{}, [] { return true; }};
