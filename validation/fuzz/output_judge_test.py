@@ -80,8 +80,8 @@ class Judge(unittest.TestCase):
         self.expect_file("not CSV", "a.csv", 'a,b\n"1"x,2\n')
 
     def test_leftovers(self):
-        self.expect_file("half-written", "a.svg.partial-12", "")
-        self.expect_file("half-written", ".folder.partial-12", "", code=130)
+        self.expect_file("half-written", "a.svg.whole", "")
+        self.expect_file("half-written", ".folder.partial-12-0", "", code=130)
         self.expect_file("a journal left behind", "a.part", "")
         self.write("stderr", "exactff: interrupted\n")
         self.expect_file("", "a.part", "", code=130)

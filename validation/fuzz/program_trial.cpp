@@ -266,7 +266,7 @@ class Trial {
         (last.front() == "truth" || last.front() == "compare") && !given(last, "--resume") && !given(last, "--force");
     if (!can || ended_.code != 128 + case_.signal) return {};
     Words resumed = last;
-    resumed.emplace_back("--resume");
+    resumed.insert(resumed.begin() + 1, "--resume");  // at the end it could be taken for the value of an option
     std::string wrong = run_one(resumed, bench_.scratch / "first", nullptr);
     return wrong.empty() ? compare_with(case_.commands) : "resumed " + wrong;
   }
