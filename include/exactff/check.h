@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -276,6 +277,27 @@ struct Histogram {
 
 // A gnuplot script that plots the histogram as SVG to standard output; empty if every error is 0.
 [[nodiscard]] std::string histogram_script(const Report& report);
+
+// The picture that gnuplot makes of this script, or the reason why there is none. Throws InputError if there is no
+// place for temporary files. Ends gnuplot if `cancelled` returns true while it runs.
+struct Plot {
+  std::string svg;
+  std::string why_not;  // empty if there is a picture
+};
+[[nodiscard]] Plot plot_histogram(const Report& report, const std::function<bool()>& cancelled = {});
+
+// --- Words ---------------------------------------------------------------------------------------------------------
+
+[[nodiscard]] std::string name_of(const Quantile& quantile);  // "quantile 0.99"
+[[nodiscard]] std::string name_of(const Verdict& verdict);    // "max-abs, source light"
+// "max-abs, source light: 0.0123 is above the limit 0.01, at receiver '7'"
+[[nodiscard]] std::string sentence(const Verdict& verdict);
+// "receiver '7', source 'light'"
+[[nodiscard]] std::string name_of(const RowError& row);
+// "exact 0.25, found 0.26, error 0.01, relative 0.04"
+[[nodiscard]] std::string describe(const RowError& row);
+// What the user should know about the result, whether it passed or not.
+[[nodiscard]] std::vector<std::string> warnings(const Report& report);
 
 // --- Single values -------------------------------------------------------------------------------------------------
 

@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "exactff/methods.h"
 #include "exactff/scene.h"
+#include "exactff/settings.h"
 
 namespace exactff::models {
 
@@ -23,8 +23,8 @@ struct PlainScene;  // internal to the library
 struct Model {
   std::string name;     // letters, digits and hyphens
   std::string summary;  // what it shows, and its patches
-  std::vector<methods::SettingSpec> settings;
-  PlainScene (*make)(const methods::Settings&) = nullptr;  // for internal use
+  std::vector<SettingSpec> settings;
+  PlainScene (*make)(const Settings&) = nullptr;  // for internal use
 };
 
 // All models in the order of listing. The pointers stay valid as long as the program runs.

@@ -87,4 +87,8 @@ enum class GridIds { kCells, kUnique };
 // rounding. Throws one InputError with file:line for every problem.
 [[nodiscard]] std::vector<Receiver> read_receivers(const std::filesystem::path& path, const Scene& scene);
 
+// The distance of a point from a face's bounding box or from its plane, whichever is larger, over the box's diagonal:
+// an estimate, to find mistyped coordinates. For a face that is not planar, its own deviation is subtracted.
+[[nodiscard]] double relative_distance_from_face(const Scene& scene, FaceId face, const Vec3& point);
+
 }  // namespace exactff

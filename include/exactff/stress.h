@@ -16,7 +16,7 @@
 
 #include "exactff/enclosure.h"
 #include "exactff/exact.h"
-#include "exactff/study.h"
+#include "exactff/progress.h"
 
 namespace exactff::stress {
 
@@ -46,6 +46,9 @@ enum class Method {
   kAdaptiveLiteral,  // Tampieri's algorithm, literal variant: as printed
 };
 inline constexpr std::size_t kMethodCount = 6;
+inline constexpr std::array<Method, kMethodCount> kMethods = {Method::kExact,    Method::kAcos,
+                                                              Method::kAtan2,    Method::kAtan2Difference,
+                                                              Method::kAdaptive, Method::kAdaptiveLiteral};
 [[nodiscard]] std::string_view name_of(Method method);
 [[nodiscard]] std::string_view short_name_of(Method method);
 
@@ -108,14 +111,26 @@ struct Report {
 
 // Runs the families. Everything except the times depends on the request alone. Throws InputError if there is no family
 // of a given name.
-[[nodiscard]] Report run(Request request, const study::Hooks& hooks = {});
+[[nodiscard]] Report run(Request request, const Hooks& hooks = {});
 
-// Writes report.html, values.csv, summary.csv and timings.csv in the same way as study::write: all or nothing, and only
-// over an earlier result. Returns notes for the user, such as a missing gnuplot.
-std::vector<std::string> write(const Report& report, const std::filesystem::path& folder,
-                               const study::Hooks& hooks = {});
+// Writes report.html, values.csv, summary.csv and timings.csv in the same way as report::write: all or nothing, and
+// only over an earlier result. Returns notes for the user, such as a missing gnuplot.
+std::vector<std::string> write(const Report& report, const std::filesystem::path& folder, const Hooks& hooks = {});
 
 // The main result in a few sentences.
 [[nodiscard]] std::vector<std::string> headlines(const Report& report);
+
+// Powers from 10000 on as "10³⁰⁰" and "2⁵²", smaller numbers as "4096", 0 as "–".
+[[nodiscard]] std::string stiffness_text(double stiffness);
+
+// "3.4·10⁻¹⁷", "refused", "no number".
+[[nodiscard]] std::string error_text(const Answer& answer);
+
+// Up to which stiffness a method keeps its error below a threshold: "all" if to the family's end, otherwise the last
+// such stiffness, or "–".
+[[nodiscard]] std::string reach_text(const FamilyResult& result, Method method, double threshold);
+
+// The same for every threshold: "10⁸ · 10⁵ · 100", or "all". Adds "(refused)" if the method then refuses the scene.
+[[nodiscard]] std::string reaches_text(const FamilyResult& result, Method method);
 
 }  // namespace exactff::stress

@@ -10,11 +10,9 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +20,7 @@
 #include "exactff/adaptive.h"
 #include "exactff/exact.h"
 #include "exactff/methods.h"
+#include "exactff/progress.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
 
@@ -224,12 +223,6 @@ struct Profile {
   std::vector<Curve> others;
 };
 
-// A part of the study that was left out because the scene has nothing for it.
-struct LeftOut {
-  std::string what;
-  std::string why;
-};
-
 struct Study {
   Request request;  // sources, sweeps and threads filled in
   double largest_rho_b = 0.0;
@@ -255,18 +248,6 @@ struct Study {
   std::vector<LeftOut> left_out;
   double exact_setup_seconds = 0.0;  // once per source
   double ray_setup_seconds = 0.0;    // once per scene
-};
-
-// The progress of the work. Hooks are called with it from one thread at a time.
-struct Progress {
-  std::string_view stage;
-  std::size_t done = 0;
-  std::size_t total = 0;
-};
-
-struct Hooks {
-  std::function<void(const Progress&)> progress;
-  std::function<bool()> cancelled;  // called between receivers, from any thread
 };
 
 // Finished work, stored in a file beside the result so that an interrupted run can be resumed. Each piece of work has a
@@ -296,29 +277,11 @@ class Journal {
 // The path of the journal for a folder of results: beside the folder.
 [[nodiscard]] std::filesystem::path journal_of_folder(const std::filesystem::path& folder);
 
-// Thrown if Hooks::cancelled returned true.
-class Cancelled : public std::runtime_error {
- public:
-  Cancelled() : std::runtime_error("cancelled") {}
-};
-
 // Runs the study. Everything except the times depends on the request alone, not on the number of threads. Times are
 // measured afterwards with one thread and no other work: the median of three calls by a steady clock, after a first
 // call with the same arguments. Values in `journal` are taken from it, and new values are stored there. Throws
-// InputError if there is no receiver or no source, if the sources' radiosities are too large to be added (beyond 1e290),
-// or if the sampled methods do not accept the scene.
+// InputError if there is no receiver or no source, if the sources' radiosities are too large to be added (beyond
+// 1e290), or if the sampled methods do not accept the scene.
 [[nodiscard]] Study run(Request request, const Hooks& hooks = {}, Journal* journal = nullptr);
-
-// Throws InputError unless `folder` can be written and replaced: it does not exist, is empty, or contains only files of
-// an earlier study.
-void check_output_folder(const std::filesystem::path& folder);
-
-// Writes the tables and the report into a hidden folder beside `folder`, and renames it at the end. The value files
-// (values, exact, summary) contain no times and have the same bytes for any number of threads. Returns notes for the
-// user, such as a missing gnuplot.
-std::vector<std::string> write(const Study& study, const std::filesystem::path& folder, const Hooks& hooks = {});
-
-// The main result in a few sentences.
-[[nodiscard]] std::vector<std::string> headlines(const Study& study);
 
 }  // namespace exactff::study

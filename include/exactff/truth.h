@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "exactff/exact.h"
+#include "exactff/progress.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
-#include "exactff/study.h"
 
 namespace exactff::truth {
 
@@ -57,9 +57,9 @@ enum class Existing {
 // Callbacks. All are called from the thread that called write() or merge(), except `cancelled`, which is called from
 // any thread.
 struct Hooks {
-  std::function<void(const study::Progress&)> progress = {};  // in rows
-  std::function<bool()> cancelled = {};                       // called between rows
-  std::function<void(const std::string&)> note = {};          // notes for the user, such as a damaged journal
+  std::function<void(const Progress&)> progress = {};  // in rows
+  std::function<bool()> cancelled = {};                // called between rows
+  std::function<void(const std::string&)> note = {};   // notes for the user, such as a damaged journal
   std::function<void(const std::string& row, double seconds)> slow_row = {};  // "receiver '7', source 'light'"
   double slow_seconds = 1.0;  // a row that takes at least this long is slow
 };
@@ -77,9 +77,13 @@ struct Summary {
 // The path of the journal of `file`: beside it, with ".part" appended.
 [[nodiscard]] std::filesystem::path journal_of(const std::filesystem::path& file);
 
+// Throws InputError if no truth file can be made at `file`: if it is a folder or a device, or if it exists already and
+// `existing` says to refuse.
+void require_free(const std::filesystem::path& file, Existing existing);
+
 // Computes the rows and writes the file. Throws InputError if the request, the file or the journal is unusable (a
 // journal may be from another request or in use by another process), or if nothing can be written; throws
-// study::Cancelled if the hooks cancel. Whatever is thrown, and even if the process is killed, the rows in the journal
+// Cancelled if the hooks cancel. Whatever is thrown, and even if the process is killed, the rows in the journal
 // stay valid: at most a second of work and the current row of each thread are lost.
 Summary write(Request request, const std::filesystem::path& file, Existing existing = Existing::kRefuse,
               const Hooks& hooks = {});

@@ -4,14 +4,12 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "check/words.h"
 #include "exactff/check.h"
 #include "kernel/float_environment.h"
-#include "scene/text_file.h"
-#include "study/tables.h"
-#include "study/text.h"
 #include "text/escape.h"
 #include "text/json_document.h"
+#include "text/phrases.h"
+#include "text/text_file.h"
 
 namespace exactff::check {
 namespace {
@@ -51,7 +49,7 @@ class Baseline {
       throw InputError({file_, 0, "there is no such baseline", "there is nothing to compare with",
                         "record one by --write-baseline"});
     }
-    json_ = ordered_json::parse(read_text_file(path, "a file of --write-baseline"), nullptr, false);
+    json_ = ordered_json::parse(text::read_text_file(path, "a file of --write-baseline"), nullptr, false);
     if (!json_.is_object() || !json_.contains("baseline") || json_["baseline"] != kFormat) refuse_format();
   }
 
@@ -113,7 +111,7 @@ std::string baseline_text(const Report& report) {
   const kernel::StandardArithmetic arithmetic;
   ordered_json json;
   json["baseline"] = kFormat;
-  json["program"] = study::program_version();
+  json["program"] = text::program_version();
   json["truth"] = {{"identity", report.identity}, {"rows", report.overall.rows}, {"column", report.column}};
   json["relative_floor"] = report.criteria.relative_floor;
   json["overall"] = numbers_json(report.overall);
@@ -127,7 +125,7 @@ std::string baseline_text(const Report& report) {
 void hold_against_baseline(Report& report, const std::filesystem::path& path, double slack) {
   const kernel::StandardArithmetic arithmetic;
   if (!(slack >= 0.0) || std::isinf(slack)) {
-    throw InputError({.what = "the slack of the baseline is " + study::shortest(slack),
+    throw InputError({.what = "the slack of the baseline is " + text::shortest(slack),
                       .why = "it is a share of what was recorded",
                       .suggestion = "give 0 or more, such as 0.1"});
   }

@@ -5,10 +5,9 @@
 #include <limits>
 
 #include "check/errors.h"
-#include "check/words.h"
 #include "exactff/check.h"
 #include "kernel/float_environment.h"
-#include "study/text.h"
+#include "text/phrases.h"
 
 namespace exactff::check {
 namespace {
@@ -26,10 +25,10 @@ double ulps_between(double a, double b) {
 }
 
 std::string bounds_of(const Expected& expected) {
-  std::string text = study::shortest(expected.value);
+  std::string text = text::shortest(expected.value);
   if (!expected.status) return text;
   if (expected.lower < expected.upper) {
-    text += " in [" + study::shortest(expected.lower) + ", " + study::shortest(expected.upper) + "]";
+    text += " in [" + text::shortest(expected.lower) + ", " + text::shortest(expected.upper) + "]";
   }
   return text + ", " + std::string(to_string(*expected.status));
 }
@@ -67,13 +66,13 @@ bool is_near(double actual, const Expected& expected, const Tolerance& tolerance
 std::string describe_difference(double actual, const Expected& expected, const Tolerance& tolerance) {
   const kernel::StandardArithmetic arithmetic;
   const Difference d = difference(actual, expected);
-  std::string text = "  actual    " + study::shortest(actual) + "\n  expected  " + bounds_of(expected) + "\n";
+  std::string text = "  actual    " + text::shortest(actual) + "\n  expected  " + bounds_of(expected) + "\n";
   if (!std::isfinite(actual)) return text + "  the actual value is not a finite number";
-  text += "  error     " + study::shortest(d.error) + ", relative " + study::shortest(d.relative) + ", " +
-          short_number(d.ulps, 6) + (d.ulps == 1.0 ? " ulp" : " ulps") + "\n  tolerance ";
-  if (tolerance.relative == 0.0) return text + study::shortest(tolerance.absolute);
-  if (tolerance.absolute == 0.0) return text + "relative " + study::shortest(tolerance.relative);
-  return text + study::shortest(tolerance.absolute) + ", or relative " + study::shortest(tolerance.relative);
+  text += "  error     " + text::shortest(d.error) + ", relative " + text::shortest(d.relative) + ", " +
+          text::short_number(d.ulps, 6) + (d.ulps == 1.0 ? " ulp" : " ulps") + "\n  tolerance ";
+  if (tolerance.relative == 0.0) return text + text::shortest(tolerance.absolute);
+  if (tolerance.absolute == 0.0) return text + "relative " + text::shortest(tolerance.relative);
+  return text + text::shortest(tolerance.absolute) + ", or relative " + text::shortest(tolerance.relative);
 }
 
 }  // namespace exactff::check

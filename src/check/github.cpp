@@ -1,7 +1,6 @@
 // Workflow commands of GitHub Actions: lines that the runner turns into annotations on files.
 #include <string_view>
 
-#include "check/words.h"
 #include "exactff/check.h"
 #include "kernel/float_environment.h"
 #include "text/escape.h"

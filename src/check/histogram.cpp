@@ -5,8 +5,11 @@
 
 #include "exactff/check.h"
 #include "kernel/float_environment.h"
-#include "study/plot_script.h"
-#include "study/text.h"
+#include "page/gnuplot.h"
+#include "page/plot_script.h"
+#include "text/phrases.h"
+#include "text/refuse.h"
+#include "work/work_folder.h"
 
 namespace exactff::check {
 namespace {
@@ -24,15 +27,25 @@ long bin_of(double value, int bins_per_decade) {
 }
 
 // The limits of single errors. Each is listed once, even if it applies to several sources.
-std::vector<study::Mark> limits(const Report& report) {
-  std::vector<study::Mark> marks;
+std::vector<page::Mark> limits(const Report& report) {
+  std::vector<page::Mark> marks;
   for (const Verdict& verdict : report.verdicts) {
     if (verdict.criterion != "max-abs" && !verdict.criterion.starts_with("quantile")) continue;
-    const study::Mark mark{verdict.criterion + " " + study::shortest(verdict.limit), verdict.limit};
-    const auto is_same = [&](const study::Mark& other) { return other.title == mark.title; };
+    const page::Mark mark{verdict.criterion + " " + text::shortest(verdict.limit), verdict.limit};
+    const auto is_same = [&](const page::Mark& other) { return other.title == mark.title; };
     if (std::none_of(marks.begin(), marks.end(), is_same)) marks.push_back(mark);
   }
   return marks;
+}
+
+// A temporary folder, not one beside the output: the picture may go to a pipe.
+work::WorkFolder scratch_folder() {
+  try {
+    return work::WorkFolder(std::filesystem::temp_directory_path() / "exactff-plot");
+  } catch (const std::filesystem::filesystem_error& error) {
+    text::refuse("no temporary folder can be made: " + error.code().message(), "gnuplot draws in one",
+                 "set TMPDIR to a folder that can be written to, or leave --plot out");
+  }
 }
 
 }  // namespace
@@ -61,11 +74,21 @@ std::string histogram_script(const Report& report) {
   constexpr int kBinsPerDecade = 4;
   constexpr std::size_t kMostBins = 120;
   const Histogram shown = histogram(report, kBinsPerDecade, kMostBins);
-  std::vector<study::Bar> bars;
+  std::vector<page::Bar> bars;
   for (const HistogramBin& bin : shown.bins) bars.push_back({bin.low, bin.high, static_cast<double>(bin.count)});
-  const std::string rows = study::counted(report.overall.rows, "row") +
+  const std::string rows = text::counted(report.overall.rows, "row") +
                            (shown.exact > 0 ? ", " + std::to_string(shown.exact) + " of them without error" : "");
-  return study::bar_plot({"absolute error", rows, true, false}, bars, limits(report));
+  return page::bar_plot({"absolute error", rows, true, false}, bars, limits(report));
+}
+
+Plot plot_histogram(const Report& report, const std::function<bool()>& cancelled) {
+  const std::string script = histogram_script(report);
+  if (script.empty()) return {{}, "every error is 0, which a logarithmic axis cannot show"};
+  const work::WorkFolder scratch = scratch_folder();
+  const page::PlotResult result = page::run_gnuplot(script, scratch.path(), cancelled);
+  if (result.outcome == page::PlotResult::Outcome::kDrawn) return {result.svg, {}};
+  const bool missing = result.outcome == page::PlotResult::Outcome::kNoProgram;
+  return {{}, missing ? "there is no gnuplot; install it" : "gnuplot failed: " + result.message};
 }
 
 }  // namespace exactff::check

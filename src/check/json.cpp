@@ -2,11 +2,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "check/words.h"
 #include "exactff/check.h"
 #include "kernel/float_environment.h"
-#include "study/tables.h"
 #include "text/json_document.h"
+#include "text/phrases.h"
 
 namespace exactff::check {
 namespace {
@@ -82,7 +81,7 @@ ordered_json list(const List& items) {
 std::string json_text(const Report& report) {
   const kernel::StandardArithmetic arithmetic;
   ordered_json json;
-  json["program"] = study::program_version();
+  json["program"] = text::program_version();
   json["truth"] = {{"file", report.truth_file},
                    {"column", report.column},
                    {"rows", report.truth_rows},

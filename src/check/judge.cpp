@@ -6,11 +6,10 @@
 #include <numeric>
 
 #include "check/errors.h"
-#include "check/words.h"
 #include "exactff/check.h"
 #include "kernel/float_environment.h"
-#include "scene/fnv1a.h"
-#include "study/text.h"
+#include "text/fnv1a.h"
+#include "text/phrases.h"
 
 namespace exactff::check {
 namespace {
@@ -19,7 +18,7 @@ using Rows = std::vector<Errors::Index>;
 
 void require_limit(const std::optional<double>& limit, std::string_view name) {
   if (!limit || *limit >= 0.0) return;
-  throw InputError({.what = "the limit of " + std::string(name) + " is " + study::shortest(*limit),
+  throw InputError({.what = "the limit of " + std::string(name) + " is " + text::shortest(*limit),
                     .why = "an error is at least 0",
                     .suggestion = "give 0 or more"});
 }
@@ -33,7 +32,7 @@ void check_criteria(const Criteria& criteria) {
   for (const Quantile& quantile : criteria.quantiles) {
     require_limit(quantile.limit, name_of(quantile));
     if (quantile.share > 0.0 && quantile.share <= 1.0) continue;
-    throw InputError({.what = "the share of a quantile is " + study::shortest(quantile.share),
+    throw InputError({.what = "the share of a quantile is " + text::shortest(quantile.share),
                       .why = "it is a share of the rows",
                       .suggestion = "give more than 0 and at most 1, such as 0.99"});
   }
@@ -86,7 +85,7 @@ class Judge {
     std::uint64_t sum = 0;
     for (const Measured& one : values_) {
       const TruthRow& row = truth_.rows[one.row];
-      Fnv1a hash;
+      text::Fnv1a hash;
       for (const std::string_view text :
            {std::string_view(truth_.column), std::string_view(row.receiver), std::string_view(truth_.source_of(row))}) {
         hash.add_bytes(text);
@@ -95,7 +94,7 @@ class Judge {
       hash.add(row.value);
       sum += hash.value();
     }
-    return hexadecimal(sum, 16);
+    return text::hexadecimal(sum, 16);
   }
 
   void require_rho_b() const {
@@ -179,10 +178,10 @@ Report judge(const Truth& truth, const std::vector<Measured>& values, const Crit
 
 Report judge(const Truth& truth, std::span<const double> values, const Criteria& criteria) {
   if (values.size() != truth.rows.size()) {
-    throw InputError({truth.file, 0,
-                      "has " + study::counted(truth.rows.size(), "row") + ", but there are " +
-                          study::counted(values.size(), "value"),
-                      "every row has one", "give the values in the order of its rows"});
+    throw InputError(
+        {truth.file, 0,
+         "has " + text::counted(truth.rows.size(), "row") + ", but there are " + text::counted(values.size(), "value"),
+         "every row has one", "give the values in the order of its rows"});
   }
   std::vector<Measured> measured;
   measured.reserve(values.size());

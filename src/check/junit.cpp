@@ -1,7 +1,6 @@
 // JUnit XML as Jenkins, GitLab and others read it: one test suite with one test case per verdict.
 #include <algorithm>
 
-#include "check/words.h"
 #include "exactff/check.h"
 #include "kernel/float_environment.h"
 #include "text/escape.h"

@@ -11,11 +11,10 @@
 
 #include "check/position_index.h"
 #include "check/row_keys.h"
-#include "check/words.h"
 #include "exactff/check.h"
 #include "kernel/float_environment.h"
-#include "scene/text_lines.h"
-#include "study/text.h"
+#include "text/phrases.h"
+#include "text/text_lines.h"
 
 namespace exactff::check {
 namespace {
@@ -82,13 +81,13 @@ class Matcher {
         truth_.sources.begin(),
         truth_.sources.begin() + static_cast<std::ptrdiff_t>(std::min(truth_.sources.size(), kShown)));
     if (truth_.sources.size() > kShown) names.emplace_back("others");
-    return study::enumerate(names);
+    return text::enumerate(names);
   }
 
   // Returns false, and complains, if the truth does not have the source of the row.
   bool has_known_source(const CandidateRow& row) {
     if (source_[row.source] != kNothing) return true;
-    complain(row.line, "the truth has no source " + in_quotes(candidate_.sources[row.source]),
+    complain(row.line, "the truth has no source " + text::in_quotes(candidate_.sources[row.source]),
              "its sources are " + source_names(), "check the name, or leave the row out");
     return false;
   }
@@ -101,7 +100,7 @@ class Matcher {
       if (!has_known_source(row)) continue;
       const std::size_t found = keys.find(row.receiver, source_[row.source]);
       if (found == truth_.rows.size()) {
-        complain(row.line, "the truth has no receiver " + in_quotes(row.receiver) + of_source(name_of(row)),
+        complain(row.line, "the truth has no receiver " + text::in_quotes(row.receiver) + of_source(name_of(row)),
                  "its value cannot be judged", unknown_advice());
       } else {
         take(found, i);
@@ -110,7 +109,7 @@ class Matcher {
   }
 
   [[nodiscard]] std::string unknown_advice() const {
-    return "its receivers are called such as " + in_quotes(truth_.rows.front().receiver) +
+    return "its receivers are called such as " + text::in_quotes(truth_.rows.front().receiver) +
            "; correct the id, or give --match position";
   }
 
@@ -124,7 +123,7 @@ class Matcher {
         take(found.front(), i);
       } else if (found.empty()) {
         complain(row.line,
-                 "the truth has no receiver within " + study::shortest(options_.tolerance) + of_source(name_of(row)),
+                 "the truth has no receiver within " + text::shortest(options_.tolerance) + of_source(name_of(row)),
                  "its value cannot be judged", "give a larger --tolerance if the coordinates were rounded");
       } else {
         complain_about_choice(row, found);
@@ -135,7 +134,8 @@ class Matcher {
   void complain_about_choice(const CandidateRow& row, const std::vector<std::uint32_t>& found) {
     const auto told = [&](std::size_t i) {
       const TruthRow& other = truth_.rows[found[i]];
-      return in_quotes(other.receiver) + " at a distance of " + short_number(distance(other.point, row.point));
+      return text::in_quotes(other.receiver) + " at a distance of " +
+             text::short_number(distance(other.point, row.point));
     };
     complain(row.line,
              std::to_string(found.size()) + " receivers of the truth match: " + told(0) + " and " + told(1) +
@@ -152,7 +152,7 @@ class Matcher {
       return;
     }
     complain(candidate_.rows[row].line,
-             "receiver " + in_quotes(truth_.rows[truth_row].receiver) +
+             "receiver " + text::in_quotes(truth_.rows[truth_row].receiver) +
                  of_source(truth_.source_of(truth_.rows[truth_row])) + " has a value already (line " +
                  std::to_string(candidate_.rows[found].line) + ")",
              "only one can be judged", "keep one of them");
@@ -167,13 +167,13 @@ class Matcher {
     for (std::size_t i = 0; i < found_.size() && names.size() < kShown; ++i) {
       if (found_[i] != kNothing) continue;
       const TruthRow& row = truth_.rows[i];
-      names.push_back(in_quotes(row.receiver) + of_source(truth_.source_of(row)));
+      names.push_back(text::in_quotes(row.receiver) + of_source(truth_.source_of(row)));
     }
     if (missing > kShown) names.push_back(std::to_string(missing - kShown) + " more");
     complain(
         0,
-        "no value for " + study::counted_of(missing, found_.size(), "row") + " of the truth: receiver " +
-            study::enumerate(names),
+        "no value for " + text::counted_of(missing, found_.size(), "row") + " of the truth: receiver " +
+            text::enumerate(names),
         "what is missing cannot be judged",
         missing < found_.size() ? "add them, or give --partial to judge the others" : "check how rows are matched");
   }
@@ -193,7 +193,7 @@ class Matcher {
   const MatchOptions& options_;
   std::vector<std::uint32_t> source_;  // source of the truth, indexed by source of the candidate
   std::vector<std::uint32_t> found_;   // row of the candidate, indexed by row of the truth
-  ProblemList problems_;
+  text::ProblemList problems_;
 };
 
 }  // namespace

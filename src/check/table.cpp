@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "scene/nearest_names.h"
-#include "scene/number_text.h"
+#include "text/nearest_names.h"
+#include "text/number_text.h"
 
 namespace exactff::check {
 namespace {
@@ -15,15 +15,15 @@ std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t kShown = 20;
   std::string text;
   for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) text += (i > 0 ? "," : "") + names[i];
-  return in_quotes(text + (names.size() > kShown ? ",..." : ""), kShownName);
+  return text::in_quotes(text + (names.size() > kShown ? ",..." : ""), text::kShownName);
 }
 
 // The value of a text that is not a finite number. The sign of "nan" is not kept.
-double not_finite_value(std::string_view text, NumberFault fault) {
-  const std::string word = in_lower_case(text);
+double not_finite_value(std::string_view text, text::NumberFault fault) {
+  const std::string word = text::in_lower_case(text);
   const double infinity =
       text.starts_with('-') ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
-  if (fault == NumberFault::kTooLarge || word.find("inf") != std::string::npos) return infinity;
+  if (fault == text::NumberFault::kTooLarge || word.find("inf") != std::string::npos) return infinity;
   return std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -33,12 +33,12 @@ Table::Table(const std::filesystem::path& path, const std::string& purpose) : li
 
 void Table::read_names() {
   for (std::string_view line; lines_.next(line);) {
-    if (!is_csv_comment(line)) {
+    if (!text::is_csv_comment(line)) {
       if (split(line)) take_names();
       return;
     }
-    const std::string_view content = trimmed(line);
-    if (!content.empty()) comments_.emplace_back(trimmed(content.substr(1)));
+    const std::string_view content = text::trimmed(line);
+    if (!content.empty()) comments_.emplace_back(text::trimmed(content.substr(1)));
   }
   complain("the file has no column names", "its columns are told apart by name",
            "begin it with a line such as receiver,source,value");
@@ -48,7 +48,7 @@ void Table::take_names() {
   names_ = fields_;
   for (auto name = names_.begin(); name != names_.end(); ++name) {
     if (std::find(names_.begin(), name, *name) == name) continue;
-    complain("column " + in_quotes(*name) + " occurs twice", "only one can count", "rename one");
+    complain("column " + text::in_quotes(*name) + " occurs twice", "only one can count", "rename one");
   }
   if (names_.size() > 1 || names_.front().find_first_of(";\t") == std::string::npos) return;
   complain("the column names are not separated by commas", "only comma-separated files are read",
@@ -73,13 +73,13 @@ std::size_t Table::needed_column(std::initializer_list<std::string_view> names, 
   if (const auto found = first_column(names)) return *found;
   if (names_.empty()) return 0;  // a complaint was already made
   std::string wanted;
-  for (const std::string_view name : names) wanted += (wanted.empty() ? "" : " or ") + in_quotes(name);
+  for (const std::string_view name : names) wanted += (wanted.empty() ? "" : " or ") + text::in_quotes(name);
   complain("there is no column " + wanted + " among " + listed(names_), why, suggestion);
   return 0;
 }
 
 bool Table::split(std::string_view line) {
-  if (split_csv_line(line, fields_)) return true;
+  if (text::split_csv_line(line, fields_)) return true;
   complain("a quotation mark is not closed in its line, or text follows it", "fields would be told apart wrongly",
            "write a quotation mark within quotes twice");
   return false;
@@ -87,7 +87,7 @@ bool Table::split(std::string_view line) {
 
 bool Table::next() {
   for (std::string_view line; lines_.next(line);) {
-    if (is_csv_comment(line) || !split(line)) continue;
+    if (text::is_csv_comment(line) || !split(line)) continue;
     if (fields_.size() == names_.size()) return true;
     complain(std::to_string(fields_.size()) + " fields where there are " + std::to_string(names_.size()) + " columns",
              "columns would be mixed up", "separate fields by commas and quote those that hold one");
@@ -97,15 +97,15 @@ bool Table::next() {
 
 double Table::number(std::size_t column, NotFinite not_finite) {
   const std::string& text = fields_[column];
-  const ParsedNumber number = parse_number(text);
-  if (number.fault == NumberFault::kNone) return number.value;
-  const bool meant = number.fault == NumberFault::kNotFinite || number.fault == NumberFault::kTooLarge;
+  const text::ParsedNumber number = text::parse_number(text);
+  if (number.fault == text::NumberFault::kNone) return number.value;
+  const bool meant = number.fault == text::NumberFault::kNotFinite || number.fault == text::NumberFault::kTooLarge;
   if (meant && not_finite == NotFinite::kAccept) return not_finite_value(text, number.fault);
   if (text.empty()) {
-    complain("column " + in_quotes(names_[column]) + " is empty", "a number is wanted there",
+    complain("column " + text::in_quotes(names_[column]) + " is empty", "a number is wanted there",
              not_finite == NotFinite::kAccept ? "write nan where there is no result, or leave the row out" : "");
   } else {
-    complain(describe(number.fault, text) + " in column " + in_quotes(names_[column]), "a number is wanted there",
+    complain(describe(number.fault, text) + " in column " + text::in_quotes(names_[column]), "a number is wanted there",
              advice(number.fault));
   }
   return 0.0;

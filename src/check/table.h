@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "exactff/geometry.h"
-#include "scene/csv_lines.h"
-#include "scene/text_lines.h"
+#include "text/csv_lines.h"
+#include "text/text_lines.h"
 
 namespace exactff::check {
 
@@ -69,11 +69,11 @@ class Table {
   void take_names();
   [[nodiscard]] bool split(std::string_view line);
 
-  CsvLines lines_;
+  text::CsvLines lines_;
   std::vector<std::string> comments_;
   std::vector<std::string> names_;
   std::vector<std::string> fields_;
-  ProblemList problems_;
+  text::ProblemList problems_;
 };
 
 }  // namespace exactff::check

@@ -107,7 +107,7 @@ class TruthReader {
     for (Status status : {Status::kCertified, Status::kZero, Status::kUnderflow, Status::kNotCertified}) {
       if (word == to_string(status)) return status;
     }
-    table_.complain("unknown status " + in_quotes(word), "it says whether the value is certified",
+    table_.complain("unknown status " + text::in_quotes(word), "it says whether the value is certified",
                     "write certified, zero, underflow or not certified");
     return Status::kCertified;
   }
@@ -134,7 +134,7 @@ class TruthReader {
       const std::uint32_t first = keys.insert(i);
       if (first == i) continue;
       table_.complain_at(truth_.rows[i].line,
-                         "receiver " + in_quotes(truth_.rows[i].receiver) + " has a second row" +
+                         "receiver " + text::in_quotes(truth_.rows[i].receiver) + " has a second row" +
                              of_source(truth_.source_of(truth_.rows[i])) + " (the first is line " +
                              std::to_string(truth_.rows[first].line) + ")",
                          "a value could be held against either", "keep one of them");

@@ -1,19 +1,18 @@
-#include "check/words.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 
+#include "exactff/check.h"
 #include "kernel/float_environment.h"
-#include "scene/text_lines.h"
-#include "study/text.h"
 #include "text/escape.h"
+#include "text/phrases.h"
+#include "text/text_lines.h"
 
 namespace exactff::check {
 namespace {
 
-using study::shortest;
+using text::shortest;
 
 }  // namespace
 
@@ -29,13 +28,6 @@ std::string_view to_string(Measure measure) {
   return {};
 }
 
-std::string short_number(double value, int digits) {
-  std::array<char, 32> buffer;
-  const auto end =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
-  return {buffer.data(), end.ptr};
-}
-
 std::string name_of(const Quantile& quantile) { return "quantile " + shortest(quantile.share); }
 
 std::string name_of(const Verdict& verdict) {
@@ -43,13 +35,14 @@ std::string name_of(const Verdict& verdict) {
 }
 
 std::string name_of(const RowError& row) {
-  return "receiver " + in_quotes(row.receiver) + (row.source.empty() ? "" : ", source " + in_quotes(row.source));
+  return "receiver " + text::in_quotes(row.receiver) +
+         (row.source.empty() ? "" : ", source " + text::in_quotes(row.source));
 }
 
 std::string describe(const RowError& row) {
   std::string text = "exact " + shortest(row.truth) + ", found " + shortest(row.value);
   if (!std::isfinite(row.value)) return text;
-  text += ", error " + short_number(row.error, 4) + ", relative " + short_number(row.relative, 4);
+  text += ", error " + text::short_number(row.error, 4) + ", relative " + text::short_number(row.relative, 4);
   if (row.status == Status::kNotCertified) text += ", truth not certified";
   return text;
 }
@@ -69,11 +62,11 @@ std::string sentence(const Verdict& verdict) {
 std::vector<std::string> warnings(const Report& report) {
   std::vector<std::string> texts;
   if (report.not_certified > 0) {
-    texts.push_back(study::counted_of(report.not_certified, report.overall.rows, "row") +
+    texts.push_back(text::counted_of(report.not_certified, report.overall.rows, "row") +
                     " of the truth judged by enclosure: not certified");
   }
   if (report.overall.rows < report.truth_rows) {
-    texts.push_back(study::counted_of(report.truth_rows - report.overall.rows, report.truth_rows, "row") +
+    texts.push_back(text::counted_of(report.truth_rows - report.overall.rows, report.truth_rows, "row") +
                     " of the truth without a value: not judged");
   }
   if (report.verdicts.size() == 1) {

@@ -13,24 +13,19 @@
 #include <utility>
 #include <vector>
 
-#include "check/words.h"
 #include "cli/command.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
-#include "cli/refuse.h"
 #include "cli/text_table.h"
-#include "scene/csv_lines.h"
-#include "scene/number_text.h"
-#include "scene/text_lines.h"
-#include "study/gnuplot.h"
-#include "study/text.h"
-#include "study/work_folder.h"
+#include "text/csv_lines.h"
 #include "text/escape.h"
+#include "text/number_text.h"
+#include "text/phrases.h"
+#include "text/refuse.h"
+#include "text/text_lines.h"
 
 namespace exactff::cli {
 namespace {
-
-using check::short_number;
 
 constexpr const char* kCheckFooter =
     "Every row of the truth has to have a value, and every value a row. A value that is not a finite number is a "
@@ -69,11 +64,12 @@ struct CheckArguments {
 };
 
 double to_limit(const std::string& text, const std::string& flag) {
-  const ParsedNumber number = parse_number(text);
-  if (number.fault == NumberFault::kNone && number.value >= 0.0) return number.value;
-  refuse(flag + ": " +
-             (number.fault == NumberFault::kNone ? in_quotes(text) + " is negative" : describe(number.fault, text)),
-         "it is a finite number of at least 0", "write it such as " + flag + " 1e-6");
+  const text::ParsedNumber number = text::parse_number(text);
+  if (number.fault == text::NumberFault::kNone && number.value >= 0.0) return number.value;
+  text::refuse(flag + ": " +
+                   (number.fault == text::NumberFault::kNone ? text::in_quotes(text) + " is negative"
+                                                             : describe(number.fault, text)),
+               "it is a finite number of at least 0", "write it such as " + flag + " 1e-6");
 }
 
 std::optional<double> to_optional_limit(const std::string& text, const std::string& flag) {
@@ -83,8 +79,8 @@ std::optional<double> to_optional_limit(const std::string& text, const std::stri
 check::Quantile to_quantile(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) {
-    refuse("--quantile: " + in_quotes(text) + " has no equals sign", "it is a share of the rows and their limit",
-           "write it such as --quantile 0.99=1e-3");
+    text::refuse("--quantile: " + text::in_quotes(text) + " has no equals sign",
+                 "it is a share of the rows and their limit", "write it such as --quantile 0.99=1e-3");
   }
   return {to_limit(text.substr(0, equals), "--quantile"), to_limit(text.substr(equals + 1), "--quantile")};
 }
@@ -92,9 +88,9 @@ check::Quantile to_quantile(const std::string& text) {
 std::array<std::string, 3> to_three_names(const std::string& text, const std::string& flag) {
   std::array<std::string, 3> names;
   std::vector<std::string> fields;
-  if (!split_csv_line(text, fields) || fields.size() != 3) {
-    refuse(flag + ": " + in_quotes(text) + " does not name three columns", "there are three coordinates",
-           "separate them by commas, such as " + flag + " x,y,z");
+  if (!text::split_csv_line(text, fields) || fields.size() != 3) {
+    text::refuse(flag + ": " + text::in_quotes(text) + " does not name three columns", "there are three coordinates",
+                 "separate them by commas, such as " + flag + " x,y,z");
   }
   std::move(fields.begin(), fields.end(), names.begin());
   return names;
@@ -161,9 +157,10 @@ check::Report report_of(const CheckArguments& args) {
 
 void add_statistics(TextTable& table, const std::string& what, const std::string& source,
                     const check::Statistics& statistics, const check::Distribution& d, bool has_bias) {
-  table.add_row({what, source, std::to_string(statistics.rows - statistics.not_finite), short_number(d.median),
-                 short_number(d.p90), short_number(d.p99), short_number(d.p999), short_number(d.max),
-                 short_number(d.rms), has_bias ? short_number(statistics.bias) : ""});
+  table.add_row({what, source, std::to_string(statistics.rows - statistics.not_finite), text::short_number(d.median),
+                 text::short_number(d.p90), text::short_number(d.p99), text::short_number(d.p999),
+                 text::short_number(d.max), text::short_number(d.rms),
+                 has_bias ? text::short_number(statistics.bias) : ""});
 }
 
 void add_all(TextTable& table, const std::string& source, const check::Statistics& s) {
@@ -186,7 +183,7 @@ void print_distribution(const check::Report& report) {
   }
   table.print(std::cout);
   if (report.overall.leaks > 0) {
-    std::cout << "The truth is 0 and the value is not: " << study::counted(report.overall.leaks, "row") << '\n';
+    std::cout << "The truth is 0 and the value is not: " << text::counted(report.overall.leaks, "row") << '\n';
   }
   std::cout << '\n';
 }
@@ -205,7 +202,7 @@ void print_histogram(const check::Report& report) {
     table.add_row({range, std::to_string(count), std::string(length, '#')});
   };
   if (histogram.exact > 0) add("0", histogram.exact);
-  for (const check::HistogramBin& bin : histogram.bins) add("up to " + short_number(bin.high, 1), bin.count);
+  for (const check::HistogramBin& bin : histogram.bins) add("up to " + text::short_number(bin.high, 1), bin.count);
   table.print(std::cout);
   std::cout << '\n';
 }
@@ -220,8 +217,8 @@ void print_worst(const check::Report& report) {
   for (const char* title : {"exact", "found", "error", "relative", "line"}) table.add_column(title, Align::kRight);
   for (std::size_t i = 0; i < report.worst.size(); ++i) {
     const check::RowError& row = report.worst[i];
-    table.add_row({std::to_string(i + 1), row.receiver, row.source, study::shortest(row.truth),
-                   study::shortest(row.value), short_number(row.error), short_number(row.relative),
+    table.add_row({std::to_string(i + 1), row.receiver, row.source, text::shortest(row.truth),
+                   text::shortest(row.value), text::short_number(row.error), text::short_number(row.relative),
                    std::to_string(row.line)});
   }
   table.print(std::cout);
@@ -234,7 +231,7 @@ void print_verdicts(const check::Report& report) {
   for (const char* title : {"measured", "limit"}) table.add_column(title, Align::kRight);
   for (const check::Verdict& verdict : report.verdicts) {
     table.add_row({verdict.passed ? "pass" : "FAIL", verdict.criterion, verdict.source.empty() ? "all" : verdict.source,
-                   short_number(verdict.measured, 6), short_number(verdict.limit, 6)});
+                   text::short_number(verdict.measured, 6), text::short_number(verdict.limit, 6)});
   }
   table.print(std::cout);
 }
@@ -243,9 +240,9 @@ void print_improvements(const check::Report& report) {
   for (const check::Improvement& better : report.improvements) {
     std::cout << "Better than " << better.criterion
               << (better.source.empty() ? "" : ", source " + text::printable(better.source)) << ": "
-              << short_number(better.recorded) << " -> " << short_number(better.now);
+              << text::short_number(better.recorded) << " -> " << text::short_number(better.now);
     if (better.recorded > 0.0 && std::isfinite(better.recorded)) {
-      std::cout << ", " << short_number(100.0 * (1.0 - better.now / better.recorded)) << " % less";
+      std::cout << ", " << text::short_number(100.0 * (1.0 - better.now / better.recorded)) << " % less";
     }
     std::cout << '\n';
   }
@@ -255,7 +252,7 @@ void print_end(const CheckArguments& args, const check::Report& report) {
   const auto failed = static_cast<std::size_t>(std::count_if(
       report.verdicts.begin(), report.verdicts.end(), [](const check::Verdict& verdict) { return !verdict.passed; }));
   if (failed > 0) {
-    std::cout << "Failed: " << failed << " of " << study::counted(report.verdicts.size(), "criterion", "criteria")
+    std::cout << "Failed: " << failed << " of " << text::counted(report.verdicts.size(), "criterion", "criteria")
               << '\n';
   } else {
     std::cout << "Passed\n";
@@ -266,9 +263,9 @@ void print_end(const CheckArguments& args, const check::Report& report) {
 
 void print(const CheckArguments& args, const check::Report& report) {
   std::cout << "truth      " << text::printable(report.truth_file) << " (" << text::printable(report.column) << ", "
-            << study::counted(report.truth_rows, "row") << ")\n"
+            << text::counted(report.truth_rows, "row") << ")\n"
             << "candidate  " << text::printable(report.candidate_file) << " ("
-            << study::counted(report.overall.rows, "row") << " judged)\n\n";
+            << text::counted(report.overall.rows, "row") << " judged)\n\n";
   print_distribution(report);
   print_histogram(report);
   print_worst(report);
@@ -277,40 +274,15 @@ void print(const CheckArguments& args, const check::Report& report) {
   print_end(args, report);
 }
 
-// A temporary folder, not one beside the output: the picture may go to a pipe.
-study::WorkFolder scratch_folder() {
-  try {
-    return study::WorkFolder(std::filesystem::temp_directory_path() / "exactff-plot");
-  } catch (const std::filesystem::filesystem_error& error) {
-    refuse("no temporary folder can be made: " + error.code().message(), "gnuplot draws in one",
-           "set TMPDIR to a folder that can be written to, or leave --plot out");
-  }
-}
-
-study::PlotResult run_plot(const std::string& script) {
-  study::PlotResult result;
+void draw(const check::Report& report, const std::string& file) {
+  check::Plot plot;
   {
-    const InterruptWatch watch;  // a signal waits until the folder is removed
-    const study::WorkFolder scratch = scratch_folder();
-    result = study::run_gnuplot(script, scratch.path(), is_interrupted);
+    const InterruptWatch watch;  // a signal waits until gnuplot's folder is removed
+    plot = check::plot_histogram(report, is_interrupted);
   }
   if (is_interrupted()) ::raise(interrupting_signal());
-  return result;
-}
-
-void draw(const check::Report& report, const std::string& file) {
-  const std::string script = check::histogram_script(report);
-  if (script.empty()) {
-    std::cerr << "note: " << text::printable(file)
-              << " is not drawn: every error is 0, which a logarithmic axis cannot show\n";
-    return;
-  }
-  const study::PlotResult result = run_plot(script);
-  if (result.outcome == study::PlotResult::Outcome::kDrawn) return write_whole_file(file, result.svg);
-  const bool missing = result.outcome == study::PlotResult::Outcome::kNoProgram;
-  std::cerr << "note: " << text::printable(file) << " is not drawn: "
-            << (missing ? "there is no gnuplot; install it" : "gnuplot failed: " + text::printable(result.message))
-            << '\n';
+  if (!plot.svg.empty()) return write_whole_file(file, plot.svg);
+  std::cerr << "note: " << text::printable(file) << " is not drawn: " << text::printable(plot.why_not) << '\n';
 }
 
 void write_files(const CheckArguments& args, const check::Report& report) {

@@ -11,10 +11,10 @@
 #include "cli/command.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
-#include "cli/scene_options.h"
 #include "cli/text_table.h"
 #include "exactff/models.h"
 #include "exactff/version.h"
+#include "flags/scene.h"
 #include "text/escape.h"
 #include "text/json_document.h"
 
@@ -294,31 +294,32 @@ void print_models() {
          "out has the value above.\n";
 }
 
-ordered_json to_json(const methods::SettingSpec& setting) {
+ordered_json to_json(const SettingSpec& setting) {
   return {{"name", setting.name},
-          {"default", methods::to_string(setting.fallback)},
+          {"default", to_string(setting.fallback)},
           {"meaning", setting.meaning},
           {"unit", setting.unit},
-          {"allowed", methods::allowed(setting)}};
+          {"allowed", allowed(setting)}};
 }
 
 void print_models_json() {
   ordered_json json = ordered_json::array();
   for (const models::Model* model : models::all_models()) {
     json.push_back({{"name", model->name}, {"summary", model->summary}, {"settings", ordered_json::array()}});
-    for (const methods::SettingSpec& setting : model->settings) json.back()["settings"].push_back(to_json(setting));
+    for (const SettingSpec& setting : model->settings) json.back()["settings"].push_back(to_json(setting));
   }
   std::cout << text::json_document({{"version", kVersion}, {"models", json}}) << '\n';
 }
 
 struct InfoArguments {
-  SceneArguments scene;
+  flags::SceneArguments scene;
   bool json = false;
 };
 
 void print(const InfoArguments& arguments) {
   if (arguments.scene.path == "@") return arguments.json ? print_models_json() : print_models();
   const Scene scene = arguments.scene.load();
+  print_warnings(scene.warnings());
   (arguments.json ? print_json : print_text)(scene, arguments.scene.path);
 }
 

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "truth/team.h"
+#include "exactff/team.h"
 
 namespace exactff::cli {
 

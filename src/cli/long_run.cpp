@@ -9,17 +9,16 @@
 #include <ctime>
 #include <iostream>
 
-#include "study/file.h"
-#include "study/output_folder.h"
-#include "study/text.h"
 #include "text/escape.h"
+#include "text/phrases.h"
+#include "work/unfinished.h"
 
 namespace exactff::cli {
 
 ProgressBar::ProgressBar() : on_terminal_(::isatty(STDERR_FILENO) == 1) {}
 ProgressBar::~ProgressBar() { clear(); }
 
-void ProgressBar::show(const study::Progress& progress) {
+void ProgressBar::show(const Progress& progress) {
   if (!on_terminal_) return;
   const auto now = Clock::now();
   if (progress.stage != stage_) {
@@ -36,15 +35,15 @@ void ProgressBar::clear() const {
   if (on_terminal_ && drawn_ != Clock::time_point{}) std::cerr << "\r\033[K" << std::flush;
 }
 
-void ProgressBar::draw(const study::Progress& progress, double elapsed) const {
+void ProgressBar::draw(const Progress& progress, double elapsed) const {
   constexpr std::size_t kWidth = 30;
   const std::size_t filled = kWidth * progress.done / std::max<std::size_t>(progress.total, 1);
   std::cerr << "\r\033[K" << text::printable(progress.stage) << " [" << std::string(filled, '#')
             << std::string(kWidth - filled, '.') << "] " << progress.done << '/' << progress.total;
   if (progress.done > done_before_ && elapsed > 0.0) {
     const double pace = static_cast<double>(progress.done - done_before_) / elapsed;
-    std::cerr << ", " << study::duration(static_cast<double>(progress.total - progress.done) / pace) << " left, "
-              << study::rounded(pace) << "/s";
+    std::cerr << ", " << text::duration(static_cast<double>(progress.total - progress.done) / pace) << " left, "
+              << text::rounded(pace) << "/s";
   }
   std::cerr << std::flush;
 }
@@ -53,8 +52,6 @@ namespace {
 
 std::atomic<int> interrupted_by = 0;
 static_assert(std::atomic<int>::is_always_lock_free);  // a signal handler uses it
-
-bool is_writing() { return study::StagedFolder::any() || study::WholeFile::any(); }
 
 // The data for signal handlers: plain, and set before the handlers are installed.
 struct Patience {
@@ -74,14 +71,14 @@ void take_note(int signal) {
   constexpr long kPatience = 400;
   const bool again = interrupted_by.exchange(signal) != 0;
   if (!again && patience.ends) wait_for(kPatience);
-  if (!again || is_writing()) return;
+  if (!again || work::Unfinished::any()) return;
   std::signal(signal, SIG_DFL);
   ::raise(signal);  // takes effect when this handler returns
 }
 
 void lose_patience(int /*signal*/) {
   constexpr long kMoment = 20;
-  if (is_writing()) return wait_for(kMoment);
+  if (work::Unfinished::any()) return wait_for(kMoment);
   const char* words = patience.last_words.data();
   static_cast<void>(!::write(STDERR_FILENO, words, std::strlen(words)));
   ::_exit(128 + interrupted_by);

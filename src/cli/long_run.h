@@ -19,12 +19,12 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  void show(const study::Progress& progress);
+  void show(const Progress& progress);
   void clear() const;
 
  private:
   using Clock = std::chrono::steady_clock;
-  void draw(const study::Progress& progress, double elapsed) const;
+  void draw(const Progress& progress, double elapsed) const;
 
   const bool on_terminal_;
   std::string stage_;

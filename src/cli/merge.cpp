@@ -33,13 +33,13 @@ int run(const MergeArguments& args) {
   const std::string given_up = "exactff: interrupted; nothing was written\n";
   const InterruptWatch watch(given_up);
   ProgressBar bar;
-  const truth::Hooks hooks{.progress = [&](const study::Progress& progress) { bar.show(progress); },
+  const truth::Hooks hooks{.progress = [&](const Progress& progress) { bar.show(progress); },
                            .cancelled = is_interrupted};
   truth::Summary summary;
   try {
     summary = truth::merge({args.shards.begin(), args.shards.end()}, args.file,
                            args.force ? truth::Existing::kReplace : truth::Existing::kRefuse, hooks);
-  } catch (const study::Cancelled&) {
+  } catch (const Cancelled&) {
     bar.clear();
     std::cerr << given_up;
     return 128 + interrupting_signal();

@@ -4,27 +4,30 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <iostream>
 #include <system_error>
 
 #include "cli/long_run.h"
-#include "scene/number_text.h"
-#include "scene/text_file.h"
-#include "study/file.h"
-#include "study/text.h"
+#include "exactff/report.h"
+#include "text/number_text.h"
+#include "text/phrases.h"
+#include "text/text_file.h"
+#include "text/text_lines.h"
+#include "work/file.h"
 
 namespace exactff::cli {
 
 namespace fs = std::filesystem;
 
-std::string percent(double share) { return study::rounded(100.0 * share, 4) + " %"; }
+std::string percent(double share) { return text::rounded(100.0 * share, 4) + " %"; }
 
 std::string pad(const std::string& text, std::size_t width) {
   return text + std::string(text.size() < width ? width - text.size() : 1, ' ');
 }
 
 double parse_finite(const std::string& text, const std::string& flag) {
-  const ParsedNumber number = parse_number(text);
-  if (number.fault == NumberFault::kNone) return number.value;
+  const text::ParsedNumber number = text::parse_number(text);
+  if (number.fault == text::NumberFault::kNone) return number.value;
   throw InputError({.what = flag + ": " + describe(number.fault, text),
                     .why = "coordinates are finite decimal numbers",
                     .suggestion = "give three numbers, such as " + flag + " 0 0.5 -1e-3"});
@@ -60,9 +63,19 @@ void write_through(const fs::path& path, const std::string& text) {
 }
 
 void replace_file(const fs::path& path, const std::string& text) {
-  study::WholeFile file(path, {}, study::WholeFile::WhenBusy::kWait);
+  work::WholeFile file(path, {}, work::WholeFile::WhenBusy::kWait);
   file.append(text);
   file.commit();
+}
+
+// Signals wait for a moment, so that nothing partial is left behind.
+template <class Write>
+void undisturbed(const Write& write) {
+  {
+    const InterruptWatch watch;
+    write();
+  }
+  if (is_interrupted()) ::raise(interrupting_signal());
 }
 
 }  // namespace
@@ -71,11 +84,11 @@ void write_whole_file(const fs::path& path, const std::string& text) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) cannot_write(path, "it is a folder");
   if (fs::is_other(path, ignored)) return write_through(path, text);
-  {
-    const InterruptWatch watch;  // signals wait for a moment, so that no partial file is left behind
-    replace_file(path, text);
-  }
-  if (is_interrupted()) ::raise(interrupting_signal());
+  undisturbed([&] { replace_file(path, text); });
+}
+
+void check_output_folder(const fs::path& folder) {
+  undisturbed([&] { report::check_output_folder(folder); });
 }
 
 void check_output(std::ostream& out) {
@@ -84,6 +97,17 @@ void check_output(std::ostream& out) {
   throw InputError({.what = "the result could not be written to standard output",
                     .why = "what was printed is incomplete",
                     .suggestion = "make room on the disk, or send the output elsewhere"});
+}
+
+void print_warnings(std::span<const Problem> warnings) {
+  constexpr std::size_t kPrinted = 20;
+  for (const Problem& warning : warnings.first(std::min(warnings.size(), kPrinted))) {
+    std::cerr << "warning: " << warning.message() << '\n';
+  }
+  const bool at_least = warnings.size() > text::ProblemList::kKept;
+  if (warnings.size() > kPrinted) {
+    std::cerr << "warning: ... and " << (at_least ? "more than " : "") << warnings.size() - kPrinted << " more\n";
+  }
 }
 
 }  // namespace exactff::cli

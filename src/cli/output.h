@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <span>
 #include <string>
 
 #include "exactff/scene.h"
@@ -23,5 +24,11 @@ void write_whole_file(const std::filesystem::path& path, const std::string& text
 
 // Throws InputError if the printed text could not be written, for example because the disk is full.
 void check_output(std::ostream& out);
+
+// Writes "warning: ..." to stderr for the first 20 warnings, then the number of the others.
+void print_warnings(std::span<const Problem> warnings);
+
+// Throws InputError unless a result can be written to `folder` (exactff/report.h).
+void check_output_folder(const std::filesystem::path& folder);
 
 }  // namespace exactff::cli

@@ -8,26 +8,26 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/engine_option.h"
 #include "cli/exit_code.h"
 #include "cli/output.h"
-#include "cli/scene_options.h"
 #include "exactff/adaptive.h"
 #include "exactff/exact.h"
+#include "exactff/receiver.h"
 #include "exactff/study.h"
 #include "exactff/version.h"
-#include "scene/number_text.h"
-#include "scene/receiver_distance.h"
-#include "study/text.h"
-#include "study/visibility_svg.h"
+#include "exactff/visibility_svg.h"
+#include "flags/engine.h"
+#include "flags/scene.h"
 #include "text/escape.h"
 #include "text/json_document.h"
+#include "text/number_text.h"
+#include "text/phrases.h"
 
 namespace exactff::cli {
 
 namespace {
 
-using study::shortest;
+using text::shortest;
 
 constexpr int kMostDigits = 10000;
 constexpr std::uint64_t kMostLeaves = 10'000'000;  // takes some seconds
@@ -37,7 +37,7 @@ constexpr std::size_t kMostSharesShown = 20;
 using Triple = std::array<std::string, 3>;
 
 struct PointArguments {
-  SceneArguments scene;
+  flags::SceneArguments scene;
   Triple at;
   Triple normal;
   std::string on;
@@ -45,7 +45,7 @@ struct PointArguments {
   std::vector<double> reflectance;
   int digits = 0;
   int precision_cap = ExactOptions{}.precision_cap;
-  EngineArgument engine;
+  flags::EngineArgument engine;
   bool flip = false;
   bool fraction = false;
   bool exact_fraction = false;
@@ -160,13 +160,23 @@ SourceResult compute_source(const PointArguments& args, const Scene& scene, cons
   return result;
 }
 
+void require_one(const std::vector<Selection>& sources, const std::string& picture) {
+  if (sources.size() == 1) return;
+  throw InputError({.file = picture,
+                    .what = "--svg draws one source, but there are " + std::to_string(sources.size()),
+                    .why = {},
+                    .suggestion = "name one with --source NAME"});
+}
+
 PointResult compute(const PointArguments& args, const Scene& scene) {
   PointResult result{
       .receiver = make_receiver(args, scene), .reflectance = {}, .sources = {}, .sum = {}, .radiosity = {}};
   result.reflectance = make_reflectance(args, scene, result.receiver);
   std::optional<AdaptiveSolver> sampler;
   if (args.adaptive) sampler.emplace(scene);
-  for (const Selection& selection : make_sources(args, scene)) {
+  const std::vector<Selection> sources = make_sources(args, scene);
+  if (!args.svg.empty()) require_one(sources, args.svg);
+  for (const Selection& selection : sources) {
     const ExactSource source(scene, selection);
     SourceResult one = compute_source(args, scene, result, source, sampler);
     const Rgb b = scene.source_radiosity(selection);
@@ -388,21 +398,16 @@ void print_json(const PointArguments& args, const Scene& scene, const PointResul
 }
 
 void write_svg(const PointArguments& args, const Scene& scene, const PointResult& point) {
-  if (point.sources.size() != 1) {
-    throw InputError({.file = args.svg,
-                      .what = "--svg draws one source, but there are " + std::to_string(point.sources.size()),
-                      .why = {},
-                      .suggestion = "name one with --source NAME"});
-  }
   const SourceResult& one = point.sources.front();
   const std::span<const Leaf> leaves =
       one.adaptive ? std::span<const Leaf>(one.adaptive->leaf_list) : std::span<const Leaf>();
   const ExactSource source(scene, one.source);
-  write_whole_file(args.svg, study::visibility_svg(scene, point.receiver, source, one.exact, leaves));
+  write_whole_file(args.svg, visibility_svg(scene, point.receiver, source, one.exact, leaves));
 }
 
 Scene load_scene(const PointArguments& args) {
   Scene scene = args.scene.load();
+  print_warnings(scene.warnings());
   if (!args.flip) return scene;
   return scene.with_flipped(make_sources(args, scene));
 }
@@ -437,12 +442,13 @@ std::string is_no_flag(const std::string& text) {
 
 // A NaN passes every range check, since all its comparisons are false.
 std::string is_a_number(const std::string& text) {
-  return parse_number(text).fault == NumberFault::kNone ? "" : "'" + text + "' is not a finite decimal number";
+  return text::parse_number(text).fault == text::NumberFault::kNone ? ""
+                                                                    : "'" + text + "' is not a finite decimal number";
 }
 
 std::string is_a_tolerance(const std::string& text) {
-  const ParsedNumber number = parse_number(text);
-  return number.fault == NumberFault::kNone && number.value >= 0.0
+  const text::ParsedNumber number = text::parse_number(text);
+  return number.fault == text::NumberFault::kNone && number.value >= 0.0
              ? ""
              : "'" + text + "' is not a finite decimal number of at least 0";
 }

@@ -9,10 +9,9 @@
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/text_table.h"
-#include "stress/tables.h"
-#include "stress/words.h"
-#include "study/text.h"
+#include "exactff/report.h"
 #include "text/escape.h"
+#include "text/phrases.h"
 
 namespace exactff::cli {
 namespace {
@@ -57,8 +56,8 @@ void print_family(const stress::FamilyResult& result) {
   for (stress::Method method : stress::kMethods) table.add_column(std::string(short_name_of(method)), Align::kRight);
   for (const stress::Row& row : result.rows) {
     const stress::Answer& exact = row.of(stress::Method::kExact);
-    std::vector<std::string> cells = {stress::stiffness_text(row.stiffness), study::rounded(exact.value, 6),
-                                      std::to_string(row.precision_bits), study::duration(exact.seconds)};
+    std::vector<std::string> cells = {stress::stiffness_text(row.stiffness), text::rounded(exact.value, 6),
+                                      std::to_string(row.precision_bits), text::duration(exact.seconds)};
     for (stress::Method method : stress::kMethods) cells.push_back(stress::error_text(row.of(method)));
     if (!row.agrees) cells.back() += "  DISAGREES with the truth";
     table.add_row(std::move(cells));
@@ -96,18 +95,18 @@ int run(const StressArguments& args) {
     check_output(std::cout);
     return 0;
   }
-  if (!args.folder.empty()) study::check_output_folder(args.folder);
+  if (!args.folder.empty()) check_output_folder(args.folder);
   const std::string given_up = "exactff: interrupted; nothing was written\n";
   const InterruptWatch watch(given_up);
   ProgressBar bar;
-  const study::Hooks hooks{[&](const study::Progress& progress) { bar.show(progress); }, is_interrupted};
+  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
   stress::Report report;
   std::vector<std::string> messages;
   try {
     report =
         stress::run({args.families, args.threads, args.folder.empty() ? std::string() : command_line(args)}, hooks);
     if (!args.folder.empty()) messages = stress::write(report, args.folder, hooks);
-  } catch (const study::Cancelled&) {
+  } catch (const Cancelled&) {
     bar.clear();
     std::cerr << given_up;
     return 128 + interrupting_signal();

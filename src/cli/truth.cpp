@@ -9,19 +9,18 @@
 #include <string>
 
 #include "cli/command.h"
-#include "cli/engine_option.h"
 #include "cli/exit_code.h"
 #include "cli/launch.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
-#include "cli/receiver_options.h"
-#include "cli/scene_options.h"
-#include "cli/source_options.h"
 #include "cli/truth_summary.h"
-#include "scene/text_lines.h"
-#include "study/text.h"
+#include "flags/engine.h"
+#include "flags/receivers.h"
+#include "flags/scene.h"
+#include "flags/sources.h"
 #include "text/escape.h"
-#include "truth/journal.h"
+#include "text/phrases.h"
+#include "text/text_lines.h"
 
 namespace exactff::cli {
 namespace {
@@ -43,16 +42,16 @@ constexpr const char* kTruthFooter =
     "  exactff truth data/scenes/cornell_box.obj --on floor --grid 200x200 -o truth.csv";
 
 struct TruthArguments {
-  SceneArguments scene;
-  ReceiverArguments receivers;
-  SourceArguments sources;
+  flags::SceneArguments scene;
+  flags::ReceiverArguments receivers;
+  flags::SourceArguments sources;
   bool unoccluded = false;
   bool fraction = false;
   std::string shard;
   bool resume = false;
   bool force = false;
   double slow_seconds = 1.0;
-  EngineArgument engine;
+  flags::EngineArgument engine;
   int threads = 0;
   std::string file;
 
@@ -70,7 +69,7 @@ truth::Shard shard_of(const std::string& text) {
     const auto count = std::from_chars(number.ptr + 1, end, shard.count);
     if (count.ec == std::errc{} && count.ptr == end && shard.number >= 1 && shard.number <= shard.count) return shard;
   }
-  throw InputError({.what = "--shard: " + in_quotes(text) + " is no shard",
+  throw InputError({.what = "--shard: " + text::in_quotes(text) + " is no shard",
                     .why = "it is one of several, counted from 1",
                     .suggestion = "write number/count: --shard 1/4 to --shard 4/4"});
 }
@@ -83,15 +82,16 @@ struct Job {
 
 std::unique_ptr<Job> job_of(const TruthArguments& args, const truth::Team* team) {
   const truth::Shard shard = shard_of(args.shard);
-  check_receiver_options(args.receivers);
+  flags::check_receiver_options(args.receivers);
   auto job = std::make_unique<Job>(Job{args.scene.load(), {}});
+  print_warnings(job->scene.warnings());
   truth::Request& request = job->request;
-  ChosenReceivers receivers = receivers_of(args.receivers, job->scene);
+  flags::ChosenReceivers receivers = flags::receivers_of(args.receivers, job->scene);
   request.scene = &job->scene;
   request.scene_name = std::filesystem::path(args.scene.path).filename().string();
   request.receivers = std::move(receivers.receivers);
   request.receivers_name = std::move(receivers.description);
-  request.sources = sources_of(args.sources, job->scene);
+  request.sources = flags::sources_of(args.sources, job->scene);
   request.unoccluded = args.unoccluded;
   request.visible_fraction = args.fraction;
   request.engine = args.engine.engine();
@@ -104,7 +104,7 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const truth::Team* team)
 class Narrator {
  public:
   [[nodiscard]] truth::Hooks hooks(double slow_seconds) {
-    return {.progress = [this](const study::Progress& progress) { show(progress); },
+    return {.progress = [this](const Progress& progress) { show(progress); },
             .cancelled = is_interrupted,
             .note = [this](const std::string& text) { tell("warning: " + text::printable(text)); },
             .slow_row = [this](const std::string& row, double seconds) { tell_slow(row, seconds); },
@@ -120,13 +120,13 @@ class Narrator {
     if (rows_.done == 0) {
       std::cerr << "no row was finished, nothing is left behind\n";
     } else {
-      std::cerr << rows_.done << " of " << study::counted(rows_.total, "row") << " are kept in "
+      std::cerr << rows_.done << " of " << text::counted(rows_.total, "row") << " are kept in "
                 << text::printable(truth::journal_of(file).string()) << "; the same command with --resume goes on\n";
     }
   }
 
  private:
-  void show(const study::Progress& progress) {
+  void show(const Progress& progress) {
     if (progress.stage == "rows") rows_ = progress;
     bar_.show(progress);
   }
@@ -137,12 +137,12 @@ class Narrator {
   void tell_slow(const std::string& row, double seconds) {
     constexpr int kMostTold = 50;
     if (++slow_ > kMostTold) return;
-    tell("slow: " + text::printable(row) + " took " + study::duration(seconds));
+    tell("slow: " + text::printable(row) + " took " + text::duration(seconds));
     if (slow_ == kMostTold) tell("slow: further rows are only counted");
   }
 
   ProgressBar bar_;
-  study::Progress rows_;
+  Progress rows_;
   int slow_ = 0;
 };
 
@@ -154,7 +154,7 @@ int write(const TruthArguments& args, truth::Team* team) {
   try {
     summary =
         truth::write(std::move(job->request), args.file, args.existing(), narrator.hooks(args.slow_seconds), team);
-  } catch (const study::Cancelled&) {
+  } catch (const Cancelled&) {
     narrator.tell_what_is_kept("interrupted", args.file);
     return 128 + (interrupting_signal() != 0 ? interrupting_signal() : SIGTERM);  // another rank was interrupted
   } catch (...) {
@@ -204,8 +204,8 @@ Command add_truth(CLI::App& app) {
   auto args = std::make_shared<TruthArguments>();
   CLI::App* command = app.add_subcommand("truth", "A file of certified values to hold other programs against");
   args->scene.add_to(*command);
-  add_receiver_options(*command, args->receivers);
-  add_source_options(*command, args->sources);
+  flags::add_receiver_options(*command, args->receivers);
+  flags::add_source_options(*command, args->sources);
   command->add_flag("--unoccluded", args->unoccluded, "A column more: the value without any occluder");
   command->add_flag("--fraction", args->fraction, "A column more: the visible fraction of the source");
   command

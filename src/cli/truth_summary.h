@@ -7,15 +7,15 @@
 #include "cli/exit_code.h"
 #include "cli/output.h"
 #include "exactff/truth.h"
-#include "study/text.h"
 #include "text/escape.h"
+#include "text/phrases.h"
 
 namespace exactff::cli {
 
 // Prints the summary. Returns the exit code: 3 if a row is not certified.
 inline int print_summary(const truth::Summary& summary, const std::string& file) {
   const std::uint64_t uncertified = summary.with(Status::kNotCertified);
-  std::cout << study::counted(summary.rows, "row") << ':';
+  std::cout << text::counted(summary.rows, "row") << ':';
   const char* separator = " ";
   for (const Status status : {Status::kCertified, Status::kZero, Status::kUnderflow, Status::kNotCertified}) {
     if (summary.with(status) == 0) continue;
@@ -25,10 +25,10 @@ inline int print_summary(const truth::Summary& summary, const std::string& file)
   std::cout << '\n';
   const std::uint64_t computed = summary.rows - summary.resumed;
   if (summary.seconds > 0.0 && computed > 0) {
-    std::cout << "computed " << (summary.resumed > 0 ? study::counted(computed, "row") + " of them" : "them") << " in "
-              << study::duration(summary.seconds) << ", "
-              << study::rounded(static_cast<double>(computed) / summary.seconds) << " per second";
-    if (summary.slow > 0) std::cout << "; " << study::counted(summary.slow, "slow row");
+    std::cout << "computed " << (summary.resumed > 0 ? text::counted(computed, "row") + " of them" : "them") << " in "
+              << text::duration(summary.seconds) << ", "
+              << text::rounded(static_cast<double>(computed) / summary.seconds) << " per second";
+    if (summary.slow > 0) std::cout << "; " << text::counted(summary.slow, "slow row");
     std::cout << '\n';
   } else if (summary.resumed > 0) {
     std::cout << "all were there already\n";
@@ -36,7 +36,7 @@ inline int print_summary(const truth::Summary& summary, const std::string& file)
   std::cout << "Truth file: " << text::printable(file) << '\n';
   check_output(std::cout);
   if (uncertified == 0) return 0;
-  std::cerr << "exactff: " << study::counted(uncertified, "row")
+  std::cerr << "exactff: " << text::counted(uncertified, "row")
             << " met the cap on precision and could not be certified (their bounds are valid, their values estimates); "
                "look for the status 'not certified'\n";
   return kNotCertified;

@@ -5,9 +5,7 @@ find_package(Threads REQUIRED)
 find_package(CGAL 5.5 REQUIRED)
 find_package(embree 3.13 REQUIRED)
 find_package(nlohmann_json REQUIRED)
-if(EXACTFF_PROGRAM)
-  find_package(CLI11 REQUIRED)
-endif()
+find_package(CLI11 REQUIRED)
 include(ImportLibrary)
 
 # The Booleans allocate and free millions of small numbers, and jemalloc is faster at that (src/README.md has the

@@ -4,16 +4,16 @@
 #include <cmath>
 
 #include "exactff/models.h"
-#include "study/parallel.h"
 #include "study/statistics.h"
-#include "study/text.h"
+#include "text/phrases.h"
+#include "work/parallel.h"
 
 namespace exactff::experiments {
 
 namespace {
 
-using study::counted;
-using study::rounded;
+using text::counted;
+using text::rounded;
 
 constexpr std::string_view kClosureStage = "closure";
 
@@ -50,11 +50,11 @@ Truth truth_at(const Scene& scene, const Receiver& receiver, std::span<const Exa
 }
 
 std::vector<Truth> truths_at(const Scene& scene, std::span<const Receiver> receivers,
-                             std::span<const Selection> patches, int threads, const study::Hooks& hooks) {
+                             std::span<const Selection> patches, int threads, const Hooks& hooks) {
   const std::vector<ExactSource> sources = exact_sources(scene, patches);
   std::vector<Truth> truths(receivers.size());
-  study::parallel_for(receivers.size(), threads, kClosureStage, hooks,
-                      [&](std::size_t i) { truths[i] = truth_at(scene, receivers[i], sources); });
+  work::parallel_for(receivers.size(), threads, kClosureStage, hooks,
+                     [&](std::size_t i) { truths[i] = truth_at(scene, receivers[i], sources); });
   return truths;
 }
 
@@ -78,7 +78,7 @@ ClosureErrors errors_of(const std::string& choice, const Scene& scene, std::span
 std::string exact_sentence(const ClosureStudy& study) {
   return "In a closed room of " + counted(study.patches, "patch", "patches") +
          " the exact form factors must sum to 1: they do at " +
-         study::counted_of(study.hold_one, study.receivers, "receiver") +
+         text::counted_of(study.hold_one, study.receivers, "receiver") +
          ", where the sum of the proved balls holds 1 and is at most " + rounded(study.widest, 2) + " wide.";
 }
 
@@ -106,7 +106,7 @@ TextTable table_of(const ClosureStudy& study, const ClosureSize& size) {
 
 }  // namespace
 
-ClosureStudy closure_study(const ClosureSize& size, int threads, const study::Hooks& hooks) {
+ClosureStudy closure_study(const ClosureSize& size, int threads, const Hooks& hooks) {
   const Scene scene = models::make_scene(size.room);
   const std::vector<Selection> patches = all_patches(scene);
   const std::vector<Receiver> receivers = receivers_in(scene, size.receivers);
@@ -117,13 +117,13 @@ ClosureStudy closure_study(const ClosureSize& size, int threads, const study::Ho
     study.widest = std::max(study.widest, truth.sum.upper() - truth.sum.lower());
   }
   study.methods.resize(size.choices.size());
-  study::parallel_for(size.choices.size(), threads, kClosureStage, hooks, [&](std::size_t i) {
+  work::parallel_for(size.choices.size(), threads, kClosureStage, hooks, [&](std::size_t i) {
     study.methods[i] = errors_of(size.choices[i], scene, receivers, patches, truths);
   });
   return study;
 }
 
-Result closure(const ClosureSize& size, int threads, const study::Hooks& hooks) {
+Result closure(const ClosureSize& size, int threads, const Hooks& hooks) {
   const ClosureStudy study = closure_study(size, threads, hooks);
   return {.name = "closure",
           .title = "Closure: all patches of a closed room",
@@ -131,7 +131,7 @@ Result closure(const ClosureSize& size, int threads, const study::Hooks& hooks) 
           .values = {table_of(study, size)}};
 }
 
-Result closure(const Effort& effort, const study::Hooks& hooks) {
+Result closure(const Effort& effort, const Hooks& hooks) {
   ClosureSize size;
   if (effort.abridged) size.receivers = 12;
   return closure(size, effort.threads, hooks);

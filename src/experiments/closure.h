@@ -29,9 +29,9 @@ struct ClosureStudy {
   double widest = 0.0;       // width of the widest summed ball
   std::vector<ClosureErrors> methods = {};
 };
-[[nodiscard]] ClosureStudy closure_study(const ClosureSize& size, int threads, const study::Hooks& hooks);
+[[nodiscard]] ClosureStudy closure_study(const ClosureSize& size, int threads, const Hooks& hooks);
 
-[[nodiscard]] Result closure(const ClosureSize& size, int threads, const study::Hooks& hooks);
-[[nodiscard]] Result closure(const Effort& effort, const study::Hooks& hooks);
+[[nodiscard]] Result closure(const ClosureSize& size, int threads, const Hooks& hooks);
+[[nodiscard]] Result closure(const Effort& effort, const Hooks& hooks);
 
 }  // namespace exactff::experiments

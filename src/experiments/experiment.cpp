@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 
-#include "scene/nearest_names.h"
-#include "study/text.h"
+#include "text/nearest_names.h"
+#include "text/phrases.h"
 
 namespace exactff::experiments {
 
-#define EXACTFF_EXPERIMENT(function, name, summary) Result function(const Effort&, const study::Hooks&);
+#define EXACTFF_EXPERIMENT(function, name, summary) Result function(const Effort&, const Hooks&);
 #include "experiments/list.h"
 #undef EXACTFF_EXPERIMENT
 
@@ -30,12 +30,12 @@ const Experiment& experiment_named(std::string_view name) {
   std::vector<std::string_view> names;
   for (const Experiment& e : kExperiments) names.push_back(e.name);
   std::vector<std::string> near;
-  for (const std::string_view n : nearest_names(names, name, 3)) near.emplace_back(n);
+  for (const std::string_view n : text::nearest_names(names, name, 3)) near.emplace_back(n);
   throw InputError(Problem{{},
                            0,
                            "there is no experiment '" + std::string(name) + "'",
                            "nothing can be run",
-                           "the closest are " + study::enumerate(near)});
+                           "the closest are " + text::enumerate(near)});
 }
 
 }  // namespace exactff::experiments

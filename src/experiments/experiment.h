@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "exactff/study.h"
-#include "study/report.h"
+#include "page/chapter.h"
 
 namespace exactff::experiments {
 
@@ -21,13 +21,13 @@ struct Effort {
   int threads = 1;        // for values; times are always measured with one thread
 };
 
-using study::TextTable;
-using Result = study::Chapter;
+using page::TextTable;
+using Result = page::Chapter;
 
 struct Experiment {
   std::string_view name;     // letters, digits and hyphens
   std::string_view summary;  // one line
-  Result (*run)(const Effort&, const study::Hooks&) = nullptr;
+  Result (*run)(const Effort&, const Hooks&) = nullptr;
 };
 
 // In the order of the report.

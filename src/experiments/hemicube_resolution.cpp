@@ -4,17 +4,17 @@
 #include <cmath>
 
 #include "models/random.h"
-#include "study/parallel.h"
 #include "study/statistics.h"
-#include "study/text.h"
+#include "text/phrases.h"
+#include "work/parallel.h"
 
 namespace exactff::experiments {
 
 namespace {
 
-using study::Axes;
-using study::rounded;
-using study::Series;
+using page::Axes;
+using page::Series;
+using text::rounded;
 
 // The values where rotation and distance do not vary.
 constexpr double kUsualResolution = 100;
@@ -23,7 +23,7 @@ constexpr double kUsualDistance = 2;  // from the light
 constexpr std::string_view kResolutionStage = "hemicube-resolution";
 
 std::string choice_text(double resolution, double rotation) {
-  return "hemicube:resolution=" + study::shortest(resolution) + ",rotation=" + study::shortest(rotation);
+  return "hemicube:resolution=" + text::shortest(resolution) + ",rotation=" + text::shortest(rotation);
 }
 
 // --------------------------------------------------------------------------------------------------- Karkanis' scenes
@@ -117,7 +117,7 @@ std::string rotation_sentence(const ResolutionCurves& c) {
          " pixels, turning the hemicube about the normal changes the square light's relative RMS error by a factor "
          "of " +
          rounded(*std::ranges::max_element(light) / *std::ranges::min_element(light), 2) + ": " +
-         study::enumerate(peaks) + ", where its edges run along the rows or the diagonals of the pixels, against " +
+         text::enumerate(peaks) + ", where its edges run along the rows or the diagonals of the pixels, against " +
          percent(study::median(light)) +
          " in the median over all angles. For triangles with edges in every direction "
          "it makes no difference beyond chance (" +
@@ -153,7 +153,7 @@ Series theory(const ErrorCurve& curve, double power, std::string title) {
   return {std::move(title), {{x, y}, {last, y * std::pow(last / x, power)}}, 0};
 }
 
-std::vector<study::Figure> figures(const ResolutionCurves& c) {
+std::vector<page::Figure> figures(const ResolutionCurves& c) {
   const Axes by_resolution{.x = "resolution n, pixels along a side",
                            .y = "RMS error",
                            .extra = {"set xtics (32,64,128,256,512,1024)", "set format x '%g'"}};
@@ -167,18 +167,18 @@ std::vector<study::Figure> figures(const ResolutionCurves& c) {
   return {{"hemicube-resolution.resolution", "Hemicube: error against resolution",
            "Triangles: error in F. Light: relative error of a square of side 1 at distance " + rounded(kUsualDistance) +
                ", its edges along the rows of pixels or turned by " + rounded(kTurned) + "°.",
-           study::line_plot(by_resolution, {line("Karkanis’ triangles", c.triangles_by_resolution, 1),
-                                            line("light, along rows", c.aligned_by_resolution, 2),
-                                            line("light, turned", c.turned_by_resolution, 3),
-                                            theory(c.aligned_by_resolution, -1.0, "slope −1"),
-                                            theory(c.triangles_by_resolution, -1.5, "slope −3/2")})},
+           page::line_plot(by_resolution, {line("Karkanis’ triangles", c.triangles_by_resolution, 1),
+                                           line("light, along rows", c.aligned_by_resolution, 2),
+                                           line("light, turned", c.turned_by_resolution, 3),
+                                           theory(c.aligned_by_resolution, -1.0, "slope −1"),
+                                           theory(c.triangles_by_resolution, -1.5, "slope −3/2")})},
           {"hemicube-resolution.rotation", "Hemicube: error against rotation",
            "With " + pixels + ". Triangles: error in F; light: relative error.",
-           study::line_plot(by_rotation, {line("Karkanis’ triangles", c.triangles_by_rotation, 1),
-                                          line("square light", c.light_by_rotation, 2)})},
+           page::line_plot(by_rotation, {line("Karkanis’ triangles", c.triangles_by_rotation, 1),
+                                         line("square light", c.light_by_rotation, 2)})},
           {"hemicube-resolution.distance", "Hemicube: error against distance",
            "With " + pixels + ". Beyond the line at 1 the light is now and then missed, or counted many times over.",
-           study::line_plot(
+           page::line_plot(
                by_distance,
                {line("light, along rows", c.aligned_by_distance, 2),
                 line("light, turned", c.turned_by_distance, 3),
@@ -238,15 +238,15 @@ SlopeFit ErrorCurve::slope(double last) const {
 }
 
 std::vector<ErrorCurve> error_curves(std::size_t groups, std::span<const CurvePlan> plans, int threads,
-                                     const study::Hooks& hooks) {
+                                     const Hooks& hooks) {
   std::vector<Task> tasks;
   for (const CurvePlan& plan : plans) {
     for (const double at : plan.at) {
       for (std::size_t group = 0; group < groups; ++group) tasks.push_back({&plan, at, group, {}});
     }
   }
-  study::parallel_for(tasks.size(), threads, kResolutionStage, hooks,
-                      [&](std::size_t i) { tasks[i].found = tasks[i].plan->errors(tasks[i].group, tasks[i].at); });
+  work::parallel_for(tasks.size(), threads, kResolutionStage, hooks,
+                     [&](std::size_t i) { tasks[i].found = tasks[i].plan->errors(tasks[i].group, tasks[i].at); });
   std::vector<ErrorCurve> curves;
   auto task = tasks.begin();
   for (const CurvePlan& plan : plans) {
@@ -258,7 +258,7 @@ std::vector<ErrorCurve> error_curves(std::size_t groups, std::span<const CurvePl
   return curves;
 }
 
-ResolutionCurves resolution_curves(const ResolutionSize& size, int threads, const study::Hooks& hooks) {
+ResolutionCurves resolution_curves(const ResolutionSize& size, int threads, const Hooks& hooks) {
   std::vector<Subject> subjects;
   for (std::size_t group = 0; group < size.groups; ++group) subjects.push_back(make_subject(group, size.triangles));
   const auto triangles = [&](const auto& choice_at) {
@@ -285,7 +285,7 @@ ResolutionCurves resolution_curves(const ResolutionSize& size, int threads, cons
   return {c[0], c[1], c[2], c[3], c[4], c[5], c[6]};
 }
 
-Result hemicube_resolution(const ResolutionSize& size, int threads, const study::Hooks& hooks) {
+Result hemicube_resolution(const ResolutionSize& size, int threads, const Hooks& hooks) {
   const ResolutionCurves curves = resolution_curves(size, threads, hooks);
   return {.name = "hemicube-resolution",
           .title = "The hemicube against resolution, rotation and distance",
@@ -294,7 +294,7 @@ Result hemicube_resolution(const ResolutionSize& size, int threads, const study:
           .values = {curve_table(curves, size)}};
 }
 
-Result hemicube_resolution(const Effort& effort, const study::Hooks& hooks) {
+Result hemicube_resolution(const Effort& effort, const Hooks& hooks) {
   ResolutionSize size;
   if (effort.abridged) {
     size.resolutions = {32, 64, 128, 256, 512};

@@ -38,7 +38,7 @@ struct CurvePlan {
   ErrorsAt errors;
 };
 [[nodiscard]] std::vector<ErrorCurve> error_curves(std::size_t groups, std::span<const CurvePlan> plans, int threads,
-                                                   const study::Hooks& hooks);
+                                                   const Hooks& hooks);
 
 // All curves. Errors of the triangles are in F; those of the light are relative to the exact value.
 struct ResolutionCurves {
@@ -46,9 +46,9 @@ struct ResolutionCurves {
   ErrorCurve triangles_by_rotation, light_by_rotation;
   ErrorCurve aligned_by_distance, turned_by_distance;
 };
-[[nodiscard]] ResolutionCurves resolution_curves(const ResolutionSize& size, int threads, const study::Hooks& hooks);
+[[nodiscard]] ResolutionCurves resolution_curves(const ResolutionSize& size, int threads, const Hooks& hooks);
 
-[[nodiscard]] Result hemicube_resolution(const ResolutionSize& size, int threads, const study::Hooks& hooks);
-[[nodiscard]] Result hemicube_resolution(const Effort& effort, const study::Hooks& hooks);
+[[nodiscard]] Result hemicube_resolution(const ResolutionSize& size, int threads, const Hooks& hooks);
+[[nodiscard]] Result hemicube_resolution(const Effort& effort, const Hooks& hooks);
 
 }  // namespace exactff::experiments

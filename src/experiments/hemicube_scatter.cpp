@@ -6,18 +6,18 @@
 #include <map>
 #include <numbers>
 
-#include "study/parallel.h"
 #include "study/statistics.h"
-#include "study/text.h"
+#include "text/phrases.h"
+#include "work/parallel.h"
 
 namespace exactff::experiments {
 
 namespace {
 
-using study::Axes;
-using study::counted;
-using study::rounded;
-using study::Series;
+using page::Axes;
+using page::Series;
+using text::counted;
+using text::rounded;
 
 std::string choice_text(int resolution) { return "hemicube:resolution=" + std::to_string(resolution); }
 std::string pixels_text(int resolution) { return std::to_string(resolution) + " × " + std::to_string(resolution); }
@@ -84,7 +84,7 @@ std::string missed_sentence(std::span<const ScatterPoint> points, const ScatterS
     const Counts counts = count(points, r);
     text += (r == 0 ? "With " : " With ") + pixels_text(size.resolutions[r]) + " pixels it misses " +
             std::to_string(counts.missed) + " of the visible triangles altogether (" +
-            study::share(counts.missed, counts.visible) + ")";
+            text::share(counts.missed, counts.visible) + ")";
     if (counts.missed > 0) {
       text += ", the largest of them with F = " + rounded(counts.largest_missed, 2) + " (its largest pixel has " +
               rounded(largest_pixel(size.resolutions[r]), 2) + ")";
@@ -113,7 +113,7 @@ std::string trend_sentence(std::span<const ScatterPoint> points, const ScatterSi
   if (powers.empty()) return {};
   return "Karkanis' trend is confirmed: the error falls as the form factor grows. Among triangles larger than a pixel "
          "the normalised error goes like F to the power " +
-         study::enumerate(powers) + " (95 % confidence over " +
+         text::enumerate(powers) + " (95 % confidence over " +
          counted(static_cast<std::uint64_t>(size.scenes), "scene") +
          "). Theory gives −3/4 where errors of a pixel's area add up at random along an outline of length √F. It is a "
          "little flatter where outlines of the larger triangles are longer than that, since others cut them, and where "
@@ -122,7 +122,7 @@ std::string trend_sentence(std::span<const ScatterPoint> points, const ScatterSi
 
 // ------------------------------------------------------------------------------------------------------------ figures
 
-study::Figure value_figure(std::span<const ScatterPoint> points, int resolution) {
+page::Figure value_figure(std::span<const ScatterPoint> points, int resolution) {
   Series seen{"seen by the hemicube", {}, 1}, missed{"missed (drawn at the bottom)", {}, 2};
   double low = 1.0, high = 0.0;
   for (const ScatterPoint& p : points) {
@@ -141,14 +141,14 @@ study::Figure value_figure(std::span<const ScatterPoint> points, int resolution)
   return {"hemicube-scatter.value", "Hemicube against exact, triangle by triangle",
           "Karkanis' first plot, with " + pixels_text(resolution) +
               " pixels. Crosses at the bottom: visible triangles of which the hemicube sees nothing.",
-          study::scatter_plot(Axes{.x = "exact form factor",
-                                   .y = "form factor by the hemicube",
-                                   .extra = {"set yrange [" + study::shortest(bottom / 1.5) + ":*]"}},
-                              {diagonal, seen, missed})};
+          page::scatter_plot(Axes{.x = "exact form factor",
+                                  .y = "form factor by the hemicube",
+                                  .extra = {"set yrange [" + text::shortest(bottom / 1.5) + ":*]"}},
+                             {diagonal, seen, missed})};
 }
 
-study::Figure error_figure(std::span<const ScatterPoint> points, const ScatterSize& size) {
-  Series seen{"a triangle", {}, 1}, missed{"missed: error 1", {}, 2}, medians{"median by decade", {}, study::kOverlay};
+page::Figure error_figure(std::span<const ScatterPoint> points, const ScatterSize& size) {
+  Series seen{"a triangle", {}, 1}, missed{"missed: error 1", {}, 2}, medians{"median by decade", {}, page::kOverlay};
   for (const ScatterPoint& p : points) {
     if (p.exact > 0.0) (p.hemicube.front() > 0.0 ? seen : missed).points.emplace_back(p.exact, error_of(p, 0));
   }
@@ -159,8 +159,8 @@ study::Figure error_figure(std::span<const ScatterPoint> points, const ScatterSi
   const Series theory{"slope −3/4", {{pixel, 1.0}, {1000.0 * pixel, std::pow(1000.0, -0.75)}}, 0};
   return {"hemicube-scatter.error", "Normalised error of the hemicube against the exact value",
           "Karkanis' second plot. The grey line starts at the largest pixel; left of it a triangle is hit or missed.",
-          study::scatter_plot(Axes{.x = "exact form factor", .y = "|hemicube − exact| / exact"},
-                              {theory, seen, missed, medians})};
+          page::scatter_plot(Axes{.x = "exact form factor", .y = "|hemicube − exact| / exact"},
+                             {theory, seen, missed, medians})};
 }
 
 // ------------------------------------------------------------------------------------------------------------- tables
@@ -192,10 +192,10 @@ TextTable decade_table(std::span<const ScatterPoint> points, const ScatterSize& 
 
 }  // namespace
 
-std::vector<ScatterPoint> scatter_points(const ScatterSize& size, int threads, const study::Hooks& hooks) {
+std::vector<ScatterPoint> scatter_points(const ScatterSize& size, int threads, const Hooks& hooks) {
   std::vector<std::vector<ScatterPoint>> by_scene(static_cast<std::size_t>(size.scenes));
-  study::parallel_for(by_scene.size(), threads, "hemicube-scatter", hooks,
-                      [&](std::size_t i) { by_scene[i] = points_of_scene(static_cast<int>(i) + 1, size); });
+  work::parallel_for(by_scene.size(), threads, "hemicube-scatter", hooks,
+                     [&](std::size_t i) { by_scene[i] = points_of_scene(static_cast<int>(i) + 1, size); });
   std::vector<ScatterPoint> all;
   for (std::vector<ScatterPoint>& points : by_scene) std::ranges::move(points, std::back_inserter(all));
   return all;
@@ -237,7 +237,7 @@ std::vector<double> scatter_slopes(std::span<const ScatterPoint> points, const S
   return slopes;
 }
 
-Result hemicube_scatter(const ScatterSize& size, int threads, const study::Hooks& hooks) {
+Result hemicube_scatter(const ScatterSize& size, int threads, const Hooks& hooks) {
   const std::vector<ScatterPoint> points = scatter_points(size, threads, hooks);
   Result result{.name = "hemicube-scatter", .title = "Karkanis' two plots: hemicube against exact"};
   result.paragraphs = {scene_sentence(points, size), missed_sentence(points, size),
@@ -248,7 +248,7 @@ Result hemicube_scatter(const ScatterSize& size, int threads, const study::Hooks
   return result;
 }
 
-Result hemicube_scatter(const Effort& effort, const study::Hooks& hooks) {
+Result hemicube_scatter(const Effort& effort, const Hooks& hooks) {
   ScatterSize size;
   if (effort.abridged) size.scenes = 4;
   return hemicube_scatter(size, effort.threads, hooks);

@@ -31,7 +31,7 @@ struct ScatterDecade {
 };
 
 // Every triangle of every scene, including hidden ones.
-[[nodiscard]] std::vector<ScatterPoint> scatter_points(const ScatterSize& size, int threads, const study::Hooks& hooks);
+[[nodiscard]] std::vector<ScatterPoint> scatter_points(const ScatterSize& size, int threads, const Hooks& hooks);
 
 // Results for one resolution (an index into the list), over the visible triangles. Decades without a triangle are left
 // out.
@@ -45,7 +45,7 @@ struct ScatterDecade {
 [[nodiscard]] std::vector<double> scatter_slopes(std::span<const ScatterPoint> points, const ScatterSize& size,
                                                  std::size_t resolution);
 
-[[nodiscard]] Result hemicube_scatter(const ScatterSize& size, int threads, const study::Hooks& hooks);
-[[nodiscard]] Result hemicube_scatter(const Effort& effort, const study::Hooks& hooks);
+[[nodiscard]] Result hemicube_scatter(const ScatterSize& size, int threads, const Hooks& hooks);
+[[nodiscard]] Result hemicube_scatter(const Effort& effort, const Hooks& hooks);
 
 }  // namespace exactff::experiments

@@ -4,18 +4,19 @@
 #include <array>
 #include <cmath>
 
-#include "study/page_files.h"
-#include "study/text.h"
+#include "page/figure.h"
+#include "text/phrases.h"
+#include "work/parallel.h"
 
 namespace exactff::experiments {
 
 namespace {
 
-using study::Axes;
-using study::counted;
-using study::duration;
-using study::rounded;
-using study::Series;
+using page::Axes;
+using page::Series;
+using text::counted;
+using text::duration;
+using text::rounded;
 
 struct HisTime {
   int triangles;
@@ -28,18 +29,18 @@ constexpr std::string_view kKarkanisStage = "karkanis-times";
 // ------------------------------------------------------------------------------------------------------- measurements
 
 std::vector<FormFactor> all_patches(const KarkanisScene& scene, const std::vector<ExactSource>& sources,
-                                    ShaftCulling culling, const study::Hooks& hooks) {
+                                    ShaftCulling culling, const Hooks& hooks) {
   std::vector<FormFactor> results;
   results.reserve(sources.size());
   for (const ExactSource& source : sources) {
-    if (results.size() % 64 == 0) study::require_not_cancelled(hooks);
+    if (results.size() % 64 == 0) work::require_not_cancelled(hooks);
     results.push_back(exact_form_factor(scene.scene, scene.receiver, source, {.culling = culling}));
   }
   return results;
 }
 
 double exact_seconds(const KarkanisScene& scene, const std::vector<ExactSource>& sources, ShaftCulling culling,
-                     const study::Hooks& hooks) {
+                     const Hooks& hooks) {
   return seconds_of([&] { (void)all_patches(scene, sources, culling, hooks); });
 }
 
@@ -75,7 +76,7 @@ bool affordable_without_shaft(const std::vector<TimeRow>& rows, int triangles, d
   return rows.empty() || predicted(rows, triangles) <= budget;
 }
 
-TimeRow time_row(const TimesSize& size, int triangles, const std::vector<TimeRow>& before, const study::Hooks& hooks) {
+TimeRow time_row(const TimesSize& size, int triangles, const std::vector<TimeRow>& before, const Hooks& hooks) {
   const KarkanisScene scene = karkanis_scene(triangles, 1);
   const std::vector<ExactSource> sources = exact_sources(scene.scene, scene.triangles);
   TimeRow row{.triangles = triangles};
@@ -95,7 +96,7 @@ struct Affordable {
   double error = 0.0;  // RMS over the patches, divided by the RMS form factor
 };
 
-std::vector<Affordable> affordable_rays(const TimesSize& size, const study::Hooks& hooks) {
+std::vector<Affordable> affordable_rays(const TimesSize& size, const Hooks& hooks) {
   const KarkanisScene scene = karkanis_scene(size.affordable_at, 1);
   std::vector<double> exact;
   for (const FormFactor& f :
@@ -104,7 +105,7 @@ std::vector<Affordable> affordable_rays(const TimesSize& size, const study::Hook
   }
   std::vector<Affordable> rows;
   for (const int rays : size.affordable) {
-    study::require_not_cancelled(hooks);
+    work::require_not_cancelled(hooks);
     Bench bench(methods::parse(rays_choice(rays)), scene.scene, scene.triangles);
     std::vector<double> errors;
     for (const methods::Estimate& e : bench.look_from(scene.receiver)) {
@@ -185,7 +186,7 @@ std::string others_sentence(const std::vector<TimeRow>& rows, const TimesSize& s
   const TimeRow& row = rows.back();
   return "At " + std::to_string(row.triangles) + " triangles a hemicube of 100 × 100 pixels takes " +
          duration(row.hemicube) + " for all of them at once, " + rounded(row.with_shaft / row.hemicube, 2) +
-         " times less than exact; " + study::rounded(size.rays) + " rays to each take " + duration(row.rays) + ", " +
+         " times less than exact; " + text::rounded(size.rays) + " rays to each take " + duration(row.rays) + ", " +
          rounded(row.rays / row.with_shaft, 2) + " times as much as exact.";
 }
 
@@ -223,7 +224,7 @@ std::string affordable_sentence(const std::vector<Affordable>& rows, double exac
 
 // ------------------------------------------------------------------------------------------------------------ figures
 
-study::Figure figure(const std::vector<TimeRow>& rows, int rays) {
+page::Figure figure(const std::vector<TimeRow>& rows, int rays) {
   Series with{"exact", {}, 1}, without{"exact, no shaft", {}, 3}, his{"Karkanis 1999", {}, 2};
   Series hemicube{"hemicube 100", {}, 4}, sampled{rounded(rays) + " rays each", {}, 5};
   for (const HisTime& time : kHis) his.points.emplace_back(time.triangles, time.seconds);
@@ -235,7 +236,7 @@ study::Figure figure(const std::vector<TimeRow>& rows, int rays) {
   }
   return {"karkanis-times.time", "Time for all patches from one point",
           "Certified values, one thread. Karkanis' times are of a 300 MHz Pentium II.",
-          study::line_plot(
+          page::line_plot(
               Axes{.x = "triangles, each a source",
                    .y = "time for all of them, s",
                    .extra = {"set xtics (50,100,200,500,1000,2000,5000,10000) rotate by -40", "set format x '%g'"}},
@@ -284,13 +285,13 @@ TextTable work_table(const std::vector<WorkRow>& rows) {
   return table.finish("karkanis-times-work.csv", "work and values behind the times");
 }
 
-std::vector<study::LeftOut> left_out(const std::vector<TimeRow>& rows, const TimesSize& size) {
+std::vector<LeftOut> left_out(const std::vector<TimeRow>& rows, const TimesSize& size) {
   std::vector<std::string> missing;
   for (const TimeRow& row : rows) {
     if (!row.without_shaft) missing.push_back(std::to_string(row.triangles));
   }
   if (missing.empty()) return {};
-  return {{"exact times without the shaft at " + study::enumerate(missing) + " triangles",
+  return {{"exact times without the shaft at " + text::enumerate(missing) + " triangles",
            "judging by the smaller scenes they would take longer than the budget of " + duration(size.budget)}};
 }
 
@@ -320,11 +321,11 @@ WorkRow work_row(int triangles, bool compare) {
   return row;
 }
 
-Result karkanis_times(const TimesSize& size, const study::Hooks& hooks) {
+Result karkanis_times(const TimesSize& size, const Hooks& hooks) {
   std::vector<TimeRow> times;
   std::vector<WorkRow> work;
   for (const int triangles : size.triangles) {
-    study::require_not_cancelled(hooks);
+    work::require_not_cancelled(hooks);
     work.push_back(work_row(triangles, triangles <= size.same_bits_up_to));
     times.push_back(time_row(size, triangles, times, hooks));
     if (hooks.progress) hooks.progress({kKarkanisStage, times.size(), size.triangles.size()});
@@ -342,7 +343,7 @@ Result karkanis_times(const TimesSize& size, const study::Hooks& hooks) {
   return result;
 }
 
-Result karkanis_times(const Effort& effort, const study::Hooks& hooks) {
+Result karkanis_times(const Effort& effort, const Hooks& hooks) {
   TimesSize size;
   if (effort.abridged) {
     size.triangles = {50, 100, 200, 500};

@@ -46,7 +46,7 @@ struct TimeRow {
 // ln(t1 / t0) / ln(n1 / n0)
 [[nodiscard]] double local_exponent(int n0, double t0, int n1, double t1);
 
-[[nodiscard]] Result karkanis_times(const TimesSize& size, const study::Hooks& hooks);
-[[nodiscard]] Result karkanis_times(const Effort& effort, const study::Hooks& hooks);
+[[nodiscard]] Result karkanis_times(const TimesSize& size, const Hooks& hooks);
+[[nodiscard]] Result karkanis_times(const Effort& effort, const Hooks& hooks);
 
 }  // namespace exactff::experiments

@@ -3,21 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/vec.h"
 #include "models/random.h"
-#include "study/parallel.h"
 #include "study/statistics.h"
-#include "study/text.h"
-#include "study/vec.h"
+#include "text/phrases.h"
+#include "work/parallel.h"
 
 namespace exactff::experiments {
 
 namespace {
 
+using kernel::dot;
 using models::Random;
-using study::Axes;
-using study::dot;
-using study::rounded;
-using study::Series;
+using page::Axes;
+using page::Series;
+using text::rounded;
 
 constexpr std::string_view kNettleRuleStage = "nettle-rule";
 
@@ -29,7 +29,7 @@ Vec3 scaled(const Vec3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 Vec3 random_direction(Random& random) {
   while (true) {
     const Vec3 v{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
-    const double squared = dot(v, v);
+    const double squared = kernel::dot(v, v);
     if (squared < 0.01 || squared > 1.0) continue;
     return scaled(v, 1.0 / std::sqrt(squared));
   }
@@ -39,7 +39,7 @@ Vec3 random_direction(Random& random) {
 Vec3 random_towards(Random& random, const Vec3& other, double least) {
   while (true) {
     const Vec3 v = random_direction(random);
-    if (dot(v, other) >= least) return v;
+    if (kernel::dot(v, other) >= least) return v;
   }
 }
 
@@ -248,8 +248,8 @@ std::string literal_sentence(const std::vector<NettleLiteral>& rows) {
 
 std::string cosine_sentence(const TurnedAway& t) {
   return "His cosines, \"always positive\", also connect patches that are turned away: of " + std::to_string(t.pairs) +
-         " pairs turned at random " + study::share(t.zero, t.pairs) + " exchange nothing, and in " +
-         study::share(t.literal_positive, t.zero) + " of those the literal text has energy flow.";
+         " pairs turned at random " + text::share(t.zero, t.pairs) + " exchange nothing, and in " +
+         text::share(t.literal_positive, t.zero) + " of those the literal text has energy flow.";
 }
 
 // ------------------------------------------------------------------------------------------------------------ figures
@@ -271,7 +271,7 @@ Series theory(const NettleCurve& curve, double power, std::string title) {
   return {std::move(title), {{x, 0.5 * y}, {0.5, 0.5 * y * std::pow(0.5 / x, power)}}, 0};
 }
 
-std::vector<study::Figure> figures(const std::vector<NettleCurve>& curves, const NettleSize& size) {
+std::vector<page::Figure> figures(const std::vector<NettleCurve>& curves, const NettleSize& size) {
   std::vector<Series> free, occluded;
   int style = 0;
   for (const int m : size.splits) {
@@ -281,13 +281,13 @@ std::vector<study::Figure> figures(const std::vector<NettleCurve>& curves, const
   }
   free.push_back(theory(curve_at(curves, NettleCase::kFree, 1), 2.0, "slope 2"));
   const NettleCurve& exact_v = curve_at(curves, NettleCase::kExactV, 1);
-  occluded.push_back(series_of(exact_v, "1 × 1, exact V", study::kOverlay));
+  occluded.push_back(series_of(exact_v, "1 × 1, exact V", page::kOverlay));
   occluded.push_back(theory(exact_v, 1.0, "slope 1"));
   return {{"nettle-rule.free", "Nettle's rule without occlusion",
-           "Factor from centre to centre for each of m × m parts of a square patch.", study::line_plot(axes(), free)},
+           "Factor from centre to centre for each of m × m parts of a square patch.", page::line_plot(axes(), free)},
           {"nettle-rule.occluded", "Nettle's rule with an occluder across the patch",
            std::to_string(size.rays) + " jittered rays for each of m × m parts, or the exact visible fraction.",
-           study::line_plot(axes(), occluded)}};
+           page::line_plot(axes(), occluded)}};
 }
 
 // ------------------------------------------------------------------------------------------------------------- tables
@@ -337,7 +337,7 @@ double median_literal_ratio(const NettleSize& size, double side, const std::stri
     const Receiver receiver = receiver_of(c, scale);
     const double literal =
         nettle(scene, receiver,
-               "rays=1,variant=literal,area_ratio=" + area_ratio + ",receiver_area=" + study::shortest(own_area));
+               "rays=1,variant=literal,area_ratio=" + area_ratio + ",receiver_area=" + text::shortest(own_area));
     ratios.push_back(literal / exact(scene, receiver, false).value);
   }
   return study::median(std::move(ratios));
@@ -362,9 +362,9 @@ SlopeFit NettleCurve::slope() const {
   return mean_slope(slopes);
 }
 
-std::vector<NettleCurve> nettle_curves(const NettleSize& size, int threads, const study::Hooks& hooks) {
+std::vector<NettleCurve> nettle_curves(const NettleSize& size, int threads, const Hooks& hooks) {
   std::vector<GroupErrors> found(size.sides.size() * size.groups);
-  study::parallel_for(found.size(), threads, kNettleRuleStage, hooks, [&](std::size_t i) {
+  work::parallel_for(found.size(), threads, kNettleRuleStage, hooks, [&](std::size_t i) {
     found[i] = group_errors(size, i % size.groups, size.sides[i / size.groups]);
   });
   std::vector<NettleCurve> curves;
@@ -372,9 +372,9 @@ std::vector<NettleCurve> nettle_curves(const NettleSize& size, int threads, cons
   return curves;
 }
 
-std::vector<NettleLiteral> nettle_literal(const NettleSize& size, int threads, const study::Hooks& hooks) {
+std::vector<NettleLiteral> nettle_literal(const NettleSize& size, int threads, const Hooks& hooks) {
   std::vector<NettleLiteral> rows(size.sides.size());
-  study::parallel_for(rows.size(), threads, kNettleRuleStage, hooks, [&](std::size_t i) {
+  work::parallel_for(rows.size(), threads, kNettleRuleStage, hooks, [&](std::size_t i) {
     const double side = size.sides[i];
     rows[i] = {side, median_literal_ratio(size, side, "sender-over-receiver"),
                median_literal_ratio(size, side, "receiver-over-sender"),
@@ -399,7 +399,7 @@ TurnedAway nettle_turned_away(const NettleSize& size) {
   return count;
 }
 
-Result nettle_rule(const NettleSize& size, int threads, const study::Hooks& hooks) {
+Result nettle_rule(const NettleSize& size, int threads, const Hooks& hooks) {
   const std::vector<NettleCurve> curves = nettle_curves(size, threads, hooks);
   const std::vector<NettleLiteral> literal = nettle_literal(size, threads, hooks);
   Result result{.name = "nettle-rule", .title = "Nettle's rule: how small is relatively small?"};
@@ -411,7 +411,7 @@ Result nettle_rule(const NettleSize& size, int threads, const study::Hooks& hook
   return result;
 }
 
-Result nettle_rule(const Effort& effort, const study::Hooks& hooks) {
+Result nettle_rule(const Effort& effort, const Hooks& hooks) {
   NettleSize size;
   if (effort.abridged) {
     size.sides = geometric(1.0 / 64.0, 2.0, 8);

@@ -38,7 +38,7 @@ struct NettleCurve {
   // The slope of the log-log line through the sides up to an eighth of the distance.
   [[nodiscard]] SlopeFit slope() const;
 };
-[[nodiscard]] std::vector<NettleCurve> nettle_curves(const NettleSize& size, int threads, const study::Hooks& hooks);
+[[nodiscard]] std::vector<NettleCurve> nettle_curves(const NettleSize& size, int threads, const Hooks& hooks);
 
 // What his text says literally, for unoccluded patches that are as large as the receiver's.
 struct NettleLiteral {
@@ -47,7 +47,7 @@ struct NettleLiteral {
   double receiver_over_sender = 0.0;
   double in_tenths = 0.0;  // sender over receiver again, with all lengths in units of a tenth
 };
-[[nodiscard]] std::vector<NettleLiteral> nettle_literal(const NettleSize& size, int threads, const study::Hooks& hooks);
+[[nodiscard]] std::vector<NettleLiteral> nettle_literal(const NettleSize& size, int threads, const Hooks& hooks);
 
 // Of the pairs with random orientations: those with F = 0, and among them those for which the literal text gives more.
 struct TurnedAway {
@@ -57,7 +57,7 @@ struct TurnedAway {
 };
 [[nodiscard]] TurnedAway nettle_turned_away(const NettleSize& size);
 
-[[nodiscard]] Result nettle_rule(const NettleSize& size, int threads, const study::Hooks& hooks);
-[[nodiscard]] Result nettle_rule(const Effort& effort, const study::Hooks& hooks);
+[[nodiscard]] Result nettle_rule(const NettleSize& size, int threads, const Hooks& hooks);
+[[nodiscard]] Result nettle_rule(const Effort& effort, const Hooks& hooks);
 
 }  // namespace exactff::experiments

@@ -4,20 +4,20 @@
 #include <cmath>
 
 #include "exactff/models.h"
-#include "study/page_files.h"
-#include "study/parallel.h"
+#include "page/figure.h"
 #include "study/statistics.h"
-#include "study/text.h"
+#include "text/phrases.h"
+#include "work/parallel.h"
 
 namespace exactff::experiments {
 
 namespace {
 
-using study::Axes;
-using study::counted;
-using study::duration;
-using study::rounded;
-using study::Series;
+using page::Axes;
+using page::Series;
+using text::counted;
+using text::duration;
+using text::rounded;
 
 constexpr std::string_view kSmallEmittersStage = "small-emitters";
 
@@ -47,15 +47,15 @@ double radiosity(const Hall& hall, const Receiver& receiver, std::span<const met
 
 // Indexed by choice, then receiver. Each thread takes blocks of receivers.
 std::vector<std::vector<double>> radiosities(const Hall& hall, std::span<const std::string> choices, int threads,
-                                             const study::Hooks& hooks) {
+                                             const Hooks& hooks) {
   constexpr std::size_t kBlocks = 8;
   const std::size_t count = hall.receivers.size();
   std::vector<std::vector<double>> all(choices.size(), std::vector<double>(count));
-  study::parallel_for(kBlocks * choices.size(), threads, kSmallEmittersStage, hooks, [&](std::size_t task) {
+  work::parallel_for(kBlocks * choices.size(), threads, kSmallEmittersStage, hooks, [&](std::size_t task) {
     const std::size_t choice = task / kBlocks, block = task % kBlocks;
     Bench bench(methods::parse(choices[choice]), hall.scene, hall.lamps);
     for (std::size_t i = block * count / kBlocks; i < (block + 1) * count / kBlocks; ++i) {
-      study::require_not_cancelled(hooks);
+      work::require_not_cancelled(hooks);
       all[choice][i] = radiosity(hall, hall.receivers[i], bench.look_from(hall.receivers[i]));
     }
   });
@@ -154,7 +154,7 @@ std::string ray_verdict(const std::vector<Timed>& methods, double exact_seconds)
 
 // ------------------------------------------------------------------------------------------------------------- figure
 
-study::Figure figure(const std::vector<Timed>& methods, double exact_seconds) {
+page::Figure figure(const std::vector<Timed>& methods, double exact_seconds) {
   std::vector<Series> series;
   int style = 1;
   double low = 1.0, high = 0.0;
@@ -173,7 +173,7 @@ study::Figure figure(const std::vector<Timed>& methods, double exact_seconds) {
   return {"small-emitters.time", "Many small bright lamps: error against time",
           "RMS radiosity error over the mean radiosity, against the time per receiver for all lamps, one thread. Exact "
           "is the upright line.",
-          study::line_plot(Axes{.x = "time per receiver, s", .y = "relative RMS error in radiosity"}, series)};
+          page::line_plot(Axes{.x = "time per receiver, s", .y = "relative RMS error in radiosity"}, series)};
 }
 
 // ------------------------------------------------------------------------------------------------------------- tables
@@ -190,7 +190,7 @@ TextTable value_table(const EmitterStudy& study, const Hall& hall) {
 }
 
 TextTable error_table(const EmitterStudy& study) {
-  Table table("radiosity errors over the mean exact radiosity of " + study::shortest(study.mean),
+  Table table("radiosity errors over the mean exact radiosity of " + text::shortest(study.mean),
               {"method", "rms", "worst"});
   for (const EmitterErrors& m : study.methods) table.row() << m.choice << m.rms << m.worst;
   return table.finish("small-emitters-errors.csv", "radiosity errors under many small lamps");
@@ -210,7 +210,7 @@ EmitterErrors errors_of(const EmitterStudy& study, const std::string& choice, st
   return {choice, statistics.rms, statistics.worst, std::move(radiosity)};
 }
 
-EmitterStudy study_of(const Hall& hall, const EmittersSize& size, int threads, const study::Hooks& hooks) {
+EmitterStudy study_of(const Hall& hall, const EmittersSize& size, int threads, const Hooks& hooks) {
   std::vector<std::string> choices = size.choices;
   choices.insert(choices.begin(), "exact");
   std::vector<std::vector<double>> values = radiosities(hall, choices, threads, hooks);
@@ -224,17 +224,17 @@ EmitterStudy study_of(const Hall& hall, const EmittersSize& size, int threads, c
 
 }  // namespace
 
-EmitterStudy emitter_study(const EmittersSize& size, int threads, const study::Hooks& hooks) {
+EmitterStudy emitter_study(const EmittersSize& size, int threads, const Hooks& hooks) {
   return study_of(make_hall(size), size, threads, hooks);
 }
 
-Result small_emitters(const EmittersSize& size, int threads, const study::Hooks& hooks) {
+Result small_emitters(const EmittersSize& size, int threads, const Hooks& hooks) {
   const Hall hall = make_hall(size);
   const EmitterStudy study = study_of(hall, size, threads, hooks);
   const double exact_seconds = seconds_per_receiver(hall, "exact", size.timed);
   std::vector<Timed> timed;
   for (const EmitterErrors& m : study.methods) {
-    study::require_not_cancelled(hooks);
+    work::require_not_cancelled(hooks);
     timed.push_back({&m, seconds_per_receiver(hall, m.choice, size.timed)});
     if (hooks.progress) hooks.progress({"small-emitters, times", timed.size(), study.methods.size()});
   }
@@ -247,7 +247,7 @@ Result small_emitters(const EmittersSize& size, int threads, const study::Hooks&
           .times = {time_table(timed, exact_seconds)}};
 }
 
-Result small_emitters(const Effort& effort, const study::Hooks& hooks) {
+Result small_emitters(const Effort& effort, const Hooks& hooks) {
   EmittersSize size;
   if (!effort.abridged) return small_emitters(size, effort.threads, hooks);
   size.lamps = 64;

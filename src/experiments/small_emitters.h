@@ -48,9 +48,9 @@ struct EmitterStudy {
   double mean = 0.0;
   std::vector<EmitterErrors> methods;
 };
-[[nodiscard]] EmitterStudy emitter_study(const EmittersSize& size, int threads, const study::Hooks& hooks);
+[[nodiscard]] EmitterStudy emitter_study(const EmittersSize& size, int threads, const Hooks& hooks);
 
-[[nodiscard]] Result small_emitters(const EmittersSize& size, int threads, const study::Hooks& hooks);
-[[nodiscard]] Result small_emitters(const Effort& effort, const study::Hooks& hooks);
+[[nodiscard]] Result small_emitters(const EmittersSize& size, int threads, const Hooks& hooks);
+[[nodiscard]] Result small_emitters(const Effort& effort, const Hooks& hooks);
 
 }  // namespace exactff::experiments

@@ -8,7 +8,7 @@
 
 #include "exactff/models.h"
 #include "study/statistics.h"
-#include "study/text.h"
+#include "text/phrases.h"
 
 namespace exactff::experiments {
 
@@ -104,7 +104,7 @@ std::optional<double> reaches(const Points& points, double y) {
   return std::nullopt;
 }
 
-std::string percent(double share) { return study::rounded(100.0 * share, 2) + " %"; }
+std::string percent(double share) { return text::rounded(100.0 * share, 2) + " %"; }
 
 Table::Table(std::string_view about, std::initializer_list<std::string_view> columns) {
   out_.imbue(std::locale::classic());
@@ -114,7 +114,7 @@ Table::Table(std::string_view about, std::initializer_list<std::string_view> col
     out_ << "# " << rest.substr(0, end) << '\n';
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
-  study::CsvRow names(out_);
+  text::CsvRow names(out_);
   for (const std::string_view name : columns) names << name;
 }
 

@@ -12,8 +12,8 @@
 #include "exactff/exact.h"
 #include "exactff/methods.h"
 #include "experiments/experiment.h"
-#include "study/csv_row.h"
-#include "study/plot_script.h"
+#include "page/plot_script.h"
+#include "text/csv_row.h"
 
 namespace exactff::experiments {
 
@@ -71,7 +71,7 @@ class Bench {
 
 // ------------------------------------------------------------------------------------------------------------ slopes
 
-using study::Points;
+using page::Points;
 
 struct SlopeFit {
   double slope = 0.0;
@@ -98,7 +98,7 @@ struct SlopeFit {
 class Table {
  public:
   Table(std::string_view about, std::initializer_list<std::string_view> columns);
-  [[nodiscard]] study::CsvRow row() { return study::CsvRow(out_); }
+  [[nodiscard]] text::CsvRow row() { return text::CsvRow(out_); }
   [[nodiscard]] TextTable finish(std::string file, std::string holds) const;
 
  private:

@@ -59,6 +59,12 @@ class ExactVisibility : public sampled::PatchVisibility {
   }
 
   [[nodiscard]] std::uint64_t asked() const { return asked_; }
+  // Decisions that needed rational numbers.
+  [[nodiscard]] std::uint64_t undecided() const {
+    std::uint64_t sum = 0;
+    for (const auto& share : shares_) sum += share ? share->undecided() : 0;
+    return sum;
+  }
 
  private:
   void turn_to_piece() {
@@ -104,6 +110,7 @@ class Control : public Evaluator {
     Estimate result{found.form_factor, {}};
     count_leaves(found, result.counters);
     result.counters.add("exact V", visibility.asked());
+    result.counters.add("rational decisions", visibility.undecided());
     return result;
   }
 

@@ -3,8 +3,8 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "methods/choice_text.h"
 #include "methods/method_files.h"
+#include "text/choice_text.h"
 
 namespace exactff::methods {
 
@@ -79,7 +79,7 @@ const Method& method_named(std::string_view name) {
   if (const Method* found = Registry::get().find_named(name)) return *found;
   std::vector<std::string_view> names;
   for (const Method* method : all_methods()) names.emplace_back(method->name);
-  throw unknown_name("method", name, names);
+  throw text::unknown_name("method", name, names);
 }
 
 const Method& add_method(Method method) { return Registry::get().add(std::move(method)); }
@@ -98,10 +98,10 @@ std::string Choice::short_text() const { return text_of(method, settings.short_t
 
 Choice parse(std::string_view text) {
   const kernel::StandardArithmetic arithmetic;
-  const auto [name, assignments] = take_apart(text);
+  const auto [name, assignments] = text::take_apart(text);
   const Method& method = method_named(name);
   Choice choice{&method, method.defaults()};
-  read_assignments(assignments, "method '" + method.name + "'", choice.settings);
+  text::read_assignments(assignments, "method '" + method.name + "'", choice.settings);
   if (method.check) method.check(choice.settings);
   return choice;
 }
@@ -109,7 +109,7 @@ Choice parse(std::string_view text) {
 std::string description(const Method& method) {
   std::string text = method.name + ": " + method.summary + "\n";
   if (!method.source.empty()) text += "  " + method.source + "\n";
-  return text + setting_lines(method.settings);
+  return text + text::setting_lines(method.settings);
 }
 
 }  // namespace exactff::methods

@@ -56,7 +56,7 @@ void add_boxes(PlainScene& scene, Random& random, int count) {
   }
 }
 
-PlainScene make_closed_room(const methods::Settings& settings) {
+PlainScene make_closed_room(const Settings& settings) {
   PlainScene scene;
   scene.materials = {{"floor", {0.4, 0.3, 0.2}, {}}, {"wall", {0.75, 0.75, 0.7}, {}}, {"lamp", {0, 0, 0}, {10, 10, 9}},
                      {"metal", {0.5, 0.5, 0.5}, {}}, {"wood", {0.5, 0.35, 0.2}, {}},  {"board", {0.6, 0.6, 0.55}, {}}};
@@ -81,14 +81,13 @@ PlainScene make_closed_room(const methods::Settings& settings) {
 }  // namespace
 
 Model closed_room_model() {
-  return {
-      .name = "closed-room",
-      .summary =
-          "a room of 6 x 4 x 3 m without a gap, with a lamp, a table and boxes; all patches seen from a "
-          "point in it make up 1 (floor, ceiling, wall_*, lamp, table_*, box1 ...)",
-      .settings = {methods::word_setting("lamp", {"flush", "hanging"}, "in the ceiling, or a box half a metre below"),
-                   methods::whole_setting("boxes", 6, 0, 1000, "boxes along the walls"), methods::seed_setting()},
-      .make = &make_closed_room};
+  return {.name = "closed-room",
+          .summary =
+              "a room of 6 x 4 x 3 m without a gap, with a lamp, a table and boxes; all patches seen from a "
+              "point in it make up 1 (floor, ceiling, wall_*, lamp, table_*, box1 ...)",
+          .settings = {word_setting("lamp", {"flush", "hanging"}, "in the ceiling, or a box half a metre below"),
+                       whole_setting("boxes", 6, 0, 1000, "boxes along the walls"), seed_setting()},
+          .make = &make_closed_room};
 }
 
 }  // namespace exactff::models

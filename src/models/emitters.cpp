@@ -52,7 +52,7 @@ void add_hiding_boxes(PlainScene& scene, Random& random, int count) {
 // The radiosity of a lamp at which all lamps together give the floor about 1.
 double radiosity(int count, double size) { return kHall.x * kHall.z / (count * size * size); }
 
-PlainScene make_emitters(const methods::Settings& settings) {
+PlainScene make_emitters(const Settings& settings) {
   const int count = static_cast<int>(settings.whole("n"));
   const double size = settings.number("size");
   const double bright = radiosity(count, size);
@@ -79,15 +79,14 @@ PlainScene make_emitters(const methods::Settings& settings) {
 }  // namespace
 
 Model emitters_model() {
-  return {
-      .name = "emitters",
-      .summary =
-          "a hall of 10 x 10 x 3 m with n small bright lamps, each a source of its own, and boxes between "
-          "them and the floor (floor, ceiling, wall_*, box1 ..., lamp1 ...)",
-      .settings = {methods::whole_setting("n", 64, 1, 2500, "lamps"),
-                   methods::number_setting("size", 0.03, 1e-6, 0.1, "side of a lamp; all together shine the same", "m"),
-                   methods::whole_setting("boxes", 12, 0, 1000, "boxes on the floor"), methods::seed_setting()},
-      .make = &make_emitters};
+  return {.name = "emitters",
+          .summary =
+              "a hall of 10 x 10 x 3 m with n small bright lamps, each a source of its own, and boxes between "
+              "them and the floor (floor, ceiling, wall_*, box1 ..., lamp1 ...)",
+          .settings = {whole_setting("n", 64, 1, 2500, "lamps"),
+                       number_setting("size", 0.03, 1e-6, 0.1, "side of a lamp; all together shine the same", "m"),
+                       whole_setting("boxes", 12, 0, 1000, "boxes on the floor"), seed_setting()},
+          .make = &make_emitters};
 }
 
 }  // namespace exactff::models

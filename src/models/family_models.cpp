@@ -7,9 +7,6 @@ namespace exactff::models {
 
 namespace {
 
-using methods::Settings;
-using methods::SettingSpec;
-
 constexpr int kMostFaces = 10'000'000;
 constexpr int kMostTilesASide = 3000;
 
@@ -56,15 +53,15 @@ PlainScene make_karkanis(const Settings& settings) {
 PlainScene make_room(const Settings& settings) { return room(options_of(settings)); }
 
 SettingSpec cover_setting() {
-  return methods::number_setting("cover", 1.0, 1e-6, 1e6, "area of all shadows together over the source's");
+  return number_setting("cover", 1.0, 1e-6, 1e6, "area of all shadows together over the source's");
 }
 
 SettingSpec floor_setting() {
-  return methods::number_setting("floor", 1.0, 0.0, 100.0, "side of the patch `floor` about the receiver; 0: none");
+  return number_setting("floor", 1.0, 0.0, 100.0, "side of the patch `floor` about the receiver; 0: none");
 }
 
 SettingSpec count_setting(int fallback, int most, std::string meaning) {
-  return methods::whole_setting("n", fallback, 1, most, std::move(meaning));
+  return whole_setting("n", fallback, 1, most, std::move(meaning));
 }
 
 }  // namespace
@@ -74,8 +71,7 @@ Model karkanis_model() {
           .summary =
               "n random triangles of one normal, which face the receiver at the origin, before the square "
               "source (occ, source, floor)",
-          .settings = {count_setting(50, kMostFaces, "triangles"), cover_setting(), floor_setting(),
-                       methods::seed_setting()},
+          .settings = {count_setting(50, kMostFaces, "triangles"), cover_setting(), floor_setting(), seed_setting()},
           .make = &make_karkanis};
 }
 
@@ -84,8 +80,7 @@ Model soup_model() {
           .summary =
               "n random triangles of any orientation between the origin and the square source (occ, source, "
               "floor)",
-          .settings = {count_setting(50, kMostFaces, "triangles"), cover_setting(), floor_setting(),
-                       methods::seed_setting()},
+          .settings = {count_setting(50, kMostFaces, "triangles"), cover_setting(), floor_setting(), seed_setting()},
           .make = &make_family<&soup>};
 }
 
@@ -100,8 +95,7 @@ Model tiles_model() {
   return {.name = "tiles",
           .summary = "n x n abutting squares that hide the square source from the origin (occ, source, floor)",
           .settings = {count_setting(16, kMostTilesASide, "tiles along a side; powers of two have exact corners"),
-                       methods::whole_setting("drop", 0, 0, kMostFaces, "leave out every so many-th; 0: none"),
-                       floor_setting()},
+                       whole_setting("drop", 0, 0, kMostFaces, "leave out every so many-th; 0: none"), floor_setting()},
           .make = &make_family<&tiles>};
 }
 
@@ -115,11 +109,10 @@ Model mesh_model() {
 }
 
 Model lattice_model() {
-  return {
-      .name = "lattice",
-      .summary = "n faces that touch, overlap and coincide, with corners on multiples of 1/64 (occ, source, floor)",
-      .settings = {count_setting(50, kMostFaces, "faces"), cover_setting(), floor_setting(), methods::seed_setting()},
-      .make = &make_family<&lattice>};
+  return {.name = "lattice",
+          .summary = "n faces that touch, overlap and coincide, with corners on multiples of 1/64 (occ, source, floor)",
+          .settings = {count_setting(50, kMostFaces, "faces"), cover_setting(), floor_setting(), seed_setting()},
+          .make = &make_family<&lattice>};
 }
 
 Model room_model() {

@@ -100,7 +100,7 @@ double leaf_radius(int n, double cover) {
   return std::min(kLongestLeaf, std::sqrt(area / (3 * std::sqrt(0.1875))));
 }
 
-PlainScene make_forest(const methods::Settings& settings) {
+PlainScene make_forest(const Settings& settings) {
   constexpr double h = kSide / 2;
   const int n = static_cast<int>(settings.whole("n"));
   Random random(static_cast<std::uint64_t>(settings.whole("seed")));
@@ -127,17 +127,17 @@ PlainScene make_forest(const methods::Settings& settings) {
 }  // namespace
 
 Model forest_model() {
-  return {.name = "forest",
-          .summary =
-              "n triangles as the leaves of trees, between the ground and the sky, 40 x 40 m (ground, trunks, "
-              "leaves, sky)",
-          .settings = {methods::whole_setting("n", 10'000, 1, kMostLeaves, "leaves"),
-                       methods::whole_setting("trees", 25, 1, 10'000, "trees"),
-                       methods::number_setting("cover", 2.0, 1e-3, 100.0,
-                                               "area of all leaves over the ground's, unless they would be longer "
-                                               "than a metre or so"),
-                       methods::seed_setting()},
-          .make = &make_forest};
+  return {
+      .name = "forest",
+      .summary =
+          "n triangles as the leaves of trees, between the ground and the sky, 40 x 40 m (ground, trunks, "
+          "leaves, sky)",
+      .settings = {whole_setting("n", 10'000, 1, kMostLeaves, "leaves"), whole_setting("trees", 25, 1, 10'000, "trees"),
+                   number_setting("cover", 2.0, 1e-3, 100.0,
+                                  "area of all leaves over the ground's, unless they would be longer "
+                                  "than a metre or so"),
+                   seed_setting()},
+      .make = &make_forest};
 }
 
 }  // namespace exactff::models

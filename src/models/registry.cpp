@@ -1,8 +1,8 @@
 #include <algorithm>
 
 #include "kernel/float_environment.h"
-#include "methods/choice_text.h"
 #include "models/model_files.h"
+#include "text/choice_text.h"
 
 namespace exactff::models {
 
@@ -22,22 +22,22 @@ const Model& model_named(std::string_view name) {
   if (found != list().end()) return *found;
   std::vector<std::string_view> names;
   for (const Model& model : list()) names.emplace_back(model.name);
-  throw methods::unknown_name("model", name, names);
+  throw text::unknown_name("model", name, names);
 }
 
 struct Choice {
   const Model& model;
-  methods::Settings settings;
+  Settings settings;
 
   // Includes all settings, so that the text stays valid when a default changes.
   [[nodiscard]] std::string text() const { return model.name + ":" + settings.text(); }
 };
 
 Choice parse(std::string_view text) {
-  const auto [name, assignments] = methods::take_apart(text);
+  const auto [name, assignments] = text::take_apart(text);
   const Model& model = model_named(name);
-  Choice choice{model, methods::Settings(model.settings)};
-  methods::read_assignments(assignments, "model '" + model.name + "'", choice.settings);
+  Choice choice{model, Settings(model.settings)};
+  text::read_assignments(assignments, "model '" + model.name + "'", choice.settings);
   return choice;
 }
 
@@ -72,7 +72,7 @@ std::string make_obj(std::string_view text, const std::string& mtl) {
 std::string make_mtl(std::string_view text) { return to_mtl(make_plain(text)); }
 
 std::string description(const Model& model) {
-  return model.name + ": " + model.summary + "\n" + methods::setting_lines(model.settings);
+  return model.name + ": " + model.summary + "\n" + text::setting_lines(model.settings);
 }
 
 }  // namespace exactff::models

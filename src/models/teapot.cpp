@@ -182,7 +182,7 @@ void add_teapot(PlainScene& scene, int segments) {
   tessellation.add("spout", kSpout, kHalves);
 }
 
-PlainScene make_teapot(const methods::Settings& settings) {
+PlainScene make_teapot(const Settings& settings) {
   constexpr double kFloor = 5.0, kLight = 1.5;  // half their sides
   constexpr double kLightHeight = 6.0;
   PlainScene scene;
@@ -206,8 +206,8 @@ PlainScene make_teapot(const methods::Settings& settings) {
 Model teapot_model() {
   return {.name = "teapot",
           .summary = "the Utah teapot between a square light and a floor (floor, body, lid, handle, spout, light)",
-          .settings = {methods::whole_setting("segments", 8, 2, 64,
-                                              "pieces of each side of a Bezier patch; 64 s^2 - 8 s triangles")},
+          .settings = {whole_setting("segments", 8, 2, 64,
+                                     "pieces of each side of a Bezier patch; 64 s^2 - 8 s triangles")},
           .make = &make_teapot};
 }
 

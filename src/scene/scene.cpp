@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "kernel/float_environment.h"
-#include "scene/fnv1a.h"
 #include "scene/misuse.h"
-#include "scene/nearest_names.h"
-#include "scene/numbered_name.h"
 #include "scene/places.h"
 #include "scene/scene_data.h"
-#include "scene/text_lines.h"
+#include "text/fnv1a.h"
+#include "text/nearest_names.h"
+#include "text/numbered_name.h"
+#include "text/text_lines.h"
 
 namespace exactff {
 
@@ -66,9 +66,9 @@ std::string choice_of_names(const Scene& scene, std::string_view wanted) {
   std::string text =
       names.size() > kShown ? "the closest of its " + std::to_string(names.size()) + " patches are" : "the patches are";
   char separator = ':';
-  for (const std::string_view name : nearest_names(names, wanted, kShown)) {
+  for (const std::string_view name : text::nearest_names(names, wanted, kShown)) {
     text += separator;
-    text += ' ' + in_quotes(name, kShownName);
+    text += ' ' + text::in_quotes(name, text::kShownName);
     separator = ',';
   }
   return text;
@@ -81,21 +81,23 @@ std::string count_of_faces(std::size_t count) { return std::to_string(count) + (
 Selection Scene::select(std::string_view name) const {
   const auto& by_name = data().patch_by_name;
   if (const auto exact = by_name.find(std::string(name)); exact != by_name.end()) return {exact->second, {}, id()};
-  const auto parts = numbered_name(name);
+  const auto parts = text::numbered_name(name);
   const auto owner = parts ? by_name.find(parts->patch) : by_name.end();
   if (owner == by_name.end()) {
-    throw InputError({data().file, 0, "there is no patch named " + in_quotes(name, kShownName),
+    throw InputError({data().file, 0, "there is no patch named " + text::in_quotes(name, text::kShownName),
                       "names are matched letter by letter", choice_of_names(*this, parts ? parts->patch : name)});
   }
   const std::vector<FaceId>& faces = patch(owner->second).faces;
   if (parts->number < 1 || parts->number > faces.size()) {
-    throw InputError({data().file, 0, "there is no face " + in_quotes(name, kShownName),
-                      "patch " + in_quotes(parts->patch, kShownName) + " has " + count_of_faces(faces.size()),
-                      "faces count from 1"});
+    throw InputError(
+        {data().file, 0, "there is no face " + text::in_quotes(name, text::kShownName),
+         "patch " + text::in_quotes(parts->patch, text::kShownName) + " has " + count_of_faces(faces.size()),
+         "faces count from 1"});
   }
   const FaceId face_id = faces[parts->number - 1];
   if (face(face_id).shape == FaceShape::kSkipped) {
-    throw InputError({data().file, face(face_id).line, "face " + in_quotes(name, kShownName) + " cannot be used",
+    throw InputError({data().file, face(face_id).line,
+                      "face " + text::in_quotes(name, text::kShownName) + " cannot be used",
                       "it was dropped as a bad face", "see the warning about it"});
   }
   return {owner->second, face_id, this->id()};
@@ -150,16 +152,16 @@ Rgb Scene::receiver_reflectance(std::optional<FaceId> id) const {
 
 namespace {
 
-void add_text(Fnv1a& hash, const std::string& text) {
+void add_text(text::Fnv1a& hash, const std::string& text) {
   hash.add(std::uint64_t{text.size()});
   hash.add_bytes(text);
 }
 
-void add_colour(Fnv1a& hash, const Rgb& c) {
+void add_colour(text::Fnv1a& hash, const Rgb& c) {
   for (const double v : {c.r, c.g, c.b}) hash.add(v);
 }
 
-void add_face(Fnv1a& hash, const Face& face) {
+void add_face(text::Fnv1a& hash, const Face& face) {
   hash.add(static_cast<std::uint64_t>(face.patch));
   hash.add(static_cast<std::uint64_t>(face.material));
   hash.add(static_cast<std::uint64_t>(face.shape));
@@ -173,7 +175,7 @@ void add_face(Fnv1a& hash, const Face& face) {
 }  // namespace
 
 std::string Scene::hash() const {
-  Fnv1a hash;
+  text::Fnv1a hash;
   hash.add(static_cast<std::uint64_t>(vertices().size()));
   for (const Vec3& vertex : vertices()) hash.add(vertex);
   hash.add(static_cast<std::uint64_t>(materials().size()));

@@ -8,18 +8,18 @@
 
 #include "kernel/float_environment.h"
 #include "scene/misuse.h"
-#include "scene/numbered_name.h"
 #include "scene/scene_data.h"
-#include "scene/text_lines.h"
 #include "scene/triangulation.h"
+#include "text/numbered_name.h"
+#include "text/text_lines.h"
 
 namespace exactff {
 
 struct SceneBuilder::State {
   SceneOptions options;
   std::unique_ptr<Scene::Data> data = std::make_unique<Scene::Data>();
-  ProblemList problems;
-  ProblemList warnings;
+  text::ProblemList problems;
+  text::ProblemList warnings;
   std::size_t zero_area_count = 0;
   std::size_t first_zero_area = 0;
 
@@ -39,8 +39,8 @@ struct SceneBuilder::State {
   std::string quoted(const Face& face) const {
     const std::string& name = data->patches[index_of(face.patch)].name;
     const std::string number = ":" + std::to_string(face.number);
-    return "face " + (name.size() <= kShownName ? in_quotes(name + number, name.size() + number.size())
-                                                : in_quotes(name, kShownName) + number);
+    return "face " + (name.size() <= text::kShownName ? text::in_quotes(name + number, name.size() + number.size())
+                                                      : text::in_quotes(name, text::kShownName) + number);
   }
 };
 
@@ -134,9 +134,10 @@ void SceneBuilder::State::check_materials() {
   };
   for (const Material& material : data->materials) {
     if (usable(material.reflectance) && usable(material.radiosity)) continue;
-    problems.add({data->file, 0,
-                  "material " + in_quotes(material.name, kShownName) + " has a negative or infinite Kd or Ke",
-                  "reflectances and radiosities are not negative", "correct it"});
+    problems.add(
+        {data->file, 0,
+         "material " + text::in_quotes(material.name, text::kShownName) + " has a negative or infinite Kd or Ke",
+         "reflectances and radiosities are not negative", "correct it"});
   }
 }
 
@@ -149,7 +150,7 @@ void SceneBuilder::State::check_names() {
     if (patch.name.size() <= kLongName || patch.faces.size() < 2) continue;
     if (patch.faces.size() < kMostBytes / patch.name.size()) continue;
     problems.add({data->file, data->faces[index_of(patch.faces.front())].line,
-                  "the name " + in_quotes(patch.name) + " of " + std::to_string(patch.name.size()) +
+                  "the name " + text::in_quotes(patch.name) + " of " + std::to_string(patch.name.size()) +
                       " characters belongs to " + std::to_string(patch.faces.size()) + " faces",
                   "each of them is called by it", "choose a name of at most 255 characters"});
   }
@@ -239,7 +240,7 @@ void SceneBuilder::State::warn_zero_area() {
 // An exact patch name wins over NAME:k.
 void SceneBuilder::State::warn_hidden_names() {
   for (const Patch& rival : data->patches) {
-    const std::optional<NumberedName> hidden = numbered_name(rival.name);
+    const std::optional<text::NumberedName> hidden = text::numbered_name(rival.name);
     if (!hidden) continue;
     const auto owner = data->patch_by_name.find(hidden->patch);
     if (owner == data->patch_by_name.end()) continue;

@@ -6,17 +6,17 @@
 #include <functional>
 #include <string>
 
+#include "page/plot_script.h"
 #include "stress/tables.h"
-#include "study/plot_script.h"
-#include "study/text.h"
+#include "text/phrases.h"
 
 namespace exactff::stress {
 
 namespace {
 
-using study::Axes;
-using study::Points;
-using study::Series;
+using page::Axes;
+using page::Points;
+using page::Series;
 
 // Errors outside this range are drawn at its ends.
 constexpr double kSmallestDrawn = 1e-18;
@@ -28,7 +28,7 @@ struct LineLook {
   int style;
 };
 constexpr std::array<LineLook, kMethodCount> kLooks = {
-    {{"exact", 1}, {"acos", 2}, {"atan2", 3}, {"a×(b−a)", study::kOverlay}, {"Tampieri", 5}, {"as printed", 6}}};
+    {{"exact", 1}, {"acos", 2}, {"atan2", 3}, {"a×(b−a)", page::kOverlay}, {"Tampieri", 5}, {"as printed", 6}}};
 
 // Up to 10^16 a decade is one unit of the axis, beyond it 1/18 of a unit, so that both ends are readable.
 constexpr double kBend = 16.0;
@@ -44,7 +44,7 @@ std::string tic_commands(double largest) {
   const auto mark = [&](int decade) {
     const std::string label = decade == 0 ? "1" : decade == 1 ? "10" : "10^{" + std::to_string(decade) + "}";
     marks += (marks.empty() ? "'" : ", '") + label + "' " +
-             study::shortest(position(std::stod("1e" + std::to_string(decade))));
+             text::shortest(position(std::stod("1e" + std::to_string(decade))));
   };
   const int last = static_cast<int>(std::log10(largest));
   const int step = last < 6 ? 1 : 4;
@@ -75,11 +75,11 @@ Axes axes(const FamilyResult& result, const char* y) {
   const double largest = result.rows.back().stiffness;
   Axes a{.x = "stiffness: " + std::string(result.family.stiffness), .y = y, .log_x = false};
   a.extra.push_back(tic_commands(largest));
-  a.extra.push_back("set xrange [-0.3:" + study::shortest(position(largest) + 0.3) + ']');
+  a.extra.push_back("set xrange [-0.3:" + text::shortest(position(largest) + 0.3) + ']');
   return a;
 }
 
-study::Figure error_figure(const FamilyResult& result) {
+page::Figure error_figure(const FamilyResult& result) {
   Axes a = axes(result, "relative error");
   a.extra.emplace_back("set yrange [3e-19:3e3]");
   a.extra.emplace_back("set ytics 1e-18,1e3");
@@ -93,7 +93,7 @@ study::Figure error_figure(const FamilyResult& result) {
       line_plot(a, series)};
 }
 
-study::Figure precision_figure(const FamilyResult& result) {
+page::Figure precision_figure(const FamilyResult& result) {
   Axes a = axes(result, "bits of the certified sum");
   a.log_y = false;
   a.extra.emplace_back("set yrange [0:*]");
@@ -103,7 +103,7 @@ study::Figure precision_figure(const FamilyResult& result) {
           line_plot(a, {{"", bits, 1}})};
 }
 
-study::Figure time_figure(const FamilyResult& result) {
+page::Figure time_figure(const FamilyResult& result) {
   const Axes a = axes(result, "time per value, µs");
   std::vector<Series> series;
   for (Method method : {Method::kExact, Method::kAtan2Difference, Method::kAdaptive, Method::kAdaptiveLiteral}) {
@@ -114,7 +114,7 @@ study::Figure time_figure(const FamilyResult& result) {
 
 }  // namespace
 
-std::vector<study::Figure> figures(const FamilyResult& result) {
+std::vector<page::Figure> figures(const FamilyResult& result) {
   const auto bits = [](const Row& row) { return row.precision_bits; };
   const bool constant = std::ranges::adjacent_find(result.rows, std::not_equal_to<>{}, bits) == result.rows.end();
   if (constant) return {error_figure(result), time_figure(result)};

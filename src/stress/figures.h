@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "exactff/stress.h"
-#include "study/figures.h"
+#include "page/figure.h"
 
 namespace exactff::stress {
 
-[[nodiscard]] std::vector<study::Figure> figures(const FamilyResult& result);
+[[nodiscard]] std::vector<page::Figure> figures(const FamilyResult& result);
 
 }  // namespace exactff::stress

@@ -5,15 +5,14 @@
 #include "exactff/stress.h"
 #include "kernel/float_environment.h"
 #include "stress/tables.h"
-#include "stress/words.h"
-#include "study/text.h"
+#include "text/phrases.h"
 
 namespace exactff::stress {
 
 namespace {
 
-using study::counted;
-using study::counted_of;
+using text::counted;
+using text::counted_of;
 
 struct Tally {
   std::size_t independent = 0;  // compared with a closed form or a symmetry
@@ -45,7 +44,7 @@ std::string exact_sentence(const Report& report) {
   if (t.independent > 0) {
     text = "The exact value is what an independent closed form or symmetry rounds to in " +
            counted_of(t.agreeing, t.independent, "scene");
-    if (std::isfinite(t.smallest)) text += ", down to a form factor of " + study::rounded(t.smallest, 2);
+    if (std::isfinite(t.smallest)) text += ", down to a form factor of " + text::rounded(t.smallest, 2);
     text += t.certified > 0 ? "; " : ". ";
   }
   if (t.certified > 0) {

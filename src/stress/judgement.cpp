@@ -4,7 +4,7 @@
 
 #include "exactff/stress.h"
 #include "stress/family.h"
-#include "study/text.h"
+#include "text/phrases.h"
 
 namespace exactff::stress {
 

@@ -2,35 +2,36 @@
 
 #include <algorithm>
 
+#include "exactff/stress.h"
+#include "page/page_text.h"
 #include "stress/tables.h"
-#include "stress/words.h"
-#include "study/page_text.h"
-#include "study/text.h"
+#include "text/escape.h"
+#include "text/phrases.h"
 
 namespace exactff::stress {
 
 namespace {
 
-using study::counted;
-using study::heading;
-using study::html;
-using study::paragraph;
+using page::heading;
+using page::paragraph;
+using text::counted;
+using text::html;
 
 constexpr const char* kTitle = "Where each method stops being usable";
 
 class PageWriter {
  public:
-  PageWriter(const Report& report, const study::DrawnFigures& drawn) : report_(report), drawn_(drawn) {}
+  PageWriter(const Report& report, const page::DrawnFigures& drawn) : report_(report), drawn_(drawn) {}
 
   std::string write() {
-    text_ = study::page_head(kTitle);
+    text_ = page::page_head(kTitle);
     opening();
     summary();
     how_to_read();
     for (const FamilyResult& family : report_.families) section(family);
     definitions();
     reproduction();
-    text_ += study::page_end();
+    text_ += page::page_end();
     return std::move(text_);
   }
 
@@ -46,7 +47,7 @@ class PageWriter {
         "compute as long as nothing is very near, very far, very thin or very nearly aligned. Each family below is a "
         "scene that one number, its stiffness, drives from benign to extreme. How far does each method follow?");
     text_ += "<p><strong>The answer.</strong></p>\n<ul class=\"answer\">\n";
-    for (const std::string& sentence : headlines(report_)) text_ += "<li>" + study::prose(html(sentence)) + "</li>\n";
+    for (const std::string& sentence : headlines(report_)) text_ += "<li>" + page::prose(html(sentence)) + "</li>\n";
     text_ += "</ul>\n";
     if (!drawn_.none.empty()) text_ += paragraph(html(drawn_.none));
   }
@@ -66,7 +67,7 @@ class PageWriter {
     text_ += paragraph(
         "Eq. (4) in double is handed the exact visible region: where finding it is the difficulty, it has none. "
         "Tampieri’s algorithm was asked for an absolute error of " +
-        study::rounded(kToleranceShare) +
+        text::rounded(kToleranceShare) +
         " of the unoccluded form factor, not for 10⁻⁶ or 10⁻¹², nor for an error relative to F; around 10⁻³ its cells "
         "depend on where its rays happen to fall. Families end before F leaves the range of normal doubles.");
     text_ += "<div class=\"wide\"><table>\n<thead><tr>";
@@ -140,11 +141,11 @@ class PageWriter {
       text_ += "<tr>";
       const Answer& exact = row.of(Method::kExact);
       cell(stiffness_text(row.stiffness));
-      cell(study::shortest(exact.value));
+      cell(text::shortest(exact.value));
       cell(row.agrees ? html(exactff::to_string(row.status)) : "<b>disagrees with the truth</b>");
       cell(std::to_string(row.precision_bits));
       cell(std::to_string(row.edges));
-      cell(study::prose(study::duration(exact.seconds)));
+      cell(page::prose(text::duration(exact.seconds)));
       for (Method method : kMethods) cell(error_text(row.of(method)));
       text_ += "</tr>\n";
     }
@@ -152,7 +153,7 @@ class PageWriter {
   }
 
   void define(const char* term, const char* meaning) {
-    text_ += std::string("<dt>") + term + "</dt><dd>" + study::prose(meaning) + "</dd>\n";
+    text_ += std::string("<dt>") + term + "</dt><dd>" + page::prose(meaning) + "</dd>\n";
   }
 
   void definitions() {
@@ -183,13 +184,13 @@ class PageWriter {
   void reproduction() {
     text_ += heading("How to reproduce this page");
     if (!report_.request.command_line.empty()) text_ += "<pre>" + html(report_.request.command_line) + "</pre>\n";
-    text_ += study::facts_table(
-        {{"program", study::program_fact()},
-         {"Tampieri’s algorithm", "ε_B " + study::rounded(kToleranceShare) + " of the unoccluded form factor, " +
+    text_ += page::facts_table(
+        {{"program", page::program_fact()},
+         {"Tampieri’s algorithm", "ε_B " + text::rounded(kToleranceShare) + " of the unoccluded form factor, " +
                                       counted(kRays, "jittered ray") + " per undecided leaf, seed 1"},
-         {"processor", study::processor_fact()},
+         {"processor", page::processor_fact()},
          {"threads", std::to_string(report_.request.threads)},
-         {"made", study::today()}});
+         {"made", page::today()}});
     text_ += paragraph(
         "Exact values are the same everywhere, all other values on the same machine and for any number of threads; "
         "times are not, and are least disturbed with --threads 1.");
@@ -201,13 +202,13 @@ class PageWriter {
   }
 
   const Report& report_;
-  const study::DrawnFigures& drawn_;
+  const page::DrawnFigures& drawn_;
   std::string text_;
 };
 
 }  // namespace
 
-std::string report_page(const Report& report, const study::DrawnFigures& drawn) {
+std::string report_page(const Report& report, const page::DrawnFigures& drawn) {
   return PageWriter(report, drawn).write();
 }
 

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "exactff/stress.h"
-#include "study/page_files.h"
+#include "page/figure.h"
 
 namespace exactff::stress {
 
 // `drawn` holds the figures of all families, in order.
-[[nodiscard]] std::string report_page(const Report& report, const study::DrawnFigures& drawn);
+[[nodiscard]] std::string report_page(const Report& report, const page::DrawnFigures& drawn);
 
 }  // namespace exactff::stress

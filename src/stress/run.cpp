@@ -17,8 +17,8 @@
 #include "kernel/float_environment.h"
 #include "stress/double_formulas.h"
 #include "stress/family.h"
-#include "study/parallel.h"
-#include "study/text.h"
+#include "text/phrases.h"
+#include "work/parallel.h"
 
 namespace exactff::stress {
 
@@ -169,7 +169,7 @@ class Trial {
                            0,
                            "there is no family '" + name + "'",
                            {},
-                           "exactff stress --list tells them all: " + study::enumerate(names)});
+                           "exactff stress --list tells them all: " + text::enumerate(names)});
 }
 
 const Family& family_named(const std::string& name) {
@@ -193,9 +193,9 @@ std::vector<const Family*> selected(const std::vector<std::string>& names) {
 
 }  // namespace
 
-Report run(Request request, const study::Hooks& hooks) {
+Report run(Request request, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
-  if (request.threads <= 0) request.threads = study::usable_threads();
+  if (request.threads <= 0) request.threads = work::usable_threads();
   Report report{std::move(request), {}};
   struct Place {
     const Family* family;
@@ -207,7 +207,7 @@ Report run(Request request, const study::Hooks& hooks) {
     for (std::size_t row = 0; row < count; ++row) places.push_back({family, report.families.size(), row});
     report.families.push_back({family->info, std::vector<Row>(count)});
   }
-  study::parallel_for(places.size(), report.request.threads, "stiff scenes", hooks, [&](std::size_t i) {
+  work::parallel_for(places.size(), report.request.threads, "stiff scenes", hooks, [&](std::size_t i) {
     const Place& place = places[i];
     const Case scene_case = place.family->make(place.family->stiffnesses[place.row]);
     Trial(scene_case, report.families[place.result].rows[place.row]).run();

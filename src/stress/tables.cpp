@@ -1,18 +1,18 @@
 #include "stress/tables.h"
 
-#include "study/csv_row.h"
-#include "study/tables.h"
+#include "text/csv_row.h"
+#include "text/phrases.h"
 
 namespace exactff::stress {
 
 namespace {
 
-using study::CsvRow;
+using text::CsvRow;
 
 constexpr int kPrintedDigits = 30;
 
 void write_head(std::ostream& out, std::string_view what) {
-  out << "# " << study::program_version() << " stress: " << what << '\n';
+  out << "# " << text::program_version() << " stress: " << what << '\n';
 }
 
 std::string method_column(Method method, std::string_view suffix) {
@@ -20,7 +20,7 @@ std::string method_column(Method method, std::string_view suffix) {
 }
 
 void write_settings(std::ostream& out) {
-  out << "# tampieri: eps_B " << study::shortest(kToleranceShare) << " of the unoccluded form factor, " << kRays
+  out << "# tampieri: eps_B " << text::shortest(kToleranceShare) << " of the unoccluded form factor, " << kRays
       << " jittered rays, seed 1\n";
 }
 
@@ -28,7 +28,7 @@ void write_values(const Report& report, std::ostream& out) {
   write_head(out, "every family, stiffness and method");
   out << "# error: |value - truth| / truth; where the truth is 0, |value| over the unoccluded form factor\n"
          "# errors below "
-      << study::shortest(kTruthIsGoodTo) << ", which is as far as the truth is known, are written 0\n";
+      << text::shortest(kTruthIsGoodTo) << ", which is as far as the truth is known, are written 0\n";
   write_settings(out);
   {
     CsvRow row(out);

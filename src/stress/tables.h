@@ -18,8 +18,4 @@ struct Table {
 // In the order of the report's list. Only timings.csv holds times.
 [[nodiscard]] const std::array<Table, 3>& tables();
 
-inline constexpr std::array<Method, kMethodCount> kMethods = {Method::kExact,    Method::kAcos,
-                                                              Method::kAtan2,    Method::kAtan2Difference,
-                                                              Method::kAdaptive, Method::kAdaptiveLiteral};
-
 }  // namespace exactff::stress

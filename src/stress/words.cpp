@@ -1,9 +1,8 @@
-#include "stress/words.h"
-
 #include <cmath>
 #include <string_view>
 
-#include "study/text.h"
+#include "exactff/stress.h"
+#include "text/phrases.h"
 
 namespace exactff::stress {
 
@@ -22,18 +21,18 @@ constexpr double kSmallEnoughToWrite = 1e4;
 
 std::string stiffness_text(double stiffness) {
   if (stiffness == 0.0) return "–";
-  if (stiffness < kSmallEnoughToWrite) return study::shortest(stiffness);
+  if (stiffness < kSmallEnoughToWrite) return text::shortest(stiffness);
   int exponent = 0;
   if (std::frexp(stiffness, &exponent) == 0.5) return "2" + superscript(exponent - 1);
   const int decade = static_cast<int>(std::lround(std::log10(stiffness)));
   if (std::stod("1e" + std::to_string(decade)) == stiffness) return "10" + superscript(decade);
-  return study::rounded(stiffness);
+  return text::rounded(stiffness);
 }
 
 std::string error_text(const Answer& answer) {
   if (answer.refused) return "refused";
   if (std::isnan(answer.error)) return "no number";
-  return answer.error == 0.0 ? "0" : study::rounded(answer.error, 2);
+  return answer.error == 0.0 ? "0" : text::rounded(answer.error, 2);
 }
 
 std::string reach_text(const FamilyResult& result, Method method, double threshold) {

@@ -13,8 +13,8 @@
 
 #include "exactff/study.h"
 #include "exactff/version.h"
-#include "scene/fnv1a.h"
-#include "study/file.h"
+#include "text/fnv1a.h"
+#include "work/file.h"
 
 namespace exactff::study {
 namespace {
@@ -30,7 +30,7 @@ std::string checksum(std::string_view name, std::string_view bytes) {
   boost::crc_32_type crc;
   crc.process_bytes(name.data(), name.size());
   crc.process_bytes(bytes.data(), bytes.size());
-  return hexadecimal(crc.checksum(), 8);
+  return text::hexadecimal(crc.checksum(), 8);
 }
 
 std::string record(std::string_view name, std::string_view bytes) {
@@ -66,8 +66,8 @@ struct Place {
   std::uint64_t bytes = 0;
 };
 
-const Consolation kConsolation{"finished work is kept there, so that an interrupted run can go on",
-                               "make room, or name a folder elsewhere"};
+const work::Consolation kConsolation{"finished work is kept there, so that an interrupted run can go on",
+                                     "make room, or name a folder elsewhere"};
 
 }  // namespace
 
@@ -103,10 +103,10 @@ struct Journal::Impl {
   }
 
   // The process that held the lock may meanwhile have finished and removed the file.
-  static File opened(const fs::path& path) {
+  static work::File opened(const fs::path& path) {
     for (;;) {
-      File file(path, File::Mode::kReadWrite, kConsolation);
-      if (file.lock() == File::Lock::kInUse) {
+      work::File file(path, work::File::Mode::kReadWrite, kConsolation);
+      if (file.lock() == work::File::Lock::kInUse) {
         throw InputError({.file = path.string(),
                           .what = "another process is working on it",
                           .why = "two would compute the same values and spoil each other's journal",
@@ -160,7 +160,7 @@ struct Journal::Impl {
   }
 
   fs::path outermost_made;  // the topmost folder that was created; empty: none
-  File file;
+  work::File file;
   mutable std::mutex mutex;
   std::map<std::string, Place> places;
   std::uint64_t end = 0;

@@ -5,14 +5,14 @@
 #include <utility>
 
 #include "exactff/study.h"
-#include "scene/fnv1a.h"
-#include "study/words.h"
+#include "text/fnv1a.h"
+#include "work/fields.h"
 
 namespace exactff::study {
 
 // A hash that distinguishes texts, without blanks: for the names of pieces of work.
 [[nodiscard]] inline std::string short_hash(std::string_view text) {
-  Fnv1a hash;
+  text::Fnv1a hash;
   hash.add_bytes(text);
   return hash.digits();
 }
@@ -23,19 +23,19 @@ class KeptWork {
  public:
   KeptWork(Journal* journal, std::string prefix) : journal_(journal), prefix_(std::move(prefix)) {}
 
-  // Calls read(WordReader&) if the journal has the result; otherwise calls compute() and keeps what write(WordWriter&)
-  // writes. Safe from any thread.
+  // Calls read(work::WordReader&) if the journal has the result; otherwise calls compute() and keeps what
+  // write(work::WordWriter&) writes. Safe from any thread.
   template <class Compute, class Write, class Read>
   void get(const std::string& name, const Compute& compute, const Write& write, const Read& read) const {
     if (journal_ == nullptr) return compute();
     const std::string key = prefix_ + '/' + name;
     if (const auto bytes = journal_->find(key)) {
-      WordReader words(*bytes);
+      work::WordReader words(*bytes);
       read(words);
       if (words.complete()) return;
     }
     compute();
-    WordWriter words;
+    work::WordWriter words;
     write(words);
     journal_->add(key, words.bytes());
   }

@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "kernel/float_environment.h"
-#include "study/text.h"
+#include "text/phrases.h"
+#include "text/text_lines.h"
 
 namespace exactff::study {
 namespace {
@@ -19,12 +20,6 @@ std::vector<std::string> parts_of(std::string_view text, char separator) {
   }
 }
 
-std::string trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
-}
-
 [[noreturn]] void refuse(const std::string& what, const std::string& why, const std::string& suggestion) {
   throw InputError(Problem{{}, 0, what, why, suggestion});
 }
@@ -36,12 +31,13 @@ struct LadderText {
 
   explicit LadderText(std::string_view text) {
     const std::size_t colon = text.find(':');
-    method = trimmed(text.substr(0, colon));
+    method = text::trimmed(text.substr(0, colon));
     if (colon == std::string_view::npos) return;
     for (const std::string& part : parts_of(text.substr(colon + 1), ',')) {
       const std::size_t equals = part.find('=');
       const std::string values = equals == std::string::npos ? std::string() : part.substr(equals + 1);
-      settings.emplace_back(trimmed(part.substr(0, equals)), parts_of(values, '|'));
+      settings.emplace_back(std::string(text::trimmed(std::string_view(part).substr(0, equals))),
+                            parts_of(values, '|'));
     }
   }
 
@@ -78,7 +74,7 @@ struct LadderText {
 };
 
 bool is_word(const methods::Method& method, const std::string& setting) {
-  return std::any_of(method.settings.begin(), method.settings.end(), [&](const methods::SettingSpec& spec) {
+  return std::any_of(method.settings.begin(), method.settings.end(), [&](const SettingSpec& spec) {
     return spec.name == setting && std::holds_alternative<std::string>(spec.fallback);
   });
 }
@@ -99,7 +95,7 @@ std::string setting_words(const methods::Method& method, const std::string& name
 std::string ladder_name(const LadderText& text, const methods::Method& method, const std::string& along) {
   std::string name = method_words(method.name);
   for (const auto& [setting, values] : text.settings) {
-    if (setting != along) name += ", " + setting_words(method, setting, trimmed(values.front()));
+    if (setting != along) name += ", " + setting_words(method, setting, std::string(text::trimmed(values.front())));
   }
   return name;
 }
@@ -129,7 +125,7 @@ std::vector<Ladder> default_ladders(double largest_rho_b) {
   const auto tolerances = [&](int first, int last) {
     std::string list;
     for (int power = first; power <= last; ++power) {
-      list += (list.empty() ? "" : "|") + shortest(largest_rho_b / std::pow(10.0, power));
+      list += (list.empty() ? "" : "|") + text::shortest(largest_rho_b / std::pow(10.0, power));
     }
     return list;
   };
@@ -175,12 +171,12 @@ std::vector<LeftOut> leave_out(std::vector<Ladder>& ladders, const Sightings& si
 
 std::string rung_text(const Ladder& ladder, std::size_t rung) {
   if (ladder.along.empty()) return {};
-  const methods::Settings& settings = ladder.rungs[rung].settings;
+  const Settings& settings = ladder.rungs[rung].settings;
   for (std::size_t k = 0; k < settings.specs().size(); ++k) {
     if (settings.specs()[k].name != ladder.along) continue;
-    const methods::SettingValue& value = settings.values()[k];
-    if (const double* number = std::get_if<double>(&value)) return rounded(*number);
-    return methods::to_string(value);
+    const SettingValue& value = settings.values()[k];
+    if (const double* number = std::get_if<double>(&value)) return text::rounded(*number);
+    return to_string(value);
   }
   return {};
 }

@@ -14,11 +14,12 @@
 #include <map>
 
 #include "study/ladders.h"
-#include "study/parallel.h"
 #include "study/prepared_method.h"
 #include "study/radiosity.h"
 #include "study/statistics.h"
-#include "study/text.h"
+#include "text/escape.h"
+#include "text/phrases.h"
+#include "work/parallel.h"
 
 namespace exactff::study {
 namespace {
@@ -31,7 +32,8 @@ double price(std::string_view counter, std::size_t faces) {
   static const std::map<std::string_view, double> kPrices = {
       {"rays", 150.0},       {"leaves", 300.0},    {"shaft tests", 10.0}, {"samples", 20.0},
       {"sub-patches", 50.0}, {"pixels", 0.0},      {"pixels drawn", 1.5}, {"polygons", 100.0},
-      {"edges", 400.0},      {"occluders", 300.0}, {"bits", 0.0},         {"not certified", 0.0}};
+      {"edges", 400.0},      {"occluders", 300.0}, {"bits", 0.0},         {"not certified", 0.0},
+      {"rational decisions", 1e6}};
   if (counter == "exact V") return 2e4 + 400.0 * static_cast<double>(faces);
   if (counter.starts_with("leaves:")) return 0.0;  // already counted as leaves
   const auto found = kPrices.find(counter);
@@ -104,7 +106,7 @@ class MethodRunner {
     try {
       prepared.emplace(*ladder.rungs.front().method, request());
     } catch (const InputError& refusal) {
-      study_.left_out.push_back({"method " + ladder.name, csv_comment(refusal.what())});
+      study_.left_out.push_back({"method " + ladder.name, text::csv_comment(refusal.what())});
       return;
     }
     double left = request().methods.budget;
@@ -168,14 +170,14 @@ class MethodRunner {
   void fill(MethodCell& cell, const PreparedMethod& prepared) {
     kept_.get(
         "method/" + short_hash(choice_of(cell).text()), [&] { compute(cell, prepared); },
-        [&](WordWriter& words) {
+        [&](work::WordWriter& words) {
           words.put(cell.work);
           for (std::size_t s = 0; s < cell.seeds.size(); ++s) {
             words.put(cell.values[s]);
             words.put(cell.radiosity_errors[s]);
           }
         },
-        [&](WordReader& words) {
+        [&](work::WordReader& words) {
           cell.work = words.number();
           for (std::size_t s = 0; s < cell.seeds.size(); ++s) {
             cell.values[s] = words.numbers();
@@ -202,7 +204,7 @@ class MethodRunner {
       }
     };
     const std::string stage = result_.ladders[cell.ladder].name;
-    parallel_for(work.size(), request().threads, stage, hooks_, task);
+    work::parallel_for(work.size(), request().threads, stage, hooks_, task);
     for (const double w : work) cell.work += w;
     cell.work /= static_cast<double>(std::max<std::size_t>(receivers * cell.seeds.size(), 1));
   }
@@ -232,8 +234,8 @@ class MethodRunner {
     for (std::size_t k = rung; k < ladder.rungs.size(); ++k) names.push_back(rung_text(ladder, k));
     study_.left_out.push_back(
         {"method " + ladder.name +
-             (ladder.along.empty() ? std::string() : ", " + ladder.along + ' ' + enumerate(names)),
-         "its counted work would take more than the budget of " + duration(request().methods.budget) +
+             (ladder.along.empty() ? std::string() : ", " + ladder.along + ' ' + text::enumerate(names)),
+         "its counted work would take more than the budget of " + text::duration(request().methods.budget) +
              " for a method on this scene (--method-budget)"});
   }
 
@@ -249,17 +251,17 @@ class MethodRunner {
         [&] {
           const std::size_t count = study_.exact.size();
           field.radiosity_errors.assign(count, 0.0);
-          parallel_for((count + kReceiversPerTask - 1) / kReceiversPerTask, request().threads, ladder.name, hooks_,
-                       [&](std::size_t t) {
-                         const auto evaluator = prepared.scene->configure(seeded(choice, seed));
-                         for (std::size_t i = t * kReceiversPerTask; i < std::min((t + 1) * kReceiversPerTask, count);
-                              ++i) {
-                           field.radiosity_errors[i] = evaluate(*evaluator, prepared, i).radiosity_error;
-                         }
-                       });
+          work::parallel_for((count + kReceiversPerTask - 1) / kReceiversPerTask, request().threads, ladder.name,
+                             hooks_, [&](std::size_t t) {
+                               const auto evaluator = prepared.scene->configure(seeded(choice, seed));
+                               for (std::size_t i = t * kReceiversPerTask;
+                                    i < std::min((t + 1) * kReceiversPerTask, count); ++i) {
+                                 field.radiosity_errors[i] = evaluate(*evaluator, prepared, i).radiosity_error;
+                               }
+                             });
         },
-        [&](WordWriter& words) { words.put(field.radiosity_errors); },
-        [&](WordReader& words) { field.radiosity_errors = words.numbers(); });
+        [&](work::WordWriter& words) { words.put(field.radiosity_errors); },
+        [&](work::WordReader& words) { field.radiosity_errors = words.numbers(); });
     result_.fields.push_back(std::move(field));
   }
 

@@ -23,8 +23,8 @@ struct PreparedMethod {
 };
 
 // The settings of a choice with this seed; seed 0 leaves them unchanged.
-[[nodiscard]] inline methods::Settings seeded(const methods::Choice& choice, std::uint64_t seed) {
-  methods::Settings settings = choice.settings;
+[[nodiscard]] inline Settings seeded(const methods::Choice& choice, std::uint64_t seed) {
+  Settings settings = choice.settings;
   if (seed > 0) settings.set("seed", static_cast<std::int64_t>(seed));
   return settings;
 }

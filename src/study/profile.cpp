@@ -6,11 +6,11 @@
 #include <map>
 
 #include "study/ladders.h"
-#include "study/parallel.h"
 #include "study/prepared_method.h"
 #include "study/radiosity.h"
 #include "study/shadow_edges.h"
 #include "study/sight.h"
+#include "work/parallel.h"
 
 namespace exactff::study {
 namespace {
@@ -82,7 +82,7 @@ class Profiler {
     const std::size_t count = profile_.receivers.size();
     profile_.exact.resize(count);
     sights_.resize(count);
-    parallel_for(count, request().threads, "profile", hooks_, [&](std::size_t i) {
+    work::parallel_for(count, request().threads, "profile", hooks_, [&](std::size_t i) {
       const Receiver& receiver = profile_.receivers[i];
       std::vector<double> values;
       for (const ExactSource& source : sources_) {

@@ -18,7 +18,6 @@
 #include "study/kept_work.h"
 #include "study/ladders.h"
 #include "study/method_runs.h"
-#include "study/parallel.h"
 #include "study/profile.h"
 #include "study/radiosity.h"
 #include "study/settings.h"
@@ -27,8 +26,9 @@
 #include "study/silent_errors.h"
 #include "study/statistics.h"
 #include "study/sweep_budget.h"
-#include "study/text.h"
 #include "study/timing.h"
+#include "text/phrases.h"
+#include "work/parallel.h"
 
 namespace exactff::study {
 namespace {
@@ -47,7 +47,7 @@ void complete(Request& request) {
     throw InputError(Problem{request.scene_name, 0, "no patch emits", "without a source there is nothing to compare",
                              "name one with --source"});
   }
-  if (request.threads <= 0) request.threads = usable_threads();
+  if (request.threads <= 0) request.threads = work::usable_threads();
 }
 
 // Sums and means of radiosities below this bound do not overflow, whatever the number of receivers.
@@ -55,13 +55,11 @@ constexpr double kMostRadiosity = 1e290;
 
 void require_moderate(double radiosity, const Request& request) {
   if (radiosity <= kMostRadiosity) return;
-  throw InputError(Problem{request.scene_name,
-                           0,
-                           "the sources would give a receiver that sees nothing else a radiosity of " +
-                               shortest(radiosity),
-                           "a comparison adds and averages radiosities, which overflows beyond " +
-                               shortest(kMostRadiosity),
-                           "scale the emissions (Ke) down; form factors do not depend on them"});
+  throw InputError(
+      Problem{request.scene_name, 0,
+              "the sources would give a receiver that sees nothing else a radiosity of " + text::shortest(radiosity),
+              "a comparison adds and averages radiosities, which overflows beyond " + text::shortest(kMostRadiosity),
+              "scale the emissions (Ke) down; form factors do not depend on them"});
 }
 
 double mean_face_area(const Request& request) {
@@ -76,7 +74,7 @@ double mean_face_area(const Request& request) {
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
-void put(WordWriter& words, const ExactRow& row) {
+void put(work::WordWriter& words, const ExactRow& row) {
   for (const ExactTerm& term : row.terms) {
     for (const double v : {term.value, term.lower, term.upper, term.visible_fraction}) words.put(v);
     words.put(static_cast<std::uint64_t>(term.status));
@@ -92,7 +90,7 @@ void put(WordWriter& words, const ExactRow& row) {
 
 constexpr std::uint64_t kStatuses = 4, kSights = 4;
 
-void take(WordReader& words, ExactRow& row, std::size_t sources) {
+void take(work::WordReader& words, ExactRow& row, std::size_t sources) {
   row.terms.assign(sources, {});
   for (ExactTerm& term : row.terms) {
     for (double* v : {&term.value, &term.lower, &term.upper, &term.visible_fraction}) *v = words.number();
@@ -107,14 +105,14 @@ void take(WordReader& words, ExactRow& row, std::size_t sources) {
   row.sampled = words.word() != 0;
 }
 
-void put(WordWriter& words, const SampleRow& row) {
+void put(work::WordWriter& words, const SampleRow& row) {
   for (const double v : {row.form_factor, row.error, row.radiosity_error, row.silent_error}) words.put(v);
   for (const std::uint64_t n : {row.leaves, row.rays, row.shaft_tests}) words.put(n);
   for (const std::uint64_t n : row.leaves_by_reason) words.put(n);
   for (const std::uint64_t n : {row.silent_leaves, row.wrong_leaves}) words.put(n);
 }
 
-void take(WordReader& words, SampleRow& row) {
+void take(work::WordReader& words, SampleRow& row) {
   for (double* v : {&row.form_factor, &row.error, &row.radiosity_error, &row.silent_error}) *v = words.number();
   for (std::uint64_t* n : {&row.leaves, &row.rays, &row.shaft_tests}) *n = words.word();
   for (std::uint64_t& n : row.leaves_by_reason) n = words.word();
@@ -126,7 +124,7 @@ std::string request_text(const Request& request) {
   std::string text = request.scene->hash();
   const auto put = [&](const std::string& part) { text += '\n' + part; };
   for (const Receiver& r : request.receivers) {
-    for (const double c : {r.point.x, r.point.y, r.point.z, r.normal.x, r.normal.y, r.normal.z}) put(shortest(c));
+    for (const double c : {r.point.x, r.point.y, r.point.z, r.normal.x, r.normal.y, r.normal.z}) put(text::shortest(c));
     put(r.on ? std::to_string(index_of(*r.on)) : "free");
   }
   for (const Selection& source : request.sources) put(request.scene->name_of(source));
@@ -137,7 +135,7 @@ std::string settings_text(const Study& study) {
   std::string text;
   const auto put = [&](const std::string& part) { text += '\n' + part; };
   for (const AdaptiveOptions& s : study.settings) {
-    for (const double v : {s.eps_b, s.eps_a}) put(shortest(v));
+    for (const double v : {s.eps_b, s.eps_a}) put(text::shortest(v));
     put(std::to_string(s.rays) + ' ' + std::to_string(s.seed));
     put(std::string(name_of(s.pattern)) + ' ' + std::string(name_of(s.variant)));
   }
@@ -196,11 +194,11 @@ class Runner {
     const std::size_t count = request().receivers.size();
     study_.exact.resize(count);
     const KeptWork kept(journal_, request_hash_);
-    parallel_for(count, threads(), "exact values", hooks_, [&](std::size_t i) {
+    work::parallel_for(count, threads(), "exact values", hooks_, [&](std::size_t i) {
       ExactRow& row = study_.exact[i];
       kept.get(
-          "exact/" + std::to_string(i), [&] { find_exact_row(i); }, [&](WordWriter& words) { put(words, row); },
-          [&](WordReader& words) { take(words, row, sources_.size()); });
+          "exact/" + std::to_string(i), [&] { find_exact_row(i); }, [&](work::WordWriter& words) { put(words, row); },
+          [&](work::WordReader& words) { take(words, row, sources_.size()); });
     });
   }
 
@@ -264,7 +262,7 @@ class Runner {
     constexpr std::size_t kLargeScene = 300, kJudged = 32;
     if (scene().faces().size() > kLargeScene) {
       study_.judged = choose_receivers(study_.exact, kJudged);
-      study_.left_out.push_back({"silent errors at all but " + counted(study_.judged.size(), "receiver"),
+      study_.left_out.push_back({"silent errors at all but " + text::counted(study_.judged.size(), "receiver"),
                                  "the exact visible region of so many faces takes long to draw"});
     } else {
       for (std::size_t i = 0; i < study_.exact.size(); ++i) study_.judged.push_back(i);
@@ -276,13 +274,13 @@ class Runner {
     const std::size_t count = request().receivers.size();
     study_.samples.assign(study_.settings.size(), std::vector<SampleRow>(count));
     const KeptWork kept(journal_, request_hash_ + '-' + short_hash(settings_text(study_)));
-    parallel_for(count, threads(), "sampling", hooks_, [&](std::size_t i) {
+    work::parallel_for(count, threads(), "sampling", hooks_, [&](std::size_t i) {
       kept.get(
           "samples/" + std::to_string(i), [&] { sample_receiver(i); },
-          [&](WordWriter& words) {
+          [&](work::WordWriter& words) {
             for (const auto& of_setting : study_.samples) put(words, of_setting[i]);
           },
-          [&](WordReader& words) {
+          [&](work::WordReader& words) {
             for (auto& of_setting : study_.samples) take(words, of_setting[i]);
           });
     });

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "study/text.h"
+#include "text/phrases.h"
 
 namespace exactff::study {
 namespace {
@@ -47,11 +47,11 @@ std::vector<double> powers_of_ten(double unit, int first, int last) {
 void check_ranges(const Sweeps& sweeps) {
   for (double eps_b : sweeps.eps_b) {
     if (!std::isfinite(eps_b) || eps_b < 0.0)
-      refuse("eps_B is " + shortest(eps_b), "a tolerance is finite and not negative");
+      refuse("eps_B is " + text::shortest(eps_b), "a tolerance is finite and not negative");
   }
   for (double eps_a : sweeps.eps_a) {
     if (!std::isfinite(eps_a) || eps_a < 0.0)
-      refuse("eps_A is " + shortest(eps_a), "an area is finite and not negative");
+      refuse("eps_A is " + text::shortest(eps_a), "an area is finite and not negative");
   }
   for (int rays : sweeps.rays) {
     if (rays < 1) refuse("a number of rays is " + std::to_string(rays), "every undecided leaf needs at least one");
@@ -311,6 +311,17 @@ std::optional<std::size_t> find_setting(const std::vector<AdaptiveOptions>& sett
       std::find_if(settings.begin(), settings.end(), [&](const AdaptiveOptions& s) { return same_setting(s, wanted); });
   if (found == settings.end()) return std::nullopt;
   return static_cast<std::size_t>(std::distance(settings.begin(), found));
+}
+
+std::string setting_name(const Study& study, std::size_t setting) {
+  const AdaptiveOptions& s = study.settings[setting];
+  const AdaptiveOptions& base = study.settings[study.base];
+  std::string text = "ε_B = " + text::rounded(s.eps_b) + ", " + std::to_string(s.rays) + ' ' +
+                     std::string(name_of(s.pattern)) + (s.rays == 1 ? " ray" : " rays");
+  if (s.eps_a != base.eps_a || s.eps_a != 0.0) text += ", ε_A = " + text::rounded(s.eps_a);
+  if (s.variant != base.variant) text += ", " + std::string(name_of(s.variant)) + " variant";
+  if (s.seed != base.seed) text += ", seed " + std::to_string(s.seed);
+  return text;
 }
 
 }  // namespace exactff::study

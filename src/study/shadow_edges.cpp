@@ -9,9 +9,9 @@
 #include <boost/geometry/index/rtree.hpp>
 #include <cmath>
 
-#include "study/parallel.h"
+#include "kernel/vec.h"
 #include "study/sight.h"
-#include "study/vec.h"
+#include "work/parallel.h"
 
 namespace exactff::study {
 namespace {
@@ -45,8 +45,8 @@ class Raster {
 
   void classify(std::span<const ExactSource> sources, const Hooks& hooks) {
     sights_.resize(receivers_.size());
-    parallel_for(receivers_.size(), study_.request.threads, "shadow edges", hooks,
-                 [&](std::size_t i) { sights_[i] = sights(*study_.request.scene, receivers_[i], sources); });
+    work::parallel_for(receivers_.size(), study_.request.threads, "shadow edges", hooks,
+                       [&](std::size_t i) { sights_[i] = sights(*study_.request.scene, receivers_[i], sources); });
   }
 
   [[nodiscard]] std::vector<Point> edges() const {

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-#include "study/vec.h"
+#include "kernel/vec.h"
 
 namespace exactff::study {
 namespace {
@@ -27,7 +27,7 @@ using Polygon = std::vector<FlatPoint>;
 
 // Coordinates in the plane, relative to `origin`; the axis of the largest normal component is dropped.
 FlatPoint flattened(const Vec3& p, const Vec3& origin, const Vec3& normal) {
-  const Vec3 d = difference(p, origin);
+  const Vec3 d = kernel::difference(p, origin);
   const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
   if (x >= y && x >= z) return {d.y, d.z};
   return y >= z ? FlatPoint{d.z, d.x} : FlatPoint{d.x, d.y};
@@ -83,13 +83,14 @@ std::vector<Vec3> corners_of(const Leaf& leaf) {
 
 // The distance of the leaf from the plane, in units of the normal; infinite if the leaf faces the other way.
 double misfit(const std::vector<Vec3>& leaf, const PlaneDrawing& plane) {
-  const Vec3 front = cross(difference(leaf[1], leaf[0]), difference(leaf[2], leaf[0]));
-  if (plane.source.empty() || dot(front, plane.normal) <= 0.0) return std::numeric_limits<double>::infinity();
+  const Vec3 front = kernel::cross(kernel::difference(leaf[1], leaf[0]), kernel::difference(leaf[2], leaf[0]));
+  if (plane.source.empty() || kernel::dot(front, plane.normal) <= 0.0) return std::numeric_limits<double>::infinity();
   double worst = 0.0;
   for (const Vec3& corner : leaf) {
-    worst = std::max(worst, std::abs(dot(plane.normal, difference(corner, plane.source.front().corners.front()))));
+    worst = std::max(
+        worst, std::abs(kernel::dot(plane.normal, kernel::difference(corner, plane.source.front().corners.front()))));
   }
-  return worst / std::sqrt(dot(plane.normal, plane.normal));
+  return worst / std::sqrt(kernel::dot(plane.normal, plane.normal));
 }
 
 void judge(const Leaf& leaf, const std::vector<PlaneDrawing>& truth, SampledVerdict& verdict) {

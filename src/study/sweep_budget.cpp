@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <numeric>
 
-#include "study/figures.h"
 #include "study/method_runs.h"
 #include "study/radiosity.h"
-#include "study/text.h"
+#include "study/settings.h"
+#include "text/phrases.h"
 
 namespace exactff::study {
 namespace {
@@ -75,11 +75,11 @@ class SweepPlan {
 void require_possible(const Study& study, double base_seconds) {
   const double most = most_seconds_of_base(study);
   if (base_seconds <= most) return;
-  throw InputError(
-      {.file = study.request.scene_name,
-       .what = "the ray-sampled algorithm at " + label(study, study.base) + " would take more than " + duration(most),
-       .why = "the sweeps cross at this setting, so it is always run",
-       .suggestion = "give a larger --eps-b, fewer --rays or receivers, or a larger --sweep-budget"});
+  throw InputError({.file = study.request.scene_name,
+                    .what = "the ray-sampled algorithm at " + setting_name(study, study.base) +
+                            " would take more than " + text::duration(most),
+                    .why = "the sweeps cross at this setting, so it is always run",
+                    .suggestion = "give a larger --eps-b, fewer --rays or receivers, or a larger --sweep-budget"});
 }
 
 }  // namespace
@@ -99,13 +99,13 @@ void keep_to_budget(Study& study, std::span<const ExactSource> sources, const Ad
     if (k == study.base) continue;
     total -= costs[k];
     dropped[k] = true;
-    names.push_back(label(study, k));
+    names.push_back(setting_name(study, k));
   }
   if (names.empty()) return;
   study.left_out.push_back(
-      {counted(names.size(), "setting") + " of the ray-sampled algorithm (" + enumerate(names) + ')',
-       "the counted work of all settings would take more than the budget of " + duration(study.request.sweep_budget) +
-           " for this scene (--sweep-budget)"});
+      {text::counted(names.size(), "setting") + " of the ray-sampled algorithm (" + text::enumerate(names) + ')',
+       "the counted work of all settings would take more than the budget of " +
+           text::duration(study.request.sweep_budget) + " for this scene (--sweep-budget)"});
   std::vector<AdaptiveOptions> kept;
   std::size_t base = 0;
   for (std::size_t k = 0; k < dropped.size(); ++k) {

@@ -7,10 +7,10 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "study/page_files.h"
 #include "study/prepared_method.h"
 #include "study/radiosity.h"
 #include "study/statistics.h"
+#include "work/parallel.h"
 
 namespace exactff::study {
 namespace {
@@ -83,7 +83,7 @@ class Stopwatch {
   }
 
   void report() {
-    require_not_cancelled(hooks_);
+    work::require_not_cancelled(hooks_);
     if (hooks_.progress) hooks_.progress({"times", ++done_, total_});
   }
 

@@ -2,19 +2,19 @@
 
 #include <stdexcept>
 
-#include "study/file.h"
+#include "work/file.h"
 
 namespace exactff::truth {
 
 void Pace::add(std::uint64_t rows) {
-  if (hooks_.cancelled && hooks_.cancelled()) throw study::Cancelled();
+  if (hooks_.cancelled && hooks_.cancelled()) throw Cancelled();
   done_ += rows;
   if (hooks_.progress) hooks_.progress({stage_, done_, total_});
 }
 
 void assemble(const Rows& rows, Journal& journal, const std::filesystem::path& file, const Hooks& hooks,
               Summary& summary) {
-  study::WholeFile whole(
+  work::WholeFile whole(
       file, {"every row is done and kept in " + journal.path().string() + "; the file needs as much room again",
              "make room, then go on with --resume"});
   const bool in_blocks = rows.request().shard.count > 1;

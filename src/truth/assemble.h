@@ -13,7 +13,7 @@ namespace exactff::truth {
 void assemble(const Rows& rows, Journal& journal, const std::filesystem::path& file, const Hooks& hooks,
               Summary& summary);
 
-// Reports progress in rows. Throws study::Cancelled if the hooks request it.
+// Reports progress in rows. Throws Cancelled if the hooks request it.
 class Pace {
  public:
   Pace(std::string_view stage, std::uint64_t total, const Hooks& hooks) : stage_(stage), total_(total), hooks_(hooks) {}

@@ -4,7 +4,7 @@
 #include <boost/crc.hpp>
 #include <charconv>
 
-#include "scene/fnv1a.h"
+#include "text/fnv1a.h"
 
 namespace exactff::truth {
 namespace {
@@ -67,7 +67,7 @@ std::optional<Block> block_at(const File& file, std::uint64_t offset) {
   if (!scan.skip("\n")) return std::nullopt;
   block.offset = offset + scan.at();
   if (block.bytes > file.size() - block.offset) return std::nullopt;
-  if (crc != hexadecimal(crc_of(opening, read_lines(file, block)), 8)) return std::nullopt;
+  if (crc != text::hexadecimal(crc_of(opening, read_lines(file, block)), 8)) return std::nullopt;
   return block;
 }
 
@@ -99,7 +99,7 @@ std::optional<std::string> read_head(const File& file) {
 
 std::string block_text(Range range, std::string_view lines) {
   std::string text = opening_of(range, lines.size());
-  text += hexadecimal(crc_of(text, lines), 8) + '\n';
+  text += text::hexadecimal(crc_of(text, lines), 8) + '\n';
   text += lines;
   return text;
 }

@@ -13,13 +13,13 @@
 #include <string_view>
 #include <vector>
 
-#include "study/file.h"
 #include "truth/rows.h"
+#include "work/file.h"
 
 namespace exactff::truth {
 
-using study::File;
-using study::WholeFile;
+using work::File;
+using work::WholeFile;
 
 // The head of a file: its comment lines and the line of column names. Nothing if the file ends before that.
 [[nodiscard]] std::optional<std::string> read_head(const File& file);

@@ -4,9 +4,9 @@
 #include <system_error>
 
 #include "exactff/error.h"
-#include "study/text.h"
 #include "text/characters.h"
 #include "text/escape.h"
+#include "text/phrases.h"
 
 namespace exactff::truth {
 
@@ -120,7 +120,7 @@ void Journal::take_over(const Rows& rows, Existing existing, const Hooks& hooks)
   const std::uint64_t lost = there.damaged + file_.size() - there.end;
   if (lost > 0) {
     if (hooks.note) {
-      hooks.note(file_.path().string() + ": " + study::counted(lost, "byte") +
+      hooks.note(file_.path().string() + ": " + text::counted(lost, "byte") +
                  " of it are incomplete or damaged; their rows are computed again");
     }
     file_.truncate(there.end);
@@ -149,7 +149,7 @@ void Journal::keep_usable(std::vector<Block> found, const Rows& rows, const Hook
     next = range.end();
   }
   if (blocks_.size() < count && hooks.note) {
-    hooks.note(file_.path().string() + ": " + study::counted(count - blocks_.size(), "block") +
+    hooks.note(file_.path().string() + ": " + text::counted(count - blocks_.size(), "block") +
                " of it are of no use here; their rows are computed again");
   }
 }
@@ -178,7 +178,7 @@ void Journal::sync() {
   }
   if (end == synced_) return;
   file_.sync();
-  if (synced_ == 0) study::sync_folder_of(file_.path());  // makes the directory entry of the file durable
+  if (synced_ == 0) work::sync_folder_of(file_.path());  // makes the directory entry of the file durable
   synced_ = end;
 }
 

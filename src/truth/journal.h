@@ -11,14 +11,10 @@
 #include <vector>
 
 #include "exactff/truth.h"
-#include "study/file.h"
 #include "truth/blocks.h"
+#include "work/file.h"
 
 namespace exactff::truth {
-
-// Throws InputError if no truth file can be made at `file`: if it is a folder or a device, or if it exists already and
-// `existing` says to refuse.
-void require_free(const std::filesystem::path& file, Existing existing);
 
 // Throws an InputError that names the first line in which the head of `file` differs from the expected head.
 void require_same_head(

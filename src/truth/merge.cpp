@@ -6,11 +6,11 @@
 #include <system_error>
 
 #include "kernel/float_environment.h"
-#include "study/file.h"
-#include "study/text.h"
+#include "text/phrases.h"
 #include "truth/assemble.h"
 #include "truth/blocks.h"
 #include "truth/journal.h"
+#include "work/file.h"
 
 namespace exactff::truth {
 namespace {
@@ -72,7 +72,7 @@ void read_chunks(ShardFile& shard, std::uint64_t head_bytes) {
   for (std::size_t i = 0; whole && i < found.list.size(); ++i) whole = found.list[i].range == chunk_of(shard, i);
   if (!whole) {
     refuse(shard.file.path(),
-           "is damaged: " + std::to_string(found.list.size()) + " of its " + study::counted(chunks_of(shard), "chunk") +
+           "is damaged: " + std::to_string(found.list.size()) + " of its " + text::counted(chunks_of(shard), "chunk") +
                " of rows are sound",
            "every row is wanted", "remove it and compute this shard again");
   }
@@ -105,7 +105,7 @@ void add(Shards& shards, ShardFile shard) {
   if (!shards.empty()) {
     const ShardFile& first = shards.begin()->second;
     if (shard.shard.count != first.shard.count) {
-      refuse(shard.file.path(), "is one of " + study::counted(shard.shard.count, "shard"),
+      refuse(shard.file.path(), "is one of " + text::counted(shard.shard.count, "shard"),
              first.file.path().string() + " is one of " + std::to_string(first.shard.count),
              "name the shards of one request");
     }
@@ -144,8 +144,8 @@ void require_all(const Shards& shards) {
     if (!shards.contains(number)) missing.push_back(std::to_string(number));
   }
   if (missing.size() > kMostNamed) missing.back() = "more";
-  refuse({}, "of " + study::counted(count, "shard") + " there is no " + study::enumerate(missing),
-         "every row is wanted", "name those files too");
+  refuse({}, "of " + text::counted(count, "shard") + " there is no " + text::enumerate(missing), "every row is wanted",
+         "name those files too");
 }
 
 }  // namespace

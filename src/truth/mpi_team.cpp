@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "truth/team.h"
+#include "exactff/team.h"
 
 namespace exactff::truth {
 namespace {

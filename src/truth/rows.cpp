@@ -9,10 +9,11 @@
 #include <string_view>
 
 #include "exactff/version.h"
-#include "scene/fnv1a.h"
 #include "scene/misuse.h"
-#include "study/parallel.h"
-#include "study/text.h"
+#include "text/escape.h"
+#include "text/fnv1a.h"
+#include "text/phrases.h"
+#include "work/parallel.h"
 
 namespace exactff::truth {
 namespace {
@@ -21,7 +22,7 @@ constexpr std::array kStatuses = {Status::kCertified, Status::kZero, Status::kUn
 
 // A hash of everything that the rows state about the receivers: a file of the same name may have changed.
 std::string hash_of(const std::vector<Receiver>& receivers) {
-  Fnv1a hash;
+  text::Fnv1a hash;
   for (const Receiver& receiver : receivers) {
     hash.add(receiver.point);
     hash.add(receiver.normal);
@@ -50,7 +51,7 @@ void complete(Request& request) {
     refuse({}, "there is no shard " + std::to_string(shard.number) + " of " + std::to_string(shard.count),
            "shards are counted from 1", "write --shard 1/4 for the first of four");
   }
-  if (request.threads <= 0) request.threads = study::usable_threads();
+  if (request.threads <= 0) request.threads = work::usable_threads();
 }
 
 }  // namespace
@@ -82,11 +83,11 @@ bool Rows::may_be_one_block(Range range) const {
 std::string Rows::head() const {
   std::ostringstream out;
   out << "# exactff " << kVersion << " truth: form factors, correctly rounded, between proved bounds\n"
-      << "# scene: " << study::csv_comment(request_.scene_name) << ", hash " << request_.scene->hash() << '\n'
-      << "# receivers: " << study::csv_comment(request_.receivers_name) << ", hash " << receivers_hash_ << '\n'
+      << "# scene: " << text::csv_comment(request_.scene_name) << ", hash " << request_.scene->hash() << '\n'
+      << "# receivers: " << text::csv_comment(request_.receivers_name) << ", hash " << receivers_hash_ << '\n'
       << "# sources: ";
   for (std::size_t s = 0; s < source_names_.size(); ++s)
-    out << (s > 0 ? " + " : "") << study::csv_comment(source_names_[s]);
+    out << (s > 0 ? " + " : "") << text::csv_comment(source_names_[s]);
   out << '\n'
       << "# rows: " << count() << '\n'
       << "# units: form factors are pure numbers, radiosity is in the unit of Ke, lengths are in the unit of the "
@@ -117,7 +118,7 @@ class Line {
     return put({digits.data(), end.ptr});
   }
   Line& operator<<(const Vec3& v) { return *this << v.x << v.y << v.z; }
-  Line& operator<<(std::string_view text) { return put(study::csv_field(text)); }
+  Line& operator<<(std::string_view text) { return put(text::csv_field(text)); }
 
  private:
   Line& put(std::string_view field) {

@@ -1,5 +1,3 @@
-#include "truth/team.h"
-
 #include <algorithm>
 #include <condition_variable>
 #include <cstring>
@@ -10,7 +8,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "study/parallel.h"
+#include "truth/leader.h"
+#include "work/parallel.h"
 
 namespace exactff::truth {
 namespace {
@@ -98,7 +97,7 @@ std::string trouble(Blame blame, const std::string& place, const std::string& wh
 [[noreturn]] void rethrow(int rank, Reader message) {
   const auto blame = message.read<Blame>();
   const std::string place = message.read_text(), what = message.read_text();
-  if (blame == Blame::kSignal) throw study::Cancelled();
+  if (blame == Blame::kSignal) throw Cancelled();
   if (blame == Blame::kMemory) throw std::bad_alloc();
   const std::string where = "on rank " + std::to_string(rank) + " (" + place + "): ";
   if (blame == Blame::kInput) throw InputError(Problem{{}, 0, where + what, {}, {}});
@@ -109,7 +108,7 @@ std::string trouble(Blame blame, const std::string& place, const std::string& wh
 
 int fair_threads(const Team& team) {
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  return std::clamp(cores / team.ranks_on_this_machine(), 1, study::usable_threads());
+  return std::clamp(cores / team.ranks_on_this_machine(), 1, work::usable_threads());
 }
 
 // --- the leader ---------------------------------------------------------------------------------------------------
@@ -250,7 +249,7 @@ class Follower {
       work(rows);
     } catch (const InputError& error) {
       team_.send(0, trouble(Blame::kInput, team_.place(), error.what()));
-    } catch (const study::Cancelled&) {
+    } catch (const Cancelled&) {
       team_.send(0, trouble(Blame::kSignal, team_.place(), "interrupted"));
     } catch (const std::bad_alloc&) {
       team_.send(0, trouble(Blame::kMemory, team_.place(), "out of memory"));

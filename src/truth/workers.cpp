@@ -79,7 +79,7 @@ void Workers::work() {
 }
 
 bool Workers::must_stop() {
-  if (!stop_ && hooks_.cancelled && hooks_.cancelled()) throw study::Cancelled();
+  if (!stop_ && hooks_.cancelled && hooks_.cancelled()) throw Cancelled();
   return stop_;
 }
 

@@ -70,7 +70,7 @@ class Workers {
   [[nodiscard]] bool stopped() const { return stop_; }
   // True once every thread has ended.
   [[nodiscard]] bool wait_for(std::chrono::milliseconds time);
-  // Rethrows what was thrown in a thread. Throws study::Cancelled if the hooks requested it.
+  // Rethrows what was thrown in a thread. Throws Cancelled if the hooks requested it.
   void rethrow() const;
 
  private:

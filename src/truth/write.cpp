@@ -16,11 +16,11 @@
 
 #include "exactff/truth.h"
 #include "kernel/float_environment.h"
-#include "study/text.h"
+#include "text/phrases.h"
 #include "truth/assemble.h"
 #include "truth/journal.h"
+#include "truth/leader.h"
 #include "truth/rows.h"
-#include "truth/team.h"
 #include "truth/workers.h"
 
 namespace exactff::truth {
@@ -77,7 +77,7 @@ class Computation {
       if (ended) workers.rethrow();
       if (leader_) leader_->attend([this] { return schedule_.next(); }, [this](Finished f) { keep(std::move(f)); });
       tell(summary);
-      if (hooks_.cancelled && hooks_.cancelled()) throw study::Cancelled();
+      if (hooks_.cancelled && hooks_.cancelled()) throw Cancelled();
       if (Clock::now() - synced < kSyncEvery) continue;
       journal_.sync();
       synced = Clock::now();
@@ -156,7 +156,7 @@ Summary account_of(const fs::path& path, const Rows& rows) {
   if (!tally.whole() || tally.rows() != rows.shard_rows()) {
     throw InputError({.file = path.string(),
                       .what = "is damaged: " + std::to_string(tally.rows()) + " of " +
-                              study::counted(rows.shard_rows(), "row") + " can be read",
+                              text::counted(rows.shard_rows(), "row") + " can be read",
                       .why = "a complete file has them all",
                       .suggestion = "compute it again with --force"});
   }

@@ -22,7 +22,7 @@
 #include <span>
 #include <vector>
 
-#include "exactff/exact.h"
+#include "exactff/record.h"
 #include "exactff/scene.h"
 #include "kernel/direction.h"
 #include "scene/shaft_tree.h"

@@ -17,7 +17,8 @@
 #include <span>
 #include <vector>
 
-#include "exactff/exact.h"
+#include "exactff/receiver.h"
+#include "exactff/record.h"
 #include "scene/shaft_tree.h"
 #include "visibility/boundary_piece.h"
 #include "visibility/plane_frame.h"

@@ -17,9 +17,9 @@
 #include "exactff/study.h"
 #include "fuzz/complaints.h"
 #include "fuzz/edits.h"
-#include "scene/fnv1a.h"
-#include "study/report.h"
+#include "report/report.h"
 #include "support/program.h"
+#include "text/fnv1a.h"
 #include "unit/study_support.h"
 
 namespace exactff::validation {
@@ -31,7 +31,7 @@ std::string record(std::string_view name, std::string_view bytes) {
   boost::crc_32_type crc;
   crc.process_bytes(name.data(), name.size());
   crc.process_bytes(bytes.data(), bytes.size());
-  return std::string(name) + ' ' + std::to_string(bytes.size()) + ' ' + hexadecimal(crc.checksum(), 8) + '\n' +
+  return std::string(name) + ' ' + std::to_string(bytes.size()) + ' ' + text::hexadecimal(crc.checksum(), 8) + '\n' +
          std::string(bytes) + '\n';
 }
 
@@ -116,6 +116,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                               : (mode & 1) != 0 ? edited(truth.journal, bytes)
                                                 : raw;
   check(journal, scene, forged ? nullptr : &truth.tables);
-  (void)study::chapter_of(raw);
+  (void)page::chapter_of(raw);
   return 0;
 }

@@ -80,7 +80,7 @@ Texts make_texts(const Scene& scene) {
   int rows = 0;
   try {
     (void)truth::write(request_of(scene), file, truth::Existing::kRefuse, {.cancelled = [&] { return ++rows > 60; }});
-  } catch (const study::Cancelled&) {
+  } catch (const Cancelled&) {
   }
   Texts texts{{}, text_of(truth::journal_of(file))};
   (void)truth::write(request_of(scene), file, truth::Existing::kResume);

@@ -20,7 +20,7 @@ using generate::Random;
 namespace {
 
 // Within limits, but small: the work grows with it.
-std::string small_setting(const methods::SettingSpec& spec, Random& random) {
+std::string small_setting(const SettingSpec& spec, Random& random) {
   if (random.one_in(20)) return odd_number(random);
   if (!spec.words.empty()) return one_of(random, spec.words);
   const double high = std::min(spec.highest, std::max(spec.lowest, 1.0) * 8.0);
@@ -34,10 +34,9 @@ std::string small_setting(const methods::SettingSpec& spec, Random& random) {
 }
 
 // NAME or NAME:SETTING=VALUE,...
-std::string with_settings(const std::string& name, std::span<const methods::SettingSpec> specs, bool all,
-                          Random& random) {
+std::string with_settings(const std::string& name, std::span<const SettingSpec> specs, bool all, Random& random) {
   std::string text = name;
-  for (const methods::SettingSpec& spec : specs) {
+  for (const SettingSpec& spec : specs) {
     if (!all && random.one_in(2)) continue;
     text += (text.find(':') == std::string::npos ? ':' : ',') + spec.name + '=' + small_setting(spec, random);
   }

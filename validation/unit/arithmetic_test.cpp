@@ -22,6 +22,7 @@
 #include "exactff/models.h"
 #include "exactff/obj.h"
 #include "exactff/receiver.h"
+#include "exactff/report.h"
 #include "exactff/stress.h"
 #include "exactff/study.h"
 #include "exactff/truth.h"
@@ -362,8 +363,8 @@ TEST(ThreadsArithmetic, ChangesNoStudy) {
   const std::filesystem::path folder = directory.path() / "study";
   const auto write = [&] {
     const study::Study study = study::run(request);
-    study::write(study, folder);
-    EXPECT_FALSE(study::headlines(study).empty());  // which tell of times
+    report::write(study, folder);
+    EXPECT_FALSE(report::headlines(study).empty());  // which tell of times
     return std::string();
   };
   expect_the_same(joint_settings(), write, [&] { return value_files(folder); });

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "exactff/check.h"
-#include "study/text.h"
 #include "support/program.h"
+#include "text/phrases.h"
 
 namespace exactff {
 namespace {
@@ -225,7 +225,7 @@ TEST(CheckOfATruthFile, CatchesAThousandthAndForgivesABillionth) {
   for (const double bug : {1e-3, 1e-9}) {
     std::string mine = "receiver,value\n";
     for (const check::TruthRow& row : check::read_truth(truth).rows) {
-      mine += '"' + row.receiver + "\"," + study::shortest(row.value + (row.receiver == "2,3" ? bug : 0.0)) + '\n';
+      mine += '"' + row.receiver + "\"," + text::shortest(row.value + (row.receiver == "2,3" ? bug : 0.0)) + '\n';
     }
     const std::string file = directory.write("mine.csv", mine).string();
     const ProgramRun run = run_program(EXACTFF_PROGRAM, {"check", truth, file, "--max-abs", "1e-6", "--eps-b", "1e-6"});

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "check/words.h"
 #include "exactff/check.h"
-#include "study/gnuplot.h"
+#include "page/gnuplot.h"
 #include "support/program.h"
+#include "text/phrases.h"
 
 namespace exactff::check {
 namespace {
@@ -125,19 +125,19 @@ TEST(CheckJson, TellsEverythingAndSurvivesAnyName) {
 TEST(ErrorHistogram, IsDrawnWithoutComplaint) {
   const validation::TemporaryDirectory scratch;
   const Criteria criteria{.max_abs = 1e-9, .rms = 1.0, .quantiles = {{0.5, 0.0}, {0.9, 7.0}}};
-  const study::PlotResult plot = study::run_gnuplot(histogram_script(awkward_report(criteria, 0.501)), scratch.path());
-  if (plot.outcome == study::PlotResult::Outcome::kNoProgram) GTEST_SKIP() << "gnuplot is not installed";
-  EXPECT_EQ(plot.outcome, study::PlotResult::Outcome::kDrawn);
+  const page::PlotResult plot = page::run_gnuplot(histogram_script(awkward_report(criteria, 0.501)), scratch.path());
+  if (plot.outcome == page::PlotResult::Outcome::kNoProgram) GTEST_SKIP() << "gnuplot is not installed";
+  EXPECT_EQ(plot.outcome, page::PlotResult::Outcome::kDrawn);
   EXPECT_EQ(plot.message, "");
   for (const char* shown : {"max-abs", "quantile 0.9", "2 rows"}) EXPECT_HOLDS(plot.svg, shown);
   EXPECT_FALSE(holds(plot.svg, "quantile 0.5"));  // a logarithmic axis cannot show its limit
 }
 
 TEST(ShortNumbers, AreFitForFlags) {
-  EXPECT_EQ(short_number(0.0), "0");
-  EXPECT_EQ(short_number(0.0123456), "0.0123");
-  EXPECT_EQ(short_number(1.5e-9), "1.5e-09");
-  EXPECT_EQ(short_number(-123456.0), "-1.23e+05");
+  EXPECT_EQ(text::short_number(0.0), "0");
+  EXPECT_EQ(text::short_number(0.0123456), "0.0123");
+  EXPECT_EQ(text::short_number(1.5e-9), "1.5e-09");
+  EXPECT_EQ(text::short_number(-123456.0), "-1.23e+05");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "scene/csv_lines.h"
+#include "text/csv_lines.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using validation::TemporaryDirectory;
 
 std::vector<std::string> lines_of(const std::string& text) {
   const TemporaryDirectory directory;
-  CsvLines lines(directory.write("a.csv", text), "a CSV file");
+  text::CsvLines lines(directory.write("a.csv", text), "a CSV file");
   std::vector<std::string> result;
   for (std::string_view line; lines.next(line);) {
     result.emplace_back(line);
@@ -55,7 +55,7 @@ TEST(CsvLines, RefuseWhatIsNoText) {
   const TemporaryDirectory directory;
   const auto refusal = [&](const std::filesystem::path& path) -> std::string {
     try {
-      CsvLines lines(path, "a CSV file");
+      text::CsvLines lines(path, "a CSV file");
       for (std::string_view line; lines.next(line);) {
       }
     } catch (const InputError& error) {
@@ -76,7 +76,7 @@ TEST(CsvLines, RefuseWhatIsNoText) {
 
 List fields_of(std::string_view line) {
   List fields{"left", "over", "from", "before"};
-  return split_csv_line(line, fields) ? fields : List{"refused"};
+  return text::split_csv_line(line, fields) ? fields : List{"refused"};
 }
 
 TEST(CsvFields, AreTrimmedUnlessQuoted) {
@@ -98,11 +98,11 @@ TEST(CsvFields, AreRefusedWhereQuotesDoNotMatch) {
 }
 
 TEST(CsvComments, AreBlankOrBeginWithANumberSign) {
-  EXPECT_TRUE(is_csv_comment(""));
-  EXPECT_TRUE(is_csv_comment(" \t"));
-  EXPECT_TRUE(is_csv_comment("  # x"));
-  EXPECT_FALSE(is_csv_comment("a # x"));
-  EXPECT_FALSE(is_csv_comment("\"#\""));
+  EXPECT_TRUE(text::is_csv_comment(""));
+  EXPECT_TRUE(text::is_csv_comment(" \t"));
+  EXPECT_TRUE(text::is_csv_comment("  # x"));
+  EXPECT_FALSE(text::is_csv_comment("a # x"));
+  EXPECT_FALSE(text::is_csv_comment("\"#\""));
 }
 
 }  // namespace

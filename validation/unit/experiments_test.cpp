@@ -14,12 +14,12 @@
 #include "experiments/karkanis_times.h"
 #include "experiments/nettle_rule.h"
 #include "experiments/small_emitters.h"
-#include "study/plot_script.h"
+#include "page/plot_script.h"
 
 namespace exactff::experiments {
 namespace {
 
-const study::Hooks kNoHooks;
+const Hooks kNoHooks;
 
 // --- what they share -----------------------------------------------------------------------------------
 
@@ -60,31 +60,31 @@ std::string values_of(const Result& result) {
 
 struct SmallRun {
   const char* name;
-  std::function<Result(int threads, const study::Hooks&)> run;
+  std::function<Result(int threads, const Hooks&)> run;
 };
 
 std::vector<SmallRun> small_runs() {
-  const auto scatter = [](int threads, const study::Hooks& hooks) {
+  const auto scatter = [](int threads, const Hooks& hooks) {
     return hemicube_scatter(ScatterSize{.scenes = 3, .triangles = 30, .resolutions = {20}}, threads, hooks);
   };
-  const auto resolution = [](int threads, const study::Hooks& hooks) {
+  const auto resolution = [](int threads, const Hooks& hooks) {
     ResolutionSize size{.resolutions = {16, 32}, .rotations = {0, 45}, .distances = {1, 2, 4}};
     size.groups = 2;
     size.triangles = 20;
     size.places = 2;
     return hemicube_resolution(size, threads, hooks);
   };
-  const auto nettle = [](int threads, const study::Hooks& hooks) {
+  const auto nettle = [](int threads, const Hooks& hooks) {
     NettleSize size{.sides = {0.05, 0.1, 0.5}, .splits = {1, 2}, .rays = 4, .groups = 2};
     size.configurations = 3;
     size.orientations = 20;
     return nettle_rule(size, threads, hooks);
   };
-  const auto emitters = [](int threads, const study::Hooks& hooks) {
+  const auto emitters = [](int threads, const Hooks& hooks) {
     return small_emitters(EmittersSize{.lamps = 4, .grid = 3, .timed = 1, .choices = {"hemicube", "nettle:rays=4"}},
                           threads, hooks);
   };
-  const auto room = [](int threads, const study::Hooks& hooks) {
+  const auto room = [](int threads, const Hooks& hooks) {
     return closure(ClosureSize{.receivers = 4, .choices = {"hemicube", "nettle:rays=4"}}, threads, hooks);
   };
   return {{"scatter", scatter}, {"resolution", resolution}, {"nettle", nettle}, {"emitters", emitters}, {"room", room}};
@@ -96,15 +96,15 @@ TEST(Experiments, GiveTheSameBytesOfValuesForAnyNumberOfThreads) {
     EXPECT_FALSE(one.paragraphs.empty()) << small.name;
     EXPECT_FALSE(one.values.empty()) << small.name;
     EXPECT_EQ(values_of(one), values_of(small.run(3, kNoHooks))) << small.name;
-    for (const study::Figure& figure : one.figures) EXPECT_FALSE(figure.script.empty()) << figure.id;
+    for (const page::Figure& figure : one.figures) EXPECT_FALSE(figure.script.empty()) << figure.id;
   }
 }
 
 TEST(Experiments, GiveUpWhenCancelled) {
-  study::Hooks hooks;
+  Hooks hooks;
   hooks.cancelled = [] { return true; };
-  for (const SmallRun& small : small_runs()) EXPECT_THROW((void)small.run(2, hooks), study::Cancelled) << small.name;
-  EXPECT_THROW((void)karkanis_times(TimesSize{.triangles = {10}}, hooks), study::Cancelled);
+  for (const SmallRun& small : small_runs()) EXPECT_THROW((void)small.run(2, hooks), Cancelled) << small.name;
+  EXPECT_THROW((void)karkanis_times(TimesSize{.triangles = {10}}, hooks), Cancelled);
 }
 
 // --- Karkanis' two plots -------------------------------------------------------------------------------
@@ -152,7 +152,7 @@ TEST(HemicubeScatter, TheErrorFallsAsTheFormFactorGrows) {
 TEST(HemicubeScatter, DrawsWhatIsMissedApart) {
   const Result result = hemicube_scatter(ScatterSize{.scenes = 1, .triangles = 100, .resolutions = {20}}, 1, kNoHooks);
   ASSERT_EQ(result.figures.size(), 2U);
-  for (const study::Figure& figure : result.figures) EXPECT_NE(figure.script.find("missed"), std::string::npos);
+  for (const page::Figure& figure : result.figures) EXPECT_NE(figure.script.find("missed"), std::string::npos);
 }
 
 // --- resolution, rotation, distance --------------------------------------------------------------------
@@ -286,14 +286,14 @@ TEST(Closure, ExactBallsHoldOneAndTheHemicubeClosesThoughItsValuesErr) {
 // --- the plot they need --------------------------------------------------------------------------------
 
 TEST(ScatterPlot, RoundsItsPointsAndDrawsEachPlaceOnce) {
-  const study::Axes axes{.x = "x", .y = "y"};
-  const std::string script = study::scatter_plot(
+  const page::Axes axes{.x = "x", .y = "y"};
+  const std::string script = page::scatter_plot(
       axes,
       {{"cloud", {{0.123456, 1.0}, {0.123461, 1.0}, {2.0, 0.0}, {3.0, 5.0}}, 1}, {"diagonal", {{1, 1}, {2, 2}}, 0}});
   EXPECT_NE(script.find("0.1235 1\n3 5\nEND"), std::string::npos) << script;
   EXPECT_NE(script.find("'diagonal'"), std::string::npos);
   EXPECT_EQ(script.find("0.12346"), std::string::npos);
-  EXPECT_EQ(study::scatter_plot(axes, {{"nothing", {{-1.0, 1.0}}, 1}}), "");
+  EXPECT_EQ(page::scatter_plot(axes, {{"nothing", {{-1.0, 1.0}}, 1}}), "");
 }
 
 }  // namespace

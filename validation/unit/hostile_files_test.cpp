@@ -7,8 +7,8 @@
 
 #include "exactff/obj.h"
 #include "exactff/receiver.h"
-#include "scene/nearest_names.h"
 #include "support/program.h"
+#include "text/nearest_names.h"
 
 namespace exactff {
 namespace {
@@ -110,11 +110,11 @@ TEST(HostileFiles, TheClosestOfManyAlikeNamesAreFound) {
   std::vector<std::string> patches;
   for (int i = 0; i < 20'000; ++i) patches.push_back("patch_with_a_similar_name_" + std::to_string(i));
   const std::vector<std::string_view> names(patches.begin(), patches.end());
-  EXPECT_EQ(nearest_names(names, "PATCH_with_a_similar_nam_17", 2),
+  EXPECT_EQ(text::nearest_names(names, "PATCH_with_a_similar_nam_17", 2),
             (std::vector<std::string_view>{names[17], names[1]}));
-  EXPECT_EQ(edit_distance("kitten", "sitting", 10), 3U);
-  EXPECT_EQ(edit_distance("kitten", "sitting", 3), 3U);
-  EXPECT_GT(edit_distance("kitten", "sitting", 2), 2U);
+  EXPECT_EQ(text::edit_distance("kitten", "sitting", 10), 3U);
+  EXPECT_EQ(text::edit_distance("kitten", "sitting", 3), 3U);
+  EXPECT_GT(text::edit_distance("kitten", "sitting", 2), 2U);
 }
 
 TEST(HostileFiles, MaterialFilesThatAreNoneAreNeverWaitedFor) {

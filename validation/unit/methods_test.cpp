@@ -27,7 +27,7 @@ TEST(MethodRegistry, EveryMethodDescribesItselfAndItsSettings) {
   for (const Method* method : methods::all_methods()) {
     EXPECT_FALSE(method->summary.empty()) << method->name;
     const std::string text = methods::description(*method);
-    for (const methods::SettingSpec& spec : method->settings) {
+    for (const SettingSpec& spec : method->settings) {
       EXPECT_FALSE(spec.meaning.empty()) << method->name << ' ' << spec.name;
       EXPECT_NE(text.find(spec.name + "="), std::string::npos) << text;
     }
@@ -77,7 +77,7 @@ TEST(MethodSettings, NumbersThatAreNoneAreRefused) {
 }
 
 TEST(MethodSettings, AProgramThatAsksForWhatIsNotThereIsWrong) {
-  const methods::Settings settings = methods::method_named("hemicube").defaults();
+  const Settings settings = methods::method_named("hemicube").defaults();
   EXPECT_THROW((void)settings.number("resolution"), std::logic_error);  // a whole number
   EXPECT_THROW((void)settings.whole("size"), std::logic_error);
 }
@@ -268,7 +268,7 @@ struct Guess : methods::Evaluator {
 
 struct GuessOnScene : methods::PreparedScene {
   using PreparedScene::PreparedScene;
-  [[nodiscard]] std::unique_ptr<methods::Evaluator> configure(const methods::Settings& settings) const override {
+  [[nodiscard]] std::unique_ptr<methods::Evaluator> configure(const Settings& settings) const override {
     auto guess = std::make_unique<Guess>();
     guess->scene = &scene();
     guess->factor = settings.number("factor");
@@ -280,7 +280,7 @@ TEST(MethodRegistry, TakesAMethodOfTheUsersOwn) {
   Method guess{.name = "guess",
                .summary = "a guess",
                .source = "",
-               .settings = {methods::number_setting("factor", 1.0, 0.0, 10.0, "a factor on everything")},
+               .settings = {number_setting("factor", 1.0, 0.0, 10.0, "a factor on everything")},
                .prepare = [](const Scene& scene) { return std::make_unique<GuessOnScene>(scene); }};
   methods::add_method(guess);
   const Scene room = furnished_room();

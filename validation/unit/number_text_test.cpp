@@ -1,4 +1,4 @@
-#include "scene/number_text.h"
+#include "text/number_text.h"
 
 #include <gtest/gtest.h>
 
@@ -49,76 +49,77 @@ TEST(NumberText, ReadsDecimalsWithCorrectRounding) {
       {"0.0000001e8", 10.0},
   };
   for (const Accepted& entry : table) {
-    const ParsedNumber number = parse_number(entry.text);
-    EXPECT_EQ(number.fault, NumberFault::kNone) << entry.text;
+    const text::ParsedNumber number = text::parse_number(entry.text);
+    EXPECT_EQ(number.fault, text::NumberFault::kNone) << entry.text;
     EXPECT_EQ(std::bit_cast<std::uint64_t>(number.value), std::bit_cast<std::uint64_t>(entry.value)) << entry.text;
   }
 }
 
 TEST(NumberText, DigitsAndExponentMayBalance) {
   const std::string zeros(500, '0');
-  EXPECT_EQ(parse_number("1" + zeros + "e-500").value, 1.0);
-  EXPECT_EQ(parse_number("0." + zeros + "25e501").value, 2.5);
-  EXPECT_EQ(parse_number("0." + zeros + "25").value, 0.0);
+  EXPECT_EQ(text::parse_number("1" + zeros + "e-500").value, 1.0);
+  EXPECT_EQ(text::parse_number("0." + zeros + "25e501").value, 2.5);
+  EXPECT_EQ(text::parse_number("0." + zeros + "25").value, 0.0);
 }
 
 TEST(NumberText, ATieBelowTheSmallestDenormalIsDecidedByTheLastDigit) {
   kernel::Integer five_to_1075;
   mpz_ui_pow_ui(five_to_1075.get_mpz_t(), 5, 1075);
   const std::string digits = five_to_1075.get_str();  // 2^-1075 = 5^1075 / 10^1075
-  EXPECT_EQ(parse_number(digits + "e-1075").value, 0.0);
-  EXPECT_EQ(parse_number(digits + "1e-1076").value, 0x1p-1074);
+  EXPECT_EQ(text::parse_number(digits + "e-1075").value, 0.0);
+  EXPECT_EQ(text::parse_number(digits + "1e-1076").value, 0x1p-1074);
 }
 
 TEST(NumberText, RejectsWhatIsNoNumber) {
   const struct {
     std::string text;
-    NumberFault fault;
+    text::NumberFault fault;
   } table[] = {
-      {"", NumberFault::kNotANumber},
-      {"+", NumberFault::kNotANumber},
-      {"-", NumberFault::kNotANumber},
-      {".", NumberFault::kNotANumber},
-      {"+-1", NumberFault::kNotANumber},
-      {"--1", NumberFault::kNotANumber},
-      {"e5", NumberFault::kNotANumber},
-      {"1e", NumberFault::kNotANumber},
-      {"1e+", NumberFault::kNotANumber},
-      {"1.2.3", NumberFault::kNotANumber},
-      {"1x", NumberFault::kNotANumber},
-      {"1 ", NumberFault::kNotANumber},
-      {" 1", NumberFault::kNotANumber},
-      {"1f", NumberFault::kNotANumber},
-      {"1d3", NumberFault::kNotANumber},
-      {"nan", NumberFault::kNotFinite},
-      {"-NaN", NumberFault::kNotFinite},
-      {"nan(0x1)", NumberFault::kNotFinite},
-      {"inf", NumberFault::kNotFinite},
-      {"+Infinity", NumberFault::kNotFinite},
-      {"-1.#IND", NumberFault::kNotFinite},
-      {"1.#QNAN", NumberFault::kNotFinite},
-      {"0x10", NumberFault::kHexadecimal},
-      {"-0X1p3", NumberFault::kHexadecimal},
-      {"1,5", NumberFault::kComma},
-      {"1,5,5", NumberFault::kNotANumber},
-      {"1e400", NumberFault::kTooLarge},
-      {"-1e400", NumberFault::kTooLarge},
-      {"1.7976931348623159e308", NumberFault::kTooLarge},
-      {"1e99999999999999999999", NumberFault::kTooLarge},
+      {"", text::NumberFault::kNotANumber},
+      {"+", text::NumberFault::kNotANumber},
+      {"-", text::NumberFault::kNotANumber},
+      {".", text::NumberFault::kNotANumber},
+      {"+-1", text::NumberFault::kNotANumber},
+      {"--1", text::NumberFault::kNotANumber},
+      {"e5", text::NumberFault::kNotANumber},
+      {"1e", text::NumberFault::kNotANumber},
+      {"1e+", text::NumberFault::kNotANumber},
+      {"1.2.3", text::NumberFault::kNotANumber},
+      {"1x", text::NumberFault::kNotANumber},
+      {"1 ", text::NumberFault::kNotANumber},
+      {" 1", text::NumberFault::kNotANumber},
+      {"1f", text::NumberFault::kNotANumber},
+      {"1d3", text::NumberFault::kNotANumber},
+      {"nan", text::NumberFault::kNotFinite},
+      {"-NaN", text::NumberFault::kNotFinite},
+      {"nan(0x1)", text::NumberFault::kNotFinite},
+      {"inf", text::NumberFault::kNotFinite},
+      {"+Infinity", text::NumberFault::kNotFinite},
+      {"-1.#IND", text::NumberFault::kNotFinite},
+      {"1.#QNAN", text::NumberFault::kNotFinite},
+      {"0x10", text::NumberFault::kHexadecimal},
+      {"-0X1p3", text::NumberFault::kHexadecimal},
+      {"1,5", text::NumberFault::kComma},
+      {"1,5,5", text::NumberFault::kNotANumber},
+      {"1e400", text::NumberFault::kTooLarge},
+      {"-1e400", text::NumberFault::kTooLarge},
+      {"1.7976931348623159e308", text::NumberFault::kTooLarge},
+      {"1e99999999999999999999", text::NumberFault::kTooLarge},
   };
-  for (const auto& entry : table) EXPECT_EQ(parse_number(entry.text).fault, entry.fault) << "'" << entry.text << "'";
+  for (const auto& entry : table)
+    EXPECT_EQ(text::parse_number(entry.text).fault, entry.fault) << "'" << entry.text << "'";
 }
 
 TEST(NumberText, TheLocaleDoesNotMatter) {
   const char* const changed = std::setlocale(LC_ALL, "de_DE.UTF-8");  // where it is installed
-  EXPECT_EQ(parse_number("1.5").value, 1.5);
-  EXPECT_EQ(parse_number("1,5").fault, NumberFault::kComma);
+  EXPECT_EQ(text::parse_number("1.5").value, 1.5);
+  EXPECT_EQ(text::parse_number("1,5").fault, text::NumberFault::kComma);
   if (changed != nullptr) std::setlocale(LC_ALL, "C");
 }
 
 TEST(NumberText, MessagesQuoteTheTextAndCutItShort) {
-  EXPECT_EQ(describe(NumberFault::kTooLarge, "1e400"), "'1e400' is too large for a double");
-  EXPECT_EQ(describe(NumberFault::kNotANumber, std::string(50, 'x')),
+  EXPECT_EQ(describe(text::NumberFault::kTooLarge, "1e400"), "'1e400' is too large for a double");
+  EXPECT_EQ(describe(text::NumberFault::kNotANumber, std::string(50, 'x')),
             "'" + std::string(40, 'x') + "...' is not a number");
 }
 

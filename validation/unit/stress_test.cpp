@@ -16,7 +16,6 @@
 #include "stress/report_page.h"
 #include "stress/stage.h"
 #include "stress/tables.h"
-#include "stress/words.h"
 #include "support/program.h"
 
 namespace exactff::stress {
@@ -243,14 +242,14 @@ TEST(Stress, AnUnknownFamilyIsAnInputErrorThatNamesTheKnownOnes) {
 }
 
 TEST(Stress, StopsWhenItIsCancelled) {
-  EXPECT_THROW((void)run({{"shrink"}, 2, {}}, {{}, [] { return true; }}), study::Cancelled);
+  EXPECT_THROW((void)run({{"shrink"}, 2, {}}, {{}, [] { return true; }}), Cancelled);
 }
 
 TEST(Stress, TheReportHoldsEveryFamilyAndFetchesNothing) {
   const Report report = run({{"crack", "crack-ulp"}, 2, "exactff stress <&>"});
-  study::DrawnFigures drawn;
+  page::DrawnFigures drawn;
   for (const FamilyResult& family : report.families) {
-    for (study::Figure& figure : figures(family)) drawn.figures.push_back({std::move(figure), "<svg></svg>"});
+    for (page::Figure& figure : figures(family)) drawn.figures.push_back({std::move(figure), "<svg></svg>"});
   }
   ASSERT_EQ(drawn.figures.size(), 6U);
   const std::string page = report_page(report, drawn);

@@ -1,8 +1,9 @@
 // The file that describes a study.
-#include "cli/study_file.h"
+#include "report/study_file.h"
 
 #include <gtest/gtest.h>
 
+#include "exactff/report.h"
 #include "support/program.h"
 
 namespace exactff::cli {
@@ -12,7 +13,9 @@ using Words = std::vector<std::string>;
 
 class StudyFileReader : public ::testing::Test {
  protected:
-  StudyFile read(const std::string& text) const { return read_study_file(directory_.write("a.study", text)); }
+  report::StudyFile read(const std::string& text) const {
+    return report::parse_study_file(directory_.write("a.study", text));
+  }
   // The problems of a file, without its folder.
   std::string complaint(const std::string& text) const {
     try {
@@ -30,7 +33,7 @@ class StudyFileReader : public ::testing::Test {
 };
 
 TEST_F(StudyFileReader, TakesTitleScenesAndExperiments) {
-  const StudyFile study = read(
+  const report::StudyFile study = read(
       "# what this is\n"
       "title  Form factors of \"rooms\"  \n"
       "\n"
@@ -73,11 +76,11 @@ TEST_F(StudyFileReader, WithNothingToDoIsRefused) {
 }
 
 TEST_F(StudyFileReader, ThatIsNotThereIsNamed) {
-  EXPECT_THROW((void)read_study_file(directory_.path() / "none.study"), InputError);
+  EXPECT_THROW((void)report::parse_study_file(directory_.path() / "none.study"), InputError);
 }
 
 TEST(SplitWords, TakesWhatQuotesHold) {
-  const auto split = [](const char* line) { return split_words(line, "f", 1); };
+  const auto split = [](const char* line) { return report::split_words(line, "f", 1); };
   EXPECT_EQ(split(""), Words{});
   EXPECT_EQ(split("  a\tb  "), (Words{"a", "b"}));
   EXPECT_EQ(split("--title=\"two words\" 'it is \"so\"'"), (Words{"--title=two words", "it is \"so\""}));
@@ -89,11 +92,11 @@ TEST(SplitWords, TakesWhatQuotesHold) {
 }
 
 TEST(StudyFiles, AreToldByTheirNames) {
-  EXPECT_TRUE(is_study_file("a.study"));
-  EXPECT_TRUE(is_study_file("/b/a.b.study"));
-  EXPECT_FALSE(is_study_file("a.obj"));
-  EXPECT_FALSE(is_study_file("study"));
-  EXPECT_FALSE(is_study_file("@teapot"));
+  EXPECT_TRUE(report::is_study_file("a.study"));
+  EXPECT_TRUE(report::is_study_file("/b/a.b.study"));
+  EXPECT_FALSE(report::is_study_file("a.obj"));
+  EXPECT_FALSE(report::is_study_file("study"));
+  EXPECT_FALSE(report::is_study_file("@teapot"));
 }
 
 }  // namespace

@@ -9,11 +9,11 @@
 #include <string>
 
 #include "exactff/study.h"
+#include "report/report.h"
 #include "study/kept_work.h"
-#include "study/report.h"
-#include "study/words.h"
 #include "support/program.h"
 #include "unit/study_support.h"
+#include "work/fields.h"
 
 namespace exactff::study {
 namespace {
@@ -207,7 +207,8 @@ TEST_F(StudyJournal, GivesKeptWorkBackInsteadOfComputing) {
               ++computed;
               result = 1.5;
             },
-            [&](WordWriter& words) { words.put(result); }, [&](WordReader& words) { result = words.number(); });
+            [&](work::WordWriter& words) { words.put(result); },
+            [&](work::WordReader& words) { result = words.number(); });
     EXPECT_EQ(result, 1.5);
   };
   Journal journal(file_, Existing::kRefuse);
@@ -226,14 +227,14 @@ TEST_F(StudyJournal, GivesKeptWorkBackInsteadOfComputing) {
 // --- words ---------------------------------------------------------------------------------------------------
 
 TEST(Words, ReadBackAsTheyWereWritten) {
-  WordWriter writer;
+  work::WordWriter writer;
   writer.put(-0.0);
   writer.put(std::numeric_limits<double>::quiet_NaN());
   writer.put(std::uint64_t{1} << 63);
   for (const char* text : {"", "seven77", "eight888", "nine99999"}) writer.put(std::string_view(text));
   writer.put(std::vector<double>{1, 2, 3});
   writer.put(std::vector<double>{});
-  WordReader reader(writer.bytes());
+  work::WordReader reader(writer.bytes());
   EXPECT_TRUE(std::signbit(reader.number()));
   EXPECT_TRUE(std::isnan(reader.number()));
   EXPECT_EQ(reader.word(), std::uint64_t{1} << 63);
@@ -245,13 +246,13 @@ TEST(Words, ReadBackAsTheyWereWritten) {
 }
 
 TEST(Words, CutAnywhereAreTornAndDoNoHarm) {
-  WordWriter writer;
+  work::WordWriter writer;
   writer.put(1.0);
   writer.put(std::string_view("a text of some length"));
   writer.put(std::vector<double>{1, 2});
   const std::string whole = writer.bytes();
   for (std::size_t cut = 0; cut <= whole.size(); ++cut) {
-    WordReader reader(std::string_view(whole).substr(0, cut));
+    work::WordReader reader(std::string_view(whole).substr(0, cut));
     (void)reader.number();
     (void)reader.text();
     (void)reader.numbers();
@@ -262,14 +263,14 @@ TEST(Words, CutAnywhereAreTornAndDoNoHarm) {
 TEST(Words, ThatPromiseMoreThanThereIsAreTorn) {
   const std::vector<std::uint64_t> counts = {2, ~std::uint64_t{0}, std::uint64_t{1} << 61};
   for (const std::uint64_t count : counts) {
-    WordWriter writer;
+    work::WordWriter writer;
     writer.put(count);
     writer.put(1.0);
-    WordReader numbers(writer.bytes());
+    work::WordReader numbers(writer.bytes());
     EXPECT_TRUE(numbers.numbers().empty());
     EXPECT_TRUE(numbers.torn());
     if (count == 2) continue;
-    WordReader text(writer.bytes());
+    work::WordReader text(writer.bytes());
     EXPECT_EQ(text.text(), "");
     EXPECT_TRUE(text.torn());
   }
@@ -277,8 +278,8 @@ TEST(Words, ThatPromiseMoreThanThereIsAreTorn) {
 
 // --- chapters ------------------------------------------------------------------------------------------------
 
-Chapter a_chapter() {
-  Chapter chapter{.name = "name", .title = "A title"};
+page::Chapter a_chapter() {
+  page::Chapter chapter{.name = "name", .title = "A title"};
   chapter.paragraphs = {"One.", "", "Three, with ε."};
   chapter.figures = {{"f1", "Figure", "caption", "plot 1\n", false}, {"f2", "Map", "<b>", "plot 2\n", true}};
   chapter.values = {{"name.csv", "what it holds", "# exactff\nx\n1\n"}};
@@ -288,8 +289,8 @@ Chapter a_chapter() {
 }
 
 TEST(ChapterBytes, ReadBackAsTheyWereWritten) {
-  const Chapter chapter = a_chapter();
-  const auto back = chapter_of(to_bytes(chapter));
+  const page::Chapter chapter = a_chapter();
+  const auto back = page::chapter_of(page::to_bytes(chapter));
   ASSERT_TRUE(back.has_value());
   EXPECT_EQ(back->name, "name");
   EXPECT_EQ(back->title, "A title");
@@ -305,15 +306,15 @@ TEST(ChapterBytes, ReadBackAsTheyWereWritten) {
   EXPECT_EQ(back->times[0].holds, "seconds");
   ASSERT_EQ(back->left_out.size(), 1U);
   EXPECT_EQ(back->left_out[0].why, "too far");
-  EXPECT_EQ(to_bytes(*back), to_bytes(chapter));
+  EXPECT_EQ(page::to_bytes(*back), page::to_bytes(chapter));
 }
 
 TEST(ChapterBytes, CutAnywhereOrTooLongAreNone) {
-  const std::string whole = to_bytes(a_chapter());
+  const std::string whole = page::to_bytes(a_chapter());
   for (std::size_t cut = 0; cut < whole.size(); ++cut) {
-    EXPECT_FALSE(chapter_of(std::string_view(whole).substr(0, cut)).has_value()) << cut;
+    EXPECT_FALSE(page::chapter_of(std::string_view(whole).substr(0, cut)).has_value()) << cut;
   }
-  EXPECT_FALSE(chapter_of(whole + '\0').has_value());
+  EXPECT_FALSE(page::chapter_of(whole + '\0').has_value());
 }
 
 // --- studies -------------------------------------------------------------------------------------------------

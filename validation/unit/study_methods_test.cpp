@@ -8,18 +8,19 @@
 #include <string>
 
 #include "exactff/study.h"
+#include "report/report_page.h"
+#include "report/verdicts.h"
 #include "study/ladders.h"
 #include "study/method_runs.h"
 #include "study/profile.h"
-#include "study/report_page.h"
 #include "study/settings.h"
 #include "study/shadow_edges.h"
 #include "study/silent_errors.h"
 #include "study/statistics.h"
-#include "study/text.h"
 #include "study/timing.h"
-#include "study/verdicts.h"
 #include "support/complaint.h"
+#include "text/escape.h"
+#include "text/phrases.h"
 #include "unit/study_support.h"
 
 namespace exactff::study {
@@ -301,7 +302,7 @@ struct OffOnScene : methods::PreparedScene {
   std::unique_ptr<methods::PreparedSource> prepare_source(const Selection& selection) const override {
     return exact->prepare_source(selection);
   }
-  std::unique_ptr<methods::Evaluator> configure(const methods::Settings& settings) const override {
+  std::unique_ptr<methods::Evaluator> configure(const Settings& settings) const override {
     auto evaluator = std::make_unique<OffByOneOverN>();
     evaluator->exact = exact->configure(methods::method_named("exact").defaults());
     evaluator->n = settings.number("n");
@@ -314,7 +315,7 @@ TEST(MethodStudy, TakesAUsersMethodLikeAnyOther) {
   methods::add_method({.name = "off-by-one-over-n",
                        .summary = "the exact value plus 1 / n",
                        .source = "",
-                       .settings = {methods::number_setting("n", 1.0, 1.0, 1e6, "how little it is off")},
+                       .settings = {number_setting("n", 1.0, 1.0, 1e6, "how little it is off")},
                        .prepare = [](const Scene& scene) { return std::make_unique<OffOnScene>(scene); }});
   const Scene scene = small_room(true);
   Request request = request_with_methods(scene, 1);
@@ -343,7 +344,7 @@ struct Constant : methods::Evaluator {
 
 struct ConstantOnScene : methods::PreparedScene {
   using PreparedScene::PreparedScene;
-  std::unique_ptr<methods::Evaluator> configure(const methods::Settings& settings) const override {
+  std::unique_ptr<methods::Evaluator> configure(const Settings& settings) const override {
     auto evaluator = std::make_unique<Constant>();
     evaluator->value = 1.5;
     if (settings.word("of") == "nan") evaluator->value = std::numeric_limits<double>::quiet_NaN();
@@ -356,7 +357,7 @@ TEST(MethodStudy, CountsValuesThatAreNoNumbersOrLeaveTheRange) {
   methods::add_method({.name = "constant",
                        .summary = "the same everywhere",
                        .source = "",
-                       .settings = {methods::word_setting("of", {"one-and-a-half", "nan", "inf"}, "which value")},
+                       .settings = {word_setting("of", {"one-and-a-half", "nan", "inf"}, "which value")},
                        .prepare = [](const Scene& scene) { return std::make_unique<ConstantOnScene>(scene); }});
   const Scene scene = small_room(true);
   const auto study_with = [&](const std::vector<std::string>& ladders) {
@@ -367,26 +368,27 @@ TEST(MethodStudy, CountsValuesThatAreNoNumbersOrLeaveTheRange) {
     return run(std::move(request));
   };
   const Study sound = study_with({"exact", "hemicube:resolution=16"});
-  EXPECT_TRUE(range_sentences(sound).empty()) << range_sentences(sound).front();
+  EXPECT_TRUE(report::range_sentences(sound).empty()) << report::range_sentences(sound).front();
   const Study study = study_with({"exact", "constant:of=nan", "constant:of=inf", "constant"});
-  const std::vector<std::string> sentences = range_sentences(study);
+  const std::vector<std::string> sentences = report::range_sentences(study);
   ASSERT_EQ(sentences.size(), 3U);
   EXPECT_TRUE(sentences[0].starts_with("6 of 6 values of constant, nan are no finite numbers: ")) << sentences[0];
   EXPECT_TRUE(sentences[1].starts_with("6 of 6 values of constant, inf are no finite numbers: ")) << sentences[1];
   EXPECT_EQ(sentences[2],
             "6 of 6 values of constant lie outside [0, 1], by at most 0.5: the formula of the method, not rounding.");
   for (const MethodCell& cell : study.methods.cells) {
-    const bool is_number = is_exact(study, cell) || cell.ladder == 3;
-    EXPECT_EQ(std::isfinite(relative_error(study, cell)), is_number);
+    const bool is_number = report::is_exact(study, cell) || cell.ladder == 3;
+    EXPECT_EQ(std::isfinite(report::relative_error(study, cell)), is_number);
   }
-  EXPECT_EQ(cheapest(study, 1e-2), nullptr) << "a method without numbers is right to nothing";
-  for (const MethodCell* cell : pareto_front(study)) EXPECT_TRUE(std::isfinite(relative_error(study, *cell)));
-  Report report;
+  EXPECT_EQ(report::cheapest(study, 1e-2), nullptr) << "a method without numbers is right to nothing";
+  for (const MethodCell* cell : report::pareto_front(study))
+    EXPECT_TRUE(std::isfinite(report::relative_error(study, *cell)));
+  report::Report report;
   report.scenes.push_back({"", "room", study});
-  Pages pages;
+  report::Pages pages;
   pages.scenes.emplace_back();
-  const std::string page = report_page(report, pages);
-  for (const std::string& sentence : sentences) EXPECT_NE(page.find("<p>" + html(sentence)), std::string::npos);
+  const std::string page = report::report_page(report, pages);
+  for (const std::string& sentence : sentences) EXPECT_NE(page.find("<p>" + text::html(sentence)), std::string::npos);
 }
 
 TEST(MethodStudy, EndsALadderWhereItsBudgetEnds) {
@@ -657,8 +659,8 @@ TEST_F(Verdicts, TheCheapestIsTheFastestThatIsRightEnough) {
   add_wallace();
   add_control();
   const auto name = [&](double wanted, std::optional<std::size_t> ladder = {}) {
-    const MethodCell* cell = cheapest(study_, wanted, ladder);
-    return cell == nullptr ? std::string("none") : cell_name(study_, *cell);
+    const MethodCell* cell = report::cheapest(study_, wanted, ladder);
+    return cell == nullptr ? std::string("none") : report::cell_name(study_, *cell);
   };
   EXPECT_EQ(name(0.3), "wallace, splits 1");
   EXPECT_EQ(name(5e-3), "hemicube, resolution 64") << "at most, not below";
@@ -679,11 +681,11 @@ TEST_F(Verdicts, TheFrontHoldsWhatNobodyBeats) {
   add_wallace();
   add_control();
   std::vector<std::string> names;
-  for (const MethodCell* cell : pareto_front(study_)) names.push_back(cell_name(study_, *cell));
+  for (const MethodCell* cell : report::pareto_front(study_)) names.push_back(report::cell_name(study_, *cell));
   EXPECT_EQ(names, (std::vector<std::string>{"wallace, splits 1", "exact"}));
   study_.methods.cells[0].seconds = 1.0;
   names.clear();
-  for (const MethodCell* cell : pareto_front(study_)) names.push_back(cell_name(study_, *cell));
+  for (const MethodCell* cell : report::pareto_front(study_)) names.push_back(report::cell_name(study_, *cell));
   EXPECT_EQ(names, (std::vector<std::string>{"wallace, splits 1", "hemicube, resolution 64", "hemicube, resolution 128",
                                              "wallace, splits 2", "exact"}));
 }
@@ -693,7 +695,7 @@ TEST_F(Verdicts, SayWhatTheOthersNeed) {
   add_hemicube();
   add_wallace();
   add_control();
-  EXPECT_EQ(method_sentences(study_),
+  EXPECT_EQ(report::method_sentences(study_),
             (std::vector<std::string>{
                 "On this scene the exact value takes 100 µs per receiver in the mean; the cheapest other way to be "
                 "right to 10⁻³ of the brightest receiver (RMS), hemicube, resolution 128, takes 8 times as long, and "
@@ -705,43 +707,43 @@ TEST_F(Verdicts, SayWhatTheOthersNeed) {
 TEST_F(Verdicts, SayThatNoOtherIsRightOrAsFast) {
   add_exact();
   add("hemicube:resolution=64", {{0.05, 2e-4}});
-  EXPECT_EQ(method_sentences(study_),
+  EXPECT_EQ(report::method_sentences(study_),
             (std::vector<std::string>{"On this scene the exact value takes 100 µs per receiver in the mean; no setting "
                                       "of the others that was run is right to 10⁻² of the brightest receiver (RMS).",
                                       "No other method is as fast as the exact one at any setting."}));
 }
 
 TEST_F(Verdicts, SayNothingOfExactAlone) {
-  EXPECT_TRUE(method_sentences(study_).empty());
+  EXPECT_TRUE(report::method_sentences(study_).empty());
   add_exact();
-  EXPECT_TRUE(method_sentences(study_).empty());
+  EXPECT_TRUE(report::method_sentences(study_).empty());
 }
 
 TEST_F(Verdicts, OnADarkSceneAnErrorIsNoneOrBeyondMeasure) {
   study_.exact[0].radiosity = {};
   add_hemicube();
   study_.methods.cells[0].error.rms = 0.0;
-  EXPECT_EQ(relative_error(study_, study_.methods.cells[0]), 0.0);
-  EXPECT_TRUE(std::isinf(relative_error(study_, study_.methods.cells[1])));
+  EXPECT_EQ(report::relative_error(study_, study_.methods.cells[0]), 0.0);
+  EXPECT_TRUE(std::isinf(report::relative_error(study_, study_.methods.cells[1])));
 }
 
 TEST(PowersOfTen, AreWrittenAsPeopleDo) {
-  EXPECT_EQ(power_of_ten(1e-2), "10⁻²");
-  EXPECT_EQ(power_of_ten(1e-6), "10⁻⁶");
+  EXPECT_EQ(report::power_of_ten(1e-2), "10⁻²");
+  EXPECT_EQ(report::power_of_ten(1e-6), "10⁻⁶");
 }
 
 TEST(SlopeWords, SayWhetherTheoryAgrees) {
   const Ladder random = parse_ladder("area-sampling:pattern=random,samples=4|16");
   const Ladder stratified = parse_ladder("area-sampling:pattern=stratified,samples=4|16");
   const Ladder hemicube = parse_ladder("hemicube:resolution=8|16");
-  EXPECT_EQ(slope_words({-0.51, -0.53, -0.49, 30, 5}, random, Sight::kPartly),
+  EXPECT_EQ(report::slope_words({-0.51, -0.53, -0.49, 30, 5}, random, Sight::kPartly),
             "area, random: −0.51 (−0.53 to −0.49), theory −1/2");
-  EXPECT_EQ(slope_words({-0.75, -0.8, -0.7, 30, 5}, stratified, Sight::kPartly),
+  EXPECT_EQ(report::slope_words({-0.75, -0.8, -0.7, 30, 5}, stratified, Sight::kPartly),
             "area, stratified: −0.75 (−0.8 to −0.7), theory −3/4 with one shadow edge across the source");
-  EXPECT_EQ(slope_words({-1.0, -1.0, -1.0, 1, 5}, hemicube, Sight::kVisible), "hemicube: −1");
-  const std::string shallow = slope_words({-0.55, -0.56, -0.54, 30, 5}, stratified, Sight::kPartly);
+  EXPECT_EQ(report::slope_words({-1.0, -1.0, -1.0, 1, 5}, hemicube, Sight::kVisible), "hemicube: −1");
+  const std::string shallow = report::slope_words({-0.55, -0.56, -0.54, 30, 5}, stratified, Sight::kPartly);
   EXPECT_NE(shallow.find("; shallower, since "), std::string::npos) << shallow;
-  const std::string steep = slope_words({-1.3, -1.31, -1.29, 30, 5}, stratified, Sight::kVisible);
+  const std::string steep = report::slope_words({-1.3, -1.31, -1.29, 30, 5}, stratified, Sight::kVisible);
   EXPECT_NE(steep.find("theory −1 where nothing is discontinuous; steeper, since "), std::string::npos) << steep;
 }
 

@@ -13,15 +13,17 @@
 #include <sstream>
 #include <string>
 
-#include "study/figures.h"
-#include "study/gnuplot.h"
-#include "study/report_page.h"
+#include "exactff/report.h"
+#include "page/gnuplot.h"
+#include "report/figures.h"
+#include "report/report_page.h"
+#include "report/tables.h"
 #include "study/settings.h"
 #include "study/silent_errors.h"
 #include "study/statistics.h"
-#include "study/tables.h"
-#include "study/text.h"
 #include "support/program.h"
+#include "text/escape.h"
+#include "text/phrases.h"
 #include "unit/study_support.h"
 
 namespace exactff::study {
@@ -92,31 +94,31 @@ TEST(Statistics, TheSlopeOfAPowerLawIsItsExponent) {
 // --- words and numbers -------------------------------------------------------------------------------
 
 TEST(Text, ShortestDecimalsReadBack) {
-  EXPECT_EQ(shortest(0.1), "0.1");
-  EXPECT_EQ(shortest(1e300), "1e+300");
-  EXPECT_EQ(shortest(-0.0), "-0");
-  EXPECT_EQ(shortest(5e-324), "5e-324");
+  EXPECT_EQ(text::shortest(0.1), "0.1");
+  EXPECT_EQ(text::shortest(1e300), "1e+300");
+  EXPECT_EQ(text::shortest(-0.0), "-0");
+  EXPECT_EQ(text::shortest(5e-324), "5e-324");
 }
 
 TEST(Text, ASharedPartIsNeverRoundedToNoneOrAll) {
-  EXPECT_EQ(share(0, 10), "0 %");
-  EXPECT_EQ(share(1, 100000), "under 0.1 %");
-  EXPECT_EQ(share(99999, 100000), "over 99.9 %");
-  EXPECT_EQ(share(1, 3), "33.3 %");
-  EXPECT_EQ(share(3, 3), "100 %");
+  EXPECT_EQ(text::share(0, 10), "0 %");
+  EXPECT_EQ(text::share(1, 100000), "under 0.1 %");
+  EXPECT_EQ(text::share(99999, 100000), "over 99.9 %");
+  EXPECT_EQ(text::share(1, 3), "33.3 %");
+  EXPECT_EQ(text::share(3, 3), "100 %");
 }
 
 TEST(Text, FieldsAreQuotedWhereTheyMustBe) {
-  EXPECT_EQ(csv_field("plain"), "plain");
-  EXPECT_EQ(csv_field("1,2"), "\"1,2\"");
-  EXPECT_EQ(csv_field("a \"b\""), "\"a \"\"b\"\"\"");
+  EXPECT_EQ(text::csv_field("plain"), "plain");
+  EXPECT_EQ(text::csv_field("1,2"), "\"1,2\"");
+  EXPECT_EQ(text::csv_field("a \"b\""), "\"a \"\"b\"\"\"");
 }
 
 TEST(Text, DurationsTakeTheUnitThatFits) {
-  EXPECT_EQ(duration(3.12e-7), "312 ns");
-  EXPECT_EQ(duration(4.512e-6), "4.51 µs");
-  EXPECT_EQ(duration(0.0012), "1.2 ms");
-  EXPECT_EQ(duration(125), "2 min 5 s");
+  EXPECT_EQ(text::duration(3.12e-7), "312 ns");
+  EXPECT_EQ(text::duration(4.512e-6), "4.51 µs");
+  EXPECT_EQ(text::duration(0.0012), "1.2 ms");
+  EXPECT_EQ(text::duration(125), "2 min 5 s");
 }
 
 // --- sweeps ------------------------------------------------------------------------------------------
@@ -272,7 +274,7 @@ TEST(Study, ValueTablesAreTheSameBytesForAnyNumberOfThreads) {
 
 TEST(Study, OfAllMethodsHasAllTables) {
   std::set<std::string_view> files;
-  for (const Table& table : tables()) {
+  for (const report::Table& table : report::tables()) {
     EXPECT_TRUE(table.has_rows(whole_study())) << table.file;
     EXPECT_TRUE(files.insert(table.file).second) << table.file;
   }
@@ -281,7 +283,7 @@ TEST(Study, OfAllMethodsHasAllTables) {
 
 TEST(Study, WithoutMethodsHasNoTableOfThem) {
   EXPECT_EQ(value_tables(small_study()).size(), 3U);
-  for (const Table& table : tables()) {
+  for (const report::Table& table : report::tables()) {
     EXPECT_EQ(table.has_rows(small_study()), std::string(table.file).find("method") == std::string::npos &&
                                                  table.file != "slopes.csv" && table.file != "receivers.csv" &&
                                                  table.file != "profile.csv")
@@ -290,7 +292,7 @@ TEST(Study, WithoutMethodsHasNoTableOfThem) {
 }
 
 TEST(Study, ValuesHaveARowPerReceiverAndSetting) {
-  const std::string text = text_of(tables()[0], small_study());
+  const std::string text = text_of(report::tables()[0], small_study());
   std::size_t rows = 0;
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) rows += line.starts_with('#') ? 0 : 1;
@@ -373,20 +375,20 @@ TEST(Study, StopsWhenItIsCancelled) {
 
 // The report on a study, drawn by nobody.
 struct UndrawnReport {
-  Report report;
-  Pages pages;
+  report::Report report;
+  report::Pages pages;
 
   void add(const std::string& name, const std::string& title, const Study& study) {
-    Page page;
+    report::Page page;
     page.left_out = study.left_out;
-    for (Figure& figure : figures(study, page.left_out)) {
+    for (page::Figure& figure : report::figures(study, page.left_out)) {
       if (!name.empty()) figure.id = name + '-' + figure.id;
       page.drawn.figures.push_back({std::move(figure), "<svg></svg>"});
     }
     report.scenes.push_back({name, title, study});
     pages.scenes.push_back(std::move(page));
   }
-  [[nodiscard]] std::string text() const { return report_page(report, pages); }
+  [[nodiscard]] std::string text() const { return report::report_page(report, pages); }
 };
 
 void expect_nothing_fetched(const std::string& text) {
@@ -402,7 +404,7 @@ TEST(Study, TheReportHoldsEveryFigureAndFetchesNothing) {
     const auto& drawn = undrawn.pages.scenes.front().drawn.figures;
     ASSERT_GE(drawn.size(), study == &whole_study() ? 12U : 6U);
     const std::string text = undrawn.text();
-    for (const DrawnFigure& one : drawn) {
+    for (const page::DrawnFigure& one : drawn) {
       EXPECT_NE(text.find("<figure id=\"" + one.figure.id + "\""), std::string::npos) << one.figure.id;
     }
     expect_nothing_fetched(text);
@@ -416,7 +418,7 @@ TEST(Study, AReportOnSeveralScenesAndChaptersHoldsThemAll) {
   undrawn.report.title = "Two <rooms>";
   undrawn.add("one", "Room 1", small_study());
   undrawn.add("two", "Room & 2", whole_study());
-  Chapter chapter{.name = "a-chapter", .title = "What was <found>"};
+  page::Chapter chapter{.name = "a-chapter", .title = "What was <found>"};
   chapter.paragraphs = {"One is less than two: 1 < 2."};
   chapter.values = {{"a-chapter.csv", "a number", "# of one\nx\n1\n"}};
   undrawn.report.chapters.push_back(chapter);
@@ -439,7 +441,8 @@ TEST(Study, AReportOnSeveralScenesAndChaptersHoldsThemAll) {
 TEST(Study, EveryFigureHasItsOwnName) {
   std::vector<LeftOut> left_out;
   std::set<std::string> ids;
-  for (const Figure& figure : figures(whole_study(), left_out)) EXPECT_TRUE(ids.insert(figure.id).second) << figure.id;
+  for (const page::Figure& figure : report::figures(whole_study(), left_out))
+    EXPECT_TRUE(ids.insert(figure.id).second) << figure.id;
 }
 
 TEST(InlinedSvg, HasItsOwnIdsAndNothingFromOutside) {
@@ -447,7 +450,7 @@ TEST(InlinedSvg, HasItsOwnIdsAndNothingFromOutside) {
       "<?xml version=\"1.0\"?>\n<svg viewBox=\"0 0 1 1\"\n xmlns=\"http://www.w3.org/2000/svg\"\n "
       "xmlns:xlink=\"http://www.w3.org/1999/xlink\">\n<title>x</title><circle id='p'/><use xlink:href='#p'/>"
       "<g color=\"black\" fill=\"black\"/></svg>\n";
-  const std::string text = inlined(svg, "fig", "A \"title\"");
+  const std::string text = page::inlined(svg, "fig", "A \"title\"");
   EXPECT_TRUE(text.starts_with("<svg role=\"img\" aria-label=\"A &quot;title&quot;\""));
   EXPECT_NE(text.find("id='fig-p'"), std::string::npos);
   EXPECT_NE(text.find("href='#fig-p'"), std::string::npos);
@@ -462,15 +465,15 @@ TEST(InlinedSvg, ComesFromEveryFigureThatGnuplotDraws) {
                                                "C");  // as on a bare machine: the scripts are UTF-8 all the same
   const validation::TemporaryDirectory scratch;
   std::vector<LeftOut> left_out;
-  std::vector<Figure> all = figures(small_study(), left_out);
+  std::vector<page::Figure> all = report::figures(small_study(), left_out);
   std::set<bool> kinds;
-  for (const Figure& figure : all) {
+  for (const page::Figure& figure : all) {
     if (!kinds.insert(figure.map).second) continue;  // one line figure and one map: gnuplot takes its time
-    const PlotResult plot = run_gnuplot(figure.script, scratch.path());
-    if (plot.outcome == PlotResult::Outcome::kNoProgram) GTEST_SKIP() << "gnuplot is not installed";
-    EXPECT_EQ(plot.outcome, PlotResult::Outcome::kDrawn) << plot.message;
+    const page::PlotResult plot = page::run_gnuplot(figure.script, scratch.path());
+    if (plot.outcome == page::PlotResult::Outcome::kNoProgram) GTEST_SKIP() << "gnuplot is not installed";
+    EXPECT_EQ(plot.outcome, page::PlotResult::Outcome::kDrawn) << plot.message;
     EXPECT_EQ(plot.message, "") << "gnuplot warned about " << figure.id;
-    EXPECT_EQ(inlined(plot.svg, figure.id, figure.title).find("http"), std::string::npos);
+    EXPECT_EQ(page::inlined(plot.svg, figure.id, figure.title).find("http"), std::string::npos);
   }
   EXPECT_EQ(kinds.size(), 2U);
 }
@@ -499,31 +502,31 @@ class OutputFolder : public ::testing::Test {
 
 TEST_F(OutputFolder, OfAStrangerIsRefused) {
   fs::create_directories(root_ / "out");
-  EXPECT_NO_THROW(check_output_folder(root_ / "out"));
+  EXPECT_NO_THROW(report::check_output_folder(root_ / "out"));
   std::ofstream(root_ / "out" / "thesis.txt") << "do not lose me";
-  EXPECT_THROW(check_output_folder(root_ / "out"), InputError);
+  EXPECT_THROW(report::check_output_folder(root_ / "out"), InputError);
   std::ofstream(root_ / "file") << "x";
-  EXPECT_THROW(check_output_folder(root_ / "file"), InputError);
+  EXPECT_THROW(report::check_output_folder(root_ / "file"), InputError);
 }
 
 TEST_F(OutputFolder, OfAnEarlierStudyMayBeReplaced) {
   fs::create_directories(root_ / "out");
   std::ofstream(root_ / "out" / "report.html") << "<!doctype html>\n";
-  EXPECT_THROW(check_output_folder(root_ / "out"), InputError) << "a page of anybody's";
+  EXPECT_THROW(report::check_output_folder(root_ / "out"), InputError) << "a page of anybody's";
   std::ofstream(root_ / "out" / "room_summary.csv") << "# exactff 0.1.0 compare: summary\n";
-  EXPECT_NO_THROW(check_output_folder(root_ / "out" / ""));
+  EXPECT_NO_THROW(report::check_output_folder(root_ / "out" / ""));
   std::ofstream(root_ / "out" / "values.csv") << "a,b\n";
-  EXPECT_THROW(check_output_folder(root_ / "out"), InputError) << "a table of somebody else's";
+  EXPECT_THROW(report::check_output_folder(root_ / "out"), InputError) << "a table of somebody else's";
 }
 
 TEST_F(OutputFolder, OfACancelledStudyIsNotThere) {
   const Hooks hooks{{}, [] { return true; }};
-  EXPECT_THROW((void)write(small_study(), root_ / "out", hooks), Cancelled);
+  EXPECT_THROW((void)report::write(small_study(), root_ / "out", hooks), Cancelled);
   EXPECT_TRUE(names().empty());
 }
 
 TEST_F(OutputFolder, OfSeveralScenesHasTheirNamesBeforeTheFiles) {
-  Report report;
+  report::Report report;
   report.title = "rooms";
   report.scenes.push_back({"one", "One", small_study()});
   report.scenes.push_back({"two", "Two", small_study()});
@@ -538,16 +541,16 @@ TEST_F(OutputFolder, OfSeveralScenesHasTheirNamesBeforeTheFiles) {
   EXPECT_FALSE(fs::exists(root_ / "out" / "values.csv"));
   const std::string table = validation::text_of(root_ / "out" / "more.csv");
   EXPECT_TRUE(table.starts_with("# exactff ") && table.ends_with(" compare: one\n# of one\nx\n1\n")) << table;
-  EXPECT_NO_THROW(check_output_folder(root_ / "out"));
+  EXPECT_NO_THROW(report::check_output_folder(root_ / "out"));
 }
 
 TEST_F(OutputFolder, WithoutGnuplotHoldsTablesAndAReportThatSaysSo) {
   const validation::EnvironmentVariable path("PATH", root_);
-  const auto messages = write(small_study(), root_ / "out");
+  const auto messages = report::write(small_study(), root_ / "out");
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_NE(messages.front().find("gnuplot"), std::string::npos);
   EXPECT_EQ(names(), std::set<std::string>{"out"});
-  for (const Table& table : tables()) {
+  for (const report::Table& table : report::tables()) {
     EXPECT_EQ(fs::exists(root_ / "out" / table.file), table.has_rows(small_study())) << table.file;
   }
   EXPECT_TRUE(fs::exists(root_ / "out" / "report.html"));

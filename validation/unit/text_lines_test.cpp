@@ -1,4 +1,4 @@
-#include "scene/text_lines.h"
+#include "text/text_lines.h"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@ using Lines = std::vector<std::pair<std::size_t, std::string>>;
 
 Lines read(std::string_view text) {
   Lines result;
-  TextLines lines(text);
-  for (TextLine line; lines.next(line);) {
+  text::TextLines lines(text);
+  for (text::TextLine line; lines.next(line);) {
     if (!line.text.empty()) result.emplace_back(line.number, line.text);
   }
   return result;
@@ -36,12 +36,12 @@ TEST(TextLines, CommentsStartAtAWordAndNeverContinue) {
 TEST(TextLines, ByteOrderMarkAndOuterBlanksVanish) { EXPECT_EQ(read("\xEF\xBB\xBF\t v  \t"), (Lines{{1, "v"}})); }
 
 TEST(TextLines, WordsAreSeparatedByBlanksAndTabs) {
-  EXPECT_EQ(words(" a\tb  c "), (std::vector<std::string_view>{"a", "b", "c"}));
-  EXPECT_TRUE(words(" \t").empty());
+  EXPECT_EQ(text::words(" a\tb  c "), (std::vector<std::string_view>{"a", "b", "c"}));
+  EXPECT_TRUE(text::words(" \t").empty());
 }
 
 TEST(ProblemList, KeepsAThousandAndCountsTheRest) {
-  ProblemList list;
+  text::ProblemList list;
   for (std::size_t i = 0; i < 1500; ++i) list.add({"f", 1500 - i, "wrong", "", ""});
   try {
     list.throw_if_any();

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "scene/csv_lines.h"
 #include "support/program.h"
 #include "text/characters.h"
+#include "text/csv_lines.h"
 #include "text/escape.h"
 #include "text/json_document.h"
 
@@ -184,7 +184,7 @@ TEST(Json, ReadsBackEveryCharacterAndShowsBytesOfNone) {
 // As one field of three, through the reader that check uses.
 void expect_reads_back(const std::string& text) {
   std::vector<std::string> fields;
-  ASSERT_TRUE(split_csv_line("first," + csv_field(text) + ",last", fields)) << printable(text);
+  ASSERT_TRUE(text::split_csv_line("first," + csv_field(text) + ",last", fields)) << printable(text);
   ASSERT_EQ(fields.size(), 3U) << printable(text);
   EXPECT_EQ(fields[1], text) << printable(text);
 }

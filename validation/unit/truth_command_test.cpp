@@ -92,9 +92,9 @@ TEST_F(TruthCommand, ASignalKeepsWhatIsFinishedAndTellsHowToGoOn) {
     running.send(signal);
     EXPECT_EQ(running.wait(), 128 + signal);
     EXPECT_TRUE(running.error().starts_with("exactff: interrupted; ")) << running.error();
-    EXPECT_NE(running.error().find(" rows are kept in " + journal_.string() +
-                                   "; the same command with --resume goes on\n"),
-              std::string::npos)
+    EXPECT_NE(
+        running.error().find(" rows are kept in " + journal_.string() + "; the same command with --resume goes on\n"),
+        std::string::npos)
         << running.error();
   }
   EXPECT_EQ(run(kGrid, file_, {"--resume"}).exit_code, 0);

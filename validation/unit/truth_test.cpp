@@ -14,12 +14,12 @@
 #include <thread>
 
 #include "exactff/obj.h"
+#include "exactff/team.h"
 #include "exactff/version.h"
 #include "support/program.h"
 #include "truth/blocks.h"
 #include "truth/journal.h"
 #include "truth/rows.h"
-#include "truth/team.h"
 #include "truth/workers.h"
 
 namespace exactff::truth {
@@ -77,7 +77,7 @@ class Truth : public testing::Test {
     std::atomic<int> left = rows;
     Hooks hooks;
     hooks.cancelled = [&left] { return left-- <= 0; };
-    EXPECT_THROW(write(std::move(asked), file_, Existing::kResume, hooks), study::Cancelled);
+    EXPECT_THROW(write(std::move(asked), file_, Existing::kResume, hooks), Cancelled);
   }
 
   // What is wrong, as the user reads it; empty if nothing is.
@@ -459,9 +459,9 @@ TEST_F(Truth, SlowRowsAreTold) {
 
 TEST_F(Truth, ProgressGoesFromWhatWasThereToAll) {
   interrupt(request(10), 100);
-  std::vector<study::Progress> told;
+  std::vector<Progress> told;
   Hooks hooks;
-  hooks.progress = [&](const study::Progress& progress) { told.push_back(progress); };
+  hooks.progress = [&](const Progress& progress) { told.push_back(progress); };
   const Summary summary = write(request(10), file_, Existing::kResume, hooks);
   EXPECT_EQ(told.front().done, summary.resumed);
   EXPECT_EQ(told.back().done, 200U);
@@ -504,7 +504,7 @@ TEST_F(TruthShards, InterruptionsDoNotShow) {
     std::atomic<int> left = rows;
     Hooks hooks;
     hooks.cancelled = [&left] { return left-- <= 0; };
-    EXPECT_THROW(write(shard(10, 1, 2), file_, Existing::kResume, hooks), study::Cancelled);
+    EXPECT_THROW(write(shard(10, 1, 2), file_, Existing::kResume, hooks), Cancelled);
   }
   EXPECT_NE(merge_refusal({journal_, parts[1]}).find("is the journal of a run that was not finished"),
             std::string::npos);
@@ -668,10 +668,10 @@ TEST_F(TruthTeam, AnInterruptedTeamKeepsWhatItFinished) {
   fs::remove(file_);
   std::atomic<int> followers_rows = 600, leaders_rows = 300;
   const auto asked = [this](int) { return request(40); };
-  EXPECT_EQ(message_of<study::Cancelled>(run(4, asked, slow(), interrupted_after(followers_rows))), "cancelled");
+  EXPECT_EQ(message_of<Cancelled>(run(4, asked, slow(), interrupted_after(followers_rows))), "cancelled");
   expect_only({"truth.csv.part"});
   EXPECT_GE(rows_in_journal(request(40)), 580U);  // they are asked before each row, and before each piece of 64
-  EXPECT_EQ(message_of<study::Cancelled>(run(4, asked, interrupted_after(leaders_rows), slow())), "cancelled");
+  EXPECT_EQ(message_of<Cancelled>(run(4, asked, interrupted_after(leaders_rows), slow())), "cancelled");
   expect_only({"truth.csv.part"});
   const Summary summary = write(request(40), file_, Existing::kResume);
   EXPECT_GT(summary.resumed, 600U);
@@ -694,7 +694,7 @@ TEST_F(TruthTeam, ALeaderThatStopsTakesWhatOthersHaveInHand) {
   };
   const auto thrown = run(
       4, [this](int) { return request(40); }, leaders, followers);
-  EXPECT_EQ(message_of<study::Cancelled>(thrown), "cancelled");
+  EXPECT_EQ(message_of<Cancelled>(thrown), "cancelled");
   EXPECT_GE(rows_in_journal(request(40)), 80U);  // of the followers; the leader adds some
 }
 

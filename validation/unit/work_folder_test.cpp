@@ -1,5 +1,5 @@
 // Hidden folders of processes that were killed, of ones that live, of older versions and of others.
-#include "study/work_folder.h"
+#include "work/work_folder.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -12,7 +12,7 @@
 #include <string>
 
 #include "exactff/error.h"
-#include "study/output_folder.h"
+#include "page/output_folder.h"
 #include "support/program.h"
 
 namespace exactff::study {
@@ -35,7 +35,7 @@ class WorkFolders : public testing::Test {
   void be_killed_in_the_middle() const {
     const pid_t child = ::fork();
     if (child == 0) {
-      const WorkFolder folder(target_);
+      const work::WorkFolder folder(target_);
       std::ofstream(folder.path() / "half.csv") << "half";
       ::raise(SIGKILL);
     }
@@ -49,23 +49,23 @@ class WorkFolders : public testing::Test {
 };
 
 TEST_F(WorkFolders, GoWithTheirOwner) {
-  { const WorkFolder folder(target_); }
+  { const work::WorkFolder folder(target_); }
   EXPECT_TRUE(names().empty());
 }
 
 TEST_F(WorkFolders, OfAKilledProcessAreCleared) {
   be_killed_in_the_middle();
   EXPECT_EQ(names().size(), 1U);
-  { const WorkFolder folder(target_); }
+  { const work::WorkFolder folder(target_); }
   EXPECT_TRUE(names().empty());
 }
 
 TEST_F(WorkFolders, OfALivingProcessAreNotTouched) {
-  const WorkFolder living(target_);
+  const work::WorkFolder living(target_);
   std::ofstream(living.path() / "half.csv") << "half";
   be_killed_in_the_middle();  // clears nothing either
   EXPECT_EQ(names().size(), 2U);
-  { const WorkFolder other(target_); }
+  { const work::WorkFolder other(target_); }
   EXPECT_EQ(names(), std::set<std::string>{living.path().filename().string()});
   EXPECT_TRUE(fs::exists(living.path() / "half.csv"));
 }
@@ -73,14 +73,14 @@ TEST_F(WorkFolders, OfALivingProcessAreNotTouched) {
 TEST_F(WorkFolders, OfAnotherTargetStay) {
   be_killed_in_the_middle();
   const std::set<std::string> before = names();
-  { const WorkFolder other(directory_.path() / "resul"); }
-  { const WorkFolder other(directory_.path() / "result2"); }
+  { const work::WorkFolder other(directory_.path() / "resul"); }
+  { const work::WorkFolder other(directory_.path() / "result2"); }
   EXPECT_EQ(names(), before);
 }
 
 TEST_F(WorkFolders, WithoutALockAreLeftOvers) {
   put(directory_.path() / ".result.partial-4711" / "values.csv");  // as the first version called them
-  { const WorkFolder folder(target_); }
+  { const work::WorkFolder folder(target_); }
   EXPECT_TRUE(names().empty());
 }
 
@@ -88,7 +88,7 @@ TEST_F(WorkFolders, WhatWasNeverPutThereByUsStays) {
   put(directory_.path() / ".result.partial-1" / "deeper" / "letter.txt");
   put(directory_.path() / ".result.partial-mine" / "letter.txt");
   put(directory_.path() / ".result.partial-2");  // no folder
-  { const WorkFolder folder(target_); }
+  { const work::WorkFolder folder(target_); }
   EXPECT_EQ(names(), (std::set<std::string>{".result.partial-1", ".result.partial-2", ".result.partial-mine"}));
   EXPECT_TRUE(fs::exists(directory_.path() / ".result.partial-1" / "deeper" / "letter.txt"));
   EXPECT_TRUE(fs::exists(directory_.path() / ".result.partial-mine" / "letter.txt"));
@@ -97,32 +97,32 @@ TEST_F(WorkFolders, WhatWasNeverPutThereByUsStays) {
 TEST_F(WorkFolders, TakeThePlaceOfTheTarget) {
   put(target_ / "old.csv");
   {
-    WorkFolder folder(target_);
+    work::WorkFolder folder(target_);
     std::ofstream(folder.path() / "new.csv") << "new";
     folder.put_in_place();
   }
   EXPECT_EQ(names(), std::set<std::string>{"result"});
   EXPECT_TRUE(fs::exists(target_ / "new.csv"));
   EXPECT_FALSE(fs::exists(target_ / "old.csv"));
-  EXPECT_FALSE(fs::exists(target_ / kLockFile));
+  EXPECT_FALSE(fs::exists(target_ / work::kLockFile));
 }
 
 // Killed between two renames, where folders cannot change places.
 TEST_F(WorkFolders, AFormerResultComesBack) {
   put(directory_.path() / ".result.old-4711-0" / "values.csv", "# exactff 0.1.0\n");
-  { const WorkFolder folder(target_); }
+  { const work::WorkFolder folder(target_); }
   EXPECT_EQ(names(), std::set<std::string>{"result"});
   EXPECT_TRUE(fs::exists(target_ / "values.csv"));
   put(directory_.path() / ".result.old-4711-0" / "values.csv", "# exactff 0.1.0\n");
-  { const WorkFolder folder(target_); }
+  { const work::WorkFolder folder(target_); }
   EXPECT_EQ(names(), std::set<std::string>{"result"});
 }
 
 // Killed just after the renaming: the lock's file is still there.
 TEST_F(WorkFolders, AResultWithALockCanBeReplaced) {
   put(target_ / "values.csv", "# exactff 0.1.0\n");
-  put(target_ / kLockFile, "");
-  StagedFolder staged(target_);
+  put(target_ / work::kLockFile, "");
+  page::StagedFolder staged(target_);
   staged.commit();
   EXPECT_TRUE(fs::is_empty(target_));
 }
@@ -131,9 +131,9 @@ TEST_F(WorkFolders, WholeFilesTakeTheirTurns) {
   const fs::path file = directory_.path() / "a.svg";
   put(file.string() + ".whole", "what a killed process left");
   {
-    WholeFile first(file);
+    work::WholeFile first(file);
     first.append("first");
-    EXPECT_THROW(WholeFile second(file), InputError);
+    EXPECT_THROW(work::WholeFile second(file), InputError);
     first.commit();
   }
   EXPECT_EQ(validation::text_of(file), "first");
@@ -145,7 +145,7 @@ TEST_F(WorkFolders, WholeFilesOfTwoProcessesAreAlwaysWhole) {
   const fs::path file = directory_.path() / "a.svg";
   const auto write = [&file](char letter) {
     for (int i = 0; i < 8; ++i) {
-      WholeFile whole(file, {}, WholeFile::WhenBusy::kWait);
+      work::WholeFile whole(file, {}, work::WholeFile::WhenBusy::kWait);
       whole.append(std::string(10'000, letter));
       whole.commit();
     }

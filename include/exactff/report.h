@@ -1,0 +1,78 @@
+// Reports on studies: tables and one HTML page with figures. A .study file describes a report on several scenes.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "exactff/progress.h"
+#include "exactff/study.h"
+
+namespace exactff::report {
+
+// Throws InputError unless `folder` can be written and replaced: it does not exist, is empty, or contains only files of
+// an earlier study.
+void check_output_folder(const std::filesystem::path& folder);
+
+// Writes the tables and the report into a hidden folder beside `folder`, and renames it at the end. The value files
+// (values, exact, summary) contain no times and have the same bytes for any number of threads. Returns notes for the
+// user, such as a missing gnuplot.
+std::vector<std::string> write(const study::Study& study, const std::filesystem::path& folder, const Hooks& hooks = {});
+
+// The main result in a few sentences.
+[[nodiscard]] std::vector<std::string> headlines(const study::Study& study);
+
+// ---------------------------------------------------------------------------------------------------- several scenes
+
+struct Effort {
+  bool abridged = false;  // a first look: coarser grids, fewer settings and receivers, shorter experiments
+  int threads = 0;        // 0: as many as this process may use; values do not depend on it
+};
+
+struct PlannedScene {
+  std::string name;   // letters, digits and hyphens, for the names of files; empty: the report is on this scene alone
+  std::string title;  // "Cornell box"
+  std::shared_ptr<const Scene> scene;
+  study::Request request;  // of this scene
+};
+
+// What a report is to cover: scenes, and experiments that bring their own scenes.
+struct Plan {
+  std::string title;  // of the report; empty: that of the only scene
+  std::vector<PlannedScene> scenes;
+  std::vector<std::string> experiments;  // names
+  std::vector<LeftOut> left_out;         // scenes that an abridged report leaves out
+  Effort effort;
+  std::string command_line;  // shown in the last section of the report
+
+  // Gives the scene a name that no other has.
+  void add_scene(std::string scene_title, std::shared_ptr<const Scene> scene, study::Request request);
+  // "all" stands for every experiment. Drops repetitions. Throws InputError for an unknown name.
+  void add_experiments(const std::vector<std::string>& names);
+};
+
+[[nodiscard]] std::vector<std::string> experiment_names();
+
+[[nodiscard]] bool is_study_file(const std::string& path);  // by its extension, .study
+
+// Reads a .study file (data/README.md) and loads its scenes. Throws one InputError with the line of every problem.
+[[nodiscard]] Plan read_study_file(const std::filesystem::path& file, const Effort& effort = {});
+
+// What was found out, for the user to read.
+struct Outcome {
+  struct OfScene {
+    std::string title;
+    std::vector<std::string> sentences;
+  };
+  std::vector<OfScene> scenes;
+  std::vector<std::string> notes;  // such as a missing gnuplot
+};
+
+// Runs every study and experiment of the plan and writes one report on all of them, as write() does. The files of a
+// scene begin with its name and an underscore. What is finished is kept in `journal`, which is to be removed when
+// everything is done.
+Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, study::Journal& journal,
+                  const Hooks& hooks = {});
+
+}  // namespace exactff::report

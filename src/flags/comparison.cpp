@@ -1,0 +1,218 @@
+#include "flags/comparison.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "flags/lists.h"
+#include "text/escape.h"
+#include "text/number_text.h"
+#include "text/phrases.h"
+#include "text/refuse.h"
+#include "text/text_lines.h"
+
+namespace exactff::flags {
+namespace {
+
+constexpr int kMostRays = 1 << 20;
+
+double to_tolerance(const std::string& text, const std::string& flag) {
+  const text::ParsedNumber number = text::parse_number(text);
+  if (number.fault == text::NumberFault::kNone && number.value < 0.0) {
+    text::refuse(flag + ": " + text::in_quotes(text) + " is negative", "a tolerance is not", "give 0 or more");
+  }
+  if (number.fault == text::NumberFault::kNone) return number.value;
+  text::refuse(flag + ": " + describe(number.fault, text), "the list holds decimal numbers",
+               "separate them by commas only, such as " + flag + " 1e-2,1e-3");
+}
+
+template <class Whole>
+Whole to_whole(const std::string& text, const std::string& flag) {
+  if (const auto value = whole_number<Whole>(text)) return *value;
+  text::refuse(flag + ": " + text::in_quotes(text) + " is not a whole number in range",
+               "it counts or numbers something", "separate several by commas only, such as " + flag + " 1,4,16");
+}
+
+// The text of an option that was not given is empty, and so is its list, which stands for the default.
+template <class T, class Convert>
+std::vector<T> list_of(const std::string& text, const std::string& flag, const Convert& convert) {
+  std::vector<T> values;
+  if (text.empty()) return values;
+  constexpr std::size_t kMostValues = 1000;
+  for (const std::string& part : split_list(text)) values.push_back(convert(part, flag));
+  if (values.size() > kMostValues) {
+    text::refuse(flag + " has " + std::to_string(values.size()) + " values", "every setting is run for every receiver",
+                 "give at most 1000, better a dozen");
+  }
+  return values;
+}
+
+int to_rays(const std::string& text, const std::string& flag) {
+  const int rays = to_whole<int>(text, flag);
+  if (rays >= 1 && rays <= kMostRays) return rays;
+  text::refuse(flag + ": " + text::in_quotes(text) + " is not within 1 to " + std::to_string(kMostRays),
+               "so many shadow rays are sent to every undecided leaf", "give numbers such as 1,4,16");
+}
+
+SamplePattern to_pattern(const std::string& text, const std::string& flag) {
+  if (const auto pattern = study::pattern_named(text)) return *pattern;
+  text::refuse(flag + ": there is no pattern " + text::in_quotes(text), "it says where rays end",
+               "use centre, regular, jittered or low-discrepancy");
+}
+
+Variant to_variant(const std::string& text, const std::string& flag) {
+  if (const auto variant = study::variant_named(text)) return *variant;
+  text::refuse(flag + ": there is no variant " + text::in_quotes(text), "it says which algorithm is run",
+               "use mended or literal");
+}
+
+study::Sweeps sweeps_of(const ComparisonArguments& args) {
+  study::Sweeps sweeps;
+  sweeps.eps_b = list_of<double>(args.eps_b, "--eps-b", to_tolerance);
+  sweeps.eps_a = list_of<double>(args.eps_a, "--eps-a", to_tolerance);
+  sweeps.rays = list_of<int>(args.rays, "--rays", to_rays);
+  sweeps.seeds = list_of<std::uint64_t>(args.seeds, "--seeds", to_whole<std::uint64_t>);
+  sweeps.patterns = list_of<SamplePattern>(args.pattern, "--pattern", to_pattern);
+  sweeps.variants = list_of<Variant>(args.variant, "--variant", to_variant);
+  return sweeps;
+}
+
+template <class Number>
+Number within(Number value, Number lowest, Number highest, const std::string& flag, const std::string& meaning) {
+  if (value >= lowest && value <= highest) return value;
+  text::refuse(flag + " is not within " + text::shortest(static_cast<double>(lowest)) + " to " +
+                   text::shortest(static_cast<double>(highest)),
+               meaning, "give a number within these");
+}
+
+study::MethodSweep methods_of(const ComparisonArguments& args) {
+  study::MethodSweep sweep;
+  sweep.enabled = !args.no_methods;
+  for (const std::string& text : args.methods) sweep.ladders.push_back(study::parse_ladder(text));
+  if (!args.method_seeds.empty()) {
+    sweep.seeds = within<std::size_t>(to_whole<std::size_t>(args.method_seeds, "--method-seeds"), 1, 10000,
+                                      "--method-seeds", "every stochastic method is run with so many seeds");
+  }
+  if (!args.method_receivers.empty()) {
+    sweep.receivers = within<std::size_t>(to_whole<std::size_t>(args.method_receivers, "--method-receivers"), 1, 100000,
+                                          "--method-receivers", "methods are compared at so many receivers");
+  }
+  if (!args.method_budget.empty()) {
+    sweep.budget = within(to_tolerance(args.method_budget, "--method-budget"), 0.0, 1e9, "--method-budget",
+                          "so many seconds of counted work may a method take on a scene");
+  }
+  return sweep;
+}
+
+// The most cells along a side.
+constexpr int kAbridgedGrid = 12;
+
+std::string abridged_grid(const std::string& grid) {
+  const std::size_t cross = grid.find('x');
+  const auto u = flags::whole_number<int>(std::string_view(grid).substr(0, cross));
+  const auto v =
+      cross == std::string::npos ? std::nullopt : flags::whole_number<int>(std::string_view(grid).substr(cross + 1));
+  if (!u || !v) return grid;  // refused later
+  return std::to_string(std::min(*u, kAbridgedGrid)) + 'x' + std::to_string(std::min(*v, kAbridgedGrid));
+}
+
+// Reduces settings that the user did not give.
+void abridge(study::Request& request) {
+  if (request.sweeps.rays.empty()) request.sweeps.rays = {1, 16, 64};
+  if (request.sweeps.seeds.empty()) request.sweeps.seeds = {1, 2, 3};
+  if (request.sweeps.patterns.empty()) request.sweeps.patterns = {SamplePattern::kJittered};
+  if (request.sweeps.variants.empty()) request.sweeps.variants = {Variant::kMended};
+  request.methods.receivers = std::min<std::size_t>(request.methods.receivers, 12);
+  request.methods.budget = std::min(request.methods.budget, 0.2);
+  request.sweep_budget = std::min(request.sweep_budget, 1.0);
+  request.seconds_for_a_time = 0.02;
+}
+
+}  // namespace
+
+std::string short_name(const std::string& path) {
+  return path.starts_with('@') ? path.substr(1) : std::filesystem::path(path).filename().string();
+}
+
+Comparison comparison_of(ComparisonArguments args, bool abridged, int threads) {
+  if (abridged && !args.receivers.grid.empty()) args.receivers.grid = abridged_grid(args.receivers.grid);
+  check_receiver_options(args.receivers);
+  Comparison comparison;
+  study::Request& request = comparison.request;
+  request.sweeps = sweeps_of(args);
+  request.methods = methods_of(args);
+  if (!args.sweep_budget.empty()) request.sweep_budget = to_tolerance(args.sweep_budget, "--sweep-budget");
+  comparison.scene = std::make_shared<const Scene>(args.scene.load());
+  request.scene = comparison.scene.get();
+  request.scene_name = short_name(args.scene.path);
+  request.sources = sources_of(args.sources, *comparison.scene);
+  request.engine = args.engine.engine();
+  request.threads = threads;
+  ChosenReceivers chosen = receivers_of(args.receivers, *comparison.scene);
+  request.receivers = std::move(chosen.receivers);
+  request.receivers_name = std::move(chosen.description);
+  if (abridged) abridge(request);
+  comparison.title = args.title.empty() ? request.scene_name : args.title;
+  return comparison;
+}
+
+std::string command_words(const ComparisonArguments& args) {
+  std::string line;
+  const auto add = [&](const char* flag, const std::string& value) {
+    if (!value.empty()) line += std::string(" ") + flag + ' ' + text::shell_word(value);
+  };
+  if (args.scene.patches != "groups") add("--patches", args.scene.patches);
+  if (args.scene.skip_bad_faces) line += " --skip-bad-faces";
+  line += command_words(args.receivers) + command_words(args.sources);
+  add("--eps-b", args.eps_b);
+  add("--eps-a", args.eps_a);
+  add("--rays", args.rays);
+  add("--seeds", args.seeds);
+  add("--pattern", args.pattern);
+  add("--variant", args.variant);
+  for (const std::string& method : args.methods) add("--method", method);
+  if (args.no_methods) line += " --no-methods";
+  add("--method-seeds", args.method_seeds);
+  add("--method-receivers", args.method_receivers);
+  add("--method-budget", args.method_budget);
+  add("--sweep-budget", args.sweep_budget);
+  if (args.engine.engine() != Engine::kEdges) add("--engine", args.engine.name);
+  add("--title", args.title);
+  if (args.unless_abridged) line += " --unless-abridged";
+  return line;
+}
+
+void ComparisonArguments::add_to(CLI::App& app) {
+  scene.add_to(app);
+  add_receiver_options(app, receivers);
+  add_source_options(app, sources);
+  app.add_option("--eps-b", eps_b, "Tolerances, radiosity (default: max(rho B) times 1e-1,...,1e-5)")
+      ->type_name("LIST");
+  app.add_option("--eps-a", eps_a, "Smallest areas (default: 0 and the mean source face times 1e-1,...,1e-4)")
+      ->type_name("LIST");
+  app.add_option("--rays", rays, "Shadow rays per undecided leaf (default: 1,4,16,64,256)")->type_name("LIST");
+  app.add_option("--seeds", seeds, "Seeds of the shadow rays (default: 1,...,10)")->type_name("LIST");
+  app.add_option("--pattern", pattern, "Where rays end: jittered, centre, regular, low-discrepancy (default: all)")
+      ->type_name("LIST");
+  app.add_option("--variant", variant, "mended, literal (default: both)")->type_name("LIST");
+  CLI::Option* method =
+      app.add_option("--method", methods, "A method to hold against the others, may be repeated (default: all)")
+          ->type_name("METHOD")
+          ->take_all();
+  app.add_flag("--no-methods", no_methods, "Only the ray-sampled adaptive algorithm")->excludes(method);
+  app.add_option("--method-seeds", method_seeds, "Seeds of stochastic methods, 1 to N (default: 30)")->type_name("N");
+  app.add_option("--method-receivers", method_receivers, "Receivers at which methods are compared (default: 48)")
+      ->type_name("N");
+  app.add_option("--method-budget", method_budget,
+                 "Seconds that a method may take on a scene, by its counted work at fixed prices, so that what is run "
+                 "does not depend on the machine (default: 2)")
+      ->type_name("SECONDS");
+  app.add_option("--sweep-budget", sweep_budget,
+                 "The same for all settings of the adaptive algorithm together (default: 15)")
+      ->type_name("SECONDS");
+  engine.add_to(app);
+  app.add_option("--title", title, "What the report calls the scene")->type_name("TEXT");
+  app.add_flag("--unless-abridged", unless_abridged, "Leave the scene out with --abridged");
+}
+
+}  // namespace exactff::flags

@@ -1,0 +1,55 @@
+#include "flags/lists.h"
+
+#include <algorithm>
+
+namespace exactff::flags {
+namespace {
+
+bool is_a_name(const Scene& scene, const std::string& text) {
+  try {
+    (void)scene.select(text);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+void add_all(const Scene& scene, std::vector<Selection>& selections) {
+  for (std::size_t p = 0; p < scene.patches().size(); ++p) {
+    const Selection whole{PatchId(static_cast<std::uint32_t>(p)), {}};
+    if (!scene.faces_of(whole).empty()) selections.push_back(whole);
+  }
+}
+
+void add(const Scene& scene, const std::string& name, std::vector<Selection>& selections) {
+  const auto has_name = [&](const Patch& patch) { return patch.name == name; };
+  if (name == "all" && std::ranges::none_of(scene.patches(), has_name)) return add_all(scene, selections);
+  selections.push_back(scene.select(name));
+}
+
+}  // namespace
+
+std::vector<std::string> split_list(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    parts.push_back(text.substr(at, comma - at));
+    at = comma + 1;
+  }
+  return parts;
+}
+
+std::vector<Selection> selections_named(const Scene& scene, const std::vector<std::string>& texts) {
+  std::vector<Selection> selections;
+  for (const std::string& text : texts) {
+    const std::vector<std::string> parts = split_list(text);
+    if (parts.size() > 1 && is_a_name(scene, text)) {
+      selections.push_back(scene.select(text));
+    } else {
+      for (const std::string& name : parts) add(scene, name, selections);
+    }
+  }
+  return selections;
+}
+
+}  // namespace exactff::flags

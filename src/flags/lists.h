@@ -1,0 +1,31 @@
+// Parses the lists and whole numbers of flags, and the patch names in them.
+#pragma once
+
+#include <charconv>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exactff/scene.h"
+
+namespace exactff::flags {
+
+// The parts between the commas. An empty text has one empty part.
+std::vector<std::string> split_list(const std::string& text);
+
+// Parses the whole text as decimal digits. Returns nothing for any other text or a value out of range.
+template <class Whole>
+std::optional<Whole> whole_number(std::string_view text) {
+  Whole value{};
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || end.ec != std::errc{} || end.ptr != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+// In the order of `texts`. Each of them is a name, a comma list of names, or "all": every patch with area, in the order
+// of the file. A patch with exactly the given name has priority, even if its name is "all" or contains a comma. Throws
+// InputError for an unknown name.
+std::vector<Selection> selections_named(const Scene& scene, const std::vector<std::string>& texts);
+
+}  // namespace exactff::flags

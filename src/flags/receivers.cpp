@@ -1,0 +1,179 @@
+#include "flags/receivers.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <unordered_set>
+#include <utility>
+
+#include "flags/lists.h"
+#include "text/escape.h"
+#include "text/phrases.h"
+#include "text/refuse.h"
+#include "text/text_lines.h"
+
+namespace exactff::flags {
+namespace {
+
+// The given flags that say where on a patch the receivers are.
+std::vector<std::string> placements(const ReceiverArguments& args) {
+  std::vector<std::string> flags;
+  if (!args.grid.empty()) flags.emplace_back("--grid");
+  if (args.vertices) flags.emplace_back("--vertices");
+  if (args.centres) flags.emplace_back("--centres");
+  if (!args.samples.empty()) flags.emplace_back("--samples");
+  return flags;
+}
+
+void check_file_alone(const ReceiverArguments& args) {
+  std::vector<std::string> others = placements(args);
+  if (!args.on.empty()) others.insert(others.begin(), "--on");
+  if (args.file.empty() || others.empty()) return;
+  text::refuse("--receivers comes with " + text::enumerate(others),
+               "the receivers are those of the file, or those on a patch", "leave one of them out");
+}
+
+int to_cells(std::string_view text, const std::string& grid) {
+  if (const auto count = whole_number<int>(text)) return *count;
+  text::refuse("--grid: " + text::in_quotes(grid) + " is no grid", "it is made of two whole numbers",
+               "write columns x rows: --grid 32x32");
+}
+
+GridSize grid_of(const std::string& text) {
+  const std::string_view view = text;
+  const std::size_t cross = std::min(view.find('x'), view.size());
+  return {to_cells(view.substr(0, cross), text), to_cells(view.substr(std::min(cross + 1, view.size())), text)};
+}
+
+std::uint64_t to_count(const std::string& text, const std::string& flag, const std::string& why,
+                       const std::string& example) {
+  if (const auto count = whole_number<std::uint64_t>(text)) return *count;
+  text::refuse(flag + ": " + text::in_quotes(text) + " is not a whole number in range", why,
+               "write it such as " + flag + example);
+}
+
+std::uint64_t sample_count(const ReceiverArguments& args) {
+  return to_count(args.samples, "--samples", "so many receivers are drawn", " 1000");
+}
+
+std::uint64_t sample_seed(const ReceiverArguments& args) {
+  if (args.sample_seed.empty()) return 1;
+  return to_count(args.sample_seed, "--sample-seed", "it numbers the random choices, from 0 to 2^64 - 1", " 7");
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+  return text;
+}
+
+std::vector<FaceId> faces_named(const Scene& scene, const std::vector<std::string>& names) {
+  std::vector<FaceId> faces;
+  std::unordered_set<std::size_t> known;
+  for (const Selection& selection : selections_named(scene, names)) {
+    for (const FaceId face : scene.faces_of(selection)) {
+      if (!known.insert(index_of(face)).second) {
+        text::refuse("--on: '" + scene.name_of(face) + "' is named twice", "it would have every receiver twice",
+                     "name it once");
+      }
+      faces.push_back(face);
+    }
+  }
+  if (faces.empty()) {
+    text::refuse("--on: there is no face with area in " + text::in_quotes(joined(names), text::kShownName),
+                 "receivers lie on faces", "name another patch");
+  }
+  return faces;
+}
+
+ChosenReceivers on_faces(const ReceiverArguments& args, const Scene& scene, GridIds grid_ids) {
+  const std::string on = joined(args.on);
+  const std::vector<FaceId> faces = faces_named(scene, args.on);
+  if (!args.grid.empty())
+    return {grid_receivers(scene, faces, grid_of(args.grid), grid_ids), on + ", grid " + args.grid};
+  if (args.vertices) return {vertex_receivers(scene, faces), on + ", vertices"};
+  if (args.centres) return {centre_receivers(scene, faces), on + ", centres"};
+  const std::uint64_t count = sample_count(args), seed = sample_seed(args);
+  return {sample_receivers(scene, faces, count, seed),
+          on + ", " + text::counted(count, "sample") + ", seed " + std::to_string(seed)};
+}
+
+ChosenReceivers in_file(const std::string& file, const Scene& scene) {
+  return {read_receivers(file, scene), std::filesystem::path(file).filename().string()};
+}
+
+void check_not_empty(const ReceiverArguments& args, const ChosenReceivers& chosen) {
+  if (!chosen.receivers.empty()) return;
+  const std::string what = "there is no receiver in " + chosen.description;
+  if (!args.file.empty()) text::refuse(what, "its rows are the receivers", "add one below the header");
+  text::refuse(what, "no cell of the grid has its centre inside a face", "use a finer grid, or another patch");
+}
+
+}  // namespace
+
+void add_receiver_options(CLI::App& app, ReceiverArguments& args) {
+  app.add_option("--on", args.on,
+                 "Patch or face that carries the receivers; repeat it or separate names by commas; all: every patch")
+      ->type_name("NAME[:K]")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--grid", args.grid, "A receiver in each cell: columns x rows on each face, such as 32x32")
+      ->type_name("UxV");
+  app.add_flag("--vertices", args.vertices, "A receiver at each vertex of each face, with that face's normal");
+  app.add_flag("--centres", args.centres, "A receiver in the middle of each face");
+  app.add_option("--samples", args.samples, "So many receivers at random, uniformly by area")->type_name("N");
+  app.add_option("--sample-seed", args.sample_seed, "Seed of --samples, not of any ray (default: 1)")->type_name("S");
+  app.add_option("--receivers", args.file, "CSV file with the columns id,x,y,z,nx,ny,nz,on, instead of --on")
+      ->type_name("FILE");
+}
+
+void check_receiver_options(const ReceiverArguments& args) {
+  const std::vector<std::string> placed = placements(args);
+  check_file_alone(args);
+  if (!args.sample_seed.empty() && args.samples.empty()) {
+    text::refuse("--sample-seed comes without --samples", "nothing else is drawn at random",
+                 "give --samples 1000, or leave it out");
+  }
+  if (!args.file.empty()) return;
+  if (args.on.empty() && placed.empty()) {
+    text::refuse("there are no receivers", "values are computed at points",
+                 "give --on NAME with --grid 32x32, --vertices, --centres or --samples 1000; or --receivers FILE.csv");
+  }
+  if (args.on.empty()) {
+    text::refuse(placed.front() + " comes without --on", "it places receivers on a patch", "name that with --on NAME");
+  }
+  if (placed.empty()) {
+    text::refuse("--on comes without --grid, --vertices, --centres or --samples",
+                 "they say where on it the receivers are", "give one of them, such as --grid 32x32");
+  }
+  if (placed.size() > 1) {
+    text::refuse(text::enumerate(placed) + " come together", "each places the receivers in a way of its own",
+                 "keep one of them");
+  }
+  if (!args.grid.empty()) (void)grid_of(args.grid);
+  if (!args.samples.empty()) (void)sample_count(args);
+  (void)sample_seed(args);
+}
+
+ChosenReceivers receivers_of(const ReceiverArguments& args, const Scene& scene, GridIds grid_ids) {
+  check_receiver_options(args);
+  ChosenReceivers chosen = args.file.empty() ? on_faces(args, scene, grid_ids) : in_file(args.file, scene);
+  check_not_empty(args, chosen);
+  return chosen;
+}
+
+std::string command_words(const ReceiverArguments& args) {
+  std::string words;
+  const auto add = [&](const char* flag, const std::string& value) {
+    if (!value.empty()) words += std::string(" ") + flag + ' ' + text::shell_word(value);
+  };
+  for (const std::string& name : args.on) add("--on", name);
+  add("--grid", args.grid);
+  if (args.vertices) words += " --vertices";
+  if (args.centres) words += " --centres";
+  add("--samples", args.samples);
+  add("--sample-seed", args.sample_seed);
+  add("--receivers", args.file);
+  return words;
+}
+
+}  // namespace exactff::flags

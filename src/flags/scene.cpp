@@ -1,0 +1,27 @@
+#include "flags/scene.h"
+
+#include "exactff/models.h"
+#include "exactff/obj.h"
+
+namespace exactff::flags {
+
+void SceneArguments::add_to(CLI::App& app) {
+  app.add_option("SCENE", path,
+                 "Wavefront OBJ file, or @MODEL[:SETTING=VALUE,...] for a generated scene: `exactff info @` lists them")
+      ->required();
+  app.add_option("--patches", patches, "What makes a patch: groups (g, else o) or faces (each face NAME:k)")
+      ->check(CLI::IsMember({"groups", "faces"}))
+      ->capture_default_str();
+  app.add_flag("--skip-bad-faces", skip_bad_faces, "Leave unusable faces out, with a warning, instead of stopping");
+}
+
+SceneOptions SceneArguments::options() const {
+  return {skip_bad_faces ? BadFaces::kSkip : BadFaces::kReject,
+          patches == "faces" ? PatchMode::kFaces : PatchMode::kGroups};
+}
+
+Scene SceneArguments::load() const {
+  return path.starts_with('@') ? models::make_scene(path.substr(1), options()) : read_obj(path, options());
+}
+
+}  // namespace exactff::flags

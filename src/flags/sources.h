@@ -1,0 +1,25 @@
+// The flag --source, shared by all commands over many receivers.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "exactff/scene.h"
+
+namespace exactff::flags {
+
+struct SourceArguments {
+  std::vector<std::string> names;  // each a name, a comma list of names, or "all"
+};
+
+void add_source_options(CLI::App& app, SourceArguments& args);
+
+// In the given order. Empty if the flag was not given, which stands for every patch that emits. Throws InputError if a
+// name is unknown or occurs twice.
+std::vector<Selection> sources_of(const SourceArguments& args, const Scene& scene);
+
+// The flags again, each preceded by a blank and quoted for a shell.
+std::string command_words(const SourceArguments& args);
+
+}  // namespace exactff::flags

@@ -1,0 +1,128 @@
+#include "formats/mtl_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <unordered_set>
+#include <utility>
+
+#include "text/number_text.h"
+
+namespace exactff {
+
+namespace {
+
+class MtlReader {
+ public:
+  MtlReader(const std::string& file, text::ProblemList& problems, text::ProblemList& warnings)
+      : file_(file), problems_(problems), warnings_(warnings) {}
+
+  std::vector<Material> run(std::string_view text) {
+    text::TextLines lines(text);
+    while (lines.next(line_)) read_line();
+    return std::move(materials_);
+  }
+
+ private:
+  void read_line();
+  void start_material(std::string_view name);
+  void read_colour(std::string_view keyword, std::string_view values);
+  bool read_numbers(std::string_view keyword, const std::vector<std::string_view>& texts, Rgb& colour);
+  void check(std::string_view keyword, const Rgb& colour);
+  void fail(std::string what, std::string why, std::string suggestion);
+  void warn(std::string what, std::string why, std::string suggestion);
+
+  std::string of_material(std::string_view keyword) const {
+    return std::string(keyword) + " of material " + text::in_quotes(current_.name);
+  }
+
+  const std::string& file_;
+  text::ProblemList& problems_;
+  text::ProblemList& warnings_;
+  text::TextLine line_;
+  Material current_;     // the material that the current lines belong to
+  bool counts_ = false;  // false before any newmtl and in a repeated material
+  bool started_ = false;
+  std::vector<Material> materials_;
+  std::unordered_set<std::string> names_;
+};
+
+void MtlReader::fail(std::string what, std::string why, std::string suggestion) {
+  problems_.add({file_, line_.number, std::move(what), std::move(why), std::move(suggestion)});
+}
+
+void MtlReader::warn(std::string what, std::string why, std::string suggestion) {
+  warnings_.add({file_, line_.number, std::move(what), std::move(why), std::move(suggestion)});
+}
+
+void MtlReader::read_line() {
+  std::string_view rest = line_.text;
+  const std::string_view keyword = text::take_word(rest);
+  if (keyword == "newmtl") return start_material(text::trimmed(rest));
+  if (keyword != "Kd" && keyword != "Ke") return;
+  if (!started_) return fail(std::string(keyword) + " before any newmtl", "it belongs to no material", "move it");
+  read_colour(keyword, rest);
+  if (counts_) materials_.back() = current_;
+}
+
+void MtlReader::start_material(std::string_view name) {
+  started_ = true;
+  current_ = Material{std::string(name)};
+  if (name.empty()) fail("newmtl without a name", "nothing can use it", "give the material a name");
+  counts_ = names_.insert(current_.name).second;
+  if (counts_) {
+    materials_.push_back(current_);
+  } else {
+    warn("material " + text::in_quotes(name) + " is defined again", "the first definition counts", "remove one");
+  }
+}
+
+void MtlReader::read_colour(std::string_view keyword, std::string_view values) {
+  const std::vector<std::string_view> texts = text::words(values.substr(0, values.find('#')));
+  if (!texts.empty() && (texts[0] == "spectral" || texts[0] == "xyz")) {
+    return warn(of_material(keyword) + " is given as " + text::in_quotes(texts[0]), "only RGB values are read",
+                "the default stands; write red, green and blue");
+  }
+  Rgb& colour = keyword == "Kd" ? current_.reflectance : current_.radiosity;
+  if (read_numbers(keyword, texts, colour)) check(keyword, colour);
+}
+
+bool MtlReader::read_numbers(std::string_view keyword, const std::vector<std::string_view>& texts, Rgb& colour) {
+  if (texts.empty() || texts.size() == 2) {
+    fail(of_material(keyword) + " has " + (texts.empty() ? "no value" : "two values"),
+         "a colour has one value or three", "give one value or red, green and blue");
+    return false;
+  }
+  std::array<double, 3> values{};
+  for (std::size_t i = 0; i < std::min<std::size_t>(texts.size(), 3); ++i) {
+    const text::ParsedNumber number = text::parse_number(texts[i]);
+    if (number.fault != text::NumberFault::kNone) {
+      fail(of_material(keyword) + ": " + describe(number.fault, texts[i]), "a colour is made of finite numbers",
+           advice(number.fault));
+      return false;
+    }
+    values[i] = number.value;
+  }
+  if (texts.size() == 1) values[1] = values[2] = values[0];
+  colour = {values[0], values[1], values[2]};
+  return true;
+}
+
+void MtlReader::check(std::string_view keyword, const Rgb& colour) {
+  const bool reflectance = keyword == "Kd";
+  if (std::min({colour.r, colour.g, colour.b}) < 0.0) {
+    return fail(of_material(keyword) + " is negative",
+                reflectance ? "a reflectance lies between 0 and 1" : "a radiosity is not negative", "correct it");
+  }
+  if (reflectance && colour.largest() > 1.0) {
+    warn(of_material(keyword) + " exceeds 1", "such a surface reflects more than it receives", "correct it");
+  }
+}
+
+}  // namespace
+
+std::vector<Material> read_mtl(std::string_view text, const std::string& file, text::ProblemList& problems,
+                               text::ProblemList& warnings) {
+  return MtlReader(file, problems, warnings).run(text);
+}
+
+}  // namespace exactff

@@ -1,0 +1,426 @@
+// Wavefront OBJ.
+//
+// 1. Lines are read once, in order; vertices go to the builder, faces are kept with the current group, object and
+//    material. A positive index may refer to a vertex further down, so the indices are checked at the end.
+// 2. The patches are the groups if the file has any, otherwise the objects.
+// 3. The MTL files are read, materials get their values, the faces go to the builder.
+// Problems are collected throughout; those found so far are thrown before the builder looks at the faces.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <limits>
+#include <optional>
+#include <set>
+#include <unordered_map>
+#include <utility>
+
+#include "exactff/obj.h"
+#include "formats/mtl_reader.h"
+#include "kernel/float_environment.h"
+#include "text/number_text.h"
+#include "text/text_file.h"
+#include "text/text_lines.h"
+
+namespace exactff {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kDefaultPatch = "default";
+constexpr std::string_view kNoMaterial = "(none)";
+constexpr std::size_t kMostIndices = std::numeric_limits<std::uint32_t>::max();
+
+// Distinct names in the order of their first use.
+class NameTable {
+ public:
+  explicit NameTable(std::string_view first) { index(first); }
+
+  std::uint32_t index(std::string_view name) {
+    const auto [place, is_new] = index_.emplace(name, static_cast<std::uint32_t>(names_.size()));
+    if (is_new) names_.emplace_back(name);
+    return place->second;
+  }
+  const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  std::vector<std::string> names_;
+  std::unordered_map<std::string, std::uint32_t> index_;
+};
+
+struct ObjFace {
+  std::size_t line = 0;
+  std::uint32_t group = 0;
+  std::uint32_t object = 0;
+  std::uint32_t material = 0;
+  std::size_t first_corner = 0;
+  std::size_t corner_count = 0;
+};
+
+// Lines of one kind, reported in one warning together.
+struct Tally {
+  std::size_t count = 0;
+  std::size_t first_line = 0;
+  std::string first;
+
+  void add(std::size_t line, std::string_view text) {
+    if (count++ > 0) return;
+    first_line = line;
+    first = text::in_quotes(text);
+  }
+  std::string others() const {
+    if (count < 2) return {};
+    return " (and on " + std::to_string(count - 1) + (count == 2 ? " more line)" : " more lines)");
+  }
+};
+
+bool passed_over(std::string_view keyword) {
+  static constexpr std::array kWords = {
+      std::string_view("vt"),     std::string_view("vn"),         std::string_view("vp"),
+      std::string_view("p"),      std::string_view("l"),          std::string_view("s"),
+      std::string_view("mg"),     std::string_view("lod"),        std::string_view("usemap"),
+      std::string_view("maplib"), std::string_view("shadow_obj"), std::string_view("trace_obj"),
+      std::string_view("bevel"),  std::string_view("c_interp"),   std::string_view("d_interp")};
+  return std::find(kWords.begin(), kWords.end(), keyword) != kWords.end();
+}
+
+class ObjReader {
+ public:
+  ObjReader(std::string_view text, const fs::path& path, const SceneOptions& options)
+      : path_(path), file_(path.string()), options_(options), builder_(file_, options), lines_(text) {}
+
+  Scene run();
+
+ private:
+  void read_line();
+  void read_vertex(std::string_view values);
+  std::array<double, 3> read_coordinates(std::string_view values);
+  void read_face(std::string_view corners);
+  std::optional<std::uint32_t> read_corner(std::string_view corner);
+  void read_group(std::string_view names);
+  void use_material(std::string_view name);
+
+  void check_indices();
+  void warn_tallies();
+  void read_libraries();
+  void read_library(const fs::path& path, std::size_t line);
+  std::vector<fs::path> library_paths(std::string_view names) const;
+  void add_materials();
+  void add_faces();
+
+  void fail(std::string what, std::string why, std::string suggestion) {
+    problems_.add({file_, line_.number, std::move(what), std::move(why), std::move(suggestion)});
+  }
+  void warn(std::size_t line, std::string what, std::string why, std::string suggestion) {
+    builder_.warn({file_, line, std::move(what), std::move(why), std::move(suggestion)});
+  }
+
+  const fs::path path_;
+  const std::string file_;
+  const SceneOptions options_;
+  SceneBuilder builder_;
+  text::TextLines lines_;
+  text::TextLine line_;
+  text::ProblemList problems_;
+
+  std::vector<ObjFace> faces_;
+  std::vector<std::uint32_t> corners_;  // of all faces
+  NameTable groups_{kDefaultPatch};
+  NameTable objects_{kDefaultPatch};
+  NameTable materials_{kNoMaterial};
+  std::vector<std::size_t> material_line_{0};  // of its first usemtl
+  ObjFace current_;                            // group, object and material for the next face
+  bool has_groups_ = false;
+  std::vector<std::pair<std::size_t, std::string>> libraries_;  // line, names
+  std::unordered_map<std::string, Material> defined_;
+  bool library_missing_ = false;
+  Tally several_groups_;
+  Tally unread_geometry_;
+  Tally unknown_;
+};
+
+Scene ObjReader::run() {
+  while (lines_.next(line_)) read_line();
+  if (lines_.is_cut_off()) {
+    warn(line_.number, "the last line has no line end", "the file may have been cut off there",
+         "end it with a line end if it is complete");
+  }
+  check_indices();
+  if (faces_.empty() && problems_.empty()) {
+    throw InputError({file_, 0, "has no faces", "there is nothing to compute with", "is it a Wavefront OBJ file?"});
+  }
+  warn_tallies();
+  read_libraries();
+  problems_.throw_if_any();
+  add_materials();
+  add_faces();
+  return builder_.build();
+}
+
+void ObjReader::read_line() {
+  std::string_view rest = line_.text;
+  const std::string_view keyword = text::take_word(rest);
+  if (keyword.empty() || passed_over(keyword)) return;
+  if (keyword == "v") return read_vertex(rest);
+  if (keyword == "f" || keyword == "fo") return read_face(rest);
+  if (keyword == "g") return read_group(rest);
+  if (keyword == "o") {
+    const std::string_view name = text::trimmed(rest);
+    current_.object = objects_.index(name.empty() ? kDefaultPatch : name);
+  } else if (keyword == "usemtl") {
+    use_material(text::trimmed(rest));
+  } else if (keyword == "mtllib") {
+    libraries_.emplace_back(line_.number, text::trimmed(rest));
+  } else {
+    static const std::set<std::string_view> kGeometry = {"curv", "curv2", "surf", "bzp", "bsp",
+                                                         "cdc",  "cdp",   "res",  "call"};
+    static const std::set<std::string_view> kFreeForm = {"cstype", "deg", "bmat", "step", "parm",  "trim",  "hole",
+                                                         "scrv",   "sp",  "end",  "con",  "ctech", "stech", "csh"};
+    if (kGeometry.contains(keyword))
+      unread_geometry_.add(line_.number, keyword);
+    else if (!kFreeForm.contains(keyword))
+      unknown_.add(line_.number, keyword);
+  }
+}
+
+// Numbers and indices hold no '#': there, a comment may follow without a blank.
+std::string_view before_comment(std::string_view values) { return values.substr(0, values.find('#')); }
+
+void ObjReader::read_vertex(std::string_view values) {
+  if (builder_.vertex_count() == kMostIndices) {
+    throw InputError({file_, line_.number, "more than 4294967295 vertices", "indices have 32 bits", "split the scene"});
+  }
+  // A faulty vertex still counts, so that the indices in the faces below stay correct.
+  const auto [x, y, z] = read_coordinates(before_comment(values));
+  builder_.add_vertex({x, y, z});
+}
+
+// Text after x, y and z (a weight or a colour) is ignored.
+std::array<double, 3> ObjReader::read_coordinates(std::string_view values) {
+  std::array<double, 3> xyz{};
+  for (double& coordinate : xyz) {
+    const std::string_view word = text::take_word(values);
+    if (word.empty()) {
+      fail("a vertex has fewer than three coordinates", "the point would not be known", "write v x y z");
+      return xyz;
+    }
+    const text::ParsedNumber number = text::parse_number(word);
+    if (number.fault != text::NumberFault::kNone)
+      fail(describe(number.fault, word), "a coordinate stands for one exact number", advice(number.fault));
+    coordinate = number.value;
+  }
+  return xyz;
+}
+
+void ObjReader::read_face(std::string_view corners) {
+  ObjFace face = current_;
+  face.line = line_.number;
+  face.first_corner = corners_.size();
+  bool sound = true;
+  corners = before_comment(corners);
+  for (std::string_view word = text::take_word(corners); !word.empty(); word = text::take_word(corners)) {
+    const std::optional<std::uint32_t> corner = read_corner(word);
+    sound = sound && corner;
+    if (corner) corners_.push_back(*corner);
+  }
+  face.corner_count = corners_.size() - face.first_corner;
+  if (corners_.size() > kMostIndices || faces_.size() == kMostIndices) {
+    throw InputError({file_, line_.number, "more than 4294967295 faces or corners of faces", "indices have 32 bits",
+                      "split the scene"});
+  }
+  if (sound && face.corner_count < 3 && options_.bad_faces == BadFaces::kReject) {
+    fail("a face has " + std::to_string(face.corner_count) + (face.corner_count == 1 ? " vertex" : " vertices"),
+         "a polygon has at least three", "remove it, or leave bad faces out with --skip-bad-faces");
+  }
+  faces_.push_back(face);
+}
+
+namespace {
+
+enum class IndexText { kNumber, kTooLong, kOther };
+
+IndexText parse_index(std::string_view text, long& index) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (end != text.data() + text.size() || text.empty() || error == std::errc::invalid_argument)
+    return IndexText::kOther;
+  return error == std::errc() ? IndexText::kNumber : IndexText::kTooLong;
+}
+
+// v, v/vt, v//vn, v/vt/vn, also v/ and v//: only v is used, the others must be numbers.
+bool well_formed_tail(std::string_view tail) {
+  if (std::count(tail.begin(), tail.end(), '/') > 2) return false;
+  while (!tail.empty()) {
+    tail.remove_prefix(1);
+    const std::string_view part = tail.substr(0, tail.find('/'));
+    long ignored = 0;
+    if (!part.empty() && parse_index(part, ignored) == IndexText::kOther) return false;
+    tail.remove_prefix(part.size());
+  }
+  return true;
+}
+
+}  // namespace
+
+// Counted from 0; not yet checked against the end of the vertex list.
+std::optional<std::uint32_t> ObjReader::read_corner(std::string_view corner) {
+  const std::size_t slash = std::min(corner.find('/'), corner.size());
+  const auto count = static_cast<long>(builder_.vertex_count());
+  long index = 0;
+  const IndexText kind = parse_index(corner.substr(0, slash), index);
+  if (kind == IndexText::kOther || !well_formed_tail(corner.substr(slash))) {
+    fail(text::in_quotes(corner) + " is not a corner of a face", "a corner is the number of a vertex",
+         "write v, v/vt, v//vn or v/vt/vn");
+    return std::nullopt;
+  }
+  if (kind == IndexText::kNumber && index == 0) {
+    fail("vertex 0 does not exist", "vertices count from 1, or from -1 backwards", "correct the index");
+    return std::nullopt;
+  }
+  const long position = index > 0 ? index - 1 : count + index;
+  if (kind == IndexText::kTooLong || position < 0 || std::cmp_greater_equal(position, kMostIndices)) {
+    fail("vertex " + std::string(corner.substr(0, std::min<std::size_t>(slash, 40))) + " does not exist",
+         "the lines before define " + std::to_string(count) + " vertices", "correct the index");
+    return std::nullopt;
+  }
+  return static_cast<std::uint32_t>(position);
+}
+
+void ObjReader::read_group(std::string_view names) {
+  has_groups_ = true;
+  const std::string_view all = text::trimmed(names);
+  const std::string_view first = text::take_word(names);
+  current_.group = groups_.index(first.empty() ? kDefaultPatch : first);
+  if (!text::trimmed(names).empty()) several_groups_.add(line_.number, all);
+}
+
+void ObjReader::use_material(std::string_view name) {
+  current_.material = materials_.index(name.empty() ? kNoMaterial : name);
+  if (current_.material == material_line_.size()) material_line_.push_back(line_.number);
+}
+
+void ObjReader::check_indices() {
+  const std::size_t count = builder_.vertex_count();
+  for (const ObjFace& face : faces_) {
+    for (std::size_t i = face.first_corner; i < face.first_corner + face.corner_count; ++i) {
+      if (corners_[i] < count) continue;
+      problems_.add({file_, face.line, "vertex " + std::to_string(corners_[i] + 1ULL) + " does not exist",
+                     "the file has " + std::to_string(count) + (count == 1 ? " vertex" : " vertices"),
+                     "correct the index"});
+    }
+  }
+}
+
+void ObjReader::warn_tallies() {
+  if (several_groups_.count > 0) {
+    warn(several_groups_.first_line, "g " + several_groups_.first + " names several groups" + several_groups_.others(),
+         "a face belongs to one patch", "the first name counts");
+  }
+  if (unread_geometry_.count > 0) {
+    warn(unread_geometry_.first_line, unread_geometry_.first + " is not read" + unread_geometry_.others(),
+         "curves, surfaces and other files are no polygons", "convert them to faces");
+  }
+  if (unknown_.count > 0) {
+    warn(unknown_.first_line, "unknown keyword " + unknown_.first + unknown_.others(), "the line is passed over",
+         "is it a Wavefront OBJ file?");
+  }
+}
+
+// A name may contain blanks; one line may hold several names. Backslashes are read as slashes if necessary.
+std::vector<fs::path> ObjReader::library_paths(std::string_view names) const {
+  const auto beside = [&](std::string_view name) {
+    const fs::path as_written = path_.parent_path() / name;
+    if (name.find('\\') == std::string_view::npos) return as_written;
+    std::string other(name);
+    std::replace(other.begin(), other.end(), '\\', '/');
+    std::error_code ignored;
+    return fs::exists(as_written, ignored) ? as_written : path_.parent_path() / other;
+  };
+  std::error_code ignored;
+  if (fs::exists(beside(names), ignored)) return {beside(names)};
+  std::set<std::string_view> seen;
+  std::vector<fs::path> paths;
+  for (std::string_view name = text::take_word(names); !name.empty(); name = text::take_word(names)) {
+    if (seen.insert(name).second) paths.push_back(beside(name));
+  }
+  return paths;
+}
+
+void ObjReader::read_libraries() {
+  std::set<fs::path> done;
+  for (const auto& [line, names] : libraries_) {
+    for (const fs::path& path : library_paths(names)) {
+      if (done.insert(path).second) read_library(path, line);
+    }
+  }
+}
+
+void ObjReader::read_library(const fs::path& path, std::size_t line) {
+  std::error_code error;
+  std::optional<std::string> text;
+  std::string why;
+  try {
+    // Only a plain file: a device or a pipe named in a scene could keep the reader waiting for ever.
+    if (fs::is_regular_file(path, error)) text = text::read_text_file(path, "a Wavefront MTL file");
+  } catch (const InputError& unreadable) {
+    const Problem& problem = unreadable.problems().front();
+    why = problem.what + ": " + problem.why + "; ";
+  }
+  if (!text) {
+    library_missing_ = true;
+    return warn(line, "material file " + text::in_quotes(path.string(), text::kShownName) + " cannot be read",
+                why + "its materials become Kd 1, Ke 0", "put it there if colours or emission matter");
+  }
+  text::ProblemList warnings;
+  for (Material& material : read_mtl(*text, path.string(), problems_, warnings)) {
+    defined_.try_emplace(material.name, std::move(material));
+  }
+  for (Problem& warning : warnings.take("warnings")) builder_.warn(std::move(warning));
+}
+
+void ObjReader::add_materials() {
+  const std::vector<std::string>& names = materials_.names();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto definition = defined_.find(names[i]);
+    builder_.add_material(definition != defined_.end() ? definition->second : Material{names[i]});
+    if (definition != defined_.end() || i == 0 || library_missing_) continue;
+    warn(material_line_[i], "material " + text::in_quotes(names[i]) + " is not defined", "it becomes Kd 1, Ke 0",
+         "define it in a file named by mtllib");
+  }
+}
+
+// Patches are made in the order of their first faces.
+void ObjReader::add_faces() {
+  const std::vector<std::string>& names = has_groups_ ? groups_.names() : objects_.names();
+  std::vector<std::optional<PatchId>> patches(names.size());
+  for (const ObjFace& face : faces_) {
+    const std::uint32_t name = has_groups_ ? face.group : face.object;
+    if (!patches[name]) patches[name] = builder_.patch(names[name]);
+    const auto first = corners_.begin() + static_cast<std::ptrdiff_t>(face.first_corner);
+    std::vector<std::uint32_t> ring(first, first + static_cast<std::ptrdiff_t>(face.corner_count));
+    std::vector<std::vector<std::uint32_t>> rings;
+    rings.push_back(std::move(ring));
+    builder_.add_face(*patches[name], static_cast<MaterialId>(face.material), std::move(rings), face.line);
+  }
+}
+
+constexpr const char* kPurpose = "a Wavefront OBJ file";
+
+Scene read(const std::string& text, const fs::path& path, const SceneOptions& options) {
+  const kernel::StandardArithmetic arithmetic;
+  if (text.empty())
+    throw InputError({path.string(), 0, "is empty", "there is nothing to compute with", "give a Wavefront OBJ file"});
+  return ObjReader(text, path, options).run();
+}
+
+}  // namespace
+
+Scene read_obj(std::istream& in, const fs::path& name, const SceneOptions& options) {
+  return read(text::read_text(in, name.string(), kPurpose), name, options);
+}
+
+Scene read_obj(const fs::path& path, const SceneOptions& options) {
+  return read(text::read_text_file(path, kPurpose), path, options);
+}
+
+}  // namespace exactff

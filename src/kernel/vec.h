@@ -1,0 +1,14 @@
+// Vectors of doubles, only for pictures and counts.
+#pragma once
+
+#include "exactff/geometry.h"
+
+namespace exactff::kernel {
+
+inline Vec3 difference(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+}  // namespace exactff::kernel

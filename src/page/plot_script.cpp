@@ -1,0 +1,303 @@
+#include "page/plot_script.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "text/escape.h"
+#include "text/phrases.h"
+
+namespace exactff::page {
+namespace {
+
+// The colours of Okabe and Ito, which can be distinguished with every common colour blindness, then the page's text
+// colour and a grey. Marks and dashes differ as well, for print. Their yellow is left out: it cannot be seen on white.
+// The light colours come late, and the last four lines are dashed, so that the eighth line is not mistaken for the
+// first.
+constexpr std::array<std::string_view, 8> kLineStyles = {
+    "lc rgb '#0072B2' pt 7 dt 1",  "lc rgb '#D55E00' pt 5 dt 1",       "lc rgb '#009E73' pt 9 dt 1",
+    "lc rgb '#CC79A7' pt 13 dt 1", "lc rgb '#E69F00' pt 11 dt (16,4)", "lc rgb '#56B4E9' pt 6 dt (8,3)",
+    "lc black pt 4 dt (12,3,2,3)", "lc rgb '#8A8A8A' pt 2 dt (4,3)"};
+// For a line that may coincide with another: the other line stays visible through its open marks.
+constexpr std::string_view kOverlayStyle = "with linespoints lw 1.2 ps 1.3 lc rgb '#CC79A7' pt 12 dt 3";
+
+// Ten samples of viridis; a diverging scale that is light grey in the middle.
+constexpr std::string_view kViridis =
+    "set palette defined (0 '#440154', 1 '#482878', 2 '#3e4989', 3 '#31688e', 4 '#26828e', 5 '#1f9e89', 6 '#35b779', "
+    "7 '#6ece58', 8 '#b5de2b', 9 '#fde725')\n";
+constexpr std::string_view kDiverging =
+    "set palette defined (0 '#2166ac', 1 '#67a9cf', 2 '#d1e5f0', 3 '#f7f7f7', 4 '#fddbc7', 5 '#ef8a62', 6 '#b2182b')\n";
+
+// Figures on a page use its background; separate figures have a white background.
+enum class Background { kOfPage, kWhite };
+constexpr int kPlotWidth = 520;  // small enough that the lettering is readable on a phone
+constexpr int kKeyFont = 13;
+
+std::string head(int width, int height, Background background = Background::kOfPage) {
+  return "set encoding utf8\nset terminal svg size " + std::to_string(width) + ',' + std::to_string(height) +
+         " dynamic enhanced font 'sans-serif,15' linewidth 1.2" +
+         (background == Background::kWhite ? " background rgb 'white'" : "") + "\n";
+}
+
+Points drawable(const Points& points, const Axes& axes) {
+  Points kept;
+  for (const auto& [x, y] : points) {
+    if (!std::isfinite(x) || !std::isfinite(y)) continue;
+    if ((axes.log_x && x <= 0.0) || (axes.log_y && y <= 0.0)) continue;
+    kept.emplace_back(x, y);
+  }
+  std::sort(kept.begin(), kept.end());
+  return kept;
+}
+
+std::string data_block(const std::string& name, const Points& points) {
+  std::string text = '$' + name + " << END\n";
+  for (const auto& [x, y] : points) text += text::shortest(x) + ' ' + text::shortest(y) + '\n';
+  return text + "END\n";
+}
+
+// The legend above the plot: as many equally full columns as fit.
+struct Key {
+  std::size_t rows = 0;
+  std::size_t columns = 1;
+  std::size_t spare = 0;  // how many characters gnuplot overestimates the longest entry by
+};
+
+std::size_t characters(std::string_view text) {
+  const auto begins = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };  // in UTF-8
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), begins));
+}
+
+// The room and the widths are those that gnuplot's SVG terminal assumes.
+Key key_of(const std::vector<std::string>& titles) {
+  constexpr double kRoom = kPlotWidth - 40, kCharacter = 0.7 * kKeyFont, kSample = 5.7 * kCharacter;
+  std::size_t entries = 0, longest = 0;
+  for (const std::string& title : titles) {
+    if (title.empty()) continue;
+    ++entries;
+    longest = std::max(longest, characters(title));
+  }
+  if (entries == 0) return {};
+  const std::size_t spare = longest / 8;
+  const auto fitting = static_cast<std::size_t>(kRoom / (kCharacter * static_cast<double>(longest - spare) + kSample));
+  const std::size_t most = std::clamp<std::size_t>(fitting, 1, entries);
+  const std::size_t rows = (entries + most - 1) / most;
+  return {rows, (entries + rows - 1) / rows, spare};
+}
+
+// The axes get the same room however large the legend is.
+std::string plot_head(const Key& key, Background background = Background::kOfPage) {
+  return head(kPlotWidth, 360 + 20 * static_cast<int>(key.rows), background);
+}
+
+std::string axis_commands(const Axes& axes, const Key& key) {
+  std::string text = "set xlabel " + text::gnuplot_string(axes.x) + "\nset ylabel " + text::gnuplot_string(axes.y) +
+                     "\nset grid lw 0.5 lc rgb '#8A8A8A' dt 3\nset minussign\nset bmargin 3.3\n"
+                     "set key tmargin center horizontal samplen 2.4 font '," +
+                     std::to_string(kKeyFont) + "' width -" + std::to_string(key.spare) + " maxcols " +
+                     std::to_string(key.columns) + "\nset border 3 lw 0.8\nset tics nomirror\n";
+  if (axes.log_x) text += "set logscale x\nset format x '10^{%T}'\n";
+  if (axes.log_y) text += "set logscale y\nset format y '10^{%T}'\n";
+  for (const std::string& command : axes.extra) text += command + '\n';
+  return text;
+}
+
+// Otherwise a logarithmic axis would extend to the next power of ten.
+std::string x_range(const Axes& axes, const std::vector<Points>& drawn) {
+  if (!axes.log_x) return {};
+  std::vector<double> all = axes.marks;
+  for (const Points& points : drawn) {
+    for (const auto& point : points) all.push_back(point.first);
+  }
+  const auto [low, high] = std::minmax_element(all.begin(), all.end());
+  return "set xrange [" + text::shortest(*low / 1.5) + ':' + text::shortest(*high * 1.5) + "]\n";
+}
+
+std::string style_of(const Series& series) {
+  if (series.style == kOverlay) return std::string(kOverlayStyle);
+  if (series.style == 0) return "with lines lw 1.2 dt 2 lc rgb '#8A8A8A'";
+  const std::string style(kLineStyles[static_cast<std::size_t>(series.style - 1) % kLineStyles.size()]);
+  if (series.drawn == Drawn::kMarks) return "with points ps 0.5 " + style;
+  if (series.drawn == Drawn::kLine) return "with lines lw 2.2 " + style.substr(0, style.find(" pt")) + " dt 1";
+  return "with linespoints lw 1.8 ps 0.8 " + style;
+}
+
+// The style of a mark over bars. Bars use the first colour.
+std::string mark_style(std::size_t i) {
+  constexpr std::array<std::string_view, 4> kColours = {"#D55E00", "#CC79A7", "#009E73", "#E69F00"};
+  return "lw 2 dt " + std::to_string(1 + i % 5) + " lc rgb '" + std::string(kColours[i % kColours.size()]) + '\'';
+}
+
+// Large sets are drawn as dots, and points that must not be overlooked among them as crosses. A dot is a very short
+// line with round ends: as a mark it would take three times the bytes.
+struct CloudLook {
+  bool dots = true;
+  std::string_view colour;
+};
+CloudLook cloud_look(int style) {
+  constexpr std::array<CloudLook, 4> kClouds = {
+      {{true, "#600072B2"}, {false, "#D55E00"}, {true, "#60009E73"}, {false, "#CC79A7"}}};
+  return kClouds[static_cast<std::size_t>(style - 1) % kClouds.size()];
+}
+
+// For a line that must be visible over a cloud of points. Plain black becomes the page's text colour.
+constexpr const char* kOverCloudStyle = "with linespoints lw 1.6 ps 1.1 lc black pt 6 dt 1";
+
+// `width`: the range of the points in x.
+std::string cloud_command(const std::string& name, const Series& cloud, const Axes& axes, double width) {
+  const CloudLook look = cloud_look(cloud.style);
+  const std::string colour = " lc rgb '" + std::string(look.colour) + '\'';
+  const std::string title = cloud.title.empty() ? " notitle" : " title " + text::gnuplot_string(cloud.title);
+  if (!look.dots) return name + " using 1:2 with points pt 2 ps 0.6 lw 1.5" + colour + title;
+  const std::string length = axes.log_x ? "$1*0.003" : text::shortest(0.0003 * width);
+  return name + " using 1:2:(" + length + "):(0) with vectors nohead lw 2.6" + colour +
+         " notitle, keyentry with points pt 7 ps 0.6" + colour + title;
+}
+
+// Four digits are finer than a plot's pixels.
+std::string four_digits(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 4);
+  return {text.data(), end.ptr};
+}
+
+// A mark that coincides with the one before is drawn once.
+std::string cloud_block(const std::string& name, const Points& points) {
+  std::string text = name + " << END\n", last;
+  for (const auto& [x, y] : points) {
+    std::string mark = four_digits(x) + ' ' + four_digits(y) + '\n';
+    if (mark == last) continue;
+    text += mark;
+    last = std::move(mark);
+  }
+  return text + "END\n";
+}
+
+double largest_value(const Map& map) {
+  double largest = 0.0;
+  for (const MapCell& cell : map.cells) largest = std::max(largest, cell.value);
+  return largest;
+}
+
+// Only a few tick marks, so that their numbers do not overlap on a narrow bar.
+std::string colour_range(double low, double middle, double high) {
+  const auto mark = [](double value) {
+    return std::string(value < 0.0 ? "'−" : "'") + text::rounded(std::abs(value), 2) + "' " + text::shortest(value);
+  };
+  return "set cbrange [" + text::shortest(low) + ':' + text::shortest(high) + "]\nset cbtics (" + mark(low) + ", " +
+         mark(middle) + ", " + mark(high) + ") offset 0,2.1 nomirror scale 0\n";
+}
+
+std::string colour_commands(const Map& map) {
+  if (map.colours == MapColours::kDiverging) {
+    return std::string(kDiverging) + colour_range(-map.largest, 0.0, map.largest);
+  }
+  if (map.colours == MapColours::kClasses) {
+    std::string marks;
+    for (std::size_t i = 0; i < map.classes.size(); ++i) {
+      marks += (i > 0 ? ", " : "") + text::gnuplot_string(map.classes[i]) + ' ' + std::to_string(i);
+    }
+    return std::string(kViridis) + "set cbrange [0:" + std::to_string(map.classes.size() - 1) + "]\nset cbtics (" +
+           marks + ") offset 0,2.1 nomirror scale 0\n";
+  }
+  const double largest = largest_value(map);
+  if (map.colours == MapColours::kLogarithmic && largest > 10.0) {
+    return std::string(kViridis) + "set logscale cb\n" + colour_range(1.0, std::round(std::sqrt(largest)), largest);
+  }
+  return std::string(kViridis) + colour_range(0.0, 0.5 * largest, largest);
+}
+
+}  // namespace
+
+std::string line_plot(const Axes& axes, const std::vector<Series>& series) {
+  std::string data, plot;
+  std::vector<std::string> titles;
+  std::vector<Points> drawn;
+  for (const Series& line : series) {
+    Points points = drawable(line.points, axes);
+    if (points.empty()) continue;
+    const std::string name = "series" + std::to_string(drawn.size());
+    data += data_block(name, points);
+    plot += (plot.empty() ? "plot " : ", \\\n     ") + ('$' + name) + " using 1:2 " + style_of(line) +
+            (line.title.empty() ? " notitle" : " title " + text::gnuplot_string(line.title));
+    titles.push_back(line.title);
+    drawn.push_back(std::move(points));
+  }
+  if (plot.empty()) return {};
+  const Key key = key_of(titles);
+  return plot_head(key) + axis_commands(axes, key) + x_range(axes, drawn) + data + plot + '\n';
+}
+
+std::string scatter_plot(const Axes& axes, const std::vector<Series>& series) {
+  std::string data, plot;
+  std::vector<std::string> titles;
+  std::vector<Points> drawn;
+  for (const Series& cloud : series) {
+    Points points = drawable(cloud.points, axes);
+    if (points.empty()) continue;
+    const std::string name = "$series" + std::to_string(drawn.size());
+    data += cloud_block(name, points);
+    const std::string style = cloud.style == kOverlay ? kOverCloudStyle : style_of(cloud);
+    const std::string line = name + " using 1:2 " + style + " title " + text::gnuplot_string(cloud.title);
+    plot += (plot.empty() ? "plot " : ", \\\n     ") +
+            (cloud.style > 0 ? cloud_command(name, cloud, axes, points.back().first - points.front().first) : line);
+    titles.push_back(cloud.title);
+    drawn.push_back(std::move(points));
+  }
+  if (plot.empty()) return {};
+  const Key key = key_of(titles);
+  std::string head = plot_head(key);
+  head.insert(head.find(" dynamic"), " rounded");
+  return head + axis_commands(axes, key) + x_range(axes, drawn) + data + plot + '\n';
+}
+
+std::string bar_plot(const Axes& axes, const std::vector<Bar>& bars, const std::vector<Mark>& marks) {
+  const auto is_drawable = [&](double x) { return std::isfinite(x) && (x > 0.0 || !axes.log_x); };
+  std::string data, arrows, keys;
+  std::vector<std::string> titles;
+  Points ends;
+  for (const Bar& bar : bars) {
+    if (!is_drawable(bar.low) || !is_drawable(bar.high)) continue;
+    data += text::shortest(bar.low) + ' ' + text::shortest(bar.high) + ' ' + text::shortest(bar.height) + '\n';
+    ends.insert(ends.end(), {{bar.low, 0.0}, {bar.high, 0.0}});
+  }
+  if (data.empty()) return {};
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    if (!is_drawable(marks[i].x)) continue;
+    const std::string at = text::shortest(marks[i].x), style = mark_style(i);
+    ends.emplace_back(marks[i].x, 0.0);
+    titles.push_back(marks[i].title);
+    arrows += "set arrow from " + at + ", graph 0 to " + at + ", graph 1 nohead front " + style + '\n';
+    keys += ", \\\n     keyentry with lines " + style + " title " + text::gnuplot_string(marks[i].title);
+  }
+  const Key key = key_of(titles);
+  return plot_head(key, Background::kWhite) + axis_commands(axes, key) + x_range(axes, {ends}) + "set yrange [0:*]\n" +
+         arrows + "$bars << END\n" + data +
+         "END\nplot $bars using 1:3:1:2:(0):3 with boxxyerror lc rgb '#0072B2' fs solid 0.6 noborder notitle" + keys +
+         '\n';
+}
+
+std::string map_plot(const Map& map) {
+  std::string text = head(460, 460);
+  text += "set size ratio " + text::shortest(std::clamp(map.height_over_width, 0.4, 1.6)) + '\n';
+  text +=
+      "set xrange [0.5:" + std::to_string(map.columns) + ".5]\nset yrange [0.5:" + std::to_string(map.rows) + ".5]\n";
+  text += "set xlabel 'column of the grid (u)'\nset ylabel 'row of the grid (v)' offset 0.5,0\nset tics nomirror out\n";
+  text += colour_commands(map);
+  text +=
+      "set colorbox horizontal user origin graph 0, graph 1.06 size graph 1, graph 0.04\n"
+      "set cblabel " +
+      text::gnuplot_string(map.quantity) +
+      " offset 0,4.9\n"
+      "set lmargin at screen 0.18\nset rmargin at screen 0.94\n"
+      "set tmargin at screen 0.83\nset bmargin at screen 0.17\n";
+  text += "$cells << END\n";
+  for (const MapCell& cell : map.cells) {
+    text += std::to_string(cell.column) + ' ' + std::to_string(cell.row) + ' ' + text::shortest(cell.value) + '\n';
+  }
+  return text + "END\nplot $cells using 1:2:3 with image pixels notitle\n";
+}
+
+}  // namespace exactff::page

@@ -1,0 +1,164 @@
+// Receivers from a CSV file.
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <unordered_set>
+
+#include "exactff/error.h"
+#include "exactff/receiver.h"
+#include "kernel/float_environment.h"
+#include "scene/scene_data.h"
+#include "text/csv_lines.h"
+#include "text/number_text.h"
+#include "text/text_lines.h"
+
+namespace exactff {
+namespace {
+
+constexpr std::array<std::string_view, 8> kColumns = {"id", "x", "y", "z", "nx", "ny", "nz", "on"};
+constexpr std::size_t kId = 0, kX = 1, kNx = 4, kOn = 7;
+
+class ReceiverTable {
+ public:
+  ReceiverTable(const std::filesystem::path& path, const Scene& scene)
+      : lines_(path, "a CSV file of receivers"), scene_(scene) {}
+
+  std::vector<Receiver> read() {
+    for (std::string_view line; lines_.next(line);) {
+      if (!text::is_csv_comment(line)) take(line);
+    }
+    if (!header_read_) complain("the file has no header", "its columns are told apart by name", kHeaderAdvice);
+    problems_.throw_if_any();
+    return std::move(receivers_);
+  }
+
+ private:
+  static constexpr const char* kHeaderAdvice = "begin it with id,x,y,z,nx,ny,nz,on";
+
+  void complain(std::string what, std::string why, std::string suggestion = {}) {
+    problems_.add({lines_.file(), lines_.number(), std::move(what), std::move(why), std::move(suggestion)});
+    ++problem_count_;
+  }
+
+  void take(std::string_view line) {
+    if (!text::split_csv_line(line, fields_)) {
+      complain("a quotation mark is not closed, or text follows it", "fields would be told apart wrongly",
+               "write a quotation mark within quotes twice");
+    } else if (!header_read_) {
+      take_header(fields_);
+    } else if (usable_) {
+      take_row(fields_);
+    }
+  }
+
+  void take_header(const std::vector<std::string>& names) {
+    header_read_ = true;
+    column_.fill(names.size());
+    field_count_ = names.size();
+    const std::size_t before = problem_count_;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const auto known = std::find(kColumns.begin(), kColumns.end(), names[i]);
+      if (known == kColumns.end()) {
+        complain("unknown column " + text::in_quotes(names[i]), "a misspelt name would be silently ignored",
+                 "the columns are id,x,y,z,nx,ny,nz,on");
+        continue;
+      }
+      std::size_t& column = column_[static_cast<std::size_t>(known - kColumns.begin())];
+      if (column < field_count_)
+        complain("column " + text::in_quotes(names[i]) + " occurs twice", "only one can count", "remove one");
+      column = i;
+    }
+    for (std::size_t c = kX; c < kOn; ++c) {
+      if (column_[c] < field_count_) continue;
+      complain("there is no column '" + std::string(kColumns[c]) + "'", "a receiver is a point with a normal",
+               kHeaderAdvice);
+    }
+    usable_ = problem_count_ == before;
+  }
+
+  void take_row(const std::vector<std::string>& fields) {
+    if (fields.size() != field_count_) {
+      complain(std::to_string(fields.size()) + " fields where the header has " + std::to_string(field_count_),
+               "columns would be mixed up", "separate fields by commas and quote those that hold one");
+      return;
+    }
+    const std::size_t before = problem_count_;
+    Receiver receiver;
+    receiver.point = vector_at(fields, kX);
+    receiver.normal = vector_at(fields, kNx);
+    if (problem_count_ == before && receiver.normal == Vec3{}) {
+      complain("the normal is zero", "it says which way the receiver faces", "give it any other length");
+    }
+    if (column_[kOn] < field_count_ && !fields[column_[kOn]].empty()) receiver.on = face_named(fields[column_[kOn]]);
+    if (column_[kId] < field_count_) receiver.id = fields[column_[kId]];
+    take_id(receiver.id);
+    receivers_.push_back(std::move(receiver));
+  }
+
+  // The id of a row without an id is its number.
+  void take_id(std::string& id) {
+    if (id.empty()) id = std::to_string(receivers_.size() + 1);
+    if (!ids_.insert(id).second) {
+      complain("the id " + text::in_quotes(id) + " is used twice", "rows of the results could not be told apart",
+               "give every receiver an id of its own, or none");
+    }
+  }
+
+  Vec3 vector_at(const std::vector<std::string>& fields, std::size_t first) {
+    return {number_at(fields, first), number_at(fields, first + 1), number_at(fields, first + 2)};
+  }
+
+  double number_at(const std::vector<std::string>& fields, std::size_t c) {
+    const std::string& text = fields[column_[c]];
+    const text::ParsedNumber number = text::parse_number(text);
+    if (number.fault == text::NumberFault::kNone) return number.value;
+    complain(describe(number.fault, text) + " in column " + std::string(kColumns[c]),
+             "points and normals are made of finite doubles", advice(number.fault));
+    return 0.0;
+  }
+
+  // Searching for similar names takes time; it is skipped if the message would not be shown.
+  std::optional<FaceId> face_named(const std::string& name) {
+    constexpr std::size_t kExplained = 20;
+    const auto& patches = scene_.data().patch_by_name;
+    const bool known = patches.contains(name) || patches.contains(name.substr(0, name.rfind(':')));
+    if (problem_count_ >= kExplained && !known) {
+      complain("there is no face " + text::in_quotes(name), "it lies on no face of the scene",
+               "see the first such line");
+      return std::nullopt;
+    }
+    try {
+      const Selection selection = scene_.select(name);
+      if (selection.face) return selection.face;
+      const std::vector<FaceId>& faces = scene_.patch(selection.patch).faces;
+      if (faces.size() == 1) return faces.front();
+      complain(text::in_quotes(name, text::kShownName) + " has " + std::to_string(faces.size()) + " faces",
+               "a receiver lies on one of them",
+               "write " + text::in_quotes(name + ":k", text::kShownName) + " for its k-th face");
+    } catch (const InputError& error) {
+      for (const Problem& p : error.problems()) complain(p.what, p.why, p.suggestion);
+    }
+    return std::nullopt;
+  }
+
+  text::CsvLines lines_;
+  const Scene& scene_;
+  std::vector<std::string> fields_;
+  bool header_read_ = false;
+  bool usable_ = false;
+  std::size_t field_count_ = 0;
+  std::array<std::size_t, kColumns.size()> column_{};  // field_count_ where the column is absent
+  std::unordered_set<std::string> ids_;
+  std::vector<Receiver> receivers_;
+  text::ProblemList problems_;
+  std::size_t problem_count_ = 0;
+};
+
+}  // namespace
+
+std::vector<Receiver> read_receivers(const std::filesystem::path& path, const Scene& scene) {
+  const kernel::StandardArithmetic arithmetic;
+  return ReceiverTable(path, scene).read();
+}
+
+}  // namespace exactff

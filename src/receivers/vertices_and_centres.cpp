@@ -1,0 +1,173 @@
+// Receivers at the corners and centres of faces.
+//
+// The centroid of a face, in exact arithmetic and rounded once at the end. The face's convex pieces are fans of
+// triangles p, q, r with the vectors N_t = (q - p) x (r - p); N is the face's Newell vector.
+//   1. Each triangle weighs w_t = N.N_t: twice its area as seen along N, up to a factor that is common to all.
+//   2. The centroid is the sum of w_t (p + q + r) over 3 times the sum of w_t.
+//   3. Is it strictly inside the rings, as seen along N? If not, the receiver is at the mean of the
+//      corners of the piece that weighs most.
+#include <unordered_set>
+
+#include "exactff/error.h"
+#include "exactff/receiver.h"
+#include "kernel/float_environment.h"
+#include "receivers/face_plane.h"
+#include "scene/places.h"
+
+namespace exactff {
+namespace {
+
+using kernel::ExactVec3;
+using kernel::Integer;
+using kernel::Rational;
+
+std::string name_of(const Scene& scene, FaceId face) { return scene.name_of(Selection{scene.face(face).patch, face}); }
+
+// --- Corners -------------------------------------------------------------------------------------------
+
+void check_corner_count(const Scene& scene, std::span<const FaceId> on) {
+  std::uint64_t corners = 0;
+  for (const FaceId face : on) {
+    if (scene.face(face).piece_count == 0) continue;
+    for (const auto& ring : scene.face(face).rings) corners += ring.size();
+  }
+  if (corners <= kMostReceivers) return;
+  throw InputError({.what = std::to_string(corners) + " corners of faces",
+                    .why = "there may be " + std::to_string(kMostReceivers) + " receivers in all",
+                    .suggestion = "use a smaller patch"});
+}
+
+void append_corners(const Scene& scene, FaceId id, std::vector<Receiver>& receivers) {
+  const Face& face = scene.face(id);
+  const std::string prefix = name_of(scene, id) + '/';
+  std::unordered_set<std::uint32_t> visited;
+  std::size_t number = 0;
+  for (const auto& ring : face.rings) {
+    for (const std::uint32_t v : ring) {
+      ++number;
+      if (!visited.insert(places(scene)[v]).second) continue;
+      receivers.push_back({scene.vertices()[v], face.newell, id, prefix + std::to_string(number)});
+    }
+  }
+}
+
+// --- Centres -------------------------------------------------------------------------------------------
+
+// A point relative to the first corner of the face, in units of 2^exponent.
+struct Fraction {
+  ExactVec3 numerator;
+  Integer denominator = 0;
+};
+
+// Where the receiver of one face is.
+class FaceCentre {
+ public:
+  FaceCentre(const Scene& scene, FaceId id) : scene_(scene), id_(id), plane_(scene, id) {}
+
+  [[nodiscard]] Vec3 find() const {
+    if (is_convex()) return rounded(mean(plane_.points().at));
+    Fraction largest;
+    const Fraction centroid = weigh_pieces(largest);
+    return rounded(is_inside(centroid) ? centroid : largest);
+  }
+
+ private:
+  // The single piece of a convex planar face is the face itself.
+  [[nodiscard]] bool is_convex() const {
+    if (plane_.is_convex_quadrilateral()) return true;
+    const auto pieces = scene_.pieces_of(id_);
+    return pieces.size() == 1 && plane_.points().ring_count() == 1 &&
+           pieces.front().corner_count == plane_.points().size();
+  }
+
+  // The centroid. Sets `largest` to the mean of the corners of the heaviest piece, the first of equals.
+  Fraction weigh_pieces(Fraction& largest) const {
+    Fraction centroid;
+    Integer largest_weight = 0;
+    for (const Piece& piece : scene_.pieces_of(id_)) {
+      const std::vector<ExactVec3> corners = corners_of(piece);
+      const Integer weight = add_piece(corners, centroid);
+      if (weight <= largest_weight) continue;
+      largest_weight = weight;
+      largest = mean(corners);
+    }
+    return centroid;
+  }
+
+  // Returns the weight.
+  Integer add_piece(const std::vector<ExactVec3>& p, Fraction& centroid) const {
+    Integer sum = 0;
+    for (std::size_t i = 2; i < p.size(); ++i) {
+      const Integer weight = dot(plane_.normal(), cross(p[i - 1] - p[0], p[i] - p[0]));
+      centroid.numerator = centroid.numerator + (p[0] + p[i - 1] + p[i]) * weight;
+      sum += weight;
+    }
+    centroid.denominator += 3 * sum;
+    return sum;
+  }
+
+  [[nodiscard]] std::vector<ExactVec3> corners_of(const Piece& piece) const {
+    const std::span<const Vec3> vertices = scene_.vertices();
+    std::vector<ExactVec3> corners;
+    for (const std::uint32_t v : scene_.corners(piece)) {
+      kernel::ScaledVec3 corner = kernel::exact_difference(vertices[v], vertices[plane_.points().vertex.front()]);
+      if (!kernel::is_zero(corner.v)) kernel::lower_exponent(corner, plane_.points().exponent);
+      corners.push_back(std::move(corner.v));
+    }
+    return corners;
+  }
+
+  static Fraction mean(const std::vector<ExactVec3>& points) {
+    Fraction sum;
+    for (const ExactVec3& p : points) sum.numerator = sum.numerator + p;
+    sum.denominator = static_cast<unsigned long>(points.size());
+    return sum;
+  }
+
+  [[nodiscard]] bool is_inside(const Fraction& p) const {
+    const FaceFrame frame(plane_);
+    return frame.strictly_inside({dot(frame.e(), p.numerator), p.denominator},
+                                 {dot(frame.f(), p.numerator), p.denominator});
+  }
+
+  [[nodiscard]] Vec3 rounded(const Fraction& p) const {
+    return plane_.rounded({quotient(p.numerator.x, p.denominator), quotient(p.numerator.y, p.denominator),
+                           quotient(p.numerator.z, p.denominator)});
+  }
+
+  const Scene& scene_;
+  FaceId id_;
+  FacePlane plane_;
+};
+
+void check_face_count(std::size_t faces) {
+  if (faces <= kMostReceivers) return;
+  throw InputError({.what = std::to_string(faces) + " faces",
+                    .why = "there may be " + std::to_string(kMostReceivers) + " receivers in all",
+                    .suggestion = "use a smaller patch"});
+}
+
+}  // namespace
+
+std::vector<Receiver> vertex_receivers(const Scene& scene, std::span<const FaceId> on) {
+  const kernel::StandardArithmetic arithmetic;
+  check_corner_count(scene, on);
+  std::vector<Receiver> receivers;
+  for (const FaceId face : on) {
+    if (scene.face(face).piece_count > 0) append_corners(scene, face, receivers);
+  }
+  return receivers;
+}
+
+std::vector<Receiver> centre_receivers(const Scene& scene, std::span<const FaceId> on) {
+  const kernel::StandardArithmetic arithmetic;
+  check_face_count(on.size());
+  std::vector<Receiver> receivers;
+  for (const FaceId face : on) {
+    if (scene.face(face).piece_count == 0) continue;
+    receivers.push_back({FaceCentre(scene, face).find(), scene.face(face).newell, face, name_of(scene, face)});
+  }
+  return receivers;
+}
+
+}  // namespace exactff

@@ -1,0 +1,456 @@
+#include "report/figures.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "page/plot_script.h"
+#include "report/method_figures.h"
+#include "study/settings.h"
+#include "study/statistics.h"
+#include "text/escape.h"
+#include "text/phrases.h"
+
+namespace exactff::report {
+namespace {
+
+constexpr const char* kEpsB = "tolerance ε_B (radiosity)";
+constexpr const char* kError = "error (radiosity)";
+
+double parameter_of(const AdaptiveOptions& s, Parameter parameter) {
+  switch (parameter) {
+    case Parameter::kEpsB:
+      return s.eps_b;
+    case Parameter::kEpsA:
+      return s.eps_a;
+    case Parameter::kRays:
+      return s.rays;
+    default:
+      return 0.0;
+  }
+}
+
+// The kinds of error that a figure shows.
+struct Kind {
+  const char* title;
+  double ErrorStatistics::*value;
+};
+constexpr std::array<Kind, 3> kKinds = {
+    {{"worst", &ErrorStatistics::worst}, {"p99", &ErrorStatistics::p99}, {"RMS", &ErrorStatistics::rms}}};
+
+class FigureMaker {
+ public:
+  FigureMaker(const Study& study, std::vector<LeftOut>& left_out) : study_(study), left_out_(left_out) {}
+
+  std::vector<page::Figure> make() {
+    add_error_against_eps_b();
+    add_violations();
+    add_work_against_eps_b();
+    add_silent_errors();
+    add_error_against_time();
+    add_error_against_rays();
+    add_patterns();
+    add_error_against_eps_a();
+    add_method_figures(study_, figures_, left_out_);
+    add_maps();
+    return std::move(figures_);
+  }
+
+ private:
+  [[nodiscard]] const AdaptiveOptions& base() const { return study_.settings[study_.base]; }
+
+  [[nodiscard]] page::Points points(const std::vector<std::size_t>& line, Parameter x,
+                                    double ErrorStatistics::*y) const {
+    page::Points result;
+    for (std::size_t k : line) {
+      result.emplace_back(parameter_of(study_.settings[k], x), study_.summaries[k].radiosity.*y);
+    }
+    return result;
+  }
+
+  [[nodiscard]] std::vector<page::Series> error_series(const std::vector<std::size_t>& line, Parameter x) const {
+    std::vector<page::Series> series;
+    int style = 0;
+    for (const Kind& kind : kKinds) series.push_back({kind.title, points(line, x, kind.value), ++style});
+    return series;
+  }
+
+  void leave_out(std::string what, std::string why) { left_out_.push_back({std::move(what), std::move(why)}); }
+
+  // An empty script means that the figure has no point.
+  void add(page::Figure figure) {
+    if (figure.script.empty()) {
+      leave_out("figure: " + figure.title, "every error is 0, which a logarithmic axis cannot show");
+    } else {
+      figures_.push_back(std::move(figure));
+    }
+  }
+
+  // The settings that differ from `from` in this parameter only. If there are fewer than two: nothing, and the reason
+  // is recorded.
+  std::optional<std::vector<std::size_t>> sweep(std::size_t from, Parameter parameter, const std::string& title) {
+    std::vector<std::size_t> line = study::line_through(study_.settings, from, parameter);
+    if (line.size() >= 2) return line;
+    const bool told = std::any_of(study_.left_out.begin(), study_.left_out.end(), [&](const LeftOut& item) {
+      return parameter == Parameter::kEpsB ? item.what == "sweep of eps_B" : item.what != "sweep of eps_B";
+    });
+    leave_out("figure: " + title, told ? "its sweep was left out" : "the sweep has a single value");
+    return std::nullopt;
+  }
+
+  void add_error_against_eps_b() {
+    const std::string title = "Achieved error against the tolerance ε_B";
+    const auto line = sweep(study_.base, Parameter::kEpsB, title);
+    if (!line) return;
+    std::vector<page::Series> series = error_series(*line, Parameter::kEpsB);
+    AdaptiveOptions literal = base();
+    literal.variant = base().variant == Variant::kMended ? Variant::kLiteral : Variant::kMended;
+    if (const auto other = study::find_setting(study_.settings, literal)) {
+      const auto other_line = study::line_through(study_.settings, *other, Parameter::kEpsB);
+      series.push_back({"RMS, " + std::string(name_of(literal.variant)),
+                        points(other_line, Parameter::kEpsB, &ErrorStatistics::rms), page::kOverlay});
+    }
+    page::Points diagonal;
+    for (std::size_t k : *line) diagonal.emplace_back(study_.settings[k].eps_b, study_.settings[k].eps_b);
+    series.push_back({"error = ε_B", diagonal, 0});
+    add({"eps-b", title,
+         "What was asked for against what was got, with " + std::to_string(base().rays) + ' ' +
+             std::string(name_of(base().pattern)) +
+             " rays per undecided leaf. Above the dashed line the tolerance is broken. ε_B bounds the error of "
+             "each leaf of the recursion, not of their sum, and a leaf whose rays all agree is not divided at all.",
+         page::line_plot({kEpsB, kError, true, true, {}}, series)});
+  }
+
+  // One series per number of rays: the settings along eps_B, all other parameters as in the base.
+  template <class PointOf>
+  [[nodiscard]] std::vector<page::Series> series_by_rays(const PointOf& point_of) const {
+    std::vector<page::Series> series;
+    int style = 0;
+    for (std::size_t k : study::line_through(study_.settings, study_.base, Parameter::kRays)) {
+      page::Series one{text::counted(static_cast<std::uint64_t>(study_.settings[k].rays), "ray"), {}, ++style};
+      for (std::size_t j : study::line_through(study_.settings, k, Parameter::kEpsB)) one.points.push_back(point_of(j));
+      series.push_back(std::move(one));
+    }
+    return series;
+  }
+
+  void add_violations() {
+    const std::string title = "How often the tolerance is broken";
+    if (!sweep(study_.base, Parameter::kEpsB, title)) return;
+    const auto count = static_cast<double>(study_.exact.size());
+    const auto series = series_by_rays([&](std::size_t k) {
+      return std::pair(study_.settings[k].eps_b, 100.0 * static_cast<double>(study_.summaries[k].violations) / count);
+    });
+    add({"violations", title,
+         "Share of the " + text::counted(study_.exact.size(), "receiver") +
+             " whose radiosity is off by more than ε_B, one line per number of rays.",
+         page::line_plot({kEpsB, "receivers with |error| > ε_B, %", true, false, {"set yrange [0:*<100]"}}, series)});
+  }
+
+  // Mean counts per receiver, over all receivers.
+  [[nodiscard]] std::vector<page::Series> work_series(const std::vector<std::size_t>& line, Parameter x) const {
+    const auto count = static_cast<double>(study_.exact.size());
+    page::Series leaves{"leaves", {}, 1}, rays{"rays", {}, 2};
+    for (const std::size_t k : line) {
+      const double at = parameter_of(study_.settings[k], x);
+      leaves.points.emplace_back(at, static_cast<double>(study_.summaries[k].leaves) / count);
+      rays.points.emplace_back(at, static_cast<double>(study_.summaries[k].rays) / count);
+    }
+    return {leaves, rays};
+  }
+
+  void add_work_against_eps_b() {
+    const std::string title = "Leaves and rays against the tolerance ε_B";
+    const auto line = sweep(study_.base, Parameter::kEpsB, title);
+    if (!line) return;
+    add({"work-eps-b", title,
+         "What a receiver costs in the mean, with " + std::to_string(base().rays) + ' ' +
+             std::string(name_of(base().pattern)) + " rays per undecided leaf.",
+         page::line_plot({kEpsB, "per receiver", true, true, {}}, work_series(*line, Parameter::kEpsB))});
+  }
+
+  void add_silent_errors() {
+    const std::string title = "Silent errors against the tolerance ε_B";
+    const auto line = sweep(study_.base, Parameter::kEpsB, title);
+    if (!line) return;
+    page::Series all{"RMS error of F", {}, 1}, silent{"RMS of what silent leaves add", {}, 2},
+        worst{"the worst of it", {}, 4};
+    for (const std::size_t k : *line) {
+      const Summary& s = study_.summaries[k];
+      const double eps_b = study_.settings[k].eps_b;
+      all.points.emplace_back(eps_b, s.form_factor.rms);
+      silent.points.emplace_back(eps_b, s.silent.rms);
+      worst.points.emplace_back(eps_b, s.silent.worst);
+    }
+    if (std::all_of(silent.points.begin(), silent.points.end(), [](const auto& p) { return p.second == 0.0; })) {
+      leave_out("figure: " + title, "no leaf was silently wrong");
+      return;
+    }
+    const Summary& b = study_.summaries[study_.base];
+    add({"silent", title,
+         "Leaves whose rays all agreed although they were partly visible, or that were the opposite of what the rays "
+         "said: how much they add to the form factor beyond what they should. At the base setting " +
+             text::counted_of(b.silent_receivers, study_.judged.size(), "receiver") + " had such leaves.",
+         page::line_plot({kEpsB, "error of the form factor", true, true, {}}, {all, silent, worst})});
+  }
+
+  void add_error_against_time() {
+    const bool partly = study_.receivers_by_sight[static_cast<std::size_t>(Sight::kPartly)] > 0;
+    const auto time_of = [&](const TimeSummary& t) { return 1e6 * (partly ? t.median_partly : t.median); };
+    std::vector<page::Series> series = series_by_rays([&](std::size_t k) {
+      const Summary& s = study_.summaries[k];
+      return std::pair(time_of(study_.times[k]), partly ? s.radiosity_partly.rms : s.radiosity.rms);
+    });
+    const double exact = time_of(study_.exact_time);
+    const std::string at = text::shortest(exact);
+    page::Axes axes{"time per receiver, µs (median)", "RMS error (radiosity)", true, true, {}, {exact}};
+    axes.extra = {"set arrow from " + at + ", graph 0 to " + at + ", graph 1 nohead lw 2.5 lc rgb '#D55E00'",
+                  "set label 'exact: error 0' at " + at +
+                      ", graph 0.98 rotate by 90 right offset character -0.8,0 tc rgb '#D55E00'"};
+    // The exact method's line has a colour of its own; no series here uses it.
+    for (page::Series& one : series) one.style = one.style == 1 ? 1 : one.style + 1;
+    add({"time", "Error against run time",
+         std::string("Both over the receivers that ") + (partly ? "see the source partly hidden" : "were compared") +
+             ": the median time of one call and the RMS error. Each line runs over ε_B at one number of rays. The "
+             "exact method "
+             "has no error and stands at its time, " +
+             text::duration(exact * 1e-6) + ": what lies to its right costs more and is less accurate.",
+         page::line_plot(axes, series)});
+  }
+
+  void add_error_against_rays() {
+    const std::string title = "Error against the number of rays";
+    const auto line = sweep(study_.base, Parameter::kRays, title);
+    if (!line) return;
+    add({"rays", title,
+         "At ε_B = " + text::rounded(base().eps_b) + ", " + std::string(name_of(base().pattern)) +
+             " rays per undecided leaf. " + slope_sentence(*line),
+         page::line_plot({"rays per undecided leaf", kError, true, true, {}}, error_series(*line, Parameter::kRays))});
+  }
+
+  [[nodiscard]] std::string slope_sentence(const std::vector<std::size_t>& line) const {
+    const auto slope = study::fitted_slope(points(line, Parameter::kRays, &ErrorStatistics::rms));
+    if (!slope) return {};
+    return std::string("The RMS error falls as the number of rays to the power ") + (*slope < 0.0 ? "−" : "") +
+           text::rounded(std::abs(*slope), 2) +
+           " (least squares); plain random sampling of a fixed set would give −0.5.";
+  }
+
+  void add_patterns() {
+    const std::string title = "Sample patterns";
+    std::vector<page::Series> series;
+    int style = 0;
+    for (SamplePattern pattern : study_.request.sweeps.patterns) {
+      page::Series one{std::string(name_of(pattern)), {}, ++style};
+      for (std::size_t k = 0; k < study_.settings.size(); ++k) {
+        if (!differs_by_pattern_and_rays(study_.settings[k], pattern)) continue;
+        one.points.emplace_back(study_.settings[k].rays, study_.summaries[k].radiosity.rms);
+      }
+      series.push_back(std::move(one));
+    }
+    if (series.size() < 2) return;
+    add({"patterns", title,
+         "RMS error at ε_B = " + text::rounded(base().eps_b) +
+             " by where in a leaf its rays end. One ray at the centre is the "
+             "cheapest choice of all.",
+         page::line_plot({"rays per undecided leaf", "RMS error (radiosity)", true, true, {}}, series)});
+  }
+
+  [[nodiscard]] bool differs_by_pattern_and_rays(const AdaptiveOptions& s, SamplePattern pattern) const {
+    AdaptiveOptions wanted = base();
+    wanted.pattern = pattern;
+    wanted.rays = s.rays;
+    return study::same_setting(s, wanted);
+  }
+
+  void add_error_against_eps_a() {
+    const std::string title = "Achieved error against the area limit ε_A";
+    AdaptiveOptions start = base();
+    const auto& eps_b = study_.request.sweeps.eps_b;
+    const auto& rays = study_.request.sweeps.rays;
+    start.eps_b = *std::min_element(eps_b.begin(), eps_b.end());
+    if (start.pattern != SamplePattern::kCentre) start.rays = *std::max_element(rays.begin(), rays.end());
+    const auto from = study::find_setting(study_.settings, start);
+    const auto line = sweep(from.value_or(study_.base), Parameter::kEpsA, title);
+    if (!line) return;
+    add({"eps-a", title,
+         "At the smallest tolerance, ε_B = " + text::rounded(start.eps_b) + ", and " +
+             text::counted(static_cast<std::uint64_t>(start.rays), "ray") +
+             ", where it is the area of a leaf that ends the recursion. ε_A = 0 cannot be shown on this axis; the "
+             "table has it.",
+         page::line_plot({"smallest area ε_A (square of the scene’s unit)", kError, true, true, {}},
+                         error_series(*line, Parameter::kEpsA))});
+    add({"work-eps-a", "Leaves and rays against the area limit ε_A",
+         "What a receiver costs in the mean, at the same ε_B and rays as the errors beside.",
+         page::line_plot({"smallest area ε_A (square of the scene’s unit)", "per receiver", true, true, {}},
+                         work_series(*line, Parameter::kEpsA))});
+  }
+
+  // The receivers on the face with the most grid cells.
+  struct Grid {
+    FaceId face{};
+    std::vector<std::pair<std::size_t, GridCell>> cells;
+    std::size_t other_faces = 0;
+    int columns = 1;
+    int rows = 1;
+  };
+
+  [[nodiscard]] std::optional<Grid> find_grid() const {
+    std::map<FaceId, Grid> by_face;
+    for (std::size_t i = 0; i < study_.request.receivers.size(); ++i) {
+      const auto cell = grid_cell(study_.request.receivers[i]);
+      if (!cell) return std::nullopt;
+      Grid& grid = by_face[cell->face];
+      grid.face = cell->face;
+      grid.cells.emplace_back(i, *cell);
+      grid.columns = std::max(grid.columns, cell->column);
+      grid.rows = std::max(grid.rows, cell->row);
+    }
+    const auto largest = std::max_element(by_face.begin(), by_face.end(), [](const auto& a, const auto& b) {
+      return a.second.cells.size() < b.second.cells.size();
+    });
+    if (largest == by_face.end() || largest->second.columns < 2 || largest->second.rows < 2) return std::nullopt;
+    largest->second.other_faces = by_face.size() - 1;
+    return largest->second;
+  }
+
+  // The ratio of the first two edges of a quadrilateral; 1 for any other face.
+  [[nodiscard]] double height_over_width(const Grid& grid) const {
+    const auto& ring = study_.request.scene->face(grid.face).rings.front();
+    if (ring.size() != 4) return 1.0;
+    const auto corner = [&](std::size_t i) { return study_.request.scene->vertices()[ring[i]]; };
+    const auto length = [](const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); };
+    const double ratio = length(corner(1), corner(2)) / length(corner(0), corner(1));
+    return std::isfinite(ratio) && ratio > 0.0 ? ratio : 1.0;
+  }
+
+  template <class ValueOf>
+  [[nodiscard]] page::Map map_of(const Grid& grid, std::string quantity, page::MapColours colours,
+                                 const ValueOf& value_of) const {
+    page::Map map{std::move(quantity), grid.columns, grid.rows, height_over_width(grid), colours, 0.0, {}};
+    for (const auto& [i, cell] : grid.cells) map.cells.push_back({cell.column, cell.row, value_of(i)});
+    return map;
+  }
+
+  void add_maps() {
+    const auto grid = find_grid();
+    if (!grid) {
+      leave_out("false-colour maps", "the receivers are not a grid on a face");
+      return;
+    }
+    if (grid->other_faces > 0) {
+      leave_out("maps of " + text::counted(grid->other_faces, "other face"),
+                "the maps show " + study_.request.scene->name_of(grid->face) + ", which has the most receivers");
+    }
+    add_exact_map(*grid);
+    add_approximate_map(*grid);
+    add_error_map(*grid);
+    add_leaves_map(*grid);
+    add_sight_map(*grid);
+    add_silent_map(*grid);
+  }
+
+  void add_exact_map(const Grid& grid) {
+    const page::Map map = map_of(grid, "radiosity", page::MapColours::kSequential,
+                                 [&](std::size_t i) { return study_.exact[i].radiosity.largest(); });
+    const auto lit = [](const page::MapCell& cell) { return cell.value > 0.0; };
+    if (std::none_of(map.cells.begin(), map.cells.end(), lit)) {
+      leave_out("map of the exact radiosity", "it is 0 everywhere");
+      return;
+    }
+    add({"map-exact", "Exact radiosity",
+         "Over " + text::html(study_.request.scene->name_of(grid.face)) +
+             ", largest colour channel. Columns run along the face’s first edge.",
+         page::map_plot(map), true});
+  }
+
+  void add_approximate_map(const Grid& grid) {
+    const auto& samples = study_.samples[study_.base];
+    // The exact radiosity plus the error of the channel with the largest error: grey scenes have only one channel.
+    const page::Map map = map_of(grid, "radiosity", page::MapColours::kSequential, [&](std::size_t i) {
+      return std::max(0.0, study_.exact[i].radiosity.largest() + samples[i].radiosity_error);
+    });
+    const auto lit = [](const page::MapCell& cell) { return cell.value > 0.0; };
+    if (std::none_of(map.cells.begin(), map.cells.end(), lit)) return;
+    add({"map-approximate", "Radiosity by the base setting",
+         text::html(study::setting_name(study_, study_.base)) + ": what the ray-sampled algorithm makes of it.",
+         page::map_plot(map), true});
+  }
+
+  void add_sight_map(const Grid& grid) {
+    const auto class_of = [&](std::size_t i) { return static_cast<double>(study_.exact[i].sight); };
+    page::Map map = map_of(grid, "the source is", page::MapColours::kClasses, class_of);
+    map.classes = {"behind", "hidden", "partly", "visible"};
+    add({"map-sight", "What is seen of the source",
+         "Decided exactly. From dark to light: the receiver faces away; the source is hidden (umbra), partly hidden "
+         "(penumbra), wholly visible.",
+         page::map_plot(map), true});
+  }
+
+  void add_silent_map(const Grid& grid) {
+    const auto& samples = study_.samples[study_.base];
+    if (study_.judged.size() < study_.exact.size()) {
+      leave_out("map of silent errors", "they were looked for at some receivers only");
+      return;
+    }
+    page::Map map = map_of(grid, "form factor, too much or too little", page::MapColours::kDiverging,
+                           [&](std::size_t i) { return samples[i].silent_error; });
+    std::vector<double> magnitudes;
+    for (const page::MapCell& cell : map.cells) magnitudes.push_back(std::abs(cell.value));
+    map.largest = *std::max_element(magnitudes.begin(), magnitudes.end());
+    if (!(map.largest > 0.0)) {
+      leave_out("map of silent errors", "no leaf of the base setting was silently wrong");
+      return;
+    }
+    add({"map-silent", "Where silent errors are",
+         "What leaves whose rays all agreed, and were wrong, add to the form factor at the base setting. Red: too "
+         "much.",
+         page::map_plot(map), true});
+  }
+
+  void add_error_map(const Grid& grid) {
+    const auto& samples = study_.samples[study_.base];
+    page::Map map = map_of(grid, "approximate − exact (radiosity)", page::MapColours::kDiverging,
+                           [&](std::size_t i) { return samples[i].radiosity_error; });
+    std::vector<double> magnitudes;
+    for (const page::MapCell& cell : map.cells) magnitudes.push_back(std::abs(cell.value));
+    map.largest = study::percentile(magnitudes, 99.0);
+    if (map.largest == 0.0) map.largest = *std::max_element(magnitudes.begin(), magnitudes.end());
+    if (!(map.largest > 0.0)) {
+      leave_out("map of the signed error", "the base setting has no error anywhere");
+      return;
+    }
+    add({"map-error", "Signed error of the base setting",
+         text::html(study::setting_name(study_, study_.base)) + ". Red: too bright; blue: too dark; beyond ±" +
+             text::rounded(map.largest) + " (the 99th percentile) the colour stays that of the end.",
+         page::map_plot(map), true});
+  }
+
+  void add_leaves_map(const Grid& grid) {
+    const auto& samples = study_.samples[study_.base];
+    const auto leaves = [&](std::size_t i) { return static_cast<double>(samples[i].leaves); };
+    const page::Map map = map_of(grid, "leaves", page::MapColours::kLogarithmic, leaves);
+    const auto many = [](const page::MapCell& cell) { return cell.value > 1.0; };
+    if (std::none_of(map.cells.begin(), map.cells.end(), many)) {
+      leave_out("map of the leaves", "the source is nowhere divided at the base setting");
+      return;
+    }
+    add({"map-leaves", "Where the recursion works",
+         "Leaves into which the base setting divides the source. One leaf: seen whole, hidden whole, or taken for it.",
+         page::map_plot(map), true});
+  }
+
+  const Study& study_;
+  std::vector<LeftOut>& left_out_;
+  std::vector<page::Figure> figures_;
+};
+
+}  // namespace
+
+std::vector<page::Figure> figures(const Study& study, std::vector<LeftOut>& left_out) {
+  return FigureMaker(study, left_out).make();
+}
+
+}  // namespace exactff::report

@@ -1,0 +1,15 @@
+// The figures of the report, as gnuplot scripts that contain their data.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "page/figure.h"
+#include "report/studies.h"
+
+namespace exactff::report {
+
+// Returns only the figures that the study has data for. The missing ones are added to `left_out`.
+[[nodiscard]] std::vector<page::Figure> figures(const Study& study, std::vector<LeftOut>& left_out);
+
+}  // namespace exactff::report

@@ -1,0 +1,169 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "kernel/float_environment.h"
+#include "report/figures.h"
+#include "report/studies.h"
+#include "study/settings.h"
+#include "study/statistics.h"
+#include "text/phrases.h"
+
+namespace exactff::report {
+namespace {
+
+std::size_t sight_count(const Study& study, Sight sight) {
+  return study.receivers_by_sight[static_cast<std::size_t>(sight)];
+}
+
+// The time used to compare settings: over the receivers that see the source partly hidden, if there are any.
+double typical(const Study& study, const TimeSummary& t) {
+  return sight_count(study, Sight::kPartly) > 0 ? t.median_partly : t.median;
+}
+
+std::string where_partly(const Study& study) {
+  return sight_count(study, Sight::kPartly) > 0 ? " where the source is partly hidden" : " per receiver";
+}
+
+std::string exact_sentence(const Study& study) {
+  const auto certified = static_cast<std::size_t>(
+      std::count_if(study.exact.begin(), study.exact.end(), [](const ExactRow& row) { return row.certified; }));
+  const std::size_t all = study.exact.size();
+  std::string text =
+      "The exact form factor takes " + text::duration(study.exact_time.median) + " per receiver (median)";
+  if (sight_count(study, Sight::kPartly) > 0) {
+    text += ", " + text::duration(study.exact_time.median_partly) + " where the source is partly hidden";
+  }
+  return text + ", and is certified to the last bit at " + text::counted_of(certified, all, "receiver") + ".";
+}
+
+std::string base_sentence(const Study& study) {
+  const Summary& base = study.summaries[study.base];
+  const double eps_b = study.settings[study.base].eps_b;
+  std::string text = "Ray sampling at the base setting (" + study::setting_name(study, study.base) + ") takes " +
+                     text::duration(typical(study, study.times[study.base])) + where_partly(study);
+  if (base.violations == 0) return text + " and keeps its tolerance at every receiver.";
+  text += " and misses its tolerance at " + text::share(base.violations, study.exact.size()) + " of the receivers (" +
+          std::to_string(base.violations) + ")";
+  if (eps_b > 0.0)
+    text += "; its worst error is " + text::rounded(base.radiosity.worst / eps_b, 2) + " times the tolerance";
+  return text + ".";
+}
+
+// What a smaller eps_B alone achieves.
+std::string tolerance_sentence(const Study& study) {
+  const std::vector<std::size_t> line = study::line_through(study.settings, study.base, Parameter::kEpsB);
+  const auto smaller = [&](std::size_t a, std::size_t b) { return study.settings[a].eps_b < study.settings[b].eps_b; };
+  const auto [low, high] = std::minmax_element(line.begin(), line.end(), smaller);
+  const double low_eps = study.settings[*low].eps_b, high_eps = study.settings[*high].eps_b;
+  const double low_rms = study.summaries[*low].radiosity.rms, high_rms = study.summaries[*high].radiosity.rms;
+  if (!(low_eps > 0.0) || low_eps == high_eps || !(low_rms > 0.0)) return {};
+  return "Lowering ε_B by a factor of " + text::rounded(high_eps / low_eps) + ", from " + text::rounded(high_eps) +
+         " to " + text::rounded(low_eps) + ", lowers the RMS error by a factor of " +
+         text::rounded(high_rms / low_rms, 2) + "; the share of receivers off by more than ε_B goes from " +
+         text::share(study.summaries[*high].violations, study.exact.size()) + " to " +
+         text::share(study.summaries[*low].violations, study.exact.size()) + ".";
+}
+
+std::string seeds_sentence(const Study& study) {
+  const std::vector<std::size_t> line = study::line_through(study.settings, study.base, Parameter::kSeed);
+  if (line.size() < 2) return {};
+  std::vector<double> rms;
+  for (std::size_t k : line) rms.push_back(study.summaries[k].radiosity.rms);
+  const auto [low, high] = std::minmax_element(rms.begin(), rms.end());
+  return "Over " + std::to_string(line.size()) + " seeds the RMS error of the base setting ranges from " +
+         text::rounded(*low) + " to " + text::rounded(*high) + ".";
+}
+
+std::string violations_sentence(const Study& study) {
+  const auto broken = static_cast<std::size_t>(std::count_if(
+      study.summaries.begin(), study.summaries.end(), [](const Summary& summary) { return summary.violations > 0; }));
+  if (study.settings.size() < 2) return {};
+  if (broken == 0)
+    return "None of the " + std::to_string(study.settings.size()) + " settings broke its own tolerance anywhere.";
+  return std::to_string(broken) + " of the " + std::to_string(study.settings.size()) +
+         " settings broke their own tolerance at one receiver or more.";
+}
+
+// Where the exact method wins: the best that sampling reaches in the same time, and what the most accurate setting
+// costs.
+std::string crossover_sentence(const Study& study) {
+  const double exact = typical(study, study.exact_time);
+  const auto rms = [&](std::size_t k) { return study.summaries[k].radiosity.rms; };
+  std::size_t best = 0, best_in_time = study.settings.size();
+  for (std::size_t k = 0; k < study.settings.size(); ++k) {
+    if (rms(k) < rms(best)) best = k;
+    const bool in_time = typical(study, study.times[k]) <= exact;
+    if (in_time && (best_in_time == study.settings.size() || rms(k) < rms(best_in_time))) best_in_time = k;
+  }
+  if (study.summaries[best].radiosity.worst == 0.0) return {};
+  const double brightest = study::largest_radiosity(study);
+  const auto size_of = [&](double error) {
+    return text::rounded(error) +
+           (brightest > 0.0 ? " (" + text::rounded(100.0 * error / brightest, 2) + " % of the brightest receiver)"
+                            : "");
+  };
+  std::string text;
+  if (best_in_time < study.settings.size()) {
+    text = "Within the time of the exact method, sampling comes to an RMS error of " + size_of(rms(best_in_time)) +
+           " at best, with " + study::setting_name(study, best_in_time) + ". ";
+  } else {
+    text = "No setting is as fast as the exact method. ";
+  }
+  if (best == best_in_time) return text + "No slower setting was more accurate.";
+  const double ratio = typical(study, study.times[best]) / exact;
+  return text + "The most accurate setting (" + study::setting_name(study, best) + ") still has an RMS error of " +
+         size_of(rms(best)) + " and takes " + text::rounded(ratio, 2) + " times as long as the exact method.";
+}
+
+// The base setting in the other variant, if the variant makes a difference.
+std::string variant_sentence(const Study& study) {
+  AdaptiveOptions literal = study.settings[study.base];
+  if (literal.variant == Variant::kLiteral) return {};
+  literal.variant = Variant::kLiteral;
+  const auto found = study::find_setting(study.settings, literal);
+  if (!found) return {};
+  const double mended = study.summaries[study.base].radiosity.rms, printed = study.summaries[*found].radiosity.rms;
+  if (!(printed > 1.1 * mended)) return {};
+  std::string text =
+      "Followed to the letter (literal variant), the published listing has an RMS error of " + text::rounded(printed);
+  if (mended > 0.0) text += ", " + text::rounded(printed / mended, 2) + " times that of the mended one";
+  return text + ".";
+}
+
+std::string silent_sentence(const Study& study) {
+  std::uint64_t sampled = 0, silent = 0, wrong = 0;
+  const auto reason = [](LeafReason r) { return static_cast<std::size_t>(r); };
+  for (const std::size_t i : study.judged) {
+    const SampleRow& row = study.samples[study.base][i];
+    sampled += row.leaves_by_reason[reason(LeafReason::kSampledVisible)] +
+               row.leaves_by_reason[reason(LeafReason::kSampledHidden)];
+    silent += row.silent_leaves;
+    wrong += row.wrong_leaves;
+  }
+  if (sampled == 0) return {};
+  return "At the base setting all rays of " + text::counted(sampled, "leaf", "leaves") + " agreed; " +
+         text::share(silent, sampled) +
+         " of these leaves were in truth partly visible, an error that nothing in the algorithm can notice" +
+         (wrong > 0 ? ", and " + std::to_string(wrong) + " were the opposite of what the rays said." : ".");
+}
+
+std::string no_work_sentence(const Study& study) {
+  if (sight_count(study, Sight::kPartly) > 0) return {};
+  return "No receiver sees the source partly hidden: sampling has next to nothing to decide in this scene.";
+}
+
+}  // namespace
+
+std::vector<std::string> headlines(const Study& study) {
+  const kernel::StandardArithmetic arithmetic;
+  std::vector<std::string> sentences;
+  for (std::string sentence : {exact_sentence(study), base_sentence(study), tolerance_sentence(study),
+                               seeds_sentence(study), violations_sentence(study), crossover_sentence(study),
+                               variant_sentence(study), silent_sentence(study), no_work_sentence(study)}) {
+    if (!sentence.empty()) sentences.push_back(std::move(sentence));
+  }
+  return sentences;
+}
+
+}  // namespace exactff::report

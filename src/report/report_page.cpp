@@ -1,0 +1,478 @@
+#include "report/report_page.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exactff/report.h"
+#include "page/page_text.h"
+#include "report/tables.h"
+#include "report/verdicts.h"
+#include "text/escape.h"
+#include "text/phrases.h"
+
+namespace exactff::report {
+namespace {
+
+std::string figure_group(const page::DrawnFigures& drawn, bool maps) {
+  std::string group;
+  for (const page::DrawnFigure& one : drawn.figures) {
+    if (one.figure.map != maps || one.svg.empty()) continue;
+    group += "<figure id=\"" + one.figure.id + "\">\n<h3>" + page::prose(text::html(one.figure.title)) + "</h3>\n" +
+             one.svg + "\n<figcaption>" + page::prose(one.figure.caption) + "</figcaption>\n</figure>\n";
+  }
+  if (group.empty()) return {};
+  return std::string("<div class=\"figures") + (maps ? " maps" : "") + "\">\n" + group + "</div>\n";
+}
+
+std::string left_out_list(const std::vector<LeftOut>& items) {
+  std::string text = "<ul>\n";
+  for (const LeftOut& item : items)
+    text += "<li>" + page::prose(text::html(item.what) + ": " + text::html(item.why)) + ".</li>\n";
+  return text + "</ul>\n";
+}
+
+class ScenePart {
+ public:
+  ScenePart(const SceneChapter& scene, const Page& page, bool alone) : scene_(scene), page_(page), alone_(alone) {}
+
+  std::string write() {
+    text_ = "<section class=\"scene\" id=\"" + anchor(scene_) + "\">\n<h2>" + text::html(scene_.title) + "</h2>\n";
+    text_ += "<p class=\"subtitle\">" + text::counted(study().exact.size(), "receiver") + " (" +
+             text::html(study().request.receivers_name) + "), source " + text::html(source_names(study())) + ", " +
+             text::counted(study().request.scene->faces().size(), "face") + ", " +
+             text::counted(study().settings.size(), "setting") + " of the ray-sampled algorithm" +
+             (study().methods.cells.empty()
+                  ? std::string()
+                  : ", " + text::counted(study().methods.ladders.size(), "method") + " against one another") +
+             ".</p>\n";
+    answer();
+    tiles();
+    figures();
+    needs();
+    for (const std::string& sentence : range_sentences(study())) text_ += page::paragraph(text::html(sentence));
+    methods_table();
+    settings_table();
+    left_out();
+    text_ += "</section>\n";
+    return std::move(text_);
+  }
+
+  static std::string anchor(const SceneChapter& scene) { return scene.name.empty() ? "scene" : "scene-" + scene.name; }
+
+ private:
+  [[nodiscard]] const Study& study() const { return scene_.study; }
+  [[nodiscard]] bool partly() const { return study().receivers_by_sight[static_cast<std::size_t>(Sight::kPartly)] > 0; }
+
+  void subheading(const std::string& words) { text_ += "<h3 class=\"part\">" + words + "</h3>\n"; }
+
+  void answer() {
+    if (alone_) {
+      for (const std::string& sentence : method_sentences(study())) {
+        text_ += "<p class=\"quote\">" + page::prose(text::html(sentence)) + "</p>\n";
+      }
+    }
+    text_ += "<ul class=\"answer\">\n";
+    for (const std::string& sentence : headlines(study()))
+      text_ += "<li>" + page::prose(text::html(sentence)) + "</li>\n";
+    text_ += "</ul>\n";
+  }
+
+  void tile(const std::string& number, const std::string& words) {
+    text_ += "<div class=\"tile\"><b>" + number + "</b><span>" + page::prose(words) + "</span></div>\n";
+  }
+
+  void tiles() {
+    const Summary& base = study().summaries[study().base];
+    const double exact = partly() ? study().exact_time.median_partly : study().exact_time.median;
+    const TimeSummary& base_time = study().times[study().base];
+    const std::string where = partly() ? ", source partly hidden" : "";
+    text_ += "<div class=\"tiles\">\n";
+    tile(text::duration(exact), "exact, per receiver" + where + " (median)");
+    tile(text::duration(partly() ? base_time.median_partly : base_time.median),
+         "sampled at the base setting, per receiver" + where + " (median)");
+    tile(text::share(base.violations, study().exact.size()), "of receivers off by more than ε_B at the base setting");
+    tile(text::rounded(base.radiosity.rms),
+         "RMS error there (radiosity); the tolerance is " + text::rounded(study().settings[study().base].eps_b));
+    text_ += "</div>\n";
+  }
+
+  void figures() {
+    if (!page_.drawn.none.empty()) text_ += page::paragraph(text::html(page_.drawn.none));
+    text_ += figure_group(page_.drawn, false);
+    const std::string maps = figure_group(page_.drawn, true);
+    if (!maps.empty()) subheading("Over the grid of receivers");
+    text_ += maps;
+  }
+
+  void cell(const std::string& text, bool words = false) {
+    text_ += std::string("<td") + (words ? " class=\"text\"" : "") + ">" + text + "</td>";
+  }
+
+  void column(const std::string& name, bool words = false) {
+    text_ += std::string("<th") + (words ? " class=\"text\"" : "") + ">" + page::prose(name) + "</th>";
+  }
+
+  // One row per method: its least time for every wanted error, as a multiple of the exact method's time.
+  void needs() {
+    const MethodCell* exact = exact_cell(study());
+    if (exact == nullptr || study().methods.cells.size() < 2) return;
+    subheading("What each method needs");
+    text_ += page::paragraph(
+        "How many times as long as the exact method (" + text::duration(exact->seconds) +
+        " per receiver) each method takes to be right to a wanted error: RMS over the chosen receivers and seeds, "
+        "divided by the radiosity of the brightest receiver. A dash: not reached by any setting that was run.");
+    text_ += "<div class=\"wide\"><table>\n<thead><tr>";
+    column("method", true);
+    for (const double wanted : kWantedErrors) column(power_of_ten(wanted));
+    column("best error");
+    text_ += "</tr></thead>\n<tbody>\n";
+    for (std::size_t l = 0; l < study().methods.ladders.size(); ++l) needs_row(l, exact->seconds);
+    text_ += "</tbody></table></div>\n";
+  }
+
+  void needs_row(std::size_t l, double exact_seconds) {
+    const Ladder& ladder = study().methods.ladders[l];
+    text_ += ladder.rungs.front().method->name == "exact" ? "<tr class=\"exact\">" : "<tr>";
+    cell(text::html(ladder.name), true);
+    for (const double wanted : kWantedErrors) {
+      const MethodCell* found = cheapest(study(), wanted, l);
+      cell(found != nullptr ? text::rounded(found->seconds / exact_seconds, 2) : "–");
+    }
+    double best = INFINITY;
+    for (const MethodCell& c : study().methods.cells) {
+      if (c.ladder == l) best = std::min(best, relative_error(study(), c));
+    }
+    cell(std::isfinite(best) ? text::rounded(best, 2) : "–");
+    text_ += "</tr>\n";
+  }
+
+  void methods_table() {
+    if (study().methods.cells.empty()) return;
+    text_ += "<details><summary>Every method and setting</summary>\n<div class=\"wide\"><table>\n<thead><tr>";
+    column("method", true);
+    for (const char* name :
+         {"work", "seeds", "RMS", "partly hidden", "visible", "mean", "p99", "worst", "time per receiver", "exact ×"}) {
+      column(name);
+    }
+    text_ += "</tr></thead>\n<tbody>\n";
+    const MethodCell* exact = exact_cell(study());
+    for (const MethodCell& c : study().methods.cells) {
+      text_ += is_exact(study(), c) ? "<tr class=\"exact\">" : "<tr>";
+      cell(text::html(cell_name(study(), c)), true);
+      cell(text::rounded(c.work));
+      cell(c.seeds.front() == 0 ? "–" : std::to_string(c.seeds.size()));
+      for (const double v :
+           {c.error.rms, c.error_partly.rms, c.error_visible.rms, c.error.mean, c.error.p99, c.error.worst}) {
+        cell(signed_number(v));
+      }
+      cell(text::duration(c.seconds));
+      cell(exact != nullptr ? text::rounded(c.seconds / exact->seconds, 2) : "–");
+      text_ += "</tr>\n";
+    }
+    text_ += "</tbody></table></div></details>\n";
+  }
+
+  void settings_table() {
+    text_ += std::string("<details") + (alone_ && study().methods.cells.empty() ? " open" : "") +
+             "><summary>Every setting of the ray-sampled algorithm</summary>\n";
+    text_ += page::paragraph(
+        "Errors are in radiosity, approximate minus exact, over all receivers. The marked row is the base setting, "
+        "through which the sweeps run. “Off” is the share of receivers whose error exceeds ε_B; “silent” counts leaves "
+        "whose rays all agreed and were wrong in part. Times are per receiver" +
+        std::string(partly() ? ", the last column over the receivers that see the source partly hidden." : "."));
+    text_ += "<div class=\"wide\"><table>\n<thead><tr>";
+    for (const char* name : {"#", "ε_B", "rays"}) column(name);
+    column("pattern", true);
+    for (const char* name : {"ε_A", "seed"}) column(name);
+    column("variant", true);
+    for (const char* name : {"RMS", "mean", "p99", "worst", "off", "leaves", "rays traced", "silent", "median time"}) {
+      column(name);
+    }
+    if (partly()) column("median, partly hidden");
+    text_ += "</tr></thead>\n<tbody>\n";
+    exact_row();
+    for (std::size_t k = 0; k < study().settings.size(); ++k) setting_row(k);
+    text_ += "</tbody></table></div></details>\n";
+  }
+
+  void exact_row() {
+    text_ +=
+        "<tr class=\"exact\"><td></td><td class=\"text\" "
+        "colspan=\"6\">exact</td><td>0</td><td>0</td><td>0</td><td>0</td>"
+        "<td>0 %</td><td></td><td></td><td></td>";
+    times(study().exact_time);
+    text_ += "</tr>\n";
+  }
+
+  void times(const TimeSummary& t) {
+    cell(text::duration(t.median));
+    if (partly()) cell(text::duration(t.median_partly));
+  }
+
+  void setting_row(std::size_t k) {
+    const AdaptiveOptions& s = study().settings[k];
+    const Summary& summary = study().summaries[k];
+    text_ += k == study().base ? "<tr class=\"base\">" : "<tr>";
+    cell(std::to_string(k + 1));
+    cell(text::rounded(s.eps_b));
+    cell(std::to_string(s.rays));
+    cell(std::string(name_of(s.pattern)), true);
+    cell(text::rounded(s.eps_a));
+    cell(std::to_string(s.seed));
+    cell(std::string(name_of(s.variant)), true);
+    for (double value :
+         {summary.radiosity.rms, summary.radiosity.mean, summary.radiosity.p99, summary.radiosity.worst}) {
+      cell(signed_number(value));
+    }
+    cell(text::share(summary.violations, study().exact.size()));
+    cell(std::to_string(summary.leaves));
+    cell(std::to_string(summary.rays));
+    cell(std::to_string(summary.silent_leaves));
+    times(study().times[k]);
+    text_ += "</tr>\n";
+  }
+
+  static std::string signed_number(double value) {
+    return value < 0.0 ? "−" + text::rounded(-value) : text::rounded(value);
+  }
+
+  void left_out() {
+    if (page_.left_out.empty()) return;
+    subheading("Left out, and why");
+    text_ += left_out_list(page_.left_out);
+  }
+
+  const SceneChapter& scene_;
+  const Page& page_;
+  const bool alone_;
+  std::string text_;
+};
+
+class PageWriter {
+ public:
+  PageWriter(const Report& report, const Pages& pages) : report_(report), pages_(pages) {}
+
+  std::string write() {
+    head();
+    question();
+    contents();
+    if (has_overview()) overview();
+    for (std::size_t i = 0; i < report_.scenes.size(); ++i) {
+      text_ += ScenePart(report_.scenes[i], pages_.scenes[i], alone()).write();
+    }
+    for (std::size_t i = 0; i < report_.chapters.size(); ++i) chapter(report_.chapters[i], pages_.chapters[i]);
+    left_out();
+    definitions();
+    reproduction();
+    text_ += page::page_end();
+    return std::move(text_);
+  }
+
+ private:
+  [[nodiscard]] bool alone() const { return report_.scenes.size() == 1 && report_.chapters.empty(); }
+
+  [[nodiscard]] std::string title() const {
+    if (!report_.title.empty()) return text::html(report_.title);
+    return "Exact and approximate form factors: " + text::html(report_.scenes.front().title);
+  }
+
+  void head() {
+    text_ = page::page_head(title());
+    text_ += "<h1>" + title() + "</h1>\n";
+    if (alone()) return;
+    text_ += "<p class=\"subtitle\">" + text::counted(report_.scenes.size(), "scene");
+    if (!report_.chapters.empty()) text_ += " and " + text::counted(report_.chapters.size(), "experiment");
+    text_ += ".</p>\n";
+  }
+
+  void question() {
+    text_ += page::paragraph(
+        "<strong>The question.</strong> How much light a point receives from a polygonal source depends on the part of "
+        "the source that it sees. Every code in use approximates that part: Tampieri’s adaptive algorithm (1992) by "
+        "shadow rays, dividing the source until a tolerance ε_B is met; the hemicube by pixels; others by samples. "
+        "This "
+        "page holds them against the exact values: how large is the true error, how often is the tolerance broken, and "
+        "what does each answer cost?");
+  }
+
+  void contents() {
+    text_ += "<nav class=\"contents\" aria-label=\"Contents\"><ul>\n";
+    const auto link = [&](const std::string& to, const std::string& words) {
+      text_ += "<li><a href=\"#" + to + "\">" + words + "</a></li>\n";
+    };
+    if (has_overview()) link("overview", "Which method for which error");
+    for (const SceneChapter& scene : report_.scenes) link(ScenePart::anchor(scene), text::html(scene.title));
+    for (const page::Chapter& chapter : report_.chapters) link("chapter-" + chapter.name, text::html(chapter.title));
+    if (!report_.left_out.empty()) link("left-out", "Left out of this report, and why");
+    link("words", "What the words mean");
+    link("reproduction", "How to reproduce this page");
+    text_ += "</ul></nav>\n";
+  }
+
+  [[nodiscard]] bool has_overview() const {
+    return !alone() && std::ranges::any_of(report_.scenes, [](const SceneChapter& scene) {
+      return exact_cell(scene.study) != nullptr;
+    });
+  }
+
+  void overview() {
+    text_ += "<section id=\"overview\">\n" + page::heading("Which method for which error");
+    recommendations();
+    for (const SceneChapter& scene : report_.scenes) {
+      const std::vector<std::string> sentences = method_sentences(scene.study);
+      if (sentences.empty()) continue;
+      text_ += "<p class=\"quote\"><strong>" + text::html(scene.title) + ".</strong> ";
+      for (const std::string& sentence : sentences) text_ += page::prose(text::html(sentence)) + ' ';
+      text_ += "</p>\n";
+    }
+    text_ += "</section>\n";
+  }
+
+  void left_out() {
+    if (report_.left_out.empty()) return;
+    text_ += "<section id=\"left-out\">\n" + page::heading("Left out of this report, and why") +
+             left_out_list(report_.left_out) + "</section>\n";
+  }
+
+  // One row per scene: the cheapest method for every wanted error, the exact method included.
+  void recommendations() {
+    text_ += page::paragraph(
+        "The cheapest method and setting for a wanted error on each scene, and how long it takes per receiver. The "
+        "error is the RMS error over the chosen receivers and seeds, divided by the radiosity of the brightest "
+        "receiver.");
+    text_ += "<div class=\"wide\"><table class=\"recommend\">\n<thead><tr><th>scene</th>";
+    for (const double wanted : kWantedErrors) text_ += "<th>" + power_of_ten(wanted) + "</th>";
+    text_ += "</tr></thead>\n<tbody>\n";
+    for (const SceneChapter& scene : report_.scenes) {
+      const MethodCell* exact = exact_cell(scene.study);
+      if (exact == nullptr) continue;
+      text_ += "<tr><td>" + text::html(scene.title) + "</td>";
+      for (const double wanted : kWantedErrors) {
+        const MethodCell* best = cheapest(scene.study, wanted);
+        if (best == nullptr || best->seconds > exact->seconds) best = exact;
+        const std::string name = text::html(cell_name(scene.study, *best));
+        text_ += "<td>" + (best == exact ? "<strong>" + name + "</strong>" : name) + ", " +
+                 text::duration(best->seconds) + "</td>";
+      }
+      text_ += "</tr>\n";
+    }
+    text_ += "</tbody></table></div>\n";
+  }
+
+  void chapter(const page::Chapter& chapter, const Page& page) {
+    text_ +=
+        "<section class=\"scene\" id=\"chapter-" + chapter.name + "\">\n<h2>" + text::html(chapter.title) + "</h2>\n";
+    for (const std::string& words : chapter.paragraphs) text_ += page::paragraph(text::html(words));
+    if (!page.drawn.none.empty()) text_ += page::paragraph(text::html(page.drawn.none));
+    text_ += figure_group(page.drawn, false) + figure_group(page.drawn, true);
+    if (!page.left_out.empty()) text_ += "<h3 class=\"part\">Left out, and why</h3>\n" + left_out_list(page.left_out);
+    text_ += "</section>\n";
+  }
+
+  void define(const std::string& term, const std::string& meaning) {
+    text_ += "<dt>" + page::prose(term) + "</dt><dd>" + page::prose(meaning) + "</dd>\n";
+  }
+
+  void definitions() {
+    text_ += "<section id=\"words\">\n" + page::heading("What the words mean") + "<dl>\n";
+    define("Form factor F",
+           "The integral of cos θ_r cos θ_s / (π r²) over the part of the source that is visible from the "
+           "receiving point: a pure number between 0 and 1.");
+    define("Exact",
+           "The visible part is found in rational arithmetic without any tolerance, its boundary is integrated with "
+           "proved "
+           "bounds, and the value is the true F rounded once to the nearest double.");
+    define("Radiosity",
+           "ρ_r B_s F: the receiver’s reflectance times the source’s radiosity times the form factor, summed over the "
+           "sources; errors are those of the colour channel where they are largest.");
+    define("ε_B, ε_A",
+           "The sampled algorithm stops dividing a part of the source when the part could contribute no more than ε_B "
+           "(a radiosity), or when its area is at most ε_A.");
+    define(
+        "Leaf",
+        "A part of the source that is not divided further. Its visible fraction is what its shadow rays say, unless a "
+        "shaft test decides it for certain.");
+    define("Silent error",
+           "A leaf whose rays all agreed, so that it was taken as seen whole or hidden whole, although it is partly "
+           "visible. Parts below a thousand-millionth of the leaf do not count.");
+    define("RMS, mean, p99, worst",
+           "Over the receivers: root of the mean square; the mean with its sign; the magnitude that at least "
+           "99 % of the receivers do not exceed (nearest rank); the largest magnitude.");
+    define("Mended and literal",
+           "The literal variant follows the published listing, which drops receivers at a right angle to the "
+           "source, has no horizon clip and works in single precision. The mended one does not.");
+    define("Adaptive, exact V",
+           "The same recursion, but where it would shoot rays it is given the exact visible fraction of the sub-patch: "
+           "what error remains is that of taking visibility as constant over a leaf.");
+    define("Hemicube, Nettle, Wallace, area sampling",
+           "An item buffer of the whole scene on half a cube about the receiver; the factor from centre to centre of m "
+           "× m "
+           "sub-patches, times a visible share by rays; a ray and the factor of a disc for each of m × m sub-patches; "
+           "rays "
+           "to random, stratified or low-discrepancy points of the source.");
+    text_ += "</dl>\n</section>\n";
+  }
+
+  void reproduction() {
+    text_ += "<section id=\"reproduction\">\n" + page::heading("How to reproduce this page");
+    if (!report_.command_line.empty()) text_ += "<pre>" + text::html(report_.command_line) + "</pre>\n";
+    page::Facts facts = {{"program", page::program_fact()}};
+    for (const SceneChapter& scene : report_.scenes) facts.emplace_back("scene", scene_fact(scene));
+    facts.emplace_back("processor", page::processor_fact());
+    facts.emplace_back("made", page::today());
+    text_ += page::facts_table(facts);
+    text_ += page::paragraph(
+        "Every value is the same on every run and for any number of threads; times are not. Times were measured after "
+        "all values, with one thread at work and nothing else of this program: each is the median of three calls after "
+        "a "
+        "first one with the same arguments.");
+    files();
+    text_ += "</section>\n";
+  }
+
+  [[nodiscard]] static std::string scene_fact(const SceneChapter& scene) {
+    const Study& study = scene.study;
+    return text::html(study.request.scene_name) + ", hash " + study.request.scene->hash() + "; " +
+           (study.full_product ? "every combination of the settings of the ray-sampled algorithm"
+                               : "ε_B × rays, and sweeps of the other parameters through the base setting") +
+           "; set up once: exact method " + text::duration(study.exact_setup_seconds) + ", ray structure " +
+           (study.ray_setup_seconds > 0.0 ? text::duration(study.ray_setup_seconds)
+                                          : std::string("not built (no candidate list was long enough to need it)"));
+  }
+
+  void files() {
+    text_ += "<p>Beside this page lie:</p>\n<ul>\n";
+    const auto item = [&](const std::string& file, const std::string& holds) {
+      text_ += "<li><code>" + text::html(file) + "</code>: " + text::html(holds) + "</li>\n";
+    };
+    for (const Table& table : tables()) {
+      const bool anywhere = std::any_of(report_.scenes.begin(), report_.scenes.end(),
+                                        [&](const SceneChapter& scene) { return table.has_rows(scene.study); });
+      if (!anywhere) continue;
+      item(report_.scenes.size() == 1 ? file_name(report_.scenes.front(), table) : "SCENE_" + std::string(table.file),
+           std::string(table.holds));
+    }
+    for (const page::Chapter& chapter : report_.chapters) {
+      for (const auto* list : {&chapter.values, &chapter.times}) {
+        for (const page::TextTable& table : *list) item(table.file, table.holds);
+      }
+    }
+    text_ += "</ul>\n";
+    if (report_.scenes.size() < 2) return;
+    std::vector<std::string> names;
+    for (const SceneChapter& scene : report_.scenes) {
+      names.push_back("<code>" + text::html(scene.name) + "</code> (" + text::html(scene.title) + ')');
+    }
+    text_ += "<p>SCENE stands for " + text::enumerate(names) + ".</p>\n";
+  }
+
+  const Report& report_;
+  const Pages& pages_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string report_page(const Report& report, const Pages& pages) { return PageWriter(report, pages).write(); }
+
+}  // namespace exactff::report

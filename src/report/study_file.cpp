@@ -1,0 +1,159 @@
+#include "report/study_file.h"
+
+#include <CLI/CLI.hpp>
+
+#include "exactff/report.h"
+#include "flags/comparison.h"
+#include "kernel/float_environment.h"
+#include "text/text_file.h"
+#include "text/text_lines.h"
+
+namespace exactff::report {
+
+bool is_study_file(const std::string& path) { return std::filesystem::path(path).extension() == ".study"; }
+
+std::vector<std::string> split_words(std::string_view line, const std::string& file, std::size_t number) {
+  std::vector<std::string> words;
+  bool in_word = false;
+  char quote = '\0';
+  for (const char c : line) {
+    const bool blank = c == ' ' || c == '\t';
+    if (quote != '\0') {
+      if (c == quote) {
+        quote = '\0';
+      } else {
+        words.back() += c;
+      }
+      continue;
+    }
+    if (blank) {
+      in_word = false;
+      continue;
+    }
+    if (!in_word) words.emplace_back();
+    in_word = true;
+    if (c == '"' || c == '\'') {
+      quote = c;
+    } else {
+      words.back() += c;
+    }
+  }
+  if (quote != '\0') {
+    throw InputError(Problem{file, number, "a quote is not closed", "where its word ends cannot be told",
+                             std::string("end the word with ") + quote});
+  }
+  return words;
+}
+
+StudyFile parse_study_file(const std::filesystem::path& path) {
+  const std::string text = text::read_text_file(path, "a study file");
+  const std::string file = path.string();
+  StudyFile study;
+  text::ProblemList problems;
+  text::TextLines lines(text);
+  for (text::TextLine line; lines.next(line);) {
+    if (line.text.empty()) continue;
+    std::vector<std::string> words;
+    try {
+      words = split_words(line.text, file, line.number);
+    } catch (const InputError& error) {
+      for (const Problem& problem : error.problems()) problems.add(problem);
+      continue;
+    }
+    const std::string kind = words.front();
+    words.erase(words.begin());
+    if (kind == "title" || kind == "scene" || kind == "experiment") {
+      if (words.empty()) {
+        problems.add({file, line.number, "nothing follows the word " + text::in_quotes(kind),
+                      "the line says nothing to be done", "complete it or remove it"});
+      } else if (kind == "scene") {
+        study.scenes.push_back({line.number, std::move(words)});
+      } else if (kind == "experiment") {
+        study.experiments.push_back({line.number, std::move(words)});
+      } else {
+        study.title = std::string(text::trimmed(line.text.substr(kind.size())));
+      }
+    } else {
+      problems.add({file, line.number, "a line begins with " + text::in_quotes(kind), "it says what the line is about",
+                    "begin it with title, scene or experiment, or with # for a comment"});
+    }
+  }
+  if (problems.empty() && study.scenes.empty() && study.experiments.empty()) {
+    problems.add({file, 0, "the study has neither a scene nor an experiment", "there is nothing to do",
+                  "add a line such as: scene room.obj --on floor --grid 16x16"});
+  }
+  problems.throw_if_any();
+  return study;
+}
+
+namespace {
+
+flags::ComparisonArguments arguments_of(const StudyLine& line, const std::string& file) {
+  flags::ComparisonArguments args;
+  CLI::App app;
+  app.set_help_flag();
+  args.add_to(app);
+  try {
+    std::vector<std::string> reversed(line.words.rbegin(), line.words.rend());
+    app.parse(std::move(reversed));
+  } catch (const CLI::ParseError& error) {
+    throw InputError(Problem{file, line.number, error.what(), "the line says what is done with a scene",
+                             "see exactff compare --help for the flags of a scene"});
+  }
+  const std::string& path = args.scene.path;
+  if (!path.starts_with('@')) args.scene.path = (std::filesystem::path(file).parent_path() / path).string();
+  if (!args.receivers.file.empty()) {
+    args.receivers.file = (std::filesystem::path(file).parent_path() / args.receivers.file).string();
+  }
+  return args;
+}
+
+// Problems with a line, or with the files that it names, are reported with the place of the line.
+template <class Do>
+void at_line(const std::string& file, std::size_t number, const Do& act) {
+  try {
+    act();
+  } catch (const InputError& error) {
+    std::vector<Problem> problems = error.problems();
+    for (Problem& problem : problems) {
+      if (problem.file == file) continue;
+      if (!problem.file.empty()) {
+        const std::string line = problem.line > 0 ? ':' + std::to_string(problem.line) : std::string();
+        problem.what = problem.file + line + ": " + problem.what;
+      }
+      problem.file = file;
+      problem.line = number;
+    }
+    throw InputError(std::move(problems));
+  }
+}
+
+void add_scene(const StudyLine& line, const std::string& file, Plan& plan) {
+  flags::ComparisonArguments args = arguments_of(line, file);
+  if (plan.effort.abridged && args.unless_abridged) {
+    const std::string name = args.title.empty() ? flags::short_name(args.scene.path) : args.title;
+    plan.left_out.push_back({name, "this report is abridged"});
+    return;
+  }
+  flags::Comparison comparison = flags::comparison_of(std::move(args), plan.effort.abridged, plan.effort.threads);
+  plan.add_scene(std::move(comparison.title), std::move(comparison.scene), std::move(comparison.request));
+}
+
+}  // namespace
+
+Plan read_study_file(const std::filesystem::path& file, const Effort& effort) {
+  const kernel::StandardArithmetic arithmetic;
+  const StudyFile study = parse_study_file(file);
+  Plan plan;
+  plan.title = study.title.empty() ? flags::short_name(file.string()) : study.title;
+  plan.effort = effort;
+  for (const StudyLine& line : study.scenes) {
+    at_line(file.string(), line.number, [&] { add_scene(line, file.string(), plan); });
+  }
+  for (const StudyLine& line : study.experiments) {
+    at_line(file.string(), line.number, [&] { plan.add_experiments(line.words); });
+  }
+  return plan;
+}
+
+}  // namespace exactff::report

@@ -1,0 +1,228 @@
+#include "report/verdicts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "study/ladders.h"
+#include "study/statistics.h"
+#include "text/phrases.h"
+
+namespace exactff::report {
+namespace {
+
+const Ladder& ladder_of(const Study& study, const MethodCell& cell) { return study.methods.ladders[cell.ladder]; }
+
+bool is_timed(const MethodCell& cell) { return !std::isnan(cell.seconds); }
+
+// What R. Mitchell's and the classical results predict for the RMS error against the number of samples.
+struct Expectation {
+  double exponent = 0.0;
+  const char* words = "";
+};
+
+std::optional<Expectation> expectation(const Ladder& ladder, Sight sight) {
+  const methods::Choice& choice = ladder.rungs.front();
+  if (choice.method->name != "area-sampling") return std::nullopt;
+  const std::string& pattern = choice.settings.word("pattern");
+  if (pattern == "random") return Expectation{-0.5, "−1/2"};
+  if (sight == Sight::kPartly) return Expectation{-0.75, "−3/4 with one shadow edge across the source"};
+  return Expectation{-1.0, "−1 where nothing is discontinuous"};
+}
+
+std::string signed_text(double value) {
+  return (value < 0.0 ? "−" : "") + text::rounded(std::abs(value), std::abs(value) < 0.1 ? 1 : 2);
+}
+
+const char* why_shallower(Sight sight) {
+  return sight == Sight::kPartly ? "with many edges a cell of the source holds several of them until it is finer than "
+                                   "the gaps, and samples "
+                                   "in it are as good as random"
+                                 : "the first steps are too coarse for the slope that the theory expects in the limit";
+}
+
+const char* why_steeper(Sight sight) {
+  return sight == Sight::kPartly
+             ? "the smooth part of the integrand, whose error falls faster, still outweighs the edges"
+             : "the sequence makes use of the integrand’s smoothness beyond one sample in each cell";
+}
+
+}  // namespace
+
+double relative_error(const Study& study, const MethodCell& cell) {
+  const double brightest = study::largest_radiosity(study);
+  if (cell.error.not_a_number > 0) return INFINITY;  // whatever the other values are
+  if (!(brightest > 0.0)) return cell.error.rms == 0.0 ? 0.0 : INFINITY;
+  return cell.error.rms / brightest;
+}
+
+bool is_exact(const Study& study, const MethodCell& cell) {
+  return ladder_of(study, cell).rungs.front().method->name == "exact";
+}
+
+bool is_rival(const Study& study, const MethodCell& cell) {
+  const std::string& name = ladder_of(study, cell).rungs.front().method->name;
+  return name != "exact" && name != "adaptive-exact-visibility";
+}
+
+const MethodCell* exact_cell(const Study& study) {
+  for (const MethodCell& cell : study.methods.cells) {
+    if (is_exact(study, cell)) return &cell;
+  }
+  return nullptr;
+}
+
+const MethodCell* cheapest(const Study& study, double wanted, std::optional<std::size_t> ladder) {
+  const MethodCell* best = nullptr;
+  for (const MethodCell& cell : study.methods.cells) {
+    if (ladder ? cell.ladder != *ladder : !is_rival(study, cell)) continue;
+    if (!is_timed(cell) || !(relative_error(study, cell) <= wanted)) continue;
+    if (best == nullptr || cell.seconds < best->seconds) best = &cell;
+  }
+  return best;
+}
+
+std::vector<const MethodCell*> pareto_front(const Study& study) {
+  std::vector<const MethodCell*> cells;
+  for (const MethodCell& cell : study.methods.cells) {
+    if (!is_timed(cell) || !std::isfinite(relative_error(study, cell))) continue;
+    if (is_rival(study, cell) || is_exact(study, cell)) cells.push_back(&cell);
+  }
+  std::stable_sort(cells.begin(), cells.end(),
+                   [](const MethodCell* a, const MethodCell* b) { return a->seconds < b->seconds; });
+  std::vector<const MethodCell*> front;
+  for (const MethodCell* cell : cells) {
+    if (front.empty() || relative_error(study, *cell) < relative_error(study, *front.back())) front.push_back(cell);
+  }
+  return front;
+}
+
+std::string cell_name(const Study& study, const MethodCell& cell) {
+  return study::rung_name(ladder_of(study, cell), cell.rung);
+}
+
+std::string power_of_ten(double value) {
+  static constexpr std::array<const char*, 10> kDigits = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  const int power = static_cast<int>(std::lround(-std::log10(value)));
+  return std::string("10⁻") + kDigits[static_cast<std::size_t>(std::clamp(power, 0, 9))];
+}
+
+std::vector<std::string> method_sentences(const Study& study) {
+  const MethodCell* exact = exact_cell(study);
+  if (exact == nullptr || !is_timed(*exact) || study.methods.cells.size() < 2) return {};
+  std::string text =
+      "On this scene the exact value takes " + text::duration(exact->seconds) + " per receiver in the mean";
+  double reached = 0.0, missed = 0.0;
+  for (const double wanted : kWantedErrors) {
+    (cheapest(study, wanted) != nullptr ? reached : missed) = wanted;
+    if (missed > 0.0) break;
+  }
+  const std::string of = " of the brightest receiver (RMS)";
+  if (reached > 0.0) {
+    const MethodCell* best = cheapest(study, reached);
+    const double ratio = best->seconds / exact->seconds;
+    text += "; the cheapest other way to be right to " + power_of_ten(reached) + of + ", " + cell_name(study, *best) +
+            ", takes " + text::rounded(ratio, 2) + " times as long";
+    if (missed > 0.0) text += ", and no setting of the others that was run is right to " + power_of_ten(missed);
+  } else {
+    text += "; no setting of the others that was run is right to " + power_of_ten(kWantedErrors.front()) + of;
+  }
+  std::vector<std::string> sentences = {text + "."};
+  const MethodCell* within = nullptr;
+  for (const MethodCell& cell : study.methods.cells) {
+    if (!is_rival(study, cell) || !is_timed(cell) || cell.seconds > exact->seconds) continue;
+    if (!std::isfinite(relative_error(study, cell))) continue;
+    if (within == nullptr || relative_error(study, cell) < relative_error(study, *within)) within = &cell;
+  }
+  if (within != nullptr) {
+    sentences.push_back("Side by side, exact overtakes the others at an error of " +
+                        text::rounded(100.0 * relative_error(study, *within), 2) +
+                        " % of the brightest receiver: the best that any setting compared there reaches within its "
+                        "time (" +
+                        cell_name(study, *within) + ").");
+  } else {
+    sentences.emplace_back("No other method is as fast as the exact one at any setting.");
+  }
+  return sentences;
+}
+
+namespace {
+
+// Counts values that are not finite or not in [0, 1].
+struct RangeCount {
+  std::size_t values = 0;
+  std::size_t not_finite = 0;
+  std::size_t outside = 0;
+  double farthest = 0.0;
+
+  void add(double value) {
+    ++values;
+    if (!std::isfinite(value)) {
+      ++not_finite;
+      return;
+    }
+    const double beyond = std::max(-value, value - 1.0);
+    if (beyond <= kRoundingOfSums) return;
+    ++outside;
+    farthest = std::max(farthest, beyond);
+  }
+
+  static constexpr double kRoundingOfSums = 1e-12;
+};
+
+void add_range_sentences(const std::string& name, const RangeCount& count, std::vector<std::string>& sentences) {
+  const auto of = [&](std::size_t part) {
+    return std::to_string(part) + " of " + text::counted(count.values, "value") + " of " + name;
+  };
+  if (count.outside > 0) {
+    sentences.push_back(of(count.outside) + (count.outside == 1 ? " lies" : " lie") + " outside [0, 1], by at most " +
+                        text::rounded(count.farthest) + ": the formula of the method, not rounding.");
+  }
+  if (count.not_finite > 0) {
+    sentences.push_back(of(count.not_finite) +
+                        (count.not_finite == 1 ? " is no finite number" : " are no finite numbers") +
+                        ": errors are those of the other values, and a setting with such a value counts as right to "
+                        "no wanted error.");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> range_sentences(const Study& study) {
+  std::vector<RangeCount> of_ladder(study.methods.ladders.size());
+  for (const MethodCell& cell : study.methods.cells) {
+    for (const std::vector<double>& of_seed : cell.values) {
+      for (const double value : of_seed) of_ladder[cell.ladder].add(value);
+    }
+  }
+  std::array<RangeCount, 2> of_variant;
+  for (std::size_t k = 0; k < study.samples.size(); ++k) {
+    const auto variant = static_cast<std::size_t>(study.settings[k].variant == Variant::kLiteral);
+    for (const SampleRow& row : study.samples[k]) of_variant[variant].add(row.form_factor);
+  }
+  std::vector<std::string> sentences;
+  for (const Variant variant : {Variant::kMended, Variant::kLiteral}) {
+    const auto place = static_cast<std::size_t>(variant == Variant::kLiteral);
+    add_range_sentences("the ray-sampled algorithm (" + std::string(name_of(variant)) + " variant)", of_variant[place],
+                        sentences);
+  }
+  for (std::size_t l = 0; l < of_ladder.size(); ++l) {
+    add_range_sentences(study.methods.ladders[l].name, of_ladder[l], sentences);
+  }
+  return sentences;
+}
+
+std::string slope_words(const Slope& slope, const Ladder& ladder, Sight sight) {
+  std::string text = ladder.name + ": " + signed_text(slope.exponent);
+  if (slope.seeds > 1) text += " (" + signed_text(slope.low) + " to " + signed_text(slope.high) + ")";
+  const auto expected = expectation(ladder, sight);
+  if (!expected) return text;
+  constexpr double kClose = 0.1;
+  const double off = slope.exponent - expected->exponent;
+  text += std::string(", theory ") + expected->words;
+  if (std::abs(off) <= std::max(kClose, 0.5 * (slope.high - slope.low))) return text;
+  return text + "; " +
+         (off > 0.0 ? "shallower, since " + std::string(why_shallower(sight))
+                    : "steeper, since " + std::string(why_steeper(sight)));
+}
+
+}  // namespace exactff::report

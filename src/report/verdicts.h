@@ -1,0 +1,50 @@
+// Conclusions from the runs of the methods: which is cheapest for a wanted error, and what theory predicts for the
+// slopes.
+//
+// Errors here are RMS errors over the chosen receivers and seeds, divided by the radiosity of the brightest receiver.
+// Times are seconds per receiver for all sources, averaged over the chosen receivers.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "report/studies.h"
+
+namespace exactff::report {
+
+inline constexpr std::array kWantedErrors = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
+
+[[nodiscard]] double relative_error(const Study& study, const MethodCell& cell);
+[[nodiscard]] bool is_exact(const Study& study, const MethodCell& cell);
+// Null if the exact method is not among the ladders.
+[[nodiscard]] const MethodCell* exact_cell(const Study& study);
+
+// False for the control, which is given the exact visibilities and so is not a method that anybody could use instead.
+[[nodiscard]] bool is_rival(const Study& study, const MethodCell& cell);
+
+// The fastest cell among those with an error of at most `wanted`: of one ladder, or of all rivals of the exact method.
+[[nodiscard]] const MethodCell* cheapest(const Study& study, double wanted, std::optional<std::size_t> ladder = {});
+
+// The cells that no other cell beats in both time and accuracy, by increasing time. Without the control.
+[[nodiscard]] std::vector<const MethodCell*> pareto_front(const Study& study);
+
+// "area sampling, stratified, samples 64".
+[[nodiscard]] std::string cell_name(const Study& study, const MethodCell& cell);
+// "1e-4" in typeset form: "10⁻⁴".
+[[nodiscard]] std::string power_of_ten(double value);
+
+// One or two sentences that can be quoted: the cost of an exact value, and what the other methods need for a similar
+// accuracy.
+[[nodiscard]] std::vector<std::string> method_sentences(const Study& study);
+
+// For each method, and each variant of the sweeps: how many values are not finite, and how many lie outside [0, 1] by
+// more than rounding. One sentence for each that has any. Values are sums over the sources.
+[[nodiscard]] std::vector<std::string> range_sentences(const Study& study);
+
+// A fitted slope in words, with the slope that theory expects, if it expects one.
+[[nodiscard]] std::string slope_words(const Slope& slope, const Ladder& ladder, Sight sight);
+
+}  // namespace exactff::report

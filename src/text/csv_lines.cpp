@@ -1,0 +1,99 @@
+#include "text/csv_lines.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "exactff/error.h"
+#include "text/text_file.h"
+#include "text/text_lines.h"
+
+namespace exactff::text {
+
+namespace {
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+// Appends to `field` the text between the quotes that begin at line[at]; false if they are not closed.
+bool take_quoted(std::string_view line, std::size_t& at, std::string& field) {
+  for (++at; at < line.size(); ++at) {
+    if (line[at] != '"') {
+      field += line[at];
+    } else if (at + 1 < line.size() && line[at + 1] == '"') {
+      field += line[at++];
+    } else {
+      ++at;
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+CsvLines::CsvLines(const std::filesystem::path& path, std::string purpose)
+    : file_(path.string()), purpose_(std::move(purpose)), in_(open_text_file(path, purpose_)) {
+  pass_byte_order_mark();
+}
+
+void CsvLines::pass_byte_order_mark() {
+  if (fill() && std::string_view(block_.data(), end_).starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+}
+
+bool CsvLines::fill() {
+  at_ = 0;
+  end_ = read_text_block(in_, block_, file_, purpose_);
+  return end_ > 0;
+}
+
+// Requires that the position is at a line end. Skips it; CR LF is one line end.
+void CsvLines::pass_line_end() {
+  const char ended_by = block_[at_++];
+  if (ended_by == '\r' && (at_ < end_ || fill()) && block_[at_] == '\n') ++at_;
+}
+
+bool CsvLines::next(std::string_view& line) {
+  line_.clear();
+  if (at_ == end_ && !fill()) return false;
+  ++number_;
+  do {
+    const std::string_view rest(block_.data() + at_, end_ - at_);
+    const std::size_t length = std::min(rest.find_first_of("\r\n"), rest.size());
+    line_.append(rest.substr(0, length));
+    at_ += length;
+    if (at_ < end_) {
+      pass_line_end();
+      break;
+    }
+  } while (fill());
+  line = line_;
+  return true;
+}
+
+bool is_csv_comment(std::string_view line) {
+  const std::string_view content = trimmed(line);
+  return content.empty() || content.front() == '#';
+}
+
+bool split_csv_line(std::string_view line, std::vector<std::string>& fields) {
+  std::size_t count = 0;
+  for (std::size_t at = 0;; ++at) {
+    if (count == fields.size()) fields.emplace_back();
+    std::string& field = fields[count++];
+    field.clear();
+    while (at < line.size() && (line[at] == ' ' || line[at] == '\t')) ++at;
+    const bool quoted = at < line.size() && line[at] == '"';
+    if (quoted && !take_quoted(line, at, field)) return false;
+    const std::size_t comma = std::min(line.find(',', at), line.size());
+    const std::string_view rest = trimmed(line.substr(at, comma - at));
+    if (quoted && !rest.empty()) return false;
+    if (!quoted) field.assign(rest);
+    at = comma;
+    if (at == line.size()) break;
+  }
+  fields.resize(count);
+  return true;
+}
+
+}  // namespace exactff::text

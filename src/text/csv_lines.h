@@ -1,0 +1,50 @@
+// The lines and fields of CSV files, read one after another: a file of a million rows is never held in memory as a
+// whole.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <istream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace exactff::text {
+
+// Lines that end in LF, CRLF or CR; a UTF-8 byte order mark at the start is skipped. Throws InputError where
+// read_text_file would: the file is missing, a directory, unreadable, or binary.
+class CsvLines {
+ public:
+  // `purpose` completes "give ...": "a CSV file of values".
+  CsvLines(const std::filesystem::path& path, std::string purpose);
+
+  // The next line, blank and comment lines included; valid until the next call.
+  bool next(std::string_view& line);
+  [[nodiscard]] std::size_t number() const { return number_; }  // of the line last returned, from 1
+  [[nodiscard]] const std::string& file() const { return file_; }
+
+ private:
+  bool fill();
+  void pass_line_end();
+  void pass_byte_order_mark();
+
+  std::string file_;
+  std::string purpose_;
+  std::ifstream in_;
+  std::array<char, 1 << 16> block_{};
+  std::size_t at_ = 0;
+  std::size_t end_ = 0;
+  std::size_t number_ = 0;
+  std::string line_;
+};
+
+// Blank, or a comment: one that begins with '#'.
+[[nodiscard]] bool is_csv_comment(std::string_view line);
+
+// The fields of one line, without outer blanks unless quoted; a quotation mark within quotes is written twice. Returns
+// false if a quote is not closed within its line, or text follows a closing quote. Reuses the memory of `fields`.
+[[nodiscard]] bool split_csv_line(std::string_view line, std::vector<std::string>& fields);
+
+}  // namespace exactff::text

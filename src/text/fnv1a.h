@@ -1,0 +1,43 @@
+// 64-bit FNV-1a, a hash that distinguishes inputs. The byte order is the same on every machine.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "exactff/geometry.h"
+
+namespace exactff::text {
+
+// The low bits of a number as `digits` hexadecimal digits.
+inline std::string hexadecimal(std::uint64_t value, std::size_t digits) {
+  std::string text(digits, '0');
+  for (std::size_t i = digits; i-- > 0; value >>= 4U) text[i] = "0123456789abcdef"[value & 15U];
+  return text;
+}
+
+class Fnv1a {
+ public:
+  void add(std::uint64_t value) {
+    for (int shift = 0; shift < 64; shift += 8) add_byte(static_cast<unsigned char>(value >> shift));
+  }
+  void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
+  void add(const Vec3& p) {
+    for (const double c : {p.x, p.y, p.z}) add(c);
+  }
+  // Adds no terminator: later input must make clear where the text ended.
+  void add_bytes(std::string_view text) {
+    for (const char c : text) add_byte(static_cast<unsigned char>(c));
+  }
+  void add_byte(unsigned char byte) { state_ = (state_ ^ byte) * 0x100000001b3U; }
+
+  [[nodiscard]] std::uint64_t value() const { return state_; }
+  [[nodiscard]] std::string digits() const { return hexadecimal(state_, 16); }
+
+ private:
+  std::uint64_t state_ = 0xcbf29ce484222325U;
+};
+
+}  // namespace exactff::text

@@ -1,0 +1,168 @@
+// std::from_chars rounds correctly, but rejects a plus sign, accepts "nan" and leaves the value unset where it
+// underflows. So: check the grammar, strip the plus, and where from_chars reports "out of range", distinguish overflow
+// from underflow exactly, with rational numbers.
+#include "text/number_text.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+#include "kernel/numbers.h"
+#include "text/text_lines.h"
+
+namespace exactff::text {
+
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+// The parts of [+-] whole [. fraction] [e exponent].
+struct Decimal {
+  bool negative = false;
+  std::string_view unsigned_text;
+  std::string_view whole;
+  std::string_view fraction;
+  std::string_view exponent;  // with its sign
+  bool valid = false;
+};
+
+std::string_view take_digits(std::string_view& rest) {
+  const auto end = std::find_if_not(rest.begin(), rest.end(), is_digit);
+  const std::string_view digits = rest.substr(0, static_cast<std::size_t>(end - rest.begin()));
+  rest.remove_prefix(digits.size());
+  return digits;
+}
+
+bool take(std::string_view& rest, std::string_view any_of) {
+  if (rest.empty() || any_of.find(rest.front()) == std::string_view::npos) return false;
+  rest.remove_prefix(1);
+  return true;
+}
+
+Decimal split(std::string_view text) {
+  Decimal number;
+  std::string_view rest = text;
+  number.negative = text.starts_with('-');
+  take(rest, "+-");
+  number.unsigned_text = rest;
+  number.whole = take_digits(rest);
+  if (take(rest, ".")) number.fraction = take_digits(rest);
+  bool exponent_complete = true;
+  if (take(rest, "eE")) {
+    const std::string_view start = rest;
+    take(rest, "+-");
+    exponent_complete = !take_digits(rest).empty();
+    number.exponent = start.substr(0, start.size() - rest.size());
+  }
+  number.valid = rest.empty() && exponent_complete && !(number.whole.empty() && number.fraction.empty());
+  return number;
+}
+
+// Clamped to +-10^9: no file has enough digits to compensate for such an exponent.
+long exponent_value(std::string_view text) {
+  constexpr long kLimit = 1'000'000'000;
+  std::string_view digits = text;
+  take(digits, "+-");
+  long value = 0;
+  for (const char c : digits) value = std::min(kLimit, 10 * value + (c - '0'));
+  return text.starts_with('-') ? -value : value;
+}
+
+// The number as digits * 10^exponent without leading and trailing zeros.
+struct Digits {
+  std::string text;
+  long exponent = 0;
+};
+
+Digits significant(const Decimal& number) {
+  Digits digits{std::string(number.whole) + std::string(number.fraction), exponent_value(number.exponent)};
+  digits.exponent -= static_cast<long>(number.fraction.size());
+  digits.text.erase(0, std::min(digits.text.find_first_not_of('0'), digits.text.size()));
+  const std::size_t end = digits.text.find_last_not_of('0') + 1;
+  digits.exponent += static_cast<long>(digits.text.size() - end);
+  digits.text.resize(end);
+  return digits;
+}
+
+// The values that from_chars could not represent: far outside the range of doubles, or near its ends.
+double rounded_exactly(const Digits& digits) {
+  const long magnitude = digits.exponent + static_cast<long>(digits.text.size());  // value < 10^magnitude
+  if (digits.text.empty() || magnitude < -400) return 0.0;
+  if (magnitude > 400) return HUGE_VAL;
+  kernel::Integer power;
+  mpz_ui_pow_ui(power.get_mpz_t(), 10, static_cast<unsigned long>(std::abs(digits.exponent)));
+  const kernel::Integer mantissa(digits.text, 10);
+  if (digits.exponent >= 0) return kernel::nearest_double(kernel::Rational(mantissa * power));
+  return kernel::nearest_double(kernel::Rational(mantissa, power));
+}
+
+double magnitude_of(const Decimal& number) {
+  const std::string_view text = number.unsigned_text;
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? value : rounded_exactly(significant(number));
+}
+
+NumberFault fault_of(std::string_view text) {
+  std::string word = lower_case(text);
+  if (word.starts_with('+') || word.starts_with('-')) word.erase(0, 1);
+  if (word.starts_with("nan") || word.starts_with("inf") || word.starts_with("1.#")) return NumberFault::kNotFinite;
+  if (word.starts_with("0x")) return NumberFault::kHexadecimal;
+  std::replace(word.begin(), word.end(), ',', '.');
+  return text.find(',') != std::string_view::npos && split(word).valid ? NumberFault::kComma : NumberFault::kNotANumber;
+}
+
+}  // namespace
+
+ParsedNumber parse_number(std::string_view text) {
+  const Decimal number = split(text);
+  if (!number.valid) return {0.0, fault_of(text)};
+  const double magnitude = magnitude_of(number);
+  if (std::isinf(magnitude)) return {0.0, NumberFault::kTooLarge};
+  return {number.negative && magnitude != 0.0 ? -magnitude : magnitude, NumberFault::kNone};
+}
+
+std::string describe(NumberFault fault, std::string_view text) {
+  const std::string shown = in_quotes(text);
+  switch (fault) {
+    case NumberFault::kNone:
+      return shown + " is a number";
+    case NumberFault::kNotANumber:
+      return shown + " is not a number";
+    case NumberFault::kNotFinite:
+      return shown + " is not a finite number";
+    case NumberFault::kHexadecimal:
+      return shown + " is hexadecimal";
+    case NumberFault::kComma:
+      return shown + " has a decimal comma";
+    case NumberFault::kTooLarge:
+      return shown + " is too large for a double";
+  }
+  return shown;
+}
+
+std::string advice(NumberFault fault) {
+  switch (fault) {
+    case NumberFault::kNone:
+      return {};
+    case NumberFault::kNotANumber:
+    case NumberFault::kHexadecimal:
+      return "write a decimal number such as 1.5 or -2e-3";
+    case NumberFault::kNotFinite:
+      return "give a finite number";
+    case NumberFault::kComma:
+      return "write a decimal point";
+    case NumberFault::kTooLarge:
+      return "give a smaller number; doubles end at 1.8e308";
+  }
+  return {};
+}
+
+}  // namespace exactff::text

@@ -1,0 +1,31 @@
+// Decimal text to doubles, independent of the locale.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace exactff::text {
+
+enum class NumberFault {
+  kNone,
+  kNotANumber,  // anything but [+-] digits [. digits] [e [+-] digits] with at least one digit before the exponent
+  kNotFinite,   // nan, inf, infinity in any case
+  kHexadecimal,
+  kComma,     // a number except for a decimal comma
+  kTooLarge,  // rounds to infinity
+};
+
+struct ParsedNumber {
+  double value = 0.0;
+  NumberFault fault = NumberFault::kNone;
+};
+
+// Correctly rounded to nearest, ties to even, gradual underflow included: 1e-400, -1e-400 and -0 give 0.
+ParsedNumber parse_number(std::string_view text);
+
+// "'1e400' is too large for a double": completes "FILE:LINE: ".
+std::string describe(NumberFault fault, std::string_view text);
+// What to do about it: completes a Problem.
+std::string advice(NumberFault fault);
+
+}  // namespace exactff::text

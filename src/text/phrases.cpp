@@ -1,0 +1,98 @@
+#include "text/phrases.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "exactff/version.h"
+
+namespace exactff::text {
+namespace {
+
+std::string fixed(double value, int decimals) {
+  std::array<char, 400> buffer;
+  const auto end =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed, decimals);
+  return {buffer.data(), end.ptr};
+}
+
+// "4.1e-05" to "4.1·10⁻⁵".
+std::string with_power_of_ten(const std::string& text) {
+  constexpr std::array<std::string_view, 10> kSuperscripts = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  const std::size_t e = text.find('e');
+  if (e == std::string::npos) return text;
+  std::string result = text.substr(0, e) + "·10";
+  if (text[e + 1] == '-') result += "⁻";
+  const std::size_t first = std::min(text.find_first_not_of("+-0", e + 1), text.size() - 1);
+  for (char digit : text.substr(first)) result += kSuperscripts[static_cast<std::size_t>(digit - '0')];
+  return result;
+}
+
+}  // namespace
+
+std::string shortest(double value) {
+  std::array<char, 64> buffer;
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), end.ptr};
+}
+
+std::string rounded(double value, int digits) {
+  if (value == 0.0) return "0";
+  const double magnitude = std::abs(value);
+  if (magnitude >= 100.0 && magnitude < 1e7) return fixed(value, 0);
+  std::array<char, 64> buffer;
+  const auto end =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
+  return with_power_of_ten({buffer.data(), end.ptr});
+}
+
+std::string duration(double seconds) {
+  if (!(seconds >= 0.0)) return "?";
+  if (seconds < 1e-6) return rounded(seconds * 1e9) + " ns";
+  if (seconds < 1e-3) return rounded(seconds * 1e6) + " µs";
+  if (seconds < 1.0) return rounded(seconds * 1e3) + " ms";
+  if (seconds < 100.0) return rounded(seconds) + " s";
+  const auto whole = static_cast<std::uint64_t>(std::llround(seconds));
+  return std::to_string(whole / 60) + " min " + std::to_string(whole % 60) + " s";
+}
+
+std::string share(std::size_t part, std::size_t whole) {
+  if (part == 0 || whole == 0) return "0 %";
+  if (part == whole) return "100 %";
+  const double percent = 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+  if (percent < 0.05) return "under 0.1 %";
+  if (percent >= 99.95) return "over 99.9 %";
+  return fixed(percent, 1) + " %";
+}
+
+std::string enumerate(std::span<const std::string> items) {
+  std::string text;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i > 0) text += i + 1 == items.size() ? " and " : ", ";
+    text += items[i];
+  }
+  return text;
+}
+
+std::string counted(std::uint64_t count, std::string_view noun, std::string_view plural) {
+  std::string text = std::to_string(count) + ' ';
+  if (count == 1 || plural.empty()) text += noun;
+  if (count != 1) text += plural.empty() ? std::string_view("s") : plural;
+  return text;
+}
+
+std::string counted_of(std::size_t count, std::size_t whole, std::string_view noun) {
+  return (count == whole ? std::string("every one") : std::to_string(count)) + " of " + counted(whole, noun);
+}
+
+std::string short_number(double value, int digits) {
+  std::array<char, 32> buffer;
+  const auto end =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
+  return {buffer.data(), end.ptr};
+}
+
+std::string program_version() { return std::string("exactff ") + kVersion; }
+
+}  // namespace exactff::text

@@ -1,0 +1,235 @@
+#include "exactff/settings.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "exactff/error.h"
+#include "kernel/float_environment.h"
+#include "text/nearest_names.h"
+#include "text/number_text.h"
+
+namespace exactff {
+
+namespace {
+
+template <class Number>
+std::string shortest(Number value) {
+  std::array<char, 64> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), end.ptr};
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  return list;
+}
+
+// "from 1 to 10", "of at least 0", or nothing.
+template <class Number>
+std::string range(Number lowest, Number highest, bool bounded_above) {
+  if (bounded_above) return " from " + shortest(lowest) + " to " + shortest(highest);
+  return " of at least " + shortest(lowest);
+}
+
+std::int64_t whole_of(double bound) {
+  constexpr double kLimit = 0x1p62;
+  if (bound >= kLimit) return std::numeric_limits<std::int64_t>::max();
+  return static_cast<std::int64_t>(std::max(bound, -kLimit));
+}
+
+bool allows(const SettingSpec& spec, std::int64_t value) {
+  return value >= whole_of(spec.lowest) && value <= whole_of(spec.highest) && value % spec.multiple_of == 0;
+}
+
+bool allows(const SettingSpec& spec, double value) { return value >= spec.lowest && value <= spec.highest; }
+
+bool allows(const SettingSpec& spec, const std::string& value) {
+  return std::find(spec.words.begin(), spec.words.end(), value) != spec.words.end();
+}
+
+// The value in the setting's type; nullopt if the type does not fit or the value is not allowed.
+std::optional<SettingValue> fitting(const SettingSpec& spec, SettingValue value) {
+  const bool wants_number = std::holds_alternative<double>(spec.fallback);
+  if (const auto* whole = std::get_if<std::int64_t>(&value); whole != nullptr && wants_number) {
+    value = static_cast<double>(*whole);
+  }
+  if (value.index() != spec.fallback.index()) return std::nullopt;
+  if (!std::visit([&](const auto& v) { return allows(spec, v); }, value)) return std::nullopt;
+  return value;
+}
+
+[[noreturn]] void refuse(const SettingSpec& spec, std::string_view text) {
+  const std::string unit = spec.unit.empty() ? "" : " (" + spec.unit + ")";
+  throw InputError(Problem{{},
+                           0,
+                           "'" + std::string(text) + "' will not do for " + spec.name + unit,
+                           "it is: " + spec.meaning,
+                           "give " + allowed(spec)});
+}
+
+std::optional<SettingValue> read(const SettingSpec& spec, std::string_view text) {
+  if (std::holds_alternative<std::string>(spec.fallback)) return SettingValue(std::string(text));
+  if (std::holds_alternative<std::int64_t>(spec.fallback)) {
+    std::int64_t value = 0;
+    const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (text.empty() || end.ec != std::errc{} || end.ptr != text.data() + text.size()) return std::nullopt;
+    return SettingValue(value);
+  }
+  const text::ParsedNumber number = text::parse_number(text);
+  if (number.fault != text::NumberFault::kNone) return std::nullopt;
+  return SettingValue(number.value);
+}
+
+}  // namespace
+
+SettingSpec whole_setting(std::string name, std::int64_t fallback, std::int64_t lowest, std::int64_t highest,
+                          std::string meaning, std::string unit, std::int64_t multiple_of) {
+  return {.name = std::move(name),
+          .meaning = std::move(meaning),
+          .unit = std::move(unit),
+          .fallback = fallback,
+          .lowest = static_cast<double>(lowest),
+          .highest = static_cast<double>(highest),
+          .multiple_of = multiple_of};
+}
+
+SettingSpec number_setting(std::string name, double fallback, double lowest, double highest, std::string meaning,
+                           std::string unit) {
+  return {.name = std::move(name),
+          .meaning = std::move(meaning),
+          .unit = std::move(unit),
+          .fallback = fallback,
+          .lowest = lowest,
+          .highest = highest};
+}
+
+SettingSpec word_setting(std::string name, std::vector<std::string> words, std::string meaning) {
+  std::string first = words.front();
+  return {.name = std::move(name),
+          .meaning = std::move(meaning),
+          .unit = {},
+          .fallback = std::move(first),
+          .words = std::move(words)};
+}
+
+SettingSpec seed_setting() {
+  return whole_setting("seed", 1, 0, std::numeric_limits<std::int64_t>::max(),
+                       "where the random numbers start; the same seed gives the same values");
+}
+
+std::string allowed(const SettingSpec& spec) {
+  if (std::holds_alternative<std::string>(spec.fallback)) return "one of " + joined(spec.words);
+  if (std::holds_alternative<double>(spec.fallback)) {
+    return "a number" + range(spec.lowest, spec.highest, spec.highest < std::numeric_limits<double>::max());
+  }
+  const std::int64_t lowest = whole_of(spec.lowest), highest = whole_of(spec.highest);
+  const std::string bounds = range(lowest, highest, highest < std::numeric_limits<std::int64_t>::max());
+  if (spec.multiple_of == 2) return "an even whole number" + bounds;
+  return (spec.multiple_of == 1 ? "a whole number" : "a multiple of " + shortest(spec.multiple_of)) + bounds;
+}
+
+std::string to_string(const SettingValue& value) {
+  if (const auto* word = std::get_if<std::string>(&value)) return *word;
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return shortest(*whole);
+  return shortest(std::get<double>(value));
+}
+
+Settings::Settings(std::vector<SettingSpec> specs)
+    : specs_(std::make_shared<const std::vector<SettingSpec>>(std::move(specs))) {
+  for (const SettingSpec& spec : *specs_) values_.push_back(spec.fallback);
+}
+
+std::size_t Settings::place_of(std::string_view name) const {
+  const auto all = specs();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const SettingSpec& spec) { return spec.name == name; });
+  return static_cast<std::size_t>(found - all.begin());
+}
+
+bool Settings::has(std::string_view name) const { return place_of(name) < values_.size(); }
+
+std::size_t Settings::must_find(std::string_view name) const {
+  const std::size_t place = place_of(name);
+  if (place < values_.size()) return place;
+  std::vector<std::string_view> names;
+  for (const SettingSpec& spec : specs()) names.emplace_back(spec.name);
+  std::string list;
+  for (const std::string_view known : names) list += (list.empty() ? "settings are " : ", ") + std::string(known);
+  std::string suggestion;
+  for (const std::string_view near : text::nearest_names(names, name, 1)) {
+    suggestion = "did you mean " + std::string(near) + "?";
+  }
+  throw InputError(Problem{{},
+                           0,
+                           "there is no setting '" + std::string(name) + "'",
+                           names.empty() ? "the method has none" : list,
+                           suggestion});
+}
+
+void Settings::set(std::string_view name, const SettingValue& value) {
+  const kernel::StandardArithmetic arithmetic;
+  const std::size_t place = must_find(name);
+  const SettingSpec& spec = specs()[place];
+  std::optional<SettingValue> fits = fitting(spec, value);
+  if (!fits) refuse(spec, to_string(value));
+  values_[place] = std::move(*fits);
+}
+
+void Settings::set_text(std::string_view name, std::string_view text) {
+  const kernel::StandardArithmetic arithmetic;
+  const std::size_t place = must_find(name);
+  const SettingSpec& spec = specs()[place];
+  std::optional<SettingValue> value = read(spec, text);
+  if (value) value = fitting(spec, std::move(*value));
+  if (!value) refuse(spec, text);
+  values_[place] = std::move(*value);
+}
+
+namespace {
+
+template <class Type>
+const Type& must_be(const SettingValue* value, std::string_view name) {
+  const Type* typed = value == nullptr ? nullptr : std::get_if<Type>(value);
+  if (typed == nullptr) throw std::logic_error("there is no setting '" + std::string(name) + "' of that type");
+  return *typed;
+}
+
+}  // namespace
+
+std::int64_t Settings::whole(std::string_view name) const {
+  return must_be<std::int64_t>(has(name) ? &values_[place_of(name)] : nullptr, name);
+}
+
+double Settings::number(std::string_view name) const {
+  return must_be<double>(has(name) ? &values_[place_of(name)] : nullptr, name);
+}
+
+const std::string& Settings::word(std::string_view name) const {
+  return must_be<std::string>(has(name) ? &values_[place_of(name)] : nullptr, name);
+}
+
+std::string Settings::text_of(bool all) const {
+  std::string text;
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    const SettingSpec& spec = specs()[i];
+    if (!all && values_[i] == spec.fallback) continue;
+    text += (text.empty() ? "" : ",") + spec.name + "=" + to_string(values_[i]);
+  }
+  return text;
+}
+
+std::string Settings::text() const { return text_of(true); }
+std::string Settings::short_text() const { return text_of(false); }
+
+bool Settings::names_equal(const Settings& other) const {
+  const auto a = specs(), b = other.specs();
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const SettingSpec& p, const SettingSpec& q) { return p.name == q.name; });
+}
+
+}  // namespace exactff
