@@ -178,7 +178,7 @@ TEST_F(CheckCommand, HoldsOnToABaseline) {
   const ProgramRun better = check(candidate("0.3125"), {"--baseline", file});
   EXPECT_EQ(better.exit_code, 0);
   EXPECT_HOLDS(better.output, "Better than baseline max-abs: 0.125 -> 0.0625, 50 % less\n");
-  EXPECT_HOLDS(better.output, "Hold on to it: --write-baseline " + file + '\n');
+  EXPECT_HOLDS(better.output, "To record this improvement: --write-baseline " + file + '\n');
 }
 
 TEST_F(CheckCommand, TightensABaselineAndNeverLoosensIt) {

@@ -86,7 +86,7 @@ class HostileProgram : public testing::Test {
         << refused.error();
     const Running going_on = start(resumed(folder), without_gnuplot);
     EXPECT_EQ(going_on.wait(), 0) << going_on.error();
-    EXPECT_NE(going_on.error().find("were taken from the interrupted run"), std::string::npos) << going_on.error();
+    EXPECT_NE(going_on.error().find("were reused from the interrupted run"), std::string::npos) << going_on.error();
     EXPECT_EQ(names(folder.parent_path()), std::set<std::string>{folder.filename().string()});
     EXPECT_EQ(start(comparison(directory_.path() / "undisturbed"), without_gnuplot).wait(), 0);
     for (const char* file : {"values.csv", "exact.csv", "summary.csv"}) {
@@ -110,7 +110,7 @@ TEST_F(HostileProgram, AFullDiskLeavesTheJournalAlone) {
     const Running run = start(comparison(place_ / "result"), [bytes] { limit(RLIMIT_FSIZE, bytes); });
     EXPECT_EQ(run.wait(), 2);
     EXPECT_NE(run.error().find("cannot be written"), std::string::npos) << run.error();
-    EXPECT_NE(run.error().find("result.part, and the same command with --resume goes on"), std::string::npos);
+    EXPECT_NE(run.error().find("result.part; to continue, run the same command with --resume"), std::string::npos);
     expect_only_a_journal(place_ / "result");
   }
 }
@@ -218,8 +218,8 @@ TEST_F(HostileProgram, SignalsWhileItWritesLeaveTheJournalAlone) {
       EXPECT_GT(names(place_).size(), 1U);
       for (int i = 0; i < times; ++i) run.send(signal);
       EXPECT_EQ(run.wait(), 128 + signal);
-      EXPECT_EQ(run.error(), "exactff: interrupted; what was finished is in " + folder.string() +
-                                 ".part, and the same command with --resume goes on\n");
+      EXPECT_EQ(run.error(), "exactff: interrupted; finished work is kept in " + folder.string() +
+                                 ".part; to continue, run the same command with --resume\n");
       expect_only_a_journal(folder);
     }
   }
@@ -242,8 +242,8 @@ TEST_F(HostileProgram, ASignalInAPieceOfWorkEndsItInHalfASecond) {
   run.send(SIGINT);
   EXPECT_EQ(run.wait(), 128 + SIGINT);
   EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(kSanitized ? 10 : 2));  // others work, too
-  EXPECT_EQ(run.error(), "exactff: interrupted; what was finished is in " + folder.string() +
-                             ".part, and the same command with --resume goes on\n");
+  EXPECT_EQ(run.error(), "exactff: interrupted; finished work is kept in " + folder.string() +
+                             ".part; to continue, run the same command with --resume\n");
   EXPECT_FALSE(fs::exists(folder));
 }
 
@@ -292,7 +292,7 @@ TEST_F(HostileProgram, AnInterruptedRunIsBegunAnewByForce) {
   arguments.emplace_back("--force");
   const Running anew = start(arguments, [] { ::setenv("PATH", "/nonexistent", 1); });
   EXPECT_EQ(anew.wait(), 0);
-  EXPECT_EQ(anew.error().find("were taken from"), std::string::npos) << anew.error();
+  EXPECT_EQ(anew.error().find("were reused from"), std::string::npos) << anew.error();
   EXPECT_EQ(names(place_), std::set<std::string>{"result"});
 }
 

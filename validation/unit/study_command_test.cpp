@@ -114,14 +114,14 @@ TEST_F(StudyCommand, InterruptedAndResumedHasTheSameValues) {
     ASSERT_GT(size_of(journal_), before);
     EXPECT_FALSE(fs::exists(out_));
     if (signal != SIGKILL) {
-      EXPECT_EQ(running.error(), "exactff: interrupted; what was finished is in " + journal_.string() +
-                                     ", and the same command with --resume goes on\n");
+      EXPECT_EQ(running.error(), "exactff: interrupted; finished work is kept in " + journal_.string() +
+                                     "; to continue, run the same command with --resume\n");
     }
   }
   EXPECT_EQ(run(out_), 2) << "neither --resume nor --force";
   EXPECT_TRUE(said("out.part: holds the finished work of an interrupted run")) << error_;
   EXPECT_EQ(run(out_, {"--resume", "--threads", "2"}), 0) << error_;
-  EXPECT_TRUE(said("pieces of work were taken from the interrupted run")) << error_;
+  EXPECT_TRUE(said("pieces of work were reused from the interrupted run")) << error_;
   EXPECT_FALSE(fs::exists(journal_));
   EXPECT_TRUE(values(out_) == values(directory_.path() / "whole"));
 }

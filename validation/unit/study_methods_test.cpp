@@ -710,7 +710,7 @@ TEST_F(Verdicts, SayThatNoOtherIsRightOrAsFast) {
   EXPECT_EQ(report::method_sentences(study_),
             (std::vector<std::string>{"On this scene the exact value takes 100 µs per receiver in the mean; no setting "
                                       "of the others that was run is right to 10⁻² of the brightest receiver (RMS).",
-                                      "No other method is as fast as the exact one at any setting."}));
+                                      "No setting of another method is as fast as the exact method."}));
 }
 
 TEST_F(Verdicts, SayNothingOfExactAlone) {

@@ -202,7 +202,7 @@ TEST_F(TruthCommand, OneOfManyWithoutMpiIsRefused) {
   };
   const RunningProgram first(alone, truth("1x1", file_, {}), directory_.path() / "stderr", as_rank("0"));
   EXPECT_EQ(first.wait(), 2);
-  EXPECT_NE(first.error().find("several processes were started together, and MPI cannot be had"), std::string::npos);
+  EXPECT_NE(first.error().find("several processes were started together, but MPI is not available"), std::string::npos);
   const RunningProgram other(alone, truth("1x1", file_, {}), directory_.path() / "stderr", as_rank("3"));
   EXPECT_EQ(other.wait(), 0);
   EXPECT_EQ(other.error(), "");
