@@ -50,7 +50,7 @@ namespace {
   throw InputError({.file = path.string(),
                     .what = "cannot be written: " + reason,
                     .why = "nothing was written",
-                    .suggestion = "give a file in a folder that exists, is writable and has free space"});
+                    .suggestion = "name a file in a folder that exists, is writable and has free space"});
 }
 
 // A pipe or device cannot be replaced by a file, so it is written directly.
