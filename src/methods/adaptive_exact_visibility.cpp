@@ -140,7 +140,7 @@ class ControlOnScene : public PreparedScene {
 
 Method adaptive_exact_visibility_method() {
   return {.name = "adaptive-exact-visibility",
-          .summary = "the adaptive recursion with the exact visible fraction of every sub-patch: the control",
+          .summary = "a control: Tampieri's algorithm with the exact visible fraction of every leaf instead of rays",
           .source = "F. Tampieri, Accurate Form-Factor Computation (1992), with V computed exactly",
           .settings = tolerance_settings(),
           .prepare = prepare_as<ControlOnScene>,

@@ -65,13 +65,14 @@ bool exact_uses(const Settings&, std::string_view setting) { return setting != "
 }  // namespace
 
 Method exact_method() {
-  return {.name = "exact",
-          .summary = "the exact visible region and Eq. (4) over its boundary, correctly rounded with proof",
-          .source = "",
-          .settings = {word_setting("engine", {"edges", "boolean", "both"},
-                                    "how the visible region is found; the values are the same bits")},
-          .prepare = prepare_as<ExactOnScene>,
-          .uses = exact_uses};
+  return {
+      .name = "exact",
+      .summary = "the exact visible region and Tampieri's Eq. (4) over its boundary, proved to be correctly rounded",
+      .source = "",
+      .settings = {word_setting("engine", {"edges", "boolean", "both"},
+                                "how the visible region is found; it does not affect the values")},
+      .prepare = prepare_as<ExactOnScene>,
+      .uses = exact_uses};
 }
 
 }  // namespace exactff::methods

@@ -233,7 +233,7 @@ TEST(Match, RefusesWhatIsMissingDoubledOrUnknown) {
   const std::string what = complaint([&] { (void)match(truth, candidate); });
   EXPECT_HOLDS(what,
                "mine.csv: no value for 2 of 3 rows of the truth: receiver 'b' of source 's' and 'c' of source 's' (");
-  EXPECT_HOLDS(what, "add them, or give --partial");
+  EXPECT_HOLDS(what, "add them, or use --partial");
   EXPECT_HOLDS(what, "mine.csv:3: receiver 'a' of source 's' has a value already (line 2) (");
   EXPECT_HOLDS(what, "mine.csv:4: the truth has no receiver 'd' of source 's' (");
   EXPECT_HOLDS(what, "mine.csv:5: the truth has no source 'u' (its sources are s)");
@@ -442,7 +442,7 @@ TEST(Criteria, OfAQuantileAllowForTheRest) {
 TEST(Criteria, OfEpsBBoundTheErrorTimesRhoB) {
   Truth truth = truth_with({0.5, 0.0});
   const std::vector<double> values = {0.5, 0.125};
-  EXPECT_HOLDS(complaint([&] { (void)judge(truth, values, {.eps_b = 1.0}); }), "does not tell rho B of every row");
+  EXPECT_HOLDS(complaint([&] { (void)judge(truth, values, {.eps_b = 1.0}); }), "does not contain rho B for every row");
   truth.rows[0].largest_rho_b = 100.0;
   truth.rows[1].largest_rho_b = 8.0;
   EXPECT_TRUE(judge(truth, values, {.eps_b = 1.0}).passed());
@@ -479,7 +479,7 @@ TEST(Criteria, AreRefusedIfTheyAreNone) {
   EXPECT_HOLDS(refused({.quantiles = {{0.5, -1.0}}}), "the limit of quantile 0.5 is -1");
   EXPECT_HOLDS(complaint([] { (void)judge(truth_with({1.0}), std::vector<double>{}, {}); }),
                "has 1 row, but there are 0 values");
-  EXPECT_HOLDS(complaint([] { (void)judge(truth_with({1.0}), std::vector<Measured>{}, {}); }), "has no row to judge");
+  EXPECT_HOLDS(complaint([] { (void)judge(truth_with({1.0}), std::vector<Measured>{}, {}); }), "has no row to check");
 }
 
 TEST(Criteria, TellTheWorstRowsFirst) {
@@ -578,7 +578,7 @@ TEST(Baseline, IsOfTheseRowsInAnyOrderAndNoOthers) {
   std::swap(turned.rows[0], turned.rows[1]);
   EXPECT_TRUE(ratchet.held(judge(turned, std::vector{0.25, 0.5}, {})).passed());
   const auto refused = [&](const Report& report) { return complaint([&] { (void)ratchet.held(report); }); };
-  const std::string why = "was recorded with other rows, other truths or another relative floor";
+  const std::string why = "was recorded with different rows, true values or relative floor";
   EXPECT_HOLDS(refused(judged({0.5, std::nextafter(0.25, 1.0)}, {0.5, 0.25})), why);
   EXPECT_HOLDS(refused(judged({0.5}, {0.5})), why);
   EXPECT_HOLDS(refused(judged({0.25, 0.5}, {0.25, 0.5})), why);
@@ -598,7 +598,7 @@ TEST(Baseline, IsRefusedIfItIsNone) {
   }
   Report report = judged({0.5}, {0.5});
   EXPECT_HOLDS(complaint([&] { hold_against_baseline(report, directory.path() / "none.json"); }),
-               "there is no such baseline");
+               "this baseline file does not exist");
   const auto file = directory.write("b.json", baseline_text(report));
   EXPECT_HOLDS(complaint([&] { hold_against_baseline(report, file, -1.0); }), "the slack of the baseline is -1");
 }

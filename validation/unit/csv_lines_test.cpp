@@ -64,7 +64,7 @@ TEST(CsvLines, RefuseWhatIsNoText) {
     return {};
   };
   using namespace std::string_literals;
-  EXPECT_NE(refusal(directory.path()).find("is a directory"), std::string::npos);
+  EXPECT_NE(refusal(directory.path()).find("is a folder"), std::string::npos);
   EXPECT_NE(refusal(directory.path() / "none.csv").find("cannot be opened"), std::string::npos);
   EXPECT_NE(refusal(directory.write("u.csv",
                                     "\xFF\xFE"

@@ -42,7 +42,7 @@ std::string repeated(const std::string& text, std::size_t count) {
 TEST(HostileFiles, WhatIsNoTextIsRefused) {
   const auto message = [](const std::string& text) { return message_of([&] { return read(text); }); };
   EXPECT_EQ(message(kSquare + std::string("g a\0b\n", 6)),
-            "s.obj: is not a text file (it holds zero bytes); give a Wavefront OBJ file");
+            "s.obj: is not a text file (it contains zero bytes); give a Wavefront OBJ file");
   EXPECT_EQ(message(std::string("\xFF\xFEv\0 \0", 6)), "s.obj: is UTF-16 text (only UTF-8 is read); save it as UTF-8");
   EXPECT_EQ(message(std::string("\xFE\xFF\0v\0 ", 6)), "s.obj: is UTF-16 text (only UTF-8 is read); save it as UTF-8");
   EXPECT_EQ(message("\x80\x91\xFF garbage \x01\n"),
@@ -50,7 +50,7 @@ TEST(HostileFiles, WhatIsNoTextIsRefused) {
 }
 
 TEST(HostileFiles, WhatCannotBeReadIsRefused) {
-  EXPECT_NE(message_of([] { return read_obj("/dev/zero"); }).find("it holds zero bytes"), std::string::npos);
+  EXPECT_NE(message_of([] { return read_obj("/dev/zero"); }).find("it contains zero bytes"), std::string::npos);
   EXPECT_NE(message_of([] { return read_obj("/dev/null"); }).find("is empty"), std::string::npos);
   // Readable to begin with, but not at its first byte.
   EXPECT_NE(message_of([] { return read_obj("/proc/self/mem"); }).find("cannot be read to its end ("),
@@ -167,7 +167,7 @@ TEST_F(HostileReceivers, AnyLineEndWillDo) {
 
 TEST_F(HostileReceivers, NonsenseIsRefused) {
   EXPECT_EQ(message(std::string("x,y\0z", 5)),
-            "r.csv: is not a text file (it holds zero bytes); give a CSV file of receivers");
+            "r.csv: is not a text file (it contains zero bytes); give a CSV file of receivers");
   EXPECT_EQ(message(""),
             "r.csv: the file has no header (its columns are told apart by name); begin it with id,x,y,z,nx,ny,nz,on");
   EXPECT_EQ(message(head_ + "1,2,3,0,0,1e999,\n"),

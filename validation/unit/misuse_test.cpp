@@ -40,7 +40,8 @@ void expect_refused(const std::string& words, const std::function<void()>& call)
 }
 
 void expect_moved_from(const std::string& what, const std::function<void()>& call) {
-  EXPECT_EQ(words_of<std::logic_error>(call), "this " + what + " was moved from: only assign to it or destroy it");
+  EXPECT_EQ(words_of<std::logic_error>(call),
+            "this " + what + " was moved from; it can only be assigned to or destroyed");
 }
 
 TEST(Misuse, APrecisionCapBelowOneBitIsAnInputError) {

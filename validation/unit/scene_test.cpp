@@ -202,7 +202,7 @@ TEST(SceneBuilder, SkipsBadFacesOnRequest) {
   EXPECT_EQ(scene.face(FaceId{0}).shape, FaceShape::kSkipped);
   EXPECT_EQ(scene.faces_of({PatchId{0}, {}}), std::vector<FaceId>{FaceId{1}});
   ASSERT_EQ(scene.warnings().size(), 1U);
-  EXPECT_EQ(scene.warnings()[0].suggestion, "it is left out");
+  EXPECT_EQ(scene.warnings()[0].suggestion, "the face is skipped");
   EXPECT_EQ(message_of([&] { (void)scene.select("bow:1"); }),
             "bow.obj:5: face 'bow:1' cannot be used (it was dropped as a bad face); see the warning about it");
 }

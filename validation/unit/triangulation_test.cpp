@@ -207,27 +207,27 @@ TEST(CutFace, UnusableFacesSayWhy) {
       // Two lobes of opposite sense that share a vertex, with and without a Newell vector.
       {flat({{0, 0}, {1, 1}, {2, 0}, {2, 2}, {0, 2}}),
        {{0, 1, 3, 2, 1, 4}},
-       "encloses area but its Newell vector is zero"},
+       "encloses area, but its Newell vector (area times normal) is zero"},
       {flat({{0, 0}, {1, 1}, {2, 0}, {2, 2}, {0, 3}}),
        {{0, 1, 3, 2, 1, 4}},
-       "winds around a part of its inside twice, or the other way round"},
+       "winds around a part of its interior twice, or in the opposite direction"},
       {flat({{0, 0}, {1, 0}, {0, 1}}),
        {{0, 1, 2, 0, 1, 2}},
-       "winds around a part of its inside twice, or the other way round"},
+       "winds around a part of its interior twice, or in the opposite direction"},
       {flat({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {2, 1}, {6, 1}, {6, 2}}),
        {iota_ring(0, 4), {4, 5, 6}},
        "crosses itself: edge 2-3 and edge 5-6 (vertex numbers) intersect"},
       {flat({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {5, 1}, {6, 1}, {6, 2}}),
        {iota_ring(0, 4), {4, 5, 6}},
        "has a hole that reaches outside its outer ring"},
-      {spatial, {iota_ring(0, 4), {4, 5, 6}}, "has holes and its vertices are not exactly in one plane"},
+      {spatial, {iota_ring(0, 4), {4, 5, 6}}, "has holes, but its vertices are not exactly in one plane"},
       {{{0, 0, 0}, {4, 0, 0}, {0, 1, 0}, {3, 3, 0.001}},
        {iota_ring(0, 4)},
        "crosses itself: edge 2-3 and edge 4-1 (vertex numbers) intersect"},
       // Three triangles at one vertex whose area vectors cancel.
       {{{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {1, -1, 0}},
        {{0, 1, 2, 0, 2, 3, 0, 4, 2}},
-       "has area but its Newell vector is zero"},
+       "has area, but its Newell vector (area times normal) is zero"},
   };
   for (const BadFace& entry : table) {
     const CutFace face = cut_face(entry.vertices, entry.rings);
