@@ -93,10 +93,9 @@ TEST(GitHubAnnotations, AreOneLineEach) {
 }
 
 TEST(GitHubAnnotations, WarnOfDoubts) {
-  EXPECT_EQ(
-      github_annotations(awkward_report({})),
-      "::warning file=c%2Cd%3A50%25.csv,title=exactff check::no limit was given: nothing was judged but that values "
-      "are finite numbers\n");
+  EXPECT_EQ(github_annotations(awkward_report({})),
+            "::warning file=c%2Cd%3A50%25.csv,title=exactff check::no limit was given: the only check was that all "
+            "values are finite numbers\n");
   EXPECT_EQ(github_annotations(awkward_report({.rms = 1.0})), "");
 }
 

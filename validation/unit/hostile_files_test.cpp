@@ -61,8 +61,8 @@ TEST(HostileFiles, ACutOffLastLineIsWarnedAbout) {
   const Scene scene = read(kSquare + "f 1 2 3 4\nf 1 2 3");  // perhaps once a quadrilateral
   ASSERT_EQ(scene.warnings().size(), 1U);
   EXPECT_EQ(scene.warnings()[0].message(),
-            "s.obj:6: the last line has no line end (the file may have been cut off there); end it with a line end if "
-            "it is complete");
+            "s.obj:6: the last line does not end with a newline (the file may have been cut off there); add a newline "
+            "if the file is complete");
   EXPECT_TRUE(read(kSquare + "f 1 2 3\n").warnings().empty());
   EXPECT_TRUE(read(kSquare + "f 1 2 3\r").warnings().empty());
 }
@@ -103,7 +103,7 @@ TEST(HostileFiles, ALongNameIsLegalButNotForManyFaces) {
   EXPECT_NE(bad.find("crosses itself"), std::string::npos);
   EXPECT_EQ(message_of([&] { return read(kSquare + "g " + name + "\n" + repeated("f 1 2 3\n", 1000)); }),
             "s.obj:6: the name 'xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx...' of 1000000 characters belongs to 1000 "
-            "faces (each of them is called by it); choose a name of at most 255 characters");
+            "faces (the name of every face contains it); choose a name of at most 255 characters");
 }
 
 TEST(HostileFiles, TheClosestOfManyAlikeNamesAreFound) {
@@ -134,11 +134,12 @@ TEST(HostileFiles, MaterialFilesThatAreNoneAreNeverWaitedFor) {
 TEST(HostileFiles, AHugeGridIsRefusedBeforeItIsBegun) {
   const Scene scene = read(kSquare + repeated("f 1 2 3 4\n", 10));
   const Selection all = scene.select("default");
-  EXPECT_EQ(message_of([&] {
-              return grid_receivers(scene, all, {1'000'000'000, 1'000'000'000});
-            }),
-            "a grid of 1000000000x1000000000 cells on 10 faces (there may be 4194304 cells in all); use fewer, or a "
-            "smaller patch");
+  EXPECT_EQ(
+      message_of([&] {
+        return grid_receivers(scene, all, {1'000'000'000, 1'000'000'000});
+      }),
+      "a grid of 1000000000x1000000000 cells on 10 faces (the limit is 4194304 cells in total); use fewer cells or "
+      "a smaller patch");
   EXPECT_NE(message_of([&] { return grid_receivers(scene, all, {1000, 1000}); }), "no error");
   EXPECT_EQ(grid_receivers(scene, all, {3, 2}).size(), 60U);
 }
@@ -169,12 +170,13 @@ TEST_F(HostileReceivers, NonsenseIsRefused) {
   EXPECT_EQ(message(std::string("x,y\0z", 5)),
             "r.csv: is not a text file (it contains zero bytes); give a CSV file of receivers");
   EXPECT_EQ(message(""),
-            "r.csv: the file has no header (its columns are told apart by name); begin it with id,x,y,z,nx,ny,nz,on");
+            "r.csv: the file has no header (columns are identified by their names); begin the file with the line "
+            "id,x,y,z,nx,ny,nz,on");
   EXPECT_EQ(message(head_ + "1,2,3,0,0,1e999,\n"),
             "r.csv:2: '1e999' is too large for a double in column nz (points and normals are made of finite doubles); "
-            "give a smaller number; doubles end at 1.8e308");
+            "give a smaller number; the largest double is about 1.8e308");
   EXPECT_EQ(message(head_ + "1,2,3,0,0,0,\n"),
-            "r.csv:2: the normal is zero (it says which way the receiver faces); give it any other length");
+            "r.csv:2: the normal is zero (it says which way the receiver faces); give a normal of any other length");
   EXPECT_LT(message(std::string(5'000'000, 'x')).size(), 3000U);
 }
 

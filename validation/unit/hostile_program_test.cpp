@@ -174,8 +174,9 @@ TEST_F(HostileProgram, AFullDiskOrNoPlaceAsStandardOutputIsAnError) {
       fs::remove(directory_.path() / "truth.csv.2");
       const Running run = start(arguments, stdout_of);
       EXPECT_EQ(run.wait(), 2) << arguments[0] << ' ' << arguments.back();
-      EXPECT_NE(run.error().find("the result could not be written to standard output (what was printed is incomplete)"),
-                std::string::npos)
+      EXPECT_NE(
+          run.error().find("the result could not be written to standard output (the printed output is incomplete)"),
+          std::string::npos)
           << run.error();
     }
   }
@@ -425,7 +426,7 @@ TEST_F(HostileProgram, FoldersThatMustNotBeReplacedAreNot) {
   fs::create_directory(place_ / "real");
   fs::create_directory_symlink("real", place_ / "link");
   const std::pair<std::string, std::string> table[] = {
-      {"foreign", "the folder holds 'letter.txt', which is not of our making"},
+      {"foreign", "the folder holds 'letter.txt', which exactff did not write"},
       {"file", "is not a folder"},
       {"file/below", "is not a folder that can be written to"},
       {"link", "is a symbolic link"},

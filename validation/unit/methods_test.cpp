@@ -60,8 +60,8 @@ TEST(MethodSettings, EverythingWrongIsSaidAtOnce) {
       complaint([] { (void)methods::parse("nettle:split=3,rays=0,rays=2,pattern=cubic,receiver_area=-1,seed"); });
   for (const char* part :
        {"there is no setting 'split' (settings are splits, rays, pattern", "did you mean splits?",
-        "'0' will not do for rays", "a whole number from 1 to 65536", "setting 'rays' is given twice",
-        "one of jittered, centre, regular, low-discrepancy", "a number of at least 0", "'seed' gives no value"}) {
+        "'0' is not a valid value of rays", "a whole number from 1 to 65536", "setting 'rays' is given twice",
+        "one of jittered, centre, regular, low-discrepancy", "a number of at least 0", "'seed' has no value"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\nis not in\n" << text;
   }
 }

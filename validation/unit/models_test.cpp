@@ -58,9 +58,9 @@ TEST(Models, AnUnknownOneIsToldTheClosest) {
 
 TEST(Models, EverythingWrongWithTheSettingsIsSaidAtOnce) {
   const std::string text = complaint_about("karkanis:n=0,sed=1,cover,n=2,floor=-1");
-  for (const char* part :
-       {"model 'karkanis': '0' will not do for n", "a whole number from 1 to 10000000", "there is no setting 'sed'",
-        "did you mean seed?", "'cover' gives no value", "setting 'n' is given twice", "a number from 0 to 100"}) {
+  for (const char* part : {"model 'karkanis': '0' is not a valid value of n", "a whole number from 1 to 10000000",
+                           "there is no setting 'sed'", "did you mean seed?", "'cover' has no value",
+                           "setting 'n' is given twice", "a number from 0 to 100"}) {
     EXPECT_TRUE(holds(text, part)) << part << "\nis not in\n" << text;
   }
 }

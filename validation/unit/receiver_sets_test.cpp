@@ -494,15 +494,15 @@ std::string refusal(const std::function<void()>& call) {
 TEST(SampleReceivers, ImpossibleCountsAreRefused) {
   const Scene scene = scene_of({letter_l()});
   EXPECT_EQ(refusal([&] { (void)samples_of(scene, 0); }),
-            "0 samples (there may be 1 to 4194304 receivers); ask for at least one");
+            "0 samples (the number of receivers must be between 1 and 4194304); give at least 1");
   EXPECT_EQ(refusal([&] { (void)samples_of(scene, 4194305); }),
-            "4194305 samples (there may be 1 to 4194304 receivers); use fewer");
+            "4194305 samples (the number of receivers must be between 1 and 4194304); use fewer samples");
 }
 
 TEST(SampleReceivers, WithoutAreaThereIsNothingToSample) {
   const Scene scene = scene_of({polygon({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}})});
   EXPECT_EQ(refusal([&] { (void)samples_of(scene, 5); }),
-            "there is no face with area to sample (samples are shared out by area); choose another patch");
+            "no face to sample has area (samples are distributed by area); choose another patch");
 }
 
 }  // namespace

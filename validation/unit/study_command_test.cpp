@@ -138,7 +138,7 @@ TEST_F(StudyCommand, TwiceAtOnceIsRefusedTheSecondTime) {
 
 TEST_F(StudyCommand, RefusesFlagsOfASceneBesideTheFile) {
   EXPECT_EQ(run(out_, {"--on", "floor", "--grid", "2x2"}), 2);
-  EXPECT_TRUE(said("the flags --on floor --grid 2x2 are given beside a study file")) << error_;
+  EXPECT_TRUE(said("flags of a scene are given with a study file: --on floor --grid 2x2")) << error_;
   EXPECT_FALSE(fs::exists(out_));
   EXPECT_FALSE(fs::exists(journal_));
 }

@@ -372,10 +372,11 @@ TEST(MethodStudy, CountsValuesThatAreNoNumbersOrLeaveTheRange) {
   const Study study = study_with({"exact", "constant:of=nan", "constant:of=inf", "constant"});
   const std::vector<std::string> sentences = report::range_sentences(study);
   ASSERT_EQ(sentences.size(), 3U);
-  EXPECT_TRUE(sentences[0].starts_with("6 of 6 values of constant, nan are no finite numbers: ")) << sentences[0];
-  EXPECT_TRUE(sentences[1].starts_with("6 of 6 values of constant, inf are no finite numbers: ")) << sentences[1];
-  EXPECT_EQ(sentences[2],
-            "6 of 6 values of constant lie outside [0, 1], by at most 0.5: the formula of the method, not rounding.");
+  EXPECT_TRUE(sentences[0].starts_with("6 of 6 values of constant, nan are not finite numbers; ")) << sentences[0];
+  EXPECT_TRUE(sentences[1].starts_with("6 of 6 values of constant, inf are not finite numbers; ")) << sentences[1];
+  EXPECT_EQ(
+      sentences[2],
+      "6 of 6 values of constant lie outside [0, 1], by at most 0.5; the cause is the method’s formula, not rounding.");
   for (const MethodCell& cell : study.methods.cells) {
     const bool is_number = report::is_exact(study, cell) || cell.ladder == 3;
     EXPECT_EQ(std::isfinite(report::relative_error(study, cell)), is_number);
@@ -697,19 +698,19 @@ TEST_F(Verdicts, SayWhatTheOthersNeed) {
   add_control();
   EXPECT_EQ(report::method_sentences(study_),
             (std::vector<std::string>{
-                "On this scene the exact value takes 100 µs per receiver in the mean; the cheapest other way to be "
-                "right to 10⁻³ of the brightest receiver (RMS), hemicube, resolution 128, takes 8 times as long, and "
-                "no setting of the others that was run is right to 10⁻⁴.",
-                "Side by side, exact overtakes the others at an error of 20 % of the brightest receiver: the best that "
-                "any setting compared there reaches within its time (wallace, splits 1)."}));
+                "On this scene the exact value takes 100 µs per receiver on average; the fastest other method that is "
+                "accurate to 10⁻³ of the brightest receiver (RMS), hemicube, resolution 128, takes 8 times as long, "
+                "and no other setting that was run is accurate to 10⁻⁴.",
+                "For errors below 20 % of the brightest receiver (RMS), the exact method is the fastest: no other "
+                "setting that is at least as fast is more accurate than this (best: wallace, splits 1)."}));
 }
 
 TEST_F(Verdicts, SayThatNoOtherIsRightOrAsFast) {
   add_exact();
   add("hemicube:resolution=64", {{0.05, 2e-4}});
   EXPECT_EQ(report::method_sentences(study_),
-            (std::vector<std::string>{"On this scene the exact value takes 100 µs per receiver in the mean; no setting "
-                                      "of the others that was run is right to 10⁻² of the brightest receiver (RMS).",
+            (std::vector<std::string>{"On this scene the exact value takes 100 µs per receiver on average; no other "
+                                      "setting that was run is accurate to 10⁻² of the brightest receiver (RMS).",
                                       "No setting of another method is as fast as the exact method."}));
 }
 
@@ -742,9 +743,9 @@ TEST(SlopeWords, SayWhetherTheoryAgrees) {
             "area, stratified: −0.75 (−0.8 to −0.7), theory −3/4 with one shadow edge across the source");
   EXPECT_EQ(report::slope_words({-1.0, -1.0, -1.0, 1, 5}, hemicube, Sight::kVisible), "hemicube: −1");
   const std::string shallow = report::slope_words({-0.55, -0.56, -0.54, 30, 5}, stratified, Sight::kPartly);
-  EXPECT_NE(shallow.find("; shallower, since "), std::string::npos) << shallow;
+  EXPECT_NE(shallow.find("; shallower, because "), std::string::npos) << shallow;
   const std::string steep = report::slope_words({-1.3, -1.31, -1.29, 30, 5}, stratified, Sight::kVisible);
-  EXPECT_NE(steep.find("theory −1 where nothing is discontinuous; steeper, since "), std::string::npos) << steep;
+  EXPECT_NE(steep.find("theory −1 where nothing is discontinuous; steeper, because "), std::string::npos) << steep;
 }
 
 }  // namespace

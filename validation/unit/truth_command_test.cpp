@@ -109,7 +109,7 @@ TEST_F(TruthCommand, TwoAtOnceAreRefused) {
     EXPECT_EQ(second.wait(), 2);
     EXPECT_EQ(second.error(), "exactff: " + journal_.string() +
                                   ": another process is working on it (two would compute the same rows and spoil each "
-                                  "other's file); wait for the other one, or name another file with -o\n");
+                                  "other's file); wait for the other process, or name another file with -o\n");
   }
   first.send(SIGKILL);
   EXPECT_EQ(first.wait(), 128 + SIGKILL);

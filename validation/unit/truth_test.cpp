@@ -198,7 +198,7 @@ TEST_F(Truth, TheTallyReadsTheLastFieldOfEveryRow) {
 TEST_F(Truth, SenselessRequestsAreRefused) {
   Request none = request(1);
   none.receivers.clear();
-  EXPECT_NE(refusal(none, Existing::kRefuse).find("there is no receiver in floor, grid"), std::string::npos);
+  EXPECT_NE(refusal(none, Existing::kRefuse).find("there are no receivers in floor, grid"), std::string::npos);
   Request dark = request(1);
   dark.sources.clear();  // nothing emits here
   EXPECT_NE(refusal(dark, Existing::kRefuse).find("no patch emits"), std::string::npos);
