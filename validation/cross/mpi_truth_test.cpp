@@ -83,7 +83,7 @@ TEST_F(MpiTruth, AKilledProcessCostsNoFinishedRow) {
   const validation::ProgramRun alone = validation::run_program(EXACTFF_PROGRAM, truth("floor", file_, {"--resume"}));
   EXPECT_EQ(alone.exit_code, 0);
   EXPECT_TRUE(alone.output.find(" of them in ") != std::string::npos ||
-              alone.output.find("all were there already") != std::string::npos)
+              alone.output.find("all rows were already computed") != std::string::npos)
       << alone.output;
   EXPECT_EQ(text_of(file_), whole());
 }

@@ -82,7 +82,7 @@ class HostileProgram : public testing::Test {
     const auto without_gnuplot = [] { ::setenv("PATH", "/nonexistent", 1); };
     const Running refused = start(comparison(folder), without_gnuplot);
     EXPECT_EQ(refused.wait(), 2);
-    EXPECT_NE(refused.error().find(".part: holds the finished work of an interrupted run"), std::string::npos)
+    EXPECT_NE(refused.error().find(".part: contains the finished work of an interrupted run"), std::string::npos)
         << refused.error();
     const Running going_on = start(resumed(folder), without_gnuplot);
     EXPECT_EQ(going_on.wait(), 0) << going_on.error();
@@ -304,7 +304,7 @@ TEST_F(HostileProgram, AFileWhereTheJournalWouldBeIsNotLost) {
     if (!flag.empty()) arguments.push_back(flag);
     const Running run = start(arguments);
     EXPECT_EQ(run.wait(), 2);
-    EXPECT_NE(run.error().find("result.part: is there already and is not of our making"), std::string::npos);
+    EXPECT_NE(run.error().find("result.part: already exists, and exactff did not write it"), std::string::npos);
     EXPECT_EQ(validation::text_of(place_ / "result.part"), "dear diary");
   }
 }

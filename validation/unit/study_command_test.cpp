@@ -119,7 +119,7 @@ TEST_F(StudyCommand, InterruptedAndResumedHasTheSameValues) {
     }
   }
   EXPECT_EQ(run(out_), 2) << "neither --resume nor --force";
-  EXPECT_TRUE(said("out.part: holds the finished work of an interrupted run")) << error_;
+  EXPECT_TRUE(said("out.part: contains the finished work of an interrupted run")) << error_;
   EXPECT_EQ(run(out_, {"--resume", "--threads", "2"}), 0) << error_;
   EXPECT_TRUE(said("pieces of work were reused from the interrupted run")) << error_;
   EXPECT_FALSE(fs::exists(journal_));

@@ -84,7 +84,7 @@ TEST_F(StudyJournal, ThatIsAddedToAgainHasTheLastBytes) {
 TEST_F(StudyJournal, OfAnInterruptedRunIsRefusedResumedOrReplaced) {
   const std::string bytes = written();
   const std::string said = refusal(Existing::kRefuse);
-  EXPECT_NE(said.find("out.part: holds the finished work of an interrupted run"), std::string::npos) << said;
+  EXPECT_NE(said.find("out.part: contains the finished work of an interrupted run"), std::string::npos) << said;
   EXPECT_NE(said.find("--resume"), std::string::npos);
   EXPECT_NE(said.find("--force"), std::string::npos);
   EXPECT_EQ(validation::text_of(file_), bytes) << "a refusal changes nothing";
@@ -147,7 +147,7 @@ TEST_F(StudyJournal, OfAnotherVersionIsOnlyReplaced) {
 TEST_F(StudyJournal, IsNotMadeOfAFileThatIsNone) {
   for (const Existing existing : {Existing::kRefuse, Existing::kResume, Existing::kReplace}) {
     put("Dear reader,\n");
-    EXPECT_NE(refusal(existing).find("not of our making"), std::string::npos);
+    EXPECT_NE(refusal(existing).find("exactff did not write it"), std::string::npos);
     EXPECT_EQ(validation::text_of(file_), "Dear reader,\n");
   }
 }

@@ -92,9 +92,9 @@ TEST_F(TruthCommand, ASignalKeepsWhatIsFinishedAndTellsHowToGoOn) {
     running.send(signal);
     EXPECT_EQ(running.wait(), 128 + signal);
     EXPECT_TRUE(running.error().starts_with("exactff: interrupted; ")) << running.error();
-    EXPECT_NE(
-        running.error().find(" rows are kept in " + journal_.string() + "; the same command with --resume goes on\n"),
-        std::string::npos)
+    EXPECT_NE(running.error().find(" rows are kept in " + journal_.string() +
+                                   "; to continue, run the same command with --resume\n"),
+              std::string::npos)
         << running.error();
   }
   EXPECT_EQ(run(kGrid, file_, {"--resume"}).exit_code, 0);
@@ -107,9 +107,10 @@ TEST_F(TruthCommand, TwoAtOnceAreRefused) {
   for (const char* flag : {"--resume", "--force"}) {
     const RunningProgram second(EXACTFF_PROGRAM, truth(kGrid, file_, {flag}), directory_.path() / "stderr2");
     EXPECT_EQ(second.wait(), 2);
-    EXPECT_EQ(second.error(), "exactff: " + journal_.string() +
-                                  ": another process is working on it (two would compute the same rows and spoil each "
-                                  "other's file); wait for the other process, or name another file with -o\n");
+    EXPECT_EQ(second.error(),
+              "exactff: " + journal_.string() +
+                  ": another process is working on it (two processes would compute the same rows and damage each "
+                  "other's file); wait for the other process, or name another file with -o\n");
   }
   first.send(SIGKILL);
   EXPECT_EQ(first.wait(), 128 + SIGKILL);
@@ -126,10 +127,9 @@ TEST_F(TruthCommand, AFullDiskCostsNoRow) {
   };
   const RunningProgram first = start(kGrid, {}, limited_to(50'000));
   EXPECT_EQ(first.wait(), 2);
-  EXPECT_NE(
-      first.error().find("truth.csv.part: cannot be written: File too large (the rows finished so far are kept in "
-                         "it); make room, then go on with --resume"),
-      std::string::npos)
+  EXPECT_NE(first.error().find("truth.csv.part: cannot be written: File too large (it contains the rows finished so "
+                               "far); free some space, then continue with --resume"),
+            std::string::npos)
       << first.error();
   EXPECT_GT(size_of(journal_), 30'000U);
   const std::string part = text_of(journal_);
@@ -158,12 +158,12 @@ TEST_F(TruthCommand, ShardsAreMerged) {
   EXPECT_EQ(text_of(file_), whole());
   const RunningProgram again(EXACTFF_PROGRAM, merge, directory_.path() / "stderr");
   EXPECT_EQ(again.wait(), 2);
-  EXPECT_NE(again.error().find("truth.csv: is there already"), std::string::npos);
+  EXPECT_NE(again.error().find("truth.csv: already exists"), std::string::npos);
   merge.erase(merge.begin() + 2);
   merge.push_back("--force");
   const RunningProgram less(EXACTFF_PROGRAM, merge, directory_.path() / "stderr");
   EXPECT_EQ(less.wait(), 2);
-  EXPECT_EQ(less.error(), "exactff: of 3 shards there is no 2 (every row is wanted); name those files too\n");
+  EXPECT_EQ(less.error(), "exactff: of 3 shards these are missing: 2 (every row is needed); add these files\n");
 }
 
 TEST_F(TruthCommand, SenselessFlagsAreRefused) {

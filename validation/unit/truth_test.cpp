@@ -350,13 +350,13 @@ TEST_F(Truth, BlocksThatDoNotBelongAreLeftOut) {
 
 TEST_F(Truth, NobodysWorkIsDestroyed) {
   write(request(2), file_);
-  EXPECT_NE(refusal(request(2), Existing::kRefuse).find("truth.csv: is there already (it may hold hours of work); "),
+  EXPECT_NE(refusal(request(2), Existing::kRefuse).find("truth.csv: already exists (it may hold hours of work); "),
             std::string::npos);
   EXPECT_EQ(refusal(request(2), Existing::kReplace), "");
   fs::remove(file_);
   interrupt(request(10), 100);
   EXPECT_NE(
-      refusal(request(10), Existing::kRefuse).find("truth.csv.part: holds the rows of a run that was not finished"),
+      refusal(request(10), Existing::kRefuse).find("truth.csv.part: contains the finished rows of an interrupted run"),
       std::string::npos);
   EXPECT_EQ(refusal(request(10), Existing::kReplace), "");
   expect_only({"truth.csv"});
@@ -380,8 +380,9 @@ TEST_F(Truth, AForeignFileIsNoJournal) {
   for (const char* text : {"dear diary\n", "# exactff 0.0.1 truth\nreceiver\n", "\n", "#"}) {
     write_text(journal_, text);
     if (std::string(text) == "#") continue;  // may be the beginning of ours
-    EXPECT_NE(refusal(request(2), Existing::kResume).find("truth.csv.part:1: is of another request: it says '"),
-              std::string::npos);
+    EXPECT_NE(
+        refusal(request(2), Existing::kResume).find("truth.csv.part:1: belongs to a different request: it says '"),
+        std::string::npos);
     EXPECT_EQ(text_of(journal_), text);
   }
 }
@@ -395,15 +396,16 @@ TEST_F(Truth, AJournalOfAnotherRequestIsNamedWithItsDifference) {
          r.scene = &other;
          r.sources = {other.select("light"), other.select("lamp")};
        }},
-      {"now it would be '# scene: hall.obj, ", [](Request& r) { r.scene_name = "hall.obj"; }},
-      {"now it would be '# receivers: floor, grid, hash ", [](Request& r) { r.receivers[0].point.x += 0.5; }},
-      {"now it would be '# receivers: other, hash ", [](Request& r) { r.receivers_name = "other"; }},
-      {"now it would be '# sources: lamp + light'", [](Request& r) { std::swap(r.sources[0], r.sources[1]); }},
-      {"now it would be 'receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,unoccluded,",
+      {"this request says '# scene: hall.obj, ", [](Request& r) { r.scene_name = "hall.obj"; }},
+      {"this request says '# receivers: floor, grid, hash ", [](Request& r) { r.receivers[0].point.x += 0.5; }},
+      {"this request says '# receivers: other, hash ", [](Request& r) { r.receivers_name = "other"; }},
+      {"this request says '# sources: lamp + light'", [](Request& r) { std::swap(r.sources[0], r.sources[1]); }},
+      {"this request says 'receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,unoccluded,",
        [](Request& r) { r.unoccluded = true; }},
-      {"now it would be 'receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,visible_fraction,",
+      {"this request says 'receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,visible_fraction,",
        [](Request& r) { r.visible_fraction = true; }},
-      {"now it would be '# shard: 1/2 in chunks of 64 rows, for exactff merge'", [](Request& r) { r.shard.count = 2; }},
+      {"this request says '# shard: 1/2 in chunks of 64 rows, for exactff merge'",
+       [](Request& r) { r.shard.count = 2; }},
   };
   interrupt(request(10), 100);
   const std::string journal = text_of(journal_);
@@ -412,7 +414,7 @@ TEST_F(Truth, AJournalOfAnotherRequestIsNamedWithItsDifference) {
     change(changed);
     const std::string told = refusal(changed, Existing::kResume);
     EXPECT_NE(told.find(message), std::string::npos) << told;
-    EXPECT_NE(told.find("rows of two requests must not be mixed"), std::string::npos) << told;
+    EXPECT_NE(told.find("rows of different requests must not be mixed"), std::string::npos) << told;
     EXPECT_EQ(text_of(journal_), journal);
   }
   std::string old_version = journal;
@@ -506,8 +508,7 @@ TEST_F(TruthShards, InterruptionsDoNotShow) {
     hooks.cancelled = [&left] { return left-- <= 0; };
     EXPECT_THROW(write(shard(10, 1, 2), file_, Existing::kResume, hooks), Cancelled);
   }
-  EXPECT_NE(merge_refusal({journal_, parts[1]}).find("is the journal of a run that was not finished"),
-            std::string::npos);
+  EXPECT_NE(merge_refusal({journal_, parts[1]}).find("is the journal of an unfinished run"), std::string::npos);
   write(shard(10, 1, 2), file_, Existing::kResume);
   EXPECT_EQ(text_of(file_), text_of(parts[0]));
   const Summary again = write(shard(10, 1, 2), file_, Existing::kResume);
@@ -521,8 +522,8 @@ TEST_F(TruthShards, WhatDoesNotBelongTogetherIsRefused) {
     EXPECT_NE(told.find(message), std::string::npos) << told;
     EXPECT_FALSE(fs::exists(directory_.path() / "merged.csv"));
   };
-  expect({parts[0], parts[2]}, "of 3 shards there is no 2 (every row is wanted)");
-  expect({parts[0]}, "there is no 2 and 3");
+  expect({parts[0], parts[2]}, "of 3 shards these are missing: 2 (every row is needed)");
+  expect({parts[0]}, "these are missing: 2 and 3");
   expect({}, "no shard is named");
   expect({parts[0], parts[1], parts[2], parts[1]}, "is shard 2, and so is ");
   expect({parts[0], directory_.path() / "nothing"}, "nothing: cannot be read: No such file");
@@ -531,7 +532,8 @@ TEST_F(TruthShards, WhatDoesNotBelongTogetherIsRefused) {
   write(shard(10, 3, 4), file_, Existing::kReplace);
   expect({parts[0], parts[1], file_}, "is one of 4 shards");
   write(shard(9, 3, 3), file_, Existing::kReplace);
-  expect({parts[0], parts[1], file_}, "truth.csv:3: is of another request: it says '# receivers: floor, grid, hash ");
+  expect({parts[0], parts[1], file_},
+         "truth.csv:3: belongs to a different request: it says '# receivers: floor, grid, hash ");
 }
 
 TEST_F(TruthShards, DamageIsFoundWhereverItIs) {
@@ -724,7 +726,7 @@ TEST_F(TruthTeam, ALeaderThatCannotBeginEndsAll) {
     asked.receivers.clear();
     return asked;
   });
-  EXPECT_NE(message_of<InputError>(thrown).find("there is no receiver"), std::string::npos);
+  EXPECT_NE(message_of<InputError>(thrown).find("there are no receivers"), std::string::npos);
 }
 
 }  // namespace
