@@ -338,12 +338,12 @@ TEST(Difference, IsRelativelyInfiniteWhereTheTruthIsZeroAndTheValueIsNot) {
   EXPECT_EQ(difference(1e-300, 0.0).relative, kInfinity);
 }
 
-// Nobody is blamed for what is not known.
+// An uncertainty of the truth does not count as an error.
 TEST(Difference, OfATruthThatIsNotCertifiedIsTheDistanceToItsEnclosure) {
   TruthRow row = row_of("a", 0.5);
   row.lower = 0.4;
   row.upper = 0.6;
-  EXPECT_EQ(difference(0.55, row).error, 0.55 - 0.5);  // certified: the bounds only say where roundings end
+  EXPECT_EQ(difference(0.55, row).error, 0.55 - 0.5);  // certified: the bounds are only the neighbours
   row.status = Status::kNotCertified;
   EXPECT_EQ(difference(0.55, row).error, 0.0);
   EXPECT_EQ(difference(0.55, row).relative, 0.0);

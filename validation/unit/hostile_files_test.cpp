@@ -1,4 +1,5 @@
-// Files that are damaged, contradictory or far too large: one bounded message that helps, or the right scene.
+// Files that are damaged, contradictory or far too large give either one helpful message of limited length, or the
+// right scene.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -22,7 +23,7 @@ Scene read(const std::string& text, const SceneOptions& options = {}) {
   return read_obj(in, "s.obj", options);
 }
 
-// What is said about a text, or "no error".
+// The message about a text, or "no error".
 template <class Read>
 std::string message_of(const Read& read_it) {
   try {
@@ -52,13 +53,13 @@ TEST(HostileFiles, WhatIsNoTextIsRefused) {
 TEST(HostileFiles, WhatCannotBeReadIsRefused) {
   EXPECT_NE(message_of([] { return read_obj("/dev/zero"); }).find("it contains zero bytes"), std::string::npos);
   EXPECT_NE(message_of([] { return read_obj("/dev/null"); }).find("is empty"), std::string::npos);
-  // Readable to begin with, but not at its first byte.
+  // It can be opened, but reading its first byte fails.
   EXPECT_NE(message_of([] { return read_obj("/proc/self/mem"); }).find("cannot be read to its end ("),
             std::string::npos);
 }
 
 TEST(HostileFiles, ACutOffLastLineIsWarnedAbout) {
-  const Scene scene = read(kSquare + "f 1 2 3 4\nf 1 2 3");  // perhaps once a quadrilateral
+  const Scene scene = read(kSquare + "f 1 2 3 4\nf 1 2 3");  // it may have been a quadrilateral
   ASSERT_EQ(scene.warnings().size(), 1U);
   EXPECT_EQ(scene.warnings()[0].message(),
             "s.obj:6: the last line does not end with a newline (the file may have been cut off there); add a newline "

@@ -1,5 +1,5 @@
-// The program in trouble: full disks, signals, little memory, a small stack, a broken gnuplot, folders that are none.
-// Whatever happens, the exit code is right and nothing half-written stays behind.
+// The program in trouble: full disks, signals, little memory, a small stack, a broken gnuplot, output folders that are
+// not folders. In every case the exit code is right and nothing half-written remains.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -66,7 +66,7 @@ class HostileProgram : public testing::Test {
   }
   std::vector<std::vector<std::string>> printing() const;
 
-  // A gnuplot of our own, found before any other.
+  // A fake gnuplot that is found before any other.
   std::function<void()> with_gnuplot(const std::string& script) const {
     const fs::path folder = directory_.path() / "bin";
     fs::create_directory(folder);
@@ -76,7 +76,7 @@ class HostileProgram : public testing::Test {
   }
 
   void expect_nothing_in_place() const { EXPECT_TRUE(fs::is_empty(place_)); }
-  // Nothing else, and it is of use: with it the comparison comes to the bytes of an undisturbed one.
+  // Only the journal remains, and it is usable: with it, the comparison gives the bytes of an undisturbed one.
   void expect_only_a_journal(const fs::path& folder) const {
     EXPECT_EQ(names(folder.parent_path()), std::set<std::string>{folder.filename().string() + ".part"});
     const auto without_gnuplot = [] { ::setenv("PATH", "/nonexistent", 1); };
@@ -102,11 +102,11 @@ class HostileProgram : public testing::Test {
 
   const TemporaryDirectory directory_;
   const std::string room_ = directory_.write("room.obj", kRoom).string();
-  const fs::path place_ = directory_.path() / "place";  // where the results go
+  const fs::path place_ = directory_.path() / "place";  // the place of the results
 };
 
 TEST_F(HostileProgram, AFullDiskLeavesTheJournalAlone) {
-  for (const rlim_t bytes : {600, 2048}) {  // full while values are found, and while tables are written
+  for (const rlim_t bytes : {600, 2048}) {  // full while values are computed, and while tables are written
     const Running run = start(comparison(place_ / "result"), [bytes] { limit(RLIMIT_FSIZE, bytes); });
     EXPECT_EQ(run.wait(), 2);
     EXPECT_NE(run.error().find("cannot be written"), std::string::npos) << run.error();
@@ -145,7 +145,7 @@ void to_a_pipe_without_reader() {
   ::close(ends[1]);
 }
 
-// Everything that prints.
+// Every command that prints.
 std::vector<std::vector<std::string>> HostileProgram::printing() const {
   const std::string truth = (directory_.path() / "truth.csv").string();
   EXPECT_EQ(start(truth_file(truth)).wait(), 0);
@@ -182,7 +182,7 @@ TEST_F(HostileProgram, AFullDiskOrNoPlaceAsStandardOutputIsAnError) {
   }
 }
 
-// As programs of Unix do: a pager that was left is no error, but nothing more can be told.
+// As usual on Unix: if a pager is closed early, this is not an error, but nothing more can be printed.
 TEST_F(HostileProgram, APipeThatNobodyReadsEndsItAsItEndsOthers) {
   const auto ignoring = [] {
     std::signal(SIGPIPE, SIG_IGN);
@@ -194,7 +194,7 @@ TEST_F(HostileProgram, APipeThatNobodyReadsEndsItAsItEndsOthers) {
   }
 }
 
-// The file would otherwise be opened under the number of standard output, and take what is printed.
+// Otherwise the file could get the descriptor of standard output and receive the printed text.
 TEST_F(HostileProgram, WithoutStandardStreamsFilesHoldWhatTheyShould) {
   EXPECT_EQ(start(truth_file(place_ / "a.csv")).wait(), 0);
   const auto all_closed = [] {
@@ -207,7 +207,7 @@ TEST_F(HostileProgram, WithoutStandardStreamsFilesHoldWhatTheyShould) {
   EXPECT_EQ(names(place_), (std::set<std::string>{"a.csv", "b.csv", "c.svg"}));
 }
 
-// While gnuplot draws, the hidden folder exists: the worst moment to be interrupted.
+// While gnuplot draws, the hidden folder exists: this is the worst moment for an interruption.
 TEST_F(HostileProgram, SignalsWhileItWritesLeaveTheJournalAlone) {
   const fs::path started = directory_.path() / "started", folder = place_ / "result";
   const auto gnuplot = with_gnuplot("touch '" + started.string() + "'; exec sleep 100");
@@ -242,13 +242,14 @@ TEST_F(HostileProgram, ASignalInAPieceOfWorkEndsItInHalfASecond) {
   const auto sent = std::chrono::steady_clock::now();
   run.send(SIGINT);
   EXPECT_EQ(run.wait(), 128 + SIGINT);
-  EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(kSanitized ? 10 : 2));  // others work, too
+  EXPECT_LT(std::chrono::steady_clock::now() - sent,
+            std::chrono::seconds(kSanitized ? 10 : 2));  // the machine may be busy
   EXPECT_EQ(run.error(), "exactff: interrupted; finished work is kept in " + folder.string() +
                              ".part; to continue, run the same command with --resume\n");
   EXPECT_FALSE(fs::exists(folder));
 }
 
-// A killed process cannot clear up; the next one does, and leaves alone what a living one is at.
+// A killed process cannot clean up. The next process does, but leaves the files of a living one alone.
 TEST_F(HostileProgram, WhatAKilledRunLeavesTheNextClears) {
   const fs::path started = directory_.path() / "started", folder = place_ / "result";
   const auto gnuplot = with_gnuplot("touch '" + started.string() + "'; exec sleep 3");
@@ -266,7 +267,7 @@ TEST_F(HostileProgram, WhatAKilledRunLeavesTheNextClears) {
   EXPECT_EQ(names(place_).size(), 2U);  // the journal, its own hidden folder
   const Running other = start(resumed(folder), [] { ::setenv("PATH", "/nonexistent", 1); });
   EXPECT_EQ(other.wait(), 0) << other.error();
-  EXPECT_EQ(names(place_).size(), 2U);  // the result, the hidden folder of the one that lives
+  EXPECT_EQ(names(place_).size(), 2U);  // the result, and the hidden folder of the living process
   stress.send(SIGINT);
   EXPECT_EQ(stress.wait(), 128 + SIGINT);
   EXPECT_EQ(names(place_), std::set<std::string>{"result"});
@@ -279,7 +280,7 @@ TEST_F(HostileProgram, ASignalWhileItReadsLeavesNothing) {
   arguments[1] = pipe;
   const Running run = start(arguments);
   {
-    std::ofstream(pipe) << kRoom;  // it has begun to read
+    std::ofstream(pipe) << kRoom;  // it has started to read
     run.send(SIGINT);
   }
   EXPECT_EQ(run.wait(), 128 + SIGINT);
@@ -332,7 +333,7 @@ TEST_F(HostileProgram, TheEndOfMemoryIsTold) {
   EXPECT_TRUE(run.error().starts_with("exactff: out of memory (")) << run.error();
 }
 
-// Coordinates so far apart that the exact numbers, and nothing else, take much memory: GMP itself would abort.
+// With coordinates so far apart, only the exact numbers need much memory; GMP itself would abort.
 TEST_F(HostileProgram, TheEndOfMemoryIsToldByExactNumbersToo) {
   if (kSanitized) GTEST_SKIP() << "address space cannot be limited here";
   constexpr int kCorners = 2000;
@@ -355,8 +356,8 @@ TEST_F(HostileProgram, TheEndOfMemoryIsToldByExactNumbersToo) {
   EXPECT_GT(told, 0);
 }
 
-// Nothing is left to be allocated at some point before main(), in it or in a thread: it ends with a code of its own, or
-// of the loader's where that cannot map the libraries, but never by a signal.
+// Memory runs out at some point before main(), in it or in a thread. The program ends with one of its exit codes, or
+// the loader's if it cannot map the libraries, but never by a signal.
 class LittleMemory : public HostileProgram, public testing::WithParamInterface<const char*> {
  protected:
   std::vector<std::string> arguments() const {
@@ -372,7 +373,7 @@ class LittleMemory : public HostileProgram, public testing::WithParamInterface<c
   bool works_with(rlim_t kilobytes) const {
     const Running run = start(arguments(), [kilobytes] {
       limit(RLIMIT_AS, kilobytes << 10);
-      ::setenv("PATH", "/nonexistent", 1);  // no gnuplot, which has limits of its own
+      ::setenv("PATH", "/nonexistent", 1);  // without gnuplot, which has its own limits
     });
     const int code = run.wait();
     const bool loaded = code != 127;

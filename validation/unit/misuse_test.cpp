@@ -21,7 +21,7 @@ const Receiver kBelow{.point = {1.0, 0.5, 0.1}, .normal = {0.0, 0.0, 1.0}, .on =
 
 Scene room() { return validation::small_room(true); }
 
-// The words of the exception, and none if another or none was thrown.
+// The message of the exception, or none if another exception or none was thrown.
 template <class Exception>
 std::string words_of(const std::function<void()>& call) {
   try {
@@ -64,7 +64,7 @@ TEST(Misuse, ABuilderRefusesIdsThatItHasNotMade) {
   const PatchId patch = builder.patch("a");
   expect_refused("there is no material 0", [&] { builder.add_face(patch, MaterialId{0}, ring); });
   for (const Vec3& corner : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}}) builder.add_vertex(corner);
-  builder.add_face(patch, builder.add_material({}), ring);  // what was refused has left nothing behind
+  builder.add_face(patch, builder.add_material({}), ring);  // a refused call leaves the object unchanged
   EXPECT_EQ(builder.build().faces().size(), 1U);
 }
 
@@ -102,7 +102,7 @@ TEST(Misuse, WhatAnotherSceneMadeIsRefused) {
                  [&] { (void)other_solver.form_factor(kBelow, prepared, 1.0, {}); });
   const Scene flipped = scene.with_flipped(lamp);
   expect_refused("the source belongs to another scene", [&] { (void)exact_form_factor(flipped, kBelow, source); });
-  EXPECT_NO_THROW((void)ExactSource(other, {lamp.patch, lamp.face}));  // ids that name no scene
+  EXPECT_NO_THROW((void)ExactSource(other, {lamp.patch, lamp.face}));  // ids that do not exist in the scene
 }
 
 TEST(Misuse, ASceneThatWasMovedIsStillTheSame) {

@@ -206,7 +206,7 @@ TEST(ObjReader, FilesThatCannotBeReadSaySo) {
             where + "/empty.obj: is empty (there is nothing to compute with); give a Wavefront OBJ file");
 }
 
-// Neither crashes nor hangs, whatever the bytes: either a scene or an InputError.
+// The reader never crashes or hangs: any bytes give either a scene or an InputError.
 TEST(ObjReader, SurvivesDamagedFiles) {
   const std::string good = "mtllib none.mtl\no a\ng a b\nusemtl m\n" + kSquare +
                            "v 2e-3 -1e+5 .5\nf 1/2/3 -1//2 3/4 2\nf 1 2 3 4 5\ns 1\nf \\\n 4 3 2\n# end\n";

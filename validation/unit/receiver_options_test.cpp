@@ -1,4 +1,4 @@
-// The flags that choose receivers and sources, as a user gives them.
+// The flags that choose receivers and sources, as a user enters them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ class ReceiverFlags : public testing::Test {
       return at == std::string::npos ? ""
                                      : text.substr(at, std::min(text.find('\n', at), text.find(", hash", at)) - at);
     }
-    // The first field of each row, as it stands.
+    // The first field of each row, unparsed.
     [[nodiscard]] Words ids() const {
       Words ids;
       std::istringstream lines(text);
@@ -71,12 +71,12 @@ class ReceiverFlags : public testing::Test {
     return result;
   }
 
-  // What is told of wrong flags, after the program's name.
+  // The message about wrong flags, after the program's name.
   [[nodiscard]] std::string refusal(const Words& flags, const std::string& source = "lamp") const {
     const Truth run = truth(flags, source);
     EXPECT_EQ(run.exit_code, 2);
     EXPECT_TRUE(run.text.empty());
-    const std::string start = "exactff: ";  // after a warning of the face without area
+    const std::string start = "exactff: ";  // after a warning about the face without area
     const std::size_t at = run.error.find(start);
     return at == std::string::npos ? run.error : run.error.substr(at + start.size());
   }

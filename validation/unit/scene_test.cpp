@@ -21,7 +21,7 @@ std::string message_of(const auto& action) {
   return "nothing thrown";
 }
 
-// A unit cube with one patch a side, fronts outwards, corners not shared between faces.
+// A unit cube with one patch per side, fronts outwards; corners are not shared between faces.
 struct Cube {
   SceneBuilder builder{"cube"};
   MaterialId material = builder.add_material({"grey", {0.5, 0.5, 0.5}, {}});
@@ -264,7 +264,7 @@ TEST(SceneHash, DependsOnWhatAffectsValuesOnly) {
   EXPECT_NE(with_vertex(0.0), with_vertex(0x1p-1074));
 }
 
-// Pinned: truth files of other machines and versions must recognise their scenes.
+// Fixed values: truth files from other machines and versions must recognise their scenes.
 TEST(SceneHash, IsTheSameEverywhere) { EXPECT_EQ(rooms().build().hash(), "4b98b6de23c40d7a"); }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// exactff compare with several scenes, as people run it: files, messages, exit codes, interruptions.
+// exactff compare with several scenes, as users run it: files, messages, exit codes, interruptions.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -32,7 +32,7 @@ class StudyCommand : public testing::Test {
   }
 
   void put(const std::string& study) const { std::ofstream(directory_.path() / "tiny.study") << study; }
-  // A scene with few methods and little effort; files are beside the study.
+  // A scene with few methods and little work; its files are beside the study file.
   static std::string line(const std::string& title, const std::string& grid_and_more) {
     return "scene room.obj --on floor --source light --title \"" + title +
            "\" --eps-b .1,.01 --rays 4 --seeds 1 --pattern jittered --variant mended --method exact "
@@ -44,7 +44,7 @@ class StudyCommand : public testing::Test {
   RunningProgram start(const fs::path& folder, std::vector<std::string> more = {}) const {
     std::vector<std::string> all{"compare", directory_.path() / "tiny.study", "-o", folder};
     all.insert(all.end(), more.begin(), more.end());
-    // Figures take most of the time and are looked at elsewhere.
+    // Figures take most of the time and are tested elsewhere.
     return {EXACTFF_PROGRAM, all, directory_.path() / "stderr", [] { ::setenv("PATH", "/nonexistent", 1); }};
   }
   int run(const fs::path& folder, const std::vector<std::string>& more = {}) const {
@@ -55,7 +55,7 @@ class StudyCommand : public testing::Test {
   }
   bool said(const std::string& part) const { return error_.find(part) != std::string::npos; }
 
-  // By name: what holds values.
+  // The files with values, by name.
   static std::map<std::string, std::string> values(const fs::path& folder) {
     std::map<std::string, std::string> found;
     for (const auto& entry : fs::directory_iterator(folder)) {

@@ -16,7 +16,7 @@ class StudyFileReader : public ::testing::Test {
   report::StudyFile read(const std::string& text) const {
     return report::parse_study_file(directory_.write("a.study", text));
   }
-  // The problems of a file, without its folder.
+  // The problems of a file, without the name of its folder.
   std::string complaint(const std::string& text) const {
     try {
       (void)read(text);

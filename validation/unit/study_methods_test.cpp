@@ -1,4 +1,4 @@
-// The methods of a study against one another: ladders, budgets, slopes, verdicts; shadow edges and profiles.
+// The comparison of methods in a study: ladders, budgets, slopes, verdicts; shadow edges and profiles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,7 +63,7 @@ TEST(ParseLadder, OfOneRungHasNothingAlongWhichItGoes) {
 
 TEST(ParseLadder, DropsRepetitions) {
   EXPECT_EQ(parse_ladder("hemicube:resolution=64|32|64").rungs.size(), 2U);
-  // The centre has one ray, whatever is said of rays.
+  // The centre pattern has one ray, whatever the number of rays is set to.
   EXPECT_EQ(parse_ladder("adaptive:pattern=centre,rays=1|4|16").rungs.size(), 1U);
 }
 
@@ -263,7 +263,7 @@ TEST(MethodStudy, HoldsEveryRungAtTheChosenReceivers) {
     for (std::size_t s = 0; s < cell.seeds.size(); ++s) {
       ASSERT_EQ(cell.values[s].size(), 5U);
       for (std::size_t r = 0; r < 5; ++r) {
-        // Of rho B = (5, 5, 15) the third channel is the largest.
+        // For rho B = (5, 5, 15), the third channel is the largest.
         const double error = cell.values[s][r] - study.exact[methods.receivers[r]].form_factor;
         EXPECT_DOUBLE_EQ(cell.radiosity_errors[s][r], 15.0 * error);
         errors.push_back(cell.radiosity_errors[s][r]);
@@ -283,7 +283,7 @@ TEST(MethodStudy, HoldsEveryRungAtTheChosenReceivers) {
   }
 }
 
-// A user's own method: the exact value plus 1 / n, added as include/README.md explains.
+// A user-defined method: the exact value plus 1 / n, added as include/README.md explains.
 struct OffByOneOverN : methods::Evaluator {
   std::unique_ptr<methods::Evaluator> exact;
   double n = 1.0;
@@ -330,7 +330,7 @@ TEST(MethodStudy, TakesAUsersMethodLikeAnyOther) {
   EXPECT_NEAR(study.methods.slopes[0].partly->exponent, -1.0, 1e-9);
 }
 
-// A value of `value` everywhere.
+// A method that returns `value` everywhere.
 struct Constant : methods::Evaluator {
   double value = 0.0;
   void look_from(const Receiver&) override {}
@@ -480,7 +480,7 @@ TEST(SweepBudget, DropsTheDearestSettingsAndKeepsTheBase) {
 // --- silent errors -------------------------------------------------------------------------------------------
 
 TEST(SilentErrors, AddUpToWhatTheFormFactorIsOffBy) {
-  // The unit square at z = 1, of which the left three quarters are visible.
+  // The unit square at z = 1; its left three quarters are visible.
   const auto rectangle = [](double x0, double x1) {
     return Loop{{{x0, 0, 1}, {x1, 0, 1}, {x1, 1, 1}, {x0, 1, 1}}, false};
   };
@@ -545,7 +545,7 @@ Scene half_plane() {
   return builder.build();
 }
 
-// A study as far as its exact values, on a grid of the floor.
+// A study up to its exact values, on a grid of the floor.
 struct Begun {
   const Scene& scene;
   std::vector<ExactSource> sources;
@@ -627,7 +627,7 @@ TEST(Profiles, AreLeftOutWithoutAPenumbra) {
 
 // --- verdicts ------------------------------------------------------------------------------------------------
 
-// Ladders whose rungs have these errors and seconds, on a scene of which the brightest receiver has radiosity 2.
+// Ladders whose rungs have these errors and seconds, on a scene whose brightest receiver has radiosity 2.
 class Verdicts : public ::testing::Test {
  protected:
   Verdicts() {
@@ -645,7 +645,7 @@ class Verdicts : public ::testing::Test {
       cell.seconds = errors_and_seconds[rung].second;
     }
   }
-  // The usual ones.
+  // The default ones.
   void add_exact() { add("exact", {{0.0, 1e-4}}); }
   void add_hemicube() { add("hemicube:resolution=64|128", {{5e-3, 2e-4}, {5e-4, 8e-4}}); }
   void add_wallace() { add("wallace:splits=1|2", {{0.2, 5e-5}, {4e-4, 9e-4}}); }

@@ -36,17 +36,17 @@ class TruthCommand : public testing::Test {
       const std::function<void()>& prepare = [] {}) const {
     return {EXACTFF_PROGRAM, truth(grid, file_, more), directory_.path() / "stderr", prepare};
   }
-  // The Booleans take their time, and no byte depends on them.
+  // The Boolean engine is slow, which gives the test time, and it gives the same bytes.
   RunningProgram start_slowly(std::vector<std::string> more) const {
     more.insert(more.end(), {"--engine", "boolean", "--threads", "2"});
     return start(kGrid, more);
   }
-  // Until rows were added to the journal.
+  // Waits until rows have been added to the journal.
   void wait_for_rows(const RunningProgram& running, std::uintmax_t before) const {
     while (size_of(journal_) <= before + 2000 && !running.has_ended())
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  // What one undisturbed run gives.
+  // The result of one undisturbed run.
   std::string whole() const {
     EXPECT_EQ(run(kGrid, directory_.path() / "whole.csv").exit_code, 0);
     return text_of(directory_.path() / "whole.csv");
@@ -114,10 +114,10 @@ TEST_F(TruthCommand, TwoAtOnceAreRefused) {
   }
   first.send(SIGKILL);
   EXPECT_EQ(first.wait(), 128 + SIGKILL);
-  EXPECT_EQ(run(kGrid, file_, {"--resume"}).exit_code, 0);  // the dead hold no lock
+  EXPECT_EQ(run(kGrid, file_, {"--resume"}).exit_code, 0);  // a dead process holds no lock
 }
 
-// The disk is full for the journal at first, then for the file that is made of it.
+// The disk is full first for the journal, then for the file that is made from it.
 TEST_F(TruthCommand, AFullDiskCostsNoRow) {
   const auto limited_to = [](rlim_t bytes) {
     return [bytes] {
@@ -190,9 +190,9 @@ TEST_F(TruthCommand, SlowRowsAreLogged) {
   EXPECT_TRUE(running.error().starts_with("slow: receiver '1,1' on 'floor', source 'light' took ")) << running.error();
 }
 
-// Several started together by something that the program cannot speak with would all do the same work.
+// Several processes, started together by a launcher that the program does not support, would all do the same work.
 TEST_F(TruthCommand, OneOfManyWithoutMpiIsRefused) {
-  const fs::path alone = directory_.path() / "exactff";  // away from its module
+  const fs::path alone = directory_.path() / "exactff";  // a copy of the program without its MPI module
   fs::copy_file(EXACTFF_PROGRAM, alone);
   const auto as_rank = [](const char* rank) {
     return [rank] {
