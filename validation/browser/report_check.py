@@ -42,7 +42,7 @@ def chromium_options(chromium, profile):
     for argument in (
         "--headless=new", f"--user-data-dir={profile}",
         "--no-sandbox", "--disable-dev-shm-usage", "--disable-gpu",  # as root, in a container
-        "--host-resolver-rules=MAP * ~NOTFOUND",  # what asks for the network is told of, and gets nothing
+        "--host-resolver-rules=MAP * ~NOTFOUND",  # requests to the network are reported and blocked
         "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run",
         "--hide-scrollbars", "--force-color-profile=srgb", "--lang=en", "about:blank",
     ):
@@ -72,7 +72,7 @@ class Reader:
         self.driver, self.page, self.complaints = driver, page.resolve(), []
         self.view(PHONE)
         driver.get("about:blank")
-        self.log()  # of earlier pages: away with it
+        self.log()  # remove the files of earlier pages
         driver.get(self.page.as_uri())
 
     def view(self, width, scheme="light", medium="screen"):
