@@ -88,7 +88,7 @@ class Matcher {
   bool has_known_source(const CandidateRow& row) {
     if (source_[row.source] != kNothing) return true;
     complain(row.line, "the truth has no source " + text::in_quotes(candidate_.sources[row.source]),
-             "its sources are " + source_names(), "check the name, or leave the row out");
+             "its sources are " + source_names(), "check the name, or remove the row");
     return false;
   }
 

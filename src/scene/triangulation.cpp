@@ -238,7 +238,7 @@ void FaceCutter::report(const PlanarRegion& region) {
       return;
     case RegionFault::kHoleOutside:
       face_.fault = {"has a hole that reaches outside its outer ring", "a hole must lie inside its face",
-                     "make it a face of its own, or move it"};
+                     "make it a separate face, or move it"};
       return;
   }
 }
