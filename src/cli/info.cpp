@@ -331,7 +331,7 @@ Command add_info(CLI::App& app) {
       "Example:\n"
       "  exactff info room.obj\n"
       "  exactff info room.obj --patches faces --json\n"
-      "  exactff info @                       (lists the generated scenes with their settings)\n"
+      "  exactff info @                       # lists the generated scenes with their settings\n"
       "  exactff info @teapot:segments=4");
   arguments->scene.add_to(*info);
   info->add_flag("--json", arguments->json, "Print JSON instead of a table");

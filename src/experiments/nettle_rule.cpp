@@ -208,7 +208,7 @@ std::string split_sentence(const std::vector<NettleCurve>& curves, const NettleS
   for (const int m : size.splits) {
     const auto side = m == 1 ? std::nullopt : side_for(curve_at(curves, NettleCase::kFree, m), 0.01);
     if (!side) continue;
-    text += (any ? ", " : " ") + ("for 1 % and m = " + std::to_string(m) + ", the side must be below " + *side);
+    text += (any ? "; " : " ") + ("for 1 % and m = " + std::to_string(m) + ", the side must be below " + *side);
     any = true;
   }
   return any ? text + ". This is about m times as large, at m² times the cost." : std::string();
