@@ -14,10 +14,9 @@ namespace exactff::cli {
 namespace {
 
 constexpr const char* kMergeFooter =
-    "Shards are the files that `exactff truth --shard 1/N` to `--shard N/N` wrote with the same flags. They can be "
-    "given in\n"
-    "any order. merge stops if a shard is missing, given twice, damaged, unfinished or from a run with other flags.\n"
-    "FILE has the same bytes as the result of one run without shards. It appears only when it is complete.\n"
+    "Shards are the files that `exactff truth --shard 1/N` to `--shard N/N` wrote with the same flags. They can be\n"
+    "given in any order. merge stops if a shard is missing, given twice, damaged, unfinished or from a run with other\n"
+    "flags. FILE has the same bytes as the result of one run without shards. It appears only when it is complete.\n"
     "\n"
     "Example:\n"
     "  exactff merge truth.*.csv -o truth.csv";

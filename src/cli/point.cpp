@@ -270,9 +270,7 @@ void print_stages(const Scene& scene, const SourceResult& one) {
 
 void print_shares(const Scene& scene, const SourceResult& one) {
   const std::size_t cutters = one.exact.cutters.size();
-  std::cout << "\n"
-               "  occluders that hide a part of it: "
-            << cutters << '\n';
+  std::cout << "\n  occluders that hide a part of it: " << cutters << '\n';
   for (std::size_t i = 0; i < one.shares.size() && i < kMostSharesShown; ++i) {
     std::cout << "    " << pad(shown_name(scene, one.shares[i].face), 28) << "hides " << percent(one.shares[i].alone)
               << " alone\n";
@@ -536,12 +534,11 @@ Command add_point(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("point", "Compute the exact form factor from one receiver to one source, or to all sources");
   command->footer(
-      "A receiver is a point with a normal. The form factor is the share of the diffuse light leaving the point that "
-      "reaches\n"
-      "the source directly. It is printed rounded to the nearest double, with its neighbours as bounds (the "
-      "enclosure).\n"
-      "It is certified if this rounding is proved. The exit code is 3 if a value is not certified within "
-      "--precision-cap.\n\n"
+      "A receiver is a point with a normal. The form factor is the share of the diffuse light leaving the point that\n"
+      "reaches the source directly. It is printed rounded to the nearest double, with its neighbours as bounds (the\n"
+      "enclosure). It is certified if this rounding is proved. The exit code is 3 if a value is not certified within\n"
+      "--precision-cap.\n"
+      "\n"
       "Example:\n"
       "  exactff point data/scenes/cornell_box.obj --at 300 0 300 --normal 0 1 0 --on floor --source light --explain");
   args->scene.add_to(*command);

@@ -17,12 +17,10 @@ namespace exactff::cli {
 namespace {
 
 constexpr const char* kStressFooter =
-    "A family is a scene with one number, its stiffness, that makes the scene more and more extreme. Without --family, "
-    "all\n"
-    "families are run; --list prints their names. For each family, a table shows the relative errors at each "
-    "stiffness.\n"
-    "The last table shows the largest stiffness up to which each method's error stays below 1e-3, 1e-6 and 1e-12.\n"
-    "With -o, the tables are written as CSV, with a report and figures.\n"
+    "A family is a scene with one number, its stiffness, that makes the scene more and more extreme. Without\n"
+    "--family, all families are run; --list prints their names. For each family, a table shows the relative errors at\n"
+    "each stiffness. The last table shows the largest stiffness up to which each method's error stays below 1e-3,\n"
+    "1e-6 and 1e-12. With -o, the tables are written as CSV, with a report and figures.\n"
     "acos, atan2, atan2-difference: Tampieri's contour formula, Eq. (4), in double over the exact visible region.\n"
     "tampieri, tampieri-literal: his ray-sampled algorithm, mended and as printed.\n"
     "Use --threads 1 for the most reliable times.\n"
