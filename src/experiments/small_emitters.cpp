@@ -86,7 +86,8 @@ std::string in_words(const Timed& t) {
 }
 
 std::string scene_sentence(const EmitterStudy& study, const EmittersSize& size) {
-  return "A test of Karkanis' conclusion: a hall has " + counted(static_cast<std::uint64_t>(size.lamps), "lamp") +
+  return "A test of Karkanis' conclusion that accurate form factors pay off for small, bright emitters: a hall has " +
+         counted(static_cast<std::uint64_t>(size.lamps), "lamp") +
          " of 3 × 3 cm and boxes on its floor. The methods compute the radiosity that all lamps together cause at " +
          counted(study.receivers.size(), "receiver") +
          " on the floor. Errors are in radiosity, divided by the mean radiosity of " + rounded(study.mean) + ".";
