@@ -28,7 +28,7 @@ class Adaptive : public Evaluator {
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
     const kernel::StandardArithmetic arithmetic;
-    const auto& source = static_cast<const AdaptivePrepared&>(prepared);
+    const auto& source = own<AdaptivePrepared>(prepared);
     const double rho_b = largest_rho_b(scene_, receiver_, source.radiosity);
     const AdaptiveResult found = solver_.form_factor(receiver_, source.source, rho_b, options_);
     Estimate result{found.form_factor, {}};

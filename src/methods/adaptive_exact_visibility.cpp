@@ -103,7 +103,7 @@ class Control : public Evaluator {
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
     const kernel::StandardArithmetic arithmetic;
-    const auto& source = static_cast<const ControlSource&>(prepared);
+    const auto& source = own<ControlSource>(prepared);
     const double rho_b = largest_rho_b(scene_, receiver_, source.radiosity);
     ExactVisibility visibility(scene_, receiver_, source.exact);
     const AdaptiveResult found = solver_.form_factor(receiver_, source.adaptive, rho_b, options_, visibility);

@@ -45,7 +45,7 @@ class AreaSampling : public Evaluator {
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
     const kernel::StandardArithmetic arithmetic;
-    const auto& source = static_cast<const RaySource&>(prepared);
+    const auto& source = own<RaySource>(prepared);
     Estimate result;
     if (!(source.area() > 0.0)) return result;  // nothing to sample, or too small for a double
     points_.place(stream_key(rays_.view(), source.selection(), seed_), square_);

@@ -24,7 +24,7 @@ class Exact : public Evaluator {
 
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& source) override {
-    const auto& prepared = static_cast<const ExactSourcePrepared&>(source);
+    const auto& prepared = own<ExactSourcePrepared>(source);
     exact_form_factor(scene_, receiver_, prepared.source, options_, found_);
     Estimate result;
     result.form_factor = found_.value;

@@ -218,7 +218,7 @@ Estimate Hemicube::form_factor(const PreparedSource& source) {
   const kernel::StandardArithmetic arithmetic;
   Estimate result;
   std::uint64_t pixels = 0;
-  for (const FaceId face : static_cast<const HemicubeSource&>(source).faces) {
+  for (const FaceId face : own<HemicubeSource>(source).faces) {
     result.form_factor += shares_[index_of(face)].form_factor;
     pixels += shares_[index_of(face)].pixels;
   }

@@ -61,7 +61,7 @@ class Nettle : public Evaluator {
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
     const kernel::StandardArithmetic arithmetic;
-    const auto& source = static_cast<const RaySource&>(prepared);
+    const auto& source = own<RaySource>(prepared);
     const std::uint64_t key = stream_key(rays_.view(), source.selection(), seed_);
     const Reach reach = literal() ? Reach::kEverything : Reach::kVisible;
     const std::uint64_t sub_patches =

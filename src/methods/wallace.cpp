@@ -37,7 +37,7 @@ class Wallace : public Evaluator {
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
     const kernel::StandardArithmetic arithmetic;
-    const auto& source = static_cast<const RaySource&>(prepared);
+    const auto& source = own<RaySource>(prepared);
     const std::uint64_t key = stream_key(rays_.view(), source.selection(), seed_);
     const std::uint64_t samples =
         rays_.for_each_part(source, Reach::kVisible, splits_, key, 1,

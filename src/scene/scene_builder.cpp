@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <utility>
 
+#include "kernel/expect.h"
 #include "kernel/float_environment.h"
 #include "scene/misuse.h"
 #include "scene/scene_data.h"
@@ -57,7 +57,7 @@ SceneBuilder::State& SceneBuilder::state() const { return owned_by(state_, "Scen
 std::uint32_t SceneBuilder::add_vertex(const Vec3& position) {
   const kernel::StandardArithmetic arithmetic;
   auto& vertices = state().data->vertices;
-  assert(vertices.size() < std::numeric_limits<std::uint32_t>::max());
+  EXACTFF_EXPECT(vertices.size() < std::numeric_limits<std::uint32_t>::max());
   vertices.push_back({position.x + 0.0, position.y + 0.0, position.z + 0.0});  // turns -0 into +0
   return static_cast<std::uint32_t>(vertices.size() - 1);
 }

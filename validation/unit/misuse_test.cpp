@@ -12,6 +12,7 @@
 #include "exactff/methods.h"
 #include "exactff/study.h"
 #include "exactff/truth.h"
+#include "study/statistics.h"
 #include "study_support.h"
 
 namespace exactff {
@@ -170,6 +171,25 @@ TEST(Misuse, RequestsWithoutASceneAndChoicesWithoutAMethodSaySo) {
   EXPECT_NE(words_of<std::invalid_argument>([] { (void)truth::write({}, "never_written.csv"); }), "");
   EXPECT_NE(words_of<std::logic_error>([] { (void)methods::Choice().text(); }), "");
   EXPECT_NE(words_of<std::logic_error>([] { (void)methods::Choice().short_text(); }), "");
+}
+
+TEST(Misuse, SourcesPreparedByAnotherMethodAreRefused) {
+  const Scene scene = room();
+  const Selection lamp = scene.select("lamp");
+  const auto by_hemicube = methods::method_named("hemicube").prepare(scene)->prepare_source(lamp);
+  for (const methods::Method* method : methods::all_methods()) {
+    if (method->name == "hemicube") continue;
+    const auto prepared = method->prepare(scene);
+    const auto evaluator = prepared->configure(method->defaults());
+    evaluator->look_from(kBelow);
+    EXPECT_NE(words_of<std::invalid_argument>([&] { (void)evaluator->form_factor(*by_hemicube); }), "") << method->name;
+  }
+}
+
+// The requirements of internal functions, which every build with tests checks.
+TEST(Misuse, BrokenRequirementsNameTheirPlace) {
+  const std::string words = words_of<std::logic_error>([] { (void)study::percentile({}, 50.0); });
+  EXPECT_NE(words.find("statistics.cpp:"), std::string::npos) << words;
 }
 
 }  // namespace
