@@ -182,7 +182,8 @@ def judge_file(path, code):
         raise Wrong("a journal left behind by a finished run")
     if path.is_file():
         data = path.read_bytes()
-        is_table = path.suffix == ".csv" or data.startswith(b"# exactff ")  # under any name that the user gives it
+        # Under any name that the user gives it. A journal may end in the middle of a row.
+        is_table = path.suffix == ".csv" or (path.suffix != ".part" and data.startswith(b"# exactff "))
         (judge_csv if is_table else JUDGES.get(path.suffix, text_of))(data)
 
 
