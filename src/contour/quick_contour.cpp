@@ -29,22 +29,15 @@ constexpr long kBits = 160;
 // The relative error is at most 2^-106: two roundings to nearest.
 DoubleDouble rounded(const Ball& ball) {
   const double hi = kernel::nearest_to_midpoint(ball);
-  Ball rest;
-  arb_set_d(rest.get(), hi);
-  arb_sub(rest.get(), ball.get(), rest.get(), kBits);
-  return {hi, kernel::nearest_to_midpoint(rest)};
+  return {hi, kernel::nearest_to_midpoint(ball - kernel::to_ball(hi, kBits))};
 }
 
 AngleConstants compute_constants() {
   AngleConstants result;
-  Ball ball;
   for (int k = 0; k <= kAtanSteps; ++k) {
-    arb_set_d(ball.get(), static_cast<double>(k) / kAtanSteps);
-    arb_atan(ball.get(), ball.get(), kBits);
-    result.atan[k] = rounded(ball);
+    result.atan[k] = rounded(atan(kernel::to_ball(static_cast<double>(k) / kAtanSteps, kBits)));
   }
-  arb_const_pi(ball.get(), kBits);
-  result.pi = rounded(ball);
+  result.pi = rounded(kernel::pi(kBits));
   result.half_pi = {0.5 * result.pi.hi, 0.5 * result.pi.lo};
   return result;
 }

@@ -129,17 +129,8 @@ void QuickTier::add(VisibleEdges& edges) {
 }
 
 Ball QuickTier::ball() const {
-  const contour::QuickContour::Value value = contour_.value();
-  Ball ball, low;
-  arb_set_d(ball.get(), value.hi);
-  arb_set_d(low.get(), value.lo);
-  arb_add(ball.get(), ball.get(), low.get(), ARF_PREC_EXACT);
-  mag_t error;
-  mag_init(error);
-  mag_set_d(error, value.error);  // rounds up
-  arb_add_error_mag(ball.get(), error);
-  mag_clear(error);
-  return ball;
+  const QuickContour::Value value = contour_.value();
+  return kernel::ball_around(value.hi, value.lo, value.error);
 }
 
 }  // namespace exactff::exact

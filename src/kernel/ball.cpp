@@ -11,6 +11,18 @@
 
 namespace exactff {
 
+Ball abs(const Ball& a) {
+  Ball result(a.bits());
+  arb_abs(result.get(), a.get());
+  return result;
+}
+
+Ball twice(const Ball& a) {
+  Ball result(a.bits());
+  arb_mul_2exp_si(result.get(), a.get(), 1);
+  return result;
+}
+
 namespace kernel {
 
 namespace {
@@ -29,20 +41,48 @@ Ball to_ball(const Integer& value, long bits) {
   fmpz_t copy;
   fmpz_init(copy);
   fmpz_set_mpz(copy, value.get_mpz_t());
-  Ball result;
+  Ball result(bits);
   arb_set_round_fmpz(result.get(), copy, bits);
   fmpz_clear(copy);
   return result;
 }
 
 Ball to_ball(const Rational& value, long bits) {
-  Ball result = to_ball(value.get_num(), bits + 2);
-  const Ball denominator = to_ball(value.get_den(), bits + 2);
-  arb_div(result.get(), result.get(), denominator.get(), bits + 2);
+  return with_bits(to_ball(value.get_num(), bits + 2) / to_ball(value.get_den(), bits + 2), bits);
+}
+
+Ball to_ball(double value, long bits) {
+  Ball result(bits);
+  arb_set_d(result.get(), value);
+  return result;
+}
+
+Ball pi(long bits) {
+  Ball result(bits);
+  arb_const_pi(result.get(), bits);
+  return result;
+}
+
+Ball with_bits(Ball ball, long bits) {
+  Ball result(bits);
+  arb_swap(result.get(), ball.get());
+  return result;
+}
+
+Ball ball_around(double hi, double lo, double error) {
+  Ball result;
+  arb_add(result.get(), to_ball(hi, 0).get(), to_ball(lo, 0).get(), ARF_PREC_EXACT);
+  mag_t radius;
+  mag_init(radius);
+  mag_set_d(radius, error);  // rounds up
+  arb_add_error_mag(result.get(), radius);
+  mag_clear(radius);
   return result;
 }
 
 double nearest_to_midpoint(const Ball& ball) { return arf_get_d(arb_midref(ball.get()), ARF_RND_NEAR); }
+
+long certain_bits(const Ball& ball) { return arb_rel_accuracy_bits(ball.get()); }
 
 }  // namespace kernel
 
