@@ -2,91 +2,48 @@
 #include <string>
 
 #include "exactff/exact.h"
+#include "text/phrases.h"
 
 namespace exactff {
 
 std::string_view to_string(Status status) {
-  switch (status) {
-    case Status::kCertified:
-      return "certified";
-    case Status::kZero:
-      return "zero";
-    case Status::kUnderflow:
-      return "underflow";
-    case Status::kNotCertified:
-      return "not certified";
-  }
-  return "";
+  constexpr std::string_view kNames[] = {"certified", "zero", "underflow", "not certified"};
+  return kNames[static_cast<std::size_t>(status)];
 }
 
 std::string_view to_string(VisiblePart part) {
-  switch (part) {
-    case VisiblePart::kNothing:
-      return "nothing";
-    case VisiblePart::kSome:
-      return "some";
-    case VisiblePart::kAll:
-      return "all";
-  }
-  return "";
+  constexpr std::string_view kNames[] = {"nothing", "some", "all"};
+  return kNames[static_cast<std::size_t>(part)];
 }
 
 std::string_view to_string(Engine engine) {
-  switch (engine) {
-    case Engine::kEdges:
-      return "edges";
-    case Engine::kBoolean:
-      return "boolean";
-    case Engine::kBoth:
-      return "both";
-  }
-  return "";
+  constexpr std::string_view kNames[] = {"edges", "boolean", "both"};
+  return kNames[static_cast<std::size_t>(engine)];
 }
 
 std::string_view to_string(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::kReceiverFace:
-      return "the receiver lies on it";
-    case Outcome::kBehind:
-      return "behind";
-    case Outcome::kBelowHorizon:
-      return "below the horizon";
-    case Outcome::kUnoccluded:
-      return "unoccluded";
-    case Outcome::kHiddenByOne:
-      return "hidden by one occluder";
-    case Outcome::kPartlyHidden:
-      return "partly hidden";
-    case Outcome::kHiddenByUnion:
-      return "hidden by the union of occluders";
-  }
-  return "";
+  constexpr std::string_view kNames[] = {"the receiver lies on it",
+                                         "behind",
+                                         "below the horizon",
+                                         "unoccluded",
+                                         "hidden by one occluder",
+                                         "partly hidden",
+                                         "hidden by the union of occluders"};
+  return kNames[static_cast<std::size_t>(outcome)];
 }
 
 namespace {
 
-std::string counted(std::uint64_t n, const std::string& noun) {
-  return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
-}
+using text::counted;
 
 // The last stage that had work, in the order of the method.
 enum Progress { kCulled, kClipped, kSearched, kSubtracted };
 
+// Outcomes are listed in the order of the stages.
 Progress progress(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::kReceiverFace:
-    case Outcome::kBehind:
-      return kCulled;
-    case Outcome::kBelowHorizon:
-      return kClipped;
-    case Outcome::kUnoccluded:
-    case Outcome::kHiddenByOne:
-      return kSearched;
-    case Outcome::kPartlyHidden:
-    case Outcome::kHiddenByUnion:
-      return kSubtracted;
-  }
-  return kCulled;
+  if (outcome <= Outcome::kBehind) return kCulled;
+  if (outcome <= Outcome::kBelowHorizon) return kClipped;
+  return outcome <= Outcome::kHiddenByOne ? kSearched : kSubtracted;
 }
 
 StageNote cull_note(const PlaneRecord& plane) {

@@ -11,12 +11,6 @@
 
 namespace exactff {
 
-Ball abs(const Ball& a) {
-  Ball result(a.bits());
-  arb_abs(result.get(), a.get());
-  return result;
-}
-
 Ball twice(const Ball& a) {
   Ball result(a.bits());
   arb_mul_2exp_si(result.get(), a.get(), 1);
@@ -104,12 +98,15 @@ class End {
 
 // The two ends, rounded outward to more bits than the midpoint has, so that rounding them again loses no relevant
 // accuracy.
-void get_ends(const Ball& ball, End& lower, End& upper) {
-  constexpr long kSpareBits = 128;
-  const long bits = std::max(arb_bits(ball.get()), 0L) + kSpareBits;
-  arb_get_lbound_arf(lower.get(), ball.get(), bits);
-  arb_get_ubound_arf(upper.get(), ball.get(), bits);
-}
+struct Ends {
+  explicit Ends(const Ball& ball) {
+    constexpr long kSpareBits = 128;
+    const long bits = std::max(arb_bits(ball.get()), 0L) + kSpareBits;
+    arb_get_lbound_arf(lower.get(), ball.get(), bits);
+    arb_get_ubound_arf(upper.get(), ball.get(), bits);
+  }
+  End lower, upper;
+};
 
 // Significant decimals and the power of ten: the number is 0.DDD * 10^exponent.
 struct Decimals {
@@ -182,38 +179,28 @@ Enclosure& Enclosure::operator+=(const Enclosure& other) {
 
 double Enclosure::lower() const {
   const kernel::StandardArithmetic arithmetic;
-  End lower_end;
-  End upper_end;
-  get_ends(ball(), lower_end, upper_end);
-  return arf_get_d(lower_end.get(), ARF_RND_FLOOR);
+  return arf_get_d(Ends(ball()).lower.get(), ARF_RND_FLOOR);
 }
 
 double Enclosure::upper() const {
   const kernel::StandardArithmetic arithmetic;
-  End lower_end;
-  End upper_end;
-  get_ends(ball(), lower_end, upper_end);
-  return arf_get_d(upper_end.get(), ARF_RND_CEIL);
+  return arf_get_d(Ends(ball()).upper.get(), ARF_RND_CEIL);
 }
 
 std::optional<double> Enclosure::nearest() const {
   const kernel::StandardArithmetic arithmetic;
-  End lower_end;
-  End upper_end;
-  get_ends(ball(), lower_end, upper_end);
-  const double low = arf_get_d(lower_end.get(), ARF_RND_NEAR);
-  const double high = arf_get_d(upper_end.get(), ARF_RND_NEAR);
+  const Ends ends(ball());
+  const double low = arf_get_d(ends.lower.get(), ARF_RND_NEAR);
+  const double high = arf_get_d(ends.upper.get(), ARF_RND_NEAR);
   if (low != high) return std::nullopt;  // NaN included
   return high == 0.0 ? 0.0 : high;       // never -0
 }
 
 std::optional<std::string> Enclosure::decimals(int digits) const {
   const kernel::StandardArithmetic arithmetic;
-  End lower_end;
-  End upper_end;
-  get_ends(ball(), lower_end, upper_end);
-  const Decimals low = decimals_of(lower_end, digits);
-  if (low != decimals_of(upper_end, digits)) return std::nullopt;
+  const Ends ends(ball());
+  const Decimals low = decimals_of(ends.lower, digits);
+  if (low != decimals_of(ends.upper, digits)) return std::nullopt;
   return format(low);
 }
 

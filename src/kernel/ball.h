@@ -70,7 +70,6 @@ inline Ball operator/(const Ball& a, const Ball& b) { return kernel::ball_of<arb
 inline Ball sqrt(const Ball& a) { return kernel::ball_of<arb_sqrt>(a); }
 inline Ball atan(const Ball& a) { return kernel::ball_of<arb_atan>(a); }
 inline Ball atan2(const Ball& y, const Ball& x) { return kernel::ball_of<arb_atan2>(y, x); }
-Ball abs(const Ball& a);    // not rounded
 Ball twice(const Ball& a);  // not rounded
 
 namespace kernel {

@@ -33,7 +33,7 @@ double relative_difference(double value, const Enclosure& truth, const Enclosure
   constexpr long kBits = 256;
   const auto at_bits = [](const Enclosure& of) { return kernel::with_bits(of.ball(), kBits); };
   const double error =
-      kernel::nearest_to_midpoint(abs(kernel::to_ball(value, kBits) - at_bits(truth)) / at_bits(scale));
+      std::abs(kernel::nearest_to_midpoint((kernel::to_ball(value, kBits) - at_bits(truth)) / at_bits(scale)));
   return error < kTruthIsGoodTo ? 0.0 : error;
 }
 

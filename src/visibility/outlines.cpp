@@ -116,17 +116,6 @@ CornerId Outlines::add_crossing(Plane plane, std::uint32_t p, std::uint32_t q) {
 }
 
 OutlineId Outlines::add(std::span<const CornerId> corners, bool whole) {
-  add_edges(corners, whole);
-  return static_cast<OutlineId>(outlines_.size() - 1);
-}
-
-OutlineId Outlines::add(const Piece& piece, bool mirrored) {
-  corners_of(scene_->corners(piece), ring_);
-  if (mirrored) std::reverse(ring_.begin(), ring_.end());
-  return add(ring_, true);
-}
-
-void Outlines::add_edges(std::span<const CornerId> corners, bool whole) {
   const auto outline = static_cast<OutlineId>(outlines_.size());
   outlines_.push_back(
       {static_cast<EdgeId>(edges_.size()), static_cast<std::uint32_t>(corners.size()), whole, false, 0});
@@ -139,6 +128,7 @@ void Outlines::add_edges(std::span<const CornerId> corners, bool whole) {
                       {q.y * p.z - q.z * p.y, q.z * p.x - q.x * p.z, q.x * p.y - q.y * p.x},
                       kSideError * corners_[a].size * corners_[b].size});
   }
+  return outline;
 }
 
 void Outlines::remove_last() {

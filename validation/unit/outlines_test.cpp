@@ -39,6 +39,14 @@ PlainScene triangles_on_few_lines(Random& random) {
   return scene;
 }
 
+void add_pieces(const Scene& scene, Outlines& outlines) {
+  std::vector<CornerId> corners;
+  for (const Piece& piece : scene.pieces()) {
+    outlines.corners_of(scene.corners(piece), corners);
+    outlines.add(corners, true);
+  }
+}
+
 struct Tally {
   int certain = 0, declined = 0;
 };
@@ -48,7 +56,7 @@ void expect_true_heights(const PlainScene& plain, double unit, Tally& tally) {
   const Scene scene = generate::build(plain);
   Outlines outlines;
   outlines.start(scene, plain.point, unit);
-  for (const Piece& piece : scene.pieces()) static_cast<void>(outlines.add(piece, false));
+  add_pieces(scene, outlines);
   kernel::Integer exact;
   for (const Outlines::Edge& edge : outlines.edges()) {
     for (CornerId t = 0; t < outlines.corner_count(); ++t) {
@@ -121,7 +129,7 @@ TEST(Outlines, VerticesAtOnePositionAreOneCorner) {
   Outlines outlines;
   for (int run = 0; run < 2; ++run) {
     outlines.start(scene, {}, 1.0);
-    for (const Piece& piece : scene.pieces()) static_cast<void>(outlines.add(piece, false));
+    add_pieces(scene, outlines);
     EXPECT_EQ(outlines.corner_count(), 3U);
     EXPECT_EQ(outlines.edge(0).a, outlines.edge(3).a);
   }
