@@ -111,7 +111,7 @@ TEST(Outlines, OwnCornersLieOnTheirEdgesWithoutArithmetic) {
   const Scene scene = generate::build(plain);
   Outlines outlines;
   outlines.start(scene, {}, 1.0);
-  static_cast<void>(outlines.add(scene.pieces()[0], false));
+  add_pieces(scene, outlines);
   for (const Outlines::Edge& edge : outlines.edges()) {
     for (const CornerId end : {edge.a, edge.b}) {
       EXPECT_EQ(outlines.side(edge, end), 0);
