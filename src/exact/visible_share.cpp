@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "exact/workspace.h"
+#include "kernel/expect.h"
 #include "visibility/visible_boundary.h"
 
 namespace exactff::exact {
@@ -226,6 +227,7 @@ double VisibleShare::window_blur(double doubled_area_of_window) const {
 }
 
 double VisibleShare::of(std::span<const Vec3> directions) {
+  EXACTFF_EXPECT(directions.size() == 3 || directions.size() == 4);
   if (all_) return 1.0;
   if (pieces_.empty()) return 0.0;
   set_window(directions);

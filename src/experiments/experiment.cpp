@@ -34,7 +34,7 @@ const Experiment& experiment_named(std::string_view name) {
   throw InputError(Problem{{},
                            0,
                            "there is no experiment '" + std::string(name) + "'",
-                           "nothing can be run",
+                           "only known experiments can be run",
                            "the closest are " + text::enumerate(near)});
 }
 

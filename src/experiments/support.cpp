@@ -7,6 +7,7 @@
 #include <locale>
 
 #include "exactff/models.h"
+#include "kernel/expect.h"
 #include "study/statistics.h"
 #include "text/phrases.h"
 
@@ -77,6 +78,7 @@ double seconds_of(const std::function<void()>& call, int repeats) {
 }
 
 SlopeFit mean_slope(std::span<const double> slopes) {
+  EXACTFF_EXPECT(slopes.size() >= 2);
   const auto count = static_cast<double>(slopes.size());
   const double mean = study::mean(slopes);
   double squares = 0.0;

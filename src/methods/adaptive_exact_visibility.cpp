@@ -108,7 +108,7 @@ class Control : public Evaluator {
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
     const kernel::StandardArithmetic arithmetic;
-    const auto& source = static_cast<const ControlSource&>(prepared);
+    const auto& source = own<ControlSource>(prepared);
     const double rho_b = largest_rho_b(scene_, receiver_, source.radiosity);
     ExactVisibility visibility(scene_, receiver_, source.exact, workspace_);
     const AdaptiveResult found = solver_.form_factor(receiver_, source.adaptive, rho_b, options_, visibility);
@@ -146,7 +146,7 @@ class ControlOnScene : public PreparedScene {
 
 Method adaptive_exact_visibility_method() {
   return {.name = "adaptive-exact-visibility",
-          .summary = "the adaptive recursion with the exact visible fraction of every sub-patch: the control",
+          .summary = "a control: Tampieri's algorithm with the exact visible fraction of every leaf instead of rays",
           .source = "F. Tampieri, Accurate Form-Factor Computation (1992), with V computed exactly",
           .settings = tolerance_settings(),
           .prepare = prepare_as<ControlOnScene>,

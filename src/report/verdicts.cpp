@@ -34,16 +34,16 @@ std::string signed_text(double value) {
 }
 
 const char* why_shallower(Sight sight) {
-  return sight == Sight::kPartly ? "with many edges a cell of the source holds several of them until it is finer than "
-                                   "the gaps, and samples "
-                                   "in it are as good as random"
-                                 : "the first steps are too coarse for the slope that the theory expects in the limit";
+  return sight == Sight::kPartly
+             ? "a cell of the source contains several shadow edges until the cells are finer than the gaps, so that "
+               "samples are no better than random"
+             : "the first settings are too coarse to show the slope that theory predicts in the limit";
 }
 
 const char* why_steeper(Sight sight) {
   return sight == Sight::kPartly
              ? "the smooth part of the integrand, whose error falls faster, still outweighs the edges"
-             : "the sequence makes use of the integrand’s smoothness beyond one sample in each cell";
+             : "the sequence exploits the smoothness of the integrand better than one sample per cell does";
 }
 
 }  // namespace
@@ -110,7 +110,7 @@ std::vector<std::string> method_sentences(const Study& study) {
   const MethodCell* exact = exact_cell(study);
   if (exact == nullptr || !is_timed(*exact) || study.methods.cells.size() < 2) return {};
   std::string text =
-      "On this scene the exact value takes " + text::duration(exact->seconds) + " per receiver in the mean";
+      "On this scene the exact value takes " + text::duration(exact->seconds) + " per receiver on average";
   double reached = 0.0, missed = 0.0;
   for (const double wanted : kWantedErrors) {
     (cheapest(study, wanted) != nullptr ? reached : missed) = wanted;
@@ -120,11 +120,11 @@ std::vector<std::string> method_sentences(const Study& study) {
   if (reached > 0.0) {
     const MethodCell* best = cheapest(study, reached);
     const double ratio = best->seconds / exact->seconds;
-    text += "; the cheapest other way to be right to " + power_of_ten(reached) + of + ", " + cell_name(study, *best) +
-            ", takes " + text::rounded(ratio, 2) + " times as long";
-    if (missed > 0.0) text += ", and no setting of the others that was run is right to " + power_of_ten(missed);
+    text += "; the fastest other method that is accurate to " + power_of_ten(reached) + of + ", " +
+            cell_name(study, *best) + ", takes " + text::rounded(ratio, 2) + " times as long";
+    if (missed > 0.0) text += ", and no other setting that was run is accurate to " + power_of_ten(missed);
   } else {
-    text += "; no setting of the others that was run is right to " + power_of_ten(kWantedErrors.front()) + of;
+    text += "; no other setting that was run is accurate to " + power_of_ten(kWantedErrors.front()) + of;
   }
   std::vector<std::string> sentences = {text + "."};
   const MethodCell* within = nullptr;
@@ -134,13 +134,12 @@ std::vector<std::string> method_sentences(const Study& study) {
     if (within == nullptr || relative_error(study, cell) < relative_error(study, *within)) within = &cell;
   }
   if (within != nullptr) {
-    sentences.push_back("Side by side, exact overtakes the others at an error of " +
-                        text::rounded(100.0 * relative_error(study, *within), 2) +
-                        " % of the brightest receiver: the best that any setting compared there reaches within its "
-                        "time (" +
+    sentences.push_back("For errors below " + text::rounded(100.0 * relative_error(study, *within), 2) +
+                        " % of the brightest receiver (RMS), the exact method is the fastest: no other setting that is "
+                        "at least as fast is more accurate than this (best: " +
                         cell_name(study, *within) + ").");
   } else {
-    sentences.emplace_back("No other method is as fast as the exact one at any setting.");
+    sentences.emplace_back("No setting of another method is as fast as the exact method.");
   }
   return sentences;
 }
@@ -175,13 +174,12 @@ void add_range_sentences(const std::string& name, const RangeCount& count, std::
   };
   if (count.outside > 0) {
     sentences.push_back(of(count.outside) + (count.outside == 1 ? " lies" : " lie") + " outside [0, 1], by at most " +
-                        text::rounded(count.farthest) + ": the formula of the method, not rounding.");
+                        text::rounded(count.farthest) + "; the cause is the method’s formula, not rounding.");
   }
   if (count.not_finite > 0) {
-    sentences.push_back(of(count.not_finite) +
-                        (count.not_finite == 1 ? " is no finite number" : " are no finite numbers") +
-                        ": errors are those of the other values, and a setting with such a value counts as right to "
-                        "no wanted error.");
+    sentences.push_back(
+        of(count.not_finite) + (count.not_finite == 1 ? " is not a finite number" : " are not finite numbers") +
+        "; errors are computed from the other values, and a setting with such a value never counts as accurate.");
   }
 }
 
@@ -221,8 +219,8 @@ std::string slope_words(const Slope& slope, const Ladder& ladder, Sight sight) {
   text += std::string(", theory ") + expected->words;
   if (std::abs(off) <= std::max(kClose, 0.5 * (slope.high - slope.low))) return text;
   return text + "; " +
-         (off > 0.0 ? "shallower, since " + std::string(why_shallower(sight))
-                    : "steeper, since " + std::string(why_steeper(sight)));
+         (off > 0.0 ? "shallower, because " + std::string(why_shallower(sight))
+                    : "steeper, because " + std::string(why_steeper(sight)));
 }
 
 }  // namespace exactff::report

@@ -166,7 +166,7 @@ class Trial {
                            0,
                            "there is no family '" + name + "'",
                            {},
-                           "exactff stress --list tells them all: " + text::enumerate(names)});
+                           "exactff stress --list prints them all: " + text::enumerate(names)});
 }
 
 const Family& family_named(const std::string& name) {

@@ -68,8 +68,8 @@ std::optional<SettingValue> fitting(const SettingSpec& spec, SettingValue value)
   const std::string unit = spec.unit.empty() ? "" : " (" + spec.unit + ")";
   throw InputError(Problem{{},
                            0,
-                           "'" + std::string(text) + "' will not do for " + spec.name + unit,
-                           "it is: " + spec.meaning,
+                           "'" + std::string(text) + "' is not a valid value of " + spec.name + unit,
+                           "its meaning: " + spec.meaning,
                            "give " + allowed(spec)});
 }
 
@@ -120,7 +120,7 @@ SettingSpec word_setting(std::string name, std::vector<std::string> words, std::
 
 SettingSpec seed_setting() {
   return whole_setting("seed", 1, 0, std::numeric_limits<std::int64_t>::max(),
-                       "where the random numbers start; the same seed gives the same values");
+                       "seed of the random numbers; the same seed gives the same values");
 }
 
 std::string allowed(const SettingSpec& spec) {
@@ -167,7 +167,7 @@ std::size_t Settings::must_find(std::string_view name) const {
   throw InputError(Problem{{},
                            0,
                            "there is no setting '" + std::string(name) + "'",
-                           names.empty() ? "the method has none" : list,
+                           names.empty() ? "there are no settings" : list,
                            suggestion});
 }
 

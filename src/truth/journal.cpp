@@ -39,17 +39,18 @@ std::string shortened(std::string_view line) {
 
 File opened(const fs::path& path, const Hooks& hooks) {
   for (;;) {
-    File file(path, File::Mode::kReadWrite,
-              {"the rows need a place", "name a file in a folder that exists, is writable and has room"});
+    File file(
+        path, File::Mode::kReadWrite,
+        {"the rows are kept in this file", "name a file in a folder that exists, is writable and has free space"});
     const File::Lock lock = file.lock();
     if (lock == File::Lock::kInUse) {
       throw InputError({.file = path.string(),
                         .what = "another process is working on it",
-                        .why = "two would compute the same rows and spoil each other's file",
-                        .suggestion = "wait for the other one, or name another file with -o"});
+                        .why = "two processes would compute the same rows and damage each other's file",
+                        .suggestion = "wait for the other process, or name another file with -o"});
     }
     if (lock == File::Lock::kUnsupported && hooks.note) {
-      hooks.note(path.string() + ": this file system cannot lock files; see to it that no other process uses it");
+      hooks.note(path.string() + ": this file system cannot lock files; make sure that no other process uses the file");
     }
     // The process that held the lock may meanwhile have finished and removed the file.
     if (file.is_in_place()) return file;
@@ -66,12 +67,12 @@ void require_free(const fs::path& file, Existing existing) {
                       .what = folder   ? "is a folder"
                               : device ? "is a device"
                                        : "is not the name of a file",
-                      .why = "rows are kept in a file from which an interrupted run can go on",
-                      .suggestion = "name a file, such as -o truth.csv"});
+                      .why = "finished rows are kept in a file, so that an interrupted run can continue",
+                      .suggestion = "name a file, for example -o truth.csv"});
   }
   if (existing == Existing::kRefuse && fs::exists(file, ignored)) {
     throw InputError({.file = file.string(),
-                      .what = "is there already",
+                      .what = "already exists",
                       .why = "it may hold hours of work",
                       .suggestion = "name another file, or replace it with --force"});
   }
@@ -86,16 +87,16 @@ void require_same_head(const fs::path& file, std::string_view head, std::string_
   const std::size_t line = common.rfind('\n') + 1;  // npos + 1 is 0
   throw InputError({.file = file.string(),
                     .line = static_cast<std::size_t>(std::count(common.begin(), common.end(), '\n')) + 1,
-                    .what = "is of another request: it says '" + shortened(line_at(head, line)) + "', and " + whose +
-                            " '" + shortened(line_at(other, line)) + "'",
-                    .why = "rows of two requests must not be mixed",
+                    .what = "belongs to a different request: it says '" + shortened(line_at(head, line)) + "', and " +
+                            whose + " '" + shortened(line_at(other, line)) + "'",
+                    .why = "rows of different requests must not be mixed",
                     .suggestion = suggestion});
 }
 
 Journal::Journal(const fs::path& file, const Rows& rows, Existing existing, const Hooks& hooks)
     : file_(opened(journal_of(file), hooks)) {
   take_over(rows, existing, hooks);
-  file_.console({"the rows finished so far are kept in it", "make room, then go on with --resume"});
+  file_.console({"it contains the rows finished so far", "free some space, then continue with --resume"});
 }
 
 Journal::~Journal() {
@@ -113,15 +114,15 @@ void Journal::take_over(const Rows& rows, Existing existing, const Hooks& hooks)
   if (there.list.empty()) return begin(head);
   if (existing == Existing::kRefuse) {
     throw InputError({.file = file_.path().string(),
-                      .what = "holds the rows of a run that was not finished",
+                      .what = "contains the finished rows of an interrupted run",
                       .why = "they would be lost",
-                      .suggestion = "go on with them by --resume, or begin anew with --force"});
+                      .suggestion = "continue with --resume, or start again with --force"});
   }
   const std::uint64_t lost = there.damaged + file_.size() - there.end;
   if (lost > 0) {
     if (hooks.note) {
       hooks.note(file_.path().string() + ": " + text::counted(lost, "byte") +
-                 " of it are incomplete or damaged; their rows are computed again");
+                 " are incomplete or damaged; their rows are computed again");
     }
     file_.truncate(there.end);
   }
@@ -150,7 +151,7 @@ void Journal::keep_usable(std::vector<Block> found, const Rows& rows, const Hook
   }
   if (blocks_.size() < count && hooks.note) {
     hooks.note(file_.path().string() + ": " + text::counted(count - blocks_.size(), "block") +
-               " of it are of no use here; their rows are computed again");
+               " cannot be used here; their rows are computed again");
   }
 }
 

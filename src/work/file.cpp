@@ -41,8 +41,8 @@ void File::require_regular() {
   if (::fstat(descriptor_, &status) != 0 || S_ISREG(status.st_mode)) return;
   ::close(std::exchange(descriptor_, -1));
   throw InputError({.file = path_.string(),
-                    .what = "is no regular file",
-                    .why = "it is read and written at any place, not from start to end",
+                    .what = "is not a regular file",
+                    .why = "exactff reads and writes it at arbitrary positions",
                     .suggestion = "name a file on a disk"});
 }
 
@@ -78,7 +78,7 @@ std::string File::read(std::uint64_t offset, std::size_t count) const {
       throw InputError({.file = path_.string(),
                         .what = std::string("cannot be read: ") + std::strerror(errno),
                         .why = "the disk or the network may be failing",
-                        .suggestion = "check them, then try again"});
+                        .suggestion = "check them and try again"});
     }
     if (got == 0) break;
     have += static_cast<std::size_t>(got);
@@ -140,8 +140,8 @@ void write_file(const fs::path& file, const std::function<void(std::ostream&)>& 
   out.close();
   if (out) return;
   throw InputError(Problem{file.string(), 0, "cannot be written",
-                           "the disk may be full or read-only; nothing is left behind",
-                           "make room, or name a folder elsewhere"});
+                           "the disk may be full or read-only; no incomplete file was left",
+                           "free some space, or name a folder on another disk"});
 }
 
 namespace {
@@ -164,8 +164,8 @@ File opened(const fs::path& path, const fs::path& target, const Consolation& con
     if (busy == WholeFile::WhenBusy::kRefuse || std::chrono::steady_clock::now() - start > kPatience) {
       throw InputError({.file = path.string(),
                         .what = "another process is writing the file",
-                        .why = "two would spoil it",
-                        .suggestion = "wait for the other one, or name another file"});
+                        .why = "two processes would damage the file",
+                        .suggestion = "wait for the other process, or name another file"});
     }
     std::this_thread::sleep_for(kPause);
   }

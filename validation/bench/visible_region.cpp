@@ -26,7 +26,7 @@ void append(const visibility::VisibleBoundary& boundary, std::vector<DoubleEdge>
   boundary.for_each_piece([&](const visibility::BoundaryPiece& piece) { edges.push_back(to_double(piece)); });
 }
 
-// What the edge engine found, in the doubles that it has of it.
+// The result of the edge engine, in its doubles.
 void append(visibility::VisibleEdges& engine, std::vector<DoubleEdge>& edges) {
   const visibility::Outlines& outlines = engine.outlines();
   const auto direction = [&](visibility::CornerId corner) {
