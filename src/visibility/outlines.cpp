@@ -89,12 +89,12 @@ void Outlines::corners_of(std::span<const std::uint32_t> vertices, std::vector<C
 }
 
 void Outlines::set_source_plane(const ExactVec3& normal, const FineNormal& fine_normal, const Vec3& point) {
-  crossings_[std::size_t(Plane::kSource)].start(x_, fine_normal, point, scale_exponent_);
+  crossings(Plane::kSource).start(x_, fine_normal, point, scale_exponent_);
   normal_ = &normal;
 }
 
 void Outlines::set_horizon(const Vec3& normal) {
-  crossings_[std::size_t(Plane::kHorizon)].start(x_, fine_normal(normal), x_, scale_exponent_);
+  crossings(Plane::kHorizon).start(x_, fine_normal(normal), x_, scale_exponent_);
   kernel::set_difference(horizon_, normal, Vec3{});
 }
 

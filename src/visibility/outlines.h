@@ -135,7 +135,7 @@ class Outlines {
   };
   CornerId corner_of_vertex(std::uint32_t any_vertex);
   CornerId add_corner(const kernel::Approx3& t, double size, const Origin& origin);
-  [[nodiscard]] const PlaneCrossings& crossings(Plane plane) const { return crossings_[std::size_t(plane)]; }
+  [[nodiscard]] PlaneCrossings& crossings(Plane plane) { return crossings_[std::size_t(plane)]; }
   [[nodiscard]] const kernel::ExactVec3& exact_normal(Plane plane) const {
     return plane == Plane::kSource ? *normal_ : horizon_.v;
   }
