@@ -87,6 +87,21 @@ class ExactSource {
   std::unique_ptr<Planes> planes_;
 };
 
+// Memory that is reused from one call to the next. It affects no result. Concurrent calls need one each.
+class Workspace {
+ public:
+  Workspace();
+  Workspace(Workspace&&) noexcept;
+  Workspace& operator=(Workspace&&) noexcept;
+  ~Workspace();
+
+  struct Memory;
+  [[nodiscard]] Memory& memory();
+
+ private:
+  std::unique_ptr<Memory> memory_;
+};
+
 // The form factor from `receiver` to `source`. If certified, `value` is the true F, correctly rounded; `enclosure`
 // always contains F. Requires a source and a receiver face of this scene (else std::invalid_argument), and finite
 // coordinates, a normal other than zero and a precision cap of at least one bit (else InputError). Threads may call it
@@ -94,10 +109,13 @@ class ExactSource {
 // small numbers to zero.
 [[nodiscard]] FormFactor exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                                            const ExactOptions& options = {});
-// As above, into a result that the caller keeps. Every field is set again, in the existing memory. From the second call
-// on nothing is allocated, unless the value needs more than double-double precision, the Booleans take over (`engine`
-// in a plane's record), or the options request additional output. The options must not point into `result`. After an
-// exception the content of `result` is unspecified.
+// As above, into a result and with a workspace that the caller keeps. Every field is set again, in the existing memory.
+// Once the memory is large enough, nothing is allocated, unless the value needs more than double-double precision, the
+// Booleans take over (`engine` in a plane's record), or the options request additional output. The options must not
+// point into `result`. After an exception the content of `result` is unspecified.
+void exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
+                       const ExactOptions& options, FormFactor& result, Workspace& workspace);
+// As above, with a workspace that belongs to the calling thread. The first form uses it, too.
 void exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                        const ExactOptions& options, FormFactor& result);
 

@@ -7,6 +7,7 @@ namespace exactff::contour {
 using kernel::ExactVec3;
 using kernel::Integer;
 using kernel::sign;
+using kernel::to_ball;
 using visibility::BoundaryPiece;
 using visibility::EdgeParameter;
 
@@ -32,26 +33,15 @@ void ContourIntegral::add(const BoundaryPiece& piece) {
                     dot(point_at(piece, piece.begin), point_at(piece, piece.end))});
 }
 
+// Eq. (4), in the notation of contour.h.
 Ball ContourIntegral::evaluate(long bits) const {
-  Ball sum;
-  Ball norm;
-  Ball sine;
+  Ball sum(bits);
   for (const Term& term : terms_) {
-    arb_sqrt(norm.get(), kernel::to_ball(term.squared_cross, bits).get(), bits);
-    arb_mul(sine.get(), norm.get(), kernel::to_ball(term.parameter_span, bits).get(), bits);
-    Ball value;
-    arb_atan2(value.get(), sine.get(), kernel::to_ball(term.ends_dot, bits).get(), bits);
-    arb_mul(value.get(), value.get(), kernel::to_ball(term.normal_dot, bits).get(), bits);
-    arb_div(value.get(), value.get(), norm.get(), bits);
-    arb_sub(sum.get(), sum.get(), value.get(), bits);
+    const Ball norm = sqrt(to_ball(term.squared_cross, bits));
+    const Ball angle = atan2(norm * to_ball(term.parameter_span, bits), to_ball(term.ends_dot, bits));
+    sum = sum - angle * to_ball(term.normal_dot, bits) / norm;
   }
-  Ball scale;
-  arb_const_pi(scale.get(), bits);
-  arb_mul_2exp_si(scale.get(), scale.get(), 1);
-  arb_sqrt(norm.get(), kernel::to_ball(dot(normal_, normal_), bits).get(), bits);
-  arb_mul(scale.get(), scale.get(), norm.get(), bits);
-  arb_div(sum.get(), sum.get(), scale.get(), bits);
-  return sum;
+  return sum / (twice(kernel::pi(bits)) * sqrt(to_ball(dot(normal_, normal_), bits)));
 }
 
 }  // namespace exactff::contour

@@ -29,22 +29,15 @@ constexpr long kBits = 160;
 // The relative error is at most 2^-106: two roundings to nearest.
 DoubleDouble rounded(const Ball& ball) {
   const double hi = kernel::nearest_to_midpoint(ball);
-  Ball rest;
-  arb_set_d(rest.get(), hi);
-  arb_sub(rest.get(), ball.get(), rest.get(), kBits);
-  return {hi, kernel::nearest_to_midpoint(rest)};
+  return {hi, kernel::nearest_to_midpoint(ball - kernel::to_ball(hi, kBits))};
 }
 
 AngleConstants compute_constants() {
   AngleConstants result;
-  Ball ball;
   for (int k = 0; k <= kAtanSteps; ++k) {
-    arb_set_d(ball.get(), static_cast<double>(k) / kAtanSteps);
-    arb_atan(ball.get(), ball.get(), kBits);
-    result.atan[k] = rounded(ball);
+    result.atan[k] = rounded(atan(kernel::to_ball(static_cast<double>(k) / kAtanSteps, kBits)));
   }
-  arb_const_pi(ball.get(), kBits);
-  result.pi = rounded(ball);
+  result.pi = rounded(kernel::pi(kBits));
   result.half_pi = {0.5 * result.pi.hi, 0.5 * result.pi.lo};
   return result;
 }
@@ -103,11 +96,7 @@ EXACTFF_INLINE Vector lane(const FourVector& v, std::size_t k) {
   return {{component(0), component(1), component(2)}, v.norm[k], v.error[k]};
 }
 
-}  // namespace
-
 // --- Edges ---
-
-namespace {
 
 // The receiver's normal with an error, because scaling it may have lost a component to underflow.
 template <class Real>
@@ -171,11 +160,7 @@ void lines_of(const std::array<double, 3>& normal, std::span<const QuickCorner> 
   }
 }
 
-}  // namespace
-
 // --- Crossings ---
-
-namespace {
 
 // Four points s a + m d, each of one edge, and their (s : m).
 struct FourPoints {
@@ -253,13 +238,9 @@ EXACTFF_INLINE FourPoints locate(const FourEdges& edges, const FourOf<QuickPiece
                cross_edges(gather(crossing, &QuickLine::cross), gather(crossing, &QuickLine::a), edges.a, edges.along));
 }
 
-}  // namespace
-
 // --- Terms ---
 
-namespace {
-
-// Steps 2 to 4 for up to four pieces; zero in lanes without a piece.
+// For up to four pieces: the terms angle(p, q) n . (a x b) / |a x b| of Eq. (4); zero in lanes without a piece.
 EXACTFF_INLINE FourBounded terms(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines,
                                  const AngleConstants& known) {
   const FourOf<QuickPiece> piece = four_of(pieces);
@@ -267,10 +248,13 @@ EXACTFF_INLINE FourBounded terms(std::span<const QuickPiece> pieces, std::span<c
                                   &lines[piece[3]->edge]};
   const FourVector a = gather(line, &QuickLine::a), along = gather(line, &QuickLine::along);
   const FourEdges edges{line, a, along};
+  // 2. p, q and w.
   const FourPoints p = locate(edges, piece, &QuickPiece::begin, lines);
   const FourPoints q = locate(edges, piece, &QuickPiece::end, lines);
   const FourBounded w = sum_of_products(p.s, q.m, -p.m, q.s);
+  // 3. The angle.
   const FourBounded angle = atan2(w * gather(line, &QuickLine::size), dot(p.direction, q.direction), known);
+  // 4. Its product with n . (a x b) / |a x b|.
   const FourMask present = FourMask{0, 1, 2, 3} < static_cast<std::int64_t>(pieces.size());
   return where(present, angle * gather(line, &QuickLine::weight), FourBounded{});
 }

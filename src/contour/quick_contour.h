@@ -60,6 +60,7 @@ struct QuickPiece {
 
 class QuickContour {
  public:
+  QuickContour() = default;  // of no receiver
   // `normal`: the receiver's normal, finite and not zero, of any length.
   explicit QuickContour(const Vec3& normal);
 

@@ -4,7 +4,7 @@
 #include "exact/source_planes.h"
 #include "exactff/exact.h"
 #include "kernel/float_environment.h"
-#include "visibility/visible_boundary.h"
+#include "visibility/boolean_walk.h"
 
 namespace exactff {
 
@@ -49,23 +49,22 @@ Vec3 rounded(const ExactVec3& direction) {
 }
 
 PlaneDrawing draw(const visibility::View& view, const visibility::SourcePlane& plane) {
-  const visibility::Request request{.keep_geometry = true};
-  const visibility::PlaneVisibility seen = find_visible_boundary(view, plane, request);
+  const visibility::PlaneGeometry seen = find_geometry(view, plane);
   const Lift lift(plane, view.x);
   PlaneDrawing drawing;
   drawing.normal = rounded(plane.normal.exact);
   if (side_of(plane, view.x) <= 0) return drawing;
-  for (const kernel::Ring& ring : seen.geometry.source) drawing.source.push_back(lift(ring));
-  for (const kernel::Ring& ring : seen.geometry.clipped) drawing.clipped_source.push_back(lift(ring));
-  for (const visibility::Occluder& occluder : seen.geometry.occluders) {
+  for (const kernel::Ring& ring : seen.source) drawing.source.push_back(lift(ring));
+  for (const kernel::Ring& ring : seen.clipped) drawing.clipped_source.push_back(lift(ring));
+  for (const visibility::Occluder& occluder : seen.occluders) {
     drawing.shadows.push_back({occluder.face, lift(occluder.ring)});
   }
-  for (const visibility::RegionLoop& loop : seen.geometry.visible) {
+  for (const visibility::RegionLoop& loop : seen.visible) {
     Loop drawn{{}, loop.hole};
     for (const visibility::Point2& corner : loop.corners) {
-      drawn.corners.push_back(lift(seen.geometry.frame->to_direction(corner)));
+      drawn.corners.push_back(lift(seen.frame->to_direction(corner)));
     }
-    if (!seen.geometry.frame->keeps_orientation()) std::reverse(drawn.corners.begin(), drawn.corners.end());
+    if (!seen.frame->keeps_orientation()) std::reverse(drawn.corners.begin(), drawn.corners.end());
     drawing.visible.push_back(std::move(drawn));
   }
   return drawing;

@@ -14,12 +14,11 @@
 
 #include "contour/contour.h"
 #include "exact/fraction.h"
-#include "exact/quick_tier.h"
 #include "exact/source_planes.h"
+#include "exact/workspace.h"
 #include "kernel/float_environment.h"
 #include "scene/misuse.h"
 #include "visibility/visible_boundary.h"
-#include "visibility/visible_edges.h"
 
 namespace exactff {
 
@@ -36,6 +35,12 @@ ExactSource& ExactSource::operator=(ExactSource&&) noexcept = default;
 ExactSource::~ExactSource() = default;
 const ExactSource::Planes& ExactSource::planes() const { return owned_by(planes_, "ExactSource"); }
 const Selection& ExactSource::selection() const { return planes().selection; }
+
+Workspace::Workspace() : memory_(std::make_unique<Memory>()) {}
+Workspace::Workspace(Workspace&&) noexcept = default;
+Workspace& Workspace::operator=(Workspace&&) noexcept = default;
+Workspace::~Workspace() = default;
+Workspace::Memory& Workspace::memory() { return owned_by(memory_, "Workspace"); }
 
 namespace {
 
@@ -74,27 +79,24 @@ void check_options(const ExactOptions& options) {
                     .suggestion = "give a cap of at least 1; the default is 65536"});
 }
 
-// Sources differ in their number of planes. Records that one source does not need are kept here, to avoid reallocation
-// for the next one.
-void set_count(std::vector<PlaneRecord>& records, std::size_t count) {
-  constexpr std::size_t kMostWaiting = 4096;
-  thread_local std::vector<PlaneRecord> waiting;
+void set_count(std::vector<PlaneRecord>& records, std::size_t count, std::vector<PlaneRecord>& spare) {
+  constexpr std::size_t kMostSpare = 4096;
   for (; records.size() > count; records.pop_back()) {
-    if (waiting.size() < kMostWaiting) waiting.push_back(std::move(records.back()));
+    if (spare.size() < kMostSpare) spare.push_back(std::move(records.back()));
   }
-  for (; records.size() < count && !waiting.empty(); waiting.pop_back()) records.push_back(std::move(waiting.back()));
+  for (; records.size() < count && !spare.empty(); spare.pop_back()) records.push_back(std::move(spare.back()));
   records.resize(count);
 }
 
 // Resets the result but keeps its memory; the records are still to be set.
-void reset(FormFactor& result, std::size_t planes) {
+void reset(FormFactor& result, std::size_t planes, std::vector<PlaneRecord>& spare) {
   FormFactor fresh;
   fresh.enclosure = std::move(result.enclosure);
   fresh.enclosure.set(Ball());
   fresh.cutters = std::move(result.cutters);
   fresh.cutters.clear();
   fresh.planes = std::move(result.planes);
-  set_count(fresh.planes, planes);
+  set_count(fresh.planes, planes, spare);
   result = std::move(fresh);
 }
 
@@ -176,23 +178,23 @@ bool certify_quickly(const exact::QuickTier& quick, const ExactOptions& options,
 class Solver {
  public:
   Solver(const Scene& scene, const Receiver& receiver, const ExactSource& source, const ExactOptions& options,
-         FormFactor& result)
+         FormFactor& result, Workspace::Memory& memory)
       : scene_(scene),
         planes_(source.planes().planes),
         options_(options),
         wants_fraction_(options.visible_fraction || options.exact_fraction),
         view_(scene, receiver),
-        quick_(receiver.normal),
-        result_(result) {
-    request_ = {.engine = options.engine,
-                .fraction = wants_fraction_,
-                .list_cutters = options.list_cutters,
-                .only_occluders = options.only_occluders,
-                .culling = options.culling};
-  }
+        request_{.engine = options.engine,
+                 .fraction = wants_fraction_,
+                 .list_cutters = options.list_cutters,
+                 .only_occluders = options.only_occluders,
+                 .culling = options.culling},
+        result_(result),
+        memory_(memory) {}
 
   void run() {
-    reset(result_, planes_.size());
+    reset(result_, planes_.size(), memory_.spare_records);
+    memory_.quick.start(view_.n);
     for (std::size_t p = 0; p < planes_.size(); ++p) look_at(planes_[p], result_.planes[p]);
     sort_unique(result_.cutters);
     if (something_visible_) integrate();
@@ -201,38 +203,33 @@ class Solver {
   }
 
  private:
+  [[nodiscard]] PlaneVisibility find(const SourcePlane& plane) {
+    return find_visible_boundary(view_, plane, request_, memory_.edges);
+  }
+
   void look_at(const SourcePlane& plane, PlaneRecord& record) {
-    PlaneVisibility seen = find_visible_boundary(view_, plane, request_);
-    if (!seen.boundary.empty() || seen.edges != nullptr) {
-      something_visible_ = true;
-      all_by_edges_ = all_by_edges_ && seen.edges != nullptr;
-      if (seen.edges != nullptr) quick_.add(*seen.edges);
-    }
+    PlaneVisibility seen = find(plane);
+    something_visible_ = something_visible_ || !seen.boundary.empty();
+    memory_.quick.add(seen.boundary);
     if (wants_fraction_) {
       note_fraction(seen, options_);
       shares_.push_back(share_of(scene_, plane, seen));
     }
     result_.cutters.insert(result_.cutters.end(), seen.cutters.begin(), seen.cutters.end());
     set_record(record, std::move(seen.record), plane.faces);
-    last_ = std::move(seen);
+    last_boundary_ = std::move(seen.boundary);
   }
 
   void integrate() {
-    const bool may_be_quick = all_by_edges_ && options_.precision_cap >= exact::QuickTier::kBits;
-    if (may_be_quick && certify_quickly(quick_, options_, result_)) return;
+    if (options_.precision_cap >= exact::QuickTier::kBits && certify_quickly(memory_.quick, options_, result_)) return;
     contour::ContourIntegral contour(view_.normal().exact);
+    const auto add = [&](const visibility::BoundaryPiece& piece) { contour.add(piece); };
     if (planes_.size() == 1) {
-      add_exactly(last_, contour);
+      last_boundary_.for_each_piece(add);
     } else {
-      for (const SourcePlane& plane : planes_) add_exactly(find_visible_boundary(view_, plane, request_), contour);
+      for (const SourcePlane& plane : planes_) find(plane).boundary.for_each_piece(add);
     }
     certify(contour, options_, result_);
-  }
-
-  static void add_exactly(const PlaneVisibility& seen, contour::ContourIntegral& contour) {
-    for (const visibility::BoundaryPiece& piece : seen.boundary) contour.add(piece);
-    if (seen.edges == nullptr) return;
-    for (const visibility::VisibleEdges::Part& part : seen.edges->parts()) contour.add(seen.edges->exact(part));
   }
 
   const Scene& scene_;
@@ -240,19 +237,18 @@ class Solver {
   const ExactOptions& options_;
   const bool wants_fraction_;
   const visibility::View view_;
-  visibility::Request request_;
-  exact::QuickTier quick_;
+  const visibility::Request request_;
   FormFactor& result_;
+  Workspace::Memory& memory_;
   std::vector<PlaneShare> shares_;
-  PlaneVisibility last_;
+  visibility::VisibleBoundary last_boundary_;
   bool something_visible_ = false;
-  bool all_by_edges_ = true;
 };
 
 void solve_by(Engine engine, const Scene& scene, const Receiver& receiver, const ExactSource& source,
-              ExactOptions options, FormFactor& result) {
+              ExactOptions options, FormFactor& result, Workspace::Memory& memory) {
   options.engine = engine;
-  Solver(scene, receiver, source, options, result).run();
+  Solver(scene, receiver, source, options, result, memory).run();
 }
 
 // Each engine sums its own edges, so with a low precision cap one engine may find a value that the other does not, or
@@ -282,14 +278,21 @@ FormFactor exact_form_factor(const Scene& scene, const Receiver& receiver, const
 
 void exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                        const ExactOptions& options, FormFactor& result) {
+  thread_local Workspace own;
+  exact_form_factor(scene, receiver, source, options, result, own);
+}
+
+void exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
+                       const ExactOptions& options, FormFactor& result, Workspace& workspace) {
   const kernel::StandardArithmetic arithmetic;
   check_options(options);
   exact::check_arguments(scene, receiver, source);
   const bool both = options.engine == Engine::kBoth;
-  solve_by(both ? Engine::kEdges : options.engine, scene, receiver, source, options, result);
+  Workspace::Memory& memory = workspace.memory();
+  solve_by(both ? Engine::kEdges : options.engine, scene, receiver, source, options, result, memory);
   if (!both) return;
   FormFactor reference;
-  solve_by(Engine::kBoolean, scene, receiver, source, options, reference);
+  solve_by(Engine::kBoolean, scene, receiver, source, options, reference, memory);
   require_agreement(result, reference);
 }
 

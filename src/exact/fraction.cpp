@@ -30,19 +30,15 @@ Area area_of(const PlaneShare& plane) {
 }
 
 Ball ratio_at(std::span<const PlaneShare> planes, long bits) {
-  Ball visible;
-  Ball whole;
+  using kernel::to_ball;
+  Ball visible(bits), whole(bits);
   for (const PlaneShare& plane : planes) {
-    const Area area = area_of(plane);
-    Ball value = kernel::to_ball(area.radicand, bits);
-    arb_sqrt(value.get(), value.get(), bits);
-    arb_mul(value.get(), value.get(), kernel::to_ball(area.coefficient, bits).get(), bits);
-    arb_add(whole.get(), whole.get(), value.get(), bits);
-    arb_mul(value.get(), value.get(), kernel::to_ball(plane.fraction, bits).get(), bits);
-    arb_add(visible.get(), visible.get(), value.get(), bits);
+    const auto [coefficient, radicand] = area_of(plane);
+    const Ball area = sqrt(to_ball(radicand, bits)) * to_ball(coefficient, bits);
+    whole = whole + area;
+    visible = visible + area * to_ball(plane.fraction, bits);
   }
-  arb_div(visible.get(), visible.get(), whole.get(), bits);
-  return visible;
+  return visible / whole;
 }
 
 struct CommensurableClass {

@@ -1,49 +1,20 @@
 #include "exact/quick_tier.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <span>
-#include <vector>
+#include <limits>
 
 namespace exactff::exact {
 
 using contour::QuickContour;
 using contour::QuickCorner;
-using contour::QuickEdge;
-using contour::QuickLine;
 using contour::QuickPiece;
 using visibility::CornerId;
 using visibility::EdgeId;
 using visibility::Outlines;
+using visibility::Parameter;
 using visibility::VisibleEdges;
 
 namespace {
-
-// Numbers items in the order in which they are first requested. forget() starts a new numbering from 0 without clearing
-// the table.
-class Numbers {
- public:
-  void clear(std::size_t count) {
-    first_ = next_ = 0;
-    number_.assign(count, kNone);
-  }
-  // The number of item i, counted from the last forget(), and whether it is new.
-  struct Found {
-    std::uint32_t number;
-    bool is_new;
-  };
-  Found find(std::uint32_t i) {
-    const bool is_new = number_[i] == kNone || number_[i] < first_;
-    if (is_new) number_[i] = next_++;
-    return {number_[i] - first_, is_new};
-  }
-  void forget() { first_ = next_; }
-
- private:
-  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-  std::uint32_t first_ = 0, next_ = 0;
-  std::vector<std::uint32_t> number_;
-};
 
 QuickCorner quick_corner(Outlines& outlines, CornerId id) {
   if (const auto vertex = outlines.vertex(id)) {
@@ -53,93 +24,78 @@ QuickCorner quick_corner(Outlines& outlines, CornerId id) {
   return contour::quick_corner(outlines.exact(id));
 }
 
-// The corners and lines of one plane's parts.
-class Lines {
- public:
-  void clear(const Outlines& outlines) {
-    forget();
-    corners_.clear();
-    corner_numbers_.clear(outlines.corner_count());
-    line_numbers_.clear(outlines.edges().size());
-  }
-  // The number of an edge's line. The line itself is made later, by lines().
-  std::uint32_t find(Outlines& outlines, EdgeId id) {
-    const auto [number, is_new] = line_numbers_.find(id);
-    if (is_new) {
-      const Outlines::Edge& edge = outlines.edge(id);
-      edges_.push_back({corner(outlines, edge.a), corner(outlines, edge.b)});
-    }
-    return number;
-  }
-  // All lines found so far; makes those that are missing.
-  [[nodiscard]] std::span<const QuickLine> lines(const QuickContour& contour) {
-    if (lines_.size() < edges_.size()) lines_.resize(edges_.size());
-    contour.make_lines(corners_, std::span(edges_).subspan(made_), std::span(lines_).subspan(made_));
-    made_ = edges_.size();
-    return lines_;
-  }
-  // Neighbouring parts share lines, so recent lines are worth keeping; all lines together would not fit into the cache.
-  void forget_if_many() {
-    if (edges_.size() >= kMostLines) forget();
-  }
-
- private:
-  static constexpr std::size_t kMostLines = 8192;
-
-  void forget() {
-    edges_.clear();
-    made_ = 0;
-    line_numbers_.forget();
-  }
-  std::uint32_t corner(Outlines& outlines, CornerId id) {
-    const auto [number, is_new] = corner_numbers_.find(id);
-    if (is_new) corners_.push_back(quick_corner(outlines, id));
-    return number;
-  }
-
-  Numbers corner_numbers_, line_numbers_;
-  std::vector<QuickCorner> corners_;
-  std::vector<QuickEdge> edges_;
-  std::vector<QuickLine> lines_;  // valid for the first `made_` edges; the rest is only memory
-  std::size_t made_ = 0;
-};
-
 }  // namespace
 
-// Works in batches, so that lines are made four at a time.
-void QuickTier::add(VisibleEdges& edges) {
-  using Parameter = VisibleEdges::Parameter;
+void QuickTier::start(const Vec3& normal) {
+  contour_ = QuickContour(normal);
+  declined_ = false;
+}
+
+void QuickTier::add(const visibility::VisibleBoundary& boundary) {
+  if (boundary.empty()) return;
+  if (boundary.edges() == nullptr) {
+    declined_ = true;
+  } else {
+    add(*boundary.edges());
+  }
+}
+
+// Neighbouring parts share lines, so recent lines are worth keeping; all lines together would not fit into the cache.
+void QuickTier::add(VisibleEdges& found) {
   static_assert(Parameter::kAtBegin == QuickPiece::kAtA && Parameter::kAtEnd == QuickPiece::kAtB);
-  constexpr std::size_t kBatch = 64;
-  thread_local Lines lines;  // static so that its memory is reused
-  thread_local std::vector<QuickPiece> pieces;
-  Outlines& outlines = edges.outlines();
-  lines.clear(outlines);
-  const auto end = [&](EdgeId line) { return line < Parameter::kAtBegin ? lines.find(outlines, line) : line; };
-  for (std::span<const VisibleEdges::Part> parts = edges.parts(); !parts.empty();) {
-    lines.forget_if_many();
-    pieces.clear();
+  constexpr std::size_t kBatch = 64, kMostLines = 8192;
+  Outlines& outlines = found.outlines();
+  corners_.clear();
+  corner_index_.clear(outlines.corner_count());
+  line_index_.clear(outlines.edges().size());
+  forget_lines();
+  const auto end = [&](EdgeId line) { return line < Parameter::kAtBegin ? number_of_line(outlines, line) : line; };
+  for (std::span<const VisibleEdges::Part> parts = found.parts(); !parts.empty();) {
+    if (edges_.size() >= kMostLines) forget_lines();
+    // 1. Number the lines and corners of a batch.
     const std::size_t count = std::min(kBatch, parts.size());
+    pieces_.clear();
     for (const VisibleEdges::Part& part : parts.first(count)) {
-      pieces.push_back({lines.find(outlines, part.edge), end(part.begin.line), end(part.end.line)});
+      pieces_.push_back({number_of_line(outlines, part.edge), end(part.begin.line), end(part.end.line)});
     }
-    contour_.add(pieces, lines.lines(contour_));
+    // 2. Make the lines that are new.
+    make_lines();
+    // 3. Add the parts.
+    contour_.add(pieces_, lines_);
     parts = parts.subspan(count);
   }
 }
 
+std::uint32_t QuickTier::number_of_line(Outlines& outlines, EdgeId id) {
+  const auto [number, is_new] = line_index_.find(id);
+  if (is_new) {
+    const Outlines::Edge& edge = outlines.edge(id);
+    edges_.push_back({number_of_corner(outlines, edge.a), number_of_corner(outlines, edge.b)});
+  }
+  return number;
+}
+
+std::uint32_t QuickTier::number_of_corner(Outlines& outlines, CornerId id) {
+  const auto [number, is_new] = corner_index_.find(id);
+  if (is_new) corners_.push_back(quick_corner(outlines, id));
+  return number;
+}
+
+void QuickTier::make_lines() {
+  if (lines_.size() < edges_.size()) lines_.resize(edges_.size());
+  contour_.make_lines(corners_, std::span(edges_).subspan(made_), std::span(lines_).subspan(made_));
+  made_ = edges_.size();
+}
+
+void QuickTier::forget_lines() {
+  edges_.clear();
+  made_ = 0;
+  line_index_.restart();
+}
+
 Ball QuickTier::ball() const {
-  const contour::QuickContour::Value value = contour_.value();
-  Ball ball, low;
-  arb_set_d(ball.get(), value.hi);
-  arb_set_d(low.get(), value.lo);
-  arb_add(ball.get(), ball.get(), low.get(), ARF_PREC_EXACT);
-  mag_t error;
-  mag_init(error);
-  mag_set_d(error, value.error);  // rounds up
-  arb_add_error_mag(ball.get(), error);
-  mag_clear(error);
-  return ball;
+  const QuickContour::Value value = contour_.value();
+  return kernel::ball_around(value.hi, value.lo, declined_ ? std::numeric_limits<double>::infinity() : value.error);
 }
 
 }  // namespace exactff::exact

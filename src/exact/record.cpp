@@ -1,93 +1,41 @@
 // The explanation of a result: which stages ran, and why the others were skipped.
 #include <string>
+#include <utility>
 
 #include "exactff/exact.h"
+#include "text/phrases.h"
 
 namespace exactff {
 
 std::string_view to_string(Status status) {
-  switch (status) {
-    case Status::kCertified:
-      return "certified";
-    case Status::kZero:
-      return "zero";
-    case Status::kUnderflow:
-      return "underflow";
-    case Status::kNotCertified:
-      return "not certified";
-  }
-  return "";
+  constexpr std::string_view kNames[] = {"certified", "zero", "underflow", "not certified"};
+  return kNames[static_cast<std::size_t>(status)];
 }
 
 std::string_view to_string(VisiblePart part) {
-  switch (part) {
-    case VisiblePart::kNothing:
-      return "nothing";
-    case VisiblePart::kSome:
-      return "some";
-    case VisiblePart::kAll:
-      return "all";
-  }
-  return "";
+  constexpr std::string_view kNames[] = {"nothing", "some", "all"};
+  return kNames[static_cast<std::size_t>(part)];
 }
 
 std::string_view to_string(Engine engine) {
-  switch (engine) {
-    case Engine::kEdges:
-      return "edges";
-    case Engine::kBoolean:
-      return "boolean";
-    case Engine::kBoth:
-      return "both";
-  }
-  return "";
+  constexpr std::string_view kNames[] = {"edges", "boolean", "both"};
+  return kNames[static_cast<std::size_t>(engine)];
 }
 
 std::string_view to_string(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::kReceiverFace:
-      return "the receiver lies on it";
-    case Outcome::kBehind:
-      return "behind";
-    case Outcome::kBelowHorizon:
-      return "below the horizon";
-    case Outcome::kUnoccluded:
-      return "unoccluded";
-    case Outcome::kHiddenByOne:
-      return "hidden by one occluder";
-    case Outcome::kPartlyHidden:
-      return "partly hidden";
-    case Outcome::kHiddenByUnion:
-      return "hidden by the union of occluders";
-  }
-  return "";
+  constexpr std::string_view kNames[] = {"the receiver lies on it",
+                                         "behind",
+                                         "below the horizon",
+                                         "unoccluded",
+                                         "hidden by one occluder",
+                                         "partly hidden",
+                                         "hidden by the union of occluders"};
+  return kNames[static_cast<std::size_t>(outcome)];
 }
 
 namespace {
 
-std::string counted(std::uint64_t n, const std::string& noun) {
-  return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
-}
-
-// The last stage that had work, in the order of the method.
-enum Progress { kCulled, kClipped, kSearched, kSubtracted };
-
-Progress progress(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::kReceiverFace:
-    case Outcome::kBehind:
-      return kCulled;
-    case Outcome::kBelowHorizon:
-      return kClipped;
-    case Outcome::kUnoccluded:
-    case Outcome::kHiddenByOne:
-      return kSearched;
-    case Outcome::kPartlyHidden:
-    case Outcome::kHiddenByUnion:
-      return kSubtracted;
-  }
-  return kCulled;
-}
+using text::counted;
 
 StageNote cull_note(const PlaneRecord& plane) {
   switch (plane.outcome) {
@@ -100,22 +48,19 @@ StageNote cull_note(const PlaneRecord& plane) {
   }
 }
 
-StageNote horizon_note(const PlaneRecord& plane, const std::string& left_out) {
-  if (progress(plane.outcome) < kClipped) return {"horizon clip", false, left_out};
+StageNote horizon_note(const PlaneRecord& plane) {
   if (plane.outcome == Outcome::kBelowHorizon) return {"horizon clip", true, "nothing above the horizon"};
   if (!plane.horizon_clipped) return {"horizon clip", false, "all of it is above the horizon"};
   return {"horizon clip", true, "the part below was cut off exactly"};
 }
 
-StageNote shaft_note(const PlaneRecord& plane, const std::string& left_out) {
-  if (progress(plane.outcome) < kSearched) return {"shaft", false, left_out};
+StageNote shaft_note(const PlaneRecord& plane) {
   return {"shaft", true,
           counted(plane.tree_candidates, "piece") + " from the tree, " + std::to_string(plane.candidates) +
               " in the shaft"};
 }
 
-StageNote clip_note(const PlaneRecord& plane, const std::string& left_out) {
-  if (progress(plane.outcome) < kSearched) return {"exact clip", false, left_out};
+StageNote clip_note(const PlaneRecord& plane) {
   const bool by_edges = plane.engine == Engine::kEdges;
   if (plane.clipped == 0) {
     return {"exact clip", false,
@@ -125,43 +70,36 @@ StageNote clip_note(const PlaneRecord& plane, const std::string& left_out) {
           counted(plane.clipped, "candidate") + " cut " + (by_edges ? "at the source's plane" : "to the shaft")};
 }
 
-StageNote total_note(const PlaneRecord& plane, const std::string& left_out) {
-  if (progress(plane.outcome) < kSearched) return {"total occlusion", false, left_out};
+StageNote total_note(const PlaneRecord& plane) {
   if (plane.candidates == 0) return {"total occlusion", false, "no candidates"};
   if (plane.outcome == Outcome::kHiddenByOne) return {"total occlusion", true, "one occluder hides all: 0"};
   return {"total occlusion", true, "no single candidate hides all"};
 }
 
-StageNote boolean_note(const PlaneRecord& plane, const std::string& left_out) {
-  const std::string stage = "projection and Booleans";
-  if (progress(plane.outcome) < kSearched) return {stage, false, left_out};
-  if (plane.outcome == Outcome::kHiddenByOne) return {stage, false, "nothing is left to subtract from"};
+StageNote engine_note(const PlaneRecord& plane) {
+  const bool by_edges = plane.engine == Engine::kEdges;
+  const std::string stage = by_edges ? "edges" : "projection and Booleans";
+  if (plane.outcome == Outcome::kHiddenByOne) {
+    return {stage, false, by_edges ? "nothing is left to hide" : "nothing is left to subtract from"};
+  }
   if (plane.outcome == Outcome::kUnoccluded) {
-    if (plane.source_joined) return {stage, true, "only to join the source's own pieces; nothing to subtract"};
-    return {stage, false, "no candidates"};
+    if (!plane.source_joined) return {stage, false, "no candidates"};
+    return {stage, true,
+            std::string("only to join the source's own pieces; ") +
+                (by_edges ? "nothing hides them" : "nothing to subtract")};
+  }
+  const bool nothing = plane.outcome == Outcome::kHiddenByUnion;
+  if (by_edges) {
+    return {stage, true,
+            "the part of each edge that " + counted(plane.candidates, "candidate") + " leave visible" +
+                (nothing ? ": nothing" : "")};
   }
   return {stage, true,
-          counted(plane.candidates, "shadow") + " joined and subtracted" +
-              (plane.outcome == Outcome::kHiddenByUnion ? ": nothing left" : "")};
+          counted(plane.candidates, "shadow") + " joined and subtracted" + (nothing ? ": nothing left" : "")};
 }
 
-StageNote edges_note(const PlaneRecord& plane, const std::string& left_out) {
-  const std::string stage = "edges";
-  if (progress(plane.outcome) < kSearched) return {stage, false, left_out};
-  if (plane.outcome == Outcome::kHiddenByOne) return {stage, false, "nothing is left to hide"};
-  if (plane.outcome == Outcome::kUnoccluded) {
-    if (plane.source_joined) return {stage, true, "only to join the source's own pieces; nothing hides them"};
-    return {stage, false, "no candidates"};
-  }
-  return {stage, true,
-          "the part of each edge that " + counted(plane.candidates, "candidate") + " leave visible" +
-              (plane.outcome == Outcome::kHiddenByUnion ? ": nothing" : "")};
-}
-
-StageNote contour_note(const PlaneRecord& plane, const std::string& left_out) {
-  if (plane.edges == 0) {
-    return {"contour", false, progress(plane.outcome) < kSearched ? left_out : "nothing is visible"};
-  }
+StageNote contour_note(const PlaneRecord& plane) {
+  if (plane.edges == 0) return {"contour", false, "nothing is visible"};
   const std::string edges = counted(plane.edges, "edge");
   return {"contour", true, plane.loops == 0 ? edges : counted(plane.loops, "loop") + ", " + edges};
 }
@@ -175,13 +113,18 @@ StageNote fraction_note(const PlaneRecord& plane) {
 
 std::vector<StageNote> stages(const PlaneRecord& plane) {
   const std::string left_out = "left out: " + std::string(to_string(plane.outcome));
+  const auto unless = [&](bool skipped, StageNote note) {
+    return skipped ? StageNote{std::move(note.stage), false, left_out} : std::move(note);
+  };
+  // Outcomes are listed in the order of the stages.
+  const bool unsearched = plane.outcome <= Outcome::kBelowHorizon;
   return {cull_note(plane),
-          horizon_note(plane, left_out),
-          shaft_note(plane, left_out),
-          clip_note(plane, left_out),
-          total_note(plane, left_out),
-          plane.engine == Engine::kEdges ? edges_note(plane, left_out) : boolean_note(plane, left_out),
-          contour_note(plane, left_out),
+          unless(plane.outcome <= Outcome::kBehind, horizon_note(plane)),
+          unless(unsearched, shaft_note(plane)),
+          unless(unsearched, clip_note(plane)),
+          unless(unsearched, total_note(plane)),
+          unless(unsearched, engine_note(plane)),
+          unless(unsearched && plane.edges == 0, contour_note(plane)),
           fraction_note(plane)};
 }
 

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "exact/workspace.h"
 #include "kernel/expect.h"
-#include "visibility/visible_edges.h"
+#include "visibility/visible_boundary.h"
 
 namespace exactff::exact {
 
 using kernel::ExactVec3;
-using kernel::Integer;
 using kernel::Rational;
 using visibility::BoundaryPiece;
 
@@ -31,71 +31,44 @@ bool meets_exactly(const SmallPolygon<Rational>& polygon, const Point<Rational>&
   return from < to;
 }
 
-Rational ratio(const Integer& numerator, const Integer& denominator) {
-  Rational result(numerator, denominator);
-  result.canonicalize();
-  return result;
-}
-
 }  // namespace
 
-VisibleShare::VisibleShare(const Scene& scene, const Receiver& receiver, const visibility::SourcePlane& plane)
+VisibleShare::VisibleShare(const Scene& scene, const Receiver& receiver, const visibility::SourcePlane& plane,
+                           Workspace& workspace)
     : view_(scene, receiver), plane_(plane), away_(plane.normal.exact) {
-  const visibility::Request request;
-  const visibility::PlaneVisibility seen = find_visible_boundary(view_, plane, request);
+  const visibility::PlaneVisibility seen = find_visible_boundary(view_, plane, {}, workspace.memory().edges);
   all_ = seen.record.outcome == Outcome::kUnoccluded;
-  if (all_ || (seen.boundary.empty() && seen.edges == nullptr)) return;
+  if (all_ || seen.boundary.empty()) return;
   make_frame();
-  for (const BoundaryPiece& piece : seen.boundary) add(piece);
-  if (seen.edges == nullptr) return;
-  for (const visibility::VisibleEdges::Part& part : seen.edges->parts()) add(seen.edges->exact(part));
-}
-
-Point<Rational> VisibleShare::affine(const ExactVec3& t) const {
-  const Integer depth = dot(away_, t);
-  return {ratio(t[i_], depth), ratio(t[j_], depth)};
-}
-
-Point<Rational> VisibleShare::flat(const ExactVec3& t) const {
-  const Point<Rational> p = affine(t);
-  return {Rational((p.u - low_.u) / size_.u), Rational((p.v - low_.v) / size_.v)};
+  seen.boundary.for_each_piece([this](const BoundaryPiece& piece) { add(piece); });
 }
 
 void VisibleShare::make_frame() {
-  const int k = longest_axis(away_);
-  i_ = (k + 1) % 3;
-  j_ = (k + 2) % 3;
-  keeps_orientation_ = kernel::sign(away_[k]) > 0;
-  kernel::negate(away_);
-  const kernel::Approx3 away = kernel::approx(away_);
-  away_approx_ = {away.x, away.y, away.z};
-  Point<Rational> high;
-  bool first = true;
+  std::vector<kernel::Ring> rings;
   for (const std::uint32_t index : plane_.pieces) {
+    kernel::Ring& ring = rings.emplace_back();
     for (const std::uint32_t corner : view_.scene.corners(view_.scene.pieces()[index])) {
-      const Point<Rational> p = affine(kernel::exact_difference(view_.scene.vertices()[corner], view_.x).v);
-      low_ = first ? p : Point<Rational>{std::min(low_.u, p.u), std::min(low_.v, p.v)};
-      high = first ? p : Point<Rational>{std::max(high.u, p.u), std::max(high.v, p.v)};
-      first = false;
+      ring.push_back(kernel::make_direction(kernel::exact_difference(view_.scene.vertices()[corner], view_.x).v));
     }
   }
-  size_ = {high.u - low_.u, high.v - low_.v};
+  frame_.emplace(away_, rings);
+  const int k = longest_axis(away_);
+  kernel::negate(away_);
+  const kernel::Approx3 away = kernel::approx(away_);
+  if (!std::isfinite(away.x + away.y + away.z)) return;  // the error of every window is then infinite
+  away_approx_ = {away.x, away.y, away.z};
   // The double form of `away` has its own scale, and so has everything divided by it.
-  const double longest = away_approx_[static_cast<std::size_t>(k)];
-  if (!std::isfinite(away.x + away.y + away.z)) {
-    away_approx_ = {};  // the error of every window is then infinite
-    return;
-  }
-  const Rational scale = Rational(away_[k]) / kernel::to_rational(longest);
-  low_approx_ = rounded({Rational(low_.u * scale), Rational(low_.v * scale)});
-  size_approx_ = rounded({Rational(size_.u * scale), Rational(size_.v * scale)});
+  const Rational scale = Rational(away_[k]) / kernel::to_rational(away_approx_[static_cast<std::size_t>(k)]);
+  const auto scaled = [&](const Point<Rational>& p) { return rounded({Rational(p.u * scale), Rational(p.v * scale)}); };
+  low_approx_ = scaled(frame_->low());
+  size_approx_ = scaled(frame_->size());
 }
 
 void VisibleShare::add(const BoundaryPiece& piece) {
   Piece added;
-  added.exact_p = flat(piece.a * piece.begin.l + piece.b * piece.begin.m);
-  added.exact_q = flat(piece.a * piece.end.l + piece.b * piece.end.m);
-  if (!keeps_orientation_) std::swap(added.exact_p, added.exact_q);
+  added.exact_p = frame_->to_plane(piece.a * piece.begin.l + piece.b * piece.begin.m);
+  added.exact_q = frame_->to_plane(piece.a * piece.end.l + piece.b * piece.end.m);
+  if (!frame_->keeps_orientation()) std::swap(added.exact_p, added.exact_q);
   added.p = rounded(added.exact_p);
   added.q = rounded(added.exact_q);
   const ExactVec3 normal = view_.normal().exact;
@@ -109,7 +82,7 @@ void VisibleShare::start(std::uint32_t index) {
   if (pieces_.empty()) return;
   std::vector<Point<Rational>> ring;
   for (const std::uint32_t corner : view_.scene.corners(view_.scene.pieces()[index])) {
-    ring.push_back(flat(kernel::exact_difference(view_.scene.vertices()[corner], view_.x).v));
+    ring.push_back(frame_->to_plane(kernel::exact_difference(view_.scene.vertices()[corner], view_.x).v));
   }
   for (Piece& piece : pieces_) {
     piece.outline = piece.horizon;
@@ -141,7 +114,8 @@ Point<double> VisibleShare::flat(const Vec3& t, double& error) const {
     depth += away_approx_[axis] * d[axis];
     magnitude += std::abs(away_approx_[axis] * d[axis]);
   }
-  const double p = d[static_cast<std::size_t>(i_)] / depth, q = d[static_cast<std::size_t>(j_)] / depth;
+  const auto [i, j] = frame_->axes();
+  const double p = d[static_cast<std::size_t>(i)] / depth, q = d[static_cast<std::size_t>(j)] / depth;
   const double worst = magnitude / depth;
   const auto bound = [&](double value, double low, double size) {
     return 0x1p-48 * (std::abs(value) * (worst + 1.0) + std::abs(low) + size) / size;
@@ -156,49 +130,58 @@ void VisibleShare::set_window(std::span<const Vec3> directions) {
   window_.corners.clear();
   window_.error = 0.0;
   for (const Vec3& direction : directions) window_.corners.push_back(flat(direction, window_.error));
-  if (!keeps_orientation_) window_.corners.reverse();
+  if (!frame_->keeps_orientation()) window_.corners.reverse();
 }
 
 SmallPolygon<Rational> VisibleShare::exact_window(std::span<const Vec3> directions) const {
   SmallPolygon<Rational> corners;
-  for (const Vec3& direction : directions) corners.push_back(flat(kernel::exact_vector(direction).v));
-  if (!keeps_orientation_) corners.reverse();
+  for (const Vec3& direction : directions) corners.push_back(frame_->to_plane(kernel::exact_vector(direction).v));
+  if (!frame_->keeps_orientation()) corners.reverse();
   return corners;
 }
 
-// Clips the piece by the window's sides in the same way as meets_exactly. Write |.| for the sum of the magnitudes of
-// two coordinates. A turn of a side e and an offset f, whose coordinates have errors of at most E and G, is wrong by
-// less than |e| G + |f| E + 2 E G, plus 2^-51 of the magnitudes of its products.
+namespace {
+
+struct Turn {
+  double value, error;
+  [[nodiscard]] bool certainly_positive() const { return value > error; }
+  [[nodiscard]] bool certainly_not_positive() const { return value <= -error; }
+};
+
+// turn(a, b, p). Write |.| for the sum of the magnitudes of two coordinates. A turn of a side e and an offset f, whose
+// coordinates have errors of at most E and G, is wrong by less than |e| G + |f| E + 2 E G, plus 2^-51 of the magnitudes
+// of its products. The coordinates of p are wrong by at most 2^-53.
+Turn turn_of(const Point<double>& a, const Point<double>& b, const Point<double>& p, double window_error) {
+  const double eu = b.u - a.u, ev = b.v - a.v, fu = p.u - a.u, fv = p.v - a.v;
+  const double side = std::abs(eu) + std::abs(ev), offset = std::abs(fu) + std::abs(fv);
+  const double side_error = 2.0 * window_error + 0x1p-53 * side;
+  const double offset_error = window_error + 0x1p-53 + 0x1p-53 * offset;
+  return {eu * fv - ev * fu, 1.01 * (side * offset_error + offset * side_error + 2.0 * side_error * offset_error +
+                                     0x1p-51 * (std::abs(eu * fv) + std::abs(ev * fu)))};
+}
+
+}  // namespace
+
+// Clips the piece by the window's sides in the same way as meets_exactly.
 VisibleShare::Meeting VisibleShare::meets(const Piece& piece) const {
-  constexpr double kPieceError = 0x1p-53;
-  const std::size_t n = window_.corners.size();
   double from_low = 0.0, from_high = 0.0, to_low = 1.0, to_high = 1.0;
   bool unsure = false;
-  for (std::size_t k = 0; k < n; ++k) {
-    const Point<double>& a = window_.corners[k];
-    const Point<double>& b = window_.corners.after(k);
-    const double eu = b.u - a.u, ev = b.v - a.v;
-    const double side = std::abs(eu) + std::abs(ev), side_error = 2.0 * window_.error + 0x1p-53 * side;
-    const auto height = [&](const Point<double>& p, double& error) {
-      const double fu = p.u - a.u, fv = p.v - a.v, offset = std::abs(fu) + std::abs(fv);
-      const double offset_error = window_.error + kPieceError + 0x1p-53 * offset;
-      error = 1.01 * (side * offset_error + offset * side_error + 2.0 * side_error * offset_error +
-                      0x1p-51 * (std::abs(eu * fv) + std::abs(ev * fu)));
-      return eu * fv - ev * fu;
+  for (std::size_t k = 0; k < window_.corners.size(); ++k) {
+    const auto height = [&](const Point<double>& end) {
+      return turn_of(window_.corners[k], window_.corners.after(k), end, window_.error);
     };
-    double error_p = 0.0, error_q = 0.0;
-    const double at_p = height(piece.p, error_p), at_q = height(piece.q, error_q);
-    if (at_p <= -error_p && at_q <= -error_q) return Meeting::kNo;
-    if (at_p > error_p && at_q > error_q) continue;
-    const double fall = at_p - at_q, fall_error = error_p + error_q;
-    if (!(std::abs(fall) > 4.0 * fall_error)) {
+    const Turn p = height(piece.p), q = height(piece.q);
+    if (p.certainly_not_positive() && q.certainly_not_positive()) return Meeting::kNo;
+    if (p.certainly_positive() && q.certainly_positive()) continue;
+    const Turn fall{p.value - q.value, p.error + q.error};
+    if (!(std::abs(fall.value) > 4.0 * fall.error)) {
       unsure = true;
       continue;
     }
-    const double crossing = at_p / fall;
+    const double crossing = p.value / fall.value;
     const double error =
-        2.0 * (error_p + std::abs(crossing) * fall_error) / std::abs(fall) + 0x1p-50 * (1.0 + std::abs(crossing));
-    if (fall < 0.0) {
+        2.0 * (p.error + std::abs(crossing) * fall.error) / std::abs(fall.value) + 0x1p-50 * (1.0 + std::abs(crossing));
+    if (fall.value < 0.0) {
       from_low = std::max(from_low, crossing - error);
       from_high = std::max(from_high, crossing + error);
     } else {

@@ -15,22 +15,22 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "exact/window_area.h"
-#include "exactff/receiver.h"
-#include "exactff/scene.h"
+#include "exactff/exact.h"
 #include "kernel/numbers.h"
-#include "visibility/source_plane.h"
-#include "visibility/visible_boundary.h"
+#include "visibility/plane_visibility.h"
 
 namespace exactff::exact {
 
 class VisibleShare {
  public:
   // Requires x in front of the plane, and a receiver as for exact_form_factor.
-  VisibleShare(const Scene& scene, const Receiver& receiver, const visibility::SourcePlane& plane);
+  VisibleShare(const Scene& scene, const Receiver& receiver, const visibility::SourcePlane& plane,
+               Workspace& workspace);
 
   // Selects the piece of the plane in which the next windows lie, up to rounding errors.
   void start(std::uint32_t piece);
@@ -62,8 +62,6 @@ class VisibleShare {
   };
   enum class Meeting { kNo, kYes, kUnsure };
 
-  [[nodiscard]] Point<Rational> affine(const kernel::ExactVec3& direction) const;
-  [[nodiscard]] Point<Rational> flat(const kernel::ExactVec3& direction) const;
   [[nodiscard]] Point<double> flat(const Vec3& direction, double& error) const;
   void make_frame();
   void add(const visibility::BoundaryPiece& piece);
@@ -79,11 +77,9 @@ class VisibleShare {
   const visibility::SourcePlane& plane_;
   bool all_ = false;  // the whole source is visible
   std::vector<Piece> pieces_;
-  kernel::ExactVec3 away_;  // the plane's normal turned away from x
-  std::array<double, 3> away_approx_{};
-  int i_ = 0, j_ = 1;
-  bool keeps_orientation_ = true;
-  Point<Rational> low_, size_;  // the source's box in affine coordinates: the unit square of (u, v)
+  kernel::ExactVec3 away_;                       // the plane's normal turned away from x
+  std::optional<visibility::PlaneFrame> frame_;  // its unit square is the source's box
+  std::array<double, 3> away_approx_{};          // the frame in doubles
   Point<double> low_approx_{}, size_approx_{};
   Window window_;
   std::uint64_t undecided_ = 0;

@@ -6,13 +6,12 @@
 #include <array>
 #include <cstddef>
 
+#include "visibility/plane_frame.h"
+
 namespace exactff::exact {
 
 template <class Number>
-struct Point {
-  Number u;
-  Number v;
-};
+using Point = visibility::PlanePoint<Number>;
 
 // A polygon of at most kMost corners. A triangle or quadrilateral clipped by three lines has at most seven corners;
 // rounding may repeat some.

@@ -11,6 +11,12 @@
 
 namespace exactff {
 
+Ball twice(const Ball& a) {
+  Ball result(a.bits());
+  arb_mul_2exp_si(result.get(), a.get(), 1);
+  return result;
+}
+
 namespace kernel {
 
 namespace {
@@ -29,20 +35,48 @@ Ball to_ball(const Integer& value, long bits) {
   fmpz_t copy;
   fmpz_init(copy);
   fmpz_set_mpz(copy, value.get_mpz_t());
-  Ball result;
+  Ball result(bits);
   arb_set_round_fmpz(result.get(), copy, bits);
   fmpz_clear(copy);
   return result;
 }
 
 Ball to_ball(const Rational& value, long bits) {
-  Ball result = to_ball(value.get_num(), bits + 2);
-  const Ball denominator = to_ball(value.get_den(), bits + 2);
-  arb_div(result.get(), result.get(), denominator.get(), bits + 2);
+  return with_bits(to_ball(value.get_num(), bits + 2) / to_ball(value.get_den(), bits + 2), bits);
+}
+
+Ball to_ball(double value, long bits) {
+  Ball result(bits);
+  arb_set_d(result.get(), value);
+  return result;
+}
+
+Ball pi(long bits) {
+  Ball result(bits);
+  arb_const_pi(result.get(), bits);
+  return result;
+}
+
+Ball with_bits(Ball ball, long bits) {
+  Ball result(bits);
+  arb_swap(result.get(), ball.get());
+  return result;
+}
+
+Ball ball_around(double hi, double lo, double error) {
+  Ball result;
+  arb_add(result.get(), to_ball(hi, 0).get(), to_ball(lo, 0).get(), ARF_PREC_EXACT);
+  mag_t radius;
+  mag_init(radius);
+  mag_set_d(radius, error);  // rounds up
+  arb_add_error_mag(result.get(), radius);
+  mag_clear(radius);
   return result;
 }
 
 double nearest_to_midpoint(const Ball& ball) { return arf_get_d(arb_midref(ball.get()), ARF_RND_NEAR); }
+
+long certain_bits(const Ball& ball) { return arb_rel_accuracy_bits(ball.get()); }
 
 }  // namespace kernel
 
@@ -64,12 +98,15 @@ class End {
 
 // The two ends, rounded outward to more bits than the midpoint has, so that rounding them again loses no relevant
 // accuracy.
-void get_ends(const Ball& ball, End& lower, End& upper) {
-  constexpr long kSpareBits = 128;
-  const long bits = std::max(arb_bits(ball.get()), 0L) + kSpareBits;
-  arb_get_lbound_arf(lower.get(), ball.get(), bits);
-  arb_get_ubound_arf(upper.get(), ball.get(), bits);
-}
+struct Ends {
+  explicit Ends(const Ball& ball) {
+    constexpr long kSpareBits = 128;
+    const long bits = std::max(arb_bits(ball.get()), 0L) + kSpareBits;
+    arb_get_lbound_arf(lower.get(), ball.get(), bits);
+    arb_get_ubound_arf(upper.get(), ball.get(), bits);
+  }
+  End lower, upper;
+};
 
 // Significant decimals and the power of ten: the number is 0.DDD * 10^exponent.
 struct Decimals {
@@ -142,38 +179,28 @@ Enclosure& Enclosure::operator+=(const Enclosure& other) {
 
 double Enclosure::lower() const {
   const kernel::StandardArithmetic arithmetic;
-  End lower_end;
-  End upper_end;
-  get_ends(ball(), lower_end, upper_end);
-  return arf_get_d(lower_end.get(), ARF_RND_FLOOR);
+  return arf_get_d(Ends(ball()).lower.get(), ARF_RND_FLOOR);
 }
 
 double Enclosure::upper() const {
   const kernel::StandardArithmetic arithmetic;
-  End lower_end;
-  End upper_end;
-  get_ends(ball(), lower_end, upper_end);
-  return arf_get_d(upper_end.get(), ARF_RND_CEIL);
+  return arf_get_d(Ends(ball()).upper.get(), ARF_RND_CEIL);
 }
 
 std::optional<double> Enclosure::nearest() const {
   const kernel::StandardArithmetic arithmetic;
-  End lower_end;
-  End upper_end;
-  get_ends(ball(), lower_end, upper_end);
-  const double low = arf_get_d(lower_end.get(), ARF_RND_NEAR);
-  const double high = arf_get_d(upper_end.get(), ARF_RND_NEAR);
+  const Ends ends(ball());
+  const double low = arf_get_d(ends.lower.get(), ARF_RND_NEAR);
+  const double high = arf_get_d(ends.upper.get(), ARF_RND_NEAR);
   if (low != high) return std::nullopt;  // NaN included
   return high == 0.0 ? 0.0 : high;       // never -0
 }
 
 std::optional<std::string> Enclosure::decimals(int digits) const {
   const kernel::StandardArithmetic arithmetic;
-  End lower_end;
-  End upper_end;
-  get_ends(ball(), lower_end, upper_end);
-  const Decimals low = decimals_of(lower_end, digits);
-  if (low != decimals_of(upper_end, digits)) return std::nullopt;
+  const Ends ends(ball());
+  const Decimals low = decimals_of(ends.lower, digits);
+  if (low != decimals_of(ends.upper, digits)) return std::nullopt;
   return format(low);
 }
 

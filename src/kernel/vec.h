@@ -1,4 +1,4 @@
-// Vectors of doubles, only for pictures and counts.
+// Vectors of doubles, without bounds on errors.
 #pragma once
 
 #include "exactff/geometry.h"

@@ -41,8 +41,12 @@ struct ControlSource : PreparedSource {
 // needed.
 class ExactVisibility : public sampled::PatchVisibility {
  public:
-  ExactVisibility(const Scene& scene, const Receiver& receiver, const ExactSource& source)
-      : scene_(scene), receiver_(receiver), planes_(source.planes().planes), shares_(planes_.size()) {}
+  ExactVisibility(const Scene& scene, const Receiver& receiver, const ExactSource& source, Workspace& workspace)
+      : scene_(scene),
+        receiver_(receiver),
+        planes_(source.planes().planes),
+        workspace_(workspace),
+        shares_(planes_.size()) {}
 
   void start(std::uint32_t piece) override {
     piece_ = piece;
@@ -74,7 +78,7 @@ class ExactVisibility : public sampled::PatchVisibility {
     const auto found = std::find_if(planes_.begin(), planes_.end(), holds_piece);
     if (found == planes_.end()) throw std::logic_error("a sub-patch lies in no plane of its source");
     const auto plane = static_cast<std::size_t>(found - planes_.begin());
-    if (!shares_[plane]) shares_[plane].emplace(scene_, receiver_, planes_[plane]);
+    if (!shares_[plane]) shares_[plane].emplace(scene_, receiver_, planes_[plane], workspace_);
     share_ = &*shares_[plane];
     share_->start(piece_);
     started_ = true;
@@ -83,6 +87,7 @@ class ExactVisibility : public sampled::PatchVisibility {
   const Scene& scene_;
   const Receiver& receiver_;
   const std::vector<visibility::SourcePlane>& planes_;
+  Workspace& workspace_;
   std::vector<std::optional<exact::VisibleShare>> shares_;  // by plane
   exact::VisibleShare* share_ = nullptr;
   std::uint32_t piece_ = 0;
@@ -105,7 +110,7 @@ class Control : public Evaluator {
     const kernel::StandardArithmetic arithmetic;
     const auto& source = own<ControlSource>(prepared);
     const double rho_b = largest_rho_b(scene_, receiver_, source.radiosity);
-    ExactVisibility visibility(scene_, receiver_, source.exact);
+    ExactVisibility visibility(scene_, receiver_, source.exact, workspace_);
     const AdaptiveResult found = solver_.form_factor(receiver_, source.adaptive, rho_b, options_, visibility);
     Estimate result{found.form_factor, {}};
     count_leaves(found, result.counters);
@@ -119,6 +124,7 @@ class Control : public Evaluator {
   const AdaptiveSolver& solver_;
   AdaptiveOptions options_;
   Receiver receiver_;
+  Workspace workspace_;
 };
 
 class ControlOnScene : public PreparedScene {

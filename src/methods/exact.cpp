@@ -25,7 +25,7 @@ class Exact : public Evaluator {
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& source) override {
     const auto& prepared = own<ExactSourcePrepared>(source);
-    exact_form_factor(scene_, receiver_, prepared.source, options_, found_);
+    exact_form_factor(scene_, receiver_, prepared.source, options_, found_, workspace_);
     Estimate result;
     result.form_factor = found_.value;
     std::uint64_t occluders = 0, edges = 0;
@@ -45,6 +45,7 @@ class Exact : public Evaluator {
   ExactOptions options_;
   Receiver receiver_;
   FormFactor found_;  // its memory is reused
+  Workspace workspace_;
 };
 
 class ExactOnScene : public PreparedScene {

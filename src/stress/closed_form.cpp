@@ -21,25 +21,17 @@ void ClosedForm::add(const Rectangle& rectangle, const Rational& weight) {
 
 namespace {
 
-// root = sqrt(a^2 + h^2), angle = atan(b / root) / root
-void root_and_angle(const Rational& a, const Rational& b, const Rational& h, long bits, Ball& angle) {
-  Ball root = to_ball(Rational(a * a + h * h), bits);
-  arb_sqrt(root.get(), root.get(), bits);
-  arb_div(angle.get(), to_ball(b, bits).get(), root.get(), bits);
-  arb_atan(angle.get(), angle.get(), bits);
-  arb_div(angle.get(), angle.get(), root.get(), bits);
+// atan(b / root) / root, root = sqrt(a^2 + h^2)
+Ball angle_over_root(const Rational& a, const Rational& b, const Rational& h, long bits) {
+  const Ball root = sqrt(to_ball(Rational(a * a + h * h), bits));
+  return atan(to_ball(b, bits) / root) / root;
 }
 
-// 2 pi n . (Hu, Hv, +-G) at one corner.
+// 2 pi n . (Hu, Hv, +-G) at one corner: H has atan(v/A)/A and atan(u/B)/B.
 Ball corner_value(const Rational& u, const Rational& v, const Rational& h, const std::array<Rational, 3>& n,
                   long bits) {
-  Ball in_u, in_v;  // atan(v/A)/A, atan(u/B)/B
-  root_and_angle(u, v, h, bits, in_u);
-  root_and_angle(v, u, h, bits, in_v);
-  arb_mul(in_u.get(), in_u.get(), to_ball(Rational(n[2] * u - n[0] * h), bits).get(), bits);
-  arb_mul(in_v.get(), in_v.get(), to_ball(Rational(n[2] * v - n[1] * h), bits).get(), bits);
-  arb_add(in_u.get(), in_u.get(), in_v.get(), bits);
-  return in_u;
+  return angle_over_root(u, v, h, bits) * to_ball(Rational(n[2] * u - n[0] * h), bits) +
+         angle_over_root(v, u, h, bits) * to_ball(Rational(n[2] * v - n[1] * h), bits);
 }
 
 // 2 pi n . L
@@ -48,35 +40,26 @@ Ball rectangle_value(const Rectangle& r, const std::array<Rational, 3>& normal, 
   const Rational h = abs(r.distance);
   std::array<Rational, 3> n = {normal[(axis + 1) % 3], normal[(axis + 2) % 3], normal[axis]};
   if (sign(r.distance) < 0) n[2] = -n[2];
-  Ball sum = corner_value(r.u.high, r.v.high, h, n, bits);
-  arb_sub(sum.get(), sum.get(), corner_value(r.u.low, r.v.high, h, n, bits).get(), bits);
-  arb_sub(sum.get(), sum.get(), corner_value(r.u.high, r.v.low, h, n, bits).get(), bits);
-  arb_add(sum.get(), sum.get(), corner_value(r.u.low, r.v.low, h, n, bits).get(), bits);
-  return sum;
+  const auto at = [&](const Rational& u, const Rational& v) { return corner_value(u, v, h, n, bits); };
+  return at(r.u.high, r.v.high) - at(r.u.low, r.v.high) - at(r.u.high, r.v.low) + at(r.u.low, r.v.low);
 }
 
 }  // namespace
 
 Ball ClosedForm::evaluate(long bits) const {
-  Ball sum;
+  Ball sum(bits);
   for (const Term& term : terms_) {
-    const Ball value = rectangle_value(term.rectangle, normal_, bits);
-    arb_addmul(sum.get(), value.get(), to_ball(term.weight, bits).get(), bits);
+    sum.add_product(rectangle_value(term.rectangle, normal_, bits), to_ball(term.weight, bits));
   }
-  Ball scale = to_ball(Rational(normal_[0] * normal_[0] + normal_[1] * normal_[1] + normal_[2] * normal_[2]), bits);
-  arb_sqrt(scale.get(), scale.get(), bits);
-  arb_div(sum.get(), sum.get(), scale.get(), bits);
-  arb_const_pi(scale.get(), bits);
-  arb_mul_2exp_si(scale.get(), scale.get(), 1);
-  arb_div(sum.get(), sum.get(), scale.get(), bits);
-  return sum;
+  const Rational squared_length = normal_[0] * normal_[0] + normal_[1] * normal_[1] + normal_[2] * normal_[2];
+  return sum / sqrt(to_ball(squared_length, bits)) / twice(kernel::pi(bits));
 }
 
 Enclosure ClosedForm::value() const {
   if (terms_.empty()) return {};
   constexpr long kWanted = 120, kFirst = 192, kLast = 1L << 17;
   Ball ball = evaluate(kFirst);
-  for (long bits = 2 * kFirst; bits <= kLast && arb_rel_accuracy_bits(ball.get()) < kWanted; bits *= 2) {
+  for (long bits = 2 * kFirst; bits <= kLast && kernel::certain_bits(ball) < kWanted; bits *= 2) {
     ball = evaluate(bits);
   }
   return Enclosure(ball);

@@ -31,12 +31,9 @@ constexpr int kTruthDigits = 40;
 double relative_difference(double value, const Enclosure& truth, const Enclosure& scale) {
   if (!std::isfinite(value)) return std::numeric_limits<double>::quiet_NaN();
   constexpr long kBits = 256;
-  Ball difference, quotient;
-  arb_set_d(difference.get(), value);
-  arb_sub(difference.get(), difference.get(), truth.ball().get(), kBits);
-  arb_abs(difference.get(), difference.get());
-  arb_div(quotient.get(), difference.get(), scale.ball().get(), kBits);
-  const double error = kernel::nearest_to_midpoint(quotient);
+  const auto at_bits = [](const Enclosure& of) { return kernel::with_bits(of.ball(), kBits); };
+  const double error =
+      std::abs(kernel::nearest_to_midpoint((kernel::to_ball(value, kBits) - at_bits(truth)) / at_bits(scale)));
   return error < kTruthIsGoodTo ? 0.0 : error;
 }
 

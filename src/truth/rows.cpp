@@ -145,7 +145,7 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
   const std::size_t source = row % sources_.size();
   const ExactOptions options{.engine = request_.engine, .visible_fraction = request_.visible_fraction};
   const FormFactor& f = results.exact;
-  exact_form_factor(*request_.scene, receiver, sources_[source], options, results.exact);
+  exact_form_factor(*request_.scene, receiver, sources_[source], options, results.exact, results.workspace);
   Status status = f.status;
   Line line(lines);
   line << id(row / sources_.size()) << (receiver.on ? request_.scene->name_of(*receiver.on) : std::string())
@@ -169,7 +169,7 @@ const FormFactor& Rows::without_occluders(const Receiver& receiver, const ExactS
   static const std::vector<FaceId> kNone;
   if (nothing_in_the_shaft(results.exact)) return results.exact;
   const ExactOptions options{.engine = request_.engine, .only_occluders = &kNone};
-  exact_form_factor(*request_.scene, receiver, source, options, results.unoccluded);
+  exact_form_factor(*request_.scene, receiver, source, options, results.unoccluded, results.workspace);
   return results.unoccluded;
 }
 

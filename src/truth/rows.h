@@ -40,6 +40,7 @@ class Rows {
   // Objects that a thread reuses from row to row, only to avoid reallocation.
   struct Results {
     FormFactor exact, unoccluded;
+    Workspace workspace;
   };
   // Computes a row and appends its line.
   void append(std::uint64_t row, std::string& lines, Results& results) const;

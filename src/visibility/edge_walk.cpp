@@ -7,8 +7,6 @@
 #include "scene/closed_surfaces.h"
 #include "scene/scene_data.h"
 #include "visibility/plane_frame.h"
-#include "visibility/side_planes.h"
-#include "visibility/visible_edges.h"
 
 namespace exactff::visibility {
 
@@ -19,29 +17,6 @@ using kernel::Ring;
 
 namespace {
 
-// Memory that each thread keeps from one call to the next.
-struct Workspace {
-  VisibleEdges edges;
-  std::vector<HalfSpace> half_spaces;
-  HalfSpaceGroups shaft;  // the same
-  std::vector<SidePlane> side_planes;
-  std::vector<CornerId> corners, ring;
-  std::vector<int> depths;             // of the current corners: on which side of the plane that may cut them
-  std::vector<std::uint32_t> seen_in;  // by piece: the last run that looked at it
-  // By closed surface: the last run that looked at it, and whether its pieces that face away from x were left out.
-  struct Surface {
-    std::uint32_t run = 0;
-    bool backs_left_out = false;
-  };
-  std::vector<Surface> surfaces;
-  std::uint32_t run = 0;
-};
-
-Workspace& workspace() {
-  thread_local Workspace own;
-  return own;
-}
-
 constexpr unsigned kSidePlanesBeforeEdges = 2;
 constexpr Sides kInside{.certain = true, .some_above_each = true, .all_above_each = true};
 
@@ -49,22 +24,19 @@ double largest(const Approx3& a) { return std::max({std::abs(a.x), std::abs(a.y)
 
 class EdgeWalk {
  public:
-  EdgeWalk(const View& view, const SourcePlane& plane, const Request& request)
+  EdgeWalk(const View& view, const SourcePlane& plane, const Request& request, EdgeWorkspace& workspace)
       : view_(view),
         plane_(plane),
         request_(request),
         pieces_(view.scene.pieces()),
         vertices_(view.scene.vertices()),
         surfaces_(closed_surfaces(view.scene)),
-        work_(workspace()),
+        work_(workspace),
         outlines_(work_.edges.outlines()) {}
 
   std::optional<PlaneVisibility> run() {
-    PlaneRecord& record = result_.record;
-    record.outcome = find_outcome();
+    result_.record.outcome = find_outcome();
     if (gave_up_) return std::nullopt;
-    record.edges = work_parts_.size();
-    if (!work_parts_.empty()) result_.edges = &work_.edges;
     if (request_.fraction) result_.fraction = fraction();
     return std::move(result_);
   }
@@ -78,7 +50,7 @@ class EdgeWalk {
   [[nodiscard]] bool culls() const { return request_.culling == ShaftCulling::kTree; }
   void start_run();
   bool visit(std::uint32_t piece, OutlineId source, bool inside);
-  void find_corners(std::span<const std::uint32_t> vertices);
+  void find_corners(std::span<const std::uint32_t> vertices) { outlines_.corners_of(vertices, work_.corners); }
   [[nodiscard]] Sides sides(OutlineId source);
   [[nodiscard]] bool is_left_out(std::uint32_t piece, int facing);
   [[nodiscard]] bool may_leave_out_backs(std::uint32_t surface) const;
@@ -89,9 +61,8 @@ class EdgeWalk {
   [[nodiscard]] int depth_sign(std::uint32_t vertex) const;
   [[nodiscard]] int toward_sign(CornerId corner);
   [[nodiscard]] int facing(const Piece& piece) const;
-  OutlineId add_whole(bool mirrored);
   void find_depths();
-  OutlineId add_near_part(std::span<const std::uint32_t> vertices, bool mirrored);
+  OutlineId add_occluder(std::span<const std::uint32_t> vertices, bool is_cut, bool mirrored);
   OutlineId add_part_above(Outlines::Plane plane, std::span<const std::uint32_t> vertices, bool mirrored);
   [[nodiscard]] Rational fraction();
 
@@ -101,10 +72,9 @@ class EdgeWalk {
   const std::span<const Piece> pieces_;
   const std::span<const Vec3> vertices_;
   const ClosedSurfaces& surfaces_;
-  Workspace& work_;
+  EdgeWorkspace& work_;
   Outlines& outlines_;
   PlaneVisibility result_;
-  std::span<const VisibleEdges::Part> work_parts_;
   std::size_t source_count_ = 0;
   bool gave_up_ = false;
   bool gathered_all_ = true;  // the receiver lies on none of the source's faces
@@ -123,12 +93,14 @@ Outcome EdgeWalk::find_outcome() {
   if (!gather_occluders()) return Outcome::kHiddenByOne;
   // 4., 6. and 7. Find the visible parts of every edge.
   gave_up_ = !work_.edges.find(source_count_);
-  work_parts_ = work_.edges.parts();
-  result_.record.pairs = work_.edges.pairs();
-  result_.record.undecided_pairs = work_.edges.undecided_pairs();
-  result_.record.source_joined = source_count_ > 1;
-  if (result_.record.candidates == 0) return Outcome::kUnoccluded;
-  return work_parts_.empty() ? Outcome::kHiddenByUnion : Outcome::kPartlyHidden;
+  result_.boundary = VisibleBoundary(work_.edges);
+  PlaneRecord& record = result_.record;
+  record.pairs = work_.edges.pairs();
+  record.undecided_pairs = work_.edges.undecided_pairs();
+  record.edges = work_.edges.parts().size();
+  record.source_joined = source_count_ > 1;
+  if (record.candidates == 0) return Outcome::kUnoccluded;
+  return result_.boundary.empty() ? Outcome::kHiddenByUnion : Outcome::kPartlyHidden;
 }
 
 bool EdgeWalk::gather_source() {
@@ -196,7 +168,7 @@ void EdgeWalk::start_run() {
   work_.surfaces.resize(surfaces_.surfaces().size());
   if (++work_.run == 0) {
     std::fill(work_.seen_in.begin(), work_.seen_in.end(), 0U);
-    std::fill(work_.surfaces.begin(), work_.surfaces.end(), Workspace::Surface{});
+    std::fill(work_.surfaces.begin(), work_.surfaces.end(), EdgeWorkspace::Surface{});
     work_.run = 1;
   }
 }
@@ -225,6 +197,7 @@ bool EdgeWalk::visit(std::uint32_t index, OutlineId source, bool inside) {
   const Piece& piece = pieces_[index];
   const auto vertices = view_.scene.corners(piece);
   ++result_.record.tree_candidates;
+  // 3. Only what enters the shaft,
   if (!inside) find_corners(vertices);
   const Sides sides = inside ? kInside : this->sides(source);
   if (!sides.some_above_each) return false;
@@ -234,15 +207,16 @@ bool EdgeWalk::visit(std::uint32_t index, OutlineId source, bool inside) {
   ++result_.record.candidates;
   const bool left_out = is_left_out(index, facing);
   if (left_out && sides.all_above_each) return false;
-  const bool mirrored = facing > 0;
+  // clipped by the source's plane.
   if (sides.some_below_first) ++result_.record.clipped;
   if (inside) find_corners(vertices);
-  const OutlineId outline = sides.some_below_first ? add_near_part(vertices, mirrored) : add_whole(mirrored);
+  const OutlineId outline = add_occluder(vertices, sides.some_below_first, facing > 0);
   if (sides.all_above_each && culls()) {
     outlines_.set_inside_source(outline);
     return false;
   }
   outlines_.set_within_lines(outline, sides.wholly_above >> kSidePlanesBeforeEdges);
+  // 5. Does it hide all?
   if (work_.edges.hides_all(outline, source_count_)) {
     result_.cutters = {piece.face};
     return true;
@@ -305,8 +279,6 @@ void EdgeWalk::make_side_planes(OutlineId source) {
     work_.side_planes.push_back({edge.normal, 0.0, edge.error, 0.0});
   }
 }
-
-void EdgeWalk::find_corners(std::span<const std::uint32_t> vertices) { outlines_.corners_of(vertices, work_.corners); }
 
 Sides EdgeWalk::sides(OutlineId source) {
   const Sides sides = sides_by_filter();
@@ -372,15 +344,14 @@ int EdgeWalk::facing(const Piece& piece) const {
   return filtered != kUncertain ? filtered : kernel::orientation(view_.x, vertex(0), vertex(1), vertex(2));
 }
 
-OutlineId EdgeWalk::add_whole(bool mirrored) {
+// The part of the current piece on x's side of the source's plane.
+OutlineId EdgeWalk::add_occluder(std::span<const std::uint32_t> vertices, bool is_cut, bool mirrored) {
+  if (is_cut) {
+    find_depths();
+    return add_part_above(Outlines::Plane::kSource, vertices, mirrored);
+  }
   if (mirrored) std::reverse(work_.corners.begin(), work_.corners.end());
   return outlines_.add(work_.corners, true);
-}
-
-// The part on x's side of the source's plane.
-OutlineId EdgeWalk::add_near_part(std::span<const std::uint32_t> vertices, bool mirrored) {
-  find_depths();
-  return add_part_above(Outlines::Plane::kSource, vertices, mirrored);
 }
 
 // The part where depths are not negative.
@@ -399,7 +370,7 @@ OutlineId EdgeWalk::add_part_above(Outlines::Plane plane, std::span<const std::u
 }
 
 Rational EdgeWalk::fraction() {
-  if (work_parts_.empty()) return 0;
+  if (result_.boundary.empty()) return 0;
   if (result_.record.outcome == Outcome::kUnoccluded && !result_.record.horizon_clipped && gathered_all_) return 1;
   std::vector<Ring> source;
   for (OutlineId o = 0; o < source_count_; ++o) {
@@ -411,20 +382,20 @@ Rational EdgeWalk::fraction() {
   }
   const PlaneFrame frame(plane_.normal.exact, source);
   Rational doubled;
-  for (const VisibleEdges::Part& part : work_parts_) {
-    const BoundaryPiece piece = work_.edges.exact(part);
+  result_.boundary.for_each_piece([&](const BoundaryPiece& piece) {
     const Point2 p = frame.to_plane(piece.a * piece.begin.l + piece.b * piece.begin.m);
     const Point2 q = frame.to_plane(piece.a * piece.end.l + piece.b * piece.end.m);
     doubled += p.u * q.v - q.u * p.v;
-  }
+  });
   if (!frame.keeps_orientation()) doubled = -doubled;
   return share_of_source(view_, plane_, frame, doubled);
 }
 
 }  // namespace
 
-std::optional<PlaneVisibility> find_by_edges(const View& view, const SourcePlane& plane, const Request& request) {
-  return EdgeWalk(view, plane, request).run();
+std::optional<PlaneVisibility> find_by_edges(const View& view, const SourcePlane& plane, const Request& request,
+                                             EdgeWorkspace& workspace) {
+  return EdgeWalk(view, plane, request, workspace).run();
 }
 
 }  // namespace exactff::visibility

@@ -1,6 +1,7 @@
-// The visible boundary by the edge engine: the steps of visible_boundary.h, by predicates. A corner is constructed only
-// where an edge crosses the horizon or the source's plane (plane_crossings.h).
+// The visible boundary by the edge engine, by predicates alone. A corner is constructed only where an edge crosses the
+// horizon or the source's plane (plane_crossings.h).
 //
+// Steps, stopping as soon as nothing is left:
 //   1. cull: x behind or in the plane, or nothing above the horizon;
 //   2. clip the pieces that the receiver's horizon cuts;
 //   3. shaft: candidates from the bounding-volume tree; then signs of their corners' heights above the source's edges;
@@ -18,12 +19,33 @@
 // hide all.
 #pragma once
 
-#include "visibility/visible_boundary.h"
+#include "visibility/plane_visibility.h"
+#include "visibility/side_planes.h"
 
 namespace exactff::visibility {
 
-// Lists a cutter only where one occluder hides all, and keeps no geometry.
+// What the engine found last, and memory that it reuses from one plane to the next. The memory has no effect on any
+// result.
+struct EdgeWorkspace {
+  VisibleEdges edges;
+  std::vector<HalfSpace> half_spaces;
+  HalfSpaceGroups shaft;  // the same
+  std::vector<SidePlane> side_planes;
+  std::vector<CornerId> corners, ring;
+  std::vector<int> depths;             // of the current corners: on which side of the plane that may cut them
+  std::vector<std::uint32_t> seen_in;  // by piece: the last run that looked at it
+  // By closed surface: the last run that looked at it, and whether its pieces that face away from x were left out.
+  struct Surface {
+    std::uint32_t run = 0;
+    bool backs_left_out = false;
+  };
+  std::vector<Surface> surfaces;
+  std::uint32_t run = 0;
+};
+
+// Lists a cutter only where one occluder hides all.
 // Returns nullopt where the Booleans are the better method (visible_edges.h).
-std::optional<PlaneVisibility> find_by_edges(const View& view, const SourcePlane& plane, const Request& request);
+std::optional<PlaneVisibility> find_by_edges(const View& view, const SourcePlane& plane, const Request& request,
+                                             EdgeWorkspace& workspace);
 
 }  // namespace exactff::visibility

@@ -5,10 +5,12 @@
 #include <numeric>
 
 #include "kernel/lanes.h"
+#include "kernel/vec.h"
 
 namespace exactff::visibility {
 
 using kernel::Approx3;
+using kernel::cross;
 using Edge = Outlines::Edge;
 using Outline = Outlines::Outline;
 
@@ -27,9 +29,6 @@ constexpr std::size_t kMostInCaches = 4096;  // outlines
 constexpr std::uint32_t kStrip = 32;         // columns
 
 double dot(const Vec3& a, const Approx3& t) { return a.x * t.x + a.y * t.y + a.z * t.z; }
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 // Of length 1 or very slightly less.
 Vec3 unit(const Vec3& a) {
   const double s = (1.0 - 0x1p-40) / std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);

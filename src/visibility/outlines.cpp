@@ -89,12 +89,12 @@ void Outlines::corners_of(std::span<const std::uint32_t> vertices, std::vector<C
 }
 
 void Outlines::set_source_plane(const ExactVec3& normal, const FineNormal& fine_normal, const Vec3& point) {
-  crossings_[std::size_t(Plane::kSource)].start(x_, fine_normal, point, scale_exponent_);
+  crossings(Plane::kSource).start(x_, fine_normal, point, scale_exponent_);
   normal_ = &normal;
 }
 
 void Outlines::set_horizon(const Vec3& normal) {
-  crossings_[std::size_t(Plane::kHorizon)].start(x_, fine_normal(normal), x_, scale_exponent_);
+  crossings(Plane::kHorizon).start(x_, fine_normal(normal), x_, scale_exponent_);
   kernel::set_difference(horizon_, normal, Vec3{});
 }
 
@@ -116,17 +116,6 @@ CornerId Outlines::add_crossing(Plane plane, std::uint32_t p, std::uint32_t q) {
 }
 
 OutlineId Outlines::add(std::span<const CornerId> corners, bool whole) {
-  add_edges(corners, whole);
-  return static_cast<OutlineId>(outlines_.size() - 1);
-}
-
-OutlineId Outlines::add(const Piece& piece, bool mirrored) {
-  corners_of(scene_->corners(piece), ring_);
-  if (mirrored) std::reverse(ring_.begin(), ring_.end());
-  return add(ring_, true);
-}
-
-void Outlines::add_edges(std::span<const CornerId> corners, bool whole) {
   const auto outline = static_cast<OutlineId>(outlines_.size());
   outlines_.push_back(
       {static_cast<EdgeId>(edges_.size()), static_cast<std::uint32_t>(corners.size()), whole, false, 0});
@@ -139,6 +128,7 @@ void Outlines::add_edges(std::span<const CornerId> corners, bool whole) {
                       {q.y * p.z - q.z * p.y, q.z * p.x - q.x * p.z, q.x * p.y - q.y * p.x},
                       kSideError * corners_[a].size * corners_[b].size});
   }
+  return outline;
 }
 
 void Outlines::remove_last() {

@@ -77,8 +77,6 @@ class Outlines {
   [[nodiscard]] CornerId add_crossing(Plane plane, std::uint32_t p, std::uint32_t q);
   // Counter-clockwise as x sees it. `whole`: all of a piece of the scene.
   OutlineId add(std::span<const CornerId> corners, bool whole);
-  // A piece of the scene. `mirrored`: its corners run clockwise as x sees them.
-  OutlineId add(const Piece& piece, bool mirrored);
 
   void remove_last();
   void set_inside_source(OutlineId id) { outlines_[id].inside_source = true; }
@@ -137,13 +135,12 @@ class Outlines {
   };
   CornerId corner_of_vertex(std::uint32_t any_vertex);
   CornerId add_corner(const kernel::Approx3& t, double size, const Origin& origin);
-  [[nodiscard]] const PlaneCrossings& crossings(Plane plane) const { return crossings_[std::size_t(plane)]; }
+  [[nodiscard]] PlaneCrossings& crossings(Plane plane) { return crossings_[std::size_t(plane)]; }
   [[nodiscard]] const kernel::ExactVec3& exact_normal(Plane plane) const {
     return plane == Plane::kSource ? *normal_ : horizon_.v;
   }
   // Computed at first use and kept in exact_.
   [[nodiscard]] const kernel::ScaledVec3& scaled(CornerId id);
-  void add_edges(std::span<const CornerId> corners, bool whole);
 
   const Scene* scene_ = nullptr;
   std::span<const Vec3> vertices_;
@@ -166,9 +163,7 @@ class Outlines {
   std::vector<std::pair<std::uint32_t, CornerId>> corner_of_vertex_;  // (run, corner) for every vertex of the scene
   std::uint32_t run_ = 0;
   bool shared_corners_ = false;
-  // Scratch.
-  std::vector<CornerId> ring_;
-  kernel::Integer height_;
+  kernel::Integer height_;  // scratch
 };
 
 }  // namespace exactff::visibility

@@ -134,12 +134,6 @@ std::optional<PlaneCrossings::Fine> PlaneCrossings::fine(const Vec3& p, const Ve
 
 namespace {
 
-// Scratch of set_exact, kept to avoid reallocation.
-struct Scratch {
-  ScaledVec3 t_p, t_q, d_p, d_q;
-  Integer g_p, g_q;
-};
-
 void set_magnitude_of_dot(Integer& result, const ExactVec3& a, const ExactVec3& b) {
   kernel::set_dot(result, a, b);
   mpz_abs(result.get_mpz_t(), result.get_mpz_t());
@@ -154,23 +148,21 @@ void set_sum_of_products(Integer& result, const Integer& a, const Integer& b, co
 }  // namespace
 
 void PlaneCrossings::set_exact(ScaledVec3& result, const Vec3& p, const Vec3& q, const ExactVec3& normal,
-                               long fine_exponent) const {
-  thread_local Scratch scratch;
-  auto& [t_p, t_q, d_p, d_q, g_p, g_q] = scratch;
-  kernel::set_difference(t_p, p, x_);
-  kernel::set_difference(t_q, q, x_);
-  kernel::set_difference(d_p, p, point_);
-  kernel::set_difference(d_q, q, point_);
-  const long t_exponent = std::min(t_p.exponent, t_q.exponent), d_exponent = std::min(d_p.exponent, d_q.exponent);
-  lower_exponent(t_p, t_exponent);
-  lower_exponent(t_q, t_exponent);
-  lower_exponent(d_p, d_exponent);
-  lower_exponent(d_q, d_exponent);
-  set_magnitude_of_dot(g_p, normal, d_p.v);
-  set_magnitude_of_dot(g_q, normal, d_q.v);
-  set_sum_of_products(result.v.x, t_p.v.x, g_q, t_q.v.x, g_p);
-  set_sum_of_products(result.v.y, t_p.v.y, g_q, t_q.v.y, g_p);
-  set_sum_of_products(result.v.z, t_p.v.z, g_q, t_q.v.z, g_p);
+                               long fine_exponent) {
+  kernel::set_difference(t_p_, p, x_);
+  kernel::set_difference(t_q_, q, x_);
+  kernel::set_difference(d_p_, p, point_);
+  kernel::set_difference(d_q_, q, point_);
+  const long t_exponent = std::min(t_p_.exponent, t_q_.exponent), d_exponent = std::min(d_p_.exponent, d_q_.exponent);
+  lower_exponent(t_p_, t_exponent);
+  lower_exponent(t_q_, t_exponent);
+  lower_exponent(d_p_, d_exponent);
+  lower_exponent(d_q_, d_exponent);
+  set_magnitude_of_dot(g_p_, normal, d_p_.v);
+  set_magnitude_of_dot(g_q_, normal, d_q_.v);
+  set_sum_of_products(result.v.x, t_p_.v.x, g_q_, t_q_.v.x, g_p_);
+  set_sum_of_products(result.v.y, t_p_.v.y, g_q_, t_q_.v.y, g_p_);
+  set_sum_of_products(result.v.z, t_p_.v.z, g_q_, t_q_.v.z, g_p_);
   result.exponent = t_exponent + d_exponent + 2L * scale_exponent_ - bit_length(normal) + fine_exponent;
 }
 

@@ -41,7 +41,7 @@ class PlaneCrossings {
   // The exact crossing. Reuses the memory of `result`. v 2^exponent is the value that a Fine with `fine_exponent`
   // approximates.
   void set_exact(kernel::ScaledVec3& result, const Vec3& p, const Vec3& q, const kernel::ExactVec3& normal,
-                 long fine_exponent) const;
+                 long fine_exponent);
 
  private:
   Vec3 x_, point_;
@@ -49,6 +49,9 @@ class PlaneCrossings {
   int zero_axis_ = -1;  // along which all crossings are 0; -1: none
   int scale_exponent_ = 0;
   double scale_ = 1.0;
+  // Scratch of set_exact.
+  kernel::ScaledVec3 t_p_, t_q_, d_p_, d_q_;
+  kernel::Integer g_p_, g_q_;
 };
 
 }  // namespace exactff::visibility

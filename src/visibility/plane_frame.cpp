@@ -31,15 +31,12 @@ PlaneFrame::PlaneFrame(const ExactVec3& front, std::span<const Ring> rings) : m_
   for (const Ring& ring : rings) {
     for (const kernel::Direction& corner : ring) {
       const Point2 point = affine(corner.exact);
-      left_ = first ? point.u : std::min(left_, point.u);
-      bottom_ = first ? point.v : std::min(bottom_, point.v);
-      high.u = first ? point.u : std::max(high.u, point.u);
-      high.v = first ? point.v : std::max(high.v, point.v);
+      low_ = first ? point : Point2{std::min(low_.u, point.u), std::min(low_.v, point.v)};
+      high = first ? point : Point2{std::max(high.u, point.u), std::max(high.v, point.v)};
       first = false;
     }
   }
-  width_ = high.u - left_;
-  height_ = high.v - bottom_;
+  size_ = {high.u - low_.u, high.v - low_.v};
 }
 
 Point2 PlaneFrame::affine(const ExactVec3& t) const {
@@ -48,15 +45,13 @@ Point2 PlaneFrame::affine(const ExactVec3& t) const {
 }
 
 Point2 PlaneFrame::to_plane(const ExactVec3& direction) const {
-  Point2 point = affine(direction);
-  point.u = (point.u - left_) / width_;
-  point.v = (point.v - bottom_) / height_;
-  return point;
+  const Point2 point = affine(direction);
+  return {(point.u - low_.u) / size_.u, (point.v - low_.v) / size_.v};
 }
 
 ExactVec3 PlaneFrame::to_direction(const Point2& point) const {
-  const Rational p = left_ + point.u * width_;
-  const Rational q = bottom_ + point.v * height_;
+  const Rational p = low_.u + point.u * size_.u;
+  const Rational q = low_.v + point.v * size_.v;
   const Rational r = (1 - m_[i_] * p - m_[j_] * q) / m_[k_];
   Integer denominator;
   mpz_lcm(denominator.get_mpz_t(), p.get_den_mpz_t(), q.get_den_mpz_t());

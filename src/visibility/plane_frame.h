@@ -6,6 +6,7 @@
 // square: CGAL's filters need numbers of moderate size, and affine maps preserve everything that the Booleans test.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -13,10 +14,12 @@
 
 namespace exactff::visibility {
 
-struct Point2 {
-  kernel::Rational u;
-  kernel::Rational v;
+template <class Number>
+struct PlanePoint {
+  Number u;
+  Number v;
 };
+using Point2 = PlanePoint<kernel::Rational>;
 using Polygon2 = std::vector<Point2>;
 
 class PlaneFrame {
@@ -31,8 +34,13 @@ class PlaneFrame {
   [[nodiscard]] Polygon2 to_polygon(const kernel::Ring& ring_from_x) const;
   // True if counter-clockwise in (u, v) is counter-clockwise as x sees it.
   [[nodiscard]] bool keeps_orientation() const { return keeps_orientation_; }
+  // i and j.
+  [[nodiscard]] std::array<int, 2> axes() const { return {i_, j_}; }
+  // The bounding box in (p, q).
+  [[nodiscard]] const Point2& low() const { return low_; }
+  [[nodiscard]] const Point2& size() const { return size_; }
   // Area in (p, q) of a region of area 1 in (u, v).
-  [[nodiscard]] kernel::Rational unit_area() const { return width_ * height_; }
+  [[nodiscard]] kernel::Rational unit_area() const { return size_.u * size_.v; }
 
  private:
   [[nodiscard]] Point2 affine(const kernel::ExactVec3& direction) const;  // (p, q)
@@ -42,10 +50,8 @@ class PlaneFrame {
   int j_ = 1;
   int k_ = 2;
   bool keeps_orientation_ = true;
-  kernel::Rational left_;
-  kernel::Rational bottom_;
-  kernel::Rational width_;
-  kernel::Rational height_;
+  Point2 low_;
+  Point2 size_;
 };
 
 // Twice the signed area.

@@ -82,7 +82,6 @@ int Shaft::depth_sign(std::size_t corner) {
   return cmp(value, h) < 0 ? -1 : cmp(value, h) > 0 ? 1 : 0;
 }
 
-// Step 1.
 bool Shaft::may_meet(std::span<const std::uint32_t> corners, ShaftCulling culling) {
   const std::size_t n = corners.size();
   depth_.resize(n);
@@ -99,7 +98,7 @@ bool Shaft::may_meet(std::span<const std::uint32_t> corners, ShaftCulling cullin
   return some_corner_inside(toward_) && std::all_of(sides_.begin(), sides_.end(), some_corner_inside);
 }
 
-// Step 3: affine, so all corners must share one scale. Corners on x's side stay; a crossing is
+// Affine, so all corners must share one scale. Corners on x's side stay; a crossing is
 // (a |g_b| + b |g_a|) up to a factor, g = M . t - h.
 bool Shaft::clip_to_source_plane(Ring& ring) {
   if (std::none_of(depth_.begin(), depth_.end(), [](int s) { return s > 0; })) return false;
@@ -124,7 +123,6 @@ bool Shaft::clip_to_source_plane(Ring& ring) {
   return true;
 }
 
-// Step 4.
 bool Shaft::hides_all(const Ring& ring) const {
   for (std::size_t j = 0; j < ring.size(); ++j) {
     const Direction inward = kernel::make_direction(cross(ring[(j + 1) % ring.size()].exact, ring[j].exact));
@@ -143,13 +141,15 @@ Fate Shaft::test(std::uint32_t piece_index, ShaftCulling culling, Occluder& occl
     approx_corners_.push_back(kernel::approx_difference(vertices[corner], x_));
   }
   exact_corners_.assign(corners_.size(), std::nullopt);
+  // 1. Nowhere near the shaft?
   if (!may_meet(corners_, culling)) return Fate::kOutside;
 
-  // Step 2, and the orientation as x sees it.
+  // 2. Seen edge-on? And the orientation as x sees it.
   const auto relative = [&](int f) { return kernel::exact_difference(vertices[piece.frame[f]], x_).v; };
   const int facing = sign(dot(cross(relative(0), relative(1)), relative(2)));
   if (facing == 0) return Fate::kOutside;
 
+  // 3. Clip by the source's plane.
   Ring& ring = occluder.ring;
   ring.clear();
   occluder.face = piece.face;
@@ -158,11 +158,13 @@ Fate Shaft::test(std::uint32_t piece_index, ShaftCulling culling, Occluder& occl
     for (std::size_t c = 0; c < corners_.size(); ++c) ring.push_back(kernel::make_direction(exact_corner(c).v));
   }
   if (facing > 0) std::reverse(ring.begin(), ring.end());
+  // 4. Does it hide all?
   if (hides_all(ring)) {
     ring = hull_;
     return Fate::kHidesAll;
   }
 
+  // 5. Clip by the side planes.
   for (const Direction& side_plane : sides_) {
     const ClipResult result = clip(ring, side_plane);
     if (result == ClipResult::kEmpty) return Fate::kOutside;

@@ -14,7 +14,6 @@ using Outline = Outlines::Outline;
 
 namespace {
 
-using Parameter = VisibleEdges::Parameter;
 constexpr Parameter kBegin{0.0, 0.0F, Parameter::kAtBegin};
 constexpr Parameter kEnd{1.0, 0.0F, Parameter::kAtEnd};
 
@@ -26,21 +25,18 @@ constexpr std::size_t kMostToInsert = 16;
 // Counts four bits. std::popcount is a function call where the processor may lack the instruction.
 std::uint64_t bit_count(unsigned bits) { return (0x4332322132212110U >> (4 * bits)) & 0xFU; }
 
-// The error of a crossing's parameter as a float. It exceeds the double by enough that the sum of two, rounded as
-// floats, is no less than the sum of the doubles. It is at least 2^-50 and so a normal float; an infinite error decides
-// nothing in either case.
-float rounded_up(double error) { return static_cast<float>(error * (1.0 + 0x1p-20)); }
-
 }  // namespace
 
 bool VisibleEdges::find(std::size_t source_count) {
   parts_.clear();
-  stored_count_ = 0;
   pairs_ = undecided_pairs_ = 0;
-  stored_at_.resize(4 * outlines_.edges().size());
+  exact_.clear(outlines_.edges().size());
+  // 1. Silhouettes.
   drop_inner_edges(source_count);
+  // 2. The grid.
   grid_.build(outlines_, source_count, dropped_);
   if (grid_.unsorted_pairs(outlines_) > kMostUnsortedPairs * outlines_.edges().size()) return false;
+  // 3. and 4. Edge by edge.
   for (const OutlineId o : grid_.in_order(outlines_.outlines().size())) trace_outline(o, source_count);
   return true;
 }
@@ -56,37 +52,24 @@ bool VisibleEdges::hides_all(OutlineId occluder, std::size_t source_count) {
   return true;
 }
 
-// Step 1. Of edges with the same two corners the first is kept, and only if none runs the other way. It represents the
+// Of edges with the same two corners the first is kept, and only if none runs the other way. It represents the
 // line of all of them, so that no arithmetic is needed to see that crossings with it are equal.
 void VisibleEdges::drop_inner_edges(std::size_t source_count) {
-  constexpr EdgeId kFree = 0xFFFFFFFFU;
   const auto edges = outlines_.edges();
   dropped_.assign(edges.size(), 0);
   line_.resize(edges.size());
   std::iota(line_.begin(), line_.end(), EdgeId{0});
   if (!outlines_.has_shared_corners()) return;
-  const std::size_t mask = std::bit_ceil(2 * edges.size()) - 1;
-  slots_.assign(mask + 1, kFree);
+  table_.clear(edges.size());
   for (OutlineId o = static_cast<OutlineId>(source_count); o < outlines_.outlines().size(); ++o) {
     const Outline& outline = outlines_.outline(o);
     if (!outline.whole) continue;
     for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
-      const auto [low, high] = std::minmax(edges[id].a, edges[id].b);
-      const std::uint64_t key = (std::uint64_t{high} << 32U | low) * 0x9E3779B97F4A7C15U;
-      for (std::size_t slot = key >> 32U & mask;; slot = (slot + 1) & mask) {
-        if (slots_[slot] == kFree) {
-          slots_[slot] = id;
-          break;
-        }
-        const EdgeId first = slots_[slot];
-        const bool same = edges[first].a == edges[id].a && edges[first].b == edges[id].b;
-        const bool opposite = edges[first].a == edges[id].b && edges[first].b == edges[id].a;
-        if (!same && !opposite) continue;
-        dropped_[id] = 1;
-        if (opposite) dropped_[first] = 1;
-        line_[id] = first;
-        break;
-      }
+      const EdgeId first = table_.add(id, edges);
+      if (first == id) continue;
+      dropped_[id] = 1;
+      if (edges[first].a != edges[id].a) dropped_[first] = 1;  // it runs the other way
+      line_[id] = first;
     }
   }
 }
@@ -122,11 +105,12 @@ EXACTFF_INLINE void VisibleEdges::keep_rest(EdgeId id, bool reversed, const Inte
 }
 
 EXACTFF_INLINE void VisibleEdges::trace(Run& run, std::size_t source_count) {
+  // 3. The intervals that outlines cover.
   find_allowed(run, source_count);
   if (run.wanted == 0) return;
   near_ = grid_.find_near(outlines_, run.first, run.wanted);
   find_removed(run, source_count);
-  // Step 4.
+  // 4. Sweep over them.
   for (unsigned k = 0; k < run.edges; ++k) {
     if ((run.wanted >> k & 1U) == 0) continue;
     const EdgeId id = run.first + k;
@@ -147,7 +131,7 @@ EXACTFF_INLINE void VisibleEdges::set_corners(Run& run) const {
   run.size = Four{a.size, b.size, c.size, d.size};
 }
 
-// Step 3.
+// Run by run.
 EXACTFF_CLONES void VisibleEdges::trace_outline(OutlineId id, std::size_t source_count) {
   const Outline& outline = outlines_.outline(id);
   const unsigned step = outline.count <= kRunCorners ? outline.count : kRunCorners - 1;
@@ -232,7 +216,7 @@ EXACTFF_INLINE void VisibleEdges::cut(const Run& run, OutlineId outline, Cuts& c
   undecided_pairs_ += bit_count(cuts.unsure & run.wanted);
 }
 
-VisibleEdges::Parameter VisibleEdges::parameter(const Parameters& of, unsigned k) const {
+Parameter VisibleEdges::parameter(const Parameters& of, unsigned k) const {
   const auto line = static_cast<EdgeId>(of.line[k]);
   return {of.value[k], rounded_up(of.error[k]), line < Parameter::kAtBegin ? line_[line] : line};
 }
@@ -423,7 +407,7 @@ void VisibleEdges::cut_exactly(EdgeId edge_id, EdgeId line, int& sign_a, int& si
     crossing = {std::abs(a.value) / sum, rounded_up(2.0 * error / sum + 0x1p-50), line_[line]};
     return;
   }
-  const EdgeParameter& at = exact_crossing(edge_id, line_[line]);
+  const EdgeParameter& at = exact_.crossing(outlines_, edge_id, line_[line]);
   long l_exponent = 0, m_exponent = 0;
   const double l_mantissa = mpz_get_d_2exp(&l_exponent, at.l.get_mpz_t());
   const double m_mantissa = mpz_get_d_2exp(&m_exponent, at.m.get_mpz_t());
@@ -466,37 +450,6 @@ bool VisibleEdges::cover_exactly(EdgeId edge, OutlineId outline, Cover& result) 
   return true;
 }
 
-const EdgeParameter& VisibleEdges::exact(EdgeId edge, const Parameter& p) {
-  static const EdgeParameter begin{1, 0}, end{0, 1};
-  return p.line == Parameter::kAtBegin ? begin : p.line == Parameter::kAtEnd ? end : exact_crossing(edge, p.line);
-}
-
-const EdgeParameter& VisibleEdges::exact_crossing(EdgeId edge, EdgeId line) {
-  std::uint32_t& at = stored_at(edge, line);
-  if (at < stored_count_ && stored_[at].edge == edge && stored_[at].line == line) return stored_[at].parameter;
-  at = static_cast<std::uint32_t>(stored_count_++);
-  if (stored_.size() < stored_count_) stored_.emplace_back();
-  Stored& stored = stored_[at];
-  stored.edge = edge;
-  stored.line = line;
-  auto& [l, m] = stored.parameter;
-  outlines_.set_exact_height(l, outlines_.edge(line), outlines_.edge(edge).b);
-  outlines_.set_exact_height(m, outlines_.edge(line), outlines_.edge(edge).a);
-  mpz_abs(l.get_mpz_t(), l.get_mpz_t());
-  mpz_abs(m.get_mpz_t(), m.get_mpz_t());
-  return stored.parameter;
-}
-
-int VisibleEdges::compare_exactly(EdgeId edge, const Parameter& p, const Parameter& q) {
-  if (p.line == Parameter::kAtBegin || q.line == Parameter::kAtEnd) return -1;
-  if (p.line == Parameter::kAtEnd || q.line == Parameter::kAtBegin) return 1;
-  const EdgeParameter &a = exact_crossing(edge, p.line), &b = exact_crossing(edge, q.line);
-  product_p_ = a.m * b.l;
-  product_q_ = b.m * a.l;
-  const int order = cmp(product_p_, product_q_);
-  return order < 0 ? -1 : order > 0 ? 1 : 0;
-}
-
 // The union, as disjoint intervals in order.
 void VisibleEdges::merge(EdgeId edge, std::vector<Interval>& intervals) {
   if (intervals.size() < 2) return;
@@ -514,7 +467,8 @@ void VisibleEdges::merge(EdgeId edge, std::vector<Interval>& intervals) {
 
 BoundaryPiece VisibleEdges::exact(const Part& part) {
   const Edge& edge = outlines_.edge(part.edge);
-  return {outlines_.exact(edge.a), outlines_.exact(edge.b), exact(part.edge, part.begin), exact(part.edge, part.end)};
+  const auto at = [&](const Parameter& p) { return exact_.of(outlines_, part.edge, p); };
+  return {outlines_.exact(edge.a), outlines_.exact(edge.b), at(part.begin), at(part.end)};
 }
 
 }  // namespace exactff::visibility

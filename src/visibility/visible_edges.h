@@ -24,12 +24,12 @@
 
 #include <array>
 #include <cmath>
-#include <deque>
 #include <span>
 #include <vector>
 
 #include "kernel/lane_types.h"
-#include "visibility/boundary_piece.h"
+#include "visibility/edge_parameters.h"
+#include "visibility/edge_table.h"
 #include "visibility/outline_grid.h"
 #include "visibility/outlines.h"
 
@@ -38,14 +38,6 @@ namespace exactff::visibility {
 // A workspace: its memory is reused from one call to the next.
 class VisibleEdges {
  public:
-  // A parameter (l : m) of an edge (outlines.h), with a and b scaled like their doubles: one of the edge's ends, or the
-  // crossing with the line of another edge. m / (l + m) lies within `error` of `value`.
-  struct Parameter {
-    static constexpr EdgeId kAtBegin = 0xFFFFFFFEU, kAtEnd = 0xFFFFFFFFU;
-    double value = 0.0;
-    float error = 0.0F;
-    EdgeId line = kAtBegin;  // the line that crosses
-  };
   // A part of the boundary of V, V to its left.
   struct Part {
     EdgeId edge = 0;
@@ -112,12 +104,6 @@ class VisibleEdges {
     unsigned unsure = 0;   // a bit for every edge where nothing is certain
     Intervals intervals;
   };
-  // An exact parameter, kept so that it is not computed twice.
-  struct Stored {
-    EdgeId edge = 0, line = 0;
-    EdgeParameter parameter;
-  };
-
   void drop_inner_edges(std::size_t source_count);
   void trace_outline(OutlineId id, std::size_t source_count);
   void set_corners(Run& run) const;
@@ -149,13 +135,7 @@ class VisibleEdges {
   [[nodiscard]] int compare(EdgeId edge, const Parameter& p, const Parameter& q) {
     const double difference = p.value - q.value, error = p.error + q.error;
     if (std::abs(difference) > error) return difference > 0.0 ? 1 : -1;
-    return p.line == q.line ? 0 : compare_exactly(edge, p, q);
-  }
-  [[nodiscard]] int compare_exactly(EdgeId edge, const Parameter& p, const Parameter& q);
-  [[nodiscard]] const EdgeParameter& exact(EdgeId edge, const Parameter& p);
-  [[nodiscard]] const EdgeParameter& exact_crossing(EdgeId edge, EdgeId line);
-  [[nodiscard]] std::uint32_t& stored_at(EdgeId edge, EdgeId line) {
-    return stored_at_[4 * std::size_t{line} + edge % 4];
+    return p.line == q.line ? 0 : exact_.compare(outlines_, edge, p, q);
   }
   void sort(EdgeId edge, std::vector<Interval>& intervals);
   void merge(EdgeId edge, std::vector<Interval>& intervals);
@@ -168,13 +148,10 @@ class VisibleEdges {
   std::array<Cuts, kBatch> batch_;     // by some of these
   std::vector<Part> parts_;
   std::uint64_t pairs_ = 0, undecided_pairs_ = 0;
-  std::deque<Stored> stored_;  // the first stored_count_; the rest is spare memory
-  std::size_t stored_count_ = 0;
-  kernel::Integer product_p_, product_q_;  // scratch
-  std::vector<std::uint32_t> stored_at_;  // into stored_, for every line and four edges; may be stale or another edge's
+  ExactParameters exact_;
   // By edge of the run: the intervals removed, and the intervals with the source on the left and on the right.
   std::array<std::vector<Interval>, kRunCorners> removed_, left_, right_;
-  std::vector<EdgeId> slots_;  // a hash table of drop_inner_edges
+  EdgeTable table_;  // of drop_inner_edges
 };
 
 }  // namespace exactff::visibility

@@ -5,7 +5,6 @@
 #include "exact/source_planes.h"
 #include "sampled/vec.h"
 #include "visibility/visible_boundary.h"
-#include "visibility/visible_edges.h"
 
 namespace exactff::bench {
 
@@ -16,10 +15,15 @@ namespace {
 
 template <class Take>
 void for_every_plane(const BenchScene& s, Engine engine, const Take& take) {
+  static visibility::EdgeWorkspace workspace;
   const visibility::View view(s.scene, s.receiver);
   for (const visibility::SourcePlane& plane : s.source.planes().planes) {
-    take(find_visible_boundary(view, plane, {.engine = engine}));
+    take(find_visible_boundary(view, plane, {.engine = engine}, workspace));
   }
+}
+
+void append(const visibility::VisibleBoundary& boundary, std::vector<DoubleEdge>& edges) {
+  boundary.for_each_piece([&](const visibility::BoundaryPiece& piece) { edges.push_back(to_double(piece)); });
 }
 
 // The result of the edge engine, in its doubles.
@@ -44,8 +48,7 @@ const std::vector<visibility::BoundaryPiece>& exact_boundary(const BenchScene& s
   std::vector<visibility::BoundaryPiece>& boundary = entry->second;
   if (!is_new) return boundary;
   for_every_plane(s, Engine::kEdges, [&](const visibility::PlaneVisibility& seen) {
-    if (seen.edges == nullptr) return;
-    for (const auto& part : seen.edges->parts()) boundary.push_back(seen.edges->exact(part));
+    seen.boundary.for_each_piece([&](const visibility::BoundaryPiece& piece) { boundary.push_back(piece); });
   });
   return boundary;
 }
@@ -53,8 +56,11 @@ const std::vector<visibility::BoundaryPiece>& exact_boundary(const BenchScene& s
 void find_double_boundary(const BenchScene& s, Engine engine, std::vector<DoubleEdge>& edges) {
   edges.clear();
   for_every_plane(s, engine, [&](const visibility::PlaneVisibility& seen) {
-    for (const visibility::BoundaryPiece& piece : seen.boundary) edges.push_back(to_double(piece));
-    if (seen.edges != nullptr) append(*seen.edges, edges);
+    if (seen.boundary.edges() == nullptr) {
+      append(seen.boundary, edges);
+    } else {
+      append(*seen.boundary.edges(), edges);
+    }
   });
 }
 
@@ -62,10 +68,13 @@ double double_form_factor(const BenchScene& s, Engine engine) {
   double sum = 0.0;
   std::vector<DoubleEdge> edges;
   for_every_plane(s, engine, [&](const visibility::PlaneVisibility& seen) {
-    edges.clear();
-    for (const visibility::BoundaryPiece& piece : seen.boundary) edges.push_back(to_double(piece));
-    sum += form_factor(edges, s.receiver.normal);
-    if (seen.edges != nullptr) sum += form_factor(*seen.edges, s.receiver.normal);
+    if (seen.boundary.edges() == nullptr) {
+      edges.clear();
+      append(seen.boundary, edges);
+      sum += form_factor(edges, s.receiver.normal);
+    } else {
+      sum += form_factor(*seen.boundary.edges(), s.receiver.normal);
+    }
   });
   return sum;
 }

@@ -361,13 +361,15 @@ std::string text_of(const FormFactor& result) {
   return text.str();
 }
 
-// One result object is reused for all pairs; nothing of a pair may remain in the next result.
+// One result and one workspace are reused for all pairs; nothing of a pair may remain in them for the next.
 class KeptResult : public ::testing::Test {
  protected:
   void expect_as_anew(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                       const ExactOptions& options) {
-    exact_form_factor(scene, receiver, source, options, kept_);
-    const FormFactor anew = exact_form_factor(scene, receiver, source, options);
+    exact_form_factor(scene, receiver, source, options, kept_, workspace_);
+    FormFactor anew;
+    Workspace fresh;
+    exact_form_factor(scene, receiver, source, options, anew, fresh);
     EXPECT_EQ(text_of(kept_), text_of(anew));
     EXPECT_TRUE(kept_.enclosure.contains(anew.enclosure) && anew.enclosure.contains(kept_.enclosure));
   }
@@ -378,6 +380,7 @@ class KeptResult : public ::testing::Test {
   }
 
   FormFactor kept_;
+  Workspace workspace_;
 };
 
 const std::vector<FaceId> kNobody;

@@ -18,7 +18,8 @@ struct Window {
   PlainScene plain;
   Scene scene = generate::build(plain);
   ExactSource source{scene, scene.select(plain.source)};
-  VisibleShare share{scene, generate::receiver_of(plain), source.planes().planes.front()};
+  Workspace workspace;
+  VisibleShare share{scene, generate::receiver_of(plain), source.planes().planes.front(), workspace};
 
   explicit Window(PlainScene given) : plain(std::move(given)) { share.start(source.planes().planes.front().pieces[0]); }
 };

@@ -141,6 +141,10 @@ TEST(Misuse, MovedFromObjectsSaySo) {
   const ExactSource kept_source = std::move(source);
   expect_moved_from("ExactSource", [&] { (void)exact_form_factor(scene, kBelow, source); });
   expect_moved_from("ExactSource", [&] { (void)source.selection(); });
+  FormFactor result;
+  Workspace workspace;
+  const Workspace kept_workspace = std::move(workspace);
+  expect_moved_from("Workspace", [&] { exact_form_factor(scene, kBelow, kept_source, {}, result, workspace); });
   const AdaptiveSource kept_prepared = std::move(prepared);
   expect_moved_from("AdaptiveSource", [&] { (void)solver.form_factor(kBelow, prepared, 1.0, {}); });
   const AdaptiveSolver kept_solver = std::move(solver);

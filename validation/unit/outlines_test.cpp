@@ -40,6 +40,14 @@ PlainScene triangles_on_few_lines(Random& random) {
   return scene;
 }
 
+void add_pieces(const Scene& scene, Outlines& outlines) {
+  std::vector<CornerId> corners;
+  for (const Piece& piece : scene.pieces()) {
+    outlines.corners_of(scene.corners(piece), corners);
+    outlines.add(corners, true);
+  }
+}
+
 struct Tally {
   int certain = 0, declined = 0;
 };
@@ -49,7 +57,7 @@ void expect_true_heights(const PlainScene& plain, double unit, Tally& tally) {
   const Scene scene = generate::build(plain);
   Outlines outlines;
   outlines.start(scene, plain.point, unit);
-  for (const Piece& piece : scene.pieces()) static_cast<void>(outlines.add(piece, false));
+  add_pieces(scene, outlines);
   kernel::Integer exact;
   for (const Outlines::Edge& edge : outlines.edges()) {
     for (CornerId t = 0; t < outlines.corner_count(); ++t) {
@@ -104,7 +112,7 @@ TEST(Outlines, OwnCornersLieOnTheirEdgesWithoutArithmetic) {
   const Scene scene = generate::build(plain);
   Outlines outlines;
   outlines.start(scene, {}, 1.0);
-  static_cast<void>(outlines.add(scene.pieces()[0], false));
+  add_pieces(scene, outlines);
   for (const Outlines::Edge& edge : outlines.edges()) {
     for (const CornerId end : {edge.a, edge.b}) {
       EXPECT_EQ(outlines.side(edge, end), 0);
@@ -122,7 +130,7 @@ TEST(Outlines, VerticesAtOnePositionAreOneCorner) {
   Outlines outlines;
   for (int run = 0; run < 2; ++run) {
     outlines.start(scene, {}, 1.0);
-    for (const Piece& piece : scene.pieces()) static_cast<void>(outlines.add(piece, false));
+    add_pieces(scene, outlines);
     EXPECT_EQ(outlines.corner_count(), 3U);
     EXPECT_EQ(outlines.edge(0).a, outlines.edge(3).a);
   }

@@ -49,7 +49,7 @@ kernel::ExactVec3 normal_of(const Segment& s) {
 int height_sign(const Segment& s, const Vec3& y) { return kernel::orientation(s.a, s.b, s.c, y); }
 
 // The point where the segment pq crosses the plane with this normal.
-void expect_holds(const PlaneCrossings::Fine& fine, const PlaneCrossings& crossings, const Vec3& p, const Vec3& q,
+void expect_holds(const PlaneCrossings::Fine& fine, PlaneCrossings& crossings, const Vec3& p, const Vec3& q,
                   const kernel::ExactVec3& normal) {
   kernel::ScaledVec3 exact;
   crossings.set_exact(exact, p, q, normal, fine.exponent);

@@ -141,14 +141,12 @@ std::map<std::string, int> open_ends(const PlainScene& plain) {
     kernel::make_primitive(t);
     ends[t.x.get_str() + ' ' + t.y.get_str() + ' ' + t.z.get_str()] += by;
   };
+  EdgeWorkspace workspace;
   for (const SourcePlane& plane : group_by_plane(scene, scene.faces_of(scene.select("source")))) {
-    const PlaneVisibility seen = find_visible_boundary(view, plane, {.engine = Engine::kEdges});
-    if (seen.edges == nullptr) continue;
-    for (const VisibleEdges::Part& part : seen.edges->parts()) {
-      const BoundaryPiece piece = seen.edges->exact(part);
+    find_visible_boundary(view, plane, {}, workspace).boundary.for_each_piece([&](const BoundaryPiece& piece) {
       count(piece, piece.begin, 1);
       count(piece, piece.end, -1);
-    }
+    });
   }
   std::erase_if(ends, [](const auto& end) { return end.second == 0; });
   return ends;

@@ -1,0 +1,96 @@
+// What the engines are given and what they find: the visible part of one plane of the source. Two engines find it,
+// edge_walk.h and boolean_walk.h. No radiometry.
+#pragma once
+
+#include <boost/container/small_vector.hpp>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "exactff/receiver.h"
+#include "exactff/record.h"
+#include "scene/shaft_tree.h"
+#include "visibility/boundary_piece.h"
+#include "visibility/source_plane.h"
+#include "visibility/visible_edges.h"
+
+namespace exactff::visibility {
+
+class PlaneFrame;
+
+// Everything that depends on the receiver alone.
+struct View {
+  View(const Scene& scene_in, const Receiver& receiver);
+
+  const Scene& scene;
+  Vec3 x;
+  Vec3 n;  // the receiver's normal
+  std::optional<FaceId> on;
+  // The normal as a direction in integers, which are seldom needed.
+  [[nodiscard]] kernel::Direction normal() const;
+};
+
+struct Request {
+  Engine engine = Engine::kEdges;
+  bool fraction = false;
+  bool list_cutters = false;
+  const std::vector<FaceId>* only_occluders = nullptr;  // ascending
+  ShaftCulling culling = ShaftCulling::kTree;
+};
+
+// The boundary of the visible region, whichever engine found it. Refers to the workspace that it was found with: valid
+// until that is used again.
+class VisibleBoundary {
+ public:
+  VisibleBoundary() = default;  // nothing is visible
+  explicit VisibleBoundary(std::vector<BoundaryPiece> pieces) : pieces_(std::move(pieces)) {}
+  explicit VisibleBoundary(VisibleEdges& found) : edges_(found.parts().empty() ? nullptr : &found) {}
+
+  [[nodiscard]] bool empty() const { return pieces_.empty() && edges_ == nullptr; }
+  // Calls visit(piece) for every piece of the boundary.
+  template <class Visit>
+  void for_each_piece(const Visit& visit) const {
+    for (const BoundaryPiece& piece : pieces_) visit(piece);
+    if (edges_ == nullptr) return;
+    for (const VisibleEdges::Part& part : edges_->parts()) visit(edges_->exact(part));
+  }
+  // The same pieces for arithmetic in doubles, if the edge engine found them; else null.
+  [[nodiscard]] VisibleEdges* edges() const { return edges_; }
+
+ private:
+  std::vector<BoundaryPiece> pieces_;
+  VisibleEdges* edges_ = nullptr;
+};
+
+// One occluder that hides all needs no allocation.
+using Cutters = boost::container::small_vector<FaceId, 1>;
+
+struct PlaneVisibility {
+  PlaneRecord record;  // without its faces, which are the plane's
+  VisibleBoundary boundary;
+  std::optional<kernel::Rational> fraction;  // visible area / whole unclipped area of the union, in [0, 1]
+  Cutters cutters;                           // ascending
+};
+
+// For both engines: calls visit(piece, inside) for every piece that may lie in the shaft, until one call returns false;
+// inside: certainly within it (shaft_tree.h).
+template <class Visit>
+void for_each_candidate(const View& view, const HalfSpaceGroups& shaft, ShaftCulling culling, Visit&& visit) {
+  if (culling == ShaftCulling::kTree) {
+    shaft_tree(view.scene).query_with_inside(view.x, shaft, visit);
+    return;
+  }
+  const auto count = static_cast<std::uint32_t>(view.scene.pieces().size());
+  for (std::uint32_t piece = 0; piece < count && visit(piece, false); ++piece) {
+  }
+}
+
+// For both engines: true if a piece of the scene may occlude the plane. The source's own pieces in this plane cannot;
+// its pieces in other planes can.
+[[nodiscard]] bool may_occlude(const View& view, const SourcePlane& plane, const Request& request, std::uint32_t piece);
+// Twice an area in the frame's unit square, as a share of the whole unclipped source in the plane.
+[[nodiscard]] kernel::Rational share_of_source(const View& view, const SourcePlane& plane, const PlaneFrame& frame,
+                                               const kernel::Rational& doubled);
+
+}  // namespace exactff::visibility
