@@ -9,6 +9,7 @@
 #include <map>
 #include <thread>
 
+#include "exactff/report.h"
 #include "support/program.h"
 
 namespace exactff {
@@ -170,6 +171,20 @@ TEST_F(StudyCommand, NamesTheNearestExperiment) {
   EXPECT_EQ(run(out_, {"--experiment", "closur"}), 2);
   EXPECT_TRUE(said("there is no experiment 'closur'")) << error_;
   EXPECT_TRUE(said("closure")) << error_;
+}
+
+TEST_F(StudyCommand, HasTheValuesOfTheLibraryCall) {
+  EXPECT_EQ(run(out_), 0) << error_;
+  const fs::path by_library = directory_.path() / "by-library";
+  const validation::EnvironmentVariable without_gnuplot("PATH", "/nonexistent");
+  study::Journal journal(study::journal_of_folder(by_library), study::Journal::Existing::kRefuse);
+  const report::Outcome outcome =
+      report::carry_out(report::read_study_file(directory_.path() / "tiny.study"), by_library, journal);
+  EXPECT_EQ(values(by_library), values(out_));
+  ASSERT_EQ(outcome.scenes.size(), 2U);
+  EXPECT_EQ(outcome.scenes.front().title, "Room A");
+  EXPECT_FALSE(outcome.scenes.front().sentences.empty());
+  EXPECT_EQ(outcome.notes.size(), 1U) << "gnuplot is missing";
 }
 
 TEST_F(StudyCommand, OfNothingButLeftOutScenesIsRefused) {
