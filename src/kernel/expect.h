@@ -7,7 +7,7 @@
 namespace exactff::kernel {
 
 [[noreturn]] inline void broken_requirement(const char* condition, const char* file, int line) {
-  throw std::logic_error(std::string(file) + ":" + std::to_string(line) + ": not so: " + condition);
+  throw std::logic_error(std::string(file) + ":" + std::to_string(line) + ": requirement not met: " + condition);
 }
 
 }  // namespace exactff::kernel

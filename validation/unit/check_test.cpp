@@ -224,7 +224,7 @@ TEST(Match, NeedsNoSourceWhereTheTruthHasOne) {
             std::vector<double>{1});
   const Truth two = truth_of("receiver,source,exact\na,s,.1\na,t,.2\n");
   EXPECT_HOLDS(complaint([&] { (void)match(two, plain); }),
-               "has no column that names the source (the truth has 2: s and t); add a column source");
+               "has no column that names the source (the truth has 2: s and t); add a column named source");
 }
 
 TEST(Match, RefusesWhatIsMissingDoubledOrUnknown) {
@@ -276,7 +276,7 @@ TEST(MatchByPosition, RefusesAChoice) {
       complaint([] { (void)matched_by_position("x,y,z,source,value\n0.25,0,0,s,1\n0,0,0,t,2\n", 0.75); });
   EXPECT_HOLDS(what,
                "mine.csv:2: 3 receivers of the truth match: 'a' at a distance of 0.25 and 'c' at a distance of 0.25, "
-               "and more (it is not clear which one the value belongs to); give a smaller --tolerance");
+               "and more (it is not clear which one the value belongs to); use a smaller --tolerance");
   EXPECT_FALSE(holds(what, "mine.csv:3"));
 }
 

@@ -199,7 +199,8 @@ TEST(ObjReader, FilesThatCannotBeReadSaySo) {
     return std::string("no error");
   };
   const std::string where = directory.path().string();
-  EXPECT_EQ(message(directory.path()), where + ": is a folder (a file is needed); name a Wavefront OBJ file in it");
+  EXPECT_EQ(message(directory.path()),
+            where + ": is a folder (a file is needed); name a Wavefront OBJ file in this folder");
   EXPECT_EQ(message(directory.path() / "none.obj"),
             where + "/none.obj: cannot be opened (No such file or directory); check the path");
   EXPECT_EQ(message(directory.write("empty.obj", "")),

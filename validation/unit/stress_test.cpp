@@ -273,7 +273,7 @@ TEST(StressCommand, WritesItsFilesAndReplacesThem) {
   for (int turn = 0; turn < 2; ++turn) {
     const auto run = run_program(EXACTFF_PROGRAM, {"stress", "--family", "overlap", "--threads", "1", "-o", folder});
     EXPECT_EQ(run.exit_code, 0);
-    EXPECT_NE(run.output.find("rounds to in every one of 28 scenes"), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find("rounded to a double, in every one of 28 scenes"), std::string::npos) << run.output;
   }
   for (const char* file : {"report.html", "values.csv", "summary.csv", "timings.csv"}) {
     EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(folder) / file)) << file;

@@ -342,7 +342,7 @@ TEST_F(Truth, BlocksThatDoNotBelongAreLeftOut) {
   Hooks hooks;
   hooks.note = [&](const std::string& text) { note = text; };
   EXPECT_EQ(write(shard(10, 2, 3), file_, Existing::kResume, hooks).resumed, 1U);
-  EXPECT_NE(note.find("6 blocks of it are of no use here"), std::string::npos) << note;
+  EXPECT_NE(note.find("6 blocks cannot be used here"), std::string::npos) << note;
   const std::string resumed = text_of(file_);
   write(shard(10, 2, 3), file_, Existing::kReplace);
   EXPECT_EQ(text_of(file_), resumed);
@@ -369,7 +369,8 @@ TEST_F(Truth, ACompleteFileIsLeftAsItIs) {
   EXPECT_EQ(fs::last_write_time(file_), written);
   EXPECT_EQ(again.resumed, first.rows);
   EXPECT_EQ(again.rows_by_status, first.rows_by_status);
-  EXPECT_NE(refusal(request(4), Existing::kResume).find("truth.csv:3: is of another request"), std::string::npos);
+  EXPECT_NE(refusal(request(4), Existing::kResume).find("truth.csv:3: belongs to a different request"),
+            std::string::npos);
   write_text(file_, text_of(file_).substr(0, fs::file_size(file_) - 5));
   EXPECT_NE(refusal(request(3), Existing::kResume).find("truth.csv: is damaged: 17 of 18 rows can be read"),
             std::string::npos)
@@ -707,7 +708,7 @@ TEST_F(TruthTeam, AProcessThatSeesOtherFilesIsNamed) {
     return asked;
   });
   const std::string told = message_of<InputError>(thrown);
-  EXPECT_NE(told.find("on rank 2 (here): the program, the scene or the receivers are not those of rank 0"),
+  EXPECT_NE(told.find("on rank 2 (here): the program, the scene or the receivers differ from those of rank 0"),
             std::string::npos)
       << told;
 }
