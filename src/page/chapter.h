@@ -31,7 +31,7 @@ struct Chapter {
 
 // Converts a chapter to bytes for a journal of this machine, and back. The way back returns nothing if the bytes are
 // torn.
-[[nodiscard]] std::string to_bytes(const Chapter& chapter);
+[[nodiscard]] std::string to_bytes(Chapter chapter);
 [[nodiscard]] std::optional<Chapter> chapter_of(std::string_view bytes);
 
 }  // namespace exactff::page

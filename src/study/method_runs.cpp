@@ -30,10 +30,9 @@ constexpr double kRoundingError = 1e-12;  // relative; smaller errors say nothin
 // Nanoseconds of a counted piece of work on a processor of about 2020, rounded. Used for planning only.
 double price(std::string_view counter, std::size_t faces) {
   static const std::map<std::string_view, double> kPrices = {
-      {"rays", 150.0},       {"leaves", 300.0},    {"shaft tests", 10.0}, {"samples", 20.0},
-      {"sub-patches", 50.0}, {"pixels", 0.0},      {"pixels drawn", 1.5}, {"polygons", 100.0},
-      {"edges", 400.0},      {"occluders", 300.0}, {"bits", 0.0},         {"not certified", 0.0},
-      {"rational decisions", 1e6}};
+      {"rays", 150.0}, {"leaves", 300.0},      {"shaft tests", 10.0},      {"samples", 20.0}, {"sub-patches", 50.0},
+      {"pixels", 0.0}, {"pixels drawn", 1.5},  {"polygons", 100.0},        {"edges", 400.0},  {"occluders", 300.0},
+      {"bits", 0.0},   {"not certified", 0.0}, {"rational decisions", 1e6}};
   if (counter == "exact V") return 2e4 + 400.0 * static_cast<double>(faces);
   if (counter.starts_with("leaves:")) return 0.0;  // already counted as leaves
   const auto found = kPrices.find(counter);
@@ -170,19 +169,9 @@ class MethodRunner {
   void fill(MethodCell& cell, const PreparedMethod& prepared) {
     kept_.get(
         "method/" + short_hash(choice_of(cell).text()), [&] { compute(cell, prepared); },
-        [&](work::WordWriter& words) {
-          words.put(cell.work);
-          for (std::size_t s = 0; s < cell.seeds.size(); ++s) {
-            words.put(cell.values[s]);
-            words.put(cell.radiosity_errors[s]);
-          }
-        },
-        [&](work::WordReader& words) {
-          cell.work = words.number();
-          for (std::size_t s = 0; s < cell.seeds.size(); ++s) {
-            cell.values[s] = words.numbers();
-            cell.radiosity_errors[s] = words.numbers();
-          }
+        [&](auto& words) {
+          words(cell.work);
+          for (std::size_t s = 0; s < cell.seeds.size(); ++s) words(cell.values[s], cell.radiosity_errors[s]);
         });
   }
 
@@ -260,8 +249,7 @@ class MethodRunner {
                                }
                              });
         },
-        [&](work::WordWriter& words) { words.put(field.radiosity_errors); },
-        [&](work::WordReader& words) { field.radiosity_errors = words.numbers(); });
+        [&](auto& words) { words(field.radiosity_errors); });
     result_.fields.push_back(std::move(field));
   }
 

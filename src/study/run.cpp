@@ -74,49 +74,25 @@ double mean_face_area(const Request& request) {
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
-void put(work::WordWriter& words, const ExactRow& row) {
-  for (const ExactTerm& term : row.terms) {
-    for (const double v : {term.value, term.lower, term.upper, term.visible_fraction}) words.put(v);
-    words.put(static_cast<std::uint64_t>(term.status));
-    words.put(static_cast<std::uint64_t>(term.sight));
-  }
-  for (const double v : {row.form_factor, row.radiosity.r, row.radiosity.g, row.radiosity.b, row.visible_fraction}) {
-    words.put(v);
-  }
-  words.put(static_cast<std::uint64_t>(row.sight));
-  words.put(std::uint64_t{row.certified});
-  words.put(std::uint64_t{row.sampled});
-}
-
 constexpr std::uint64_t kStatuses = 4, kSights = 4;
 
-void take(work::WordReader& words, ExactRow& row, std::size_t sources) {
-  row.terms.assign(sources, {});
+template <class Words>
+void fields(Words& words, ExactRow& row) {
   for (ExactTerm& term : row.terms) {
-    for (double* v : {&term.value, &term.lower, &term.upper, &term.visible_fraction}) *v = words.number();
-    term.status = static_cast<Status>(words.below(kStatuses));
-    term.sight = static_cast<Sight>(words.below(kSights));
+    words(term.value, term.lower, term.upper, term.visible_fraction);
+    words.choice(term.status, kStatuses);
+    words.choice(term.sight, kSights);
   }
-  for (double* v : {&row.form_factor, &row.radiosity.r, &row.radiosity.g, &row.radiosity.b, &row.visible_fraction}) {
-    *v = words.number();
-  }
-  row.sight = static_cast<Sight>(words.below(kSights));
-  row.certified = words.word() != 0;
-  row.sampled = words.word() != 0;
+  words(row.form_factor, row.radiosity.r, row.radiosity.g, row.radiosity.b, row.visible_fraction);
+  words.choice(row.sight, kSights);
+  words(row.certified, row.sampled);
 }
 
-void put(work::WordWriter& words, const SampleRow& row) {
-  for (const double v : {row.form_factor, row.error, row.radiosity_error, row.silent_error}) words.put(v);
-  for (const std::uint64_t n : {row.leaves, row.rays, row.shaft_tests}) words.put(n);
-  for (const std::uint64_t n : row.leaves_by_reason) words.put(n);
-  for (const std::uint64_t n : {row.silent_leaves, row.wrong_leaves}) words.put(n);
-}
-
-void take(work::WordReader& words, SampleRow& row) {
-  for (double* v : {&row.form_factor, &row.error, &row.radiosity_error, &row.silent_error}) *v = words.number();
-  for (std::uint64_t* n : {&row.leaves, &row.rays, &row.shaft_tests}) *n = words.word();
-  for (std::uint64_t& n : row.leaves_by_reason) n = words.word();
-  for (std::uint64_t* n : {&row.silent_leaves, &row.wrong_leaves}) *n = words.word();
+template <class Words>
+void fields(Words& words, SampleRow& row) {
+  words(row.form_factor, row.error, row.radiosity_error, row.silent_error, row.leaves, row.rays, row.shaft_tests);
+  for (std::uint64_t& leaves : row.leaves_by_reason) words(leaves);
+  words(row.silent_leaves, row.wrong_leaves);
 }
 
 // Everything that the exact values depend on.
@@ -196,9 +172,9 @@ class Runner {
     const KeptWork kept(journal_, request_hash_);
     work::parallel_for(count, threads(), "exact values", hooks_, [&](std::size_t i) {
       ExactRow& row = study_.exact[i];
+      row.terms.resize(sources_.size());
       kept.get(
-          "exact/" + std::to_string(i), [&] { find_exact_row(i); }, [&](work::WordWriter& words) { put(words, row); },
-          [&](work::WordReader& words) { take(words, row, sources_.size()); });
+          "exact/" + std::to_string(i), [&] { find_exact_row(i); }, [&](auto& words) { fields(words, row); });
     });
   }
 
@@ -277,11 +253,8 @@ class Runner {
     work::parallel_for(count, threads(), "sampling", hooks_, [&](std::size_t i) {
       kept.get(
           "samples/" + std::to_string(i), [&] { sample_receiver(i); },
-          [&](work::WordWriter& words) {
-            for (const auto& of_setting : study_.samples) put(words, of_setting[i]);
-          },
-          [&](work::WordReader& words) {
-            for (auto& of_setting : study_.samples) take(words, of_setting[i]);
+          [&](auto& words) {
+            for (auto& of_setting : study_.samples) fields(words, of_setting[i]);
           });
     });
   }

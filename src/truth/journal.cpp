@@ -38,22 +38,15 @@ std::string shortened(std::string_view line) {
 }
 
 File opened(const fs::path& path, const Hooks& hooks) {
-  for (;;) {
-    File file(path, File::Mode::kReadWrite,
-              {"the rows need a place", "name a file in a folder that exists, is writable and has room"});
-    const File::Lock lock = file.lock();
-    if (lock == File::Lock::kInUse) {
-      throw InputError({.file = path.string(),
-                        .what = "another process is working on it",
-                        .why = "two would compute the same rows and spoil each other's file",
-                        .suggestion = "wait for the other one, or name another file with -o"});
-    }
-    if (lock == File::Lock::kUnsupported && hooks.note) {
-      hooks.note(path.string() + ": this file system cannot lock files; see to it that no other process uses it");
-    }
-    // The process that held the lock may meanwhile have finished and removed the file.
-    if (file.is_in_place()) return file;
+  File file = work::open_locked(
+      path, {"the rows need a place", "name a file in a folder that exists, is writable and has room"},
+      {.what = "another process is working on it",
+       .why = "two would compute the same rows and spoil each other's file",
+       .suggestion = "wait for the other one, or name another file with -o"});
+  if (file.lock() == File::Lock::kUnsupported && hooks.note) {
+    hooks.note(path.string() + ": this file system cannot lock files; see to it that no other process uses it");
   }
+  return file;
 }
 
 }  // namespace
@@ -99,7 +92,7 @@ Journal::Journal(const fs::path& file, const Rows& rows, Existing existing, cons
 }
 
 Journal::~Journal() {
-  if (!removed_ && blocks_.empty() && end_ > 0) remove();
+  if (blocks_.empty() && end_ > 0) remove();
 }
 
 void Journal::take_over(const Rows& rows, Existing existing, const Hooks& hooks) {
@@ -186,12 +179,6 @@ std::vector<Block> Journal::blocks() const {
   std::vector<Block> sorted = blocks_;
   std::sort(sorted.begin(), sorted.end(), [](const Block& a, const Block& b) { return a.range.first < b.range.first; });
   return sorted;
-}
-
-void Journal::remove() {
-  std::error_code ignored;
-  fs::remove(file_.path(), ignored);
-  removed_ = true;
 }
 
 }  // namespace exactff::truth

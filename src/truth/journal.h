@@ -45,7 +45,7 @@ class Journal {
   [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
 
   // Removes the journal. Called when the truth file is complete.
-  void remove();
+  void remove() { file_.remove(); }
 
  private:
   void take_over(const Rows& rows, Existing existing, const Hooks& hooks);
@@ -57,7 +57,6 @@ class Journal {
   std::vector<Block> blocks_;
   std::uint64_t end_ = 0;
   std::uint64_t synced_ = 0;
-  bool removed_ = false;
 };
 
 }  // namespace exactff::truth

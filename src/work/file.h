@@ -2,6 +2,7 @@
 // safe.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -9,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "exactff/error.h"
 #include "work/unfinished.h"
 
 namespace exactff::work {
@@ -45,6 +47,8 @@ class File {
   [[nodiscard]] Lock lock();
   // Whether the path still leads to this file: it may have been renamed, removed or replaced.
   [[nodiscard]] bool is_in_place() const;
+  // Removes the file from its folder, if it is in place.
+  void remove();
 
   [[noreturn]] void fail(int error) const;
   void console(Consolation consolation) { consolation_ = std::move(consolation); }
@@ -57,6 +61,11 @@ class File {
   Consolation consolation_;
   int descriptor_ = -1;
 };
+
+// Opens and locks a file that is read and written. While another process holds the lock, tries again until `patience`
+// is over, then throws `in_use` with the name of the file.
+[[nodiscard]] File open_locked(const std::filesystem::path& path, const Consolation& consolation, Problem in_use,
+                               std::chrono::seconds patience = {}, const std::filesystem::path& called = {});
 
 // Makes renames and removals in the folder of `path` durable, as far as the file system can.
 void sync_folder_of(const std::filesystem::path& path);
@@ -85,7 +94,6 @@ class WholeFile {
   File file_;
   std::string buffer_;
   std::uint64_t written_ = 0;
-  bool committed_ = false;
 };
 
 // The path at which to write a file that replaces `path`: the target of a symbolic link, otherwise the path itself.
