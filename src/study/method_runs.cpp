@@ -57,18 +57,18 @@ void take_evenly(std::vector<std::size_t>& chosen, const std::vector<std::size_t
 
 class MethodRunner {
  public:
-  MethodRunner(Study& study, const KeptWork& kept, const Hooks& hooks)
+  MethodRunner(const Study& study, const KeptWork& kept, const Hooks& hooks)
       : study_(study), kept_(kept), hooks_(hooks), brightest_(largest_radiosity(study)) {
     for (const Selection& source : request().sources) radiosities_.push_back(scene().source_radiosity(source));
   }
 
-  MethodStudy run() {
+  MethodResults run() {
     result_.ladders = request().methods.ladders;
     result_.receivers = choose_receivers(study_.exact, request().methods.receivers);
     for (std::size_t l = 0; l < result_.ladders.size(); ++l) run_ladder(l);
     drop_idle_ladders();
     for (std::size_t l = 0; l < result_.ladders.size(); ++l) result_.slopes.push_back(slopes_of(l));
-    return std::move(result_);
+    return {std::move(result_), std::move(left_out_)};
   }
 
  private:
@@ -105,7 +105,7 @@ class MethodRunner {
     try {
       prepared.emplace(*ladder.rungs.front().method, request());
     } catch (const InputError& refusal) {
-      study_.left_out.push_back({"method " + ladder.name, text::csv_comment(refusal.what())});
+      left_out_.push_back({"method " + ladder.name, text::csv_comment(refusal.what())});
       return;
     }
     double left = request().methods.budget;
@@ -221,7 +221,7 @@ class MethodRunner {
   void tell_truncation(const Ladder& ladder, std::size_t rung) {
     std::vector<std::string> names;
     for (std::size_t k = rung; k < ladder.rungs.size(); ++k) names.push_back(rung_text(ladder, k));
-    study_.left_out.push_back(
+    left_out_.push_back(
         {"method " + ladder.name +
              (ladder.along.empty() ? std::string() : ", " + ladder.along + ' ' + text::enumerate(names)),
          "its counted work would take more than the budget of " + text::duration(request().methods.budget) +
@@ -296,12 +296,13 @@ class MethodRunner {
     return slope;
   }
 
-  Study& study_;
+  const Study& study_;
   const KeptWork& kept_;
   const Hooks& hooks_;
   const double brightest_;
   std::vector<Rgb> radiosities_;
   MethodStudy result_;
+  std::vector<LeftOut> left_out_;
 };
 
 }  // namespace
@@ -328,7 +329,7 @@ double planned_seconds(const methods::Counters& counters, std::size_t faces) {
   return 1e-9 * nanoseconds;
 }
 
-MethodStudy run_methods(Study& study, const KeptWork& kept, const Hooks& hooks) {
+MethodResults run_methods(const Study& study, const KeptWork& kept, const Hooks& hooks) {
   return MethodRunner(study, kept, hooks).run();
 }
 

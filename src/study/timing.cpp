@@ -43,16 +43,17 @@ double typical_time(const Call& call) {
 
 class Stopwatch {
  public:
-  Stopwatch(Study& study, const Hooks& hooks) : study_(study), hooks_(hooks) {}
+  Stopwatch(const Study& study, const Hooks& hooks) : study_(study), hooks_(hooks) {}
 
-  void run() {
+  Times run() {
     total_ = 1 + study_.settings.size() + study_.methods.cells.size();
     prepare();
     choose();
     time_exact();
     for (std::size_t k = 0; k < study_.settings.size(); ++k) time_setting(k);
-    study_.ray_setup_seconds = solver_->build_seconds();  // built at the first long candidate list
+    times_.ray_setup = solver_->build_seconds();  // built at the first long candidate list
     time_methods();
+    return std::move(times_);
   }
 
  private:
@@ -60,7 +61,7 @@ class Stopwatch {
   [[nodiscard]] const Scene& scene() const { return *request().scene; }
 
   void prepare() {
-    study_.exact_setup_seconds = timed([&] {
+    times_.exact_setup = timed([&] {
       for (const Selection& source : request().sources) sources_.emplace_back(scene(), source);
     });
     solver_.emplace(scene());
@@ -108,34 +109,36 @@ class Stopwatch {
 
   void time_exact() {
     FormFactor result;
+    times_.exact.assign(study_.exact.size(), kNotTimed);
     spend(4.0 * request().seconds_for_a_time, kFewestTimed, order_, [&](std::size_t i) {
-      study_.timed.push_back(i);
+      times_.receivers.push_back(i);
       const ExactOptions options{.engine = request().engine};
       double sum = 0.0;
       for (const ExactSource& source : sources_) {
         sum += typical_time([&] { exact_form_factor(scene(), request().receivers[i], source, options, result); });
       }
-      study_.exact[i].seconds = sum;
+      times_.exact[i] = sum;
     });
-    std::sort(study_.timed.begin(), study_.timed.end());
+    std::sort(times_.receivers.begin(), times_.receivers.end());
     report();
   }
 
   void time_setting(std::size_t k) {
+    std::vector<double>& seconds = times_.samples.emplace_back(study_.exact.size(), kNotTimed);
     spend(request().seconds_for_a_time, kFewestTimed, order_, [&](std::size_t i) {
       const Receiver& receiver = request().receivers[i];
-      SampleRow& row = study_.samples[k][i];
       double form_factor = 0.0;
-      row.seconds = 0.0;
+      seconds[i] = 0.0;
       for (std::size_t s = 0; s < sampled_sources_.size(); ++s) {
         const double rho_b = largest_rho_b(scene(), receiver, radiosities_[s]);
         double value = 0.0;
-        row.seconds += typical_time([&] {
+        seconds[i] += typical_time([&] {
           value = solver_->form_factor(receiver, sampled_sources_[s], rho_b, study_.settings[k]).form_factor;
         });
         form_factor += value;
       }
-      if (form_factor != row.form_factor && !(std::isnan(form_factor) && std::isnan(row.form_factor))) {
+      const double before = study_.samples[k][i].form_factor;
+      if (form_factor != before && !(std::isnan(form_factor) && std::isnan(before))) {
         throw std::logic_error("the adaptive algorithm gave two results for one receiver and setting");
       }
     });
@@ -143,20 +146,20 @@ class Stopwatch {
   }
 
   void time_methods() {
-    MethodStudy& methods = study_.methods;
+    const MethodStudy& methods = study_.methods;
     std::vector<std::size_t> order;
     for (const std::size_t k : spread_order(methods.receivers.size())) order.push_back(methods.receivers[k]);
     for (std::size_t first = 0, l = 0; l < methods.ladders.size(); ++l) {
       const methods::Choice& choice = methods.ladders[l].rungs.front();
       std::optional<PreparedMethod> prepared;
-      methods.setup_seconds.push_back(timed([&] { prepared.emplace(*choice.method, request()); }));
+      times_.method_setup.push_back(timed([&] { prepared.emplace(*choice.method, request()); }));
       for (; first < methods.cells.size() && methods.cells[first].ladder == l; ++first) {
         time_cell(methods.cells[first], *prepared, order);
       }
     }
   }
 
-  void time_cell(MethodCell& cell, const PreparedMethod& prepared, const std::vector<std::size_t>& order) {
+  void time_cell(const MethodCell& cell, const PreparedMethod& prepared, const std::vector<std::size_t>& order) {
     const methods::Choice& choice = study_.methods.ladders[cell.ladder].rungs[cell.rung];
     const auto evaluator = prepared.scene->configure(seeded(choice, cell.seeds.front()));
     std::vector<methods::Estimate> estimates(prepared.sources.size());
@@ -168,13 +171,14 @@ class Stopwatch {
       }));
       if (study_.exact[i].sight == Sight::kPartly) partly.push_back(all.back());
     });
-    if (!all.empty()) cell.seconds = mean(all);
-    if (!partly.empty()) cell.seconds_partly = mean(partly);
+    const auto mean_of = [](const std::vector<double>& list) { return list.empty() ? kNotTimed : mean(list); };
+    times_.cells.push_back({mean_of(all), mean_of(partly)});
     report();
   }
 
-  Study& study_;
+  const Study& study_;
   const Hooks& hooks_;
+  Times times_;
   std::vector<ExactSource> sources_;
   std::optional<AdaptiveSolver> solver_;
   std::vector<AdaptiveSource> sampled_sources_;
@@ -197,6 +201,6 @@ std::vector<std::size_t> spread_order(std::size_t count) {
   return order;
 }
 
-void measure_times(Study& study, const Hooks& hooks) { Stopwatch(study, hooks).run(); }
+Times measure_times(const Study& study, const Hooks& hooks) { return Stopwatch(study, hooks).run(); }
 
 }  // namespace exactff::study
