@@ -1,7 +1,6 @@
 #include "experiments/hemicube_scatter.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -58,14 +57,8 @@ Counts count(std::span<const ScatterPoint> points, std::size_t resolution) {
   return counts;
 }
 
-// "10⁻⁴"; form factors are at most 1.
-std::string power_of_ten(int exponent) {
-  constexpr std::array<std::string_view, 10> kSuperscripts = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  if (exponent == 0) return "1";
-  std::string text = "10⁻";
-  for (const char digit : std::to_string(-exponent)) text += kSuperscripts[static_cast<std::size_t>(digit - '0')];
-  return text;
-}
+// "10⁻⁴"
+std::string power_of_ten(int exponent) { return exponent == 0 ? "1" : "10" + text::superscript(exponent); }
 
 // ---------------------------------------------------------------------------------------------------------- sentences
 

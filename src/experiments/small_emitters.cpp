@@ -68,7 +68,7 @@ double seconds_per_receiver(const Hall& hall, const std::string& choice, int tim
   std::vector<double> times;
   const std::size_t step = std::max<std::size_t>(1, hall.receivers.size() / static_cast<std::size_t>(timed));
   for (std::size_t i = step / 2; i < hall.receivers.size(); i += step) {
-    times.push_back(seconds_of([&] { (void)bench.look_from(hall.receivers[i]); }, 3));
+    times.push_back(median_seconds([&] { (void)bench.look_from(hall.receivers[i]); }, 3));
   }
   return study::mean(times);
 }

@@ -1,14 +1,13 @@
 #include "experiments/support.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
-#include <chrono>
 #include <cmath>
 #include <locale>
 
 #include "exactff/models.h"
 #include "study/statistics.h"
 #include "text/phrases.h"
+#include "work/stopwatch.h"
 
 namespace exactff::experiments {
 
@@ -59,31 +58,14 @@ std::vector<ExactSource> exact_sources(const Scene& scene, std::span<const Selec
 
 double root_mean_square(std::span<const double> errors) { return study::error_statistics(errors).rms; }
 
-double seconds_of(const std::function<void()>& call, int repeats) {
-  using Clock = std::chrono::steady_clock;
+double median_seconds(const std::function<void()>& call, std::size_t repeats) {
   constexpr double kLong = 1.0;
-  const auto timed = [&] {
-    const auto start = Clock::now();
-    call();
-    return std::chrono::duration<double>(Clock::now() - start).count();
-  };
-  const double first = timed();
-  if (first > kLong) return first;
-  std::vector<double> times;
-  for (double spent = 0.0; static_cast<int>(times.size()) < repeats && spent < kLong; spent += times.back()) {
-    times.push_back(timed());
-  }
-  return study::median(times);
+  const double first = work::seconds_of(call);
+  return first > kLong ? first : work::median_seconds(call, repeats, kLong);
 }
 
 SlopeFit mean_slope(std::span<const double> slopes) {
-  const auto count = static_cast<double>(slopes.size());
-  const double mean = study::mean(slopes);
-  double squares = 0.0;
-  for (const double s : slopes) squares += (s - mean) * (s - mean);
-  const boost::math::students_t student(count - 1.0);
-  const double t = quantile(student, 0.975);
-  return {mean, t * std::sqrt(squares / (count - 1.0) / count), slopes.size()};
+  return {study::mean(slopes), study::mean_half_width(slopes), slopes.size()};
 }
 
 std::string to_text(const SlopeFit& fit) { return slope_text(fit.slope) + " ± " + slope_text(fit.half_width); }

@@ -67,7 +67,7 @@ class Bench {
 
 // The time of one call in seconds, on a steady clock: the median of up to `repeats` calls after a warm-up call, as long
 // as they take less than a second together. If the first call takes longer than that, its time is the result.
-[[nodiscard]] double seconds_of(const std::function<void()>& call, int repeats = 5);
+[[nodiscard]] double median_seconds(const std::function<void()>& call, std::size_t repeats = 5);
 
 // ------------------------------------------------------------------------------------------------------------ slopes
 

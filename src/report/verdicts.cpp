@@ -101,9 +101,7 @@ std::string cell_name(const Study& study, const MethodCell& cell) {
 }
 
 std::string power_of_ten(double value) {
-  static constexpr std::array<const char*, 10> kDigits = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  const int power = static_cast<int>(std::lround(-std::log10(value)));
-  return std::string("10⁻") + kDigits[static_cast<std::size_t>(std::clamp(power, 0, 9))];
+  return "10" + text::superscript(static_cast<int>(std::lround(std::log10(value))));
 }
 
 std::vector<std::string> method_sentences(const Study& study) {

@@ -9,7 +9,6 @@
 #include "study/method_runs.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
 
@@ -265,7 +264,7 @@ class MethodRunner {
     if (cells.size() < 3) return std::nullopt;
     std::vector<double> exponents;
     for (std::size_t seed = 0; seed < cells.front()->seeds.size(); ++seed) {
-      Points points;
+      std::vector<std::pair<double, double>> points;
       for (const MethodCell* cell : cells) {
         std::vector<double> errors;
         append(errors, cell->radiosity_errors[std::min(seed, cell->seeds.size() - 1)],
@@ -277,23 +276,8 @@ class MethodRunner {
       if (exponent) exponents.push_back(*exponent);
     }
     if (exponents.empty()) return std::nullopt;
-    return with_interval(exponents, cells.size());
-  }
-
-  using Points = std::vector<std::pair<double, double>>;
-
-  static Slope with_interval(const std::vector<double>& exponents, std::size_t rungs) {
-    Slope slope{mean(exponents), 0.0, 0.0, exponents.size(), rungs};
-    double squares = 0.0;
-    for (const double e : exponents) squares += (e - slope.exponent) * (e - slope.exponent);
-    double half = 0.0;
-    if (exponents.size() > 1) {
-      const double n = static_cast<double>(exponents.size());
-      half = boost::math::quantile(boost::math::students_t(n - 1.0), 0.975) * std::sqrt(squares / (n - 1.0) / n);
-    }
-    slope.low = slope.exponent - half;
-    slope.high = slope.exponent + half;
-    return slope;
+    const double middle = mean(exponents), half = mean_half_width(exponents);
+    return Slope{middle, middle - half, middle + half, exponents.size(), cells.size()};
   }
 
   const Study& study_;

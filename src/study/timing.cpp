@@ -1,7 +1,6 @@
 #include "study/timing.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <numeric>
@@ -11,34 +10,20 @@
 #include "study/radiosity.h"
 #include "study/statistics.h"
 #include "work/parallel.h"
+#include "work/stopwatch.h"
 
 namespace exactff::study {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr double kLongCallSeconds = 0.02;  // a first call this long needs no warm-up
 constexpr std::size_t kMostTimed = 256;    // receivers
 constexpr std::size_t kFewestTimed = 12;
 constexpr std::size_t kFewestInCell = 4;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-template <class Call>
-double timed(const Call& call) {
-  const auto start = Clock::now();
-  call();
-  return seconds_since(start);
-}
-
 template <class Call>
 double typical_time(const Call& call) {
-  const double first = timed(call);
-  if (first >= kLongCallSeconds) return first;
-  std::array<double, 3> times{};
-  for (double& t : times) t = timed(call);
-  std::sort(times.begin(), times.end());
-  return times[1];
+  const double first = work::seconds_of(call);
+  return first >= kLongCallSeconds ? first : work::median_seconds(call, 3, std::numeric_limits<double>::infinity());
 }
 
 class Stopwatch {
@@ -61,7 +46,7 @@ class Stopwatch {
   [[nodiscard]] const Scene& scene() const { return *request().scene; }
 
   void prepare() {
-    times_.exact_setup = timed([&] {
+    times_.exact_setup = work::seconds_of([&] {
       for (const Selection& source : request().sources) sources_.emplace_back(scene(), source);
     });
     solver_.emplace(scene());
@@ -92,13 +77,14 @@ class Stopwatch {
   // are any.
   template <class Measure>
   void spend(double seconds, std::size_t fewest, const std::vector<std::size_t>& order, const Measure& measure) {
-    const auto start = Clock::now();
+    const auto start = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> limit(seconds);
     std::size_t done = 0, partly = 0;
     const std::size_t all_partly = static_cast<std::size_t>(std::count_if(
         order.begin(), order.end(), [&](std::size_t i) { return study_.exact[i].sight == Sight::kPartly; }));
     for (const std::size_t i : order) {
       const bool is_partly = study_.exact[i].sight == Sight::kPartly;
-      const bool spent = seconds_since(start) > seconds && done >= fewest;
+      const bool spent = std::chrono::steady_clock::now() - start > limit && done >= fewest;
       if (spent && partly >= std::min<std::size_t>(3, all_partly)) break;
       if (spent && !is_partly) continue;
       measure(i);
@@ -152,7 +138,7 @@ class Stopwatch {
     for (std::size_t first = 0, l = 0; l < methods.ladders.size(); ++l) {
       const methods::Choice& choice = methods.ladders[l].rungs.front();
       std::optional<PreparedMethod> prepared;
-      times_.method_setup.push_back(timed([&] { prepared.emplace(*choice.method, request()); }));
+      times_.method_setup.push_back(work::seconds_of([&] { prepared.emplace(*choice.method, request()); }));
       for (; first < methods.cells.size() && methods.cells[first].ladder == l; ++first) {
         time_cell(methods.cells[first], *prepared, order);
       }
