@@ -104,43 +104,48 @@ std::string power_of_ten(double value) {
   return "10" + text::superscript(static_cast<int>(std::lround(std::log10(value))));
 }
 
-std::vector<std::string> method_sentences(const Study& study) {
-  const MethodCell* exact = exact_cell(study);
-  if (exact == nullptr || !is_timed(*exact) || study.methods.cells.size() < 2) return {};
-  std::string text =
-      "On this scene the exact value takes " + text::duration(exact->seconds) + " per receiver in the mean";
+namespace {
+
+// What the exact value costs, and which other method is accurate to the smallest wanted error that any of them reaches.
+std::string cost_sentence(const Study& study, const MethodCell& exact) {
   double reached = 0.0, missed = 0.0;
   for (const double wanted : kWantedErrors) {
     (cheapest(study, wanted) != nullptr ? reached : missed) = wanted;
     if (missed > 0.0) break;
   }
   const std::string of = " of the brightest receiver (RMS)";
-  if (reached > 0.0) {
-    const MethodCell* best = cheapest(study, reached);
-    const double ratio = best->seconds / exact->seconds;
-    text += "; the cheapest other way to be right to " + power_of_ten(reached) + of + ", " + cell_name(study, *best) +
-            ", takes " + text::rounded(ratio, 2) + " times as long";
-    if (missed > 0.0) text += ", and no setting of the others that was run is right to " + power_of_ten(missed);
-  } else {
-    text += "; no setting of the others that was run is right to " + power_of_ten(kWantedErrors.front()) + of;
+  const std::string text =
+      "On this scene the exact value takes " + text::duration(exact.seconds) + " per receiver in the mean; ";
+  if (reached == 0.0) {
+    return text + "no setting of the others that was run is right to " + power_of_ten(kWantedErrors.front()) + of + '.';
   }
-  std::vector<std::string> sentences = {text + "."};
+  const MethodCell* best = cheapest(study, reached);
+  return text + "the cheapest other way to be right to " + power_of_ten(reached) + of + ", " + cell_name(study, *best) +
+         ", takes " + text::rounded(best->seconds / exact.seconds, 2) + " times as long" +
+         (missed > 0.0 ? ", and no setting of the others that was run is right to " + power_of_ten(missed) : "") + '.';
+}
+
+// The error that other methods reach in the time of the exact one.
+std::string overtaking_sentence(const Study& study, const MethodCell& exact) {
   const MethodCell* within = nullptr;
   for (const MethodCell& cell : study.methods.cells) {
-    if (!is_rival(study, cell) || !is_timed(cell) || cell.seconds > exact->seconds) continue;
+    if (!is_rival(study, cell) || !is_timed(cell) || cell.seconds > exact.seconds) continue;
     if (!std::isfinite(relative_error(study, cell))) continue;
     if (within == nullptr || relative_error(study, cell) < relative_error(study, *within)) within = &cell;
   }
-  if (within != nullptr) {
-    sentences.push_back("Side by side, exact overtakes the others at an error of " +
-                        text::rounded(100.0 * relative_error(study, *within), 2) +
-                        " % of the brightest receiver: the best that any setting compared there reaches within its "
-                        "time (" +
-                        cell_name(study, *within) + ").");
-  } else {
-    sentences.emplace_back("No other method is as fast as the exact one at any setting.");
-  }
-  return sentences;
+  if (within == nullptr) return "No other method is as fast as the exact one at any setting.";
+  return "Side by side, exact overtakes the others at an error of " +
+         text::rounded(100.0 * relative_error(study, *within), 2) +
+         " % of the brightest receiver: the best that any setting compared there reaches within its time (" +
+         cell_name(study, *within) + ").";
+}
+
+}  // namespace
+
+std::vector<std::string> method_sentences(const Study& study) {
+  const MethodCell* exact = exact_cell(study);
+  if (exact == nullptr || !is_timed(*exact) || study.methods.cells.size() < 2) return {};
+  return {cost_sentence(study, *exact), overtaking_sentence(study, *exact)};
 }
 
 namespace {
