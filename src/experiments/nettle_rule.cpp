@@ -1,6 +1,7 @@
 #include "experiments/nettle_rule.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "kernel/vec.h"
@@ -293,15 +294,8 @@ std::vector<page::Figure> figures(const std::vector<NettleCurve>& curves, const 
 // ------------------------------------------------------------------------------------------------------------- tables
 
 std::string_view name_of(NettleCase kind) {
-  switch (kind) {
-    case NettleCase::kFree:
-      return "none";
-    case NettleCase::kExactV:
-      return "exact fraction";
-    case NettleCase::kRayV:
-      break;
-  }
-  return "rays";
+  constexpr std::array<std::string_view, 3> kNames = {"none", "exact fraction", "rays"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 TextTable curve_table(const std::vector<NettleCurve>& curves, const NettleSize& size) {

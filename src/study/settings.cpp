@@ -11,6 +11,7 @@
 #include "study/settings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -207,36 +208,24 @@ AdaptiveOptions without(AdaptiveOptions setting, Parameter parameter) {
 
 }  // namespace
 
-std::string_view name_of(SamplePattern pattern) {
-  switch (pattern) {
-    case SamplePattern::kCentre:
-      return "centre";
-    case SamplePattern::kRegular:
-      return "regular";
-    case SamplePattern::kJittered:
-      return "jittered";
-    case SamplePattern::kLowDiscrepancy:
-      return "low-discrepancy";
-  }
-  return {};
+namespace {
+
+// In the order of the enumerators.
+constexpr std::array<std::string_view, 4> kPatternNames = {"centre", "regular", "jittered", "low-discrepancy"};
+constexpr std::array<std::string_view, 2> kVariantNames = {"mended", "literal"};
+
+template <class Enum>
+std::optional<Enum> named(std::span<const std::string_view> names, std::string_view name) {
+  const auto found = std::ranges::find(names, name);
+  return found == names.end() ? std::nullopt : std::optional(static_cast<Enum>(found - names.begin()));
 }
 
-std::string_view name_of(Variant variant) { return variant == Variant::kMended ? "mended" : "literal"; }
+}  // namespace
 
-std::optional<SamplePattern> pattern_named(std::string_view name) {
-  for (SamplePattern pattern :
-       {SamplePattern::kCentre, SamplePattern::kRegular, SamplePattern::kJittered, SamplePattern::kLowDiscrepancy}) {
-    if (name_of(pattern) == name) return pattern;
-  }
-  return std::nullopt;
-}
-
-std::optional<Variant> variant_named(std::string_view name) {
-  for (Variant variant : {Variant::kMended, Variant::kLiteral}) {
-    if (name_of(variant) == name) return variant;
-  }
-  return std::nullopt;
-}
+std::string_view name_of(SamplePattern pattern) { return kPatternNames[static_cast<std::size_t>(pattern)]; }
+std::string_view name_of(Variant variant) { return kVariantNames[static_cast<std::size_t>(variant)]; }
+std::optional<SamplePattern> pattern_named(std::string_view name) { return named<SamplePattern>(kPatternNames, name); }
+std::optional<Variant> variant_named(std::string_view name) { return named<Variant>(kVariantNames, name); }
 
 void complete(Sweeps& sweeps, const Work& work) {
   const double unit = work.largest_rho_b > 0.0 ? work.largest_rho_b : 1.0;
