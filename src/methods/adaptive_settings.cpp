@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "kernel/float_environment.h"
+#include "text/refuse.h"
 
 namespace exactff::methods {
 
@@ -36,11 +37,9 @@ void check_tolerances(const Settings& settings) {
   constexpr std::int64_t kModestDepth = 12;
   if (settings.number("eps_B") > 0.0 || settings.number("eps_A") > 0.0) return;
   if (settings.whole("depth_cap") <= kModestDepth) return;
-  throw InputError(Problem{{},
-                           0,
-                           "eps_B and eps_A are both 0",
-                           "nothing but the depth cap would end the recursion, after 2^depth leaves or more",
-                           "give one of them, or a depth_cap of at most 12"});
+  text::refuse("eps_B and eps_A are both 0",
+               "nothing but the depth cap would end the recursion, after 2^depth leaves or more",
+               "give one of them, or a depth_cap of at most 12");
 }
 
 Estimate RecursionEvaluator::estimate(const AdaptiveSource& source, const Rgb& radiosity,

@@ -17,6 +17,7 @@
 #include "stress/double_formulas.h"
 #include "stress/family.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "work/parallel.h"
 #include "work/stopwatch.h"
 
@@ -155,11 +156,8 @@ class Trial {
 [[noreturn]] void refuse_family(const std::string& name) {
   std::vector<std::string> names;
   for (const Family& family : all_families()) names.emplace_back(family.info.name);
-  throw InputError(Problem{{},
-                           0,
-                           "there is no family '" + name + "'",
-                           {},
-                           "exactff stress --list tells them all: " + text::enumerate(names)});
+  text::refuse("there is no family '" + name + "'", {},
+               "exactff stress --list tells them all: " + text::enumerate(names));
 }
 
 const Family& family_named(const std::string& name) {

@@ -29,6 +29,7 @@
 #include "study/sweep_budget.h"
 #include "study/timing.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "work/parallel.h"
 
 namespace exactff::study {
@@ -37,11 +38,8 @@ namespace {
 void complete(Request& request) {
   require_scene(request.scene);
   if (request.receivers.empty()) {
-    throw InputError(Problem{{},
-                             0,
-                             "there is no receiver in " + request.receivers_name,
-                             "a comparison needs at least one point",
-                             "use a finer grid, or another patch"});
+    text::refuse("there is no receiver in " + request.receivers_name, "a comparison needs at least one point",
+                 "use a finer grid, or another patch");
   }
   if (request.sources.empty()) request.sources = request.scene->emitters();
   if (request.sources.empty()) {

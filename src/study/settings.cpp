@@ -16,6 +16,7 @@
 #include <iterator>
 
 #include "text/phrases.h"
+#include "text/refuse.h"
 
 namespace exactff::study {
 namespace {
@@ -41,9 +42,7 @@ std::vector<double> powers_of_ten(double unit, int first, int last) {
   return values;
 }
 
-[[noreturn]] void refuse(std::string what, std::string why) {
-  throw InputError(Problem{{}, 0, std::move(what), std::move(why), {}});
-}
+[[noreturn]] void refuse(std::string what, std::string why) { text::refuse(std::move(what), std::move(why), {}); }
 
 void check_ranges(const Sweeps& sweeps) {
   for (double eps_b : sweeps.eps_b) {
