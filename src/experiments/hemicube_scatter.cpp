@@ -158,11 +158,12 @@ page::Figure error_figure(std::span<const ScatterPoint> points, const ScatterSiz
 
 // ------------------------------------------------------------------------------------------------------------- tables
 
-TextTable point_table(std::span<const ScatterPoint> points, const ScatterSize& size) {
-  Table table("every triangle of Karkanis' scenes: models karkanis:n=" + std::to_string(size.triangles) +
-                  ",floor=0,seed=SCENE, seen from the origin along +z\nexact is correctly rounded, 0 where nothing can "
-                  "be seen; form_factor is of the method hemicube:resolution=RESOLUTION",
-              {"scene", "triangle", "exact", "resolution", "form_factor"});
+CsvFile point_table(std::span<const ScatterPoint> points, const ScatterSize& size) {
+  TableWriter table(
+      "every triangle of Karkanis' scenes: models karkanis:n=" + std::to_string(size.triangles) +
+          ",floor=0,seed=SCENE, seen from the origin along +z\nexact is correctly rounded, 0 where nothing can "
+          "be seen; form_factor is of the method hemicube:resolution=RESOLUTION",
+      {"scene", "triangle", "exact", "resolution", "form_factor"});
   for (const ScatterPoint& p : points) {
     for (std::size_t r = 0; r < p.hemicube.size(); ++r) {
       table.row() << p.scene << p.triangle << p.exact << size.resolutions[r] << p.hemicube[r];
@@ -171,9 +172,10 @@ TextTable point_table(std::span<const ScatterPoint> points, const ScatterSize& s
   return table.finish("hemicube-scatter.csv", "exact and hemicube form factor of every triangle");
 }
 
-TextTable decade_table(std::span<const ScatterPoint> points, const ScatterSize& size) {
-  Table table("normalised error |hemicube - exact| / exact of visible triangles, by decades of the exact form factor",
-              {"resolution", "from", "to", "visible", "missed", "median", "p99"});
+CsvFile decade_table(std::span<const ScatterPoint> points, const ScatterSize& size) {
+  TableWriter table(
+      "normalised error |hemicube - exact| / exact of visible triangles, by decades of the exact form factor",
+      {"resolution", "from", "to", "visible", "missed", "median", "p99"});
   for (std::size_t r = 0; r < size.resolutions.size(); ++r) {
     for (const ScatterDecade& d : scatter_decades(points, r)) {
       table.row() << size.resolutions[r] << std::pow(10.0, d.exponent) << std::pow(10.0, d.exponent + 1) << d.visible

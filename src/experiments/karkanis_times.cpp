@@ -245,8 +245,8 @@ page::Figure figure(const std::vector<TimeRow>& rows, int rays) {
 
 // ------------------------------------------------------------------------------------------------------------- tables
 
-TextTable time_table(const std::vector<TimeRow>& rows, const TimesSize& size) {
-  Table table(
+CsvFile time_table(const std::vector<TimeRow>& rows, const TimesSize& size) {
+  TableWriter table(
       "seconds for the form factors of all triangles from one point: models karkanis:n=TRIANGLES,floor=0,"
       "seed=1\none thread, after a first call unless that took more than a second; preparation of scene and sources "
       "not included\nrays: " +
@@ -262,16 +262,16 @@ TextTable time_table(const std::vector<TimeRow>& rows, const TimesSize& size) {
   return table.finish("karkanis-times.csv", "time for all patches from one point against their number");
 }
 
-TextTable affordable_table(const std::vector<Affordable>& rows, int triangles) {
-  Table table("stratified sampling of all triangles of karkanis:n=" + std::to_string(triangles) +
-                  ",floor=0,seed=1 from one point: seconds, and the RMS error over the RMS form factor",
-              {"rays", "seconds", "error"});
+CsvFile affordable_table(const std::vector<Affordable>& rows, int triangles) {
+  TableWriter table("stratified sampling of all triangles of karkanis:n=" + std::to_string(triangles) +
+                        ",floor=0,seed=1 from one point: seconds, and the RMS error over the RMS form factor",
+                    {"rays", "seconds", "error"});
   for (const Affordable& row : rows) table.row() << row.rays << row.seconds << row.error;
   return table.finish("karkanis-times-rays.csv", "what rays cost and how far off they are on one of his scenes");
 }
 
-TextTable work_table(const std::vector<WorkRow>& rows) {
-  Table table(
+CsvFile work_table(const std::vector<WorkRow>& rows) {
+  TableWriter table(
       "all triangles of karkanis:n=TRIANGLES,floor=0,seed=1 from one point\nlooked_at: pairs of a source and a "
       "face that may hide it; differences: values that differ without the shaft, empty where not compared",
       {"triangles", "visible", "sum", "looked_at", "looked_at_without_shaft", "differences"});

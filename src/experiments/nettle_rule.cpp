@@ -298,8 +298,8 @@ std::string_view name_of(NettleCase kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-TextTable curve_table(const std::vector<NettleCurve>& curves, const NettleSize& size) {
-  Table table(
+CsvFile curve_table(const std::vector<NettleCurve>& curves, const NettleSize& size) {
+  TableWriter table(
       "relative error of Nettle's factor from centre to centre, over " +
           std::to_string(static_cast<int>(size.groups) * size.configurations) +
           " configurations in general position\nside: of the patch over its distance; splits: m of m x m parts\n"
@@ -314,9 +314,9 @@ TextTable curve_table(const std::vector<NettleCurve>& curves, const NettleSize& 
   return table.finish("nettle-rule.csv", "error of Nettle's factor against the patch's size");
 }
 
-TextTable literal_table(const std::vector<NettleLiteral>& rows) {
-  Table table("Nettle's literal text over the exact value, median, for patches as large as the receiver's",
-              {"side", "sender_over_receiver", "receiver_over_sender", "sender_over_receiver_in_tenths"});
+CsvFile literal_table(const std::vector<NettleLiteral>& rows) {
+  TableWriter table("Nettle's literal text over the exact value, median, for patches as large as the receiver's",
+                    {"side", "sender_over_receiver", "receiver_over_sender", "sender_over_receiver_in_tenths"});
   for (const NettleLiteral& r : rows) {
     table.row() << r.side << r.sender_over_receiver << r.receiver_over_sender << r.in_tenths;
   }

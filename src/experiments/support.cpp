@@ -88,7 +88,7 @@ std::optional<double> reaches(const Points& points, double y) {
 
 std::string percent(double share) { return text::rounded(100.0 * share, 2) + " %"; }
 
-Table::Table(std::string_view about, std::initializer_list<std::string_view> columns) {
+TableWriter::TableWriter(std::string_view about, std::initializer_list<std::string_view> columns) {
   out_.imbue(std::locale::classic());
   std::string_view rest = about;
   while (!rest.empty()) {
@@ -100,7 +100,7 @@ Table::Table(std::string_view about, std::initializer_list<std::string_view> col
   for (const std::string_view name : columns) names << name;
 }
 
-TextTable Table::finish(std::string file, std::string holds) const {
+CsvFile TableWriter::finish(std::string file, std::string holds) const {
   return {std::move(file), std::move(holds), out_.str()};
 }
 

@@ -95,11 +95,11 @@ struct SlopeFit {
 // ------------------------------------------------------------------------------------------------------------ tables
 
 // Writes a CSV file: comment lines (#) that describe it, the column names, rows.
-class Table {
+class TableWriter {
  public:
-  Table(std::string_view about, std::initializer_list<std::string_view> columns);
+  TableWriter(std::string_view about, std::initializer_list<std::string_view> columns);
   [[nodiscard]] text::CsvRow row() { return text::CsvRow(out_); }
-  [[nodiscard]] TextTable finish(std::string file, std::string holds) const;
+  [[nodiscard]] CsvFile finish(std::string file, std::string holds) const;
 
  private:
   std::ostringstream out_;

@@ -10,7 +10,7 @@ void fields(Words& words, Chapter& chapter) {
   words(chapter.name, chapter.title, chapter.paragraphs);
   words.list(chapter.figures, [&](Figure& f) { words(f.id, f.title, f.caption, f.script, f.map); });
   for (auto* tables : {&chapter.values, &chapter.times}) {
-    words.list(*tables, [&](TextTable& table) { words(table.file, table.holds, table.csv); });
+    words.list(*tables, [&](CsvFile& table) { words(table.file, table.holds, table.csv); });
   }
   words.list(chapter.left_out, [&](LeftOut& item) { words(item.what, item.why); });
 }

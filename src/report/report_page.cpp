@@ -223,7 +223,7 @@ class ScenePart {
 
 class PageWriter {
  public:
-  PageWriter(const Report& report, const Pages& pages) : report_(report), pages_(pages) {}
+  PageWriter(const StudyReport& report, const Pages& pages) : report_(report), pages_(pages) {}
 
   std::string write() {
     head();
@@ -417,7 +417,7 @@ class PageWriter {
     const auto item = [&](const std::string& file, const std::string& holds) {
       text_ += "<li><code>" + text::html(file) + "</code>: " + text::html(holds) + "</li>\n";
     };
-    for (const Table& table : tables()) {
+    for (const StudyTable& table : tables()) {
       const bool anywhere = std::any_of(report_.scenes.begin(), report_.scenes.end(),
                                         [&](const SceneChapter& scene) { return table.has_rows(scene.study); });
       if (!anywhere) continue;
@@ -426,7 +426,7 @@ class PageWriter {
     }
     for (const page::Chapter& chapter : report_.chapters) {
       for (const auto* list : {&chapter.values, &chapter.times}) {
-        for (const page::TextTable& table : *list) item(table.file, table.holds);
+        for (const page::CsvFile& table : *list) item(table.file, table.holds);
       }
     }
     text_ += "</ul>\n";
@@ -438,13 +438,13 @@ class PageWriter {
     text_ += "<p>SCENE stands for " + text::enumerate(names) + ".</p>\n";
   }
 
-  const Report& report_;
+  const StudyReport& report_;
   const Pages& pages_;
   std::string text_;
 };
 
 }  // namespace
 
-std::string report_page(const Report& report, const Pages& pages) { return PageWriter(report, pages).write(); }
+std::string report_page(const StudyReport& report, const Pages& pages) { return PageWriter(report, pages).write(); }
 
 }  // namespace exactff::report

@@ -182,7 +182,7 @@ class PageWriter {
         "Exact values are the same everywhere, all other values on the same machine and for any number of threads; "
         "times are not, and are least disturbed with --threads 1.");
     text_ += "<p>Beside this page lie:</p>\n<ul>\n";
-    for (const Table& table : tables()) {
+    for (const StressTable& table : tables()) {
       text_ += "<li><code>" + std::string(table.file) + "</code>: " + html(table.holds) + "</li>\n";
     }
     text_ += "</ul>\n";

@@ -59,8 +59,8 @@ struct Place {
   std::uint64_t bytes = 0;
 };
 
-const work::Consolation kConsolation{"finished work is kept there, so that an interrupted run can go on",
-                                     "make room, or name a folder elsewhere"};
+const work::FailureAdvice kAdvice{"finished work is kept there, so that an interrupted run can go on",
+                                  "make room, or name a folder elsewhere"};
 const Problem kInUse{.what = "another process is working on it",
                      .why = "two would compute the same values and spoil each other's journal",
                      .suggestion = "wait for the other one, or name another folder with -o"};
@@ -68,7 +68,7 @@ const Problem kInUse{.what = "another process is working on it",
 }  // namespace
 
 struct Journal::Impl {
-  explicit Impl(const fs::path& path) : made(path), file(work::open_locked(path, kConsolation, kInUse)) {}
+  explicit Impl(const fs::path& path) : made(path), file(work::open_locked(path, kAdvice, kInUse)) {}
 
   // If the first line is cut off, nothing follows it.
   void require_ours(Existing existing) const {

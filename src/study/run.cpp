@@ -220,7 +220,7 @@ class Runner {
     Sweeps& sweeps = study_.request.sweeps;
     study::complete(sweeps, work);
     leave_out(study::leave_out(sweeps, work));
-    Plan plan = combine(sweeps);
+    SettingPlan plan = combine(sweeps);
     study_.settings = std::move(plan.settings);
     study_.base = plan.base;
     study_.full_product = plan.full_product;

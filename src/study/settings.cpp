@@ -264,10 +264,10 @@ std::vector<LeftOut> leave_out(Sweeps& sweeps, const Work& work) {
   return left_out;
 }
 
-Plan combine(const Sweeps& sweeps) {
+SettingPlan combine(const Sweeps& sweeps) {
   const AdaptiveOptions base = base_of(sweeps);
   Collector settings(sweeps);
-  Plan plan;
+  SettingPlan plan;
   plan.full_product = product_size(sweeps) <= kFullProductLimit;
   if (plan.full_product) {
     add_full_product(settings, sweeps);

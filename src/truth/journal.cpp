@@ -85,17 +85,17 @@ void require_same_head(const fs::path& file, std::string_view head, std::string_
                     .suggestion = suggestion});
 }
 
-Journal::Journal(const fs::path& file, const Rows& rows, Existing existing, const Hooks& hooks)
+RowJournal::RowJournal(const fs::path& file, const Rows& rows, Existing existing, const Hooks& hooks)
     : file_(opened(journal_of(file), hooks)) {
   take_over(rows, existing, hooks);
-  file_.console({"the rows finished so far are kept in it", "make room, then go on with --resume"});
+  file_.set_failure_advice({"the rows finished so far are kept in it", "make room, then go on with --resume"});
 }
 
-Journal::~Journal() {
+RowJournal::~RowJournal() {
   if (blocks_.empty() && end_ > 0) remove();
 }
 
-void Journal::take_over(const Rows& rows, Existing existing, const Hooks& hooks) {
+void RowJournal::take_over(const Rows& rows, Existing existing, const Hooks& hooks) {
   const std::string head = journal_head(rows.head());
   const std::optional<std::string> found = read_head(file_);
   // A journal that is cut off within its head holds no rows.
@@ -122,14 +122,14 @@ void Journal::take_over(const Rows& rows, Existing existing, const Hooks& hooks)
   keep_usable(std::move(there.list), rows, hooks);
 }
 
-void Journal::begin(const std::string& head) {
+void RowJournal::begin(const std::string& head) {
   file_.truncate(0);
   end_ = head.size();
   file_.write(0, head);
 }
 
 // Keeps the rows of this request, each once. Nothing else is ever appended, but the file may have been tampered with.
-void Journal::keep_usable(std::vector<Block> found, const Rows& rows, const Hooks& hooks) {
+void RowJournal::keep_usable(std::vector<Block> found, const Rows& rows, const Hooks& hooks) {
   std::stable_sort(found.begin(), found.end(),
                    [](const Block& a, const Block& b) { return a.range.first < b.range.first; });
   const std::size_t count = found.size();
@@ -147,7 +147,7 @@ void Journal::keep_usable(std::vector<Block> found, const Rows& rows, const Hook
   }
 }
 
-void Journal::append(Range range, std::string_view lines) {
+void RowJournal::append(Range range, std::string_view lines) {
   const std::string text = block_text(range, lines);
   const std::lock_guard lock(mutex_);
   try {
@@ -163,7 +163,7 @@ void Journal::append(Range range, std::string_view lines) {
   end_ += text.size();
 }
 
-void Journal::sync() {
+void RowJournal::sync() {
   std::uint64_t end = 0;
   {
     const std::lock_guard lock(mutex_);
@@ -175,7 +175,7 @@ void Journal::sync() {
   synced_ = end;
 }
 
-std::vector<Block> Journal::blocks() const {
+std::vector<Block> RowJournal::blocks() const {
   std::vector<Block> sorted = blocks_;
   std::sort(sorted.begin(), sorted.end(), [](const Block& a, const Block& b) { return a.range.first < b.range.first; });
   return sorted;

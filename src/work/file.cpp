@@ -17,10 +17,8 @@ namespace exactff::work {
 
 namespace fs = std::filesystem;
 
-File::File(fs::path path, Mode mode, Consolation consolation, fs::path called)
-    : path_(std::move(path)),
-      called_(called.empty() ? path_ : std::move(called)),
-      consolation_(std::move(consolation)) {
+File::File(fs::path path, Mode mode, FailureAdvice advice, fs::path called)
+    : path_(std::move(path)), called_(called.empty() ? path_ : std::move(called)), advice_(std::move(advice)) {
   const int flags = mode == Mode::kRead ? O_RDONLY : O_RDWR | O_CREAT;
   descriptor_ = ::open(path_.c_str(), flags | O_CLOEXEC, 0666);
   if (descriptor_ >= 0) {
@@ -47,7 +45,7 @@ void File::require_regular() {
 File::File(File&& other) noexcept
     : path_(std::move(other.path_)),
       called_(std::move(other.called_)),
-      consolation_(std::move(other.consolation_)),
+      advice_(std::move(other.advice_)),
       descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 File::~File() {
@@ -57,8 +55,8 @@ File::~File() {
 void File::fail(int error) const {
   throw InputError({.file = called_.string(),
                     .what = std::string("cannot be written: ") + std::strerror(error),
-                    .why = consolation_.why,
-                    .suggestion = consolation_.suggestion});
+                    .why = advice_.why,
+                    .suggestion = advice_.suggestion});
 }
 
 std::uint64_t File::size() const {
@@ -123,12 +121,12 @@ void File::remove() {
 
 // The process that held the lock may meanwhile have renamed or removed the file: it is then the result of that process,
 // or gone, so the file is opened again.
-File open_locked(const fs::path& path, const Consolation& consolation, Problem in_use, std::chrono::seconds patience,
+File open_locked(const fs::path& path, const FailureAdvice& advice, Problem in_use, std::chrono::seconds patience,
                  const fs::path& called) {
   constexpr auto kPause = std::chrono::milliseconds(5);
   const auto start = std::chrono::steady_clock::now();
   for (;;) {
-    File file(path, File::Mode::kReadWrite, consolation, called);
+    File file(path, File::Mode::kReadWrite, advice, called);
     const bool locked = file.lock() != File::Lock::kInUse;
     if (locked && file.is_in_place()) return file;
     if (locked) continue;
@@ -178,9 +176,9 @@ const Problem kBeingWritten{.what = "another process is writing the file",
 
 }  // namespace
 
-WholeFile::WholeFile(const fs::path& path, Consolation consolation, WhenBusy when_busy)
+WholeFile::WholeFile(const fs::path& path, FailureAdvice advice, WhenBusy when_busy)
     : target_(destination(path)),
-      file_(open_locked(with_suffix(target_, ".whole"), consolation, kBeingWritten,
+      file_(open_locked(with_suffix(target_, ".whole"), advice, kBeingWritten,
                         when_busy == WhenBusy::kWait ? kPatience : std::chrono::seconds(0), path)) {
   file_.truncate(0);
 }

@@ -383,7 +383,7 @@ TEST(MethodStudy, CountsValuesThatAreNoNumbersOrLeaveTheRange) {
   EXPECT_EQ(report::cheapest(study, 1e-2), nullptr) << "a method without numbers is right to nothing";
   for (const MethodCell* cell : report::pareto_front(study))
     EXPECT_TRUE(std::isfinite(report::relative_error(study, *cell)));
-  report::Report report;
+  report::StudyReport report;
   report.scenes.push_back({"", "room", study});
   report::Pages pages;
   pages.scenes.emplace_back();
