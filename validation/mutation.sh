@@ -38,7 +38,7 @@ check() {
       failures=$((failures + 1))
     fi
     apply "$name" "$top" --dry-run && continue
-    echo "$name.patch no longer applies: plant the fault anew in the present sources, as 'diff -u' from a/ to b/"
+    echo "$name.patch no longer applies: write it again for the present sources, as 'diff -u' from a/ to b/"
     failures=$((failures + 1))
   done
   [ "$failures" -eq 0 ] || exit 1
@@ -166,7 +166,7 @@ main() {
   local name names=("$@")
   [ "${#names[@]}" -gt 0 ] || mapfile -t names < <(names_of_all)
   for name in "${names[@]}"; do
-    [ -f "$patches/$name.patch" ] || { echo "there is no fault '$name'; there are: $(names_of_all | xargs)" >&2; exit 2; }
+    [ -f "$patches/$name.patch" ] || { echo "there is no fault '$name'; the faults are: $(names_of_all | xargs)" >&2; exit 2; }
   done
 
   "$top/validation/setup.sh" patch

@@ -7,7 +7,7 @@ set -euo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$top"
 validation/setup.sh
-validation/build.sh build -DEXACTFF_TESTS=OFF
+validation/build.sh build -DEXACTFF_TESTS=OFF -DEXACTFF_QUICK_BUILD=ON
 
 build/exactff compare data/scenes/cornell_box.obj --on floor --grid 32x32 --source light --resume -o build/report "$@"
 echo "Open $top/build/report/report.html in a browser."

@@ -26,7 +26,7 @@ rows_in() { # JOURNAL: rows of its blocks, the last of which may be torn
 }
 require_same() {
   cmp whole.csv "$1" || { echo "FAILED: $1 differs from the undisturbed run"; exit 1; }
-  [ ! -e "$1.part" ] && [ ! -e "$1.whole" ] || { echo "FAILED: something is left beside $1"; exit 1; }
+  [ ! -e "$1.part" ] && [ ! -e "$1.whole" ] || { echo "FAILED: files were left beside $1"; exit 1; }
 }
 
 echo "Undisturbed, all cores:"
@@ -55,7 +55,7 @@ for kill in 1 2 3 4 5; do
   while [ "$(size_of killed.csv.part)" -le "$before" ] && [ -d "/proc/$pid" ]; do sleep 0.01; done
   delay=$((RANDOM % (computing / 6)))
   sleep "$(printf '%d.%03d' $((delay / 1000)) $((delay % 1000)))"
-  kill -9 "$pid" || { echo "FAILED: it had ended before it could be killed"; exit 1; }
+  kill -9 "$pid" || { echo "FAILED: the run ended before it could be killed"; exit 1; }
   wait "$pid" 2> /dev/null || true
   echo "  $kill: $(rows_in killed.csv.part) rows in the journal"
 done
@@ -77,7 +77,7 @@ echo "  the same bytes"
 rm shard.* merged.csv
 
 if [ ! -e "$(dirname "$program")/exactff_mpi.so" ] || ! command -v mpirun > /dev/null; then
-  echo "No MPI here: the rest is left out."
+  echo "MPI is not installed: skipping the rest."
   exit 0
 fi
 
@@ -95,7 +95,7 @@ rank=$((RANDOM % 4))
 mapfile -t ranks < <(tr ' ' '\n' < "/proc/$pid/task/$pid/children" | sed '/^$/d')
 before=$(rows_in mpi_killed.csv.part)
 kill -9 "${ranks[$rank]}"
-wait "$pid" && { echo "FAILED: mpirun took the dead for the living"; exit 1; }
+wait "$pid" && { echo "FAILED: mpirun reported success although a process was killed"; exit 1; }
 after=$(rows_in mpi_killed.csv.part)
 echo "  rank $rank killed with $before rows in the journal; $after when all had ended"
 "${truth[@]}" -o mpi_killed.csv --resume > log

@@ -46,18 +46,18 @@ class Baseline {
   explicit Baseline(const std::filesystem::path& path) : file_(path.string()) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) {
-      throw InputError({file_, 0, "there is no such baseline", "there is nothing to compare with",
-                        "record one by --write-baseline"});
+      throw InputError({file_, 0, "this baseline file does not exist", "there is nothing to compare with",
+                        "record one with --write-baseline"});
     }
-    json_ = ordered_json::parse(text::read_text_file(path, "a file of --write-baseline"), nullptr, false);
+    json_ = ordered_json::parse(text::read_text_file(path, "a file written by --write-baseline"), nullptr, false);
     if (!json_.is_object() || !json_.contains("baseline") || json_["baseline"] != kFormat) refuse_format();
   }
 
   void require_same_rows(const Report& report) const {
     if (at({"truth", "identity"}) == report.identity && at({"relative_floor"}) == report.criteria.relative_floor)
       return;
-    throw InputError({file_, 0, "was recorded with other rows, other truths or another relative floor",
-                      "its errors would not be comparable", "record a new one by --write-baseline"});
+    throw InputError({file_, 0, "was recorded with different rows, true values or relative floor",
+                      "its errors cannot be compared", "record a new one with --write-baseline"});
   }
 
   // Nothing if the baseline does not have the statistic.
@@ -74,7 +74,7 @@ class Baseline {
  private:
   [[noreturn]] void refuse_format() const {
     throw InputError({file_, 0, "is not a baseline that this program can read", "there is nothing to compare with",
-                      "record one by --write-baseline"});
+                      "record one with --write-baseline"});
   }
 
   [[nodiscard]] const ordered_json& at(std::initializer_list<std::string> path) const {
@@ -125,9 +125,9 @@ std::string baseline_text(const Report& report) {
 void hold_against_baseline(Report& report, const std::filesystem::path& path, double slack) {
   const kernel::StandardArithmetic arithmetic;
   if (!(slack >= 0.0) || std::isinf(slack)) {
-    throw InputError({.what = "the slack of the baseline is " + text::shortest(slack),
-                      .why = "it is a share of what was recorded",
-                      .suggestion = "give 0 or more, such as 0.1"});
+    throw InputError({.what = "the slack for the baseline is " + text::shortest(slack),
+                      .why = "the slack is a share of the recorded errors",
+                      .suggestion = "give 0 or more, for example 0.1"});
   }
   const Baseline baseline(path);
   baseline.require_same_rows(report);

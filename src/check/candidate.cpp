@@ -27,12 +27,12 @@ class CandidateReader {
 
  private:
   void find_columns(const CandidateColumns& columns) {
-    value_ =
-        find(columns.value, {"value", "approximate", "exact"}, "it holds what is judged", "name it by --value-column");
+    value_ = find(columns.value, {"value", "approximate", "exact"}, "it contains the values to check",
+                  "name it with --value-column");
     const bool by_position = by_ == MatchBy::kPosition;
     if (!by_position) {
-      receiver_ = find(columns.receiver, {"receiver", "id"}, "it tells which row of the truth a value is held against",
-                       "name it by --receiver-column, or give --match position");
+      receiver_ = find(columns.receiver, {"receiver", "id"}, "it says which row of the truth a value belongs to",
+                       "name it with --receiver-column, or use --match position");
     }
     find_source(columns.source);
     if (by_position) find_coordinates(columns);
@@ -52,7 +52,7 @@ class CandidateReader {
 
   void find_coordinates(const CandidateColumns& columns) {
     for (std::size_t i = 0; i < 3; ++i) {
-      point_[i] = find(columns.position[i], {}, "rows are matched by their position", "name it by --position-columns");
+      point_[i] = find(columns.position[i], {}, "rows are matched by position", "name it with --position-columns");
     }
     candidate_.has_normals = true;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -76,7 +76,7 @@ class CandidateReader {
   void take_receiver(CandidateRow& row) {
     row.receiver = table_.field(receiver_);
     if (row.receiver.empty()) {
-      table_.complain("the receiver has no id", "its row of the truth cannot be told", "give it one");
+      table_.complain("the receiver has no id", "its row in the truth cannot be found", "give it an id");
     }
   }
 

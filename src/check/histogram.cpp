@@ -43,8 +43,8 @@ work::WorkFolder scratch_folder() {
   try {
     return work::WorkFolder(std::filesystem::temp_directory_path() / "exactff-plot");
   } catch (const std::filesystem::filesystem_error& error) {
-    text::refuse("no temporary folder can be made: " + error.code().message(), "gnuplot draws in one",
-                 "set TMPDIR to a folder that can be written to, or leave --plot out");
+    text::refuse("cannot create a temporary folder: " + error.code().message(), "gnuplot needs one to draw",
+                 "set TMPDIR to a writable folder, or remove --plot");
   }
 }
 
@@ -88,7 +88,7 @@ Plot plot_histogram(const Report& report, const std::function<bool()>& cancelled
   const page::PlotResult result = page::run_gnuplot(script, scratch.path(), cancelled);
   if (result.outcome == page::PlotResult::Outcome::kDrawn) return {result.svg, {}};
   const bool missing = result.outcome == page::PlotResult::Outcome::kNoProgram;
-  return {{}, missing ? "there is no gnuplot; install it" : "gnuplot failed: " + result.message};
+  return {{}, missing ? "gnuplot was not found; install it" : "gnuplot failed: " + result.message};
 }
 
 }  // namespace exactff::check

@@ -18,8 +18,8 @@ using Rows = std::vector<Errors::Index>;
 
 void require_limit(const std::optional<double>& limit, std::string_view name) {
   if (!limit || *limit >= 0.0) return;
-  throw InputError({.what = "the limit of " + std::string(name) + " is " + text::shortest(*limit),
-                    .why = "an error is at least 0",
+  throw InputError({.what = "the limit for " + std::string(name) + " is " + text::shortest(*limit),
+                    .why = "errors are never negative",
                     .suggestion = "give 0 or more"});
 }
 
@@ -33,8 +33,8 @@ void check_criteria(const Criteria& criteria) {
     require_limit(quantile.limit, name_of(quantile));
     if (quantile.share > 0.0 && quantile.share <= 1.0) continue;
     throw InputError({.what = "the share of a quantile is " + text::shortest(quantile.share),
-                      .why = "it is a share of the rows",
-                      .suggestion = "give more than 0 and at most 1, such as 0.99"});
+                      .why = "a quantile is a share of the rows",
+                      .suggestion = "give a number above 0 and up to 1, for example 0.99"});
   }
 }
 
@@ -99,9 +99,9 @@ class Judge {
 
   void require_rho_b() const {
     if (!criteria_.eps_b || report_.overall.radiosity) return;
-    throw InputError({truth_.file, 0, "does not tell rho B of every row",
-                      "--eps-b bounds the error in radiosity, which is the error times rho B",
-                      "give a truth file with the column largest_rho_b, or use --max-abs"});
+    throw InputError({truth_.file, 0, "does not contain rho B for every row",
+                      "--eps-b limits the error in radiosity, which is the absolute error times rho B",
+                      "use a truth file with the column largest_rho_b, or use --max-abs"});
   }
 
   void add_finiteness() {
@@ -170,8 +170,8 @@ Report judge(const Truth& truth, const std::vector<Measured>& values, const Crit
   const kernel::StandardArithmetic arithmetic;
   check_criteria(criteria);
   if (values.empty()) {
-    throw InputError({truth.file, 0, "has no row to judge", "a check that judges nothing would always pass",
-                      "give values for its rows"});
+    throw InputError(
+        {truth.file, 0, "has no row to check", "a check without rows would always pass", "give values for its rows"});
   }
   return Judge(truth, values, criteria).judge(candidate_file);
 }
@@ -181,7 +181,7 @@ Report judge(const Truth& truth, std::span<const double> values, const Criteria&
     throw InputError(
         {truth.file, 0,
          "has " + text::counted(truth.rows.size(), "row") + ", but there are " + text::counted(values.size(), "value"),
-         "every row has one", "give the values in the order of its rows"});
+         "every row needs one value", "give the values in the order of its rows"});
   }
   std::vector<Measured> measured;
   measured.reserve(values.size());

@@ -43,16 +43,16 @@ class Matcher {
   void check_request() {
     const auto is_tolerance = [](double t) { return std::isfinite(t) && t >= 0.0; };
     if (!is_tolerance(options_.tolerance) || !is_tolerance(options_.normal_tolerance)) {
-      throw InputError({.what = "the tolerance of matching is negative or not finite",
-                        .why = "it is a distance",
+      throw InputError({.what = "the tolerance for matching is negative or not finite",
+                        .why = "a tolerance is a distance",
                         .suggestion = "give 0 or more"});
     }
     if (options_.by == MatchBy::kPosition && !truth_.has_points) {
-      throw InputError({truth_.file, 0, "has no columns x, y and z", "rows are to be matched by their position",
-                        "match them by receiver"});
+      throw InputError({truth_.file, 0, "has no columns x, y and z", "matching by position needs them",
+                        "match by receiver instead"});
     }
     if (candidate_.rows.empty()) {
-      throw InputError({candidate_.file, 0, "has no rows", "there is nothing to judge", "write one row per value"});
+      throw InputError({candidate_.file, 0, "has no rows", "there is nothing to check", "write one row per value"});
     }
   }
 
@@ -72,7 +72,7 @@ class Matcher {
     if (truth_.sources.size() == 1) return;
     throw InputError({candidate_.file, 0, "has no column that names the source",
                       "the truth has " + std::to_string(truth_.sources.size()) + ": " + source_names(),
-                      "add a column source, or name it by --source-column"});
+                      "add a column named source, or name the column with --source-column"});
   }
 
   [[nodiscard]] std::string source_names() const {
@@ -88,7 +88,7 @@ class Matcher {
   bool has_known_source(const CandidateRow& row) {
     if (source_[row.source] != kNothing) return true;
     complain(row.line, "the truth has no source " + text::in_quotes(candidate_.sources[row.source]),
-             "its sources are " + source_names(), "check the name, or leave the row out");
+             "its sources are " + source_names(), "check the name, or remove the row");
     return false;
   }
 
@@ -101,7 +101,7 @@ class Matcher {
       const std::size_t found = keys.find(row.receiver, source_[row.source]);
       if (found == truth_.rows.size()) {
         complain(row.line, "the truth has no receiver " + text::in_quotes(row.receiver) + of_source(name_of(row)),
-                 "its value cannot be judged", unknown_advice());
+                 "its value cannot be checked", unknown_advice());
       } else {
         take(found, i);
       }
@@ -109,8 +109,8 @@ class Matcher {
   }
 
   [[nodiscard]] std::string unknown_advice() const {
-    return "its receivers are called such as " + text::in_quotes(truth_.rows.front().receiver) +
-           "; correct the id, or give --match position";
+    return "its receivers have ids such as " + text::in_quotes(truth_.rows.front().receiver) +
+           "; correct the id, or use --match position";
   }
 
   void match_positions() {
@@ -124,7 +124,7 @@ class Matcher {
       } else if (found.empty()) {
         complain(row.line,
                  "the truth has no receiver within " + text::shortest(options_.tolerance) + of_source(name_of(row)),
-                 "its value cannot be judged", "give a larger --tolerance if the coordinates were rounded");
+                 "its value cannot be checked", "use a larger --tolerance if the coordinates were rounded");
       } else {
         complain_about_choice(row, found);
       }
@@ -140,7 +140,8 @@ class Matcher {
     complain(row.line,
              std::to_string(found.size()) + " receivers of the truth match: " + told(0) + " and " + told(1) +
                  (found.size() > 2 ? ", and more" : ""),
-             "the value could be held against either", "give a smaller --tolerance, or normals, or match by receiver");
+             "it is not clear which one the value belongs to",
+             "use a smaller --tolerance, add normals, or match by receiver");
   }
 
   [[nodiscard]] const std::string& name_of(const CandidateRow& row) const { return candidate_.sources[row.source]; }
@@ -153,9 +154,9 @@ class Matcher {
     }
     complain(candidate_.rows[row].line,
              "receiver " + text::in_quotes(truth_.rows[truth_row].receiver) +
-                 of_source(truth_.source_of(truth_.rows[truth_row])) + " has a value already (line " +
+                 of_source(truth_.source_of(truth_.rows[truth_row])) + " already has a value (line " +
                  std::to_string(candidate_.rows[found].line) + ")",
-             "only one can be judged", "keep one of them");
+             "only one value can be checked", "keep one of them");
   }
 
   // Called last: rows that were matched under a wrong name are missing, too.
@@ -170,12 +171,11 @@ class Matcher {
       names.push_back(text::in_quotes(row.receiver) + of_source(truth_.source_of(row)));
     }
     if (missing > kShown) names.push_back(std::to_string(missing - kShown) + " more");
-    complain(
-        0,
-        "no value for " + text::counted_of(missing, found_.size(), "row") + " of the truth: receiver " +
-            text::enumerate(names),
-        "what is missing cannot be judged",
-        missing < found_.size() ? "add them, or give --partial to judge the others" : "check how rows are matched");
+    complain(0,
+             "no value for " + text::counted_of(missing, found_.size(), "row") + " of the truth: receiver " +
+                 text::enumerate(names),
+             "missing values cannot be checked",
+             missing < found_.size() ? "add them, or use --partial to check the others" : "check how rows are matched");
   }
 
   [[nodiscard]] std::vector<Measured> measured() const {

@@ -42,8 +42,8 @@ void CsvTable::read_names() {
     const std::string_view content = text::trimmed(line);
     if (!content.empty()) comments_.emplace_back(text::trimmed(content.substr(1)));
   }
-  complain("the file has no column names", "its columns are told apart by name",
-           "begin it with a line such as receiver,source,value");
+  complain("the file has no column names", "columns are identified by their names",
+           "begin the file with a line such as receiver,source,value");
 }
 
 void CsvTable::take_names() {
@@ -82,8 +82,8 @@ std::size_t CsvTable::needed_column(std::initializer_list<std::string_view> name
 
 bool CsvTable::split(std::string_view line) {
   if (text::split_csv_line(line, fields_)) return true;
-  complain("a quotation mark is not closed in its line, or text follows it", "fields would be told apart wrongly",
-           "write a quotation mark within quotes twice");
+  complain("a quotation mark is not closed in its line, or text follows it", "the fields cannot be separated",
+           "write a quotation mark inside quotes twice");
   return false;
 }
 
@@ -92,7 +92,8 @@ bool CsvTable::next() {
     if (text::is_csv_comment(line) || !split(line)) continue;
     if (fields_.size() == names_.size()) return true;
     complain(std::to_string(fields_.size()) + " fields where there are " + std::to_string(names_.size()) + " columns",
-             "columns would be mixed up", "separate fields by commas and quote those that hold one");
+             "values would be assigned to the wrong columns",
+             "separate fields by commas, and quote fields that contain a comma");
   }
   return false;
 }
@@ -104,11 +105,11 @@ double CsvTable::number(std::size_t column, NotFinite not_finite) {
   const bool meant = number.fault == text::NumberFault::kNotFinite || number.fault == text::NumberFault::kTooLarge;
   if (meant && not_finite == NotFinite::kAccept) return not_finite_value(text, number.fault);
   if (text.empty()) {
-    complain("column " + text::in_quotes(names_[column]) + " is empty", "a number is wanted there",
-             not_finite == NotFinite::kAccept ? "write nan where there is no result, or leave the row out" : "");
+    complain("column " + text::in_quotes(names_[column]) + " is empty", "this column must contain numbers",
+             not_finite == NotFinite::kAccept ? "write nan if there is no result, or remove the row" : "");
   } else {
-    complain(describe(number.fault, text) + " in column " + text::in_quotes(names_[column]), "a number is wanted there",
-             advice(number.fault));
+    complain(describe(number.fault, text) + " in column " + text::in_quotes(names_[column]),
+             "this column must contain numbers", advice(number.fault));
   }
   return 0.0;
 }

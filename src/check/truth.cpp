@@ -29,7 +29,7 @@ class TruthReader {
     const bool has_columns = table_.is_sound();
     while (has_columns && table_.next()) take_row();
     if (table_.is_sound() && truth_.rows.empty()) {
-      table_.complain("the file has no rows", "there is nothing to hold values against", "give a truth file with rows");
+      table_.complain("the file has no rows", "there is nothing to compare values with", "give a truth file with rows");
     }
     truth_.sources = sources_.take();
     truth_.faces = faces_.take();
@@ -40,9 +40,9 @@ class TruthReader {
 
  private:
   void find_columns() {
-    const std::string advice = "give a file of `exactff truth`, or the exact.csv of `exactff compare`";
-    receiver_ = table_.needed_column({"receiver", "id"}, "it tells the rows apart", advice);
-    value_ = table_.needed_column({truth_.column}, "it holds the truth", advice);
+    const std::string advice = "give a file written by `exactff truth`, or exact.csv of `exactff compare`";
+    receiver_ = table_.needed_column({"receiver", "id"}, "it identifies the rows", advice);
+    value_ = table_.needed_column({truth_.column}, "it contains the true values", advice);
     source_ = table_.column("source").value_or(kNoColumn);
     on_ = table_.column("on").value_or(kNoColumn);
     status_ = table_.column("status").value_or(kNoColumn);
@@ -81,7 +81,7 @@ class TruthReader {
     row.line = static_cast<std::uint32_t>(table_.line());
     row.receiver = table_.field(receiver_);
     if (row.receiver.empty()) {
-      table_.complain("the receiver has no id", "its row could not be told from others", "give it one");
+      table_.complain("the receiver has no id", "its row cannot be identified", "give it an id");
     }
     row.source = sources_.number_of(source_ == kNoColumn ? std::string() : table_.field(source_));
     row.on = on_ == kNoColumn ? 0 : faces_.number_of(table_.field(on_));
@@ -99,8 +99,8 @@ class TruthReader {
     row.lower = table_.number(lower_);
     row.upper = table_.number(upper_);
     if (row.lower <= row.value && row.value <= row.upper) return;
-    table_.complain("the value is not within its bounds", "the truth would contradict itself",
-                    "take the file as `exactff` has written it");
+    table_.complain("the value is not within its bounds", "the file contradicts itself",
+                    "use the file as `exactff` wrote it");
   }
 
   Status status_named(const std::string& word) {
@@ -137,7 +137,7 @@ class TruthReader {
                          "receiver " + text::in_quotes(truth_.rows[i].receiver) + " has a second row" +
                              of_source(truth_.source_of(truth_.rows[i])) + " (the first is line " +
                              std::to_string(truth_.rows[first].line) + ")",
-                         "a value could be held against either", "keep one of them");
+                         "it is not clear which one a value belongs to", "keep one of them");
     }
   }
 

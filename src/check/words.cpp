@@ -44,7 +44,7 @@ std::string sentence(const Verdict& verdict) {
   std::string text = name_of(verdict) + ": ";
   if (verdict.criterion == "finite") {
     text += verdict.passed ? std::string("every value is a finite number")
-                           : "values that are no finite numbers: " + shortest(verdict.measured);
+                           : "values that are not finite numbers: " + shortest(verdict.measured);
   } else {
     text += shortest(verdict.measured) + (verdict.passed ? " is within the limit " : " is above the limit ") +
             shortest(verdict.limit);
@@ -56,14 +56,14 @@ std::vector<std::string> warnings(const Report& report) {
   std::vector<std::string> texts;
   if (report.not_certified > 0) {
     texts.push_back(text::counted_of(report.not_certified, report.overall.rows, "row") +
-                    " of the truth judged by enclosure: not certified");
+                    " of the truth not certified: compared with the enclosure instead");
   }
   if (report.overall.rows < report.truth_rows) {
     texts.push_back(text::counted_of(report.truth_rows - report.overall.rows, report.truth_rows, "row") +
-                    " of the truth without a value: not judged");
+                    " of the truth without a value: not checked");
   }
   if (report.verdicts.size() == 1) {
-    texts.emplace_back("no limit was given: nothing was judged but that values are finite numbers");
+    texts.emplace_back("no limit was given: the only check was that all values are finite numbers");
   }
   return texts;
 }

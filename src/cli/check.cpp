@@ -28,18 +28,16 @@ namespace exactff::cli {
 namespace {
 
 constexpr const char* kCheckFooter =
-    "Every row of the truth has to have a value, and every value a row. A value that is not a finite number is a "
-    "failure\n"
-    "of the candidate. Without a limit the errors are told and only that is judged. A limit is kept by an error equal "
-    "to "
-    "it.\n"
-    "The relative error is infinite where the truth is 0 and the value is not; --relative-floor has small truths "
-    "count\n"
-    "as larger ones. eps_B bounds the error times the largest rho B of the row, row by row.\n"
-    "A baseline makes today's errors the limits of tomorrow: worse is larger by more than --slack and by more than\n"
-    "4 units in the last place. What draws new random numbers in every run needs a slack such as 0.2, or a fixed "
-    "seed.\n"
-    "With --baseline, --write-baseline writes only if nothing got worse.\n"
+    "Every row of the truth file needs a value, and every value needs a row in the truth file. A value that is not a\n"
+    "finite number is a failure. If no limit is given, the errors are printed and nothing else is checked.\n"
+    "An error that is equal to a limit passes.\n"
+    "The relative error is infinite if the truth is 0 and the value is not. With --relative-floor, relative errors\n"
+    "are divided by the truth or by the floor, whichever is larger. --eps-b limits the error in radiosity: in each\n"
+    "row, the absolute error times the largest rho B (reflectance of the receiver times radiosity of the source).\n"
+    "A baseline file records errors, which become the limits of later runs. An error counts as worse if it is larger\n"
+    "by more than --slack and by more than 4 units in the last place. A program that draws new random numbers in\n"
+    "every run needs a slack such as 0.2, or a fixed seed.\n"
+    "With --baseline, --write-baseline writes the file only if nothing got worse.\n"
     "Exit codes: 0 passed, 1 failed, 2 bad input.\n"
     "\n"
     "Examples:\n"
@@ -69,7 +67,7 @@ double to_limit(const std::string& text, const std::string& flag) {
   text::refuse(flag + ": " +
                    (number.fault == text::NumberFault::kNone ? text::in_quotes(text) + " is negative"
                                                              : describe(number.fault, text)),
-               "it is a finite number of at least 0", "write it such as " + flag + " 1e-6");
+               "a limit is a finite number of at least 0", "write, for example, " + flag + " 1e-6");
 }
 
 std::optional<double> to_optional_limit(const std::string& text, const std::string& flag) {
@@ -80,7 +78,8 @@ check::Quantile to_quantile(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) {
     text::refuse("--quantile: " + text::in_quotes(text) + " has no equals sign",
-                 "it is a share of the rows and their limit", "write it such as --quantile 0.99=1e-3");
+                 "a quantile is a share of the rows and a limit for their errors",
+                 "write, for example, --quantile 0.99=1e-3");
   }
   return {to_limit(text.substr(0, equals), "--quantile"), to_limit(text.substr(equals + 1), "--quantile")};
 }
@@ -89,8 +88,8 @@ std::array<std::string, 3> to_three_names(const std::string& text, const std::st
   std::array<std::string, 3> names;
   std::vector<std::string> fields;
   if (!text::split_csv_line(text, fields) || fields.size() != 3) {
-    text::refuse(flag + ": " + text::in_quotes(text) + " does not name three columns", "there are three coordinates",
-                 "separate them by commas, such as " + flag + " x,y,z");
+    text::refuse(flag + ": " + text::in_quotes(text) + " does not name three columns", "a point has three coordinates",
+                 "separate them by commas, for example " + flag + " x,y,z");
   }
   std::move(fields.begin(), fields.end(), names.begin());
   return names;
@@ -183,7 +182,7 @@ void print_distribution(const check::Report& report) {
   }
   table.print(std::cout);
   if (report.overall.leaks > 0) {
-    std::cout << "The truth is 0 and the value is not: " << text::counted(report.overall.leaks, "row") << '\n';
+    std::cout << "Truth is 0, but value is not: " << text::counted(report.overall.leaks, "row") << '\n';
   }
   std::cout << '\n';
 }
@@ -258,7 +257,7 @@ void print_end(const CheckArguments& args, const check::Report& report) {
     std::cout << "Passed\n";
   }
   const bool suggests = failed == 0 && !report.improvements.empty() && args.write_baseline.empty();
-  if (suggests) std::cout << "Hold on to it: --write-baseline " << text::printable(args.baseline) << '\n';
+  if (suggests) std::cout << "To record this improvement: --write-baseline " << text::printable(args.baseline) << '\n';
 }
 
 void print(const CheckArguments& args, const check::Report& report) {
@@ -282,7 +281,7 @@ void draw(const check::Report& report, const std::string& file) {
   }
   if (is_interrupted()) ::raise(interrupting_signal());
   if (!plot.svg.empty()) return write_whole_file(file, plot.svg);
-  std::cerr << "note: " << text::printable(file) << " is not drawn: " << text::printable(plot.why_not) << '\n';
+  std::cerr << "note: " << text::printable(file) << " was not drawn: " << text::printable(plot.why_not) << '\n';
 }
 
 void write_files(const CheckArguments& args, const check::Report& report) {
@@ -298,8 +297,8 @@ void record(const CheckArguments& args, const check::Report& report) {
     return !verdict.passed && (verdict.criterion == "finite" || verdict.criterion.starts_with("baseline "));
   };
   if (std::any_of(report.verdicts.begin(), report.verdicts.end(), is_worse)) {
-    std::cerr << "note: " << text::printable(args.write_baseline) << " is not written: "
-              << (report.overall.not_finite > 0 ? "not every value is a number\n" : "errors got worse\n");
+    std::cerr << "note: " << text::printable(args.write_baseline) << " was not written: "
+              << (report.overall.not_finite > 0 ? "some values are not numbers\n" : "errors got worse\n");
     return;
   }
   write_whole_file(args.write_baseline, check::baseline_text(report));
@@ -332,74 +331,80 @@ void add_matching(CLI::App& command, CheckArguments& args) {
       .add_option("--value-column", args.columns.value,
                   "The candidate's column to judge (default: value, approximate or exact)")
       ->type_name("NAME");
-  command.add_option("--receiver-column", args.columns.receiver, "Its column of receivers (default: receiver or id)")
+  command
+      .add_option("--receiver-column", args.columns.receiver,
+                  "The candidate's column of receiver ids (default: receiver or id)")
       ->type_name("NAME");
   command
       .add_option("--source-column", args.columns.source,
-                  "Its column of sources (default: source); needed only where the truth has several")
+                  "The candidate's column of sources (default: source); needed only if the truth has several")
       ->type_name("NAME");
   command
       .add_option("--truth-column", args.truth_column,
-                  "The truth's column to hold against, such as unoccluded or radiosity_g")
+                  "The truth's column to compare with, such as unoccluded or radiosity_g")
       ->capture_default_str()
       ->type_name("NAME");
-  command.add_option("--match", args.match, "How rows find each other: by the receiver's id or by its coordinates")
+  command.add_option("--match", args.match, "How rows are matched: by the receiver's id or by its position")
       ->check(CLI::IsMember({"receiver", "position"}))
       ->capture_default_str();
-  command.add_option("--tolerance", args.tolerance, "By position: largest distance of points that are the same")
+  command.add_option("--tolerance", args.tolerance, "Matching by position: largest distance between matching points")
       ->capture_default_str()
       ->type_name("DISTANCE");
   command
       .add_option("--normal-tolerance", args.normal_tolerance,
-                  "By position: largest distance of unit normals, where both files have normals")
+                  "Matching by position: largest distance between matching unit normals, if both files have normals")
       ->capture_default_str()
       ->type_name("DISTANCE");
   command.add_option("--position-columns", args.position_columns, "The candidate's columns of coordinates")
       ->capture_default_str()
       ->type_name("X,Y,Z");
-  command.add_option("--normal-columns", args.normal_columns, "Its columns of normals, which need not be there")
+  command.add_option("--normal-columns", args.normal_columns, "The candidate's columns of normals, if it has any")
       ->capture_default_str()
       ->type_name("NX,NY,NZ");
   command.add_flag("--partial", args.partial, "Rows of the truth may be missing");
 }
 
 void add_criteria(CLI::App& command, CheckArguments& args) {
-  command.add_option("--max-abs", args.max_abs, "Limit of every absolute error")->type_name("LIMIT");
-  command.add_option("--max-rel", args.max_rel, "Limit of every relative error")->type_name("LIMIT");
-  command.add_option("--rms", args.rms, "Limit of the root mean square of the absolute errors")->type_name("LIMIT");
-  command.add_option("--eps-b", args.eps_b, "Limit of every error in radiosity")->type_name("LIMIT");
+  command.add_option("--max-abs", args.max_abs, "Limit for every absolute error")->type_name("LIMIT");
+  command.add_option("--max-rel", args.max_rel, "Limit for every relative error")->type_name("LIMIT");
+  command.add_option("--rms", args.rms, "Limit for the root mean square of the absolute errors")->type_name("LIMIT");
+  command.add_option("--eps-b", args.eps_b, "Limit for every error in radiosity")->type_name("LIMIT");
   command
-      .add_option("--quantile", args.quantiles,
-                  "Share of the rows and the limit of their absolute errors, such as 0.99=1e-3; can be repeated")
+      .add_option(
+          "--quantile", args.quantiles,
+          "This share of the rows must have absolute errors within the limit, such as 0.99=1e-3; can be repeated")
       ->type_name("SHARE=LIMIT")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_flag("--per-source", args.per_source, "Every source has to keep every limit, and its own baseline");
-  command.add_option("--relative-floor", args.relative_floor, "Relative errors are taken of at least this")
+  command.add_flag("--per-source", args.per_source, "Check every limit and the baseline for each source separately");
+  command.add_option("--relative-floor", args.relative_floor, "Divide by at least this number in relative errors")
       ->capture_default_str()
       ->type_name("NUMBER");
-  command.add_option("--baseline", args.baseline, "Fail where errors are worse than those recorded here")
+  command.add_option("--baseline", args.baseline, "Fail if errors are worse than those recorded in this file")
       ->type_name("FILE");
-  command.add_option("--write-baseline", args.write_baseline, "Record today's errors")->type_name("FILE");
-  command.add_option("--slack", args.slack, "Share by which errors may exceed the baseline")
+  command.add_option("--write-baseline", args.write_baseline, "Record the errors of this run")->type_name("FILE");
+  command.add_option("--slack", args.slack, "Share by which errors may exceed the baseline: 0.1 allows 10 % more")
       ->capture_default_str()
       ->type_name("SHARE");
 }
 
 void add_outputs(CLI::App& command, CheckArguments& args) {
-  command.add_option("--worst", args.worst, "Rows to list, the worst first")->capture_default_str()->type_name("N");
+  command.add_option("--worst", args.worst, "Number of rows to list, worst first")
+      ->capture_default_str()
+      ->type_name("N");
   command.add_option("--plot", args.plot, "Draw the histogram of the errors as SVG")->type_name("FILE");
   command.add_option("--junit", args.junit, "Write the verdicts as JUnit XML")->type_name("FILE");
   command.add_option("--json", args.json, "Write everything as JSON")->type_name("FILE");
-  command.add_flag("--github", args.github, "Print annotations for GitHub Actions, too");
+  command.add_flag("--github", args.github, "Also print annotations for GitHub Actions");
 }
 
 }  // namespace
 
 Command add_check(CLI::App& app) {
   auto args = std::make_shared<CheckArguments>();
-  CLI::App* command = app.add_subcommand("check", "Values of another program against a truth file: pass or fail");
-  command->add_option("TRUTH", args->truth, "File of `exactff truth`, or exact.csv of `exactff compare`")
+  CLI::App* command =
+      app.add_subcommand("check", "Compare the values of another program with a truth file: pass or fail");
+  command->add_option("TRUTH", args->truth, "File written by `exactff truth`, or exact.csv of `exactff compare`")
       ->required()
       ->type_name("FILE");
   command->add_option("CANDIDATE", args->candidate, "CSV file of the values to judge")->required()->type_name("FILE");

@@ -18,20 +18,21 @@ namespace exactff::cli {
 namespace {
 
 constexpr const char* kCompareFooter =
-    "The ray-sampled adaptive algorithm: every combination of the lists is run if there are at most 40; else every\n"
-    "--eps-b with every --rays, and each other list on its own around the base (the middle --eps-b and --rays, the\n"
-    "first of every other list).\n"
-    "A METHOD is its name and settings, one of which may have several values: hemicube:resolution=64|128|256. Names:\n"
+    "Tampieri's ray-sampled adaptive algorithm splits the source into parts until the tolerance is met: a part that\n"
+    "is not split further is a leaf, and shadow rays estimate the visible fraction of an undecided leaf. If the lists\n"
+    "make at most 40 combinations, all of them are run. Otherwise each --eps-b is run with each --rays, and the other\n"
+    "lists are varied one at a time around a base setting (the middle --eps-b and --rays, the first value of the\n"
+    "others).\n"
+    "A METHOD is a name with settings; one setting may have several values: hemicube:resolution=64|128|256. Names:\n"
     "exact, adaptive, adaptive-exact-visibility, hemicube, nettle, wallace, area-sampling.\n"
-    "A .study file in the place of SCENE describes several scenes, one a line with these very flags, and experiments:\n"
+    "Instead of SCENE, a .study file describes several scenes, one per line with the same flags, and experiments:\n"
     "  title Rooms\n"
     "  scene cornell_box.obj --on floor --grid 32x32 --title \"Cornell box\"\n"
     "  experiment karkanis-times\n"
-    "What a scene gives no work to is left out, and the report says what and why.\n"
+    "Settings that cannot affect a scene are left out, and the report says which and why.\n"
     "Times are measured after all values, on one thread.\n"
-    "DIR is written whole or not at all; an earlier result of this command there is replaced. While it works, "
-    "finished\n"
-    "values are in DIR.part, whatever happens: the same command with --resume goes on from there.\n"
+    "DIR appears only when it is complete, and replaces an earlier result of this command. Until then, finished\n"
+    "values are kept in DIR.part. After an interruption, the same command with --resume continues from there.\n"
     "\n"
     "Examples:\n"
     "  exactff compare data/scenes/cornell_box.obj --on floor --grid 32x32 -o cornell-report\n"
@@ -68,8 +69,9 @@ report::Plan plan_of(const CompareArguments& args) {
   if (report::is_study_file(path)) {
     const std::string flags = flags::command_words(args.scene);
     if (!flags.empty()) {
-      text::refuse("the flags" + flags + " are given beside a study file", "they are about one scene",
-                   "write them in the scene's line of the file");
+      text::refuse("flags of a scene are given with a study file:" + flags,
+                   "a study file has several scenes, each with its own flags",
+                   "write them on the scene's line in the file");
     }
     plan = report::read_study_file(path, effort);
   } else {
@@ -99,8 +101,8 @@ int run(const CompareArguments& args) {
   const report::Plan plan = plan_of(args);
   for (const report::PlannedScene& scene : plan.scenes) print_warnings(scene.scene->warnings());
   study::Journal journal(study::journal_of_folder(args.folder), args.existing());
-  const std::string kept = "what was finished is in " + text::printable(journal.path().string()) +
-                           ", and the same command with --resume goes on\n";
+  const std::string kept = "finished work is kept in " + text::printable(journal.path().string()) +
+                           "; to continue, run the same command with --resume\n";
   const InterruptWatch watch("exactff: interrupted; " + kept);
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
@@ -109,7 +111,8 @@ int run(const CompareArguments& args) {
     const report::Outcome outcome = report::carry_out(plan, args.folder, journal, hooks);
     bar.clear();
     journal.remove();
-    if (resumed > 0) std::cerr << "note: " << resumed << " pieces of work were taken from the interrupted run\n";
+    if (resumed > 0)
+      std::cerr << "note: " << resumed << " finished pieces of work were reused from the interrupted run\n";
     for (const std::string& note : outcome.notes) std::cerr << "note: " << text::printable(note) << '\n';
     print(outcome);
   } catch (const Cancelled&) {
@@ -136,25 +139,27 @@ std::string experiment_list() {
 
 Command add_compare(CLI::App& app) {
   auto args = std::make_shared<CompareArguments>();
-  CLI::App* command = app.add_subcommand("compare", "Error and time of approximate methods against the exact values");
+  CLI::App* command =
+      app.add_subcommand("compare", "Compare approximate methods with the exact values: error and run time");
   args->scene.add_to(*command);
-  command->get_option("SCENE")->description("Wavefront OBJ file, @MODEL, or a .study file of several");
+  command->get_option("SCENE")->description(
+      "Wavefront OBJ file, @MODEL for a generated scene, or a .study file with several scenes");
   command
       ->add_option("--experiment", args->experiments,
-                   "Add an experiment to the report, may be repeated: " + experiment_list())
+                   "Add an experiment to the report; can be repeated: " + experiment_list())
       ->type_name("NAME")
       ->delimiter(',')
       ->take_all();
   command->add_flag("--abridged", args->abridged,
-                    "A first look: grids of at most 12x12, fewer settings and receivers, short experiments");
-  command->add_option("--threads", args->threads, "Threads (default: all); values do not depend on it")
+                    "Run a short version: grids of at most 12x12, fewer settings and receivers, short experiments");
+  command->add_option("--threads", args->threads, "Number of threads (default: all); it does not affect the values")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
-  command->add_option("-o,--output", args->folder, "Folder for the tables and the report")
+  command->add_option("-o,--output", args->folder, "Folder for the report and the tables")
       ->required()
       ->type_name("DIR");
-  CLI::Option* resume = command->add_flag("--resume", args->resume, "Go on with an interrupted run, if there is one");
-  command->add_flag("--force", args->force, "Begin anew, whatever an interrupted run has left")->excludes(resume);
+  CLI::Option* resume = command->add_flag("--resume", args->resume, "Continue an interrupted run, if there is one");
+  command->add_flag("--force", args->force, "Start again and discard the work of an interrupted run")->excludes(resume);
   command->footer(kCompareFooter);
   return {command, [args] { return run(*args); }};
 }

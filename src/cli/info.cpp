@@ -195,8 +195,8 @@ void print_faces(const Scene& scene) {
     other.push_back(numbered_name(scene, face) + " (off by " + six_digits(scene.face(face).out_of_plane) + ", " +
                     counted(scene.face(face).piece_count, "triangle", "triangles") + ")");
   }
-  print_list("not exactly planar, cut into triangles (largest distance over diameter)", other);
-  print_list("without area, ignored", numbered_names(scene, FaceShape::kZeroArea));
+  print_list("not exactly planar, cut into triangles (distance from the plane / diameter)", other);
+  print_list("zero area, ignored", numbered_names(scene, FaceShape::kZeroArea));
   print_list("unusable, left out", numbered_names(scene, FaceShape::kSkipped));
   const std::size_t open = scene.open_edge_count();
   std::cout << "open edges: " << open << (open == 0 ? " (the surface is closed)" : "") << '\n';
@@ -217,7 +217,7 @@ void print_suggestion(const Scene& scene, const std::vector<PatchSummary>& rows,
   std::cout << "next: exactff compare " << text::shell_word(path) << " --on "
             << text::shell_word(suggested_receiver(rows).name) << " --source "
             << text::shell_word(emitters.empty() ? rows.front().name : emitters.front())
-            << " --grid 16x16 -o DIR (--source and --on take a patch of the table, or PATCH:k for its k-th face)\n";
+            << " --grid 16x16 -o DIR (--source and --on take a patch from the table, or PATCH:k for its k-th face)\n";
 }
 
 void print_text(const Scene& scene, const std::string& path) {
@@ -289,9 +289,8 @@ void print_json(const Scene& scene, const std::string& path) {
 
 void print_models() {
   for (const models::Model* model : models::all_models()) std::cout << models::description(*model) << '\n';
-  std::cout
-      << "A command takes @MODEL or @MODEL:SETTING=VALUE,... for SCENE, such as @teapot:segments=4; a setting left "
-         "out has the value above.\n";
+  std::cout << "Every command accepts @MODEL or @MODEL:SETTING=VALUE,... as SCENE, such as @teapot:segments=4. "
+               "Settings that are not given have the values above.\n";
 }
 
 ordered_json to_json(const SettingSpec& setting) {
@@ -327,12 +326,12 @@ void print(const InfoArguments& arguments) {
 
 Command add_info(CLI::App& app) {
   const auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* info = app.add_subcommand("info", "List what a scene holds: patches, emitters, faces worth a look");
+  CLI::App* info = app.add_subcommand("info", "List the patches of a scene, its emitters and suspicious faces");
   info->footer(
       "Example:\n"
       "  exactff info room.obj\n"
       "  exactff info room.obj --patches faces --json\n"
-      "  exactff info @                       the scenes that the program makes itself, with their settings\n"
+      "  exactff info @                       # lists the generated scenes with their settings\n"
       "  exactff info @teapot:segments=4");
   arguments->scene.add_to(*info);
   info->add_flag("--json", arguments->json, "Print JSON instead of a table");

@@ -35,10 +35,11 @@ bool launched_with_others() {
 }
 
 [[noreturn]] void refuse(std::string why_not) {
-  throw InputError({.what = "several processes were started together, and MPI cannot be had: " + std::move(why_not),
-                    .why = "each would do all the work",
-                    .suggestion = "start one alone, use --shard, or build exactff where libboost-mpi-dev and "
-                                  "libopenmpi-dev are installed"});
+  throw InputError(
+      {.what = "several processes were started together, but MPI is not available: " + std::move(why_not),
+       .why = "each process would do all the work",
+       .suggestion =
+           "start only one process, use --shard, or build exactff with libboost-mpi-dev and libopenmpi-dev installed"});
 }
 
 // The module is beside the program in the build folder, or where it is installed.

@@ -19,9 +19,16 @@
 namespace {
 
 constexpr const char* kDescription =
-    "exactff: exact form factors from a point to a polygonal source, with occluders in between\n"
+    "exactff: exact form factors from a point to a polygonal source, with occluders\n"
     "\n"
-    "Start with `exactff info SCENE` to see what can be named, then\n"
+    "The form factor F from a point x to a patch s is the share of the diffuse light leaving x that reaches s\n"
+    "directly:\n"
+    "  F = integral over the part of s visible from x of  max(0, cos th_r) max(0, cos th_s) / (pi r^2) dA\n"
+    "r is the distance, th_r and th_s are the angles to the normals at x and on s. A receiver is a point x with its\n"
+    "normal. A source is a patch s. An occluder is a face between them that hides part of s. A value is certified if\n"
+    "it is proved to be F rounded to the nearest double.\n"
+    "\n"
+    "Start with `exactff info SCENE`, which lists the names of the patches. Then, for example:\n"
     "  exactff point SCENE --at X Y Z --normal NX NY NZ --source NAME\n"
     "  exactff compare SCENE --on NAME --grid 32x32 -o DIR\n"
     "  exactff truth SCENE --on NAME --grid 32x32 -o truth.csv\n"
@@ -56,7 +63,7 @@ int parse_and_run(int argc, char** argv) {
   for (const exactff::cli::Command& command : commands) {
     if (command.app->parsed()) return command.run();
   }
-  std::cerr << app.help() << "\nName one of the commands.\n";
+  std::cerr << app.help() << "\nGive one of the commands.\n";
   return exactff::cli::kBadInput;
 }
 

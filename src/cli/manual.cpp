@@ -17,13 +17,13 @@ Done.
 A check failed.
 .TP
 .B 2
-Bad input; a message says what is wrong, why it matters and what to do.
+Bad input; a message says what the problem is, why it matters and what to do.
 .TP
 .B 3
-A value could not be certified; its bounds hold nevertheless.
+A value could not be certified; its bounds are still valid.
 .TP
 .B 4
-Internal failure, or out of memory.
+Internal error, or out of memory.
 .TP
 .B 128 + N
 Ended by signal N.
@@ -36,10 +36,10 @@ source <(exactff completion zsh)
 exactff completion fish | source
 .EE
 .PP
-teach the running shell to complete command lines. An installed program has done so already.
+enable completion of command lines in the running shell. An installed program has done this already.
 .SH SEE ALSO
 .BR gnuplot (1),
-which draws the figures of the reports where it is installed.
+which draws the figures of the reports if it is installed.
 )";
 
 // Escapes characters that have a meaning in roff.

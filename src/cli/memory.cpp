@@ -53,8 +53,7 @@ void release_known(void* memory, std::size_t /*size*/) { release(memory); }
 // Does not allocate, and works before any stream is constructed.
 [[noreturn]] void end_at_once() {
   constexpr std::string_view kMessage =
-      "exactff: out of memory, or ended by another error that nothing could handle (no result was written); raise the "
-      "limit\n";
+      "exactff: out of memory, or stopped by an unexpected error (no result was written); raise the memory limit\n";
   (void)!::write(STDERR_FILENO, kMessage.data(), kMessage.size());
   std::_Exit(kInternalFailure);
 }

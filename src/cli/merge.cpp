@@ -14,11 +14,9 @@ namespace exactff::cli {
 namespace {
 
 constexpr const char* kMergeFooter =
-    "The shards are those that `exactff truth --shard 1/N` to `--shard N/N` wrote with the same flags, in any order. "
-    "None\n"
-    "may be missing, doubled, damaged, unfinished or of another request. FILE gets the bytes of one run without "
-    "shards;\n"
-    "it appears whole or not at all.\n"
+    "Shards are the files that `exactff truth --shard 1/N` to `--shard N/N` wrote with the same flags. They can be\n"
+    "given in any order. merge stops if a shard is missing, given twice, damaged, unfinished or from a run with other\n"
+    "flags. FILE has the same bytes as the result of one run without shards. It appears only when it is complete.\n"
     "\n"
     "Example:\n"
     "  exactff merge truth.*.csv -o truth.csv";
@@ -52,9 +50,9 @@ int run(const MergeArguments& args) {
 
 Command add_merge(CLI::App& app) {
   auto args = std::make_shared<MergeArguments>();
-  CLI::App* command = app.add_subcommand("merge", "Put the shards of a truth file together");
-  command->add_option("SHARD", args->shards, "Files that exactff truth --shard wrote")->required()->type_name("FILE");
-  command->add_flag("--force", args->force, "Replace what is there");
+  CLI::App* command = app.add_subcommand("merge", "Join the shards of a truth file");
+  command->add_option("SHARD", args->shards, "Files written by exactff truth --shard")->required()->type_name("FILE");
+  command->add_flag("--force", args->force, "Replace an existing file");
   command->add_option("-o,--output", args->file, "CSV file to write")->required()->type_name("FILE");
   command->footer(kMergeFooter);
   return {command, [args] { return run(*args); }};

@@ -29,8 +29,8 @@ double parse_finite(const std::string& text, const std::string& flag) {
   const text::ParsedNumber number = text::parse_number(text);
   if (number.fault == text::NumberFault::kNone) return number.value;
   throw InputError({.what = flag + ": " + describe(number.fault, text),
-                    .why = "coordinates are finite decimal numbers",
-                    .suggestion = "give three numbers, such as " + flag + " 0 0.5 -1e-3"});
+                    .why = "a coordinate is a finite decimal number",
+                    .suggestion = "give three numbers, for example " + flag + " 0 0.5 -1e-3"});
 }
 
 FaceId select_face(const Scene& scene, const std::string& name) {
@@ -40,7 +40,7 @@ FaceId select_face(const Scene& scene, const std::string& name) {
   if (patch.faces.size() == 1) return patch.faces.front();
   throw InputError(
       {.what = "--on " + name + ": the patch has " + std::to_string(patch.faces.size()) + " faces",
-       .why = "a receiver lies on one face",
+       .why = "a receiver lies on exactly one face",
        .suggestion = "name one of them: " + name + ":1 to " + name + ":" + std::to_string(patch.faces.size())});
 }
 
@@ -50,7 +50,7 @@ namespace {
   throw InputError({.file = path.string(),
                     .what = "cannot be written: " + reason,
                     .why = "nothing was written",
-                    .suggestion = "name a file in a folder that exists, is writable and has room"});
+                    .suggestion = "name a file in a folder that exists, is writable and has free space"});
 }
 
 // A pipe or device cannot be replaced by a file, so it is written directly.
@@ -93,8 +93,8 @@ void check_output(std::ostream& out) {
   out.flush();
   if (out) return;
   throw InputError({.what = "the result could not be written to standard output",
-                    .why = "what was printed is incomplete",
-                    .suggestion = "make room on the disk, or send the output elsewhere"});
+                    .why = "the printed output is incomplete",
+                    .suggestion = "free some disk space, or send the output elsewhere"});
 }
 
 void print_warnings(std::span<const Problem> warnings) {

@@ -19,8 +19,9 @@ constexpr int kMostDigits = 10000;
 void warn_if_flipped(const Scene& scene, const PointResult& point) {
   for (const PointTerm& one : point.sources) {
     if (!behind_every_face(one.exact)) continue;
-    std::cerr << "exactff: warning: the receiver is behind every face of '" << shown_name(scene, one.source)
-              << "' (a source emits from its front only, so the form factor is 0); is it flipped? --flip turns it\n";
+    std::cerr
+        << "exactff: warning: the receiver is behind every face of '" << shown_name(scene, one.source)
+        << "' (a source emits only from its front, so the form factor is 0); if its faces are flipped, use --flip\n";
   }
 }
 
@@ -30,19 +31,18 @@ void warn_if_off_its_face(const Scene& scene, const Receiver& receiver) {
   if (!receiver.on) return;
   const double distance = relative_distance_from_face(scene, *receiver.on, receiver.point);
   if (distance <= kFar) return;
-  std::cerr
-      << "exactff: warning: --at is " << percent(distance) << " of the size of face '"
-      << shown_name(scene, *receiver.on)
-      << "' away from it (that face neither occludes nor illuminates a receiver that lies on it); is it the right "
-         "one?\n";
+  std::cerr << "exactff: warning: --at is " << percent(distance) << " of the size of face '"
+            << shown_name(scene, *receiver.on)
+            << "' away from that face (a receiver on a face is neither occluded nor illuminated by it); check --at and "
+               "--on\n";
 }
 
 void warn_of_missing_decimals(const PointArguments& args, const Scene& scene, const PointResult& point) {
   for (const PointTerm& one : point.sources) {
     if (args.digits == 0 || one.exact.status == Status::kZero || one.exact.enclosure.decimals(args.digits)) continue;
     std::cerr << "exactff: warning: " << args.digits << " significant digits of '" << shown_name(scene, one.source)
-              << "' are not certified (its value may be a tie there, or --precision-cap is too low); the double stands "
-                 "in their place\n";
+              << "' are not certified (the value may be a rounding tie, or --precision-cap is too low); the double is "
+                 "printed instead\n";
   }
 }
 
@@ -50,7 +50,8 @@ void warn_of_stopped_recursion(const Scene& scene, const PointResult& point) {
   for (const PointTerm& one : point.sources) {
     if (!one.adaptive || one.adaptive->leaves < kMostPointLeaves) continue;
     std::cerr << "exactff: warning: the adaptive recursion on '" << shown_name(scene, one.source) << "' stopped at "
-              << one.adaptive->leaves << " leaves (its estimate is rougher than the tolerance asks for); give a larger "
+              << one.adaptive->leaves
+              << " leaves (its estimate is less accurate than the tolerance requires); use a larger "
               << "--eps-b\n";
   }
 }
@@ -80,7 +81,7 @@ int run(const PointArguments& args) {
 
 // Otherwise, if numbers are missing, the flag that follows would be read as one of them.
 std::string is_no_flag(const std::string& text) {
-  return text.starts_with("--") ? "takes three numbers; found '" + text + "' among them" : "";
+  return text.starts_with("--") ? "needs three numbers; found '" + text + "' among them" : "";
 }
 
 // A NaN passes every range check, since all its comparisons are false.
@@ -97,62 +98,74 @@ std::string is_a_tolerance(const std::string& text) {
 }
 
 void add_receiver_flags(CLI::App& app, PointArguments& args) {
-  app.add_option("--at", args.at, "Receiving point X Y Z")->required()->type_name("X Y Z")->check(is_no_flag);
-  app.add_option("--normal", args.normal, "Its normal, of any length other than zero")
+  app.add_option("--at", args.at, "The receiver's point")->required()->type_name("X Y Z")->check(is_no_flag);
+  app.add_option("--normal", args.normal, "The receiver's normal, of any length except zero")
       ->required()
       ->type_name("NX NY NZ")
       ->check(is_no_flag);
-  app.add_option("--on", args.on, "The receiver lies on this face: it neither occludes nor illuminates")
+  app.add_option("--on", args.on, "The receiver lies on this face, which then neither occludes nor illuminates it")
       ->type_name("NAME[:K]");
-  app.add_flag("--flip", args.flip, "Turn the source's faces round: their fronts become their backs");
-  app.add_option("--source", args.sources, "Source patch or face; default: every emitting patch, and their sum")
+  app.add_flag("--flip", args.flip, "Flip the faces of the source, so that they emit from the other side");
+  app.add_option("--source", args.sources, "Source patch or face (default: every emitting patch, and their sum)")
       ->type_name("NAME[:K]")
       ->delimiter(',');
-  app.add_option("--reflectance", args.reflectance,
-                 "rho of the receiver, one value or three; default: Kd of --on's face, else 1")
+  app.add_option(
+         "--reflectance", args.reflectance,
+         "Reflectance rho of the receiver, one or three values (default: Kd of the face of --on, or 1 without --on)")
       ->expected(1, 3)
       ->check(CLI::Range(0.0, 1.0))
       ->check(is_a_number);
 }
 
 void add_output_flags(CLI::App& app, PointArguments& args) {
-  app.add_option("--digits", args.digits, "Certified significant digits")->check(CLI::Range(1, kMostDigits));
+  app.add_option("--digits", args.digits, "Number of significant digits to certify")->check(CLI::Range(1, kMostDigits));
   args.engine.add_to(app);
-  app.add_option("--precision-cap", args.precision_cap, "Most bits that the contour may use")
+  app.add_option("--precision-cap", args.precision_cap, "Largest precision, in bits, of the contour integral")
       ->check(CLI::Range(32, 1 << 24))
       ->capture_default_str();
-  app.add_flag("--fraction", args.fraction, "Visible fraction of the source too");
-  app.add_flag("--exact-fraction", args.exact_fraction, "The same as exact rationals, plane by plane");
-  auto* plain = app.add_flag("--plain", args.plain, "Print the value alone: 0 is a proved zero, 0.0 an underflow");
+  app.add_flag("--fraction", args.fraction, "Also print the visible fraction of the source");
+  app.add_flag("--exact-fraction", args.exact_fraction,
+               "Print the visible fractions as exact rationals, one per plane of the source");
+  auto* plain = app.add_flag("--plain", args.plain, "Print only the value: 0 is a proved zero, 0.0 an underflow");
   auto* json = app.add_flag("--json", args.json, "Print JSON");
   plain->excludes(json);
   app.add_flag("--explain", args.explain,
-               "Which stages ran, which were left out and why, and the occluders that cut the source");
-  app.add_option("--svg", args.svg, "Draw the source in its plane, shadows and visible region")->type_name("FILE");
+               "Show which stages ran, which were skipped and why, and the occluders that hide a part of the source");
+  app.add_option("--svg", args.svg,
+                 "Draw the source in its plane, with the shadows of the occluders and the visible region")
+      ->type_name("FILE");
 }
 
 void add_adaptive_flags(CLI::App& app, PointArguments& args) {
   AdaptiveOptions& options = args.adaptive_options;
-  app.add_flag("--adaptive", args.adaptive, "Run the ray-sampled adaptive algorithm too; --svg then shows its leaves");
-  app.add_option("--eps-b", options.eps_b, "Its radiosity tolerance")->capture_default_str()->check(is_a_tolerance);
-  app.add_option("--eps-a", options.eps_a, "Its area tolerance")->capture_default_str()->check(is_a_tolerance);
-  app.add_option("--rays", options.rays, "Its shadow rays per sub-patch")
+  app.add_flag("--adaptive", args.adaptive,
+               "Also run Tampieri's ray-sampled adaptive algorithm; --svg then shows its leaves, the parts that it "
+               "does not split further");
+  app.add_option("--eps-b", options.eps_b, "Its tolerance eps_B, a radiosity for each leaf")
+      ->capture_default_str()
+      ->check(is_a_tolerance);
+  app.add_option("--eps-a", options.eps_a, "Its tolerance eps_A, the area below which nothing is split")
+      ->capture_default_str()
+      ->check(is_a_tolerance);
+  app.add_option("--rays", options.rays, "Its number of shadow rays per undecided leaf")
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 20));
   app.add_option("--seed", options.seed, "Its random seed")->capture_default_str();
-  app.add_option("--pattern", args.pattern, "Where its rays end: jittered, centre, regular or low-discrepancy")
+  app.add_option("--pattern", args.pattern,
+                 "Where in a leaf its rays end: jittered, centre, regular or low-discrepancy")
       ->type_name("NAME")
       ->capture_default_str()
       ->check([](const std::string& name) {
         return study::pattern_named(name)
                    ? ""
-                   : "no such pattern: " + name + "; choose jittered, centre, regular or low-discrepancy";
+                   : "there is no pattern " + name + "; choose jittered, centre, regular or low-discrepancy";
       });
-  app.add_option("--variant", args.variant, "mended, or literal: the listing as it was printed")
+  app.add_option("--variant", args.variant,
+                 "literal: the algorithm as printed in 1992; mended: with its faults corrected")
       ->type_name("NAME")
       ->capture_default_str()
       ->check([](const std::string& name) {
-        return study::variant_named(name) ? "" : "no such variant: " + name + "; choose mended or literal";
+        return study::variant_named(name) ? "" : "there is no variant " + name + "; choose mended or literal";
       });
 }
 
@@ -160,9 +173,14 @@ void add_adaptive_flags(CLI::App& app, PointArguments& args) {
 
 Command add_point(CLI::App& app) {
   auto args = std::make_shared<PointArguments>();
-  CLI::App* command = app.add_subcommand("point", "Exact form factor from one receiver to one source, or to all");
+  CLI::App* command =
+      app.add_subcommand("point", "Compute the exact form factor from one receiver to one source, or to all sources");
   command->footer(
-      "The exit code is 3 if a value is not certified within --precision-cap.\n\n"
+      "A receiver is a point with a normal. The form factor is the share of the diffuse light leaving the point that\n"
+      "reaches the source directly. It is printed rounded to the nearest double, with its neighbours as bounds (the\n"
+      "enclosure). It is certified if this rounding is proved. The exit code is 3 if a value is not certified within\n"
+      "--precision-cap.\n"
+      "\n"
       "Example:\n"
       "  exactff point data/scenes/cornell_box.obj --at 300 0 300 --normal 0 1 0 --on floor --source light --explain");
   args->scene.add_to(*command);

@@ -51,15 +51,16 @@ void print_stages(const Scene& scene, const PointTerm& one) {
 
 void print_shares(const Scene& scene, const PointTerm& one) {
   const std::size_t cutters = one.exact.cutters.size();
-  std::cout << "\n  occluders that cut it: " << cutters << '\n';
+  std::cout << "\n  occluders that hide a part of it: " << cutters << '\n';
   for (std::size_t i = 0; i < one.shares.size() && i < kMostSharesShown; ++i) {
-    std::cout << "    " << pad(shown_name(scene, one.shares[i].face), 28) << "takes " << percent(one.shares[i].alone)
+    std::cout << "    " << pad(shown_name(scene, one.shares[i].face), 28) << "hides " << percent(one.shares[i].alone)
               << " alone\n";
   }
   if (cutters > kMostSharesShown) std::cout << "    ... and " << cutters - kMostSharesShown << " more\n";
   if (one.unoccluded) std::cout << "  unoccluded form factor: " << shortest(*one.unoccluded) << '\n';
   if (one.exact.precision_bits > 0) {
-    std::cout << "  contour: " << one.exact.precision_bits << " bits decided the last bit of the double\n";
+    std::cout << "  contour: " << one.exact.precision_bits
+              << " bits were needed to decide the last bit of the double\n";
   }
 }
 

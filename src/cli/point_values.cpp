@@ -27,8 +27,8 @@ std::vector<Selection> make_sources(const PointArguments& args, const Scene& sce
   if (sources.empty()) {
     throw InputError({.file = args.scene.path,
                       .what = "no patch of the scene emits (Ke is 0 everywhere)",
-                      .why = "without --source every emitting patch is a source",
-                      .suggestion = "name one with --source NAME; `exactff info` lists the names"});
+                      .why = "without --source, every emitting patch is a source",
+                      .suggestion = "name a source with --source NAME; `exactff info` lists the names"});
   }
   if (args.plain && sources.size() != 1) {
     throw InputError({.file = {},

@@ -40,7 +40,8 @@ void add_file(CLI::App& command, DescriptionArguments& args) {
 
 Command add_completion(CLI::App& app) {
   auto args = std::make_shared<DescriptionArguments>();
-  CLI::App* command = app.add_subcommand("completion", "Print what completes command lines in a shell")->group("");
+  CLI::App* command =
+      app.add_subcommand("completion", "Print the script for command-line completion in a shell")->group("");
   command->add_option("SHELL", args->shell, "bash, zsh or fish")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
@@ -50,7 +51,7 @@ Command add_completion(CLI::App& app) {
 
 Command add_manual(CLI::App& app) {
   auto args = std::make_shared<DescriptionArguments>();
-  CLI::App* command = app.add_subcommand("manual", "Print the manual page in the language of man(7)")->group("");
+  CLI::App* command = app.add_subcommand("manual", "Print the manual page in the format of man(7)")->group("");
   add_file(*command, *args);
   return {command, [args, &app] { return print(manual_page(program_table(app)), args->file); }};
 }

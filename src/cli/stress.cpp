@@ -17,14 +17,14 @@ namespace exactff::cli {
 namespace {
 
 constexpr const char* kStressFooter =
-    "Without --family every family is run; --list tells their names. Each prints a table of relative errors against "
-    "the\n"
-    "family's stiffness, and one table at the end tells up to which stiffness each method's error stays below 1e-3, "
-    "1e-6\n"
-    "and 1e-12. With -o a folder is written with the tables as CSV and a report with figures.\n"
-    "acos, atan2, atan2-difference: Tampieri's contour formula, Eq. (4), in double over the exact visible region;\n"
-    "tampieri: his ray-sampled algorithm, mended and as printed. Times are least disturbed with --threads 1.\n"
-    "The exit code is 1 if an exact value is not what the independent truth rounds to.\n"
+    "A family is a scene with one number, its stiffness, that makes the scene more and more extreme. Without\n"
+    "--family, all families are run; --list prints their names. For each family, a table shows the relative errors at\n"
+    "each stiffness. The last table shows the largest stiffness up to which each method's error stays below 1e-3,\n"
+    "1e-6 and 1e-12. With -o, the tables are written as CSV, with a report and figures.\n"
+    "acos, atan2, atan2-difference: Tampieri's contour formula, Eq. (4), in double over the exact visible region.\n"
+    "tampieri, tampieri-literal: his ray-sampled algorithm, mended and as printed.\n"
+    "Use --threads 1 for the most reliable times.\n"
+    "The exit code is 1 if an exact value differs from the independent true value rounded to a double.\n"
     "\n"
     "Example:\n"
     "  exactff stress -o stress-report";
@@ -67,7 +67,7 @@ void print_family(const stress::FamilyResult& result) {
 }
 
 void print_report(const stress::Report& report) {
-  std::cout << "The largest stiffness with an error below 1e-3, 1e-6, 1e-12 (all: to the end; –: not even at first)\n";
+  std::cout << "Largest stiffness with an error below 1e-3, 1e-6, 1e-12 (all: to the end; –: not even at the start)\n";
   TextTable table;
   table.add_column("family");
   table.add_column("ends at", Align::kRight);
@@ -127,15 +127,16 @@ int run(const StressArguments& args) {
 
 Command add_stress(CLI::App& app) {
   auto args = std::make_shared<StressArguments>();
-  CLI::App* command = app.add_subcommand("stress", "How every method behaves as scenes go from benign to extreme");
+  CLI::App* command =
+      app.add_subcommand("stress", "Show how the methods behave as scenes become more and more extreme");
   command->add_option("--family", args->families, "Families, separated by commas (default: all)")
       ->delimiter(',')
       ->type_name("NAME");
-  command->add_flag("--list", args->list, "Tell the families and what their stiffness is");
-  command->add_option("--threads", args->threads, "Threads (default: all); values do not depend on it")
+  command->add_flag("--list", args->list, "List the families and what their stiffness means");
+  command->add_option("--threads", args->threads, "Number of threads (default: all); it does not affect the values")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
-  command->add_option("-o,--output", args->folder, "Folder for the tables and the report")->type_name("DIR");
+  command->add_option("-o,--output", args->folder, "Folder for the report and the tables")->type_name("DIR");
   command->footer(kStressFooter);
   return {command, [args] { return run(*args); }};
 }

@@ -26,17 +26,15 @@ namespace exactff::cli {
 namespace {
 
 constexpr const char* kTruthFooter =
-    "One row per receiver and source: point, normal, the face that it lies on, the certified value between its "
-    "bounds,\n"
-    "the radiosity that it brings in each channel, and the status. The bytes of FILE depend on the scene and on what "
-    "is\n"
-    "asked, not on threads, machines, shards or interruptions.\n"
-    "While it works, finished rows are in FILE.part, whatever happens: the same command with --resume goes on from\n"
-    "there. Scripts may give --resume always; a complete FILE is left as it is.\n"
-    "More than one machine: `mpirun -n 4 exactff truth ...` with the same flags (rank 0 writes, all compute; every "
-    "rank\n"
-    "reads the scene), or --shard 1/4, 2/4, ... in jobs of their own and `exactff merge` at the end.\n"
-    "Exit codes: 0 done, 2 bad input, 3 done but some row is not certified, 128 + signal when interrupted.\n"
+    "FILE has one row per receiver and source: point, normal, the face on which the receiver lies, the certified form\n"
+    "factor with its bounds, the radiosity received in each channel, and the status. A value is certified if it is\n"
+    "proved to be the true form factor, rounded to the nearest double. The bytes of FILE depend only on the scene and\n"
+    "the request, not on threads, machines, shards or interruptions.\n"
+    "Until FILE is complete, finished rows are kept in FILE.part. After an interruption, the same command with\n"
+    "--resume continues from there. Scripts can always give --resume; a complete FILE stays as it is.\n"
+    "On several machines: run `mpirun -n 4 exactff truth ...` (every process reads the scene and computes; rank 0\n"
+    "writes), or start separate jobs with --shard 1/4, 2/4, ... and join their files with `exactff merge`.\n"
+    "Exit codes: 0 done, 2 bad input, 3 done but some rows are not certified, 128 + signal when interrupted.\n"
     "\n"
     "Example:\n"
     "  exactff truth data/scenes/cornell_box.obj --on floor --grid 200x200 -o truth.csv";
@@ -69,9 +67,9 @@ truth::Shard shard_of(const std::string& text) {
     const auto count = std::from_chars(number.ptr + 1, end, shard.count);
     if (count.ec == std::errc{} && count.ptr == end && shard.number >= 1 && shard.number <= shard.count) return shard;
   }
-  throw InputError({.what = "--shard: " + text::in_quotes(text) + " is no shard",
-                    .why = "it is one of several, counted from 1",
-                    .suggestion = "write number/count: --shard 1/4 to --shard 4/4"});
+  throw InputError({.what = "--shard: " + text::in_quotes(text) + " is not a shard",
+                    .why = "a shard is a part of the rows, numbered from 1",
+                    .suggestion = "write number/count, for example --shard 1/4 to --shard 4/4"});
 }
 
 // A request and the scene that it refers to.
@@ -118,10 +116,11 @@ class Narrator {
     if (rows_.total == 0) return;  // it had not begun
     std::cerr << "exactff: " << reason << "; ";
     if (rows_.done == 0) {
-      std::cerr << "no row was finished, nothing is left behind\n";
+      std::cerr << "no row was finished; nothing was written\n";
     } else {
       std::cerr << rows_.done << " of " << text::counted(rows_.total, "row") << " are kept in "
-                << text::printable(truth::journal_of(file).string()) << "; the same command with --resume goes on\n";
+                << text::printable(truth::journal_of(file).string())
+                << "; to continue, run the same command with --resume\n";
     }
   }
 
@@ -138,7 +137,7 @@ class Narrator {
     constexpr int kMostTold = 50;
     if (++slow_ > kMostTold) return;
     tell("slow: " + text::printable(row) + " took " + text::duration(seconds));
-    if (slow_ == kMostTold) tell("slow: further rows are only counted");
+    if (slow_ == kMostTold) tell("slow: further slow rows are counted, but not listed");
   }
 
   ProgressBar bar_;
@@ -158,7 +157,7 @@ int write(const TruthArguments& args, truth::Team* team) {
     narrator.tell_what_is_kept("interrupted", args.file);
     return 128 + (interrupting_signal() != 0 ? interrupting_signal() : SIGTERM);  // another rank was interrupted
   } catch (...) {
-    narrator.tell_what_is_kept("ended by an error, told below", args.file);
+    narrator.tell_what_is_kept("stopped by the error below", args.file);
     throw;
   }
   narrator.clear();
@@ -193,7 +192,7 @@ int run(const TruthArguments& args) {
   }
   const InterruptWatch watch("exactff: interrupted; all finished rows are kept in " +
                              text::printable(truth::journal_of(args.file).string()) +
-                             "; the same command with --resume goes on\n");
+                             "; to continue, run the same command with --resume\n");
   if (team == nullptr) return write(args, nullptr);
   return team->rank() == 0 ? lead(args, *team) : follow(args, *team);
 }
@@ -202,24 +201,24 @@ int run(const TruthArguments& args) {
 
 Command add_truth(CLI::App& app) {
   auto args = std::make_shared<TruthArguments>();
-  CLI::App* command = app.add_subcommand("truth", "A file of certified values to hold other programs against");
+  CLI::App* command = app.add_subcommand("truth", "Write a file of certified values, to check other programs");
   args->scene.add_to(*command);
   flags::add_receiver_options(*command, args->receivers);
   flags::add_source_options(*command, args->sources);
-  command->add_flag("--unoccluded", args->unoccluded, "A column more: the value without any occluder");
-  command->add_flag("--fraction", args->fraction, "A column more: the visible fraction of the source");
-  command
-      ->add_option("--shard", args->shard, "Compute one of several parts, for exactff merge: 1/4 is the first of four")
+  command->add_flag("--unoccluded", args->unoccluded, "Add a column: the form factor without occluders");
+  command->add_flag("--fraction", args->fraction, "Add a column: the visible fraction of the source");
+  command->add_option("--shard", args->shard, "Compute only part I of N, for exactff merge: 1/4 is the first of four")
       ->type_name("I/N");
-  CLI::Option* resume = command->add_flag("--resume", args->resume, "Go on with an interrupted run, if there is one");
-  command->add_flag("--force", args->force, "Begin anew and replace what is there")->excludes(resume);
-  command->add_option("--slow", args->slow_seconds, "Tell of every row that takes so many seconds")
+  CLI::Option* resume = command->add_flag("--resume", args->resume, "Continue an interrupted run, if there is one");
+  command->add_flag("--force", args->force, "Start again and replace existing files")->excludes(resume);
+  command->add_option("--slow", args->slow_seconds, "Report every row that takes at least this many seconds")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber)
       ->type_name("SECONDS");
   args->engine.add_to(*command);
   command
-      ->add_option("--threads", args->threads, "Threads (default: all; under mpirun this rank's share of the machine)")
+      ->add_option("--threads", args->threads,
+                   "Number of threads (default: all; under mpirun: this rank's share of the machine)")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
   command->add_option("-o,--output", args->file, "CSV file to write")->required()->type_name("FILE");

@@ -31,13 +31,13 @@ inline int print_summary(const truth::Summary& summary, const std::string& file)
     if (summary.slow > 0) std::cout << "; " << text::counted(summary.slow, "slow row");
     std::cout << '\n';
   } else if (summary.resumed > 0) {
-    std::cout << "all were there already\n";
+    std::cout << "all rows were already computed\n";
   }
   std::cout << "Truth file: " << text::printable(file) << '\n';
   check_output(std::cout);
   if (uncertified == 0) return 0;
   std::cerr << "exactff: " << text::counted(uncertified, "row")
-            << " met the cap on precision and could not be certified (their bounds are valid, their values estimates); "
+            << " could not be certified within the precision cap (their bounds are valid, their values are estimates); "
                "look for the status 'not certified'\n";
   return kNotCertified;
 }

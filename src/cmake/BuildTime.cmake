@@ -3,7 +3,7 @@
 # EXACTFF_QUICK_BUILD is for builds in which nobody edits sources. Sources that instantiate the same templates are
 # compiled together, and the standard headers of the unit tests are parsed once. Such a build does not check that every
 # source includes what it uses, and misses warnings that appear only when a source is compiled by itself. A build
-# without the option checks both: test.sh without flags makes one.
+# without the option checks both: test.sh --sanitizers makes one.
 
 # exactff_compile_together(TARGET): compiles the sources of each folder as one source. Sources with their own compile
 # options stay separate. Names that the sources of a folder define locally must therefore differ.
@@ -27,16 +27,18 @@ endfunction()
 # exactff_precompile(TARGET HEADER...). When optimising, GCC 12 gives warnings about code that it inlines from
 # precompiled standard headers. So use it for targets of exactff_save_compile_time only.
 function(exactff_precompile target)
-  if(EXACTFF_QUICK_BUILD AND EXACTFF_SANITIZE)
+  if(EXACTFF_QUICK_BUILD)
     target_precompile_headers(${target} PRIVATE ${ARGN})
   endif()
 endfunction()
 
-# exactff_save_compile_time(TARGET): compiles the target without optimisation under sanitizers. Optimising the program
-# and the tests would take minutes and save seconds of their runs. The runs spend their time in the library, which is
-# compiled with the options of the build.
+# exactff_save_compile_time(TARGET [LEVEL]): compiles the target with -O0, or with LEVEL where no sanitizer slows it down.
+# Optimising the tests and the commands of the program would take minutes and save seconds of their runs. The runs spend
+# their time in the library, which is compiled with the options of the build.
 function(exactff_save_compile_time target)
-  if(EXACTFF_SANITIZE)
+  if(ARGC GREATER 1 AND NOT EXACTFF_SANITIZE)
+    target_compile_options(${target} PRIVATE ${ARGV1})
+  else()
     target_compile_options(${target} PRIVATE -O0)
   endif()
 endfunction()

@@ -48,7 +48,7 @@ void check_receiver(const Receiver& receiver) {
   }
   if (receiver.normal == Vec3{}) {
     throw InputError({.what = "the receiver's normal is (0, 0, 0)",
-                      .why = "it has no direction, so there is no horizon to look above",
+                      .why = "it has no direction, so the horizon is not defined",
                       .suggestion = "give a normal of any length other than zero"});
   }
 }
@@ -70,7 +70,7 @@ namespace {
 void check_options(const ExactOptions& options) {
   if (options.precision_cap >= 1) return;
   throw InputError({.what = "the precision cap is " + std::to_string(options.precision_cap) + " bits",
-                    .why = "a ball needs at least one",
+                    .why = "a ball (interval) needs at least one bit",
                     .suggestion = "give a cap of at least 1; the default is 65536"});
 }
 

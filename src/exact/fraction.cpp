@@ -11,6 +11,7 @@
 
 #include "exactff/enclosure.h"
 #include "kernel/ball.h"
+#include "kernel/expect.h"
 
 namespace exactff::exact {
 
@@ -77,6 +78,7 @@ std::optional<Rational> rational_ratio(std::span<const PlaneShare> planes) {
 }  // namespace
 
 double visible_fraction(std::span<const PlaneShare> planes) {
+  EXACTFF_EXPECT(!planes.empty());
   const Rational& first = planes.front().fraction;
   const auto equals_first = [&](const PlaneShare& plane) { return plane.fraction == first; };
   if (std::all_of(planes.begin(), planes.end(), equals_first)) return kernel::nearest_double(first);

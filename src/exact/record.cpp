@@ -94,9 +94,9 @@ StageNote cull_note(const PlaneRecord& plane) {
     case Outcome::kReceiverFace:
       return {"cull", true, "the receiver lies on this face: it contributes 0"};
     case Outcome::kBehind:
-      return {"cull", true, "x is behind or in its plane: it contributes 0"};
+      return {"cull", true, "the receiver is behind the source or in its plane: it contributes 0"};
     default:
-      return {"cull", true, "x is in front"};
+      return {"cull", true, "the receiver is in front of the source"};
   }
 }
 
@@ -104,7 +104,7 @@ StageNote horizon_note(const PlaneRecord& plane, const std::string& left_out) {
   if (progress(plane.outcome) < kClipped) return {"horizon clip", false, left_out};
   if (plane.outcome == Outcome::kBelowHorizon) return {"horizon clip", true, "nothing above the horizon"};
   if (!plane.horizon_clipped) return {"horizon clip", false, "all of it is above the horizon"};
-  return {"horizon clip", true, "the part below was cut off, exactly"};
+  return {"horizon clip", true, "the part below was cut off exactly"};
 }
 
 StageNote shaft_note(const PlaneRecord& plane, const std::string& left_out) {
@@ -119,7 +119,7 @@ StageNote clip_note(const PlaneRecord& plane, const std::string& left_out) {
   const bool by_edges = plane.engine == Engine::kEdges;
   if (plane.clipped == 0) {
     return {"exact clip", false,
-            by_edges ? "no candidate crosses the source's plane" : "no candidate reaches out of the shaft"};
+            by_edges ? "no candidate crosses the source's plane" : "no candidate extends beyond the shaft"};
   }
   return {"exact clip", true,
           counted(plane.clipped, "candidate") + " cut " + (by_edges ? "at the source's plane" : "to the shaft")};
@@ -135,7 +135,7 @@ StageNote total_note(const PlaneRecord& plane, const std::string& left_out) {
 StageNote boolean_note(const PlaneRecord& plane, const std::string& left_out) {
   const std::string stage = "projection and Booleans";
   if (progress(plane.outcome) < kSearched) return {stage, false, left_out};
-  if (plane.outcome == Outcome::kHiddenByOne) return {stage, false, "nothing left to subtract from"};
+  if (plane.outcome == Outcome::kHiddenByOne) return {stage, false, "nothing is left to subtract from"};
   if (plane.outcome == Outcome::kUnoccluded) {
     if (plane.source_joined) return {stage, true, "only to join the source's own pieces; nothing to subtract"};
     return {stage, false, "no candidates"};
@@ -148,13 +148,13 @@ StageNote boolean_note(const PlaneRecord& plane, const std::string& left_out) {
 StageNote edges_note(const PlaneRecord& plane, const std::string& left_out) {
   const std::string stage = "edges";
   if (progress(plane.outcome) < kSearched) return {stage, false, left_out};
-  if (plane.outcome == Outcome::kHiddenByOne) return {stage, false, "nothing left to hide"};
+  if (plane.outcome == Outcome::kHiddenByOne) return {stage, false, "nothing is left to hide"};
   if (plane.outcome == Outcome::kUnoccluded) {
-    if (plane.source_joined) return {stage, true, "only to join the source's own pieces; nothing hides any"};
+    if (plane.source_joined) return {stage, true, "only to join the source's own pieces; nothing hides them"};
     return {stage, false, "no candidates"};
   }
   return {stage, true,
-          "what " + counted(plane.candidates, "candidate") + " leave of each edge" +
+          "the part of each edge that " + counted(plane.candidates, "candidate") + " leave visible" +
               (plane.outcome == Outcome::kHiddenByUnion ? ": nothing" : "")};
 }
 
@@ -167,7 +167,7 @@ StageNote contour_note(const PlaneRecord& plane, const std::string& left_out) {
 }
 
 StageNote fraction_note(const PlaneRecord& plane) {
-  if (!plane.visible_fraction) return {"visible fraction", false, "not asked for"};
+  if (!plane.visible_fraction) return {"visible fraction", false, "not requested"};
   return {"visible fraction", true, "exact, then rounded"};
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/expect.h"
 #include "visibility/visible_edges.h"
 
 namespace exactff::exact {
@@ -243,6 +244,7 @@ double VisibleShare::window_blur(double doubled_area_of_window) const {
 }
 
 double VisibleShare::of(std::span<const Vec3> directions) {
+  EXACTFF_EXPECT(directions.size() == 3 || directions.size() == 4);
   if (all_) return 1.0;
   if (pieces_.empty()) return 0.0;
   set_window(directions);

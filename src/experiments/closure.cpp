@@ -77,9 +77,10 @@ ClosureErrors errors_of(const std::string& choice, const Scene& scene, std::span
 
 std::string exact_sentence(const ClosureStudy& study) {
   return "In a closed room of " + counted(study.patches, "patch", "patches") +
-         " the exact form factors must sum to 1: they do at " +
+         " the form factors from a point to all patches sum to 1. The exact values do so at " +
          text::counted_of(study.hold_one, study.receivers, "receiver") +
-         ", where the sum of the proved balls holds 1 and is at most " + rounded(study.widest, 2) + " wide.";
+         ": the sum of their balls (proved intervals) contains 1, and its width is at most " +
+         rounded(study.widest, 2) + ".";
 }
 
 std::string others_sentence(const ClosureStudy& study) {
@@ -89,7 +90,7 @@ std::string others_sentence(const ClosureStudy& study) {
             rounded(m.rms, 2) + " and " + rounded(m.single_rms, 2);
   }
   return text +
-         ". The hemicube closes by construction, since its pixels sum to 1 whatever they show: closure says "
+         ". The hemicube closes by construction, because its pixels sum to 1 whatever they show. Its closure says "
          "nothing about the accuracy of its values.";
 }
 

@@ -32,7 +32,7 @@ const Experiment& experiment_named(std::string_view name) {
   for (const Experiment& e : kExperiments) names.push_back(e.name);
   std::vector<std::string> near;
   for (const std::string_view n : text::nearest_names(names, name, 3)) near.emplace_back(n);
-  text::refuse("there is no experiment '" + std::string(name) + "'", "nothing can be run",
+  text::refuse("there is no experiment '" + std::string(name) + "'", "only known experiments can be run",
                "the closest are " + text::enumerate(near));
 }
 

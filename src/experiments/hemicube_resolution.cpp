@@ -94,15 +94,15 @@ std::string resolution_sentence(const ResolutionCurves& c) {
     return rounded(curve.rms.front(), 2) + " at " + rounded(curve.at.front()) + " pixels, " +
            rounded(curve.rms.back(), 2) + " at " + rounded(curve.at.back());
   };
-  return "Against resolution n, the RMS error of the triangles' form factors falls like n to the power " +
+  return "With increasing resolution n, the RMS error of the triangles' form factors falls like n to the power " +
          to_text(c.triangles_by_resolution.slope(kAll)) + " (" + ends(c.triangles_by_resolution) +
-         "). The relative error of a square light whose edges lie along the rows of pixels falls like n to the power " +
+         "). The relative error of a square light with edges along the rows of pixels falls like n to the power " +
          to_text(c.aligned_by_resolution.slope(kAll)) + " (" + ends(c.aligned_by_resolution) +
-         "), and that of the same light turned by " + rounded(kTurned) + "° like " +
+         "). For the same light turned by " + rounded(kTurned) + "°, the power is " +
          to_text(c.turned_by_resolution.slope(kAll)) + " (" + ends(c.turned_by_resolution) +
-         "). Theory: an edge along a row gains or loses all of its pixels at once, an error of the pixel's width, n⁻¹; "
-         "the pixels along an edge in general position err in both directions, between n⁻³ᐟ² where they do so "
-         "independently and n⁻² where they alternate regularly.";
+         "). Theory: an edge along a row gains or loses all its pixels at once; the error is the width of a pixel, "
+         "n⁻¹. Along an edge in general position, pixels err in both directions; the error lies between n⁻³ᐟ² "
+         "(independent pixel errors) and n⁻² (regularly alternating ones).";
 }
 
 std::string rotation_sentence(const ResolutionCurves& c) {
@@ -114,29 +114,29 @@ std::string rotation_sentence(const ResolutionCurves& c) {
     if (angle == 0.0 || angle == 45.0) peaks.push_back(percent(light[i]) + " at " + rounded(angle) + "°");
   }
   return "With " + rounded(kUsualResolution) + " × " + rounded(kUsualResolution) +
-         " pixels, turning the hemicube about the normal changes the square light's relative RMS error by a factor "
-         "of " +
+         " pixels, turning the hemicube about the normal changes the relative RMS error of the square light by a "
+         "factor of " +
          rounded(*std::ranges::max_element(light) / *std::ranges::min_element(light), 2) + ": " +
-         text::enumerate(peaks) + ", where its edges run along the rows or the diagonals of the pixels, against " +
+         text::enumerate(peaks) + " (its edges run along the rows or the diagonals of the pixels), against " +
          percent(study::median(light)) +
-         " in the median over all angles. For triangles with edges in every direction "
-         "it makes no difference beyond chance (" +
+         " in the median over all angles. For triangles with edges in all directions, the angle makes no significant "
+         "difference (" +
          rounded(*low, 2) + " to " + rounded(*high, 2) + " in F).";
 }
 
 std::string distance_sentence(const ResolutionCurves& c) {
   const ErrorCurve& turned = c.turned_by_distance;
   const ErrorCurve& aligned = c.aligned_by_distance;
-  std::string text =
-      "A square light of side 1 that moves away: its relative RMS error with " + rounded(kUsualResolution) + " × " +
-      rounded(kUsualResolution) + " pixels grows like d to the power " + to_text(turned.slope(kLastLarge)) + " (" +
-      to_text(aligned.slope(kLastLarge)) + " where its edges lie along the rows) as long as it is many pixels large";
+  std::string text = "A square light of side 1 moves away to distance d. With " + rounded(kUsualResolution) + " × " +
+                     rounded(kUsualResolution) + " pixels, its relative RMS error grows like d to the power " +
+                     to_text(turned.slope(kLastLarge)) + " (" + to_text(aligned.slope(kLastLarge)) +
+                     " with edges along the rows) while the light covers many pixels";
   Points points;
   for (std::size_t i = 0; i < turned.at.size(); ++i) points.emplace_back(turned.at[i], turned.rms[i]);
   if (const auto far = reaches(points, 0.1)) text += ", reaches 10 % at a distance of " + rounded(*far, 2) + " sides";
   if (const auto far = reaches(points, 1.0))
-    text += " and 100 % at " + rounded(*far, 2) + " sides, where it is about a pixel";
-  return text + ". The exact value is right to the last bit at every distance.";
+    text += " and 100 % at " + rounded(*far, 2) + " sides, where the light is about as large as a pixel";
+  return text + ". The exact value is correct to the last bit at every distance.";
 }
 
 // ------------------------------------------------------------------------------------------------------------ figures
@@ -166,7 +166,7 @@ std::vector<page::Figure> figures(const ResolutionCurves& c) {
   const std::string pixels = rounded(kUsualResolution) + " × " + rounded(kUsualResolution) + " pixels";
   return {{"hemicube-resolution.resolution", "Hemicube: error against resolution",
            "Triangles: error in F. Light: relative error of a square of side 1 at distance " + rounded(kUsualDistance) +
-               ", its edges along the rows of pixels or turned by " + rounded(kTurned) + "°.",
+               ", with edges along the rows of pixels or turned by " + rounded(kTurned) + "°.",
            page::line_plot(by_resolution, {line("Karkanis’ triangles", c.triangles_by_resolution, 1),
                                            line("light, along rows", c.aligned_by_resolution, 2),
                                            line("light, turned", c.turned_by_resolution, 3),
@@ -177,7 +177,7 @@ std::vector<page::Figure> figures(const ResolutionCurves& c) {
            page::line_plot(by_rotation, {line("Karkanis’ triangles", c.triangles_by_rotation, 1),
                                          line("square light", c.light_by_rotation, 2)})},
           {"hemicube-resolution.distance", "Hemicube: error against distance",
-           "With " + pixels + ". Beyond the line at 1 the light is now and then missed, or counted many times over.",
+           "With " + pixels + ". Above the line at 1, the light is sometimes missed and sometimes counted many times.",
            page::line_plot(
                by_distance,
                {line("light, along rows", c.aligned_by_distance, 2),

@@ -66,17 +66,19 @@ std::string scene_sentence(std::span<const ScatterPoint> points, const ScatterSi
   const std::size_t visible = count(points, 0).visible;
   return counted(static_cast<std::uint64_t>(size.scenes), "scene") + " of Karkanis' kind, each of " +
          counted(static_cast<std::uint64_t>(size.triangles), "triangle") +
-         " of one normal that face one point: " + std::to_string(visible) + " of the " + std::to_string(points.size()) +
-         " triangles can be seen from it. Their exact form factors are held against those of a hemicube with " +
-         pixels_text(size.resolutions.front()) + " pixels, his yardstick.";
+         " that have the same normal and face one point. " + std::to_string(visible) + " of the " +
+         std::to_string(points.size()) +
+         " triangles are visible from this point. Their exact form factors are compared with those of a hemicube "
+         "with " +
+         pixels_text(size.resolutions.front()) + " pixels, which Karkanis used as reference.";
 }
 
 std::string missed_sentence(std::span<const ScatterPoint> points, const ScatterSize& size) {
   std::string text;
   for (std::size_t r = 0; r < size.resolutions.size(); ++r) {
     const Counts counts = count(points, r);
-    text += (r == 0 ? "With " : " With ") + pixels_text(size.resolutions[r]) + " pixels it misses " +
-            std::to_string(counts.missed) + " of the visible triangles altogether (" +
+    text += (r == 0 ? "With " : " With ") + pixels_text(size.resolutions[r]) + " pixels, the hemicube misses " +
+            std::to_string(counts.missed) + " of the visible triangles completely (" +
             text::share(counts.missed, counts.visible) + ")";
     if (counts.missed > 0) {
       text += ", the largest of them with F = " + rounded(counts.largest_missed, 2) + " (its largest pixel has " +
@@ -104,13 +106,13 @@ std::string trend_sentence(std::span<const ScatterPoint> points, const ScatterSi
     powers.push_back(to_text(mean_slope(slopes)) + " with " + pixels_text(size.resolutions[r]) + " pixels");
   }
   if (powers.empty()) return {};
-  return "Karkanis' trend is confirmed: the error falls as the form factor grows. Among triangles larger than a pixel "
-         "the normalised error goes like F to the power " +
-         text::enumerate(powers) + " (95 % confidence over " +
+  return "Karkanis' trend is confirmed: the error falls as the form factor grows. For triangles larger than a pixel, "
+         "the normalised error is proportional to F to the power " +
+         text::enumerate(powers) + " (95 % confidence intervals over " +
          counted(static_cast<std::uint64_t>(size.scenes), "scene") +
-         "). Theory gives −3/4 where errors of a pixel's area add up at random along an outline of length √F. It is a "
-         "little flatter where outlines of the larger triangles are longer than that, since others cut them, and where "
-         "many are hardly larger than a pixel, since these cannot err by much more than 100 %.";
+         "). Theory gives −3/4 if errors of a pixel's area add up at random along an outline of length √F. The slope "
+         "is a little flatter for two reasons: the outlines of larger triangles are longer, because other triangles "
+         "cut them; and triangles hardly larger than a pixel cannot err by much more than 100 %.";
 }
 
 // ------------------------------------------------------------------------------------------------------------ figures
@@ -133,7 +135,7 @@ page::Figure value_figure(std::span<const ScatterPoint> points, int resolution) 
   const Series diagonal{"hemicube = exact", {{std::max(low, bottom), std::max(low, bottom)}, {high, high}}, 0};
   return {"hemicube-scatter.value", "Hemicube against exact, triangle by triangle",
           "Karkanis' first plot, with " + pixels_text(resolution) +
-              " pixels. Crosses at the bottom: visible triangles of which the hemicube sees nothing.",
+              " pixels. Crosses at the bottom: visible triangles that the hemicube misses.",
           page::scatter_plot(Axes{.x = "exact form factor",
                                   .y = "form factor by the hemicube",
                                   .extra = {"set yrange [" + text::shortest(bottom / 1.5) + ":*]"}},
@@ -151,7 +153,8 @@ page::Figure error_figure(std::span<const ScatterPoint> points, const ScatterSiz
   const double pixel = largest_pixel(size.resolutions.front());
   const Series theory{"slope −3/4", {{pixel, 1.0}, {1000.0 * pixel, std::pow(1000.0, -0.75)}}, 0};
   return {"hemicube-scatter.error", "Normalised error of the hemicube against the exact value",
-          "Karkanis' second plot. The grey line starts at the largest pixel; left of it a triangle is hit or missed.",
+          "Karkanis' second plot. The grey line starts at the size of the largest pixel; a smaller triangle is either "
+          "hit or missed.",
           page::scatter_plot(Axes{.x = "exact form factor", .y = "|hemicube − exact| / exact"},
                              {theory, seen, missed, medians})};
 }

@@ -162,7 +162,7 @@ std::string large_number(double value) {
 }
 
 std::string against_him(const std::vector<TimeRow>& rows) {
-  std::string text = "Time for the certified form factors of all triangles from one point, one thread:";
+  std::string text = "Time for the certified form factors of all triangles from one point, on one thread:";
   for (const TimeRow& row : rows) {
     text += (&row == rows.data() ? " " : "; ") + counted(static_cast<std::uint64_t>(row.triangles), "triangle") + " " +
             duration(row.with_shaft);
@@ -179,15 +179,15 @@ std::string against_him(const std::vector<TimeRow>& rows) {
 std::string exponents_sentence(const std::vector<TimeRow>& rows) {
   return "The time grows like n to the power " + exponent_between(rows, with_shaft) + ", and without the shaft " +
          exponent_between(rows, without_shaft) + "; Karkanis' local exponents are " + his_list() +
-         ", which made him speak of exponential behaviour. It was his algorithm's, not the problem's.";
+         ". He called this exponential behaviour; it was a property of his algorithm, not of the problem.";
 }
 
 std::string others_sentence(const std::vector<TimeRow>& rows, const TimesSize& size) {
   const TimeRow& row = rows.back();
-  return "At " + std::to_string(row.triangles) + " triangles a hemicube of 100 × 100 pixels takes " +
-         duration(row.hemicube) + " for all of them at once, " + rounded(row.with_shaft / row.hemicube, 2) +
-         " times less than exact; " + text::rounded(size.rays) + " rays to each take " + duration(row.rays) + ", " +
-         rounded(row.rays / row.with_shaft, 2) + " times as much as exact.";
+  return "At " + std::to_string(row.triangles) + " triangles, a hemicube of 100 × 100 pixels takes " +
+         duration(row.hemicube) + " for all of them together, " + rounded(row.with_shaft / row.hemicube, 2) +
+         " times less than the exact method; " + text::rounded(size.rays) + " rays to each triangle take " +
+         duration(row.rays) + ", " + rounded(row.rays / row.with_shaft, 2) + " times as much as the exact method.";
 }
 
 std::string bits_sentence(const std::vector<WorkRow>& rows) {
@@ -200,9 +200,12 @@ std::string bits_sentence(const std::vector<WorkRow>& rows) {
   if (compared == 0) return {};
   const WorkRow& last =
       *std::find_if(rows.rbegin(), rows.rend(), [](const WorkRow& r) { return r.differences.has_value(); });
-  return "Shaft culling changes no bit: " + std::to_string(differences) + " of " + std::to_string(compared) +
-         " values differ without it. It leaves " + rounded(static_cast<double>(last.looked_at) / last.triangles, 2) +
-         " possible occluders to a source of " + std::to_string(last.triangles) + ", instead of " +
+  return "The shaft (the convex hull of the receiver and the source, outside of which no face can be an occluder) "
+         "changes no bit: " +
+         std::to_string(differences) + " of " + std::to_string(compared) +
+         " values differ without it. On average it leaves " +
+         rounded(static_cast<double>(last.looked_at) / last.triangles, 2) +
+         " possible occluders per source in the scene of " + std::to_string(last.triangles) + ", instead of " +
          rounded(static_cast<double>(last.looked_at_without) / last.triangles, 3) + ".";
 }
 
@@ -211,15 +214,15 @@ std::string affordable_sentence(const std::vector<Affordable>& rows, double exac
   if (dearer == rows.end()) return {};
   const std::string at = " on the scene of " + std::to_string(triangles) + " triangles";
   if (dearer == rows.begin()) {
-    return "Sampling cannot be cheaper" + at + ": " + counted(static_cast<std::uint64_t>(dearer->rays), "ray") +
+    return "Sampling is not faster" + at + ": " + counted(static_cast<std::uint64_t>(dearer->rays), "ray") +
            " to each triangle take " + duration(dearer->seconds) + " against " + duration(exact_time) +
-           " for exact, with an RMS error of " + percent(dearer->error) + " of the RMS form factor.";
+           " for the exact method, with an RMS error of " + percent(dearer->error) + " of the RMS form factor.";
   }
   const Affordable& cheaper = *std::prev(dearer);
-  return "In the time that exact takes" + at + " (" + duration(exact_time) + "), stratified sampling affords between " +
-         std::to_string(cheaper.rays) + " and " + std::to_string(dearer->rays) +
-         " rays to each triangle; its RMS error then is between " + percent(dearer->error) + " and " +
-         percent(cheaper.error) + " of the RMS form factor.";
+  return "In the time of the exact method" + at + " (" + duration(exact_time) +
+         "), stratified sampling can send between " + std::to_string(cheaper.rays) + " and " +
+         std::to_string(dearer->rays) + " rays to each triangle; its RMS error is then between " +
+         percent(dearer->error) + " and " + percent(cheaper.error) + " of the RMS form factor.";
 }
 
 // ------------------------------------------------------------------------------------------------------------ figures
@@ -235,7 +238,7 @@ page::Figure figure(const std::vector<TimeRow>& rows, int rays) {
     sampled.points.emplace_back(row.triangles, row.rays);
   }
   return {"karkanis-times.time", "Time for all patches from one point",
-          "Certified values, one thread. Karkanis' times are of a 300 MHz Pentium II.",
+          "Certified values, one thread. Karkanis' times are from a 300 MHz Pentium II.",
           page::line_plot(
               Axes{.x = "triangles, each a source",
                    .y = "time for all of them, s",
@@ -292,7 +295,7 @@ std::vector<LeftOut> left_out(const std::vector<TimeRow>& rows, const TimesSize&
   }
   if (missing.empty()) return {};
   return {{"exact times without the shaft at " + text::enumerate(missing) + " triangles",
-           "judging by the smaller scenes they would take longer than the budget of " + duration(size.budget)}};
+           "estimated from the smaller scenes, they would take longer than the budget of " + duration(size.budget)}};
 }
 
 }  // namespace

@@ -5,7 +5,7 @@ EXACTFF_EXPERIMENT(hemicube_scatter, "hemicube-scatter",
 EXACTFF_EXPERIMENT(hemicube_resolution, "hemicube-resolution",
                    "hemicube error against resolution, rotation and distance")
 EXACTFF_EXPERIMENT(karkanis_times, "karkanis-times",
-                   "time for all patches from one point against their number, beside Karkanis'")
+                   "time for all patches from one point against their number, compared with Karkanis' times")
 EXACTFF_EXPERIMENT(nettle_rule, "nettle-rule", "Nettle's rule: error against the patch's size over its distance")
 EXACTFF_EXPERIMENT(small_emitters, "small-emitters", "Karkanis' conclusion: many small bright emitters, in radiosity")
-EXACTFF_EXPERIMENT(closure, "closure", "a closed room: all patches seen from a point make up 1")
+EXACTFF_EXPERIMENT(closure, "closure", "a closed room: the form factors from a point to all patches sum to 1")

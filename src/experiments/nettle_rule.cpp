@@ -192,37 +192,38 @@ std::optional<std::string> side_for(const NettleCurve& curve, double error) {
 
 std::string rule_sentence(const std::vector<NettleCurve>& curves, const NettleSize& size) {
   const NettleCurve& whole = curve_at(curves, NettleCase::kFree, 1);
-  std::string text = "Nettle's rule in numbers, without occlusion, over " +
-                     rounded(static_cast<double>(size.groups) * size.configurations) +
-                     " pairs in general position: the relative error of the factor from centre to centre grows like "
-                     "the patch's side over the distance to the power " +
-                     to_text(whole.slope()) + " (theory: 2).";
-  if (const auto one = side_for(whole, 0.01)) text += " For an RMS error of 1 % the side must be smaller than " + *one;
-  if (const auto tenth = side_for(whole, 0.001)) text += ", for 0.1 % smaller than " + *tenth;
+  std::string text =
+      "Nettle's rule is that the form factor from centre to centre is accurate if the patch is small relative to its "
+      "distance d. Without occlusion, over " +
+      rounded(static_cast<double>(size.groups) * size.configurations) +
+      " pairs in general position, its relative error grows like the patch's side divided by d, to the power " +
+      to_text(whole.slope()) + " (theory: 2).";
+  if (const auto one = side_for(whole, 0.01)) text += " For an RMS error of 1 %, the side must be smaller than " + *one;
+  if (const auto tenth = side_for(whole, 0.001)) text += "; for 0.1 %, smaller than " + *tenth;
   return text + '.';
 }
 
 std::string split_sentence(const std::vector<NettleCurve>& curves, const NettleSize& size) {
-  std::string text = "Splitting the patch into m × m parts, each with its own factor, stretches the rule:";
+  std::string text = "If the patch is split into m × m parts, each with its own form factor, it may be larger:";
   bool any = false;
   for (const int m : size.splits) {
     const auto side = m == 1 ? std::nullopt : side_for(curve_at(curves, NettleCase::kFree, m), 0.01);
     if (!side) continue;
-    text += (any ? ", " : " ") + ("for 1 % with m = " + std::to_string(m) + " the side must be below " + *side);
+    text += (any ? "; " : " ") + ("for 1 % and m = " + std::to_string(m) + ", the side must be below " + *side);
     any = true;
   }
-  return any ? text + ", about m times as large at m² times the cost." : std::string();
+  return any ? text + ". This is about m times as large, at m² times the cost." : std::string();
 }
 
 std::string occlusion_sentence(const std::vector<NettleCurve>& curves, const NettleSize& size) {
   const NettleCurve& exact_v = curve_at(curves, NettleCase::kExactV, 1);
   const NettleCurve& ray_v = curve_at(curves, NettleCase::kRayV, 1);
   std::string text =
-      "With an occluder across the patch the rule no longer suffices. Even with the exact visible fraction as "
-      "visibility scalar the error falls with the side to the power " +
-      to_text(exact_v.slope()) + " only (theory: 1, since what is visible has its centre elsewhere than the patch has)";
-  if (const auto side = side_for(exact_v, 0.01)) text += ": for 1 % the side must be smaller than " + *side;
-  text += ". With " + std::to_string(size.rays) + " jittered rays the error does not fall at all (power " +
+      "With an occluder across the patch, the rule is not sufficient. Even with the exact visible fraction as "
+      "visibility factor, the error falls only like the side to the power " +
+      to_text(exact_v.slope()) + " (theory: 1, because the centre of the visible part is not the centre of the patch)";
+  if (const auto side = side_for(exact_v, 0.01)) text += "; for 1 %, the side must be smaller than " + *side;
+  text += ". With " + std::to_string(size.rays) + " jittered rays, the error does not fall at all (power " +
           to_text(ray_v.slope()) + "): it stays at " + percent(ray_v.rms.front()) + " however small the patch";
   const int m = size.splits.back();
   if (m > 1) {
@@ -235,22 +236,22 @@ std::string occlusion_sentence(const std::vector<NettleCurve>& curves, const Net
 std::string literal_sentence(const std::vector<NettleLiteral>& rows) {
   const NettleLiteral& row =
       *std::ranges::min_element(rows, {}, [](const NettleLiteral& r) { return std::abs(std::log(r.side / 0.1)); });
-  return "To the letter, his text multiplies by a ratio of the two areas where the sender's area belongs, and says "
-         "both "
-         "ratios. Between patches of equal size both make the result a number per area: with a side of " +
-         rounded(row.side, 2) + " of the distance it is " + rounded(row.sender_over_receiver, 3) +
+  return "Taken literally, Nettle's text multiplies by a ratio of the two areas where the sender's area is needed, and "
+         "it gives both ratios. For patches of equal size, either ratio makes the result a number per area. With a "
+         "side of " +
+         rounded(row.side, 2) + " of the distance, the result is " + rounded(row.sender_over_receiver, 3) +
          " (sender over "
          "receiver) and " +
          rounded(row.receiver_over_sender, 3) +
-         " (receiver over sender) times the truth. A form factor has no unit; his, with lengths measured in tenths of "
-         "the unit, is " +
-         rounded(row.in_tenths / row.sender_over_receiver, 2) + " times what it was.";
+         " (receiver over sender) times the true value. A form factor has no unit. His result changes by a factor of " +
+         rounded(row.in_tenths / row.sender_over_receiver, 2) + " if lengths are measured in tenths of the unit.";
 }
 
 std::string cosine_sentence(const TurnedAway& t) {
-  return "His cosines, \"always positive\", also connect patches that are turned away: of " + std::to_string(t.pairs) +
-         " pairs turned at random " + text::share(t.zero, t.pairs) + " exchange nothing, and in " +
-         text::share(t.literal_positive, t.zero) + " of those the literal text has energy flow.";
+  return "His cosines, which are \"always positive\", also give energy to patches that face away: of " +
+         std::to_string(t.pairs) + " pairs with random orientation, " + text::share(t.zero, t.pairs) +
+         " exchange no energy, but for " + text::share(t.literal_positive, t.zero) +
+         " of those the literal text gives a positive value.";
 }
 
 // ------------------------------------------------------------------------------------------------------------ figures
@@ -284,11 +285,12 @@ std::vector<page::Figure> figures(const std::vector<NettleCurve>& curves, const 
   const NettleCurve& exact_v = curve_at(curves, NettleCase::kExactV, 1);
   occluded.push_back(series_of(exact_v, "1 × 1, exact V", page::kOverlay));
   occluded.push_back(theory(exact_v, 1.0, "slope 1"));
-  return {{"nettle-rule.free", "Nettle's rule without occlusion",
-           "Factor from centre to centre for each of m × m parts of a square patch.", page::line_plot(axes(), free)},
-          {"nettle-rule.occluded", "Nettle's rule with an occluder across the patch",
-           std::to_string(size.rays) + " jittered rays for each of m × m parts, or the exact visible fraction.",
-           page::line_plot(axes(), occluded)}};
+  return {
+      {"nettle-rule.free", "Nettle's rule without occlusion",
+       "Form factor from centre to centre for each of m × m parts of a square patch.", page::line_plot(axes(), free)},
+      {"nettle-rule.occluded", "Nettle's rule with an occluder across the patch",
+       std::to_string(size.rays) + " jittered rays for each of m × m parts, or the exact visible fraction.",
+       page::line_plot(axes(), occluded)}};
 }
 
 // ------------------------------------------------------------------------------------------------------------- tables

@@ -86,15 +86,15 @@ std::string in_words(const Timed& t) {
 }
 
 std::string scene_sentence(const EmitterStudy& study, const EmittersSize& size) {
-  return "Karkanis' conclusion put to the test: a hall with " +
+  return "A test of Karkanis' conclusion that accurate form factors pay off for small, bright emitters: a hall has " +
          counted(static_cast<std::uint64_t>(size.lamps), "lamp") +
-         " of 3 × 3 cm and boxes on its floor, and the radiosity that all lamps bring to " +
+         " of 3 × 3 cm and boxes on its floor. The methods compute the radiosity that all lamps together cause at " +
          counted(study.receivers.size(), "receiver") +
-         " on the floor. Errors are in radiosity, over the mean radiosity of " + rounded(study.mean) + ".";
+         " on the floor. Errors are in radiosity, divided by the mean radiosity of " + rounded(study.mean) + ".";
 }
 
 std::string methods_sentence(const std::vector<Timed>& methods, double exact_seconds) {
-  std::string text = "Exact takes " + duration(exact_seconds) + " per receiver for all lamps.";
+  std::string text = "The exact method takes " + duration(exact_seconds) + " per receiver for all lamps.";
   for (const std::string_view family : {"hemicube", "nettle", "area-sampling", "adaptive"}) {
     const Timed* first = nullptr;
     const Timed* last = nullptr;
@@ -118,7 +118,8 @@ const Timed* cheapest_within(const std::vector<Timed>& methods, double error) {
 }
 
 std::string in_exact_times(double factor) {
-  return factor >= 1.0 ? rounded(factor, 2) + " times as long as exact" : percent(factor) + " of exact's time";
+  return factor >= 1.0 ? rounded(factor, 2) + " times as long as the exact method"
+                       : percent(factor) + " of the exact method's time";
 }
 
 std::string hemicube_verdict(const std::vector<Timed>& methods, double exact_seconds) {
@@ -130,22 +131,24 @@ std::string hemicube_verdict(const std::vector<Timed>& methods, double exact_sec
     finest = &t;
   }
   if (finest == nullptr) return {};
-  const std::string verdict = finest->seconds > exact_seconds ? "Beside the hemicube, his yardstick, exact pays off: "
-                                                              : "Beside the hemicube, his yardstick: ";
+  const std::string verdict = finest->seconds > exact_seconds
+                                  ? "Compared with the hemicube, his reference, the exact method is worth it: "
+                                  : "Compared with the hemicube, his reference: ";
   return verdict + coarsest->errors->choice + " takes " + in_exact_times(coarsest->seconds / exact_seconds) +
-         " and is off by " + percent(coarsest->errors->rms) + "; " + finest->errors->choice + " takes " +
-         in_exact_times(finest->seconds / exact_seconds) + " and is still off by " + percent(finest->errors->rms) + ".";
+         " and has an RMS error of " + percent(coarsest->errors->rms) + "; " + finest->errors->choice + " takes " +
+         in_exact_times(finest->seconds / exact_seconds) + " and still has an RMS error of " +
+         percent(finest->errors->rms) + ".";
 }
 
 std::string ray_verdict(const std::vector<Timed>& methods, double exact_seconds) {
   std::string text =
-      "Beside rays, for which a small lamp is the easiest case there is, it depends on the error wanted:";
+      "Compared with rays, for which a small lamp is the easiest case, it depends on the required error:";
   bool first = true;
   for (const double wanted : {1e-2, 1e-3, 1e-4, 1e-5}) {
     const Timed* cheapest = cheapest_within(methods, wanted);
     text += std::string(first ? " " : "; ") + "for " + percent(wanted) + " ";
     text += cheapest == nullptr
-                ? "none of these settings will do"
+                ? "none of these settings is accurate enough"
                 : cheapest->errors->choice + " takes " + in_exact_times(cheapest->seconds / exact_seconds);
     first = false;
   }
@@ -171,8 +174,8 @@ page::Figure figure(const std::vector<Timed>& methods, double exact_seconds) {
   }
   series.insert(series.begin(), {"exact: no error", {{exact_seconds, low / 3.0}, {exact_seconds, high}}, 1});
   return {"small-emitters.time", "Many small bright lamps: error against time",
-          "RMS radiosity error over the mean radiosity, against the time per receiver for all lamps, one thread. Exact "
-          "is the upright line.",
+          "RMS radiosity error divided by the mean radiosity, against the time per receiver for all lamps, one thread. "
+          "The vertical line is the time of the exact method.",
           page::line_plot(Axes{.x = "time per receiver, s", .y = "relative RMS error in radiosity"}, series)};
 }
 
@@ -256,7 +259,7 @@ Result small_emitters(const Effort& effort, const Hooks& hooks) {
   size.timed = 6;
   std::erase(size.choices, "hemicube:resolution=1024");
   Result result = small_emitters(size, effort.threads, hooks);
-  result.left_out.push_back({"a hemicube of 1024 pixels, and 256 lamps instead of 64", "abridged"});
+  result.left_out.push_back({"a hemicube of 1024 pixels, and a hall with 256 lamps instead of 64", "abridged"});
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <locale>
 
 #include "exactff/models.h"
+#include "kernel/expect.h"
 #include "study/statistics.h"
 #include "text/phrases.h"
 #include "work/stopwatch.h"
@@ -65,6 +66,7 @@ double median_seconds(const std::function<void()>& call, std::size_t repeats) {
 }
 
 SlopeFit mean_slope(std::span<const double> slopes) {
+  EXACTFF_EXPECT(slopes.size() >= 2);
   return {study::mean(slopes), study::mean_half_width(slopes), slopes.size()};
 }
 

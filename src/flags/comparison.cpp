@@ -19,18 +19,20 @@ constexpr int kMostRays = 1 << 20;
 double to_tolerance(const std::string& text, const std::string& flag) {
   const text::ParsedNumber number = text::parse_number(text);
   if (number.fault == text::NumberFault::kNone && number.value < 0.0) {
-    text::refuse(flag + ": " + text::in_quotes(text) + " is negative", "a tolerance is not", "give 0 or more");
+    text::refuse(flag + ": " + text::in_quotes(text) + " is negative", "a tolerance cannot be negative",
+                 "give 0 or more");
   }
   if (number.fault == text::NumberFault::kNone) return number.value;
-  text::refuse(flag + ": " + describe(number.fault, text), "the list holds decimal numbers",
-               "separate them by commas only, such as " + flag + " 1e-2,1e-3");
+  text::refuse(flag + ": " + describe(number.fault, text), "the list consists of decimal numbers",
+               "separate them by commas without spaces, for example " + flag + " 1e-2,1e-3");
 }
 
 template <class Whole>
 Whole to_whole(const std::string& text, const std::string& flag) {
   if (const auto value = whole_number<Whole>(text)) return *value;
   text::refuse(flag + ": " + text::in_quotes(text) + " is not a whole number in range",
-               "it counts or numbers something", "separate several by commas only, such as " + flag + " 1,4,16");
+               "this option counts or numbers something",
+               "separate several numbers by commas without spaces, for example " + flag + " 1,4,16");
 }
 
 // The text of an option that was not given is empty, and so is its list, which stands for the default.
@@ -41,8 +43,8 @@ std::vector<T> list_of(const std::string& text, const std::string& flag, const C
   constexpr std::size_t kMostValues = 1000;
   for (const std::string& part : split_list(text)) values.push_back(convert(part, flag));
   if (values.size() > kMostValues) {
-    text::refuse(flag + " has " + std::to_string(values.size()) + " values", "every setting is run for every receiver",
-                 "give at most 1000, better a dozen");
+    text::refuse(flag + " has " + std::to_string(values.size()) + " values", "every setting is run at every receiver",
+                 "give at most 1000; a dozen is usually enough");
   }
   return values;
 }
@@ -50,19 +52,19 @@ std::vector<T> list_of(const std::string& text, const std::string& flag, const C
 int to_rays(const std::string& text, const std::string& flag) {
   const int rays = to_whole<int>(text, flag);
   if (rays >= 1 && rays <= kMostRays) return rays;
-  text::refuse(flag + ": " + text::in_quotes(text) + " is not within 1 to " + std::to_string(kMostRays),
-               "so many shadow rays are sent to every undecided leaf", "give numbers such as 1,4,16");
+  text::refuse(flag + ": " + text::in_quotes(text) + " is not between 1 and " + std::to_string(kMostRays),
+               "it is the number of shadow rays for every undecided leaf", "give numbers, for example 1,4,16");
 }
 
 SamplePattern to_pattern(const std::string& text, const std::string& flag) {
   if (const auto pattern = study::pattern_named(text)) return *pattern;
-  text::refuse(flag + ": there is no pattern " + text::in_quotes(text), "it says where rays end",
+  text::refuse(flag + ": there is no pattern " + text::in_quotes(text), "the pattern says where rays end",
                "use centre, regular, jittered or low-discrepancy");
 }
 
 Variant to_variant(const std::string& text, const std::string& flag) {
   if (const auto variant = study::variant_named(text)) return *variant;
-  text::refuse(flag + ": there is no variant " + text::in_quotes(text), "it says which algorithm is run",
+  text::refuse(flag + ": there is no variant " + text::in_quotes(text), "the variant says which algorithm is run",
                "use mended or literal");
 }
 
@@ -80,9 +82,9 @@ study::Sweeps sweeps_of(const ComparisonArguments& args) {
 template <class Number>
 Number within(Number value, Number lowest, Number highest, const std::string& flag, const std::string& meaning) {
   if (value >= lowest && value <= highest) return value;
-  text::refuse(flag + " is not within " + text::shortest(static_cast<double>(lowest)) + " to " +
+  text::refuse(flag + " is not between " + text::shortest(static_cast<double>(lowest)) + " and " +
                    text::shortest(static_cast<double>(highest)),
-               meaning, "give a number within these");
+               meaning, "give a number in this range");
 }
 
 study::MethodSweep methods_of(const ComparisonArguments& args) {
@@ -91,15 +93,16 @@ study::MethodSweep methods_of(const ComparisonArguments& args) {
   for (const std::string& text : args.methods) sweep.ladders.push_back(study::parse_ladder(text));
   if (!args.method_seeds.empty()) {
     sweep.seeds = within<std::size_t>(to_whole<std::size_t>(args.method_seeds, "--method-seeds"), 1, 10000,
-                                      "--method-seeds", "every stochastic method is run with so many seeds");
+                                      "--method-seeds", "it is the number of seeds for every stochastic method");
   }
   if (!args.method_receivers.empty()) {
-    sweep.receivers = within<std::size_t>(to_whole<std::size_t>(args.method_receivers, "--method-receivers"), 1, 100000,
-                                          "--method-receivers", "methods are compared at so many receivers");
+    sweep.receivers =
+        within<std::size_t>(to_whole<std::size_t>(args.method_receivers, "--method-receivers"), 1, 100000,
+                            "--method-receivers", "it is the number of receivers at which methods are compared");
   }
   if (!args.method_budget.empty()) {
     sweep.budget = within(to_tolerance(args.method_budget, "--method-budget"), 0.0, 1e9, "--method-budget",
-                          "so many seconds of counted work may a method take on a scene");
+                          "it is the limit, in seconds of counted work, for a method on a scene");
   }
   return sweep;
 }
@@ -186,33 +189,41 @@ void ComparisonArguments::add_to(CLI::App& app) {
   scene.add_to(app);
   add_receiver_options(app, receivers);
   add_source_options(app, sources);
-  app.add_option("--eps-b", eps_b, "Tolerances, radiosity (default: max(rho B) times 1e-1,...,1e-5)")
+  app.add_option("--eps-b", eps_b,
+                 "Values of eps_B, the tolerance of the adaptive algorithm: a radiosity for each leaf (default: "
+                 "max(rho B) times 1e-1,...,1e-5)")
       ->type_name("LIST");
-  app.add_option("--eps-a", eps_a, "Smallest areas (default: 0 and the mean source face times 1e-1,...,1e-4)")
+  app.add_option("--eps-a", eps_a,
+                 "Values of eps_A, the area below which nothing is split (default: 0 and the mean area of a source "
+                 "face times 1e-1,...,1e-4)")
       ->type_name("LIST");
-  app.add_option("--rays", rays, "Shadow rays per undecided leaf (default: 1,4,16,64,256)")->type_name("LIST");
+  app.add_option("--rays", rays, "Numbers of shadow rays per undecided leaf (default: 1,4,16,64,256)")
+      ->type_name("LIST");
   app.add_option("--seeds", seeds, "Seeds of the shadow rays (default: 1,...,10)")->type_name("LIST");
   app.add_option("--pattern", pattern, "Where rays end: jittered, centre, regular, low-discrepancy (default: all)")
       ->type_name("LIST");
-  app.add_option("--variant", variant, "mended, literal (default: both)")->type_name("LIST");
-  CLI::Option* method =
-      app.add_option("--method", methods, "A method to hold against the others, may be repeated (default: all)")
-          ->type_name("METHOD")
-          ->take_all();
-  app.add_flag("--no-methods", no_methods, "Only the ray-sampled adaptive algorithm")->excludes(method);
-  app.add_option("--method-seeds", method_seeds, "Seeds of stochastic methods, 1 to N (default: 30)")->type_name("N");
-  app.add_option("--method-receivers", method_receivers, "Receivers at which methods are compared (default: 48)")
+  app.add_option("--variant", variant,
+                 "literal: the algorithm as printed in 1992; mended: with its faults corrected (default: both)")
+      ->type_name("LIST");
+  CLI::Option* method = app.add_option("--method", methods, "A method to compare; can be repeated (default: all)")
+                            ->type_name("METHOD")
+                            ->take_all();
+  app.add_flag("--no-methods", no_methods, "Run only the ray-sampled adaptive algorithm")->excludes(method);
+  app.add_option("--method-seeds", method_seeds, "Run stochastic methods with seeds 1 to N (default: 30)")
+      ->type_name("N");
+  app.add_option("--method-receivers", method_receivers,
+                 "Number of receivers at which methods are compared (default: 48)")
       ->type_name("N");
   app.add_option("--method-budget", method_budget,
-                 "Seconds that a method may take on a scene, by its counted work at fixed prices, so that what is run "
-                 "does not depend on the machine (default: 2)")
+                 "Time limit for each method on a scene. The time is estimated from counted work at fixed prices, so "
+                 "that the settings that run do not depend on the machine (default: 2)")
       ->type_name("SECONDS");
   app.add_option("--sweep-budget", sweep_budget,
-                 "The same for all settings of the adaptive algorithm together (default: 15)")
+                 "The same limit for all settings of the adaptive algorithm together (default: 15)")
       ->type_name("SECONDS");
   engine.add_to(app);
-  app.add_option("--title", title, "What the report calls the scene")->type_name("TEXT");
-  app.add_flag("--unless-abridged", unless_abridged, "Leave the scene out with --abridged");
+  app.add_option("--title", title, "Name of the scene in the report")->type_name("TEXT");
+  app.add_flag("--unless-abridged", unless_abridged, "Leave this scene out of abridged reports");
 }
 
 }  // namespace exactff::flags

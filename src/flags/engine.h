@@ -12,10 +12,9 @@ struct EngineArgument {
   std::string name = "edges";
 
   void add_to(CLI::App& app) {
-    app.add_option(
-           "--engine", name,
-           "How the visible region is found: edges (fast), boolean (the reference) or both (one checked against "
-           "the other); values do not depend on it")
+    app.add_option("--engine", name,
+                   "How the visible region is found: edges (fast), boolean (Boolean set operations, the reference) or "
+                   "both (run both and compare); it does not affect the values")
         ->capture_default_str()
         ->check(CLI::IsMember({"edges", "boolean", "both"}));
   }

@@ -28,13 +28,13 @@ void check_file_alone(const ReceiverArguments& args) {
   std::vector<std::string> others = placements(args);
   if (!args.on.empty()) others.insert(others.begin(), "--on");
   if (args.file.empty() || others.empty()) return;
-  text::refuse("--receivers comes with " + text::enumerate(others),
-               "the receivers are those of the file, or those on a patch", "leave one of them out");
+  text::refuse("--receivers is given together with " + text::enumerate(others),
+               "receivers come either from the file or from a patch", "remove one of them");
 }
 
 int to_cells(std::string_view text, const std::string& grid) {
   if (const auto count = whole_number<int>(text)) return *count;
-  text::refuse("--grid: " + text::in_quotes(grid) + " is no grid", "it is made of two whole numbers",
+  text::refuse("--grid: " + text::in_quotes(grid) + " is not a grid", "a grid is two whole numbers",
                "write columns x rows: --grid 32x32");
 }
 
@@ -48,16 +48,16 @@ std::uint64_t to_count(const std::string& text, const std::string& flag, const s
                        const std::string& example) {
   if (const auto count = whole_number<std::uint64_t>(text)) return *count;
   text::refuse(flag + ": " + text::in_quotes(text) + " is not a whole number in range", why,
-               "write it such as " + flag + example);
+               "write, for example, " + flag + example);
 }
 
 std::uint64_t sample_count(const ReceiverArguments& args) {
-  return to_count(args.samples, "--samples", "so many receivers are drawn", " 1000");
+  return to_count(args.samples, "--samples", "it is the number of receivers", " 1000");
 }
 
 std::uint64_t sample_seed(const ReceiverArguments& args) {
   if (args.sample_seed.empty()) return 1;
-  return to_count(args.sample_seed, "--sample-seed", "it numbers the random choices, from 0 to 2^64 - 1", " 7");
+  return to_count(args.sample_seed, "--sample-seed", "a seed is a whole number from 0 to 2^64 - 1", " 7");
 }
 
 std::string joined(const std::vector<std::string>& names) {
@@ -72,15 +72,15 @@ std::vector<FaceId> faces_named(const Scene& scene, const std::vector<std::strin
   for (const Selection& selection : selections_named(scene, names)) {
     for (const FaceId face : scene.faces_of(selection)) {
       if (!known.insert(index_of(face)).second) {
-        text::refuse("--on: '" + scene.name_of(face) + "' is named twice", "it would have every receiver twice",
-                     "name it once");
+        text::refuse("--on: '" + scene.name_of(face) + "' is named twice", "every receiver on it would occur twice",
+                     "give it once");
       }
       faces.push_back(face);
     }
   }
   if (faces.empty()) {
-    text::refuse("--on: there is no face with area in " + text::in_quotes(joined(names), text::kShownName),
-                 "receivers lie on faces", "name another patch");
+    text::refuse("--on: no face has area in " + text::in_quotes(joined(names), text::kShownName),
+                 "receivers lie on faces", "choose another patch");
   }
   return faces;
 }
@@ -103,25 +103,28 @@ ChosenReceivers in_file(const std::string& file, const Scene& scene) {
 
 void check_not_empty(const ReceiverArguments& args, const ChosenReceivers& chosen) {
   if (!chosen.receivers.empty()) return;
-  const std::string what = "there is no receiver in " + chosen.description;
-  if (!args.file.empty()) text::refuse(what, "its rows are the receivers", "add one below the header");
-  text::refuse(what, "no cell of the grid has its centre inside a face", "use a finer grid, or another patch");
+  const std::string what = "there are no receivers in " + chosen.description;
+  if (!args.file.empty()) text::refuse(what, "every row of the file is a receiver", "add rows below the header");
+  text::refuse(what, "no cell of the grid has its centre inside a face", "use a finer grid or another patch");
 }
 
 }  // namespace
 
 void add_receiver_options(CLI::App& app, ReceiverArguments& args) {
-  app.add_option("--on", args.on,
-                 "Patch or face that carries the receivers; repeat it or separate names by commas; all: every patch")
+  app.add_option(
+         "--on", args.on,
+         "Patch or face on which the receivers lie; can be repeated, or separate names by commas; all: every patch")
       ->type_name("NAME[:K]")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app.add_option("--grid", args.grid, "A receiver in each cell: columns x rows on each face, such as 32x32")
+  app.add_option("--grid", args.grid,
+                 "A receiver in the centre of each cell of a grid on each face: columns x rows, such as 32x32")
       ->type_name("UxV");
   app.add_flag("--vertices", args.vertices, "A receiver at each vertex of each face, with that face's normal");
-  app.add_flag("--centres", args.centres, "A receiver in the middle of each face");
-  app.add_option("--samples", args.samples, "So many receivers at random, uniformly by area")->type_name("N");
-  app.add_option("--sample-seed", args.sample_seed, "Seed of --samples, not of any ray (default: 1)")->type_name("S");
+  app.add_flag("--centres", args.centres, "A receiver at the centre of each face");
+  app.add_option("--samples", args.samples, "N receivers at random, uniformly by area")->type_name("N");
+  app.add_option("--sample-seed", args.sample_seed, "Seed of --samples; it does not affect rays (default: 1)")
+      ->type_name("S");
   app.add_option("--receivers", args.file, "CSV file with the columns id,x,y,z,nx,ny,nz,on, instead of --on")
       ->type_name("FILE");
 }
@@ -130,24 +133,25 @@ void check_receiver_options(const ReceiverArguments& args) {
   const std::vector<std::string> placed = placements(args);
   check_file_alone(args);
   if (!args.sample_seed.empty() && args.samples.empty()) {
-    text::refuse("--sample-seed comes without --samples", "nothing else is drawn at random",
-                 "give --samples 1000, or leave it out");
+    text::refuse("--sample-seed is given without --samples", "only --samples draws receivers at random",
+                 "add --samples 1000, or remove it");
   }
   if (!args.file.empty()) return;
   if (args.on.empty() && placed.empty()) {
-    text::refuse("there are no receivers", "values are computed at points",
+    text::refuse("there are no receivers", "values are computed at receivers",
                  "give --on NAME with --grid 32x32, --vertices, --centres or --samples 1000; or --receivers FILE.csv");
   }
   if (args.on.empty()) {
-    text::refuse(placed.front() + " comes without --on", "it places receivers on a patch", "name that with --on NAME");
+    text::refuse(placed.front() + " is given without --on", "it places receivers on a patch",
+                 "name the patch with --on NAME");
   }
   if (placed.empty()) {
-    text::refuse("--on comes without --grid, --vertices, --centres or --samples",
-                 "they say where on it the receivers are", "give one of them, such as --grid 32x32");
+    text::refuse("--on is given without --grid, --vertices, --centres or --samples",
+                 "they say where the receivers lie on the patch", "add one of them, for example --grid 32x32");
   }
   if (placed.size() > 1) {
-    text::refuse(text::enumerate(placed) + " come together", "each places the receivers in a way of its own",
-                 "keep one of them");
+    text::refuse(text::enumerate(placed) + " are given together", "each places the receivers in a different way",
+                 "keep only one of them");
   }
   if (!args.grid.empty()) (void)grid_of(args.grid);
   if (!args.samples.empty()) (void)sample_count(args);

@@ -9,10 +9,11 @@ void SceneArguments::add_to(CLI::App& app) {
   app.add_option("SCENE", path,
                  "Wavefront OBJ file, or @MODEL[:SETTING=VALUE,...] for a generated scene: `exactff info @` lists them")
       ->required();
-  app.add_option("--patches", patches, "What makes a patch: groups (g, else o) or faces (each face NAME:k)")
+  app.add_option("--patches", patches,
+                 "What a patch is: groups (g lines; without them, o lines) or faces (each face is a patch NAME:k)")
       ->check(CLI::IsMember({"groups", "faces"}))
       ->capture_default_str();
-  app.add_flag("--skip-bad-faces", skip_bad_faces, "Leave unusable faces out, with a warning, instead of stopping");
+  app.add_flag("--skip-bad-faces", skip_bad_faces, "Leave out unusable faces with a warning instead of stopping");
 }
 
 SceneOptions SceneArguments::options() const {

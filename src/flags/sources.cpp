@@ -11,7 +11,8 @@ namespace exactff::flags {
 
 void add_source_options(CLI::App& app, SourceArguments& args) {
   app.add_option("--source", args.names,
-                 "Source patch; repeat it or separate names by commas; all: every patch (default: all that emit)")
+                 "Source patch or face; can be repeated, or separate names by commas; all: every patch (default: every "
+                 "emitting patch)")
       ->type_name("NAME[:K]")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -24,7 +25,7 @@ std::vector<Selection> sources_of(const SourceArguments& args, const Scene& scen
     if (named.emplace(source.patch, source.face).second) continue;
     throw InputError({.what = "--source: '" + scene.name_of(source) + "' is named twice",
                       .why = "its light would count twice",
-                      .suggestion = "name it once"});
+                      .suggestion = "give it once"});
   }
   return sources;
 }

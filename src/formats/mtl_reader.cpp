@@ -59,7 +59,8 @@ void MtlReader::read_line() {
   const std::string_view keyword = text::take_word(rest);
   if (keyword == "newmtl") return start_material(text::trimmed(rest));
   if (keyword != "Kd" && keyword != "Ke") return;
-  if (!started_) return fail(std::string(keyword) + " before any newmtl", "it belongs to no material", "move it");
+  if (!started_)
+    return fail(std::string(keyword) + " before any newmtl", "it does not belong to a material", "move it");
   read_colour(keyword, rest);
   if (counts_) materials_.back() = current_;
 }
@@ -67,20 +68,20 @@ void MtlReader::read_line() {
 void MtlReader::start_material(std::string_view name) {
   started_ = true;
   current_ = Material{std::string(name)};
-  if (name.empty()) fail("newmtl without a name", "nothing can use it", "give the material a name");
+  if (name.empty()) fail("newmtl without a name", "no face can use it", "give the material a name");
   counts_ = names_.insert(current_.name).second;
   if (counts_) {
     materials_.push_back(current_);
   } else {
-    warn("material " + text::in_quotes(name) + " is defined again", "the first definition counts", "remove one");
+    warn("material " + text::in_quotes(name) + " is defined again", "the first definition is used", "remove one");
   }
 }
 
 void MtlReader::read_colour(std::string_view keyword, std::string_view values) {
   const std::vector<std::string_view> texts = text::words(values.substr(0, values.find('#')));
   if (!texts.empty() && (texts[0] == "spectral" || texts[0] == "xyz")) {
-    return warn(of_material(keyword) + " is given as " + text::in_quotes(texts[0]), "only RGB values are read",
-                "the default stands; write red, green and blue");
+    return warn(of_material(keyword) + " is given as " + text::in_quotes(texts[0]), "exactff reads only RGB values",
+                "the default is used; write red, green and blue");
   }
   Rgb& colour = keyword == "Kd" ? current_.reflectance : current_.radiosity;
   if (read_numbers(keyword, texts, colour)) check(keyword, colour);
@@ -89,14 +90,14 @@ void MtlReader::read_colour(std::string_view keyword, std::string_view values) {
 bool MtlReader::read_numbers(std::string_view keyword, const std::vector<std::string_view>& texts, Rgb& colour) {
   if (texts.empty() || texts.size() == 2) {
     fail(of_material(keyword) + " has " + (texts.empty() ? "no value" : "two values"),
-         "a colour has one value or three", "give one value or red, green and blue");
+         "a colour has one or three values", "give one value, or red, green and blue");
     return false;
   }
   std::array<double, 3> values{};
   for (std::size_t i = 0; i < std::min<std::size_t>(texts.size(), 3); ++i) {
     const text::ParsedNumber number = text::parse_number(texts[i]);
     if (number.fault != text::NumberFault::kNone) {
-      fail(of_material(keyword) + ": " + describe(number.fault, texts[i]), "a colour is made of finite numbers",
+      fail(of_material(keyword) + ": " + describe(number.fault, texts[i]), "colours are finite numbers",
            advice(number.fault));
       return false;
     }
@@ -111,7 +112,7 @@ void MtlReader::check(std::string_view keyword, const Rgb& colour) {
   const bool reflectance = keyword == "Kd";
   if (std::min({colour.r, colour.g, colour.b}) < 0.0) {
     return fail(of_material(keyword) + " is negative",
-                reflectance ? "a reflectance lies between 0 and 1" : "a radiosity is not negative", "correct it");
+                reflectance ? "a reflectance lies between 0 and 1" : "a radiosity cannot be negative", "correct it");
   }
   if (reflectance && colour.largest() > 1.0) {
     warn(of_material(keyword) + " exceeds 1", "such a surface reflects more than it receives", "correct it");

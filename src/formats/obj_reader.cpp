@@ -143,8 +143,8 @@ class ObjReader {
 Scene ObjReader::run() {
   while (lines_.next(line_)) read_line();
   if (lines_.is_cut_off()) {
-    warn(line_.number, "the last line has no line end", "the file may have been cut off there",
-         "end it with a line end if it is complete");
+    warn(line_.number, "the last line does not end with a newline", "the file may have been cut off there",
+         "add a newline if the file is complete");
   }
   check_indices();
   if (faces_.empty() && problems_.empty()) {
@@ -202,12 +202,12 @@ std::array<double, 3> ObjReader::read_coordinates(std::string_view values) {
   for (double& coordinate : xyz) {
     const std::string_view word = text::take_word(values);
     if (word.empty()) {
-      fail("a vertex has fewer than three coordinates", "the point would not be known", "write v x y z");
+      fail("a vertex has fewer than three coordinates", "a point needs all three", "write v x y z");
       return xyz;
     }
     const text::ParsedNumber number = text::parse_number(word);
     if (number.fault != text::NumberFault::kNone)
-      fail(describe(number.fault, word), "a coordinate stands for one exact number", advice(number.fault));
+      fail(describe(number.fault, word), "a coordinate is one exact number", advice(number.fault));
     coordinate = number.value;
   }
   return xyz;
@@ -231,7 +231,7 @@ void ObjReader::read_face(std::string_view corners) {
   }
   if (sound && face.corner_count < 3 && options_.bad_faces == BadFaces::kReject) {
     fail("a face has " + text::counted(face.corner_count, "vertex", "vertices"), "a polygon has at least three",
-         "remove it, or leave bad faces out with --skip-bad-faces");
+         "remove it, or skip bad faces with --skip-bad-faces");
   }
   faces_.push_back(face);
 }
@@ -270,12 +270,12 @@ std::optional<std::uint32_t> ObjReader::read_corner(std::string_view corner) {
   long index = 0;
   const IndexText kind = parse_index(corner.substr(0, slash), index);
   if (kind == IndexText::kOther || !well_formed_tail(corner.substr(slash))) {
-    fail(text::in_quotes(corner) + " is not a corner of a face", "a corner is the number of a vertex",
+    fail(text::in_quotes(corner) + " is not a valid corner of a face", "a corner is a vertex number",
          "write v, v/vt, v//vn or v/vt/vn");
     return std::nullopt;
   }
   if (kind == IndexText::kNumber && index == 0) {
-    fail("vertex 0 does not exist", "vertices count from 1, or from -1 backwards", "correct the index");
+    fail("vertex 0 does not exist", "vertices are numbered from 1, or backwards from -1", "correct the index");
     return std::nullopt;
   }
   const long position = index > 0 ? index - 1 : count + index;
@@ -314,14 +314,14 @@ void ObjReader::check_indices() {
 void ObjReader::warn_tallies() {
   if (several_groups_.count > 0) {
     warn(several_groups_.first_line, "g " + several_groups_.first + " names several groups" + several_groups_.others(),
-         "a face belongs to one patch", "the first name counts");
+         "a face belongs to one patch", "the first name is used");
   }
   if (unread_geometry_.count > 0) {
     warn(unread_geometry_.first_line, unread_geometry_.first + " is not read" + unread_geometry_.others(),
-         "curves, surfaces and other files are no polygons", "convert them to faces");
+         "curves, surfaces and references to other files are not polygons", "convert them to faces");
   }
   if (unknown_.count > 0) {
-    warn(unknown_.first_line, "unknown keyword " + unknown_.first + unknown_.others(), "the line is passed over",
+    warn(unknown_.first_line, "unknown keyword " + unknown_.first + unknown_.others(), "the line is ignored",
          "is it a Wavefront OBJ file?");
   }
 }
@@ -369,7 +369,7 @@ void ObjReader::read_library(const fs::path& path, std::size_t line) {
   if (!text) {
     library_missing_ = true;
     return warn(line, "material file " + text::in_quotes(path.string(), text::kShownName) + " cannot be read",
-                why + "its materials become Kd 1, Ke 0", "put it there if colours or emission matter");
+                why + "its materials get Kd 1, Ke 0", "add the file if colours or emission matter");
   }
   text::ProblemList warnings;
   for (Material& material : read_mtl(*text, path.string(), problems_, warnings)) {
@@ -384,7 +384,7 @@ void ObjReader::add_materials() {
     const auto definition = defined_.find(names[i]);
     builder_.add_material(definition != defined_.end() ? definition->second : Material{names[i]});
     if (definition != defined_.end() || i == 0 || library_missing_) continue;
-    warn(material_line_[i], "material " + text::in_quotes(names[i]) + " is not defined", "it becomes Kd 1, Ke 0",
+    warn(material_line_[i], "material " + text::in_quotes(names[i]) + " is not defined", "it gets Kd 1, Ke 0",
          "define it in a file named by mtllib");
   }
 }

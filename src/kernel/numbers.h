@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <string>
+
+#include "kernel/expect.h"
 
 namespace exactff::kernel {
 
@@ -32,7 +33,10 @@ inline long bit_length(const Integer& a) {
 Rational times_power_of_two(Rational value, long exponent);
 
 // Requires a finite value; exact, denormals included.
-inline Rational to_rational(double value) { return Rational(value); }
+inline Rational to_rational(double value) {
+  EXACTFF_EXPECT(std::isfinite(value));
+  return Rational(value);
+}
 
 // Correctly rounded, ties to even, gradual underflow; overflow gives an infinity.
 double nearest_double(const Rational& value);
@@ -51,7 +55,7 @@ struct BinaryDouble {
 };
 inline BinaryDouble decompose(double value) {
   constexpr int kStoredBits = 52, kBias = 1075;
-  assert(std::isfinite(value));
+  EXACTFF_EXPECT(std::isfinite(value));
   const auto bits = std::bit_cast<std::uint64_t>(value);
   const std::uint64_t stored = bits & ((std::uint64_t{1} << kStoredBits) - 1);
   const int exponent = static_cast<int>(bits >> kStoredBits & 0x7FFU);

@@ -35,7 +35,7 @@ class Adaptive : public RecursionEvaluator {
 
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
-    const auto& source = static_cast<const AdaptivePrepared&>(prepared);
+    const auto& source = own<AdaptivePrepared>(prepared);
     return estimate(source.source, source.radiosity);
   }
 };
@@ -47,11 +47,14 @@ Method adaptive_method() {
   std::vector<SettingSpec> settings = tolerance_settings();
   settings.push_back(whole_setting("rays", defaults.rays, 1, kMostRays, "shadow rays for each undecided sub-patch"));
   settings.push_back(pattern_setting());
-  settings.push_back(word_setting("variant", {"mended", "literal"},
-                                  "literal: as printed in 1992, with no horizon clip, in single precision"));
+  settings.push_back(word_setting(
+      "variant", {"mended", "literal"},
+      "literal: as printed in 1992, without clipping at the horizon, in single precision; mended: corrected"));
   settings.push_back(seed_setting());
   return {.name = "adaptive",
-          .summary = "recursive splitting until visibility is certain or the form factor small, V from shadow rays",
+          .summary =
+              "Tampieri's algorithm: splits the source until visibility is certain or the form factor is small; "
+              "visibility V from shadow rays",
           .source = "F. Tampieri, Accurate Form-Factor Computation (1992)",
           .settings = std::move(settings),
           .prepare = prepare_as<OnScene<AdaptiveSolver, AdaptivePrepared, Adaptive>>,

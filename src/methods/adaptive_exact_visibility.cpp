@@ -103,7 +103,7 @@ class Control : public RecursionEvaluator {
 
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
-    const auto& source = static_cast<const ControlSource&>(prepared);
+    const auto& source = own<ControlSource>(prepared);
     ExactVisibility visibility(scene(), receiver(), source.exact);
     Estimate result = estimate(source.adaptive, source.radiosity, &visibility);
     result.counters.add("exact V", visibility.asked());
@@ -116,7 +116,7 @@ class Control : public RecursionEvaluator {
 
 Method adaptive_exact_visibility_method() {
   return {.name = "adaptive-exact-visibility",
-          .summary = "the adaptive recursion with the exact visible fraction of every sub-patch: the control",
+          .summary = "a control: Tampieri's algorithm with the exact visible fraction of every leaf instead of rays",
           .source = "F. Tampieri, Accurate Form-Factor Computation (1992), with V computed exactly",
           .settings = tolerance_settings(),
           .prepare = prepare_as<OnScene<AdaptiveSolver, ControlSource, Control>>,

@@ -21,10 +21,10 @@ constexpr std::array<std::string_view, kLeafReasonCount> kLeafCounters = {
 std::vector<SettingSpec> tolerance_settings() {
   constexpr double kAny = std::numeric_limits<double>::max();
   const AdaptiveOptions defaults;
-  return {number_setting("eps_B", defaults.eps_b, 0.0, kAny, "tolerance; a leaf stops at F <= eps_B / max(rho B)",
+  return {number_setting("eps_B", defaults.eps_b, 0.0, kAny, "tolerance: no part with F <= eps_B / max(rho B) is split",
                          "radiosity"),
-          number_setting("eps_A", defaults.eps_a, 0.0, kAny, "a leaf stops at this area", "area"),
-          whole_setting("depth_cap", defaults.depth_cap, 0, kDeepest, "a leaf stops after so many splits")};
+          number_setting("eps_A", defaults.eps_a, 0.0, kAny, "no part of this area or less is split", "area"),
+          whole_setting("depth_cap", defaults.depth_cap, 0, kDeepest, "largest number of splits above a leaf")};
 }
 
 void take_tolerances(const Settings& settings, AdaptiveOptions& options) {

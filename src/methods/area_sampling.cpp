@@ -45,7 +45,7 @@ class AreaSampling : public Evaluator {
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
     const kernel::StandardArithmetic arithmetic;
-    const auto& source = static_cast<const RaySource&>(prepared);
+    const auto& source = own<RaySource>(prepared);
     Estimate result;
     if (!(source.area() > 0.0)) return result;  // nothing to sample, or too small for a double
     points_.place(stream_key(rays_.view(), source.selection(), seed_), square_);
@@ -99,16 +99,17 @@ class AreaSampling : public Evaluator {
 }  // namespace
 
 Method area_sampling_method() {
-  return {.name = "area-sampling",
-          .summary = "the mean of the integrand and a shadow ray over points of the source, uniform in area",
-          .source = "P. Shirley, C. Wang and K. Zimmerman, Monte Carlo Techniques for Direct Lighting (1996)",
-          .settings = {whole_setting("samples", 64, 1, kMostSamples, "points, with a ray to each"),
-                       word_setting("pattern", {"random", "stratified", "sobol", "halton", "r2"},
-                                    "independent points, one in each of as many cells, or the first of a "
-                                    "low-discrepancy sequence, shifted at random"),
-                       seed_setting()},
-          .prepare = prepare_as<OnScene<SceneForRays, RaySource, AreaSampling>>,
-          .can_leave_unit = [](const Settings&) { return true; }};
+  return {
+      .name = "area-sampling",
+      .summary = "the mean of integrand times visibility (one shadow ray) over points of the source, uniform in area",
+      .source = "P. Shirley, C. Wang and K. Zimmerman, Monte Carlo Techniques for Direct Lighting (1996)",
+      .settings = {whole_setting("samples", 64, 1, kMostSamples, "sample points, with one ray to each"),
+                   word_setting("pattern", {"random", "stratified", "sobol", "halton", "r2"},
+                                "random: independent points; stratified: one in each cell; the others: the start of a "
+                                "low-discrepancy sequence, shifted at random"),
+                   seed_setting()},
+      .prepare = prepare_as<OnScene<SceneForRays, RaySource, AreaSampling>>,
+      .can_leave_unit = [](const Settings&) { return true; }};
 }
 
 }  // namespace exactff::methods

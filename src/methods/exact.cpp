@@ -31,7 +31,7 @@ class Exact : public Evaluator {
 
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& source) override {
-    const auto& prepared = static_cast<const ExactSourcePrepared&>(source);
+    const auto& prepared = own<ExactSourcePrepared>(source);
     exact_form_factor(scene_, receiver_, prepared.source, options_, found_);
     Estimate result;
     result.form_factor = found_.value;
@@ -60,13 +60,14 @@ bool exact_uses(const Settings&, std::string_view setting) { return setting != "
 }  // namespace
 
 Method exact_method() {
-  return {.name = "exact",
-          .summary = "the exact visible region and Eq. (4) over its boundary, correctly rounded with proof",
-          .source = "",
-          .settings = {word_setting("engine", {"edges", "boolean", "both"},
-                                    "how the visible region is found; the values are the same bits")},
-          .prepare = prepare_as<OnScene<Nothing, ExactSourcePrepared, Exact>>,
-          .uses = exact_uses};
+  return {
+      .name = "exact",
+      .summary = "the exact visible region and Tampieri's Eq. (4) over its boundary, proved to be correctly rounded",
+      .source = "",
+      .settings = {word_setting("engine", {"edges", "boolean", "both"},
+                                "how the visible region is found; it does not affect the values")},
+      .prepare = prepare_as<OnScene<Nothing, ExactSourcePrepared, Exact>>,
+      .uses = exact_uses};
 }
 
 }  // namespace exactff::methods

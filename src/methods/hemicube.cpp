@@ -218,7 +218,7 @@ Estimate Hemicube::form_factor(const PreparedSource& source) {
   const kernel::StandardArithmetic arithmetic;
   Estimate result;
   std::uint64_t pixels = 0;
-  for (const FaceId face : static_cast<const HemicubeSource&>(source).faces) {
+  for (const FaceId face : own<HemicubeSource>(source).faces) {
     result.form_factor += shares_[index_of(face)].form_factor;
     pixels += shares_[index_of(face)].pixels;
   }
@@ -233,13 +233,12 @@ Estimate Hemicube::form_factor(const PreparedSource& source) {
 
 Method hemicube_method() {
   return {.name = "hemicube",
-          .summary = "item buffer of the whole scene on half a cube, delta form factors exact for each pixel",
+          .summary = "the scene is drawn on the pixels of half a cube; the form factor of each pixel is exact",
           .source = "M. F. Cohen and D. P. Greenberg, The Hemi-Cube (1985)",
           .settings = {whole_setting("resolution", 100, 2, kHighestResolution,
                                      "pixels along a side of the top face; the side faces have half as many rows",
                                      "pixels", 2),
-                       number_setting("rotation", 0.0, -360.0, 360.0, "angle by which it is turned about the normal",
-                                      "degrees")},
+                       number_setting("rotation", 0.0, -360.0, 360.0, "rotation about the normal", "degrees")},
           .all_sources_at_once = true,
           .prepare = prepare_as<HemicubeOnScene>};
 }

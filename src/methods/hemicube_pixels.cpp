@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "kernel/expect.h"
 #include "sampled/closed_form.h"
 
 namespace exactff::methods {
@@ -10,6 +11,7 @@ namespace exactff::methods {
 using namespace sampled;
 
 HemicubePixels::HemicubePixels(int resolution) : resolution_(resolution), form_factors_(count()) {
+  EXACTFF_EXPECT(resolution >= 2 && resolution % 2 == 0);
   set_top();
   set_sides();
 }

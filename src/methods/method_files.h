@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 
 #include "exactff/methods.h"
 #include "kernel/float_environment.h"
@@ -23,6 +24,13 @@ template <class OnScene>
 std::unique_ptr<PreparedScene> prepare_as(const Scene& scene) {
   const kernel::StandardArithmetic arithmetic;
   return std::make_unique<OnScene>(scene);
+}
+
+// The data that this method has prepared for a source. Throws std::invalid_argument for those of another method.
+template <class Own>
+const Own& own(const PreparedSource& source) {
+  if (const auto* own = dynamic_cast<const Own*>(&source)) return *own;
+  throw std::invalid_argument("this source was prepared by another method: use the PreparedScene of the evaluator");
 }
 
 // A scene with what a method makes of it: Data of the scene, Source of data, scene and selection, Evaluating of data,

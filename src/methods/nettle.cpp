@@ -61,7 +61,7 @@ class Nettle : public Evaluator {
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
     const kernel::StandardArithmetic arithmetic;
-    const auto& source = static_cast<const RaySource&>(prepared);
+    const auto& source = own<RaySource>(prepared);
     const std::uint64_t key = stream_key(rays_.view(), source.selection(), seed_);
     const Reach reach = literal() ? Reach::kEverything : Reach::kVisible;
     const std::uint64_t sub_patches =
@@ -149,17 +149,19 @@ bool nettle_uses(const Settings& settings, std::string_view setting) {
 Method nettle_method() {
   return {
       .name = "nettle",
-      .summary = "centre to centre for each of m x m sub-patches, times a visibility scalar from k rays",
+      .summary =
+          "for each of m x m sub-patches: form factor from centre to centre, times a visible share found by k rays",
       .source = "P. Nettle, Radiosity In English - Form Factor Calculation (1999)",
-      .settings = {whole_setting("splits", 1, 1, kMostSplits, "m of the m x m sub-patches of a face"),
-                   whole_setting("rays", 16, 1, kMostRays, "k rays for each sub-patch's visibility scalar"),
+      .settings = {whole_setting("splits", 1, 1, kMostSplits, "m, for m x m sub-patches of each face"),
+                   whole_setting("rays", 16, 1, kMostRays, "k, the number of rays to each sub-patch"),
                    pattern_setting(),
                    word_setting("variant", {"mended", "literal"},
-                                "literal: cosines always positive, and a ratio of areas in the sender's place"),
+                                "literal: cosines always positive, and a ratio of areas instead of the sender's area"),
                    word_setting("area_ratio", {"receiver-over-sender", "sender-over-receiver"},
-                                "of the literal variant, whose text says both"),
+                                "ratio of areas in the literal variant (the text gives both)"),
                    number_setting("receiver_area", 0.0, 0.0, std::numeric_limits<double>::max(),
-                                  "of the literal variant; 0: that of the face the receiver lies on, else 1", "area"),
+                                  "receiver's area in the literal variant; 0: area of its face, or 1 without a face",
+                                  "area"),
                    seed_setting()},
       .prepare = prepare_as<OnScene<SceneForRays, RaySource, Nettle>>,
       .uses = nettle_uses,

@@ -25,7 +25,7 @@ class Registry {
   }
 
   const Method& add(Method method) {
-    if (!is_name(method.name)) throw std::logic_error("'" + method.name + "' is no name for a method");
+    if (!is_name(method.name)) throw std::logic_error("'" + method.name + "' is not a valid name for a method");
     if (!method.prepare) throw std::logic_error("method '" + method.name + "' cannot be prepared");
     const std::scoped_lock lock(mutex_);
     if (find(method.name) != nullptr) throw std::logic_error("there is a method '" + method.name + "' already");

@@ -4,7 +4,7 @@ namespace exactff::methods {
 
 SettingSpec pattern_setting() {
   return word_setting("pattern", {"jittered", "centre", "regular", "low-discrepancy"},
-                      "where the rays to a sub-patch end; centre sends one");
+                      "where the rays to a leaf or sub-patch end; centre sends only one ray");
 }
 
 SamplePattern pattern_named(std::string_view name) {

@@ -37,7 +37,7 @@ class Wallace : public Evaluator {
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
     const kernel::StandardArithmetic arithmetic;
-    const auto& source = static_cast<const RaySource&>(prepared);
+    const auto& source = own<RaySource>(prepared);
     const std::uint64_t key = stream_key(rays_.view(), source.selection(), seed_);
     const std::uint64_t samples =
         rays_.for_each_part(source, Reach::kVisible, splits_, key, 1,
@@ -74,13 +74,13 @@ bool wallace_uses(const Settings& settings, std::string_view setting) {
 
 Method wallace_method() {
   return {.name = "wallace",
-          .summary = "m x m sub-patches of each face of the source, each a disc with a ray to it",
+          .summary = "for each of m x m sub-patches: form factor of a disc, and one ray",
           .source =
               "J. R. Wallace, K. A. Elmquist and E. A. Haines, A Ray Tracing Algorithm for Progressive Radiosity "
               "(1989)",
-          .settings = {whole_setting("splits", 4, 1, kMostSplits, "m of the m x m sub-patches of a face"),
+          .settings = {whole_setting("splits", 4, 1, kMostSplits, "m, for m x m sub-patches of each face"),
                        word_setting("pattern", {"centre", "jittered"},
-                                    "where in its sub-patch a sample lies: in the middle or anywhere"),
+                                    "where the sample lies in its sub-patch: at the centre or at random"),
                        seed_setting()},
           .prepare = prepare_as<OnScene<SceneForRays, RaySource, Wallace>>,
           .uses = wallace_uses,

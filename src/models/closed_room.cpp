@@ -83,10 +83,11 @@ PlainScene make_closed_room(const Settings& settings) {
 Model closed_room_model() {
   return {.name = "closed-room",
           .summary =
-              "a room of 6 x 4 x 3 m without a gap, with a lamp, a table and boxes; all patches seen from a "
-              "point in it make up 1 (floor, ceiling, wall_*, lamp, table_*, box1 ...)",
-          .settings = {word_setting("lamp", {"flush", "hanging"}, "in the ceiling, or a box half a metre below"),
-                       whole_setting("boxes", 6, 0, 1000, "boxes along the walls"), seed_setting()},
+              "a closed room of 6 x 4 x 3 m with a lamp, a table and boxes; the form factors from a point in it to all "
+              "patches sum to 1 (floor, ceiling, wall_*, lamp, table_*, box1 ...)",
+          .settings = {word_setting("lamp", {"flush", "hanging"},
+                                    "flush: in the ceiling; hanging: a box half a metre below it"),
+                       whole_setting("boxes", 6, 0, 1000, "number of boxes along the walls"), seed_setting()},
           .make = &make_closed_room};
 }
 

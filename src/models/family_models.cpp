@@ -53,11 +53,11 @@ PlainScene make_karkanis(const Settings& settings) {
 PlainScene make_room(const Settings& settings) { return room(options_of(settings)); }
 
 SettingSpec cover_setting() {
-  return number_setting("cover", 1.0, 1e-6, 1e6, "area of all shadows together over the source's");
+  return number_setting("cover", 1.0, 1e-6, 1e6, "total area of all shadows / area of the source");
 }
 
 SettingSpec floor_setting() {
-  return number_setting("floor", 1.0, 0.0, 100.0, "side of the patch `floor` about the receiver; 0: none");
+  return number_setting("floor", 1.0, 0.0, 100.0, "side of the patch `floor` around the receiver; 0: no floor");
 }
 
 SettingSpec count_setting(int fallback, int most, std::string meaning) {
@@ -69,7 +69,7 @@ SettingSpec count_setting(int fallback, int most, std::string meaning) {
 Model karkanis_model() {
   return {.name = "karkanis",
           .summary =
-              "n random triangles of one normal, which face the receiver at the origin, before the square "
+              "n random triangles with the same normal, facing the receiver at the origin, in front of the square "
               "source (occ, source, floor)",
           .settings = {count_setting(50, kMostFaces, "triangles"), cover_setting(), floor_setting(), seed_setting()},
           .make = &make_karkanis};
@@ -92,11 +92,12 @@ Model blinds_model() {
 }
 
 Model tiles_model() {
-  return {.name = "tiles",
-          .summary = "n x n abutting squares that hide the square source from the origin (occ, source, floor)",
-          .settings = {count_setting(16, kMostTilesASide, "tiles along a side; powers of two have exact corners"),
-                       whole_setting("drop", 0, 0, kMostFaces, "leave out every so many-th; 0: none"), floor_setting()},
-          .make = &make_family<&tiles>};
+  return {
+      .name = "tiles",
+      .summary = "n x n abutting squares that hide the square source from the origin (occ, source, floor)",
+      .settings = {count_setting(16, kMostTilesASide, "tiles along a side; with a power of two, the corners are exact"),
+                   whole_setting("drop", 0, 0, kMostFaces, "leave out every k-th square; 0: none"), floor_setting()},
+      .make = &make_family<&tiles>};
 }
 
 Model mesh_model() {

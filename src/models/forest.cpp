@@ -125,17 +125,16 @@ PlainScene make_forest(const Settings& settings) {
 }  // namespace
 
 Model forest_model() {
-  return {
-      .name = "forest",
-      .summary =
-          "n triangles as the leaves of trees, between the ground and the sky, 40 x 40 m (ground, trunks, "
-          "leaves, sky)",
-      .settings = {whole_setting("n", 10'000, 1, kMostLeaves, "leaves"), whole_setting("trees", 25, 1, 10'000, "trees"),
-                   number_setting("cover", 2.0, 1e-3, 100.0,
-                                  "area of all leaves over the ground's, unless they would be longer "
-                                  "than a metre or so"),
-                   seed_setting()},
-      .make = &make_forest};
+  return {.name = "forest",
+          .summary =
+              "trees with n triangular leaves between the ground and the sky, 40 x 40 m (ground, trunks, leaves, sky)",
+          .settings =
+              {whole_setting("n", 10'000, 1, kMostLeaves, "leaves"), whole_setting("trees", 25, 1, 10'000, "trees"),
+               number_setting(
+                   "cover", 2.0, 1e-3, 100.0,
+                   "total area of the leaves / area of the ground; less if leaves would be longer than about a metre"),
+               seed_setting()},
+          .make = &make_forest};
 }
 
 }  // namespace exactff::models

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "kernel/expect.h"
+
 namespace exactff::models {
 
 class Random {
@@ -25,7 +27,10 @@ class Random {
   double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
   double between(double low, double high) { return low + (high - low) * unit(); }
   // 0 .. count - 1; requires count > 0. The bias is below count * 2^-64.
-  std::size_t below(std::size_t count) { return static_cast<std::size_t>(bits() % count); }
+  std::size_t below(std::size_t count) {
+    EXACTFF_EXPECT(count > 0);
+    return static_cast<std::size_t>(bits() % count);
+  }
   // Both ends included.
   int integer(int low, int high) { return low + static_cast<int>(below(static_cast<std::size_t>(high - low) + 1)); }
   bool one_in(std::size_t count) { return below(count) == 0; }

@@ -8,7 +8,7 @@ namespace exactff::page {
 namespace {
 
 constexpr const char* kNoGnuplot =
-    "There are no figures because gnuplot was not found; install it (Debian: gnuplot-nox) and run the command again. "
+    "There are no figures because gnuplot was not found. Install it (Debian: gnuplot-nox) and run the command again. "
     "The tables are complete.";
 
 }  // namespace

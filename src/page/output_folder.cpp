@@ -47,14 +47,15 @@ void require_replaceable(const fs::path& folder) {
       any_table = any_table || entry->path().extension() == ".csv";
       continue;
     }
-    refuse(folder, "the folder holds '" + entry->path().filename().string() + "', which is not of our making",
-           "the whole folder would be replaced", "name a new one");
+    refuse(folder, "the folder holds '" + entry->path().filename().string() + "', which exactff did not write",
+           "the whole folder would be replaced", "name a new folder");
   }
   if (error)
-    refuse(folder, "the folder cannot be read: " + error.message(), "it would be replaced", "name another one");
+    refuse(folder, "the folder cannot be read: " + error.message(), "its content would be replaced",
+           "name another folder");
   if (!empty && !any_table) {
-    refuse(folder, "the folder holds a page, but no table of an earlier comparison",
-           "the whole folder would be replaced", "name a new one");
+    refuse(folder, "the folder holds a report page, but no table that exactff wrote",
+           "the whole folder would be replaced", "name a new folder");
   }
 }
 
@@ -79,7 +80,8 @@ void require_elsewhere(const fs::path& folder, const fs::path& target) {
   const fs::path here = fs::current_path(error);
   const auto [end, ignored] = std::mismatch(target.begin(), target.end(), here.begin(), here.end());
   if (error || end != target.end()) return;
-  refuse(folder, "is the current folder or holds it", "the whole folder would be replaced", "name a folder in it");
+  refuse(folder, "is the current folder or contains it", "the whole folder would be replaced",
+         "name a folder inside it");
 }
 
 void require_free_or_ours(const fs::path& folder, const fs::path& target) {
@@ -89,11 +91,11 @@ void require_free_or_ours(const fs::path& folder, const fs::path& target) {
   const fs::file_status status = fs::symlink_status(target, ignored);
   if (!fs::exists(status)) return;
   if (fs::is_symlink(status)) {
-    refuse(folder, "is a symbolic link", "the link would be replaced, not what it leads to",
+    refuse(folder, "is a symbolic link", "the link itself would be replaced, not its target",
            "name the folder itself, or a new one");
   }
   if (!fs::is_directory(status)) {
-    refuse(folder, "is not a folder", "the results are several files", "name a new folder");
+    refuse(folder, "is not a folder", "the results are several files in one folder", "name a new folder");
   }
   require_elsewhere(folder, target);
   require_replaceable(target);

@@ -27,13 +27,13 @@ class ReceiverTable {
     for (std::string_view line; lines_.next(line);) {
       if (!text::is_csv_comment(line)) take(line);
     }
-    if (!header_read_) complain("the file has no header", "its columns are told apart by name", kHeaderAdvice);
+    if (!header_read_) complain("the file has no header", "columns are identified by their names", kHeaderAdvice);
     problems_.throw_if_any();
     return std::move(receivers_);
   }
 
  private:
-  static constexpr const char* kHeaderAdvice = "begin it with id,x,y,z,nx,ny,nz,on";
+  static constexpr const char* kHeaderAdvice = "begin the file with the line id,x,y,z,nx,ny,nz,on";
 
   void complain(std::string what, std::string why, std::string suggestion = {}) {
     problems_.add({lines_.file(), lines_.number(), std::move(what), std::move(why), std::move(suggestion)});
@@ -42,8 +42,8 @@ class ReceiverTable {
 
   void take(std::string_view line) {
     if (!text::split_csv_line(line, fields_)) {
-      complain("a quotation mark is not closed, or text follows it", "fields would be told apart wrongly",
-               "write a quotation mark within quotes twice");
+      complain("a quotation mark is not closed, or text follows it", "the fields cannot be separated",
+               "write a quotation mark inside quotes twice");
     } else if (!header_read_) {
       take_header(fields_);
     } else if (usable_) {
@@ -59,7 +59,7 @@ class ReceiverTable {
     for (std::size_t i = 0; i < names.size(); ++i) {
       const auto known = std::find(kColumns.begin(), kColumns.end(), names[i]);
       if (known == kColumns.end()) {
-        complain("unknown column " + text::in_quotes(names[i]), "a misspelt name would be silently ignored",
+        complain("unknown column " + text::in_quotes(names[i]), "a misspelt name would be ignored without any warning",
                  "the columns are id,x,y,z,nx,ny,nz,on");
         continue;
       }
@@ -79,7 +79,8 @@ class ReceiverTable {
   void take_row(const std::vector<std::string>& fields) {
     if (fields.size() != field_count_) {
       complain(std::to_string(fields.size()) + " fields where the header has " + std::to_string(field_count_),
-               "columns would be mixed up", "separate fields by commas and quote those that hold one");
+               "values would be assigned to the wrong columns",
+               "separate fields by commas, and quote fields that contain a comma");
       return;
     }
     const std::size_t before = problem_count_;
@@ -87,7 +88,7 @@ class ReceiverTable {
     receiver.point = vector_at(fields, kX);
     receiver.normal = vector_at(fields, kNx);
     if (problem_count_ == before && receiver.normal == Vec3{}) {
-      complain("the normal is zero", "it says which way the receiver faces", "give it any other length");
+      complain("the normal is zero", "it says which way the receiver faces", "give a normal of any other length");
     }
     if (column_[kOn] < field_count_ && !fields[column_[kOn]].empty()) receiver.on = face_named(fields[column_[kOn]]);
     if (column_[kId] < field_count_) receiver.id = fields[column_[kId]];
@@ -99,8 +100,8 @@ class ReceiverTable {
   void take_id(std::string& id) {
     if (id.empty()) id = std::to_string(receivers_.size() + 1);
     if (!ids_.insert(id).second) {
-      complain("the id " + text::in_quotes(id) + " is used twice", "rows of the results could not be told apart",
-               "give every receiver an id of its own, or none");
+      complain("the id " + text::in_quotes(id) + " is used twice", "rows of the results could not be distinguished",
+               "give every receiver a different id, or no id");
     }
   }
 
@@ -123,8 +124,8 @@ class ReceiverTable {
     const auto& patches = scene_.data().patch_by_name;
     const bool known = patches.contains(name) || patches.contains(name.substr(0, name.rfind(':')));
     if (problem_count_ >= kExplained && !known) {
-      complain("there is no face " + text::in_quotes(name), "it lies on no face of the scene",
-               "see the first such line");
+      complain("there is no face " + text::in_quotes(name), "the receiver must lie on a face of the scene",
+               "see the message for the first such line");
       return std::nullopt;
     }
     try {
@@ -133,7 +134,7 @@ class ReceiverTable {
       const std::vector<FaceId>& faces = scene_.patch(selection.patch).faces;
       if (faces.size() == 1) return faces.front();
       complain(text::in_quotes(name, text::kShownName) + " has " + std::to_string(faces.size()) + " faces",
-               "a receiver lies on one of them",
+               "a receiver lies on exactly one face",
                "write " + text::in_quotes(name + ":k", text::kShownName) + " for its k-th face");
     } catch (const InputError& error) {
       for (const Problem& p : error.problems()) complain(p.what, p.why, p.suggestion);

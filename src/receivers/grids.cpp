@@ -120,13 +120,15 @@ bool parse_count(std::string_view text, int& value) {
 void check_grid_size(GridSize size, std::size_t faces) {
   const std::string cells = "a grid of " + std::to_string(size.u) + "x" + std::to_string(size.v) + " cells";
   if (size.u < 1 || size.v < 1) {
-    throw InputError({.what = cells, .why = "each count is at least 1", .suggestion = "write it as 32x32"});
+    throw InputError({.what = cells,
+                      .why = "a grid has at least one column and one row",
+                      .suggestion = "write, for example, 32x32"});
   }
   const std::uint64_t per_face = static_cast<std::uint64_t>(size.u) * static_cast<std::uint64_t>(size.v);
   if (per_face * (faces > 0 ? 1 : 0) <= kMostReceivers / std::max<std::uint64_t>(faces, 1)) return;
   throw InputError({.what = cells + " on " + text::counted(faces, "face"),
-                    .why = "there may be " + std::to_string(kMostReceivers) + " cells in all",
-                    .suggestion = "use fewer, or a smaller patch"});
+                    .why = "the limit is " + std::to_string(kMostReceivers) + " cells in total",
+                    .suggestion = "use fewer cells or a smaller patch"});
 }
 
 // The text after "NAME:k/", or the whole id if it has no such prefix.

@@ -160,8 +160,8 @@ Vec3 point_in(const Scene& scene, const Triangle& triangle, RandomNumbers& numbe
 void check_sample_count(std::uint64_t count) {
   if (count >= 1 && count <= kMostReceivers) return;
   throw InputError({.what = std::to_string(count) + " samples",
-                    .why = "there may be 1 to " + std::to_string(kMostReceivers) + " receivers",
-                    .suggestion = count < 1 ? "ask for at least one" : "use fewer"});
+                    .why = "the number of receivers must be between 1 and " + std::to_string(kMostReceivers),
+                    .suggestion = count < 1 ? "give at least 1" : "use fewer samples"});
 }
 
 }  // namespace
@@ -173,8 +173,8 @@ std::vector<Receiver> sample_receivers(const Scene& scene, std::span<const FaceI
   const std::vector<Triangle> triangles = triangles_of(scene, on);
   const std::vector<Integer> sums = cumulated_shares(scene, triangles);
   if (sums.empty()) {
-    throw InputError({.what = "there is no face with area to sample",
-                      .why = "samples are shared out by area",
+    throw InputError({.what = "no face to sample has area",
+                      .why = "samples are distributed by area",
                       .suggestion = "choose another patch"});
   }
   RandomNumbers numbers(seed);

@@ -33,7 +33,7 @@ void check_corner_count(const Scene& scene, std::span<const FaceId> on) {
   }
   if (corners <= kMostReceivers) return;
   throw InputError({.what = std::to_string(corners) + " corners of faces",
-                    .why = "there may be " + std::to_string(kMostReceivers) + " receivers in all",
+                    .why = "the limit is " + std::to_string(kMostReceivers) + " receivers in total",
                     .suggestion = "use a smaller patch"});
 }
 
@@ -143,7 +143,7 @@ class FaceCentre {
 void check_face_count(std::size_t faces) {
   if (faces <= kMostReceivers) return;
   throw InputError({.what = std::to_string(faces) + " faces",
-                    .why = "there may be " + std::to_string(kMostReceivers) + " receivers in all",
+                    .why = "the limit is " + std::to_string(kMostReceivers) + " receivers in total",
                     .suggestion = "use a smaller patch"});
 }
 

@@ -116,10 +116,10 @@ class FigureMaker {
     for (std::size_t k : *line) diagonal.emplace_back(study_.settings[k].eps_b, study_.settings[k].eps_b);
     series.push_back({"error = ε_B", diagonal, 0});
     add({"eps-b", title,
-         "What was asked for against what was got, with " + std::to_string(base().rays) + ' ' +
+         "The error that was reached against the tolerance that was set, with " + std::to_string(base().rays) + ' ' +
              std::string(name_of(base().pattern)) +
-             " rays per undecided leaf. Above the dashed line the tolerance is broken. ε_B bounds the error of "
-             "each leaf of the recursion, not of their sum, and a leaf whose rays all agree is not divided at all.",
+             " rays per undecided leaf. Above the dashed line the tolerance is broken. ε_B bounds the error of each "
+             "leaf of the recursion, not of their sum, and a leaf whose rays all agree is not split at all.",
          page::line_plot({kEpsB, kError, true, true, {}}, series)});
   }
 
@@ -166,8 +166,8 @@ class FigureMaker {
     const auto line = sweep(study_.base, Parameter::kEpsB, title);
     if (!line) return;
     add({"work-eps-b", title,
-         "What a receiver costs in the mean, with " + std::to_string(base().rays) + ' ' +
-             std::string(name_of(base().pattern)) + " rays per undecided leaf.",
+         "Average work per receiver, with " + std::to_string(base().rays) + ' ' + std::string(name_of(base().pattern)) +
+             " rays per undecided leaf.",
          page::line_plot({kEpsB, "per receiver", true, true, {}}, work_series(*line, Parameter::kEpsB))});
   }
 
@@ -175,8 +175,8 @@ class FigureMaker {
     const std::string title = "Silent errors against the tolerance ε_B";
     const auto line = sweep(study_.base, Parameter::kEpsB, title);
     if (!line) return;
-    page::Series all{"RMS error of F", {}, 1}, silent{"RMS of what silent leaves add", {}, 2},
-        worst{"the worst of it", {}, 4};
+    page::Series all{"RMS error of F", {}, 1}, silent{"RMS error from silent leaves", {}, 2},
+        worst{"worst error from silent leaves", {}, 4};
     for (const std::size_t k : *line) {
       const Summary& s = study_.summaries[k];
       const double eps_b = study_.settings[k].eps_b;
@@ -185,13 +185,14 @@ class FigureMaker {
       worst.points.emplace_back(eps_b, s.silent.worst);
     }
     if (std::all_of(silent.points.begin(), silent.points.end(), [](const auto& p) { return p.second == 0.0; })) {
-      leave_out("figure: " + title, "no leaf was silently wrong");
+      leave_out("figure: " + title, "no leaf had a silent error");
       return;
     }
     const Summary& b = study_.summaries[study_.base];
     add({"silent", title,
-         "Leaves whose rays all agreed although they were partly visible, or that were the opposite of what the rays "
-         "said: how much they add to the form factor beyond what they should. At the base setting " +
+         "A leaf has a silent error if all its rays agreed, but the leaf was partly visible or the opposite of what "
+         "the rays showed. The figure shows the error that these leaves cause in the form factor. At the base "
+         "setting " +
              text::counted_of(b.silent_receivers, study_.judged.size(), "receiver") + " had such leaves.",
          page::line_plot({kEpsB, "error of the form factor", true, true, {}}, {all, silent, worst})});
   }
@@ -212,11 +213,11 @@ class FigureMaker {
     // The exact method's line has a colour of its own; no series here uses it.
     for (page::Series& one : series) one.style = one.style == 1 ? 1 : one.style + 1;
     add({"time", "Error against run time",
-         std::string("Both over the receivers that ") + (partly ? "see the source partly hidden" : "were compared") +
-             ": the median time of one call and the RMS error. Each line runs over ε_B at one number of rays. The "
-             "exact method "
-             "has no error and stands at its time, " +
-             text::duration(exact * 1e-6) + ": what lies to its right costs more and is less accurate.",
+         std::string("The median time of one call and the RMS error, over the receivers that ") +
+             (partly ? "see the source partly hidden" : "were compared") +
+             ". Each line is one number of rays with varying ε_B. The exact method has no error. The vertical line is "
+             "its time, " +
+             text::duration(exact * 1e-6) + ": settings to the right of it take longer and are less accurate.",
          page::line_plot(axes, series)});
   }
 
@@ -235,7 +236,7 @@ class FigureMaker {
     if (!slope) return {};
     return std::string("The RMS error falls as the number of rays to the power ") + (*slope < 0.0 ? "−" : "") +
            text::rounded(std::abs(*slope), 2) +
-           " (least squares); plain random sampling of a fixed set would give −0.5.";
+           " (least squares); random sampling of a fixed set of leaves would give −0.5.";
   }
 
   void add_patterns() {
@@ -253,8 +254,8 @@ class FigureMaker {
     if (series.size() < 2) return;
     add({"patterns", title,
          "RMS error at ε_B = " + text::rounded(base().eps_b) +
-             " by where in a leaf its rays end. One ray at the centre is the "
-             "cheapest choice of all.",
+             " for each sample pattern, which is where in a leaf its rays end. One ray at the centre is the cheapest "
+             "choice.",
          page::line_plot({"rays per undecided leaf", "RMS error (radiosity)", true, true, {}}, series)});
   }
 
@@ -278,12 +279,11 @@ class FigureMaker {
     add({"eps-a", title,
          "At the smallest tolerance, ε_B = " + text::rounded(start.eps_b) + ", and " +
              text::counted(static_cast<std::uint64_t>(start.rays), "ray") +
-             ", where it is the area of a leaf that ends the recursion. ε_A = 0 cannot be shown on this axis; the "
-             "table has it.",
+             ", so that the area of a leaf ends the recursion. This axis cannot show ε_A = 0; the table does.",
          page::line_plot({"smallest area ε_A (square of the scene’s unit)", kError, true, true, {}},
                          error_series(*line, Parameter::kEpsA))});
     add({"work-eps-a", "Leaves and rays against the area limit ε_A",
-         "What a receiver costs in the mean, at the same ε_B and rays as the errors beside.",
+         "Average work per receiver, at the ε_B and number of rays of the previous figure.",
          page::line_plot({"smallest area ε_A (square of the scene’s unit)", "per receiver", true, true, {}},
                          work_series(*line, Parameter::kEpsA))});
   }
@@ -361,8 +361,8 @@ class FigureMaker {
       return;
     }
     add({"map-exact", "Exact radiosity",
-         "Over " + text::html(study_.request.scene->name_of(grid.face)) +
-             ", largest colour channel. Columns run along the face’s first edge.",
+         "On " + text::html(study_.request.scene->name_of(grid.face)) +
+             ", largest colour channel. Columns run along the first edge of the face.",
          page::map_plot(map), true});
   }
 
@@ -375,7 +375,7 @@ class FigureMaker {
     const auto lit = [](const page::MapCell& cell) { return cell.value > 0.0; };
     if (std::none_of(map.cells.begin(), map.cells.end(), lit)) return;
     add({"map-approximate", "Radiosity by the base setting",
-         text::html(study::setting_name(study_, study_.base)) + ": what the ray-sampled algorithm makes of it.",
+         text::html(study::setting_name(study_, study_.base)) + ": the result of the ray-sampled algorithm.",
          page::map_plot(map), true});
   }
 
@@ -383,30 +383,30 @@ class FigureMaker {
     const auto class_of = [&](std::size_t i) { return static_cast<double>(study_.exact[i].sight); };
     page::Map map = map_of(grid, "the source is", page::MapColours::kClasses, class_of);
     map.classes = {"behind", "hidden", "partly", "visible"};
-    add({"map-sight", "What is seen of the source",
-         "Decided exactly. From dark to light: the receiver faces away; the source is hidden (umbra), partly hidden "
-         "(penumbra), wholly visible.",
+    add({"map-sight", "Visibility of the source",
+         "Classified exactly. From dark to light: the receiver is behind the source or faces away; the source is "
+         "hidden (umbra), partly hidden (penumbra), fully visible.",
          page::map_plot(map), true});
   }
 
   void add_silent_map(const Grid& grid) {
     const auto& samples = study_.samples[study_.base];
     if (study_.judged.size() < study_.exact.size()) {
-      leave_out("map of silent errors", "they were looked for at some receivers only");
+      leave_out("map of silent errors", "silent errors were computed at some receivers only");
       return;
     }
-    page::Map map = map_of(grid, "form factor, too much or too little", page::MapColours::kDiverging,
+    page::Map map = map_of(grid, "error of the form factor", page::MapColours::kDiverging,
                            [&](std::size_t i) { return samples[i].silent_error; });
     std::vector<double> magnitudes;
     for (const page::MapCell& cell : map.cells) magnitudes.push_back(std::abs(cell.value));
     map.largest = *std::max_element(magnitudes.begin(), magnitudes.end());
     if (!(map.largest > 0.0)) {
-      leave_out("map of silent errors", "no leaf of the base setting was silently wrong");
+      leave_out("map of silent errors", "no leaf of the base setting had a silent error");
       return;
     }
-    add({"map-silent", "Where silent errors are",
-         "What leaves whose rays all agreed, and were wrong, add to the form factor at the base setting. Red: too "
-         "much.",
+    add({"map-silent", "Silent errors",
+         "The error that silent leaves (all rays agreed, and were wrong) cause in the form factor at the base setting. "
+         "Red: too large.",
          page::map_plot(map), true});
   }
 
@@ -423,8 +423,8 @@ class FigureMaker {
       return;
     }
     add({"map-error", "Signed error of the base setting",
-         text::html(study::setting_name(study_, study_.base)) + ". Red: too bright; blue: too dark; beyond ±" +
-             text::rounded(map.largest) + " (the 99th percentile) the colour stays that of the end.",
+         text::html(study::setting_name(study_, study_.base)) + ". Red: too bright; blue: too dark. Errors beyond ±" +
+             text::rounded(map.largest) + " (the 99th percentile) have the colour of that value.",
          page::map_plot(map), true});
   }
 
@@ -434,11 +434,12 @@ class FigureMaker {
     const page::Map map = map_of(grid, "leaves", page::MapColours::kLogarithmic, leaves);
     const auto many = [](const page::MapCell& cell) { return cell.value > 1.0; };
     if (std::none_of(map.cells.begin(), map.cells.end(), many)) {
-      leave_out("map of the leaves", "the source is nowhere divided at the base setting");
+      leave_out("map of the leaves", "the base setting never splits the source");
       return;
     }
-    add({"map-leaves", "Where the recursion works",
-         "Leaves into which the base setting divides the source. One leaf: seen whole, hidden whole, or taken for it.",
+    add({"map-leaves", "Number of leaves",
+         "Number of leaves into which the base setting splits the source. One leaf: the source is fully visible or "
+         "fully hidden, or the algorithm assumes so.",
          page::map_plot(map), true});
   }
 

@@ -71,7 +71,7 @@ std::string seeds_sentence(const Study& study) {
   std::vector<double> rms;
   for (std::size_t k : line) rms.push_back(study.summaries[k].radiosity.rms);
   const auto [low, high] = std::minmax_element(rms.begin(), rms.end());
-  return "Over " + std::to_string(line.size()) + " seeds the RMS error of the base setting ranges from " +
+  return "Over " + std::to_string(line.size()) + " seeds, the RMS error of the base setting ranges from " +
          text::rounded(*low) + " to " + text::rounded(*high) + ".";
 }
 
@@ -80,9 +80,10 @@ std::string violations_sentence(const Study& study) {
       study.summaries.begin(), study.summaries.end(), [](const Summary& summary) { return summary.violations > 0; }));
   if (study.settings.size() < 2) return {};
   if (broken == 0)
-    return "None of the " + std::to_string(study.settings.size()) + " settings broke its own tolerance anywhere.";
+    return "None of the " + std::to_string(study.settings.size()) +
+           " settings broke its own tolerance at any receiver.";
   return std::to_string(broken) + " of the " + std::to_string(study.settings.size()) +
-         " settings broke their own tolerance at one receiver or more.";
+         " settings broke their own tolerance at one or more receivers.";
 }
 
 // Where the exact method wins: the best that sampling reaches in the same time, and what the most accurate setting
@@ -105,7 +106,7 @@ std::string crossover_sentence(const Study& study) {
   };
   std::string text;
   if (best_in_time < study.settings.size()) {
-    text = "Within the time of the exact method, sampling comes to an RMS error of " + size_of(rms(best_in_time)) +
+    text = "In the time of the exact method, sampling reaches an RMS error of " + size_of(rms(best_in_time)) +
            " at best, with " + study::setting_name(study, best_in_time) + ". ";
   } else {
     text = "No setting is as fast as the exact method. ";
@@ -126,8 +127,8 @@ std::string variant_sentence(const Study& study) {
   const double mended = study.summaries[study.base].radiosity.rms, printed = study.summaries[*found].radiosity.rms;
   if (!(printed > 1.1 * mended)) return {};
   std::string text =
-      "Followed to the letter (literal variant), the published listing has an RMS error of " + text::rounded(printed);
-  if (mended > 0.0) text += ", " + text::rounded(printed / mended, 2) + " times that of the mended one";
+      "The literal variant, which follows the published listing exactly, has an RMS error of " + text::rounded(printed);
+  if (mended > 0.0) text += ", " + text::rounded(printed / mended, 2) + " times that of the mended variant";
   return text + ".";
 }
 
@@ -142,15 +143,15 @@ std::string silent_sentence(const Study& study) {
     wrong += row.wrong_leaves;
   }
   if (sampled == 0) return {};
-  return "At the base setting all rays of " + text::counted(sampled, "leaf", "leaves") + " agreed; " +
+  return "At the base setting, all rays of " + text::counted(sampled, "leaf", "leaves") + " agreed. " +
          text::share(silent, sampled) +
-         " of these leaves were in truth partly visible, an error that nothing in the algorithm can notice" +
-         (wrong > 0 ? ", and " + std::to_string(wrong) + " were the opposite of what the rays said." : ".");
+         " of these leaves were in fact partly visible, an error that the algorithm cannot detect" +
+         (wrong > 0 ? ", and " + std::to_string(wrong) + " were the opposite of what the rays showed." : ".");
 }
 
 std::string no_work_sentence(const Study& study) {
   if (sight_count(study, Sight::kPartly) > 0) return {};
-  return "No receiver sees the source partly hidden: sampling has next to nothing to decide in this scene.";
+  return "No receiver sees the source partly hidden, so sampling has almost nothing to decide in this scene.";
 }
 
 }  // namespace

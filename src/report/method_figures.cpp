@@ -43,7 +43,7 @@ class MethodFigures {
     if (methods().cells.empty() || !(brightest_ > 0.0)) return;
     add_error_against_time();
     add_convergence(Sight::kPartly, "convergence-partly", "Convergence where the source is partly hidden");
-    add_convergence(Sight::kVisible, "convergence-visible", "Convergence where all of the source is seen");
+    add_convergence(Sight::kVisible, "convergence-visible", "Convergence where the whole source is visible");
     add_by_fraction();
     add_by_distance();
     add_profile();
@@ -80,15 +80,16 @@ class MethodFigures {
     }
     series.push_back(std::move(front));
     page::Axes axes{"time per receiver, µs", kRelative, true, true, {kFloor}, {}};
-    std::string caption = "Each line is a method with rising effort, at " +
+    std::string caption = "Each line is a method with increasing effort, at " +
                           text::counted(methods().receivers.size(), "receiver") +
-                          "; the dashed one joins those that none beats in both time and error. ";
+                          ". The dashed line joins the settings that no other setting beats in both time and error. ";
     if (const MethodCell* exact = exact_cell(study_)) {
       const std::string at = text::shortest(1e6 * exact->seconds);
       axes.marks = {1e6 * exact->seconds};
       axes.extra = {kFloor, "set arrow from " + at + ", graph 0 to " + at + ", graph 1 nohead lw 2.5 lc rgb '#8A8A8A'",
                     "set label 'exact: error 0' at " + at + ", graph 0.98 rotate by 90 right offset character -0.8,0"};
-      caption += "The exact method has no error and stands at its time, " + text::duration(exact->seconds) + ". ";
+      caption +=
+          "The exact method has no error; the vertical line is its time, " + text::duration(exact->seconds) + ". ";
     }
     add({"methods-time", "All methods: error against run time", caption + time_slopes(), page::line_plot(axes, series)},
         "no method has an error that a logarithmic axis can show");
@@ -132,14 +133,13 @@ class MethodFigures {
     std::string list;
     for (const std::string& word : words) list += "<br>" + text::html(word) + '.';
     add({id, title,
-         "Against the number of samples for a receiver (hemicube: pixels; adaptive: leaves and rays, or exact V). "
-         "Fitted "
-         "exponents, "
-         "with 95 % confidence intervals over the seeds where there are any:" +
+         "Error against the number of samples per receiver (hemicube: pixels; adaptive: leaves plus rays, or leaves "
+         "plus exact visible fractions). Fitted exponents, with 95 % confidence intervals over the seeds for "
+         "stochastic methods:" +
              list,
          page::line_plot({"samples, pixels, or leaves and rays", kRelative, true, true, {kFloor}, {}}, series)},
-        sight == Sight::kPartly ? "no receiver sees the source partly, or fewer than three settings were run"
-                                : "no receiver sees all of the source, or fewer than three settings were run");
+        sight == Sight::kPartly ? "no receiver sees the source partly hidden, or fewer than three settings were run"
+                                : "no receiver sees the whole source, or fewer than three settings were run");
   }
 
   // Every method's errors at all receivers: the fields, and the adaptive algorithm's base setting.
@@ -192,7 +192,7 @@ class MethodFigures {
   void add_by_fraction() {
     if (study_.request.scene->faces().size() > study::kMostFacesForFractions) {
       leave_out("Error by how much of the source is visible",
-                "exact visible fractions of a scene with so many faces take long");
+                "exact visible fractions take too long in a scene with so many faces");
       return;
     }
     const auto bin_of = [&](std::size_t i) -> std::optional<double> {
@@ -203,8 +203,8 @@ class MethodFigures {
       return std::clamp(10.0 * std::floor(10.0 * v) + 5.0, 5.0, 95.0);
     };
     add({"by-fraction", "Error by how much of the source is visible",
-         "Receivers in bins by the exact visible share of the source’s area: nothing, tenths, all; bins with "
-         "fewer than three receivers are left out. " +
+         "Receivers are grouped into bins by the exact visible share of the source’s area: nothing, tenths, all. Bins "
+         "with fewer than three receivers are left out. " +
              middle_settings(),
          page::line_plot(
              {"visible share of the source, %", kRelative, false, true, {"set xrange [-3:103]", kFloor}, {}},
@@ -222,10 +222,10 @@ class MethodFigures {
       return unit * std::exp2(std::floor(std::log2(d / unit)) + 0.5);
     };
     add({"by-distance", title,
-         "An edge is where the source begins to be hidden or to be seen, found by classifying a finer raster exactly; "
-         "distances below " +
+         "A shadow edge is where the source begins to be hidden or begins to be visible. The edges are found by exact "
+         "classification of a finer grid, so distances below " +
              text::rounded(unit, 2) +
-             " are not told apart. Bins are powers of two; the methods’ settings are those of the figure before.",
+             " cannot be distinguished. Bins are powers of two. The settings are those of the previous figure.",
          page::line_plot({"distance to the nearest shadow edge (scene’s unit)", kRelative, true, true, {kFloor}, {}},
                          binned(bin_of))},
         "every error is 0, or no bin has three receivers");
@@ -257,9 +257,9 @@ class MethodFigures {
                            ", graph 1 nohead back lw 1 dt 3 lc rgb '#8A8A8A'");
     }
     add({"profile", "A profile through the penumbra",
-         "The exact curve against single evaluations of other methods at their middle setting. Dotted verticals: where "
-         "the source begins to be hidden or to be seen (" +
-             text::counted(profile.kinks.size(), "place") + "), to which the curve’s kinks belong.",
+         "The exact curve, and single evaluations of other methods at their middle setting. Dotted vertical lines: "
+         "where the source begins to be hidden or begins to be visible (" +
+             text::counted(profile.kinks.size(), "place") + "). The curve has its kinks there.",
          page::line_plot(axes, series)},
         "the profile has no value");
   }

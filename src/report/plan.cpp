@@ -95,10 +95,11 @@ void Plan::add_experiments(const std::vector<std::string>& names) {
 Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, study::Journal& journal, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
   if (plan.scenes.empty() && plan.experiments.empty()) {
-    text::refuse("the report has neither a scene nor an experiment",
-                 plan.left_out.empty() ? "there is nothing to do"
-                                       : "an abridged report leaves out the scenes marked --unless-abridged",
-                 plan.left_out.empty() ? "add one" : "leave --abridged out, or mark fewer");
+    text::refuse(
+        plan.left_out.empty() ? "the report has no scene and no experiment" : "every scene of the study is left out",
+        plan.left_out.empty() ? "there is nothing to do"
+                              : "an abridged report leaves out the scenes marked --unless-abridged",
+        plan.left_out.empty() ? "add a scene or an experiment" : "remove --abridged, or mark fewer scenes");
   }
   StudyReport report;
   report.title = plan.title;

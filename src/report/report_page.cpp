@@ -40,14 +40,14 @@ class ScenePart {
 
   std::string write() {
     text_ = "<section class=\"scene\" id=\"" + anchor(scene_) + "\">\n<h2>" + text::html(scene_.title) + "</h2>\n";
-    text_ += "<p class=\"subtitle\">" + text::counted(study().exact.size(), "receiver") + " (" +
-             text::html(study().request.receivers_name) + "), source " + text::html(source_names(study())) + ", " +
-             text::counted(study().request.scene->faces().size(), "face") + ", " +
-             text::counted(study().settings.size(), "setting") + " of the ray-sampled algorithm" +
-             (study().methods.cells.empty()
-                  ? std::string()
-                  : ", " + text::counted(study().methods.ladders.size(), "method") + " against one another") +
-             ".</p>\n";
+    text_ +=
+        "<p class=\"subtitle\">" + text::counted(study().exact.size(), "receiver") + " (" +
+        text::html(study().request.receivers_name) + "), source " + text::html(source_names(study())) + ", " +
+        text::counted(study().request.scene->faces().size(), "face") + ", " +
+        text::counted(study().settings.size(), "setting") + " of the ray-sampled algorithm" +
+        (study().methods.cells.empty() ? std::string()
+                                       : ", " + text::counted(study().methods.ladders.size(), "method") + " compared") +
+        ".</p>\n";
     answer();
     tiles();
     figures();
@@ -93,7 +93,8 @@ class ScenePart {
     tile(text::duration(exact), "exact, per receiver" + where + " (median)");
     tile(text::duration(partly() ? base_time.median_partly : base_time.median),
          "sampled at the base setting, per receiver" + where + " (median)");
-    tile(text::share(base.violations, study().exact.size()), "of receivers off by more than ε_B at the base setting");
+    tile(text::share(base.violations, study().exact.size()),
+         "of receivers with an error above ε_B at the base setting");
     tile(text::rounded(base.radiosity.rms),
          "RMS error there (radiosity); the tolerance is " + text::rounded(study().settings[study().base].eps_b));
     text_ += "</div>\n";
@@ -103,7 +104,7 @@ class ScenePart {
     if (!page_.drawn.none.empty()) text_ += page::paragraph(text::html(page_.drawn.none));
     text_ += figure_group(page_.drawn, false);
     const std::string maps = figure_group(page_.drawn, true);
-    if (!maps.empty()) subheading("Over the grid of receivers");
+    if (!maps.empty()) subheading("Maps over the grid of receivers");
     text_ += maps;
   }
 
@@ -111,11 +112,12 @@ class ScenePart {
   void needs() {
     const MethodCell* exact = exact_cell(study());
     if (exact == nullptr || study().methods.cells.size() < 2) return;
-    subheading("What each method needs");
+    subheading("Time that each method needs");
     text_ += page::paragraph(
-        "How many times as long as the exact method (" + text::duration(exact->seconds) +
-        " per receiver) each method takes to be right to a wanted error: RMS over the chosen receivers and seeds, "
-        "divided by the radiosity of the brightest receiver. A dash: not reached by any setting that was run.");
+        "Time that each method needs to be accurate to a given error, as a multiple of the time of the exact method (" +
+        text::duration(exact->seconds) +
+        " per receiver). The error is the RMS error over the chosen receivers and seeds, divided by the radiosity of "
+        "the brightest receiver. A dash means that no setting that was run reached this error.");
     HtmlTable table;
     table.column("method", kText);
     for (const double wanted : kWantedErrors) table.column(power_of_ten(wanted));
@@ -161,10 +163,11 @@ class ScenePart {
     text_ += std::string("<details") + (alone_ && study().methods.cells.empty() ? " open" : "") +
              "><summary>Every setting of the ray-sampled algorithm</summary>\n";
     text_ += page::paragraph(
-        "Errors are in radiosity, approximate minus exact, over all receivers. The marked row is the base setting, "
-        "through which the sweeps run. “Off” is the share of receivers whose error exceeds ε_B; “silent” counts leaves "
-        "whose rays all agreed and were wrong in part. Times are per receiver" +
-        std::string(partly() ? ", the last column over the receivers that see the source partly hidden." : "."));
+        "Errors are in radiosity, approximate minus exact, over all receivers. The marked row is the base setting; "
+        "each sweep varies one parameter of it. “Off” is the share of receivers whose error exceeds ε_B. “Silent” "
+        "counts the leaves with a silent error: all their rays agreed, and were wrong for a part of the leaf. Times "
+        "are per receiver" +
+        std::string(partly() ? "; the last column covers only receivers that see the source partly hidden." : "."));
     HtmlTable table;
     table.columns({"#", "ε_B", "rays"});
     table.column("pattern", kText);
@@ -211,7 +214,7 @@ class ScenePart {
 
   void left_out() {
     if (page_.left_out.empty()) return;
-    subheading("Left out, and why");
+    subheading("What was left out, and why");
     text_ += left_out_list(page_.left_out);
   }
 
@@ -260,12 +263,11 @@ class PageWriter {
 
   void question() {
     text_ += page::paragraph(
-        "<strong>The question.</strong> How much light a point receives from a polygonal source depends on the part of "
-        "the source that it sees. Every code in use approximates that part: Tampieri’s adaptive algorithm (1992) by "
-        "shadow rays, dividing the source until a tolerance ε_B is met; the hemicube by pixels; others by samples. "
-        "This "
-        "page holds them against the exact values: how large is the true error, how often is the tolerance broken, and "
-        "what does each answer cost?");
+        "<strong>The question.</strong> The light that a point receives from a polygonal source depends on the part of "
+        "the source that is visible from the point. Most programs approximate this part. Tampieri’s adaptive algorithm "
+        "(1992) uses shadow rays and splits the source until a tolerance ε_B is met; the hemicube uses pixels; other "
+        "methods use sample points. This page compares them with the exact values. How large is the true error? How "
+        "often is the tolerance broken? How long does each method take?");
   }
 
   void contents() {
@@ -276,8 +278,8 @@ class PageWriter {
     if (has_overview()) link("overview", "Which method for which error");
     for (const SceneChapter& scene : report_.scenes) link(ScenePart::anchor(scene), text::html(scene.title));
     for (const page::Chapter& chapter : report_.chapters) link("chapter-" + chapter.name, text::html(chapter.title));
-    if (!report_.left_out.empty()) link("left-out", "Left out of this report, and why");
-    link("words", "What the words mean");
+    if (!report_.left_out.empty()) link("left-out", "What this report leaves out, and why");
+    link("words", "Terms and sources");
     link("reproduction", "How to reproduce this page");
     text_ += "</ul></nav>\n";
   }
@@ -303,16 +305,16 @@ class PageWriter {
 
   void left_out() {
     if (report_.left_out.empty()) return;
-    text_ += "<section id=\"left-out\">\n" + page::heading("Left out of this report, and why") +
+    text_ += "<section id=\"left-out\">\n" + page::heading("What this report leaves out, and why") +
              left_out_list(report_.left_out) + "</section>\n";
   }
 
   // One row per scene: the cheapest method for every wanted error, the exact method included.
   void recommendations() {
     text_ += page::paragraph(
-        "The cheapest method and setting for a wanted error on each scene, and how long it takes per receiver. The "
-        "error is the RMS error over the chosen receivers and seeds, divided by the radiosity of the brightest "
-        "receiver.");
+        "For each scene and error: the fastest method and setting that is accurate to this error, and its time per "
+        "receiver. The error is the RMS error over the chosen receivers and seeds, divided by the radiosity of the "
+        "brightest receiver.");
     HtmlTable table("recommend");
     table.column("scene");
     for (const double wanted : kWantedErrors) table.column(power_of_ten(wanted));
@@ -337,7 +339,8 @@ class PageWriter {
     for (const std::string& words : chapter.paragraphs) text_ += page::paragraph(text::html(words));
     if (!page.drawn.none.empty()) text_ += page::paragraph(text::html(page.drawn.none));
     text_ += figure_group(page.drawn, false) + figure_group(page.drawn, true);
-    if (!page.left_out.empty()) text_ += "<h3 class=\"part\">Left out, and why</h3>\n" + left_out_list(page.left_out);
+    if (!page.left_out.empty())
+      text_ += "<h3 class=\"part\">What was left out, and why</h3>\n" + left_out_list(page.left_out);
     text_ += "</section>\n";
   }
 
@@ -346,42 +349,61 @@ class PageWriter {
   }
 
   void definitions() {
-    text_ += "<section id=\"words\">\n" + page::heading("What the words mean") + "<dl>\n";
+    text_ += "<section id=\"words\">\n" + page::heading("Terms and sources") + "<dl>\n";
     define("Form factor F",
-           "The integral of cos θ_r cos θ_s / (π r²) over the part of the source that is visible from the "
-           "receiving point: a pure number between 0 and 1.");
+           "The share of the diffuse light leaving the receiving point that reaches the source directly: the integral "
+           "of cos θ_r cos θ_s / (π r²) over the visible part of the source, where r is the distance and θ_r and θ_s "
+           "are the angles to the normals at the receiver and on the source. It is a pure number between 0 and 1.");
     define("Exact",
-           "The visible part is found in rational arithmetic without any tolerance, its boundary is integrated with "
-           "proved "
-           "bounds, and the value is the true F rounded once to the nearest double.");
+           "The visible part is found in rational arithmetic without any tolerance. The integral over its boundary, "
+           "Eq. (4) below, is enclosed in balls: intervals, given by midpoint and radius, that are proved to contain "
+           "F. The value is certified: it is proved to be the true F, rounded once to the nearest double.");
     define("Radiosity",
-           "ρ_r B_s F: the receiver’s reflectance times the source’s radiosity times the form factor, summed over the "
-           "sources; errors are those of the colour channel where they are largest.");
+           "ρ_r B_s F, summed over the sources: the receiver’s reflectance times the source’s radiosity times the form "
+           "factor. Errors are given for the colour channel with the largest error.");
     define("ε_B, ε_A",
-           "The sampled algorithm stops dividing a part of the source when the part could contribute no more than ε_B "
-           "(a radiosity), or when its area is at most ε_A.");
-    define(
-        "Leaf",
-        "A part of the source that is not divided further. Its visible fraction is what its shadow rays say, unless a "
-        "shaft test decides it for certain.");
+           "The tolerances of Tampieri’s algorithm. It stops splitting a part of the source when the part can "
+           "contribute at most ε_B (a radiosity), or when its area is at most ε_A.");
+    define("Leaf",
+           "A part of the source that the algorithm does not split further. Shadow rays estimate its visible fraction, "
+           "unless a shaft test decides it. The shaft is the convex hull of the receiver and the part; only faces that "
+           "reach into it can be occluders, which hide a part of the source.");
     define("Silent error",
-           "A leaf whose rays all agreed, so that it was taken as seen whole or hidden whole, although it is partly "
-           "visible. Parts below a thousand-millionth of the leaf do not count.");
+           "All rays of a leaf agreed, so the algorithm assumed that it is fully visible or fully hidden, but it is "
+           "not. Differences below 10⁻⁹ of the leaf do not count.");
     define("RMS, mean, p99, worst",
-           "Over the receivers: root of the mean square; the mean with its sign; the magnitude that at least "
-           "99 % of the receivers do not exceed (nearest rank); the largest magnitude.");
+           "Statistics of the errors over the receivers: the root mean square; the mean, with its sign; the magnitude "
+           "that at least 99 % of the receivers do not exceed (nearest rank); the largest magnitude.");
     define("Mended and literal",
-           "The literal variant follows the published listing, which drops receivers at a right angle to the "
-           "source, has no horizon clip and works in single precision. The mended one does not.");
+           "Two variants of Tampieri’s algorithm. The literal variant follows the published listing: it returns 0 for "
+           "a receiver at a right angle to the source, does not clip the source at the horizon (the receiver’s plane), "
+           "and works in single precision. The mended variant corrects these three faults.");
     define("Adaptive, exact V",
-           "The same recursion, but where it would shoot rays it is given the exact visible fraction of the sub-patch: "
-           "what error remains is that of taking visibility as constant over a leaf.");
+           "The same algorithm with the exact visible fraction of a leaf instead of rays. The remaining error comes "
+           "from the assumption that visibility is constant over a leaf.");
     define("Hemicube, Nettle, Wallace, area sampling",
-           "An item buffer of the whole scene on half a cube about the receiver; the factor from centre to centre of m "
-           "× m "
-           "sub-patches, times a visible share by rays; a ray and the factor of a disc for each of m × m sub-patches; "
-           "rays "
-           "to random, stratified or low-discrepancy points of the source.");
+           "Hemicube: the scene is drawn on the pixels of half a cube around the receiver. Nettle: for each of m × m "
+           "sub-patches, the form factor from centre to centre times a visible share found by rays. Wallace: for each "
+           "of m × m sub-patches, one ray and the form factor of a disc. Area sampling: rays to random, stratified or "
+           "low-discrepancy points of the source.");
+    define("Sources",
+           "F. Tampieri, “Accurate Form-Factor Computation”, in D. Kirk (ed.), <em>Graphics Gems III</em>, Academic "
+           "Press, 1992, pp. 329–333 and 577–581. Its Eq. (4), the contour integral: F = −1/(2π) Σ<sub>i</sub> "
+           "(arccos(R<sub>i</sub> · R<sub>j</sub>) / |R<sub>i</sub> × R<sub>j</sub>|) (R<sub>i</sub> × "
+           "R<sub>j</sub> · N<sub>r</sub>), j = i + 1 modulo n. R<sub>i</sub> is the unit vector from the receiver to "
+           "vertex i of the n vertices of the visible region, in counter-clockwise order as seen from the receiver "
+           "(holes: clockwise); N<sub>r</sub> is the unit normal at the receiver. For this order the printed equation "
+           "lacks the minus sign.<br>"
+           "T. Karkanis, “Accurate Point-To-Patch Form Factors”, course project CSC2522, University of Toronto, about "
+           "1999.<br>"
+           "P. Nettle, “Radiosity In English – Form Factor Calculation”, flipcode, 3 June 1999.<br>"
+           "J. R. Wallace, K. A. Elmquist and E. A. Haines, “A Ray Tracing Algorithm for Progressive Radiosity”, "
+           "<em>Computer Graphics</em> 23(3) (SIGGRAPH ’89), pp. 315–324.<br>"
+           "E. A. Haines and J. R. Wallace, “Shaft Culling for Efficient Ray-Cast Radiosity”, Eurographics Workshop on "
+           "Rendering, 1991; in <em>Photorealistic Rendering in Computer Graphics</em>, Springer, 1994, pp. "
+           "122–138.<br>"
+           "M. F. Cohen and D. P. Greenberg, “The Hemi-Cube: A Radiosity Solution for Complex Environments”, "
+           "<em>Computer Graphics</em> 19(3) (SIGGRAPH ’85), pp. 31–40.");
     text_ += "</dl>\n</section>\n";
   }
 
@@ -394,10 +416,9 @@ class PageWriter {
     facts.emplace_back("made", page::today());
     text_ += page::facts_table(facts);
     text_ += page::paragraph(
-        "Every value is the same on every run and for any number of threads; times are not. Times were measured after "
-        "all values, with one thread at work and nothing else of this program: each is the median of three calls after "
-        "a "
-        "first one with the same arguments.");
+        "All values are the same in every run and for any number of threads. Times are not. They were measured on one "
+        "thread, after all values had been computed. Each time is the median of three calls, after a first call with "
+        "the same arguments.");
     files();
     text_ += "</section>\n";
   }
@@ -407,13 +428,15 @@ class PageWriter {
     return text::html(study.request.scene_name) + ", hash " + study.request.scene->hash() + "; " +
            (study.full_product ? "every combination of the settings of the ray-sampled algorithm"
                                : "ε_B × rays, and sweeps of the other parameters through the base setting") +
-           "; set up once: exact method " + text::duration(study.exact_setup_seconds) + ", ray structure " +
+           "; set up once per scene: exact method " + text::duration(study.exact_setup_seconds) + ", ray structure " +
            (study.ray_setup_seconds > 0.0 ? text::duration(study.ray_setup_seconds)
                                           : std::string("not built (no candidate list was long enough to need it)"));
   }
 
   void files() {
-    text_ += "<p>Beside this page lie:</p>\n<ul>\n";
+    text_ +=
+        "<p>Files in this folder:</p>\n"
+        "<ul>\n";
     const auto item = [&](const std::string& file, const std::string& holds) {
       text_ += "<li><code>" + text::html(file) + "</code>: " + text::html(holds) + "</li>\n";
     };

@@ -32,8 +32,8 @@ std::vector<std::string> split_words(std::string_view line, const std::string& f
     }
   }
   if (quote != '\0') {
-    throw InputError(Problem{file, number, "a quote is not closed", "where its word ends cannot be told",
-                             std::string("end the word with ") + quote});
+    throw InputError(Problem{file, number, "a quote is not closed", "the end of the word is unknown",
+                             std::string("close it with ") + quote});
   }
   return words;
 }
@@ -47,12 +47,12 @@ void add_line(const text::TextLine& line, const std::string& file, StudyFile& st
   std::vector<StudyLine>* list = kind == "scene" ? &study.scenes : kind == "experiment" ? &study.experiments : nullptr;
   if (list == nullptr && kind != "title") {
     throw InputError(Problem{file, line.number, "a line begins with " + text::in_quotes(kind),
-                             "it says what the line is about",
+                             "the first word says what the line is",
                              "begin it with title, scene or experiment, or with # for a comment"});
   }
   if (words.empty()) {
-    throw InputError(Problem{file, line.number, "nothing follows the word " + text::in_quotes(kind),
-                             "the line says nothing to be done", "complete it or remove it"});
+    throw InputError(Problem{file, line.number, "nothing follows " + text::in_quotes(kind), "the line is incomplete",
+                             "complete the line or remove it"});
   }
   if (list != nullptr) {
     list->push_back({line.number, std::move(words)});
@@ -78,8 +78,8 @@ StudyFile parse_study_file(const std::filesystem::path& path) {
     }
   }
   if (problems.empty() && study.scenes.empty() && study.experiments.empty()) {
-    problems.add({file, 0, "the study has neither a scene nor an experiment", "there is nothing to do",
-                  "add a line such as: scene room.obj --on floor --grid 16x16"});
+    problems.add({file, 0, "the study has no scene and no experiment", "there is nothing to do",
+                  "add a line, for example: scene room.obj --on floor --grid 16x16"});
   }
   problems.throw_if_any();
   return study;
@@ -96,8 +96,8 @@ flags::ComparisonArguments arguments_of(const StudyLine& line, const std::string
     std::vector<std::string> reversed(line.words.rbegin(), line.words.rend());
     app.parse(std::move(reversed));
   } catch (const CLI::ParseError& error) {
-    throw InputError(Problem{file, line.number, error.what(), "the line says what is done with a scene",
-                             "see exactff compare --help for the flags of a scene"});
+    throw InputError(Problem{file, line.number, error.what(), "the line has the flags of a scene",
+                             "exactff compare --help explains these flags"});
   }
   const std::string& path = args.scene.path;
   if (!path.starts_with('@')) args.scene.path = (std::filesystem::path(file).parent_path() / path).string();

@@ -173,7 +173,7 @@ const std::vector<StudyTable>& tables() {
         {"summary.csv", "one row per setting: the error statistics", write_summary, always, Holds::kValues},
         {"timings.csv", "one row per receiver that was timed and method: the time of a single call", write_timings,
          always, Holds::kTimes},
-        {"summary_timings.csv", "one row per setting: time per receiver, with the exact method's beside it",
+        {"summary_timings.csv", "one row per setting: time per receiver, and that of the exact method",
          write_summary_timings, always, Holds::kTimes},
     };
     for (const StudyTable& table : method_tables()) list.push_back(table);

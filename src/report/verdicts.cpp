@@ -34,16 +34,16 @@ std::string signed_text(double value) {
 }
 
 const char* why_shallower(Sight sight) {
-  return sight == Sight::kPartly ? "with many edges a cell of the source holds several of them until it is finer than "
-                                   "the gaps, and samples "
-                                   "in it are as good as random"
-                                 : "the first steps are too coarse for the slope that the theory expects in the limit";
+  return sight == Sight::kPartly
+             ? "a cell of the source contains several shadow edges until the cells are finer than the gaps, so that "
+               "samples are no better than random"
+             : "the first settings are too coarse to show the slope that theory predicts in the limit";
 }
 
 const char* why_steeper(Sight sight) {
   return sight == Sight::kPartly
              ? "the smooth part of the integrand, whose error falls faster, still outweighs the edges"
-             : "the sequence makes use of the integrand’s smoothness beyond one sample in each cell";
+             : "the sequence exploits the smoothness of the integrand better than one sample per cell does";
 }
 
 }  // namespace
@@ -115,14 +115,14 @@ std::string cost_sentence(const Study& study, const MethodCell& exact) {
   }
   const std::string of = " of the brightest receiver (RMS)";
   const std::string text =
-      "On this scene the exact value takes " + text::duration(exact.seconds) + " per receiver in the mean; ";
+      "On this scene the exact value takes " + text::duration(exact.seconds) + " per receiver on average; ";
   if (reached == 0.0) {
-    return text + "no setting of the others that was run is right to " + power_of_ten(kWantedErrors.front()) + of + '.';
+    return text + "no other setting that was run is accurate to " + power_of_ten(kWantedErrors.front()) + of + '.';
   }
   const MethodCell* best = cheapest(study, reached);
-  return text + "the cheapest other way to be right to " + power_of_ten(reached) + of + ", " + cell_name(study, *best) +
-         ", takes " + text::rounded(best->seconds / exact.seconds, 2) + " times as long" +
-         (missed > 0.0 ? ", and no setting of the others that was run is right to " + power_of_ten(missed) : "") + '.';
+  return text + "the fastest other method that is accurate to " + power_of_ten(reached) + of + ", " +
+         cell_name(study, *best) + ", takes " + text::rounded(best->seconds / exact.seconds, 2) + " times as long" +
+         (missed > 0.0 ? ", and no other setting that was run is accurate to " + power_of_ten(missed) : "") + '.';
 }
 
 // The error that other methods reach in the time of the exact one.
@@ -133,10 +133,10 @@ std::string overtaking_sentence(const Study& study, const MethodCell& exact) {
     if (!std::isfinite(relative_error(study, cell))) continue;
     if (within == nullptr || relative_error(study, cell) < relative_error(study, *within)) within = &cell;
   }
-  if (within == nullptr) return "No other method is as fast as the exact one at any setting.";
-  return "Side by side, exact overtakes the others at an error of " +
-         text::rounded(100.0 * relative_error(study, *within), 2) +
-         " % of the brightest receiver: the best that any setting compared there reaches within its time (" +
+  if (within == nullptr) return "No setting of another method is as fast as the exact method.";
+  return "For errors below " + text::rounded(100.0 * relative_error(study, *within), 2) +
+         " % of the brightest receiver (RMS), the exact method is the fastest: no other setting that is at least as "
+         "fast is more accurate than this (best: " +
          cell_name(study, *within) + ").";
 }
 
@@ -178,13 +178,12 @@ void add_range_sentences(const std::string& name, const RangeCount& count, std::
   };
   if (count.outside > 0) {
     sentences.push_back(of(count.outside) + (count.outside == 1 ? " lies" : " lie") + " outside [0, 1], by at most " +
-                        text::rounded(count.farthest) + ": the formula of the method, not rounding.");
+                        text::rounded(count.farthest) + "; the cause is the method’s formula, not rounding.");
   }
   if (count.not_finite > 0) {
-    sentences.push_back(of(count.not_finite) +
-                        (count.not_finite == 1 ? " is no finite number" : " are no finite numbers") +
-                        ": errors are those of the other values, and a setting with such a value counts as right to "
-                        "no wanted error.");
+    sentences.push_back(
+        of(count.not_finite) + (count.not_finite == 1 ? " is not a finite number" : " are not finite numbers") +
+        "; errors are computed from the other values, and a setting with such a value never counts as accurate.");
   }
 }
 
@@ -224,8 +223,8 @@ std::string slope_words(const Slope& slope, const Ladder& ladder, Sight sight) {
   text += std::string(", theory ") + expected->words;
   if (std::abs(off) <= std::max(kClose, 0.5 * (slope.high - slope.low))) return text;
   return text + "; " +
-         (off > 0.0 ? "shallower, since " + std::string(why_shallower(sight))
-                    : "steeper, since " + std::string(why_steeper(sight)));
+         (off > 0.0 ? "shallower, because " + std::string(why_shallower(sight))
+                    : "steeper, because " + std::string(why_steeper(sight)));
 }
 
 }  // namespace exactff::report

@@ -12,6 +12,7 @@
 
 #include <numbers>
 
+#include "kernel/expect.h"
 #include "kernel/lanes.h"
 
 namespace exactff::sampled {
@@ -79,6 +80,8 @@ SubPatch scaled(const SubPatch& s, int exponent) {
 
 EXACTFF_CLONES
 double unoccluded_form_factor(const SubPatch& s, const Vec3& unit_normal) {
+  EXACTFF_EXPECT(std::abs(unit_normal.x * unit_normal.x + unit_normal.y * unit_normal.y +
+                          unit_normal.z * unit_normal.z - 1.0) < 1e-9);
   Edges e;
   make_edges(s, unit_normal, e);
   const Four least = four(kLeastCosine);

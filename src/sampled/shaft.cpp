@@ -4,6 +4,7 @@
 #include <bit>
 #include <numeric>
 
+#include "kernel/expect.h"
 #include "kernel/lanes.h"
 
 namespace exactff::sampled {
@@ -145,6 +146,7 @@ std::optional<CandidateRange> OccluderSet::inherit(CandidateRange parent, const 
 // A ray is hidden by an occluder if no form is negative at its end.
 EXACTFF_CLONES
 unsigned OccluderSet::hidden_lanes(CandidateRange list, const RayEnds& ends, int first) const {
+  EXACTFF_EXPECT(first >= 0 && first % RayEnds::kLanes == 0);
   const auto i = static_cast<std::size_t>(first);
   const Four x0 = load(&ends.x[i]), y0 = load(&ends.y[i]), z0 = load(&ends.z[i]);
   const Four x1 = load(&ends.x[i + 4]), y1 = load(&ends.y[i + 4]), z1 = load(&ends.z[i + 4]);

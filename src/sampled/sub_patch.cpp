@@ -1,6 +1,6 @@
 #include "sampled/sub_patch.h"
 
-#include <cassert>
+#include "kernel/expect.h"
 
 namespace exactff::sampled {
 
@@ -57,7 +57,7 @@ std::array<SubPatch, 4> split_quadrilateral(const SubPatch& s) {
 }  // namespace
 
 SubPatch make_sub_patch(std::span<const Vec3> corners) {
-  assert(corners.size() == 3 || corners.size() == 4);
+  EXACTFF_EXPECT(corners.size() == 3 || corners.size() == 4);
   if (corners.size() == 3) return triangle(corners[0], corners[1], corners[2]);
   const PatchShape shape = shape_of(corners[0], corners[1], corners[2], corners[3]);
   return quadrilateral(shape, corners[0], corners[1], corners[2], corners[3]);

@@ -22,11 +22,12 @@ void require_face(const Scene& scene, FaceId face) {
 
 void require_of_scene(const Scene& scene, SceneId made_by, const char* what) {
   if (made_by == scene.id()) return;
-  refuse_argument("the " + std::string(what) + " belongs to another scene", "its ids mean something else there");
+  refuse_argument("the " + std::string(what) + " belongs to another scene", "its ids have another meaning there");
 }
 
 void require_scene(const Scene* scene) {
-  if (scene == nullptr) refuse_argument("the request has no scene", "it refers to one that its maker keeps");
+  if (scene == nullptr)
+    refuse_argument("the request has no scene", "set the pointer to a scene that lives as long as the request");
 }
 
 void require_of_scene(const Scene& scene, const Selection& selection) {

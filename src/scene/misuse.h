@@ -11,7 +11,8 @@ namespace exactff {
 // For objects that own their data by a pointer, which is null after a move. Throws std::logic_error if it is null.
 template <class Owner>
 auto& owned_by(const Owner& owner, const char* what) {
-  if (!owner) throw std::logic_error(std::string("this ") + what + " was moved from: only assign to it or destroy it");
+  if (!owner)
+    throw std::logic_error(std::string("this ") + what + " was moved from; it can only be assigned to or destroyed");
   return *owner;
 }
 

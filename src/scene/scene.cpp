@@ -84,20 +84,20 @@ Selection Scene::select(std::string_view name) const {
   const auto owner = parts ? by_name.find(parts->patch) : by_name.end();
   if (owner == by_name.end()) {
     throw InputError({data().file, 0, "there is no patch named " + text::in_quotes(name, text::kShownName),
-                      "names are matched letter by letter", choice_of_names(*this, parts ? parts->patch : name)});
+                      "names must match exactly", choice_of_names(*this, parts ? parts->patch : name)});
   }
   const std::vector<FaceId>& faces = patch(owner->second).faces;
   if (parts->number < 1 || parts->number > faces.size()) {
     throw InputError(
         {data().file, 0, "there is no face " + text::in_quotes(name, text::kShownName),
          "patch " + text::in_quotes(parts->patch, text::kShownName) + " has " + text::counted(faces.size(), "face"),
-         "faces count from 1"});
+         "faces are numbered from 1"});
   }
   const FaceId face_id = faces[parts->number - 1];
   if (face(face_id).shape == FaceShape::kSkipped) {
     throw InputError({data().file, face(face_id).line,
                       "face " + text::in_quotes(name, text::kShownName) + " cannot be used",
-                      "it was dropped as a bad face", "see the warning about it"});
+                      "it was skipped as a bad face", "see the warning about it"});
   }
   return {owner->second, face_id, this->id()};
 }
@@ -138,7 +138,7 @@ Rgb Scene::source_radiosity(const Selection& source) const {
     throw InputError({data().file, face(id).line, "the faces of source '" + name_of(source) + "' differ in Ke",
                       "'" + name_of(faces.front()) + "' has material '" + first.name + "', '" + name_of(id) +
                           "' has '" + other.name + "'; a source has one radiosity",
-                      "name one face, or give the faces groups of their own"});
+                      "name a single face, or put the faces into separate groups"});
   }
   return first.emits() ? first.radiosity : unit;
 }

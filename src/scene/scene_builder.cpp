@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <utility>
 
+#include "kernel/expect.h"
 #include "kernel/float_environment.h"
 #include "scene/misuse.h"
 #include "scene/scene_data.h"
@@ -57,7 +57,7 @@ SceneBuilder::State& SceneBuilder::state() const { return owned_by(state_, "Scen
 std::uint32_t SceneBuilder::add_vertex(const Vec3& position) {
   const kernel::StandardArithmetic arithmetic;
   auto& vertices = state().data->vertices;
-  assert(vertices.size() < std::numeric_limits<std::uint32_t>::max());
+  EXACTFF_EXPECT(vertices.size() < std::numeric_limits<std::uint32_t>::max());
   vertices.push_back({position.x + 0.0, position.y + 0.0, position.z + 0.0});  // turns -0 into +0
   return static_cast<std::uint32_t>(vertices.size() - 1);
 }
@@ -82,10 +82,10 @@ void SceneBuilder::add_face(PatchId patch, MaterialId material, std::vector<std:
                             std::size_t line) {
   Scene::Data& data = *state().data;
   if (index_of(patch) >= data.patches.size()) {
-    refuse_argument("there is no patch " + std::to_string(index_of(patch)), "SceneBuilder::patch() makes them");
+    refuse_argument("there is no patch " + std::to_string(index_of(patch)), "SceneBuilder::patch() creates patches");
   }
   if (index_of(material) >= data.materials.size()) {
-    refuse_argument("there is no material " + std::to_string(index_of(material)), "add_material() makes them");
+    refuse_argument("there is no material " + std::to_string(index_of(material)), "add_material() creates materials");
   }
   std::vector<FaceId>& siblings = data.patches[index_of(patch)].faces;
   siblings.push_back(FaceId(static_cast<std::uint32_t>(data.faces.size())));
@@ -124,7 +124,7 @@ void SceneBuilder::State::check_vertices() {
     const Vec3& v = data->vertices[i];
     if (std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) continue;
     problems.add({data->file, 0, "vertex " + std::to_string(i + 1) + " is not finite",
-                  "a coordinate stands for an exact number", "give finite coordinates"});
+                  "a coordinate is one exact number", "give finite coordinates"});
   }
 }
 
@@ -137,7 +137,7 @@ void SceneBuilder::State::check_materials() {
     problems.add(
         {data->file, 0,
          "material " + text::in_quotes(material.name, text::kShownName) + " has a negative or infinite Kd or Ke",
-         "reflectances and radiosities are not negative", "correct it"});
+         "reflectances and radiosities are finite and not negative", "correct it"});
   }
 }
 
@@ -152,7 +152,7 @@ void SceneBuilder::State::check_names() {
     problems.add({data->file, data->faces[index_of(patch.faces.front())].line,
                   "the name " + text::in_quotes(patch.name) + " of " + std::to_string(patch.name.size()) +
                       " characters belongs to " + std::to_string(patch.faces.size()) + " faces",
-                  "each of them is called by it", "choose a name of at most 255 characters"});
+                  "the name of every face contains it", "choose a name of at most 255 characters"});
   }
 }
 
@@ -186,10 +186,10 @@ void SceneBuilder::State::cut(FaceId id) {
 void SceneBuilder::State::refuse(const Face& face, const FaceFault& fault) {
   Problem problem{data->file, face.line, quoted(face) + " " + fault.what, fault.why, fault.suggestion};
   if (options.bad_faces == BadFaces::kReject) {
-    problem.suggestion += ", or leave bad faces out with --skip-bad-faces";
+    problem.suggestion += ", or skip bad faces with --skip-bad-faces";
     problems.add(std::move(problem));
   } else {
-    problem.suggestion = "it is left out";
+    problem.suggestion = "the face is skipped";
     warnings.add(std::move(problem));
   }
 }
@@ -220,11 +220,11 @@ std::string two_digits(double value) {
 void SceneBuilder::State::warn_out_of_plane(const Face& face) {
   constexpr double kWorthSaying = 1e-6;
   if (face.out_of_plane <= kWorthSaying) return;
-  warnings.add(
-      {data->file, face.line,
-       quoted(face) + " is out of plane by " + two_digits(face.out_of_plane) + " of its diameter",
-       "it was cut into " + std::to_string(face.piece_count) + " triangles; another cut would be another surface",
-       "give triangles where that matters"});
+  warnings.add({data->file, face.line,
+                quoted(face) + " is out of plane by " + two_digits(face.out_of_plane) + " of its diameter",
+                "it was cut into " + std::to_string(face.piece_count) +
+                    " triangles; a different cut would give a different surface",
+                "use triangles if this matters"});
 }
 
 void SceneBuilder::State::warn_zero_area() {
@@ -249,7 +249,7 @@ void SceneBuilder::State::warn_hidden_names() {
     const Face& face = data->faces[index_of(faces[hidden->number - 1])];
     if (rival.name != hidden->patch + ":" + std::to_string(face.number)) continue;  // such as NAME:01
     warnings.add({data->file, face.line, quoted(face) + " cannot be named",
-                  "a patch has that very name, and a patch's name wins", "rename the patch"});
+                  "a patch has the same name, and patch names take precedence", "rename the patch"});
   }
 }
 

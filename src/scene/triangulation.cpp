@@ -141,19 +141,21 @@ void FaceCutter::without_newell(const ExactVec3& normal) {
   if (region.fault == RegionFault::kCrossing) return report(region);
   face_.shape = FaceShape::kZeroArea;
   if (region.encloses_something) {
-    face_.fault = {"encloses area but its Newell vector is zero", "it has no front", "split it into simple polygons"};
+    face_.fault = {"encloses area, but its Newell vector (area times normal) is zero", "it has no front side",
+                   "split it into simple polygons"};
   }
 }
 
 void FaceCutter::cut_other() {
   face_.shape = FaceShape::kTriangulated;
   if (points_.ring_count() > 1) {
-    face_.fault = {"has holes and its vertices are not exactly in one plane", "the holes would have no place",
-                   "bridge them to the outer ring, or give triangles"};
+    face_.fault = {"has holes, but its vertices are not exactly in one plane",
+                   "the position of the holes is not defined", "connect the holes to the outer ring, or use triangles"};
     return;
   }
   if (is_zero(newell_)) {
-    face_.fault = {"has area but its Newell vector is zero", "it has no front", "split it into simple polygons"};
+    face_.fault = {"has area, but its Newell vector (area times normal) is zero", "it has no front side",
+                   "split it into simple polygons"};
     return;
   }
   face_.out_of_plane = out_of_plane(points_, newell_);
@@ -163,13 +165,15 @@ void FaceCutter::cut_other() {
     return report_crossing(*crossing);
   }
   if (!triangles) {
-    face_.fault = {"is not planar and, seen along its Newell vector, not a simple polygon",
-                   "it cannot be cut into triangles", "split it into simple polygons"};
+    face_.fault = {
+        "is not planar, and its projection along its Newell vector (area times normal) is not a simple polygon",
+        "it cannot be cut into triangles", "split it into simple polygons"};
     return;
   }
   if (leaves_gap(*triangles)) {
-    face_.fault = {"is not planar and has corners that coincide only as seen along its Newell vector",
-                   "cut along that vector it would have a gap", "split it into simple polygons"};
+    face_.fault = {
+        "is not planar, and some of its corners coincide when projected along its Newell vector (area times normal)",
+        "triangulated in this projection, it would have a gap", "split it into simple polygons"};
     return;
   }
   for (const TriangleIndices& triangle : *triangles) add_part(plane, triangle);
@@ -218,7 +222,7 @@ void FaceCutter::report_crossing(std::pair<EdgeIndex, EdgeIndex> edges) {
   const bool holes = edges.second >= points_.ring_start[1];
   face_.fault = {"crosses itself: edge " + edge_text(edges.first) + " and edge " + edge_text(edges.second) +
                      " (vertex numbers) intersect",
-                 holes ? "a hole must lie inside its face" : "its inside is ambiguous",
+                 holes ? "a hole must lie inside its face" : "its interior is ambiguous",
                  "split it into simple polygons"};
 }
 
@@ -229,12 +233,12 @@ void FaceCutter::report(const PlanarRegion& region) {
     case RegionFault::kCrossing:
       return report_crossing(region.edges);
     case RegionFault::kWinding:
-      face_.fault = {"winds around a part of its inside twice, or the other way round", "its front is ambiguous",
-                     "split it into simple polygons"};
+      face_.fault = {"winds around a part of its interior twice, or in the opposite direction",
+                     "its front side is ambiguous", "split it into simple polygons"};
       return;
     case RegionFault::kHoleOutside:
       face_.fault = {"has a hole that reaches outside its outer ring", "a hole must lie inside its face",
-                     "make it a face of its own, or move it"};
+                     "make it a separate face, or move it"};
       return;
   }
 }

@@ -68,52 +68,53 @@ Case horizon_tilted(double s) {
 std::vector<Family> distance_families() {
   return {
       {{"approach-interior", "Receiver approaching the inside of the source", "1 / distance",
-        "A square of side 2 above a receiver that comes ever closer to it, away from its centre. F tends to 1: every "
-        "edge subtends almost a half turn."},
+        "The receiver approaches a square of side 2 from below, away from its centre. F tends to 1: every edge "
+        "subtends almost 180°."},
        decades(300),
        approach_interior},
       {{"approach-edge", "Receiver approaching an edge of the source", "1 / distance",
-        "The receiver comes closer to a point of an edge, right below it. F tends to 1/2, and the edge comes to be "
-        "seen under a half turn, where a x b vanishes against a . b."},
+        "The receiver approaches a point of an edge from right below. F tends to 1/2. The edge subtends almost 180°, "
+        "where a × b vanishes compared with a · b."},
        decades(300),
        approach_edge},
       {{"approach-vertex", "Receiver approaching a vertex of the source", "1 / distance",
-        "The receiver comes closer to a corner, right below it. F tends to 1/4; two edges end at the receiver itself."},
+        "The receiver approaches a corner from right below. F tends to 1/4. In the limit, two edges end at the "
+        "receiver."},
        decades(300),
        approach_vertex},
       {{"foot-of-wall", "Receiver at the foot of a wall", "1 / distance",
-        "A wall at right angles to the receiver's surface, standing on it, comes closer. F tends to 1/2. A listing "
-        "that drops perpendicular pairs returns 0."},
+        "The receiver approaches a wall that stands on its surface at a right angle. F tends to 1/2. A program that "
+        "drops perpendicular pairs returns 0."},
        decades(300),
        foot_of_wall},
       {{"shrink", "Source shrinking", "1 / side",
-        "A square off the receiver's axis, at (100, 37, 50), shrinks. The terms of its edges fall with its side and F "
-        "with the square, to 10⁻²⁸⁵: all but a vanishing share of them cancels."},
+        "A square off the receiver's axis, at (100, 37, 50), shrinks. The terms of its edges fall with its side, but F "
+        "falls with the square of the side, to 10⁻²⁸⁵. The terms cancel almost completely."},
        decades(140),
        shrink},
       {{"recede", "Source receding", "distance / side, over 118",
-        "A unit square off the receiver's axis recedes. The receiver's coordinates swallow those of the square: "
-        "what is left of a program's differences is zero or noise."},
+        "A unit square off the receiver's axis recedes. Differences of its coordinates are lost in rounding: a program "
+        "computes zero or noise."},
        decades(140),
        recede},
       {{"sliver", "Sliver as source", "aspect ratio, over 1.4",
-        "A rectangle 1.4 long that gets thinner. Two long edges coincide ever more closely and their terms cancel."},
+        "A rectangle of length 1.4 becomes thinner. Its two long edges almost coincide and their terms cancel."},
        decades(300),
        sliver},
       {{"horizon-grazed", "Source hardly above the horizon", "1 / height above the horizon",
-        "A wall across the receiver's horizon of which less and less rises above it. F falls with the square of "
-        "that height. Without a clip by the horizon Eq. (4) returns the part above less the part below; the printed "
-        "listing drops the pair and returns 0."},
+        "A wall crosses the receiver's horizon (the plane of its surface), and less and less of the wall rises above "
+        "it. F falls with the square of that height. Without clipping at the horizon, Eq. (4) returns the part above "
+        "minus the part below; the printed listing drops the pair and returns 0."},
        decades(150),
        horizon_grazed},
       {{"horizon-ulp", "Source above the horizon by an ulp", "1 / height above the horizon",
-        "The same with the receiver at height 1: the last wall rises above its horizon by one unit in the last place "
+        "The same with the receiver at height 1. The last wall rises above the horizon by one unit in the last place "
         "of its coordinates."},
        octaves(52),
        horizon_ulp},
       {{"horizon-tilted", "Horizon leaving a strip of the source", "1 / width left",
-        "The receiver turns away until its horizon leaves a strip of the square above it, down to a width of 2⁻⁵². "
-        "Both the strip and the cosine at the receiver vanish."},
+        "The receiver turns away until only a strip of the square is above its horizon, down to a width of 2⁻⁵². Both "
+        "the strip and the cosine at the receiver vanish."},
        octaves(52),
        horizon_tilted},
   };

@@ -86,11 +86,10 @@ page::Figure error_figure(const FamilyResult& result) {
   a.extra.emplace_back("unset mytics");
   std::vector<Series> series;
   for (Method method : kMethods) series.push_back(series_of(result, method, drawn_error));
-  return {
-      std::string(result.family.name) + ".error", "Error",
-      "Errors below 10<sup>−18</sup> and above 10<sup>3</sup> are drawn there. A line ends where its method returns no "
-      "number or refuses the scene.",
-      line_plot(a, series)};
+  return {std::string(result.family.name) + ".error", "Error",
+          "Errors below 10<sup>−18</sup> and above 10<sup>3</sup> are drawn at these values. A line ends where its "
+          "method returns no number or refuses the scene.",
+          line_plot(a, series)};
 }
 
 page::Figure precision_figure(const FamilyResult& result) {

@@ -42,14 +42,14 @@ std::string exact_sentence(const Report& report) {
   const Tally t = tally(report);
   std::string text;
   if (t.independent > 0) {
-    text = "The exact value is what an independent closed form or symmetry rounds to in " +
+    text = "The exact value agrees with an independent closed form or symmetry, rounded to a double, in " +
            counted_of(t.agreeing, t.independent, "scene");
     if (std::isfinite(t.smallest)) text += ", down to a form factor of " + text::rounded(t.smallest, 2);
     text += t.certified > 0 ? "; " : ". ";
   }
   if (t.certified > 0) {
     text += (text.empty() ? "In " : "in ") + counted(t.certified, "scene") +
-            " there is none, and its own enclosure at higher precision is the judge. ";
+            " no independent value exists; there it is compared with its own enclosure at higher precision. ";
   }
   if (t.most_bits > 0) text += "The proof needed at most " + std::to_string(t.most_bits) + " bits.";
   return text;
@@ -76,13 +76,13 @@ std::size_t refusals(const Report& report, Method method) {
 
 std::string method_sentence(const Report& report, Method method) {
   const std::size_t whole = report.families.size();
-  std::string text = std::string(name_of(method)) + " keeps its error below 10⁻³ to the end of " +
+  std::string text = std::string(name_of(method)) + " keeps its error below 10⁻³ to the end in " +
                      std::to_string(families_kept(report, method, kThresholds[0])) + " of " +
-                     counted(whole, "family", "families") + ", below 10⁻⁶ of " +
-                     std::to_string(families_kept(report, method, kThresholds[1])) + " and below 10⁻¹² of " +
+                     counted(whole, "family", "families") + ", below 10⁻⁶ in " +
+                     std::to_string(families_kept(report, method, kThresholds[1])) + " and below 10⁻¹² in " +
                      std::to_string(families_kept(report, method, kThresholds[2]));
   if (const std::size_t refused = refusals(report, method); refused > 0) {
-    text += "; it refuses " + counted(refused, "scene") + " whose corners single precision would merge";
+    text += "; it refuses " + counted(refused, "scene") + " because single precision would merge corners";
   }
   return text + '.';
 }

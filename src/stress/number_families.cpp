@@ -66,25 +66,26 @@ Case short_normal(double s) {
 std::vector<Family> number_families() {
   return {
       {{"tiny", "Everything tiny", "1 / size",
-        "All coordinates are scaled down. Squares of lengths underflow from 10⁻¹⁵⁴ on, "
-        "|a × b|², a fourth power, already from about 10⁻⁸⁰ on."},
+        "All coordinates are scaled down. Squares of lengths underflow below 10⁻¹⁵⁴; |a × b|², a fourth power, "
+        "underflows below about 10⁻⁸⁰."},
        decades(300),
        tiny},
       {{"huge", "Everything huge", "size",
-        "All coordinates are scaled up. Squares of lengths overflow from 10¹⁵⁴ on, |a × b|² already from 10⁷⁷ on."},
+        "All coordinates are scaled up. Squares of lengths overflow above 10¹⁵⁴, |a × b|² above 10⁷⁷."},
        decades(300),
        huge},
       {{"mixed-scales", "Tiny and huge at once", "size of the source, and 1 / size of the occluder",
-        "The source is scaled up and the plate before it down: up to 10³⁰⁰ and 10⁻³⁰⁰ in one scene."},
+        "The source is scaled up and the plate in front of it is scaled down: up to 10³⁰⁰ and 10⁻³⁰⁰ in one scene."},
        decades(300),
        mixed},
       {{"moved-away", "Everything far from the origin", "distance from the origin",
-        "The scene is moved by a power of two; its coordinates remain exact, and F the same to the last bit. Eq. (4) "
-        "never notices; shadow rays fall otherwise."},
+        "The scene is moved by a power of two. Its coordinates remain exact, and F stays the same to the last bit. Eq. "
+        "(4) is not affected; shadow rays hit other points."},
        octaves(46, 2),
        moved_away},
       {{"short-normal", "Denormal normal", "1 / length, over 5·10²¹",
-        "The receiver's normal, not a unit vector, gets shorter, down to denormal numbers; its direction stays."},
+        "The receiver's normal is not a unit vector and becomes shorter, down to denormal numbers. Its direction stays "
+        "the same."},
        octaves(1000, 40),
        short_normal},
   };

@@ -108,49 +108,49 @@ Case pinwheel(double s) {
 std::vector<Family> occluder_families() {
   return {
       {{"crack", "Crack between two occluders", "1 / width",
-        "Two plates hide all but a crack. F is proportional to its width, down to 10⁻³⁰⁰: soon no shadow ray finds it, "
-        "and after rounding its two sides coincide."},
+        "Two plates hide everything except a crack. F is proportional to its width, down to 10⁻³⁰⁰. Soon no shadow ray "
+        "hits it, and after rounding its two sides coincide."},
        decades(300),
        crack},
       {{"crack-ulp", "Crack of an ulp", "1 / width",
-        "The same crack at x = 1/4, where the narrowest that doubles can express is 2⁻⁵⁴ wide."},
+        "The same crack at x = 1/4, where the narrowest crack that doubles can represent is 2⁻⁵⁴ wide."},
        octaves(54, 2),
        crack_ulp},
       {{"overlap", "Overlap of two occluders", "1 / width",
-        "The same two plates overlap, down to one unit in the last place. F is exactly 0; errors are relative to the "
+        "The two plates overlap, down to one unit in the last place. F is exactly 0; errors are relative to the "
         "unoccluded form factor."},
        octaves(54, 2),
        overlap},
       {{"near-receiver", "Occluder approaching the receiver", "1 / distance, over 2",
-        "A plate shrinks into the receiver, its shadow staying the same: coordinates of 10⁻³⁰⁰ decide over those of "
-        "order 1."},
+        "A plate approaches the receiver and shrinks, so that its shadow stays the same. Coordinates of 10⁻³⁰⁰ are as "
+        "important as those of order 1."},
        decades(300),
        near_receiver},
       {{"near-source", "Occluder approaching the source", "1 / distance, over 2",
-        "A plate all but lies upon the source; one that does would hide nothing."},
+        "A plate lies almost on the source. A plate exactly on the source hides nothing."},
        decades(300),
        near_source},
       {{"edge-on", "Occluder seen edge on", "1 / distance of its plane from the receiver, over 4",
-        "Two plates leave a crack in which a third one stands, its plane all but holding the receiver. The crack and "
-        "the third plate's shadow are as thin as that distance."},
+        "A third plate stands in the crack between two plates. Its plane almost contains the receiver. The crack and "
+        "the shadow of the third plate are as thin as the distance of the receiver from that plane."},
        decades(300),
        edge_on},
       {{"wall-beside", "Wall beside the receiver", "1 / distance of its plane from the receiver, over 4",
-        "A wall rises from the receiver's own plane: in the limit it hides half of what there is to see, and nothing "
-        "once it stands in the receiver."},
+        "A wall rises from the receiver's own plane. In the limit it hides half of the source; if its plane contains "
+        "the receiver, it hides nothing."},
        decades(300),
        wall_beside},
       {{"contact-with-source", "Occluder nearly in the plane of the source", "1 / slope, over 2",
-        "A plate touches the source along a line and rises from it at a vanishing slope. In the source's plane "
-        "it would hide nothing."},
+        "A plate touches the source along a line and rises from it at a vanishing slope. In the source's plane, it "
+        "would hide nothing."},
        decades(300),
        contact_with_source},
       {{"crossing", "Occluders that cross", "1 / slope, over 2",
-        "Two plates cross one another at a vanishing angle; their shadows overlap."},
+        "Two plates cross each other at a vanishing angle. Their shadows overlap."},
        decades(300),
        crossing},
       {{"pinwheel", "Occluders that overlap in a cycle", "1 / slope, over 2",
-        "Four bars, each lying over the next: no order from front to back exists.", Evidence::kCertified},
+        "Four bars, each in front of the next, so that no order from front to back exists.", Evidence::kCertified},
        decades(300),
        pinwheel},
   };

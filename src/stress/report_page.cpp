@@ -45,9 +45,11 @@ class PageWriter {
              counted(report_.families.size(), "family", "families") + " of stiff scenes, " + counted(scenes, "scene") +
              ", " + std::to_string(kMethodCount) + " methods.</p>\n";
     text_ += paragraph(
-        "<strong>The question.</strong> A form factor from a point to a polygon, with occluders in between, is easy to "
-        "compute as long as nothing is very near, very far, very thin or very nearly aligned. Each family below is a "
-        "scene that one number, its stiffness, drives from benign to extreme. How far does each method follow?");
+        "<strong>The question.</strong> The form factor from a point to a polygon is the share of the diffuse light "
+        "leaving the point that reaches the polygon directly; occluders between them hide a part of it. It is easy to "
+        "compute unless something is very near, very far, very thin or almost aligned. Each family below is a scene "
+        "with one number, its stiffness, that makes it more and more extreme. Up to which stiffness is each method "
+        "usable?");
     text_ += "<p><strong>The answer.</strong></p>\n<ul class=\"answer\">\n";
     for (const std::string& sentence : headlines(report_)) text_ += "<li>" + page::prose(html(sentence)) + "</li>\n";
     text_ += "</ul>\n";
@@ -55,19 +57,19 @@ class PageWriter {
   }
 
   void summary() {
-    text_ += heading("The largest stiffness with an error below 10⁻³, 10⁻⁶ and 10⁻¹²");
+    text_ += heading("Largest stiffness with an error below 10⁻³, 10⁻⁶ and 10⁻¹²");
     text_ += paragraph(
-        "From the benign end on, without a gap: three numbers a cell, one a threshold. “all”: to the end of the "
-        "family; "
-        "“–”: not even at its benign end; “refused”: there the method refuses the scene. Stiffnesses are tried in "
-        "steps, "
-        "beyond 10<sup>16</sup> in every twentieth decade; a cell names the last one that was good.");
+        "Each cell has three numbers, one per threshold: the stiffness up to which the error stays below the "
+        "threshold, starting at the least extreme scene. “all”: to the end of the family; “–”: not even at the start; "
+        "“refused”: the method refuses the scene. Stiffness grows in steps, above 10<sup>16</sup> in steps of twenty "
+        "decades; a cell shows the last step that passed.");
     text_ += paragraph(
-        "Eq. (4) in double is handed the exact visible region: where finding it is the difficulty, it has none. "
-        "Tampieri’s algorithm was asked for an absolute error of " +
+        "Eq. (4) in double gets the exact visible region, so difficulties in finding the region do not affect it. "
+        "Tampieri’s algorithm runs with a tolerance for the absolute error, " +
         text::rounded(kToleranceShare) +
-        " of the unoccluded form factor, not for 10⁻⁶ or 10⁻¹², nor for an error relative to F; around 10⁻³ its cells "
-        "depend on where its rays happen to fall. Families end before F leaves the range of normal doubles.");
+        " of the unoccluded form factor. It is not meant to reach 10⁻⁶ or 10⁻¹², or an error relative to F. Around "
+        "10⁻³ its cells depend on where its random rays hit. Families end before F leaves the range of normal "
+        "doubles.");
     HtmlTable table;
     table.column("family", kText);
     table.column("ends at");
@@ -87,12 +89,11 @@ class PageWriter {
   void how_to_read() {
     text_ += heading("How to read the figures");
     text_ += paragraph(
-        "From left to right a scene grows stiffer; beyond 10<sup>16</sup> the axis is compressed eighteen-fold. Errors "
-        "below 10<sup>−18</sup> and above 10<sup>3</sup> are drawn at these values. A line ends where its method "
-        "returns no number or refuses the scene. Bits are those at which the contour integral was last "
-        "evaluated, 0 where none "
-        "was needed; where they never change there is no figure of them. Times are medians of single calls; Eq. (4) in "
-        "double is handed the visible region, and finding it is not in its time.");
+        "Stiffness grows from left to right; above 10<sup>16</sup> the axis is compressed by a factor of eighteen. "
+        "Errors below 10<sup>−18</sup> and above 10<sup>3</sup> are drawn at these values. A line ends where its "
+        "method returns no number or refuses the scene. “Bits” is the precision of the last evaluation of the contour "
+        "integral, or 0 if none was needed; there is no figure if it never changes. Times are medians of single calls. "
+        "The time of Eq. (4) in double does not include finding the visible region.");
   }
 
   void section(const FamilyResult& result) {
@@ -102,7 +103,7 @@ class PageWriter {
                        ". Truth: " + html(to_string(family.evidence)) + ".</em>");
     figures(family);
     if (const int bits = constant_bits(result); bits > 0) {
-      text_ += paragraph("The proof needed " + std::to_string(bits) + " bits throughout.");
+      text_ += paragraph("The proof needed " + std::to_string(bits) + " bits in every scene.");
     }
     text_ += "<details><summary>Every value</summary>\n" + values_table(result) + "\n</details>\n";
   }
@@ -145,26 +146,28 @@ class PageWriter {
 
   void definitions() {
     text_ += heading("Definitions") + "<dl>\n";
-    define(
-        "Relative error",
-        "|value − F| / F; where F is 0, |value| over the unoccluded form factor. F comes from the catalogue’s closed "
-        "forms for rectangles, evaluated in balls at a precision that grows until they are good to 36 digits, with "
-        "coordinates taken as the exact rationals that they are; or from a symmetry; or, where neither exists, from "
-        "the exact method’s own enclosure.");
-    define(
-        "Exact",
-        "The correctly rounded form factor. Its error is that of one rounding, at most 1.1·10⁻¹⁶ of a normal number.");
-    define(
-        "Eq. (4) in double",
-        "Tampieri’s contour formula over the exact visible region, whose corners were rounded to doubles. Three "
-        "ways to the angle between two corners a and b: by acos of unit vectors; by atan2(|a × b|, a · b); and with a "
-        "× b formed as a × (b − a). The visible region is given to them; a program must find it, too.");
-    define(
-        "Tampieri’s algorithm",
-        "The ray-sampled adaptive algorithm, by jittered shadow rays; mended, and as printed: no horizon clip, single "
-        "precision, nothing for perpendicular pairs. It refuses scenes whose corners single precision, in which its "
-        "shadow rays are "
-        "traced, would merge.");
+    define("Relative error",
+           "|value − F| / F; if F is 0, |value| / unoccluded form factor. F comes from closed forms for rectangles, "
+           "from a symmetry, or, where neither exists, from the exact method’s own enclosure. The closed forms are "
+           "evaluated in balls (intervals that are proved to contain the result), with the exact values of the "
+           "coordinates and a precision that grows until 36 digits are certain.");
+    define("Exact",
+           "The exact form factor, proved to be correctly rounded. Its only error is this one rounding, at most "
+           "1.1·10⁻¹⁶ relative for normal numbers.");
+    define("Eq. (4) in double",
+           "F = −1/(2π) Σ<sub>i</sub> (arccos(R<sub>i</sub> · R<sub>j</sub>) / |R<sub>i</sub> × R<sub>j</sub>|) "
+           "(R<sub>i</sub> × R<sub>j</sub> · N<sub>r</sub>), j = i + 1 modulo n: Tampieri’s contour formula over the "
+           "exact visible region, whose n corners are rounded to doubles. R<sub>i</sub> is the unit vector from the "
+           "receiver to corner i, N<sub>r</sub> the receiver’s unit normal. Source: F. Tampieri, “Accurate Form-Factor "
+           "Computation”, in D. Kirk (ed.), <em>Graphics Gems III</em>, Academic Press, 1992, pp. 329–333 and 577–581; "
+           "the printed equation lacks the minus sign. There are three ways to compute the angle between two corners a "
+           "and b: acos of unit vectors; atan2(|a × b|, a · b); and the same with a × b computed as a × (b − a). A "
+           "real program would also have to find the visible region.");
+    define("Tampieri’s algorithm",
+           "The ray-sampled adaptive algorithm of the same source, with jittered shadow rays, in two variants. As "
+           "printed: it does not clip at the horizon, works in single precision, and returns 0 for perpendicular "
+           "pairs. Mended: these faults are corrected. Shadow rays are traced in single precision, so both variants "
+           "refuse scenes whose corners single precision would merge.");
     text_ += "</dl>\n";
   }
 
@@ -179,9 +182,9 @@ class PageWriter {
          {"threads", std::to_string(report_.request.threads)},
          {"made", page::today()}});
     text_ += paragraph(
-        "Exact values are the same everywhere, all other values on the same machine and for any number of threads; "
-        "times are not, and are least disturbed with --threads 1.");
-    text_ += "<p>Beside this page lie:</p>\n<ul>\n";
+        "Exact values are the same on every machine. All other values are the same on one machine for any number of "
+        "threads. Times vary; --threads 1 gives the most reliable ones.");
+    text_ += "<p>Files in this folder:</p>\n<ul>\n";
     for (const StressTable& table : tables()) {
       text_ += "<li><code>" + std::string(table.file) + "</code>: " + html(table.holds) + "</li>\n";
     }

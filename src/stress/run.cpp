@@ -157,7 +157,7 @@ class Trial {
   std::vector<std::string> names;
   for (const Family& family : all_families()) names.emplace_back(family.info.name);
   text::refuse("there is no family '" + name + "'", {},
-               "exactff stress --list tells them all: " + text::enumerate(names));
+               "exactff stress --list prints them all: " + text::enumerate(names));
 }
 
 const Family& family_named(const std::string& name) {

@@ -102,8 +102,8 @@ void write_timings(const Report& report, std::ostream& out) {
 
 const std::array<StressTable, 3>& tables() {
   static const std::array<StressTable, 3> list = {
-      {{"summary.csv", "up to which stiffness each method stays within each error", write_summary},
-       {"values.csv", "every value and error, the truth to 30 digits, bits needed", write_values},
+      {{"summary.csv", "the stiffness up to which each method stays below each error", write_summary},
+       {"values.csv", "every value and error, the truth to 30 digits, the bits needed", write_values},
        {"timings.csv", "times of single calls", write_timings}}};
   return list;
 }

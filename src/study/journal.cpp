@@ -59,11 +59,11 @@ struct Place {
   std::uint64_t bytes = 0;
 };
 
-const work::FailureAdvice kAdvice{"finished work is kept there, so that an interrupted run can go on",
-                                  "make room, or name a folder elsewhere"};
+const work::FailureAdvice kAdvice{"finished work is kept there, so that an interrupted run can continue",
+                                  "free some space, or name a folder on another disk"};
 const Problem kInUse{.what = "another process is working on it",
-                     .why = "two would compute the same values and spoil each other's journal",
-                     .suggestion = "wait for the other one, or name another folder with -o"};
+                     .why = "two processes would compute the same values and damage each other's journal",
+                     .suggestion = "wait for the other process, or name another folder with -o"};
 
 }  // namespace
 
@@ -76,15 +76,15 @@ struct Journal::Impl {
     if (ours.starts_with(theirs)) return;
     if (!theirs.starts_with(kBeginning)) {
       throw InputError({.file = file.path().string(),
-                        .what = "is there already and is not of our making",
-                        .why = "finished work is to be kept in a file of this name",
+                        .what = "already exists, and exactff did not write it",
+                        .why = "finished work must be kept in a file with this name",
                         .suggestion = "move it away, or name another folder with -o"});
     }
     if (existing == Existing::kReplace) return;
     throw InputError({.file = file.path().string(),
-                      .what = "is of another version of exactff",
+                      .what = "was written by another version of exactff",
                       .why = "its values may differ",
-                      .suggestion = "go on with that version, or begin anew with --force"});
+                      .suggestion = "continue with that version, or start again with --force"});
   }
 
   void read() {
@@ -126,9 +126,9 @@ Journal::Journal(const fs::path& path, Existing existing) : impl_(std::make_uniq
   impl_->read();
   if (existing == Existing::kRefuse && !impl_->places.empty()) {
     throw InputError({.file = path.string(),
-                      .what = "holds the finished work of an interrupted run",
+                      .what = "contains the finished work of an interrupted run",
                       .why = "it may be hours of work",
-                      .suggestion = "go on with --resume, or begin anew with --force"});
+                      .suggestion = "continue with --resume, or start again with --force"});
   }
   try {
     if (existing != Existing::kResume || impl_->end == 0) impl_->begin();

@@ -48,8 +48,8 @@ struct LadderText {
       if (values.size() < 2) continue;
       if (!found.empty()) {
         refuse("'" + found + "' and '" + name + "' of " + method + " both have several values",
-               "a method is followed along one setting at a time",
-               "give the other one a single value, or two --method");
+               "only one setting of a method can vary at a time",
+               "give one of them a single value, or use two --method options");
       }
       found = name;
     }
@@ -115,8 +115,8 @@ Ladder parse_ladder(std::string_view text) {
     if (!repeated) ladder.rungs.push_back(std::move(choice));
   }
   if (ladder.along == "seed") {
-    refuse("the seed of " + taken_apart.method + " has several values", "a study runs many seeds by itself",
-           "leave the seed out, and say how many with --method-seeds");
+    refuse("the seed of " + taken_apart.method + " has several values", "a study varies the seed by itself",
+           "remove the seed, and give the number of seeds with --method-seeds");
   }
   ladder.name = ladder_name(taken_apart, *ladder.rungs.front().method, ladder.along);
   return ladder;

@@ -38,13 +38,13 @@ namespace {
 void complete(Request& request) {
   require_scene(request.scene);
   if (request.receivers.empty()) {
-    text::refuse("there is no receiver in " + request.receivers_name, "a comparison needs at least one point",
-                 "use a finer grid, or another patch");
+    text::refuse("there are no receivers in " + request.receivers_name, "a comparison needs at least one receiver",
+                 "use a finer grid or another patch");
   }
   if (request.sources.empty()) request.sources = request.scene->emitters();
   if (request.sources.empty()) {
     throw InputError(Problem{request.scene_name, 0, "no patch emits", "without a source there is nothing to compare",
-                             "name one with --source"});
+                             "name a source with --source"});
   }
   if (request.threads <= 0) request.threads = work::usable_threads();
 }
@@ -56,9 +56,9 @@ void require_moderate(double radiosity, const Request& request) {
   if (radiosity <= kMostRadiosity) return;
   throw InputError(
       Problem{request.scene_name, 0,
-              "the sources would give a receiver that sees nothing else a radiosity of " + text::shortest(radiosity),
-              "a comparison adds and averages radiosities, which overflows beyond " + text::shortest(kMostRadiosity),
-              "scale the emissions (Ke) down; form factors do not depend on them"});
+              "a receiver that sees only the sources would have a radiosity of " + text::shortest(radiosity),
+              "a comparison adds and averages radiosities; sums overflow above " + text::shortest(kMostRadiosity),
+              "reduce the emissions (Ke); form factors do not depend on them"});
 }
 
 double mean_face_area(const Request& request) {

@@ -58,7 +58,7 @@ void check_ranges(const Sweeps& sweeps) {
   }
   const bool unbounded = std::count(sweeps.eps_b.begin(), sweeps.eps_b.end(), 0.0) > 0 &&
                          std::count(sweeps.eps_a.begin(), sweeps.eps_a.end(), 0.0) > 0;
-  if (unbounded) refuse("eps_B and eps_A are both 0", "nothing but the depth cap would end the recursion");
+  if (unbounded) refuse("eps_B and eps_A are both 0", "only the depth cap would end the recursion");
 }
 
 // A parameter that the pattern ignores gets one fixed value.

@@ -4,6 +4,8 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
+#include "kernel/expect.h"
+
 namespace exactff::study {
 namespace {
 
@@ -44,6 +46,7 @@ ErrorStatistics error_statistics(std::span<const double> errors) {
 }
 
 double percentile(std::vector<double> values, double percent) {
+  EXACTFF_EXPECT(!values.empty() && percent > 0.0 && percent <= 100.0);
   // Multiplies percent * n before dividing: the rank is then exact for whole percents.
   const double rank = std::ceil(percent * static_cast<double>(values.size()) / 100.0);
   const auto index = static_cast<std::ptrdiff_t>(std::max(rank, 1.0)) - 1;

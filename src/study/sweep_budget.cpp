@@ -78,8 +78,8 @@ void require_possible(const Study& study, double base_seconds) {
   throw InputError({.file = study.request.scene_name,
                     .what = "the ray-sampled algorithm at " + setting_name(study, study.base) +
                             " would take more than " + text::duration(most),
-                    .why = "the sweeps cross at this setting, so it is always run",
-                    .suggestion = "give a larger --eps-b, fewer --rays or receivers, or a larger --sweep-budget"});
+                    .why = "all sweeps include this setting, so it is always run",
+                    .suggestion = "use a larger --eps-b, fewer --rays or receivers, or a larger --sweep-budget"});
 }
 
 }  // namespace

@@ -23,10 +23,10 @@ void read_assignment(std::string_view text, Settings& settings, std::vector<std:
   std::string_view value = text;
   const std::string name(take_until(value, '='));
   if (text.find('=') == std::string_view::npos) {
-    refuse("'" + std::string(text) + "' gives no value", "settings read NAME=VALUE", {});
+    refuse("'" + std::string(text) + "' has no value", "settings are written NAME=VALUE", {});
   }
   if (std::find(seen.begin(), seen.end(), name) != seen.end()) {
-    refuse("setting '" + name + "' is given twice", "it has one value", "leave one out");
+    refuse("setting '" + name + "' is given twice", "a setting has one value", "remove one");
   }
   seen.push_back(name);
   settings.set_text(name, trimmed(value));

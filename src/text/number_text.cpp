@@ -149,7 +149,7 @@ std::string advice(NumberFault fault) {
     case NumberFault::kComma:
       return "write a decimal point";
     case NumberFault::kTooLarge:
-      return "give a smaller number; doubles end at 1.8e308";
+      return "give a smaller number; the largest double is about 1.8e308";
   }
   return {};
 }

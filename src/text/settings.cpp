@@ -67,8 +67,8 @@ std::optional<SettingValue> fitting(const SettingSpec& spec, SettingValue value)
 
 [[noreturn]] void refuse(const SettingSpec& spec, std::string_view text) {
   const std::string unit = spec.unit.empty() ? "" : " (" + spec.unit + ")";
-  text::refuse("'" + std::string(text) + "' will not do for " + spec.name + unit, "it is: " + spec.meaning,
-               "give " + allowed(spec));
+  text::refuse("'" + std::string(text) + "' is not a valid value of " + spec.name + unit,
+               "its meaning: " + spec.meaning, "give " + allowed(spec));
 }
 
 std::optional<SettingValue> read(const SettingSpec& spec, std::string_view text) {
@@ -118,7 +118,7 @@ SettingSpec word_setting(std::string name, std::vector<std::string> words, std::
 
 SettingSpec seed_setting() {
   return whole_setting("seed", 1, 0, std::numeric_limits<std::int64_t>::max(),
-                       "where the random numbers start; the same seed gives the same values");
+                       "seed of the random numbers; the same seed gives the same values");
 }
 
 std::string allowed(const SettingSpec& spec) {
@@ -162,7 +162,7 @@ std::size_t Settings::must_find(std::string_view name) const {
   for (const std::string_view near : text::nearest_names(names, name, 1)) {
     suggestion = "did you mean " + std::string(near) + "?";
   }
-  text::refuse("there is no setting '" + std::string(name) + "'", names.empty() ? "the method has none" : list,
+  text::refuse("there is no setting '" + std::string(name) + "'", names.empty() ? "there are no settings" : list,
                suggestion);
 }
 

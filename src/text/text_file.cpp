@@ -15,7 +15,7 @@ namespace {
 [[noreturn]] void refuse_binary(const std::string& file, std::string_view block, const std::string& purpose) {
   const bool utf16 = block.starts_with("\xFF\xFE") || block.starts_with("\xFE\xFF");
   throw InputError({file, 0, utf16 ? "is UTF-16 text" : "is not a text file",
-                    utf16 ? "only UTF-8 is read" : "it holds zero bytes",
+                    utf16 ? "only UTF-8 is read" : "it contains zero bytes",
                     utf16 ? "save it as UTF-8" : "give " + purpose});
 }
 
@@ -51,7 +51,7 @@ std::string read_text(std::istream& in, const std::string& file, const std::stri
 std::ifstream open_text_file(const std::filesystem::path& path, const std::string& purpose) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
-    throw InputError({path.string(), 0, "is a directory", "a file is wanted", "name " + purpose + " in it"});
+    throw InputError({path.string(), 0, "is a folder", "a file is needed", "name " + purpose + " in this folder"});
   }
   errno = 0;
   std::ifstream in(path, std::ios::binary);

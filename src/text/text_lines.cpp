@@ -80,7 +80,7 @@ void ProblemList::add(Problem problem) {
 std::vector<Problem> ProblemList::take(const std::string& noun) {
   if (dropped_ > 0) {
     problems_.push_back(
-        {problems_[0].file, 0, std::to_string(dropped_) + " more " + noun, "only the first are kept", ""});
+        {problems_[0].file, 0, std::to_string(dropped_) + " more " + noun, "only the first ones are shown", ""});
   }
   return std::move(problems_);
 }

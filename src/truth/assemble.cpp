@@ -15,8 +15,8 @@ void Pace::add(std::uint64_t rows) {
 void assemble(const Rows& rows, RowJournal& journal, const std::filesystem::path& file, const Hooks& hooks,
               Summary& summary) {
   work::WholeFile whole(
-      file, {"every row is done and kept in " + journal.path().string() + "; the file needs as much room again",
-             "make room, then go on with --resume"});
+      file, {"all rows are finished and kept in " + journal.path().string() + "; the file needs the same space again",
+             "free some space, then continue with --resume"});
   const bool in_blocks = rows.request().shard.count > 1;
   Pace pace("writing the file", rows.shard_rows(), hooks);
   Tally tally;

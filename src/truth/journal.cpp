@@ -39,12 +39,12 @@ std::string shortened(std::string_view line) {
 
 File opened(const fs::path& path, const Hooks& hooks) {
   File file = work::open_locked(
-      path, {"the rows need a place", "name a file in a folder that exists, is writable and has room"},
+      path, {"the rows are kept in this file", "name a file in a folder that exists, is writable and has free space"},
       {.what = "another process is working on it",
-       .why = "two would compute the same rows and spoil each other's file",
-       .suggestion = "wait for the other one, or name another file with -o"});
+       .why = "two processes would compute the same rows and damage each other's file",
+       .suggestion = "wait for the other process, or name another file with -o"});
   if (file.lock() == File::Lock::kUnsupported && hooks.note) {
-    hooks.note(path.string() + ": this file system cannot lock files; see to it that no other process uses it");
+    hooks.note(path.string() + ": this file system cannot lock files; make sure that no other process uses the file");
   }
   return file;
 }
@@ -59,12 +59,12 @@ void require_free(const fs::path& file, Existing existing) {
                       .what = folder   ? "is a folder"
                               : device ? "is a device"
                                        : "is not the name of a file",
-                      .why = "rows are kept in a file from which an interrupted run can go on",
-                      .suggestion = "name a file, such as -o truth.csv"});
+                      .why = "finished rows are kept in a file, so that an interrupted run can continue",
+                      .suggestion = "name a file, for example -o truth.csv"});
   }
   if (existing == Existing::kRefuse && fs::exists(file, ignored)) {
     throw InputError({.file = file.string(),
-                      .what = "is there already",
+                      .what = "already exists",
                       .why = "it may hold hours of work",
                       .suggestion = "name another file, or replace it with --force"});
   }
@@ -79,16 +79,16 @@ void require_same_head(const fs::path& file, std::string_view head, std::string_
   const std::size_t line = common.rfind('\n') + 1;  // npos + 1 is 0
   throw InputError({.file = file.string(),
                     .line = static_cast<std::size_t>(std::count(common.begin(), common.end(), '\n')) + 1,
-                    .what = "is of another request: it says '" + shortened(line_at(head, line)) + "', and " + whose +
-                            " '" + shortened(line_at(other, line)) + "'",
-                    .why = "rows of two requests must not be mixed",
+                    .what = "belongs to a different request: it says '" + shortened(line_at(head, line)) + "', and " +
+                            whose + " '" + shortened(line_at(other, line)) + "'",
+                    .why = "rows of different requests must not be mixed",
                     .suggestion = suggestion});
 }
 
 RowJournal::RowJournal(const fs::path& file, const Rows& rows, Existing existing, const Hooks& hooks)
     : file_(opened(journal_of(file), hooks)) {
   take_over(rows, existing, hooks);
-  file_.set_failure_advice({"the rows finished so far are kept in it", "make room, then go on with --resume"});
+  file_.set_failure_advice({"it contains the rows finished so far", "free some space, then continue with --resume"});
 }
 
 RowJournal::~RowJournal() {
@@ -106,15 +106,15 @@ void RowJournal::take_over(const Rows& rows, Existing existing, const Hooks& hoo
   if (there.list.empty()) return begin(head);
   if (existing == Existing::kRefuse) {
     throw InputError({.file = file_.path().string(),
-                      .what = "holds the rows of a run that was not finished",
+                      .what = "contains the finished rows of an interrupted run",
                       .why = "they would be lost",
-                      .suggestion = "go on with them by --resume, or begin anew with --force"});
+                      .suggestion = "continue with --resume, or start again with --force"});
   }
   const std::uint64_t lost = there.damaged + file_.size() - there.end;
   if (lost > 0) {
     if (hooks.note) {
       hooks.note(file_.path().string() + ": " + text::counted(lost, "byte") +
-                 " of it are incomplete or damaged; their rows are computed again");
+                 " are incomplete or damaged; their rows are computed again");
     }
     file_.truncate(there.end);
   }
@@ -143,7 +143,7 @@ void RowJournal::keep_usable(std::vector<Block> found, const Rows& rows, const H
   }
   if (blocks_.size() < count && hooks.note) {
     hooks.note(file_.path().string() + ": " + text::counted(count - blocks_.size(), "block") +
-               " of it are of no use here; their rows are computed again");
+               " cannot be used here; their rows are computed again");
   }
 }
 

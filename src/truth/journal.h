@@ -19,8 +19,8 @@ namespace exactff::truth {
 // Throws an InputError that names the first line in which the head of `file` differs from the expected head.
 void require_same_head(
     const std::filesystem::path& file, std::string_view head, std::string_view other,
-    const std::string& whose = "now it would be",
-    const std::string& suggestion = "ask for the same as then, name another file, or begin anew with --force");
+    const std::string& whose = "this request says",
+    const std::string& suggestion = "use the same flags as before, name another file, or start again with --force");
 
 class RowJournal {
  public:

@@ -73,8 +73,8 @@ void read_chunks(ShardFile& shard, std::uint64_t head_bytes) {
   if (!whole) {
     refuse(shard.file.path(),
            "is damaged: " + std::to_string(found.list.size()) + " of its " + text::counted(chunks_of(shard), "chunk") +
-               " of rows are sound",
-           "every row is wanted", "remove it and compute this shard again");
+               " of rows are intact",
+           "every row is needed", "delete it and compute this shard again");
   }
   shard.blocks = std::move(found.list);
 }
@@ -83,14 +83,14 @@ ShardFile read_shard_file(const fs::path& path) {
   ShardFile shard{File(path, File::Mode::kRead), {}, {}, 0, {}};
   const std::string head = read_head(shard.file).value_or("");
   if (!line_of(head, "# unfinished: ").empty()) {
-    refuse(path, "is the journal of a run that was not finished", "rows are missing",
-           "complete it by the same exactff truth command with --resume");
+    refuse(path, "is the journal of an unfinished run", "rows are missing",
+           "complete it with the same exactff truth command and --resume");
   }
   std::string_view rows = line_of(head, kRowsLine);
   const std::string_view told = line_of(head, kShardLine);
   if (!head.starts_with("# exactff ") || !read_number(rows, shard.rows) || !read_shard(told, shard.shard)) {
-    refuse(path, "is not a shard of a truth file", "shards are what exactff truth --shard 1/4 and so on write",
-           "name those files alone");
+    refuse(path, "is not a shard of a truth file", "shards are written by exactff truth --shard 1/4 and so on",
+           "name only those files");
   }
   const auto line = static_cast<std::size_t>(told.data() - head.data()) - kShardLine.size();
   shard.head = head.substr(0, line) + head.substr(head.find('\n', line) + 1);
@@ -107,16 +107,16 @@ void add(Shards& shards, ShardFile shard) {
     if (shard.shard.count != first.shard.count) {
       refuse(shard.file.path(), "is one of " + text::counted(shard.shard.count, "shard"),
              first.file.path().string() + " is one of " + std::to_string(first.shard.count),
-             "name the shards of one request");
+             "name shards of the same request");
     }
     require_same_head(shard.file.path(), shard.head, first.head, first.file.path().string() + " says",
-                      "name the shards of one request");
+                      "name shards of the same request");
   }
   const auto [place, is_new] = shards.try_emplace(shard.shard.number, std::move(shard));
   if (is_new) return;
   refuse(shard.file.path(),
          "is shard " + std::to_string(place->first) + ", and so is " + place->second.file.path().string(),
-         "its rows would come twice", "name each shard once");
+         "its rows would occur twice", "give each shard once");
 }
 
 Shards read_all(const std::vector<fs::path>& paths, Pace& pace) {
@@ -135,7 +135,7 @@ Shards read_all(const std::vector<fs::path>& paths, Pace& pace) {
 }
 
 void require_all(const Shards& shards) {
-  if (shards.empty()) refuse({}, "no shard is named", "there is nothing to merge", "name the shards' files");
+  if (shards.empty()) refuse({}, "no shard is named", "there is nothing to merge", "name the files of the shards");
   const std::uint64_t count = shards.begin()->second.shard.count;
   if (shards.size() == count) return;
   constexpr std::size_t kMostNamed = 20;
@@ -144,8 +144,8 @@ void require_all(const Shards& shards) {
     if (!shards.contains(number)) missing.push_back(std::to_string(number));
   }
   if (missing.size() > kMostNamed) missing.back() = "more";
-  refuse({}, "of " + text::counted(count, "shard") + " there is no " + text::enumerate(missing), "every row is wanted",
-         "name those files too");
+  refuse({}, "of " + text::counted(count, "shard") + " these are missing: " + text::enumerate(missing),
+         "every row is needed", "add these files");
 }
 
 }  // namespace
@@ -166,7 +166,7 @@ Summary merge(const std::vector<fs::path>& paths, const fs::path& file, Existing
     const Block& block = shard.blocks[chunk / first.shard.count];
     const std::string lines = read_lines(shard.file, block);
     if (!tally.add_rows(lines, block.range.rows)) {
-      refuse(shard.file.path(), "was changed while it was read", "every row is wanted", "try again");
+      refuse(shard.file.path(), "changed while it was being read", "every row is needed", "try again");
     }
     whole.append(lines);
     pace.add(block.range.rows);

@@ -38,17 +38,18 @@ void complete(Request& request) {
     throw InputError(Problem{std::move(file), 0, std::move(what), std::move(why), std::move(suggestion)});
   };
   if (request.receivers.empty()) {
-    refuse({}, "there is no receiver in " + request.receivers_name, "a truth file has a row for each",
-           "use a finer grid, or another patch");
+    refuse({}, "there are no receivers in " + request.receivers_name, "a truth file has a row for each receiver",
+           "use a finer grid or another patch");
   }
   if (request.sources.empty()) request.sources = request.scene->emitters();
   if (request.sources.empty()) {
-    refuse(request.scene_name, "no patch emits", "a truth file has a row for each source", "name one with --source");
+    refuse(request.scene_name, "no patch emits", "a truth file has a row for each source",
+           "name a source with --source");
   }
   const Shard& shard = request.shard;
   if (shard.number < 1 || shard.number > shard.count) {
     refuse({}, "there is no shard " + std::to_string(shard.number) + " of " + std::to_string(shard.count),
-           "shards are counted from 1", "write --shard 1/4 for the first of four");
+           "shards are numbered from 1", "write --shard 1/4 for the first of four");
   }
   if (request.threads <= 0) request.threads = work::usable_threads();
 }

@@ -126,7 +126,7 @@ void Leader::answer(const Message& message, const Workers::Take& take, const Wor
       const std::string place = reader.read_text();
       if (reader.read_text() != head_) {
         rethrow(message.rank, Reader(trouble(Blame::kInput, place,
-                                             "the program, the scene or the receivers are not those of rank 0 (" +
+                                             "the program, the scene or the receivers differ from those of rank 0 (" +
                                                  team_.place() + "); every process needs the same files")));
       }
       ++here_;

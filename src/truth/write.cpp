@@ -157,7 +157,7 @@ Summary account_of(const fs::path& path, const Rows& rows) {
     throw InputError({.file = path.string(),
                       .what = "is damaged: " + std::to_string(tally.rows()) + " of " +
                               text::counted(rows.shard_rows(), "row") + " can be read",
-                      .why = "a complete file has them all",
+                      .why = "a complete file has all rows",
                       .suggestion = "compute it again with --force"});
   }
   Summary summary;

@@ -37,8 +37,8 @@ void File::require_regular() {
   if (::fstat(descriptor_, &status) != 0 || S_ISREG(status.st_mode)) return;
   ::close(std::exchange(descriptor_, -1));
   throw InputError({.file = path_.string(),
-                    .what = "is no regular file",
-                    .why = "it is read and written at any place, not from start to end",
+                    .what = "is not a regular file",
+                    .why = "exactff reads and writes it at arbitrary positions",
                     .suggestion = "name a file on a disk"});
 }
 
@@ -74,7 +74,7 @@ std::string File::read(std::uint64_t offset, std::size_t count) const {
       throw InputError({.file = path_.string(),
                         .what = std::string("cannot be read: ") + std::strerror(errno),
                         .why = "the disk or the network may be failing",
-                        .suggestion = "check them, then try again"});
+                        .suggestion = "check them and try again"});
     }
     if (got == 0) break;
     have += static_cast<std::size_t>(got);
@@ -160,8 +160,8 @@ void write_file(const fs::path& file, const std::function<void(std::ostream&)>& 
   out.close();
   if (out) return;
   throw InputError(Problem{file.string(), 0, "cannot be written",
-                           "the disk may be full or read-only; nothing is left behind",
-                           "make room, or name a folder elsewhere"});
+                           "the disk may be full or read-only; no incomplete file was left",
+                           "free some space, or name a folder on another disk"});
 }
 
 namespace {
@@ -171,8 +171,8 @@ fs::path with_suffix(fs::path path, const char* suffix) { return path += suffix;
 constexpr std::size_t kBufferBytes = 1 << 20;
 constexpr auto kPatience = std::chrono::seconds(10);
 const Problem kBeingWritten{.what = "another process is writing the file",
-                            .why = "two would spoil it",
-                            .suggestion = "wait for the other one, or name another file"};
+                            .why = "two processes would damage the file",
+                            .suggestion = "wait for the other process, or name another file"};
 
 }  // namespace
 

@@ -18,7 +18,7 @@ namespace exactff::work {
 // What the message of a failed write says: what is kept, and what to do.
 struct FailureAdvice {
   std::string why = "nothing was written";
-  std::string suggestion = "name a file in a folder that exists, is writable and has room";
+  std::string suggestion = "name a file in a folder that exists, is writable and has free space";
 };
 
 // An open file; the destructor closes it. Offsets are bytes from the start of the file.

@@ -1,5 +1,5 @@
-// The contour integral alone, over the boundary that the edge engine finds, and the limit below which no exact method
-// can go: Eq. (4) in double over the visible edges, and every occluder read once.
+// The contour integral alone, over the boundary that the edge engine finds, and a lower limit for the time of any exact
+// method: Eq. (4) in double over the visible edges, plus reading every occluder once.
 #include <benchmark/benchmark.h>
 
 #include <bit>
@@ -33,7 +33,7 @@ void count_edges(benchmark::State& state, std::size_t edges) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(edges));
 }
 
-// What every precision shares: the exact terms.
+// The exact terms, which all precisions share.
 void terms(benchmark::State& state, const BenchScene& s) {
   const auto& boundary = exact_boundary(s);
   for (auto _ : state) keep(contour_of(s, boundary));
@@ -53,7 +53,7 @@ void doubles(benchmark::State& state, const BenchScene& s) {
   count_edges(state, edges.size());
 }
 
-// Reads every coordinate of every piece's corners; whole numbers, so that nothing waits for a sum.
+// Reads every coordinate of every corner of every piece, as integers, so that no addition delays the reading.
 std::uint64_t read_all(const Scene& scene) {
   std::uint64_t bits = 0;
   for (const Piece& piece : scene.pieces()) {

@@ -1,4 +1,4 @@
-// The Cornell box end to end: the certified value at each receiver of a grid on the floor, the light as source.
+// The Cornell box end to end: the certified value at each receiver of a grid on the floor, with the light as source.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ double seconds_of(const Receiver& receiver, Engine engine, FormFactor& result) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-// One iteration asks every receiver once; its time is the median over them.
+// One iteration computes every receiver once; the result is the median time over them.
 void median_receiver(benchmark::State& state, const std::vector<Receiver>& receivers, Engine engine) {
   std::vector<double> seconds(receivers.size());
   FormFactor result;
@@ -63,7 +63,7 @@ void median_receiver(benchmark::State& state, const std::vector<Receiver>& recei
   state.counters["receivers"] = static_cast<double>(receivers.size());
 }
 
-// Receivers one after the other, dealt out to the threads.
+// Receivers one after the other, distributed to the threads.
 void throughput(benchmark::State& state) {
   const std::vector<Receiver>& receivers = cornell().receivers;
   auto i = static_cast<std::size_t>(state.thread_index());
@@ -90,7 +90,7 @@ void add_cornell() {
                                    })
           ->Unit(benchmark::kMicrosecond)
           ->UseManualTime()
-          ->Iterations(5);  // each asks every receiver
+          ->Iterations(5);  // each thread computes every receiver
     }
   }
   benchmark::RegisterBenchmark("cornell/throughput", throughput)

@@ -27,7 +27,7 @@ struct Scaled {
   long exponent = 0;
 };
 
-// A direction and, since that is rounded to the order of 1, the exponent that it lost.
+// A direction, scaled to the order of 1 and rounded, and the exponent that the scaling removed.
 struct Rounded {
   explicit Rounded(const kernel::ExactVec3& exact) : exponent(bit_length(exact)) {
     const kernel::Approx3 t = kernel::approx(exact);
@@ -49,10 +49,11 @@ using kernel::lanes::Four;
 using kernel::lanes::four;
 using kernel::reals::root;
 
-// The angle of (cosine, sine) for sine >= 0, within some units in the last place. With y / x at most 1, the tangent of
-// an angle from 0 to pi / 4 or, where it is more than tan(pi / 8), of one from -pi / 8 to 0 beyond pi / 4:
+// The angle of (cosine, sine) for sine >= 0, accurate to some units in the last place. With y / x at most 1, the
+// tangent is that of an angle from 0 to pi / 4 or, if it is above tan(pi / 8), of an angle from -pi / 8 to 0 relative
+// to pi / 4:
 //   atan(u) = u - u z q(z),  z = u^2,
-// where q is a Chebyshev interpolation on [0, tan^2(pi / 8)], off by less than 2^-57 of atan(u).
+// where q is a Chebyshev interpolation on [0, tan^2(pi / 8)] with an error below 2^-57 of atan(u).
 EXACTFF_INLINE Four angle(const Four& sine, const Four& cosine) {
   using namespace kernel::lanes;
   constexpr double kTangent = 0.41421356237309503;  // of pi / 8
@@ -76,7 +77,7 @@ struct FourParts {
   Four ax{}, ay{}, az{}, bx{}, by{}, bz{}, nx{}, ny{}, nz{}, s{}, t{};
 };
 
-// The first four; fewer are filled up with the last.
+// The first four parts; if there are fewer, the last one is repeated.
 EXACTFF_INLINE void gather(const visibility::Outlines& outlines, std::span<const Part> parts, FourParts& result) {
   std::array<const Part*, 4> part{};
   std::array<const visibility::Outlines::Edge*, 4> edge{};

@@ -1,4 +1,4 @@
-// Eq. (4) in plain double over visible edges: what the value would cost if nothing had to be proved.
+// Eq. (4) in plain double over visible edges: the cost of the value without a proof.
 #pragma once
 
 #include <span>
@@ -19,7 +19,7 @@ struct DoubleEdge {
 // Estimates F. Requires a normal other than zero.
 [[nodiscard]] double form_factor(std::span<const DoubleEdge> edges, const Vec3& normal);
 
-// Estimates F by what the edge engine found of one plane, four parts at a time.
+// Estimates F from the edge engine's result for one plane, four parts at a time.
 [[nodiscard]] double form_factor(const visibility::VisibleEdges& visible, const Vec3& normal);
 
 }  // namespace exactff::bench

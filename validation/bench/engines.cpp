@@ -39,7 +39,7 @@ void visible(benchmark::State& state, const BenchScene& s, Engine engine) {
     keep(value);
   }
   state.counters["value"] = value;
-  // The double contour errs by its rounding alone; more would mean that something else was measured.
+  // The double contour has only rounding errors; a larger error would mean that something else was measured.
   if (std::abs(value - s.value()) > 1e-9) state.SkipWithError("the double contour is off");
 }
 
@@ -54,7 +54,7 @@ Box box_of(const Scene& scene, const Piece& piece) {
   return box;
 }
 
-// The bounding-volume tree: what the exact method builds once a scene, as rays build theirs.
+// The bounding-volume tree: the exact method builds it once per scene, as ray tracing builds its structure.
 void tree(benchmark::State& state, const BenchScene& s) {
   for (auto _ : state) {
     std::vector<Box> boxes;

@@ -1,4 +1,4 @@
-// exactff_bench: takes Google Benchmark's options, --benchmark_filter=REGEX first among them.
+// exactff_bench: accepts Google Benchmark's options, above all --benchmark_filter=REGEX.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>

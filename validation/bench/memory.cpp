@@ -1,4 +1,4 @@
-// The largest memory that one certified value needs, in a process of its own: the scene, then the evaluation.
+// The peak memory of one certified value, in a separate process: the scene, then the evaluation.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 

@@ -1,8 +1,8 @@
-// The opponent, not handicapped: 10^4 shadow rays to jittered points of the source, in packets of 16 that lie ready,
-// against exactly the occluders that the exact method has. Building their structure is timed apart, and reads the
-// occluders where they lie. The rays of a packet end in a square of 4 x 4 neighbouring cells of the source; Embree is
-// told that they are coherent, or not, since now the one is faster and now the other. Beside that, the same rays as a
-// program casts them that draws its points at random.
+// The competing method under its best conditions: 10^4 shadow rays to jittered points of the source, in prepared
+// packets of 16, against exactly the occluders that the exact method has. Building the ray structure is timed
+// separately, and reads the occluders in place. The rays of a packet end in a square of 4 x 4 neighbouring cells of the
+// source. Embree is told that they are coherent, or not, because sometimes the one is faster and sometimes the other.
+// In addition, the same rays as cast by a program that draws its points at random.
 #include <benchmark/benchmark.h>
 #include <embree3/rtcore.h>
 
@@ -28,7 +28,7 @@ using sampled::operator*;
 namespace {
 
 constexpr int kCells = 100;  // a side of the source; one ray each
-constexpr int kTile = 4;     // cells a side of a packet
+constexpr int kTile = 4;     // cells per side of a packet
 constexpr int kPacket = kTile * kTile;
 
 template <class Handle, void (*release)(Handle)>
@@ -49,12 +49,12 @@ struct Occluders {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-// All faces but the source's, as fans.
+// All faces except the source's, as fans.
 Occluders occluders_of(const BenchScene& s) {
   Occluders result;
   const auto number = [](double value) { return static_cast<float>(value); };
   for (const Vec3& v : s.scene.vertices()) result.vertices.push_back({number(v.x), number(v.y), number(v.z)});
-  result.vertices.push_back({});  // Embree reads 16 bytes for each
+  result.vertices.push_back({});  // Embree reads 16 bytes for each of them
   for (const Piece& piece : s.scene.pieces()) {
     if (s.scene.face(piece.face).patch == s.source.selection().patch) continue;
     const auto corners = s.scene.corners(piece);
@@ -102,7 +102,7 @@ void set_ray(RTCRay16& rays, int lane, const Vec3& x, const Vec3& end) {
   rays.flags[lane] = 0;
 }
 
-// The order of the rays: cell by cell within a tile, tile by tile; or at random.
+// The order of the rays: cell by cell within a tile, tile by tile; or random.
 enum class Order { kTiles, kRandom };
 
 std::vector<int> cells_in_order(Order order) {
@@ -132,7 +132,7 @@ std::vector<RTCRay16> make_rays(const BenchScene& s, Order order) {
   return packets;
 }
 
-// How many rays arrive.
+// The number of rays that reach the source.
 int cast_rays(RTCScene structure, const std::vector<RTCRay16>& packets, RTCIntersectContextFlags flags) {
   alignas(64) static const std::array<int, kPacket> kAll = [] {
     std::array<int, kPacket> all{};
@@ -159,7 +159,7 @@ void cast(benchmark::State& state, const BenchScene& s, Order order, RTCIntersec
   for (auto _ : state) visible = static_cast<double>(cast_rays(structure.get(), packets, flags)) / (kCells * kCells);
   state.counters["visible"] = visible;
   if (s.scene.pieces().size() > 2000) return;
-  // Jittered rays err by less than 1/200 (one standard deviation): more would mean another scene.
+  // The error of jittered rays is below 1/200 (one standard deviation); a larger one would mean a different scene.
   if (std::abs(visible - s.visible_fraction()) > 0.025)
     state.SkipWithError("the rays do not see what the exact method sees");
 }

@@ -25,9 +25,9 @@ double nudged(double value, generate::Random& random) {
   return step == 0 || value == 0.0 ? value : std::nextafter(value, step * 1e300);
 }
 
-// The lattice turned by 1 radian about the axis, each occluder's corner then moved by a unit in the last place: what
-// coincided in the lattice nearly does, and every sign is one that doubles can hardly tell. Heights stay, so that the
-// squares stay planar.
+// The lattice is rotated by 1 radian about the axis, and each occluder's corner is then moved by a unit in the last
+// place. What coincided in the lattice now almost coincides, and doubles can hardly decide any sign. Heights stay
+// unchanged, so that the squares stay planar.
 PlainScene near_degenerate(int n) {
   constexpr double kCosine = 0.54030230586813977, kSine = 0.8414709848078965;
   PlainScene scene = generate::lattice(options(n));
@@ -43,8 +43,8 @@ PlainScene near_degenerate(int n) {
   return scene;
 }
 
-// About n of the abutting squares that cover the source, every third left out and none of those side by side: corners
-// and edges coincide everywhere.
+// About n of the abutting squares that cover the source. Every third square is left out, and no two of those are
+// adjacent. Corners and edges coincide everywhere.
 PlainScene tiles(int n) {
   int side = static_cast<int>(std::lround(std::sqrt(1.5 * n)));
   if (side % 3 == 0) ++side;
@@ -56,7 +56,7 @@ struct Kind {
   PlainScene (*make)(int n);
 };
 
-// Depth: how many occluders a ray to the source meets on average.
+// Depth: the average number of occluders on a ray to the source.
 constexpr std::array<Kind, 8> kKinds{{
     {"sparse", [](int n) { return generate::soup(options(n, 0.75)); }},  // depth 0.8
     {"blinds", [](int n) { return generate::blinds(options(n)); }},

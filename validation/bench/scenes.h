@@ -12,11 +12,11 @@
 
 namespace exactff::bench {
 
-// Ready to be asked: the bounding-volume tree, which a scene makes once, is there.
+// Ready for queries: the bounding-volume tree, which a scene builds once, exists.
 struct BenchScene {
   explicit BenchScene(const generate::PlainScene& plain);
 
-  // What a measurement must come out at, computed when first asked for.
+  // The expected result of a measurement, computed on first use.
   [[nodiscard]] double value() const;
   [[nodiscard]] double visible_fraction() const;
 
@@ -28,7 +28,7 @@ struct BenchScene {
   mutable std::optional<double> value_, visible_fraction_;
 };
 
-// Computes the value, whatever becomes of it. (DoNotOptimize of something that may change spoils doubles with GCC 12.)
+// Computes the value even if it is not used. (DoNotOptimize of an object that may change spoils doubles with GCC 12.)
 template <class Value>
 void keep(const Value& value) {
   benchmark::DoNotOptimize(value);
@@ -40,7 +40,7 @@ using Body = std::function<void(benchmark::State&, const BenchScene&)>;
 // the timing, and kept.
 void add_for_every_scene(const std::string& subject, const Body& body);
 
-// The same, but the scene is made afresh and left to the body.
+// The same, but the body makes the scene.
 using MakerBody = std::function<void(benchmark::State&, const std::function<generate::PlainScene()>& make)>;
 void add_maker_for_every_scene(const std::string& subject, const MakerBody& body);
 

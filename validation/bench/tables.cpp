@@ -1,5 +1,5 @@
-// exactff_bench_tables FILE...: the tables of validation/README.md, in Markdown, from the JSON output of exactff_bench.
-// The median of the repetitions counts. Exits with 1 if a benchmark failed or the engines differ.
+// exactff_bench_tables FILE...: prints the tables of validation/README.md in Markdown, from the JSON output of
+// exactff_bench. Uses the median of the repetitions. Exits with 1 if a benchmark failed or the engines differ.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,7 +21,7 @@ using Maybe = std::optional<double>;
 constexpr std::array kScenes{"sparse", "blinds", "mesh", "dense", "deep", "tiles", "lattice", "near"};
 constexpr std::array kSizes{100, 1000, 10'000, 100'000, 1'000'000};
 
-// What was measured, by name.
+// The measurements, by name.
 class Results {
  public:
   void read(const std::string& path) {
@@ -31,7 +31,7 @@ class Results {
     for (const json& run : file.at("benchmarks")) add(run);
   }
 
-  // CPU time is what a busy machine disturbs least.
+  // CPU time is the measure that a busy machine affects least.
   [[nodiscard]] Maybe microseconds(const std::string& name) const { return figure(name, "cpu_time"); }
   [[nodiscard]] Maybe figure(const std::string& name, const char* key) const {
     const auto run = runs_.find(name);
@@ -43,7 +43,7 @@ class Results {
 
  private:
   void add(const json& run) {
-    // Google Benchmark adds how it was run.
+    // Google Benchmark appends how it ran.
     static const std::regex kAddition("/(iterations:[0-9]+|manual_time|real_time)");
     const std::string name = std::regex_replace(run.at("run_name").get<std::string>(), kAddition, "");
     if (run.value("error_occurred", false)) {
@@ -82,7 +82,7 @@ Maybe operator+(Maybe a, Maybe b) { return a && b ? Maybe(*a + *b) : Maybe(); }
 Maybe operator/(Maybe a, Maybe b) { return a && b && *b != 0.0 ? Maybe(*a / *b) : Maybe(); }
 Maybe in_ms(Maybe microseconds) { return microseconds / Maybe(1000.0); }
 
-// A whole number or three significant digits; "-" for what was not measured.
+// A whole number or three significant digits; "-" if it was not measured.
 std::string text(Maybe value) {
   if (!value) return "-";
   const bool whole = *value == std::round(*value);
@@ -116,7 +116,8 @@ void print_ratios(const Results& results) {
   for (const char* scene : kScenes) {
     const auto us = [&](const char* subject) { return results.microseconds(at(subject, scene, n)); };
     const Maybe engine = us("visible/edges"), boolean = us("visible/boolean"), certified = us("certified/edges");
-    const Maybe rays = std::min(us("rays/coherent"), us("rays/incoherent"));  // what is missing is less: no ratio then
+    const Maybe rays =
+        std::min(us("rays/coherent"), us("rays/incoherent"));  // a missing value compares as less: no ratio then
     print_row({scene, text(in_ms(engine)), text(in_ms(boolean)), text(boolean / engine), text(engine / us("limit")),
                text(engine / rays), text((engine + us("tree")) / (rays + us("rays/build"))),
                text(engine / us("rays/scattered")), text(in_ms(certified)), text(certified / engine)});
@@ -161,7 +162,7 @@ void print_growth_of(const Results& results, const std::string& engine, const st
       if (const Maybe mib = results.figure(at("memory", scene, n), "peak_mib")) peak = mib;
     }
   }
-  if (time_of.size() < 2) return;  // one size does not grow
+  if (time_of.size() < 2) return;  // one size has no slope
   cells.insert(cells.end(), {exponents_by_decade(time_of), text(fitted_exponent(time_of, 1000, 100'000)),
                              text(undecided), text(peak)});
   print_row(cells);

@@ -22,7 +22,7 @@ void for_every_plane(const BenchScene& s, Engine engine, const Take& take) {
   }
 }
 
-// What the edge engine found, in the doubles that it has of it.
+// The result of the edge engine, in its doubles.
 void append(visibility::VisibleEdges& engine, std::vector<DoubleEdge>& edges) {
   const visibility::Outlines& outlines = engine.outlines();
   const auto direction = [&](visibility::CornerId corner) {

@@ -1,4 +1,4 @@
-// The visible region's boundary as the contour wants it, for every plane of a scene's source together.
+// The boundary of the visible region in the form that the contour needs, for all planes of a scene's source together.
 #pragma once
 
 #include <vector>
@@ -9,13 +9,13 @@
 
 namespace exactff::bench {
 
-// By the edge engine, computed when first asked for.
+// By the edge engine, computed on first use.
 [[nodiscard]] const std::vector<visibility::BoundaryPiece>& exact_boundary(const BenchScene& s);
 
-// In doubles; what `edges` held before is gone.
+// In doubles; replaces the content of `edges`.
 void find_double_boundary(const BenchScene& s, Engine engine, std::vector<DoubleEdge>& edges);
 
-// Eq. (4) in double over what an engine finds.
+// Eq. (4) in double over the result of an engine.
 [[nodiscard]] double double_form_factor(const BenchScene& s, Engine engine);
 
 }  // namespace exactff::bench

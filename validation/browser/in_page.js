@@ -31,11 +31,15 @@
   // --- Colours ---
 
   const canvas = new OffscreenCanvas(1, 1).getContext('2d', {willReadFrequently: true});
+  const known_colours = new Map();  // a page has few, on thousands of shapes
   function rgba(colour) {
-    canvas.clearRect(0, 0, 1, 1);
-    canvas.fillStyle = colour;
-    canvas.fillRect(0, 0, 1, 1);
-    return [...canvas.getImageData(0, 0, 1, 1).data];
+    if (!known_colours.has(colour)) {
+      canvas.clearRect(0, 0, 1, 1);
+      canvas.fillStyle = colour;
+      canvas.fillRect(0, 0, 1, 1);
+      known_colours.set(colour, [...canvas.getImageData(0, 0, 1, 1).data]);
+    }
+    return known_colours.get(colour);
   }
   // Relative luminance and contrast as the Web Content Accessibility Guidelines define them.
   function luminance([r, g, b]) {
@@ -47,15 +51,22 @@
     return (high + 0.05) / (low + 0.05);
   }
 
-  // Of the nearest thing behind an element that is painted: in a figure, a rectangle that fills it.
-  function background_of(element) {
-    const svg = element.closest('svg');
-    if (svg) {
+  // The rectangle that fills a figure, if there is one.
+  const known_sheets = new Map();
+  function sheet_of(svg) {
+    if (!known_sheets.has(svg)) {
       const all = svg.getBoundingClientRect();
       const fills = (rect) => is_painted(getComputedStyle(rect).fill) && within(all, rect.getBoundingClientRect(), 2);
-      const sheet = list('rect', svg).find((rect) => !rect.closest(kUndrawn) && fills(rect));
-      if (sheet) return getComputedStyle(sheet).fill;
+      known_sheets.set(svg, list('rect', svg).find((rect) => !rect.closest(kUndrawn) && fills(rect)));
     }
+    return known_sheets.get(svg);
+  }
+
+  // Of the nearest thing behind an element that is painted: in a figure, its sheet.
+  function background_of(element) {
+    const svg = element.closest('svg');
+    const sheet = svg && sheet_of(svg);
+    if (sheet) return getComputedStyle(sheet).fill;
     for (let at = element; at; at = at.parentElement) {
       const colour = getComputedStyle(at).backgroundColor;
       if (is_painted(colour)) return colour;
@@ -294,5 +305,36 @@
       const marks = medium.localName === 'img' ? [medium] : hidden ? marks_of(medium) : list(kDrawn, medium);
       marks.forEach((mark) => { mark.style.visibility = hidden ? 'hidden' : ''; });
     }),
+    // For each place, whether two pictures of the page agree there. A picture has parts of this height, PNG in base64.
+    looks_the_same: async (before, after, height, places) => {
+      const same = places.map(({width, height}) => width > 0 && height > 0);
+      for (let part = 0; part < Math.min(before.length, after.length); ++part) {
+        const [one, other] = await Promise.all([pixels_of(before[part]), pixels_of(after[part])]);
+        places.forEach((place, i) => {
+          if (same[i] && differ(one, other, place, part * height)) same[i] = false;
+        });
+      }
+      return same;
+    },
   };
+
+  async function pixels_of(png) {
+    const image = new Image();
+    image.src = `data:image/png;base64,${png}`;
+    await image.decode();
+    const context = new OffscreenCanvas(image.width, image.height).getContext('2d', {willReadFrequently: true});
+    context.drawImage(image, 0, 0);
+    return context.getImageData(0, 0, image.width, image.height);
+  }
+  function differ(one, other, place, top) {
+    const left = Math.max(0, Math.ceil(place.x)), right = Math.min(one.width, Math.floor(place.x + place.width));
+    const first = Math.max(0, Math.ceil(place.y) - top);
+    const last = Math.min(one.height, other.height, Math.floor(place.y + place.height) - top);
+    for (let y = first; y < last; ++y) {
+      const row = (pixels) => pixels.data.subarray(4 * (y * pixels.width + left), 4 * (y * pixels.width + right));
+      const [a, b] = [row(one), row(other)];
+      if (a.some((value, k) => value !== b[k])) return true;
+    }
+    return false;
+  }
 })();

@@ -42,7 +42,7 @@ def chromium_options(chromium, profile):
     for argument in (
         "--headless=new", f"--user-data-dir={profile}",
         "--no-sandbox", "--disable-dev-shm-usage", "--disable-gpu",  # as root, in a container
-        "--host-resolver-rules=MAP * ~NOTFOUND",  # what asks for the network is told of, and gets nothing
+        "--host-resolver-rules=MAP * ~NOTFOUND",  # requests to the network are reported and blocked
         "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run",
         "--hide-scrollbars", "--force-color-profile=srgb", "--lang=en", "about:blank",
     ):
@@ -72,7 +72,7 @@ class Reader:
         self.driver, self.page, self.complaints = driver, page.resolve(), []
         self.view(PHONE)
         driver.get("about:blank")
-        self.log()  # of earlier pages: away with it
+        self.log()  # remove the files of earlier pages
         driver.get(self.page.as_uri())
 
     def view(self, width, scheme="light", medium="screen"):
@@ -111,33 +111,32 @@ class Reader:
         names = sorted(pathlib.Path(link).name for link in missing)
         self.complaints += [f"a link leads to {name}, which is not there" for name in names]
 
-    def picture(self, clip):
-        return self.driver.execute_cdp_cmd("Page.captureScreenshot", {
-            "format": "png", "captureBeyondViewport": True, "clip": {"scale": 1, **clip}})["data"]
+    def pictures(self):
+        """The whole page, in parts where it is too long for one picture: PNG in base64."""
+        size = self.driver.execute_cdp_cmd("Page.getLayoutMetrics", {})["cssContentSize"]
+        clips = [{"x": 0, "y": top, "width": size["width"], "height": min(TALLEST_PICTURE, size["height"] - top)}
+                 for top in range(0, math.ceil(size["height"]), TALLEST_PICTURE)]
+        return [self.driver.execute_cdp_cmd("Page.captureScreenshot", {
+            "format": "png", "captureBeyondViewport": True, "clip": {"scale": 1, **clip}})["data"] for clip in clips]
 
-    def check_marks_show(self):
+    def check_marks_show(self, before):
         """A figure without its marks looks different: they have not the colour of its background, nor lie behind it."""
-        run = lambda what: self.driver.execute_script(f"{IN_PAGE}\nreturn report_marks.{what}")
-        places = run("places()")
-        clips = [{key: place[key] for key in ("x", "y", "width", "height")} for place in places]
-        visible = [clip["width"] > 0 and clip["height"] > 0 for clip in clips]
-        before = [self.picture(clip) if good else None for clip, good in zip(clips, visible)]
-        run("hide(true)")
-        for place, clip, good, picture in zip(places, clips, visible, before):
-            if good and self.picture(clip) == picture:
+        run = lambda what, *arguments: self.driver.execute_script(
+            f"{IN_PAGE}\nreturn report_marks.{what}(...arguments)", *arguments)
+        places = run("places")
+        run("hide", True)
+        after = self.pictures()
+        run("hide", False)
+        for place, same in zip(places, run("looks_the_same", before, after, TALLEST_PICTURE, places)):
+            if same:
                 name = place["name"]
                 self.complaints.append(f"{name} shows no mark that differs from its background ({self.condition})")
-        run("hide(false)")
 
-    def save(self, folder, name):
-        """The whole page, in parts where it is too long for one picture."""
-        size = self.driver.execute_cdp_cmd("Page.getLayoutMetrics", {})["cssContentSize"]
-        parts = math.ceil(size["height"] / TALLEST_PICTURE)
-        for part in range(parts):
-            top = part * TALLEST_PICTURE
-            clip = {"x": 0, "y": top, "width": size["width"], "height": min(TALLEST_PICTURE, size["height"] - top)}
-            file = folder / (f"{name}.png" if parts == 1 else f"{name}-{part + 1}.png")
-            file.write_bytes(base64.b64decode(self.picture(clip)))
+
+def save(pictures, folder, name):
+    for part, picture in enumerate(pictures, 1):
+        file = folder / (f"{name}.png" if len(pictures) == 1 else f"{name}-{part}.png")
+        file.write_bytes(base64.b64decode(picture))
 
 
 def check_layout(reader, width, scheme, medium="screen"):
@@ -160,12 +159,13 @@ def check_report(driver, page, screenshots=None):
     reader.check_neighbours()
     for width, scheme in ((PHONE, "light"), (PHONE, "dark"), (SCREEN, "dark"), (SCREEN, "light")):
         check_layout(reader, width, scheme)
+        pictures = reader.pictures() if width == PHONE or screenshots else []
         if width == PHONE:
             reader.check("running_text_is_large", LEAST_RUNNING_TEXT)
             reader.check("lettering_can_be_read", LEAST_LETTERING)
-            reader.check_marks_show()
+            reader.check_marks_show(pictures)
         if screenshots:
-            reader.save(screenshots, f"{'phone' if width == PHONE else 'screen'}-{scheme}")
+            save(pictures, screenshots, f"{'phone' if width == PHONE else 'screen'}-{scheme}")
     for scheme in ("light", "dark"):  # of the reader's system; paper is white
         check_layout(reader, PAPER, scheme, "print")
     reader.check_requests()

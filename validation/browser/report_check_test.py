@@ -15,7 +15,7 @@ SOUND = pathlib.Path(__file__).with_name("sound.html")
 CURVE = '<path id="line" d="M60 240 L200 90 L370 60" stroke="#0072b2" stroke-width="2" fill="none"/>'
 DATA = '<path class="data" d="M60 240 L370 60" stroke-width="2"/>'
 
-# What is put in place of what, and words of a complaint that must come of it.
+# Each row: a text, its replacement, and words of the complaint that must follow.
 FAULTS = {
     "a figure with axes alone": (CURVE, "", "figure 'Curve' (#curve) shows axes at most: nothing is drawn"),
     "a plot with its key alone": (DATA, "", "figure 'Plot' (#plot) shows axes at most: nothing is drawn"),

@@ -1,4 +1,4 @@
-// exactff truth under mpirun: four processes, whatever the number of cores.
+// exactff truth under mpirun: four processes, independent of the number of cores.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -64,7 +64,7 @@ TEST_F(MpiTruth, FourProcessesWriteTheBytesOfOne) {
 
 TEST_F(MpiTruth, AKilledProcessCostsNoFinishedRow) {
   int killed = 0;
-  // mpirun takes its time to end the others, which go on meanwhile: they may even finish.
+  // mpirun needs some time to end the other processes, which continue meanwhile and may even finish.
   for (std::size_t victim = 0; victim < 4 && !fs::exists(file_); ++victim) {
     const std::uintmax_t before = size_of(journal_);
     const RunningProgram run = start(truth("floor", file_, {"--resume", "--engine", "boolean"}));
@@ -83,7 +83,7 @@ TEST_F(MpiTruth, AKilledProcessCostsNoFinishedRow) {
   const validation::ProgramRun alone = validation::run_program(EXACTFF_PROGRAM, truth("floor", file_, {"--resume"}));
   EXPECT_EQ(alone.exit_code, 0);
   EXPECT_TRUE(alone.output.find(" of them in ") != std::string::npos ||
-              alone.output.find("all were there already") != std::string::npos)
+              alone.output.find("all rows were already computed") != std::string::npos)
       << alone.output;
   EXPECT_EQ(text_of(file_), whole());
 }

@@ -1,7 +1,8 @@
-// The solver against an algorithm that shares nothing with it: equal doubles, zero flags and exact rational fractions.
+// Compares the solver with an algorithm that shares nothing with it: equal doubles, zero flags and exact rational
+// fractions.
 //
-// EXACTFF_TEST_SCALE multiplies the number of scenes, EXACTFF_TEST_SEED moves to others, and EXACTFF_TEST_KEEP names
-// a directory for the minimised cases of failures.
+// EXACTFF_TEST_SCALE multiplies the number of scenes, EXACTFF_TEST_SEED selects other scenes, and EXACTFF_TEST_KEEP
+// names a directory for the minimised cases of failures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +26,7 @@ namespace {
 using generate::PlainScene;
 using generate::Random;
 
-// The oracle itself, on what is known to be true.
+// The oracle itself, on scenes with known values.
 TEST(Oracle, AgreesWithTheReferenceCases) {
   for (const auto& path : case_paths(EXACTFF_DATA_DIR "/reference")) {
     const CaseFile file = read_case(path);
@@ -46,14 +47,14 @@ void keep(const std::string& name, const PlainScene& scene) {
   try {
     std::ofstream(std::filesystem::path(directory) / (name + ".json"))
         << to_json(as_case(name, scene), "found by a random search");
-  } catch (const std::exception&) {  // beyond the case format, as receivers on a face are: the OBJ must do
+  } catch (const std::exception&) {  // outside the case format, like receivers on a face: only the OBJ is kept
   }
 }
 
 using Make = PlainScene (*)(Random&);
 
 void expect_agreement(const std::string& family, std::uint64_t count, Make make) {
-  constexpr int kEnough = 5;  // failures that are worth minimising
+  constexpr int kEnough = 5;  // number of failures to minimise
   int failures = 0;
   for (std::uint64_t i = 0; i < scaled_count(count) && failures < kEnough; ++i) {
     Random random(seed_of(i));
@@ -98,7 +99,7 @@ TEST(Oracle, AgreesOnTheGeneratedFamilies) {
   }
 }
 
-// The receiver remembers a face: neither it nor anything it was cut into may hide or emit.
+// The receiver lies on a face: neither this face nor the parts into which it was cut may hide or emit.
 TEST(Oracle, AgreesForReceiversOnAFace) {
   for (std::uint64_t i = 0; i < scaled_count(100); ++i) {
     Random random(seed_of(i));
@@ -112,7 +113,7 @@ TEST(Oracle, AgreesForReceiversOnAFace) {
   }
 }
 
-// Sources so far off that F is subnormal, or positive and still rounds to zero.
+// Sources so far away that F is subnormal, or positive but rounds to zero.
 TEST(Oracle, AgreesWhereTheFormFactorUnderflows) {
   int statuses[3] = {0, 0, 0};
   for (int exponent = 480; exponent <= 560; ++exponent) {
@@ -135,7 +136,7 @@ TEST(Oracle, AgreesWhereTheFormFactorUnderflows) {
   EXPECT_GT(statuses[static_cast<int>(Status::kUnderflow)], 0);
 }
 
-// A search that only ever sees empty or full sources proves little.
+// A search that finds only empty or full sources would prove little.
 double partly_visible_share(Make make) {
   constexpr int kCount = 50;
   int partial = 0;

@@ -1,5 +1,5 @@
-// Embree's single-precision rays against CGAL's bounding-box tree in double: how many see something else, and how
-// that compares with the error of sampling at all.
+// Compares Embree's single-precision rays with CGAL's bounding-box tree in double: how many rays differ, and how this
+// compares with the sampling error.
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
@@ -26,7 +26,7 @@ using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 
 Kernel::Point_3 cgal_point(const Vec3& p) { return {p.x, p.y, p.z}; }
 
-// All pieces but the source's.
+// All pieces except those of the source.
 Triangles triangles_of(const ScaledScene& scaled, const std::vector<std::uint32_t>& left_out) {
   Triangles triangles;
   for (std::uint32_t k = 0; k < scaled.scene->pieces().size(); ++k) {
@@ -38,7 +38,7 @@ Triangles triangles_of(const ScaledScene& scaled, const std::vector<std::uint32_
   return triangles;
 }
 
-// One scene, seen by everyone.
+// One scene in the representation of each.
 class Witnesses {
  public:
   explicit Witnesses(const PlainScene& plain)
@@ -65,7 +65,7 @@ class Witnesses {
     return ends;
   }
 
-  // Each answers for the ray to end i.
+  // Each function answers for the ray to end i.
   [[nodiscard]] bool hidden_by_referee(const RayEnds& ends, std::size_t i) const {
     const Vec3 y = view_.point + Vec3{ends.x[i], ends.y[i], ends.z[i]};
     return referee_.do_intersect(Kernel::Segment_3(cgal_point(view_.point), cgal_point(y)));
@@ -114,8 +114,8 @@ Comparison compare(const PlainScene& plain, int ray_count) {
   return result;
 }
 
-// Sampling with n rays errs by about sqrt(V (1 - V) / n): 0.125 for 16, 0.008 even for 4096. Rays that see something
-// else shift V by at most their share. Of a million rays a scene, 0 to 4 did.
+// The sampling error of n rays is about sqrt(V (1 - V) / n): 0.125 for 16, and still 0.008 for 4096. Rays with a
+// different result shift V by at most their share. Of a million rays per scene, 0 to 4 differed.
 TEST(RayReferee, DisagreementIsFarBelowTheSamplingError) {
   constexpr int kRays = 20000;
   const std::vector<PlainScene> scenes = {generate::soup({.n = 1000, .seed = 1}),

@@ -1,4 +1,4 @@
-// The sampled method against the exact one: two algorithms that share nothing but the scene.
+// Compares the sampled method with the exact one: two algorithms that share nothing but the scene.
 //
 // Scenes on which geometry goes wrong if it can (support/random_scenes.h). Left out: what single precision refuses, and
 // sources with more than one face in a plane, whose overlaps the sampled method counts twice. Over 4,008 scenes of

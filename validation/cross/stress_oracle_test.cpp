@@ -1,4 +1,4 @@
-// The second opinion on every stiff scene that is not too crowded for it: also where no closed form exists.
+// The oracle checks every stiff scene that has few enough faces for it, also where no closed form exists.
 #include <gtest/gtest.h>
 
 #include "stress/family.h"

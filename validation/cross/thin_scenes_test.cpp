@@ -1,6 +1,6 @@
-// Embree's builder on scenes as thin as checked_unit_box lets through: it must live. A death of this program is the
-// failure, and the last line that it prints tells the seed. EXACTFF_TEST_SCALE multiplies the number of scenes and
-// EXACTFF_TEST_SEED moves to others. A million scenes:
+// Embree's builder must survive scenes as thin as checked_unit_box accepts. The failure is a crash of this program, and
+// the last line that it prints shows the seed. EXACTFF_TEST_SCALE multiplies the number of scenes and EXACTFF_TEST_SEED
+// selects others. For a million scenes:
 //
 //   EXACTFF_TEST_SCALE=500 build/sampled_tests --gtest_filter='ThinScenes.*'
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ class ThinScene {
     for (double& extent : half_extent_) extent = std::ldexp(0.5, -exponent());
     half_extent_[random_.below(3)] = 0.5;
     if (random_.one_in(6)) half_extent_[random_.below(3)] = 0.0;
-    // Mostly up to the bound (the scene is 1 large, and half of that in the box); the check must see the others.
+    // Mostly up to the bound (the scene has size 1, in the box half of it); checked_unit_box must detect the others.
     least_ = random_.one_in(16) ? 0.0 : 2.0 * kLeastInEmbree;
     needles_ = random_.one_in(3);
   }
@@ -82,7 +82,7 @@ class ThinScene {
   }
 
  private:
-  // Of a half extent: nothing special, near the bound, or beyond it.
+  // The kind of a half extent: ordinary, near the bound, or beyond it.
   int exponent() {
     const std::size_t kind = random_.below(20);
     if (kind < 5) return random_.integer(0, 30);
@@ -116,7 +116,7 @@ class ThinScene {
     return kept(half_extent_[axis] * (random_.one_in(3) ? tiny : lattice));
   }
 
-  // Needles and specks.
+  // Long thin and tiny triangles.
   Vec3 towards(const Vec3& a, const Vec3& b) {
     const double step = std::ldexp(1.0, -random_.integer(1, 12));
     return {kept(a.x + (b.x - a.x) * step), kept(a.y + (b.y - a.y) * step), kept(a.z + (b.z - a.z) * step)};
@@ -171,15 +171,15 @@ Outcome try_one(std::uint64_t seed) {
   return Outcome::kBuilt;
 }
 
-// Both were found by running 10^6 scenes. Here the receiver is so far away that rounding puts the ends of rays far
-// outside of the scene.
+// Both were found by running 10^6 scenes. Here the receiver is so far away that rounding moves the ends of rays far
+// outside the scene.
 TEST(ThinScenes, EmbreeLivesWithRaysFromFarAway) {
   const auto before = std::signal(SIGABRT, tell_seed);
   EXPECT_EQ(try_one(0xd28adefc780b540c), Outcome::kBuilt);
   std::signal(SIGABRT, before);
 }
 
-// RTC_BUILD_QUALITY_HIGH dies of this one.
+// RTC_BUILD_QUALITY_HIGH crashes on this one.
 TEST(ThinScenes, EmbreeLivesWhereItsSpatialSplitsDie) {
   const auto before = std::signal(SIGABRT, tell_seed);
   EXPECT_EQ(try_one(0xded13ba90e0467c5), Outcome::kBuilt);

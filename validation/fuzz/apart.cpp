@@ -13,7 +13,7 @@ namespace exactff::validation {
 
 namespace {
 
-// Sanitizers end a process with 1 by default.
+// By default, sanitizers end a process with exit code 1.
 constexpr int kFineCode = 90;
 constexpr int kProblemCode = 91;
 
@@ -35,7 +35,7 @@ std::string read_all(int file) {
   }
 }
 
-// An exception must not leave it: the caller's frames are those of the parent.
+// An exception must not leave this function, because the frames of the caller belong to the parent process.
 [[noreturn]] void be_the_child(const std::function<std::string()>& check, unsigned seconds, int result) noexcept {
   for (const int number : {SIGALRM, SIGABRT, SIGSEGV, SIGFPE}) std::signal(number, SIG_DFL);
   alarm(seconds);

@@ -1,4 +1,4 @@
-// Every way a check can end, from within a process that goes on.
+// Every way in which a check can end, observed from a process that continues.
 #include "fuzz/apart.h"
 
 #include <gtest/gtest.h>

@@ -65,7 +65,7 @@ std::string difference(const Answer& one, const Answer& other, Identity identity
 
 bool same_positions(const PlainScene& a, const PlainScene& b) { return a.point == b.point && a.vertices == b.vertices; }
 
-// By a power of two that loses no bit; nothing if the one drawn does.
+// Scales by a power of two that loses no bit; returns nothing if the random one does.
 std::optional<PlainScene> scaled(const PlainScene& scene, Random& random) {
   const int exponent = random.integer(-1000, 1000);
   PlainScene out = scene;
@@ -83,7 +83,7 @@ std::optional<PlainScene> with_other_normal(const PlainScene& scene, Random& ran
   return times(out.normal, std::ldexp(1.0, -exponent)) == scene.normal ? std::optional(std::move(out)) : std::nullopt;
 }
 
-// The first occluder, somewhere in the order; nothing if there is none.
+// The first occluder in random order; nothing if there is none.
 std::optional<std::size_t> some_occluder(const PlainScene& scene, Random& random) {
   std::vector<std::size_t> occluders;
   for (std::size_t i = 0; i < scene.patches.size(); ++i) {
@@ -119,7 +119,7 @@ bool can_be_built(const PlainScene& scene) {
   }
 }
 
-// Rounding keeps order, so that the correctly rounded values may not fall either.
+// Rounding is monotone, so the correctly rounded values may not decrease either.
 std::string one_less_problem(const FuzzCase& fuzz_case) {
   const auto fewer = changed(fuzz_case);
   if (!fewer) return {};
@@ -129,7 +129,7 @@ std::string one_less_problem(const FuzzCase& fuzz_case) {
   return "an occluder more raises " + text_of(without) + " to " + text_of(with);
 }
 
-// The faces said to cut the source, alone, cut it to the same shape.
+// If only the faces reported as cutting the source remain, they cut it to the same shape.
 std::string cutters_problem(const PlainScene& plain) {
   const Scene scene = generate::build(plain);
   ExactOptions options;
@@ -139,8 +139,8 @@ std::string cutters_problem(const PlainScene& plain) {
   return difference(answer_of(all), answer(scene, plain, &all.cutters), Identity::kCuttersAlone);
 }
 
-// OBJ has no holes. The keyholes that to_obj makes of them want rings that do not meet, so that such faces are left out
-// here; the decoder makes its own.
+// OBJ has no holes. to_obj converts them to keyholes, which requires rings that do not meet. So such faces are left out
+// here; the decoder makes its own keyholes.
 bool has_holes(const PlainScene& scene) {
   return std::ranges::any_of(scene.patches, [](const PlainPatch& patch) {
     return std::ranges::any_of(patch.faces, [](const generate::PlainFace& face) { return face.rings.size() > 1; });
@@ -153,7 +153,7 @@ std::string obj_problem(const PlainScene& plain) {
   return difference(answer(plain), answer(read_obj(in, "scene.obj"), plain), Identity::kObjText);
 }
 
-// Drawings are rounded and promise nothing but to be there.
+// Drawings are rounded; the only promise is that one exists.
 std::string drawing_problem(const PlainScene& plain) {
   const Scene scene = generate::build(plain);
   const ExactSource source(scene, scene.select(plain.source));
@@ -197,7 +197,7 @@ std::optional<PlainScene> changed(const FuzzCase& fuzz_case) {
     case Identity::kIdleCorners:
       return with_idle_corners(scene, random);
     case Identity::kSpikes: {
-      // Made for rings without spikes; where there is one already, a second may cross it.
+      // Intended for rings without spikes; a second spike may cross an existing one.
       PlainScene out = with_spikes(scene, random);
       return can_be_built(out) ? std::optional(std::move(out)) : std::nullopt;
     }

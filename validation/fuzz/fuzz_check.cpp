@@ -1,5 +1,5 @@
 // Arbitrary bytes as a truth file and, after the first byte 0x1e (ASCII's record separator), as the values of another
-// program: either an InputError that says something, or a report whose figures can be believed and whose texts parse.
+// program. The result is either an InputError with a message, or a report with consistent figures and valid texts.
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -39,7 +39,7 @@ void check_match(const check::Truth& truth, const std::filesystem::path& candida
   check_report(check::judge(truth, measured, {.max_abs = 1e-3, .quantiles = {{0.5, 1e-3}}, .per_source = true}));
 }
 
-// Every way of matching, whether or not the others are refused.
+// Tries every way of matching, even if the others are refused.
 template <class Work>
 void attempt(const Work& work) {
   try {

@@ -1,7 +1,7 @@
 // Arbitrary bytes as an OBJ file and, after the first byte 0x1e (ASCII's record separator), as the MTL file `m`.
 //
-// Either an InputError that says something, or a scene that keeps its promises: pieces, names, the same hash when its
-// own text is read again, and form factors in [0, 1]. Both modes of the reader's options are tried.
+// The result is either an InputError with a message, or a scene that keeps its promises: pieces, names, the same hash
+// when its own text is read again, and form factors in [0, 1]. Both modes of the reader are tried.
 #include <algorithm>
 #include <cstdint>
 #include <optional>

@@ -1,17 +1,18 @@
 // fuzz_program [--seconds N] [--runs N] [--seed S] [--keep FOLDER]
 // fuzz_program --replay FOLDER
-// Both take --program FILE, to run another build's.
+// Both accept --program FILE, to run the program of another build.
 //
-// The whole program on random scenes and files (odd_files.h) with random command lines of its own option tables
-// (odd_commands.h), run as a user runs it, some of it interrupted, short of memory or of room on the disk. Each run has
-// to end without a signal, in time and with a documented exit code; bad input is told; what is printed and written
-// parses (output_judge.py), whole or not there at all; run again, the bytes are the same.
+// Runs the whole program on random scenes and files (odd_files.h) with random command lines from its own option tables
+// (odd_commands.h), as a user would. Some runs are interrupted, or have little memory or disk space. Each run must end
+// without a signal, in time, and with a documented exit code. Bad input must be reported. Printed and written output
+// must be valid (output_judge.py), and complete or absent. A second run must give the same bytes.
 //
-// It is a program of its own, no libFuzzer target: coverage of a process that it starts would not be seen. It takes the
-// optimised build as well, which runs far more cases in a second. Cases depend on the seed and their number alone.
+// This is a separate program and not a libFuzzer target, because libFuzzer would not see the coverage of a process that
+// it starts. It also accepts the optimised build, which runs far more cases per second. Cases depend only on the seed
+// and their number.
 //
-// A find is shortened word by word, and kept in FOLDER with its files and command lines; one of each kind, and how
-// often each came. The exit code is 1 if there is one.
+// A finding is shortened word by word and kept in FOLDER with its files and command lines: one of each kind, and the
+// number of times that it occurred. The exit code is 1 if there is a finding.
 #include <algorithm>
 #include <charconv>
 #include <chrono>
@@ -68,10 +69,10 @@ void disturb(ProgramCase& one, int least_memory, Random& random) {
   }
 }
 
-// What two finds have in common: names and numbers left out.
+// The kind of a finding: its text without names and numbers.
 std::string kind_of(const std::string& problem) {
   static const std::regex kParticular(R"(0x[0-9a-f]+|[-+.]?\d+|'[^']*'|folder/[^:]*)");
-  constexpr std::size_t kLongest = 500;  // std::regex takes stack for every character of a quoted name
+  constexpr std::size_t kLongest = 500;  // std::regex needs stack for every character of a quoted name
   return std::regex_replace(problem.substr(0, kLongest), kParticular, "*");
 }
 
@@ -118,7 +119,8 @@ class Fuzzer {
               << disturbance_words(one) << "\n  replay: fuzz_program --replay " << folder.string() << std::endl;
   }
 
-  // Without what the problem does not need: the disturbance, steps, words, files. Ends where that takes long.
+  // Removes everything that the problem does not need: the disturbance, steps, words, files. Stops if this takes too
+  // long.
   ProgramCase shortened(ProgramCase one, const std::string& kind) {
     const auto still = [&](const ProgramCase& smaller) { return kind_of(problem_of(smaller, bench_, judge_)) == kind; };
     const auto start = Clock::now();

@@ -1,5 +1,5 @@
-// Arbitrary bytes as a CSV of receivers for a fixed small scene: either an InputError that says something, or receivers
-// that the solver can use.
+// Arbitrary bytes as a CSV file of receivers for a fixed small scene. The result is either an InputError with a
+// message, or receivers that the solver can use.
 #include <cmath>
 #include <cstdint>
 #include <set>
@@ -15,7 +15,7 @@
 namespace exactff::validation {
 namespace {
 
-// A light, a plate before part of it and a floor of two faces.
+// A light, a plate in front of a part of it, and a floor of two faces.
 Scene room() {
   generate::PlainScene plain;
   plain.add_ring(plain.patch("source"), {{-1, 1, 2}, {1, 1, 2}, {1, -1, 2}, {-1, -1, 2}});

@@ -1,4 +1,4 @@
-// Arbitrary bytes as a small degenerate scene: the exact solver against the oracle and against itself.
+// Arbitrary bytes as a small degenerate scene: compares the exact solver with the oracle and with itself.
 //
 // A failure is printed, shrunk into the folder EXACTFF_TEST_KEEP if that is set, and ends the process.
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Arbitrary bytes as a study file: either an InputError that says something, or lines that hold what the reader
-// promises, and are read again from their own words.
+// Arbitrary bytes as a study file. The result is either an InputError with a message, or lines with everything that the
+// reader promises; writing these lines out and reading them again gives the same result.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -12,7 +12,7 @@
 namespace exactff::validation {
 namespace {
 
-// Between double quotes a word ends at the next one, and the other way round.
+// Inside double quotes a word ends at the next double quote; for single quotes likewise.
 bool can_be_quoted(const std::string& word) {
   return word.find('"') == std::string::npos && word.find_first_of("\n\r") == std::string::npos;
 }

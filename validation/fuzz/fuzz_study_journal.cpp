@@ -1,9 +1,9 @@
-// Arbitrary bytes as the journal of an interrupted study: what follows the first byte is the journal itself or, if that
-// byte is odd, edits of a true one (edits.h). If its second bit is set, the edits are those of its records, each under
-// a checksum that holds: what they guard is then reached, too.
+// Arbitrary bytes as the journal of an interrupted study. The bytes after the first byte are the journal itself or, if
+// the first byte is odd, edits of a valid one (edits.h). If its second bit is set, the edits change records and update
+// their checksums, so that the code behind the checksums is reached, too.
 //
-// A journal whose checksums hold as they are gives the values of an undisturbed run, or is refused with a message. One
-// with forged checksums may hold wrong values, which nothing can tell from right ones; it must do no other harm.
+// A journal with valid checksums gives the values of an undisturbed run, or is refused with a message. A journal with
+// forged checksums may contain wrong values, which cannot be detected; it must do no other harm.
 #include <algorithm>
 #include <boost/crc.hpp>
 #include <cstdint>
@@ -53,7 +53,7 @@ fs::path file() {
   return directory.path() / "study.part";
 }
 
-// What an undisturbed run finds, and the journal that it would leave if it were interrupted at its end.
+// The values of an undisturbed run, and the journal that it would leave if it were interrupted at its end.
 struct Truth {
   Tables tables;
   std::string journal;
@@ -68,7 +68,7 @@ Truth make_truth(const Scene& scene) {
   return {std::move(tables), text};
 }
 
-// Every record of a sound journal edited, under a checksum of its own.
+// Edits every record of a valid journal, with a new checksum for each.
 std::string with_edited_records(const std::string& journal, Bytes& bytes) {
   std::size_t at = journal.find('\n') + 1;
   std::string out = journal.substr(0, at);
@@ -95,7 +95,7 @@ void check(const std::string& text, const Scene& scene, const Tables* expected) 
     require_words(error);
     if (text_of(file()) != text) fail("refused, and changed");
   } catch (const std::logic_error&) {
-    if (expected != nullptr) throw;  // forged values may contradict those that are computed, which is noticed
+    if (expected != nullptr) throw;  // forged values may contradict computed ones, which is detected
   }
 }
 

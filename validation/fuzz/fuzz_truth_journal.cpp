@@ -1,9 +1,9 @@
-// Arbitrary bytes as the journal of an interrupted truth run: what follows the first byte is the journal itself or, if
-// that byte is odd, edits of a true one (edits.h). If its second bit is set, the checksums of its blocks are mended:
-// what they guard is then reached, too.
+// Arbitrary bytes as the journal of an interrupted truth run. The bytes after the first byte are the journal itself or,
+// if the first byte is odd, edits of a valid one (edits.h). If its second bit is set, the checksums of its blocks are
+// corrected, so that the code behind the checksums is reached, too.
 //
-// A journal whose checksums hold as they are is resumed to the bytes of an undisturbed run, or refused with a message.
-// One with forged checksums may hold wrong rows, which nothing can tell from right ones; it must do no other harm.
+// A journal with valid checksums is resumed to the bytes of an undisturbed run, or refused with a message. A journal
+// with forged checksums may contain wrong rows, which cannot be detected; it must do no other harm.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -70,7 +70,7 @@ const TemporaryDirectory& directory() {
   return one;
 }
 
-// What an undisturbed run writes, and what one leaves that is interrupted.
+// The file of an undisturbed run, and the journal of an interrupted one.
 struct Texts {
   std::string whole, journal;
 };

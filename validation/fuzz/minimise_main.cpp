@@ -1,7 +1,7 @@
 // exactff_minimise [-o FOLDER] INPUT...
 //
-// Shrinks failing inputs and writes each as a regression case: moving that into data/regression makes it a test. An
-// input is a case file (.json) or a file that fuzz_solver has found to fail, by a wrong value, a crash or a hang.
+// Shrinks failing inputs and writes each as a regression case. If that case is moved into data/regression, it becomes a
+// test. An input is a case file (.json), or a file for which fuzz_solver fails with a wrong value, a crash or a hang.
 // Exit code 0: every input fails and was shrunk; 1: one does not fail (here); 2: bad input.
 #include <cstdint>
 #include <exception>

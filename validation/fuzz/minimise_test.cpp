@@ -1,4 +1,4 @@
-// A failure made on purpose becomes a small case that says the truth.
+// An artificial failure is reduced to a small case with the true value.
 #include "support/minimise.h"
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ TEST(Minimise, ShortensNumbers) {
   EXPECT_EQ(v->x, std::round(v->x * 2048) / 2048) << "ten bits are enough";
 }
 
-// A failure that any change would hide, also one by an exception.
+// A failure that every change would remove, including one by an exception.
 TEST(Minimise, NeverLeavesTheScenesThatCanBeBuilt) {
   for (std::uint64_t i = 0; i < scaled_count(10); ++i) {
     generate::Random random(seed_of(i));
@@ -77,7 +77,7 @@ TEST(Minimise, NeverLeavesTheScenesThatCanBeBuilt) {
   }
 }
 
-// Whatever is shrunk can be written, read and holds the oracle's value: a source of many polygons too.
+// Every shrunk case can be written and read, and has the oracle's value; also for a source of many polygons.
 TEST(Minimise, EveryCaseFileReadsBack) {
   const TemporaryDirectory directory;
   for (std::uint64_t i = 0; i < scaled_count(30); ++i) {

@@ -19,7 +19,7 @@ using generate::Random;
 
 namespace {
 
-// Within limits, but small: the work grows with it.
+// Within the limits, but small, because the work grows with the value.
 std::string small_setting(const SettingSpec& spec, Random& random) {
   if (random.one_in(20)) return odd_number(random);
   if (!spec.words.empty()) return one_of(random, spec.words);
@@ -98,11 +98,11 @@ class CommandWriter {
   }
 
  private:
-  // Where a command wants receivers they are told by one of these; together they are refused.
+  // If a command needs receivers, one of these options gives them; several together are refused.
   static bool places_receivers(const OptionRow& row) {
     return contains_any(row.names.back(), {"--grid", "--vertices", "--centres", "--samples", "--receivers"});
   }
-  // Without these a command takes seconds.
+  // Without these options, a command takes seconds.
   static bool keeps_work_small(const OptionRow& row) {
     static const std::vector<std::string> kFrugal = {"--family",        "--eps-b",        "--rays",
                                                      "--seeds",         "--method-seeds", "--method-receivers",
@@ -143,7 +143,7 @@ class CommandWriter {
     }
   }
 
-  // Rarely one too few.
+  // Rarely one value too few.
   void add_values(const OptionRow& row) {
     int count = row.most_values > row.least_values ? random_.integer(row.least_values, std::min(3, row.most_values))
                                                    : row.least_values;
@@ -179,7 +179,7 @@ class CommandWriter {
     return random_.one_in(40) ? odd_place() : "in/scene.obj";
   }
 
-  // Where no file can be read or written, or where one should not be.
+  // Places where no file can be read or written, or should not be.
   std::string odd_place() {
     return one_of<std::string>(random_, {"in", "/dev/null", "/dev/full", "nowhere/at/all", "", ".", "in/scene.obj/x",
                                          "out/" + odd_name(random_), "@", "@nothing", "in/truth.csv", "out"});
@@ -202,7 +202,7 @@ class CommandWriter {
     return std::to_string(random_.integer(1, 4)) + 'x' + std::to_string(random_.integer(1, 4));
   }
 
-  // An output where the description says what is written there.
+  // An output if the description says that something is written there.
   std::string file(const OptionRow& row) {
     static const std::regex kWritten(R"(\b([Ww]rite|[Dd]raw|[Rr]ecord)\b)");
     if (random_.one_in(30)) return odd_place();
@@ -225,7 +225,7 @@ class CommandWriter {
     return one_of<std::string>(random_, {"0", "1e-3", "0.01", "0.02", "1e-12", "0.5", "0.99", "1"});
   }
 
-  // Below, the adaptive algorithm may need hours and all memory, as it was asked to.
+  // Below these values, the adaptive algorithm may need hours and all memory, as requested.
   std::string tolerance() {
     return one_of<std::string>(random_, {"1e-3", "0.01", "0.02", "0.5", "0.99", "1", "1e300"});
   }
@@ -241,7 +241,7 @@ class CommandWriter {
     return small_whole(random_, low, std::min(high, std::max(low * 4, 4)));
   }
 
-  // Lists and names: what the description names, numbers, and families.
+  // Lists and names: names from the description, numbers, and families.
   std::string word(const OptionRow& row) {
     if (row.names.back() == "--family") return std::string(one_of(random_, stress::families()).name);
     if (row.names.back() == "--rays" || row.names.back() == "--seeds")
@@ -267,7 +267,7 @@ const CommandTable& table_of(const cli::ProgramTable& program, std::string_view 
   return *std::ranges::find(program.commands, name, &CommandTable::name);
 }
 
-// What `truth` writes, for merge and check.
+// Files that `truth` writes, for merge and check.
 Words truth_into(const std::string& file, const OddInputs& inputs, Words more) {
   Words words = {
       "truth", "in/scene.obj", "--on", inputs.scene.source, "--centres", "--source", inputs.scene.source, "--threads",
@@ -305,7 +305,7 @@ cli::ProgramTable own_table() {
 }
 
 std::vector<Words> odd_commands(const cli::ProgramTable& program, const OddInputs& inputs, Random& random) {
-  // stress works on scenes of its own, merge on little.
+  // stress uses its own scenes, and merge reads only a few files.
   const std::vector<std::string> often = {"point", "point", "point", "compare", "compare",
                                           "truth", "truth", "check", "check",   "info"};
   const std::string name =

@@ -43,7 +43,8 @@ PlainScene scene_of_any_family(Random& random) {
   return random.one_in(30) ? crowded_scene(random) : kFamilies[random.below(kFamilies.size())](random);
 }
 
-// Extreme ones rarely: tolerances are small beside them, and the adaptive algorithm works as long as it may.
+// Extreme values are rare, because tolerances are small compared with them, and the adaptive algorithm then runs for a
+// long time.
 double odd_emission(Random& random) {
   if (!random.one_in(8)) return one_of<double>(random, {0.0, 0.0, 1.0, 15.5, random.unit()});
   return one_of<double>(random, {1e-300, 1e300, 4.9e-324, 1.7976931348623157e308});
@@ -70,7 +71,7 @@ void rename_patches(PlainScene& scene, Random& random) {
   }
 }
 
-// OBJ's groups are one word, its objects the rest of the line.
+// In OBJ, a group name is one word, and an object name is the rest of the line.
 std::string with_objects(std::string obj) {
   for (std::size_t at = 0; (at = obj.find("\ng ", at)) != std::string::npos; ++at) obj[at + 1] = 'o';
   return obj;
@@ -84,7 +85,7 @@ void add_scene(OddInputs& inputs, Random& random) {
     try {
       const std::string obj = generate::to_obj(scene, "scene.mtl");
       inputs.files["in/scene.obj"] = random.one_in(2) ? with_objects(obj) : obj;
-    } catch (const std::invalid_argument&) {  // holes that touch have no keyhole
+    } catch (const std::invalid_argument&) {  // touching holes cannot be converted to keyholes
       continue;
     }
     inputs.files["in/scene.mtl"] = generate::to_mtl(scene);
@@ -95,7 +96,7 @@ void add_scene(OddInputs& inputs, Random& random) {
 
 // --- tables ---
 
-// As CSV has it; sometimes without the quotes that it needs.
+// As in CSV; sometimes without the necessary quotes.
 std::string field(Random& random, const std::string& text) {
   if (text.find_first_of(",\"\n\r ") == std::string::npos || random.one_in(30)) return text;
   std::string quoted = "\"";
@@ -125,7 +126,7 @@ std::string odd_receivers(const PlainScene& scene, Random& random) {
   return text;
 }
 
-// A truth of few rows and what another program makes of them, by id and by position.
+// A truth file with few rows and the values of another program for them, by id and by position.
 void add_tables(Files& files, Random& random) {
   const bool rho = random.one_in(2), positions = !random.one_in(3), bounds = random.one_in(2);
   std::string truth = "# made by hand: " + odd_name(random) + "\nreceiver,source" + (positions ? ",x,y,z" : "") +

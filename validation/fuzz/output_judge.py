@@ -19,12 +19,13 @@ from decimal import Decimal, InvalidOperation
 csv.field_size_limit(1 << 30)
 
 CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f]")
-# A number that is none, as printf, iostreams and JavaScript write it; not within a word.
+# inf or nan, as printf, iostreams and JavaScript write it; not inside a word.
 NO_NUMBER = re.compile(r"(?<![\w.])[-+]?(nan|inf|infinity)(?![\w.])", re.IGNORECASE)
-# The value of a judged method and its error, in a stress table: some formulas have none there. Times that were not
-# measured, for example of partly hidden receivers if there are none. Fractions in large scenes (exactff/study.h).
+# Places where a table may have no number: the value and error of a method in a stress table (some formulas give none);
+# times that were not measured, for example of partly hidden receivers if there are none; fractions in large scenes
+# (exactff/study.h).
 MAY_BE_NO_NUMBER = re.compile(r"_(value|error)$|^seconds|^visible_fraction$")
-# Sums over sources of a formula that gives no pure number.
+# Sums over sources, for a formula whose result is not a pure number.
 MAY_OVERFLOW = re.compile(r"^(approximate|error)$|^nettle:.*variant=literal")
 LEFTOVER = re.compile(r"^\..*\.(partial|old)-\d|\.whole$|^\.lock$")
 GEOMETRY = {"x", "y", "x1", "y1", "x2", "y2", "cx", "cy", "r", "rx", "ry", "width", "height", "d", "points", "viewBox",
@@ -58,10 +59,11 @@ def refuse_twice(pairs):
     return dict(pairs)
 
 
-# Where a number may be missing: patches without a common front, and errors that JSON cannot tell (README, check).
+# Places where JSON may have no number: patches without a common front, and errors that JSON cannot represent (README,
+# check).
 MAY_BE_NULL = {"front", "relative", "max", "max-rel", "measured", "median", "p90", "p99", "p999", "rms", "value", "limit",
                "found", "error", "now", "recorded", "bias",
-               "radiosity"}  # beyond the largest double where Ke is near it
+               "radiosity"}  # above the largest double if Ke is near it
 
 
 def refuse_nulls(item, key, may_be_null):
@@ -132,7 +134,7 @@ def judge_html(data):
 
 
 def judge_csv(data):
-    lines = data.decode("utf-8", "surrogateescape").split("\n")  # names are the bytes of the scene's file
+    lines = data.decode("utf-8", "surrogateescape").split("\n")  # names are the bytes from the scene file
     if lines.pop() != "":
         raise Wrong("the last line has no end")
     rows = csv.reader(io.StringIO("\n".join(line for line in lines if not line.startswith("#"))), strict=True)
@@ -161,7 +163,7 @@ def judge_plain(data):
         raise Wrong("--plain prints a number outside [0, 1]")
 
 
-# A terminal gets names as they are in the files, which need not be UTF-8; nothing in them may steer it.
+# Names reach a terminal as they are in the files, which need not be UTF-8; they must not control it.
 def judge_words(data):
     found = CONTROL.search(data.decode("latin-1"))
     if found:
@@ -180,7 +182,7 @@ def judge_file(path, code):
         raise Wrong("a journal left behind by a finished run")
     if path.is_file():
         data = path.read_bytes()
-        is_table = path.suffix == ".csv" or data.startswith(b"# exactff ")  # whatever the user calls it
+        is_table = path.suffix == ".csv" or data.startswith(b"# exactff ")  # under any name that the user gives it
         (judge_csv if is_table else JUDGES.get(path.suffix, text_of))(data)
 
 

@@ -18,7 +18,7 @@ namespace {
 constexpr std::array<const char*, kDisturbanceCount> kNames = {"none",          "twice",     "signal",
                                                                "little-memory", "full-disk", "full-output"};
 
-// Printable ASCII stays; every other byte is \xNN.
+// Printable ASCII stays unchanged; every other byte becomes \xNN.
 std::string escaped(const std::string& word) {
   std::string text;
   for (const char c : word) {

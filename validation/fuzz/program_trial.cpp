@@ -29,15 +29,15 @@ namespace {
 constexpr int kProcessorSeconds = kSanitized ? 120 : 15;
 constexpr int kWallSeconds = 20 * kProcessorSeconds;  // other processes need time, too
 constexpr rlim_t kMegabytes = 3000;
-// Of processor time, from a signal to the end: wall time depends on what else the machine does.
+// Processor time from a signal to the end; wall time depends on other processes.
 constexpr double kPatience = kSanitized ? 5.0 : 0.5;
 constexpr int kNeverStarted = 127;  // the dynamic loader found no memory
 
 struct Ended {
-  int code = 0;  // 128 + signal where a signal ended it
+  int code = 0;  // 128 + signal if a signal ended it
   bool by_signal = false;
   bool hung = false;
-  bool signalled = false;  // it was sent one
+  bool signalled = false;  // a signal was sent
   double seconds_after_signal = 0.0;
 };
 
@@ -64,7 +64,8 @@ void redirect(const char* path, int descriptor) {
   redirect(full_output ? "/dev/full" : "stdout", STDOUT_FILENO);
   redirect("stderr", STDERR_FILENO);
   ::setenv("TMPDIR", folder.c_str(), 1);
-  for (const char* options : {"ASAN_OPTIONS", "UBSAN_OPTIONS"}) ::setenv(options, "exitcode=86", 1);  // no code of ours
+  for (const char* options : {"ASAN_OPTIONS", "UBSAN_OPTIONS"})
+    ::setenv(options, "exitcode=86", 1);  // not one of our exit codes
   limit(RLIMIT_CPU, kProcessorSeconds);
   limit(RLIMIT_CORE, 0);
   if (!kSanitized) limit(RLIMIT_AS, kMegabytes << 20);
@@ -82,7 +83,7 @@ double seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-// Of a process that runs: fields 14 and 15 of its stat, behind its name in parentheses.
+// Of a running process: fields 14 and 15 of its stat file, after its name in parentheses.
 double processor_seconds(pid_t process) {
   const std::string stat = text_of("/proc/" + std::to_string(process) + "/stat");
   std::istringstream fields(stat.substr(std::min(stat.rfind(')') + 2, stat.size())));
@@ -117,7 +118,7 @@ Ended wait_for(pid_t process, const ProgramCase* disturbed) {
   return ended;
 }
 
-// `disturbed`: the case whose disturbance this command is to suffer, or null.
+// `disturbed`: the case whose disturbance applies to this command, or null.
 Ended run(const std::string& program, const Words& words, const fs::path& folder, const ProgramCase* disturbed) {
   const bool full_output = disturbed != nullptr && disturbed->disturbance == Disturbance::kFullOutput;
   const auto limits = [&] {
@@ -126,7 +127,7 @@ Ended run(const std::string& program, const Words& words, const fs::path& folder
     if (disturbed->disturbance == Disturbance::kLittleMemory && !kSanitized) limit(RLIMIT_AS, amount << 20);
     if (disturbed->disturbance == Disturbance::kFullDisk) limit(RLIMIT_FSIZE, amount);
   };
-  for (const char* stream : {"stdout", "stderr"}) std::ofstream(folder / stream);  // it may be ended before it begins
+  for (const char* stream : {"stdout", "stderr"}) std::ofstream(folder / stream);  // it may end before it starts
   const pid_t process = ::fork();
   if (process < 0) throw std::runtime_error("cannot start a process");
   if (process == 0) be_the_program(program, words, folder, limits, full_output);
@@ -135,7 +136,7 @@ Ended run(const std::string& program, const Words& words, const fs::path& folder
 
 bool given(const Words& words, const std::string& word) { return std::ranges::find(words, word) != words.end(); }
 
-// --json takes a file with check.
+// With check, --json has a file.
 std::string form_of(const Words& words, const ProgramCase* disturbed) {
   if (disturbed != nullptr && disturbed->disturbance == Disturbance::kFullOutput) return "cut";
   if (words.empty() || given(words, "--help") || given(words, "--version")) return "text";
@@ -169,7 +170,7 @@ void write_files(const Files& files, const fs::path& folder) {
 
 // --- the same bytes ---
 
-// Of a study's folder only the files that hold no times are promised (exactff/study.h).
+// In the folder of a study, only files without times are promised to be equal (exactff/study.h).
 bool is_promised(const fs::path& file, const Words& words) {
   if (words.front() != "compare" && words.front() != "stress") return true;
   return words.front() == "compare" && file.extension() == ".csv" &&
@@ -236,13 +237,13 @@ class Trial {
   std::string run_one(const Words& words, const fs::path& folder, const ProgramCase* disturbed) {
     ended_ = run(bench_.program, words, folder, disturbed);
     std::string wrong = wrong_ending(ended_, words, disturbed);
-    // What is killed cannot tidy up.
+    // A killed process cannot clean up.
     const bool killed = ended_.signalled && ended_.code == 128 + SIGKILL;
     if (wrong.empty() && !killed) wrong = judge_.judge(folder, form_of(words, disturbed), ended_.code);
     return wrong.empty() ? "" : (words.empty() ? "" : words.front()) + ": " + wrong;
   }
 
-  // As undisturbed, elsewhere, and compared.
+  // Runs without the disturbance in another folder, and compares.
   std::string compare_with(const std::vector<Words>& commands) {
     const int code = ended_.code;
     std::string wrong = run_all(commands, bench_.scratch / "second", nullptr);
@@ -259,14 +260,15 @@ class Trial {
     return compare_with(again);
   }
 
-  // What was interrupted goes on to the bytes of an undisturbed run.
+  // An interrupted run, when resumed, gives the bytes of an undisturbed run.
   std::string resume() {
     const Words& last = case_.commands.back();
     const bool can =
         (last.front() == "truth" || last.front() == "compare") && !given(last, "--resume") && !given(last, "--force");
     if (!can || ended_.code != 128 + case_.signal) return {};
     Words resumed = last;
-    resumed.insert(resumed.begin() + 1, "--resume");  // at the end it could be taken for the value of an option
+    resumed.insert(resumed.begin() + 1,
+                   "--resume");  // at the end of the line it could be read as the value of an option
     std::string wrong = run_one(resumed, bench_.scratch / "first", nullptr);
     return wrong.empty() ? compare_with(case_.commands) : "resumed " + wrong;
   }

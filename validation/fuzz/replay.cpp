@@ -1,5 +1,5 @@
-// Stands in for libFuzzer where the compiler is not Clang: runs the target once on each file named, and on each file
-// of each folder named. Arguments that begin with a dash are libFuzzer's and mean nothing here.
+// Replaces libFuzzer if the compiler is not Clang: runs the target once for each named file, and for each file of each
+// named folder. Arguments that begin with a dash are libFuzzer's options and are ignored.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -30,7 +30,7 @@ bool run(const fs::path& path) {
     return false;
   }
   const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};
-  std::fprintf(stderr, "Running: %s\n", path.c_str());  // the last line where the target ends the process
+  std::fprintf(stderr, "Running: %s\n", path.c_str());  // the last line if the target ends the process
   (void)LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
   return true;
 }

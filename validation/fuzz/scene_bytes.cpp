@@ -34,7 +34,7 @@ double& component(Vec3& v, std::size_t axis) { return axis == 0 ? v.x : axis == 
 
 bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-// The numbers of the instructions; part of the corpus' format.
+// The numbers of the instructions are part of the corpus' format.
 enum class Op : std::uint8_t {
   kTriangle,
   kParallelogram,
@@ -55,7 +55,7 @@ enum class Op : std::uint8_t {
 };
 constexpr std::size_t kOpCount = 16;
 
-// Beside the instruction in its byte.
+// Flags in the same byte as the instruction.
 enum Flag : std::uint8_t { kSamePatch = 1, kReversed = 2, kKeyhole = 4, kOther = 8 };
 
 enum class Place : std::uint8_t { kOrigin, kLattice, kCorner, kMiddle, kInPlane, kRaw };
@@ -127,7 +127,7 @@ class Decoder {
     if (kind == NormalKind::kLattice) normal_ = lattice_point();
     if (kind == NormalKind::kRaw) normal_ = raw_point();
     if (normal_ == Vec3{}) normal_.z = 1.0;
-    // Sources of one face are the rule.
+    // Most sources have one face.
     const std::size_t size = in_.next();
     source_faces_ = size < 192 ? 1 : size - 190;
     exponent_ = static_cast<std::int8_t>(in_.next());
@@ -167,7 +167,7 @@ class Decoder {
     return {x, y, in_.raw_double()};
   }
 
-  // A new corner, or one that is there already.
+  // A new corner or an existing one.
   Vec3 corner() {
     const std::uint8_t choice = in_.next();
     if (choice < 160 || faces_.empty()) return lattice_point();
@@ -293,7 +293,7 @@ class Decoder {
     return out;
   }
 
-  // A rectangle with one hole or two, which may touch it or each other.
+  // A rectangle with one or two holes, which may touch it or each other.
   Rings frame() {
     const Plane where = plane();
     const Rectangle outer = rectangle();
@@ -311,7 +311,7 @@ class Decoder {
     return out;
   }
 
-  // A face once more, in place or one step of the lattice away.
+  // A copy of a face, at the same place or one lattice step away.
   Rings copy() {
     if (faces_.empty()) return {triangle()};
     Rings out = faces_[in_.below(faces_.size())].rings;
@@ -323,7 +323,7 @@ class Decoder {
     return out;
   }
 
-  // A face drawn towards the receiver or away from it: the shadows of its sides are the sides.
+  // A face moved along its rays towards the receiver or away from it: its shadow has the same sides.
   Rings cover() {
     if (faces_.empty()) return {triangle()};
     constexpr std::array kFactors{0.5, 0.25, 0.75, 2.0, 0x1p-30, -0.5, 1.0, 1.0 / 3.0};
@@ -335,7 +335,7 @@ class Decoder {
     return out;
   }
 
-  // A parallelogram with the receiver as a corner, on a side, inside, or merely in its plane.
+  // A parallelogram with the receiver at a corner, on a side, inside, or only in its plane.
   Corners through_receiver() {
     const Vec3 u = corner() - point_;
     const Vec3 v = corner() - point_;
@@ -352,7 +352,7 @@ class Decoder {
     }
   }
 
-  // Shares a side, or part of one, with a face.
+  // A face that shares a side, or a part of one, with another face.
   Corners neighbour() {
     if (faces_.empty()) return triangle();
     const Corners& ring = faces_[in_.below(faces_.size())].rings.front();
@@ -404,7 +404,7 @@ class Decoder {
     return ring.size() < kMaxRingCorners ? &ring : nullptr;
   }
 
-  // From a corner towards another corner, or anywhere, and back.
+  // A spike from a corner towards another corner or a random point, and back.
   void add_spike() {
     Corners* ring = last_ring();
     if (ring == nullptr) return;
@@ -419,7 +419,7 @@ class Decoder {
     ring->insert(ring->begin() + static_cast<std::ptrdiff_t>(i), spike.begin(), spike.end());
   }
 
-  // A corner repeated, or one in the middle of a side.
+  // A repeated corner, or a corner in the middle of a side.
   void add_idle_corner() {
     Corners* ring = last_ring();
     if (ring == nullptr) return;
@@ -458,7 +458,7 @@ class Decoder {
     return count;
   }
 
-  // Faces drawn around the receiver keep their places: they then meet it no more, or still do.
+  // Faces placed relative to the receiver stay where they are: after the change they may or may not meet it.
   void place_receiver_on_faces() {
     if (faces_.empty()) return;
     const Corners& ring = faces_.back().rings.front();
@@ -486,7 +486,7 @@ class Decoder {
   static void join_rings(const std::vector<Vec3>& vertices, PlainFace& face) {
     try {
       face.rings = {generate::keyhole(vertices, face)};
-    } catch (const std::invalid_argument&) {  // they touch: no bridge
+    } catch (const std::invalid_argument&) {  // they touch, so no bridge is possible
     }
   }
 
@@ -510,7 +510,7 @@ class Decoder {
     scene.vertices = std::move(vertices);
   }
 
-  // Most of the 256 exponents leave the scene as it is.
+  // Most of the 256 exponents leave the scene unchanged.
   [[nodiscard]] PlainScene rescaled(PlainScene scene) const {
     if (std::abs(exponent_) < 100) return scene;
     PlainScene out = scene;
@@ -541,11 +541,11 @@ Scene build_what_can_be(const PlainScene& plain) {
   return builder.build();
 }
 
-// Without the faces that a scene cannot hold.
+// Leaves out the faces that a scene cannot contain.
 PlainScene usable_part(const PlainScene& plain) {
   const Scene built = build_what_can_be(plain);
   PlainScene out = plain;
-  std::size_t i = 0;  // faces in the order they were added
+  std::size_t i = 0;  // faces in the order in which they were added
   for (PlainPatch& patch : out.patches) {
     std::vector<PlainFace> usable;
     for (PlainFace& face : patch.faces) {

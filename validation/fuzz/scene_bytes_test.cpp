@@ -1,4 +1,4 @@
-// A fuzzer learns nothing from bytes that mean no scene, or scenes in which nothing happens.
+// A fuzzer learns nothing from bytes that give no scene, or from trivial scenes.
 #include "fuzz/scene_bytes.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ TEST(SceneBytes, MostBytesMeanAScene) {
   EXPECT_EQ(identities.size(), kIdentityCount);
 }
 
-// Random bytes do not aim at the receiver as the corpus does; still some must see part of their source.
+// Random bytes are not aimed at the receiver like the corpus; still, some scenes must show a part of their source.
 TEST(SceneBytes, SomeScenesShowPartOfTheirSource) {
   constexpr int kCount = 80;
   int visible = 0;
@@ -113,7 +113,7 @@ TEST(SceneBytes, ScenesBeyondTheLimitsAreRefused) {
   EXPECT_THROW((void)encode(file.scene, Identity::kOrder), std::invalid_argument);
 }
 
-// One scene through every check.
+// Runs every check on one scene.
 TEST(FuzzChecks, FindNothingWhereNothingIsWrong) {
   Random random(seed_of(7));
   const PlainScene scene = triangles_scene(random);

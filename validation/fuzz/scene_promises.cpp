@@ -35,9 +35,9 @@ Vector newell(const Corners& corners) {
   return sum;
 }
 
-// All corners in one plane, and each on the left of each side or on its line.
+// True if all corners are in one plane, and each lies to the left of each side or on its line.
 bool convex_and_planar(const Corners& corners, const Vector& normal) {
-  constexpr std::size_t kAllPairs = 60;  // beyond, only neighbours: the time would be quadratic
+  constexpr std::size_t kAllPairs = 60;  // above this number, only neighbours are compared: the time would be quadratic
   const std::size_t n = corners.size();
   for (std::size_t i = 0; i < n; ++i) {
     if (sgn(dot(normal, minus(corners[i], corners[0]))) != 0) return false;
@@ -66,8 +66,8 @@ std::string broken_by(const Scene& scene, const Piece& piece) {
   return {};
 }
 
-// True where the pieces' vector area is certain to be the ring's: one ring, no vertex twice, and no side of a face
-// that is not planar seen end-on along its Newell vector (there the triangles leave a gap, which is fewer of them).
+// True if the pieces' vector area must equal the ring's: one ring, no vertex twice, and no side of a non-planar face
+// seen end-on along its Newell vector (such triangles would leave a gap, so there are fewer of them).
 bool area_is_kept(const Face& face) {
   const auto& ring = face.rings.front();
   if (face.rings.size() != 1 || std::set<std::uint32_t>(ring.begin(), ring.end()).size() != ring.size()) return false;
@@ -133,18 +133,18 @@ std::string colour(const char* keyword, const Rgb& c) {
   return std::string(keyword) + ' ' + to_text(c.r) + ' ' + to_text(c.g) + ' ' + to_text(c.b) + '\n';
 }
 
-// Names of groups are one word; only those of objects hold blanks.
+// Group names are one word; only object names contain blanks.
 bool patches_are_objects(const Scene& scene) {
   return std::ranges::any_of(
       scene.patches(), [](const Patch& patch) { return patch.name.find_first_of(" \t\v\f") != std::string::npos; });
 }
 
 std::string patch_line(const Patch& patch, bool object) {
-  // The second word is passed over; it keeps a backslash at the end of the name from joining the next line.
+  // The second word is ignored; it keeps a backslash at the end of the name from joining the next line.
   return object ? "o " + patch.name + '\n' : "g " + patch.name + " .\n";
 }
 
-// A ring that repetitions have left with one corner or two gets them back.
+// A ring with only one or two corners left after repetitions gets its repetitions back.
 std::string face_line(const Face& face) {
   std::string out = "f";
   if (face.rings.empty()) return out + '\n';

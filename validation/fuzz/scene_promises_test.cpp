@@ -1,4 +1,4 @@
-// Scenes read from text give their own text back, whatever their names and rings look like.
+// Scenes read from text give the same text again, for any names and rings.
 #include "fuzz/scene_promises.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // exactff_fuzz_seed FOLDER CASE.json...
 //
 // Writes each case file as an input of fuzz_solver, so that a run starts from the reference and regression cases.
-// Cases beyond the decoder's limits are passed over.
+// Cases beyond the decoder's limits are skipped.
 #include <cstddef>
 #include <cstdint>
 #include <exception>

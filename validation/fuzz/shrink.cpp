@@ -29,7 +29,8 @@ std::string text_of(const Outcome& outcome) {
   return outcome.problem;
 }
 
-// Smaller scenes must end the same way: a disagreement is not followed into a crash, nor a crash into a hang.
+// Smaller scenes must fail in the same way: shrinking does not go from a disagreement to a crash, or from a crash to a
+// hang.
 Shrunk shrunk_by(const PlainScene& scene, Ending ending, const std::function<Outcome(const PlainScene&)>& run) {
   Shrunk out;
   out.scene = minimised(scene, [&](const PlainScene& smaller) { return run(smaller).ending == ending; });
@@ -43,7 +44,7 @@ std::optional<Shrunk> shrink(const FuzzCase& fuzz_case, unsigned seconds) {
   const auto ask_oracle = [=](const PlainScene& scene) {
     return run_apart([&] { return oracle_problem(scene); }, seconds);
   };
-  // Of two scenes that should agree and do not, one is wrong: the oracle tells which.
+  // If two scenes should agree and do not, one is wrong: the oracle decides which.
   std::vector<PlainScene> suspects{fuzz_case.scene};
   if (run_apart([&] { return changed(fuzz_case) ? "changes" : ""; }, seconds).ending == Ending::kProblem) {
     suspects.push_back(*changed(fuzz_case));
@@ -67,7 +68,8 @@ std::filesystem::path keep(const Shrunk& shrunk, const std::string& name, const 
   std::filesystem::create_directories(folder);
   try {
     std::ofstream(folder / (name + ".obj")) << generate::to_obj(shrunk.scene);
-  } catch (const std::invalid_argument&) {  // rings that touch have no keyhole; the case file is all there is
+  } catch (
+      const std::invalid_argument&) {  // touching rings cannot be converted to keyholes; there is only the case file
   }
   const std::string with = shrunk.alone ? "" : " (only with the identity: " + name_of(shrunk.identity) + ")";
   const std::filesystem::path path = folder / (name + ".json");

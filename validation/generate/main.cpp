@@ -1,4 +1,5 @@
-// exactff_generate: writes a generated scene as OBJ (and MTL where it has materials): any model, or a family by flags.
+// exactff_generate: writes a generated scene as OBJ (and MTL if it has materials): any model, or a family chosen by
+// flags.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>

@@ -1,4 +1,4 @@
-// What comes with a value as its proof: enclosures at every precision, and the rounding of visible fractions.
+// The proof that comes with a value: enclosures at every precision, and the rounding of visible fractions.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using generate::Random;
 
 PlainScene random_scene(Random& random) { return random.one_in(3) ? generic_scene(random) : degenerate_scene(random); }
 
-// Each cap on the precision ends the loop with a ball of its own; all of them hold the same F, and so do the bounds.
+// Each precision cap ends the loop with a different ball; all balls contain the same F, and so do the bounds.
 TEST(Certificate, BallsAndBoundsOfEveryPrecisionHoldTheFormFactor) {
   for (std::uint64_t i = 0; i < scaled_count(40); ++i) {
     Random random(seed_of(i));
@@ -57,7 +57,7 @@ PlainScene shrunk_source(Random& random, int shrink) {
   return scene;
 }
 
-// At every loss of precision some first ball holds the midpoint of two doubles; taking either for certified would be
+// For every loss of precision, some first ball contains the midpoint of two doubles; certifying either double would be
 // wrong half of the time.
 TEST(Certificate, AValueStaysWhenMoreDecimalsAreAskedFor) {
   bool raised = false;
@@ -78,7 +78,7 @@ TEST(Certificate, AValueStaysWhenMoreDecimalsAreAskedFor) {
 
 bool mantissa_is_even(double value) { return (std::bit_cast<std::uint64_t>(value) & 1U) == 0; }
 
-// No double is nearer, and a tie goes to the even one. Judged by comparing rationals alone.
+// No double is nearer, and a tie goes to the even one. The test compares only rationals.
 bool is_nearest(double value, const mpq_class& exact) {
   const mpq_class error = abs(mpq_class(value) - exact);
   for (const double toward : {-1.0, 2.0}) {

@@ -23,7 +23,7 @@ Exact difference(const Vec3& a, const Vec3& b) {
   return {mpq_class(a.x) - b.x, mpq_class(a.y) - b.y, mpq_class(a.z) - b.z};
 }
 
-// Above 0 where d lies on the side of the plane of a, b, c from which they run counter-clockwise.
+// Positive if d lies on the side of the plane of a, b, c from which they run counter-clockwise.
 int side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Exact u = difference(b, a);
   const Exact v = difference(c, a);
@@ -79,7 +79,7 @@ bool in_general_position(const std::vector<Vec3>& points) {
   return true;
 }
 
-// A triangle is a face if nothing lies before it.
+// A triangle is a face if no point lies in front of it.
 Solid hull(const std::vector<Vec3>& points) {
   Solid solid{points, {}};
   const auto n = static_cast<std::uint32_t>(points.size());
@@ -138,7 +138,7 @@ void add_thing(PlainScene& scene, const Solid& solid) {
   for (const PlainFace& face : solid.faces) scene.patch("things").faces.push_back(renumbered(face, first));
 }
 
-// Both sides share their corners, so that a polygon that is not planar is cut along the same diagonals.
+// Both sides share their corners, so a non-planar polygon is cut along the same diagonals on both sides.
 void add_sheet(PlainScene& scene, const std::vector<Vec3>& corners) {
   const std::uint32_t first = add_corners(scene, corners);
   PlainFace front{{{}}};
@@ -153,7 +153,7 @@ namespace {
 
 constexpr double kHeight = 8;
 
-// Boxes that together fill a floor plan; they may overlap.
+// Boxes that fill a floor plan together; they may overlap.
 struct Building {
   FloorPlan plan;
   std::vector<std::array<double, 4>> cells;  // x from, x to, y from, y to
@@ -194,7 +194,7 @@ class BuildingMaker {
   const std::array<double, 4>& cell() { return building_.cells[random_.below(building_.cells.size())]; }
   double whole(double low, double high) { return random_.integer(static_cast<int>(low), static_cast<int>(high)); }
 
-  // The ceiling gets a hole, and the hole a patch of its own.
+  // Cuts a hole into the ceiling and fills it with another patch.
   void add_window(Solid& shell) {
     const std::vector<std::vector<std::array<double, 2>>> outlines{
         {{2, 2}, {6, 2}, {6, 6}, {2, 6}}, {{0, 0}, {6, 2}, {4, 4}, {7, 7}, {2, 6}}, {{4, 0}, {8, 4}, {4, 8}, {0, 4}}};
@@ -222,7 +222,7 @@ class BuildingMaker {
     solids_.push_back(std::move(solid));
   }
 
-  // Off the walls: a sheet on a wall would be seen twice.
+  // Keeps a distance from the walls: a sheet on a wall would be seen twice.
   void add_sheet_in(const std::array<double, 4>& where) {
     std::vector<Vec3> corners;
     do {
@@ -287,7 +287,7 @@ class BuildingMaker {
     }
   }
 
-  // As near to a wall as 1e-300, or as doubles are.
+  // As near to a wall as 1e-300, or as doubles allow.
   double beside(double low, double high) {
     const std::array<double, 4> distances{1e-3, 1e-9, 1e-15, 1e-300};
     const double distance = distances[random_.below(distances.size())];
@@ -331,7 +331,7 @@ Vec3 shrunk(const Vec3& v, double factor, const Vec3& centre) {
   return {centre.x + factor * v.x, centre.y + factor * v.y, centre.z + factor * v.z};
 }
 
-// From `corner` towards `middle`, by 1 to 1e-15 of the way.
+// A point from `corner` towards `middle`, by 1 to 1e-15 of the way.
 Vec3 towards(const Vec3& corner, const Vec3& middle, Random& random) {
   const double t = std::pow(0.1, random.integer(0, 15));
   return {corner.x + t * (middle.x - corner.x), corner.y + t * (middle.y - corner.y),

@@ -1,5 +1,5 @@
-// In a closed room all form factors from an inner point add up to exactly one, whatever stands in the room: the balls
-// of all patches together hold 1, and are as narrow as the precision that was asked for.
+// In a closed room, all form factors from an inner point add up to exactly one, whatever objects the room contains. The
+// sum of the balls of all patches contains 1, and it is as narrow as the requested precision.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,8 +37,8 @@ mpq_class power_of_ten(int exponent) {
   return mpq_class(1, power);
 }
 
-// D certified digits of a summand leave an error below 10^(1-D) of it, and the summands are 1 together. Without digits
-// each ball rounds to one double.
+// D certified digits of a summand leave a relative error below 10^(1-D), and the summands add up to 1. Without digits,
+// each ball determines one double.
 void expect_one(const PlainScene& plain) {
   const Scene scene = generate::build(plain);
   for (const int digits : {0, 30, 150}) {
@@ -56,7 +56,7 @@ void map(PlainScene& scene, const std::function<Vec3(const Vec3&)>& change) {
   scene.point = change(scene.point);
 }
 
-// Exact, whatever the coordinates: the axes grow by powers of two of their own.
+// Exact for any coordinates: each axis is scaled by a different power of two.
 void grow_axes(PlainScene& scene, Random& random) {
   const auto power = [&] { return std::ldexp(1.0, random.integer(0, 400)); };
   const double x = power();
@@ -65,7 +65,7 @@ void grow_axes(PlainScene& scene, Random& random) {
   map(scene, [&](const Vec3& v) { return Vec3{v.x * x, v.y * y, v.z * z}; });
 }
 
-// Exact for eighths: afterwards most coordinates have full mantissas, and no face is parallel to an axis.
+// Exact for multiples of 1/8. Afterwards most coordinates have full mantissas, and no face is parallel to an axis.
 void skew(PlainScene& scene, Random& random) {
   const auto whole = [&] { return std::floor(random.between(1, 0x1p43)); };
   const std::array<double, 6> m{whole(), whole(), whole(), whole(), whole(), whole()};
@@ -81,11 +81,11 @@ PlainScene framed(ClosedRoom room, Random& random) {
   if (choice == 0) grow_axes(room.scene, random);
   if (!room.receiver_is_eighths || choice == 0) return room.scene;
   if (choice == 1) skew(room.scene, random);
-  // Every quadrilateral is bent by a rounding, and cut into triangles.
+  // Rounding makes every quadrilateral non-planar, so it is cut into triangles.
   return choice >= 2 && !room.holes ? sheared(room.scene, random) : room.scene;
 }
 
-// Draws until the scene can be built: a sheet's fourth corner may make it cross itself, as may rounding.
+// Draws until the scene can be built: rounding or its fourth corner may make a sheet cross itself.
 ClosedRoom framed_building(Random& random) {
   for (;;) {
     ClosedRoom room = random_building(random);
@@ -99,7 +99,7 @@ ClosedRoom framed_building(Random& random) {
 }
 
 // Cubes, L and U shapes, pillars, windows in a face with a hole; boxes, tetrahedra and two-sided sheets that touch,
-// overlap and stand at the walls; receivers in planes of faces and as near to walls as doubles go.
+// overlap and stand at the walls; receivers in planes of faces and as near to walls as doubles allow.
 TEST(Closure, Buildings) {
   for (std::uint64_t i = 0; i < scaled_count(60); ++i) {
     Random random(seed_of(i));
@@ -116,7 +116,7 @@ TEST(Closure, ConvexRoomsOfRandomCorners) {
   }
 }
 
-// The buildings above are of every kind that they should be.
+// Checks that the random buildings above include every intended kind.
 TEST(Closure, TheBuildingsAreOfAllKinds) {
   int holes = 0;
   int things = 0;
@@ -148,7 +148,7 @@ PlainScene cube_room(Random& random) {
   return scene;
 }
 
-// A receiver on the wall itself: its own wall gives 0 and the five others make up for it.
+// A receiver on a wall: its own wall gives 0, and the five others add up to 1.
 TEST(Closure, ReceiverOnAWall) {
   Random random(seed_of(0));
   PlainScene scene = cube_room(random);
@@ -170,7 +170,7 @@ TEST(Closure, ReceiverInACorner) {
   }
 }
 
-// The same room as one patch of six faces: their F is one ball, and it rounds to 1 and to nothing else.
+// The same room as one patch of six faces: F is a single ball, and it rounds to exactly 1.
 TEST(Closure, AWholeRoomAsOneSourceIsOne) {
   for (std::uint64_t i = 0; i < scaled_count(10); ++i) {
     Random random(seed_of(i));

@@ -1,5 +1,5 @@
-// The faces that a result lists as cutting the source are those that, each alone, leave less of it visible than there
-// is without any: judged by exact fractions, on scenes of every random family. EXACTFF_TEST_SCALE multiplies their
+// The faces that a result lists as cutting the source are exactly those that, each alone, reduce its visible part. This
+// is checked with exact fractions, on scenes of every random family. EXACTFF_TEST_SCALE multiplies their
 // number.
 #include <gmpxx.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What is drawn is what was found: the exact geometry rounded to doubles, on scenes of every random family.
+// A drawing shows the exact geometry, rounded to doubles. Checked on scenes of every random family.
 // EXACTFF_TEST_SCALE multiplies the number of views.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 using generate::PlainScene;
 using generate::Random;
 
-// Loops seen along the axis of the normal's largest component, in rational numbers.
+// Loops, projected along the axis of the normal's largest component, in rational numbers.
 class Projection {
  public:
   explicit Projection(const Vec3& normal) {
@@ -29,7 +29,7 @@ class Projection {
     sign_ = components[axis_] < 0.0 ? -1 : 1;
   }
 
-  // Twice the area, positive where the loop runs counter-clockwise as x sees it.
+  // Twice the area; positive if the loop runs counter-clockwise as seen from x.
   [[nodiscard]] mpq_class doubled_area(const Loop& loop) const {
     mpq_class sum = 0;
     for (std::size_t i = 0; i < loop.corners.size(); ++i) {
@@ -63,7 +63,7 @@ class Projection {
   int sign_ = 1;
 };
 
-// Twice an area, known up to a blur.
+// Twice an area, known up to an error.
 struct Area {
   mpq_class doubled = 0;
   mpq_class blur = 0;
@@ -90,7 +90,7 @@ void expect_sound(const Projection& projection, const Loop& loop) {
   EXPECT_GE(turned, -projection.blur(loop)) << (loop.hole ? "hole" : "loop") << " runs the wrong way round";
 }
 
-// Faces of one plane may overlap: then the pieces of the source add up to more than their union.
+// Faces in one plane may overlap; then the pieces of the source have more area than their union.
 void expect_drawn_as_found(const PlaneDrawing& drawing, const PlaneRecord& record) {
   const Projection projection(drawing.normal);
   EXPECT_TRUE(is_finite(drawing.normal));
@@ -142,7 +142,7 @@ TEST_P(Drawing, IsWhatWasFound) {
 INSTANTIATE_TEST_SUITE_P(RandomScenes, Drawing, testing::ValuesIn(random_families()),
                          [](const auto& family) { return family.param.name; });
 
-// One face of the scene enlarged about a point of it until it hides everything from nearby.
+// Enlarges one face of the scene about one of its points until it hides everything at a short distance.
 TEST(HiddenByOne, IsDrawnAsTheWholeSource) {
   int lids = 0;
   for (std::uint64_t i = 0; i < scaled_count(300); ++i) {
@@ -152,7 +152,7 @@ TEST(HiddenByOne, IsDrawnAsTheWholeSource) {
     const Vec3 x = plain.point, n = plain.normal;
     const double a = random.between(-1.0, 1.0), b = random.between(-1.0, 1.0), size = 64.0;
     const auto lid_corner = [&](double p, double q) {
-      const double tilt = a * p + b * q;  // corners may lie behind x, in its horizon, or far ahead
+      const double tilt = a * p + b * q;  // corners may lie behind x, in its horizon, or far in front
       return Vec3{x.x + p + 0.125 * n.x * (1.0 + tilt), x.y + q + 0.125 * n.y * (1.0 + tilt),
                   x.z + 0.125 * n.z * (1.0 + tilt)};
     };

@@ -1,4 +1,4 @@
-// What must not move a bit of value, zero flag and visible fraction.
+// Changes of a scene that must not change a bit of the value, the zero flag or the visible fraction.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ using generate::Random;
 
 PlainScene random_scene(Random& random) { return random.one_in(3) ? generic_scene(random) : degenerate_scene(random); }
 
-// Compares each of `count` random scenes with `change` of it.
+// Compares each of `count` random scenes with the result of `change`.
 void expect_same_bits(std::uint64_t count, const std::function<PlainScene(const PlainScene&, Random&)>& change) {
   for (std::uint64_t i = 0; i < scaled_count(count); ++i) {
     Random random(seed_of(i));
@@ -64,7 +64,7 @@ TEST(Invariance, PowerOfTwoScaling) {
 bool scales_exactly(const PlainScene& scene, int exponent) {
   PlainScene there = scene;
   generate::scale(there, std::ldexp(1.0, exponent));
-  generate::scale(there, std::ldexp(1.0, -exponent / 2));  // in two steps: 2^1074 is no double
+  generate::scale(there, std::ldexp(1.0, -exponent / 2));  // in two steps, because 2^1074 is not a double
   generate::scale(there, std::ldexp(1.0, -exponent - (-exponent / 2)));
   return there.point == scene.point && there.vertices == scene.vertices;
 }
@@ -118,7 +118,7 @@ TEST(Invariance, SpikesInRings) {
   expect_same_bits(200, [](const PlainScene& scene, Random& random) { return with_spikes(scene, random); });
 }
 
-// Holes become keyholes and numbers become text on the way.
+// On the way, holes become keyholes and numbers become text.
 TEST(Invariance, TheWayThroughObj) {
   ExactOptions options;
   options.visible_fraction = true;
@@ -131,7 +131,7 @@ TEST(Invariance, TheWayThroughObj) {
   }
 }
 
-// Magnitudes from 1e-300 to 1e300 in one scene, even in one triangle, and the same F to the last bit.
+// With magnitudes from 1e-300 to 1e300 in one scene, even in one triangle, F is the same to the last bit.
 TEST(Invariance, CornersSlideAlongRaysThroughTheReceiver) {
   for (const int range : {1, 40, 1000}) {
     for (std::uint64_t i = 0; i < scaled_count(40); ++i) {
@@ -157,7 +157,7 @@ std::vector<Answer> answers(const Scene& scene, const std::vector<Receiver>& rec
   return out;
 }
 
-// Two threads at work on the same scene and source at the same time, against one.
+// Two threads that use the same scene and source at the same time, compared with one thread.
 TEST(Invariance, OneOrTwoThreads) {
   const PlainScene plain = generate::lattice({.n = 40, .seed = 5});
   const Scene scene = generate::build(plain);

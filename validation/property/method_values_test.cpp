@@ -1,9 +1,9 @@
-// What include/exactff/methods.h promises of every value: finite, and in [0, 1] unless the method says that its formula
-// leaves it. A scene that a method will not have is an InputError in words, and nothing else is thrown.
+// include/exactff/methods.h promises that every value is finite, and in [0, 1] unless the method says that its formula
+// can leave this range. If a method refuses a scene, it throws an InputError with a message, and nothing else.
 //
-// The scenes are those that the exact solver is judged by (support/random_scenes.h), degenerate ones first, as they are
-// and with every axis scaled by a power of two of its own, up to 2^1000. EXACTFF_TEST_SCALE multiplies the number of
-// scenes, EXACTFF_TEST_SEED moves to others.
+// The scenes are those of the exact solver's tests (support/random_scenes.h), degenerate ones first, unchanged and with
+// every axis scaled by a different power of two, up to 2^1000. EXACTFF_TEST_SCALE multiplies the number of scenes,
+// EXACTFF_TEST_SEED selects other scenes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,8 +25,8 @@ namespace {
 using generate::PlainScene;
 using generate::Random;
 
-// The recursion's settings end it soon: a leaf costs the control an exact visible fraction. The exact method is judged
-// by oracle_test.cpp, and takes seconds where scenes of 2^1000 go to the Booleans.
+// The settings end the recursion early, because each leaf costs the control an exact visible fraction. The exact method
+// is tested by oracle_test.cpp, and needs seconds if scenes of size 2^1000 go to the Boolean engine.
 const std::vector<std::string> kChoices = {"adaptive:eps_B=0.02,rays=4,depth_cap=6",
                                            "adaptive:eps_B=0.05,rays=9,pattern=low-discrepancy,depth_cap=6",
                                            "adaptive:eps_B=0.05,rays=1,pattern=centre,eps_A=0.01,depth_cap=6",
@@ -60,7 +60,7 @@ bool is_literal(const methods::Choice& choice) {
 
 bool recurses(const methods::Choice& choice) { return choice.method->name.starts_with("adaptive"); }
 
-// Empty where the value is as promised.
+// Empty if the value is as promised.
 std::string fault(const methods::Choice& choice, double value, std::size_t source_pieces) {
   const auto told = [&](const char* what) { return choice.text() + " gives " + std::to_string(value) + ", " + what; };
   if (!std::isfinite(value)) return told("which is not finite");
@@ -71,7 +71,7 @@ std::string fault(const methods::Choice& choice, double value, std::size_t sourc
   return {};
 }
 
-// Values of one method from one receiver; empty where all are as promised.
+// Values of one method from one receiver; empty if all are as promised.
 std::string judged(const Scene& scene, const Receiver& receiver, const std::string& source, const std::string& text,
                    Judge& judge) {
   const methods::Choice choice = methods::parse(text);
@@ -96,7 +96,7 @@ std::string judged(const Scene& scene, const Receiver& receiver, const std::stri
 
 double power(Random& random, int range) { return std::ldexp(1.0, random.integer(-range, range)); }
 
-// A random power of two for every axis, or one for all, or none.
+// A different random power of two for every axis, the same for all, or none.
 void stretch(PlainScene& scene, Random& random) {
   constexpr int kRanges[] = {0, 10, 60, 130, 500, 1000};
   const int range = kRanges[random.below(std::size(kRanges))];
@@ -112,7 +112,7 @@ Vec3 moved(const Vec3& p, const Vec3& towards, double share) {
   return {p.x + (towards.x - p.x) * share, p.y + (towards.y - p.y) * share, p.z + (towards.z - p.z) * share};
 }
 
-// The scene's own receiver, one very near to a corner, one that is far away.
+// The scene's own receiver, one very near a corner, and one far away.
 Receiver receiver_in(const PlainScene& plain, const Scene& scene, Random& random) {
   Receiver receiver = generate::receiver_of(plain);
   const Vec3 corner = plain.vertices[random.below(plain.vertices.size())];
@@ -127,7 +127,7 @@ Receiver receiver_in(const PlainScene& plain, const Scene& scene, Random& random
   return receiver;
 }
 
-// Grown until Embree is asked: copies of the scene's occluders, each a little beside the other.
+// Enlarged until Embree is used: copies of the scene's occluders, each slightly displaced.
 void crowd(PlainScene& plain, Random& random) {
   const std::size_t patches = plain.patches.size();
   for (int copy = 0; copy < 6; ++copy) {
@@ -157,7 +157,7 @@ void judge_scenes(std::uint64_t count, PlainScene (*make)(Random&)) {
     try {
       scene.emplace(generate::build(plain));
     } catch (const InputError&) {
-      continue;  // overflow, or a face that the scaling spoils
+      continue;  // overflow, or a face that scaling makes invalid
     }
     const Receiver receiver = receiver_in(plain, *scene, random);
     for (const std::string& text : kChoices) {
@@ -191,8 +191,8 @@ TEST(MethodValues, AreAsPromisedOnScenesOnRays) {
   }
 }
 
-// The control alone, to greater depth. V is exact and in [0, 1], so a leaf that eps_F stops is wrong by no more than
-// eps_F, and no other leaf is wrong beyond rounding.
+// Only the control, to a greater depth. V is exact and in [0, 1], so the error of a leaf that eps_F stops is at most
+// eps_F, and other leaves have only rounding errors.
 class ControlValues : public testing::TestWithParam<RandomFamily> {};
 
 TEST_P(ControlValues, AreWithinTheirBound) {

@@ -1,4 +1,4 @@
-// What an enclosure prints, read back exactly, holds the enclosure.
+// A printed enclosure, read back exactly, contains the enclosure.
 #include <gtest/gtest.h>
 
 #include "exactff/enclosure.h"
@@ -12,7 +12,7 @@ namespace {
 
 using generate::Random;
 
-// Midpoints of any size and of few or many bits, radii from far above to far below them; now and then either is 0.
+// Midpoints of any size with few or many bits, radii from far above to far below them; sometimes either is 0.
 struct Sample {
   Ball ball;
   mpq_class middle;
@@ -53,11 +53,11 @@ TEST(PrintedBall, HoldsTheBall) {
     ASSERT_LE(radius, 3 * width) << "seed " << seed_of(i);
     around_zero += original.middle == 0 && radius > 0 ? 1 : 0;
   }
-  EXPECT_GT(around_zero, 0);  // a contour that cancels to nothing gives such balls
+  EXPECT_GT(around_zero, 0);  // a contour that cancels completely gives such balls
 }
 
-// At the precision that suffices to know that F rounds to 0, its terms have cancelled to a ball around 0: once printed
-// as no number at all, with the radius 0.
+// At the precision that is sufficient to know that F rounds to 0, its terms have cancelled to a ball around 0. Such a
+// ball was once printed as nan with the radius 0.
 TEST(PrintedBall, HoldsAFormFactorWhoseTermsCancel) {
   generate::PlainScene scene;
   scene.add_ring(

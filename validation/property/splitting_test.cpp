@@ -1,4 +1,4 @@
-// Parts of a source against the whole, and more occluders against fewer.
+// Compares parts of a source with the whole source, and more occluders with fewer.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
@@ -87,7 +87,7 @@ TEST(Splitting, DyadicLatticeAddsUpToTheSquare) {
   expect_additive(cells, 25);
 }
 
-// The parts as faces of one source: their union is the square itself, so not even a bit may move.
+// With the parts as faces of one source, their union is the square itself, so no bit may change.
 TEST(Splitting, PartsOfOneSourceAreTheWholeBitForBit) {
   for (std::uint64_t i = 0; i < scaled_count(60); ++i) {
     Random random(seed_of(i));
@@ -100,7 +100,7 @@ TEST(Splitting, PartsOfOneSourceAreTheWholeBitForBit) {
   }
 }
 
-// Correct rounding is monotone, so this holds for values and not only for balls.
+// Correct rounding is monotone, so this holds for values as well as for balls.
 TEST(Splitting, AnAddedOccluderNeverRaisesTheFormFactor) {
   ExactOptions options;
   options.exact_fraction = true;

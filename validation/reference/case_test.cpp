@@ -1,4 +1,4 @@
-// Every case of data/reference and data/regression: by the library, and as a script would ask the program.
+// Every case of data/reference and data/regression, with the library and with the program as a script would call it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -122,7 +122,7 @@ TEST_P(ReferenceCase, VisibleFractionIsWithinTwoUlpInEachPlane) {
   }
 }
 
-// A unit square so far off that its form factor, about 2^-1202 / pi, is positive and still rounds to zero.
+// A unit square so far away that its form factor, about 2^-1202 / pi, is positive but rounds to zero.
 TEST(ReferenceCases, ProgramPrintsAnUnderflowAsZeroPointZero) {
   generate::PlainScene scene;
   scene.add_ring(scene.patch("source"), {{0, 0, 0x1p601}, {0, 1, 0x1p601}, {1, 1, 0x1p601}, {1, 0, 0x1p601}});

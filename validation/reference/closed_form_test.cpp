@@ -1,5 +1,5 @@
-// Point factors with known closed forms, to the last bit: the constants are correct to 30 digits, and strtod rounds
-// correctly. The digits come from the catalogue's formulas evaluated to 60 digits:
+// Form factors from a point with known closed forms, to the last bit. The constants are correct to 30 digits, and
+// strtod rounds correctly. The digits come from the catalogue's formulas, evaluated to 60 digits:
 //   parallel, below a corner (B-3): (X/A atan(Y/A) + Y/B atan(X/B)) / 2 pi, A = sqrt(1+X^2), B = sqrt(1+Y^2),
 //   perpendicular (B-4), all sides 1: (atan 1 - atan(1/sqrt 2) / sqrt 2) / 2 pi;
 // a centred plate at half the height hides a centred square of twice its side: the difference of two such sums.

@@ -1,5 +1,5 @@
-// Scenes that broke something beside the value. Each is data/regression/NAME.obj with receivers in NAME.csv; everything
-// that can be asked of a receiver and a source is asked of every receiver and every patch.
+// Scenes that once caused a fault other than a wrong value. Each is data/regression/NAME.obj with receivers in
+// NAME.csv. Every function for a receiver and a source is called for every receiver and every patch.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -75,7 +75,7 @@ TEST_P(RegressionScene, IsDrawn) {
   });
 }
 
-// A method may refuse a scene, with words.
+// A method may refuse a scene with a message.
 TEST_P(RegressionScene, EveryMethodGivesAShareOrRefuses) {
   for (const methods::Method* method : methods::all_methods()) {
     SCOPED_TRACE(method->name);

@@ -1,4 +1,4 @@
-// The scenes of data/scenes are what they say they are.
+// The scenes of data/scenes have their documented properties.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ TEST(CornellBox, FrontsFaceIntoTheRoomAndOutOfTheBlocks) {
   EXPECT_GT(newell("tall_block:1").y, 0.0);
 }
 
-// Seen from inside the closed blocks or just outside, sides must not show their backs to the room.
+// From inside the closed blocks or just outside them, no side may show its back to the room.
 TEST(CornellBox, BlocksHideTheLightFromTheirInside) {
   const Scene scene = read_obj(kScenes + "cornell_box.obj");
   for (const Vec3& inside : {Vec3{186, 80, 169}, Vec3{368, 160, 351}}) {
@@ -66,7 +66,7 @@ TEST(CornellBox, BlocksHideTheLightFromTheirInside) {
   }
 }
 
-// The room is closed but for its front: with a wall there all patches together fill the view.
+// The room is closed except for its front. With a wall there, the form factors of all patches sum to 1.
 TEST(CornellBox, ClosesToOneWithAFrontWall) {
   std::istringstream text(text_of(kScenes + "cornell_box.obj") +
                           "g front\nv 0 0 0\nv 552.8 0 0\nv 556 548.8 0\nv 0 548.8 0\nf -4 -3 -2 -1\n");
@@ -98,7 +98,7 @@ TEST(BlindsRoom, WindowIsPartlyHiddenByTheBlind) {
   EXPECT_LT(result.visible_fraction.value(), 1.0);
 }
 
-// A point that is in front of every slat sees nothing but fronts.
+// A point in front of every slat sees only fronts.
 TEST(BlindsRoom, ClosesToOne) {
   const Scene scene = read_obj(kScenes + "blinds_room.obj");
   Enclosure sum;

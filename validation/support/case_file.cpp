@@ -22,7 +22,7 @@ double number(const std::string& text) {
   return value;
 }
 
-// The same double twice, or the file is damaged.
+// Both texts must give the same double; otherwise the file is damaged.
 double number(const Json& decimal, const Json& hex) {
   const double value = number(decimal.get<std::string>());
   if (std::bit_cast<std::uint64_t>(value) != std::bit_cast<std::uint64_t>(number(hex.get<std::string>()))) {

@@ -69,7 +69,7 @@ struct RingPlace {
   std::size_t ring = 0;
 };
 
-// Calls change(scene, ring) for every ring until one change is found under which the scene still fails.
+// Calls change(scene, ring) for every ring until a change is found for which the scene still fails.
 template <class Change>
 bool change_a_ring(PlainScene& scene, const Fails& fails, const Change& change) {
   for (std::size_t i = 0; i < scene.patches.size(); ++i) {
@@ -112,7 +112,7 @@ bool drop_a_corner_here(PlainScene& scene, const Fails& fails, const RingPlace& 
 bool drop_a_hole(PlainScene& scene, const Fails& fails) { return change_a_ring(scene, fails, &drop_this_hole); }
 bool drop_a_corner(PlainScene& scene, const Fails& fails) { return change_a_ring(scene, fails, &drop_a_corner_here); }
 
-// How much there is to write down: the bits of the mantissa, and how far the exponent is from 0.
+// The complexity of a number: the bits of its mantissa, and the distance of its exponent from 0.
 int complexity(double value) {
   if (value == 0.0) return 0;
   int exponent = 0;
@@ -132,7 +132,7 @@ bool simplify(double& value, const std::function<bool()>& fails) {
   const double old = value;
   for (const double simpler : {0.0, 1.0, -1.0, std::round(old), shortened(old, 1), shortened(old, 2), shortened(old, 4),
                                shortened(old, 10), shortened(old, 26)}) {
-    if (!(complexity(simpler) < complexity(old))) continue;  // infinite ones are not simpler
+    if (!(complexity(simpler) < complexity(old))) continue;  // infinite numbers are not simpler
     value = simpler;
     if (fails()) return true;
   }
@@ -148,7 +148,7 @@ bool simplify_a_coordinate(PlainScene& scene, const Fails& fails) {
   return simplify_in(scene.point) || simplify_in(scene.normal) || std::ranges::any_of(scene.vertices, simplify_in);
 }
 
-// A change may make a face cross itself; that it is refused is no failure.
+// A change may make a face cross itself; its refusal is not a failure.
 bool is_a_scene(const PlainScene& scene) {
   try {
     (void)generate::build(scene);
@@ -179,7 +179,7 @@ PlainPatch in_triangles(const PlainScene& scene, const PlainPatch& patch) {
   for (const FaceId id : built.faces_of(built.select(patch.name))) {
     for (const Piece& piece : built.pieces_of(id)) {
       const auto corners = built.corners(piece);
-      // Where the fan starts in the middle of a side it has triangles without area, which are ignored.
+      // If the fan starts in the middle of a side, it has triangles without area, which are ignored.
       for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
         out.faces.push_back({{{corners[0], corners[k], corners[k + 1]}}});
       }
@@ -195,7 +195,7 @@ PlainScene minimised(PlainScene scene, const Fails& fails) {
   while (drop_a_patch(scene, still_fails) || drop_a_face(scene, still_fails) || drop_a_hole(scene, still_fails) ||
          drop_a_corner(scene, still_fails)) {
   }
-  // Faces that are not planar are cut by the order of their vertices, so that this is a change too.
+  // Non-planar faces are cut by the order of their vertices, so this is also a change.
   if (PlainScene renumbered = without_unused_corners(scene); fails(renumbered)) scene = std::move(renumbered);
   while (simplify_a_coordinate(scene, still_fails)) {
   }

@@ -1,10 +1,10 @@
-// Method: everything is moved so that the receiver x is the origin. In the plane of some source faces, a fragment is
-// a convex polygon with exact rational corners. What a face P hides is an intersection of half-spaces cut with the
-// source plane, so it is never projected:
+// Method: everything is translated so that the receiver x is the origin. A fragment is a convex polygon with exact
+// rational corners in the plane of some source faces. The part that a face P hides is an intersection of half-spaces
+// with the source plane, so P is never projected:
 //   y is hidden by a triangle (a,b,c)  <=>  y lies in the cone over it (three planes through x)
 //                                           and beyond its plane, seen from x.
-// A polygon, with holes or not, is the even-odd sum of the triangles that one fixed corner makes with its edges;
-// each fragment carries the parity of the triangles that hold it.
+// A polygon, with or without holes, is the even-odd sum of the triangles that one fixed corner makes with its edges;
+// each fragment has the parity of the triangles that contain it.
 // 1. Begin with one fragment that holds all faces of the plane; split it along the cones of the faces and keep what
 //    they hold: the source. The sum of its areas is the whole.
 // 2. Keep what lies above the horizon. 3. For each other face split along its shadow and drop what that holds.
@@ -72,7 +72,7 @@ std::array<Fragment, 2> split(const Fragment& fragment, const std::vector<Ration
   return parts;
 }
 
-// Turns over the parity of what lies in all half-spaces, splitting fragments where they leave one.
+// Flips the parity of everything in all half-spaces, splitting fragments at their borders.
 void toggle(Fragments& fragments, const std::vector<HalfSpace>& halves) {
   Fragments out;
   for (Fragment& fragment : fragments) {
@@ -97,7 +97,7 @@ void toggle(Fragments& fragments, const std::vector<HalfSpace>& halves) {
   fragments = std::move(out);
 }
 
-// Turns over the parity of what lies in the cone over the polygon and in `beyond`.
+// Flips the parity of everything in the cone over the polygon and in `beyond`.
 void toggle_cone(Fragments& fragments, const Polygon& polygon, const std::vector<HalfSpace>& beyond) {
   const Vector& a = polygon.rings.front().front();
   for (const std::vector<Vector>& ring : polygon.rings) {
@@ -160,7 +160,7 @@ Rational area_along(const Fragments& fragments, int k) {
   return sum;
 }
 
-// Requires a plane that does not hold the receiver.
+// Requires a plane that does not contain the receiver.
 Fragments union_of(const std::vector<Polygon>& faces) {
   Fragments rest{bounding_fragment(faces)};
   Fragments out;
@@ -175,7 +175,7 @@ Fragments union_of(const std::vector<Polygon>& faces) {
 
 void hide(Fragments& fragments, const Polygon& occluder) {
   const int sign = sgn(occluder.offset);
-  if (sign == 0) return;  // the occluder's plane holds the receiver
+  if (sign == 0) return;  // the occluder's plane contains the receiver
   const HalfSpace beyond{sign > 0 ? occluder.normal : negative(occluder.normal), abs(occluder.offset)};
   toggle_cone(fragments, occluder, {beyond});
   keep(fragments, false);
@@ -190,7 +190,7 @@ struct Setting {
   Vector normal;             // of the receiver
 };
 
-// Any origin will do that does not lie in the plane.
+// Any origin outside the plane is possible.
 Rational whole_area(std::vector<Polygon> faces, int axis) {
   if (sgn(faces.front().offset) == 0) {
     const Vector away = faces.front().normal;
@@ -199,7 +199,7 @@ Rational whole_area(std::vector<Polygon> faces, int axis) {
   return area_along(union_of(faces), axis);
 }
 
-// Faces seen from behind or edge-on show nothing.
+// Faces seen from behind or edge-on contribute nothing.
 Fragments visible_part(const Setting& setting, std::vector<Polygon> faces) {
   std::erase_if(faces, [&](const Polygon& face) { return face.face == setting.on; });
   if (faces.empty() || sgn(faces.front().offset) >= 0) return {};

@@ -2,8 +2,8 @@
 // 1. a quadrilateral takes the diagonal through the corner of lowest index if both triangles run counter-clockwise,
 //    else the other one;
 // 2. a larger face loses ear by ear, each time the one of lowest index that holds no other corner, its rim included.
-// The rule is silent where the ring touches itself as seen along that vector, and any cut of the same face would do;
-// such a face is taken as the scene cut it.
+// The rule does not cover a ring that touches itself as seen along that vector, where any cut of the face would be
+// valid; such a face is used as the scene cut it.
 #include "support/oracle_faces.h"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ bool in_plane(const Corners& corners, const Polygon& plane) {
   return std::ranges::all_of(corners, [&](const Vector& c) { return dot(plane.normal, c) == plane.offset; });
 }
 
-// A ring seen along its Newell vector, and what is left of it.
+// A ring, projected along its Newell vector, and the part that is left of it.
 class Ears {
  public:
   Ears(const Corners& corners, std::span<const std::uint32_t> index) : corners_(corners), along_(newell(corners)) {
@@ -144,7 +144,7 @@ std::vector<Corners> as_the_scene_cut_it(const Scene& scene, FaceId face, const 
 std::vector<Polygon> polygons_of(const Scene& scene, FaceId id, const Vector& origin) {
   const Face& face = scene.face(id);
   if (face.shape == FaceShape::kSkipped) return {};
-  if (face.shape == FaceShape::kZeroArea && face.rings.size() > 1) return {};  // the holes leave nothing
+  if (face.shape == FaceShape::kZeroArea && face.rings.size() > 1) return {};  // the holes cover everything
   std::vector<Corners> rings;
   for (const auto& ring : face.rings) {
     Corners& corners = rings.emplace_back();
@@ -152,7 +152,7 @@ std::vector<Polygon> polygons_of(const Scene& scene, FaceId id, const Vector& or
   }
   if (on_one_line(rings.front())) return {};
   const Polygon whole = polygon(id, rings);
-  if (is_zero(whole.normal)) return {};  // goes there and back the same way
+  if (is_zero(whole.normal)) return {};  // goes forth and back the same way
   if (std::ranges::all_of(rings, [&](const Corners& ring) { return in_plane(ring, whole); })) return {whole};
   Ears ears(rings.front(), face.rings.front());
   std::vector<Polygon> out;

@@ -75,7 +75,7 @@ void evaluate(arb_ptr form_factor, const std::vector<Corners>& polygons, const V
   arb_div(form_factor, form_factor, divisor, bits);
 }
 
-// Where the numbers that round to `value` end: halfway to the next double in the direction of `limit`, exactly.
+// The end of the interval that rounds to `value`: halfway to the next double in the direction of `limit`, exact.
 void set_halfway(arf_t out, double value, double limit) {
   arf_t next;
   arf_init(next);
@@ -127,7 +127,7 @@ void set_ends(RoundedSum& result, arb_ptr ball) {
   arf_clear(high);
 }
 
-// False while the ball does not determine the double and 30 digits.
+// False if the ball does not determine the double and 30 digits.
 bool settle(RoundedSum& result, arb_ptr ball) {
   if (arb_rel_accuracy_bits(ball) < 110) return false;
   result.value = arf_get_d(arb_midref(ball), ARF_RND_NEAR);

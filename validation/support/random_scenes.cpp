@@ -112,7 +112,7 @@ class Degenerate {
     }
   }
 
-  // Gives corner() something to repeat.
+  // Gives corner() corners to repeat.
   void seed_corners() { scene_.vertices.push_back(point()); }
 
   void add_until_some_area(PlainPatch& source) {
@@ -129,7 +129,7 @@ class Degenerate {
     return out;
   }
 
-  // Two corners of what is there already and one more: shares an edge, or lies in its plane.
+  // Two existing corners and a new one: the face shares an edge, or lies in an existing plane.
   Corners neighbour() {
     const std::size_t i = random_.below(scene_.vertices.size());
     const std::size_t j = i + 1 < scene_.vertices.size() ? i + 1 : 0;
@@ -138,7 +138,7 @@ class Degenerate {
     return {a, b, random_.one_in(2) ? 0.5 * (a + corner()) : corner()};
   }
 
-  // A parallelogram through the receiver, or one whose plane holds it.
+  // A parallelogram through the receiver, or one whose plane contains it.
   Corners edge_on() {
     const Vec3 a = random_.one_in(2) ? scene_.point : scene_.point + direction();
     const Vec3 b = scene_.point + direction();
@@ -238,12 +238,12 @@ PlainScene generic_scene(Random& random) {
   Corners source{anywhere(2), anywhere(2), anywhere(2)};
   const Vec3 u = source[1] - source[0];
   const Vec3 v = source[2] - source[0];
-  if (u.x * v.y - u.y * v.x > 0) std::swap(source[1], source[2]);  // most see it from below
+  if (u.x * v.y - u.y * v.x > 0) std::swap(source[1], source[2]);  // most receivers see it from below
   scene.add_ring(scene.patch("source"), source);
   const int occluders = random.integer(0, 8);
   for (int i = 0; i < occluders; ++i) {
     Corners face{anywhere(1), anywhere(1), anywhere(1)};
-    if (random.one_in(3)) {  // an edge, 1 ulp or nothing beside one that is there
+    if (random.one_in(3)) {  // an edge beside an existing one, at a distance of 1 ulp or 0
       const std::size_t k = 3 * random.below(scene.vertices.size() / 3);
       face[0] = scene.vertices[k];
       face[1] = scene.vertices[k + 1];

@@ -1,10 +1,11 @@
 // Scenes whose coincidences survive every exact frame.
 //
-// The receiver is the origin and corners are k (a, b, 5) with small integers a, b, k: on few rays from the receiver, so
-// that shadows share corners and edges whatever the distances k, and planes meet the receiver, the source and each
-// other. The source lies at k = 12, so shadows are thirds, fifths and sevenths of what casts them. A frame then moves
-// the scene by an affine map that is exact in doubles (mantissas full, axes scaled apart, coordinates subnormal: all
-// coincidences stay, and only rationals can tell) or rounds every coordinate (all are missed by an ulp).
+// The receiver is the origin, and corners are k (a, b, 5) with small integers a, b, k. So they lie on few rays from the
+// receiver: shadows share corners and edges for any distances k, and planes meet the receiver, the source and each
+// other. The source lies at k = 12, so the corners of shadows are thirds, fifths and sevenths of the occluders'
+// corners. A frame then either moves the scene by an affine map that is exact in doubles (full mantissas, axes scaled
+// differently, subnormal coordinates: all coincidences remain, and only rationals can decide), or rounds every
+// coordinate (every coincidence is missed by an ulp).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -83,7 +84,7 @@ class Rays {
     const int a = random_.integer(-4, 4);
     return {a, random_.integer(-4, 4)};
   }
-  // Mostly between the receiver and the source, sometimes behind either, in its plane or at the receiver itself.
+  // Mostly between the receiver and the source, sometimes behind either, in the source's plane or at the receiver.
   Vec3 corner() {
     if (random_.one_in(12)) return at(ray(), random_.integer(-2, 15));
     return random_.one_in(8) ? any_corner() : at(ray(), k());
@@ -107,7 +108,7 @@ class Rays {
   void add_occluder(const std::vector<Corners>& rings) { scene_.add_rings(new_patch(), rings); }
   void add_face(const Corners& ring) { add_occluder({ring}); }
   void add_flat() { add_occluder(flat(shape(), random_.one_in(12) ? random_.integer(kSource, 14) : k())); }
-  // The shadows of its corners are where the rays are, its plane is not parallel to the source.
+  // The shadows of its corners are on the rays; its plane is not parallel to the source.
   void add_tilted() {
     const Ray a = ray();
     const Ray b = ray();
@@ -149,7 +150,7 @@ class Rays {
  private:
   const Shape& pick(const std::vector<Shape>& shapes) { return shapes[random_.below(shapes.size())]; }
 
-  // Turned, mirrored and moved; what was counter-clockwise stays so.
+  // Rotated, mirrored and moved; counter-clockwise rings stay counter-clockwise.
   Shape placed(Shape shape) {
     const bool swap = random_.one_in(2);
     const bool mirror = random_.one_in(2);
@@ -191,7 +192,7 @@ PlainScene fan(Random& random) {
   return rays.done();
 }
 
-// Edges that all cross in one point of their interiors: each is halved by the apex ray.
+// Edges that all cross in one point: the ray through the apex halves each of them.
 PlainScene concurrent(Random& random) {
   Rays rays(random);
   rays.add_source(rays.shape());
@@ -218,7 +219,7 @@ PlainScene pinwheel(Random& random) {
   return rays.done();
 }
 
-// Everything pierces everything else.
+// All faces pierce each other.
 PlainScene piercing(Random& random) {
   Rays rays(random);
   rays.add_source(rays.plain_shape());
@@ -262,7 +263,7 @@ PlainScene one_plane(Random& random) {
   return rays.done();
 }
 
-// Faces that hold the receiver, whose planes hold it, whose sides point at it, or that cross the source's plane.
+// Faces that contain the receiver, whose planes contain it, whose sides point at it, or that cross the source's plane.
 PlainScene edge_on(Random& random) {
   Rays rays(random);
   rays.add_source(rays.shape());
@@ -294,7 +295,7 @@ PlainScene edge_on(Random& random) {
   return rays.done();
 }
 
-// Tiles that cover a rectangle exactly, each at a distance of its own, some as two triangles that tilt.
+// Tiles that cover a rectangle exactly, each at a different distance, some as two triangles that tilt.
 PlainScene tiled(Random& random) {
   Rays rays(random);
   rays.add_source(random.one_in(2) ? square_ring(random.integer(2, 4), 0) : rays.shape());
@@ -315,7 +316,7 @@ PlainScene tiled(Random& random) {
   return rays.done();
 }
 
-// The source's faces again nearer to the receiver, whole and in fans: covers with nothing to spare.
+// Copies of the source's faces nearer to the receiver, whole and in fans: they cover the source exactly.
 PlainScene covered(Random& random) {
   Rays rays(random);
   const Shape shape = rays.plain_shape();
@@ -349,7 +350,7 @@ PlainScene solids(Random& random) {
   return rays.done();
 }
 
-// The source's own faces hide one another, in many planes.
+// The source's own faces hide each other, in many planes.
 PlainScene self_hiding(Random& random) {
   Rays rays(random);
   rays.add_source(rays.plain_shape());
@@ -372,7 +373,7 @@ PlainScene grazing(Random& random) {
   return scene;
 }
 
-// Every face twice or more: as it is, turned round, cut into a fan, elsewhere along its rays.
+// Every face at least twice: unchanged, reversed, cut into a fan, or moved along its rays.
 PlainScene repeated(Random& random) {
   Rays rays(random);
   rays.add_source(rays.plain_shape());
@@ -391,7 +392,7 @@ PlainScene repeated(Random& random) {
   return rays.done();
 }
 
-// Faces out of plane: corners of one outline at distances of their own.
+// Non-planar faces: corners of one outline at different distances.
 Corners warp(Rays& rays, const Shape& shape, int base) {
   Corners ring;
   for (const Ray& ray : shape.front()) ring.insert(ring.begin(), at(ray, base + rays.random().integer(-1, 1)));
@@ -416,7 +417,7 @@ PlainScene on_a_face(Random& random) {
   const double y = 5.0 * random.integer(-2, 2);
   const auto in_plane = [&](double u, double v) { return Vec3{5 * u, 5 * v, -(x * u + y * v)}; };
   rays.scene().add_ring(rays.scene().patch("on"), {in_plane(-2, -2), in_plane(2, -2), in_plane(2, 3), in_plane(-2, 2)});
-  rays.scene().vertices.back().z += random.one_in(2) ? 0 : 1;  // then it is out of plane, and cut
+  rays.scene().vertices.back().z += random.one_in(2) ? 0 : 1;  // then it is non-planar and is cut
   if (random.one_in(2)) rays.add_face({in_plane(0, 0), in_plane(3, 0), in_plane(0, 3)});
   if (random.one_in(2)) rays.add_face({in_plane(0, 0), in_plane(1, 0), rays.corner()});
   rays.add_some(4);
@@ -436,7 +437,7 @@ struct Frame {
     const auto sum = [&](double Vec3::*c) { return column[0].*c * v.x + column[1].*c * v.y + column[2].*c * v.z; };
     return {sum(&Vec3::x), sum(&Vec3::y), sum(&Vec3::z)};
   }
-  // What a plane's normal becomes.
+  // The image of a plane's normal.
   [[nodiscard]] Vec3 normal(const Vec3& n) const {
     const Vec3 a = cross(column[1], column[2]);
     const Vec3 b = cross(column[2], column[0]);
@@ -449,7 +450,7 @@ struct Frame {
   }
 };
 
-// Columns of whole numbers below `size`, so that every corner is exact for sizes up to 2^44.
+// Columns of integers below `size`, so that every corner is exact for sizes up to 2^44.
 Frame random_frame(Random& random, double size) {
   const auto whole = [&] { return std::floor(random.between(-size, size + 1)); };
   const auto vector = [&] {
@@ -496,8 +497,8 @@ double largest_coordinate(const PlainScene& scene) {
   return largest;
 }
 
-// Coordinates are whole multiples of the smallest subnormal number, or so large that their differences are beyond the
-// doubles; the normal is as small or nearly as large.
+// Coordinates are integer multiples of the smallest subnormal number, or so large that their differences overflow a
+// double; the normal is equally small, or nearly as large.
 void scale_to_the_ends(PlainScene& scene, Random& random) {
   const int largest = std::ilogb(largest_coordinate(scene));
   generate::scale(scene, std::ldexp(1.0, random.one_in(2) ? -1074 : 1023 - largest));
@@ -505,7 +506,7 @@ void scale_to_the_ends(PlainScene& scene, Random& random) {
   scene.normal = times(scene.normal, {scale, scale, scale});
 }
 
-// Nothing meets exactly any more, but all of it nearly.
+// Nothing coincides exactly any more, but everything does nearly.
 void round(PlainScene& scene, Random& random) {
   const std::array<double, 5> factors{0.1, 1.0 / 3, 0.7, 1e-7, 3e13};
   generate::scale(scene, factors[random.below(factors.size())]);
@@ -535,7 +536,7 @@ void move(PlainScene& scene, Random& random) {
   }
 }
 
-// Corners get new numbers, which decide how faces out of plane are cut.
+// Corners get new numbers, which determine how non-planar faces are cut.
 void renumber(PlainScene& scene, Random& random) {
   std::vector<std::uint32_t> number(scene.vertices.size());
   std::iota(number.begin(), number.end(), 0u);

@@ -73,7 +73,7 @@ void rotate(Ring& ring, Random& random) {
   std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(random.below(ring.size())), ring.end());
 }
 
-// The diagonal of a face that is not planar goes by vertex order, so such a scene keeps its vertices where they are.
+// The diagonal of a non-planar face depends on the vertex order, so such a scene keeps its vertices.
 bool all_planar(const Scene& scene) {
   return std::ranges::none_of(scene.faces(), [](const Face& face) { return face.shape == FaceShape::kTriangulated; });
 }
@@ -191,7 +191,7 @@ std::uint32_t add_vertex(PlainScene& scene, const Vec3& position) {
   return static_cast<std::uint32_t>(scene.vertices.size() - 1);
 }
 
-// From corner i of a convex ring halfway to the middle of two other corners, where all that is exact.
+// A point halfway from corner i of a convex ring to the midpoint of two other corners, if all of this is exact.
 Ring with_spike(PlainScene& scene, const Ring& ring, Random& random) {
   const std::size_t n = ring.size(), i = random.below(n);
   const Vec3 corner = scene.vertices[ring[i]];

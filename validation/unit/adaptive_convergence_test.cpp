@@ -1,13 +1,14 @@
-// The estimate against known values, within what sampling theory allows.
+// Compares the estimate with known values, within the error that sampling theory allows.
 //
-// Let the leaves be given. A leaf that n stratified rays judged errs by V' F instead of its visible form factor:
+// For given leaves, a leaf that n stratified rays judged contributes V' F instead of its visible form factor. The error
+// has three parts:
 //   random    V' has mean V and variance at most V (1 - V) / n <= 1 / (4 n), independently of other leaves;
-//   bias      V F weighs the leaf's area evenly where the kernel does not: at most F times half its relative range, and
-//             only where V is neither 0 nor 1;
-//   silent    a leaf wholly seen or wholly hidden but for the share d of its area is taken for such with probability at
-//             most (1 - d)^n <= exp(-d n): d <= 15 / n but once in three million.
-// Bound taken: five standard deviations of the first (once in two million), plus the sums of the other two. The seed is
-// fixed.
+//   bias      V F gives the same weight to all of the leaf, but the kernel varies: at most F times half its relative
+//             range, and only if V is neither 0 nor 1;
+//   silent    a leaf that is fully visible or fully hidden except for the share d of its area is judged uniform with a
+//             probability of at most (1 - d)^n <= exp(-d n); d > 15 / n happens once in three million.
+// The bound is five standard deviations of the random part (exceeded once in two million), plus the sums of the other
+// two parts. The seed is fixed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,7 +51,7 @@ double error_bound(const AdaptiveResult& result, int rays) {
   return 5.0 * std::sqrt(variance) + bias + silent + 1e-15;
 }
 
-// The source in two parts, so that no edge of the occluder's shadow falls on a line of the subdivision.
+// The source is in two parts, so that no edge of the occluder's shadow lies on a subdivision line.
 PlainScene two_part_scene(double h) {
   PlainScene scene;
   add(scene, "source", {{-1, -1, 1}, {-1, 1, 1}, {0.1, 1, 1}, {0.1, -1, 1}});
@@ -96,7 +97,7 @@ TEST(AdaptiveConvergence, TendsToTheTruth) {
   }
 }
 
-// Where the shadow's edges are lines of the subdivision, shaft culling and one look at each side suffice.
+// If the shadow's edges are subdivision lines, shaft culling and one ray to each side are sufficient.
 TEST(AdaptiveConvergence, IsExactOnceTheSubdivisionMeetsTheShadow) {
   for (const Known& known : kKnown) {
     const AdaptiveResult result = solve(occluded_scene(known.half_size), 1e-3, 16, SamplePattern::kJittered);
@@ -112,7 +113,7 @@ TEST(AdaptiveConvergence, EveryPatternConverges) {
   }
 }
 
-// One ray to the centre of each part never doubts: two leaves, both silently wrong.
+// With one ray to the centre of each part there is no doubt: two leaves, both with a silent error.
 TEST(AdaptiveConvergence, OneRayNeverSubdivides) {
   const AdaptiveResult result = solve(two_part_scene(0.25), 1e-6, 1, SamplePattern::kCentre);
   EXPECT_EQ(result.leaves, 2U);

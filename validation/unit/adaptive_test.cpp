@@ -33,7 +33,7 @@ double leaf_area(const Leaf& leaf) {
   return 0.5 * std::hypot(p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x);
 }
 
-// Eq. (4) in double on patches about as large as they are far: a few roundings an edge.
+// Eq. (4) in double, for patches about as large as their distance: a few roundings per edge.
 constexpr double kClosedFormBound = 64 * 0x1p-53;
 
 TEST(Adaptive, AnUnoccludedSourceIsOneLeafOfEquationFour) {
@@ -57,7 +57,7 @@ TEST(Adaptive, OnlyTheFrontOfASourceShines) {
 
 TEST(Adaptive, APointInTheSourcesPlaneSeesNothing) {
   PlainScene plain = open_scene();
-  plain.point = {0.25, 0.25, 1};  // inside the polygon: Eq. (4) alone would say 1/2
+  plain.point = {0.25, 0.25, 1};  // inside the polygon: Eq. (4) alone would give 1/2
   EXPECT_EQ(solve(plain, {}).form_factor, 0.0);
 }
 
@@ -69,7 +69,7 @@ TEST(Adaptive, AFullyCoveredSourceIsOneCutShaft) {
   EXPECT_EQ(result.rays, 0U);
 }
 
-// Tiles hide the source together, none alone: only rays can tell.
+// The tiles hide the source only together, so only rays can find out.
 TEST(Adaptive, AbuttingTilesAreFoundByRays) {
   const AdaptiveResult result = solve(generate::tiles({.n = 4}), {});
   EXPECT_EQ(result.form_factor, 0.0);
@@ -187,7 +187,7 @@ TEST(Adaptive, WhatIsCoplanarWithTheSourceHidesNothing) {
   EXPECT_EQ(result.leaves, 1U);
 }
 
-// One unit in the last place before the source is before the source.
+// A face one unit in the last place in front of the source is an occluder.
 TEST(Adaptive, CoplanarityIsExact) {
   PlainScene plain = open_scene();
   add(plain, "veil", square_above(2.0, std::nextafter(1.0, 0.0)));
@@ -205,10 +205,11 @@ TEST(Adaptive, FacesBehindXOrBeyondTheSourceAreNoCandidates) {
   EXPECT_EQ(count(solve(plain, {}), LeafReason::kShaftEmpty), 1U);
 }
 
-// Many candidates, so that Embree is asked; but single precision cannot tell these two faces from x and the source.
+// There are so many candidates that Embree is used, but single precision cannot separate these two faces from x and the
+// source.
 TEST(Adaptive, WhatSinglePrecisionCannotPlaceIsTestedInDouble) {
   const auto form_factor_with = [](const std::vector<Vec3>& face) {
-    PlainScene changed = open_scene();  // behind slats with gaps as wide
+    PlainScene changed = open_scene();  // behind slats with gaps of the same width
     for (int k = -100; k < 100; ++k) {
       const double y = 0.005 * k;
       add(changed, "slats", {{-0.6, y, 0.5}, {-0.6, y + 0.0025, 0.5}, {0.6, y + 0.0025, 0.5}, {0.6, y, 0.5}});
@@ -227,7 +228,7 @@ TEST(Adaptive, WhatSinglePrecisionCannotPlaceIsTestedInDouble) {
 
 TEST(Adaptive, OtherFacesOfTheSourcesPatchHide) {
   PlainScene plain = open_scene();
-  add(plain, "source", square_above(0.75, 0.5));  // hides the first and shines itself
+  add(plain, "source", square_above(0.75, 0.5));  // hides the first source and is itself a source
   const AdaptiveResult result = solve(plain, {});
   EXPECT_EQ(count(result, LeafReason::kShaftCut), 1U);
   EXPECT_EQ(count(result, LeafReason::kShaftEmpty), 1U);
@@ -236,7 +237,7 @@ TEST(Adaptive, OtherFacesOfTheSourcesPatchHide) {
 TEST(Adaptive, RepeatedFacesCountOnce) {
   PlainScene plain = open_scene();
   const double once = solve(plain, {}).form_factor;
-  add(plain, "source", {{1, 1, 1}, {1, -1, 1}, {-1, -1, 1}, {-1, 1, 1}});  // the same from another corner on
+  add(plain, "source", {{1, 1, 1}, {1, -1, 1}, {-1, -1, 1}, {-1, 1, 1}});  // the same ring, starting at another corner
   EXPECT_EQ(solve(plain, {}).form_factor, once);
 }
 
@@ -265,7 +266,7 @@ TEST(Adaptive, IsReproducibleWhateverRanBefore) {
   EXPECT_NE(first.form_factor, solver.form_factor(receiver, source, 1.0, options).form_factor);
 }
 
-// A power of two changes no bit of any coordinate's mantissa, hence no sign, no ray and no sum.
+// Scaling by a power of two changes no mantissa, and hence no sign, no ray and no sum.
 TEST(Adaptive, ThePowerOfTwoInTheUnitOfLengthDoesNotMatter) {
   AdaptiveOptions options;
   options.eps_b = 1e-4;
@@ -308,7 +309,7 @@ TEST(AdaptiveLiteral, DropsAPerpendicularWall) {
 }
 
 TEST(AdaptiveLiteral, SumsAWallAcrossTheHorizonToAboutZero) {
-  PlainScene plain;  // leans towards the receiver by 0.001, so that it passes the published cull
+  PlainScene plain;  // leans towards the receiver by 0.001, so that the published cull keeps it
   add(plain, "source", {{0, 0, -1}, {0, 1, -1}, {0.001, 1, 1}, {0.001, 0, 1}});
   plain.point = {0.5, 0.5, 0};
   EXPECT_NEAR(solve(plain, literal()).form_factor, 0.0, 1e-3);

@@ -1,6 +1,6 @@
-// In the steady state a pair of a receiver and a source allocates nothing, unless its value takes Arb.
+// In the steady state, computing a pair of a receiver and a source allocates nothing, unless its value needs Arb.
 //
-// GMP and Arb allocate by malloc, operator new does too: this program's own counts them all.
+// GMP, Arb and operator new all allocate by malloc: this program's own malloc counts every call.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ void count_one() {
 
 }  // namespace
 
-// The C library's own, under their other names.
+// The functions of the C library, under their other names.
 extern "C" {
 void* __libc_malloc(std::size_t size) noexcept;
 void* __libc_calloc(std::size_t count, std::size_t size) noexcept;
@@ -95,7 +95,7 @@ struct Pair {
   const ExactSource* source = nullptr;
 };
 
-// What a pair did when it was asked for with all others a second time.
+// The counts of each pair, in the second pass over all pairs.
 struct Second {
   Outcome outcome = Outcome::kBehind;
   int bits = 0;
@@ -124,7 +124,7 @@ std::vector<Second> ask_twice(const Scene& scene, const std::vector<Pair>& pairs
   return seconds;
 }
 
-// Returns how many take Arb.
+// Returns how many pairs need Arb.
 std::size_t expect_none_but_by_arb(const std::vector<Second>& seconds) {
   std::size_t by_arb = 0;
   for (std::size_t i = 0; i < seconds.size(); ++i) {
@@ -159,7 +159,7 @@ TEST(Allocation, IsNotMadeForTheFloorOfTheCornellBox) {
             (std::set{Outcome::kUnoccluded, Outcome::kHiddenByOne, Outcome::kPartlyHidden, Outcome::kHiddenByUnion}));
 }
 
-// Rooms along the axes, whose edges line up: what the filter cannot tell is found out exactly.
+// Rooms along the axes, whose edges line up: if the filter is uncertain, exact arithmetic decides.
 TEST(Allocation, IsNotMadeBetweenThePatchesOfARoom) {
   for (const char* file : {EXACTFF_DATA_DIR "/scenes/cornell_box.obj", EXACTFF_DATA_DIR "/scenes/blinds_room.obj"}) {
     SCOPED_TRACE(file);
@@ -181,7 +181,7 @@ TEST(Allocation, IsNotMadeBetweenThePatchesOfARoom) {
   }
 }
 
-// What lines up, and what all but does.
+// Edges that line up, and edges that almost line up.
 TEST(Allocation, IsNotMadeOnDegenerateScenes) {
   std::size_t count = 0, by_arb = 0, undecided = 0;
   for (std::uint64_t i = 0; i < validation::scaled_count(400); ++i) {
@@ -201,7 +201,8 @@ TEST(Allocation, IsNotMadeOnDegenerateScenes) {
   EXPECT_GE(5 * undecided, count);
 }
 
-// Three sources in no special position: of one plane, of nine, and a round one; occluders before and through them.
+// Three sources in general position: in one plane, in nine planes, and a round one, with occluders in front of and
+// crossing them.
 PlainScene scene_of_three_sources() {
   PlainScene plain;
   Random random(1);

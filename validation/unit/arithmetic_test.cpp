@@ -1,6 +1,7 @@
-// What is promised to depend on its arguments alone does not depend on the arithmetic that the calling thread has set,
-// and leaves that as it was: every public function that computes, under every way of rounding, with small numbers
-// flushed to zero or read as zero, and with floating-point traps. EXACTFF_TEST_SCALE multiplies the number of scenes.
+// Results that are promised to depend only on the arguments do not depend on the floating-point settings of the calling
+// thread, and do not change them. The test calls every public function that computes, in every rounding mode, with
+// denormal numbers flushed to zero or read as zero, and with floating-point traps. EXACTFF_TEST_SCALE multiplies the
+// number of scenes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -62,7 +63,7 @@ std::vector<Setting> single_settings() {
   return settings;
 }
 
-// Everything at once.
+// All settings at once.
 std::vector<Setting> joint_settings() {
   std::vector<Setting> settings;
   for (const int rounding : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
@@ -79,7 +80,7 @@ std::vector<Setting> joint_settings() {
   return settings;
 }
 
-// How it rounds, what it traps, and whether it makes small numbers zero or reads them as zero.
+// The rounding mode, the traps, and whether denormal numbers are flushed to zero or read as zero.
 std::tuple<int, int, unsigned> arithmetic_of_thread() {
   int traps = 0;
   unsigned flushes = 0;
@@ -159,8 +160,8 @@ std::string all_of(const Task& task) {
 
 using Call = std::function<std::string()>;
 
-// The call's text under each setting is that under the usual one, with what is read from files afterwards. Standard
-// libraries compute with traps too: files have their names before.
+// Under each setting, the call must give the same text as under the default setting. Files are read afterwards, and
+// their names are made before, because the standard library also computes under the traps.
 void expect_the_same(
     const std::vector<Setting>& settings, const Call& call, const Call& read = [] { return std::string(); }) {
   std::string expected = call();
@@ -170,7 +171,7 @@ void expect_the_same(
     std::fenv_t standard;
     std::fegetenv(&standard);
     const auto usual = arithmetic_of_thread();
-    std::feclearexcept(FE_ALL_EXCEPT);  // what has been raised already would trap at once
+    std::feclearexcept(FE_ALL_EXCEPT);  // a flag that is already raised would trap at once
     setting.set();
     const auto before = arithmetic_of_thread();
     std::string found = call();
@@ -202,7 +203,7 @@ TEST(ThreadsArithmetic, ChangesNoSceneAndNoExactValue) {
   }
 }
 
-// A lamp that emits the smallest number, which some threads read as nothing.
+// A lamp that emits the smallest double, which reads as zero under some settings.
 TEST(ThreadsArithmetic, ChangesNothingThatASceneSaysOfItself) {
   expect_the_same([] {
     SceneBuilder builder;
@@ -246,7 +247,7 @@ TEST(ThreadsArithmetic, ChangesNoEnclosure) {
   });
 }
 
-// Every method, prepared and configured anew each time.
+// Every method, prepared and configured again each time.
 TEST(ThreadsArithmetic, ChangesNoMethodsValue) {
   Random random(1);
   PlainScene plain = validation::generic_scene(random);
@@ -279,7 +280,7 @@ TEST(ThreadsArithmetic, ChangesNoMethodsValue) {
 
 TEST(ThreadsArithmetic, ChangesNoModel) {
   for (const models::Model* model : models::all_models()) {
-    if (model->name == "forest") continue;  // takes long, and computes as the others do
+    if (model->name == "forest") continue;  // takes long, and computes like the others
     const std::string text = model->name == "teapot" ? "teapot:segments=2" : model->name;
     SCOPED_TRACE(text);
     expect_the_same(joint_settings(), [&] {
@@ -342,7 +343,7 @@ TEST(ThreadsArithmetic, ChangesNoCheck) {
   });
 }
 
-// What studies write but times, without gnuplot, which computes elsewhere.
+// All files of studies except times, without gnuplot, which computes in another process.
 std::string value_files(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -364,7 +365,7 @@ TEST(ThreadsArithmetic, ChangesNoStudy) {
   const auto write = [&] {
     const study::Study study = study::run(request);
     report::write(study, folder);
-    EXPECT_FALSE(report::headlines(study).empty());  // which tell of times
+    EXPECT_FALSE(report::headlines(study).empty());  // these contain times
     return std::string();
   };
   expect_the_same(joint_settings(), write, [&] { return value_files(folder); });

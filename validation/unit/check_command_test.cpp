@@ -17,7 +17,7 @@ using validation::ProgramRun;
 using validation::run_program;
 using validation::TemporaryDirectory;
 
-// Tables with one blank between columns: their widths depend on the other rows.
+// Tables with single blanks between columns, because column widths depend on the other rows.
 std::string squeezed(const std::string& text) {
   std::string result;
   for (const char c : text) {
@@ -38,7 +38,7 @@ std::string contents(const std::filesystem::path& file) {
   return text.str();
 }
 
-// Three receivers and two sources; a candidate that is off by `error` at receiver b and source t.
+// Three receivers and two sources; the candidate has the error `error` at receiver b and source t.
 class CheckCommand : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -178,7 +178,7 @@ TEST_F(CheckCommand, HoldsOnToABaseline) {
   const ProgramRun better = check(candidate("0.3125"), {"--baseline", file});
   EXPECT_EQ(better.exit_code, 0);
   EXPECT_HOLDS(better.output, "Better than baseline max-abs: 0.125 -> 0.0625, 50 % less\n");
-  EXPECT_HOLDS(better.output, "Hold on to it: --write-baseline " + file + '\n');
+  EXPECT_HOLDS(better.output, "To record this improvement: --write-baseline " + file + '\n');
 }
 
 TEST_F(CheckCommand, TightensABaselineAndNeverLoosensIt) {
@@ -216,7 +216,7 @@ TEST_F(CheckCommand, RefusesFlagsThatMeanNothing) {
   }
 }
 
-// From the scene to the verdict: the values of a truth file as a candidate, with one of them off.
+// From the scene to the verdict: the values of a truth file are the candidate, with an error in one of them.
 TEST(CheckOfATruthFile, CatchesAThousandthAndForgivesABillionth) {
   const TemporaryDirectory directory;
   const std::string truth = (directory.path() / "truth.csv").string();

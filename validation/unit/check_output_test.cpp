@@ -1,4 +1,4 @@
-// What a check writes for machines, from values and names that machines may stumble over.
+// The machine-readable output of a check, with values and names that may break a parser.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ bool holds(const std::string& text, const std::string& part) { return text.find(
 
 #define EXPECT_HOLDS(text, part) EXPECT_TRUE(holds(text, part)) << "\"" << (part) << "\" is not in:\n" << (text)
 
-// Receivers with awkward names; the second value is wrong by 0.25, of a relative 1.
+// Receivers with awkward names; the second value has an error of 0.25, 1 relative.
 Report awkward_report(const Criteria& criteria, double first = 0.5) {
   Truth truth;
   truth.file = "a,b:100%.csv";
@@ -93,10 +93,9 @@ TEST(GitHubAnnotations, AreOneLineEach) {
 }
 
 TEST(GitHubAnnotations, WarnOfDoubts) {
-  EXPECT_EQ(
-      github_annotations(awkward_report({})),
-      "::warning file=c%2Cd%3A50%25.csv,title=exactff check::no limit was given: nothing was judged but that values "
-      "are finite numbers\n");
+  EXPECT_EQ(github_annotations(awkward_report({})),
+            "::warning file=c%2Cd%3A50%25.csv,title=exactff check::no limit was given: the only check was that all "
+            "values are finite numbers\n");
   EXPECT_EQ(github_annotations(awkward_report({.rms = 1.0})), "");
 }
 
@@ -130,7 +129,7 @@ TEST(ErrorHistogram, IsDrawnWithoutComplaint) {
   EXPECT_EQ(plot.outcome, page::PlotResult::Outcome::kDrawn);
   EXPECT_EQ(plot.message, "");
   for (const char* shown : {"max-abs", "quantile 0.9", "2 rows"}) EXPECT_HOLDS(plot.svg, shown);
-  EXPECT_FALSE(holds(plot.svg, "quantile 0.5"));  // a logarithmic axis cannot show its limit
+  EXPECT_FALSE(holds(plot.svg, "quantile 0.5"));  // a logarithmic axis cannot show this limit
 }
 
 TEST(ShortNumbers, AreFitForFlags) {

@@ -186,7 +186,7 @@ TEST(CandidateFile, MayHoldValuesThatAreNoNumbers) {
 
 TEST(CandidateFile, IsRefusedWithEveryProblemAndItsLine) {
   const std::string what = complaint([] { (void)candidate_of("receiver,value\na,\nb,x\n,1\nc,1,2\nd,\"1\n"); });
-  EXPECT_HOLDS(what, "mine.csv:2: column 'value' is empty (a number is wanted there); write nan");
+  EXPECT_HOLDS(what, "mine.csv:2: column 'value' is empty (this column must contain numbers); write nan");
   EXPECT_HOLDS(what, "mine.csv:3: 'x' is not a number in column 'value' (");
   EXPECT_HOLDS(what, "mine.csv:4: the receiver has no id (");
   EXPECT_HOLDS(what, "mine.csv:5: 3 fields where there are 2 columns (");
@@ -233,8 +233,8 @@ TEST(Match, RefusesWhatIsMissingDoubledOrUnknown) {
   const std::string what = complaint([&] { (void)match(truth, candidate); });
   EXPECT_HOLDS(what,
                "mine.csv: no value for 2 of 3 rows of the truth: receiver 'b' of source 's' and 'c' of source 's' (");
-  EXPECT_HOLDS(what, "add them, or give --partial");
-  EXPECT_HOLDS(what, "mine.csv:3: receiver 'a' of source 's' has a value already (line 2) (");
+  EXPECT_HOLDS(what, "add them, or use --partial");
+  EXPECT_HOLDS(what, "mine.csv:3: receiver 'a' of source 's' already has a value (line 2) (");
   EXPECT_HOLDS(what, "mine.csv:4: the truth has no receiver 'd' of source 's' (");
   EXPECT_HOLDS(what, "mine.csv:5: the truth has no source 'u' (its sources are s)");
 }
@@ -276,13 +276,13 @@ TEST(MatchByPosition, RefusesAChoice) {
       complaint([] { (void)matched_by_position("x,y,z,source,value\n0.25,0,0,s,1\n0,0,0,t,2\n", 0.75); });
   EXPECT_HOLDS(what,
                "mine.csv:2: 3 receivers of the truth match: 'a' at a distance of 0.25 and 'c' at a distance of 0.25, "
-               "and more (the value could be held against either); give a smaller --tolerance");
+               "and more (it is not clear which one the value belongs to); give a smaller --tolerance");
   EXPECT_FALSE(holds(what, "mine.csv:3"));
 }
 
 TEST(MatchByPosition, RefusesTwoValuesForOneRow) {
   EXPECT_HOLDS(complaint([] { (void)matched_by_position("x,y,z,source,value\n1,0,0,s,1\n1.1,0,0,s,2\n", 0.2); }),
-               "receiver 'b' of source 's' has a value already (line 2)");
+               "receiver 'b' of source 's' already has a value (line 2)");
 }
 
 TEST(MatchByPosition, WorksAtBothEndsOfTheDoubles) {
@@ -338,12 +338,12 @@ TEST(Difference, IsRelativelyInfiniteWhereTheTruthIsZeroAndTheValueIsNot) {
   EXPECT_EQ(difference(1e-300, 0.0).relative, kInfinity);
 }
 
-// Nobody is blamed for what is not known.
+// An uncertainty of the truth does not count as an error.
 TEST(Difference, OfATruthThatIsNotCertifiedIsTheDistanceToItsEnclosure) {
   TruthRow row = row_of("a", 0.5);
   row.lower = 0.4;
   row.upper = 0.6;
-  EXPECT_EQ(difference(0.55, row).error, 0.55 - 0.5);  // certified: the bounds only say where roundings end
+  EXPECT_EQ(difference(0.55, row).error, 0.55 - 0.5);  // certified: the bounds are only the neighbours
   row.status = Status::kNotCertified;
   EXPECT_EQ(difference(0.55, row).error, 0.0);
   EXPECT_EQ(difference(0.55, row).relative, 0.0);
@@ -442,7 +442,7 @@ TEST(Criteria, OfAQuantileAllowForTheRest) {
 TEST(Criteria, OfEpsBBoundTheErrorTimesRhoB) {
   Truth truth = truth_with({0.5, 0.0});
   const std::vector<double> values = {0.5, 0.125};
-  EXPECT_HOLDS(complaint([&] { (void)judge(truth, values, {.eps_b = 1.0}); }), "does not tell rho B of every row");
+  EXPECT_HOLDS(complaint([&] { (void)judge(truth, values, {.eps_b = 1.0}); }), "does not contain rho B for every row");
   truth.rows[0].largest_rho_b = 100.0;
   truth.rows[1].largest_rho_b = 8.0;
   EXPECT_TRUE(judge(truth, values, {.eps_b = 1.0}).passed());
@@ -470,16 +470,16 @@ TEST(Criteria, AreRefusedIfTheyAreNone) {
   const auto refused = [](const Criteria& criteria) {
     return complaint([&] { (void)judged({1.0}, {1.0}, criteria); });
   };
-  EXPECT_HOLDS(refused({.max_abs = -1.0}), "the limit of max-abs is -1 (");
-  EXPECT_HOLDS(refused({.max_rel = std::nan("")}), "the limit of max-rel is nan");
-  EXPECT_HOLDS(refused({.rms = -1.0}), "the limit of rms");
-  EXPECT_HOLDS(refused({.eps_b = -1.0}), "the limit of eps-b");
+  EXPECT_HOLDS(refused({.max_abs = -1.0}), "the limit for max-abs is -1 (");
+  EXPECT_HOLDS(refused({.max_rel = std::nan("")}), "the limit for max-rel is nan");
+  EXPECT_HOLDS(refused({.rms = -1.0}), "the limit for rms");
+  EXPECT_HOLDS(refused({.eps_b = -1.0}), "the limit for eps-b");
   EXPECT_HOLDS(refused({.quantiles = {{0.0, 1.0}}}), "the share of a quantile is 0 (");
   EXPECT_HOLDS(refused({.quantiles = {{1.5, 1.0}}}), "the share of a quantile is 1.5");
-  EXPECT_HOLDS(refused({.quantiles = {{0.5, -1.0}}}), "the limit of quantile 0.5 is -1");
+  EXPECT_HOLDS(refused({.quantiles = {{0.5, -1.0}}}), "the limit for quantile 0.5 is -1");
   EXPECT_HOLDS(complaint([] { (void)judge(truth_with({1.0}), std::vector<double>{}, {}); }),
                "has 1 row, but there are 0 values");
-  EXPECT_HOLDS(complaint([] { (void)judge(truth_with({1.0}), std::vector<Measured>{}, {}); }), "has no row to judge");
+  EXPECT_HOLDS(complaint([] { (void)judge(truth_with({1.0}), std::vector<Measured>{}, {}); }), "has no row to check");
 }
 
 TEST(Criteria, TellTheWorstRowsFirst) {
@@ -578,7 +578,7 @@ TEST(Baseline, IsOfTheseRowsInAnyOrderAndNoOthers) {
   std::swap(turned.rows[0], turned.rows[1]);
   EXPECT_TRUE(ratchet.held(judge(turned, std::vector{0.25, 0.5}, {})).passed());
   const auto refused = [&](const Report& report) { return complaint([&] { (void)ratchet.held(report); }); };
-  const std::string why = "was recorded with other rows, other truths or another relative floor";
+  const std::string why = "was recorded with different rows, true values or relative floor";
   EXPECT_HOLDS(refused(judged({0.5, std::nextafter(0.25, 1.0)}, {0.5, 0.25})), why);
   EXPECT_HOLDS(refused(judged({0.5}, {0.5})), why);
   EXPECT_HOLDS(refused(judged({0.25, 0.5}, {0.25, 0.5})), why);
@@ -598,9 +598,9 @@ TEST(Baseline, IsRefusedIfItIsNone) {
   }
   Report report = judged({0.5}, {0.5});
   EXPECT_HOLDS(complaint([&] { hold_against_baseline(report, directory.path() / "none.json"); }),
-               "there is no such baseline");
+               "this baseline file does not exist");
   const auto file = directory.write("b.json", baseline_text(report));
-  EXPECT_HOLDS(complaint([&] { hold_against_baseline(report, file, -1.0); }), "the slack of the baseline is -1");
+  EXPECT_HOLDS(complaint([&] { hold_against_baseline(report, file, -1.0); }), "the slack for the baseline is -1");
 }
 
 // --- Histogram ---

@@ -1,4 +1,4 @@
-// Closed surfaces: which there are, and that leaving out their backs changes nothing.
+// Finds closed surfaces; removing their back faces changes no result.
 #include "scene/closed_surfaces.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ PlainScene scene_with_source() {
   return scene;
 }
 
-// Adds vertices and the faces on them, whose indices count from the first of these.
+// Adds vertices, and faces whose indices count from the first of these vertices.
 void add_solid(PlainScene& scene, const std::vector<Vec3>& vertices, std::vector<Ring> faces) {
   const auto first = static_cast<std::uint32_t>(scene.vertices.size());
   scene.vertices.insert(scene.vertices.end(), vertices.begin(), vertices.end());
@@ -88,11 +88,11 @@ TEST(ClosedSurfaces, AreToldByPositionsAndKeptApart) {
 TEST(ClosedSurfaces, WithAFinAreOpen) {
   PlainScene scene = scene_with_source();
   add_solid(scene, kCorners, kTetrahedron);
-  add_solid(scene, {{0, 0, 0.5}, {0.25, 0, 0.5}, {0, 0.25, 0.5}}, {{0, 1, 2}});  // the first face, the other way
+  add_solid(scene, {{0, 0, 0.5}, {0.25, 0, 0.5}, {0, 0.25, 0.5}}, {{0, 1, 2}});  // the first face, reversed
   EXPECT_EQ(count_of(scene), 0U);
   PlainScene loose = scene_with_source();
   add_solid(loose, kCorners, kTetrahedron);
-  add_solid(loose, {{0, 0, 0.5}, {0.25, 0, 0.5}, {0, 0, 0}}, {{0, 1, 2}});  // a corner of its own: certainly open
+  add_solid(loose, {{0, 0, 0.5}, {0.25, 0, 0.5}, {0, 0, 0}}, {{0, 1, 2}});  // an unshared corner: certainly open
   EXPECT_EQ(count_of(loose), 1U);
 }
 
@@ -157,7 +157,8 @@ Vec3 random_point(Random& random, double reach, double z) {
   return {random.between(-reach, reach), random.between(-reach, reach), z + random.between(-reach, reach)};
 }
 
-// Through one another and themselves, around x and about the source's plane, some inside out, some on a lattice.
+// Solids that intersect each other and themselves, around x and near the source's plane, some inside out, some on a
+// lattice.
 TEST(ClosedSurfaces, HideWhatTheBooleansFind) {
   Random random(4);
   for (int round = 0; round < 60; ++round) {

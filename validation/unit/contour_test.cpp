@@ -16,7 +16,7 @@ using visibility::EdgeParameter;
 
 const ExactVec3 kUp{0, 0, 1};
 
-// The unit square (0,1)^2 at z = 1, counter-clockwise as the origin below sees it.
+// The unit square (0,1)^2 at z = 1, counter-clockwise as seen from the origin below.
 std::vector<ExactVec3> square() { return {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}; }
 
 Enclosure integrate(const std::vector<BoundaryPiece>& pieces, long bits, const ExactVec3& normal = kUp) {
@@ -50,7 +50,7 @@ TEST(Contour, AReversedLoopIsTheNegative) {
   std::vector<BoundaryPiece> forward = loop_of(square());
   std::vector<BoundaryPiece> both = forward;
   for (BoundaryPiece piece : forward) {
-    std::swap(piece.begin, piece.end);  // same supporting edge, other sense
+    std::swap(piece.begin, piece.end);  // same supporting edge, opposite direction
     both.push_back(piece);
   }
   const Enclosure sum = integrate(both, 100);
@@ -67,7 +67,7 @@ TEST(Contour, PiecesOfOneSupportingEdgeAddUp) {
   for (const BoundaryPiece& piece : whole) {
     split.push_back({piece.a, piece.b, start, third});
     split.push_back({piece.a, piece.b, third, half});
-    split.push_back({piece.b, piece.a, half, start});  // the other half, on the reversed edge: to its `a`
+    split.push_back({piece.b, piece.a, half, start});  // the other half, on the reversed edge, up to its `a`
   }
   EXPECT_TRUE(integrate(split, 300).overlaps(integrate(whole, 300)));
   EXPECT_EQ(integrate(split, 300).decimals(60), integrate(whole, 300).decimals(60));

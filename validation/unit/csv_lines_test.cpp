@@ -43,7 +43,7 @@ TEST(CsvLines, PassByteOrderMarkAtTheStartOnly) {
   EXPECT_EQ(lines_of("\xEF\xBB\xBF"), List{});
 }
 
-// The file is read in blocks of 65536 bytes: let CR LF, and a long line, lie across their borders.
+// The file is read in blocks of 65536 bytes: here CR LF and a long line cross block borders.
 TEST(CsvLines, LieAcrossBlocks) {
   for (const std::size_t length : {65533U, 65534U, 65535U, 65536U, 65537U, 200000U}) {
     const std::string line(length, 'x');
@@ -64,7 +64,7 @@ TEST(CsvLines, RefuseWhatIsNoText) {
     return {};
   };
   using namespace std::string_literals;
-  EXPECT_NE(refusal(directory.path()).find("is a directory"), std::string::npos);
+  EXPECT_NE(refusal(directory.path()).find("is a folder"), std::string::npos);
   EXPECT_NE(refusal(directory.path() / "none.csv").find("cannot be opened"), std::string::npos);
   EXPECT_NE(refusal(directory.write("u.csv",
                                     "\xFF\xFE"

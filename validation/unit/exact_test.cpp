@@ -1,4 +1,4 @@
-// The result of the exact method: status, bounds, decimals, cutters, fractions, bad receivers, one kept for the next.
+// The result of the exact method: status, bounds, decimals, cutters, fractions, bad receivers, and reuse of a result.
 #include "exactff/exact.h"
 
 #include <gtest/gtest.h>
@@ -73,7 +73,7 @@ TEST(ExactFormFactor, PositiveButRoundingToZeroIsAnUnderflow) {
 }
 
 TEST(ExactFormFactor, DenormalValuesAreCorrectlyRounded) {
-  // F = A / (pi d^2) to a relative 1e-300 for a source so small: A = 4 h^2, h = 2^-530.
+  // For such a small source, F = A / (pi d^2) with a relative error of 1e-300: A = 4 h^2, h = 2^-530.
   const FormFactor f = solve(square_source(0x1p-530));
   EXPECT_EQ(f.status, Status::kCertified);
   EXPECT_EQ(f.value, std::ldexp(4.0 / 3.14159265358979323846, -1060));
@@ -114,7 +114,7 @@ TEST(ExactFormFactor, GivesAsManyDecimalsAsAskedFor) {
 }
 
 TEST(ExactFormFactor, ADecimalTieLeavesTheDoubleCertified) {
-  // An eighth of the sphere of directions: F = 1/8, which no ball can round to two decimals.
+  // An eighth of the sphere of directions: F = 1/8, a tie that no ball can round to two decimals.
   PlainScene plain;
   plain.add_ring(plain.patch("source"), {{1, 0, 0}, {1, 0, 2}, {1, 1, 2}, {1, 1, 0}});
   plain.add_ring(plain.patch("source"), {{0, 0, 2}, {1, 1, 2}, {1, 0, 2}});
@@ -175,7 +175,7 @@ TEST(ExactFormFactor, OccludersCanBeSingledOut) {
   EXPECT_GT(without_b, solve(scene, plain).value);
 }
 
-// Value, status and fraction with the shaft and without it, by both engines.
+// Value, status and fraction, with and without the shaft, by both engines.
 void expect_the_same_without_shaft(const PlainScene& plain) {
   const Scene scene = generate::build(plain);
   for (const Engine engine : validation::kEngines) {
@@ -224,8 +224,8 @@ TEST(ExactFormFactor, AFlippedSourceIsBehindAndTurnsBack) {
 }
 
 TEST(ExactFormFactor, AFractionOverCommensurablePlanesIsExactEvenOnAMidpoint) {
-  // Two unit faces at right angles, both seen from x; of one a strip of 2^-53 is hidden: the fraction
-  // 1 - 2^-54 is the midpoint of two doubles, and ties go to the even 1.
+  // Two unit faces at a right angle, both facing x; a strip of 2^-53 of one is hidden. The fraction 1 - 2^-54 is the
+  // midpoint of two doubles, and ties go to the even one, 1.
   PlainScene plain;
   plain.add_ring(plain.patch("source"), {{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}});
   plain.add_ring(plain.patch("source"), {{1, 0, 0}, {1, 0, 1}, {1, 1, 1}, {1, 1, 0}});
@@ -241,7 +241,7 @@ TEST(ExactFormFactor, AFractionOverCommensurablePlanesIsExactEvenOnAMidpoint) {
 }
 
 TEST(ExactFormFactor, AFractionOverIncommensurablePlanesIsRounded) {
-  // A unit face wholly seen and one of area sqrt(2) behind the horizon: 1 / (1 + sqrt(2)) = sqrt(2) - 1.
+  // A fully visible unit face, and one of area sqrt(2) behind the horizon: 1 / (1 + sqrt(2)) = sqrt(2) - 1.
   PlainScene plain;
   plain.add_ring(plain.patch("source"), {{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}});
   plain.add_ring(plain.patch("source"), {{0, 0, -2}, {0, 1, -2}, {1, 1, -1}, {1, 0, -1}});
@@ -299,7 +299,7 @@ TEST(ExactFormFactor, DrawsTheVisibleRegion) {
   }
 }
 
-// All shadows lie within 2^-40 of one direction, where doubles know directions to no better than 2^-49.
+// All shadows lie within 2^-40 of one direction, but doubles know directions only to 2^-49.
 TEST(ExactFormFactor, OccludersThatNothingTellsApartAreLeftToTheBooleans) {
   constexpr double kSize = 0x1p-40;
   PlainScene plain = square_source(kSize);
@@ -319,7 +319,7 @@ TEST(ExactFormFactor, OccludersThatNothingTellsApartAreLeftToTheBooleans) {
   EXPECT_EQ(solve(plain).planes.at(0).engine, Engine::kEdges);
 }
 
-// From so near the source no projection shows all of it: every occluder is compared with every edge.
+// So near the source, no projection shows all of it: every occluder is compared with every edge.
 TEST(ExactFormFactor, AWideSourceBehindManyOccludersHasTheSameValueForBothEngines) {
   PlainScene plain = square_source(1000.0);
   generate::Random random(7);
@@ -333,7 +333,7 @@ TEST(ExactFormFactor, AWideSourceBehindManyOccludersHasTheSameValueForBothEngine
   EXPECT_EQ(record.outcome, Outcome::kPartlyHidden);
 }
 
-// All that a record holds and all that a result holds; a field more, and this does not compile.
+// All fields of a record and of a result. If a field is added, this does not compile.
 std::string text_of(const PlaneRecord& record) {
   const auto& [faces, engine, outcome, horizon_clipped, source_joined, tree_candidates, candidates, clipped, pairs,
                undecided_pairs, loops, edges, visible_fraction, exact_fraction] = record;
@@ -361,7 +361,7 @@ std::string text_of(const FormFactor& result) {
   return text.str();
 }
 
-// One result for all, and nothing of a pair is left in that of the next.
+// One result object is reused for all pairs; nothing of a pair may remain in the next result.
 class KeptResult : public ::testing::Test {
  protected:
   void expect_as_anew(const Scene& scene, const Receiver& receiver, const ExactSource& source,
@@ -398,7 +398,7 @@ TEST_F(KeptResult, IsAsOneMadeAnew) {
   add_square(scenes[1], "hides_all", 0.9, 0.5);
   add_square(scenes[2], "hides_some", 0.2, 0.5, 0.1);
   scenes[3].normal = {0.0, 0.0, -1.0};  // below the horizon
-  scenes[4].normal = {1.0, 0.0, 0.1};   // cut by it
+  scenes[4].normal = {1.0, 0.0, 0.1};   // crosses the horizon
   scenes[5].point = {0.0, 0.0, 2.0};    // behind
   add_square(scenes[6], "source", 0.3, 0.8, 0.2, 0.1);
   scenes[6].add_ring(scenes[6].patch("source"), {{1, -1, 1}, {2, -1, 0.7}, {2, 1, 0.7}, {1, 1, 1}});
@@ -482,7 +482,7 @@ double signed_area(const Loop& loop, const Vec3& n) {
   return sum;
 }
 
-// A square source across each half-axis, a smaller square before it that leaves a ring to be seen.
+// A square source across each half-axis; a smaller square in front of it leaves a visible ring.
 TEST(Drawing, LoopsRunCounterClockwiseAsTheReceiverSeesThem) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {-1.0, 1.0}) {

@@ -1,4 +1,4 @@
-// The experiments of the report, each on a scene small enough for a test, and what they share.
+// The experiments of the report, each on a scene that is small enough for a test, and their shared helpers.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Files that are damaged, contradictory or far too large: one bounded message that helps, or the right scene.
+// Files that are damaged, contradictory or far too large give either one helpful message of limited length, or the
+// right scene.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -22,7 +23,7 @@ Scene read(const std::string& text, const SceneOptions& options = {}) {
   return read_obj(in, "s.obj", options);
 }
 
-// What is said about a text, or "no error".
+// The message about a text, or "no error".
 template <class Read>
 std::string message_of(const Read& read_it) {
   try {
@@ -42,7 +43,7 @@ std::string repeated(const std::string& text, std::size_t count) {
 TEST(HostileFiles, WhatIsNoTextIsRefused) {
   const auto message = [](const std::string& text) { return message_of([&] { return read(text); }); };
   EXPECT_EQ(message(kSquare + std::string("g a\0b\n", 6)),
-            "s.obj: is not a text file (it holds zero bytes); give a Wavefront OBJ file");
+            "s.obj: is not a text file (it contains zero bytes); give a Wavefront OBJ file");
   EXPECT_EQ(message(std::string("\xFF\xFEv\0 \0", 6)), "s.obj: is UTF-16 text (only UTF-8 is read); save it as UTF-8");
   EXPECT_EQ(message(std::string("\xFE\xFF\0v\0 ", 6)), "s.obj: is UTF-16 text (only UTF-8 is read); save it as UTF-8");
   EXPECT_EQ(message("\x80\x91\xFF garbage \x01\n"),
@@ -50,19 +51,19 @@ TEST(HostileFiles, WhatIsNoTextIsRefused) {
 }
 
 TEST(HostileFiles, WhatCannotBeReadIsRefused) {
-  EXPECT_NE(message_of([] { return read_obj("/dev/zero"); }).find("it holds zero bytes"), std::string::npos);
+  EXPECT_NE(message_of([] { return read_obj("/dev/zero"); }).find("it contains zero bytes"), std::string::npos);
   EXPECT_NE(message_of([] { return read_obj("/dev/null"); }).find("is empty"), std::string::npos);
-  // Readable to begin with, but not at its first byte.
+  // It can be opened, but reading its first byte fails.
   EXPECT_NE(message_of([] { return read_obj("/proc/self/mem"); }).find("cannot be read to its end ("),
             std::string::npos);
 }
 
 TEST(HostileFiles, ACutOffLastLineIsWarnedAbout) {
-  const Scene scene = read(kSquare + "f 1 2 3 4\nf 1 2 3");  // perhaps once a quadrilateral
+  const Scene scene = read(kSquare + "f 1 2 3 4\nf 1 2 3");  // it may have been a quadrilateral
   ASSERT_EQ(scene.warnings().size(), 1U);
   EXPECT_EQ(scene.warnings()[0].message(),
-            "s.obj:6: the last line has no line end (the file may have been cut off there); end it with a line end if "
-            "it is complete");
+            "s.obj:6: the last line does not end with a newline (the file may have been cut off there); add a newline "
+            "if the file is complete");
   EXPECT_TRUE(read(kSquare + "f 1 2 3\n").warnings().empty());
   EXPECT_TRUE(read(kSquare + "f 1 2 3\r").warnings().empty());
 }
@@ -103,7 +104,7 @@ TEST(HostileFiles, ALongNameIsLegalButNotForManyFaces) {
   EXPECT_NE(bad.find("crosses itself"), std::string::npos);
   EXPECT_EQ(message_of([&] { return read(kSquare + "g " + name + "\n" + repeated("f 1 2 3\n", 1000)); }),
             "s.obj:6: the name 'xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx...' of 1000000 characters belongs to 1000 "
-            "faces (each of them is called by it); choose a name of at most 255 characters");
+            "faces (the name of every face contains it); choose a name of at most 255 characters");
 }
 
 TEST(HostileFiles, TheClosestOfManyAlikeNamesAreFound) {
@@ -134,11 +135,12 @@ TEST(HostileFiles, MaterialFilesThatAreNoneAreNeverWaitedFor) {
 TEST(HostileFiles, AHugeGridIsRefusedBeforeItIsBegun) {
   const Scene scene = read(kSquare + repeated("f 1 2 3 4\n", 10));
   const Selection all = scene.select("default");
-  EXPECT_EQ(message_of([&] {
-              return grid_receivers(scene, all, {1'000'000'000, 1'000'000'000});
-            }),
-            "a grid of 1000000000x1000000000 cells on 10 faces (there may be 4194304 cells in all); use fewer, or a "
-            "smaller patch");
+  EXPECT_EQ(
+      message_of([&] {
+        return grid_receivers(scene, all, {1'000'000'000, 1'000'000'000});
+      }),
+      "a grid of 1000000000x1000000000 cells on 10 faces (the limit is 4194304 cells in total); use fewer cells or "
+      "a smaller patch");
   EXPECT_NE(message_of([&] { return grid_receivers(scene, all, {1000, 1000}); }), "no error");
   EXPECT_EQ(grid_receivers(scene, all, {3, 2}).size(), 60U);
 }
@@ -167,14 +169,15 @@ TEST_F(HostileReceivers, AnyLineEndWillDo) {
 
 TEST_F(HostileReceivers, NonsenseIsRefused) {
   EXPECT_EQ(message(std::string("x,y\0z", 5)),
-            "r.csv: is not a text file (it holds zero bytes); give a CSV file of receivers");
+            "r.csv: is not a text file (it contains zero bytes); give a CSV file of receivers");
   EXPECT_EQ(message(""),
-            "r.csv: the file has no header (its columns are told apart by name); begin it with id,x,y,z,nx,ny,nz,on");
+            "r.csv: the file has no header (columns are identified by their names); begin the file with the line "
+            "id,x,y,z,nx,ny,nz,on");
   EXPECT_EQ(message(head_ + "1,2,3,0,0,1e999,\n"),
             "r.csv:2: '1e999' is too large for a double in column nz (points and normals are made of finite doubles); "
-            "give a smaller number; doubles end at 1.8e308");
+            "give a smaller number; the largest double is about 1.8e308");
   EXPECT_EQ(message(head_ + "1,2,3,0,0,0,\n"),
-            "r.csv:2: the normal is zero (it says which way the receiver faces); give it any other length");
+            "r.csv:2: the normal is zero (it says which way the receiver faces); give a normal of any other length");
   EXPECT_LT(message(std::string(5'000'000, 'x')).size(), 3000U);
 }
 

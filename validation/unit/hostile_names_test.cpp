@@ -1,5 +1,5 @@
-// Patches, files and titles whose names steer terminals, turn the reading direction or are no text at all: nothing of
-// it may reach a terminal, a log or a page, and what programs read must be sound.
+// Names of patches, files and titles that control terminals, change the reading direction or are not valid text. None
+// of this may reach a terminal, a log or a page, and machine-readable output must be valid.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using validation::text_of;
 
-// A Latin-1 letter, escape, a C1 control in UTF-8 and alone, a turn to the left, an overlong slash, marks of XML.
+// A Latin-1 letter, escape, a C1 control in UTF-8 and as a byte, a right-to-left mark, an overlong slash, HTML markup.
 const std::string kLight = "l\xE4mp\x1B[31m\xC2\x9B\x9B\xE2\x80\xAE\xC0\xAF<&>\"'%";
 const std::string kFloor = "fl\x07oor\x7F,::error::\xED\xA0\x80";
 const std::string kShownLight = "l\\xe4mp\\x1b[31m\\u009b\\x9b\\u202e\\xc0\\xaf<&>\"'%";
@@ -63,7 +63,7 @@ class HostileNames : public testing::Test {
     return file;
   }
 
-  // Lines of characters that are seen, and nothing else. The parser of JSON takes well-formed UTF-8 only.
+  // Lines of visible characters only. The JSON parser accepts only well-formed UTF-8.
   static bool is_harmless(const std::string& text) {
     std::string letters;
     for (const char c : text) {
@@ -97,8 +97,8 @@ TEST_F(HostileNames, AreSeenInResults) {
 TEST_F(HostileNames, AreSeenInComplaints) {
   expect_harmless({"info", "no\x1B[2J\xE4.obj"}, 2);
   expect_harmless(point({"--source", "x\x1B\xC2\x9B"}), 2);
-  expect_harmless({"\x1B[2J\xE4"}, 2);                          // told by the parser of flags
-  expect_harmless({"info", room_, "--no\x1B\xE2\x80\xAE"}, 2);  // so is this
+  expect_harmless({"\x1B[2J\xE4"}, 2);                          // reported by the parser of flags
+  expect_harmless({"info", room_, "--no\x1B\xE2\x80\xAE"}, 2);  // this too
   expect_harmless(point({"--at", "1", "2", "3\x1B"}), 2);
   const std::string bad = directory_.write("bad.obj", "v 0 0 \x1B[2J\xE4\xC2\x85\nf \xE2\x80\xAE 2 3\n").string();
   EXPECT_NE(expect_harmless({"info", bad}, 2).error.find("\\x1b[2J\\xe4\\u0085"), std::string::npos);

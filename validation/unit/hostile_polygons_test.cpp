@@ -1,5 +1,5 @@
-// Faces of tens of thousands of vertices in the shapes that make simple algorithms quadratic, and random ones held
-// against plain algorithms.
+// Faces with tens of thousands of vertices in shapes that make simple algorithms quadratic, and random faces compared
+// with simple algorithms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ bool any_crossing(const FacePoints& points, const PlanePoints& plane) {
   return false;
 }
 
-// The rule itself: again and again the lowest of all valid ears, each judged from scratch.
+// The rule itself: repeatedly cut off the valid ear with the lowest index, judging each ear from scratch.
 class PlainEarClipper {
  public:
   PlainEarClipper(const PlanePoints& plane, Ring index) : plane_(plane), index_(std::move(index)) {
@@ -97,7 +97,7 @@ class PlainEarClipper {
   std::vector<std::size_t> left_;
 };
 
-// A vertex on an edge that is not its own.
+// A vertex on an edge to which it does not belong.
 bool touches_itself(const FacePoints& points, const PlanePoints& plane) {
   for (EdgeIndex edge = 0; edge < points.size(); ++edge) {
     const std::size_t end = next_in_ring(points, edge);
@@ -109,7 +109,7 @@ bool touches_itself(const FacePoints& points, const PlanePoints& plane) {
   return false;
 }
 
-// Different points of a small lattice, in an order without crossings (each crossing is undone by reversing what lies
+// Distinct points of a small lattice, ordered without crossings (each crossing is removed by reversing the points
 // between). Straight corners are common.
 struct LatticePolygon {
   Vertices vertices;
@@ -214,7 +214,7 @@ Vertices star() {
   return vertices;
 }
 
-// V-shaped teeth one inside the other: the ear of each would hold all inner ones.
+// Nested V-shaped teeth: the ear of each would contain all inner ones.
 Vertices chevrons() {
   Vertices vertices;
   for (std::size_t i = 0; i < kLarge / 6; ++i) {
@@ -234,7 +234,7 @@ Vertices wavy(Vertices vertices) {
   return vertices;
 }
 
-// Ample for near-linear time, too little for quadratic time.
+// Sufficient for near-linear time, too little for quadratic time.
 void expect_cut_quickly(const Vertices& vertices, FaceShape shape) {
   const std::clock_t start = std::clock();
   const CutFace face = cut_face(vertices, {whole_ring(vertices.size())});

@@ -1,5 +1,5 @@
-// The program in trouble: full disks, signals, little memory, a small stack, a broken gnuplot, folders that are none.
-// Whatever happens, the exit code is right and nothing half-written stays behind.
+// The program in trouble: full disks, signals, little memory, a small stack, a broken gnuplot, output folders that are
+// not folders. In every case the exit code is right and nothing half-written remains.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -66,7 +66,7 @@ class HostileProgram : public testing::Test {
   }
   std::vector<std::vector<std::string>> printing() const;
 
-  // A gnuplot of our own, found before any other.
+  // A fake gnuplot that is found before any other.
   std::function<void()> with_gnuplot(const std::string& script) const {
     const fs::path folder = directory_.path() / "bin";
     fs::create_directory(folder);
@@ -76,17 +76,17 @@ class HostileProgram : public testing::Test {
   }
 
   void expect_nothing_in_place() const { EXPECT_TRUE(fs::is_empty(place_)); }
-  // Nothing else, and it is of use: with it the comparison comes to the bytes of an undisturbed one.
+  // Only the journal remains, and it is usable: with it, the comparison gives the bytes of an undisturbed one.
   void expect_only_a_journal(const fs::path& folder) const {
     EXPECT_EQ(names(folder.parent_path()), std::set<std::string>{folder.filename().string() + ".part"});
     const auto without_gnuplot = [] { ::setenv("PATH", "/nonexistent", 1); };
     const Running refused = start(comparison(folder), without_gnuplot);
     EXPECT_EQ(refused.wait(), 2);
-    EXPECT_NE(refused.error().find(".part: holds the finished work of an interrupted run"), std::string::npos)
+    EXPECT_NE(refused.error().find(".part: contains the finished work of an interrupted run"), std::string::npos)
         << refused.error();
     const Running going_on = start(resumed(folder), without_gnuplot);
     EXPECT_EQ(going_on.wait(), 0) << going_on.error();
-    EXPECT_NE(going_on.error().find("were taken from the interrupted run"), std::string::npos) << going_on.error();
+    EXPECT_NE(going_on.error().find("were reused from the interrupted run"), std::string::npos) << going_on.error();
     EXPECT_EQ(names(folder.parent_path()), std::set<std::string>{folder.filename().string()});
     EXPECT_EQ(start(comparison(directory_.path() / "undisturbed"), without_gnuplot).wait(), 0);
     for (const char* file : {"values.csv", "exact.csv", "summary.csv"}) {
@@ -102,15 +102,15 @@ class HostileProgram : public testing::Test {
 
   const TemporaryDirectory directory_;
   const std::string room_ = directory_.write("room.obj", kRoom).string();
-  const fs::path place_ = directory_.path() / "place";  // where the results go
+  const fs::path place_ = directory_.path() / "place";  // the place of the results
 };
 
 TEST_F(HostileProgram, AFullDiskLeavesTheJournalAlone) {
-  for (const rlim_t bytes : {600, 2048}) {  // full while values are found, and while tables are written
+  for (const rlim_t bytes : {600, 2048}) {  // full while values are computed, and while tables are written
     const Running run = start(comparison(place_ / "result"), [bytes] { limit(RLIMIT_FSIZE, bytes); });
     EXPECT_EQ(run.wait(), 2);
     EXPECT_NE(run.error().find("cannot be written"), std::string::npos) << run.error();
-    EXPECT_NE(run.error().find("result.part, and the same command with --resume goes on"), std::string::npos);
+    EXPECT_NE(run.error().find("result.part; to continue, run the same command with --resume"), std::string::npos);
     expect_only_a_journal(place_ / "result");
   }
 }
@@ -145,7 +145,7 @@ void to_a_pipe_without_reader() {
   ::close(ends[1]);
 }
 
-// Everything that prints.
+// Every command that prints.
 std::vector<std::vector<std::string>> HostileProgram::printing() const {
   const std::string truth = (directory_.path() / "truth.csv").string();
   EXPECT_EQ(start(truth_file(truth)).wait(), 0);
@@ -174,14 +174,15 @@ TEST_F(HostileProgram, AFullDiskOrNoPlaceAsStandardOutputIsAnError) {
       fs::remove(directory_.path() / "truth.csv.2");
       const Running run = start(arguments, stdout_of);
       EXPECT_EQ(run.wait(), 2) << arguments[0] << ' ' << arguments.back();
-      EXPECT_NE(run.error().find("the result could not be written to standard output (what was printed is incomplete)"),
-                std::string::npos)
+      EXPECT_NE(
+          run.error().find("the result could not be written to standard output (the printed output is incomplete)"),
+          std::string::npos)
           << run.error();
     }
   }
 }
 
-// As programs of Unix do: a pager that was left is no error, but nothing more can be told.
+// As usual on Unix: if a pager is closed early, this is not an error, but nothing more can be printed.
 TEST_F(HostileProgram, APipeThatNobodyReadsEndsItAsItEndsOthers) {
   const auto ignoring = [] {
     std::signal(SIGPIPE, SIG_IGN);
@@ -193,7 +194,7 @@ TEST_F(HostileProgram, APipeThatNobodyReadsEndsItAsItEndsOthers) {
   }
 }
 
-// The file would otherwise be opened under the number of standard output, and take what is printed.
+// Otherwise the file could get the descriptor of standard output and receive the printed text.
 TEST_F(HostileProgram, WithoutStandardStreamsFilesHoldWhatTheyShould) {
   EXPECT_EQ(start(truth_file(place_ / "a.csv")).wait(), 0);
   const auto all_closed = [] {
@@ -206,7 +207,7 @@ TEST_F(HostileProgram, WithoutStandardStreamsFilesHoldWhatTheyShould) {
   EXPECT_EQ(names(place_), (std::set<std::string>{"a.csv", "b.csv", "c.svg"}));
 }
 
-// While gnuplot draws, the hidden folder exists: the worst moment to be interrupted.
+// While gnuplot draws, the hidden folder exists: this is the worst moment for an interruption.
 TEST_F(HostileProgram, SignalsWhileItWritesLeaveTheJournalAlone) {
   const fs::path started = directory_.path() / "started", folder = place_ / "result";
   const auto gnuplot = with_gnuplot("touch '" + started.string() + "'; exec sleep 100");
@@ -218,8 +219,8 @@ TEST_F(HostileProgram, SignalsWhileItWritesLeaveTheJournalAlone) {
       EXPECT_GT(names(place_).size(), 1U);
       for (int i = 0; i < times; ++i) run.send(signal);
       EXPECT_EQ(run.wait(), 128 + signal);
-      EXPECT_EQ(run.error(), "exactff: interrupted; what was finished is in " + folder.string() +
-                                 ".part, and the same command with --resume goes on\n");
+      EXPECT_EQ(run.error(), "exactff: interrupted; finished work is kept in " + folder.string() +
+                                 ".part; to continue, run the same command with --resume\n");
       expect_only_a_journal(folder);
     }
   }
@@ -241,13 +242,14 @@ TEST_F(HostileProgram, ASignalInAPieceOfWorkEndsItInHalfASecond) {
   const auto sent = std::chrono::steady_clock::now();
   run.send(SIGINT);
   EXPECT_EQ(run.wait(), 128 + SIGINT);
-  EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(kSanitized ? 10 : 2));  // others work, too
-  EXPECT_EQ(run.error(), "exactff: interrupted; what was finished is in " + folder.string() +
-                             ".part, and the same command with --resume goes on\n");
+  EXPECT_LT(std::chrono::steady_clock::now() - sent,
+            std::chrono::seconds(kSanitized ? 10 : 2));  // the machine may be busy
+  EXPECT_EQ(run.error(), "exactff: interrupted; finished work is kept in " + folder.string() +
+                             ".part; to continue, run the same command with --resume\n");
   EXPECT_FALSE(fs::exists(folder));
 }
 
-// A killed process cannot clear up; the next one does, and leaves alone what a living one is at.
+// A killed process cannot clean up. The next process does, but leaves the files of a living one alone.
 TEST_F(HostileProgram, WhatAKilledRunLeavesTheNextClears) {
   const fs::path started = directory_.path() / "started", folder = place_ / "result";
   const auto gnuplot = with_gnuplot("touch '" + started.string() + "'; exec sleep 3");
@@ -265,7 +267,7 @@ TEST_F(HostileProgram, WhatAKilledRunLeavesTheNextClears) {
   EXPECT_EQ(names(place_).size(), 2U);  // the journal, its own hidden folder
   const Running other = start(resumed(folder), [] { ::setenv("PATH", "/nonexistent", 1); });
   EXPECT_EQ(other.wait(), 0) << other.error();
-  EXPECT_EQ(names(place_).size(), 2U);  // the result, the hidden folder of the one that lives
+  EXPECT_EQ(names(place_).size(), 2U);  // the result, and the hidden folder of the living process
   stress.send(SIGINT);
   EXPECT_EQ(stress.wait(), 128 + SIGINT);
   EXPECT_EQ(names(place_), std::set<std::string>{"result"});
@@ -278,7 +280,7 @@ TEST_F(HostileProgram, ASignalWhileItReadsLeavesNothing) {
   arguments[1] = pipe;
   const Running run = start(arguments);
   {
-    std::ofstream(pipe) << kRoom;  // it has begun to read
+    std::ofstream(pipe) << kRoom;  // it has started to read
     run.send(SIGINT);
   }
   EXPECT_EQ(run.wait(), 128 + SIGINT);
@@ -292,7 +294,7 @@ TEST_F(HostileProgram, AnInterruptedRunIsBegunAnewByForce) {
   arguments.emplace_back("--force");
   const Running anew = start(arguments, [] { ::setenv("PATH", "/nonexistent", 1); });
   EXPECT_EQ(anew.wait(), 0);
-  EXPECT_EQ(anew.error().find("were taken from"), std::string::npos) << anew.error();
+  EXPECT_EQ(anew.error().find("were reused from"), std::string::npos) << anew.error();
   EXPECT_EQ(names(place_), std::set<std::string>{"result"});
 }
 
@@ -303,7 +305,7 @@ TEST_F(HostileProgram, AFileWhereTheJournalWouldBeIsNotLost) {
     if (!flag.empty()) arguments.push_back(flag);
     const Running run = start(arguments);
     EXPECT_EQ(run.wait(), 2);
-    EXPECT_NE(run.error().find("result.part: is there already and is not of our making"), std::string::npos);
+    EXPECT_NE(run.error().find("result.part: already exists, and exactff did not write it"), std::string::npos);
     EXPECT_EQ(validation::text_of(place_ / "result.part"), "dear diary");
   }
 }
@@ -331,7 +333,7 @@ TEST_F(HostileProgram, TheEndOfMemoryIsTold) {
   EXPECT_TRUE(run.error().starts_with("exactff: out of memory (")) << run.error();
 }
 
-// Coordinates so far apart that the exact numbers, and nothing else, take much memory: GMP itself would abort.
+// With coordinates so far apart, only the exact numbers need much memory; GMP itself would abort.
 TEST_F(HostileProgram, TheEndOfMemoryIsToldByExactNumbersToo) {
   if (kSanitized) GTEST_SKIP() << "address space cannot be limited here";
   constexpr int kCorners = 2000;
@@ -354,8 +356,8 @@ TEST_F(HostileProgram, TheEndOfMemoryIsToldByExactNumbersToo) {
   EXPECT_GT(told, 0);
 }
 
-// Nothing is left to be allocated at some point before main(), in it or in a thread: it ends with a code of its own, or
-// of the loader's where that cannot map the libraries, but never by a signal.
+// Memory runs out at some point before main(), in it or in a thread. The program ends with one of its exit codes, or
+// the loader's if it cannot map the libraries, but never by a signal.
 class LittleMemory : public HostileProgram, public testing::WithParamInterface<const char*> {
  protected:
   std::vector<std::string> arguments() const {
@@ -371,7 +373,7 @@ class LittleMemory : public HostileProgram, public testing::WithParamInterface<c
   bool works_with(rlim_t kilobytes) const {
     const Running run = start(arguments(), [kilobytes] {
       limit(RLIMIT_AS, kilobytes << 10);
-      ::setenv("PATH", "/nonexistent", 1);  // no gnuplot, which has limits of its own
+      ::setenv("PATH", "/nonexistent", 1);  // without gnuplot, which has its own limits
     });
     const int code = run.wait();
     const bool loaded = code != 127;
@@ -425,7 +427,7 @@ TEST_F(HostileProgram, FoldersThatMustNotBeReplacedAreNot) {
   fs::create_directory(place_ / "real");
   fs::create_directory_symlink("real", place_ / "link");
   const std::pair<std::string, std::string> table[] = {
-      {"foreign", "the folder holds 'letter.txt', which is not of our making"},
+      {"foreign", "the folder holds 'letter.txt', which exactff did not write"},
       {"file", "is not a folder"},
       {"file/below", "is not a folder that can be written to"},
       {"link", "is a symbolic link"},

@@ -50,7 +50,7 @@ TEST(InfoCommand, ListsPatchesEmittersAndDoubtfulFaces) {
       "3 patches, 4 faces in 4 convex pieces, 9 vertices, area ",
       "emitters: lamp\n",
       "bent:1 (off by ",
-      "without area, ignored: bent:2\n",
+      "zero area, ignored: bent:2\n",
       "unusable, left out: none\n",
       "open edges: 8\n",
       " --on floor --source lamp --grid 16x16 -o DIR",

@@ -1,4 +1,4 @@
-// The exact visible share of a window, and the recursion that uses it in the place of rays.
+// The exact visible share of a window, and the algorithm that uses it instead of rays.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,8 @@ std::vector<Vec3> square_at(double x, double y, double side) {
   return {{x, y, 1}, {x, y + side, 1}, {x + side, y + side, 1}, {x + side, y, 1}};
 }
 
-// The exact method's fraction of the square as a source of its own. The whole source stays: it is coplanar.
+// The exact method's fraction of the square as a separate source. The original source stays in the scene: it is
+// coplanar.
 double fraction_of(const PlainScene& plain, const std::vector<Vec3>& square) {
   PlainScene own = plain;
   add(own, "window", square);
@@ -83,7 +84,7 @@ TEST(VisibleShare, DoublesAndRationalsAgree) {
   }
 }
 
-// Where a filter cannot tell, and where rounding would say 0 or 1.
+// Cases where a filter is uncertain, and where rounding would give 0 or 1.
 TEST(VisibleShare, DecidesNothingAllAndInBetweenExactly) {
   Window window(occluded_scene(0.25));  // hides [-1/2, 1/2]^2
   EXPECT_EQ(window.share.of(square_at(-0.5, -0.5, 1.0)), 0.0);
@@ -99,7 +100,7 @@ TEST(VisibleShare, DecidesNothingAllAndInBetweenExactly) {
   EXPECT_LT(nearly_nothing, 1e-14);
 }
 
-// A window that roundings push over the source's own rim is no less visible for that.
+// A window that rounding pushes over the rim of the source keeps its visible share.
 TEST(VisibleShare, TheSourcesOwnOutlineHidesNothing) {
   Window window(occluded_scene(0.25));
   const double out = 1.0 + 0x1p-52;
@@ -124,7 +125,7 @@ TEST(Control, IsTheAdaptiveAlgorithmBitForBitWhereShaftsDecideAll) {
   EXPECT_GE(decided, 1);
 }
 
-// A leaf that stops at eps_F has F <= eps_F, and both its share and what is credited for it lie between 0 and F.
+// A leaf that stops at eps_F has F <= eps_F; both its visible form factor and the credited one lie between 0 and F.
 TEST(Control, ErrsByNoMoreThanEpsFForEachLeafThatStopsThere) {
   for (const PlainScene& plain : busy_scenes()) {
     const Scene scene = generate::build(plain);
@@ -147,7 +148,7 @@ TEST(Control, ConvergesToTheExactValue) {
   EXPECT_LT(fine, 0.01 * rough);
 }
 
-// Tiles along the lines of the recursion: every leaf is hidden or visible altogether, and V = 0 is no guess.
+// Tiles along the subdivision lines: every leaf is fully hidden or fully visible, and V = 0 is not a guess.
 TEST(Control, IsExactWhereShadowsFollowTheSplits) {
   const PlainScene plain = generate::tiles({.n = 4, .drop = 3});
   const Scene scene = generate::build(plain);
@@ -159,7 +160,7 @@ TEST(Control, IsExactWhereShadowsFollowTheSplits) {
   EXPECT_EQ(value(generate::tiles({.n = 4}), "adaptive-exact-visibility"), 0.0);
 }
 
-// Where sampling says 0 or 1 silently: a slit that 16 rays at eps_B = 0.1 do not find.
+// Where sampling is silently wrong: 16 rays at eps_B = 0.1 do not find a slit.
 TEST(Control, HasNoSilentErrors) {
   PlainScene plain = open_scene();
   add(plain, "left", {{-2, -2, 0.5}, {-2, 2, 0.5}, {0.1, 2, 0.5}, {0.1, -2, 0.5}});

@@ -56,8 +56,8 @@ TEST(HemicubePixels, DeltaFormFactorsAgreeWithNumericalIntegration) {
   }
 }
 
-// The pixels that the outline of the source passes through are all that can be wrong: on the top face, a side that
-// spans da columns and db rows passes through at most da + db + 2, each of at most 4 / (pi n^2).
+// Only pixels on the outline of the source can be wrong. On the top face, a side that spans da columns and db rows
+// crosses at most da + db + 2 pixels, each with at most 4 / (pi n^2).
 double outline_bound(const std::vector<std::array<double, 2>>& outline, int n) {
   double pixels = 0.0;
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -87,7 +87,7 @@ TEST(Hemicube, RotationMovesTheValueWithinThePixelsOnTheOutline) {
   generate::PlainScene plain;
   add(plain, "source", {{-0.3, -0.4, 1}, {-0.3, 0.2, 1}, {0.5, 0.2, 1}, {0.5, -0.4, 1}});
   const double f = truth(plain);
-  // However turned, the corners stay within sqrt(0.5) of the axis, on the top face, and a side of length l spans at
+  // For every rotation, the corners stay within sqrt(0.5) of the axis, on the top face, and a side of length l spans at
   // most sqrt(2) l.
   const double bound = std::numbers::sqrt2 * outline_bound({{-0.3, -0.4}, {-0.3, 0.2}, {0.5, 0.2}, {0.5, -0.4}}, 100);
   std::vector<double> values;
@@ -98,7 +98,7 @@ TEST(Hemicube, RotationMovesTheValueWithinThePixelsOnTheOutline) {
   EXPECT_NE(values[0], values[1]);
 }
 
-// Every direction above the horizon hits a face of a closed room, and every pixel is somebody's.
+// In a closed room, every direction above the horizon hits a face, so every pixel belongs to a patch.
 TEST(Hemicube, FormFactorsInAClosedRoomSumToOne) {
   generate::PlainScene plain;
   const Vec3 c[] = {{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {0, 2, 0}, {0, 0, 1.5}, {3, 0, 1.5}, {3, 2, 1.5}, {0, 2, 1.5}};
@@ -124,7 +124,7 @@ TEST(Hemicube, FormFactorsInAClosedRoomSumToOne) {
   }
 }
 
-// Triangles that share sides leave no pixel out and none twice: a tessellated source has the pixels of the whole.
+// Triangles with shared sides cover every pixel exactly once: a tessellated source has the pixels of the whole source.
 TEST(Hemicube, TrianglesThatShareSidesTileThePixels) {
   generate::PlainScene whole, cut;
   const std::vector<Vec3> square = square_above(0.75, 1.0);  // sides through pixel centres at n = 16
@@ -150,7 +150,7 @@ TEST(Hemicube, TheNearerFaceHasThePixelWhicheverComesFirst) {
   EXPECT_GT(value(beyond, "hemicube"), 0.5);
 }
 
-// An occluder's back hides as its front does; a source's back is dark and hides what is behind it.
+// The back of an occluder hides like its front. The back of a source is dark and hides what is behind it.
 TEST(Hemicube, BothSidesHideAndOnlyTheFrontShines) {
   generate::PlainScene plain = open_scene();
   std::vector<Vec3> turned = square_above(0.75, 0.5);
@@ -161,7 +161,7 @@ TEST(Hemicube, BothSidesHideAndOnlyTheFrontShines) {
   EXPECT_EQ(value(plain, "hemicube"), 0.0);
 }
 
-// A floor that runs on behind the receiver and below its horizon needs no care.
+// A floor that extends behind the receiver and below its horizon needs no special treatment.
 TEST(Hemicube, FacesThatReachBehindTheReceiverAreClipped) {
   generate::PlainScene plain;
   add(plain, "source", {{-50, -50, -1}, {-50, -50, 60}, {-50, 50, 60}, {-50, 50, -1}});
@@ -181,7 +181,7 @@ TEST(Hemicube, TheReceiversFaceIsLeftOut) {
   EXPECT_GT(estimate(room, receiver, "lamp", "hemicube").form_factor, 0.0);
 }
 
-// Of two coplanar faces the first has the pixels of both.
+// If two faces are coplanar, the first one gets the pixels of both.
 TEST(Hemicube, TheFirstOfTwoCoplanarFacesWins) {
   for (const bool lamp_first : {false, true}) {
     generate::PlainScene plain;

@@ -1,4 +1,4 @@
-// Nettle, Wallace and area sampling: what their theory promises of them.
+// Nettle, Wallace and area sampling: properties that theory predicts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ TEST(Nettle, SplitIntoCellsItIsTheMidpointRule) {
     const double found = value(plain, "nettle:splits=" + std::to_string(m));
     EXPECT_NEAR(found, f, midpoint_bound(4.0, 2.0 / m)) << m;
   }
-  EXPECT_NEAR(value(plain, "nettle"), 4.0 * std::numbers::inv_pi, 1e-14);  // A / (pi r^2): more than all there is
+  EXPECT_NEAR(value(plain, "nettle"), 4.0 * std::numbers::inv_pi, 1e-14);  // A / (pi r^2): more than 1
 }
 
 TEST(Wallace, SplitIntoDiscsItConvergesWithTheirArea) {
@@ -68,14 +68,14 @@ TEST(Wallace, SplitIntoDiscsItConvergesWithTheirArea) {
   for (const int m : {1, 4, 16, 64}) {
     const double area = 4.0 / (m * m);
     const double found = value(plain, "wallace:splits=" + std::to_string(m));
-    // The disc takes off at most dA / (pi r^2) of each term, and r is at least 1.
+    // The disc reduces each term by at most dA / (pi r^2), and r is at least 1.
     EXPECT_NEAR(found, f, midpoint_bound(4.0, 2.0 / m) + (f + midpoint_bound(4.0, 2.0 / m)) * area / std::numbers::pi);
   }
   EXPECT_NEAR(value(plain, "wallace:splits=1"), 4.0 / (std::numbers::pi + 4.0), 1e-14);
 }
 
-// Beside the smooth part, only cells that the shadow's edge passes through can be wrong, each by no more than its
-// whole: the edge, 2 long or a little more, passes through at most 2 m + 2 of them.
+// Apart from the smooth part, only cells on the shadow's edge can be wrong, each at most by its whole value. The edge
+// is slightly longer than 2 and crosses at most 2 m + 2 cells.
 TEST(CentreRays, ErrInTheCellsOfTheShadowsEdgeOnly) {
   const PlainScene plain = half_hidden();
   const double f = truth(plain);
@@ -89,9 +89,9 @@ TEST(CentreRays, ErrInTheCellsOfTheShadowsEdgeOnly) {
 }
 
 TEST(Nettle, ManyRaysGiveTheVisibleShareOfAnEvenlyLitPatch) {
-  PlainScene far = half_hidden();  // so far away that nothing but V matters
+  PlainScene far = half_hidden();  // so far away that only V matters
   for (Vec3& v : far.vertices) v = {v.x, v.y, v.z + 100.0};
-  // 4096 regular cells, of which the edge passes through at most 2 * 64 + 2.
+  // 4096 regular cells; the edge crosses at most 2 * 64 + 2 of them.
   EXPECT_NEAR(value(far, "nettle:rays=4096,pattern=regular") / truth(far), 1.0, 130.0 / 4096.0 / 0.4 + 4e-4);
 }
 
@@ -109,7 +109,7 @@ TEST(Nettle, TheLiteralVariantShinesBehindAndScalesByARatioOfAreas) {
   below.normal = {0, 0, -1};
   EXPECT_NEAR(value(below, "nettle:variant=literal"), inverse, 1e-15);
   add(behind, "lid", {{-2, -2, 1.5}, {2, -2, 1.5}, {2, 2, 1.5}, {-2, 2, 1.5}});
-  EXPECT_EQ(value(behind, "nettle:variant=literal"), 0.0);  // what stands between hides, from behind too
+  EXPECT_EQ(value(behind, "nettle:variant=literal"), 0.0);  // faces in between hide the source, also from behind
 }
 
 // 64 independent batches: their mean is within 5 of its standard errors.
@@ -125,7 +125,7 @@ TEST(StochasticMethods, AreRightOnAverage) {
   }
 }
 
-// Without shadows 4096 points of a net leave a standard error below 1e-6: a bias of a part in a hundred thousand shows.
+// Without shadows, 4096 points of a net have a standard error below 1e-6, so a bias of 1e-5 would be detected.
 TEST(AreaSampling, IsRightToFiveDigitsOnASmoothSource) {
   const PlainScene plain = open_scene();
   const Moments found = moments(values_by_seed(plain, "area-sampling:pattern=sobol,samples=4096", 16));
@@ -133,8 +133,8 @@ TEST(AreaSampling, IsRightToFiveDigitsOnASmoothSource) {
   EXPECT_NEAR(found.mean, truth(plain), 5.0 * std::sqrt(found.variance / 16.0));
 }
 
-// Root mean square error against n: slope -1/2, -3/4 across one shadow edge, -1 without any. Of two variances with 63
-// degrees of freedom each, the logarithm of the ratio is within 5 of its standard deviations, sqrt(2/63 + 2/63).
+// Root mean square error against n: slope -1/2; -3/4 across one shadow edge; -1 without an edge. For two variances with
+// 63 degrees of freedom each, the logarithm of the ratio is within 5 standard deviations, sqrt(2/63 + 2/63).
 TEST(AreaSampling, VarianceFallsAsTheoryHasIt) {
   const double slack = std::exp(5.0 * std::sqrt(4.0 / 63.0));
   const auto ratio = [](const PlainScene& plain, const std::string& pattern) {
@@ -149,7 +149,7 @@ TEST(AreaSampling, VarianceFallsAsTheoryHasIt) {
   EXPECT_GT(ratio(open_scene(), "sobol"), 256.0 / slack);
 }
 
-// A source of faces of several shapes and planes, one of them below the horizon in part.
+// A source with faces of several shapes in several planes, one of them partly below the horizon.
 TEST(AreaSampling, IsUniformOverAllFaces) {
   PlainScene plain;
   add(plain, "source", {{-1, -1, 1}, {-1, 1, 1}, {1, 1.5, 1}, {0.5, -1, 1}});
@@ -171,13 +171,13 @@ TEST(RayMethods, AreRightOnAverageBehindManyOccluders) {
   const double f = truth(plain);
   for (const char* choice : {"area-sampling:pattern=stratified", "wallace:pattern=jittered,splits=16"}) {
     const Moments found = moments(values_by_seed(plain, choice, 64));
-    // Wallace's discs of area 1/64 take off at most a 200th.
+    // Wallace's discs of area 1/64 reduce the value by at most 1/200.
     const double bias = choice[0] == 'w' ? f / 200.0 : 0.0;
     EXPECT_NEAR(found.mean, f, 5.0 * std::sqrt(found.variance / 64.0) + bias) << choice;
   }
 }
 
-// Where single precision could not tell them from x or from the source.
+// Where single precision cannot separate them from x or from the source.
 TEST(RayMethods, LidsOnTheReceiverAndOnTheSourceHideAmongMany) {
   for (const double z : {1e-9, 1.0 - 1e-9}) {
     PlainScene plain = generate::soup({.n = 600, .seed = 8});
@@ -266,7 +266,7 @@ TEST(RayMethods, AreRightWhereTheSquareOfAnAreaUnderflows) {
   }
 }
 
-// Two faces, so that points are shared out by area.
+// Two faces, so that points are distributed by area.
 TEST(RayMethods, AreNumbersWhereAreasThemselvesAreSubnormal) {
   PlainScene plain = open_scene();
   for (Vec3& v : plain.vertices) v = {v.x * 0x1p-530, v.y * 0x1p-530, v.z};
@@ -277,7 +277,7 @@ TEST(RayMethods, AreNumbersWhereAreasThemselvesAreSubnormal) {
   }
 }
 
-// x stands 2^-530 below a speck of a lamp; a vertex that no face uses gives the scene its scale.
+// x is 2^-530 below a tiny lamp; a vertex that no face uses gives the scene its size.
 TEST(RayMethods, AreNumbersWhereDistancesSquaredUnderflow) {
   PlainScene plain = open_scene();
   for (Vec3& v : plain.vertices) v = {v.x * 0x1p-530, v.y * 0x1p-530, v.z * 0x1p-530};
@@ -289,7 +289,7 @@ TEST(RayMethods, AreNumbersWhereDistancesSquaredUnderflow) {
   EXPECT_NEAR(value(plain, "adaptive"), truth(plain), 1e-12);
 }
 
-// The text's ratio of areas over a squared distance goes with the fourth power of the unit of length.
+// The text's ratio of areas divided by a squared distance scales with the fourth power of the unit of length.
 TEST(LiteralNettle, IsTheLargestDoubleWhereItsNumberIsLarger) {
   PlainScene plain = open_scene();
   const double f = value(plain, "nettle:variant=literal");

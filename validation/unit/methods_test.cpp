@@ -60,8 +60,8 @@ TEST(MethodSettings, EverythingWrongIsSaidAtOnce) {
       complaint([] { (void)methods::parse("nettle:split=3,rays=0,rays=2,pattern=cubic,receiver_area=-1,seed"); });
   for (const char* part :
        {"there is no setting 'split' (settings are splits, rays, pattern", "did you mean splits?",
-        "'0' will not do for rays", "a whole number from 1 to 65536", "setting 'rays' is given twice",
-        "one of jittered, centre, regular, low-discrepancy", "a number of at least 0", "'seed' gives no value"}) {
+        "'0' is not a valid value of rays", "a whole number from 1 to 65536", "setting 'rays' is given twice",
+        "one of jittered, centre, regular, low-discrepancy", "a number of at least 0", "'seed' has no value"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\nis not in\n" << text;
   }
 }
@@ -110,10 +110,10 @@ TEST(MethodSettings, KnowWhetherTheSeedMatters) {
   }
 }
 
-// What `stochastic` says is what happens.
+// `stochastic` is set exactly for the methods whose values depend on the seed.
 TEST(Methods, ASeedChangesTheValueOfStochasticMethodsOnly) {
   const Scene room = furnished_room();
-  const Receiver receiver = room_receivers(room)[0];  // which sees half of the lamp
+  const Receiver receiver = room_receivers(room)[0];  // this receiver sees half of the lamp
   for (const char* text : {"area-sampling", "area-sampling:pattern=sobol", "adaptive:eps_B=1e-4", "nettle:splits=4",
                            "wallace:pattern=jittered"}) {
     const std::string with = std::string(text) + (std::string_view(text).find(':') == std::string::npos ? ":" : ",");
@@ -190,7 +190,7 @@ TEST(Methods, AllSourcesAtOnceGetTheValuesThatTheyGetOneByOne) {
   }
 }
 
-// The definition's zeros: behind the source, in its plane, below the horizon, on the source itself.
+// The zeros of the definition: behind the source, in its plane, below the horizon, on the source itself.
 TEST(Methods, WhatTheDefinitionSaysIsZeroIsZero) {
   generate::PlainScene behind = open_scene();
   behind.point = {0, 0, 2};
@@ -250,7 +250,7 @@ TEST(MethodCounters, AddUpByName) {
   EXPECT_EQ(counters.list().size(), 2U);
 }
 
-// A method of the user's own, as the header shows it: F of a small source, without shadows.
+// A user-defined method, as the header shows it: F of a small source, without shadows.
 struct Guess : methods::Evaluator {
   const Scene* scene = nullptr;
   double factor = 1.0;

@@ -12,6 +12,7 @@
 #include "exactff/methods.h"
 #include "exactff/study.h"
 #include "exactff/truth.h"
+#include "study/statistics.h"
 #include "study_support.h"
 
 namespace exactff {
@@ -21,7 +22,7 @@ const Receiver kBelow{.point = {1.0, 0.5, 0.1}, .normal = {0.0, 0.0, 1.0}, .on =
 
 Scene room() { return validation::small_room(true); }
 
-// The words of the exception, and none if another or none was thrown.
+// The message of the exception, or none if another exception or none was thrown.
 template <class Exception>
 std::string words_of(const std::function<void()>& call) {
   try {
@@ -40,7 +41,8 @@ void expect_refused(const std::string& words, const std::function<void()>& call)
 }
 
 void expect_moved_from(const std::string& what, const std::function<void()>& call) {
-  EXPECT_EQ(words_of<std::logic_error>(call), "this " + what + " was moved from: only assign to it or destroy it");
+  EXPECT_EQ(words_of<std::logic_error>(call),
+            "this " + what + " was moved from; it can only be assigned to or destroyed");
 }
 
 TEST(Misuse, APrecisionCapBelowOneBitIsAnInputError) {
@@ -63,7 +65,7 @@ TEST(Misuse, ABuilderRefusesIdsThatItHasNotMade) {
   const PatchId patch = builder.patch("a");
   expect_refused("there is no material 0", [&] { builder.add_face(patch, MaterialId{0}, ring); });
   for (const Vec3& corner : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}}) builder.add_vertex(corner);
-  builder.add_face(patch, builder.add_material({}), ring);  // what was refused has left nothing behind
+  builder.add_face(patch, builder.add_material({}), ring);  // a refused call leaves the object unchanged
   EXPECT_EQ(builder.build().faces().size(), 1U);
 }
 
@@ -101,7 +103,7 @@ TEST(Misuse, WhatAnotherSceneMadeIsRefused) {
                  [&] { (void)other_solver.form_factor(kBelow, prepared, 1.0, {}); });
   const Scene flipped = scene.with_flipped(lamp);
   expect_refused("the source belongs to another scene", [&] { (void)exact_form_factor(flipped, kBelow, source); });
-  EXPECT_NO_THROW((void)ExactSource(other, {lamp.patch, lamp.face}));  // ids that name no scene
+  EXPECT_NO_THROW((void)ExactSource(other, {lamp.patch, lamp.face}));  // ids that do not exist in the scene
 }
 
 TEST(Misuse, ASceneThatWasMovedIsStillTheSame) {
@@ -169,6 +171,25 @@ TEST(Misuse, RequestsWithoutASceneAndChoicesWithoutAMethodSaySo) {
   EXPECT_NE(words_of<std::invalid_argument>([] { (void)truth::write({}, "never_written.csv"); }), "");
   EXPECT_NE(words_of<std::logic_error>([] { (void)methods::Choice().text(); }), "");
   EXPECT_NE(words_of<std::logic_error>([] { (void)methods::Choice().short_text(); }), "");
+}
+
+TEST(Misuse, SourcesPreparedByAnotherMethodAreRefused) {
+  const Scene scene = room();
+  const Selection lamp = scene.select("lamp");
+  const auto by_hemicube = methods::method_named("hemicube").prepare(scene)->prepare_source(lamp);
+  for (const methods::Method* method : methods::all_methods()) {
+    if (method->name == "hemicube") continue;
+    const auto prepared = method->prepare(scene);
+    const auto evaluator = prepared->configure(method->defaults());
+    evaluator->look_from(kBelow);
+    EXPECT_NE(words_of<std::invalid_argument>([&] { (void)evaluator->form_factor(*by_hemicube); }), "") << method->name;
+  }
+}
+
+// The requirements of internal functions, which every build with tests checks.
+TEST(Misuse, BrokenRequirementsNameTheirPlace) {
+  const std::string words = words_of<std::logic_error>([] { (void)study::percentile({}, 50.0); });
+  EXPECT_NE(words.find("statistics.cpp:"), std::string::npos) << words;
 }
 
 }  // namespace

@@ -58,9 +58,9 @@ TEST(Models, AnUnknownOneIsToldTheClosest) {
 
 TEST(Models, EverythingWrongWithTheSettingsIsSaidAtOnce) {
   const std::string text = complaint_about("karkanis:n=0,sed=1,cover,n=2,floor=-1");
-  for (const char* part :
-       {"model 'karkanis': '0' will not do for n", "a whole number from 1 to 10000000", "there is no setting 'sed'",
-        "did you mean seed?", "'cover' gives no value", "setting 'n' is given twice", "a number from 0 to 100"}) {
+  for (const char* part : {"model 'karkanis': '0' is not a valid value of n", "a whole number from 1 to 10000000",
+                           "there is no setting 'sed'", "did you mean seed?", "'cover' has no value",
+                           "setting 'n' is given twice", "a number from 0 to 100"}) {
     EXPECT_TRUE(holds(text, part)) << part << "\nis not in\n" << text;
   }
 }
@@ -90,7 +90,7 @@ TEST(Models, TheFirstCommentMakesTheSceneAgain) {
   EXPECT_EQ(make_scene(text).hash(), make_scene("tiles:n=3").hash());
 }
 
-// Which bits these are nobody knows in advance: that they are the same on every machine is the point.
+// These bits cannot be derived in advance. The test checks that they are the same on every machine.
 TEST(Models, BitsAreTheSameOnEveryMachine) {
   const std::map<std::string, std::string> hashes = {{"teapot:segments=3", "39a0f0f183acde91"},
                                                      {"forest:n=100", "61fe630f2369489b"},
@@ -140,7 +140,7 @@ std::vector<models::Ring> rings_of(const models::PlainScene& scene) {
 TEST(Models, WithoutAFloorAFamilyIsLeftAsItWas) {
   for (const models::Family& family : models::families()) {
     const std::string name(family.name);
-    if (name == "room" || name == "karkanis") continue;  // the one has no floor to leave out, the other is turned
+    if (name == "room" || name == "karkanis") continue;  // without a floor to leave out, and with a turned one
     const models::PlainScene before = family.make({.n = 7});
     const models::PlainScene after = models::make_plain(name + ":n=7,floor=0");
     EXPECT_EQ(after.vertices, before.vertices) << name;
@@ -163,7 +163,7 @@ TEST(KarkanisModel, EveryTriangleIsASourceThatFacesTheReceiver) {
 
 // --- the teapot ---
 
-// Edges of a patch by the positions of their ends, with how often they are run forth and back.
+// Edges of a patch by the positions of their ends, with the number of times they occur in each direction.
 using Position = std::tuple<double, double, double>;
 using Edges = std::map<std::pair<Position, Position>, std::pair<int, int>>;
 
@@ -190,7 +190,7 @@ std::vector<Vec3> corners_of(const Scene& scene, const std::string& patch) {
   return corners;
 }
 
-// Three corners of each triangle, from the first one on, so that images may be compared; not turned.
+// The corners of each triangle in order, starting with a fixed one, so that images can be compared.
 std::set<std::set<Position>> triangles_of(const Scene& scene, const std::string& patch, double x_sign, double y_sign) {
   std::set<std::set<Position>> triangles;
   for (const FaceId id : scene.faces_of(scene.select(patch))) {
@@ -214,8 +214,8 @@ TEST(TeapotModel, HasItsTrianglesAndNoneWithoutArea) {
   }
 }
 
-// The body is 4 wide and 3.15 high; the handle ends at x = -3; the spout's lip is a curve of degree 3 that stays
-// behind its farthest control point, 3.525.
+// The body is 4 wide and 3.15 high. The handle ends at x = -3. The lip of the spout is a cubic curve that stays behind
+// its farthest control point, 3.525.
 TEST(TeapotModel, HasTheKnownSize) {
   const Scene scene = make_scene("teapot:segments=8");
   Vec3 low{9, 9, 9}, high{-9, -9, -9};
@@ -231,7 +231,8 @@ TEST(TeapotModel, HasTheKnownSize) {
   EXPECT_NEAR(high.x, 3.434, 0.005);
 }
 
-// The middles, u = v = 1/2, of the ten patches that the others mirror, from the published points by another program.
+// The centres, u = v = 1/2, of the ten patches that are not mirrored, computed from the published points by another
+// program.
 TEST(TeapotModel, LiesOnTheBezierPatches) {
   const std::map<std::string, Vec3> middles = {
       {"rim", {0.99621875, 0.99621875, 2.4984375}},   {"upper body", {1.3090625, 1.3090625, 1.621875}},
@@ -271,7 +272,7 @@ TEST(TeapotModel, ItsFormFactorsAreSymmetric) {
   }
 }
 
-// Two vertices of a seam that differ in the last bit would be such a pair, and leave a gap.
+// If two vertices of a seam differed in the last bit, the seam would have a gap.
 TEST(TeapotModel, PatchesJoinInTheSameDoubles) {
   constexpr int s = 5;
   const Scene scene = make_scene("teapot:segments=" + std::to_string(s));
@@ -299,7 +300,7 @@ double signed_volume(const std::vector<Vec3>& corners, const Vec3& origin) {
   return six_times / 6;
 }
 
-// Edges run once each way make the fronts agree; the volume then says to which side they look.
+// If each edge occurs once in each direction, the fronts agree. The sign of the volume then says which side they face.
 TEST(TeapotModel, FrontsLookOutward) {
   const Scene scene = make_scene("teapot:segments=4");
   for (const char* part : kParts) {
@@ -379,7 +380,7 @@ TEST(EmittersModel, TogetherShineTheSameWhateverTheirNumberAndSize) {
   }
 }
 
-// A hemicube of 100 x 100 pixels has pixels of a fiftieth of the distance straight up.
+// The pixels of a 100 x 100 hemicube are a fiftieth of the distance wide, straight above.
 TEST(EmittersModel, LampsAreSmallerThanAPixelOfAHemicubeOnTheFloor) {
   const Scene scene = make_scene("emitters");
   for (const Selection& lamp : scene.emitters()) {
@@ -401,7 +402,7 @@ TEST(ModelsInTheProgram, InfoListsThem) {
   EXPECT_TRUE(holds(json.output, "\"name\": \"teapot\""));
 }
 
-// Leaves have more area than the ground, but nobody would put a grid on each.
+// The leaves have more area than the ground, but a grid on each leaf is not useful.
 TEST(ModelsInTheProgram, InfoSuggestsThePatchOfTheLargestFaces) {
   const ProgramRun run = run_program(EXACTFF_PROGRAM, {"info", "@forest:n=3000"});
   EXPECT_TRUE(holds(run.output, "next: exactff compare @forest:n=3000 --on ground --source sky ")) << run.output;

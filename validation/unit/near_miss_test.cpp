@@ -1,5 +1,5 @@
-// One unit in the last place decides: what lies that much nearer than the source, or inside its shaft, hides; what lies
-// on the limit or beyond it does not. From receivers whose coordinates make every difference round.
+// One unit in the last place decides: an occluder hides if it is that much nearer than the source or inside the shaft,
+// and hides nothing on the limit or beyond it. The receivers' coordinates make every difference round.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -56,7 +56,7 @@ TEST(NearMiss, InTheSourcesPlaneOrOneUlpBeyondItNothingIsHidden) {
   expect_everywhere(square(0.5, kAfter), VisiblePart::kAll);
 }
 
-// A triangle beside the shaft with its tip at the middle of a side of the source.
+// A triangle beside the shaft, with its tip at the middle of a side of the source.
 Corners pointing_at_the_side(double tip) { return {{tip, 0, 1}, {2, -1, 0.95}, {2, 1, 0.95}}; }
 
 TEST(NearMiss, ATipOneUlpInsideTheShaftHides) { expect_everywhere(pointing_at_the_side(kBefore), VisiblePart::kSome); }
@@ -66,7 +66,7 @@ TEST(NearMiss, ATipOnTheShaftOrOneUlpOutsideHidesNothing) {
   expect_everywhere(pointing_at_the_side(kAfter), VisiblePart::kAll);
 }
 
-// An occluder that reaches the source's sides hides all; one that falls short of one of them by a unit does not.
+// An occluder that reaches all sides of the source hides everything; one that is a unit too short does not.
 TEST(NearMiss, ASideOneUlpShortLeavesAGap) {
   const auto cover = [](double side) {
     return Corners{{-1, -1, kBefore}, {side, -1, kBefore}, {side, 1, kBefore}, {-1, 1, kBefore}};

@@ -89,7 +89,7 @@ TEST(ObjReader, GroupsMakePatchesInTheOrderOfTheirFirstFace) {
   EXPECT_EQ(scene.patches()[1].faces, (std::vector<FaceId>{FaceId{1}, FaceId{3}}));
   EXPECT_EQ(scene.faces()[3].number, 2U);
   EXPECT_EQ(warnings_of(scene),
-            "s.obj:7: g 'b c' names several groups (a face belongs to one patch); the first name counts\n");
+            "s.obj:7: g 'b c' names several groups (a face belongs to one patch); the first name is used\n");
 }
 
 TEST(ObjReader, ObjectsMakePatchesWhereThereAreNoGroups) {
@@ -112,25 +112,25 @@ struct Malformed {
 };
 
 TEST(ObjReader, MalformedFilesAreNamedByLine) {
-  const std::string exact = " (a coordinate stands for one exact number)";
+  const std::string exact = " (a coordinate is one exact number)";
   const std::string decimal = "; write a decimal number such as 1.5 or -2e-3";
   const std::string corner =
-      " is not a corner of a face (a corner is the number of a vertex); write v, v/vt, v//vn or v/vt/vn";
+      " is not a valid corner of a face (a corner is a vertex number); write v, v/vt, v//vn or v/vt/vn";
   const std::string range = "; correct the index";
-  const std::string backwards = " (vertices count from 1, or from -1 backwards)" + range;
+  const std::string backwards = " (vertices are numbered from 1, or backwards from -1)" + range;
   const Malformed table[] = {
       {"", "s.obj: is empty (there is nothing to compute with); give a Wavefront OBJ file"},
       {"\n\n", "s.obj: has no faces (there is nothing to compute with); is it a Wavefront OBJ file?"},
       {kSquare, "s.obj: has no faces (there is nothing to compute with); is it a Wavefront OBJ file?"},
-      {std::string("v 0\0 0", 6), "s.obj: is not a text file (it holds zero bytes); give a Wavefront OBJ file"},
-      {"v 1 2\n", "s.obj:1: a vertex has fewer than three coordinates (the point would not be known); write v x y z"},
-      {"v\n", "s.obj:1: a vertex has fewer than three coordinates (the point would not be known); write v x y z"},
+      {std::string("v 0\0 0", 6), "s.obj: is not a text file (it contains zero bytes); give a Wavefront OBJ file"},
+      {"v 1 2\n", "s.obj:1: a vertex has fewer than three coordinates (a point needs all three); write v x y z"},
+      {"v\n", "s.obj:1: a vertex has fewer than three coordinates (a point needs all three); write v x y z"},
       {"\n v 1 2 x\n", "s.obj:2: 'x' is not a number" + exact + decimal},
       {"v 1 2 3y\n", "s.obj:1: '3y' is not a number" + exact + decimal},
       {"v 1 nan 3\n", "s.obj:1: 'nan' is not a finite number" + exact + "; give a finite number"},
       {"v 1 2 -Inf\n", "s.obj:1: '-Inf' is not a finite number" + exact + "; give a finite number"},
-      {"v 1e400 2 3\n",
-       "s.obj:1: '1e400' is too large for a double" + exact + "; give a smaller number; doubles end at 1.8e308"},
+      {"v 1e400 2 3\n", "s.obj:1: '1e400' is too large for a double" + exact +
+                            "; give a smaller number; the largest double is about 1.8e308"},
       {"v 0x1 2 3\n", "s.obj:1: '0x1' is hexadecimal" + exact + decimal},
       {"v 1,5 2 3\n", "s.obj:1: '1,5' has a decimal comma" + exact + "; write a decimal point"},
       {"v 1 \\\n2 \\\nz\n", "s.obj:1: 'z' is not a number" + exact + decimal},
@@ -151,14 +151,14 @@ TEST(ObjReader, MalformedFilesAreNamedByLine) {
       {kSquare + "f 1 2 3/x\n", "s.obj:5: '3/x'" + corner},
       {kSquare + "f 1, 2, 3\n", "s.obj:5: '1,'" + corner + "\ns.obj:5: '2,'" + corner},
       {kSquare + "f 1 2\n",
-       "s.obj:5: a face has 2 vertices (a polygon has at least three); remove it, or leave bad "
-       "faces out with --skip-bad-faces"},
+       "s.obj:5: a face has 2 vertices (a polygon has at least three); remove it, or skip bad faces with "
+       "--skip-bad-faces"},
       {kSquare + "f\n",
-       "s.obj:5: a face has 0 vertices (a polygon has at least three); remove it, or leave bad faces "
-       "out with --skip-bad-faces"},
+       "s.obj:5: a face has 0 vertices (a polygon has at least three); remove it, or skip bad faces with "
+       "--skip-bad-faces"},
       {kSquare + "g bow\nf 1 2 4 3\n",
-       "s.obj:6: face 'bow:1' crosses itself: edge 2-4 and edge 3-1 (vertex numbers) intersect (its inside is "
-       "ambiguous); split it into simple polygons, or leave bad faces out with --skip-bad-faces"},
+       "s.obj:6: face 'bow:1' crosses itself: edge 2-4 and edge 3-1 (vertex numbers) intersect (its interior is "
+       "ambiguous); split it into simple polygons, or skip bad faces with --skip-bad-faces"},
       {"f 1 2 9\nv 1 2 x\nf 1 0 1\n", "s.obj:1: vertex 2 does not exist (the file has 1 vertex)" + range +
                                           "\ns.obj:1: vertex 9 does not exist (the file has 1 vertex)" + range +
                                           "\ns.obj:2: 'x' is not a number" + exact + decimal +
@@ -183,9 +183,9 @@ TEST(ObjReader, ShortFacesAreSkippedOnRequest) {
 TEST(ObjReader, UnknownWordsAndCurvedGeometryAreMentionedOnce) {
   const Scene scene = read(kSquare + "cstype bezier\nsurf 0 1 0 1 1 2 3\nend\nF 1 2 3\nface 1 2 3\nf 1 2 3\n");
   EXPECT_EQ(warnings_of(scene),
-            "s.obj:6: 'surf' is not read (curves, surfaces and other files are no polygons); convert them to faces\n"
-            "s.obj:8: unknown keyword 'F' (and on 1 more line) (the line is passed over); is it a Wavefront OBJ "
-            "file?\n");
+            "s.obj:6: 'surf' is not read (curves, surfaces and references to other files are not polygons); convert "
+            "them to faces\n"
+            "s.obj:8: unknown keyword 'F' (and on 1 more line) (the line is ignored); is it a Wavefront OBJ file?\n");
 }
 
 TEST(ObjReader, FilesThatCannotBeReadSaySo) {
@@ -199,14 +199,14 @@ TEST(ObjReader, FilesThatCannotBeReadSaySo) {
     return std::string("no error");
   };
   const std::string where = directory.path().string();
-  EXPECT_EQ(message(directory.path()), where + ": is a directory (a file is wanted); name a Wavefront OBJ file in it");
+  EXPECT_EQ(message(directory.path()), where + ": is a folder (a file is needed); name a Wavefront OBJ file in it");
   EXPECT_EQ(message(directory.path() / "none.obj"),
             where + "/none.obj: cannot be opened (No such file or directory); check the path");
   EXPECT_EQ(message(directory.write("empty.obj", "")),
             where + "/empty.obj: is empty (there is nothing to compute with); give a Wavefront OBJ file");
 }
 
-// Neither crashes nor hangs, whatever the bytes: either a scene or an InputError.
+// The reader never crashes or hangs: any bytes give either a scene or an InputError.
 TEST(ObjReader, SurvivesDamagedFiles) {
   const std::string good = "mtllib none.mtl\no a\ng a b\nusemtl m\n" + kSquare +
                            "v 2e-3 -1e+5 .5\nf 1/2/3 -1//2 3/4 2\nf 1 2 3 4 5\ns 1\nf \\\n 4 3 2\n# end\n";
@@ -275,22 +275,21 @@ TEST(MtlReader, SeveralLibrariesAndBackslashesAreFound) {
 TEST(MtlReader, MalformedFilesAreNamedByLine) {
   const Malformed table[] = {
       {"newmtl a\nKd 1 x 1\n",
-       "m.mtl:2: Kd of material 'a': 'x' is not a number (a colour is made of finite numbers); write a decimal number "
-       "such as 1.5 or -2e-3"},
+       "m.mtl:2: Kd of material 'a': 'x' is not a number (colours are finite numbers); write a decimal number such as "
+       "1.5 or -2e-3"},
       {"newmtl a\nKe 1 2\n",
-       "m.mtl:2: Ke of material 'a' has two values (a colour has one value or three); give one value or red, green and "
-       "blue"},
+       "m.mtl:2: Ke of material 'a' has two values (a colour has one or three values); give one value, or red, green "
+       "and blue"},
       {"newmtl a\nKd\n",
-       "m.mtl:2: Kd of material 'a' has no value (a colour has one value or three); give one value or red, green and "
+       "m.mtl:2: Kd of material 'a' has no value (a colour has one or three values); give one value, or red, green and "
        "blue"},
-      {"newmtl a\nKe 1 -2 1\n", "m.mtl:2: Ke of material 'a' is negative (a radiosity is not negative); correct it"},
+      {"newmtl a\nKe 1 -2 1\n", "m.mtl:2: Ke of material 'a' is negative (a radiosity cannot be negative); correct it"},
       {"newmtl a\nKd -.1\n",
        "m.mtl:2: Kd of material 'a' is negative (a reflectance lies between 0 and 1); correct it"},
-      {"Kd 1\n", "m.mtl:1: Kd before any newmtl (it belongs to no material); move it"},
-      {"newmtl\n", "m.mtl:1: newmtl without a name (nothing can use it); give the material a name"},
+      {"Kd 1\n", "m.mtl:1: Kd before any newmtl (it does not belong to a material); move it"},
+      {"newmtl\n", "m.mtl:1: newmtl without a name (no face can use it); give the material a name"},
       {"newmtl a\nKe inf\n",
-       "m.mtl:2: Ke of material 'a': 'inf' is not a finite number (a colour is made of finite numbers); give a finite "
-       "number"},
+       "m.mtl:2: Ke of material 'a': 'inf' is not a finite number (colours are finite numbers); give a finite number"},
   };
   for (const Malformed& entry : table) {
     try {
@@ -308,16 +307,15 @@ TEST(MtlReader, DoubtfulFilesAreWarnedAbout) {
        "m.mtl:2: Kd of material 'a' exceeds 1 (such a surface reflects more than it receives); "
        "correct it\n"},
       {"newmtl a\nKd spectral x.rfl\n",
-       "m.mtl:2: Kd of material 'a' is given as 'spectral' (only RGB values are "
-       "read); the default stands; write red, green and blue\n"},
+       "m.mtl:2: Kd of material 'a' is given as 'spectral' (exactff reads only RGB values); the default is used; write "
+       "red, green and blue\n"},
       {"newmtl a\nKd xyz 1 1 1\n",
-       "m.mtl:2: Kd of material 'a' is given as 'xyz' (only RGB values are read); the "
-       "default stands; write red, green and blue\n"},
+       "m.mtl:2: Kd of material 'a' is given as 'xyz' (exactff reads only RGB values); the default is used; write red, "
+       "green and blue\n"},
       {"newmtl a\nKd .5\nnewmtl a\nKd .25\n",
-       "m.mtl:3: material 'a' is defined again (the first definition counts); remove one\n"},
+       "m.mtl:3: material 'a' is defined again (the first definition is used); remove one\n"},
       {"newmtl b\n",
-       "s.obj:2: material 'a' is not defined (it becomes Kd 1, Ke 0); define it in a file named by "
-       "mtllib\n"},
+       "s.obj:2: material 'a' is not defined (it gets Kd 1, Ke 0); define it in a file named by mtllib\n"},
   };
   for (const Malformed& entry : table) {
     const std::string warnings = warnings_of(read_with_mtl(entry.text));
@@ -328,8 +326,8 @@ TEST(MtlReader, DoubtfulFilesAreWarnedAbout) {
 TEST(MtlReader, AMissingFileIsAWarningAndGivesDefaults) {
   const Scene scene = read("mtllib none.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 4\n");
   EXPECT_EQ(warnings_of(scene),
-            "s.obj:1: material file 'none.mtl' cannot be read (its materials become Kd 1, Ke 0); "
-            "put it there if colours or emission matter\n");
+            "s.obj:1: material file 'none.mtl' cannot be read (its materials get Kd 1, Ke 0); add the file if colours "
+            "or emission matter\n");
   EXPECT_EQ(scene.material(scene.faces()[1].material).name, "b");
 }
 

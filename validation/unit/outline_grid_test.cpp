@@ -1,4 +1,5 @@
-// The grid loses no pair of an edge and an occluder that counts. EXACTFF_TEST_SCALE multiplies the number of scenes.
+// The grid keeps every pair of an edge and an occluder that matters. EXACTFF_TEST_SCALE multiplies the number of
+// scenes.
 #include "visibility/outline_grid.h"
 
 #include <gtest/gtest.h>
@@ -29,14 +30,14 @@ Vec3 operator*(const Vec3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 // Outlines of directions from the origin.
 class Seen {
  public:
-  // Nothing is added where the origin sees no area.
+  // A face without area, as seen from the origin, is not added.
   void add(Corners corners) {
     const int turn = kernel::orientation({}, corners[0], corners[1], corners[2]);
     if (turn == 0) return;
     if (turn > 0) std::reverse(corners.begin(), corners.end());
     rings_.push_back(std::move(corners));
   }
-  // Of all that was added before.
+  // Of all outlines that were added before.
   Outlines& outlines() {
     if (scene_) return outlines_;
     scene_ = generate::build(with_all_vertices());
@@ -55,7 +56,7 @@ class Seen {
   }
 
  private:
-  // Rings of four corners need not lie in a plane: the scene has a triangle of one of them alone.
+  // A ring of four corners may be non-planar: then the scene has only one triangle of it.
   [[nodiscard]] generate::PlainScene with_all_vertices() const {
     generate::PlainScene plain;
     for (const Corners& ring : rings_) plain.vertices.insert(plain.vertices.end(), ring.begin(), ring.end());
@@ -104,8 +105,8 @@ struct Tally {
   std::uint64_t met = 0, left_out = 0, near = 0, pairs = 0;
 };
 
-// Whatever an edge meets within the source is near it, or hidden there by another that is near it. Edges with a mark
-// in `dropped` are not asked for.
+// Every outline that an edge meets within the source is near the edge, or is hidden there by another outline near it.
+// Edges marked in `dropped` are not queried.
 void expect_nothing_lost(Outlines& outlines, const std::vector<std::uint8_t>& dropped, Tally& tally) {
   OutlineGrid grid;
   grid.build(outlines, 1, dropped);
@@ -136,7 +137,7 @@ void expect_nothing_lost(Outlines& outlines, const std::vector<std::uint8_t>& dr
   }
 }
 
-// Slats, giants, specks and faces that reach behind the receiver, before a source of a size.
+// Slats, huge and tiny faces, and faces that reach behind the receiver, in front of a source of some size.
 Corners random_corners(Random& random, double size) {
   const auto number = [&](double most) { return random.between(-most, most); };
   const double x = number(1.5 * size), y = number(1.5 * size), z = random.between(0.1, 1.0);
@@ -165,7 +166,7 @@ TEST(OutlineGrid, LosesNothingThatCounts) {
   for (std::uint64_t i = 0; i < validation::scaled_count(30); ++i) {
     SCOPED_TRACE("seed " + std::to_string(validation::seed_of(i)));
     Random random(validation::seed_of(i));
-    // Down to sources smaller than what the images are known to.
+    // Down to sources that are smaller than the error of the images.
     const double size = random.one_in(2) ? 1.0 : std::ldexp(1.0, -random.integer(1, 45));
     Seen seen;
     seen.add({{-size, -size, 1}, {size, -size, 1}, {size, size, 1}, {-size, size, 1}});
@@ -178,8 +179,8 @@ TEST(OutlineGrid, LosesNothingThatCounts) {
   }
   EXPECT_GT(few.met, 0U);
   EXPECT_GT(tally.met, 0U);
-  EXPECT_GT(tally.left_out, 0U);       // cells that one covers were met with
-  EXPECT_LT(tally.near, tally.pairs);  // and not everything is near everything
+  EXPECT_GT(tally.left_out, 0U);       // some cells are fully covered
+  EXPECT_LT(tally.near, tally.pairs);  // and not everything is near everything else
 }
 
 TEST(OutlineGrid, TellsTheSlatsOfABlindApart) {
@@ -195,7 +196,8 @@ TEST(OutlineGrid, TellsTheSlatsOfABlindApart) {
   EXPECT_LT(tally.near, 8 * seen.outlines().edges().size());
 }
 
-// Where all lie closer together than their images are known, no number of cells helps, and the grid says so.
+// If all outlines are closer together than the error of their images, no number of cells helps, and the grid reports
+// this.
 TEST(OutlineGrid, KnowsWhatItCannotTellApart) {
   constexpr int kCount = 300;
   constexpr double kSize = 0x1p-40;
@@ -209,7 +211,7 @@ TEST(OutlineGrid, KnowsWhatItCannotTellApart) {
   grid.build(seen.outlines(), 1, {});
   const std::uint64_t pairs = std::uint64_t{40} * 4 * kCount * kCount;
   EXPECT_GE(grid.unsorted_pairs(seen.outlines()), pairs);
-  EXPECT_LE(grid.unsorted_pairs(seen.outlines()), 4 * pairs);  // few cells hold them all
+  EXPECT_LE(grid.unsorted_pairs(seen.outlines()), 4 * pairs);  // all are in few cells
   EXPECT_EQ(grid.find_near(seen.outlines(), 0, 1).size(), std::size_t{kCount});
 }
 

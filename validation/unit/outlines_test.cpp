@@ -1,4 +1,5 @@
-// The heights that the edge engine decides by: never further off than they say, on corners that all but line up.
+// The heights by which the edge engine decides are never further off than their bounds, for corners that almost line
+// up.
 // EXACTFF_TEST_SCALE multiplies the number of scenes.
 #include "visibility/outlines.h"
 
@@ -21,7 +22,7 @@ using kernel::times_power_of_two;
 Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 Vec3 operator*(const Vec3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 
-// Triangles whose corners x sees on few lines, but for roundings; x is the scene's point.
+// Triangles whose corners, seen from x, lie on few lines except for rounding; x is a point of the scene.
 PlainScene triangles_on_few_lines(Random& random) {
   PlainScene scene;
   const auto number = [&] { return random.between(-1.0, 1.0); };
@@ -81,11 +82,11 @@ TEST(Outlines, HeightsAreWithinTheirError) {
     generate::scale(scene, scale);
     expect_true_heights(scene, scale, tally);
   }
-  EXPECT_GT(tally.certain, tally.declined / 10);   // and the filters are of use,
-  EXPECT_GT(tally.declined, tally.certain / 100);  // and were tried where they are not
+  EXPECT_GT(tally.certain, tally.declined / 10);   // the filters are useful,
+  EXPECT_GT(tally.declined, tally.certain / 100);  // and were also tried where they fail
 }
 
-// A unit far from the distances: nothing is certain but what is computed exactly.
+// The unit is far from the distances, so only exact results are certain.
 TEST(Outlines, DecidesExactlyWhereTheFiltersDecline) {
   for (const double scale : {0x1p-700, 0x1p-350, 0x1p350, 0x1p700}) {
     Random random(validation::seed_of(0));

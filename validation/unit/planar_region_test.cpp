@@ -1,5 +1,5 @@
-// Random rings on a small lattice, where edges overlap, touch and pass through vertices all the time, against the
-// definition: winding numbers and parities at points that lie on no edge.
+// Random rings on a small lattice, where edges often overlap, touch and pass through vertices. The result is compared
+// with the definition: winding numbers and parities at points that lie on no edge.
 #include "scene/planar_region.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ long turn(const Point& a, const Point& b, const Point& c) {
 
 using Polygon = std::vector<Point>;
 
-// How often the polygon runs counter-clockwise around a point that is on none of its edges.
+// How often the polygon winds counter-clockwise around a point that is on none of its edges.
 int winding_number(const Polygon& polygon, const Point& p) {
   int winding = 0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -62,7 +62,7 @@ long twice_area(const Polygon& ring) {
   return sum;
 }
 
-constexpr long kUnit = 1009;  // lattice spacing; a prime, so that the probes below lie on no line of the lattice
+constexpr long kUnit = 1009;  // lattice spacing; a prime, so that the probe points lie on no lattice line
 constexpr long kSize = 4;
 
 std::vector<Point> probes() {
@@ -105,9 +105,9 @@ Polygon corners_of(const ConvexPart& part, const std::vector<Polygon>& rings) {
   return corners;
 }
 
-// What the definition says at the probes.
+// The definition, evaluated at the probe points.
 struct Truth {
-  bool ambiguous = false;  // something is wound around twice or the other way round
+  bool ambiguous = false;  // a part is wound around twice or in the opposite direction
   bool hole_outside = false;
   std::vector<int> inside;
 };
@@ -126,7 +126,7 @@ Truth truth(const std::vector<Polygon>& rings, const std::vector<Point>& points)
   return result;
 }
 
-// Turns left or goes straight on at every corner, never back, and goes around once.
+// Turns left or goes straight on at every corner, never back, and winds around once.
 bool is_strictly_convex_ring(const Polygon& ring) {
   int changes = 0;
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -160,7 +160,7 @@ TEST_P(RandomRings, AreCutAsWindingNumbersSay) {
       ++refused;
     }
     if (face.fault) continue;
-    // Edges may cross only where a vertex stands at the crossing and the winding numbers stay 0 and 1.
+    // Edges may cross only at a vertex, and the winding numbers must stay 0 and 1.
     crossings += any_crossing(rings) ? 1 : 0;
     ++accepted;
     for (const ConvexPart& part : face.parts) {

@@ -1,4 +1,4 @@
-// Crossings with the source's plane: what double-double says of them holds, and it declines where it cannot know.
+// Crossings with the source's plane: the double-double result is always right, and it declines if it cannot decide.
 // EXACTFF_TEST_SCALE multiplies the number of segments.
 #include "visibility/plane_crossings.h"
 
@@ -28,7 +28,7 @@ Vec3 between(const Vec3& a, const Vec3& b, double t) {
   return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)};
 }
 
-// Among them segments whose ends are within roundings of the plane, and some that cross it within roundings of x.
+// Some segments have ends within rounding errors of the plane; some cross the plane within rounding errors of x.
 Segment random_segment(Random& random) {
   const double size = std::ldexp(1.0, random.integer(-40, 40));
   Segment s{random_point(random, size), random_point(random, size), random_point(random, size),
@@ -48,7 +48,7 @@ kernel::ExactVec3 normal_of(const Segment& s) {
 
 int height_sign(const Segment& s, const Vec3& y) { return kernel::orientation(s.a, s.b, s.c, y); }
 
-// Where the segment pq crosses the plane of that normal.
+// The point where the segment pq crosses the plane with this normal.
 void expect_holds(const PlaneCrossings::Fine& fine, const PlaneCrossings& crossings, const Vec3& p, const Vec3& q,
                   const kernel::ExactVec3& normal) {
   kernel::ScaledVec3 exact;
@@ -86,7 +86,7 @@ TEST(PlaneCrossings, HoldWhatTheyPromise) {
   EXPECT_GT(declined, 20);
 }
 
-// The horizon's normal comes as three doubles, of any length, and its plane holds x.
+// The horizon's normal is three doubles, of any length, and its plane contains x.
 TEST(PlaneCrossings, HoldWhatTheyPromiseOnTheHorizon) {
   int fine_ones = 0, fine_along_z = 0;
   for (std::uint64_t i = 0; i < validation::scaled_count(3000); ++i) {
@@ -121,7 +121,7 @@ TEST(PlaneCrossings, KnowAnExactZero) {
   expect_holds(*fine, crossings, {0.1, 0.7, 0.5}, {0.1, 0.2, 1.5}, normal);
 }
 
-// Beside a component of 2^128, brought to 1, one of 2^-900 is no longer normal.
+// If a component of 2^128 is scaled to 1, a component of 2^-900 becomes denormal.
 TEST(PlaneCrossings, HoldWhatTheyPromiseOfTheSmallestComponents) {
   const kernel::ExactVec3 normal{0, 0, 1};
   constexpr double kFar = 0x1p128;
@@ -140,7 +140,7 @@ TEST(PlaneCrossings, HoldWhatTheyPromiseOfTheSmallestComponents) {
   EXPECT_GT(declined, 100);
 }
 
-// An x that lies on the segment's line sees the crossing within roundings of itself.
+// If x lies on the segment's line, the crossing is within rounding errors of x.
 TEST(PlaneCrossings, DeclineWhereComponentsCancel) {
   const kernel::ExactVec3 normal{0, 0, 1};
   PlaneCrossings crossings;

@@ -31,7 +31,7 @@ using kernel::sign;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr long kBits = 600;
 
-// An end of an edge, or where the plane through x and the corners c, d meets it.
+// An end of an edge, or the point where the plane through x and the corners c, d meets it.
 struct End {
   enum class Kind { kA, kB, kCrossing } kind = Kind::kA;
   std::uint32_t c = 0;
@@ -51,7 +51,7 @@ struct Part {
 
 // --- A contour in both arithmetics ---
 
-// Its corners are vertices seen from x, or directions given by integers.
+// The corners are vertices seen from x, or directions given by integers.
 struct Both {
   Vec3 normal{0, 0, 1};
   Vec3 x;
@@ -74,7 +74,7 @@ struct Both {
     for (std::uint32_t i = 0; i < count; ++i) pieces.push_back({i, (i + 1) % count, kA, kB});
   }
 
-  // Every line is made anew for every piece. At most `batch` pieces are added at a time.
+  // The lines are computed again for every piece. At most `batch` pieces are added at a time.
   [[nodiscard]] QuickContour::Value quick(std::size_t batch = 1000) const {
     QuickContour contour(normal);
     std::vector<QuickEdge> edges;
@@ -128,7 +128,7 @@ bool answers(const QuickContour::Value& value) { return std::isfinite(value.erro
 
 double relative_error(const QuickContour::Value& value) { return value.error / std::abs(value.hi); }
 
-// Returns whether the double was found.
+// Returns true if the double was determined.
 bool expect_the_truth(const Both& both) {
   const QuickContour::Value value = both.quick();
   if (!answers(value)) return false;
@@ -149,7 +149,7 @@ Vec3 random_vector(Random& random, double size) {
   return {random.between(-size, size), random.between(-size, size), random.between(-size, size)};
 }
 
-// A triangle of about the size, near a point above x.
+// A triangle of about this size, near a point above x.
 Both triangle(Random& random, double size) {
   Both both;
   both.x = random_vector(random, 1);
@@ -162,22 +162,22 @@ Both triangle(Random& random, double size) {
   return both;
 }
 
-// What the cutter's line c d leaves of the triangle, between its first corner and the line: a loop with pieces of all
-// kinds. c and d lie on either side, at a random depth between x and the triangle.
+// The part of the triangle between its first corner and the cutter's line c d: a loop with pieces of all kinds. c and d
+// lie on either side, at a random depth between x and the triangle.
 Both cut_triangle(Random& random, double size) {
   Both both = triangle(random, size);
   const std::array<QuickCorner, 3> corners = {both.corners[0], both.corners[1], both.corners[2]};
   const double t = random.between(0.2, 0.8);
   const double u = random.between(0.2, 0.8);
   const double depth = random.between(0.3, 1);
-  // The point with the barycentric coordinates, seen from x at that depth.
+  // The point with these barycentric coordinates, seen from x at this depth.
   const auto point = [&](double k0, double k1, double k2) {
     const auto along = [&](int i) {
       return depth * (k0 * corners[0].hi[i] + k1 * corners[1].hi[i] + k2 * corners[2].hi[i]);
     };
     return Vec3{both.x.x + along(0), both.x.y + along(1), both.x.z + along(2)};
   };
-  // Through the points t and u along the two sides, longer by half at either end.
+  // Through the points t and u along the two sides, extended by half at either end.
   const std::uint32_t c = both.add(point(1 - 1.5 * t + 0.5 * u, 1.5 * t, -0.5 * u));
   const std::uint32_t d = both.add(point(1 - 1.5 * u + 0.5 * t, -0.5 * t, 1.5 * u));
   both.pieces = {{0, 1, kA, crossing(c, d)}, {c, d, crossing(0, 1), crossing(2, 0)}, {2, 0, crossing(c, d), kB}};
@@ -201,7 +201,7 @@ struct Count {
   std::size_t found = 0;
 };
 
-// `make` gives a loop; every one must enclose the truth.
+// `make` makes a loop; every enclosure must contain the true value.
 template <typename Make>
 Count expect_the_truth_of(std::size_t count, std::uint64_t first_seed, Make make) {
   Count result{.loops = validation::scaled_count(count)};
@@ -318,7 +318,7 @@ TEST(QuickContour, EnclosesAnglesNearAHalfTurn) {
   EXPECT_GT(count.found, count.loops * 9 / 10);
 }
 
-// Any pieces, not closed, of directions with more bits than double-double has, or fewer.
+// Arbitrary pieces, not closed, with directions of more or fewer bits than double-double has.
 TEST(QuickContour, EnclosesPiecesOfExactDirections) {
   const Count count = expect_the_truth_of(1000, 7001, [](Random& random) {
     Both both;
@@ -363,13 +363,13 @@ TEST(QuickContour, EnclosesCornersOfAnyModerateSize) {
   EXPECT_GT(count.found, count.loops * 8 / 10);
 }
 
-// Every step of the table of arc tangents, both ends of it, in every octant.
+// Every step of the arc tangent table, both ends of each step, in every octant.
 TEST(QuickContour, EnclosesAnglesOfEveryStep) {
   constexpr int kSteps = 512;
   for (int k = -kSteps; k <= kSteps; ++k) {
     for (const bool steep : {false, true}) {
       for (const int side : {1, -1}) {
-        if (!steep && k == 0) continue;  // a on one line with b
+        if (!steep && k == 0) continue;  // a is collinear with b and x
         Both both;
         both.normal = {0.3, 0.4, 0.5};
         both.add(ExactVec3{1, 0, 0});
@@ -408,7 +408,7 @@ TEST(QuickContour, TheLengthOfTheNormalMeansNothing) {
     Both both;
     for (const ExactVec3& corner : {ExactVec3{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}) both.add(corner);
     both.close_loop();
-    both.normal = {0.25, -0.5, 4};  // few bits: they outlast any shift
+    both.normal = {0.25, -0.5, 4};  // few bits, so that any shift is exact
     const QuickContour::Value plain = both.quick();
     both.normal = {std::ldexp(0.25, exponent), std::ldexp(-0.5, exponent), std::ldexp(4, exponent)};
     EXPECT_EQ(both.quick().hi, plain.hi) << exponent;
@@ -466,7 +466,7 @@ TEST(QuickContour, DeclinesAnEdgeOnOneLineWithX) {
   EXPECT_TRUE(answers(one_piece({1, 2, 3}, {1, 2, 4}).quick()));
 }
 
-// One piece that is declined is one too many.
+// If one piece is declined, the whole sum is declined.
 TEST(QuickContour, StaysDeclined) {
   Both both = one_piece({1, 2, 3}, {2, 4, 6});
   both.add(ExactVec3{1, 5, 2});
@@ -600,8 +600,8 @@ TEST(QuickCorner, OfAFewBitsIsExact) {
 
 // --- Arithmetic ---
 
-// Every operation on numbers at the edge of what their bounds allow: its own bound must hold, and, where the operands
-// are exact, must not be a hundred times too large for the worst of many.
+// Every operation, with numbers at the limits that their bounds allow. The bound of the operation must hold. If the
+// operands are exact, the bound must not be a hundred times too large for the worst of many cases.
 class Arithmetic : public ::testing::Test {
  protected:
   struct Operand {
@@ -624,7 +624,7 @@ class Arithmetic : public ::testing::Test {
     return Rational(lost / kernel::to_rational(kInflation * result.error)).get_d();
   }
 
-  // `shares` gives the share of the bound that one case uses up.
+  // `shares` returns the share of the bound that one case uses.
   template <typename Shares>
   static void expect_sharp_bounds(Shares shares) {
     double worst = 0.0;
@@ -646,7 +646,7 @@ TEST_F(Arithmetic, SumsKeepTheirBounds) {
   });
 }
 
-// Operands that cancel to a few of their last bits, or all.
+// Operands that cancel down to a few of their last bits, or completely.
 TEST_F(Arithmetic, SumsThatCancelKeepTheirBounds) {
   for (std::uint64_t seed = 1; seed <= validation::scaled_count(4000); ++seed) {
     Random random(validation::seed_of(seed));
@@ -756,7 +756,7 @@ TEST_F(VectorArithmetic, DifferencesKeepTheirBounds) {
     if (random.one_in(2)) {  // near p
       for (int i = 0; i < 3; ++i) q.truth[i] += p.truth[i];
       q.bounded = difference(p.bounded, vector({-q.bounded.c[0], -q.bounded.c[1], -q.bounded.c[2]}, q.bounded.error));
-      if (exact) q.bounded.error = 0;  // the sum as it was rounded is an exact operand
+      if (exact) q.bounded.error = 0;  // the rounded sum is an exact operand
       if (exact) {
         for (int i = 0; i < 3; ++i) q.truth[i] = exactly(q.bounded.c[i].hi, q.bounded.c[i].lo);
       }
@@ -794,7 +794,7 @@ TEST_F(VectorArithmetic, CombinationsKeepTheirBounds) {
   });
 }
 
-// p is t q to within anything from 2^-100 to 1 of its size.
+// p is t q up to a relative difference between 2^-100 and 1.
 TEST_F(VectorArithmetic, NearCancellationsKeepTheirBounds) {
   expect_sharp_bounds([](Random& random, bool exact) {
     const VectorOperand q = vector_operand(random, exact);
@@ -886,12 +886,12 @@ bool same(double x, double y) {
   return std::isnan(x) ? std::isnan(y) : std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
 }
 
-// Compares lane by lane what is done with four and with one.
+// Compares the results for four lanes with the results for one.
 class Lanes : public ::testing::Test {
  protected:
   static constexpr std::size_t kLanes = 4;
 
-  // Of every kind: ordinary, at the ends of the range, none.
+  // Operands of every kind: ordinary, at the ends of the range, none.
   static double number(Random& random) {
     constexpr std::array kHostile = {0.0,     -0.0,      5e-324,    -5e-324,    0x1p-1022, 0x1.8p-1030,
                                      0x1p900, -0x1p1023, kInfinity, -kInfinity, 0x1p-600,  1.0};
@@ -946,7 +946,7 @@ class Lanes : public ::testing::Test {
     expect_lane(four.error, k, one.error);
   }
 
-  // `function` of fours, and of what is in their lanes.
+  // `function` of four lanes, and of the number in each lane.
   template <class Function, class... Ones>
   static void expect_same_of(Function function, const std::array<Ones, kLanes>&... ones) {
     const auto four = function(pack(ones)...);
@@ -1003,7 +1003,7 @@ TEST_F(Lanes, AnglesAreThoseOfOne) {
   });
 }
 
-// Both sides of every step of the table and of every octant: each lane at a step and an octant of its own.
+// Both sides of every step of the table and of every octant; each lane has a different step and octant.
 TEST_F(Lanes, AnglesOfEveryStepAreThoseOfOneAndEncloseTheTruth) {
   const auto angle = [](const auto& sine, const auto& cosine) { return atan2(sine, cosine, angle_constants()); };
   const auto point = [](int octant, double ratio) -> std::pair<Bounded, Bounded> {
@@ -1046,7 +1046,7 @@ bool same(const QuickLine& f, const QuickLine& g) {
          same(f.cross, g.cross) && same(f.size, g.size) && same(f.weight, g.weight);
 }
 
-// Corners that are declined for every reason among others.
+// Corners that are declined for every possible reason, between other corners.
 std::vector<QuickCorner> mixed_corners(Random& random) {
   const double nan = std::nan("");
   std::vector<QuickCorner> corners{{{nan, nan, nan}, {}, 0}, {{kInfinity, 1, 0}, {}, 0},
@@ -1065,7 +1065,7 @@ TEST(QuickContourInCompany, ALineIsWhatItIsAlone) {
     for (std::size_t count = 0; count <= 9; ++count) {
       std::vector<QuickEdge> edges;
       for (std::size_t i = 0; i < count; ++i) edges.push_back({any(), any()});
-      std::vector<QuickLine> lines(count + 1);  // one too many: it is left as it is
+      std::vector<QuickLine> lines(count + 1);  // one too many: it stays as it is
       contour.make_lines(corners, edges, lines);
       EXPECT_TRUE(same(lines[count], QuickLine()));
       for (std::size_t i = 0; i < count; ++i) {
@@ -1077,7 +1077,7 @@ TEST(QuickContourInCompany, ALineIsWhatItIsAlone) {
   }
 }
 
-// A piece between others from a to a, which add nothing, at any place of any number of them.
+// A piece from a to a, which adds nothing, at any position among any number of pieces.
 TEST(QuickContourInCompany, APieceIsWhatItIsAlone) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     Random random(validation::seed_of(seed));
@@ -1100,7 +1100,7 @@ TEST(QuickContourInCompany, APieceIsWhatItIsAlone) {
   }
 }
 
-// Of two sizes, so that one may have what the other needs no steps for; the sum of two is the same in any lanes.
+// Pieces of two sizes, so that only one needs all steps. The sum of both must not depend on the lanes.
 TEST(QuickContourInCompany, TwoPiecesAreWhatTheyAreApart) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Random random(validation::seed_of(seed));
@@ -1119,7 +1119,7 @@ TEST(QuickContourInCompany, TwoPiecesAreWhatTheyAreApart) {
   }
 }
 
-// A piece that is declined spoils its own sum, wherever it is; lanes that repeat a piece spoil none.
+// A declined piece invalidates its own sum in any position; lanes that repeat a piece invalidate none.
 TEST(QuickContourInCompany, EveryNumberOfPiecesIsSummedWhole) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     Random random(validation::seed_of(seed));

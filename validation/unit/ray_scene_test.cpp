@@ -153,7 +153,7 @@ TEST(SinglePrecision, AnOffsetThatLeavesTheDetailIsFine) {
   EXPECT_EQ(refusal(plain), "");  // the box is moved to the origin first
 }
 
-// Twenty triangles before the source, in a box that is `thickness` thick along z and 1 along the other axes.
+// Twenty triangles in front of the source, in a box of size `thickness` along z and 1 along the other axes.
 PlainScene thin_scene(double thickness) {
   PlainScene plain;
   validation::add(plain, "source", {{-0.5, -0.5, thickness}, {-0.5, 0.5, thickness}, {0.5, 0.5, thickness}});
@@ -181,7 +181,7 @@ TEST(SinglePrecision, FewFacesMayBeAsThinAsFloatsAre) {
   EXPECT_EQ(refusal(plain), "");
 }
 
-// As cos(pi / 2) times itself is on the pole of a sphere.
+// Such coordinates arise as products of cos(pi / 2) in double, for example at the pole of a sphere.
 TEST(SinglePrecision, NoiseBesideTheMiddleIsTakenForTheMiddle) {
   PlainScene plain = thin_scene(0.5);
   for (Vec3& v : plain.vertices) {

@@ -1,4 +1,4 @@
-// The flags that choose receivers and sources, as a user gives them.
+// The flags that choose receivers and sources, as a user enters them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ class ReceiverFlags : public testing::Test {
       return at == std::string::npos ? ""
                                      : text.substr(at, std::min(text.find('\n', at), text.find(", hash", at)) - at);
     }
-    // The first field of each row, as it stands.
+    // The first field of each row, unparsed.
     [[nodiscard]] Words ids() const {
       Words ids;
       std::istringstream lines(text);
@@ -71,12 +71,12 @@ class ReceiverFlags : public testing::Test {
     return result;
   }
 
-  // What is told of wrong flags, after the program's name.
+  // The message about wrong flags, after the program's name.
   [[nodiscard]] std::string refusal(const Words& flags, const std::string& source = "lamp") const {
     const Truth run = truth(flags, source);
     EXPECT_EQ(run.exit_code, 2);
     EXPECT_TRUE(run.text.empty());
-    const std::string start = "exactff: ";  // after a warning of the face without area
+    const std::string start = "exactff: ";  // after a warning about the face without area
     const std::size_t at = run.error.find(start);
     return at == std::string::npos ? run.error : run.error.substr(at + start.size());
   }
@@ -149,76 +149,78 @@ TEST_F(ReceiverFlags, SourcesAreThoseThatEmitUnlessNamed) {
 
 TEST_F(ReceiverFlags, WhatIsMissingIsTold) {
   EXPECT_EQ(refusal({}),
-            "there are no receivers (values are computed at points); give --on NAME with --grid 32x32, --vertices, "
+            "there are no receivers (values are computed at receivers); give --on NAME with --grid 32x32, --vertices, "
             "--centres or --samples 1000; or --receivers FILE.csv\n");
   EXPECT_EQ(refusal({"--on", "floor"}),
-            "--on comes without --grid, --vertices, --centres or --samples (they say where on it the receivers are); "
-            "give one of them, such as --grid 32x32\n");
+            "--on is given without --grid, --vertices, --centres or --samples (they say where the receivers lie on the "
+            "patch); "
+            "add one of them, for example --grid 32x32\n");
   for (const Words& flags : {Words{"--grid", "2x2"}, {"--vertices"}, {"--centres"}, {"--samples", "9"}}) {
-    EXPECT_EQ(refusal(flags),
-              flags.front() + " comes without --on (it places receivers on a patch); name that with --on NAME\n");
+    EXPECT_EQ(
+        refusal(flags),
+        flags.front() + " is given without --on (it places receivers on a patch); name the patch with --on NAME\n");
   }
   EXPECT_EQ(refusal({"--on", "floor", "--centres", "--sample-seed", "2"}),
-            "--sample-seed comes without --samples (nothing else is drawn at random); give --samples 1000, or leave it "
-            "out\n");
+            "--sample-seed is given without --samples (only --samples draws receivers at random); add --samples 1000, "
+            "or remove it\n");
 }
 
 TEST_F(ReceiverFlags, WhatContradictsIsTold) {
-  EXPECT_EQ(
-      refusal({"--on", "floor", "--vertices", "--samples", "9"}),
-      "--vertices and --samples come together (each places the receivers in a way of its own); keep one of them\n");
-  EXPECT_EQ(refusal({"--on", "floor", "--grid", "2x2", "--vertices", "--centres"}),
-            "--grid, --vertices and --centres come together (each places the receivers in a way of its own); keep one "
+  EXPECT_EQ(refusal({"--on", "floor", "--vertices", "--samples", "9"}),
+            "--vertices and --samples are given together (each places the receivers in a different way); keep only one "
             "of them\n");
+  EXPECT_EQ(refusal({"--on", "floor", "--grid", "2x2", "--vertices", "--centres"}),
+            "--grid, --vertices and --centres are given together (each places the receivers in a different way); keep "
+            "only one of them\n");
   EXPECT_EQ(refusal({"--receivers", "points.csv", "--on", "floor", "--grid", "2x2"}),
-            "--receivers comes with --on and --grid (the receivers are those of the file, or those on a patch); leave "
-            "one of them out\n");
+            "--receivers is given together with --on and --grid (receivers come either from the file or from a patch); "
+            "remove one of them\n");
   EXPECT_EQ(refusal({"--receivers", "points.csv", "--centres"}),
-            "--receivers comes with --centres (the receivers are those of the file, or those on a patch); leave one of "
-            "them out\n");
+            "--receivers is given together with --centres (receivers come either from the file or from a patch); "
+            "remove one of them\n");
 }
 
 TEST_F(ReceiverFlags, WrongNumbersAreTold) {
   for (const std::string grid : {"2", "2x", "x2", "2x2x2", "2.5x2", "2 x2"}) {
     EXPECT_EQ(
         refusal({"--on", "floor", "--grid", grid}),
-        "--grid: '" + grid + "' is no grid (it is made of two whole numbers); write columns x rows: --grid 32x32\n");
+        "--grid: '" + grid + "' is not a grid (a grid is two whole numbers); write columns x rows: --grid 32x32\n");
   }
   EXPECT_EQ(refusal({"--on", "floor", "--grid", "0x2"}),
-            "a grid of 0x2 cells (each count is at least 1); write it as 32x32\n");
+            "a grid of 0x2 cells (a grid has at least one column and one row); write, for example, 32x32\n");
   for (const std::string count : {"1e3", "many", "1.5", "99999999999999999999"}) {
-    EXPECT_EQ(refusal({"--on", "floor", "--samples", count}),
-              "--samples: '" + count +
-                  "' is not a whole number in range (so many receivers are drawn); write it such "
-                  "as --samples 1000\n");
+    EXPECT_EQ(
+        refusal({"--on", "floor", "--samples", count}),
+        "--samples: '" + count +
+            "' is not a whole number in range (it is the number of receivers); write, for example, --samples 1000\n");
   }
   EXPECT_EQ(refusal({"--on", "floor", "--samples", "0"}),
-            "0 samples (there may be 1 to 4194304 receivers); ask for at least one\n");
+            "0 samples (the number of receivers must be between 1 and 4194304); give at least 1\n");
   EXPECT_EQ(refusal({"--on", "floor", "--samples", "4194305"}),
-            "4194305 samples (there may be 1 to 4194304 receivers); use fewer\n");
+            "4194305 samples (the number of receivers must be between 1 and 4194304); use fewer samples\n");
   EXPECT_EQ(refusal({"--on", "floor", "--samples", "9", "--sample-seed", "18446744073709551616"}),
-            "--sample-seed: '18446744073709551616' is not a whole number in range (it numbers the random choices, from "
-            "0 to 2^64 - 1); write it such as --sample-seed 7\n");
+            "--sample-seed: '18446744073709551616' is not a whole number in range (a seed is a whole number from 0 to "
+            "2^64 - 1); write, for example, --sample-seed 7\n");
 }
 
 TEST_F(ReceiverFlags, WrongNamesAreTold) {
   EXPECT_EQ(refusal({"--on", "lid,lid:2", "--centres"}),
-            "--on: 'lid:2' is named twice (it would have every receiver twice); name it once\n");
+            "--on: 'lid:2' is named twice (every receiver on it would occur twice); give it once\n");
   EXPECT_EQ(refusal({"--on", "line", "--vertices"}),
-            "--on: there is no face with area in 'line' (receivers lie on faces); name another patch\n");
+            "--on: no face has area in 'line' (receivers lie on faces); choose another patch\n");
   EXPECT_NE(refusal({"--on", "flor", "--vertices"}).find("there is no patch named 'flor'"), std::string::npos);
-  const std::string twice = "--source: 'lamp' is named twice (its light would count twice); name it once\n";
+  const std::string twice = "--source: 'lamp' is named twice (its light would count twice); give it once\n";
   EXPECT_EQ(refusal({"--on", "floor", "--centres"}, "lamp,lamp"), twice);
   EXPECT_EQ(refusal({"--on", "floor", "--centres"}, "all,lamp"), twice);
 }
 
 TEST_F(ReceiverFlags, WhereNothingIsLeftItIsTold) {
   EXPECT_EQ(refusal({"--on", "lid:1", "--grid", "1x1"}),
-            "there is no receiver in lid:1, grid 1x1 (no cell of the grid has its centre inside a face); use a finer "
-            "grid, or another patch\n");
+            "there are no receivers in lid:1, grid 1x1 (no cell of the grid has its centre inside a face); use a finer "
+            "grid or another patch\n");
   const fs::path file = directory_.write("none.csv", "x,y,z,nx,ny,nz\n");
   EXPECT_EQ(refusal({"--receivers", file.string()}),
-            "there is no receiver in none.csv (its rows are the receivers); add one below the header\n");
+            "there are no receivers in none.csv (every row of the file is a receiver); add rows below the header\n");
 }
 
 // Without gnuplot, so that nothing is drawn.

@@ -1,4 +1,4 @@
-// Receivers at corners, in the middle of faces and drawn at random.
+// Receivers at corners, at the centres of faces, and at random.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -74,7 +74,7 @@ bool all_differ(std::vector<std::string> ids) {
   return std::adjacent_find(ids.begin(), ids.end()) == ids.end();
 }
 
-// Exactly, of a point in the plane z = 0: within a convex piece of the face, its sides excluded.
+// Exact test for a point in the plane z = 0: strictly inside a convex piece of the face.
 bool strictly_in_a_piece(const Scene& scene, FaceId face, const Vec3& p) {
   const auto left_of = [&](const Vec3& a, const Vec3& b) {
     return kernel::orientation(a, b, p, {a.x, a.y, a.z + 1}) > 0;
@@ -88,7 +88,7 @@ bool strictly_in_a_piece(const Scene& scene, FaceId face, const Vec3& p) {
   });
 }
 
-// A square of side 3 without the square in its middle.
+// A square of side 3 with a hole: the square in its middle is missing.
 Polygon window_frame() {
   return {{{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {1, 1, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}},
           {{0, 1, 2, 3}, {4, 5, 6, 7}}};
@@ -144,7 +144,7 @@ TEST(VertexReceivers, APositionVisitedTwiceHasOne) {
 }
 
 TEST(VertexReceivers, TwoVerticesAtOnePositionAreOne) {
-  Polygon twice = bow_tie();  // with a vertex of its own for the second visit
+  Polygon twice = bow_tie();  // with a separate vertex for the second visit
   twice.vertices.push_back({0, 0, 0});
   twice.rings = {{0, 1, 2, 3, 5, 4}};
   EXPECT_EQ(vertices_of(scene_of({twice})).size(), 5U);
@@ -188,7 +188,7 @@ TEST(CentreReceivers, ACentreIsTheNearestDoubleOfTheTrueOne) {
   // The sums of these need more than 53 bits; a long double holds them.
   const Vec3 centre = centre_of(polygon({{0.1, 0, 0}, {0.7, 0, 0}, {0.7, 0.3, 0}, {0.1, 0.3, 0}}));
   EXPECT_EQ(centre.x, static_cast<double>((static_cast<long double>(0.1) + static_cast<long double>(0.7)) / 2));
-  // A third is no dyadic number.
+  // 1/3 is not a dyadic number.
   EXPECT_EQ(centre_of(polygon({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})), (Vec3{1.0 / 3.0, 1.0 / 3.0, 0}));
 }
 
@@ -214,7 +214,7 @@ TEST(CentreReceivers, ACentroidOutsideAUIsReplacedByAPointInside) {
 }
 
 TEST(CentreReceivers, ACentroidOnTheOutlineIsReplacedByAPointInside) {
-  const Vec3 centre = centre_of(bow_tie());  // of which the centroid is the corner where the triangles touch
+  const Vec3 centre = centre_of(bow_tie());  // its centroid is the corner where the triangles touch
   EXPECT_EQ(std::abs(centre.x), 4.0 / 3.0);
   EXPECT_EQ(centre.y, 0.0);
 }
@@ -233,7 +233,7 @@ TEST(CentreReceivers, AHoleThatMissesTheCentroidShiftsIt) {
   EXPECT_EQ(centre_of(holed), (Vec3{-0.625 / 15.5, 0, 0}));
 }
 
-// A star around the origin, of any radii, with a smaller copy of it as a hole.
+// A star around the origin with random radii, and a smaller copy of it as a hole.
 Polygon random_star(std::mt19937_64& random, bool holed) {
   const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
   const std::uint32_t corners = 5 + static_cast<std::uint32_t>(random() % 20);
@@ -251,7 +251,7 @@ Polygon random_star(std::mt19937_64& random, bool holed) {
   return star;
 }
 
-// Exactly, of a point in the plane z = 0: an odd number of edges crosses the line from it towards larger x.
+// Exact test for a point in the plane z = 0: an odd number of edges crosses the line from it towards larger x.
 bool within_rings(const Polygon& polygon, const Vec3& p) {
   bool inside = false;
   for (const Ring& ring : polygon.rings) {
@@ -280,7 +280,7 @@ TEST(CentreReceivers, ANonPlanarQuadrilateralHasTheCentreOfItsBilinearPatch) {
 }
 
 TEST(CentreReceivers, ANonPlanarFaceIsWeighedAsSeenAlongItsNewellVector) {
-  // An L of which one corner is lifted, and the opposite one as much: seen from above as it was.
+  // An L with one corner lifted, and the opposite corner lifted by the same amount; its view from above is unchanged.
   Polygon bent = letter_l();
   bent.vertices[2].z = bent.vertices[4].z = 0.125;
   bent.vertices[3].z = 0.25;
@@ -330,7 +330,8 @@ std::vector<std::uint64_t> counts_by(const std::vector<Receiver>& receivers, std
 }
 
 TEST(SampleReceivers, AreTheSameOnEveryMachine) {
-  // From a separate computation in Python's integers, with the generator of Matsumoto and Nishimura written out.
+  // From a separate computation with Python's integers and a separate implementation of Matsumoto and Nishimura's
+  // generator.
   const Scene scene =
       scene_of({polygon({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}), polygon({{0, 0, 2}, {3, 0, 2.5}, {3, 1, 2.5}, {0, 1, 2}})});
   const auto receivers = samples_of(scene, 6, 42);
@@ -343,7 +344,7 @@ TEST(SampleReceivers, AreTheSameOnEveryMachine) {
 }
 
 TEST(SampleReceivers, FacesAreChosenByTheirArea) {
-  // Triangles in many planes, with areas of 1/2 |a x b| that no common unit measures.
+  // Triangles in many planes, with areas of 1/2 |a x b| that have no common unit.
   std::vector<Polygon> faces;
   std::vector<double> areas;
   for (int i = 1; i <= 12; ++i) {
@@ -400,7 +401,7 @@ TEST(SampleReceivers, LieStrictlyInsideTheFaceTheyRemember) {
   for (const Receiver& r : samples_of(scene, 2000)) {
     ASSERT_TRUE(r.on.has_value());
     EXPECT_EQ(r.normal, scene.face(*r.on).newell);
-    if (index_of(*r.on) == 2) continue;  // a sliver: rounding may reach its edge
+    if (index_of(*r.on) == 2) continue;  // a sliver: rounding may move points onto its edge
     EXPECT_GT(r.point.x, 0.0);
     EXPECT_GT(r.point.y, 0.0);
     EXPECT_EQ(r.point.z, 0.0);
@@ -450,7 +451,7 @@ TEST(SampleReceivers, MagnitudesMayBeAnywhere) {
 }
 
 TEST(SampleReceivers, FacesFarApartInScaleKeepTheirShares) {
-  // Of one area: a square of side 1 and a strip of 2^500 by 2^-500.
+  // Faces of equal area: a square of side 1 and a strip of 2^500 by 2^-500.
   const double wide = 0x1p500, narrow = 0x1p-500;
   const Scene scene = scene_of({polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}),
                                 polygon({{0, 0, 1}, {wide, 0, 1}, {wide, narrow, 1}, {0, narrow, 1}})});
@@ -494,15 +495,15 @@ std::string refusal(const std::function<void()>& call) {
 TEST(SampleReceivers, ImpossibleCountsAreRefused) {
   const Scene scene = scene_of({letter_l()});
   EXPECT_EQ(refusal([&] { (void)samples_of(scene, 0); }),
-            "0 samples (there may be 1 to 4194304 receivers); ask for at least one");
+            "0 samples (the number of receivers must be between 1 and 4194304); give at least 1");
   EXPECT_EQ(refusal([&] { (void)samples_of(scene, 4194305); }),
-            "4194305 samples (there may be 1 to 4194304 receivers); use fewer");
+            "4194305 samples (the number of receivers must be between 1 and 4194304); use fewer samples");
 }
 
 TEST(SampleReceivers, WithoutAreaThereIsNothingToSample) {
   const Scene scene = scene_of({polygon({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}})});
   EXPECT_EQ(refusal([&] { (void)samples_of(scene, 5); }),
-            "there is no face with area to sample (samples are shared out by area); choose another patch");
+            "no face to sample has area (samples are distributed by area); choose another patch");
 }
 
 }  // namespace

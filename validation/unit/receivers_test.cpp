@@ -141,7 +141,7 @@ TEST(GridReceivers, OnSeveralFacesIdsMayBeMadeUnique) {
   for (const Vec3& v : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{1, 1, 0}, Vec3{0, 1, 0}}) builder.add_vertex(v);
   const MaterialId material = builder.add_material({});
   builder.add_face(builder.patch("slab"), material, {{0, 1, 2, 3}});
-  builder.add_face(builder.patch("slab"), material, {{0, 1, 0}});  // no area: it does not count
+  builder.add_face(builder.patch("slab"), material, {{0, 1, 0}});  // a face without area does not count
   builder.add_face(builder.patch("slab"), material, {{3, 2, 1, 0}});
   const Scene scene = builder.build();
   const std::vector<FaceId> both = {FaceId{0}, FaceId{1}, FaceId{2}}, one = {FaceId{0}, FaceId{1}};

@@ -34,14 +34,14 @@ TEST(ClosedForm, PerpendicularRectangle) {
   EXPECT_NEAR(unoccluded_form_factor(make_sub_patch(wall), {0, 0, 1}), truth, kBound * truth);
 }
 
-// As h/r falls below 1/8 the series takes over from atan2; on either side F must be the same function.
+// Below h/r = 1/8 the series replaces atan2; on both sides F must be the same function.
 TEST(ClosedForm, SeriesAndArcTangentAgree) {
   for (double h = 1.0; h > 1e-3; h *= 0.93) {
     const SubPatch whole = square(h, 4.0);
     double parts = 0.0;
     for (const SubPatch& part : split_patch(whole)) parts += unoccluded_form_factor(part, {0, 0, 1});
     const double f = unoccluded_form_factor(whole, {0, 0, 1});
-    // Splitting adds edges through the middle that cancel: relative loss about r/h.
+    // Splitting adds edges through the middle, which cancel: relative loss about r/h.
     EXPECT_NEAR(parts, f, kBound * f * (4.0 / h)) << h;
   }
 }

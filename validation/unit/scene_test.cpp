@@ -21,7 +21,7 @@ std::string message_of(const auto& action) {
   return "nothing thrown";
 }
 
-// A unit cube with one patch a side, fronts outwards, corners not shared between faces.
+// A unit cube with one patch per side, fronts outwards; corners are not shared between faces.
 struct Cube {
   SceneBuilder builder{"cube"};
   MaterialId material = builder.add_material({"grey", {0.5, 0.5, 0.5}, {}});
@@ -97,7 +97,7 @@ TEST(SceneNames, AnExactNameWins) {
   EXPECT_EQ(scene.select("wall:1:1"), (Selection{kWallOne, FaceId{2}}));
   ASSERT_EQ(scene.warnings().size(), 2U);
   EXPECT_EQ(scene.warnings()[1].message(),
-            "rooms.obj:10: face 'wall:1' cannot be named (a patch has that very name, and a patch's name wins); "
+            "rooms.obj:10: face 'wall:1' cannot be named (a patch has the same name, and patch names take precedence); "
             "rename the patch");
 }
 
@@ -113,12 +113,12 @@ TEST(SceneNames, NamesReadBack) {
 TEST(SceneNames, UnknownNamesListTheClosest) {
   const Scene scene = rooms().build();
   EXPECT_EQ(message_of([&] { (void)scene.select("Lamb"); }),
-            "rooms.obj: there is no patch named 'Lamb' (names are matched letter by letter); the patches are: 'lamp', "
-            "'wall', 'wall:1', 'mixed'");
+            "rooms.obj: there is no patch named 'Lamb' (names must match exactly); the patches are: 'lamp', 'wall', "
+            "'wall:1', 'mixed'");
   EXPECT_EQ(message_of([&] { (void)scene.select("wall:4"); }),
-            "rooms.obj: there is no face 'wall:4' (patch 'wall' has 3 faces); faces count from 1");
+            "rooms.obj: there is no face 'wall:4' (patch 'wall' has 3 faces); faces are numbered from 1");
   EXPECT_EQ(message_of([&] { (void)scene.select("lamp:0"); }),
-            "rooms.obj: there is no face 'lamp:0' (patch 'lamp' has 1 face); faces count from 1");
+            "rooms.obj: there is no face 'lamp:0' (patch 'lamp' has 1 face); faces are numbered from 1");
   for (const char* name : {"", ":", "lamp:", "lamp:x", "lamp:-1", "lamp:+1", "lamp:1 ", "lamp:99999999999999999999"}) {
     EXPECT_THROW((void)scene.select(name), InputError) << name;
   }
@@ -129,9 +129,8 @@ TEST(SceneNames, ManyPatchesAreNotAllListed) {
   for (int i = 0; i < 50; ++i) (void)builder.patch("patch" + std::to_string(i));
   const Scene scene = builder.build();
   EXPECT_EQ(message_of([&] { (void)scene.select("patch77"); }),
-            "there is no patch named 'patch77' (names are matched letter by letter); the closest of its 50 patches "
-            "are: 'patch7', 'patch17', 'patch27', "
-            "'patch37', 'patch47', 'patch0'");
+            "there is no patch named 'patch77' (names must match exactly); the closest of its 50 patches are: "
+            "'patch7', 'patch17', 'patch27', 'patch37', 'patch47', 'patch0'");
 }
 
 TEST(SceneNames, PatchModeFacesMakesEveryFaceAPatch) {
@@ -157,7 +156,7 @@ TEST(SceneMaterials, SourceRadiosityIsKeOrOne) {
   EXPECT_EQ(scene.source_radiosity(scene.select("mixed:2")), (Rgb{1, 1, 1}));
   EXPECT_EQ(message_of([&] { (void)scene.source_radiosity(scene.select("mixed")); }),
             "rooms.obj:16: the faces of source 'mixed' differ in Ke ('mixed:1' has material 'bright', 'mixed:2' has "
-            "'dim'; a source has one radiosity); name one face, or give the faces groups of their own");
+            "'dim'; a source has one radiosity); name a single face, or put the faces into separate groups");
 }
 
 TEST(SceneMaterials, ReceiverReflectanceIsKdOfItsFaceOrOne) {
@@ -196,15 +195,15 @@ TEST(SceneBuilder, SkipsBadFacesOnRequest) {
     return builder.build();
   };
   EXPECT_EQ(message_of([&] { (void)with_bow_tie(BadFaces::kReject); }),
-            "bow.obj:5: face 'bow:1' crosses itself: edge 1-2 and edge 3-4 (vertex numbers) intersect (its inside is "
-            "ambiguous); split it into simple polygons, or leave bad faces out with --skip-bad-faces");
+            "bow.obj:5: face 'bow:1' crosses itself: edge 1-2 and edge 3-4 (vertex numbers) intersect (its interior is "
+            "ambiguous); split it into simple polygons, or skip bad faces with --skip-bad-faces");
   const Scene scene = with_bow_tie(BadFaces::kSkip);
   EXPECT_EQ(scene.face(FaceId{0}).shape, FaceShape::kSkipped);
   EXPECT_EQ(scene.faces_of({PatchId{0}, {}}), std::vector<FaceId>{FaceId{1}});
   ASSERT_EQ(scene.warnings().size(), 1U);
-  EXPECT_EQ(scene.warnings()[0].suggestion, "it is left out");
+  EXPECT_EQ(scene.warnings()[0].suggestion, "the face is skipped");
   EXPECT_EQ(message_of([&] { (void)scene.select("bow:1"); }),
-            "bow.obj:5: face 'bow:1' cannot be used (it was dropped as a bad face); see the warning about it");
+            "bow.obj:5: face 'bow:1' cannot be used (it was skipped as a bad face); see the warning about it");
 }
 
 TEST(SceneBuilder, WarnsAboutFacesOutOfPlaneByMoreThanAMillionth) {
@@ -228,10 +227,10 @@ TEST(SceneBuilder, CollectsEveryMistake) {
   builder.add_vertex({0, std::numeric_limits<double>::infinity(), 0});
   builder.add_face(builder.patch("a"), material, {{0, 1, 2}});
   EXPECT_EQ(message_of([&] { (void)builder.build(); }),
-            "api: vertex 1 is not finite (a coordinate stands for an exact number); give finite coordinates\n"
-            "api: vertex 2 is not finite (a coordinate stands for an exact number); give finite coordinates\n"
-            "api: material 'black hole' has a negative or infinite Kd or Ke (reflectances and radiosities are not "
-            "negative); correct it");
+            "api: vertex 1 is not finite (a coordinate is one exact number); give finite coordinates\n"
+            "api: vertex 2 is not finite (a coordinate is one exact number); give finite coordinates\n"
+            "api: material 'black hole' has a negative or infinite Kd or Ke (reflectances and radiosities are finite "
+            "and not negative); correct it");
 }
 
 TEST(SceneBuilder, RefusesIndicesBeyondTheVertices) {
@@ -265,7 +264,7 @@ TEST(SceneHash, DependsOnWhatAffectsValuesOnly) {
   EXPECT_NE(with_vertex(0.0), with_vertex(0x1p-1074));
 }
 
-// Pinned: truth files of other machines and versions must recognise their scenes.
+// Fixed values: truth files from other machines and versions must recognise their scenes.
 TEST(SceneHash, IsTheSameEverywhere) { EXPECT_EQ(rooms().build().hash(), "4b98b6de23c40d7a"); }
 
 }  // namespace

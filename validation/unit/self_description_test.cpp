@@ -1,4 +1,4 @@
-// Completions, manual page and help are written from the same option tables; the help tells what there must be.
+// Completions, manual page and help are written from the same option tables; the help serves as the reference.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,7 +52,7 @@ std::set<std::string> options_in_help(const std::string& command) {
   return names;
 }
 
-// What bash offers where the last of `words` is being typed; for files and folders, how it is told to offer them.
+// What bash offers at the last of `words`; for files and folders, the way in which it is told to offer them.
 std::vector<std::string> offered_by_bash(const std::vector<std::string>& words) {
   static const std::string kCompletion = output_of({"completion", "bash"});
   std::string script = "compopt() { COMPREPLY=(\"compopt $*\"); }\n" + kCompletion + "COMP_WORDS=(";

@@ -1,5 +1,5 @@
-// Shaft culling never loses an occluder and never declares a cut that is none: against exact segments, and against
-// the unculled list. EXACTFF_TEST_SCALE multiplies the number of scenes.
+// Shaft culling never loses an occluder and never reports a cut that does not exist. The test compares it with exact
+// segments and with the unculled list. EXACTFF_TEST_SCALE multiplies the number of scenes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ SubPatch random_sub_patch(Random& random) {
   return make_sub_patch(corners);
 }
 
-// A triangle or parallelogram that meets the pyramid now and then; on a lattice half of the time, so that it touches.
+// A triangle or parallelogram that sometimes meets the pyramid; half of the time on a lattice, so that it touches.
 std::vector<Vec3> random_occluder(Random& random, const SubPatch& s) {
   const double t = random.between(0.2, 0.9);
   const Vec3 centre = (s.corner(0) + s.corner(2)) * (0.5 * t);
@@ -47,7 +47,7 @@ std::vector<Vec3> random_occluder(Random& random, const SubPatch& s) {
   return corners;
 }
 
-// As the origin sees it; nothing if it lies in the polygon's plane.
+// The face as seen from the origin; nothing if the origin lies in its plane.
 std::optional<SeenPolygon> seen_from_origin(const std::vector<Vec3>& corners) {
   SeenPolygon seen;
   seen.corners = corners;
@@ -62,7 +62,7 @@ std::optional<SeenPolygon> seen_from_origin(const std::vector<Vec3>& corners) {
   return seen;
 }
 
-// Exact: the open segment from the origin to y meets the inside of the triangle a, b, c.
+// Exact test: the open segment from the origin to y meets the interior of the triangle a, b, c.
 bool meets_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& y) {
   const Vec3 x{};
   const int before = kernel::orientation(a, b, c, x);
@@ -171,14 +171,14 @@ TEST(ShaftCull, APatchCoveredExactlyIsNotDeclaredCut) {
   set.add(*seen_from_origin({{-0.5, -0.5, 0.5}, {-0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, {0.5, -0.5, 0.5}}), 1.0);
   const auto list = set.inherit(set.push_all(), s, ShaftSides(s));
   ASSERT_TRUE(list);
-  EXPECT_EQ(list->size(), 1U);  // in doubt, rays decide
+  EXPECT_EQ(list->size(), 1U);  // if uncertain, rays decide
   EXPECT_EQ(set.count_visible(*list, place(s, SamplePattern::kJittered, 16, 1)), 0);
 }
 
 // ---- From the scene to the first list ------------------------------------------------------------------------------
 
-// Every piece that a segment to a random point of the source meets must have been gathered; the rest of the scene
-// may be left out. Receivers at the origin, so that relative coordinates are exact.
+// Every piece that meets a segment to a random point of the source must have been gathered; other pieces may be left
+// out. Receivers are at the origin, so that relative coordinates are exact.
 void expect_nothing_lost(const PlainScene& plain, std::uint64_t seed) {
   const Scene scene = generate::build(plain);
   const ScaledScene scaled(scene);

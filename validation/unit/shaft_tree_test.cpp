@@ -1,4 +1,4 @@
-// The bounding-volume tree: never loses what a half-space might hold.
+// The bounding-volume tree never loses a piece that may meet a half-space.
 #include "scene/shaft_tree.h"
 
 #include <gtest/gtest.h>
@@ -87,7 +87,7 @@ TEST(ShaftTree, KnowsWhatLiesInside) {
   EXPECT_GT(count, 100U);
 }
 
-// Nothing is certain of what touches a half-space's plane, nor within the errors.
+// The result is uncertain for a box that touches the half-space's plane or is within the error bounds.
 TEST(ShaftTree, TakesNothingForInsideThatMayNotBe) {
   const Box box{{1, 0, 0}, {2, 1, 1}};
   const HalfSpace plain{{1, 0, 0}, 0.5};

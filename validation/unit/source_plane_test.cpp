@@ -1,4 +1,4 @@
-// A source of several faces, or of a face with a hole: what counts once, what counts for itself, and what not at all.
+// A source with several faces, or with a hole: overlaps count once, separate planes are added, back faces do not count.
 #include "visibility/source_plane.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ PlainScene source_of(const std::vector<Corners>& faces) {
 
 Enclosure form_factor(const Corners& face) { return solve(source_of({face})).enclosure; }
 
-// Two balls of some 90 bits, or a sum of such, that hold one number.
+// Two balls of about 90 bits, or sums of such balls, that contain the same number.
 void expect_equal(const Enclosure& a, const Enclosure& b) {
   EXPECT_TRUE(a.overlaps(b)) << a.midpoint() << " and " << b.midpoint();
   EXPECT_LT(a.upper() - a.lower(), 0x1p-50);

@@ -188,7 +188,7 @@ TEST(StressFamilies, SayWhatTheirTruthRestsOn) {
   }
 }
 
-// The exact value against the closed form at the benign end, in the middle and as far as it goes within a moment.
+// Compares the exact value with the closed form at the start, in the middle and as far as a short test allows.
 class StressFamily : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(StressFamily, ExactValueIsWhatTheTruthRoundsTo) {

@@ -1,4 +1,4 @@
-// exactff compare with several scenes, as people run it: files, messages, exit codes, interruptions.
+// exactff compare with several scenes, as users run it: files, messages, exit codes, interruptions.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -9,6 +9,7 @@
 #include <map>
 #include <thread>
 
+#include "exactff/report.h"
 #include "support/program.h"
 
 namespace exactff {
@@ -32,7 +33,7 @@ class StudyCommand : public testing::Test {
   }
 
   void put(const std::string& study) const { std::ofstream(directory_.path() / "tiny.study") << study; }
-  // A scene with few methods and little effort; files are beside the study.
+  // A scene with few methods and little work; its files are beside the study file.
   static std::string line(const std::string& title, const std::string& grid_and_more) {
     return "scene room.obj --on floor --source light --title \"" + title +
            "\" --eps-b .1,.01 --rays 4 --seeds 1 --pattern jittered --variant mended --method exact "
@@ -44,7 +45,7 @@ class StudyCommand : public testing::Test {
   RunningProgram start(const fs::path& folder, std::vector<std::string> more = {}) const {
     std::vector<std::string> all{"compare", directory_.path() / "tiny.study", "-o", folder};
     all.insert(all.end(), more.begin(), more.end());
-    // Figures take most of the time and are looked at elsewhere.
+    // Figures take most of the time and are tested elsewhere.
     return {EXACTFF_PROGRAM, all, directory_.path() / "stderr", [] { ::setenv("PATH", "/nonexistent", 1); }};
   }
   int run(const fs::path& folder, const std::vector<std::string>& more = {}) const {
@@ -55,7 +56,7 @@ class StudyCommand : public testing::Test {
   }
   bool said(const std::string& part) const { return error_.find(part) != std::string::npos; }
 
-  // By name: what holds values.
+  // The files with values, by name.
   static std::map<std::string, std::string> values(const fs::path& folder) {
     std::map<std::string, std::string> found;
     for (const auto& entry : fs::directory_iterator(folder)) {
@@ -114,14 +115,14 @@ TEST_F(StudyCommand, InterruptedAndResumedHasTheSameValues) {
     ASSERT_GT(size_of(journal_), before);
     EXPECT_FALSE(fs::exists(out_));
     if (signal != SIGKILL) {
-      EXPECT_EQ(running.error(), "exactff: interrupted; what was finished is in " + journal_.string() +
-                                     ", and the same command with --resume goes on\n");
+      EXPECT_EQ(running.error(), "exactff: interrupted; finished work is kept in " + journal_.string() +
+                                     "; to continue, run the same command with --resume\n");
     }
   }
   EXPECT_EQ(run(out_), 2) << "neither --resume nor --force";
-  EXPECT_TRUE(said("out.part: holds the finished work of an interrupted run")) << error_;
+  EXPECT_TRUE(said("out.part: contains the finished work of an interrupted run")) << error_;
   EXPECT_EQ(run(out_, {"--resume", "--threads", "2"}), 0) << error_;
-  EXPECT_TRUE(said("pieces of work were taken from the interrupted run")) << error_;
+  EXPECT_TRUE(said("pieces of work were reused from the interrupted run")) << error_;
   EXPECT_FALSE(fs::exists(journal_));
   EXPECT_TRUE(values(out_) == values(directory_.path() / "whole"));
 }
@@ -138,7 +139,7 @@ TEST_F(StudyCommand, TwiceAtOnceIsRefusedTheSecondTime) {
 
 TEST_F(StudyCommand, RefusesFlagsOfASceneBesideTheFile) {
   EXPECT_EQ(run(out_, {"--on", "floor", "--grid", "2x2"}), 2);
-  EXPECT_TRUE(said("the flags --on floor --grid 2x2 are given beside a study file")) << error_;
+  EXPECT_TRUE(said("flags of a scene are given with a study file: --on floor --grid 2x2")) << error_;
   EXPECT_FALSE(fs::exists(out_));
   EXPECT_FALSE(fs::exists(journal_));
 }
@@ -170,6 +171,20 @@ TEST_F(StudyCommand, NamesTheNearestExperiment) {
   EXPECT_EQ(run(out_, {"--experiment", "closur"}), 2);
   EXPECT_TRUE(said("there is no experiment 'closur'")) << error_;
   EXPECT_TRUE(said("closure")) << error_;
+}
+
+TEST_F(StudyCommand, HasTheValuesOfTheLibraryCall) {
+  EXPECT_EQ(run(out_), 0) << error_;
+  const fs::path by_library = directory_.path() / "by-library";
+  const validation::EnvironmentVariable without_gnuplot("PATH", "/nonexistent");
+  study::Journal journal(study::journal_of_folder(by_library), study::Journal::Existing::kRefuse);
+  const report::Outcome outcome =
+      report::carry_out(report::read_study_file(directory_.path() / "tiny.study"), by_library, journal);
+  EXPECT_EQ(values(by_library), values(out_));
+  ASSERT_EQ(outcome.scenes.size(), 2U);
+  EXPECT_EQ(outcome.scenes.front().title, "Room A");
+  EXPECT_FALSE(outcome.scenes.front().sentences.empty());
+  EXPECT_EQ(outcome.notes.size(), 1U) << "gnuplot is missing";
 }
 
 TEST_F(StudyCommand, OfNothingButLeftOutScenesIsRefused) {

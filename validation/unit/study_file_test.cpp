@@ -16,7 +16,7 @@ class StudyFileReader : public ::testing::Test {
   report::StudyFile read(const std::string& text) const {
     return report::parse_study_file(directory_.write("a.study", text));
   }
-  // The problems of a file, without its folder.
+  // The problems of a file, without the name of its folder.
   std::string complaint(const std::string& text) const {
     try {
       (void)read(text);
@@ -59,19 +59,18 @@ TEST_F(StudyFileReader, TellsEverythingThatIsWrongWithItsLine) {
       "scene a.obj\n"
       "experiment\n");
   EXPECT_NE(said.find("a.study:1: a line begins with 'Scene'"), std::string::npos) << said;
-  EXPECT_NE(said.find("a.study:2: nothing follows the word 'title'"), std::string::npos) << said;
-  EXPECT_NE(said.find("a.study:3: a quote is not closed (where its word ends cannot be told); end the word with '"),
+  EXPECT_NE(said.find("a.study:2: nothing follows 'title'"), std::string::npos) << said;
+  EXPECT_NE(said.find("a.study:3: a quote is not closed (the end of the word is unknown); close it with '"),
             std::string::npos)
       << said;
-  EXPECT_NE(said.find("a.study:4: nothing follows the word 'scene'"), std::string::npos) << said;
-  EXPECT_NE(said.find("a.study:6: nothing follows the word 'experiment'"), std::string::npos) << said;
+  EXPECT_NE(said.find("a.study:4: nothing follows 'scene'"), std::string::npos) << said;
+  EXPECT_NE(said.find("a.study:6: nothing follows 'experiment'"), std::string::npos) << said;
   EXPECT_EQ(said.find("a.study:5"), std::string::npos) << said;
 }
 
 TEST_F(StudyFileReader, WithNothingToDoIsRefused) {
   for (const char* text : {"", "# only words\n", "title A title\n"}) {
-    EXPECT_NE(complaint(text).find("a.study: the study has neither a scene nor an experiment"), std::string::npos)
-        << text;
+    EXPECT_NE(complaint(text).find("a.study: the study has no scene and no experiment"), std::string::npos) << text;
   }
 }
 

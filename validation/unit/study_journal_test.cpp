@@ -1,4 +1,4 @@
-// Finished work in a file: what was added comes back, and what is torn, damaged or somebody else's does no harm.
+// Finished work in a file: added records are read back, and torn, damaged or foreign files do no harm.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,7 +36,7 @@ class StudyJournal : public ::testing::Test {
     return validation::text_of(file_);
   }
   void put(const std::string& bytes) const { std::ofstream(file_, std::ios::binary) << bytes; }
-  // Every piece is right or not there, and one is there only if those before it are.
+  // Every record is either right or missing, and it is present only if the records before it are.
   std::size_t sound_pieces(const Journal& journal) const {
     std::size_t count = 0;
     for (const auto& [name, bytes] : pieces_) {
@@ -84,7 +84,7 @@ TEST_F(StudyJournal, ThatIsAddedToAgainHasTheLastBytes) {
 TEST_F(StudyJournal, OfAnInterruptedRunIsRefusedResumedOrReplaced) {
   const std::string bytes = written();
   const std::string said = refusal(Existing::kRefuse);
-  EXPECT_NE(said.find("out.part: holds the finished work of an interrupted run"), std::string::npos) << said;
+  EXPECT_NE(said.find("out.part: contains the finished work of an interrupted run"), std::string::npos) << said;
   EXPECT_NE(said.find("--resume"), std::string::npos);
   EXPECT_NE(said.find("--force"), std::string::npos);
   EXPECT_EQ(validation::text_of(file_), bytes) << "a refusal changes nothing";
@@ -147,7 +147,7 @@ TEST_F(StudyJournal, OfAnotherVersionIsOnlyReplaced) {
 TEST_F(StudyJournal, IsNotMadeOfAFileThatIsNone) {
   for (const Existing existing : {Existing::kRefuse, Existing::kResume, Existing::kReplace}) {
     put("Dear reader,\n");
-    EXPECT_NE(refusal(existing).find("not of our making"), std::string::npos);
+    EXPECT_NE(refusal(existing).find("exactff did not write it"), std::string::npos);
     EXPECT_EQ(validation::text_of(file_), "Dear reader,\n");
   }
 }
@@ -391,7 +391,7 @@ TEST(ResumedStudy, HasTheSameValuesWhereverTheJournalWasCut) {
   }
 }
 
-// Whoever takes values from a journal can be told from who computes them.
+// Values from a journal can be distinguished from computed ones.
 TEST(ResumedStudy, TakesWhatTheJournalHas) {
   const validation::TemporaryDirectory directory;
   const fs::path file = directory.path() / "out.part";

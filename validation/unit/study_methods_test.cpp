@@ -1,4 +1,4 @@
-// The methods of a study against one another: ladders, budgets, slopes, verdicts; shadow edges and profiles.
+// The comparison of methods in a study: ladders, budgets, slopes, verdicts; shadow edges and profiles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,7 +63,7 @@ TEST(ParseLadder, OfOneRungHasNothingAlongWhichItGoes) {
 
 TEST(ParseLadder, DropsRepetitions) {
   EXPECT_EQ(parse_ladder("hemicube:resolution=64|32|64").rungs.size(), 2U);
-  // The centre has one ray, whatever is said of rays.
+  // The centre pattern has one ray, whatever the number of rays is set to.
   EXPECT_EQ(parse_ladder("adaptive:pattern=centre,rays=1|4|16").rungs.size(), 1U);
 }
 
@@ -263,7 +263,7 @@ TEST(MethodStudy, HoldsEveryRungAtTheChosenReceivers) {
     for (std::size_t s = 0; s < cell.seeds.size(); ++s) {
       ASSERT_EQ(cell.values[s].size(), 5U);
       for (std::size_t r = 0; r < 5; ++r) {
-        // Of rho B = (5, 5, 15) the third channel is the largest.
+        // For rho B = (5, 5, 15), the third channel is the largest.
         const double error = cell.values[s][r] - study.exact[methods.receivers[r]].form_factor;
         EXPECT_DOUBLE_EQ(cell.radiosity_errors[s][r], 15.0 * error);
         errors.push_back(cell.radiosity_errors[s][r]);
@@ -283,7 +283,7 @@ TEST(MethodStudy, HoldsEveryRungAtTheChosenReceivers) {
   }
 }
 
-// A user's own method: the exact value plus 1 / n, added as include/README.md explains.
+// A user-defined method: the exact value plus 1 / n, added as include/README.md explains.
 struct OffByOneOverN : methods::Evaluator {
   std::unique_ptr<methods::Evaluator> exact;
   double n = 1.0;
@@ -330,7 +330,7 @@ TEST(MethodStudy, TakesAUsersMethodLikeAnyOther) {
   EXPECT_NEAR(study.methods.slopes[0].partly->exponent, -1.0, 1e-9);
 }
 
-// A value of `value` everywhere.
+// A method that returns `value` everywhere.
 struct Constant : methods::Evaluator {
   double value = 0.0;
   void look_from(const Receiver&) override {}
@@ -372,10 +372,11 @@ TEST(MethodStudy, CountsValuesThatAreNoNumbersOrLeaveTheRange) {
   const Study study = study_with({"exact", "constant:of=nan", "constant:of=inf", "constant"});
   const std::vector<std::string> sentences = report::range_sentences(study);
   ASSERT_EQ(sentences.size(), 3U);
-  EXPECT_TRUE(sentences[0].starts_with("6 of 6 values of constant, nan are no finite numbers: ")) << sentences[0];
-  EXPECT_TRUE(sentences[1].starts_with("6 of 6 values of constant, inf are no finite numbers: ")) << sentences[1];
-  EXPECT_EQ(sentences[2],
-            "6 of 6 values of constant lie outside [0, 1], by at most 0.5: the formula of the method, not rounding.");
+  EXPECT_TRUE(sentences[0].starts_with("6 of 6 values of constant, nan are not finite numbers; ")) << sentences[0];
+  EXPECT_TRUE(sentences[1].starts_with("6 of 6 values of constant, inf are not finite numbers; ")) << sentences[1];
+  EXPECT_EQ(
+      sentences[2],
+      "6 of 6 values of constant lie outside [0, 1], by at most 0.5; the cause is the method’s formula, not rounding.");
   for (const MethodCell& cell : study.methods.cells) {
     const bool is_number = report::is_exact(study, cell) || cell.ladder == 3;
     EXPECT_EQ(std::isfinite(report::relative_error(study, cell)), is_number);
@@ -479,7 +480,7 @@ TEST(SweepBudget, DropsTheDearestSettingsAndKeepsTheBase) {
 // --- silent errors -------------------------------------------------------------------------------------------
 
 TEST(SilentErrors, AddUpToWhatTheFormFactorIsOffBy) {
-  // The unit square at z = 1, of which the left three quarters are visible.
+  // The unit square at z = 1; its left three quarters are visible.
   const auto rectangle = [](double x0, double x1) {
     return Loop{{{x0, 0, 1}, {x1, 0, 1}, {x1, 1, 1}, {x0, 1, 1}}, false};
   };
@@ -544,7 +545,7 @@ Scene half_plane() {
   return builder.build();
 }
 
-// A study as far as its exact values, on a grid of the floor.
+// A study up to its exact values, on a grid of the floor.
 struct Begun {
   const Scene& scene;
   std::vector<ExactSource> sources;
@@ -619,7 +620,7 @@ TEST(Profiles, AreLeftOutWithoutAPenumbra) {
 
 // --- verdicts ------------------------------------------------------------------------------------------------
 
-// Ladders whose rungs have these errors and seconds, on a scene of which the brightest receiver has radiosity 2.
+// Ladders whose rungs have these errors and seconds, on a scene whose brightest receiver has radiosity 2.
 class Verdicts : public ::testing::Test {
  protected:
   Verdicts() {
@@ -637,7 +638,7 @@ class Verdicts : public ::testing::Test {
       cell.seconds = errors_and_seconds[rung].second;
     }
   }
-  // The usual ones.
+  // The default ones.
   void add_exact() { add("exact", {{0.0, 1e-4}}); }
   void add_hemicube() { add("hemicube:resolution=64|128", {{5e-3, 2e-4}, {5e-4, 8e-4}}); }
   void add_wallace() { add("wallace:splits=1|2", {{0.2, 5e-5}, {4e-4, 9e-4}}); }
@@ -690,20 +691,20 @@ TEST_F(Verdicts, SayWhatTheOthersNeed) {
   add_control();
   EXPECT_EQ(report::method_sentences(study_),
             (std::vector<std::string>{
-                "On this scene the exact value takes 100 µs per receiver in the mean; the cheapest other way to be "
-                "right to 10⁻³ of the brightest receiver (RMS), hemicube, resolution 128, takes 8 times as long, and "
-                "no setting of the others that was run is right to 10⁻⁴.",
-                "Side by side, exact overtakes the others at an error of 20 % of the brightest receiver: the best that "
-                "any setting compared there reaches within its time (wallace, splits 1)."}));
+                "On this scene the exact value takes 100 µs per receiver on average; the fastest other method that is "
+                "accurate to 10⁻³ of the brightest receiver (RMS), hemicube, resolution 128, takes 8 times as long, "
+                "and no other setting that was run is accurate to 10⁻⁴.",
+                "For errors below 20 % of the brightest receiver (RMS), the exact method is the fastest: no other "
+                "setting that is at least as fast is more accurate than this (best: wallace, splits 1)."}));
 }
 
 TEST_F(Verdicts, SayThatNoOtherIsRightOrAsFast) {
   add_exact();
   add("hemicube:resolution=64", {{0.05, 2e-4}});
   EXPECT_EQ(report::method_sentences(study_),
-            (std::vector<std::string>{"On this scene the exact value takes 100 µs per receiver in the mean; no setting "
-                                      "of the others that was run is right to 10⁻² of the brightest receiver (RMS).",
-                                      "No other method is as fast as the exact one at any setting."}));
+            (std::vector<std::string>{"On this scene the exact value takes 100 µs per receiver on average; no other "
+                                      "setting that was run is accurate to 10⁻² of the brightest receiver (RMS).",
+                                      "No setting of another method is as fast as the exact method."}));
 }
 
 TEST_F(Verdicts, SayNothingOfExactAlone) {
@@ -735,9 +736,9 @@ TEST(SlopeWords, SayWhetherTheoryAgrees) {
             "area, stratified: −0.75 (−0.8 to −0.7), theory −3/4 with one shadow edge across the source");
   EXPECT_EQ(report::slope_words({-1.0, -1.0, -1.0, 1, 5}, hemicube, Sight::kVisible), "hemicube: −1");
   const std::string shallow = report::slope_words({-0.55, -0.56, -0.54, 30, 5}, stratified, Sight::kPartly);
-  EXPECT_NE(shallow.find("; shallower, since "), std::string::npos) << shallow;
+  EXPECT_NE(shallow.find("; shallower, because "), std::string::npos) << shallow;
   const std::string steep = report::slope_words({-1.3, -1.31, -1.29, 30, 5}, stratified, Sight::kVisible);
-  EXPECT_NE(steep.find("theory −1 where nothing is discontinuous; steeper, since "), std::string::npos) << steep;
+  EXPECT_NE(steep.find("theory −1 where nothing is discontinuous; steeper, because "), std::string::npos) << steep;
 }
 
 }  // namespace

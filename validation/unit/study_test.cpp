@@ -198,7 +198,7 @@ Loop rectangle(double x0, double y0, double x1, double y1, bool hole = false) {
   return {{{x0, y0, 1}, {x1, y0, 1}, {x1, y1, 1}, {x0, y1, 1}}, hole};
 }
 
-// The unit square at z = 1, of which what lies left of `seen` is visible.
+// The unit square at z = 1; the part to the left of `seen` is visible.
 PlaneDrawing unit_source(double seen) {
   PlaneDrawing plane;
   plane.normal = {0, 0, 1};
@@ -221,7 +221,7 @@ TEST(SilentErrors, AreSampledLeavesThatAreSeenInPart) {
       leaf(0, 0.5, LeafReason::kSampledVisible),      // right
       leaf(0.5, 1, LeafReason::kSampledHidden),       // right
       leaf(0.25, 0.75, LeafReason::kSampledVisible),  // silent
-      leaf(0.25, 0.75, LeafReason::kEpsF),            // not sampled as 0 or 1
+      leaf(0.25, 0.75, LeafReason::kEpsF),            // the sampled value is neither 0 nor 1
       leaf(0.6, 0.8, LeafReason::kSampledVisible),    // wrong
       leaf(0.1, 0.2, LeafReason::kSampledHidden),     // wrong
   };
@@ -259,7 +259,7 @@ const Study& small_study() {
   return study;
 }
 
-// All methods too.
+// With all methods.
 const Study& whole_study() {
   static const Scene scene = small_room(true);
   static const Study study = run(request_with_methods(scene, 1));
@@ -305,7 +305,7 @@ TEST(Study, ErrorsAreApproximateMinusExact) {
     for (std::size_t i = 0; i < study.exact.size(); ++i) {
       const SampleRow& row = study.samples[k][i];
       EXPECT_EQ(row.error, row.form_factor - study.exact[i].form_factor);
-      // Of rho B = (5, 5, 15) the third channel is the largest.
+      // For rho B = (5, 5, 15), the third channel is the largest.
       EXPECT_DOUBLE_EQ(row.radiosity_error, 15 * row.error);
     }
   }
@@ -350,7 +350,7 @@ TEST(Study, NeedsAReceiverAndASource) {
   EXPECT_THROW((void)run(small_request(unlit, 1)), InputError);
 }
 
-// Sums and means of such radiosities would overflow, and the tables would have no numbers.
+// Sums and means of such radiosities would overflow, and the tables would contain inf or nan.
 TEST(Study, RefusesSourcesNearTheLargestDouble) {
   SceneBuilder builder("blinding");
   for (const Vec3& v : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) builder.add_vertex(v);
@@ -363,7 +363,7 @@ TEST(Study, RefusesSourcesNearTheLargestDouble) {
     (void)run(small_request(scene, 1));
     FAIL() << "a radiosity of 5e307 was accepted";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("scale the emissions"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("reduce the emissions"), std::string::npos) << error.what();
   }
 }
 
@@ -373,7 +373,7 @@ TEST(Study, StopsWhenItIsCancelled) {
   EXPECT_THROW((void)run(small_request(scene, 2), hooks), Cancelled);
 }
 
-// The report on a study, drawn by nobody.
+// The report on a study, without figures.
 struct UndrawnReport {
   report::StudyReport report;
   report::Pages pages;
@@ -461,8 +461,9 @@ TEST(InlinedSvg, HasItsOwnIdsAndNothingFromOutside) {
 }
 
 TEST(InlinedSvg, ComesFromEveryFigureThatGnuplotDraws) {
-  const validation::EnvironmentVariable locale("LC_ALL",
-                                               "C");  // as on a bare machine: the scripts are UTF-8 all the same
+  const validation::EnvironmentVariable locale(
+      "LC_ALL",
+      "C");  // as on a machine without locales: the scripts are UTF-8 all the same
   const validation::TemporaryDirectory scratch;
   std::vector<LeftOut> left_out;
   std::vector<page::Figure> all = report::figures(small_study(), left_out);
@@ -556,7 +557,7 @@ TEST_F(OutputFolder, WithoutGnuplotHoldsTablesAndAReportThatSaysSo) {
   EXPECT_TRUE(fs::exists(root_ / "out" / "report.html"));
 }
 
-// Its recursion would take years: the probes of the budget end, and say so.
+// Its recursion would take years: the probes of the budget stop early and report this.
 TEST(Study, RefusesABaseSettingThatWouldNotEnd) {
   const Scene scene = validation::small_room(true);
   study::Request request = validation::small_request(scene, 1);
@@ -567,7 +568,7 @@ TEST(Study, RefusesABaseSettingThatWouldNotEnd) {
     FAIL() << "it ended";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("would take more than"), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("give a larger --eps-b"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("use a larger --eps-b"), std::string::npos) << error.what();
   }
 }
 

@@ -32,7 +32,7 @@ TEST(FormFactorNear, TakesFormFactorsRowsAndNumbers) {
   ASSERT_FORM_FACTOR_NEAR(0.25, row, 0.0);
 }
 
-// EXPECT_NONFATAL_FAILURE wants its statement free of local variables' lifetimes, not of commas.
+// The statement in EXPECT_NONFATAL_FAILURE may contain commas, but cannot use local variables.
 TEST(FormFactorNear, TellsBothValuesTheErrorAndTheStatus) {
   const FormFactor f = certified(0.25);
   const double mine = std::nextafter(0.25, 1.0);

@@ -49,7 +49,7 @@ TEST(ProblemList, KeepsAThousandAndCountsTheRest) {
   } catch (const InputError& error) {
     EXPECT_EQ(error.problems().size(), 1001U);
     EXPECT_EQ(error.problems().front().line, 501U);
-    EXPECT_EQ(error.problems().back().message(), "f: 500 more problems (only the first are kept)");
+    EXPECT_EQ(error.problems().back().message(), "f: 500 more problems (only the first ones are shown)");
     EXPECT_TRUE(std::string_view(error.what()).ends_with("\n... and more than 981 more problems"));
   }
 }

@@ -33,7 +33,7 @@ std::string hexadecimal(const char* format, unsigned number) {
   return digits.data();
 }
 
-// Bytes that no conforming decoder takes for a character, each with what is left when its bytes become visible.
+// Bytes that no conforming decoder accepts as a character, each with the result when its bytes become visible.
 struct Broken {
   std::string bytes;
   std::string shown;
@@ -66,7 +66,7 @@ std::vector<std::string> awkward() {
   return texts;
 }
 
-// Nothing that acts, told without the code under test. `kept`: of ASCII.
+// Checks, independently of the tested code, that no control character remains. `kept`: of ASCII.
 bool is_harmless(const std::string& text, const std::string& kept = "") {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
@@ -76,7 +76,7 @@ bool is_harmless(const std::string& text, const std::string& kept = "") {
       if (text.compare(i, 3, act) == 0) return false;
     }
   }
-  return nlohmann::json::accept("\"" + [&] {  // a parser that takes well-formed UTF-8 only
+  return nlohmann::json::accept("\"" + [&] {  // a parser that accepts only well-formed UTF-8
     std::string letters;
     for (const char c : text) letters += c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20 ? 'x' : c;
     return letters;
@@ -100,7 +100,7 @@ TEST(Characters, BytesOfNoneAreTakenOneByOne) {
   }
 }
 
-// Of two bytes, exactly U+0080 to U+07FF make a character.
+// The two-byte characters are exactly U+0080 to U+07FF.
 TEST(Characters, PairsOfBytes) {
   int pairs = 0;
   for (int first = 0x80; first < 256; ++first) {
@@ -181,7 +181,7 @@ TEST(Json, ReadsBackEveryCharacterAndShowsBytesOfNone) {
   EXPECT_EQ(read["\\xffkey"][3][0], 0.5);
 }
 
-// As one field of three, through the reader that check uses.
+// As one of three fields, read by the reader that check uses.
 void expect_reads_back(const std::string& text) {
   std::vector<std::string> fields;
   ASSERT_TRUE(text::split_csv_line("first," + csv_field(text) + ",last", fields)) << printable(text);

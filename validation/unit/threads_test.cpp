@@ -1,5 +1,6 @@
-// What is documented as safe to share between threads, used by several at once from its first moment on, when what it
-// builds on demand is not there yet: the same results as one thread's. validation/thread_sanitizer.sh looks for races.
+// Objects that are documented as safe to share between threads are used by several threads at once from the first
+// moment, before anything that they build on demand exists. The results must equal those of one thread.
+// validation/thread_sanitizer.sh looks for races.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -19,7 +20,7 @@ namespace {
 
 constexpr int kThreads = 4;
 
-// All begin at once; the results by thread.
+// All threads start at once. Returns the results by thread.
 template <class Work>
 auto at_once(const Work& work) {
   std::vector<decltype(work())> results(kThreads);
@@ -36,7 +37,7 @@ auto at_once(const Work& work) {
   return results;
 }
 
-// On a scene that no one has asked for anything, and on another by one thread.
+// On a scene that has not been used, and on another one by a single thread.
 template <class Work>
 void expect_same_at_once(const Work& work) {
   const Scene alone = validation::furnished_room(), shared = validation::furnished_room();

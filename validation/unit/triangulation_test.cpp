@@ -149,7 +149,8 @@ TEST(CutFace, KeyholeRingEqualsAFaceWithAHole) {
 }
 
 TEST(CutFace, HolesMayTouchTheOuterRingAndEachOther) {
-  // One hole touches the outer ring at a vertex, one an edge with a vertex, and both each other at a vertex.
+  // One hole touches the outer ring at a vertex, one touches an edge with a vertex, and both touch each other at a
+  // vertex.
   const Vertices vertices = flat({{0, 0}, {8, 0}, {8, 8}, {0, 8}, {3, 2}, {2, 4}, {8, 5}, {3, 2}, {5, 0}, {6, 1}});
   const CutFace face = cut_face(vertices, {iota_ring(0, 4), {0, 4, 5}, {7, 8, 9}});
   EXPECT_FALSE(face.fault);
@@ -162,7 +163,7 @@ TEST(CutFace, RingMayTouchItselfAtAVertexOrAnEdge) {
   const CutFace at_vertex = cut_face(lobes, {{0, 1, 2, 3, 4, 5, 2, 6}});
   EXPECT_FALSE(at_vertex.fault);
   EXPECT_EQ(at_vertex.area, 8.0);
-  // The inner corner (3,0) stands on the first edge.
+  // The inner corner (3,0) lies on the first edge.
   const Vertices notch = flat({{0, 0}, {6, 0}, {6, 4}, {4, 4}, {3, 0}, {2, 4}, {0, 4}});
   const CutFace at_edge = cut_face(notch, {iota_ring(0, 7)});
   EXPECT_FALSE(at_edge.fault);
@@ -207,27 +208,27 @@ TEST(CutFace, UnusableFacesSayWhy) {
       // Two lobes of opposite sense that share a vertex, with and without a Newell vector.
       {flat({{0, 0}, {1, 1}, {2, 0}, {2, 2}, {0, 2}}),
        {{0, 1, 3, 2, 1, 4}},
-       "encloses area but its Newell vector is zero"},
+       "encloses area, but its Newell vector (area times normal) is zero"},
       {flat({{0, 0}, {1, 1}, {2, 0}, {2, 2}, {0, 3}}),
        {{0, 1, 3, 2, 1, 4}},
-       "winds around a part of its inside twice, or the other way round"},
+       "winds around a part of its interior twice, or in the opposite direction"},
       {flat({{0, 0}, {1, 0}, {0, 1}}),
        {{0, 1, 2, 0, 1, 2}},
-       "winds around a part of its inside twice, or the other way round"},
+       "winds around a part of its interior twice, or in the opposite direction"},
       {flat({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {2, 1}, {6, 1}, {6, 2}}),
        {iota_ring(0, 4), {4, 5, 6}},
        "crosses itself: edge 2-3 and edge 5-6 (vertex numbers) intersect"},
       {flat({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {5, 1}, {6, 1}, {6, 2}}),
        {iota_ring(0, 4), {4, 5, 6}},
        "has a hole that reaches outside its outer ring"},
-      {spatial, {iota_ring(0, 4), {4, 5, 6}}, "has holes and its vertices are not exactly in one plane"},
+      {spatial, {iota_ring(0, 4), {4, 5, 6}}, "has holes, but its vertices are not exactly in one plane"},
       {{{0, 0, 0}, {4, 0, 0}, {0, 1, 0}, {3, 3, 0.001}},
        {iota_ring(0, 4)},
        "crosses itself: edge 2-3 and edge 4-1 (vertex numbers) intersect"},
       // Three triangles at one vertex whose area vectors cancel.
       {{{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {1, -1, 0}},
        {{0, 1, 2, 0, 2, 3, 0, 4, 2}},
-       "has area but its Newell vector is zero"},
+       "has area, but its Newell vector (area times normal) is zero"},
   };
   for (const BadFace& entry : table) {
     const CutFace face = cut_face(entry.vertices, entry.rings);
@@ -258,7 +259,7 @@ TEST(CutFace, LargePlanarPolygonsAreFast) {
 TEST(EarClipping, QuadrilateralTakesTheDiagonalOfItsLowestIndex) {
   const Vertices vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0}};
   EXPECT_EQ(triangles(cut_face(vertices, {{0, 1, 2, 3}})), (std::set<Triangle>{{0, 1, 2}, {0, 2, 3}}));
-  // The same square with its corners numbered the other way about.
+  // The same square with its corners in the opposite order.
   const Vertices shifted = {{1, 0, 0}, {1, 1, 1}, {0, 1, 0}, {0, 0, 0}};
   EXPECT_EQ(triangles(cut_face(shifted, {{3, 0, 1, 2}})), (std::set<Triangle>{{0, 1, 2}, {0, 2, 3}}));
 }
@@ -272,7 +273,7 @@ TEST(EarClipping, QuadrilateralTakesTheOtherDiagonalWhereThatOneIsInvalid) {
 }
 
 TEST(EarClipping, ACornerStraightAlongTheNewellVectorIsNoEar) {
-  // Corner 1 is straight as seen from above (the Newell vector), yet lifted.
+  // Corner 1 is straight as seen from above (along the Newell vector), but it is lifted.
   const Vertices vertices = {{0, 0, 0}, {1, 0, 1}, {2, 0, 0}, {1, 2, 1}};
   const CutFace face = cut_face(vertices, {{0, 1, 2, 3}});
   ASSERT_FALSE(face.fault);
@@ -281,7 +282,7 @@ TEST(EarClipping, ACornerStraightAlongTheNewellVectorIsNoEar) {
   }
 }
 
-// The rule as it is written, step by step, without anything clever.
+// The rule exactly as it is written, step by step, without optimisations.
 std::set<Triangle> clip_by_the_book(const Vertices& vertices, Ring ring) {
   const Vector n = newell(vertices, ring);
   const auto turn = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -335,7 +336,7 @@ TEST(EarClipping, FollowsTheRuleByTheBookWhateverTheStartAndDirection) {
   for (int round = 0; round < 16; ++round) {
     Star star = random_star(random, 5 + static_cast<std::uint32_t>(round) % 9);
     const std::set<Triangle> expected = clip_by_the_book(star.vertices, star.ring);
-    if (expected.empty()) continue;  // rounding to the lattice made it touch itself
+    if (expected.empty()) continue;  // rounding to the lattice made the ring touch itself
     ++compared;
     for (std::size_t start = 0; start < star.ring.size(); start += 3) {
       std::rotate(star.ring.begin(), star.ring.begin() + 1, star.ring.end());
@@ -382,15 +383,15 @@ TEST(EarClipping, KeyholeRingsAndLobesThatTouchAreCut) {
 }
 
 TEST(EarClipping, CornersThatCoincideOnlyAsSeenAlongTheNewellVectorMakeNoGap) {
-  // The Newell vector is along (1, -1, 0), and so is the side between the first two corners; the triangle that they
-  // make with the fourth is seen end-on.
+  // The Newell vector is along (1, -1, 0), and so is the side between the first two corners. The triangle of these two
+  // and the fourth corner is seen edge-on.
   const Vertices end_on = {{-1, 1, 2}, {1, -1, 2}, {-1, -1, 2}, {0, 0, 1}, {1, 1, 2}};
   const CutFace refused = cut_face(end_on, {{4, 0, 1, 2, 3}});
   ASSERT_TRUE(refused.fault);
   EXPECT_NE(refused.fault->what.find("coincide"), std::string::npos) << refused.fault->what;
   EXPECT_TRUE(refused.parts.empty());
 
-  // Corners that coincide in space do no harm, whether they are one vertex or two.
+  // Corners that coincide in space do no harm, whether they share a vertex or not.
   Vertices lobes = flat({{0, 0}, {2, 0}, {2, 2}, {4, 2}, {4, 4}, {2, 4}, {0, 2}, {2, 2}});
   lobes[0].z = 0.125;
   const CutFace touching = cut_face(lobes, {{0, 1, 2, 3, 4, 5, 7, 6}});
@@ -426,7 +427,7 @@ Vertices times(Vertices vertices, double factor) {
 }
 
 TEST(CutFace, ExtremeCoordinatesChangeNothingButTheScale) {
-  // 1020 brings the largest coordinates to 2^1023.x, so that their differences exceed every double.
+  // 1020 scales the largest coordinates to 2^1023.x, so that their differences overflow a double.
   const std::vector<std::pair<double, double>> points = {{-8, -8}, {8, -8}, {8, 8}, {-8, 8},
                                                          {2, 2},   {4, 2},  {4, 5}, {2, 5}};
   const Vertices unit = flat(points);
@@ -437,7 +438,7 @@ TEST(CutFace, ExtremeCoordinatesChangeNothingButTheScale) {
     ASSERT_FALSE(face.fault);
     EXPECT_EQ(face.parts.size(), expected.parts.size());
     EXPECT_EQ(area_of_parts(scaled, face), newell(scaled, iota_ring(0, 4)) - newell(scaled, iota_ring(4, 4)));
-    EXPECT_EQ(face.newell, (Vec3{0, 0, 0.5})) << exponent;  // 256 * 4^exponent, brought into [1/2, 1)
+    EXPECT_EQ(face.newell, (Vec3{0, 0, 0.5})) << exponent;  // 256 * 4^exponent, scaled into [1/2, 1)
     EXPECT_TRUE(std::isfinite(face.area) && face.area > 0.0);
   }
 }
@@ -453,7 +454,7 @@ TEST(CutFace, HugeAndTinyCoordinatesMeetInOneFace) {
 }
 
 TEST(CutFace, NewellVectorIsRoundedOnceFromItsExactValue) {
-  // Twice the area: 1 + 2^-53 + 2^-106, just above a tie that a sum of rounded products would round down.
+  // Twice the area is 1 + 2^-53 + 2^-106, just above a tie that a sum of rounded products would round down.
   const double h = 0x1p-53;
   const Vertices vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {-h, 0.5, 0}};
   const CutFace face = cut_face(vertices, {iota_ring(0, 5)});

@@ -36,17 +36,17 @@ class TruthCommand : public testing::Test {
       const std::function<void()>& prepare = [] {}) const {
     return {EXACTFF_PROGRAM, truth(grid, file_, more), directory_.path() / "stderr", prepare};
   }
-  // The Booleans take their time, and no byte depends on them.
+  // The Boolean engine is slow, which gives the test time, and it gives the same bytes.
   RunningProgram start_slowly(std::vector<std::string> more) const {
     more.insert(more.end(), {"--engine", "boolean", "--threads", "2"});
     return start(kGrid, more);
   }
-  // Until rows were added to the journal.
+  // Waits until rows have been added to the journal.
   void wait_for_rows(const RunningProgram& running, std::uintmax_t before) const {
     while (size_of(journal_) <= before + 2000 && !running.has_ended())
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  // What one undisturbed run gives.
+  // The result of one undisturbed run.
   std::string whole() const {
     EXPECT_EQ(run(kGrid, directory_.path() / "whole.csv").exit_code, 0);
     return text_of(directory_.path() / "whole.csv");
@@ -92,9 +92,9 @@ TEST_F(TruthCommand, ASignalKeepsWhatIsFinishedAndTellsHowToGoOn) {
     running.send(signal);
     EXPECT_EQ(running.wait(), 128 + signal);
     EXPECT_TRUE(running.error().starts_with("exactff: interrupted; ")) << running.error();
-    EXPECT_NE(
-        running.error().find(" rows are kept in " + journal_.string() + "; the same command with --resume goes on\n"),
-        std::string::npos)
+    EXPECT_NE(running.error().find(" rows are kept in " + journal_.string() +
+                                   "; to continue, run the same command with --resume\n"),
+              std::string::npos)
         << running.error();
   }
   EXPECT_EQ(run(kGrid, file_, {"--resume"}).exit_code, 0);
@@ -107,16 +107,17 @@ TEST_F(TruthCommand, TwoAtOnceAreRefused) {
   for (const char* flag : {"--resume", "--force"}) {
     const RunningProgram second(EXACTFF_PROGRAM, truth(kGrid, file_, {flag}), directory_.path() / "stderr2");
     EXPECT_EQ(second.wait(), 2);
-    EXPECT_EQ(second.error(), "exactff: " + journal_.string() +
-                                  ": another process is working on it (two would compute the same rows and spoil each "
-                                  "other's file); wait for the other one, or name another file with -o\n");
+    EXPECT_EQ(second.error(),
+              "exactff: " + journal_.string() +
+                  ": another process is working on it (two processes would compute the same rows and damage each "
+                  "other's file); wait for the other process, or name another file with -o\n");
   }
   first.send(SIGKILL);
   EXPECT_EQ(first.wait(), 128 + SIGKILL);
-  EXPECT_EQ(run(kGrid, file_, {"--resume"}).exit_code, 0);  // the dead hold no lock
+  EXPECT_EQ(run(kGrid, file_, {"--resume"}).exit_code, 0);  // a dead process holds no lock
 }
 
-// The disk is full for the journal at first, then for the file that is made of it.
+// The disk is full first for the journal, then for the file that is made from it.
 TEST_F(TruthCommand, AFullDiskCostsNoRow) {
   const auto limited_to = [](rlim_t bytes) {
     return [bytes] {
@@ -126,10 +127,9 @@ TEST_F(TruthCommand, AFullDiskCostsNoRow) {
   };
   const RunningProgram first = start(kGrid, {}, limited_to(50'000));
   EXPECT_EQ(first.wait(), 2);
-  EXPECT_NE(
-      first.error().find("truth.csv.part: cannot be written: File too large (the rows finished so far are kept in "
-                         "it); make room, then go on with --resume"),
-      std::string::npos)
+  EXPECT_NE(first.error().find("truth.csv.part: cannot be written: File too large (it contains the rows finished so "
+                               "far); free some space, then continue with --resume"),
+            std::string::npos)
       << first.error();
   EXPECT_GT(size_of(journal_), 30'000U);
   const std::string part = text_of(journal_);
@@ -158,12 +158,12 @@ TEST_F(TruthCommand, ShardsAreMerged) {
   EXPECT_EQ(text_of(file_), whole());
   const RunningProgram again(EXACTFF_PROGRAM, merge, directory_.path() / "stderr");
   EXPECT_EQ(again.wait(), 2);
-  EXPECT_NE(again.error().find("truth.csv: is there already"), std::string::npos);
+  EXPECT_NE(again.error().find("truth.csv: already exists"), std::string::npos);
   merge.erase(merge.begin() + 2);
   merge.push_back("--force");
   const RunningProgram less(EXACTFF_PROGRAM, merge, directory_.path() / "stderr");
   EXPECT_EQ(less.wait(), 2);
-  EXPECT_EQ(less.error(), "exactff: of 3 shards there is no 2 (every row is wanted); name those files too\n");
+  EXPECT_EQ(less.error(), "exactff: of 3 shards these are missing: 2 (every row is needed); add these files\n");
 }
 
 TEST_F(TruthCommand, SenselessFlagsAreRefused) {
@@ -190,9 +190,9 @@ TEST_F(TruthCommand, SlowRowsAreLogged) {
   EXPECT_TRUE(running.error().starts_with("slow: receiver '1,1' on 'floor', source 'light' took ")) << running.error();
 }
 
-// Several started together by something that the program cannot speak with would all do the same work.
+// Several processes, started together by a launcher that the program does not support, would all do the same work.
 TEST_F(TruthCommand, OneOfManyWithoutMpiIsRefused) {
-  const fs::path alone = directory_.path() / "exactff";  // away from its module
+  const fs::path alone = directory_.path() / "exactff";  // a copy of the program without its MPI module
   fs::copy_file(EXACTFF_PROGRAM, alone);
   const auto as_rank = [](const char* rank) {
     return [rank] {
@@ -202,7 +202,7 @@ TEST_F(TruthCommand, OneOfManyWithoutMpiIsRefused) {
   };
   const RunningProgram first(alone, truth("1x1", file_, {}), directory_.path() / "stderr", as_rank("0"));
   EXPECT_EQ(first.wait(), 2);
-  EXPECT_NE(first.error().find("several processes were started together, and MPI cannot be had"), std::string::npos);
+  EXPECT_NE(first.error().find("several processes were started together, but MPI is not available"), std::string::npos);
   const RunningProgram other(alone, truth("1x1", file_, {}), directory_.path() / "stderr", as_rank("3"));
   EXPECT_EQ(other.wait(), 0);
   EXPECT_EQ(other.error(), "");

@@ -72,7 +72,7 @@ class Truth : public testing::Test {
     return part;
   }
 
-  // An interrupted run: it ends before row `rows` of those that are asked for `cancelled`.
+  // An interrupted run: `cancelled` ends it before row `rows` of the rows that it asks about.
   void interrupt(Request asked, int rows) const {
     std::atomic<int> left = rows;
     Hooks hooks;
@@ -80,7 +80,7 @@ class Truth : public testing::Test {
     EXPECT_THROW(write(std::move(asked), file_, Existing::kResume, hooks), Cancelled);
   }
 
-  // What is wrong, as the user reads it; empty if nothing is.
+  // The error message as the user reads it; empty if there is none.
   static std::string message_of(const std::function<void()>& act) {
     try {
       act();
@@ -198,9 +198,9 @@ TEST_F(Truth, TheTallyReadsTheLastFieldOfEveryRow) {
 TEST_F(Truth, SenselessRequestsAreRefused) {
   Request none = request(1);
   none.receivers.clear();
-  EXPECT_NE(refusal(none, Existing::kRefuse).find("there is no receiver in floor, grid"), std::string::npos);
+  EXPECT_NE(refusal(none, Existing::kRefuse).find("there are no receivers in floor, grid"), std::string::npos);
   Request dark = request(1);
-  dark.sources.clear();  // nothing emits here
+  dark.sources.clear();  // no source emits here
   EXPECT_NE(refusal(dark, Existing::kRefuse).find("no patch emits"), std::string::npos);
   EXPECT_NE(refusal(shard(1, 5, 4), Existing::kRefuse).find("there is no shard 5 of 4"), std::string::npos);
   EXPECT_NE(refusal(shard(1, 0, 4), Existing::kRefuse).find("there is no shard 0 of 4"), std::string::npos);
@@ -260,7 +260,7 @@ TEST_F(Truth, AnInterruptedRunGoesOn) {
   fs::remove(file_);
   for (const int rows : {1, 2, 40, 100, 1, 30}) interrupt(request(10), rows);
   expect_only({"truth.csv.part"});
-  EXPECT_GE(rows_in_journal(request(10)), 160U);  // asked before each row, and some times more
+  EXPECT_GE(rows_in_journal(request(10)), 160U);  // asked before each row, and a few more times
   const Summary summary = write(request(10), file_, Existing::kResume);
   EXPECT_EQ(text_of(file_), whole);
   EXPECT_GT(summary.resumed, 150U);
@@ -273,7 +273,7 @@ TEST_F(Truth, ARunThatFinishedNoRowLeavesNothing) {
   expect_only({});
 }
 
-// Blocks of few rows, not in order, so that there is much to tear in few bytes.
+// Blocks of few rows, not in order, so that a few bytes can be damaged in many ways.
 std::string small_journal(const Rows& rows, const fs::path& file) {
   RowJournal journal(file, rows, Existing::kReplace, {});
   Rows::Results results;
@@ -334,7 +334,7 @@ TEST_F(Truth, BlocksThatDoNotBelongAreLeftOut) {
     journal.append({64, 1}, line);          // doubled
     journal.append({0, 1}, line);           // of another shard
     journal.append({127, 2}, line + line);  // of two chunks
-    journal.append({66, 2}, line);          // fewer rows than it says
+    journal.append({66, 2}, line);          // fewer rows than it claims
     journal.append({65, 0}, "");
     journal.append({1000000, 1}, line);
   }
@@ -350,13 +350,13 @@ TEST_F(Truth, BlocksThatDoNotBelongAreLeftOut) {
 
 TEST_F(Truth, NobodysWorkIsDestroyed) {
   write(request(2), file_);
-  EXPECT_NE(refusal(request(2), Existing::kRefuse).find("truth.csv: is there already (it may hold hours of work); "),
+  EXPECT_NE(refusal(request(2), Existing::kRefuse).find("truth.csv: already exists (it may hold hours of work); "),
             std::string::npos);
   EXPECT_EQ(refusal(request(2), Existing::kReplace), "");
   fs::remove(file_);
   interrupt(request(10), 100);
   EXPECT_NE(
-      refusal(request(10), Existing::kRefuse).find("truth.csv.part: holds the rows of a run that was not finished"),
+      refusal(request(10), Existing::kRefuse).find("truth.csv.part: contains the finished rows of an interrupted run"),
       std::string::npos);
   EXPECT_EQ(refusal(request(10), Existing::kReplace), "");
   expect_only({"truth.csv"});
@@ -379,14 +379,15 @@ TEST_F(Truth, ACompleteFileIsLeftAsItIs) {
 TEST_F(Truth, AForeignFileIsNoJournal) {
   for (const char* text : {"dear diary\n", "# exactff 0.0.1 truth\nreceiver\n", "\n", "#"}) {
     write_text(journal_, text);
-    if (std::string(text) == "#") continue;  // may be the beginning of ours
-    EXPECT_NE(refusal(request(2), Existing::kResume).find("truth.csv.part:1: is of another request: it says '"),
-              std::string::npos);
+    if (std::string(text) == "#") continue;  // may be the beginning of our journal
+    EXPECT_NE(
+        refusal(request(2), Existing::kResume).find("truth.csv.part:1: belongs to a different request: it says '"),
+        std::string::npos);
     EXPECT_EQ(text_of(journal_), text);
   }
 }
 
-// What a journal is made for, changed in every way that its rows depend on.
+// The request of a journal, changed in every way that affects its rows.
 TEST_F(Truth, AJournalOfAnotherRequestIsNamedWithItsDifference) {
   Scene other = scene_.with_flipped(scene_.select("board"));
   const std::pair<std::string, std::function<void(Request&)>> table[] = {
@@ -395,15 +396,16 @@ TEST_F(Truth, AJournalOfAnotherRequestIsNamedWithItsDifference) {
          r.scene = &other;
          r.sources = {other.select("light"), other.select("lamp")};
        }},
-      {"now it would be '# scene: hall.obj, ", [](Request& r) { r.scene_name = "hall.obj"; }},
-      {"now it would be '# receivers: floor, grid, hash ", [](Request& r) { r.receivers[0].point.x += 0.5; }},
-      {"now it would be '# receivers: other, hash ", [](Request& r) { r.receivers_name = "other"; }},
-      {"now it would be '# sources: lamp + light'", [](Request& r) { std::swap(r.sources[0], r.sources[1]); }},
-      {"now it would be 'receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,unoccluded,",
+      {"this request says '# scene: hall.obj, ", [](Request& r) { r.scene_name = "hall.obj"; }},
+      {"this request says '# receivers: floor, grid, hash ", [](Request& r) { r.receivers[0].point.x += 0.5; }},
+      {"this request says '# receivers: other, hash ", [](Request& r) { r.receivers_name = "other"; }},
+      {"this request says '# sources: lamp + light'", [](Request& r) { std::swap(r.sources[0], r.sources[1]); }},
+      {"this request says 'receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,unoccluded,",
        [](Request& r) { r.unoccluded = true; }},
-      {"now it would be 'receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,visible_fraction,",
+      {"this request says 'receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,visible_fraction,",
        [](Request& r) { r.visible_fraction = true; }},
-      {"now it would be '# shard: 1/2 in chunks of 64 rows, for exactff merge'", [](Request& r) { r.shard.count = 2; }},
+      {"this request says '# shard: 1/2 in chunks of 64 rows, for exactff merge'",
+       [](Request& r) { r.shard.count = 2; }},
   };
   interrupt(request(10), 100);
   const std::string journal = text_of(journal_);
@@ -412,7 +414,7 @@ TEST_F(Truth, AJournalOfAnotherRequestIsNamedWithItsDifference) {
     change(changed);
     const std::string told = refusal(changed, Existing::kResume);
     EXPECT_NE(told.find(message), std::string::npos) << told;
-    EXPECT_NE(told.find("rows of two requests must not be mixed"), std::string::npos) << told;
+    EXPECT_NE(told.find("rows of different requests must not be mixed"), std::string::npos) << told;
     EXPECT_EQ(text_of(journal_), journal);
   }
   std::string old_version = journal;
@@ -488,7 +490,7 @@ class TruthShards : public Truth {
 
 TEST_F(TruthShards, MergedAreTheBytesOfOneRun) {
   const Summary one = write(request(10), file_);
-  for (const std::uint64_t count : {2U, 3U, 4U, 7U}) {  // of 4 chunks, so that there are shards without any
+  for (const std::uint64_t count : {2U, 3U, 4U, 7U}) {  // of 4 chunks, so that some shards have none
     std::vector<fs::path> parts = write_shards(10, count);
     std::reverse(parts.begin(), parts.end());
     const fs::path merged = directory_.path() / "merged.csv";
@@ -506,8 +508,7 @@ TEST_F(TruthShards, InterruptionsDoNotShow) {
     hooks.cancelled = [&left] { return left-- <= 0; };
     EXPECT_THROW(write(shard(10, 1, 2), file_, Existing::kResume, hooks), Cancelled);
   }
-  EXPECT_NE(merge_refusal({journal_, parts[1]}).find("is the journal of a run that was not finished"),
-            std::string::npos);
+  EXPECT_NE(merge_refusal({journal_, parts[1]}).find("is the journal of an unfinished run"), std::string::npos);
   write(shard(10, 1, 2), file_, Existing::kResume);
   EXPECT_EQ(text_of(file_), text_of(parts[0]));
   const Summary again = write(shard(10, 1, 2), file_, Existing::kResume);
@@ -521,8 +522,8 @@ TEST_F(TruthShards, WhatDoesNotBelongTogetherIsRefused) {
     EXPECT_NE(told.find(message), std::string::npos) << told;
     EXPECT_FALSE(fs::exists(directory_.path() / "merged.csv"));
   };
-  expect({parts[0], parts[2]}, "of 3 shards there is no 2 (every row is wanted)");
-  expect({parts[0]}, "there is no 2 and 3");
+  expect({parts[0], parts[2]}, "of 3 shards these are missing: 2 (every row is needed)");
+  expect({parts[0]}, "these are missing: 2 and 3");
   expect({}, "no shard is named");
   expect({parts[0], parts[1], parts[2], parts[1]}, "is shard 2, and so is ");
   expect({parts[0], directory_.path() / "nothing"}, "nothing: cannot be read: No such file");
@@ -531,7 +532,8 @@ TEST_F(TruthShards, WhatDoesNotBelongTogetherIsRefused) {
   write(shard(10, 3, 4), file_, Existing::kReplace);
   expect({parts[0], parts[1], file_}, "is one of 4 shards");
   write(shard(9, 3, 3), file_, Existing::kReplace);
-  expect({parts[0], parts[1], file_}, "truth.csv:3: is of another request: it says '# receivers: floor, grid, hash ");
+  expect({parts[0], parts[1], file_},
+         "truth.csv:3: belongs to a different request: it says '# receivers: floor, grid, hash ");
 }
 
 TEST_F(TruthShards, DamageIsFoundWhereverItIs) {
@@ -592,8 +594,8 @@ class TruthTeam : public Truth {
  protected:
   using Requests = std::function<Request(int rank)>;
 
-  // Every rank in a thread; the exit code of a leader that throws is 2, and all must have that of the leader. Returns
-  // what the leader threw.
+  // Runs every rank in a thread. The exit code of a leader that throws is 2, and all ranks must return the leader's
+  // code. Returns what the leader threw.
   std::exception_ptr run(int size, const Requests& request, const Hooks& leaders = {}, const Hooks& followers = {}) {
     std::vector<Mailbox> mail(static_cast<std::size_t>(size));
     std::vector<int> codes(mail.size(), -1);
@@ -645,14 +647,14 @@ TEST_F(TruthTeam, ManyProcessesWriteTheBytesOfOne) {
   expect_only({"truth.csv"});
 }
 
-// Interrupted before so many rows, by whom it was asked.
+// Interrupted before this number of rows, by whichever thread asked.
 Hooks interrupted_after(std::atomic<int>& rows) {
   Hooks hooks;
   hooks.cancelled = [&rows] { return rows-- <= 0; };
   return hooks;
 }
 
-// A leader so slow that the others do the work.
+// A leader that is so slow that the others do the work.
 Hooks slow() {
   Hooks hooks;
   hooks.cancelled = [] {
@@ -670,7 +672,7 @@ TEST_F(TruthTeam, AnInterruptedTeamKeepsWhatItFinished) {
   const auto asked = [this](int) { return request(40); };
   EXPECT_EQ(message_of<Cancelled>(run(4, asked, slow(), interrupted_after(followers_rows))), "cancelled");
   expect_only({"truth.csv.part"});
-  EXPECT_GE(rows_in_journal(request(40)), 580U);  // they are asked before each row, and before each piece of 64
+  EXPECT_GE(rows_in_journal(request(40)), 580U);  // asked before each row, and before each piece of 64
   EXPECT_EQ(message_of<Cancelled>(run(4, asked, interrupted_after(leaders_rows), slow())), "cancelled");
   expect_only({"truth.csv.part"});
   const Summary summary = write(request(40), file_, Existing::kResume);
@@ -678,7 +680,7 @@ TEST_F(TruthTeam, AnInterruptedTeamKeepsWhatItFinished) {
   EXPECT_EQ(text_of(file_), whole);
 }
 
-// At the moment of the interruption no follower has done a whole chunk: what they have is in their hands alone.
+// At the interruption, no follower has finished a whole chunk; only the followers have their rows.
 TEST_F(TruthTeam, ALeaderThatStopsTakesWhatOthersHaveInHand) {
   std::atomic<int> asked = 0;
   Hooks leaders, followers;
@@ -695,7 +697,7 @@ TEST_F(TruthTeam, ALeaderThatStopsTakesWhatOthersHaveInHand) {
   const auto thrown = run(
       4, [this](int) { return request(40); }, leaders, followers);
   EXPECT_EQ(message_of<Cancelled>(thrown), "cancelled");
-  EXPECT_GE(rows_in_journal(request(40)), 80U);  // of the followers; the leader adds some
+  EXPECT_GE(rows_in_journal(request(40)), 80U);  // rows of the followers; the leader adds some
 }
 
 TEST_F(TruthTeam, AProcessThatSeesOtherFilesIsNamed) {
@@ -724,7 +726,7 @@ TEST_F(TruthTeam, ALeaderThatCannotBeginEndsAll) {
     asked.receivers.clear();
     return asked;
   });
-  EXPECT_NE(message_of<InputError>(thrown).find("there is no receiver"), std::string::npos);
+  EXPECT_NE(message_of<InputError>(thrown).find("there are no receivers"), std::string::npos);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The exact method step by step: which outcome, which candidates, what hides and what does not.
+// The exact method step by step: the outcome, the candidates, and which faces hide something.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,7 +33,7 @@ PlaneRecord record_by(Engine engine, const PlainScene& scene) {
 }
 double value_of(const PlainScene& scene) { return validation::solve(scene).value; }
 
-// For each engine, which names itself in a failure.
+// Runs the test for each engine and names the engine in a failure.
 template <class Check>
 void for_each_engine(const PlainScene& scene, const Check& check) {
   for (const Engine engine : validation::kEngines) {
@@ -120,7 +120,7 @@ TEST(VisibleBoundary, AFaceThroughTheSourcesPlaneHidesWithItsNearPartOnly) {
 }
 
 TEST(VisibleBoundary, AFaceThroughThePlaneOfXStaysBounded) {
-  // Slanted from behind x to ahead of it; its shadow would reach to infinity without the clip.
+  // A face that slants from behind x to in front of it; its shadow would be infinite without the clip.
   const Corners slanted = {{-3, -3, -0.5}, {3, -3, -0.5}, {3, 1, 0.7}, {-3, 1, 0.7}};
   for_each_engine(scene_with({slanted}), [](const PlaneRecord& record) {
     EXPECT_EQ(record.candidates, 1U);
@@ -155,7 +155,7 @@ TEST(VisibleBoundary, OccludersThatMeetInAnEdgeHideAllTogether) {
 
 TEST(VisibleBoundary, AnOccluderThatIsThereTwiceHidesOnce) {
   EXPECT_EQ(value_of(scene_with({square(0.25, 0.5), square(0.25, 0.5)})), value_of(scene_with({square(0.25, 0.5)})));
-  // Twice in shadow, though at two distances.
+  // The same part lies in two shadows, cast from two distances.
   EXPECT_EQ(value_of(scene_with({square(0.25, 0.5), square(0.125, 0.25)})), value_of(scene_with({square(0.25, 0.5)})));
 }
 
@@ -200,7 +200,7 @@ TEST(VisibleBoundary, CoplanarFacesOfOtherPatchesCountFully) {
 
 TEST(VisibleBoundary, OtherFacesOfTheSourceOccludeIt) {
   PlainScene plain = scene_with({});
-  plain.add_ring(plain.patch("source"), square(0.25, 0.5));  // faces up, away from x: gives nothing itself
+  plain.add_ring(plain.patch("source"), square(0.25, 0.5));  // faces up, away from x: contributes nothing
   EXPECT_EQ(value_of(plain), value_of(scene_with({square(0.25, 0.5)})));
 }
 

@@ -1,4 +1,4 @@
-// The rules of visible_edges.h one by one, on scenes small enough for the visible part to be known by hand.
+// The rules of visible_edges.h one by one, on scenes so small that the visible part is known by hand.
 #include "visibility/visible_edges.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ constexpr std::size_t kAnyNumber = 0;
 // The receiver at the origin, sources in the plane z = 1 facing down, occluders by what they hide there.
 struct Case {
   std::string name;
-  std::string fraction;            // of the source that is visible, exactly
+  std::string fraction;            // visible share of the source, exact
   std::size_t parts = kAnyNumber;  // of edges
   std::vector<Corners> occluders = {};
   std::vector<Corners> sources = {{{-1, 1, 1}, {1, 1, 1}, {1, -1, 1}, {-1, -1, 1}}};
@@ -112,13 +112,13 @@ const std::vector<Case>& cases() {
   return all;
 }
 
-// With copies nearer to the receiver, which hide the same without sharing a corner; reversed orders other edges first.
+// With copies nearer to the receiver, which hide the same part without sharing a corner; reversed edge order too.
 PlainScene scene_of(const Case& tested, int copies, bool reversed) {
   PlainScene scene;
   scene.normal = tested.normal;
   std::vector<Corners> sources = tested.sources, occluders;
   for (const Corners& o : tested.occluders) {
-    // Away from the source's plane, where a copy hides less or more.
+    // Outside the source's plane, where a copy hides less or more.
     const bool movable = std::all_of(o.begin(), o.end(), [](const Vec3& c) { return c.z < 1.0; });
     for (int k = 0; k <= (movable ? copies : 0); ++k) occluders.push_back(at_depth(o, 1.0 / (1 << k)));
   }
@@ -131,7 +131,7 @@ PlainScene scene_of(const Case& tested, int copies, bool reversed) {
   return scene;
 }
 
-// Where parts begin less where they end, by direction.
+// Number of parts that begin minus the number of parts that end, by direction.
 std::map<std::string, int> open_ends(const PlainScene& plain) {
   const Scene scene = generate::build(plain);
   const View view(scene, generate::receiver_of(plain));
@@ -158,7 +158,7 @@ class VisibleEdgesRule : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(VisibleEdgesRule, LeavesWhatIsVisible) {
   const Case& tested = cases()[GetParam()];
-  for (const int copies : {0, 1, 8}) {  // 8: enough for the grid
+  for (const int copies : {0, 1, 8}) {  // 8: enough occluders for the grid
     for (const bool reversed : {false, true}) {
       SCOPED_TRACE(tested.name + ", copies " + std::to_string(copies) + (reversed ? ", reversed" : ""));
       const PlainScene scene = scene_of(tested, copies, reversed);
@@ -192,7 +192,7 @@ TEST(VisibleEdges, RemembersNothingOfTheSceneBefore) {
   }
 }
 
-// Of as many as are taken up in another order than they came in.
+// With as many occluders as possible, processed in another order than the input order.
 TEST(VisibleEdges, LosesNoneOfManyOccluders) {
   constexpr int kSide = 64;
   Case many{"Many", "3/4", 4 + 4 * kSide * kSide};

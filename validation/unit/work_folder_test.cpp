@@ -1,4 +1,4 @@
-// Hidden folders of processes that were killed, of ones that live, of older versions and of others.
+// Hidden folders of killed processes, of living ones, of older versions and of other programs.
 #include "work/work_folder.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ class WorkFolders : public testing::Test {
     fs::create_directories(file.parent_path());
     std::ofstream(file) << text;
   }
-  // A process that makes the folder and is killed as soon as it is there.
+  // A process that creates the folder and is killed immediately afterwards.
   void be_killed_in_the_middle() const {
     const pid_t child = ::fork();
     if (child == 0) {
@@ -63,7 +63,7 @@ TEST_F(WorkFolders, OfAKilledProcessAreCleared) {
 TEST_F(WorkFolders, OfALivingProcessAreNotTouched) {
   const work::WorkFolder living(target_);
   std::ofstream(living.path() / "half.csv") << "half";
-  be_killed_in_the_middle();  // clears nothing either
+  be_killed_in_the_middle();  // this one removes nothing either
   EXPECT_EQ(names().size(), 2U);
   { const work::WorkFolder other(target_); }
   EXPECT_EQ(names(), std::set<std::string>{living.path().filename().string()});
@@ -79,7 +79,7 @@ TEST_F(WorkFolders, OfAnotherTargetStay) {
 }
 
 TEST_F(WorkFolders, WithoutALockAreLeftOvers) {
-  put(directory_.path() / ".result.partial-4711" / "values.csv");  // as the first version called them
+  put(directory_.path() / ".result.partial-4711" / "values.csv");  // names used by the first version
   { const work::WorkFolder folder(target_); }
   EXPECT_TRUE(names().empty());
 }
@@ -107,7 +107,7 @@ TEST_F(WorkFolders, TakeThePlaceOfTheTarget) {
   EXPECT_FALSE(fs::exists(target_ / work::kLockFile));
 }
 
-// Killed between two renames, where folders cannot change places.
+// Killed between two renames, where the file system cannot exchange folders.
 TEST_F(WorkFolders, AFormerResultComesBack) {
   put(directory_.path() / ".result.old-4711-0" / "values.csv", "# exactff 0.1.0\n");
   { const work::WorkFolder folder(target_); }
@@ -118,7 +118,7 @@ TEST_F(WorkFolders, AFormerResultComesBack) {
   EXPECT_EQ(names(), std::set<std::string>{"result"});
 }
 
-// Killed just after the renaming: the lock's file is still there.
+// Killed just after the rename: the lock file is still there.
 TEST_F(WorkFolders, AResultWithALockCanBeReplaced) {
   put(target_ / "values.csv", "# exactff 0.1.0\n");
   put(target_ / work::kLockFile, "");
@@ -140,7 +140,7 @@ TEST_F(WorkFolders, WholeFilesTakeTheirTurns) {
   EXPECT_EQ(names(), std::set<std::string>{"a.svg"});
 }
 
-// Two processes write it again and again: whenever it is read it is one of theirs, and none is refused.
+// Two processes write the same folder repeatedly. A reader always finds one complete result, and no process is refused.
 TEST_F(WorkFolders, WholeFilesOfTwoProcessesAreAlwaysWhole) {
   const fs::path file = directory_.path() / "a.svg";
   const auto write = [&file](char letter) {
