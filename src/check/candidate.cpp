@@ -80,7 +80,7 @@ class CandidateReader {
     }
   }
 
-  Table table_;
+  CsvTable table_;
   MatchBy by_;
   Candidate candidate_;
   NameList sources_;

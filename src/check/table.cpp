@@ -29,9 +29,11 @@ double not_finite_value(std::string_view text, text::NumberFault fault) {
 
 }  // namespace
 
-Table::Table(const std::filesystem::path& path, const std::string& purpose) : lines_(path, purpose) { read_names(); }
+CsvTable::CsvTable(const std::filesystem::path& path, const std::string& purpose) : lines_(path, purpose) {
+  read_names();
+}
 
-void Table::read_names() {
+void CsvTable::read_names() {
   for (std::string_view line; lines_.next(line);) {
     if (!text::is_csv_comment(line)) {
       if (split(line)) take_names();
@@ -44,7 +46,7 @@ void Table::read_names() {
            "begin the file with a line such as receiver,source,value");
 }
 
-void Table::take_names() {
+void CsvTable::take_names() {
   names_ = fields_;
   for (auto name = names_.begin(); name != names_.end(); ++name) {
     if (std::find(names_.begin(), name, *name) == name) continue;
@@ -55,21 +57,21 @@ void Table::take_names() {
            "write commas instead of semicolons or tabs");
 }
 
-std::optional<std::size_t> Table::column(std::string_view name) const {
+std::optional<std::size_t> CsvTable::column(std::string_view name) const {
   const auto found = std::find(names_.begin(), names_.end(), name);
   if (found == names_.end()) return std::nullopt;
   return static_cast<std::size_t>(found - names_.begin());
 }
 
-std::optional<std::size_t> Table::first_column(std::initializer_list<std::string_view> names) const {
+std::optional<std::size_t> CsvTable::first_column(std::initializer_list<std::string_view> names) const {
   for (const std::string_view name : names) {
     if (const auto found = column(name)) return found;
   }
   return std::nullopt;
 }
 
-std::size_t Table::needed_column(std::initializer_list<std::string_view> names, const std::string& why,
-                                 const std::string& suggestion) {
+std::size_t CsvTable::needed_column(std::initializer_list<std::string_view> names, const std::string& why,
+                                    const std::string& suggestion) {
   if (const auto found = first_column(names)) return *found;
   if (names_.empty()) return 0;  // a complaint was already made
   std::string wanted;
@@ -78,14 +80,14 @@ std::size_t Table::needed_column(std::initializer_list<std::string_view> names, 
   return 0;
 }
 
-bool Table::split(std::string_view line) {
+bool CsvTable::split(std::string_view line) {
   if (text::split_csv_line(line, fields_)) return true;
   complain("a quotation mark is not closed in its line, or text follows it", "the fields cannot be separated",
            "write a quotation mark inside quotes twice");
   return false;
 }
 
-bool Table::next() {
+bool CsvTable::next() {
   for (std::string_view line; lines_.next(line);) {
     if (text::is_csv_comment(line) || !split(line)) continue;
     if (fields_.size() == names_.size()) return true;
@@ -96,7 +98,7 @@ bool Table::next() {
   return false;
 }
 
-double Table::number(std::size_t column, NotFinite not_finite) {
+double CsvTable::number(std::size_t column, NotFinite not_finite) {
   const std::string& text = fields_[column];
   const text::ParsedNumber number = text::parse_number(text);
   if (number.fault == text::NumberFault::kNone) return number.value;
@@ -112,16 +114,16 @@ double Table::number(std::size_t column, NotFinite not_finite) {
   return 0.0;
 }
 
-Vec3 Table::vector(const std::array<std::size_t, 3>& columns) {
+Vec3 CsvTable::vector(const std::array<std::size_t, 3>& columns) {
   const double x = number(columns[0]), y = number(columns[1]), z = number(columns[2]);
   return {x, y, z};
 }
 
-void Table::complain(std::string what, std::string why, std::string suggestion) {
+void CsvTable::complain(std::string what, std::string why, std::string suggestion) {
   complain_at(lines_.number(), std::move(what), std::move(why), std::move(suggestion));
 }
 
-void Table::complain_at(std::size_t line, std::string what, std::string why, std::string suggestion) {
+void CsvTable::complain_at(std::size_t line, std::string what, std::string why, std::string suggestion) {
   problems_.add({lines_.file(), line, std::move(what), std::move(why), std::move(suggestion)});
 }
 

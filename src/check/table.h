@@ -36,10 +36,10 @@ class NameList {
 
 enum class NotFinite { kRefuse, kAccept };
 
-class Table {
+class CsvTable {
  public:
   // Reads the file up to and including the column names. `purpose` completes "give ...".
-  Table(const std::filesystem::path& path, const std::string& purpose);
+  CsvTable(const std::filesystem::path& path, const std::string& purpose);
 
   [[nodiscard]] const std::string& file() const { return lines_.file(); }
   [[nodiscard]] std::size_t line() const { return lines_.number(); }

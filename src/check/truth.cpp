@@ -141,7 +141,7 @@ class TruthReader {
     }
   }
 
-  Table table_;
+  CsvTable table_;
   Truth truth_;
   NameList sources_, faces_;
   std::size_t receiver_ = 0, value_ = 0, source_ = 0, on_ = 0, status_ = 0, rho_b_ = 0, exact_ = 0;

@@ -17,15 +17,8 @@ using text::shortest;
 }  // namespace
 
 std::string_view to_string(Measure measure) {
-  switch (measure) {
-    case Measure::kAbsolute:
-      return "absolute error";
-    case Measure::kRelative:
-      return "relative error";
-    case Measure::kRadiosity:
-      return "error in radiosity";
-  }
-  return {};
+  constexpr std::array<std::string_view, 3> kNames = {"absolute error", "relative error", "error in radiosity"};
+  return kNames[static_cast<std::size_t>(measure)];
 }
 
 std::string name_of(const Quantile& quantile) { return "quantile " + shortest(quantile.share); }

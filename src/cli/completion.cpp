@@ -38,6 +38,22 @@ std::string option_names(const CommandTable& command) {
   return spaced(names);
 }
 
+// One of the texts, by what the option takes.
+std::string by_completion(const OptionRow& row, const std::string& choices, const char* files, const char* folders,
+                          const char* nothing) {
+  switch (row.completion) {
+    case Completion::kChoices:
+      return choices;
+    case Completion::kFiles:
+      return files;
+    case Completion::kFolders:
+      return folders;
+    case Completion::kNothing:
+      break;
+  }
+  return nothing;
+}
+
 // --- bash ---
 
 // The words before the cursor determine what it is at: the last option, and how many values it already has. Bash splits
@@ -77,17 +93,7 @@ complete -F _exactff exactff
 )";
 
 std::string bash_offer(const OptionRow& row) {
-  switch (row.completion) {
-    case Completion::kChoices:
-      return single_quoted(spaced(row.choices));
-    case Completion::kFiles:
-      return "FILES";
-    case Completion::kFolders:
-      return "FOLDERS";
-    case Completion::kNothing:
-      break;
-  }
-  return "''";
+  return by_completion(row, single_quoted(spaced(row.choices)), "FILES", "FOLDERS", "''");
 }
 
 std::string bash_case(const std::string& pattern, const std::string& body) {
@@ -114,17 +120,7 @@ std::string bash_function(const std::string& name, const std::string& cases) {
 // --- zsh ---
 
 std::string zsh_action(const OptionRow& row) {
-  switch (row.completion) {
-    case Completion::kChoices:
-      return "(" + spaced(row.choices) + ")";
-    case Completion::kFiles:
-      return "_files";
-    case Completion::kFolders:
-      return "_files -/";
-    case Completion::kNothing:
-      break;
-  }
-  return " ";
+  return by_completion(row, "(" + spaced(row.choices) + ")", "_files", "_files -/", " ");
 }
 
 std::string zsh_values(const OptionRow& row) {
@@ -181,17 +177,8 @@ fi
 // --- fish ---
 
 std::string fish_takes(const OptionRow& row) {
-  switch (row.completion) {
-    case Completion::kChoices:
-      return " -x -a " + single_quoted(spaced(row.choices));
-    case Completion::kFiles:
-      return " -r -F";
-    case Completion::kFolders:
-      return " -x -a '(__fish_complete_directories)'";
-    case Completion::kNothing:
-      break;
-  }
-  return row.most_values > 0 ? " -x" : "";
+  return by_completion(row, " -x -a " + single_quoted(spaced(row.choices)), " -r -F",
+                       " -x -a '(__fish_complete_directories)'", row.most_values > 0 ? " -x" : "");
 }
 
 std::string fish_text(const std::string& text) { return "'" + with_backslashes(text, "'\\") + "'"; }

@@ -62,12 +62,6 @@ void write_through(const fs::path& path, const std::string& text) {
   if (!file) cannot_write(path, errno != 0 ? std::strerror(errno) : "opening or writing failed");
 }
 
-void replace_file(const fs::path& path, const std::string& text) {
-  work::WholeFile file(path, {}, work::WholeFile::WhenBusy::kWait);
-  file.append(text);
-  file.commit();
-}
-
 // Signals wait for a moment, so that nothing partial is left behind.
 template <class Write>
 void undisturbed(const Write& write) {
@@ -84,7 +78,11 @@ void write_whole_file(const fs::path& path, const std::string& text) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) cannot_write(path, "it is a folder");
   if (fs::is_other(path, ignored)) return write_through(path, text);
-  undisturbed([&] { replace_file(path, text); });
+  undisturbed([&] {
+    work::WholeFile file(path, {}, work::WholeFile::WhenBusy::kWait);
+    file.append(text);
+    file.commit();
+  });
 }
 
 void check_output_folder(const fs::path& folder) {

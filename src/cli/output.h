@@ -7,6 +7,7 @@
 #include <string>
 
 #include "exactff/scene.h"
+#include "text/escape.h"
 
 namespace exactff::cli {
 
@@ -18,6 +19,12 @@ double parse_finite(const std::string& text, const std::string& flag);
 
 // `name` is "NAME:k", or "NAME" for a patch with one face.
 FaceId select_face(const Scene& scene, const std::string& name);
+
+// For a terminal.
+template <class Named>
+std::string shown_name(const Scene& scene, const Named& named) {
+  return text::printable(scene.name_of(named));
+}
 
 // Writes a file beside `path` and renames it: the file appears complete or not at all. Throws InputError.
 void write_whole_file(const std::filesystem::path& path, const std::string& text);

@@ -94,12 +94,13 @@ std::string others_sentence(const ClosureStudy& study) {
          "nothing about the accuracy of its values.";
 }
 
-TextTable table_of(const ClosureStudy& study, const ClosureSize& size) {
-  Table table("closure in the model " + size.room + ": the sum over " + std::to_string(study.patches) +
-                  " patches less 1, over " + std::to_string(study.receivers) +
-                  " receivers, and errors of single form factors\nexact: rms and worst are 0 where the sum of balls "
-                  "holds 1",
-              {"method", "rms", "worst", "single_rms"});
+CsvFile table_of(const ClosureStudy& study, const ClosureSize& size) {
+  TableWriter table(
+      "closure in the model " + size.room + ": the sum over " + std::to_string(study.patches) +
+          " patches less 1, over " + std::to_string(study.receivers) +
+          " receivers, and errors of single form factors\nexact: rms and worst are 0 where the sum of balls "
+          "holds 1",
+      {"method", "rms", "worst", "single_rms"});
   if (study.hold_one == study.receivers) table.row() << "exact" << 0.0 << 0.0 << 0.0;
   for (const ClosureErrors& m : study.methods) table.row() << m.choice << m.rms << m.worst << m.single_rms;
   return table.finish("closure.csv", "closure error of every method in a closed room");

@@ -5,6 +5,7 @@
 
 #include "text/nearest_names.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 
 namespace exactff::experiments {
 
@@ -31,11 +32,8 @@ const Experiment& experiment_named(std::string_view name) {
   for (const Experiment& e : kExperiments) names.push_back(e.name);
   std::vector<std::string> near;
   for (const std::string_view n : text::nearest_names(names, name, 3)) near.emplace_back(n);
-  throw InputError(Problem{{},
-                           0,
-                           "there is no experiment '" + std::string(name) + "'",
-                           "only known experiments can be run",
-                           "the closest are " + text::enumerate(near)});
+  text::refuse("there is no experiment '" + std::string(name) + "'", "only known experiments can be run",
+               "the closest are " + text::enumerate(near));
 }
 
 }  // namespace exactff::experiments

@@ -21,7 +21,7 @@ struct Effort {
   int threads = 1;        // for values; times are always measured with one thread
 };
 
-using page::TextTable;
+using page::CsvFile;
 using Result = page::Chapter;
 
 struct Experiment {

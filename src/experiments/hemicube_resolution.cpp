@@ -185,12 +185,13 @@ std::vector<page::Figure> figures(const ResolutionCurves& c) {
                 {"100 %", {{c.turned_by_distance.at.front(), 1.0}, {c.turned_by_distance.at.back(), 1.0}}, 0}})}};
 }
 
-TextTable curve_table(const ResolutionCurves& c, const ResolutionSize& size) {
-  Table table("hemicube error: triangles of the models karkanis:n=" + std::to_string(size.triangles) +
-                  ",floor=0,seed=1.." + std::to_string(size.groups) +
-                  ", error in F; light: a square of side 1, relative error\nagainst: resolution in pixels, rotation in "
-                  "degrees or distance in sides of the light; the others are 100 pixels, 0 degrees (turned: 31.7), 2",
-              {"subject", "against", "at", "rms", "median"});
+CsvFile curve_table(const ResolutionCurves& c, const ResolutionSize& size) {
+  TableWriter table(
+      "hemicube error: triangles of the models karkanis:n=" + std::to_string(size.triangles) + ",floor=0,seed=1.." +
+          std::to_string(size.groups) +
+          ", error in F; light: a square of side 1, relative error\nagainst: resolution in pixels, rotation in "
+          "degrees or distance in sides of the light; the others are 100 pixels, 0 degrees (turned: 31.7), 2",
+      {"subject", "against", "at", "rms", "median"});
   const auto put = [&](std::string_view subject, std::string_view against, const ErrorCurve& curve) {
     for (std::size_t i = 0; i < curve.at.size(); ++i) {
       table.row() << subject << against << curve.at[i] << curve.rms[i] << curve.median[i];

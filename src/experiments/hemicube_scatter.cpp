@@ -1,7 +1,6 @@
 #include "experiments/hemicube_scatter.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -58,14 +57,8 @@ Counts count(std::span<const ScatterPoint> points, std::size_t resolution) {
   return counts;
 }
 
-// "10⁻⁴"; form factors are at most 1.
-std::string power_of_ten(int exponent) {
-  constexpr std::array<std::string_view, 10> kSuperscripts = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  if (exponent == 0) return "1";
-  std::string text = "10⁻";
-  for (const char digit : std::to_string(-exponent)) text += kSuperscripts[static_cast<std::size_t>(digit - '0')];
-  return text;
-}
+// "10⁻⁴"
+std::string power_of_ten(int exponent) { return exponent == 0 ? "1" : "10" + text::superscript(exponent); }
 
 // ---------------------------------------------------------------------------------------------------------- sentences
 
@@ -168,11 +161,12 @@ page::Figure error_figure(std::span<const ScatterPoint> points, const ScatterSiz
 
 // ------------------------------------------------------------------------------------------------------------- tables
 
-TextTable point_table(std::span<const ScatterPoint> points, const ScatterSize& size) {
-  Table table("every triangle of Karkanis' scenes: models karkanis:n=" + std::to_string(size.triangles) +
-                  ",floor=0,seed=SCENE, seen from the origin along +z\nexact is correctly rounded, 0 where nothing can "
-                  "be seen; form_factor is of the method hemicube:resolution=RESOLUTION",
-              {"scene", "triangle", "exact", "resolution", "form_factor"});
+CsvFile point_table(std::span<const ScatterPoint> points, const ScatterSize& size) {
+  TableWriter table(
+      "every triangle of Karkanis' scenes: models karkanis:n=" + std::to_string(size.triangles) +
+          ",floor=0,seed=SCENE, seen from the origin along +z\nexact is correctly rounded, 0 where nothing can "
+          "be seen; form_factor is of the method hemicube:resolution=RESOLUTION",
+      {"scene", "triangle", "exact", "resolution", "form_factor"});
   for (const ScatterPoint& p : points) {
     for (std::size_t r = 0; r < p.hemicube.size(); ++r) {
       table.row() << p.scene << p.triangle << p.exact << size.resolutions[r] << p.hemicube[r];
@@ -181,9 +175,10 @@ TextTable point_table(std::span<const ScatterPoint> points, const ScatterSize& s
   return table.finish("hemicube-scatter.csv", "exact and hemicube form factor of every triangle");
 }
 
-TextTable decade_table(std::span<const ScatterPoint> points, const ScatterSize& size) {
-  Table table("normalised error |hemicube - exact| / exact of visible triangles, by decades of the exact form factor",
-              {"resolution", "from", "to", "visible", "missed", "median", "p99"});
+CsvFile decade_table(std::span<const ScatterPoint> points, const ScatterSize& size) {
+  TableWriter table(
+      "normalised error |hemicube - exact| / exact of visible triangles, by decades of the exact form factor",
+      {"resolution", "from", "to", "visible", "missed", "median", "p99"});
   for (std::size_t r = 0; r < size.resolutions.size(); ++r) {
     for (const ScatterDecade& d : scatter_decades(points, r)) {
       table.row() << size.resolutions[r] << std::pow(10.0, d.exponent) << std::pow(10.0, d.exponent + 1) << d.visible

@@ -41,7 +41,7 @@ std::vector<FormFactor> all_patches(const KarkanisScene& scene, const std::vecto
 
 double exact_seconds(const KarkanisScene& scene, const std::vector<ExactSource>& sources, ShaftCulling culling,
                      const Hooks& hooks) {
-  return seconds_of([&] { (void)all_patches(scene, sources, culling, hooks); });
+  return median_seconds([&] { (void)all_patches(scene, sources, culling, hooks); });
 }
 
 // Measures every k-th source and scales the time to all sources.
@@ -50,13 +50,13 @@ double sampled_seconds(const std::string& choice, const KarkanisScene& scene, st
   const std::size_t step = std::max<std::size_t>(1, scene.triangles.size() / most);
   for (std::size_t i = step / 2; i < scene.triangles.size(); i += step) some.push_back(scene.triangles[i]);
   Bench bench(methods::parse(choice), scene.scene, some);
-  const double seconds = seconds_of([&] { (void)bench.look_from(scene.receiver); }, 3);
+  const double seconds = median_seconds([&] { (void)bench.look_from(scene.receiver); }, 3);
   return seconds * static_cast<double>(scene.triangles.size()) / static_cast<double>(some.size());
 }
 
 double hemicube_seconds(const KarkanisScene& scene) {
   Bench bench(methods::parse("hemicube"), scene.scene, scene.triangles);
-  return seconds_of([&] { (void)bench.look_from(scene.receiver); });
+  return median_seconds([&] { (void)bench.look_from(scene.receiver); });
 }
 
 std::string rays_choice(int rays) { return "area-sampling:pattern=stratified,samples=" + std::to_string(rays); }
@@ -111,7 +111,7 @@ std::vector<Affordable> affordable_rays(const TimesSize& size, const Hooks& hook
     for (const methods::Estimate& e : bench.look_from(scene.receiver)) {
       errors.push_back(e.form_factor - exact[errors.size()]);
     }
-    const double seconds = seconds_of([&] { (void)bench.look_from(scene.receiver); });
+    const double seconds = median_seconds([&] { (void)bench.look_from(scene.receiver); });
     rows.push_back({rays, seconds, root_mean_square(errors) / root_mean_square(exact)});
   }
   return rows;
@@ -248,8 +248,8 @@ page::Figure figure(const std::vector<TimeRow>& rows, int rays) {
 
 // ------------------------------------------------------------------------------------------------------------- tables
 
-TextTable time_table(const std::vector<TimeRow>& rows, const TimesSize& size) {
-  Table table(
+CsvFile time_table(const std::vector<TimeRow>& rows, const TimesSize& size) {
+  TableWriter table(
       "seconds for the form factors of all triangles from one point: models karkanis:n=TRIANGLES,floor=0,"
       "seed=1\none thread, after a first call unless that took more than a second; preparation of scene and sources "
       "not included\nrays: " +
@@ -265,16 +265,16 @@ TextTable time_table(const std::vector<TimeRow>& rows, const TimesSize& size) {
   return table.finish("karkanis-times.csv", "time for all patches from one point against their number");
 }
 
-TextTable affordable_table(const std::vector<Affordable>& rows, int triangles) {
-  Table table("stratified sampling of all triangles of karkanis:n=" + std::to_string(triangles) +
-                  ",floor=0,seed=1 from one point: seconds, and the RMS error over the RMS form factor",
-              {"rays", "seconds", "error"});
+CsvFile affordable_table(const std::vector<Affordable>& rows, int triangles) {
+  TableWriter table("stratified sampling of all triangles of karkanis:n=" + std::to_string(triangles) +
+                        ",floor=0,seed=1 from one point: seconds, and the RMS error over the RMS form factor",
+                    {"rays", "seconds", "error"});
   for (const Affordable& row : rows) table.row() << row.rays << row.seconds << row.error;
   return table.finish("karkanis-times-rays.csv", "what rays cost and how far off they are on one of his scenes");
 }
 
-TextTable work_table(const std::vector<WorkRow>& rows) {
-  Table table(
+CsvFile work_table(const std::vector<WorkRow>& rows) {
+  TableWriter table(
       "all triangles of karkanis:n=TRIANGLES,floor=0,seed=1 from one point\nlooked_at: pairs of a source and a "
       "face that may hide it; differences: values that differ without the shaft, empty where not compared",
       {"triangles", "visible", "sum", "looked_at", "looked_at_without_shaft", "differences"});

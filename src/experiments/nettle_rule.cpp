@@ -1,6 +1,7 @@
 #include "experiments/nettle_rule.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "kernel/vec.h"
@@ -295,19 +296,12 @@ std::vector<page::Figure> figures(const std::vector<NettleCurve>& curves, const 
 // ------------------------------------------------------------------------------------------------------------- tables
 
 std::string_view name_of(NettleCase kind) {
-  switch (kind) {
-    case NettleCase::kFree:
-      return "none";
-    case NettleCase::kExactV:
-      return "exact fraction";
-    case NettleCase::kRayV:
-      break;
-  }
-  return "rays";
+  constexpr std::array<std::string_view, 3> kNames = {"none", "exact fraction", "rays"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
-TextTable curve_table(const std::vector<NettleCurve>& curves, const NettleSize& size) {
-  Table table(
+CsvFile curve_table(const std::vector<NettleCurve>& curves, const NettleSize& size) {
+  TableWriter table(
       "relative error of Nettle's factor from centre to centre, over " +
           std::to_string(static_cast<int>(size.groups) * size.configurations) +
           " configurations in general position\nside: of the patch over its distance; splits: m of m x m parts\n"
@@ -322,9 +316,9 @@ TextTable curve_table(const std::vector<NettleCurve>& curves, const NettleSize& 
   return table.finish("nettle-rule.csv", "error of Nettle's factor against the patch's size");
 }
 
-TextTable literal_table(const std::vector<NettleLiteral>& rows) {
-  Table table("Nettle's literal text over the exact value, median, for patches as large as the receiver's",
-              {"side", "sender_over_receiver", "receiver_over_sender", "sender_over_receiver_in_tenths"});
+CsvFile literal_table(const std::vector<NettleLiteral>& rows) {
+  TableWriter table("Nettle's literal text over the exact value, median, for patches as large as the receiver's",
+                    {"side", "sender_over_receiver", "receiver_over_sender", "sender_over_receiver_in_tenths"});
   for (const NettleLiteral& r : rows) {
     table.row() << r.side << r.sender_over_receiver << r.receiver_over_sender << r.in_tenths;
   }

@@ -68,7 +68,7 @@ double seconds_per_receiver(const Hall& hall, const std::string& choice, int tim
   std::vector<double> times;
   const std::size_t step = std::max<std::size_t>(1, hall.receivers.size() / static_cast<std::size_t>(timed));
   for (std::size_t i = step / 2; i < hall.receivers.size(); i += step) {
-    times.push_back(seconds_of([&] { (void)bench.look_from(hall.receivers[i]); }, 3));
+    times.push_back(median_seconds([&] { (void)bench.look_from(hall.receivers[i]); }, 3));
   }
   return study::mean(times);
 }
@@ -181,9 +181,10 @@ page::Figure figure(const std::vector<Timed>& methods, double exact_seconds) {
 
 // ------------------------------------------------------------------------------------------------------------- tables
 
-TextTable value_table(const EmitterStudy& study, const Hall& hall) {
-  Table table("radiosity that all lamps of the model " + hall.name + " bring to the floor, exact and by every method",
-              {"receiver", "method", "radiosity"});
+CsvFile value_table(const EmitterStudy& study, const Hall& hall) {
+  TableWriter table(
+      "radiosity that all lamps of the model " + hall.name + " bring to the floor, exact and by every method",
+      {"receiver", "method", "radiosity"});
   const auto put = [&](std::string_view method, const std::vector<double>& values) {
     for (std::size_t i = 0; i < values.size(); ++i) table.row() << study.receivers[i].id << method << values[i];
   };
@@ -192,15 +193,15 @@ TextTable value_table(const EmitterStudy& study, const Hall& hall) {
   return table.finish("small-emitters.csv", "radiosity under many small lamps, by every method");
 }
 
-TextTable error_table(const EmitterStudy& study) {
-  Table table("radiosity errors over the mean exact radiosity of " + text::shortest(study.mean),
-              {"method", "rms", "worst"});
+CsvFile error_table(const EmitterStudy& study) {
+  TableWriter table("radiosity errors over the mean exact radiosity of " + text::shortest(study.mean),
+                    {"method", "rms", "worst"});
   for (const EmitterErrors& m : study.methods) table.row() << m.choice << m.rms << m.worst;
   return table.finish("small-emitters-errors.csv", "radiosity errors under many small lamps");
 }
 
-TextTable time_table(const std::vector<Timed>& methods, double exact_seconds) {
-  Table table("seconds per receiver for all lamps, one thread, after a first call", {"method", "seconds"});
+CsvFile time_table(const std::vector<Timed>& methods, double exact_seconds) {
+  TableWriter table("seconds per receiver for all lamps, one thread, after a first call", {"method", "seconds"});
   table.row() << "exact" << exact_seconds;
   for (const Timed& t : methods) table.row() << t.errors->choice << t.seconds;
   return table.finish("small-emitters-times.csv", "time per receiver under many small lamps");

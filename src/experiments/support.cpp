@@ -1,8 +1,6 @@
 #include "experiments/support.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
-#include <chrono>
 #include <cmath>
 #include <locale>
 
@@ -10,6 +8,7 @@
 #include "kernel/expect.h"
 #include "study/statistics.h"
 #include "text/phrases.h"
+#include "work/stopwatch.h"
 
 namespace exactff::experiments {
 
@@ -60,32 +59,15 @@ std::vector<ExactSource> exact_sources(const Scene& scene, std::span<const Selec
 
 double root_mean_square(std::span<const double> errors) { return study::error_statistics(errors).rms; }
 
-double seconds_of(const std::function<void()>& call, int repeats) {
-  using Clock = std::chrono::steady_clock;
+double median_seconds(const std::function<void()>& call, std::size_t repeats) {
   constexpr double kLong = 1.0;
-  const auto timed = [&] {
-    const auto start = Clock::now();
-    call();
-    return std::chrono::duration<double>(Clock::now() - start).count();
-  };
-  const double first = timed();
-  if (first > kLong) return first;
-  std::vector<double> times;
-  for (double spent = 0.0; static_cast<int>(times.size()) < repeats && spent < kLong; spent += times.back()) {
-    times.push_back(timed());
-  }
-  return study::median(times);
+  const double first = work::seconds_of(call);
+  return first > kLong ? first : work::median_seconds(call, repeats, kLong);
 }
 
 SlopeFit mean_slope(std::span<const double> slopes) {
   EXACTFF_EXPECT(slopes.size() >= 2);
-  const auto count = static_cast<double>(slopes.size());
-  const double mean = study::mean(slopes);
-  double squares = 0.0;
-  for (const double s : slopes) squares += (s - mean) * (s - mean);
-  const boost::math::students_t student(count - 1.0);
-  const double t = quantile(student, 0.975);
-  return {mean, t * std::sqrt(squares / (count - 1.0) / count), slopes.size()};
+  return {study::mean(slopes), study::mean_half_width(slopes), slopes.size()};
 }
 
 std::string to_text(const SlopeFit& fit) { return slope_text(fit.slope) + " ± " + slope_text(fit.half_width); }
@@ -108,7 +90,7 @@ std::optional<double> reaches(const Points& points, double y) {
 
 std::string percent(double share) { return text::rounded(100.0 * share, 2) + " %"; }
 
-Table::Table(std::string_view about, std::initializer_list<std::string_view> columns) {
+TableWriter::TableWriter(std::string_view about, std::initializer_list<std::string_view> columns) {
   out_.imbue(std::locale::classic());
   std::string_view rest = about;
   while (!rest.empty()) {
@@ -120,7 +102,7 @@ Table::Table(std::string_view about, std::initializer_list<std::string_view> col
   for (const std::string_view name : columns) names << name;
 }
 
-TextTable Table::finish(std::string file, std::string holds) const {
+CsvFile TableWriter::finish(std::string file, std::string holds) const {
   return {std::move(file), std::move(holds), out_.str()};
 }
 

@@ -67,7 +67,7 @@ class Bench {
 
 // The time of one call in seconds, on a steady clock: the median of up to `repeats` calls after a warm-up call, as long
 // as they take less than a second together. If the first call takes longer than that, its time is the result.
-[[nodiscard]] double seconds_of(const std::function<void()>& call, int repeats = 5);
+[[nodiscard]] double median_seconds(const std::function<void()>& call, std::size_t repeats = 5);
 
 // ------------------------------------------------------------------------------------------------------------ slopes
 
@@ -95,11 +95,11 @@ struct SlopeFit {
 // ------------------------------------------------------------------------------------------------------------ tables
 
 // Writes a CSV file: comment lines (#) that describe it, the column names, rows.
-class Table {
+class TableWriter {
  public:
-  Table(std::string_view about, std::initializer_list<std::string_view> columns);
+  TableWriter(std::string_view about, std::initializer_list<std::string_view> columns);
   [[nodiscard]] text::CsvRow row() { return text::CsvRow(out_); }
-  [[nodiscard]] TextTable finish(std::string file, std::string holds) const;
+  [[nodiscard]] CsvFile finish(std::string file, std::string holds) const;
 
  private:
   std::ostringstream out_;

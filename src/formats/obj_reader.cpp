@@ -18,6 +18,7 @@
 #include "formats/mtl_reader.h"
 #include "kernel/float_environment.h"
 #include "text/number_text.h"
+#include "text/phrases.h"
 #include "text/text_file.h"
 #include "text/text_lines.h"
 
@@ -229,8 +230,8 @@ void ObjReader::read_face(std::string_view corners) {
                       "split the scene"});
   }
   if (sound && face.corner_count < 3 && options_.bad_faces == BadFaces::kReject) {
-    fail("a face has " + std::to_string(face.corner_count) + (face.corner_count == 1 ? " vertex" : " vertices"),
-         "a polygon has at least three", "remove it, or skip bad faces with --skip-bad-faces");
+    fail("a face has " + text::counted(face.corner_count, "vertex", "vertices"), "a polygon has at least three",
+         "remove it, or skip bad faces with --skip-bad-faces");
   }
   faces_.push_back(face);
 }
@@ -305,8 +306,7 @@ void ObjReader::check_indices() {
     for (std::size_t i = face.first_corner; i < face.first_corner + face.corner_count; ++i) {
       if (corners_[i] < count) continue;
       problems_.add({file_, face.line, "vertex " + std::to_string(corners_[i] + 1ULL) + " does not exist",
-                     "the file has " + std::to_string(count) + (count == 1 ? " vertex" : " vertices"),
-                     "correct the index"});
+                     "the file has " + text::counted(count, "vertex", "vertices"), "correct the index"});
     }
   }
 }

@@ -18,31 +18,6 @@ struct AdaptivePrepared : PreparedSource {
   Rgb radiosity;
 };
 
-class Adaptive : public Evaluator {
- public:
-  Adaptive(const Scene& scene, const AdaptiveSolver& solver, const AdaptiveOptions& options)
-      : scene_(scene), solver_(solver), options_(options) {}
-
-  void look_from(const Receiver& receiver) override { receiver_ = receiver; }
-
-  using Evaluator::form_factor;
-  Estimate form_factor(const PreparedSource& prepared) override {
-    const kernel::StandardArithmetic arithmetic;
-    const auto& source = own<AdaptivePrepared>(prepared);
-    const double rho_b = largest_rho_b(scene_, receiver_, source.radiosity);
-    const AdaptiveResult found = solver_.form_factor(receiver_, source.source, rho_b, options_);
-    Estimate result{found.form_factor, {}};
-    count_leaves(found, result.counters);
-    return result;
-  }
-
- private:
-  const Scene& scene_;
-  const AdaptiveSolver& solver_;
-  AdaptiveOptions options_;
-  Receiver receiver_;
-};
-
 AdaptiveOptions options_of(const Settings& settings) {
   AdaptiveOptions options;
   take_tolerances(settings, options);
@@ -53,19 +28,16 @@ AdaptiveOptions options_of(const Settings& settings) {
   return options;
 }
 
-class AdaptiveOnScene : public PreparedScene {
+class Adaptive : public RecursionEvaluator {
  public:
-  explicit AdaptiveOnScene(const Scene& scene) : PreparedScene(scene), solver_(scene) {}
+  Adaptive(const AdaptiveSolver& solver, const Scene& scene, const Settings& settings)
+      : RecursionEvaluator(solver, scene, options_of(settings)) {}
 
-  [[nodiscard]] std::unique_ptr<PreparedSource> prepare_source(const Selection& selection) const override {
-    return std::make_unique<AdaptivePrepared>(solver_, scene(), selection);
+  using Evaluator::form_factor;
+  Estimate form_factor(const PreparedSource& prepared) override {
+    const auto& source = own<AdaptivePrepared>(prepared);
+    return estimate(source.source, source.radiosity);
   }
-  [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
-    return std::make_unique<Adaptive>(scene(), solver_, options_of(settings));
-  }
-
- private:
-  AdaptiveSolver solver_;
 };
 
 }  // namespace
@@ -85,7 +57,7 @@ Method adaptive_method() {
               "visibility V from shadow rays",
           .source = "F. Tampieri, Accurate Form-Factor Computation (1992)",
           .settings = std::move(settings),
-          .prepare = prepare_as<AdaptiveOnScene>,
+          .prepare = prepare_as<OnScene<AdaptiveSolver, AdaptivePrepared, Adaptive>>,
           .uses = pattern_uses,
           .check = check_tolerances,
           .can_leave_unit = [](const Settings&) { return true; }};  // the sum over a source of several faces

@@ -95,51 +95,29 @@ class ExactVisibility : public sampled::PatchVisibility {
   std::uint64_t asked_ = 0;
 };
 
-class Control : public Evaluator {
- public:
-  Control(const Scene& scene, const AdaptiveSolver& solver, const Settings& settings) : scene_(scene), solver_(solver) {
-    take_tolerances(settings, options_);
-    options_.pattern = SamplePattern::kCentre;
-    options_.rays = 1;
-  }
+AdaptiveOptions options_of(const Settings& settings) {
+  AdaptiveOptions options{.rays = 1, .pattern = SamplePattern::kCentre};
+  take_tolerances(settings, options);
+  return options;
+}
 
-  void look_from(const Receiver& receiver) override { receiver_ = receiver; }
+class Control : public RecursionEvaluator {
+ public:
+  Control(const AdaptiveSolver& solver, const Scene& scene, const Settings& settings)
+      : RecursionEvaluator(solver, scene, options_of(settings)) {}
 
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
-    const kernel::StandardArithmetic arithmetic;
     const auto& source = own<ControlSource>(prepared);
-    const double rho_b = largest_rho_b(scene_, receiver_, source.radiosity);
-    ExactVisibility visibility(scene_, receiver_, source.exact, workspace_);
-    const AdaptiveResult found = solver_.form_factor(receiver_, source.adaptive, rho_b, options_, visibility);
-    Estimate result{found.form_factor, {}};
-    count_leaves(found, result.counters);
+    ExactVisibility visibility(scene(), receiver(), source.exact, workspace_);
+    Estimate result = estimate(source.adaptive, source.radiosity, &visibility);
     result.counters.add("exact V", visibility.asked());
     result.counters.add("rational decisions", visibility.undecided());
     return result;
   }
 
  private:
-  const Scene& scene_;
-  const AdaptiveSolver& solver_;
-  AdaptiveOptions options_;
-  Receiver receiver_;
   Workspace workspace_;
-};
-
-class ControlOnScene : public PreparedScene {
- public:
-  explicit ControlOnScene(const Scene& scene) : PreparedScene(scene), solver_(scene) {}
-
-  [[nodiscard]] std::unique_ptr<PreparedSource> prepare_source(const Selection& selection) const override {
-    return std::make_unique<ControlSource>(solver_, scene(), selection);
-  }
-  [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
-    return std::make_unique<Control>(scene(), solver_, settings);
-  }
-
- private:
-  AdaptiveSolver solver_;
 };
 
 }  // namespace
@@ -149,7 +127,7 @@ Method adaptive_exact_visibility_method() {
           .summary = "a control: Tampieri's algorithm with the exact visible fraction of every leaf instead of rays",
           .source = "F. Tampieri, Accurate Form-Factor Computation (1992), with V computed exactly",
           .settings = tolerance_settings(),
-          .prepare = prepare_as<ControlOnScene>,
+          .prepare = prepare_as<OnScene<AdaptiveSolver, ControlSource, Control>>,
           .check = check_tolerances,
           .can_leave_unit = [](const Settings&) { return true; }};  // the sum over a source of several faces
 }

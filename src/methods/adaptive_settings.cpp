@@ -2,6 +2,9 @@
 
 #include <limits>
 
+#include "kernel/float_environment.h"
+#include "text/refuse.h"
+
 namespace exactff::methods {
 
 namespace {
@@ -34,25 +37,27 @@ void check_tolerances(const Settings& settings) {
   constexpr std::int64_t kModestDepth = 12;
   if (settings.number("eps_B") > 0.0 || settings.number("eps_A") > 0.0) return;
   if (settings.whole("depth_cap") <= kModestDepth) return;
-  throw InputError(Problem{{},
-                           0,
-                           "eps_B and eps_A are both 0",
-                           "nothing but the depth cap would end the recursion, after 2^depth leaves or more",
-                           "give one of them, or a depth_cap of at most 12"});
+  text::refuse("eps_B and eps_A are both 0",
+               "nothing but the depth cap would end the recursion, after 2^depth leaves or more",
+               "give one of them, or a depth_cap of at most 12");
 }
 
-double largest_rho_b(const Scene& scene, const Receiver& receiver, const Rgb& radiosity) {
-  const Rgb rho = scene.receiver_reflectance(receiver.on);
-  return Rgb{rho.r * radiosity.r, rho.g * radiosity.g, rho.b * radiosity.b}.largest();
-}
-
-void count_leaves(const AdaptiveResult& found, Counters& counters) {
-  counters.add("leaves", found.leaves);
-  counters.add("rays", found.rays);
-  counters.add("shaft tests", found.shaft_tests);
+Estimate RecursionEvaluator::estimate(const AdaptiveSource& source, const Rgb& radiosity,
+                                      sampled::PatchVisibility* visibility) const {
+  const kernel::StandardArithmetic arithmetic;
+  const Rgb rho = scene_.receiver_reflectance(receiver_.on);
+  const double rho_b = Rgb{rho.r * radiosity.r, rho.g * radiosity.g, rho.b * radiosity.b}.largest();
+  const AdaptiveResult found = visibility == nullptr
+                                   ? solver_.form_factor(receiver_, source, rho_b, options_)
+                                   : solver_.form_factor(receiver_, source, rho_b, options_, *visibility);
+  Estimate result{found.form_factor, {}};
+  result.counters.add("leaves", found.leaves);
+  result.counters.add("rays", found.rays);
+  result.counters.add("shaft tests", found.shaft_tests);
   for (std::size_t reason = 0; reason < kLeafReasonCount; ++reason) {
-    counters.add(kLeafCounters[reason], found.leaves_by_reason[reason]);
+    result.counters.add(kLeafCounters[reason], found.leaves_by_reason[reason]);
   }
+  return result;
 }
 
 }  // namespace exactff::methods

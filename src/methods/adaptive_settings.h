@@ -3,6 +3,7 @@
 
 #include "exactff/adaptive.h"
 #include "exactff/methods.h"
+#include "sampled/patch_visibility.h"
 
 namespace exactff::methods {
 
@@ -12,10 +13,24 @@ void take_tolerances(const Settings& settings, AdaptiveOptions& options);
 // Throws InputError if only the depth cap would end the recursion.
 void check_tolerances(const Settings& settings);
 
-// The largest rho_r B_s over the channels.
-[[nodiscard]] double largest_rho_b(const Scene& scene, const Receiver& receiver, const Rgb& radiosity);
+class RecursionEvaluator : public Evaluator {
+ public:
+  RecursionEvaluator(const AdaptiveSolver& solver, const Scene& scene, const AdaptiveOptions& options)
+      : scene_(scene), solver_(solver), options_(options) {}
+  void look_from(const Receiver& receiver) override { receiver_ = receiver; }
 
-// "leaves", "rays", and the leaves by reason: "leaves: V=1" and so on.
-void count_leaves(const AdaptiveResult& found, Counters& counters);
+ protected:
+  // Counts "leaves", "rays", and the leaves by reason: "leaves: V=1" and so on.
+  [[nodiscard]] Estimate estimate(const AdaptiveSource& source, const Rgb& radiosity,
+                                  sampled::PatchVisibility* visibility = nullptr) const;
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] const Receiver& receiver() const { return receiver_; }
+
+ private:
+  const Scene& scene_;
+  const AdaptiveSolver& solver_;
+  AdaptiveOptions options_;
+  Receiver receiver_;
+};
 
 }  // namespace exactff::methods

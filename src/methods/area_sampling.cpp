@@ -32,8 +32,8 @@ PointSet point_set_named(std::string_view name) {
 
 class AreaSampling : public Evaluator {
  public:
-  AreaSampling(const SampledScene& scene, const Settings& settings)
-      : rays_(scene),
+  AreaSampling(const SampledScene& sampled, const Scene& /*scene*/, const Settings& settings)
+      : rays_(sampled),
         points_(point_set_named(settings.word("pattern")), static_cast<int>(settings.whole("samples"))),
         seed_(static_cast<std::uint64_t>(settings.whole("seed"))) {}
 
@@ -96,15 +96,6 @@ class AreaSampling : public Evaluator {
   RayEnds places_;
 };
 
-class AreaSamplingOnScene : public RaysOnScene {
- public:
-  using RaysOnScene::RaysOnScene;
-  [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
-    const kernel::StandardArithmetic arithmetic;
-    return std::make_unique<AreaSampling>(sampled(), settings);
-  }
-};
-
 }  // namespace
 
 Method area_sampling_method() {
@@ -117,7 +108,7 @@ Method area_sampling_method() {
                                 "random: independent points; stratified: one in each cell; the others: the start of a "
                                 "low-discrepancy sequence, shifted at random"),
                    seed_setting()},
-      .prepare = prepare_as<AreaSamplingOnScene>,
+      .prepare = prepare_as<OnScene<SceneForRays, RaySource, AreaSampling>>,
       .can_leave_unit = [](const Settings&) { return true; }};
 }
 

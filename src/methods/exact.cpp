@@ -11,14 +11,21 @@ Engine engine_named(std::string_view name) {
   return name == "edges" ? Engine::kEdges : name == "boolean" ? Engine::kBoolean : Engine::kBoth;
 }
 
+// Nothing is prepared for the whole scene.
+struct Nothing {
+  explicit Nothing(const Scene& /*scene*/) {}
+};
+
 struct ExactSourcePrepared : PreparedSource {
-  ExactSourcePrepared(const Scene& scene, const Selection& chosen) : PreparedSource(chosen), source(scene, chosen) {}
+  ExactSourcePrepared(const Nothing& /*data*/, const Scene& scene, const Selection& chosen)
+      : PreparedSource(chosen), source(scene, chosen) {}
   ExactSource source;
 };
 
 class Exact : public Evaluator {
  public:
-  Exact(const Scene& scene, Engine engine) : scene_(scene) { options_.engine = engine; }
+  Exact(const Nothing& /*data*/, const Scene& scene, const Settings& settings)
+      : scene_(scene), options_{.engine = engine_named(settings.word("engine"))} {}
 
   void look_from(const Receiver& receiver) override { receiver_ = receiver; }
 
@@ -48,18 +55,6 @@ class Exact : public Evaluator {
   Workspace workspace_;
 };
 
-class ExactOnScene : public PreparedScene {
- public:
-  explicit ExactOnScene(const Scene& scene) : PreparedScene(scene) {}
-
-  [[nodiscard]] std::unique_ptr<PreparedSource> prepare_source(const Selection& selection) const override {
-    return std::make_unique<ExactSourcePrepared>(scene(), selection);
-  }
-  [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
-    return std::make_unique<Exact>(scene(), engine_named(settings.word("engine")));
-  }
-};
-
 // All engines give the same bits.
 bool exact_uses(const Settings&, std::string_view setting) { return setting != "engine"; }
 
@@ -72,7 +67,7 @@ Method exact_method() {
       .source = "",
       .settings = {word_setting("engine", {"edges", "boolean", "both"},
                                 "how the visible region is found; it does not affect the values")},
-      .prepare = prepare_as<ExactOnScene>,
+      .prepare = prepare_as<OnScene<Nothing, ExactSourcePrepared, Exact>>,
       .uses = exact_uses};
 }
 

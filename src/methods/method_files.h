@@ -33,4 +33,24 @@ const Own& own(const PreparedSource& source) {
   throw std::invalid_argument("this source was prepared by another method: use the PreparedScene of the evaluator");
 }
 
+// A scene with what a method makes of it: Data of the scene, Source of data, scene and selection, Evaluating of data,
+// scene and settings.
+template <class Data, class Source, class Evaluating>
+class OnScene : public PreparedScene {
+ public:
+  explicit OnScene(const Scene& scene) : PreparedScene(scene), data_(scene) {}
+
+  [[nodiscard]] std::unique_ptr<PreparedSource> prepare_source(const Selection& selection) const override {
+    const kernel::StandardArithmetic arithmetic;
+    return std::make_unique<Source>(data_, scene(), selection);
+  }
+  [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
+    const kernel::StandardArithmetic arithmetic;
+    return std::make_unique<Evaluating>(data_, scene(), settings);
+  }
+
+ private:
+  Data data_;
+};
+
 }  // namespace exactff::methods

@@ -38,7 +38,7 @@ AreaFactor area_factor_of(const Settings& settings) {
 
 class Nettle : public Evaluator {
  public:
-  Nettle(const Scene& scene, const SampledScene& sampled, const Settings& settings)
+  Nettle(const SampledScene& sampled, const Scene& scene, const Settings& settings)
       : scene_(scene),
         scale_(sampled.scene.scale),
         rays_(sampled),
@@ -139,15 +139,6 @@ class Nettle : public Evaluator {
   RayEnds ends_;
 };
 
-class NettleOnScene : public RaysOnScene {
- public:
-  using RaysOnScene::RaysOnScene;
-  [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
-    const kernel::StandardArithmetic arithmetic;
-    return std::make_unique<Nettle>(scene(), sampled(), settings);
-  }
-};
-
 bool nettle_uses(const Settings& settings, std::string_view setting) {
   if (setting == "area_ratio" || setting == "receiver_area") return settings.word("variant") == "literal";
   return pattern_uses(settings, setting);
@@ -172,7 +163,7 @@ Method nettle_method() {
                                   "receiver's area in the literal variant; 0: area of its face, or 1 without a face",
                                   "area"),
                    seed_setting()},
-      .prepare = prepare_as<NettleOnScene>,
+      .prepare = prepare_as<OnScene<SceneForRays, RaySource, Nettle>>,
       .uses = nettle_uses,
       .can_leave_unit = [](const Settings&) { return true; }};
 }

@@ -63,22 +63,17 @@ double area_of(const SourceRoot& root) {
 
 }  // namespace
 
-RaySource::RaySource(const SampledScene& scene, const Selection& chosen) : PreparedSource(chosen) {
-  SourceRoots source = make_source_roots(*scene.scene.scene, scene.scene.points, chosen);
-  for (SourcePlane& plane : source.planes) planes.push_back(make_plane(scene, std::move(plane)));
+RaySource::RaySource(const SampledScene& sampled, const Scene& scene, const Selection& chosen)
+    : PreparedSource(chosen) {
+  SourceRoots source = make_source_roots(scene, sampled.scene.points, chosen);
+  for (SourcePlane& plane : source.planes) planes.push_back(make_plane(sampled, std::move(plane)));
   roots = std::move(source.roots);
   area_up_to.push_back(0.0);
   for (const SourceRoot& root : roots) area_up_to.push_back(area_up_to.back() + area_of(root));
 }
 
-// The ray structure is built here, so that its time is not part of a timed call, but only if a list can get long.
-RaysOnScene::RaysOnScene(const Scene& scene) : PreparedScene(scene), sampled_(scene) {
-  if (scene.pieces().size() > kMostPiecesWithoutEmbree) (void)sampled_.ray_scene();
-}
-
-std::unique_ptr<PreparedSource> RaysOnScene::prepare_source(const Selection& selection) const {
-  const kernel::StandardArithmetic arithmetic;
-  return std::make_unique<RaySource>(sampled_, selection);
+SceneForRays::SceneForRays(const Scene& given) : SampledScene(given) {
+  if (given.pieces().size() > kMostPiecesWithoutEmbree) (void)ray_scene();
 }
 
 }  // namespace exactff::methods

@@ -18,7 +18,7 @@ struct RayPlane {
 };
 
 struct RaySource : PreparedSource {
-  RaySource(const sampled::SampledScene& scene, const Selection& selection);
+  RaySource(const sampled::SampledScene& sampled, const Scene& scene, const Selection& selection);
 
   std::vector<sampled::SourceRoot> roots;
   std::vector<RayPlane> planes;
@@ -27,15 +27,10 @@ struct RaySource : PreparedSource {
   [[nodiscard]] double area() const { return area_up_to.back(); }
 };
 
-// Base of the methods that trace rays.
-class RaysOnScene : public PreparedScene {
- public:
-  explicit RaysOnScene(const Scene& scene);
-  [[nodiscard]] std::unique_ptr<PreparedSource> prepare_source(const Selection& selection) const override;
-  [[nodiscard]] const sampled::SampledScene& sampled() const { return sampled_; }
-
- private:
-  sampled::SampledScene sampled_;
+// The scene of methods that trace rays. The ray structure is built here, so that its time is not part of a timed call,
+// but only if a list can get long.
+struct SceneForRays : sampled::SampledScene {
+  explicit SceneForRays(const Scene& scene);
 };
 
 }  // namespace exactff::methods

@@ -20,8 +20,8 @@ namespace {
 
 class Wallace : public Evaluator {
  public:
-  Wallace(const SampledScene& scene, const Settings& settings)
-      : rays_(scene),
+  Wallace(const SampledScene& sampled, const Scene& /*scene*/, const Settings& settings)
+      : rays_(sampled),
         splits_(static_cast<int>(settings.whole("splits"))),
         seed_(static_cast<std::uint64_t>(settings.whole("seed"))) {
     const bool jittered = settings.word("pattern") == "jittered";
@@ -66,15 +66,6 @@ class Wallace : public Evaluator {
   RayEnds end_;
 };
 
-class WallaceOnScene : public RaysOnScene {
- public:
-  using RaysOnScene::RaysOnScene;
-  [[nodiscard]] std::unique_ptr<Evaluator> configure(const Settings& settings) const override {
-    const kernel::StandardArithmetic arithmetic;
-    return std::make_unique<Wallace>(sampled(), settings);
-  }
-};
-
 bool wallace_uses(const Settings& settings, std::string_view setting) {
   return setting != "seed" || settings.word("pattern") == "jittered";
 }
@@ -91,7 +82,7 @@ Method wallace_method() {
                        word_setting("pattern", {"centre", "jittered"},
                                     "where the sample lies in its sub-patch: at the centre or at random"),
                        seed_setting()},
-          .prepare = prepare_as<WallaceOnScene>,
+          .prepare = prepare_as<OnScene<SceneForRays, RaySource, Wallace>>,
           .uses = wallace_uses,
           .can_leave_unit = [](const Settings&) { return true; }};
 }

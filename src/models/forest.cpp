@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "kernel/vec.h"
 #include "models/model_files.h"
 #include "models/random.h"
 #include "models/square_grid.h"
@@ -56,18 +57,15 @@ Vec3 in_ball(Random& random) {
   }
 }
 
-double length(const Vec3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+double length(const Vec3& v) { return std::sqrt(kernel::dot(v, v)); }
 Vec3 times(const Vec3& v, double factor) { return {v.x * factor, v.y * factor, v.z * factor}; }
 Vec3 plus(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 
 // Two random perpendicular unit vectors.
 std::array<Vec3, 2> frame(Random& random) {
   for (;;) {
     const Vec3 a = in_ball(random);
-    const Vec3 c = cross(a, in_ball(random));
+    const Vec3 c = kernel::cross(a, in_ball(random));
     if (length(a) < 0.1 || length(c) < 0.1) continue;  // too short to have a direction
     return {times(a, 1.0 / length(a)), times(c, 1.0 / length(c))};
   }

@@ -12,7 +12,7 @@
 namespace exactff::page {
 
 // A CSV file as text. The comment lines (#) come first.
-struct TextTable {
+struct CsvFile {
   std::string file;
   std::string holds;  // description in one line
   std::string csv;
@@ -24,14 +24,14 @@ struct Chapter {
   std::string title;                         // a heading
   std::vector<std::string> paragraphs = {};  // what was done and found; plain text that can be quoted
   std::vector<Figure> figures = {};
-  std::vector<TextTable> values = {};  // the same bytes on every run
-  std::vector<TextTable> times = {};
+  std::vector<CsvFile> values = {};  // the same bytes on every run
+  std::vector<CsvFile> times = {};
   std::vector<LeftOut> left_out = {};
 };
 
 // Converts a chapter to bytes for a journal of this machine, and back. The way back returns nothing if the bytes are
 // torn.
-[[nodiscard]] std::string to_bytes(const Chapter& chapter);
+[[nodiscard]] std::string to_bytes(Chapter chapter);
 [[nodiscard]] std::optional<Chapter> chapter_of(std::string_view bytes);
 
 }  // namespace exactff::page

@@ -101,12 +101,6 @@ void require_free_or_ours(const fs::path& folder, const fs::path& target) {
   require_replaceable(target);
 }
 
-// The topmost folder on the path that does not exist; it may be the path itself.
-fs::path outermost_missing(fs::path path) {
-  while (path.has_relative_path() && !is_there(path.parent_path())) path = path.parent_path();
-  return path;
-}
-
 }  // namespace
 
 void check_output_folder(const fs::path& folder) { const StagedFolder attempt(folder); }
@@ -114,32 +108,16 @@ void check_output_folder(const fs::path& folder) { const StagedFolder attempt(fo
 StagedFolder::StagedFolder(const fs::path& target) : target_(normalised(target)) {
   require_free_or_ours(target, target_);
   unfinished_.emplace();
+  const auto cannot_be_made = [&](const std::error_code& error) {
+    refuse(target, "cannot be made: " + error.message(), "the results need a place", "name another folder");
+  };
+  made_.emplace(target_);
+  if (made_->error()) cannot_be_made(made_->error());
   try {
-    outermost_made_ = outermost_missing(target_);
-    fs::create_directories(target_.parent_path());
     work_.emplace(target_);
   } catch (const fs::filesystem_error& error) {
-    remove_made();
-    refuse(target, "cannot be made: " + error.code().message(), "the results need a place", "name another folder");
-  } catch (...) {
-    remove_made();
-    throw;
+    cannot_be_made(error.code());
   }
-}
-
-StagedFolder::~StagedFolder() {
-  if (work_) remove_made();
-}
-
-void StagedFolder::remove_made() {
-  work_.reset();
-  std::error_code error;
-  // Only empty folders are removed, so that files of others cannot be lost.
-  for (fs::path made = target_; made != outermost_made_ && !error;) {
-    made = made.parent_path();
-    fs::remove(made, error);
-  }
-  unfinished_.reset();
 }
 
 void StagedFolder::commit() {

@@ -22,7 +22,6 @@ class StagedFolder {
  public:
   // Throws InputError if check_output_folder does, or if nothing can be written.
   explicit StagedFolder(const std::filesystem::path& target);
-  ~StagedFolder();
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;
 
@@ -32,11 +31,9 @@ class StagedFolder {
   void commit();
 
  private:
-  void remove_made();
-
   std::optional<work::Unfinished> unfinished_;
   std::filesystem::path target_;
-  std::filesystem::path outermost_made_;  // the topmost folder of the target's path that did not exist before
+  std::optional<work::MadeFolders> made_;
   std::optional<work::WorkFolder> work_;
 };
 

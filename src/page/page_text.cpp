@@ -49,6 +49,34 @@ std::string facts_table(const Facts& facts) {
 
 namespace {
 
+// ` class="name"`, or nothing.
+std::string class_of(const std::string& name) { return name.empty() ? name : " class=\"" + name + '"'; }
+
+}  // namespace
+
+HtmlTable::HtmlTable(const std::string& name)
+    : text_("<div class=\"wide\"><table" + class_of(name) + ">\n<thead><tr>") {}
+
+void HtmlTable::column(const std::string& heading, Kind kind) {
+  text_ += "<th" + class_of(kind == Kind::kText ? "text" : "") + '>' + prose(heading) + "</th>";
+}
+
+void HtmlTable::row(const std::string& name) {
+  text_ += (in_head_ ? "</tr></thead>\n<tbody>\n<tr" : "</tr>\n<tr") + class_of(name) + '>';
+  in_head_ = false;
+}
+
+void HtmlTable::cell(const std::string& content, Kind kind, int span) {
+  text_ += "<td" + class_of(kind == Kind::kText ? "text" : "") +
+           (span > 1 ? " colspan=\"" + std::to_string(span) + '"' : std::string()) + '>' + content + "</td>";
+}
+
+std::string HtmlTable::text() const {
+  return text_ + (in_head_ ? "</tr></thead>\n<tbody>\n" : "</tr>\n") + "</tbody></table></div>";
+}
+
+namespace {
+
 std::string processor_name() {
   std::ifstream in("/proc/cpuinfo");
   for (std::string line; std::getline(in, line);) {

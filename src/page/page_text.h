@@ -1,6 +1,7 @@
 // Pieces of HTML that all reports use.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,29 @@ namespace exactff::page {
 // Pairs of a name and its description (HTML).
 using Facts = std::vector<std::pair<std::string, std::string>>;
 [[nodiscard]] std::string facts_table(const Facts& facts);
+
+// A table, written from left to right and from top to bottom: first its columns, then row after row. All texts are
+// HTML.
+class HtmlTable {
+ public:
+  enum class Kind { kNumber, kText };
+
+  explicit HtmlTable(const std::string& name = {});
+  void column(const std::string& heading, Kind kind = Kind::kNumber);
+  void columns(std::initializer_list<const char*> headings) {
+    for (const char* heading : headings) column(heading);
+  }
+  void row(const std::string& name = {});  // begins the next one
+  void cell(const std::string& content, Kind kind = Kind::kNumber, int span = 1);
+  void cells(std::initializer_list<std::string> contents) {
+    for (const std::string& content : contents) cell(content);
+  }
+  [[nodiscard]] std::string text() const;  // without a line end after it
+
+ private:
+  std::string text_;
+  bool in_head_ = true;
+};
 
 // Facts about this program and this machine.
 [[nodiscard]] std::string program_fact();    // version, compiler, kind of build

@@ -15,6 +15,7 @@
 #include "kernel/float_environment.h"
 #include "receivers/face_plane.h"
 #include "text/numbered_name.h"
+#include "text/phrases.h"
 
 namespace exactff {
 namespace {
@@ -125,7 +126,7 @@ void check_grid_size(GridSize size, std::size_t faces) {
   }
   const std::uint64_t per_face = static_cast<std::uint64_t>(size.u) * static_cast<std::uint64_t>(size.v);
   if (per_face * (faces > 0 ? 1 : 0) <= kMostReceivers / std::max<std::uint64_t>(faces, 1)) return;
-  throw InputError({.what = cells + " on " + std::to_string(faces) + (faces == 1 ? " face" : " faces"),
+  throw InputError({.what = cells + " on " + text::counted(faces, "face"),
                     .why = "the limit is " + std::to_string(kMostReceivers) + " cells in total",
                     .suggestion = "use fewer cells or a smaller patch"});
 }

@@ -127,8 +127,8 @@ void write_method_timings(const Study& study, std::ostream& out) {
 
 }  // namespace
 
-const std::vector<Table>& method_tables() {
-  static const std::vector<Table> kTables = {
+const std::vector<StudyTable>& method_tables() {
+  static const std::vector<StudyTable> kTables = {
       {"methods.csv", "one row per method and setting at chosen receivers: work and error statistics over the seeds",
        write_methods, has_cells, Holds::kValues},
       {"method_seeds.csv", "the same for every seed", write_method_seeds, has_cells, Holds::kValues},

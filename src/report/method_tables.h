@@ -7,6 +7,6 @@
 
 namespace exactff::report {
 
-[[nodiscard]] const std::vector<Table>& method_tables();
+[[nodiscard]] const std::vector<StudyTable>& method_tables();
 
 }  // namespace exactff::report

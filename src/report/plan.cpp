@@ -56,7 +56,7 @@ Hooks titled(const PlannedScene& scene, const Hooks& hooks) {
           hooks.cancelled};
 }
 
-Outcome outcome_of(const Report& report) {
+Outcome outcome_of(const StudyReport& report) {
   Outcome outcome;
   for (const SceneChapter& scene : report.scenes) {
     std::vector<std::string> sentences = method_sentences(scene.study);
@@ -101,7 +101,7 @@ Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, study::
                               : "an abridged report leaves out the scenes marked --unless-abridged",
         plan.left_out.empty() ? "add a scene or an experiment" : "remove --abridged, or mark fewer scenes");
   }
-  Report report;
+  StudyReport report;
   report.title = plan.title;
   report.command_line = plan.command_line;
   report.left_out = plan.left_out;

@@ -17,7 +17,7 @@ struct SceneChapter {
   Study study;
 };
 
-struct Report {
+struct StudyReport {
   std::string title;  // empty: the title of the only scene
   std::vector<SceneChapter> scenes;
   std::vector<page::Chapter> chapters;
@@ -26,9 +26,9 @@ struct Report {
 };
 
 // Like write(Study), but the files of a scene begin with its name and an underscore.
-std::vector<std::string> write(const Report& report, const std::filesystem::path& folder, const Hooks& hooks = {});
+std::vector<std::string> write(const StudyReport& report, const std::filesystem::path& folder, const Hooks& hooks = {});
 
 // The file name of a scene's table.
-[[nodiscard]] std::string file_name(const SceneChapter& scene, const Table& table);
+[[nodiscard]] std::string file_name(const SceneChapter& scene, const StudyTable& table);
 
 }  // namespace exactff::report

@@ -13,6 +13,9 @@
 namespace exactff::report {
 namespace {
 
+using page::HtmlTable;
+using enum HtmlTable::Kind;
+
 std::string figure_group(const page::DrawnFigures& drawn, bool maps) {
   std::string group;
   for (const page::DrawnFigure& one : drawn.figures) {
@@ -105,14 +108,6 @@ class ScenePart {
     text_ += maps;
   }
 
-  void cell(const std::string& text, bool words = false) {
-    text_ += std::string("<td") + (words ? " class=\"text\"" : "") + ">" + text + "</td>";
-  }
-
-  void column(const std::string& name, bool words = false) {
-    text_ += std::string("<th") + (words ? " class=\"text\"" : "") + ">" + page::prose(name) + "</th>";
-  }
-
   // One row per method: its least time for every wanted error, as a multiple of the exact method's time.
   void needs() {
     const MethodCell* exact = exact_cell(study());
@@ -123,55 +118,45 @@ class ScenePart {
         text::duration(exact->seconds) +
         " per receiver). The error is the RMS error over the chosen receivers and seeds, divided by the radiosity of "
         "the brightest receiver. A dash means that no setting that was run reached this error.");
-    text_ += "<div class=\"wide\"><table>\n<thead><tr>";
-    column("method", true);
-    for (const double wanted : kWantedErrors) column(power_of_ten(wanted));
-    column("best error");
-    text_ += "</tr></thead>\n<tbody>\n";
-    for (std::size_t l = 0; l < study().methods.ladders.size(); ++l) needs_row(l, exact->seconds);
-    text_ += "</tbody></table></div>\n";
+    HtmlTable table;
+    table.column("method", kText);
+    for (const double wanted : kWantedErrors) table.column(power_of_ten(wanted));
+    table.column("best error");
+    for (std::size_t l = 0; l < study().methods.ladders.size(); ++l) needs_row(table, l, exact->seconds);
+    text_ += table.text() + '\n';
   }
 
-  void needs_row(std::size_t l, double exact_seconds) {
+  void needs_row(HtmlTable& table, std::size_t l, double exact_seconds) const {
     const Ladder& ladder = study().methods.ladders[l];
-    text_ += ladder.rungs.front().method->name == "exact" ? "<tr class=\"exact\">" : "<tr>";
-    cell(text::html(ladder.name), true);
+    table.row(ladder.rungs.front().method->name == "exact" ? "exact" : "");
+    table.cell(text::html(ladder.name), kText);
     for (const double wanted : kWantedErrors) {
       const MethodCell* found = cheapest(study(), wanted, l);
-      cell(found != nullptr ? text::rounded(found->seconds / exact_seconds, 2) : "–");
+      table.cell(found != nullptr ? text::rounded(found->seconds / exact_seconds, 2) : "–");
     }
     double best = INFINITY;
     for (const MethodCell& c : study().methods.cells) {
       if (c.ladder == l) best = std::min(best, relative_error(study(), c));
     }
-    cell(std::isfinite(best) ? text::rounded(best, 2) : "–");
-    text_ += "</tr>\n";
+    table.cell(std::isfinite(best) ? text::rounded(best, 2) : "–");
   }
 
   void methods_table() {
     if (study().methods.cells.empty()) return;
-    text_ += "<details><summary>Every method and setting</summary>\n<div class=\"wide\"><table>\n<thead><tr>";
-    column("method", true);
-    for (const char* name :
-         {"work", "seeds", "RMS", "partly hidden", "visible", "mean", "p99", "worst", "time per receiver", "exact ×"}) {
-      column(name);
-    }
-    text_ += "</tr></thead>\n<tbody>\n";
+    HtmlTable table;
+    table.column("method", kText);
+    table.columns(
+        {"work", "seeds", "RMS", "partly hidden", "visible", "mean", "p99", "worst", "time per receiver", "exact ×"});
     const MethodCell* exact = exact_cell(study());
     for (const MethodCell& c : study().methods.cells) {
-      text_ += is_exact(study(), c) ? "<tr class=\"exact\">" : "<tr>";
-      cell(text::html(cell_name(study(), c)), true);
-      cell(text::rounded(c.work));
-      cell(c.seeds.front() == 0 ? "–" : std::to_string(c.seeds.size()));
-      for (const double v :
-           {c.error.rms, c.error_partly.rms, c.error_visible.rms, c.error.mean, c.error.p99, c.error.worst}) {
-        cell(signed_number(v));
-      }
-      cell(text::duration(c.seconds));
-      cell(exact != nullptr ? text::rounded(c.seconds / exact->seconds, 2) : "–");
-      text_ += "</tr>\n";
+      table.row(is_exact(study(), c) ? "exact" : "");
+      table.cell(text::html(cell_name(study(), c)), kText);
+      table.cells({text::rounded(c.work), c.seeds.front() == 0 ? "–" : std::to_string(c.seeds.size()),
+                   signed_number(c.error.rms), signed_number(c.error_partly.rms), signed_number(c.error_visible.rms),
+                   signed_number(c.error.mean), signed_number(c.error.p99), signed_number(c.error.worst),
+                   text::duration(c.seconds), exact != nullptr ? text::rounded(c.seconds / exact->seconds, 2) : "–"});
     }
-    text_ += "</tbody></table></div></details>\n";
+    text_ += "<details><summary>Every method and setting</summary>\n" + table.text() + "</details>\n";
   }
 
   void settings_table() {
@@ -183,56 +168,44 @@ class ScenePart {
         "counts the leaves with a silent error: all their rays agreed, and were wrong for a part of the leaf. Times "
         "are per receiver" +
         std::string(partly() ? "; the last column covers only receivers that see the source partly hidden." : "."));
-    text_ += "<div class=\"wide\"><table>\n<thead><tr>";
-    for (const char* name : {"#", "ε_B", "rays"}) column(name);
-    column("pattern", true);
-    for (const char* name : {"ε_A", "seed"}) column(name);
-    column("variant", true);
-    for (const char* name : {"RMS", "mean", "p99", "worst", "off", "leaves", "rays traced", "silent", "median time"}) {
-      column(name);
-    }
-    if (partly()) column("median, partly hidden");
-    text_ += "</tr></thead>\n<tbody>\n";
-    exact_row();
-    for (std::size_t k = 0; k < study().settings.size(); ++k) setting_row(k);
-    text_ += "</tbody></table></div></details>\n";
+    HtmlTable table;
+    table.columns({"#", "ε_B", "rays"});
+    table.column("pattern", kText);
+    table.columns({"ε_A", "seed"});
+    table.column("variant", kText);
+    table.columns({"RMS", "mean", "p99", "worst", "off", "leaves", "rays traced", "silent", "median time"});
+    if (partly()) table.column("median, partly hidden");
+    exact_row(table);
+    for (std::size_t k = 0; k < study().settings.size(); ++k) setting_row(table, k);
+    text_ += table.text() + "</details>\n";
   }
 
-  void exact_row() {
-    text_ +=
-        "<tr class=\"exact\"><td></td><td class=\"text\" "
-        "colspan=\"6\">exact</td><td>0</td><td>0</td><td>0</td><td>0</td>"
-        "<td>0 %</td><td></td><td></td><td></td>";
-    times(study().exact_time);
-    text_ += "</tr>\n";
+  void exact_row(HtmlTable& table) const {
+    table.row("exact");
+    table.cell("");
+    table.cell("exact", kText, 6);
+    table.cells({"0", "0", "0", "0", "0 %", "", "", ""});
+    times(table, study().exact_time);
   }
 
-  void times(const TimeSummary& t) {
-    cell(text::duration(t.median));
-    if (partly()) cell(text::duration(t.median_partly));
+  void times(HtmlTable& table, const TimeSummary& t) const {
+    table.cell(text::duration(t.median));
+    if (partly()) table.cell(text::duration(t.median_partly));
   }
 
-  void setting_row(std::size_t k) {
+  void setting_row(HtmlTable& table, std::size_t k) const {
     const AdaptiveOptions& s = study().settings[k];
     const Summary& summary = study().summaries[k];
-    text_ += k == study().base ? "<tr class=\"base\">" : "<tr>";
-    cell(std::to_string(k + 1));
-    cell(text::rounded(s.eps_b));
-    cell(std::to_string(s.rays));
-    cell(std::string(name_of(s.pattern)), true);
-    cell(text::rounded(s.eps_a));
-    cell(std::to_string(s.seed));
-    cell(std::string(name_of(s.variant)), true);
-    for (double value :
-         {summary.radiosity.rms, summary.radiosity.mean, summary.radiosity.p99, summary.radiosity.worst}) {
-      cell(signed_number(value));
-    }
-    cell(text::share(summary.violations, study().exact.size()));
-    cell(std::to_string(summary.leaves));
-    cell(std::to_string(summary.rays));
-    cell(std::to_string(summary.silent_leaves));
-    times(study().times[k]);
-    text_ += "</tr>\n";
+    table.row(k == study().base ? "base" : "");
+    table.cells({std::to_string(k + 1), text::rounded(s.eps_b), std::to_string(s.rays)});
+    table.cell(std::string(name_of(s.pattern)), kText);
+    table.cells({text::rounded(s.eps_a), std::to_string(s.seed)});
+    table.cell(std::string(name_of(s.variant)), kText);
+    const ErrorStatistics& e = summary.radiosity;
+    table.cells({signed_number(e.rms), signed_number(e.mean), signed_number(e.p99), signed_number(e.worst),
+                 text::share(summary.violations, study().exact.size()), std::to_string(summary.leaves),
+                 std::to_string(summary.rays), std::to_string(summary.silent_leaves)});
+    times(table, study().times[k]);
   }
 
   static std::string signed_number(double value) {
@@ -253,7 +226,7 @@ class ScenePart {
 
 class PageWriter {
  public:
-  PageWriter(const Report& report, const Pages& pages) : report_(report), pages_(pages) {}
+  PageWriter(const StudyReport& report, const Pages& pages) : report_(report), pages_(pages) {}
 
   std::string write() {
     head();
@@ -342,23 +315,22 @@ class PageWriter {
         "For each scene and error: the fastest method and setting that is accurate to this error, and its time per "
         "receiver. The error is the RMS error over the chosen receivers and seeds, divided by the radiosity of the "
         "brightest receiver.");
-    text_ += "<div class=\"wide\"><table class=\"recommend\">\n<thead><tr><th>scene</th>";
-    for (const double wanted : kWantedErrors) text_ += "<th>" + power_of_ten(wanted) + "</th>";
-    text_ += "</tr></thead>\n<tbody>\n";
+    HtmlTable table("recommend");
+    table.column("scene");
+    for (const double wanted : kWantedErrors) table.column(power_of_ten(wanted));
     for (const SceneChapter& scene : report_.scenes) {
       const MethodCell* exact = exact_cell(scene.study);
       if (exact == nullptr) continue;
-      text_ += "<tr><td>" + text::html(scene.title) + "</td>";
+      table.row();
+      table.cell(text::html(scene.title));
       for (const double wanted : kWantedErrors) {
         const MethodCell* best = cheapest(scene.study, wanted);
         if (best == nullptr || best->seconds > exact->seconds) best = exact;
         const std::string name = text::html(cell_name(scene.study, *best));
-        text_ += "<td>" + (best == exact ? "<strong>" + name + "</strong>" : name) + ", " +
-                 text::duration(best->seconds) + "</td>";
+        table.cell((best == exact ? "<strong>" + name + "</strong>" : name) + ", " + text::duration(best->seconds));
       }
-      text_ += "</tr>\n";
     }
-    text_ += "</tbody></table></div>\n";
+    text_ += table.text() + '\n';
   }
 
   void chapter(const page::Chapter& chapter, const Page& page) {
@@ -468,7 +440,7 @@ class PageWriter {
     const auto item = [&](const std::string& file, const std::string& holds) {
       text_ += "<li><code>" + text::html(file) + "</code>: " + text::html(holds) + "</li>\n";
     };
-    for (const Table& table : tables()) {
+    for (const StudyTable& table : tables()) {
       const bool anywhere = std::any_of(report_.scenes.begin(), report_.scenes.end(),
                                         [&](const SceneChapter& scene) { return table.has_rows(scene.study); });
       if (!anywhere) continue;
@@ -477,7 +449,7 @@ class PageWriter {
     }
     for (const page::Chapter& chapter : report_.chapters) {
       for (const auto* list : {&chapter.values, &chapter.times}) {
-        for (const page::TextTable& table : *list) item(table.file, table.holds);
+        for (const page::CsvFile& table : *list) item(table.file, table.holds);
       }
     }
     text_ += "</ul>\n";
@@ -489,13 +461,13 @@ class PageWriter {
     text_ += "<p>SCENE stands for " + text::enumerate(names) + ".</p>\n";
   }
 
-  const Report& report_;
+  const StudyReport& report_;
   const Pages& pages_;
   std::string text_;
 };
 
 }  // namespace
 
-std::string report_page(const Report& report, const Pages& pages) { return PageWriter(report, pages).write(); }
+std::string report_page(const StudyReport& report, const Pages& pages) { return PageWriter(report, pages).write(); }
 
 }  // namespace exactff::report

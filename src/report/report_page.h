@@ -20,6 +20,6 @@ struct Pages {
   std::vector<Page> chapters;
 };
 
-[[nodiscard]] std::string report_page(const Report& report, const Pages& pages);
+[[nodiscard]] std::string report_page(const StudyReport& report, const Pages& pages);
 
 }  // namespace exactff::report

@@ -17,22 +17,15 @@ std::vector<std::string> split_words(std::string_view line, const std::string& f
   bool in_word = false;
   char quote = '\0';
   for (const char c : line) {
-    const bool blank = c == ' ' || c == '\t';
-    if (quote != '\0') {
-      if (c == quote) {
-        quote = '\0';
-      } else {
-        words.back() += c;
-      }
-      continue;
-    }
-    if (blank) {
+    if (quote == '\0' && (c == ' ' || c == '\t')) {
       in_word = false;
       continue;
     }
     if (!in_word) words.emplace_back();
     in_word = true;
-    if (c == '"' || c == '\'') {
+    if (c == quote) {
+      quote = '\0';
+    } else if (quote == '\0' && (c == '"' || c == '\'')) {
       quote = c;
     } else {
       words.back() += c;
@@ -45,6 +38,31 @@ std::vector<std::string> split_words(std::string_view line, const std::string& f
   return words;
 }
 
+namespace {
+
+void add_line(const text::TextLine& line, const std::string& file, StudyFile& study) {
+  std::vector<std::string> words = split_words(line.text, file, line.number);
+  const std::string kind = words.front();
+  words.erase(words.begin());
+  std::vector<StudyLine>* list = kind == "scene" ? &study.scenes : kind == "experiment" ? &study.experiments : nullptr;
+  if (list == nullptr && kind != "title") {
+    throw InputError(Problem{file, line.number, "a line begins with " + text::in_quotes(kind),
+                             "the first word says what the line is",
+                             "begin it with title, scene or experiment, or with # for a comment"});
+  }
+  if (words.empty()) {
+    throw InputError(Problem{file, line.number, "nothing follows " + text::in_quotes(kind), "the line is incomplete",
+                             "complete the line or remove it"});
+  }
+  if (list != nullptr) {
+    list->push_back({line.number, std::move(words)});
+  } else {
+    study.title = std::string(text::trimmed(line.text.substr(kind.size())));
+  }
+}
+
+}  // namespace
+
 StudyFile parse_study_file(const std::filesystem::path& path) {
   const std::string text = text::read_text_file(path, "a study file");
   const std::string file = path.string();
@@ -53,30 +71,10 @@ StudyFile parse_study_file(const std::filesystem::path& path) {
   text::TextLines lines(text);
   for (text::TextLine line; lines.next(line);) {
     if (line.text.empty()) continue;
-    std::vector<std::string> words;
     try {
-      words = split_words(line.text, file, line.number);
+      add_line(line, file, study);
     } catch (const InputError& error) {
       for (const Problem& problem : error.problems()) problems.add(problem);
-      continue;
-    }
-    const std::string kind = words.front();
-    words.erase(words.begin());
-    if (kind == "title" || kind == "scene" || kind == "experiment") {
-      if (words.empty()) {
-        problems.add({file, line.number, "nothing follows " + text::in_quotes(kind), "the line is incomplete",
-                      "complete the line or remove it"});
-      } else if (kind == "scene") {
-        study.scenes.push_back({line.number, std::move(words)});
-      } else if (kind == "experiment") {
-        study.experiments.push_back({line.number, std::move(words)});
-      } else {
-        study.title = std::string(text::trimmed(line.text.substr(kind.size())));
-      }
-    } else {
-      problems.add({file, line.number, "a line begins with " + text::in_quotes(kind),
-                    "the first word says what the line is",
-                    "begin it with title, scene or experiment, or with # for a comment"});
     }
   }
   if (problems.empty() && study.scenes.empty() && study.experiments.empty()) {

@@ -163,9 +163,9 @@ bool always(const Study&) { return true; }
 
 }  // namespace
 
-const std::vector<Table>& tables() {
-  static const std::vector<Table> kTables = [] {
-    std::vector<Table> list = {
+const std::vector<StudyTable>& tables() {
+  static const std::vector<StudyTable> kTables = [] {
+    std::vector<StudyTable> list = {
         {"values.csv", "one row per receiver and setting: exact and approximate value, errors, work", write_values,
          always, Holds::kValues},
         {"exact.csv", "one row per receiver and source: the certified value with its bounds", write_exact, always,
@@ -176,7 +176,7 @@ const std::vector<Table>& tables() {
         {"summary_timings.csv", "one row per setting: time per receiver, and that of the exact method",
          write_summary_timings, always, Holds::kTimes},
     };
-    for (const Table& table : method_tables()) list.push_back(table);
+    for (const StudyTable& table : method_tables()) list.push_back(table);
     return list;
   }();
   return kTables;

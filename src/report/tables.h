@@ -14,7 +14,7 @@ namespace exactff::report {
 
 enum class Holds { kValues, kTimes };  // kValues: the same bytes on every run
 
-struct Table {
+struct StudyTable {
   std::string_view file;
   std::string_view holds;  // for the report's list of files
   void (*write)(const Study& study, std::ostream& out);
@@ -23,7 +23,7 @@ struct Table {
 };
 
 // In the order of the report's list.
-[[nodiscard]] const std::vector<Table>& tables();
+[[nodiscard]] const std::vector<StudyTable>& tables();
 
 // The comment lines at the beginning of every file.
 void write_head(const Study& study, std::ostream& out, std::string_view what);

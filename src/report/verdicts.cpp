@@ -101,47 +101,51 @@ std::string cell_name(const Study& study, const MethodCell& cell) {
 }
 
 std::string power_of_ten(double value) {
-  static constexpr std::array<const char*, 10> kDigits = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  const int power = static_cast<int>(std::lround(-std::log10(value)));
-  return std::string("10⁻") + kDigits[static_cast<std::size_t>(std::clamp(power, 0, 9))];
+  return "10" + text::superscript(static_cast<int>(std::lround(std::log10(value))));
 }
 
-std::vector<std::string> method_sentences(const Study& study) {
-  const MethodCell* exact = exact_cell(study);
-  if (exact == nullptr || !is_timed(*exact) || study.methods.cells.size() < 2) return {};
-  std::string text =
-      "On this scene the exact value takes " + text::duration(exact->seconds) + " per receiver on average";
+namespace {
+
+// What the exact value costs, and which other method is accurate to the smallest wanted error that any of them reaches.
+std::string cost_sentence(const Study& study, const MethodCell& exact) {
   double reached = 0.0, missed = 0.0;
   for (const double wanted : kWantedErrors) {
     (cheapest(study, wanted) != nullptr ? reached : missed) = wanted;
     if (missed > 0.0) break;
   }
   const std::string of = " of the brightest receiver (RMS)";
-  if (reached > 0.0) {
-    const MethodCell* best = cheapest(study, reached);
-    const double ratio = best->seconds / exact->seconds;
-    text += "; the fastest other method that is accurate to " + power_of_ten(reached) + of + ", " +
-            cell_name(study, *best) + ", takes " + text::rounded(ratio, 2) + " times as long";
-    if (missed > 0.0) text += ", and no other setting that was run is accurate to " + power_of_ten(missed);
-  } else {
-    text += "; no other setting that was run is accurate to " + power_of_ten(kWantedErrors.front()) + of;
+  const std::string text =
+      "On this scene the exact value takes " + text::duration(exact.seconds) + " per receiver on average; ";
+  if (reached == 0.0) {
+    return text + "no other setting that was run is accurate to " + power_of_ten(kWantedErrors.front()) + of + '.';
   }
-  std::vector<std::string> sentences = {text + "."};
+  const MethodCell* best = cheapest(study, reached);
+  return text + "the fastest other method that is accurate to " + power_of_ten(reached) + of + ", " +
+         cell_name(study, *best) + ", takes " + text::rounded(best->seconds / exact.seconds, 2) + " times as long" +
+         (missed > 0.0 ? ", and no other setting that was run is accurate to " + power_of_ten(missed) : "") + '.';
+}
+
+// The error that other methods reach in the time of the exact one.
+std::string overtaking_sentence(const Study& study, const MethodCell& exact) {
   const MethodCell* within = nullptr;
   for (const MethodCell& cell : study.methods.cells) {
-    if (!is_rival(study, cell) || !is_timed(cell) || cell.seconds > exact->seconds) continue;
+    if (!is_rival(study, cell) || !is_timed(cell) || cell.seconds > exact.seconds) continue;
     if (!std::isfinite(relative_error(study, cell))) continue;
     if (within == nullptr || relative_error(study, cell) < relative_error(study, *within)) within = &cell;
   }
-  if (within != nullptr) {
-    sentences.push_back("For errors below " + text::rounded(100.0 * relative_error(study, *within), 2) +
-                        " % of the brightest receiver (RMS), the exact method is the fastest: no other setting that is "
-                        "at least as fast is more accurate than this (best: " +
-                        cell_name(study, *within) + ").");
-  } else {
-    sentences.emplace_back("No setting of another method is as fast as the exact method.");
-  }
-  return sentences;
+  if (within == nullptr) return "No setting of another method is as fast as the exact method.";
+  return "For errors below " + text::rounded(100.0 * relative_error(study, *within), 2) +
+         " % of the brightest receiver (RMS), the exact method is the fastest: no other setting that is at least as "
+         "fast is more accurate than this (best: " +
+         cell_name(study, *within) + ").";
+}
+
+}  // namespace
+
+std::vector<std::string> method_sentences(const Study& study) {
+  const MethodCell* exact = exact_cell(study);
+  if (exact == nullptr || !is_timed(*exact) || study.methods.cells.size() < 2) return {};
+  return {cost_sentence(study, *exact), overtaking_sentence(study, *exact)};
 }
 
 namespace {

@@ -35,6 +35,8 @@ std::string number(double value) {
   return text.data();
 }
 
+using kernel::max_norm;
+
 // (a - b) * 2^-exponent, where a - b may overflow.
 double scaled_difference(double a, double b, int exponent) {
   const double difference = a - b;
@@ -44,7 +46,6 @@ Vec3 scaled_difference(const Vec3& a, const Vec3& b, int exponent) {
   return {scaled_difference(a.x, b.x, exponent), scaled_difference(a.y, b.y, exponent),
           scaled_difference(a.z, b.z, exponent)};
 }
-double max_norm(const Vec3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 // Scales first, because squares of very small components would underflow.
 Vec3 unit(const Vec3& a) {
   const double largest = max_norm(a);

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void write_tables(const SceneChapter& scene, const fs::path& folder, const Hooks& hooks) {
-  for (const Table& table : tables()) {
+  for (const StudyTable& table : tables()) {
     if (!table.has_rows(scene.study)) continue;
     work::require_not_cancelled(hooks);
     work::write_file(folder / file_name(scene, table), [&](std::ostream& out) { table.write(scene.study, out); });
@@ -28,7 +28,7 @@ void write_tables(const SceneChapter& scene, const fs::path& folder, const Hooks
 
 void write_tables(const page::Chapter& chapter, const fs::path& folder) {
   for (const auto* list : {&chapter.values, &chapter.times}) {
-    for (const page::TextTable& table : *list) {
+    for (const page::CsvFile& table : *list) {
       work::write_file(folder / table.file, [&](std::ostream& out) {
         out << "# " << text::program_version() << " compare: " << text::csv_comment(table.holds) << '\n' << table.csv;
       });
@@ -63,13 +63,13 @@ class PageDrawer {
 
 }  // namespace
 
-std::string file_name(const SceneChapter& scene, const Table& table) {
+std::string file_name(const SceneChapter& scene, const StudyTable& table) {
   return (scene.name.empty() ? std::string() : scene.name + '_') + std::string(table.file);
 }
 
 void check_output_folder(const fs::path& folder) { page::check_output_folder(folder); }
 
-std::vector<std::string> write(const Report& report, const fs::path& folder, const Hooks& hooks) {
+std::vector<std::string> write(const StudyReport& report, const fs::path& folder, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
   page::StagedFolder staged(folder);
   std::vector<std::string> messages;
@@ -92,7 +92,7 @@ std::vector<std::string> write(const Report& report, const fs::path& folder, con
 }
 
 std::vector<std::string> write(const Study& study, const fs::path& folder, const Hooks& hooks) {
-  Report report;
+  StudyReport report;
   report.scenes.push_back({"", study.request.scene_name, study});
   report.command_line = study.request.command_line;
   return write(report, folder, hooks);

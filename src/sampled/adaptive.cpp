@@ -230,23 +230,9 @@ void check(const AdaptiveOptions& options, double largest_rho_b) {
 }  // namespace
 
 std::string_view to_string(LeafReason reason) {
-  switch (reason) {
-    case LeafReason::kShaftEmpty:
-      return "shaft empty";
-    case LeafReason::kShaftCut:
-      return "shaft cut";
-    case LeafReason::kSampledVisible:
-      return "V=1";
-    case LeafReason::kSampledHidden:
-      return "V=0";
-    case LeafReason::kEpsF:
-      return "eps_F";
-    case LeafReason::kEpsA:
-      return "eps_A";
-    case LeafReason::kDepthCap:
-      return "depth cap";
-  }
-  return "";
+  constexpr std::array<std::string_view, kLeafReasonCount> kNames = {"shaft empty", "shaft cut", "V=1",      "V=0",
+                                                                     "eps_F",       "eps_A",     "depth cap"};
+  return kNames[static_cast<std::size_t>(reason)];
 }
 
 AdaptiveSource::AdaptiveSource(std::unique_ptr<Data> data) : data_(std::move(data)) {}

@@ -13,6 +13,7 @@
 #include "text/fnv1a.h"
 #include "text/nearest_names.h"
 #include "text/numbered_name.h"
+#include "text/phrases.h"
 #include "text/text_lines.h"
 
 namespace exactff {
@@ -74,8 +75,6 @@ std::string choice_of_names(const Scene& scene, std::string_view wanted) {
   return text;
 }
 
-std::string count_of_faces(std::size_t count) { return std::to_string(count) + (count == 1 ? " face" : " faces"); }
-
 }  // namespace
 
 Selection Scene::select(std::string_view name) const {
@@ -91,7 +90,7 @@ Selection Scene::select(std::string_view name) const {
   if (parts->number < 1 || parts->number > faces.size()) {
     throw InputError(
         {data().file, 0, "there is no face " + text::in_quotes(name, text::kShownName),
-         "patch " + text::in_quotes(parts->patch, text::kShownName) + " has " + count_of_faces(faces.size()),
+         "patch " + text::in_quotes(parts->patch, text::kShownName) + " has " + text::counted(faces.size(), "face"),
          "faces are numbered from 1"});
   }
   const FaceId face_id = faces[parts->number - 1];

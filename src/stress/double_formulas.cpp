@@ -4,15 +4,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernel/vec.h"
+
 namespace exactff::stress {
 
 namespace {
 
-double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-Vec3 minus(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+using kernel::cross;
+using kernel::dot;
+
 double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 Vec3 unit(const Vec3& a) {
   const double r = length(a);
@@ -40,7 +40,7 @@ double term(const Vec3& a, const Vec3& b, const Vec3& n, AngleFormula formula) {
     case AngleFormula::kAtan2Difference:
       break;
   }
-  return term_by_atan2(a, b, cross(a, minus(b, a)), n);
+  return term_by_atan2(a, b, cross(a, kernel::difference(b, a)), n);
 }
 
 }  // namespace
@@ -50,7 +50,8 @@ double form_factor_in_double(std::span<const Polygon> region, const Vec3& x, con
   double sum = 0.0;
   for (const Polygon& polygon : region) {
     for (std::size_t i = 0; i < polygon.size(); ++i) {
-      sum += term(minus(polygon[i], x), minus(polygon[(i + 1) % polygon.size()], x), n, formula);
+      sum +=
+          term(kernel::difference(polygon[i], x), kernel::difference(polygon[(i + 1) % polygon.size()], x), n, formula);
     }
   }
   return -0.5 * std::numbers::inv_pi * sum;

@@ -13,9 +13,11 @@ namespace exactff::stress {
 namespace {
 
 using page::heading;
+using page::HtmlTable;
 using page::paragraph;
 using text::counted;
 using text::html;
+using enum HtmlTable::Kind;
 
 constexpr const char* kTitle = "Where each method stops being usable";
 
@@ -54,10 +56,6 @@ class PageWriter {
     if (!drawn_.none.empty()) text_ += paragraph(html(drawn_.none));
   }
 
-  void cell(const std::string& content, const char* kind = "td", bool words = false) {
-    text_ += std::string("<") + kind + (words ? " class=\"text\"" : "") + '>' + content + "</" + kind + '>';
-  }
-
   void summary() {
     text_ += heading("Largest stiffness with an error below 10⁻³, 10⁻⁶ and 10⁻¹²");
     text_ += paragraph(
@@ -72,24 +70,20 @@ class PageWriter {
         " of the unoccluded form factor. It is not meant to reach 10⁻⁶ or 10⁻¹², or an error relative to F. Around "
         "10⁻³ its cells depend on where its random rays hit. Families end before F leaves the range of normal "
         "doubles.");
-    text_ += "<div class=\"wide\"><table>\n<thead><tr>";
-    cell("family", "th", true);
-    cell("ends at", "th");
-    for (Method method : kMethods) cell(html(name_of(method)), "th");
-    text_ += "</tr></thead>\n<tbody>\n";
-    for (const FamilyResult& family : report_.families) summary_row(family);
-    text_ += "</tbody></table></div>\n";
-  }
-
-  void summary_row(const FamilyResult& family) {
-    text_ += "<tr>";
-    cell("<a href=\"#" + html(family.family.name) + "\">" + html(family.family.title) + "</a>", "td", true);
-    cell(stiffness_text(family.rows.back().stiffness));
-    for (Method method : kMethods) {
-      const std::string reaches = reaches_text(family, method);
-      cell(reaches == "all" ? "<b>all</b>" : reaches);
+    HtmlTable table;
+    table.column("family", kText);
+    table.column("ends at");
+    for (Method method : kMethods) table.column(html(name_of(method)));
+    for (const FamilyResult& family : report_.families) {
+      table.row();
+      table.cell("<a href=\"#" + html(family.family.name) + "\">" + html(family.family.title) + "</a>", kText);
+      table.cell(stiffness_text(family.rows.back().stiffness));
+      for (Method method : kMethods) {
+        const std::string reaches = reaches_text(family, method);
+        table.cell(reaches == "all" ? "<b>all</b>" : reaches);
+      }
     }
-    text_ += "</tr>\n";
+    text_ += table.text() + '\n';
   }
 
   void how_to_read() {
@@ -111,9 +105,7 @@ class PageWriter {
     if (const int bits = constant_bits(result); bits > 0) {
       text_ += paragraph("The proof needed " + std::to_string(bits) + " bits in every scene.");
     }
-    text_ += "<details><summary>Every value</summary>\n";
-    table(result);
-    text_ += "</details>\n";
+    text_ += "<details><summary>Every value</summary>\n" + values_table(result) + "\n</details>\n";
   }
 
   static int constant_bits(const FamilyResult& result) {
@@ -132,25 +124,20 @@ class PageWriter {
     if (!group.empty()) text_ += "<div class=\"figures maps\">\n" + group + "</div>\n";
   }
 
-  void table(const FamilyResult& result) {
-    text_ += "<div class=\"wide\"><table>\n<thead><tr>";
-    for (const char* name : {"stiffness", "form factor", "status", "exact, bits", "edges", "exact, time"})
-      cell(name, "th");
-    for (Method method : kMethods) cell("error, " + html(short_name_of(method)), "th");
-    text_ += "</tr></thead>\n<tbody>\n";
+  static std::string values_table(const FamilyResult& result) {
+    HtmlTable table;
+    table.columns({"stiffness", "form factor", "status", "exact, bits", "edges", "exact, time"});
+    for (Method method : kMethods) table.column("error, " + html(short_name_of(method)));
     for (const Row& row : result.rows) {
-      text_ += "<tr>";
       const Answer& exact = row.of(Method::kExact);
-      cell(stiffness_text(row.stiffness));
-      cell(text::shortest(exact.value));
-      cell(row.agrees ? html(exactff::to_string(row.status)) : "<b>disagrees with the truth</b>");
-      cell(std::to_string(row.precision_bits));
-      cell(std::to_string(row.edges));
-      cell(page::prose(text::duration(exact.seconds)));
-      for (Method method : kMethods) cell(error_text(row.of(method)));
-      text_ += "</tr>\n";
+      table.row();
+      table.cells({stiffness_text(row.stiffness), text::shortest(exact.value),
+                   row.agrees ? html(exactff::to_string(row.status)) : "<b>disagrees with the truth</b>",
+                   std::to_string(row.precision_bits), std::to_string(row.edges),
+                   page::prose(text::duration(exact.seconds))});
+      for (Method method : kMethods) table.cell(error_text(row.of(method)));
     }
-    text_ += "</tbody></table></div>\n";
+    return table.text();
   }
 
   void define(const char* term, const char* meaning) {
@@ -197,10 +184,8 @@ class PageWriter {
     text_ += paragraph(
         "Exact values are the same on every machine. All other values are the same on one machine for any number of "
         "threads. Times vary; --threads 1 gives the most reliable ones.");
-    text_ +=
-        "<p>Files in this folder:</p>\n"
-        "<ul>\n";
-    for (const Table& table : tables()) {
+    text_ += "<p>Files in this folder:</p>\n<ul>\n";
+    for (const StressTable& table : tables()) {
       text_ += "<li><code>" + std::string(table.file) + "</code>: " + html(table.holds) + "</li>\n";
     }
     text_ += "</ul>\n";

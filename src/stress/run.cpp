@@ -8,7 +8,6 @@
 //   5. Measure times: the median of several calls within a time limit.
 // The place of a scene in the report is its index, so that nothing but the times depends on the number of threads.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -18,7 +17,9 @@
 #include "stress/double_formulas.h"
 #include "stress/family.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "work/parallel.h"
+#include "work/stopwatch.h"
 
 namespace exactff::stress {
 
@@ -37,21 +38,11 @@ double relative_difference(double value, const Enclosure& truth, const Enclosure
   return error < kTruthIsGoodTo ? 0.0 : error;
 }
 
-// Calls compute() several times and returns the median time. Stops at kMostCalls calls or when the limit is exceeded.
 template <class Compute>
 double median_seconds(const Compute& compute) {
-  using Clock = std::chrono::steady_clock;
   constexpr std::size_t kMostCalls = 7;
   constexpr double kLimit = 0.05;
-  std::vector<double> times;
-  for (double total = 0.0; times.size() < kMostCalls && total < kLimit; total += times.back()) {
-    const auto start = Clock::now();
-    compute();
-    times.push_back(std::chrono::duration<double>(Clock::now() - start).count());
-  }
-  const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
-  std::nth_element(times.begin(), middle, times.end());
-  return *middle;
+  return work::median_seconds(compute, kMostCalls, kLimit);
 }
 
 AngleFormula formula_of(Method method) {
@@ -162,11 +153,8 @@ class Trial {
 [[noreturn]] void refuse_family(const std::string& name) {
   std::vector<std::string> names;
   for (const Family& family : all_families()) names.emplace_back(family.info.name);
-  throw InputError(Problem{{},
-                           0,
-                           "there is no family '" + name + "'",
-                           {},
-                           "exactff stress --list prints them all: " + text::enumerate(names)});
+  text::refuse("there is no family '" + name + "'", {},
+               "exactff stress --list prints them all: " + text::enumerate(names));
 }
 
 const Family& family_named(const std::string& name) {

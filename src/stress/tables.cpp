@@ -100,8 +100,8 @@ void write_timings(const Report& report, std::ostream& out) {
 
 }  // namespace
 
-const std::array<Table, 3>& tables() {
-  static const std::array<Table, 3> list = {
+const std::array<StressTable, 3>& tables() {
+  static const std::array<StressTable, 3> list = {
       {{"summary.csv", "the stiffness up to which each method stays below each error", write_summary},
        {"values.csv", "every value and error, the truth to 30 digits, the bits needed", write_values},
        {"timings.csv", "times of single calls", write_timings}}};

@@ -8,13 +8,6 @@ namespace exactff::stress {
 
 namespace {
 
-std::string superscript(int number) {
-  static constexpr std::string_view kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  std::string text;
-  for (char digit : std::to_string(number)) text += kDigits[digit - '0'];
-  return text;
-}
-
 constexpr double kSmallEnoughToWrite = 1e4;
 
 }  // namespace
@@ -23,9 +16,9 @@ std::string stiffness_text(double stiffness) {
   if (stiffness == 0.0) return "–";
   if (stiffness < kSmallEnoughToWrite) return text::shortest(stiffness);
   int exponent = 0;
-  if (std::frexp(stiffness, &exponent) == 0.5) return "2" + superscript(exponent - 1);
+  if (std::frexp(stiffness, &exponent) == 0.5) return "2" + text::superscript(exponent - 1);
   const int decade = static_cast<int>(std::lround(std::log10(stiffness)));
-  if (std::stod("1e" + std::to_string(decade)) == stiffness) return "10" + superscript(decade);
+  if (std::stod("1e" + std::to_string(decade)) == stiffness) return "10" + text::superscript(decade);
   return text::rounded(stiffness);
 }
 

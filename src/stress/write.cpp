@@ -16,7 +16,7 @@ std::vector<std::string> write(const Report& report, const std::filesystem::path
   const kernel::StandardArithmetic arithmetic;
   page::StagedFolder staged(folder);
   std::vector<std::string> messages;
-  for (const Table& table : tables()) {
+  for (const StressTable& table : tables()) {
     work::require_not_cancelled(hooks);
     work::write_file(staged.path() / table.file, [&](std::ostream& out) { table.write(report, out); });
   }

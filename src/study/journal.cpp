@@ -6,15 +6,15 @@
 // The CRC-32 covers name and bytes. Reading stops at the first record that is torn or damaged, and new records
 // overwrite everything from there on: only the sound beginning of a journal is used. A journal of another version is
 // not used, since its values may differ. A file that is not a journal is never touched.
-#include <boost/crc.hpp>
 #include <charconv>
 #include <map>
 #include <mutex>
 
 #include "exactff/study.h"
 #include "exactff/version.h"
-#include "text/fnv1a.h"
+#include "text/crc32.h"
 #include "work/file.h"
+#include "work/work_folder.h"
 
 namespace exactff::study {
 namespace {
@@ -26,16 +26,9 @@ constexpr std::size_t kLongestHead = 512;
 
 std::string first_line() { return std::string(kBeginning) + "1, version " + kVersion + '\n'; }
 
-std::string checksum(std::string_view name, std::string_view bytes) {
-  boost::crc_32_type crc;
-  crc.process_bytes(name.data(), name.size());
-  crc.process_bytes(bytes.data(), bytes.size());
-  return text::hexadecimal(crc.checksum(), 8);
-}
-
 std::string record(std::string_view name, std::string_view bytes) {
   std::string text(name);
-  text += ' ' + std::to_string(bytes.size()) + ' ' + checksum(name, bytes) + '\n';
+  text += ' ' + std::to_string(bytes.size()) + ' ' + text::crc32_digits(name, bytes) + '\n';
   text += bytes;
   return text += '\n';
 }
@@ -66,55 +59,16 @@ struct Place {
   std::uint64_t bytes = 0;
 };
 
-const work::Consolation kConsolation{"finished work is kept there, so that an interrupted run can continue",
-                                     "free some space, or name a folder on another disk"};
+const work::FailureAdvice kAdvice{"finished work is kept there, so that an interrupted run can continue",
+                                  "free some space, or name a folder on another disk"};
+const Problem kInUse{.what = "another process is working on it",
+                     .why = "two processes would compute the same values and damage each other's journal",
+                     .suggestion = "wait for the other process, or name another folder with -o"};
 
 }  // namespace
 
 struct Journal::Impl {
-  explicit Impl(const fs::path& path) : outermost_made(made_for(path)), file(opened(path)) {}
-  ~Impl() {
-    if (removed) remove_made();
-  }
-
-  // Creates the folder of the file if necessary. Returns the topmost folder that was created.
-  static fs::path made_for(const fs::path& path) {
-    const fs::path folder = fs::absolute(path).parent_path();
-    fs::path made;
-    for (fs::path f = folder; f.has_relative_path() && !is_there(f); f = f.parent_path()) made = f;
-    std::error_code ignored;  // opening the file will fail, too
-    fs::create_directories(folder, ignored);
-    return made;
-  }
-
-  // Removes the created folders, as far as they are empty.
-  void remove_made() const {
-    std::error_code error;
-    fs::path folder = fs::absolute(file.path()).parent_path();
-    for (bool more = !outermost_made.empty(); more && !error; folder = folder.parent_path()) {
-      more = folder != outermost_made;
-      fs::remove(folder, error);
-    }
-  }
-
-  static bool is_there(const fs::path& path) {
-    std::error_code ignored;
-    return fs::exists(path, ignored);
-  }
-
-  // The process that held the lock may meanwhile have finished and removed the file.
-  static work::File opened(const fs::path& path) {
-    for (;;) {
-      work::File file(path, work::File::Mode::kReadWrite, kConsolation);
-      if (file.lock() == work::File::Lock::kInUse) {
-        throw InputError({.file = path.string(),
-                          .what = "another process is working on it",
-                          .why = "two processes would compute the same values and damage each other's journal",
-                          .suggestion = "wait for the other process, or name another folder with -o"});
-      }
-      if (file.is_in_place()) return file;
-    }
-  }
+  explicit Impl(const fs::path& path) : made(path), file(work::open_locked(path, kAdvice, kInUse)) {}
 
   // If the first line is cut off, nothing follows it.
   void require_ours(Existing existing) const {
@@ -147,7 +101,8 @@ struct Journal::Impl {
     if (!head || head->bytes > file.size() || start + head->bytes + 1 > file.size()) return std::nullopt;
     const std::string bytes = file.read(start, head->bytes + 1);
     if (bytes.back() != '\n') return std::nullopt;
-    if (checksum(head->name, std::string_view(bytes).substr(0, head->bytes)) != head->checksum) return std::nullopt;
+    if (text::crc32_digits(head->name, std::string_view(bytes).substr(0, head->bytes)) != head->checksum)
+      return std::nullopt;
     places[head->name] = {start, head->bytes};
     return start + head->bytes + 1;
   }
@@ -159,12 +114,11 @@ struct Journal::Impl {
     end = first_line().size();
   }
 
-  fs::path outermost_made;  // the topmost folder that was created; empty: none
+  work::MadeFolders made;
   work::File file;
   mutable std::mutex mutex;
   std::map<std::string, Place> places;
   std::uint64_t end = 0;
-  bool removed = false;
 };
 
 Journal::Journal(const fs::path& path, Existing existing) : impl_(std::make_unique<Impl>(path)) {
@@ -210,12 +164,7 @@ std::size_t Journal::size() const {
 
 const fs::path& Journal::path() const { return impl_->file.path(); }
 
-void Journal::remove() {
-  if (impl_->removed) return;
-  std::error_code ignored;
-  fs::remove(path(), ignored);
-  impl_->removed = true;
-}
+void Journal::remove() { impl_->file.remove(); }
 
 fs::path journal_of_folder(const fs::path& folder) {
   fs::path journal = folder.lexically_normal();

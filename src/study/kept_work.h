@@ -23,20 +23,20 @@ class KeptWork {
  public:
   KeptWork(Journal* journal, std::string prefix) : journal_(journal), prefix_(std::move(prefix)) {}
 
-  // Calls read(work::WordReader&) if the journal has the result; otherwise calls compute() and keeps what
-  // write(work::WordWriter&) writes. Safe from any thread.
-  template <class Compute, class Write, class Read>
-  void get(const std::string& name, const Compute& compute, const Write& write, const Read& read) const {
+  // fields(words) lists the fields of the result. Reads them if the journal has the result; otherwise calls compute()
+  // and keeps them. Safe from any thread.
+  template <class Compute, class Fields>
+  void get(const std::string& name, const Compute& compute, const Fields& fields) const {
     if (journal_ == nullptr) return compute();
     const std::string key = prefix_ + '/' + name;
     if (const auto bytes = journal_->find(key)) {
       work::WordReader words(*bytes);
-      read(words);
+      fields(words);
       if (words.complete()) return;
     }
     compute();
     work::WordWriter words;
-    write(words);
+    fields(words);
     journal_->add(key, words.bytes());
   }
 

@@ -5,6 +5,7 @@
 
 #include "kernel/float_environment.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "text/text_lines.h"
 
 namespace exactff::study {
@@ -21,7 +22,7 @@ std::vector<std::string> parts_of(std::string_view text, char separator) {
 }
 
 [[noreturn]] void refuse(const std::string& what, const std::string& why, const std::string& suggestion) {
-  throw InputError(Problem{{}, 0, what, why, suggestion});
+  text::refuse(what, why, suggestion);
 }
 
 // A parsed ladder.

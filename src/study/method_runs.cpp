@@ -9,7 +9,6 @@
 #include "study/method_runs.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
 
@@ -57,18 +56,18 @@ void take_evenly(std::vector<std::size_t>& chosen, const std::vector<std::size_t
 
 class MethodRunner {
  public:
-  MethodRunner(Study& study, const KeptWork& kept, const Hooks& hooks)
+  MethodRunner(const Study& study, const KeptWork& kept, const Hooks& hooks)
       : study_(study), kept_(kept), hooks_(hooks), brightest_(largest_radiosity(study)) {
     for (const Selection& source : request().sources) radiosities_.push_back(scene().source_radiosity(source));
   }
 
-  MethodStudy run() {
+  MethodResults run() {
     result_.ladders = request().methods.ladders;
     result_.receivers = choose_receivers(study_.exact, request().methods.receivers);
     for (std::size_t l = 0; l < result_.ladders.size(); ++l) run_ladder(l);
     drop_idle_ladders();
     for (std::size_t l = 0; l < result_.ladders.size(); ++l) result_.slopes.push_back(slopes_of(l));
-    return std::move(result_);
+    return {std::move(result_), std::move(left_out_)};
   }
 
  private:
@@ -105,7 +104,7 @@ class MethodRunner {
     try {
       prepared.emplace(*ladder.rungs.front().method, request());
     } catch (const InputError& refusal) {
-      study_.left_out.push_back({"method " + ladder.name, text::csv_comment(refusal.what())});
+      left_out_.push_back({"method " + ladder.name, text::csv_comment(refusal.what())});
       return;
     }
     double left = request().methods.budget;
@@ -169,19 +168,9 @@ class MethodRunner {
   void fill(MethodCell& cell, const PreparedMethod& prepared) {
     kept_.get(
         "method/" + short_hash(choice_of(cell).text()), [&] { compute(cell, prepared); },
-        [&](work::WordWriter& words) {
-          words.put(cell.work);
-          for (std::size_t s = 0; s < cell.seeds.size(); ++s) {
-            words.put(cell.values[s]);
-            words.put(cell.radiosity_errors[s]);
-          }
-        },
-        [&](work::WordReader& words) {
-          cell.work = words.number();
-          for (std::size_t s = 0; s < cell.seeds.size(); ++s) {
-            cell.values[s] = words.numbers();
-            cell.radiosity_errors[s] = words.numbers();
-          }
+        [&](auto& words) {
+          words(cell.work);
+          for (std::size_t s = 0; s < cell.seeds.size(); ++s) words(cell.values[s], cell.radiosity_errors[s]);
         });
   }
 
@@ -231,7 +220,7 @@ class MethodRunner {
   void tell_truncation(const Ladder& ladder, std::size_t rung) {
     std::vector<std::string> names;
     for (std::size_t k = rung; k < ladder.rungs.size(); ++k) names.push_back(rung_text(ladder, k));
-    study_.left_out.push_back(
+    left_out_.push_back(
         {"method " + ladder.name +
              (ladder.along.empty() ? std::string() : ", " + ladder.along + ' ' + text::enumerate(names)),
          "its counted work would take more than the budget of " + text::duration(request().methods.budget) +
@@ -259,8 +248,7 @@ class MethodRunner {
                                }
                              });
         },
-        [&](work::WordWriter& words) { words.put(field.radiosity_errors); },
-        [&](work::WordReader& words) { field.radiosity_errors = words.numbers(); });
+        [&](auto& words) { words(field.radiosity_errors); });
     result_.fields.push_back(std::move(field));
   }
 
@@ -276,7 +264,7 @@ class MethodRunner {
     if (cells.size() < 3) return std::nullopt;
     std::vector<double> exponents;
     for (std::size_t seed = 0; seed < cells.front()->seeds.size(); ++seed) {
-      Points points;
+      std::vector<std::pair<double, double>> points;
       for (const MethodCell* cell : cells) {
         std::vector<double> errors;
         append(errors, cell->radiosity_errors[std::min(seed, cell->seeds.size() - 1)],
@@ -288,31 +276,17 @@ class MethodRunner {
       if (exponent) exponents.push_back(*exponent);
     }
     if (exponents.empty()) return std::nullopt;
-    return with_interval(exponents, cells.size());
+    const double middle = mean(exponents), half = mean_half_width(exponents);
+    return Slope{middle, middle - half, middle + half, exponents.size(), cells.size()};
   }
 
-  using Points = std::vector<std::pair<double, double>>;
-
-  static Slope with_interval(const std::vector<double>& exponents, std::size_t rungs) {
-    Slope slope{mean(exponents), 0.0, 0.0, exponents.size(), rungs};
-    double squares = 0.0;
-    for (const double e : exponents) squares += (e - slope.exponent) * (e - slope.exponent);
-    double half = 0.0;
-    if (exponents.size() > 1) {
-      const double n = static_cast<double>(exponents.size());
-      half = boost::math::quantile(boost::math::students_t(n - 1.0), 0.975) * std::sqrt(squares / (n - 1.0) / n);
-    }
-    slope.low = slope.exponent - half;
-    slope.high = slope.exponent + half;
-    return slope;
-  }
-
-  Study& study_;
+  const Study& study_;
   const KeptWork& kept_;
   const Hooks& hooks_;
   const double brightest_;
   std::vector<Rgb> radiosities_;
   MethodStudy result_;
+  std::vector<LeftOut> left_out_;
 };
 
 }  // namespace
@@ -339,7 +313,7 @@ double planned_seconds(const methods::Counters& counters, std::size_t faces) {
   return 1e-9 * nanoseconds;
 }
 
-MethodStudy run_methods(Study& study, const KeptWork& kept, const Hooks& hooks) {
+MethodResults run_methods(const Study& study, const KeptWork& kept, const Hooks& hooks) {
   return MethodRunner(study, kept, hooks).run();
 }
 

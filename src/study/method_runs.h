@@ -6,9 +6,13 @@
 
 namespace exactff::study {
 
+struct MethodResults {
+  MethodStudy methods;
+  std::vector<LeftOut> left_out;
+};
 // Values of every ladder at chosen receivers, and of its middle rung at all receivers. `study` must have its exact
-// values. What is left out is added to it.
-[[nodiscard]] MethodStudy run_methods(Study& study, const KeptWork& kept, const Hooks& hooks);
+// values.
+[[nodiscard]] MethodResults run_methods(const Study& study, const KeptWork& kept, const Hooks& hooks);
 
 // The receivers that a study examines in detail: evenly spaced among those that see the source partly, and for one
 // third among those that see all of it; other receivers if there are too few. Ascending.

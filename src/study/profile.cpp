@@ -41,7 +41,7 @@ std::optional<Line> line_through_penumbra(const Study& study) {
 
 class Profiler {
  public:
-  Profiler(Study& study, std::span<const ExactSource> sources, const Hooks& hooks)
+  Profiler(const Study& study, std::span<const ExactSource> sources, const Hooks& hooks)
       : study_(study), sources_(sources), hooks_(hooks) {
     for (const Selection& source : request().sources) radiosities_.push_back(scene().source_radiosity(source));
   }
@@ -140,7 +140,7 @@ class Profiler {
     profile_.others.push_back(std::move(curve));
   }
 
-  Study& study_;
+  const Study& study_;
   std::span<const ExactSource> sources_;
   const Hooks& hooks_;
   std::vector<Rgb> radiosities_;
@@ -150,12 +150,12 @@ class Profiler {
 
 }  // namespace
 
-void find_profile(Study& study, std::span<const ExactSource> sources, const Hooks& hooks) {
+std::variant<Profile, LeftOut> find_profile(const Study& study, std::span<const ExactSource> sources,
+                                            const Hooks& hooks) {
   const auto line = line_through_penumbra(study);
-  if (line) study.profile = Profiler(study, sources, hooks).along(*line);
-  if (study.profile) return;
-  study.left_out.push_back(
-      {"penumbra profile", "the receivers are not one grid on one quadrilateral on which some see a source partly"});
+  if (auto profile = line ? Profiler(study, sources, hooks).along(*line) : std::nullopt) return *std::move(profile);
+  return LeftOut{"penumbra profile",
+                 "the receivers are not one grid on one quadrilateral on which some see a source partly"};
 }
 
 }  // namespace exactff::study

@@ -2,13 +2,15 @@
 #pragma once
 
 #include <span>
+#include <variant>
 
 #include "exactff/study.h"
 
 namespace exactff::study {
 
-// Fills Study::profile if the receivers are a grid on a quadrilateral and some see the source partly; otherwise records
-// the reason. The line is the row of the grid with the most such receivers.
-void find_profile(Study& study, std::span<const ExactSource> sources, const Hooks& hooks);
+// Requires exact values and ladders. If the receivers are not a grid on a quadrilateral, or none sees the source
+// partly, says so instead. The line is the row of the grid with the most such receivers.
+[[nodiscard]] std::variant<Profile, LeftOut> find_profile(const Study& study, std::span<const ExactSource> sources,
+                                                          const Hooks& hooks);
 
 }  // namespace exactff::study

@@ -10,6 +10,7 @@
 //   7. Compute statistics.
 // Threads share the receivers. The place of a result is its index, so nothing depends on the number of threads.
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 #include "exactff/study.h"
@@ -28,6 +29,7 @@
 #include "study/sweep_budget.h"
 #include "study/timing.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "work/parallel.h"
 
 namespace exactff::study {
@@ -36,11 +38,8 @@ namespace {
 void complete(Request& request) {
   require_scene(request.scene);
   if (request.receivers.empty()) {
-    throw InputError(Problem{{},
-                             0,
-                             "there are no receivers in " + request.receivers_name,
-                             "a comparison needs at least one receiver",
-                             "use a finer grid or another patch"});
+    text::refuse("there are no receivers in " + request.receivers_name, "a comparison needs at least one receiver",
+                 "use a finer grid or another patch");
   }
   if (request.sources.empty()) request.sources = request.scene->emitters();
   if (request.sources.empty()) {
@@ -74,49 +73,25 @@ double mean_face_area(const Request& request) {
   return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
-void put(work::WordWriter& words, const ExactRow& row) {
-  for (const ExactTerm& term : row.terms) {
-    for (const double v : {term.value, term.lower, term.upper, term.visible_fraction}) words.put(v);
-    words.put(static_cast<std::uint64_t>(term.status));
-    words.put(static_cast<std::uint64_t>(term.sight));
-  }
-  for (const double v : {row.form_factor, row.radiosity.r, row.radiosity.g, row.radiosity.b, row.visible_fraction}) {
-    words.put(v);
-  }
-  words.put(static_cast<std::uint64_t>(row.sight));
-  words.put(std::uint64_t{row.certified});
-  words.put(std::uint64_t{row.sampled});
-}
-
 constexpr std::uint64_t kStatuses = 4, kSights = 4;
 
-void take(work::WordReader& words, ExactRow& row, std::size_t sources) {
-  row.terms.assign(sources, {});
+template <class Words>
+void fields(Words& words, ExactRow& row) {
   for (ExactTerm& term : row.terms) {
-    for (double* v : {&term.value, &term.lower, &term.upper, &term.visible_fraction}) *v = words.number();
-    term.status = static_cast<Status>(words.below(kStatuses));
-    term.sight = static_cast<Sight>(words.below(kSights));
+    words(term.value, term.lower, term.upper, term.visible_fraction);
+    words.choice(term.status, kStatuses);
+    words.choice(term.sight, kSights);
   }
-  for (double* v : {&row.form_factor, &row.radiosity.r, &row.radiosity.g, &row.radiosity.b, &row.visible_fraction}) {
-    *v = words.number();
-  }
-  row.sight = static_cast<Sight>(words.below(kSights));
-  row.certified = words.word() != 0;
-  row.sampled = words.word() != 0;
+  words(row.form_factor, row.radiosity.r, row.radiosity.g, row.radiosity.b, row.visible_fraction);
+  words.choice(row.sight, kSights);
+  words(row.certified, row.sampled);
 }
 
-void put(work::WordWriter& words, const SampleRow& row) {
-  for (const double v : {row.form_factor, row.error, row.radiosity_error, row.silent_error}) words.put(v);
-  for (const std::uint64_t n : {row.leaves, row.rays, row.shaft_tests}) words.put(n);
-  for (const std::uint64_t n : row.leaves_by_reason) words.put(n);
-  for (const std::uint64_t n : {row.silent_leaves, row.wrong_leaves}) words.put(n);
-}
-
-void take(work::WordReader& words, SampleRow& row) {
-  for (double* v : {&row.form_factor, &row.error, &row.radiosity_error, &row.silent_error}) *v = words.number();
-  for (std::uint64_t* n : {&row.leaves, &row.rays, &row.shaft_tests}) *n = words.word();
-  for (std::uint64_t& n : row.leaves_by_reason) n = words.word();
-  for (std::uint64_t* n : {&row.silent_leaves, &row.wrong_leaves}) *n = words.word();
+template <class Words>
+void fields(Words& words, SampleRow& row) {
+  words(row.form_factor, row.error, row.radiosity_error, row.silent_error, row.leaves, row.rays, row.shaft_tests);
+  for (std::uint64_t& leaves : row.leaves_by_reason) words(leaves);
+  words(row.silent_leaves, row.wrong_leaves);
 }
 
 // Everything that the exact values depend on.
@@ -155,8 +130,8 @@ class Runner {
     choose_settings();
     sample();
     if (request().methods.enabled) look_closer();
-    measure_times(study_, hooks_);
-    summarise_all();
+    take_times(measure_times(study_, hooks_));
+    summarise();
     return std::move(study_);
   }
 
@@ -196,14 +171,14 @@ class Runner {
     const KeptWork kept(journal_, request_hash_);
     work::parallel_for(count, threads(), "exact values", hooks_, [&](std::size_t i) {
       ExactRow& row = study_.exact[i];
+      row.terms.resize(sources_.size());
       kept.get(
-          "exact/" + std::to_string(i), [&] { find_exact_row(i); }, [&](work::WordWriter& words) { put(words, row); },
-          [&](work::WordReader& words) { take(words, row, sources_.size()); });
+          "exact/" + std::to_string(i), [&] { row = exact_row(request().receivers[i]); },
+          [&](auto& words) { fields(words, row); });
     });
   }
 
-  void find_exact_row(std::size_t i) {
-    const Receiver& receiver = request().receivers[i];
+  [[nodiscard]] ExactRow exact_row(const Receiver& receiver) const {
     ExactRow row;
     Enclosure sum;
     Rgb arriving;
@@ -227,7 +202,7 @@ class Runner {
     row.form_factor = sources_.size() == 1 ? row.terms.front().value : nearest(sum);
     row.radiosity = times(scene().receiver_reflectance(receiver.on), arriving);
     row.visible_fraction = sources_.size() == 1 ? row.terms.front().visible_fraction : visible / whole;
-    study_.exact[i] = std::move(row);
+    return row;
   }
 
   static double nearest(const Enclosure& sum) { return sum.nearest().value_or(0.5 * sum.lower() + 0.5 * sum.upper()); }
@@ -244,26 +219,44 @@ class Runner {
     const Work work{study_.largest_rho_b, mean_face_area(request()), anything_sampled()};
     Sweeps& sweeps = study_.request.sweeps;
     study::complete(sweeps, work);
-    study_.left_out = leave_out(sweeps, work);
-    Plan plan = combine(sweeps);
+    leave_out(study::leave_out(sweeps, work));
+    SettingPlan plan = combine(sweeps);
     study_.settings = std::move(plan.settings);
     study_.base = plan.base;
     study_.full_product = plan.full_product;
-    keep_to_budget(study_, sources_, *solver_, sampled_sources_);
+    leave_out_settings(over_budget(study_, sources_, *solver_, sampled_sources_));
     MethodSweep& methods = study_.request.methods;
     if (!methods.enabled) return;
     if (methods.ladders.empty()) methods.ladders = default_ladders(study_.largest_rho_b);
-    for (LeftOut& item : leave_out(methods.ladders, {anything_seen(), work.anything_sampled, work.largest_rho_b})) {
-      study_.left_out.push_back(std::move(item));
+    leave_out(study::leave_out(methods.ladders, {anything_seen(), work.anything_sampled, work.largest_rho_b}));
+  }
+
+  void leave_out(std::vector<LeftOut> items) { std::ranges::move(items, std::back_inserter(study_.left_out)); }
+
+  void leave_out_settings(const std::vector<std::size_t>& dropped) {
+    if (dropped.empty()) return;
+    std::vector<std::string> names;
+    for (const std::size_t k : dropped) names.push_back(setting_name(study_, k));
+    leave_out(
+        {{text::counted(names.size(), "setting") + " of the ray-sampled algorithm (" + text::enumerate(names) + ')',
+          "the counted work of all settings would take more than the budget of " +
+              text::duration(request().sweep_budget) + " for this scene (--sweep-budget)"}});
+    std::vector<AdaptiveOptions> kept;
+    std::size_t base = 0;
+    for (std::size_t k = 0; k < study_.settings.size(); ++k) {
+      if (k == study_.base) base = kept.size();
+      if (std::ranges::find(dropped, k) == dropped.end()) kept.push_back(study_.settings[k]);
     }
+    study_.base = base;
+    study_.settings = std::move(kept);
   }
 
   void choose_judged() {
     constexpr std::size_t kLargeScene = 300, kJudged = 32;
     if (scene().faces().size() > kLargeScene) {
       study_.judged = choose_receivers(study_.exact, kJudged);
-      study_.left_out.push_back({"silent errors at all but " + text::counted(study_.judged.size(), "receiver"),
-                                 "the exact visible region of so many faces takes long to draw"});
+      leave_out({{"silent errors at all but " + text::counted(study_.judged.size(), "receiver"),
+                  "the exact visible region of so many faces takes long to draw"}});
     } else {
       for (std::size_t i = 0; i < study_.exact.size(); ++i) study_.judged.push_back(i);
     }
@@ -277,11 +270,8 @@ class Runner {
     work::parallel_for(count, threads(), "sampling", hooks_, [&](std::size_t i) {
       kept.get(
           "samples/" + std::to_string(i), [&] { sample_receiver(i); },
-          [&](work::WordWriter& words) {
-            for (const auto& of_setting : study_.samples) put(words, of_setting[i]);
-          },
-          [&](work::WordReader& words) {
-            for (auto& of_setting : study_.samples) take(words, of_setting[i]);
+          [&](auto& words) {
+            for (auto& of_setting : study_.samples) fields(words, of_setting[i]);
           });
     });
   }
@@ -339,20 +329,46 @@ class Runner {
     const MethodSweep& methods = request().methods;
     const KeptWork kept(journal_,
                         request_hash_ + '-' + std::to_string(methods.seeds) + '-' + std::to_string(methods.receivers));
-    study_.methods = run_methods(study_, kept, hooks_);
-    find_shadow_edges(study_, sources_, hooks_);
-    find_profile(study_, sources_, hooks_);
+    MethodResults found = run_methods(study_, kept, hooks_);
+    study_.methods = std::move(found.methods);
+    leave_out(std::move(found.left_out));
+    auto edges = find_shadow_edges(request(), sources_, hooks_);
+    if (auto* why = std::get_if<LeftOut>(&edges)) {
+      leave_out({std::move(*why)});
+    } else {
+      study_.edge_distance = std::move(std::get<ShadowEdges>(edges).distance);
+      study_.edge_resolution = std::get<ShadowEdges>(edges).resolution;
+    }
+    auto profile = find_profile(study_, sources_, hooks_);
+    if (auto* why = std::get_if<LeftOut>(&profile)) {
+      leave_out({std::move(*why)});
+    } else {
+      study_.profile = std::move(std::get<Profile>(profile));
+    }
   }
 
-  void summarise_all() {
+  void take_times(Times times) {
+    const std::size_t count = study_.exact.size();
+    for (std::size_t i = 0; i < count; ++i) study_.exact[i].seconds = times.exact[i];
+    study_.exact_time = summarise_times(times.exact, study_.exact);
+    for (std::size_t k = 0; k < times.samples.size(); ++k) {
+      for (std::size_t i = 0; i < count; ++i) study_.samples[k][i].seconds = times.samples[k][i];
+      study_.times.push_back(summarise_times(times.samples[k], study_.exact));
+    }
+    for (std::size_t c = 0; c < times.cells.size(); ++c) {
+      study_.methods.cells[c].seconds = times.cells[c].all;
+      study_.methods.cells[c].seconds_partly = times.cells[c].partly;
+    }
+    study_.timed = std::move(times.receivers);
+    study_.methods.setup_seconds = std::move(times.method_setup);
+    study_.exact_setup_seconds = times.exact_setup;
+    study_.ray_setup_seconds = times.ray_setup;
+  }
+
+  void summarise() {
     for (const ExactRow& row : study_.exact) ++study_.receivers_by_sight[static_cast<std::size_t>(row.sight)];
-    std::vector<double> seconds;
-    for (const ExactRow& row : study_.exact) seconds.push_back(row.seconds);
-    study_.exact_time = summarise_times(seconds, study_.exact);
     for (std::size_t k = 0; k < study_.settings.size(); ++k) {
-      study_.summaries.push_back(summarise(study_.samples[k], study_, study_.settings[k].eps_b));
-      for (std::size_t i = 0; i < seconds.size(); ++i) seconds[i] = study_.samples[k][i].seconds;
-      study_.times.push_back(summarise_times(seconds, study_.exact));
+      study_.summaries.push_back(study::summarise(study_.samples[k], study_, study_.settings[k].eps_b));
     }
   }
 

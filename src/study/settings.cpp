@@ -11,10 +11,12 @@
 #include "study/settings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
 #include "text/phrases.h"
+#include "text/refuse.h"
 
 namespace exactff::study {
 namespace {
@@ -40,9 +42,7 @@ std::vector<double> powers_of_ten(double unit, int first, int last) {
   return values;
 }
 
-[[noreturn]] void refuse(std::string what, std::string why) {
-  throw InputError(Problem{{}, 0, std::move(what), std::move(why), {}});
-}
+[[noreturn]] void refuse(std::string what, std::string why) { text::refuse(std::move(what), std::move(why), {}); }
 
 void check_ranges(const Sweeps& sweeps) {
   for (double eps_b : sweeps.eps_b) {
@@ -207,36 +207,24 @@ AdaptiveOptions without(AdaptiveOptions setting, Parameter parameter) {
 
 }  // namespace
 
-std::string_view name_of(SamplePattern pattern) {
-  switch (pattern) {
-    case SamplePattern::kCentre:
-      return "centre";
-    case SamplePattern::kRegular:
-      return "regular";
-    case SamplePattern::kJittered:
-      return "jittered";
-    case SamplePattern::kLowDiscrepancy:
-      return "low-discrepancy";
-  }
-  return {};
+namespace {
+
+// In the order of the enumerators.
+constexpr std::array<std::string_view, 4> kPatternNames = {"centre", "regular", "jittered", "low-discrepancy"};
+constexpr std::array<std::string_view, 2> kVariantNames = {"mended", "literal"};
+
+template <class Enum>
+std::optional<Enum> named(std::span<const std::string_view> names, std::string_view name) {
+  const auto found = std::ranges::find(names, name);
+  return found == names.end() ? std::nullopt : std::optional(static_cast<Enum>(found - names.begin()));
 }
 
-std::string_view name_of(Variant variant) { return variant == Variant::kMended ? "mended" : "literal"; }
+}  // namespace
 
-std::optional<SamplePattern> pattern_named(std::string_view name) {
-  for (SamplePattern pattern :
-       {SamplePattern::kCentre, SamplePattern::kRegular, SamplePattern::kJittered, SamplePattern::kLowDiscrepancy}) {
-    if (name_of(pattern) == name) return pattern;
-  }
-  return std::nullopt;
-}
-
-std::optional<Variant> variant_named(std::string_view name) {
-  for (Variant variant : {Variant::kMended, Variant::kLiteral}) {
-    if (name_of(variant) == name) return variant;
-  }
-  return std::nullopt;
-}
+std::string_view name_of(SamplePattern pattern) { return kPatternNames[static_cast<std::size_t>(pattern)]; }
+std::string_view name_of(Variant variant) { return kVariantNames[static_cast<std::size_t>(variant)]; }
+std::optional<SamplePattern> pattern_named(std::string_view name) { return named<SamplePattern>(kPatternNames, name); }
+std::optional<Variant> variant_named(std::string_view name) { return named<Variant>(kVariantNames, name); }
 
 void complete(Sweeps& sweeps, const Work& work) {
   const double unit = work.largest_rho_b > 0.0 ? work.largest_rho_b : 1.0;
@@ -276,10 +264,10 @@ std::vector<LeftOut> leave_out(Sweeps& sweeps, const Work& work) {
   return left_out;
 }
 
-Plan combine(const Sweeps& sweeps) {
+SettingPlan combine(const Sweeps& sweeps) {
   const AdaptiveOptions base = base_of(sweeps);
   Collector settings(sweeps);
-  Plan plan;
+  SettingPlan plan;
   plan.full_product = product_size(sweeps) <= kFullProductLimit;
   if (plan.full_product) {
     add_full_product(settings, sweeps);

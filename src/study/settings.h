@@ -8,7 +8,7 @@
 
 namespace exactff::study {
 
-struct Plan {
+struct SettingPlan {
   std::vector<AdaptiveOptions> settings;
   std::size_t base = 0;
   bool full_product = false;
@@ -28,7 +28,7 @@ void complete(Sweeps& sweeps, const Work& work);
 [[nodiscard]] std::vector<LeftOut> leave_out(Sweeps& sweeps, const Work& work);
 
 // Requires completed sweeps. No setting occurs twice. The order depends on the lists alone.
-[[nodiscard]] Plan combine(const Sweeps& sweeps);
+[[nodiscard]] SettingPlan combine(const Sweeps& sweeps);
 
 // Whether the two agree in everything that can change a value.
 [[nodiscard]] bool same_setting(const AdaptiveOptions& a, const AdaptiveOptions& b);

@@ -28,8 +28,7 @@ double distance(const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y
 
 class Raster {
  public:
-  Raster(const Study& study, const ReceiverGrid& grid) : study_(study) {
-    const Request& request = study.request;
+  Raster(const Request& request, const ReceiverGrid& grid) : request_(request) {
     const bool large = request.scene->faces().size() > kLargeScene;
     const int cells = grid.size.u * grid.size.v;
     const int finer = static_cast<int>(std::sqrt((large ? kRasterCellsOfLargeScenes : kRasterCells) / cells));
@@ -45,8 +44,8 @@ class Raster {
 
   void classify(std::span<const ExactSource> sources, const Hooks& hooks) {
     sights_.resize(receivers_.size());
-    work::parallel_for(receivers_.size(), study_.request.threads, "shadow edges", hooks,
-                       [&](std::size_t i) { sights_[i] = sights(*study_.request.scene, receivers_[i], sources); });
+    work::parallel_for(receivers_.size(), request_.threads, "shadow edges", hooks,
+                       [&](std::size_t i) { sights_[i] = sights(*request_.scene, receivers_[i], sources); });
   }
 
   [[nodiscard]] std::vector<Point> edges() const {
@@ -78,7 +77,7 @@ class Raster {
     found.emplace_back(0.5 * (p.x + q.x), 0.5 * (p.y + q.y), 0.5 * (p.z + q.z));
   }
 
-  const Study& study_;
+  const Request& request_;
   GridSize size_;
   std::vector<Receiver> receivers_;
   std::vector<std::vector<Sight>> sights_;
@@ -113,22 +112,20 @@ std::vector<Sight> sights(const Scene& scene, const Receiver& receiver, std::spa
   return result;
 }
 
-void find_shadow_edges(Study& study, std::span<const ExactSource> sources, const Hooks& hooks) {
-  const auto leave_out = [&](const char* why) {
-    study.left_out.push_back({"error by distance to the nearest shadow edge", why});
-  };
-  const auto grid = grid_of(study.request.receivers);
+std::variant<ShadowEdges, LeftOut> find_shadow_edges(const Request& request, std::span<const ExactSource> sources,
+                                                     const Hooks& hooks) {
+  const auto leave_out = [](const char* why) { return LeftOut{"error by distance to the nearest shadow edge", why}; };
+  const auto grid = grid_of(request.receivers);
   if (!grid) return leave_out("the receivers are not one grid on one face");
-  Raster raster(study, *grid);
+  Raster raster(request, *grid);
   if (!raster.complete()) return leave_out("the face is no quadrilateral");
   raster.classify(sources, hooks);
   const std::vector<Point> edges = raster.edges();
   if (edges.empty()) return leave_out("what is visible is of one kind all over the face");
   const Tree tree(edges);
-  for (const Receiver& receiver : study.request.receivers) {
-    study.edge_distance.push_back(nearest_distance(tree, receiver.point));
-  }
-  study.edge_resolution = raster.spacing();
+  ShadowEdges found{{}, raster.spacing()};
+  for (const Receiver& receiver : request.receivers) found.distance.push_back(nearest_distance(tree, receiver.point));
+  return found;
 }
 
 }  // namespace exactff::study

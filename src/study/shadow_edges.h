@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <variant>
 
 #include "exactff/study.h"
 
@@ -20,7 +21,14 @@ struct ReceiverGrid {
 [[nodiscard]] std::vector<Sight> sights(const Scene& scene, const Receiver& receiver,
                                         std::span<const ExactSource> sources);
 
-// Fills Study::edge_distance from a raster finer than the grid of receivers; otherwise records the reason.
-void find_shadow_edges(Study& study, std::span<const ExactSource> sources, const Hooks& hooks);
+// See Study::edge_distance.
+struct ShadowEdges {
+  std::vector<double> distance;
+  double resolution = 0.0;
+};
+// From a raster finer than the grid of receivers; or why there are none.
+[[nodiscard]] std::variant<ShadowEdges, LeftOut> find_shadow_edges(const Request& request,
+                                                                   std::span<const ExactSource> sources,
+                                                                   const Hooks& hooks);
 
 }  // namespace exactff::study

@@ -1,6 +1,7 @@
 #include "study/sight.h"
 
 #include <algorithm>
+#include <array>
 
 namespace exactff::study {
 namespace {
@@ -43,17 +44,8 @@ bool needs_rays(const FormFactor& result) {
 }
 
 std::string_view name_of(Sight sight) {
-  switch (sight) {
-    case Sight::kNothing:
-      return "faces away";
-    case Sight::kHidden:
-      return "hidden";
-    case Sight::kPartly:
-      return "partly hidden";
-    case Sight::kVisible:
-      return "visible";
-  }
-  return {};
+  constexpr std::array<std::string_view, 4> kNames = {"faces away", "hidden", "partly hidden", "visible"};
+  return kNames[static_cast<std::size_t>(sight)];
 }
 
 }  // namespace exactff::study

@@ -1,6 +1,7 @@
 #include "study/statistics.h"
 
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
 #include "kernel/expect.h"
@@ -65,6 +66,14 @@ double mean(std::span<const double> values) {
   double sum = 0.0;
   for (double v : values) sum += v;
   return sum / static_cast<double>(values.size());
+}
+
+double mean_half_width(std::span<const double> values) {
+  if (values.size() < 2) return 0.0;
+  const double middle = mean(values), n = static_cast<double>(values.size());
+  double squares = 0.0;
+  for (const double v : values) squares += (v - middle) * (v - middle);
+  return boost::math::quantile(boost::math::students_t(n - 1.0), 0.975) * std::sqrt(squares / (n - 1.0) / n);
 }
 
 std::optional<double> fitted_slope(std::span<const std::pair<double, double>> points) {

@@ -19,6 +19,8 @@ namespace exactff::study {
 // The middle value, or the mean of the two middle values; 0 for an empty list.
 [[nodiscard]] double median(std::vector<double> values);
 [[nodiscard]] double mean(std::span<const double> values);
+// Half the width of the 95 % confidence interval of the mean, by Student's t; 0 for fewer than two values.
+[[nodiscard]] double mean_half_width(std::span<const double> values);
 
 // The exponent p of the least-squares line log y = p log x + c over the points with positive x and y. Nothing if there
 // are fewer than two such points with different x.

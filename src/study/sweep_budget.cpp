@@ -19,7 +19,7 @@ double most_seconds_of_base(const Study& study) { return std::max(10.0, kMostBud
 
 class SweepPlan {
  public:
-  SweepPlan(Study& study, std::span<const ExactSource> sources, const AdaptiveSolver& solver,
+  SweepPlan(const Study& study, std::span<const ExactSource> sources, const AdaptiveSolver& solver,
             std::span<const AdaptiveSource> sampled_sources)
       : study_(study), sources_(sources), solver_(solver), sampled_sources_(sampled_sources) {}
 
@@ -66,7 +66,7 @@ class SweepPlan {
     return k == study_.base ? most_seconds_of_base(study_) : kMostBudgets * study_.request.sweep_budget;
   }
 
-  Study& study_;
+  const Study& study_;
   std::span<const ExactSource> sources_;
   const AdaptiveSolver& solver_;
   std::span<const AdaptiveSource> sampled_sources_;
@@ -84,36 +84,22 @@ void require_possible(const Study& study, double base_seconds) {
 
 }  // namespace
 
-void keep_to_budget(Study& study, std::span<const ExactSource> sources, const AdaptiveSolver& solver,
-                    std::span<const AdaptiveSource> sampled_sources) {
+std::vector<std::size_t> over_budget(const Study& study, std::span<const ExactSource> sources,
+                                     const AdaptiveSolver& solver, std::span<const AdaptiveSource> sampled_sources) {
   const std::vector<double> costs = SweepPlan(study, sources, solver, sampled_sources).costs();
   require_possible(study, costs[study.base]);
   std::vector<std::size_t> order(costs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return costs[a] > costs[b]; });
   double total = std::accumulate(costs.begin(), costs.end(), 0.0);
-  std::vector<bool> dropped(costs.size(), false);
-  std::vector<std::string> names;
+  std::vector<std::size_t> dropped;
   for (const std::size_t k : order) {
     if (total <= study.request.sweep_budget) break;
     if (k == study.base) continue;
     total -= costs[k];
-    dropped[k] = true;
-    names.push_back(setting_name(study, k));
+    dropped.push_back(k);
   }
-  if (names.empty()) return;
-  study.left_out.push_back(
-      {text::counted(names.size(), "setting") + " of the ray-sampled algorithm (" + text::enumerate(names) + ')',
-       "the counted work of all settings would take more than the budget of " +
-           text::duration(study.request.sweep_budget) + " for this scene (--sweep-budget)"});
-  std::vector<AdaptiveOptions> kept;
-  std::size_t base = 0;
-  for (std::size_t k = 0; k < dropped.size(); ++k) {
-    if (k == study.base) base = kept.size();
-    if (!dropped[k]) kept.push_back(study.settings[k]);
-  }
-  study.base = base;
-  study.settings = std::move(kept);
+  return dropped;
 }
 
 }  // namespace exactff::study

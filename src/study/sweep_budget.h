@@ -7,10 +7,11 @@
 
 namespace exactff::study {
 
-// Leaves out the settings with the most planned work, but not the base, until the rest fits into Request::sweep_budget;
-// records which. Work is counted at a few receivers and multiplied by fixed prices, so that the choice depends on the
-// request alone.
-void keep_to_budget(Study& study, std::span<const ExactSource> sources, const AdaptiveSolver& solver,
-                    std::span<const AdaptiveSource> sampled_sources);
+// The settings to leave out: those with the most planned work, but not the base, until the rest fits into
+// Request::sweep_budget. In order of decreasing work. Requires exact values and settings. Work is counted at a few
+// receivers and multiplied by fixed prices, so that the choice depends on the request alone.
+[[nodiscard]] std::vector<std::size_t> over_budget(const Study& study, std::span<const ExactSource> sources,
+                                                   const AdaptiveSolver& solver,
+                                                   std::span<const AdaptiveSource> sampled_sources);
 
 }  // namespace exactff::study

@@ -1,7 +1,6 @@
 #include "study/timing.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <numeric>
@@ -11,48 +10,35 @@
 #include "study/radiosity.h"
 #include "study/statistics.h"
 #include "work/parallel.h"
+#include "work/stopwatch.h"
 
 namespace exactff::study {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr double kLongCallSeconds = 0.02;  // a first call this long needs no warm-up
 constexpr std::size_t kMostTimed = 256;    // receivers
 constexpr std::size_t kFewestTimed = 12;
 constexpr std::size_t kFewestInCell = 4;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-template <class Call>
-double timed(const Call& call) {
-  const auto start = Clock::now();
-  call();
-  return seconds_since(start);
-}
-
 template <class Call>
 double typical_time(const Call& call) {
-  const double first = timed(call);
-  if (first >= kLongCallSeconds) return first;
-  std::array<double, 3> times{};
-  for (double& t : times) t = timed(call);
-  std::sort(times.begin(), times.end());
-  return times[1];
+  const double first = work::seconds_of(call);
+  return first >= kLongCallSeconds ? first : work::median_seconds(call, 3, std::numeric_limits<double>::infinity());
 }
 
 class Stopwatch {
  public:
-  Stopwatch(Study& study, const Hooks& hooks) : study_(study), hooks_(hooks) {}
+  Stopwatch(const Study& study, const Hooks& hooks) : study_(study), hooks_(hooks) {}
 
-  void run() {
+  Times run() {
     total_ = 1 + study_.settings.size() + study_.methods.cells.size();
     prepare();
     choose();
     time_exact();
     for (std::size_t k = 0; k < study_.settings.size(); ++k) time_setting(k);
-    study_.ray_setup_seconds = solver_->build_seconds();  // built at the first long candidate list
+    times_.ray_setup = solver_->build_seconds();  // built at the first long candidate list
     time_methods();
+    return std::move(times_);
   }
 
  private:
@@ -60,7 +46,7 @@ class Stopwatch {
   [[nodiscard]] const Scene& scene() const { return *request().scene; }
 
   void prepare() {
-    study_.exact_setup_seconds = timed([&] {
+    times_.exact_setup = work::seconds_of([&] {
       for (const Selection& source : request().sources) sources_.emplace_back(scene(), source);
     });
     solver_.emplace(scene());
@@ -91,13 +77,14 @@ class Stopwatch {
   // are any.
   template <class Measure>
   void spend(double seconds, std::size_t fewest, const std::vector<std::size_t>& order, const Measure& measure) {
-    const auto start = Clock::now();
+    const auto start = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> limit(seconds);
     std::size_t done = 0, partly = 0;
     const std::size_t all_partly = static_cast<std::size_t>(std::count_if(
         order.begin(), order.end(), [&](std::size_t i) { return study_.exact[i].sight == Sight::kPartly; }));
     for (const std::size_t i : order) {
       const bool is_partly = study_.exact[i].sight == Sight::kPartly;
-      const bool spent = seconds_since(start) > seconds && done >= fewest;
+      const bool spent = std::chrono::steady_clock::now() - start > limit && done >= fewest;
       if (spent && partly >= std::min<std::size_t>(3, all_partly)) break;
       if (spent && !is_partly) continue;
       measure(i);
@@ -108,34 +95,36 @@ class Stopwatch {
 
   void time_exact() {
     FormFactor result;
+    times_.exact.assign(study_.exact.size(), kNotTimed);
     spend(4.0 * request().seconds_for_a_time, kFewestTimed, order_, [&](std::size_t i) {
-      study_.timed.push_back(i);
+      times_.receivers.push_back(i);
       const ExactOptions options{.engine = request().engine};
       double sum = 0.0;
       for (const ExactSource& source : sources_) {
         sum += typical_time([&] { exact_form_factor(scene(), request().receivers[i], source, options, result); });
       }
-      study_.exact[i].seconds = sum;
+      times_.exact[i] = sum;
     });
-    std::sort(study_.timed.begin(), study_.timed.end());
+    std::sort(times_.receivers.begin(), times_.receivers.end());
     report();
   }
 
   void time_setting(std::size_t k) {
+    std::vector<double>& seconds = times_.samples.emplace_back(study_.exact.size(), kNotTimed);
     spend(request().seconds_for_a_time, kFewestTimed, order_, [&](std::size_t i) {
       const Receiver& receiver = request().receivers[i];
-      SampleRow& row = study_.samples[k][i];
       double form_factor = 0.0;
-      row.seconds = 0.0;
+      seconds[i] = 0.0;
       for (std::size_t s = 0; s < sampled_sources_.size(); ++s) {
         const double rho_b = largest_rho_b(scene(), receiver, radiosities_[s]);
         double value = 0.0;
-        row.seconds += typical_time([&] {
+        seconds[i] += typical_time([&] {
           value = solver_->form_factor(receiver, sampled_sources_[s], rho_b, study_.settings[k]).form_factor;
         });
         form_factor += value;
       }
-      if (form_factor != row.form_factor && !(std::isnan(form_factor) && std::isnan(row.form_factor))) {
+      const double before = study_.samples[k][i].form_factor;
+      if (form_factor != before && !(std::isnan(form_factor) && std::isnan(before))) {
         throw std::logic_error("the adaptive algorithm gave two results for one receiver and setting");
       }
     });
@@ -143,20 +132,20 @@ class Stopwatch {
   }
 
   void time_methods() {
-    MethodStudy& methods = study_.methods;
+    const MethodStudy& methods = study_.methods;
     std::vector<std::size_t> order;
     for (const std::size_t k : spread_order(methods.receivers.size())) order.push_back(methods.receivers[k]);
     for (std::size_t first = 0, l = 0; l < methods.ladders.size(); ++l) {
       const methods::Choice& choice = methods.ladders[l].rungs.front();
       std::optional<PreparedMethod> prepared;
-      methods.setup_seconds.push_back(timed([&] { prepared.emplace(*choice.method, request()); }));
+      times_.method_setup.push_back(work::seconds_of([&] { prepared.emplace(*choice.method, request()); }));
       for (; first < methods.cells.size() && methods.cells[first].ladder == l; ++first) {
         time_cell(methods.cells[first], *prepared, order);
       }
     }
   }
 
-  void time_cell(MethodCell& cell, const PreparedMethod& prepared, const std::vector<std::size_t>& order) {
+  void time_cell(const MethodCell& cell, const PreparedMethod& prepared, const std::vector<std::size_t>& order) {
     const methods::Choice& choice = study_.methods.ladders[cell.ladder].rungs[cell.rung];
     const auto evaluator = prepared.scene->configure(seeded(choice, cell.seeds.front()));
     std::vector<methods::Estimate> estimates(prepared.sources.size());
@@ -168,13 +157,14 @@ class Stopwatch {
       }));
       if (study_.exact[i].sight == Sight::kPartly) partly.push_back(all.back());
     });
-    if (!all.empty()) cell.seconds = mean(all);
-    if (!partly.empty()) cell.seconds_partly = mean(partly);
+    const auto mean_of = [](const std::vector<double>& list) { return list.empty() ? kNotTimed : mean(list); };
+    times_.cells.push_back({mean_of(all), mean_of(partly)});
     report();
   }
 
-  Study& study_;
+  const Study& study_;
   const Hooks& hooks_;
+  Times times_;
   std::vector<ExactSource> sources_;
   std::optional<AdaptiveSolver> solver_;
   std::vector<AdaptiveSource> sampled_sources_;
@@ -197,6 +187,6 @@ std::vector<std::size_t> spread_order(std::size_t count) {
   return order;
 }
 
-void measure_times(Study& study, const Hooks& hooks) { Stopwatch(study, hooks).run(); }
+Times measure_times(const Study& study, const Hooks& hooks) { return Stopwatch(study, hooks).run(); }
 
 }  // namespace exactff::study

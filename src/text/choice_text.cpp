@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "text/nearest_names.h"
+#include "text/refuse.h"
 #include "text/text_lines.h"
 
 namespace exactff::text {
@@ -22,10 +23,10 @@ void read_assignment(std::string_view text, Settings& settings, std::vector<std:
   std::string_view value = text;
   const std::string name(take_until(value, '='));
   if (text.find('=') == std::string_view::npos) {
-    throw InputError(Problem{{}, 0, "'" + std::string(text) + "' has no value", "settings are written NAME=VALUE", {}});
+    refuse("'" + std::string(text) + "' has no value", "settings are written NAME=VALUE", {});
   }
   if (std::find(seen.begin(), seen.end(), name) != seen.end()) {
-    throw InputError(Problem{{}, 0, "setting '" + name + "' is given twice", "a setting has one value", "remove one"});
+    refuse("setting '" + name + "' is given twice", "a setting has one value", "remove one");
   }
   seen.push_back(name);
   settings.set_text(name, trimmed(value));

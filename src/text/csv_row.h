@@ -12,11 +12,15 @@
 
 namespace exactff::text {
 
-// A comma-separated row. Fields are appended from left to right.
+// A comma-separated row, appended to a text or a stream. Fields are appended from left to right.
 class CsvRow {
  public:
-  explicit CsvRow(std::ostream& out) : out_(out) {}
-  ~CsvRow() { out_ << '\n'; }
+  explicit CsvRow(std::string& text) : text_(text) {}
+  explicit CsvRow(std::ostream& out) : out_(&out), text_(own_) {}
+  ~CsvRow() {
+    text_ += '\n';
+    if (out_ != nullptr) *out_ << own_;
+  }
   CsvRow(const CsvRow&) = delete;
   CsvRow& operator=(const CsvRow&) = delete;
 
@@ -28,12 +32,14 @@ class CsvRow {
 
  private:
   CsvRow& put(std::string_view field) {
-    if (!first_) out_ << ',';
+    if (!first_) text_ += ',';
     first_ = false;
-    out_ << field;
+    text_ += field;
     return *this;
   }
-  std::ostream& out_;
+  std::ostream* out_ = nullptr;
+  std::string own_;
+  std::string& text_;
   bool first_ = true;
 };
 

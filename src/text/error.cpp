@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "text/escape.h"
+#include "text/phrases.h"
 #include "text/text_lines.h"
 
 namespace exactff {
@@ -23,8 +24,7 @@ std::string joined(const std::vector<Problem>& problems) {
   const bool at_least =
       problems.size() > text::ProblemList::kKept;  // the last one then gives the number of dropped problems
   if (others > 0) {
-    text += std::string("\n... and ") + (at_least ? "more than " : "") + std::to_string(others) +
-            (others == 1 ? " more problem" : " more problems");
+    text += std::string("\n... and ") + (at_least ? "more than " : "") + text::counted(others, "more problem");
   }
   return text;
 }

@@ -4,6 +4,7 @@
 #include "text/number_text.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -130,22 +131,10 @@ ParsedNumber parse_number(std::string_view text) {
 }
 
 std::string describe(NumberFault fault, std::string_view text) {
-  const std::string shown = in_quotes(text);
-  switch (fault) {
-    case NumberFault::kNone:
-      return shown + " is a number";
-    case NumberFault::kNotANumber:
-      return shown + " is not a number";
-    case NumberFault::kNotFinite:
-      return shown + " is not a finite number";
-    case NumberFault::kHexadecimal:
-      return shown + " is hexadecimal";
-    case NumberFault::kComma:
-      return shown + " has a decimal comma";
-    case NumberFault::kTooLarge:
-      return shown + " is too large for a double";
-  }
-  return shown;
+  constexpr std::array<std::string_view, 6> kWords = {
+      " is a number",    " is not a number",     " is not a finite number",
+      " is hexadecimal", " has a decimal comma", " is too large for a double"};
+  return in_quotes(text).append(kWords[static_cast<std::size_t>(fault)]);
 }
 
 std::string advice(NumberFault fault) {

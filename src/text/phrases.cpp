@@ -19,17 +19,18 @@ std::string fixed(double value, int decimals) {
 
 // "4.1e-05" to "4.1·10⁻⁵".
 std::string with_power_of_ten(const std::string& text) {
-  constexpr std::array<std::string_view, 10> kSuperscripts = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
   const std::size_t e = text.find('e');
-  if (e == std::string::npos) return text;
-  std::string result = text.substr(0, e) + "·10";
-  if (text[e + 1] == '-') result += "⁻";
-  const std::size_t first = std::min(text.find_first_not_of("+-0", e + 1), text.size() - 1);
-  for (char digit : text.substr(first)) result += kSuperscripts[static_cast<std::size_t>(digit - '0')];
-  return result;
+  return e == std::string::npos ? text : text.substr(0, e) + "·10" + superscript(std::stoi(text.substr(e + 1)));
 }
 
 }  // namespace
+
+std::string superscript(int number) {
+  constexpr std::array<std::string_view, 10> kDigits = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string text;
+  for (const char c : std::to_string(number)) text += c == '-' ? "⁻" : kDigits[static_cast<std::size_t>(c - '0')];
+  return text;
+}
 
 std::string shortest(double value) {
   std::array<char, 64> buffer;

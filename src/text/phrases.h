@@ -26,6 +26,9 @@ namespace exactff::text {
 // "a, b and c".
 [[nodiscard]] std::string enumerate(std::span<const std::string> items);
 
+// "⁻¹²" of -12.
+[[nodiscard]] std::string superscript(int number);
+
 // "1 receiver", "12 receivers". Pass `plural` if it is not the noun with an s.
 [[nodiscard]] std::string counted(std::uint64_t count, std::string_view noun, std::string_view plural = {});
 

@@ -12,6 +12,7 @@
 #include "kernel/float_environment.h"
 #include "text/nearest_names.h"
 #include "text/number_text.h"
+#include "text/refuse.h"
 
 namespace exactff {
 
@@ -66,11 +67,8 @@ std::optional<SettingValue> fitting(const SettingSpec& spec, SettingValue value)
 
 [[noreturn]] void refuse(const SettingSpec& spec, std::string_view text) {
   const std::string unit = spec.unit.empty() ? "" : " (" + spec.unit + ")";
-  throw InputError(Problem{{},
-                           0,
-                           "'" + std::string(text) + "' is not a valid value of " + spec.name + unit,
-                           "its meaning: " + spec.meaning,
-                           "give " + allowed(spec)});
+  text::refuse("'" + std::string(text) + "' is not a valid value of " + spec.name + unit,
+               "its meaning: " + spec.meaning, "give " + allowed(spec));
 }
 
 std::optional<SettingValue> read(const SettingSpec& spec, std::string_view text) {
@@ -164,11 +162,8 @@ std::size_t Settings::must_find(std::string_view name) const {
   for (const std::string_view near : text::nearest_names(names, name, 1)) {
     suggestion = "did you mean " + std::string(near) + "?";
   }
-  throw InputError(Problem{{},
-                           0,
-                           "there is no setting '" + std::string(name) + "'",
-                           names.empty() ? "there are no settings" : list,
-                           suggestion});
+  text::refuse("there is no setting '" + std::string(name) + "'", names.empty() ? "there are no settings" : list,
+               suggestion);
 }
 
 void Settings::set(std::string_view name, const SettingValue& value) {

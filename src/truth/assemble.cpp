@@ -12,7 +12,7 @@ void Pace::add(std::uint64_t rows) {
   if (hooks_.progress) hooks_.progress({stage_, done_, total_});
 }
 
-void assemble(const Rows& rows, Journal& journal, const std::filesystem::path& file, const Hooks& hooks,
+void assemble(const Rows& rows, RowJournal& journal, const std::filesystem::path& file, const Hooks& hooks,
               Summary& summary) {
   work::WholeFile whole(
       file, {"all rows are finished and kept in " + journal.path().string() + "; the file needs the same space again",

@@ -10,7 +10,7 @@
 namespace exactff::truth {
 
 // Writes the truth file, or the shard, then removes the journal. Requires every row to be in the journal.
-void assemble(const Rows& rows, Journal& journal, const std::filesystem::path& file, const Hooks& hooks,
+void assemble(const Rows& rows, RowJournal& journal, const std::filesystem::path& file, const Hooks& hooks,
               Summary& summary);
 
 // Reports progress in rows. Throws Cancelled if the hooks request it.

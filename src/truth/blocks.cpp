@@ -1,10 +1,8 @@
 #include "truth/blocks.h"
 
-#include <array>
-#include <boost/crc.hpp>
 #include <charconv>
 
-#include "text/fnv1a.h"
+#include "text/crc32.h"
 
 namespace exactff::truth {
 namespace {
@@ -12,13 +10,6 @@ namespace {
 constexpr std::string_view kOpening = "# rows ";
 constexpr std::size_t kLongestLine = 96;
 constexpr std::size_t kReadBytes = 1 << 20;
-
-std::uint32_t crc_of(std::string_view a, std::string_view b) {
-  boost::crc_32_type crc;
-  crc.process_bytes(a.data(), a.size());
-  crc.process_bytes(b.data(), b.size());
-  return crc.checksum();
-}
 
 std::string opening_of(Range range, std::uint64_t bytes) {
   return std::string(kOpening) + std::to_string(range.first) + '+' + std::to_string(range.rows) + ", " +
@@ -67,7 +58,7 @@ std::optional<Block> block_at(const File& file, std::uint64_t offset) {
   if (!scan.skip("\n")) return std::nullopt;
   block.offset = offset + scan.at();
   if (block.bytes > file.size() - block.offset) return std::nullopt;
-  if (crc != text::hexadecimal(crc_of(opening, read_lines(file, block)), 8)) return std::nullopt;
+  if (crc != text::crc32_digits(opening, read_lines(file, block))) return std::nullopt;
   return block;
 }
 
@@ -99,7 +90,7 @@ std::optional<std::string> read_head(const File& file) {
 
 std::string block_text(Range range, std::string_view lines) {
   std::string text = opening_of(range, lines.size());
-  text += text::hexadecimal(crc_of(text, lines), 8) + '\n';
+  text += text::crc32_digits(text, lines) + '\n';
   text += lines;
   return text;
 }

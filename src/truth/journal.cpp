@@ -38,23 +38,15 @@ std::string shortened(std::string_view line) {
 }
 
 File opened(const fs::path& path, const Hooks& hooks) {
-  for (;;) {
-    File file(
-        path, File::Mode::kReadWrite,
-        {"the rows are kept in this file", "name a file in a folder that exists, is writable and has free space"});
-    const File::Lock lock = file.lock();
-    if (lock == File::Lock::kInUse) {
-      throw InputError({.file = path.string(),
-                        .what = "another process is working on it",
-                        .why = "two processes would compute the same rows and damage each other's file",
-                        .suggestion = "wait for the other process, or name another file with -o"});
-    }
-    if (lock == File::Lock::kUnsupported && hooks.note) {
-      hooks.note(path.string() + ": this file system cannot lock files; make sure that no other process uses the file");
-    }
-    // The process that held the lock may meanwhile have finished and removed the file.
-    if (file.is_in_place()) return file;
+  File file = work::open_locked(
+      path, {"the rows are kept in this file", "name a file in a folder that exists, is writable and has free space"},
+      {.what = "another process is working on it",
+       .why = "two processes would compute the same rows and damage each other's file",
+       .suggestion = "wait for the other process, or name another file with -o"});
+  if (file.lock() == File::Lock::kUnsupported && hooks.note) {
+    hooks.note(path.string() + ": this file system cannot lock files; make sure that no other process uses the file");
   }
+  return file;
 }
 
 }  // namespace
@@ -93,17 +85,17 @@ void require_same_head(const fs::path& file, std::string_view head, std::string_
                     .suggestion = suggestion});
 }
 
-Journal::Journal(const fs::path& file, const Rows& rows, Existing existing, const Hooks& hooks)
+RowJournal::RowJournal(const fs::path& file, const Rows& rows, Existing existing, const Hooks& hooks)
     : file_(opened(journal_of(file), hooks)) {
   take_over(rows, existing, hooks);
-  file_.console({"it contains the rows finished so far", "free some space, then continue with --resume"});
+  file_.set_failure_advice({"it contains the rows finished so far", "free some space, then continue with --resume"});
 }
 
-Journal::~Journal() {
-  if (!removed_ && blocks_.empty() && end_ > 0) remove();
+RowJournal::~RowJournal() {
+  if (blocks_.empty() && end_ > 0) remove();
 }
 
-void Journal::take_over(const Rows& rows, Existing existing, const Hooks& hooks) {
+void RowJournal::take_over(const Rows& rows, Existing existing, const Hooks& hooks) {
   const std::string head = journal_head(rows.head());
   const std::optional<std::string> found = read_head(file_);
   // A journal that is cut off within its head holds no rows.
@@ -130,14 +122,14 @@ void Journal::take_over(const Rows& rows, Existing existing, const Hooks& hooks)
   keep_usable(std::move(there.list), rows, hooks);
 }
 
-void Journal::begin(const std::string& head) {
+void RowJournal::begin(const std::string& head) {
   file_.truncate(0);
   end_ = head.size();
   file_.write(0, head);
 }
 
 // Keeps the rows of this request, each once. Nothing else is ever appended, but the file may have been tampered with.
-void Journal::keep_usable(std::vector<Block> found, const Rows& rows, const Hooks& hooks) {
+void RowJournal::keep_usable(std::vector<Block> found, const Rows& rows, const Hooks& hooks) {
   std::stable_sort(found.begin(), found.end(),
                    [](const Block& a, const Block& b) { return a.range.first < b.range.first; });
   const std::size_t count = found.size();
@@ -155,7 +147,7 @@ void Journal::keep_usable(std::vector<Block> found, const Rows& rows, const Hook
   }
 }
 
-void Journal::append(Range range, std::string_view lines) {
+void RowJournal::append(Range range, std::string_view lines) {
   const std::string text = block_text(range, lines);
   const std::lock_guard lock(mutex_);
   try {
@@ -171,7 +163,7 @@ void Journal::append(Range range, std::string_view lines) {
   end_ += text.size();
 }
 
-void Journal::sync() {
+void RowJournal::sync() {
   std::uint64_t end = 0;
   {
     const std::lock_guard lock(mutex_);
@@ -183,16 +175,10 @@ void Journal::sync() {
   synced_ = end;
 }
 
-std::vector<Block> Journal::blocks() const {
+std::vector<Block> RowJournal::blocks() const {
   std::vector<Block> sorted = blocks_;
   std::sort(sorted.begin(), sorted.end(), [](const Block& a, const Block& b) { return a.range.first < b.range.first; });
   return sorted;
-}
-
-void Journal::remove() {
-  std::error_code ignored;
-  fs::remove(file_.path(), ignored);
-  removed_ = true;
 }
 
 }  // namespace exactff::truth

@@ -22,16 +22,16 @@ void require_same_head(
     const std::string& whose = "this request says",
     const std::string& suggestion = "use the same flags as before, name another file, or start again with --force");
 
-class Journal {
+class RowJournal {
  public:
   // Opens and locks the journal of `file` for rows under this head. Throws InputError if another process is using the
   // journal, if it holds rows of another request, or if it holds rows and `existing` allows neither to continue with
   // them nor to replace them.
-  Journal(const std::filesystem::path& file, const Rows& rows, Existing existing, const Hooks& hooks);
+  RowJournal(const std::filesystem::path& file, const Rows& rows, Existing existing, const Hooks& hooks);
   // Removes a journal without rows, since it has no use.
-  ~Journal();
-  Journal(const Journal&) = delete;
-  Journal& operator=(const Journal&) = delete;
+  ~RowJournal();
+  RowJournal(const RowJournal&) = delete;
+  RowJournal& operator=(const RowJournal&) = delete;
 
   // From any thread. Appends the whole block or nothing of it. Throws InputError if the disk is full.
   void append(Range range, std::string_view lines);
@@ -45,7 +45,7 @@ class Journal {
   [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
 
   // Removes the journal. Called when the truth file is complete.
-  void remove();
+  void remove() { file_.remove(); }
 
  private:
   void take_over(const Rows& rows, Existing existing, const Hooks& hooks);
@@ -57,7 +57,6 @@ class Journal {
   std::vector<Block> blocks_;
   std::uint64_t end_ = 0;
   std::uint64_t synced_ = 0;
-  bool removed_ = false;
 };
 
 }  // namespace exactff::truth

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <charconv>
 #include <numeric>
 #include <sstream>
 #include <string_view>
 
 #include "exactff/version.h"
 #include "scene/misuse.h"
+#include "text/csv_row.h"
 #include "text/escape.h"
 #include "text/fnv1a.h"
 #include "text/phrases.h"
@@ -105,31 +104,6 @@ std::string Rows::head() const {
 
 namespace {
 
-// One row. Fields are appended from left to right.
-class Line {
- public:
-  explicit Line(std::string& text) : text_(text) {}
-  ~Line() { text_.back() = '\n'; }
-  Line(const Line&) = delete;
-  Line& operator=(const Line&) = delete;
-
-  Line& operator<<(double value) {
-    std::array<char, 32> digits;
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-    return put({digits.data(), end.ptr});
-  }
-  Line& operator<<(const Vec3& v) { return *this << v.x << v.y << v.z; }
-  Line& operator<<(std::string_view text) { return put(text::csv_field(text)); }
-
- private:
-  Line& put(std::string_view field) {
-    text_.append(field);
-    text_ += ',';
-    return *this;
-  }
-  std::string& text_;
-};
-
 // True if no occluder hides anything of what is above the horizon: F is then the same as without occluders.
 bool nothing_in_the_shaft(const FormFactor& result) {
   return std::all_of(result.planes.begin(), result.planes.end(), [](const PlaneRecord& plane) {
@@ -147,7 +121,7 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
   const FormFactor& f = results.exact;
   exact_form_factor(*request_.scene, receiver, sources_[source], options, results.exact, results.workspace);
   Status status = f.status;
-  Line line(lines);
+  text::CsvRow line(lines);
   line << id(row / sources_.size()) << (receiver.on ? request_.scene->name_of(*receiver.on) : std::string())
        << receiver.point << receiver.normal << source_names_[source] << f.value << f.lower << f.upper;
   if (request_.unoccluded) {

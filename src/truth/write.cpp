@@ -36,7 +36,7 @@ constexpr auto kSyncEvery = std::chrono::seconds(1);
 // Computes the rows that are not in the journal and appends them to it.
 class Computation {
  public:
-  Computation(const Rows& rows, Journal& journal, Team* team, const Hooks& hooks)
+  Computation(const Rows& rows, RowJournal& journal, Team* team, const Hooks& hooks)
       : rows_(rows), journal_(journal), hooks_(hooks), schedule_(rows, journal.blocks()) {
     if (team != nullptr && team->size() > 1) leader_.emplace(*team, rows);
   }
@@ -120,7 +120,7 @@ class Computation {
   }
 
   const Rows& rows_;
-  Journal& journal_;
+  RowJournal& journal_;
   const Hooks& hooks_;
   Schedule schedule_;
   std::optional<Leader> leader_;
@@ -175,7 +175,7 @@ Summary write(Request request, const fs::path& file, Existing existing, const Ho
   if (existing == Existing::kResume && is_there(file) && !is_there(journal_of(file))) return account_of(file, rows);
   Summary summary;
   summary.rows = rows.shard_rows();
-  Journal journal(file, rows, existing, hooks);
+  RowJournal journal(file, rows, existing, hooks);
   Computation(rows, journal, team, hooks).run(summary);
   assemble(rows, journal, file, hooks, summary);
   return summary;

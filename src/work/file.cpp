@@ -6,23 +6,19 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <system_error>
 #include <thread>
 #include <utility>
 
-#include "exactff/error.h"
 #include "text/text_file.h"
 
 namespace exactff::work {
 
 namespace fs = std::filesystem;
 
-File::File(fs::path path, Mode mode, Consolation consolation, fs::path called)
-    : path_(std::move(path)),
-      called_(called.empty() ? path_ : std::move(called)),
-      consolation_(std::move(consolation)) {
+File::File(fs::path path, Mode mode, FailureAdvice advice, fs::path called)
+    : path_(std::move(path)), called_(called.empty() ? path_ : std::move(called)), advice_(std::move(advice)) {
   const int flags = mode == Mode::kRead ? O_RDONLY : O_RDWR | O_CREAT;
   descriptor_ = ::open(path_.c_str(), flags | O_CLOEXEC, 0666);
   if (descriptor_ >= 0) {
@@ -49,7 +45,7 @@ void File::require_regular() {
 File::File(File&& other) noexcept
     : path_(std::move(other.path_)),
       called_(std::move(other.called_)),
-      consolation_(std::move(other.consolation_)),
+      advice_(std::move(other.advice_)),
       descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 File::~File() {
@@ -59,8 +55,8 @@ File::~File() {
 void File::fail(int error) const {
   throw InputError({.file = called_.string(),
                     .what = std::string("cannot be written: ") + std::strerror(error),
-                    .why = consolation_.why,
-                    .suggestion = consolation_.suggestion});
+                    .why = advice_.why,
+                    .suggestion = advice_.suggestion});
 }
 
 std::uint64_t File::size() const {
@@ -118,6 +114,30 @@ bool File::is_in_place() const {
          here.st_dev == there.st_dev;
 }
 
+void File::remove() {
+  std::error_code ignored;
+  if (is_in_place()) fs::remove(path_, ignored);
+}
+
+// The process that held the lock may meanwhile have renamed or removed the file: it is then the result of that process,
+// or gone, so the file is opened again.
+File open_locked(const fs::path& path, const FailureAdvice& advice, Problem in_use, std::chrono::seconds patience,
+                 const fs::path& called) {
+  constexpr auto kPause = std::chrono::milliseconds(5);
+  const auto start = std::chrono::steady_clock::now();
+  for (;;) {
+    File file(path, File::Mode::kReadWrite, advice, called);
+    const bool locked = file.lock() != File::Lock::kInUse;
+    if (locked && file.is_in_place()) return file;
+    if (locked) continue;
+    if (std::chrono::steady_clock::now() - start >= patience) {
+      in_use.file = (called.empty() ? path : called).string();
+      throw InputError(std::move(in_use));
+    }
+    std::this_thread::sleep_for(kPause);
+  }
+}
+
 void sync_folder_of(const fs::path& path) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -150,38 +170,20 @@ fs::path with_suffix(fs::path path, const char* suffix) { return path += suffix;
 
 constexpr std::size_t kBufferBytes = 1 << 20;
 constexpr auto kPatience = std::chrono::seconds(10);
-constexpr auto kPause = std::chrono::milliseconds(5);
-
-// Returns the file, locked. The process that held the lock may meanwhile have renamed the file: it is then the result
-// of that process, so the file is opened again.
-File opened(const fs::path& path, const fs::path& target, const Consolation& consolation, WholeFile::WhenBusy busy) {
-  const auto start = std::chrono::steady_clock::now();
-  for (;;) {
-    File file(with_suffix(target, ".whole"), File::Mode::kReadWrite, consolation, path);
-    const bool in_use = file.lock() == File::Lock::kInUse;
-    if (!in_use && file.is_in_place()) return file;
-    if (!in_use) continue;
-    if (busy == WholeFile::WhenBusy::kRefuse || std::chrono::steady_clock::now() - start > kPatience) {
-      throw InputError({.file = path.string(),
-                        .what = "another process is writing the file",
-                        .why = "two processes would damage the file",
-                        .suggestion = "wait for the other process, or name another file"});
-    }
-    std::this_thread::sleep_for(kPause);
-  }
-}
+const Problem kBeingWritten{.what = "another process is writing the file",
+                            .why = "two processes would damage the file",
+                            .suggestion = "wait for the other process, or name another file"};
 
 }  // namespace
 
-WholeFile::WholeFile(const fs::path& path, Consolation consolation, WhenBusy when_busy)
-    : target_(destination(path)), file_(opened(path, target_, consolation, when_busy)) {
+WholeFile::WholeFile(const fs::path& path, FailureAdvice advice, WhenBusy when_busy)
+    : target_(destination(path)),
+      file_(open_locked(with_suffix(target_, ".whole"), advice, kBeingWritten,
+                        when_busy == WhenBusy::kWait ? kPatience : std::chrono::seconds(0), path)) {
   file_.truncate(0);
 }
 
-WholeFile::~WholeFile() {
-  std::error_code ignored;
-  if (!committed_) fs::remove(file_.path(), ignored);
-}
+WholeFile::~WholeFile() { file_.remove(); }
 
 void WholeFile::append(std::string_view bytes) {
   buffer_ += bytes;
@@ -200,7 +202,6 @@ void WholeFile::commit() {
   std::error_code error;
   fs::rename(file_.path(), target_, error);
   if (error) file_.fail(error.value());
-  committed_ = true;
   sync_folder_of(target_);
 }
 

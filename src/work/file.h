@@ -2,6 +2,7 @@
 // safe.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -9,12 +10,13 @@
 #include <string>
 #include <string_view>
 
+#include "exactff/error.h"
 #include "work/unfinished.h"
 
 namespace exactff::work {
 
 // What the message of a failed write says: what is kept, and what to do.
-struct Consolation {
+struct FailureAdvice {
   std::string why = "nothing was written";
   std::string suggestion = "name a file in a folder that exists, is writable and has free space";
 };
@@ -26,7 +28,7 @@ class File {
 
   // Throws InputError if the file cannot be opened or is not a regular file. Messages name `called`, if given, instead
   // of the path.
-  File(std::filesystem::path path, Mode mode, Consolation consolation = {}, std::filesystem::path called = {});
+  File(std::filesystem::path path, Mode mode, FailureAdvice advice = {}, std::filesystem::path called = {});
   File(File&& other) noexcept;
   ~File();
   File& operator=(File&&) = delete;
@@ -45,18 +47,25 @@ class File {
   [[nodiscard]] Lock lock();
   // Whether the path still leads to this file: it may have been renamed, removed or replaced.
   [[nodiscard]] bool is_in_place() const;
+  // Removes the file from its folder, if it is in place.
+  void remove();
 
   [[noreturn]] void fail(int error) const;
-  void console(Consolation consolation) { consolation_ = std::move(consolation); }
+  void set_failure_advice(FailureAdvice advice) { advice_ = std::move(advice); }
 
  private:
   void require_regular();
 
   std::filesystem::path path_;
   std::filesystem::path called_;
-  Consolation consolation_;
+  FailureAdvice advice_;
   int descriptor_ = -1;
 };
+
+// Opens and locks a file that is read and written. While another process holds the lock, tries again until `patience`
+// is over, then throws `in_use` with the name of the file.
+[[nodiscard]] File open_locked(const std::filesystem::path& path, const FailureAdvice& advice, Problem in_use,
+                               std::chrono::seconds patience = {}, const std::filesystem::path& called = {});
 
 // Makes renames and removals in the folder of `path` durable, as far as the file system can.
 void sync_folder_of(const std::filesystem::path& path);
@@ -68,7 +77,7 @@ class WholeFile {
 
   // Writes to `path`.whole first, and overwrites what a killed process left there. Throws InputError if another process
   // is writing the file. Follows a symbolic link.
-  WholeFile(const std::filesystem::path& path, Consolation consolation = {}, WhenBusy when_busy = WhenBusy::kRefuse);
+  WholeFile(const std::filesystem::path& path, FailureAdvice advice = {}, WhenBusy when_busy = WhenBusy::kRefuse);
   ~WholeFile();
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
@@ -85,7 +94,6 @@ class WholeFile {
   File file_;
   std::string buffer_;
   std::uint64_t written_ = 0;
-  bool committed_ = false;
 };
 
 // The path at which to write a file that replaces `path`: the target of a symbolic link, otherwise the path itself.

@@ -8,8 +8,6 @@
 #include <cstdio>
 #include <string>
 #include <string_view>
-#include <system_error>
-#include <vector>
 
 #include "exactff/error.h"
 
@@ -147,6 +145,21 @@ void WorkFolder::put_in_place() {
   }
   std::error_code ignored;
   fs::remove(target_ / kLockFile, ignored);
+}
+
+MadeFolders::MadeFolders(const fs::path& path) {
+  const fs::path last = fs::absolute(path).parent_path();
+  std::error_code ignored;
+  for (fs::path folder = last; folder.has_relative_path() && !fs::exists(folder, ignored);) {
+    made_.push_back(folder);
+    folder = folder.parent_path();
+  }
+  fs::create_directories(last, error_);
+}
+
+MadeFolders::~MadeFolders() {
+  std::error_code ignored;
+  for (const fs::path& folder : made_) fs::remove(folder, ignored);
 }
 
 }  // namespace exactff::work

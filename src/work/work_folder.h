@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <system_error>
+#include <vector>
 
 #include "work/file.h"
 
@@ -36,6 +38,22 @@ class WorkFolder {
   std::filesystem::path target_;
   std::filesystem::path path_;
   std::optional<File> lock_;
+};
+
+// The folders on the way to a path. The constructor creates those that are missing, and the destructor removes what it
+// created, as far as it is empty.
+class MadeFolders {
+ public:
+  explicit MadeFolders(const std::filesystem::path& path);
+  ~MadeFolders();
+  MadeFolders(const MadeFolders&) = delete;
+  MadeFolders& operator=(const MadeFolders&) = delete;
+
+  [[nodiscard]] std::error_code error() const { return error_; }  // set if they cannot be created
+
+ private:
+  std::vector<std::filesystem::path> made_;  // innermost first
+  std::error_code error_;
 };
 
 }  // namespace exactff::work

@@ -54,7 +54,7 @@ TEST(Experiments, TellWhereABrokenLineReachesAValue) {
 // The values of a run, joined.
 std::string values_of(const Result& result) {
   std::string text;
-  for (const TextTable& table : result.values) text += table.file + '\n' + table.csv;
+  for (const CsvFile& table : result.values) text += table.file + '\n' + table.csv;
   return text;
 }
 

@@ -218,7 +218,7 @@ INSTANTIATE_TEST_SUITE_P(All, StressFamily, testing::Range<std::size_t>(0, all_f
 
 std::string values_of(const Report& report) {
   std::ostringstream out;
-  for (const Table& table : tables()) {
+  for (const StressTable& table : tables()) {
     if (table.file != "timings.csv") table.write(report, out);
   }
   return out.str();

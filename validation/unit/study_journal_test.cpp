@@ -207,8 +207,7 @@ TEST_F(StudyJournal, GivesKeptWorkBackInsteadOfComputing) {
               ++computed;
               result = 1.5;
             },
-            [&](work::WordWriter& words) { words.put(result); },
-            [&](work::WordReader& words) { result = words.number(); });
+            [&](auto& words) { words(result); });
     EXPECT_EQ(result, 1.5);
   };
   Journal journal(file_, Existing::kRefuse);
@@ -226,54 +225,98 @@ TEST_F(StudyJournal, GivesKeptWorkBackInsteadOfComputing) {
 
 // --- words ---------------------------------------------------------------------------------------------------
 
-TEST(Words, ReadBackAsTheyWereWritten) {
+enum class Shape { kRound, kSquare, kFlat };
+
+struct Fields {
+  double number = 0.0;
+  std::uint64_t count = 0;
+  bool flag = false;
+  Shape shape = Shape::kRound;
+  std::vector<std::string> texts;
+  std::vector<double> numbers;
+  std::vector<double> none;
+  friend bool operator==(const Fields&, const Fields&) = default;
+};
+
+template <class Words>
+void fields(Words& words, Fields& f) {
+  words(f.number, f.count, f.flag);
+  words.choice(f.shape, 3);
+  words(f.texts, f.numbers, f.none);
+}
+
+std::string a_record() {
+  Fields all{0.1, std::uint64_t{1} << 63, true, Shape::kFlat, {"", "seven77", "eight888", "nine99999"}, {1, 2, 3}, {}};
   work::WordWriter writer;
-  writer.put(-0.0);
-  writer.put(std::numeric_limits<double>::quiet_NaN());
-  writer.put(std::uint64_t{1} << 63);
-  for (const char* text : {"", "seven77", "eight888", "nine99999"}) writer.put(std::string_view(text));
-  writer.put(std::vector<double>{1, 2, 3});
-  writer.put(std::vector<double>{});
-  work::WordReader reader(writer.bytes());
-  EXPECT_TRUE(std::signbit(reader.number()));
-  EXPECT_TRUE(std::isnan(reader.number()));
-  EXPECT_EQ(reader.word(), std::uint64_t{1} << 63);
-  for (const char* text : {"", "seven77", "eight888", "nine99999"}) EXPECT_EQ(reader.text(), text);
-  EXPECT_EQ(reader.numbers(), (std::vector<double>{1, 2, 3}));
-  EXPECT_FALSE(reader.complete()) << "the empty list is still there";
-  EXPECT_TRUE(reader.numbers().empty());
+  fields(writer, all);
+  return writer.bytes();
+}
+
+TEST(Words, ReadBackAsTheyWereWritten) {
+  const std::string bytes = a_record();
+  Fields read;
+  read.none = {7.0};
+  work::WordReader reader(bytes);
+  fields(reader, read);
   EXPECT_TRUE(reader.complete());
+  EXPECT_EQ(
+      read,
+      (Fields{
+          0.1, std::uint64_t{1} << 63, true, Shape::kFlat, {"", "seven77", "eight888", "nine99999"}, {1, 2, 3}, {}}));
+}
+
+TEST(Words, KeepEveryBitOfADouble) {
+  double zero = -0.0, nan = std::numeric_limits<double>::quiet_NaN();
+  work::WordWriter writer;
+  writer(zero, nan);
+  zero = nan = 1.0;
+  work::WordReader reader(writer.bytes());
+  reader(zero);
+  EXPECT_FALSE(reader.complete()) << "a word is still there";
+  reader(nan);
+  EXPECT_TRUE(reader.complete());
+  EXPECT_TRUE(zero == 0.0 && std::signbit(zero));
+  EXPECT_TRUE(std::isnan(nan));
 }
 
 TEST(Words, CutAnywhereAreTornAndDoNoHarm) {
-  work::WordWriter writer;
-  writer.put(1.0);
-  writer.put(std::string_view("a text of some length"));
-  writer.put(std::vector<double>{1, 2});
-  const std::string whole = writer.bytes();
+  const std::string whole = a_record();
   for (std::size_t cut = 0; cut <= whole.size(); ++cut) {
     work::WordReader reader(std::string_view(whole).substr(0, cut));
-    (void)reader.number();
-    (void)reader.text();
-    (void)reader.numbers();
+    Fields read;
+    fields(reader, read);
     EXPECT_EQ(reader.complete(), cut == whole.size()) << cut;
   }
 }
 
 TEST(Words, ThatPromiseMoreThanThereIsAreTorn) {
-  const std::vector<std::uint64_t> counts = {2, ~std::uint64_t{0}, std::uint64_t{1} << 61};
-  for (const std::uint64_t count : counts) {
+  for (std::uint64_t count : {std::uint64_t{2}, ~std::uint64_t{0}, std::uint64_t{1} << 61}) {
     work::WordWriter writer;
-    writer.put(count);
-    writer.put(1.0);
+    double one = 1.0;
+    writer(count, one);
+    std::vector<double> list;
     work::WordReader numbers(writer.bytes());
-    EXPECT_TRUE(numbers.numbers().empty());
+    numbers(list);
+    EXPECT_TRUE(list.empty());
     EXPECT_TRUE(numbers.torn());
     if (count == 2) continue;
+    std::string words = "before";
     work::WordReader text(writer.bytes());
-    EXPECT_EQ(text.text(), "");
+    text(words);
+    EXPECT_EQ(words, "");
     EXPECT_TRUE(text.torn());
   }
+}
+
+TEST(Words, ThatAreNoEnumeratorAreTorn) {
+  std::uint64_t three = 3;
+  work::WordWriter writer;
+  writer(three);
+  Shape shape = Shape::kFlat;
+  work::WordReader reader(writer.bytes());
+  reader.choice(shape, 3);
+  EXPECT_TRUE(reader.torn());
+  EXPECT_EQ(shape, Shape::kRound);
 }
 
 // --- chapters ------------------------------------------------------------------------------------------------

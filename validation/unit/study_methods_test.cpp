@@ -384,7 +384,7 @@ TEST(MethodStudy, CountsValuesThatAreNoNumbersOrLeaveTheRange) {
   EXPECT_EQ(report::cheapest(study, 1e-2), nullptr) << "a method without numbers is right to nothing";
   for (const MethodCell* cell : report::pareto_front(study))
     EXPECT_TRUE(std::isfinite(report::relative_error(study, *cell)));
-  report::Report report;
+  report::StudyReport report;
   report.scenes.push_back({"", "room", study});
   report::Pages pages;
   pages.scenes.emplace_back();
@@ -566,15 +566,14 @@ struct Begun {
 TEST(ShadowEdges, AreWhereTheHalfPlaneCastsThem) {
   const Scene scene = half_plane();
   Begun begun(scene);
-  find_shadow_edges(begun.study, begun.sources, {});
-  EXPECT_TRUE(begun.study.left_out.empty());
-  ASSERT_EQ(begun.study.edge_distance.size(), 16U);
-  EXPECT_GT(begun.study.edge_resolution, 0.0);
-  EXPECT_LT(begun.study.edge_resolution, 0.05);
+  const auto edges = std::get<ShadowEdges>(find_shadow_edges(begun.study.request, begun.sources, {}));
+  ASSERT_EQ(edges.distance.size(), 16U);
+  EXPECT_GT(edges.resolution, 0.0);
+  EXPECT_LT(edges.resolution, 0.05);
   for (std::size_t i = 0; i < 16; ++i) {
     const double x = begun.study.request.receivers[i].point.x;
     const double distance = std::min(std::abs(x - 1), std::abs(x + 1));
-    EXPECT_NEAR(begun.study.edge_distance[i], distance, 0.75 * begun.study.edge_resolution) << x;
+    EXPECT_NEAR(edges.distance[i], distance, 0.75 * edges.resolution) << x;
   }
 }
 
@@ -582,9 +581,7 @@ TEST(ShadowEdges, AreLeftOutWhereThereAreNone) {
   const auto why = [](const Scene& scene, const auto& change) {
     Begun begun(scene, {2, 2});
     change(begun.study.request.receivers);
-    find_shadow_edges(begun.study, begun.sources, {});
-    EXPECT_TRUE(begun.study.edge_distance.empty());
-    return left_out_text(begun.study.left_out);
+    return std::get<LeftOut>(find_shadow_edges(begun.study.request, begun.sources, {})).why;
   };
   const auto nothing = [](const auto&) {};
   EXPECT_NE(why(small_room(false), nothing).find("of one kind all over the face"), std::string::npos);
@@ -597,9 +594,7 @@ TEST(Profiles, HaveTheirKinksWhereTheHalfPlaneCastsThem) {
   const Scene scene = half_plane();
   Begun begun(scene);
   begun.study.methods.ladders = {parse_ladder("exact"), parse_ladder("hemicube:resolution=8|16|32")};
-  find_profile(begun.study, begun.sources, {});
-  ASSERT_TRUE(begun.study.profile.has_value());
-  const Profile& profile = *begun.study.profile;
+  const auto profile = std::get<Profile>(find_profile(begun.study, begun.sources, {}));
   EXPECT_EQ(profile.where, "row 1 of floor");
   ASSERT_EQ(profile.receivers.size(), 256U);
   const double start = profile.receivers.front().point.x;
@@ -620,9 +615,7 @@ TEST(Profiles, HaveTheirKinksWhereTheHalfPlaneCastsThem) {
 TEST(Profiles, AreLeftOutWithoutAPenumbra) {
   const Scene room = small_room(false);
   Begun begun(room);
-  find_profile(begun.study, begun.sources, {});
-  EXPECT_FALSE(begun.study.profile.has_value());
-  EXPECT_NE(left_out_text(begun.study.left_out).find("penumbra profile"), std::string::npos);
+  EXPECT_EQ(std::get<LeftOut>(find_profile(begun.study, begun.sources, {})).what, "penumbra profile");
 }
 
 // --- verdicts ------------------------------------------------------------------------------------------------

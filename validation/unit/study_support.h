@@ -63,7 +63,7 @@ inline void scatter(study::Request& request) {
   request.receivers_name = "scattered";
 }
 
-inline std::string text_of(const report::Table& table, const study::Study& study) {
+inline std::string text_of(const report::StudyTable& table, const study::Study& study) {
   std::ostringstream out;
   table.write(study, out);
   return out.str();
@@ -72,7 +72,7 @@ inline std::string text_of(const report::Table& table, const study::Study& study
 // By file: the tables that hold values.
 inline std::map<std::string, std::string> value_tables(const study::Study& study) {
   std::map<std::string, std::string> texts;
-  for (const report::Table& table : report::tables()) {
+  for (const report::StudyTable& table : report::tables()) {
     if (table.kind == report::Holds::kValues && table.has_rows(study)) texts.emplace(table.file, text_of(table, study));
   }
   return texts;

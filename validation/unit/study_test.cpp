@@ -134,7 +134,7 @@ TEST(Settings, DefaultsFollowTheLargestContribution) {
 TEST(Settings, ASmallProductIsRunInFull) {
   Sweeps sweeps{{0.1, 0.01}, {0.0}, {4, 16}, {1, 2}, {SamplePattern::kJittered}, {Variant::kMended}};
   complete(sweeps, {});
-  const Plan plan = combine(sweeps);
+  const SettingPlan plan = combine(sweeps);
   EXPECT_TRUE(plan.full_product);
   EXPECT_EQ(plan.settings.size(), 8U);
   EXPECT_EQ(plan.settings[plan.base].eps_b, 0.01);
@@ -144,7 +144,7 @@ TEST(Settings, ASmallProductIsRunInFull) {
 TEST(Settings, ALargeProductIsSweptThroughTheBase) {
   Sweeps sweeps;
   complete(sweeps, {1.0, 1.0, true});
-  const Plan plan = combine(sweeps);
+  const SettingPlan plan = combine(sweeps);
   EXPECT_FALSE(plan.full_product);
   for (const Parameter p : {Parameter::kEpsB, Parameter::kRays, Parameter::kSeed, Parameter::kVariant}) {
     EXPECT_GE(line_through(plan.settings, plan.base, p).size(), 2U);
@@ -274,7 +274,7 @@ TEST(Study, ValueTablesAreTheSameBytesForAnyNumberOfThreads) {
 
 TEST(Study, OfAllMethodsHasAllTables) {
   std::set<std::string_view> files;
-  for (const report::Table& table : report::tables()) {
+  for (const report::StudyTable& table : report::tables()) {
     EXPECT_TRUE(table.has_rows(whole_study())) << table.file;
     EXPECT_TRUE(files.insert(table.file).second) << table.file;
   }
@@ -283,7 +283,7 @@ TEST(Study, OfAllMethodsHasAllTables) {
 
 TEST(Study, WithoutMethodsHasNoTableOfThem) {
   EXPECT_EQ(value_tables(small_study()).size(), 3U);
-  for (const report::Table& table : report::tables()) {
+  for (const report::StudyTable& table : report::tables()) {
     EXPECT_EQ(table.has_rows(small_study()), std::string(table.file).find("method") == std::string::npos &&
                                                  table.file != "slopes.csv" && table.file != "receivers.csv" &&
                                                  table.file != "profile.csv")
@@ -375,7 +375,7 @@ TEST(Study, StopsWhenItIsCancelled) {
 
 // The report on a study, without figures.
 struct UndrawnReport {
-  report::Report report;
+  report::StudyReport report;
   report::Pages pages;
 
   void add(const std::string& name, const std::string& title, const Study& study) {
@@ -527,7 +527,7 @@ TEST_F(OutputFolder, OfACancelledStudyIsNotThere) {
 }
 
 TEST_F(OutputFolder, OfSeveralScenesHasTheirNamesBeforeTheFiles) {
-  report::Report report;
+  report::StudyReport report;
   report.title = "rooms";
   report.scenes.push_back({"one", "One", small_study()});
   report.scenes.push_back({"two", "Two", small_study()});
@@ -551,7 +551,7 @@ TEST_F(OutputFolder, WithoutGnuplotHoldsTablesAndAReportThatSaysSo) {
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_NE(messages.front().find("gnuplot"), std::string::npos);
   EXPECT_EQ(names(), std::set<std::string>{"out"});
-  for (const report::Table& table : report::tables()) {
+  for (const report::StudyTable& table : report::tables()) {
     EXPECT_EQ(fs::exists(root_ / "out" / table.file), table.has_rows(small_study())) << table.file;
   }
   EXPECT_TRUE(fs::exists(root_ / "out" / "report.html"));

@@ -95,7 +95,7 @@ class Truth : public testing::Test {
 
   std::uint64_t rows_in_journal(Request asked) const {
     const Rows rows(std::move(asked));
-    const Journal journal(file_, rows, Existing::kResume, {});
+    const RowJournal journal(file_, rows, Existing::kResume, {});
     return rows.shard_rows() - Schedule(rows, journal.blocks()).rows();
   }
   void expect_only(std::set<std::string> names) const {
@@ -275,7 +275,7 @@ TEST_F(Truth, ARunThatFinishedNoRowLeavesNothing) {
 
 // Blocks of few rows, not in order, so that a few bytes can be damaged in many ways.
 std::string small_journal(const Rows& rows, const fs::path& file) {
-  Journal journal(file, rows, Existing::kReplace, {});
+  RowJournal journal(file, rows, Existing::kReplace, {});
   Rows::Results results;
   for (const Range range : {Range{5, 2}, Range{0, 1}, Range{3, 2}, Range{1, 1}}) {
     std::string lines;
@@ -329,7 +329,7 @@ TEST_F(Truth, BlocksThatDoNotBelongAreLeftOut) {
   rows.append(64, line, results);
   write_text(file_, "");
   {
-    Journal journal(file_, rows, Existing::kResume, {});
+    RowJournal journal(file_, rows, Existing::kResume, {});
     journal.append({64, 1}, line);
     journal.append({64, 1}, line);          // doubled
     journal.append({0, 1}, line);           // of another shard
@@ -425,7 +425,7 @@ TEST_F(Truth, AJournalOfAnotherRequestIsNamedWithItsDifference) {
 }
 
 TEST_F(Truth, TwoProcessesCannotShareAJournal) {
-  const Journal journal(file_, Rows(request(2)), Existing::kRefuse, {});
+  const RowJournal journal(file_, Rows(request(2)), Existing::kRefuse, {});
   for (const Existing existing : {Existing::kRefuse, Existing::kResume, Existing::kReplace}) {
     EXPECT_NE(refusal(request(2), existing).find("truth.csv.part: another process is working on it"),
               std::string::npos);

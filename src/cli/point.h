@@ -1,0 +1,76 @@
+// The three parts of `exactff point`: flags and warnings (point.cpp), values, output.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactff/adaptive.h"
+#include "exactff/exact.h"
+#include "exactff/receiver.h"
+#include "flags/engine.h"
+#include "flags/scene.h"
+
+namespace exactff::cli {
+
+inline constexpr std::uint64_t kMostPointLeaves = 10'000'000;  // takes some seconds
+
+struct PointArguments {
+  flags::SceneArguments scene;
+  std::array<std::string, 3> at;
+  std::array<std::string, 3> normal;
+  std::string on;
+  std::vector<std::string> sources;
+  std::vector<double> reflectance;
+  int digits = 0;
+  int precision_cap = ExactOptions{}.precision_cap;
+  flags::EngineArgument engine;
+  bool flip = false;
+  bool fraction = false;
+  bool exact_fraction = false;
+  bool plain = false;
+  bool json = false;
+  bool explain = false;
+  std::string svg;
+  bool adaptive = false;
+  AdaptiveOptions adaptive_options;
+  std::string pattern = "jittered";
+  std::string variant = "mended";
+};
+
+// The result for one source.
+struct PointTerm {
+  struct Share {
+    FaceId face{};
+    double alone = 0.0;  // the part of the unoccluded form factor that this occluder alone hides
+  };
+
+  Selection source = {};
+  FormFactor exact = {};
+  std::optional<double> unoccluded = {};
+  std::vector<Share> shares = {};
+  std::optional<AdaptiveResult> adaptive = {};
+  double largest_rho_b = 0.0;
+};
+
+struct PointResult {
+  Receiver receiver = {};
+  Rgb reflectance = {};
+  std::vector<PointTerm> sources = {};
+  Enclosure sum = {};
+  Rgb radiosity = {};  // sum over the sources of rho B F, an estimate in double
+};
+
+// With the sources flipped, if wanted.
+[[nodiscard]] Scene load_point_scene(const PointArguments& args);
+[[nodiscard]] PointResult compute_point(const PointArguments& args, const Scene& scene);
+
+// `--plain`: "0" is a proved zero; a positive value that rounds to zero prints "0.0".
+[[nodiscard]] std::string plain_value(const FormFactor& result);
+[[nodiscard]] std::string value_text(const FormFactor& result, int digits);
+void print_point_table(const PointArguments& args, const Scene& scene, const PointResult& point);
+void print_point_json(const PointArguments& args, const Scene& scene, const PointResult& point);
+void draw_point(const PointArguments& args, const Scene& scene, const PointResult& point);
+
+}  // namespace exactff::cli

@@ -1,0 +1,197 @@
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "cli/output.h"
+#include "cli/point.h"
+#include "exactff/version.h"
+#include "exactff/visibility_svg.h"
+#include "text/json_document.h"
+#include "text/phrases.h"
+
+namespace exactff::cli {
+
+using text::shortest;
+
+std::string plain_value(const FormFactor& result) {
+  if (result.status == Status::kZero) return "0";
+  if (result.status == Status::kUnderflow) return "0.0";
+  return shortest(result.value);
+}
+
+std::string value_text(const FormFactor& result, int digits) {
+  if (result.status == Status::kZero) return "0";
+  if (digits > 0) {
+    if (const std::optional<std::string> decimals = result.enclosure.decimals(digits)) return *decimals;
+  }
+  return plain_value(result);
+}
+
+namespace {
+
+constexpr std::size_t kMostSharesShown = 20;
+
+std::string vec_text(const Vec3& v) { return "(" + shortest(v.x) + ", " + shortest(v.y) + ", " + shortest(v.z) + ")"; }
+
+void print_stages(const Scene& scene, const PointTerm& one) {
+  constexpr std::size_t kMostPlanes = 12;
+  for (std::size_t p = 0; p < one.exact.planes.size() && p < kMostPlanes; ++p) {
+    const PlaneRecord& plane = one.exact.planes[p];
+    std::cout << "\n  plane of " << shown_name(scene, plane.faces.front());
+    if (plane.faces.size() > 1) std::cout << " and " << plane.faces.size() - 1 << " more faces";
+    std::cout << ": " << to_string(plane.outcome) << '\n';
+    for (const StageNote& note : stages(plane)) {
+      std::cout << "    " << pad(note.stage, 24) << pad(note.ran ? "ran" : "-", 5) << note.note << '\n';
+    }
+    if (plane.exact_fraction) std::cout << "    exact visible fraction  " << *plane.exact_fraction << '\n';
+  }
+  if (one.exact.planes.size() > kMostPlanes) {
+    std::cout << "  ... and " << one.exact.planes.size() - kMostPlanes << " more planes (--json has them all)\n";
+  }
+}
+
+void print_shares(const Scene& scene, const PointTerm& one) {
+  const std::size_t cutters = one.exact.cutters.size();
+  std::cout << "\n  occluders that hide a part of it: " << cutters << '\n';
+  for (std::size_t i = 0; i < one.shares.size() && i < kMostSharesShown; ++i) {
+    std::cout << "    " << pad(shown_name(scene, one.shares[i].face), 28) << "hides " << percent(one.shares[i].alone)
+              << " alone\n";
+  }
+  if (cutters > kMostSharesShown) std::cout << "    ... and " << cutters - kMostSharesShown << " more\n";
+  if (one.unoccluded) std::cout << "  unoccluded form factor: " << shortest(*one.unoccluded) << '\n';
+  if (one.exact.precision_bits > 0) {
+    std::cout << "  contour: " << one.exact.precision_bits
+              << " bits were needed to decide the last bit of the double\n";
+  }
+}
+
+void print_adaptive(const PointTerm& one) {
+  const AdaptiveResult& a = *one.adaptive;
+  std::cout << "  ray-sampled adaptive: " << shortest(a.form_factor) << " (error "
+            << shortest(a.form_factor - one.exact.value) << ", " << a.leaves << " leaves, " << a.rays << " rays)\n";
+}
+
+void print_source(const PointArguments& args, const Scene& scene, const PointTerm& one) {
+  std::cout << "source " << shown_name(scene, one.source) << '\n'
+            << "  form factor  " << value_text(one.exact, args.digits) << "  (" << to_string(one.exact.status) << ")\n"
+            << "  enclosure    [" << shortest(one.exact.lower) << ", " << shortest(one.exact.upper) << "]\n";
+  if (one.exact.visible_fraction) {
+    std::cout << "  visible      " << shortest(*one.exact.visible_fraction) << "  ("
+              << to_string(*one.exact.visible_part) << " of it)\n";
+  }
+  if (one.adaptive) print_adaptive(one);
+  if (!args.explain) return;
+  print_stages(scene, one);
+  print_shares(scene, one);
+}
+
+}  // namespace
+
+void print_point_table(const PointArguments& args, const Scene& scene, const PointResult& point) {
+  std::cout << "receiver " << vec_text(point.receiver.point) << ", normal " << vec_text(point.receiver.normal);
+  if (point.receiver.on) std::cout << ", on " << shown_name(scene, *point.receiver.on);
+  std::cout << "\n\n";
+  for (const PointTerm& one : point.sources) print_source(args, scene, one);
+  if (point.sources.size() > 1) {
+    const std::optional<double> nearest = point.sum.nearest();
+    std::cout << "sum of " << point.sources.size() << " sources\n  form factor  "
+              << (nearest ? shortest(*nearest) : "between the bounds") << "\n  enclosure    ["
+              << shortest(point.sum.lower()) << ", " << shortest(point.sum.upper()) << "]\n";
+  }
+  std::cout << "\nradiosity received  " << shortest(point.radiosity.r) << ' ' << shortest(point.radiosity.g) << ' '
+            << shortest(point.radiosity.b) << "  (reflectance x Ke of the source x form factor, per channel)\n";
+}
+
+namespace {
+
+nlohmann::ordered_json numbers_json(const Vec3& v) { return nlohmann::ordered_json::array({v.x, v.y, v.z}); }
+nlohmann::ordered_json numbers_json(const Rgb& c) { return nlohmann::ordered_json::array({c.r, c.g, c.b}); }
+
+nlohmann::ordered_json ball_json(const Enclosure& enclosure) {
+  return {{"midpoint", enclosure.midpoint()}, {"radius", enclosure.radius()}};
+}
+
+nlohmann::ordered_json plane_json(const Scene& scene, const PlaneRecord& plane) {
+  nlohmann::ordered_json faces = nlohmann::ordered_json::array();
+  for (const FaceId face : plane.faces) faces.push_back(scene.name_of(face));
+  nlohmann::ordered_json notes = nlohmann::ordered_json::array();
+  for (const StageNote& note : stages(plane)) {
+    notes.push_back({{"stage", note.stage}, {"ran", note.ran}, {"note", note.note}});
+  }
+  nlohmann::ordered_json json = {{"faces", faces},
+                                 {"outcome", to_string(plane.outcome)},
+                                 {"tree_candidates", plane.tree_candidates},
+                                 {"candidates", plane.candidates},
+                                 {"clipped", plane.clipped},
+                                 {"loops", plane.loops},
+                                 {"edges", plane.edges},
+                                 {"stages", notes}};
+  if (plane.visible_fraction) json["visible_fraction"] = *plane.visible_fraction;
+  if (plane.exact_fraction) json["exact_fraction"] = *plane.exact_fraction;
+  return json;
+}
+
+nlohmann::ordered_json adaptive_json(const AdaptiveResult& a) {
+  nlohmann::ordered_json reasons;
+  for (std::size_t i = 0; i < kLeafReasonCount; ++i) {
+    reasons[std::string(to_string(static_cast<LeafReason>(i)))] = a.leaves_by_reason[i];
+  }
+  return {{"form_factor", a.form_factor}, {"leaves", a.leaves},          {"rays", a.rays},
+          {"shaft_tests", a.shaft_tests}, {"leaves_by_reason", reasons}, {"leaves_by_depth", a.leaves_by_depth}};
+}
+
+nlohmann::ordered_json source_json(const PointArguments& args, const Scene& scene, const PointTerm& one) {
+  nlohmann::ordered_json json = {{"source", scene.name_of(one.source)},
+                                 {"value", one.exact.value},
+                                 {"lower", one.exact.lower},
+                                 {"upper", one.exact.upper},
+                                 {"status", to_string(one.exact.status)},
+                                 {"ball", ball_json(one.exact.enclosure)},
+                                 {"bits", one.exact.precision_bits}};
+  if (args.digits > 0) json["decimals"] = value_text(one.exact, args.digits);
+  if (one.exact.visible_fraction) {
+    json["visible_fraction"] = *one.exact.visible_fraction;
+    json["visible_part"] = to_string(*one.exact.visible_part);
+  }
+  if (one.unoccluded) json["unoccluded"] = *one.unoccluded;
+  if (args.explain) {
+    json["cutters"] = nlohmann::ordered_json::array();
+    for (const FaceId face : one.exact.cutters) json["cutters"].push_back(scene.name_of(face));
+    json["shares_alone"] = nlohmann::ordered_json::array();
+    for (const PointTerm::Share& share : one.shares) {
+      json["shares_alone"].push_back({{"face", scene.name_of(share.face)}, {"share", share.alone}});
+    }
+  }
+  json["planes"] = nlohmann::ordered_json::array();
+  for (const PlaneRecord& plane : one.exact.planes) json["planes"].push_back(plane_json(scene, plane));
+  if (one.adaptive) json["adaptive"] = adaptive_json(*one.adaptive);
+  return json;
+}
+
+}  // namespace
+
+void print_point_json(const PointArguments& args, const Scene& scene, const PointResult& point) {
+  nlohmann::ordered_json json = {{"program", "exactff"},
+                                 {"version", kVersion},
+                                 {"scene", args.scene.path},
+                                 {"scene_hash", scene.hash()},
+                                 {"receiver",
+                                  {{"point", numbers_json(point.receiver.point)},
+                                   {"normal", numbers_json(point.receiver.normal)},
+                                   {"reflectance", numbers_json(point.reflectance)}}}};
+  if (point.receiver.on) json["receiver"]["on"] = scene.name_of(*point.receiver.on);
+  json["sources"] = nlohmann::ordered_json::array();
+  for (const PointTerm& one : point.sources) json["sources"].push_back(source_json(args, scene, one));
+  json["sum"] = {{"lower", point.sum.lower()}, {"upper", point.sum.upper()}, {"ball", ball_json(point.sum)}};
+  json["radiosity"] = numbers_json(point.radiosity);
+  std::cout << text::json_document(json) << '\n';
+}
+
+void draw_point(const PointArguments& args, const Scene& scene, const PointResult& point) {
+  const PointTerm& one = point.sources.front();
+  const std::span<const Leaf> leaves =
+      one.adaptive ? std::span<const Leaf>(one.adaptive->leaf_list) : std::span<const Leaf>();
+  const ExactSource source(scene, one.source);
+  write_whole_file(args.svg, visibility_svg(scene, point.receiver, source, one.exact, leaves));
+}
+
+}  // namespace exactff::cli

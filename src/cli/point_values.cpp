@@ -1,0 +1,129 @@
+#include <algorithm>
+
+#include "cli/output.h"
+#include "cli/point.h"
+#include "exactff/study.h"
+
+namespace exactff::cli {
+
+namespace {
+
+constexpr std::size_t kMostSharesComputed = 200;
+
+Vec3 to_vec3(const std::array<std::string, 3>& text, const std::string& flag) {
+  return {parse_finite(text[0], flag), parse_finite(text[1], flag), parse_finite(text[2], flag)};
+}
+
+Receiver make_receiver(const PointArguments& args, const Scene& scene) {
+  Receiver receiver{to_vec3(args.at, "--at"), to_vec3(args.normal, "--normal"), std::nullopt, ""};
+  if (!args.on.empty()) receiver.on = select_face(scene, args.on);
+  return receiver;
+}
+
+std::vector<Selection> make_sources(const PointArguments& args, const Scene& scene) {
+  std::vector<Selection> sources;
+  for (const std::string& name : args.sources) sources.push_back(scene.select(name));
+  if (sources.empty()) sources = scene.emitters();
+  if (sources.empty()) {
+    throw InputError({.file = args.scene.path,
+                      .what = "no patch of the scene emits (Ke is 0 everywhere)",
+                      .why = "without --source, every emitting patch is a source",
+                      .suggestion = "name a source with --source NAME; `exactff info` lists the names"});
+  }
+  if (args.plain && sources.size() != 1) {
+    throw InputError({.file = {},
+                      .what = "--plain prints one value, but there are " + std::to_string(sources.size()) + " sources",
+                      .why = {},
+                      .suggestion = "name one with --source NAME, or use --json"});
+  }
+  return sources;
+}
+
+Rgb make_reflectance(const PointArguments& args, const Scene& scene, const Receiver& receiver) {
+  if (args.reflectance.empty()) return scene.receiver_reflectance(receiver.on);
+  return {args.reflectance.front(), args.reflectance[args.reflectance.size() / 2], args.reflectance.back()};
+}
+
+void add_shares(const Scene& scene, const Receiver& receiver, const ExactSource& source, PointTerm& result) {
+  const std::vector<FaceId> none;
+  ExactOptions options{.only_occluders = &none};
+  const double open = exact_form_factor(scene, receiver, source, options).value;
+  result.unoccluded = open;
+  if (open == 0.0) return;  // an underflow: there is nothing to compare with
+  for (const FaceId face : result.exact.cutters) {
+    if (result.shares.size() == kMostSharesComputed) break;
+    const std::vector<FaceId> only{face};
+    options.only_occluders = &only;
+    result.shares.push_back({face, 1.0 - exact_form_factor(scene, receiver, source, options).value / open});
+  }
+  std::stable_sort(result.shares.begin(), result.shares.end(),
+                   [](const PointTerm::Share& a, const PointTerm::Share& b) { return a.alone > b.alone; });
+}
+
+AdaptiveOptions adaptive_options(const PointArguments& args) {
+  AdaptiveOptions options = args.adaptive_options;
+  options.pattern = *study::pattern_named(args.pattern);
+  options.variant = *study::variant_named(args.variant);
+  options.record_leaves = !args.svg.empty();  // for the drawing only: there can be millions
+  options.most_leaves = kMostPointLeaves;
+  return options;
+}
+
+PointTerm compute_source(const PointArguments& args, const Scene& scene, const PointResult& point,
+                         const ExactSource& source, const std::optional<AdaptiveSolver>& sampler) {
+  PointTerm result{.source = source.selection()};
+  const ExactOptions options{.engine = args.engine.engine(),
+                             .visible_fraction = args.fraction || args.exact_fraction,
+                             .exact_fraction = args.exact_fraction,
+                             .list_cutters = args.explain,
+                             .digits = args.digits,
+                             .precision_cap = args.precision_cap};
+  result.exact = exact_form_factor(scene, point.receiver, source, options);
+  const Rgb b = scene.source_radiosity(result.source);
+  const Rgb& rho = point.reflectance;
+  result.largest_rho_b = std::max({rho.r * b.r, rho.g * b.g, rho.b * b.b});
+  if (args.explain) add_shares(scene, point.receiver, source, result);
+  if (sampler) {
+    result.adaptive = sampler->form_factor(point.receiver, result.source, result.largest_rho_b, adaptive_options(args));
+  }
+  return result;
+}
+
+void require_one(const std::vector<Selection>& sources, const std::string& picture) {
+  if (sources.size() == 1) return;
+  throw InputError({.file = picture,
+                    .what = "--svg draws one source, but there are " + std::to_string(sources.size()),
+                    .why = {},
+                    .suggestion = "name one with --source NAME"});
+}
+
+}  // namespace
+
+Scene load_point_scene(const PointArguments& args) {
+  Scene scene = args.scene.load();
+  print_warnings(scene.warnings());
+  if (!args.flip) return scene;
+  return scene.with_flipped(make_sources(args, scene));
+}
+
+PointResult compute_point(const PointArguments& args, const Scene& scene) {
+  PointResult result{.receiver = make_receiver(args, scene)};
+  result.reflectance = make_reflectance(args, scene, result.receiver);
+  std::optional<AdaptiveSolver> sampler;
+  if (args.adaptive) sampler.emplace(scene);
+  const std::vector<Selection> sources = make_sources(args, scene);
+  if (!args.svg.empty()) require_one(sources, args.svg);
+  for (const Selection& selection : sources) {
+    const ExactSource source(scene, selection);
+    PointTerm one = compute_source(args, scene, result, source, sampler);
+    const Rgb b = scene.source_radiosity(selection);
+    result.radiosity.r += result.reflectance.r * b.r * one.exact.value;
+    result.radiosity.g += result.reflectance.g * b.g * one.exact.value;
+    result.radiosity.b += result.reflectance.b * b.b * one.exact.value;
+    result.sum += one.exact.enclosure;
+    result.sources.push_back(std::move(one));
+  }
+  return result;
+}
+
+}  // namespace exactff::cli
