@@ -95,7 +95,7 @@ class ExactVisibility : public sampled::PatchVisibility {
   std::uint64_t asked_ = 0;
 };
 
-AdaptiveOptions options_of(const Settings& settings) {
+AdaptiveOptions control_options(const Settings& settings) {
   AdaptiveOptions options{.rays = 1, .pattern = SamplePattern::kCentre};
   take_tolerances(settings, options);
   return options;
@@ -104,7 +104,7 @@ AdaptiveOptions options_of(const Settings& settings) {
 class Control : public RecursionEvaluator {
  public:
   Control(const AdaptiveSolver& solver, const Scene& scene, const Settings& settings)
-      : RecursionEvaluator(solver, scene, options_of(settings)) {}
+      : RecursionEvaluator(solver, scene, control_options(settings)) {}
 
   using Evaluator::form_factor;
   Estimate form_factor(const PreparedSource& prepared) override {
