@@ -124,8 +124,13 @@ void RowJournal::take_over(const Rows& rows, Existing existing, const Hooks& hoo
 
 void RowJournal::begin(const std::string& head) {
   file_.truncate(0);
+  try {
+    file_.write(0, head);
+  } catch (const InputError&) {  // no room: nothing is left behind
+    remove();
+    throw;
+  }
   end_ = head.size();
-  file_.write(0, head);
 }
 
 // Keeps the rows of this request, each once. Nothing else is ever appended, but the file may have been tampered with.

@@ -496,7 +496,7 @@ TEST_F(HostileProgram, AReceiverFarFromItsFaceIsWarnedAbout) {
   const Running far =
       start({"point", room_, "--at", "5", "5", "1", "--normal", "0", "0", "1", "--on", "floor", "--source", "light"});
   EXPECT_EQ(far.wait(), 0);
-  EXPECT_NE(far.error().find("of the size of face 'floor' away from it"), std::string::npos);
+  EXPECT_NE(far.error().find("of the size of face 'floor' away from that face"), std::string::npos);
   const Running near = start(point({"--on", "floor"}));
   EXPECT_EQ(near.wait(), 0);
   EXPECT_EQ(near.error(), "");

@@ -117,6 +117,15 @@ TEST_F(TruthCommand, TwoAtOnceAreRefused) {
   EXPECT_EQ(run(kGrid, file_, {"--resume"}).exit_code, 0);  // a dead process holds no lock
 }
 
+TEST_F(TruthCommand, ADiskWithoutRoomForTheHeadOfTheJournalHoldsNothingAfterwards) {
+  const RunningProgram full = start(kGrid, {}, [] {
+    const rlimit bytes{100, 100};
+    ::setrlimit(RLIMIT_FSIZE, &bytes);
+  });
+  EXPECT_EQ(full.wait(), 2);
+  EXPECT_FALSE(fs::exists(journal_));
+}
+
 // The disk is full first for the journal, then for the file that is made from it.
 TEST_F(TruthCommand, AFullDiskCostsNoRow) {
   const auto limited_to = [](rlim_t bytes) {
