@@ -19,6 +19,7 @@
 
 #include "support/program.h"
 #include "unit/sanitized.h"
+#include "work/parallel.h"
 
 namespace exactff::validation {
 
@@ -29,7 +30,7 @@ namespace {
 constexpr int kProcessorSeconds = kSanitized ? 120 : 15;
 constexpr int kWallSeconds = 20 * kProcessorSeconds;  // other processes need time, too
 constexpr rlim_t kMegabytes = 3000;
-// Processor time from a signal to the end; wall time depends on other processes.
+// Of processor time, from a signal to the end: wall time depends on the load. Each processor may use this much.
 constexpr double kPatience = kSanitized ? 5.0 : 0.5;
 constexpr int kNeverStarted = 127;  // the dynamic loader found no memory
 
@@ -150,7 +151,7 @@ std::string wrong_ending(const Ended& ended, const Words& words, const ProgramCa
   if (ended.hung) return "does not end";
   if (ended.signalled) {
     const bool told = ended.code == 128 + disturbed->signal;
-    if (told && ended.seconds_after_signal > kPatience) return "works on after a signal";
+    if (told && ended.seconds_after_signal > kPatience * work::usable_threads()) return "works on after a signal";
     if (told) return {};
   }
   if (ended.by_signal) return std::string("ended by ") + ::strsignal(ended.code - 128);
