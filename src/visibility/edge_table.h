@@ -21,12 +21,12 @@ class EdgeTable {
   // Adds an edge, unless one between the same two corners, in either direction, was added before. Returns the edge in
   // the table.
   EdgeId add(EdgeId id, std::span<const Outlines::Edge> edges) {
-    const auto ends = [&](EdgeId edge) { return std::minmax(edges[edge].a, edges[edge].b); };
-    const auto [low, high] = ends(id);
-    const std::uint64_t key = (std::uint64_t{high} << 32U | low) * 0x9E3779B97F4A7C15U;
+    const CornerId a = edges[id].a, b = edges[id].b;
+    const std::uint64_t key = (std::uint64_t{std::max(a, b)} << 32U | std::min(a, b)) * 0x9E3779B97F4A7C15U;
     for (std::size_t slot = key >> 32U & mask_;; slot = (slot + 1) & mask_) {
-      if (slots_[slot] == kFree) slots_[slot] = id;
-      if (ends(slots_[slot]) == ends(id)) return slots_[slot];
+      if (slots_[slot] == kFree) return slots_[slot] = id;
+      const Outlines::Edge& known = edges[slots_[slot]];
+      if ((known.a == a && known.b == b) || (known.a == b && known.b == a)) return slots_[slot];
     }
   }
 
