@@ -181,12 +181,12 @@ TEST(Misuse, SourcesPreparedByAnotherMethodAreRefused) {
   const Scene scene = room();
   const Selection lamp = scene.select("lamp");
   const auto by_hemicube = methods::method_named("hemicube").prepare(scene)->prepare_source(lamp);
-  for (const methods::Method* method : methods::all_methods()) {
-    if (method->name == "hemicube") continue;
-    const auto prepared = method->prepare(scene);
-    const auto evaluator = prepared->configure(method->defaults());
+  for (const char* name : {"exact", "adaptive", "adaptive-exact-visibility", "nettle", "wallace", "area-sampling"}) {
+    const methods::Method& method = methods::method_named(name);
+    const auto prepared = method.prepare(scene);
+    const auto evaluator = prepared->configure(method.defaults());
     evaluator->look_from(kBelow);
-    EXPECT_NE(words_of<std::invalid_argument>([&] { (void)evaluator->form_factor(*by_hemicube); }), "") << method->name;
+    EXPECT_NE(words_of<std::invalid_argument>([&] { (void)evaluator->form_factor(*by_hemicube); }), "") << name;
   }
 }
 
