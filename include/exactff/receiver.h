@@ -6,21 +6,26 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "exactff/scene.h"
 
 namespace exactff {
 
-// A point with a normal of any non-zero length. A receiver made on a face stores that face in `on`. The face (all its
-// pieces) then neither occludes nor illuminates the point, because the rounded point lies slightly above or below it. A
-// receiver without `on` excludes nothing.
+// A point with a normal of any non-zero length. `on` holds the receiver's own faces: those of one patch that it lies on.
+// They (all their pieces) neither occlude nor illuminate the point, because the rounded point lies slightly above or
+// below them. Its reflectance is that of the first. A receiver without own faces excludes nothing.
 struct Receiver {
   Vec3 point;
   Vec3 normal;
-  std::optional<FaceId> on;
+  std::vector<FaceId> on;  // distinct
   std::string id;  // from a CSV row, or as described at the generators below; may be empty
 };
+
+// The own faces that a text names: "NAME" (a patch of one face), "NAME:k", or "NAME:1+2" for several faces of a patch. A
+// patch whose name is exactly the text has priority. Throws InputError.
+[[nodiscard]] std::vector<FaceId> own_faces_named(const Scene& scene, std::string_view name);
 
 // The largest number of receivers that a generator makes; a larger one is most likely a mistake. Beyond it they throw
 // InputError.

@@ -33,17 +33,6 @@ double parse_finite(const std::string& text, const std::string& flag) {
                     .suggestion = "give three numbers, for example " + flag + " 0 0.5 -1e-3"});
 }
 
-FaceId select_face(const Scene& scene, const std::string& name) {
-  const Selection selection = scene.select(name);
-  if (selection.face) return *selection.face;
-  const Patch& patch = scene.patch(selection.patch);
-  if (patch.faces.size() == 1) return patch.faces.front();
-  throw InputError(
-      {.what = "--on " + name + ": the patch has " + std::to_string(patch.faces.size()) + " faces",
-       .why = "a receiver lies on exactly one face",
-       .suggestion = "name one of them: " + name + ":1 to " + name + ":" + std::to_string(patch.faces.size())});
-}
-
 namespace {
 
 [[noreturn]] void cannot_write(const fs::path& path, const std::string& reason) {

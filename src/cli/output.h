@@ -17,9 +17,6 @@ std::string pad(const std::string& text, std::size_t width);
 // Parses a finite double with correct rounding. The InputError for other texts names the flag.
 double parse_finite(const std::string& text, const std::string& flag);
 
-// `name` is "NAME:k", or "NAME" for a patch with one face.
-FaceId select_face(const Scene& scene, const std::string& name);
-
 // For a terminal.
 template <class Named>
 std::string shown_name(const Scene& scene, const Named& named) {

@@ -28,11 +28,11 @@ void warn_if_flipped(const Scene& scene, const PointResult& point) {
 // A typing error in --at or --on would otherwise go unnoticed.
 void warn_if_off_its_face(const Scene& scene, const Receiver& receiver) {
   constexpr double kFar = 0.01;
-  if (!receiver.on) return;
-  const double distance = relative_distance_from_face(scene, *receiver.on, receiver.point);
+  if (receiver.on.empty()) return;
+  const double distance = relative_distance_from_face(scene, receiver.on.front(), receiver.point);
   if (distance <= kFar) return;
   std::cerr << "exactff: warning: --at is " << percent(distance) << " of the size of face '"
-            << shown_name(scene, *receiver.on)
+            << shown_name(scene, receiver.on.front())
             << "' away from that face (a receiver on a face is neither occluded nor illuminated by it); check --at and "
                "--on\n";
 }

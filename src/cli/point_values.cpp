@@ -15,8 +15,8 @@ Vec3 to_vec3(const std::array<std::string, 3>& text, const std::string& flag) {
 }
 
 Receiver make_receiver(const PointArguments& args, const Scene& scene) {
-  Receiver receiver{to_vec3(args.at, "--at"), to_vec3(args.normal, "--normal"), std::nullopt, ""};
-  if (!args.on.empty()) receiver.on = select_face(scene, args.on);
+  Receiver receiver{to_vec3(args.at, "--at"), to_vec3(args.normal, "--normal"), {}, ""};
+  if (!args.on.empty()) receiver.on = own_faces_named(scene, args.on);
   return receiver;
 }
 

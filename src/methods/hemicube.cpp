@@ -2,7 +2,8 @@
 //
 //   1. half a cube is placed on x, its top perpendicular to the normal, turned about the normal by an angle;
 //   2. every face of the scene except the receiver's own is drawn into the item buffers of the cube's five faces;
-//   3. the form factor of a face is the sum of the delta form factors of the pixels that show its front.
+//   3. the form factor of a face is the sum of the delta form factors of the pixels that show its front;
+//   4. each transparent face is drawn on top of the others, counted, and taken off again.
 // One item buffer serves all sources. Here coplanar faces hide each other like any face in front: see item_buffer.h for
 // which one wins.
 #include <cmath>
@@ -89,7 +90,9 @@ class Hemicube : public Evaluator {
   void render(const ReceiverView& view);
   void draw(std::uint32_t piece, const ReceiverView& view);
   [[nodiscard]] int side_of_x(std::uint32_t piece, const ReceiverView& view) const;
-  void add_up();
+  void draw_transparent_faces(const ReceiverView& view);
+  template <class Counts>
+  void add_up(const Counts& counts);
 
   const HemicubeOnScene& on_scene_;
   const HemicubePixels& pixels_;
@@ -114,6 +117,7 @@ class HemicubeOnScene : public PreparedScene {
     for (const Piece& piece : given.pieces()) {
       const std::vector<Vec3>& p = scaled.points;
       normals.push_back(plane_normal(p[piece.frame[0]], p[piece.frame[1]], p[piece.frame[2]]));
+      has_transparent_faces = has_transparent_faces || piece.transparent;
     }
   }
 
@@ -129,6 +133,7 @@ class HemicubeOnScene : public PreparedScene {
 
   const ScaledScene scaled;
   std::vector<Normal> normals;  // by piece
+  bool has_transparent_faces = false;
 
  private:
   // Made once per resolution.
@@ -148,7 +153,8 @@ void Hemicube::look_from(const Receiver& receiver) {
   drawn_ = 0;
   if (max_norm(view.point) > kFarthest) return;
   render(view);
-  add_up();
+  add_up([&](std::uint32_t) { return true; });
+  if (on_scene_.has_transparent_faces) draw_transparent_faces(view);
 }
 
 void Hemicube::render(const ReceiverView& view) {
@@ -159,7 +165,19 @@ void Hemicube::render(const ReceiverView& view) {
   const auto pieces = on_scene_.scene().pieces();
   front_.assign(pieces.size(), 0);
   for (std::uint32_t k = 0; k < pieces.size(); ++k) {
-    if (view.on != pieces[k].face) draw(k, view);
+    if (!pieces[k].transparent && !view.is_own(pieces[k].face)) draw(k, view);
+  }
+}
+
+void Hemicube::draw_transparent_faces(const ReceiverView& view) {
+  const auto pieces = on_scene_.scene().pieces();
+  const ItemBuffer opaque = buffer_;
+  for (std::uint32_t k = 0; k < pieces.size(); ++k) {
+    if (!pieces[k].transparent || view.is_own(pieces[k].face)) continue;
+    draw(k, view);
+    if (k + 1 < pieces.size() && pieces[k + 1].face == pieces[k].face) continue;
+    add_up([&](std::uint32_t item) { return pieces[item].face == pieces[k].face; });
+    buffer_ = opaque;
   }
 }
 
@@ -200,14 +218,15 @@ int Hemicube::side_of_x(std::uint32_t index, const ReceiverView& view) const {
                              view.exact_point);
 }
 
-// Adds up pixels in runs that show the same piece.
-void Hemicube::add_up() {
+// Adds up pixels in runs that show the same piece, of the pieces that count.
+template <class Counts>
+void Hemicube::add_up(const Counts& counts) {
   const auto pieces = on_scene_.scene().pieces();
   const std::vector<std::uint32_t>& items = buffer_.items();
   for (std::size_t first = 0, next = 0; first < items.size(); first = next) {
     const std::uint32_t item = items[first];
     next = first + run_length({items.data() + first, items.size() - first});
-    if (item == ItemBuffer::kNothing || front_[item] == 0) continue;
+    if (item == ItemBuffer::kNothing || front_[item] == 0 || !counts(item)) continue;
     Share& share = shares_[index_of(pieces[item].face)];
     share.form_factor += sum_of({pixels_.form_factors().data() + first, next - first});
     share.pixels += next - first;

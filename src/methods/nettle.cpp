@@ -54,7 +54,7 @@ class Nettle : public Evaluator {
     const kernel::StandardArithmetic arithmetic;
     rays_.look_from(receiver);
     receiver_area_ = given_receiver_area_ > 0.0 ? given_receiver_area_
-                     : receiver.on              ? scene_.face(*receiver.on).area
+                     : !receiver.on.empty()     ? scene_.face(receiver.on.front()).area
                                                 : 1.0;
   }
 

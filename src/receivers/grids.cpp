@@ -53,7 +53,7 @@ class FaceGrid {
     Receiver receiver;
     receiver.point = plane_.rounded(at);
     receiver.normal = face_.newell;
-    receiver.on = id_;
+    receiver.on = {id_};
     receiver.id = prefix_ + std::to_string(column) + ',' + std::to_string(row);
     receivers.push_back(std::move(receiver));
   }
@@ -163,11 +163,11 @@ std::optional<GridCell> grid_cell(const Receiver& receiver) {
   const std::string_view id = without_face(receiver.id);
   const std::size_t comma = id.find(',');
   GridCell cell;
-  if (!receiver.on || comma == std::string_view::npos) return std::nullopt;
+  if (receiver.on.empty() || comma == std::string_view::npos) return std::nullopt;
   if (!parse_count(id.substr(0, comma), cell.column) || !parse_count(id.substr(comma + 1), cell.row)) {
     return std::nullopt;
   }
-  cell.face = *receiver.on;
+  cell.face = receiver.on.front();
   return cell.column >= 1 && cell.row >= 1 ? std::optional(cell) : std::nullopt;
 }
 

@@ -42,7 +42,7 @@ void write_head(const Study& study, std::ostream& out, std::string_view what) {
 namespace {
 
 std::string on_name(const Study& study, const Receiver& receiver) {
-  return receiver.on ? study.request.scene->name_of(*receiver.on) : std::string();
+  return study.request.scene->name_of(receiver.on);
 }
 
 std::string column_name(std::string_view words) {

@@ -255,10 +255,11 @@ RayScene::RayScene(const Scene& scene, const std::vector<Vec3>& points, const Un
   if (error != RTC_ERROR_NONE) fail(error, "Embree cannot build its structure");
 }
 
-// All pieces as one mesh, each a fan of triangles.
+// All pieces that occlude as one mesh, each a fan of triangles.
 void RayScene::add_mesh(const Scene& scene, const std::vector<Vec3>& points) {
   std::vector<Triangle> triangles;
   for (std::uint32_t k = 0; k < scene.pieces().size(); ++k) {
+    if (scene.pieces()[k].transparent) continue;
     const auto corners = scene.corners(scene.pieces()[k]);
     for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
       triangles.push_back({corners[0], corners[i], corners[i + 1]});

@@ -1,9 +1,10 @@
 // One receiver's view of a scene: which planes face it, and which pieces may lie between it and a source.
 #pragma once
 
+#include <algorithm>
+#include <boost/container/small_vector.hpp>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,7 +31,9 @@ struct ReceiverView {
   Vec3 point;        // scaled
   Vec3 normal;       // times a power of two
   Vec3 unit_normal;
-  std::optional<FaceId> on;
+  boost::container::small_vector<FaceId, 4> on;  // as in Receiver
+
+  [[nodiscard]] bool is_own(FaceId face) const { return std::ranges::find(on, face) != on.end(); }
 };
 
 // Throws InputError if a coordinate is not finite or the normal is zero, std::invalid_argument if the scene has no such

@@ -100,7 +100,8 @@ std::string request_text(const Request& request) {
   const auto put = [&](const std::string& part) { text += '\n' + part; };
   for (const Receiver& r : request.receivers) {
     for (const double c : {r.point.x, r.point.y, r.point.z, r.normal.x, r.normal.y, r.normal.z}) put(text::shortest(c));
-    put(r.on ? std::to_string(index_of(*r.on)) : "free");
+    for (const FaceId face : r.on) put(std::to_string(index_of(face)));
+    if (r.on.empty()) put("free");
   }
   for (const Selection& source : request.sources) put(request.scene->name_of(source));
   return text;

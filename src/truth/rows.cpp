@@ -25,7 +25,8 @@ std::string hash_of(const std::vector<Receiver>& receivers) {
   for (const Receiver& receiver : receivers) {
     hash.add(receiver.point);
     hash.add(receiver.normal);
-    hash.add(receiver.on ? std::uint64_t{index_of(*receiver.on)} : ~std::uint64_t{0});
+    for (const FaceId face : receiver.on) hash.add(std::uint64_t{index_of(face)});
+    if (receiver.on.empty()) hash.add(~std::uint64_t{0});
     hash.add_bytes(receiver.id);
     hash.add(std::uint64_t{receiver.id.size()});
   }
@@ -122,7 +123,7 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
   exact_form_factor(*request_.scene, receiver, sources_[source], options, results.exact, results.workspace);
   Status status = f.status;
   text::CsvRow line(lines);
-  line << id(row / sources_.size()) << (receiver.on ? request_.scene->name_of(*receiver.on) : std::string())
+  line << id(row / sources_.size()) << request_.scene->name_of(receiver.on)
        << receiver.point << receiver.normal << source_names_[source] << f.value << f.lower << f.upper;
   if (request_.unoccluded) {
     const FormFactor& free = without_occluders(receiver, sources_[source], results);
@@ -154,8 +155,8 @@ std::string Rows::id(std::size_t receiver) const {
 
 std::string Rows::name(std::uint64_t row) const {
   const std::size_t receiver = row / sources_.size();
-  const std::optional<FaceId> on = request_.receivers[receiver].on;
-  return "receiver '" + id(receiver) + "'" + (on ? " on '" + request_.scene->name_of(*on) + "'" : std::string()) +
+  const std::vector<FaceId>& on = request_.receivers[receiver].on;
+  return "receiver '" + id(receiver) + "'" + (on.empty() ? "" : " on '" + request_.scene->name_of(on) + "'") +
          ", source '" + source_names_[row % sources_.size()] + "'";
 }
 

@@ -42,7 +42,7 @@ TEST(GridReceivers, RememberTheFaceAndCarryItsNewellVector) {
   const Scene scene = one_face({{0, 0, 0}, {0, 2, 0}, {0, 2, 3}, {0, 0, 3}}, {{0, 1, 2, 3}});
   const auto receivers = grid(scene, 1, 1);
   ASSERT_EQ(receivers.size(), 1U);
-  EXPECT_EQ(receivers[0].on, FaceId{0});
+  EXPECT_EQ(receivers[0].on, std::vector{FaceId{0}});
   EXPECT_EQ(receivers[0].normal, (Vec3{6, 0, 0}));
 }
 
@@ -66,7 +66,7 @@ TEST(GridReceivers, ANonPlanarQuadrilateralLiesOnItsBilinearPatch) {
   const auto receivers = grid(scene, 1, 1);
   ASSERT_EQ(receivers.size(), 1U);
   EXPECT_EQ(receivers[0].point, (Vec3{0.5, 0.5, 0.25}));
-  EXPECT_EQ(receivers[0].on, FaceId{0});
+  EXPECT_EQ(receivers[0].on, std::vector{FaceId{0}});
 }
 
 TEST(GridReceivers, AnotherFaceKeepsTheCentresInsideItsBoundingRectangle) {
@@ -133,7 +133,7 @@ TEST(GridReceivers, TheCellIsReadBackFromTheId) {
   ASSERT_TRUE(cell.has_value());
   EXPECT_EQ(cell->column, 3);
   EXPECT_EQ(cell->row, 2);
-  EXPECT_FALSE(grid_cell(Receiver{{}, {0, 0, 1}, std::nullopt, "3,2"}).has_value());
+  EXPECT_FALSE(grid_cell(Receiver{{}, {0, 0, 1}, {}, "3,2"}).has_value());
 }
 
 TEST(GridReceivers, OnSeveralFacesIdsMayBeMadeUnique) {
@@ -163,7 +163,7 @@ TEST(GridReceivers, OtherReceiversHaveNoCell) {
   EXPECT_FALSE(grid_cell(vertex_receivers(scene, faces)[0]).has_value());
   EXPECT_FALSE(grid_cell(centre_receivers(scene, faces)[0]).has_value());
   EXPECT_FALSE(grid_cell(sample_receivers(scene, faces, 1, 1)[0]).has_value());
-  EXPECT_FALSE(grid_cell(Receiver{{}, {0, 0, 1}, FaceId{0}, "here/3,2"}).has_value());
+  EXPECT_FALSE(grid_cell(Receiver{{}, {0, 0, 1}, {FaceId{0}}, "here/3,2"}).has_value());
 }
 
 class ReceiverFile : public ::testing::Test {
@@ -214,9 +214,9 @@ TEST_F(ReceiverFile, ReadsQuotesCommentsCrlfAndAnyColumnOrder) {
   ASSERT_EQ(receivers.size(), 2U);
   EXPECT_EQ(receivers[0].id, "a \"b\", c");
   EXPECT_EQ(receivers[0].point, (Vec3{0.1, 2, 0.3}));
-  EXPECT_EQ(receivers[0].on, FaceId{1});
+  EXPECT_EQ(receivers[0].on, std::vector{FaceId{1}});
   EXPECT_EQ(receivers[1].id, "2");
-  EXPECT_FALSE(receivers[1].on.has_value());
+  EXPECT_TRUE(receivers[1].on.empty());
 }
 
 TEST_F(ReceiverFile, NeedsNeitherIdNorOn) {
