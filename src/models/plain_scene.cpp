@@ -213,7 +213,7 @@ Scene build(const PlainScene& scene, const std::string& name, const SceneOptions
   return builder.build();
 }
 
-Receiver receiver_of(const PlainScene& scene) { return {scene.point, scene.normal, std::nullopt, {}}; }
+Receiver receiver_of(const PlainScene& scene) { return {scene.point, scene.normal, {}, {}}; }
 
 void scale(PlainScene& scene, double factor) {
   const auto scaled = [factor](const Vec3& v) { return Vec3{v.x * factor, v.y * factor, v.z * factor}; };

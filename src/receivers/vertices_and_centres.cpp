@@ -46,7 +46,7 @@ void append_corners(const Scene& scene, FaceId id, std::vector<Receiver>& receiv
     for (const std::uint32_t v : ring) {
       ++number;
       if (!visited.insert(places(scene)[v]).second) continue;
-      receivers.push_back({scene.vertices()[v], face.newell, id, prefix + std::to_string(number)});
+      receivers.push_back({scene.vertices()[v], face.newell, {id}, prefix + std::to_string(number)});
     }
   }
 }
@@ -165,7 +165,7 @@ std::vector<Receiver> centre_receivers(const Scene& scene, std::span<const FaceI
   std::vector<Receiver> receivers;
   for (const FaceId face : on) {
     if (scene.face(face).piece_count == 0) continue;
-    receivers.push_back({FaceCentre(scene, face).find(), scene.face(face).newell, face, name_of(scene, face)});
+    receivers.push_back({FaceCentre(scene, face).find(), scene.face(face).newell, {face}, name_of(scene, face)});
   }
   return receivers;
 }
