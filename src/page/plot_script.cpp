@@ -279,12 +279,33 @@ std::string bar_plot(const Axes& axes, const std::vector<Bar>& bars, const std::
          '\n';
 }
 
+namespace {
+
+// One line for each cell, by rows: its centre and its value, if it has one.
+std::string cells_of(const Map& map) {
+  std::vector<std::string> values(static_cast<std::size_t>(map.columns) * static_cast<std::size_t>(map.rows), "NaN");
+  for (const MapCell& cell : map.cells) {
+    values[static_cast<std::size_t>(cell.row - 1) * static_cast<std::size_t>(map.columns) +
+           static_cast<std::size_t>(cell.column - 1)] = text::shortest(cell.value);
+  }
+  std::string lines;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto column = static_cast<double>(i % static_cast<std::size_t>(map.columns)) + 0.5;
+    const auto row = static_cast<double>(i / static_cast<std::size_t>(map.columns)) + 0.5;
+    lines += text::shortest(column * (map.width / map.columns)) + ' ' +
+             text::shortest(row * (map.height / map.rows)) + ' ' + values[i] + '\n';
+  }
+  return lines;
+}
+
+}  // namespace
+
 std::string map_plot(const Map& map) {
   std::string text = head(460, 460);
-  text += "set size ratio " + text::shortest(std::clamp(map.height_over_width, 0.4, 1.6)) + '\n';
-  text +=
-      "set xrange [0.5:" + std::to_string(map.columns) + ".5]\nset yrange [0.5:" + std::to_string(map.rows) + ".5]\n";
-  text += "set xlabel 'column of the grid (u)'\nset ylabel 'row of the grid (v)' offset 0.5,0\nset tics nomirror out\n";
+  const double ratio = map.height / map.width;
+  text += "set size ratio " + text::shortest(std::isfinite(ratio) ? std::clamp(ratio, 0.4, 1.6) : 1.0) + '\n';
+  text += "set xrange [0:" + text::shortest(map.width) + "]\nset yrange [0:" + text::shortest(map.height) + "]\n";
+  text += "set xlabel 'u'\nset ylabel 'v' offset 0.5,0\nset tics nomirror out\n";
   text += colour_commands(map);
   text +=
       "set colorbox horizontal user origin graph 0, graph 1.06 size graph 1, graph 0.04\n"
@@ -294,10 +315,7 @@ std::string map_plot(const Map& map) {
       "set lmargin at screen 0.18\nset rmargin at screen 0.94\n"
       "set tmargin at screen 0.83\nset bmargin at screen 0.17\n";
   text += "$cells << END\n";
-  for (const MapCell& cell : map.cells) {
-    text += std::to_string(cell.column) + ' ' + std::to_string(cell.row) + ' ' + text::shortest(cell.value) + '\n';
-  }
-  return text + "END\nplot $cells using 1:2:3 with image pixels notitle\n";
+  return text + cells_of(map) + "END\nplot $cells using 1:2:3 with image pixels notitle\n";
 }
 
 }  // namespace exactff::page

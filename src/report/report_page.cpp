@@ -48,6 +48,9 @@ class ScenePart {
         (study().methods.cells.empty() ? std::string()
                                        : ", " + text::counted(study().methods.ladders.size(), "method") + " compared") +
         ".</p>\n";
+    for (const std::string& sentence : receiver_warnings(study())) {
+      text_ += page::paragraph("Warning: " + text::html(sentence) + ".");
+    }
     answer();
     tiles();
     figures();

@@ -5,6 +5,7 @@
 
 #include "exactff/version.h"
 #include "report/method_tables.h"
+#include "report/verdicts.h"
 #include "text/csv_row.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -29,6 +30,9 @@ void write_head(const Study& study, std::ostream& out, std::string_view what) {
       << "# scene: " << text::csv_comment(study.request.scene_name) << ", hash " << study.request.scene->hash() << '\n'
       << "# receivers: " << text::csv_comment(study.request.receivers_name) << '\n'
       << "# sources: " << text::csv_comment(source_names(study)) << '\n';
+  for (const std::string& sentence : receiver_warnings(study)) {
+    out << "# warning: " << text::csv_comment(sentence) << '\n';
+  }
   write_list(out, "eps_B", sweeps.eps_b, number);
   write_list(out, "eps_A", sweeps.eps_a, number);
   write_list(out, "rays", sweeps.rays, [](int v) { return v; });

@@ -47,6 +47,10 @@ void complete(Request& request) {
     refuse(request.scene_name, "no patch emits", "a truth file has a row for each source",
            "name a source with --source");
   }
+  if (request.uv && !std::ranges::all_of(request.receivers, [](const Receiver& r) { return r.cell.has_value(); })) {
+    refuse({}, "the receivers have no u and v", "only the cells of a grid have coordinates on their lattice",
+           "make the receivers by --grid, or leave out --uv");
+  }
   const Shard& shard = request.shard;
   if (shard.number < 1 || shard.number > shard.count) {
     refuse({}, "there is no shard " + std::to_string(shard.number) + " of " + std::to_string(shard.count),
@@ -65,6 +69,7 @@ Rows::Rows(Request request) : request_(std::move(request)) {
     radiosities_.push_back(request_.scene->source_radiosity(source));
   }
   receivers_hash_ = hash_of(request_.receivers);
+  near_misses_ = sentences(near_misses(*request_.scene, request_.receivers), request_.receivers.size());
 }
 
 std::uint64_t Rows::shard_rows() const {
@@ -97,13 +102,19 @@ std::string Rows::head() const {
     out << "# shard: " << shard.number << '/' << shard.count << " in chunks of " << kChunkRows
         << " rows, for exactff merge\n";
   }
-  out << "receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper" << (request_.unoccluded ? ",unoccluded" : "")
+  for (const std::string& sentence : near_misses_) out << "# warning: " << text::csv_comment(sentence) << '\n';
+  out << "receiver,on,x,y,z,nx,ny,nz" << (request_.uv ? ",u,v" : "") << ",source,exact,lower,upper"
+      << (request_.unoccluded ? ",unoccluded" : "")
       << (request_.visible_fraction ? ",visible_fraction" : "")
       << ",radiosity_r,radiosity_g,radiosity_b,largest_rho_b,status\n";
   return std::move(out).str();
 }
 
 namespace {
+
+const GridSize& size_of(const Receiver& receiver) { return receiver.cell->lattice->size; }
+// Of the centre of a cell; from 0 to 1, correctly rounded.
+double place_along(int cell, int cells) { return (2.0 * cell - 1.0) / (2.0 * cells); }
 
 // True if no occluder hides anything of what is above the horizon: F is then the same as without occluders.
 bool nothing_in_the_shaft(const FormFactor& result) {
@@ -124,7 +135,11 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
   Status status = f.status;
   text::CsvRow line(lines);
   line << id(row / sources_.size()) << request_.scene->name_of(receiver.on)
-       << receiver.point << receiver.normal << source_names_[source] << f.value << f.lower << f.upper;
+       << receiver.point << receiver.normal;
+  if (request_.uv) {
+    line << place_along(receiver.cell->column, size_of(receiver).u) << place_along(receiver.cell->row, size_of(receiver).v);
+  }
+  line << source_names_[source] << f.value << f.lower << f.upper;
   if (request_.unoccluded) {
     const FormFactor& free = without_occluders(receiver, sources_[source], results);
     if (free.status == Status::kUnderflow) {
