@@ -12,6 +12,7 @@
 #include "text/escape.h"
 #include "text/fnv1a.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "work/parallel.h"
 
 namespace exactff::truth {
@@ -34,22 +35,19 @@ std::string hash_of(const std::vector<Receiver>& receivers) {
 
 void complete(Request& request) {
   require_scene(request.scene);
-  const auto refuse = [](std::string file, std::string what, std::string why, std::string suggestion) {
-    throw InputError(Problem{std::move(file), 0, std::move(what), std::move(why), std::move(suggestion)});
-  };
   if (request.receivers.empty()) {
-    refuse({}, "there are no receivers in " + request.receivers_name, "a truth file has a row for each receiver",
-           "use a finer grid or another patch");
+    text::refuse("there are no receivers in " + request.receivers_name, "a truth file has a row for each receiver",
+                 "use a finer grid or another patch");
   }
   if (request.sources.empty()) request.sources = request.scene->emitters();
   if (request.sources.empty()) {
-    refuse(request.scene_name, "no patch emits", "a truth file has a row for each source",
-           "name a source with --source");
+    text::refuse(request.scene_name, "no patch emits", "a truth file has a row for each source",
+                 "name a source with --source");
   }
   const Shard& shard = request.shard;
   if (shard.number < 1 || shard.number > shard.count) {
-    refuse({}, "there is no shard " + std::to_string(shard.number) + " of " + std::to_string(shard.count),
-           "shards are numbered from 1", "write --shard 1/4 for the first of four");
+    text::refuse("there is no shard " + std::to_string(shard.number) + " of " + std::to_string(shard.count),
+                 "shards are numbered from 1", "write --shard 1/4 for the first of four");
   }
   if (request.threads <= 0) request.threads = work::usable_threads();
 }
