@@ -6,8 +6,8 @@
 #include <map>
 #include <optional>
 
+#include "kernel/vec.h"
 #include "page/plot_script.h"
-#include "report/method_figures.h"
 #include "study/settings.h"
 #include "study/statistics.h"
 #include "text/escape.h"
@@ -321,8 +321,7 @@ class FigureMaker {
     const auto& ring = study_.request.scene->face(grid.face).rings.front();
     if (ring.size() != 4) return 1.0;
     const auto corner = [&](std::size_t i) { return study_.request.scene->vertices()[ring[i]]; };
-    const auto length = [](const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); };
-    const double ratio = length(corner(1), corner(2)) / length(corner(0), corner(1));
+    const double ratio = kernel::distance(corner(1), corner(2)) / kernel::distance(corner(0), corner(1));
     return std::isfinite(ratio) && ratio > 0.0 ? ratio : 1.0;
   }
 
