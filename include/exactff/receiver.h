@@ -14,8 +14,8 @@
 
 namespace exactff {
 
-// A set of faces on which one lattice of receivers lies: faces of one patch that share edges, whose fronts agree, and that
-// deviate from one plane by at most 1e-6 of the set's diameter. A lone face is a region as well.
+// A set of faces on which one lattice of receivers lies: faces of one patch that share edges, whose fronts agree, and
+// that deviate from one plane by at most 1e-6 of the set's diameter. A lone face is a region as well.
 struct Region {
   std::vector<FaceId> faces;  // ascending
 };
@@ -33,8 +33,8 @@ struct GridSize {
   int v = 1;
 };
 
-// A grid of cells on a region. On a convex quadrilateral its cells are those of the bilinear map; otherwise those of the
-// bounding rectangle.
+// A grid of cells on a region. On a convex quadrilateral its cells are those of the bilinear map; otherwise those of
+// the bounding rectangle.
 struct Lattice {
   Region region;
   GridSize size;
@@ -49,19 +49,19 @@ struct GridCell {
   int row = 1;     // along v
 };
 
-// A point with a normal of any non-zero length. `on` holds the receiver's own faces: those of one patch that it lies on.
-// They (all their pieces) neither occlude nor illuminate the point, because the rounded point lies slightly above or
-// below them. Its reflectance is that of the first. A receiver without own faces excludes nothing.
+// A point with a normal of any non-zero length. `on` holds the receiver's own faces: those of one patch that it lies
+// on. They (all their pieces) neither occlude nor illuminate the point, because the rounded point lies slightly above
+// or below them. Its reflectance is that of the first. A receiver without own faces excludes nothing.
 struct Receiver {
   Vec3 point;
   Vec3 normal;
-  std::vector<FaceId> on;  // distinct
-  std::string id;  // from a CSV row, or as described at the generators below; may be empty
+  std::vector<FaceId> on;                       // distinct
+  std::string id;                               // from a CSV row, or as described at the generators below; may be empty
   std::optional<GridCell> cell = std::nullopt;  // of a receiver that grid_receivers made
 };
 
-// The own faces that a text names: "NAME" (a patch of one face), "NAME:k", or "NAME:1+2" for several faces of a patch. A
-// patch whose name is exactly the text has priority. Throws InputError.
+// The own faces that a text names: "NAME" (a patch of one face), "NAME:k", or "NAME:1+2" for several faces of a patch.
+// A patch whose name is exactly the text has priority. Throws InputError.
 [[nodiscard]] std::vector<FaceId> own_faces_named(const Scene& scene, std::string_view name);
 
 // The faces that a receiver given by coordinates was probably meant to lie on. A diagnosis: no value depends on it.
@@ -90,10 +90,10 @@ std::vector<std::size_t> place_on_faces(const Scene& scene, std::span<Receiver> 
 // Receivers that were probably meant to lie on a face, and do not; and receivers that look away from the front of the
 // face that they lie on. A diagnosis, by find_faces with face_tolerance.
 struct NearMisses {
-  std::size_t behind = 0;    // a face that then hides everything
-  std::size_t in_front = 0;  // of a face, which is then not their own
-  std::size_t turned = 0;    // their normals point away from the front of their own face
-  double furthest = 0.0;     // from the face, of those behind it and in front of it
+  std::size_t behind = 0;          // a face that then hides everything
+  std::size_t in_front = 0;        // of a face, which is then not their own
+  std::size_t turned = 0;          // their normals point away from the front of their own face
+  double furthest = 0.0;           // from the face, of those behind it and in front of it
   std::vector<std::string> first;  // a few of them in words: "'7', 3.1e-07 behind 'floor:2'"
 
   [[nodiscard]] bool none() const { return behind + in_front + turned == 0; }
@@ -146,9 +146,9 @@ enum class GridIds { kCells, kUnique };
 // One receiver in the middle of each region, with the id "NAME:k" of its first face. It lies at the mean of the corners
 // of the outline if that is convex; otherwise at the centroid of the area; and if that is not strictly inside the
 // outline, at the mean of the corners of the largest convex piece. Decided exactly, computed rationally and rounded
-// once. On a region of several faces it is put on the face under it, as by grid_receivers. A lone face that is not planar
-// is treated as seen along its Newell vector; the point may lie off its triangles, and the receiver stores the face all
-// the same.
+// once. On a region of several faces it is put on the face under it, as by grid_receivers. A lone face that is not
+// planar is treated as seen along its Newell vector; the point may lie off its triangles, and the receiver stores the
+// face all the same.
 [[nodiscard]] std::vector<Receiver> centre_receivers(const Scene& scene, std::span<const Region> on);
 // One receiver in the middle of each face.
 [[nodiscard]] std::vector<Receiver> centre_receivers(const Scene& scene, std::span<const FaceId> on);

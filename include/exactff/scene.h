@@ -127,8 +127,8 @@ class Scene {
   // B_s of a source: its Ke, or 1 in each channel if it emits nothing. Throws InputError if faces of the selection
   // differ in Ke.
   [[nodiscard]] Rgb source_radiosity(const Selection& source) const;
-  // rho_r of a receiver with these own faces (Receiver::on): Kd of the first; (1,1,1) for a receiver that lies on no face.
-  // Throws std::invalid_argument if the scene does not have that face.
+  // rho_r of a receiver with these own faces (Receiver::on): Kd of the first; (1,1,1) for a receiver that lies on no
+  // face. Throws std::invalid_argument if the scene does not have that face.
   [[nodiscard]] Rgb receiver_reflectance(std::span<const FaceId> on) const;
 
   // The same scene with the faces of the selections turned round: their fronts become their backs. A face in several

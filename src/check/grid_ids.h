@@ -13,9 +13,9 @@ inline std::string current_id(std::string id) {
   const std::size_t comma = id.find(',', start);
   if (comma == std::string::npos) return id;
   const auto is_number = [&](std::size_t first, std::size_t last) {
-    return first < last && std::all_of(id.begin() + static_cast<std::ptrdiff_t>(first),
-                                       id.begin() + static_cast<std::ptrdiff_t>(last),
-                                       [](char c) { return c >= '0' && c <= '9'; });
+    return first < last &&
+           std::all_of(id.begin() + static_cast<std::ptrdiff_t>(first), id.begin() + static_cast<std::ptrdiff_t>(last),
+                       [](char c) { return c >= '0' && c <= '9'; });
   };
   if (!is_number(start, comma) || !is_number(comma + 1, id.size())) return id;
   return id.substr(0, start) + 'r' + id.substr(comma + 1) + 'c' + id.substr(start, comma - start);

@@ -104,8 +104,9 @@ ChosenReceivers on_faces(const ReceiverArguments& args, const Scene& scene, Grid
   const std::string per_face = args.per_face ? ", per face" : "";
   if (!args.grid.empty()) {
     const GridSize size = grid_of(args.grid);
-    return {args.per_face ? grid_receivers(scene, faces, size, grid_ids) : grid_receivers(scene, regions, size, grid_ids),
-            on + ", grid " + args.grid + per_face};
+    return {
+        args.per_face ? grid_receivers(scene, faces, size, grid_ids) : grid_receivers(scene, regions, size, grid_ids),
+        on + ", grid " + args.grid + per_face};
   }
   if (args.vertices) return {vertex_receivers(scene, faces), on + ", vertices"};
   if (args.centres) {
@@ -142,7 +143,8 @@ void check_not_empty(const ReceiverArguments& args, const ChosenReceivers& chose
 }  // namespace
 
 std::optional<AutoFace> auto_face(const std::string& on, const Scene& scene) {
-  if (!is_auto(on) || std::ranges::find(scene.patches(), on, &Patch::name) != scene.patches().end()) return std::nullopt;
+  if (!is_auto(on) || std::ranges::find(scene.patches(), on, &Patch::name) != scene.patches().end())
+    return std::nullopt;
   if (on == "auto") return AutoFace{};
   const text::ParsedNumber distance = text::parse_number(on.substr(std::string_view("auto:").size()));
   if (distance.fault == text::NumberFault::kNone && distance.value > 0.0) return AutoFace{distance.value};

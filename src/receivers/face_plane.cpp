@@ -20,9 +20,7 @@ FacePlane::FacePlane(const Scene& scene, FaceId id)
                 scene.vertices()[scene.face(id).rings.front().front()]) {}
 
 FacePlane::FacePlane(FacePoints points, const Vec3& first_corner)
-    : points_(std::move(points)),
-      first_corner_(first_corner),
-      normal_(newell(points_, 0, points_.ring_start[1])) {
+    : points_(std::move(points)), first_corner_(first_corner), normal_(newell(points_, 0, points_.ring_start[1])) {
   kernel::make_primitive(normal_);
 }
 

@@ -50,8 +50,8 @@ class Search {
         scale_(extent(scene).scale),
         point_(kernel::scaled(point, scale_)),
         tolerance_(tolerance * scale_) {
-    const HalfSpace box[] = {{{1, 0, 0}, -tolerance}, {{-1, 0, 0}, -tolerance}, {{0, 1, 0}, -tolerance},
-                             {{0, -1, 0}, -tolerance}, {{0, 0, 1}, -tolerance}, {{0, 0, -1}, -tolerance}};
+    const HalfSpace box[] = {{{1, 0, 0}, -tolerance},  {{-1, 0, 0}, -tolerance}, {{0, 1, 0}, -tolerance},
+                             {{0, -1, 0}, -tolerance}, {{0, 0, 1}, -tolerance},  {{0, 0, -1}, -tolerance}};
     shaft_tree(scene).query(point, box, [&](std::uint32_t piece) {
       if (const auto found = look_at(scene.pieces()[piece])) found_.push_back(*found);
       return true;

@@ -110,8 +110,10 @@ class Outline {
     VertexRing kept;
     bool first_is_straight = false;
     for (std::size_t i = 0; i < ring.size(); ++i) {
-      if (!is_straight(ring, i)) kept.push_back(ring[i]);
-      else if (i == 0) first_is_straight = true;
+      if (!is_straight(ring, i))
+        kept.push_back(ring[i]);
+      else if (i == 0)
+        first_is_straight = true;
     }
     if (first_is_straight && !kept.empty()) std::rotate(kept.begin(), kept.end() - 1, kept.end());
     ring = std::move(kept);

@@ -241,7 +241,8 @@ std::string name_of(const Scene& scene, const Region& region) {
   constexpr std::size_t kMostNamed = 4;
   const std::vector<FaceId>& faces = region.faces;
   const PatchId patch = scene.face(faces.front()).patch;
-  if (faces.size() > 1 && faces.size() == scene.faces_of({patch, {}, scene.id()}).size()) return scene.patch(patch).name;
+  if (faces.size() > 1 && faces.size() == scene.faces_of({patch, {}, scene.id()}).size())
+    return scene.patch(patch).name;
   const std::span<const FaceId> all(faces);
   return all.size() <= kMostNamed ? scene.name_of(all) : scene.name_of(all.first(kMostNamed - 1)) + "+...";
 }

@@ -6,8 +6,8 @@
 #include <map>
 #include <optional>
 
+#include "kernel/vec.h"
 #include "page/plot_script.h"
-#include "report/method_figures.h"
 #include "study/settings.h"
 #include "study/statistics.h"
 #include "text/escape.h"
@@ -326,9 +326,9 @@ class FigureMaker {
       return;
     }
     if (grid->other_lattices > 0) {
-      leave_out("maps of " + text::counted(grid->other_lattices, "other face"),
-                "the maps show " + name_of(*study_.request.scene, grid->lattice->region) +
-                    ", which has the most receivers");
+      leave_out(
+          "maps of " + text::counted(grid->other_lattices, "other face"),
+          "the maps show " + name_of(*study_.request.scene, grid->lattice->region) + ", which has the most receivers");
     }
     add_exact_map(*grid);
     add_approximate_map(*grid);

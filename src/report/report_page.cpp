@@ -1,10 +1,9 @@
-#include "report/report_page.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "exactff/report.h"
 #include "page/page_text.h"
+#include "report/report.h"
 #include "report/tables.h"
 #include "report/verdicts.h"
 #include "text/escape.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "exactff/version.h"
-#include "report/method_tables.h"
 #include "report/verdicts.h"
 #include "text/csv_row.h"
 #include "text/escape.h"
@@ -45,9 +44,7 @@ void write_head(const Study& study, std::ostream& out, std::string_view what) {
 
 namespace {
 
-std::string on_name(const Study& study, const Receiver& receiver) {
-  return study.request.scene->name_of(receiver.on);
-}
+std::string on_name(const Study& study, const Receiver& receiver) { return study.request.scene->name_of(receiver.on); }
 
 std::string column_name(std::string_view words) {
   std::string name(words);
@@ -171,10 +168,9 @@ const std::vector<StudyTable>& tables() {
   static const std::vector<StudyTable> kTables = [] {
     std::vector<StudyTable> list = {
         {"values.csv", "one row per receiver and setting: exact and approximate value, errors, work", write_values,
-         always, Holds::kValues},
-        {"exact.csv", "one row per receiver and source: the certified value with its bounds", write_exact, always,
-         Holds::kValues},
-        {"summary.csv", "one row per setting: the error statistics", write_summary, always, Holds::kValues},
+         always},
+        {"exact.csv", "one row per receiver and source: the certified value with its bounds", write_exact, always},
+        {"summary.csv", "one row per setting: the error statistics", write_summary, always},
         {"timings.csv", "one row per receiver that was timed and method: the time of a single call", write_timings,
          always, Holds::kTimes},
         {"summary_timings.csv", "one row per setting: time per receiver, and that of the exact method",

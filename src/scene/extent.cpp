@@ -30,8 +30,7 @@ Extent extent_of(const Scene& scene) {
     high = {std::max(high.x, q.x), std::max(high.y, q.y), std::max(high.z, q.z)};
   });
   const Vec3 sides = kernel::difference(high, low);
-  extent.diameter =
-      std::min(std::hypot(sides.x, sides.y, sides.z) / extent.scale, std::numeric_limits<double>::max());
+  extent.diameter = std::min(std::hypot(sides.x, sides.y, sides.z) / extent.scale, std::numeric_limits<double>::max());
   return extent;
 }
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 
+#include "kernel/vec.h"
 #include "study/ladders.h"
-#include "study/prepared_method.h"
+#include "study/method_runs.h"
 #include "study/radiosity.h"
 #include "study/shadow_edges.h"
 #include "study/sight.h"
@@ -65,8 +65,7 @@ class Profiler {
       if (receiver.cell->row == line.row) profile_.receivers.push_back(std::move(receiver));
     }
     for (const Receiver& receiver : profile_.receivers) {
-      const Vec3 &p = receiver.point, &q = profile_.receivers.front().point;
-      profile_.position.push_back(std::hypot(p.x - q.x, p.y - q.y, p.z - q.z));
+      profile_.position.push_back(kernel::distance(receiver.point, profile_.receivers.front().point));
     }
   }
 
@@ -126,7 +125,7 @@ class Profiler {
   void add_curve(const Ladder& ladder) {
     const std::size_t rung = ladder.rungs.size() / 2;
     const methods::Choice& choice = ladder.rungs[rung];
-    const PreparedMethod prepared(*choice.method, request());
+    const PreparedMethod prepared(*choice.method, scene(), request().sources);
     const auto evaluator = prepared.scene->configure(choice.settings);
     Profile::Curve curve{rung_name(ladder, rung), {}};
     for (const Receiver& receiver : profile_.receivers) {

@@ -18,13 +18,12 @@ namespace {
 
 namespace bgi = boost::geometry::index;
 using Point = boost::geometry::model::point<double, 3, boost::geometry::cs::cartesian>;
+using kernel::distance;
 using Tree = bgi::rtree<Point, bgi::rstar<16>>;
 
 constexpr int kRasterCells = 16384;
 constexpr int kRasterCellsOfLargeScenes = 4096;
 constexpr std::size_t kLargeScene = 300;  // faces
-
-double distance(const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
 
 class Raster {
  public:

@@ -198,4 +198,10 @@ std::vector<Block> RowJournal::blocks() const {
   return sorted;
 }
 
+void Pace::add(std::uint64_t rows) {
+  if (hooks_.cancelled && hooks_.cancelled()) throw Cancelled();
+  done_ += rows;
+  if (hooks_.progress) hooks_.progress({stage_, done_, total_});
+}
+
 }  // namespace exactff::truth

@@ -20,8 +20,8 @@ Scene room(double tilt = 0.0) {
     return Vec3{round(c * x - s * z), round(y), round(s * x + c * z)};
   };
   SceneBuilder builder("test");
-  for (const Vec3& v : {at(0, 0, 0), at(4, 0, 0), at(4, 3, 0), at(0, 3, 0), at(1, 1, 2), at(1, 2, 2), at(3, 2, 2),
-                        at(3, 1, 2)}) {
+  for (const Vec3& v :
+       {at(0, 0, 0), at(4, 0, 0), at(4, 3, 0), at(0, 3, 0), at(1, 1, 2), at(1, 2, 2), at(3, 2, 2), at(3, 1, 2)}) {
     builder.add_vertex(v);
   }
   const MaterialId grey = builder.add_material({"grey", {0.5, 0.5, 0.5}, {}});
@@ -80,7 +80,8 @@ TEST(NearFaces, TheToleranceFollowsThePrintedDecimals) {
 TEST(NearFaces, AnyUnitOfLengthWillDo) {
   for (const double unit : {1e-200, 1e-20, 1e20, 1e200}) {
     SceneBuilder builder("test");
-    for (const Vec3& v : {Vec3{0, 0, 0}, Vec3{unit, 0, 0}, Vec3{unit, unit, 0}, Vec3{0, unit, 0}}) builder.add_vertex(v);
+    for (const Vec3& v : {Vec3{0, 0, 0}, Vec3{unit, 0, 0}, Vec3{unit, unit, 0}, Vec3{0, unit, 0}})
+      builder.add_vertex(v);
     builder.add_face(builder.patch("floor"), builder.add_material({}), {{0, 1, 2, 3}});
     const Scene scene = builder.build();
     const Receiver receiver{{0.5 * unit, 0.25 * unit, -1e-7 * unit}, {0, 0, 1}, {}, ""};
@@ -106,9 +107,9 @@ Vec3 rounded(const Vec3& p, int decimals) {
 
 double distance(const Vec3& p, const Vec3& q) { return std::hypot(p.x - q.x, p.y - q.y, p.z - q.z); }
 
-// A form factor changes by at most the irradiance's gradient times the way: for a source at distance d from both points,
-// the integrand cos cos / (pi r^2) changes by at most 4 / (pi r^3) per unit of length. This holds where nothing occludes,
-// as here.
+// A form factor changes by at most the irradiance's gradient times the way: for a source at distance d from both
+// points, the integrand cos cos / (pi r^2) changes by at most 4 / (pi r^3) per unit of length. This holds where nothing
+// occludes, as here.
 double lipschitz_bound(double area, double least_distance, double moved) {
   return 4.0 / std::numbers::pi * area / std::pow(least_distance, 3) * moved;
 }
@@ -156,8 +157,9 @@ TEST(NearMisses, AreCountedAndTheFirstAreNamed) {
   EXPECT_EQ(told[0],
             "2 of 5 receivers are given without a face, within 3e-07 of one; 1 of them look through it from behind, so "
             "it hides everything; --on auto places them on their faces");
-  EXPECT_EQ(told[2], "the first: 'a', 3e-07 behind 'floor:2'; 'c', 2e-07 in front of 'floor:2'; 'e', turned against "
-                     "'floor:2'");
+  EXPECT_EQ(told[2],
+            "the first: 'a', 3e-07 behind 'floor:2'; 'c', 2e-07 in front of 'floor:2'; 'e', turned against "
+            "'floor:2'");
   EXPECT_TRUE(sentences(near_misses(scene, std::span(receivers).subspan(1, 1)), 1).empty());
 }
 

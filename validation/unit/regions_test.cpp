@@ -117,9 +117,13 @@ TEST(Regions, EndWhereTheSurfaceBends) {
 }
 
 TEST(Regions, CellsOutsideAnLAreLeftOut) {
-  const std::vector<std::pair<double, double>> corners = {{0, 0}, {1, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}, {0, 1}};
-  const Scene scene = surface([](double u, double v) { return Vec3{u, v, 0}; }, corners,
-                              {{0, 1, 4, 7}, {1, 2, 3, 4}, {7, 4, 5, 6}});
+  const std::vector<std::pair<double, double>> corners = {{0, 0}, {1, 0}, {2, 0}, {2, 1},
+                                                          {1, 1}, {1, 2}, {0, 2}, {0, 1}};
+  const Scene scene = surface(
+      [](double u, double v) {
+        return Vec3{u, v, 0};
+      },
+      corners, {{0, 1, 4, 7}, {1, 2, 3, 4}, {7, 4, 5, 6}});
   const auto receivers = grid(scene, 4, 4);
   EXPECT_EQ(receivers.size(), 12U);
   EXPECT_EQ(receivers[0].cell->lattice->width, 2.0);
@@ -129,9 +133,13 @@ TEST(Regions, CellsOutsideAnLAreLeftOut) {
 }
 
 TEST(Regions, HolesStayOpen) {
-  const std::vector<std::pair<double, double>> corners = {{0, 0}, {3, 0}, {3, 3}, {0, 3}, {1, 1}, {2, 1}, {2, 2}, {1, 2}};
-  const Scene ring = surface([](double u, double v) { return Vec3{u, v, 0}; }, corners,
-                             {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}});
+  const std::vector<std::pair<double, double>> corners = {{0, 0}, {3, 0}, {3, 3}, {0, 3},
+                                                          {1, 1}, {2, 1}, {2, 2}, {1, 2}};
+  const Scene ring = surface(
+      [](double u, double v) {
+        return Vec3{u, v, 0};
+      },
+      corners, {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}});
   EXPECT_EQ(regions(ring, ring.select("floor")).size(), 1U);
   EXPECT_EQ(grid(ring, 3, 3).size(), 8U);
 }
