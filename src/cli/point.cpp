@@ -60,6 +60,7 @@ int run(const PointArguments& args) {
   const Scene scene = load_point_scene(args);
   const PointResult point = compute_point(args, scene);
   warn_if_off_its_face(scene, point.receiver);
+  warn_of_near_face(scene, point);
   warn_if_flipped(scene, point);
   warn_of_missing_decimals(args, scene, point);
   warn_of_stopped_recursion(scene, point);
@@ -103,7 +104,10 @@ void add_receiver_flags(CLI::App& app, PointArguments& args) {
       ->required()
       ->type_name("NX NY NZ")
       ->check(is_no_flag);
-  app.add_option("--on", args.on, "The receiver lies on this face, which then neither occludes nor illuminates it")
+  app.add_option("--on", args.on,
+                 "The receiver lies on this face, or on several (floor:1+2), which then neither occlude nor illuminate "
+                 "it; auto or "
+                 "auto:DISTANCE finds them")
       ->type_name("NAME[:K]");
   app.add_flag("--flip", args.flip, "Flip the faces of the source, so that they emit from the other side");
   app.add_option("--source", args.sources, "Source patch or face (default: every emitting patch, and their sum)")
