@@ -23,7 +23,7 @@ std::vector<FaceId> own_faces(const PointArguments& args, const Scene& scene, co
   const double tolerance = automatic->tolerance.value_or(face_tolerance(scene, receiver.point));
   std::vector<FaceId> faces = find_faces(scene, receiver, tolerance).faces;
   if (!faces.empty()) return faces;
-  throw InputError({.what = "--on " + args.on + ": no face lies within " + text::rounded(tolerance, 2) +
+  throw InputError({.what = "--on " + args.on + ": no face lies within " + text::rounded_plainly(tolerance, 2) +
                             " of x with a normal within a degree of --normal",
                     .why = "the receiver would lie on no face",
                     .suggestion = "check --at and --normal, or look further away with --on auto:DISTANCE"});
