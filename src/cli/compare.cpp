@@ -100,6 +100,7 @@ void print(const report::Outcome& outcome) {
 void print_warnings_of(const report::PlannedScene& planned, bool several) {
   const study::Request& request = planned.request;
   print_warnings(planned.scene->warnings());
+  print_near_misses(*planned.scene, request.receivers);
   std::vector<Problem> dark = diagnosis::warnings_of_dark_sources(*planned.scene, request.receivers, request.sources);
   for (Problem& warning : dark) {
     if (several) warning.what = planned.title + ": " + warning.what;

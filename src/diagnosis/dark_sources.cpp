@@ -32,11 +32,7 @@ struct Counts {
 class DarkSource {
  public:
   DarkSource(const Scene& scene, std::span<const Receiver> receivers)
-      : scene_(scene), receivers_(receivers), step_((receivers.size() + kMostReceivers - 1) / kMostReceivers) {
-    double largest = 0.0;
-    for (const Vec3& v : scene.vertices()) largest = std::max(largest, kernel::max_norm(v));
-    tolerance_ = std::max(1e-6 * SightLines(scene).diameter(), 0x1p-22 * largest);
-  }
+      : scene_(scene), receivers_(receivers), step_((receivers.size() + kMostReceivers - 1) / kMostReceivers) {}
 
   [[nodiscard]] std::size_t looked_at() const { return (receivers_.size() + step_ - 1) / step_; }
 
@@ -79,27 +75,28 @@ class DarkSource {
   }
 
   [[nodiscard]] std::vector<FaceId> faces_near(const Receiver& receiver) const {
+    constexpr std::size_t kMost = 8;
     std::set<FaceId> near;
     const Vec3& x = receiver.point;
-    visit_pieces_near(scene_, {x, x}, tolerance_, [&](std::uint32_t piece) {
+    const double tolerance = face_tolerance(scene_, x);
+    visit_pieces_near(scene_, {x, x}, tolerance, [&](std::uint32_t piece) {
       const FaceId face = scene_.pieces()[piece].face;
       const bool own = std::ranges::find(receiver.on, face) != receiver.on.end();
-      if (!own && is_near_plane(scene_.face(face), x)) near.insert(face);
-      return near.size() < 8;
+      if (!own && is_near_plane(scene_.face(face), x, tolerance)) near.insert(face);
+      return near.size() < kMost;
     });
     return {near.begin(), near.end()};
   }
 
-  [[nodiscard]] bool is_near_plane(const Face& face, const Vec3& x) const {
+  [[nodiscard]] bool is_near_plane(const Face& face, const Vec3& x, double tolerance) const {
     const Vec3 away = kernel::difference(x, scene_.vertices()[face.rings.front().front()]);
     const double length = std::hypot(face.newell.x, face.newell.y, face.newell.z);
-    return std::abs(kernel::dot(face.newell, away)) <= tolerance_ * length;
+    return std::abs(kernel::dot(face.newell, away)) <= tolerance * length;
   }
 
   const Scene& scene_;
   const std::span<const Receiver> receivers_;
   const std::size_t step_;
-  double tolerance_ = 0.0;
   FormFactor result_;
 };
 
