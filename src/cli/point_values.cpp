@@ -117,8 +117,7 @@ void require_one(const std::vector<Selection>& sources, const std::string& pictu
 Scene load_point_scene(const PointArguments& args) {
   Scene scene = args.scene.load();
   print_warnings(scene.warnings());
-  if (!args.flip) return scene;
-  return scene.with_flipped(make_sources(args, scene));
+  return scene;
 }
 
 PointResult compute_point(const PointArguments& args, const Scene& scene) {
