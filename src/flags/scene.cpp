@@ -1,7 +1,7 @@
 #include "flags/scene.h"
 
 #include "exactff/models.h"
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 
 namespace exactff::flags {
 
@@ -22,7 +22,7 @@ SceneOptions SceneArguments::options() const {
 }
 
 Scene SceneArguments::load() const {
-  return path.starts_with('@') ? models::make_scene(path.substr(1), options()) : read_obj(path, options());
+  return path.starts_with('@') ? models::make_scene(path.substr(1), options()) : read_scene(path, options());
 }
 
 }  // namespace exactff::flags
