@@ -77,7 +77,8 @@ void tell_rounding(const Scene& scene, Losses& losses) {
     if (!is_float(v.x) || !is_float(v.y) || !is_float(v.z)) ++rounded;
   }
   if (rounded == 0) return;
-  losses.add(text::counted_of(rounded, scene.vertices().size(), "vertice") + " moved by rounding",
+  losses.add(text::counted_of(rounded, scene.vertices().size(), "vertice") + (rounded == 1 ? " is" : " are") +
+                 " moved by rounding",
              "binary STL has floats, not doubles, so faces may lose their plane or their area",
              "write STL as text, or PLY, to keep the coordinates");
 }

@@ -50,7 +50,7 @@ TEST(OffReader, MalformedFilesAreNamedByLine) {
       {"4OFF\n1 1 1\n", "a file of kind '4OFF' (its points are not in three dimensions)"},
       {"OFF BINARY\n", "a binary OFF file"},
       {"OFF\n", "the file ends before its counts"},
-      {"OFF\n4 x 0\n", "s.off:2: 'x' is not a count"},
+      {"OFF\n0 x 0\n", "s.off:2: 'x' is not a count"},
       {"OFF\n-4 1 0\n", "s.off:2: '-4' is not a count"},
       {"OFF\n4000000000 1 0\n" + kSquare,
        "s.off:2: the file declares 4000000000 vertices or faces (only 24 bytes follow)"},

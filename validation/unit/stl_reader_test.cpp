@@ -120,7 +120,7 @@ TEST(StlReader, MalformedTextIsNamedByLine) {
     std::string message;
   };
   const Case cases[] = {
-      {"facet normal 0 0 1\nouter loop\nvertex 0 0\n", "s.stl:3: a vertex has fewer than three coordinates"},
+      {"facet normal 0 0 1\nouter loop\nvertex 0 0\n", "s.stl:4: a vertex has fewer than three coordinates"},
       {"facet normal 0 0 1\nouter loop\nvertex 0 0 inf\n", "s.stl:4: 'inf' is not a finite number"},
       {"facet 0 0 1\n", "s.stl:2: '0' instead of normal"},
       {"facet normal 0 0 1\ninner loop\n", "s.stl:3: unknown keyword 'inner'"},

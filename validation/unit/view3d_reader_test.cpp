@@ -42,7 +42,7 @@ TEST(View3dReader, ReadsVerticesSurfacesAndObstructions) {
   EXPECT_EQ(scene.material(scene.faces()[0].material).reflectance, (Rgb{0.1, 0.1, 0.1}));
   EXPECT_EQ(scene.material(scene.faces()[1].material).reflectance, (Rgb{0.75, 0.75, 0.75}));
   EXPECT_EQ(scene.patches()[2].faces.size(), 2U);
-  EXPECT_EQ(scene.faces()[0].line, 14U);
+  EXPECT_EQ(scene.faces()[0].line, 15U);
   EXPECT_EQ(warnings_of(scene), "");
 }
 
@@ -70,7 +70,7 @@ TEST(View3dReader, SubsurfacesAreCutFromTheirBase) {
     return exact_form_factor(s, receiver, ExactSource(s, s.select(name))).value;
   };
   EXPECT_NEAR(value(scene, "wall") + value(scene, "window"), value(whole, "wall"), 1e-16);
-  EXPECT_GT(value(scene, "wall"), 0.1);
+  EXPECT_GT(value(scene, "wall"), 0.05);
 }
 
 TEST(View3dReader, SubsurfacesMayTouchEachOtherAndTheBase) {
@@ -95,7 +95,7 @@ TEST(View3dReader, SubsurfacesThatCannotBeCutAreRefused) {
             std::string::npos);
   EXPECT_NE(refused("S 2 8 7 6 5 1 0 .9 x\n").find("s.vs3:14: surface 2 ('x') faces away from its base"),
             std::string::npos);
-  EXPECT_NE(refused("S 2 5 6 11 0 1 0 .9 x\n").find("s.vs3:13: face 'base' crosses itself"), std::string::npos);
+  EXPECT_NE(refused("S 2 5 6 11 0 1 0 .9 x\n").find("s.vs3:13: face 'base:1' crosses itself"), std::string::npos);
   // The same place twice, and one in the other: no edges cross, but even and odd would be wrong.
   const std::string overlap = "s.vs3:13: subsurfaces of surface 1 ('base') overlap, or reach beyond it";
   EXPECT_NE(refused("S 2 5 6 7 8 1 0 .9 x\nS 3 5 6 7 8 1 0 .9 y\n").find(overlap), std::string::npos);
