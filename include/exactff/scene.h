@@ -62,6 +62,7 @@ struct Face {
   Vec3 newell;
   double area = 0.0;          // in the square of the scene's unit of length; an estimate, clamped to positive doubles
   double out_of_plane = 0.0;  // largest distance of a vertex from the mean plane, divided by the diameter (estimate)
+  bool transparent = false;   // occludes nothing; may be a source, and receivers may lie on it
 };
 
 struct Patch {
@@ -77,6 +78,7 @@ struct Piece {
   std::uint32_t first_corner = 0;
   std::uint32_t corner_count = 0;
   std::uint32_t frame[3] = {0, 0, 0};  // vertex indices of three corners not on a line, in order
+  bool transparent = false;            // as its face
 };
 
 // The object that a name selects: a whole patch, or one of its faces (NAME:k). Functions that take a selection throw
@@ -116,6 +118,8 @@ class Scene {
   [[nodiscard]] Selection select(std::string_view name) const;
   [[nodiscard]] std::string name_of(const Selection& selection) const;
   [[nodiscard]] std::string name_of(FaceId face) const;  // "NAME:k", or "NAME" for a patch of one face
+  // Faces of one patch: "NAME:1+2", in their order; "" for none.
+  [[nodiscard]] std::string name_of(std::span<const FaceId> faces) const;
 
   // Every patch that has an emitting face, in file order.
   [[nodiscard]] std::vector<Selection> emitters() const;
@@ -123,20 +127,24 @@ class Scene {
   // B_s of a source: its Ke, or 1 in each channel if it emits nothing. Throws InputError if faces of the selection
   // differ in Ke.
   [[nodiscard]] Rgb source_radiosity(const Selection& source) const;
-  // rho_r of a receiver on `face`: Kd of that face; (1,1,1) for a receiver that lies on no face. Throws
-  // std::invalid_argument if the scene does not have the face.
-  [[nodiscard]] Rgb receiver_reflectance(std::optional<FaceId> face) const;
+  // rho_r of a receiver with these own faces (Receiver::on): Kd of the first; (1,1,1) for a receiver that lies on no
+  // face. Throws std::invalid_argument if the scene does not have that face.
+  [[nodiscard]] Rgb receiver_reflectance(std::span<const FaceId> on) const;
 
   // The same scene with the faces of the selections turned round: their fronts become their backs. A face in several
   // selections is turned once.
   [[nodiscard]] Scene with_flipped(std::span<const Selection> selections) const;
   [[nodiscard]] Scene with_flipped(const Selection& selection) const { return with_flipped(std::span(&selection, 1)); }
 
+  // The same scene with the faces of the selections transparent: they occlude nothing, and light passes through them
+  // unchanged. They may still be sources and have receivers on them.
+  [[nodiscard]] Scene with_transparent(std::span<const Selection> selections) const;
+
   // Warnings of the builder, in file order.
   [[nodiscard]] std::span<const Problem> warnings() const;
 
-  // 64-bit FNV-1a hash over everything that affects values: vertices, rings, names, materials. 16 lower-case
-  // hexadecimal digits.
+  // 64-bit FNV-1a hash over everything that affects values: vertices, rings, names, materials, transparent faces. 16
+  // lower-case hexadecimal digits.
   [[nodiscard]] std::string hash() const;
 
   // Number of edges that an odd number of faces use, matched by vertex positions. A closed solid has none.

@@ -99,7 +99,10 @@ void print(const report::Outcome& outcome) {
 int run(const CompareArguments& args) {
   check_output_folder(args.folder);
   const report::Plan plan = plan_of(args);
-  for (const report::PlannedScene& scene : plan.scenes) print_warnings(scene.scene->warnings());
+  for (const report::PlannedScene& scene : plan.scenes) {
+    print_warnings(scene.scene->warnings());
+    print_near_misses(*scene.scene, scene.request.receivers);
+  }
   study::Journal journal(study::journal_of_folder(args.folder), args.existing());
   const std::string kept = "finished work is kept in " + text::printable(journal.path().string()) +
                            "; to continue, run the same command with --resume\n";

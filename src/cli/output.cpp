@@ -33,17 +33,6 @@ double parse_finite(const std::string& text, const std::string& flag) {
                     .suggestion = "give three numbers, for example " + flag + " 0 0.5 -1e-3"});
 }
 
-FaceId select_face(const Scene& scene, const std::string& name) {
-  const Selection selection = scene.select(name);
-  if (selection.face) return *selection.face;
-  const Patch& patch = scene.patch(selection.patch);
-  if (patch.faces.size() == 1) return patch.faces.front();
-  throw InputError(
-      {.what = "--on " + name + ": the patch has " + std::to_string(patch.faces.size()) + " faces",
-       .why = "a receiver lies on exactly one face",
-       .suggestion = "name one of them: " + name + ":1 to " + name + ":" + std::to_string(patch.faces.size())});
-}
-
 namespace {
 
 [[noreturn]] void cannot_write(const fs::path& path, const std::string& reason) {
@@ -95,6 +84,12 @@ void check_output(std::ostream& out) {
   throw InputError({.what = "the result could not be written to standard output",
                     .why = "the printed output is incomplete",
                     .suggestion = "free some disk space, or send the output elsewhere"});
+}
+
+void print_near_misses(const Scene& scene, std::span<const Receiver> receivers) {
+  for (const std::string& sentence : sentences(near_misses(scene, receivers), receivers.size())) {
+    std::cerr << "warning: " << text::printable(sentence) << '\n';
+  }
 }
 
 void print_warnings(std::span<const Problem> warnings) {

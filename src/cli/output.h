@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "exactff/receiver.h"
 #include "exactff/scene.h"
 #include "text/escape.h"
 
@@ -16,9 +17,6 @@ std::string pad(const std::string& text, std::size_t width);
 
 // Parses a finite double with correct rounding. The InputError for other texts names the flag.
 double parse_finite(const std::string& text, const std::string& flag);
-
-// `name` is "NAME:k", or "NAME" for a patch with one face.
-FaceId select_face(const Scene& scene, const std::string& name);
 
 // For a terminal.
 template <class Named>
@@ -33,6 +31,8 @@ void write_whole_file(const std::filesystem::path& path, const std::string& text
 void check_output(std::ostream& out);
 
 // Writes "warning: ..." to stderr for the first 20 warnings, then the number of the others.
+// Warnings on receivers that were probably meant to lie on a face.
+void print_near_misses(const Scene& scene, std::span<const Receiver> receivers);
 void print_warnings(std::span<const Problem> warnings);
 
 // Throws InputError unless a result can be written to `folder` (exactff/report.h).

@@ -28,11 +28,11 @@ void warn_if_flipped(const Scene& scene, const PointResult& point) {
 // A typing error in --at or --on would otherwise go unnoticed.
 void warn_if_off_its_face(const Scene& scene, const Receiver& receiver) {
   constexpr double kFar = 0.01;
-  if (!receiver.on) return;
-  const double distance = relative_distance_from_face(scene, *receiver.on, receiver.point);
+  if (receiver.on.empty()) return;
+  const double distance = relative_distance_from_face(scene, receiver.on.front(), receiver.point);
   if (distance <= kFar) return;
   std::cerr << "exactff: warning: --at is " << percent(distance) << " of the size of face '"
-            << shown_name(scene, *receiver.on)
+            << shown_name(scene, receiver.on.front())
             << "' away from that face (a receiver on a face is neither occluded nor illuminated by it); check --at and "
                "--on\n";
 }
@@ -60,6 +60,7 @@ int run(const PointArguments& args) {
   const Scene scene = load_point_scene(args);
   const PointResult point = compute_point(args, scene);
   warn_if_off_its_face(scene, point.receiver);
+  warn_of_near_face(scene, point);
   warn_if_flipped(scene, point);
   warn_of_missing_decimals(args, scene, point);
   warn_of_stopped_recursion(scene, point);
@@ -103,7 +104,10 @@ void add_receiver_flags(CLI::App& app, PointArguments& args) {
       ->required()
       ->type_name("NX NY NZ")
       ->check(is_no_flag);
-  app.add_option("--on", args.on, "The receiver lies on this face, which then neither occludes nor illuminates it")
+  app.add_option("--on", args.on,
+                 "The receiver lies on this face, or on several (floor:1+2), which then neither occlude nor illuminate "
+                 "it; auto or "
+                 "auto:DISTANCE finds them")
       ->type_name("NAME[:K]");
   app.add_flag("--flip", args.flip, "Flip the faces of the source, so that they emit from the other side");
   app.add_option("--source", args.sources, "Source patch or face (default: every emitting patch, and their sum)")

@@ -65,6 +65,8 @@ struct PointResult {
 // With the sources flipped, if wanted.
 [[nodiscard]] Scene load_point_scene(const PointArguments& args);
 [[nodiscard]] PointResult compute_point(const PointArguments& args, const Scene& scene);
+// Says on stderr that x lies near a face that is not its own, and what would follow if it were.
+void warn_of_near_face(const Scene& scene, const PointResult& point);
 
 // `--plain`: "0" is a proved zero; a positive value that rounds to zero prints "0.0".
 [[nodiscard]] std::string plain_value(const FormFactor& result);

@@ -88,7 +88,7 @@ void print_source(const PointArguments& args, const Scene& scene, const PointTer
 
 void print_point_table(const PointArguments& args, const Scene& scene, const PointResult& point) {
   std::cout << "receiver " << vec_text(point.receiver.point) << ", normal " << vec_text(point.receiver.normal);
-  if (point.receiver.on) std::cout << ", on " << shown_name(scene, *point.receiver.on);
+  if (!point.receiver.on.empty()) std::cout << ", on " << text::printable(scene.name_of(point.receiver.on));
   std::cout << "\n\n";
   for (const PointTerm& one : point.sources) print_source(args, scene, one);
   if (point.sources.size() > 1) {
@@ -178,7 +178,7 @@ void print_point_json(const PointArguments& args, const Scene& scene, const Poin
                                   {{"point", numbers_json(point.receiver.point)},
                                    {"normal", numbers_json(point.receiver.normal)},
                                    {"reflectance", numbers_json(point.reflectance)}}}};
-  if (point.receiver.on) json["receiver"]["on"] = scene.name_of(*point.receiver.on);
+  if (!point.receiver.on.empty()) json["receiver"]["on"] = scene.name_of(point.receiver.on);
   json["sources"] = nlohmann::ordered_json::array();
   for (const PointTerm& one : point.sources) json["sources"].push_back(source_json(args, scene, one));
   json["sum"] = {{"lower", point.sum.lower()}, {"upper", point.sum.upper()}, {"ball", ball_json(point.sum)}};

@@ -45,6 +45,7 @@ struct TruthArguments {
   flags::SourceArguments sources;
   bool unoccluded = false;
   bool fraction = false;
+  bool uv = false;
   std::string shard;
   bool resume = false;
   bool force = false;
@@ -85,6 +86,8 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const truth::Team* team)
   print_warnings(job->scene.warnings());
   truth::Request& request = job->request;
   flags::ChosenReceivers receivers = flags::receivers_of(args.receivers, job->scene);
+  if (receivers.without_face > 0) std::cerr << "warning: " << flags::words_on_receivers_without_face(receivers) << '\n';
+  print_near_misses(job->scene, receivers.receivers);
   request.scene = &job->scene;
   request.scene_name = std::filesystem::path(args.scene.path).filename().string();
   request.receivers = std::move(receivers.receivers);
@@ -92,6 +95,7 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const truth::Team* team)
   request.sources = flags::sources_of(args.sources, job->scene);
   request.unoccluded = args.unoccluded;
   request.visible_fraction = args.fraction;
+  request.uv = args.uv;
   request.engine = args.engine.engine();
   request.shard = shard;
   request.threads = args.threads > 0 || team == nullptr ? args.threads : truth::fair_threads(*team);
@@ -207,6 +211,7 @@ Command add_truth(CLI::App& app) {
   flags::add_source_options(*command, args->sources);
   command->add_flag("--unoccluded", args->unoccluded, "Add a column: the form factor without occluders");
   command->add_flag("--fraction", args->fraction, "Add a column: the visible fraction of the source");
+  command->add_flag("--uv", args->uv, "Add columns u,v: the place of a cell on its grid, from 0 to 1");
   command->add_option("--shard", args->shard, "Compute only part I of N, for exactff merge: 1/4 is the first of four")
       ->type_name("I/N");
   CLI::Option* resume = command->add_flag("--resume", args->resume, "Continue an interrupted run, if there is one");

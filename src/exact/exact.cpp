@@ -65,7 +65,7 @@ namespace exact {
 void check_arguments(const Scene& scene, const Receiver& receiver, const ExactSource& source) {
   require_of_scene(scene, source.planes().scene, "source");
   check_receiver(receiver);
-  if (receiver.on) require_face(scene, *receiver.on);
+  for (const FaceId face : receiver.on) require_face(scene, face);
 }
 
 }  // namespace exact

@@ -2,7 +2,8 @@
 //
 //   1. half a cube is placed on x, its top perpendicular to the normal, turned about the normal by an angle;
 //   2. every face of the scene except the receiver's own is drawn into the item buffers of the cube's five faces;
-//   3. the form factor of a face is the sum of the delta form factors of the pixels that show its front.
+//   3. the form factor of a face is the sum of the delta form factors of the pixels that show its front;
+//   4. each transparent face is drawn on top of the others, counted, and taken off again.
 // One item buffer serves all sources. Here coplanar faces hide each other like any face in front: see item_buffer.h for
 // which one wins.
 #include <cmath>
@@ -11,7 +12,6 @@
 #include <mutex>
 #include <numbers>
 
-#include "kernel/exact_vec.h"
 #include "methods/item_buffer.h"
 #include "methods/method_files.h"
 #include "sampled/plane_side.h"
@@ -88,8 +88,9 @@ class Hemicube : public Evaluator {
 
   void render(const ReceiverView& view);
   void draw(std::uint32_t piece, const ReceiverView& view);
-  [[nodiscard]] int side_of_x(std::uint32_t piece, const ReceiverView& view) const;
-  void add_up();
+  void draw_transparent_faces(const ReceiverView& view);
+  template <class Counts>
+  void add_up(const Counts& counts);
 
   const HemicubeOnScene& on_scene_;
   const HemicubePixels& pixels_;
@@ -114,6 +115,7 @@ class HemicubeOnScene : public PreparedScene {
     for (const Piece& piece : given.pieces()) {
       const std::vector<Vec3>& p = scaled.points;
       normals.push_back(plane_normal(p[piece.frame[0]], p[piece.frame[1]], p[piece.frame[2]]));
+      has_transparent_faces = has_transparent_faces || piece.transparent;
     }
   }
 
@@ -129,6 +131,7 @@ class HemicubeOnScene : public PreparedScene {
 
   const ScaledScene scaled;
   std::vector<Normal> normals;  // by piece
+  bool has_transparent_faces = false;
 
  private:
   // Made once per resolution.
@@ -148,7 +151,8 @@ void Hemicube::look_from(const Receiver& receiver) {
   drawn_ = 0;
   if (max_norm(view.point) > kFarthest) return;
   render(view);
-  add_up();
+  add_up([&](std::uint32_t) { return true; });
+  if (on_scene_.has_transparent_faces) draw_transparent_faces(view);
 }
 
 void Hemicube::render(const ReceiverView& view) {
@@ -159,7 +163,19 @@ void Hemicube::render(const ReceiverView& view) {
   const auto pieces = on_scene_.scene().pieces();
   front_.assign(pieces.size(), 0);
   for (std::uint32_t k = 0; k < pieces.size(); ++k) {
-    if (view.on != pieces[k].face) draw(k, view);
+    if (!pieces[k].transparent && !view.is_own(pieces[k].face)) draw(k, view);
+  }
+}
+
+void Hemicube::draw_transparent_faces(const ReceiverView& view) {
+  const auto pieces = on_scene_.scene().pieces();
+  const ItemBuffer opaque = buffer_;
+  for (std::uint32_t k = 0; k < pieces.size(); ++k) {
+    if (!pieces[k].transparent || view.is_own(pieces[k].face)) continue;
+    draw(k, view);
+    if (k + 1 < pieces.size() && pieces[k + 1].face == pieces[k].face) continue;
+    add_up([&](std::uint32_t item) { return pieces[item].face == pieces[k].face; });
+    buffer_ = opaque;
   }
 }
 
@@ -174,7 +190,7 @@ void Hemicube::draw(std::uint32_t index, const ReceiverView& view) {
     above = above || points_[v].z > 0.0;
   }
   if (!above) return;
-  const int side = side_of_x(index, view);
+  const int side = side_of_x(view, on_scene_.scaled, piece, on_scene_.normals[index]);
   if (side == 0) return;
   front_[index] = side > 0 ? 1 : 0;
   const Vec3& given = on_scene_.normals[index].value;
@@ -188,26 +204,15 @@ void Hemicube::draw(std::uint32_t index, const ReceiverView& view) {
   ++drawn_;
 }
 
-// +1 if x is in front of the piece's plane, 0 if in it. Exact.
-int Hemicube::side_of_x(std::uint32_t index, const ReceiverView& view) const {
-  const Piece& piece = on_scene_.scene().pieces()[index];
-  const Bounded height = bounded_dot(on_scene_.normals[index], view.point - on_scene_.scaled.points[piece.frame[0]]);
-  if (height.certainly_positive()) return 1;
-  if (height.certainly_negative()) return -1;
-  if (height.certainly_zero()) return 0;
-  const auto vertices = on_scene_.scene().vertices();
-  return kernel::orientation(vertices[piece.frame[0]], vertices[piece.frame[1]], vertices[piece.frame[2]],
-                             view.exact_point);
-}
-
-// Adds up pixels in runs that show the same piece.
-void Hemicube::add_up() {
+// Adds up pixels in runs that show the same piece, of the pieces that count.
+template <class Counts>
+void Hemicube::add_up(const Counts& counts) {
   const auto pieces = on_scene_.scene().pieces();
   const std::vector<std::uint32_t>& items = buffer_.items();
   for (std::size_t first = 0, next = 0; first < items.size(); first = next) {
     const std::uint32_t item = items[first];
     next = first + run_length({items.data() + first, items.size() - first});
-    if (item == ItemBuffer::kNothing || front_[item] == 0) continue;
+    if (item == ItemBuffer::kNothing || front_[item] == 0 || !counts(item)) continue;
     Share& share = shares_[index_of(pieces[item].face)];
     share.form_factor += sum_of({pixels_.form_factors().data() + first, next - first});
     share.pixels += next - first;

@@ -213,12 +213,6 @@ Scene build(const PlainScene& scene, const std::string& name, const SceneOptions
   return builder.build();
 }
 
-Receiver receiver_of(const PlainScene& scene) { return {scene.point, scene.normal, std::nullopt, {}}; }
-
-void scale(PlainScene& scene, double factor) {
-  const auto scaled = [factor](const Vec3& v) { return Vec3{v.x * factor, v.y * factor, v.z * factor}; };
-  for (Vec3& vertex : scene.vertices) vertex = scaled(vertex);
-  scene.point = scaled(scene.point);
-}
+Receiver receiver_of(const PlainScene& scene) { return {scene.point, scene.normal, {}, {}}; }
 
 }  // namespace exactff::models

@@ -90,7 +90,7 @@ class ReceiverTable {
     if (problem_count_ == before && receiver.normal == Vec3{}) {
       complain("the normal is zero", "it says which way the receiver faces", "give a normal of any other length");
     }
-    if (column_[kOn] < field_count_ && !fields[column_[kOn]].empty()) receiver.on = face_named(fields[column_[kOn]]);
+    if (column_[kOn] < field_count_ && !fields[column_[kOn]].empty()) receiver.on = faces_named(fields[column_[kOn]]);
     if (column_[kId] < field_count_) receiver.id = fields[column_[kId]];
     take_id(receiver.id);
     receivers_.push_back(std::move(receiver));
@@ -119,27 +119,21 @@ class ReceiverTable {
   }
 
   // Searching for similar names takes time; it is skipped if the message would not be shown.
-  std::optional<FaceId> face_named(const std::string& name) {
+  std::vector<FaceId> faces_named(const std::string& name) {
     constexpr std::size_t kExplained = 20;
     const auto& patches = scene_.data().patch_by_name;
     const bool known = patches.contains(name) || patches.contains(name.substr(0, name.rfind(':')));
     if (problem_count_ >= kExplained && !known) {
       complain("there is no face " + text::in_quotes(name), "the receiver must lie on a face of the scene",
                "see the message for the first such line");
-      return std::nullopt;
+      return {};
     }
     try {
-      const Selection selection = scene_.select(name);
-      if (selection.face) return selection.face;
-      const std::vector<FaceId>& faces = scene_.patch(selection.patch).faces;
-      if (faces.size() == 1) return faces.front();
-      complain(text::in_quotes(name, text::kShownName) + " has " + std::to_string(faces.size()) + " faces",
-               "a receiver lies on exactly one face",
-               "write " + text::in_quotes(name + ":k", text::kShownName) + " for its k-th face");
+      return own_faces_named(scene_, name);
     } catch (const InputError& error) {
       for (const Problem& p : error.problems()) complain(p.what, p.why, p.suggestion);
     }
-    return std::nullopt;
+    return {};
   }
 
   text::CsvLines lines_;

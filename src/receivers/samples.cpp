@@ -184,7 +184,7 @@ std::vector<Receiver> sample_receivers(const Scene& scene, std::span<const FaceI
     const auto chosen = std::upper_bound(sums.begin(), sums.end(), numbers.below(sums.back())) - sums.begin();
     const Triangle& triangle = triangles[static_cast<std::size_t>(chosen)];
     const Vec3 point = point_in(scene, triangle, numbers);
-    receivers.push_back({point, scene.face(triangle.face).newell, triangle.face, std::to_string(i)});
+    receivers.push_back({point, scene.face(triangle.face).newell, {triangle.face}, std::to_string(i)});
   }
   return receivers;
 }

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <string>
 
+#include "exactff/report.h"
 #include "kernel/float_environment.h"
-#include "report/figures.h"
 #include "report/studies.h"
 #include "study/settings.h"
 #include "study/statistics.h"

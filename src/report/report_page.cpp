@@ -1,10 +1,9 @@
-#include "report/report_page.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "exactff/report.h"
 #include "page/page_text.h"
+#include "report/report.h"
 #include "report/tables.h"
 #include "report/verdicts.h"
 #include "text/escape.h"
@@ -48,6 +47,9 @@ class ScenePart {
         (study().methods.cells.empty() ? std::string()
                                        : ", " + text::counted(study().methods.ladders.size(), "method") + " compared") +
         ".</p>\n";
+    for (const std::string& sentence : receiver_warnings(study())) {
+      text_ += page::paragraph("Warning: " + text::html(sentence) + ".");
+    }
     answer();
     tiles();
     figures();

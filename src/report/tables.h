@@ -25,6 +25,9 @@ struct StudyTable {
 // In the order of the report's list.
 [[nodiscard]] const std::vector<StudyTable>& tables();
 
+// Those that compare the methods.
+[[nodiscard]] const std::vector<StudyTable>& method_tables();
+
 // The comment lines at the beginning of every file.
 void write_head(const Study& study, std::ostream& out, std::string_view what);
 

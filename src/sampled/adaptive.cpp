@@ -74,7 +74,7 @@ class Recursion {
     for (const SourceRoot& root : source.roots) {
       key = derived_key(key, 0);
       const SourcePlane& plane = source.planes[root.plane];
-      if (root.face != view_.on && !can_cull(plane)) sum += compute_root(root, plane, key);
+      if (!view_.is_own(root.face) && !can_cull(plane)) sum += compute_root(root, plane, key);
     }
     return sum;
   }

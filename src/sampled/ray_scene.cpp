@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "sampled/receiver_view.h"
 #include "scene/scene_data.h"
-#include "scene/shaft_tree.h"
 
 namespace exactff::sampled {
 
@@ -34,16 +34,6 @@ std::vector<std::uint32_t> used_vertices(const Scene& scene) {
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
   return used;
-}
-
-Box bounds_of(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& used) {
-  Box bounds{points[used[0]], points[used[0]]};
-  for (const std::uint32_t v : used) {
-    const Vec3& p = points[v];
-    bounds.low = {std::min(bounds.low.x, p.x), std::min(bounds.low.y, p.y), std::min(bounds.low.z, p.z)};
-    bounds.high = {std::max(bounds.high.x, p.x), std::max(bounds.high.y, p.y), std::max(bounds.high.z, p.z)};
-  }
-  return bounds;
 }
 
 UnitBox unit_box(const Box& bounds, std::size_t pieces) {
@@ -255,10 +245,11 @@ RayScene::RayScene(const Scene& scene, const std::vector<Vec3>& points, const Un
   if (error != RTC_ERROR_NONE) fail(error, "Embree cannot build its structure");
 }
 
-// All pieces as one mesh, each a fan of triangles.
+// All pieces that occlude as one mesh, each a fan of triangles.
 void RayScene::add_mesh(const Scene& scene, const std::vector<Vec3>& points) {
   std::vector<Triangle> triangles;
   for (std::uint32_t k = 0; k < scene.pieces().size(); ++k) {
+    if (scene.pieces()[k].transparent) continue;
     const auto corners = scene.corners(scene.pieces()[k]);
     for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
       triangles.push_back({corners[0], corners[i], corners[i + 1]});
@@ -287,7 +278,7 @@ unsigned RayScene::hidden_lanes(const Vec3& origin, const RayEnds& ends, int fir
   alignas(64) int valid[kPacket];
   for (int lane = 0; lane < kPacket; ++lane) {
     const auto i = static_cast<std::size_t>(first + std::min(lane, lanes - 1));
-    const Vec3 from_x{ends.x[i], ends.y[i], ends.z[i]};
+    const Vec3 from_x = ends[i];
     valid[lane] = lane < lanes && (hidden >> lane & 1U) == 0 ? -1 : 0;
     set_ray(rays, lane, brought_into_box(start + from_x * box_.scale), from_x, box_.scale);
   }

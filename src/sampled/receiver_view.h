@@ -1,9 +1,10 @@
 // One receiver's view of a scene: which planes face it, and which pieces may lie between it and a source.
 #pragma once
 
+#include <algorithm>
+#include <boost/container/small_vector.hpp>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,12 +26,17 @@ struct ScaledScene {
   explicit ScaledScene(const Scene& scene);
 };
 
+// The box around these points.
+[[nodiscard]] Box bounds_of(const std::vector<Vec3>& points, std::span<const std::uint32_t> indices);
+
 struct ReceiverView {
   Vec3 exact_point;  // as given
   Vec3 point;        // scaled
   Vec3 normal;       // times a power of two
   Vec3 unit_normal;
-  std::optional<FaceId> on;
+  boost::container::small_vector<FaceId, 4> on;  // as in Receiver
+
+  [[nodiscard]] bool is_own(FaceId face) const { return std::ranges::find(on, face) != on.end(); }
 };
 
 // Throws InputError if a coordinate is not finite or the normal is zero, std::invalid_argument if the scene has no such
@@ -42,6 +48,10 @@ struct ReceiverView {
 
 // Exact: x is strictly in front of the plane.
 [[nodiscard]] bool in_front(const ReceiverView& view, const SourcePlane& plane);
+
+// +1 if x is in front of the piece's plane, 0 if in it. Exact. `front`: the plane_normal of the piece's frame.
+[[nodiscard]] int side_of_x(const ReceiverView& view, const ScaledScene& scene, const Piece& piece,
+                            const Normal& front);
 
 enum class Horizon { kClips, kIgnored };
 

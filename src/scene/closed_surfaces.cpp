@@ -1,5 +1,5 @@
 // Steps, each in time proportional to the scene's size except for the sorting of a vertex's edges:
-//   1. leave out pieces with a corner that no other piece has: they have an open edge;
+//   1. leave out pieces with a corner that no other piece has, since they have an open edge, and transparent pieces;
 //   2. sort the edges of the others by their ends;
 //   3. join the pieces at each edge, and mark where an edge does not cancel;
 //   4. each connected set of pieces without a mark is a closed surface.
@@ -30,7 +30,7 @@ class Finder {
   }
 
   bool find() {
-    leave_out_loose_pieces();
+    leave_out_pieces();
     if (std::all_of(open_.begin(), open_.end(), [](std::uint8_t open) { return open != 0; })) return false;
     sort_edges();
     join_at_edges();
@@ -57,7 +57,7 @@ class Finder {
       from = to;
     }
   }
-  void leave_out_loose_pieces();
+  void leave_out_pieces();
   void sort_edges();
   void join_at_edges();
   void join(std::span<const DirectedEdge> edge);
@@ -70,7 +70,7 @@ class Finder {
   std::vector<std::uint32_t> begin_;  // into edges_, by lower place, one more at the end
 };
 
-void Finder::leave_out_loose_pieces() {
+void Finder::leave_out_pieces() {
   std::vector<std::uint32_t> uses(places_.size(), 0);
   const auto for_each_place = [&](const auto& take) {
     for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
@@ -79,7 +79,7 @@ void Finder::leave_out_loose_pieces() {
   };
   for_each_place([&](std::uint32_t, std::uint32_t place) { ++uses[place]; });
   for_each_place([&](std::uint32_t piece, std::uint32_t place) {
-    if (uses[place] < 2) open_[piece] = 1;
+    if (uses[place] < 2 || scene_.pieces()[piece].transparent) open_[piece] = 1;
   });
 }
 

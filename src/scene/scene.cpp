@@ -114,6 +114,14 @@ std::string Scene::name_of(FaceId id) const {
   return name_of(Selection{owner, id});
 }
 
+std::string Scene::name_of(std::span<const FaceId> faces) const {
+  if (faces.empty()) return {};
+  if (faces.size() == 1) return name_of(faces.front());
+  std::string name = name_of(Selection{face(faces.front()).patch, faces.front()});
+  for (const FaceId id : faces.subspan(1)) name += '+' + std::to_string(face(id).number);
+  return name;
+}
+
 std::vector<Selection> Scene::emitters() const {
   const kernel::StandardArithmetic arithmetic;
   std::vector<Selection> result;
@@ -143,10 +151,10 @@ Rgb Scene::source_radiosity(const Selection& source) const {
   return first.emits() ? first.radiosity : unit;
 }
 
-Rgb Scene::receiver_reflectance(std::optional<FaceId> id) const {
-  if (!id) return {1.0, 1.0, 1.0};
-  require_face(*this, *id);
-  return material(face(*id).material).reflectance;
+Rgb Scene::receiver_reflectance(std::span<const FaceId> on) const {
+  if (on.empty()) return {1.0, 1.0, 1.0};
+  require_face(*this, on.front());
+  return material(face(on.front()).material).reflectance;
 }
 
 namespace {
@@ -160,10 +168,12 @@ void add_colour(text::Fnv1a& hash, const Rgb& c) {
   for (const double v : {c.r, c.g, c.b}) hash.add(v);
 }
 
+constexpr std::uint64_t kTransparentBit = 0x100;
+
 void add_face(text::Fnv1a& hash, const Face& face) {
   hash.add(static_cast<std::uint64_t>(face.patch));
   hash.add(static_cast<std::uint64_t>(face.material));
-  hash.add(static_cast<std::uint64_t>(face.shape));
+  hash.add(static_cast<std::uint64_t>(face.shape) | (face.transparent ? kTransparentBit : 0));
   hash.add(static_cast<std::uint64_t>(face.rings.size()));
   for (const auto& ring : face.rings) {
     hash.add(static_cast<std::uint64_t>(ring.size()));

@@ -26,7 +26,6 @@
 #include "study/sight.h"
 #include "study/silent_errors.h"
 #include "study/statistics.h"
-#include "study/sweep_budget.h"
 #include "study/timing.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -43,8 +42,8 @@ void complete(Request& request) {
   }
   if (request.sources.empty()) request.sources = request.scene->emitters();
   if (request.sources.empty()) {
-    throw InputError(Problem{request.scene_name, 0, "no patch emits", "without a source there is nothing to compare",
-                             "name a source with --source"});
+    text::refuse(request.scene_name, "no patch emits", "without a source there is nothing to compare",
+                 "name a source with --source");
   }
   if (request.threads <= 0) request.threads = work::usable_threads();
 }
@@ -54,11 +53,10 @@ constexpr double kMostRadiosity = 1e290;
 
 void require_moderate(double radiosity, const Request& request) {
   if (radiosity <= kMostRadiosity) return;
-  throw InputError(
-      Problem{request.scene_name, 0,
-              "a receiver that sees only the sources would have a radiosity of " + text::shortest(radiosity),
-              "a comparison adds and averages radiosities; sums overflow above " + text::shortest(kMostRadiosity),
-              "reduce the emissions (Ke); form factors do not depend on them"});
+  text::refuse(request.scene_name,
+               "a receiver that sees only the sources would have a radiosity of " + text::shortest(radiosity),
+               "a comparison adds and averages radiosities; sums overflow above " + text::shortest(kMostRadiosity),
+               "reduce the emissions (Ke); form factors do not depend on them");
 }
 
 double mean_face_area(const Request& request) {
@@ -100,7 +98,8 @@ std::string request_text(const Request& request) {
   const auto put = [&](const std::string& part) { text += '\n' + part; };
   for (const Receiver& r : request.receivers) {
     for (const double c : {r.point.x, r.point.y, r.point.z, r.normal.x, r.normal.y, r.normal.z}) put(text::shortest(c));
-    put(r.on ? std::to_string(index_of(*r.on)) : "free");
+    for (const FaceId face : r.on) put(std::to_string(index_of(face)));
+    if (r.on.empty()) put("free");
   }
   for (const Selection& source : request.sources) put(request.scene->name_of(source));
   return text;

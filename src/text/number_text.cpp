@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <optional>
 
 #include "kernel/numbers.h"
+#include "text/nearest_names.h"
 #include "text/text_lines.h"
 
 namespace exactff::text {
@@ -18,12 +18,6 @@ namespace exactff::text {
 namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
 
 // The parts of [+-] whole [. fraction] [e exponent].
 struct Decimal {
@@ -113,7 +107,7 @@ double magnitude_of(const Decimal& number) {
 }
 
 NumberFault fault_of(std::string_view text) {
-  std::string word = lower_case(text);
+  std::string word = in_lower_case(text);
   if (word.starts_with('+') || word.starts_with('-')) word.erase(0, 1);
   if (word.starts_with("nan") || word.starts_with("inf") || word.starts_with("1.#")) return NumberFault::kNotFinite;
   if (word.starts_with("0x")) return NumberFault::kHexadecimal;

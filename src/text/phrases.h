@@ -35,6 +35,9 @@ namespace exactff::text {
 // "{c} of {whole} {noun}s", or "every one of ...".
 [[nodiscard]] std::string counted_of(std::size_t count, std::size_t whole, std::string_view noun);
 
+// The low bits of a number as `digits` hexadecimal digits.
+[[nodiscard]] std::string hexadecimal(std::uint64_t value, std::size_t digits);
+
 // The version as all outputs state it: "exactff 0.1.0".
 [[nodiscard]] std::string program_version();
 

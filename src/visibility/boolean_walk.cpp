@@ -94,12 +94,12 @@ Outcome BooleanWalk::find_outcome() {
   return loops_.empty() ? Outcome::kHiddenByUnion : Outcome::kPartlyHidden;
 }
 
-// The pieces as x sees them, without the face that the receiver lies on. False if none is left.
+// The pieces as x sees them, without the receiver's own faces. False if none is left.
 bool BooleanWalk::gather_source() {
   const auto vertices = view_.scene.vertices();
   for (const std::uint32_t index : plane_.pieces) {
     const Piece& piece = view_.scene.pieces()[index];
-    if (view_.on && piece.face == *view_.on) continue;
+    if (view_.is_own(piece.face)) continue;
     Ring ring;
     for (const std::uint32_t corner : view_.scene.corners(piece)) {
       ring.push_back(kernel::make_direction(kernel::exact_difference(vertices[corner], view_.x).v));

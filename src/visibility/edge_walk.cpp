@@ -54,6 +54,7 @@ class EdgeWalk {
   [[nodiscard]] Sides sides(OutlineId source);
   [[nodiscard]] bool is_left_out(std::uint32_t piece, int facing);
   [[nodiscard]] bool may_leave_out_backs(std::uint32_t surface) const;
+  [[nodiscard]] bool has_piece_in(const Face& face, std::uint32_t surface) const;
   void make_shaft(OutlineId source);
   void make_side_planes(OutlineId source);
   [[nodiscard]] Sides sides_by_filter();
@@ -83,7 +84,7 @@ class EdgeWalk {
 Outcome EdgeWalk::find_outcome() {
   // 1. Cull.
   if (std::none_of(plane_.pieces.begin(), plane_.pieces.end(),
-                   [&](std::uint32_t p) { return !view_.on || pieces_[p].face != *view_.on; })) {
+                   [&](std::uint32_t p) { return !view_.is_own(pieces_[p].face); })) {
     return Outcome::kReceiverFace;
   }
   if (side_of(plane_, view_.x) <= 0) return Outcome::kBehind;
@@ -108,7 +109,7 @@ bool EdgeWalk::gather_source() {
   outlines_.set_source_plane(plane_.normal.exact, plane_.fine_normal, plane_.point);
   for (const std::uint32_t index : plane_.pieces) {
     const Piece& piece = pieces_[index];
-    if (view_.on && piece.face == *view_.on) {
+    if (view_.is_own(piece.face)) {
       gathered_all_ = false;
     } else if (add_above_horizon(piece)) {
       ++source_count_;
@@ -244,12 +245,14 @@ bool EdgeWalk::may_leave_out_backs(std::uint32_t id) const {
   const Vec3& x = view_.x;
   const bool outside = x.x < low.x || x.y < low.y || x.z < low.z || x.x > high.x || x.y > high.y || x.z > high.z;
   if (!outside || !ShaftTree::certainly_inside({low, high}, x, work_.half_spaces.back())) return false;
-  if (!view_.on) return true;
-  const Face& face = view_.scene.face(*view_.on);
+  return std::ranges::none_of(view_.on, [&](FaceId own) { return has_piece_in(view_.scene.face(own), id); });
+}
+
+bool EdgeWalk::has_piece_in(const Face& face, std::uint32_t surface) const {
   for (std::uint32_t piece = face.first_piece; piece < face.first_piece + face.piece_count; ++piece) {
-    if (surfaces_.of_piece(piece) == id) return false;
+    if (surfaces_.of_piece(piece) == surface) return true;
   }
-  return true;
+  return false;
 }
 
 // An occluder must have some part above each of these planes: the source's plane (above is its front), the parallel

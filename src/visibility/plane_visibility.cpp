@@ -15,7 +15,7 @@ kernel::Direction View::normal() const { return kernel::make_direction(kernel::e
 
 bool may_occlude(const View& view, const SourcePlane& plane, const Request& request, std::uint32_t piece) {
   const FaceId face = view.scene.pieces()[piece].face;
-  if (view.on && face == *view.on) return false;
+  if (view.is_own(face) || view.scene.pieces()[piece].transparent) return false;
   if (std::binary_search(plane.pieces.begin(), plane.pieces.end(), piece)) return false;
   const std::vector<FaceId>* only = request.only_occluders;
   return only == nullptr || std::binary_search(only->begin(), only->end(), face);

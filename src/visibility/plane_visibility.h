@@ -2,9 +2,11 @@
 // edge_walk.h and boolean_walk.h. No radiometry.
 #pragma once
 
+#include <algorithm>
 #include <boost/container/small_vector.hpp>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -19,14 +21,16 @@ namespace exactff::visibility {
 
 class PlaneFrame;
 
-// Everything that depends on the receiver alone.
+// Everything that depends on the receiver alone. Keeps a reference to the receiver's faces.
 struct View {
   View(const Scene& scene_in, const Receiver& receiver);
 
   const Scene& scene;
   Vec3 x;
-  Vec3 n;  // the receiver's normal
-  std::optional<FaceId> on;
+  Vec3 n;                      // the receiver's normal
+  std::span<const FaceId> on;  // the receiver's own faces
+
+  [[nodiscard]] bool is_own(FaceId face) const { return std::ranges::find(on, face) != on.end(); }
   // The normal as a direction in integers, which are seldom needed.
   [[nodiscard]] kernel::Direction normal() const;
 };

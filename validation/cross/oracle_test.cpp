@@ -99,16 +99,40 @@ TEST(Oracle, AgreesOnTheGeneratedFamilies) {
   }
 }
 
-// The receiver lies on a face: neither this face nor the parts into which it was cut may hide or emit.
-TEST(Oracle, AgreesForReceiversOnAFace) {
+FaceId any_face(const Scene& scene, Random& random) {
+  return FaceId{static_cast<std::uint32_t>(random.below(scene.faces().size()))};
+}
+
+// The receiver lies on a face, or on several: neither these faces nor the parts into which they were cut may hide or
+// emit.
+TEST(Oracle, AgreesForReceiversOnFaces) {
   for (std::uint64_t i = 0; i < scaled_count(100); ++i) {
     Random random(seed_of(i));
     const PlainScene plain = random.one_in(2) ? nudged_scene(random) : degenerate_scene(random);
     const Scene scene = generate::build(plain);
     Receiver receiver = generate::receiver_of(plain);
-    receiver.on = FaceId{static_cast<std::uint32_t>(random.below(scene.faces().size()))};
+    for (std::uint64_t own = random.below(4); receiver.on.size() <= own;)
+      receiver.on.push_back(any_face(scene, random));
     ASSERT_EQ(disagreement(scene, receiver, scene.select(plain.source)), "")
-        << "on " << scene.name_of(*receiver.on) << ", seed " << seed_of(i) << '\n'
+        << "on " << scene.name_of(receiver.on) << ", seed " << seed_of(i) << '\n'
+        << generate::to_obj(plain);
+  }
+}
+
+// Transparent faces hide nothing, on closed surfaces as elsewhere, and may be a part of the source.
+TEST(Oracle, AgreesForTransparentFaces) {
+  for (std::uint64_t i = 0; i < scaled_count(100); ++i) {
+    Random random(seed_of(i));
+    const PlainScene plain = random.one_in(2) ? nudged_scene(random) : degenerate_scene(random);
+    const Scene opaque = generate::build(plain);
+    std::vector<Selection> panes;
+    for (std::uint64_t k = random.below(3); panes.size() <= k;) {
+      const FaceId face = any_face(opaque, random);
+      panes.push_back({opaque.face(face).patch, face, opaque.id()});
+    }
+    const Scene scene = opaque.with_transparent(panes);
+    ASSERT_EQ(disagreement(scene, receiver_in(scene, plain), scene.select(plain.source)), "")
+        << "seed " << seed_of(i) << '\n'
         << generate::to_obj(plain);
   }
 }

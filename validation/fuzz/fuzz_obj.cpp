@@ -45,7 +45,7 @@ void check_form_factors(const Scene& scene) {
   constexpr std::size_t kPieces = 40;
   constexpr std::size_t kPatches = 3;
   if (scene.pieces().size() > kPieces) return;
-  const Receiver receiver{{0.25, -0.125, 0.0}, {0.5, 0.25, 1.0}, std::nullopt, {}};
+  const Receiver receiver{{0.25, -0.125, 0.0}, {0.5, 0.25, 1.0}, {}, {}};
   for (std::size_t i = 0; i < std::min(scene.patches().size(), kPatches); ++i) {
     const ExactSource source(scene, {PatchId(static_cast<std::uint32_t>(i)), std::nullopt});
     const FormFactor f = exact_form_factor(scene, receiver, source, {.engine = Engine::kBoth});

@@ -123,7 +123,7 @@ Receiver receiver_in(const PlainScene& plain, const Scene& scene, Random& random
     const double by = std::ldexp(1.0, random.integer(-900, 900));
     receiver.normal = {receiver.normal.x * by, receiver.normal.y * by, receiver.normal.z * by};
   }
-  if (random.one_in(8)) receiver.on = FaceId{static_cast<std::uint32_t>(random.below(scene.faces().size()))};
+  if (random.one_in(8)) receiver.on = {FaceId{static_cast<std::uint32_t>(random.below(scene.faces().size()))}};
   return receiver;
 }
 

@@ -185,9 +185,9 @@ void hide(Fragments& fragments, const Polygon& occluder) {
 // receiver.
 struct Setting {
   std::vector<std::vector<Polygon>> planes;
-  std::vector<Polygon> all;
-  std::optional<FaceId> on;  // the face that the receiver lies on
-  Vector normal;             // of the receiver
+  std::vector<Polygon> occluders;
+  std::vector<FaceId> on;  // the faces that the receiver lies on
+  Vector normal;           // of the receiver
 };
 
 // Any origin outside the plane is possible.
@@ -199,15 +199,19 @@ Rational whole_area(std::vector<Polygon> faces, int axis) {
   return area_along(union_of(faces), axis);
 }
 
+bool is_own(const Setting& setting, const Polygon& polygon) {
+  return std::ranges::find(setting.on, polygon.face) != setting.on.end();
+}
+
 // Faces seen from behind or edge-on contribute nothing.
 Fragments visible_part(const Setting& setting, std::vector<Polygon> faces) {
-  std::erase_if(faces, [&](const Polygon& face) { return face.face == setting.on; });
+  std::erase_if(faces, [&](const Polygon& face) { return is_own(setting, face); });
   if (faces.empty() || sgn(faces.front().offset) >= 0) return {};
   Fragments visible = union_of(faces);
   toggle(visible, {{setting.normal, 0}});
   keep(visible, true);
-  for (const Polygon& polygon : setting.all) {
-    if (polygon.face != setting.on) hide(visible, polygon);
+  for (const Polygon& polygon : setting.occluders) {
+    if (!is_own(setting, polygon)) hide(visible, polygon);
   }
   return visible;
 }
@@ -232,7 +236,7 @@ Setting make_setting(const Scene& scene, const Receiver& receiver, const Selecti
   for (std::size_t i = 0; i < scene.faces().size(); ++i) {
     const FaceId id{static_cast<std::uint32_t>(i)};
     for (const Polygon& polygon : polygons_of(scene, id, exact(receiver.point))) {
-      setting.all.push_back(polygon);
+      if (!scene.face(id).transparent) setting.occluders.push_back(polygon);
       if (std::ranges::find(chosen, id) != chosen.end()) add_to_plane(setting.planes, polygon);
     }
   }

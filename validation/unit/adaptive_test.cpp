@@ -172,9 +172,9 @@ TEST(Adaptive, TheRememberedFaceNeitherHidesNorShines) {
   const Scene scene = generate::build(plain);
   const AdaptiveSolver solver(scene);
   Receiver receiver = generate::receiver_of(plain);
-  receiver.on = scene.faces_of(scene.select("occluder"))[0];
+  receiver.on = {scene.faces_of(scene.select("occluder"))[0]};
   EXPECT_GT(solver.form_factor(receiver, scene.select("source"), 1.0, {}).form_factor, 0.5);
-  receiver.on = scene.faces_of(scene.select("source"))[0];
+  receiver.on = {scene.faces_of(scene.select("source"))[0]};
   EXPECT_EQ(solver.form_factor(receiver, scene.select("source"), 1.0, {}).form_factor, 0.0);
 }
 

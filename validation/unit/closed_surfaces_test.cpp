@@ -147,7 +147,7 @@ TEST(ClosedSurfaces, HideByBacksWhereFrontsAreLeftOut) {
     const std::vector<FaceId> only{FaceId{face}};
     expect_agreement(plain, receiver, {.only_occluders = &only});
     Receiver on_face = receiver;
-    on_face.on = FaceId{face};
+    on_face.on = {FaceId{face}};
     expect_agreement(plain, on_face);
     EXPECT_GE(exact_form_factor(scene, on_face, source).value, whole);
   }
@@ -177,7 +177,7 @@ TEST(ClosedSurfaces, HideWhatTheBooleansFind) {
       add_solid(scene, vertices, random.one_in(2) ? reversed(faces) : faces);
     }
     Receiver receiver = generate::receiver_of(scene);
-    if (random.one_in(4)) receiver.on = FaceId{1};
+    if (random.one_in(4)) receiver.on = {FaceId{1}};
     SCOPED_TRACE(round);
     expect_agreement(scene, receiver);
   }

@@ -174,10 +174,10 @@ TEST(Hemicube, FacesThatReachBehindTheReceiverAreClipped) {
 TEST(Hemicube, TheReceiversFaceIsLeftOut) {
   const Scene room = furnished_room();
   Receiver receiver = room_receivers(room)[0];
-  receiver.on.reset();
+  receiver.on.clear();
   receiver.point.z = -1e-3;  // below the floor, which then hides everything
   EXPECT_EQ(estimate(room, receiver, "lamp", "hemicube").form_factor, 0.0);
-  receiver.on = room.faces_of(room.select("floor"))[0];
+  receiver.on = {room.faces_of(room.select("floor"))[0]};
   EXPECT_GT(estimate(room, receiver, "lamp", "hemicube").form_factor, 0.0);
 }
 

@@ -201,7 +201,7 @@ TEST(Methods, WhatTheDefinitionSaysIsZeroIsZero) {
   turned_away.normal = {0, 0, -1};
   const Scene room = furnished_room();
   Receiver on_lamp = room_receivers(room)[0];
-  on_lamp.on = room.faces_of(room.select("lamp"))[1];
+  on_lamp.on = {room.faces_of(room.select("lamp"))[1]};
   for (const char* text : kChoices) {
     if (std::string_view(text).find("literal") != std::string_view::npos) continue;
     EXPECT_EQ(value(behind, text), 0.0) << text;

@@ -119,7 +119,7 @@ TEST(Misuse, AReceiverOnAFaceThatIsNotThereIsRefused) {
   const Selection lamp = scene.select("lamp");
   const ExactSource source(scene, lamp);
   Receiver receiver = kBelow;
-  receiver.on = FaceId{3};
+  receiver.on = {FaceId{3}};
   expect_refused("there is no face 3", [&] { (void)exact_form_factor(scene, receiver, source); });
   expect_refused("there is no face 3", [&] { (void)draw_visibility(scene, receiver, source); });
   expect_refused("there is no face 3", [&] { (void)scene.receiver_reflectance(receiver.on); });

@@ -260,13 +260,13 @@ TEST(MtlReader, KdIsTheReflectanceAndKeTheRadiosity) {
 
 TEST(MtlReader, AbsentKdIsOneAndAbsentKeIsZero) {
   const Scene scene = read_with_mtl("newmtl a\nNs 10\n");
-  EXPECT_EQ(scene.receiver_reflectance(FaceId{0}), (Rgb{1, 1, 1}));
+  EXPECT_EQ(scene.receiver_reflectance(std::vector{FaceId{0}}), (Rgb{1, 1, 1}));
   EXPECT_TRUE(scene.emitters().empty());
 }
 
 TEST(MtlReader, NamesMayHoldBlanks) {
   const Scene scene = read_with_mtl("newmtl old brick\nKd .5\n", "mtllib m.mtl\nusemtl old brick\n");
-  EXPECT_EQ(scene.receiver_reflectance(FaceId{0}), (Rgb{0.5, 0.5, 0.5}));
+  EXPECT_EQ(scene.receiver_reflectance(std::vector{FaceId{0}}), (Rgb{0.5, 0.5, 0.5}));
 }
 
 TEST(MtlReader, SeveralLibrariesAndBackslashesAreFound) {

@@ -161,7 +161,7 @@ TEST(SceneMaterials, SourceRadiosityIsKeOrOne) {
 
 TEST(SceneMaterials, ReceiverReflectanceIsKdOfItsFaceOrOne) {
   const Scene scene = rooms().build();
-  EXPECT_EQ(scene.receiver_reflectance(FaceId{0}), (Rgb{0.5, 0.25, 0.125}));
+  EXPECT_EQ(scene.receiver_reflectance(std::vector{FaceId{0}}), (Rgb{0.5, 0.25, 0.125}));
   EXPECT_EQ(scene.receiver_reflectance({}), (Rgb{1, 1, 1}));
 }
 

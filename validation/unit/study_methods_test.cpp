@@ -8,7 +8,7 @@
 #include <string>
 
 #include "exactff/study.h"
-#include "report/report_page.h"
+#include "report/report.h"
 #include "report/verdicts.h"
 #include "study/ladders.h"
 #include "study/method_runs.h"
@@ -587,7 +587,7 @@ TEST(ShadowEdges, AreLeftOutWhereThereAreNone) {
   EXPECT_NE(why(small_room(false), nothing).find("of one kind all over the face"), std::string::npos);
   const Scene room = small_room(true);
   EXPECT_NE(why(room, [](auto& list) { list[1].id = "elsewhere"; }).find("not one grid"), std::string::npos);
-  EXPECT_NE(why(room, [](auto& list) { list[1].on = FaceId{1}; }).find("not one grid"), std::string::npos);
+  EXPECT_NE(why(room, [](auto& list) { list[1].on = {FaceId{1}}; }).find("not one grid"), std::string::npos);
 }
 
 TEST(Profiles, HaveTheirKinksWhereTheHalfPlaneCastsThem) {

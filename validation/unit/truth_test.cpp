@@ -131,7 +131,7 @@ TEST_F(Truth, TheHeadKnowsOneSetOfReceiversFromAnother) {
   const std::function<void(Receiver&)> changes[] = {
       [](Receiver& r) { r.point.x = std::nextafter(r.point.x, 9.0); },
       [](Receiver& r) { r.normal.z = -r.normal.z; },
-      [](Receiver& r) { r.on.reset(); },
+      [](Receiver& r) { r.on.clear(); },
       [](Receiver& r) { r.id += 'a'; },
   };
   for (const auto& change : changes) {
@@ -145,7 +145,7 @@ TEST_F(Truth, EveryRowIsTheExactValueOfItsReceiverAndSource) {
   Request asked = request(3);
   asked.unoccluded = asked.visible_fraction = true;
   asked.receivers[4].id.clear();
-  asked.receivers[5].on.reset();
+  asked.receivers[5].on.clear();
   const Rows rows(asked);
   const std::vector<FaceId> none;
   int hidden = 0;

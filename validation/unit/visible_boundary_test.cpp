@@ -69,11 +69,11 @@ TEST(VisibleBoundary, TheReceiversOwnFaceNeitherOccludesNorIlluminates) {
   const Scene scene = generate::build(plain);
   Receiver receiver = generate::receiver_of(plain);
   const ExactSource source(scene, scene.select("source"));
-  receiver.on = scene.faces_of(scene.select("o1")).front();
+  receiver.on = {scene.faces_of(scene.select("o1")).front()};
   for (const Engine engine : validation::kEngines) {
     EXPECT_EQ(exact_form_factor(scene, receiver, source, {.engine = engine}).value, open_value()) << to_string(engine);
   }
-  receiver.on = scene.faces_of(scene.select("source")).front();
+  receiver.on = {scene.faces_of(scene.select("source")).front()};
   for (const Engine engine : validation::kEngines) {
     const FormFactor result = exact_form_factor(scene, receiver, source, {.engine = engine});
     EXPECT_EQ(result.status, Status::kZero) << to_string(engine);

@@ -20,7 +20,7 @@ TEST(SampledFormFactor, IsRightBeneathThePlate) {
   const exactff::Scene scene = exactff::read_obj(GUARD_FOLDER "/room.obj");
   const exactff::ExactSource lamp(scene, scene.select("lamp"));
   const exactff::Receiver receiver{
-      .point = {2, 1.5, 0}, .normal = {0, 0, 1}, .on = scene.select("floor:1").face, .id = {}};
+      .point = {2, 1.5, 0}, .normal = {0, 0, 1}, .on = {*scene.select("floor:1").face}, .id = {}};
   EXPECT_FORM_FACTOR_NEAR(sampled(receiver.point, receiver.normal), exactff::exact_form_factor(scene, receiver, lamp),
                           1e-4);
 }

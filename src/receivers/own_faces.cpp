@@ -1,0 +1,43 @@
+// The names of a receiver's own faces.
+#include <algorithm>
+
+#include "exactff/error.h"
+#include "exactff/receiver.h"
+#include "scene/scene_data.h"
+#include "text/numbered_name.h"
+#include "text/phrases.h"
+#include "text/text_lines.h"
+
+namespace exactff {
+
+namespace {
+
+FaceId one_face(const Scene& scene, const std::string& name) {
+  const Selection selection = scene.select(name);
+  if (selection.face) return *selection.face;
+  const std::size_t faces = scene.patch(selection.patch).faces.size();
+  if (faces == 1) return scene.patch(selection.patch).faces.front();
+  throw InputError({.what = text::in_quotes(name, text::kShownName) + " has " + std::to_string(faces) + " faces",
+                    .why = "a patch may be bent, so the name does not say where the receiver lies",
+                    .suggestion = "write " + text::in_quotes(name + ":k", text::kShownName) + " for its k-th face"});
+}
+
+}  // namespace
+
+std::vector<FaceId> own_faces_named(const Scene& scene, std::string_view name) {
+  const std::size_t plus = name.find('+', std::min(name.rfind(':'), name.size()));
+  const auto first = text::numbered_name(name.substr(0, plus));
+  if (plus == std::string_view::npos || !first || scene.data().patch_by_name.contains(std::string(name))) {
+    return {one_face(scene, std::string(name))};
+  }
+  std::vector<FaceId> faces = {one_face(scene, first->patch + ':' + std::to_string(first->number))};
+  for (std::size_t at = plus; at < name.size();) {
+    const std::size_t next = std::min(name.find('+', at + 1), name.size());
+    const FaceId face = one_face(scene, first->patch + ':' + std::string(name.substr(at + 1, next - at - 1)));
+    if (std::ranges::find(faces, face) == faces.end()) faces.push_back(face);
+    at = next;
+  }
+  return faces;
+}
+
+}  // namespace exactff
