@@ -200,7 +200,8 @@ void print_faces(const Scene& scene) {
   print_list("zero area, ignored", numbered_names(scene, FaceShape::kZeroArea));
   print_list("unusable, left out", numbered_names(scene, FaceShape::kSkipped));
   const std::size_t open = scene.open_edge_count();
-  std::cout << "open edges: " << open << (open == 0 ? " (the surface is closed)" : "") << '\n';
+  std::cout << "open edges: " << open
+            << (open == 0 ? " (the surface is closed)" : " (an odd number of faces uses them)") << '\n';
 }
 
 void print_findings(const std::vector<diagnosis::Finding>& findings) {

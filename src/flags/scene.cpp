@@ -1,7 +1,7 @@
 #include "flags/scene.h"
 
 #include "exactff/models.h"
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "flags/lists.h"
 #include "text/escape.h"
 #include "text/refuse.h"
@@ -49,7 +49,7 @@ SceneOptions SceneArguments::options() const {
 }
 
 Scene SceneArguments::load() const {
-  Scene scene = path.starts_with('@') ? models::make_scene(path.substr(1), options()) : read_obj(path, options());
+  Scene scene = path.starts_with('@') ? models::make_scene(path.substr(1), options()) : read_scene(path, options());
   if (!flip.empty()) scene = scene.with_flipped(changed(scene, "--flip", flip));
   if (!transparent.empty()) scene = scene.with_transparent(changed(scene, "--transparent", transparent));
   return scene;

@@ -17,6 +17,7 @@
 
 #include "exactff/obj.h"
 #include "formats/mtl_reader.h"
+#include "formats/readers.h"
 #include "kernel/float_environment.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
@@ -448,21 +449,21 @@ void ObjReader::add_faces() {
 
 constexpr const char* kPurpose = "a Wavefront OBJ file";
 
-Scene read(const std::string& text, const fs::path& path, const SceneOptions& options) {
+}  // namespace
+
+Scene formats::read_obj(std::string_view text, const fs::path& path, const SceneOptions& options) {
   const kernel::StandardArithmetic arithmetic;
   if (text.empty())
     throw InputError({path.string(), 0, "is empty", "there is nothing to compute with", "give a Wavefront OBJ file"});
   return ObjReader(text, path, options).run();
 }
 
-}  // namespace
-
 Scene read_obj(std::istream& in, const fs::path& name, const SceneOptions& options) {
-  return read(text::read_text(in, name.string(), kPurpose), name, options);
+  return formats::read_obj(text::read_text(in, name.string(), kPurpose), name, options);
 }
 
 Scene read_obj(const fs::path& path, const SceneOptions& options) {
-  return read(text::read_text_file(path, kPurpose), path, options);
+  return formats::read_obj(text::read_text_file(path, kPurpose), path, options);
 }
 
 }  // namespace exactff

@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 #include "kernel/numbers.h"
 #include "text/nearest_names.h"
@@ -114,9 +115,20 @@ NumberFault fault_of(std::string_view text) {
   return text.find(',') != std::string_view::npos && split(word).valid ? NumberFault::kComma : NumberFault::kNotANumber;
 }
 
+// Nearly all numbers: std::from_chars reads the whole text, and it begins as a number, not as "nan" or "inf".
+std::optional<double> plain_number(std::string_view text) {
+  const char first = text.empty() ? '\0' : text[text.front() == '-' && text.size() > 1 ? 1 : 0];
+  if (!is_digit(first) && first != '.') return std::nullopt;
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value == 0.0 ? 0.0 : value;  // no -0
+}
+
 }  // namespace
 
 ParsedNumber parse_number(std::string_view text) {
+  if (const auto value = plain_number(text)) return {*value, NumberFault::kNone};
   const Decimal number = split(text);
   if (!number.valid) return {0.0, fault_of(text)};
   const double magnitude = magnitude_of(number);
