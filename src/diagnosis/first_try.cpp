@@ -36,11 +36,14 @@ bool face_each_other(const Scene& scene, const SightLines& sight, const Selectio
   });
 }
 
-double face_size(const Scene& scene, const Selection& selection) {
-  double area = 0.0;
-  const std::vector<FaceId> faces = scene.faces_of(selection);
-  for (const FaceId face : faces) area += scene.face(face).area / static_cast<double>(faces.size());
-  return area;
+double largest_surface(const Scene& scene, const Selection& selection) {
+  double largest = 0.0;
+  for (const Region& region : regions(scene, selection)) {
+    double area = 0.0;
+    for (const FaceId face : region.faces) area += scene.face(face).area;
+    largest = std::max(largest, area);
+  }
+  return largest;
 }
 
 // A patch is no source if its faces differ in Ke; then its first face that emits is.
@@ -81,7 +84,7 @@ std::optional<FirstTry> first_try(const Scene& scene) {
   std::ranges::copy_if(all, std::back_inserter(sources), [&](const Selection& s) { return emits(scene, s); });
   if (sources.empty()) sources = all;
   std::vector<std::pair<std::pair<bool, double>, Selection>> ranked;  // those that do not emit first, then large ones
-  for (const Selection& one : all) ranked.push_back({{emits(scene, one), -face_size(scene, one)}, one});
+  for (const Selection& one : all) ranked.push_back({{emits(scene, one), -largest_surface(scene, one)}, one});
   std::ranges::stable_sort(ranked, {}, [](const auto& entry) { return entry.first; });
   if (ranked.size() > kMostTried) ranked.resize(kMostTried);
   if (sources.size() > kMostTried) sources.resize(kMostTried);
