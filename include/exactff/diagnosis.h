@@ -36,9 +36,9 @@ struct Finding {
 //
 // kNormals, kDoubledFaces, kOppositeFaces: complete. kInwardSurface: from volumes and solid angles in doubles.
 // kUnseenFront, kEmitterLooksAway: an estimate. Rays from a few points of a patch, and lines to the faces before it,
-// look for one that another patch can see. A patch that can only be seen through narrow gaps may be reported. The
-// number of rays and lines in a scene is limited, so that 100,000 faces take about a second; patches beyond it are not
-// reported.
+// look for one that another patch can see. A patch that can only be seen through narrow gaps may be reported. Parts of
+// closed surfaces are not, unless they emit. The number of rays and lines in a scene is limited, so that 100,000 faces
+// take about a second; patches beyond it are not reported.
 [[nodiscard]] std::vector<Finding> diagnose(const Scene& scene);
 
 // Receivers and a source for a first try: a patch or a face each.

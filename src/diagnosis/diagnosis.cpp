@@ -47,7 +47,7 @@ std::string advice_to_flip(const Scene& scene, std::span<const Selection> select
   if (!parts.not_yet.empty()) {
     const std::string flag = flag_to_flip(scene, selections);
     advice = "turn " + std::string(parts.not_yet.size() == 1 ? "it" : "them") + " round with " +
-             (flag.empty() ? "--flip" : flag);
+             (flag.empty() ? "--flip NAME,NAME,..." : flag);
   }
   if (parts.by_flag.empty()) return advice;
   return advice + (advice.empty() ? "" : ", and ") + "leave out --flip for " + listed(scene, parts.by_flag);

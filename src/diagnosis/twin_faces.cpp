@@ -107,7 +107,7 @@ Finding finding_of(const Scene& scene, Kind kind, const std::vector<Twins>& twin
       same ? "as sources of two patches both count, and a receiver a hair behind one of them sees nothing"
            : "a receiver on one of them may lie a hair behind the other, which then hides everything";
   finding.words.suggestion = "remove one of them, or let light pass through it with " +
-                             (finding.flag.empty() ? std::string("--transparent") : finding.flag);
+                             (finding.flag.empty() ? std::string("--transparent NAME,NAME,...") : finding.flag);
   return finding;
 }
 

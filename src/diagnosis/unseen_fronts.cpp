@@ -13,7 +13,9 @@
 #include "diagnosis/findings.h"
 #include "diagnosis/sight_lines.h"
 #include "kernel/vec.h"
+#include "scene/closed_surfaces.h"
 #include "scene/selections.h"
+#include "text/phrases.h"
 
 namespace exactff::diagnosis {
 
@@ -156,34 +158,56 @@ class FrontFinder {
 
 struct Unseen {
   std::vector<Selection> patches, emitters;
+  std::size_t looked_at = 0;
+  std::size_t to_look_at = 0;
 };
+
+// By patch: all its faces belong to closed surfaces, and these look the right way or are reported on their own.
+std::vector<bool> closed_patches(const Scene& scene) {
+  std::vector<bool> closed(scene.patches().size(), true);
+  const ClosedSurfaces& surfaces = closed_surfaces(scene);
+  for (std::uint32_t p = 0; p < scene.pieces().size(); ++p) {
+    const bool open = surfaces.empty() || surfaces.of_piece(p) == ClosedSurfaces::kNone;
+    if (open) closed[index_of(scene.face(scene.pieces()[p].face).patch)] = false;
+  }
+  return closed;
+}
 
 Unseen find_unseen(const Scene& scene) {
   Unseen unseen;
   FrontFinder finder(scene);
   if (!finder.usable()) return unseen;
-  std::vector<bool> emits(scene.patches().size(), false), lonely(scene.patches().size(), false);
+  const std::size_t count = scene.patches().size();
+  std::vector<bool> emits(count, false), lonely(count, false);
   for (const Selection& emitter : scene.emitters()) emits[index_of(emitter.patch)] = true;
-  std::vector<Front> fronts;
-  for (std::size_t p = 0; p < scene.patches().size(); ++p) {
-    if (!finder.has_area(p)) {
-      fronts.push_back({.seen = true});
-      continue;
+  const std::vector<bool> closed = closed_patches(scene);
+  std::vector<std::size_t> order;  // emitters first
+  for (const bool emitting : {true, false}) {
+    for (std::size_t p = 0; p < count; ++p) {
+      if (finder.has_area(p) && emits[p] == emitting && (emitting || !closed[p])) order.push_back(p);
     }
-    fronts.push_back(finder.look(p));
-    if (!fronts.back().complete) break;
-    lonely[p] = !fronts.back().seen && fronts.back().backs.empty();
   }
-  for (std::size_t p = 0; p < fronts.size(); ++p) {
-    const Front& front = fronts[p];
-    if (front.seen || !front.complete) continue;
-    const Selection patch{static_cast<PatchId>(p), {}, scene.id()};
-    if (lonely[p]) {
-      (emits[p] ? unseen.emitters : unseen.patches).push_back(patch);
-    } else if (!emits[p] && std::ranges::none_of(front.backs, [&](std::size_t other) { return lonely[other]; })) {
+  unseen.to_look_at = order.size();
+  std::vector<Front> fronts;
+  for (const std::size_t p : order) {
+    Front front = finder.look(p);
+    if (!front.complete) break;
+    lonely[p] = !front.seen && front.backs.empty();
+    fronts.push_back(std::move(front));
+  }
+  unseen.looked_at = fronts.size();
+  for (std::size_t i = 0; i < fronts.size(); ++i) {
+    const Selection patch{static_cast<PatchId>(order[i]), {}, scene.id()};
+    const bool emitter = emits[order[i]];
+    const auto is_lonely = [&](std::size_t other) { return lonely[other]; };
+    if (lonely[order[i]]) {
+      (emitter ? unseen.emitters : unseen.patches).push_back(patch);
+    } else if (!emitter && !fronts[i].seen && std::ranges::none_of(fronts[i].backs, is_lonely)) {
       unseen.patches.push_back(patch);
     }
   }
+  const auto by_patch = [](const Selection& selection) { return selection.patch; };
+  std::ranges::sort(unseen.patches, {}, by_patch);
   return unseen;
 }
 
@@ -193,6 +217,10 @@ std::vector<Finding> unseen_fronts(const Scene& scene) {
   std::vector<Finding> findings;
   if (scene.patches().size() < 2) return findings;
   const Unseen unseen = find_unseen(scene);
+  const std::string limit = unseen.looked_at == unseen.to_look_at
+                                ? std::string()
+                                : " (" + std::to_string(unseen.looked_at) + " of " +
+                                      text::counted(unseen.to_look_at, "patch", "patches") + " were looked at)";
   const auto add = [&](Kind kind, const std::vector<Selection>& objects, std::string what, std::string why) {
     if (objects.empty()) return;
     findings.push_back({.kind = kind,
@@ -203,7 +231,7 @@ std::vector<Finding> unseen_fronts(const Scene& scene) {
                                   .suggestion = "if the other side is meant, " + advice_to_flip(scene, objects)}});
   };
   add(Kind::kUnseenFront, unseen.patches,
-      "no other patch sees the front of " + listed(scene, unseen.patches) + ", as far as rays can tell",
+      "no other patch sees the front of " + listed(scene, unseen.patches) + ", as far as rays can tell" + limit,
       "receivers there see nothing, and it lights nothing");
   add(Kind::kEmitterLooksAway, unseen.emitters,
       (unseen.emitters.size() == 1 ? "emitter " : "emitters ") + listed(scene, unseen.emitters) +

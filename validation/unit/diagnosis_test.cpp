@@ -132,6 +132,16 @@ TEST(Diagnosis, FindsFrontsThatNobodySees) {
   EXPECT_EQ(kinds_of(scene), Names{"unseen-front"});
 }
 
+// Nothing is above the roof of a house, and that is no slip.
+TEST(Diagnosis, LeavesTheRoofsOfSolidsAlone) {
+  const std::string solid = "g bottom\nf 5 7 6\ng a\nf 5 6 8\ng b\nf 6 7 8\ng c\nf 7 5 8\n";
+  const std::string vertices =
+      "v 1.1 1.1 0.5\nv 1.2 1.1 0.5\nv 1.2 1.2 0.5\nv 1.1 1.2 0.5\nv 1 1 1\nv 2 1 1\nv 1 2 1\nv 1 1 2\n";
+  EXPECT_EQ(kinds_of(read(vertices + "g floor\nf 1 2 3 4\n" + solid)), Names{});
+  const std::string open = solid.substr(solid.find("g a"));
+  EXPECT_EQ(flag(read(vertices + "g floor\nf 1 2 3 4\n" + open), Kind::kUnseenFront), "--flip a,b,c");
+}
+
 // A small lamp that no ray of a few dozen meets.
 TEST(Diagnosis, SeesSmallThings) {
   const std::string far = "v 0 0 0\nv 900 0 0\nv 900 900 0\nv 0 900 0\nv 1 1 300\nv 1 2 300\nv 2 2 300\nv 2 1 300\n";
