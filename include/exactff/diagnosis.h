@@ -56,7 +56,8 @@ struct FirstTry {
 // Sources that are proved to give 0 at every receiver for a reason that suggests a slip: the receivers are behind the
 // source, the source is below their horizon, or a face on which they lie hides it. One warning for each source, with
 // counts and what to do. `sources` may be empty, for every patch that emits. A source on which all receivers lie is
-// left out if there are others. Of more than 10,000 receivers, 10,000 are looked at.
+// left out if there are others. Of more than 10,000 receivers, 10,000 are looked at. Receivers on a closed surface that
+// looks inward get the warning of kInwardSurface.
 [[nodiscard]] std::vector<Problem> warnings_of_dark_sources(const Scene& scene, std::span<const Receiver> receivers,
                                                             std::span<const Selection> sources);
 

@@ -94,7 +94,7 @@ struct NearMisses {
   std::size_t in_front = 0;        // of a face, which is then not their own
   std::size_t turned = 0;          // their normals point away from the front of their own face
   double furthest = 0.0;           // from the face, of those behind it and in front of it
-  std::vector<std::string> first;  // a few of them in words: "'7', 3.1e-07 behind 'floor:2'"
+  std::vector<std::string> first;  // a few of them in words, those behind a face first: "'7', 3.1e-07 behind 'floor:2'"
 
   [[nodiscard]] bool none() const { return behind + in_front + turned == 0; }
 };
@@ -111,11 +111,11 @@ inline constexpr std::uint64_t kMostReceivers = std::uint64_t{1} << 22;
 enum class GridIds { kCells, kUnique };
 
 // Receivers at the cell centres of a u x v grid on each of the regions. The outline of a region is that of its faces
-// together, without corners on a straight side. It begins at the first corner of the face with the lowest index that
-// lies on it, or, if this corner is on a straight side, at the beginning of that side. If the outline is a convex
-// quadrilateral, the grid is that of its bilinear map. On any other outline it is the grid of the bounding rectangle in
-// the plane of the Newell vector (u along the first edge, v = Newell x u), and only centres inside are kept. Computed
-// rationally and rounded once. u runs fastest.
+// together, without corners that lie within 1e-6 of its size of a straight side. It begins at the first corner of the
+// face with the lowest index that lies on it, or, if this corner is on a straight side, at the beginning of that side.
+// If the outline is a convex quadrilateral, the grid is that of its bilinear map. On any other outline it is the grid
+// of the bounding rectangle in the plane of the Newell vector (u along the first edge, v = Newell x u), and only
+// centres inside are kept. Computed rationally and rounded once. u runs fastest.
 //
 // On a region of several faces each centre is put on the face under it along the outline's Newell vector, the first one
 // if there are two. The receiver has that face's normal and stores it first, then the faces of find_faces with

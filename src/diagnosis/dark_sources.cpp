@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "diagnosis/findings.h"
 #include "diagnosis/sight_lines.h"
 #include "exactff/diagnosis.h"
 #include "exactff/exact.h"
@@ -187,6 +188,12 @@ std::vector<Problem> warnings_of_dark_sources(const Scene& scene, std::span<cons
     if (sources.size() > 1 && is_own(source)) continue;
     const std::optional<Counts> counts = finder.counts(ExactSource(scene, source));
     if (counts) warnings.push_back(wording.problem(source, *counts));
+  }
+  if (const auto inward = inward_surfaces(scene)) {
+    const auto has_receivers = [&](const Selection& object) {
+      return std::ranges::any_of(own, [&](const Selection& one) { return one.patch == object.patch; });
+    };
+    if (std::ranges::any_of(inward->objects, has_receivers)) warnings.push_back(inward->words);
   }
   return warnings;
 }

@@ -1,5 +1,6 @@
 // Receivers that were probably meant to lie on a face.
 #include <algorithm>
+#include <iterator>
 
 #include "exactff/receiver.h"
 #include "kernel/float_environment.h"
@@ -40,15 +41,16 @@ std::vector<std::size_t> place_on_faces(const Scene& scene, std::span<Receiver> 
 NearMisses near_misses(const Scene& scene, std::span<const Receiver> receivers) {
   const kernel::StandardArithmetic arithmetic;
   NearMisses misses;
-  const auto tell = [&](std::size_t i, const std::string& what) {
-    if (misses.first.size() < kMostTold) misses.first.push_back(name_of_receiver(receivers, i) + ", " + what);
+  std::vector<std::string> worst, others;  // the former see nothing
+  const auto tell = [&](std::size_t i, const std::string& what, std::vector<std::string>& list) {
+    if (list.size() < kMostTold) list.push_back(name_of_receiver(receivers, i) + ", " + what);
   };
   for (std::size_t i = 0; i < receivers.size(); ++i) {
     const Receiver& receiver = receivers[i];
     if (!receiver.on.empty()) {
       if (!looks_away_from(scene.face(receiver.on.front()), receiver.normal)) continue;
       ++misses.turned;
-      tell(i, "turned against '" + scene.name_of(receiver.on) + "'");
+      tell(i, "turned against '" + scene.name_of(receiver.on) + "'", others);
       continue;
     }
     const NearFaces near = find_faces(scene, receiver, face_tolerance(scene, receiver.point));
@@ -57,9 +59,14 @@ NearMisses near_misses(const Scene& scene, std::span<const Receiver> receivers) 
     const bool behind = (near.side < 0) != near.turned;
     ++(behind ? misses.behind : misses.in_front);
     misses.furthest = std::max(misses.furthest, near.distance);
-    tell(i, text::rounded_plainly(near.distance, 2) + (near.side < 0 ? " behind '" : " in front of '") +
-                scene.name_of(near.faces.front()) + "'");
+    tell(i,
+         text::rounded_plainly(near.distance, 2) + (near.side < 0 ? " behind '" : " in front of '") +
+             scene.name_of(near.faces.front()) + "'",
+         behind ? worst : others);
   }
+  misses.first = std::move(worst);
+  std::ranges::move(others, std::back_inserter(misses.first));
+  if (misses.first.size() > kMostTold) misses.first.resize(kMostTold);
   return misses;
 }
 

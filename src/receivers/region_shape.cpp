@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <utility>
 
 #include "kernel/expect.h"
+#include "kernel/vec.h"
+#include "scene/extent.h"
 #include "scene/places.h"
 
 namespace exactff {
@@ -20,7 +21,10 @@ namespace {
 
 using VertexRing = std::vector<std::uint32_t>;
 
-// The edges that are not shared, as rings of places.
+constexpr double kStraight = 1e-6;  // of the size of the outline
+
+// The edges that are not shared, as rings of places. What is a straight side is an estimate: it has no effect on where
+// a receiver lies, only on where cells are.
 class Outline {
  public:
   Outline(const Scene& scene, const Region& region) : scene_(scene), places_(places(scene)) {
@@ -34,7 +38,8 @@ class Outline {
     while (!edges_.empty()) rings_.push_back(take_ring(edges_.begin()->first));
     begin_with_the_outer_ring();
     rotate(rings_.front(), first_corner(region));
-    for (VertexRing& ring : rings_) remove_straight_corners(ring);
+    const double tolerance = kStraight * size_of(rings_.front());
+    for (VertexRing& ring : rings_) ring = without_straight_corners(ring, tolerance);
     std::erase_if(rings_, [](const VertexRing& ring) { return ring.size() < 3; });
     EXACTFF_EXPECT(!rings_.empty());
   }
@@ -98,25 +103,60 @@ class Outline {
     std::rotate(ring.begin(), std::ranges::find(ring, first), ring.end());
   }
 
-  [[nodiscard]] bool is_straight(const VertexRing& ring, std::size_t i) const {
-    const auto at = [&](std::size_t k) { return scene_.vertices()[ring[k % ring.size()]]; };
-    const ExactVec3 in = kernel::exact_difference(at(i), at(i + ring.size() - 1)).v;
-    const ExactVec3 out = kernel::exact_difference(at(i + 1), at(i)).v;
-    return kernel::is_zero(cross(in, out)) && sign(dot(in, out)) > 0;
+  // --- Straight sides -------------------------------------------------------------------------------------------
+
+  [[nodiscard]] Vec3 at(std::uint32_t vertex) const {
+    return kernel::scaled(scene_.vertices()[vertex], extent(scene_).scale);
+  }
+
+  [[nodiscard]] double size_of(const VertexRing& ring) const {
+    double size = 0.0;
+    for (const std::uint32_t v : ring) size = std::max(size, kernel::distance(at(ring.front()), at(v)));
+    return size;
+  }
+
+  [[nodiscard]] double distance_from_line(std::uint32_t vertex, std::uint32_t from, std::uint32_t to) const {
+    const Vec3 line = kernel::difference(at(to), at(from)), off = kernel::difference(at(vertex), at(from));
+    const double square = kernel::dot(line, line);
+    const double share = square > 0.0 ? std::clamp(kernel::dot(line, off) / square, 0.0, 1.0) : 0.0;
+    return kernel::distance(off, kernel::scaled(line, share));
+  }
+
+  // Of ring[first + 1], ..., ring[last - 1], keeps those without which the outline would move by more than the
+  // tolerance (Douglas and Peucker). The end `last` may be the ring's size, which stands for its first corner.
+  void keep_corners(const VertexRing& ring, std::size_t first, std::size_t last, double tolerance,
+                    std::vector<char>& kept) const {
+    std::size_t furthest = first;
+    double most = tolerance;
+    for (std::size_t i = first + 1; i < last; ++i) {
+      const double distance = distance_from_line(ring[i], ring[first], ring[last % ring.size()]);
+      if (distance <= most) continue;
+      most = distance;
+      furthest = i;
+    }
+    if (furthest == first) return;
+    kept[furthest] = 1;
+    keep_corners(ring, first, furthest, tolerance, kept);
+    keep_corners(ring, furthest, last, tolerance, kept);
   }
 
   // A ring that begins on a straight side begins where that side begins afterwards.
-  void remove_straight_corners(VertexRing& ring) const {
-    VertexRing kept;
-    bool first_is_straight = false;
+  [[nodiscard]] VertexRing without_straight_corners(const VertexRing& ring, double tolerance) const {
+    const auto opposite =
+        std::ranges::max_element(ring, {}, [&](std::uint32_t v) { return kernel::distance(at(ring.front()), at(v)); });
+    const auto middle = static_cast<std::size_t>(opposite - ring.begin());
+    std::vector<char> kept(ring.size(), 0);
+    kept[0] = kept[middle] = 1;
+    keep_corners(ring, 0, middle, tolerance, kept);
+    keep_corners(ring, middle, ring.size(), tolerance, kept);
+    VertexRing corners;
     for (std::size_t i = 0; i < ring.size(); ++i) {
-      if (!is_straight(ring, i))
-        kept.push_back(ring[i]);
-      else if (i == 0)
-        first_is_straight = true;
+      if (kept[i] != 0) corners.push_back(ring[i]);
     }
-    if (first_is_straight && !kept.empty()) std::rotate(kept.begin(), kept.end() - 1, kept.end());
-    ring = std::move(kept);
+    if (corners.size() < 3 || distance_from_line(corners[0], corners.back(), corners[1]) > tolerance) return corners;
+    corners.erase(corners.begin());
+    std::rotate(corners.begin(), corners.end() - 1, corners.end());
+    return corners;
   }
 
   const Scene& scene_;

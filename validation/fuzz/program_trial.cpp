@@ -27,8 +27,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kProcessorSeconds = kSanitized ? 120 : 15;
-constexpr int kWallSeconds = 20 * kProcessorSeconds;  // other processes need time, too
+constexpr int kProcessorSeconds = kSanitized ? 240 : 60;  // 14,000 polygon Booleans take half a minute
+constexpr int kWallSeconds = 10 * kProcessorSeconds;      // other processes need time, too
 constexpr rlim_t kMegabytes = 3000;
 // Of processor time, from a signal to the end: wall time depends on the load. Each processor may use this much.
 constexpr double kPatience = kSanitized ? 5.0 : 0.5;

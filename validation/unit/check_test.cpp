@@ -87,7 +87,7 @@ TEST(TruthFile, TellsRowsSourcesAndFaces) {
   EXPECT_EQ(truth.sources, (std::vector<std::string>{"light", "lamp"}));
   ASSERT_EQ(truth.rows.size(), 3U);
   const TruthRow& first = truth.rows.front();
-  EXPECT_EQ(first.receiver, "1,1");
+  EXPECT_EQ(first.receiver, "r1c1");  // "1,1" in files of older versions
   EXPECT_EQ(truth.face_of(first), "floor:2");
   EXPECT_EQ(truth.face_of(truth.rows[2]), "");
   EXPECT_EQ(first.point, (Vec3{1, 2, 3}));

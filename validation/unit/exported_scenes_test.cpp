@@ -14,8 +14,8 @@ namespace exactff {
 namespace {
 
 namespace fs = std::filesystem;
-using validation::RunningProgram;
 using validation::run_program;
+using validation::RunningProgram;
 using validation::TemporaryDirectory;
 using validation::text_of;
 
@@ -26,6 +26,7 @@ class ExportedScenes : public testing::Test {
   ExportedScenes() {
     const std::string script = std::string(EXACTFF_DATA_DIR) + "/../validation/support/exported_scenes.py";
     EXPECT_EQ(RunningProgram("/usr/bin/env", {"python3", script, path(".")}, path("script.err")).wait(), 0);
+    clean_ = value("clean");
   }
 
   [[nodiscard]] std::string path(const std::string& name) const { return (directory_.path() / name).string(); }
@@ -79,7 +80,7 @@ class ExportedScenes : public testing::Test {
 
   const TemporaryDirectory directory_;
   const Words kGrid = {"--on", "floor", "--grid", "6x5"};
-  double clean_ = value("clean");
+  double clean_ = 0.0;
 };
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -142,8 +143,9 @@ TEST_F(ExportedScenes, PointsPrintedWithSixDecimalsFindTheirFloor) {
 TEST_F(ExportedScenes, APointBehindItsFloorIsTold) {
   Words words = {"point", scene("clean"), "--at", "1", "1", "-3.1e-7", "--normal", "0", "0", "1", "--source", "lamp"};
   const std::string text = told(words);
-  EXPECT_TOLD(text, "x lies 3.1e-07 behind 'floor', which then hides everything beyond it. With --on floor the form "
-                    "factor of 'lamp' is 0.0678624");
+  EXPECT_TOLD(text,
+              "x lies 3.1e-07 behind 'floor', which then hides everything beyond it. With --on floor the form "
+              "factor of 'lamp' is 0.0678624");
   EXPECT_TOLD(text, " instead of 0\n");
   words.insert(words.end(), {"--on", "auto", "--plain"});
   EXPECT_NEAR(std::stod(run_program(EXACTFF_PROGRAM, words).output), clean_, 1e-6);
@@ -185,8 +187,9 @@ TEST_F(ExportedScenes, NamesWithBlanksAndUmlautsAreKept) {
 }
 
 TEST_F(ExportedScenes, DoubledFacesAreTold) {
-  EXPECT_TOLD(info("doubled"), "2 faces have the corners of another face and the same front, such as 'floor:2' and "
-                               "'floor:1'");
+  EXPECT_TOLD(info("doubled"),
+              "2 faces have the corners of another face and the same front, such as 'floor:2' and "
+              "'floor:1'");
   EXPECT_EQ(value("doubled"), clean_);
   EXPECT_EQ(truth("doubled", {"--on", "floor:1", "--grid", "6x5"}).values, truth("clean", kGrid).values);
 }

@@ -139,7 +139,7 @@ TEST(HostileFiles, AHugeGridIsRefusedBeforeItIsBegun) {
       message_of([&] {
         return grid_receivers(scene, all, {1'000'000'000, 1'000'000'000});
       }),
-      "a grid of 1000000000x1000000000 cells on 10 faces (the limit is 4194304 cells in total); use fewer cells or "
+      "a grid of 1000000000x1000000000 cells on 10 regions (the limit is 4194304 cells in total); use fewer cells or "
       "a smaller patch");
   EXPECT_NE(message_of([&] { return grid_receivers(scene, all, {1000, 1000}); }), "no error");
   EXPECT_EQ(grid_receivers(scene, all, {3, 2}).size(), 60U);

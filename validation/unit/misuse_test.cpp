@@ -18,6 +18,16 @@
 namespace exactff {
 namespace {
 
+// Without those that other tests of this process have added.
+std::vector<const methods::Method*> library_methods() {
+  std::vector<const methods::Method*> methods;
+  for (const char* name :
+       {"exact", "adaptive", "adaptive-exact-visibility", "hemicube", "nettle", "wallace", "area-sampling"}) {
+    methods.push_back(&methods::method_named(name));
+  }
+  return methods;
+}
+
 const Receiver kBelow{.point = {1.0, 0.5, 0.1}, .normal = {0.0, 0.0, 1.0}, .on = {}, .id = {}};
 
 Scene room() { return validation::small_room(true); }
@@ -79,7 +89,7 @@ TEST(Misuse, ASelectionWithoutSuchIdsIsRefused) {
     expect_refused(words, [&] { (void)scene.with_flipped(selection); });
     expect_refused(words, [&] { (void)AdaptiveSolver(scene).prepare(selection); });
     expect_refused(words, [&] { (void)grid_receivers(scene, selection, {2, 2}); });
-    for (const methods::Method* method : methods::all_methods()) {
+    for (const methods::Method* method : library_methods()) {
       expect_refused(words, [&] { (void)method->prepare(scene)->prepare_source(selection); });
     }
   };
@@ -123,7 +133,7 @@ TEST(Misuse, AReceiverOnAFaceThatIsNotThereIsRefused) {
   expect_refused("there is no face 3", [&] { (void)exact_form_factor(scene, receiver, source); });
   expect_refused("there is no face 3", [&] { (void)draw_visibility(scene, receiver, source); });
   expect_refused("there is no face 3", [&] { (void)scene.receiver_reflectance(receiver.on); });
-  for (const methods::Method* method : methods::all_methods()) {
+  for (const methods::Method* method : library_methods()) {
     SCOPED_TRACE(method->name);
     const auto on_scene = method->prepare(scene);
     const auto prepared = on_scene->prepare_source(lamp);
@@ -181,12 +191,12 @@ TEST(Misuse, SourcesPreparedByAnotherMethodAreRefused) {
   const Scene scene = room();
   const Selection lamp = scene.select("lamp");
   const auto by_hemicube = methods::method_named("hemicube").prepare(scene)->prepare_source(lamp);
-  for (const char* name : {"exact", "adaptive", "adaptive-exact-visibility", "nettle", "wallace", "area-sampling"}) {
-    const methods::Method& method = methods::method_named(name);
-    const auto prepared = method.prepare(scene);
-    const auto evaluator = prepared->configure(method.defaults());
+  for (const methods::Method* method : library_methods()) {
+    if (method->name == "hemicube") continue;
+    const auto prepared = method->prepare(scene);
+    const auto evaluator = prepared->configure(method->defaults());
     evaluator->look_from(kBelow);
-    EXPECT_NE(words_of<std::invalid_argument>([&] { (void)evaluator->form_factor(*by_hemicube); }), "") << name;
+    EXPECT_NE(words_of<std::invalid_argument>([&] { (void)evaluator->form_factor(*by_hemicube); }), "") << method->name;
   }
 }
 

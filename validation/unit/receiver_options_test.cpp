@@ -92,8 +92,42 @@ TEST_F(ReceiverFlags, AGridIsDescribedAndItsCellsNamed) {
 }
 
 TEST_F(ReceiverFlags, AGridOnSeveralFacesNamesThem) {
-  const Truth run = truth({"--on", "lid", "--grid", "1x2"});
+  const Truth run = truth({"--on", "lid", "--grid", "1x2", "--per-face"});
+  EXPECT_EQ(run.comment("receivers"), "# receivers: lid, grid 1x2, per face");
   EXPECT_EQ(run.ids(), (Words{"lid:1/r1c1", "lid:2/r1c1", "lid:2/r2c1"}));
+  EXPECT_EQ(truth({"--on", "lid,floor", "--grid", "1x1"}).ids(), (Words{"lid:1/r1c1", "floor:1/r1c1"}));
+}
+
+TEST_F(ReceiverFlags, TheFacesOfALidAreOneSurface) {
+  EXPECT_EQ(truth({"--on", "lid", "--grid", "1x2"}).ids(), (Words{"r1c1", "r2c1"}));
+  EXPECT_EQ(refusal({"--on", "lid", "--vertices", "--per-face"}),
+            "--per-face is given without --grid or --centres (vertices and samples are always made per face); remove "
+            "it\n");
+}
+
+TEST_F(ReceiverFlags, UAndVAreThePlaceOnTheGrid) {
+  const Truth run = truth({"--on", "floor", "--grid", "2x1", "--uv"});
+  EXPECT_NE(run.text.find("nx,ny,nz,u,v,source"), std::string::npos);
+  EXPECT_NE(run.text.find(",0.25,0.5,lamp,"), std::string::npos) << run.text;
+  EXPECT_NE(refusal({"--on", "floor", "--vertices", "--uv"}).find("the receivers have no u and v"), std::string::npos);
+}
+
+TEST_F(ReceiverFlags, AutoFindsTheFaces) {
+  const std::string points =
+      directory_.write("points.csv", "id,x,y,z,nx,ny,nz\na,3,3,1e-6,0,0,1\nb,1.5,1.5,1,0,0,1\nc,3,3,0.5,0,0,1\n")
+          .string();
+  const Truth run = truth({"--receivers", points, "--on", "auto"});
+  EXPECT_EQ(run.comment("receivers"), "# receivers: points.csv, on auto, 1 without a face");
+  EXPECT_NE(run.error.find("--on auto found no face for 1 of 3 receivers, which now lie on none; --on auto:DISTANCE "
+                           "looks further away"),
+            std::string::npos)
+      << run.error;
+  EXPECT_NE(run.text.find("\na,floor,3,"), std::string::npos) << run.text;
+  EXPECT_NE(run.text.find("\nb,lid:1+2,1.5,"), std::string::npos) << run.text;
+  EXPECT_NE(run.text.find("\nc,,3,"), std::string::npos) << run.text;
+  EXPECT_NE(truth({"--receivers", points, "--on", "auto:0.6"}).text.find("\nc,floor,3,"), std::string::npos);
+  EXPECT_NE(refusal({"--receivers", points, "--on", "auto:x"}).find("write, for example, --on auto:1e-4"),
+            std::string::npos);
 }
 
 TEST_F(ReceiverFlags, Vertices) {
@@ -103,8 +137,9 @@ TEST_F(ReceiverFlags, Vertices) {
 }
 
 TEST_F(ReceiverFlags, Centres) {
-  const Truth run = truth({"--on", "lid", "--on", "floor", "--centres"});
-  EXPECT_EQ(run.comment("receivers"), "# receivers: lid,floor, centres");
+  EXPECT_EQ(truth({"--on", "lid", "--on", "floor", "--centres"}).ids(), (Words{"lid:1", "floor:1"}));
+  const Truth run = truth({"--on", "lid", "--on", "floor", "--centres", "--per-face"});
+  EXPECT_EQ(run.comment("receivers"), "# receivers: lid,floor, centres, per face");
   EXPECT_EQ(run.ids(), (Words{"lid:1", "lid:2", "floor:1"}));
 }
 
@@ -131,7 +166,7 @@ TEST_F(ReceiverFlags, SeveralPatchesMayCarryReceivers) {
 }
 
 TEST_F(ReceiverFlags, AllIsEveryPatchWithArea) {
-  EXPECT_EQ(truth({"--on", "all", "--centres"}).ids(), (Words{"floor:1", "lid:1", "lid:2", "\"a,b:1\"", "lamp:1"}));
+  EXPECT_EQ(truth({"--on", "all", "--centres"}).ids(), (Words{"floor:1", "lid:1", "\"a,b:1\"", "lamp:1"}));
   EXPECT_EQ(truth({"--on", "floor", "--centres"}, "all").comment("sources"), "# sources: floor + lid + a,b + lamp");
 }
 

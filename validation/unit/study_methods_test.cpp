@@ -586,8 +586,9 @@ TEST(ShadowEdges, AreLeftOutWhereThereAreNone) {
   const auto nothing = [](const auto&) {};
   EXPECT_NE(why(small_room(false), nothing).find("of one kind all over the face"), std::string::npos);
   const Scene room = small_room(true);
-  EXPECT_NE(why(room, [](auto& list) { list[1].id = "elsewhere"; }).find("not one grid"), std::string::npos);
-  EXPECT_NE(why(room, [](auto& list) { list[1].on = {FaceId{1}}; }).find("not one grid"), std::string::npos);
+  EXPECT_NE(why(room, [](auto& list) { list[1].cell.reset(); }).find("not one grid"), std::string::npos);
+  EXPECT_NE(why(room, [](auto& list) { list[1].cell->lattice = std::make_shared<Lattice>(); }).find("not one grid"),
+            std::string::npos);
 }
 
 TEST(Profiles, HaveTheirKinksWhereTheHalfPlaneCastsThem) {

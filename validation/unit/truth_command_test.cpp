@@ -196,7 +196,7 @@ TEST_F(TruthCommand, SenselessFlagsAreRefused) {
 TEST_F(TruthCommand, SlowRowsAreLogged) {
   const RunningProgram running = start("2x1", {"--slow", "0"});
   EXPECT_EQ(running.wait(), 0);
-  EXPECT_TRUE(running.error().starts_with("slow: receiver '1,1' on 'floor', source 'light' took ")) << running.error();
+  EXPECT_TRUE(running.error().starts_with("slow: receiver 'r1c1' on 'floor', source 'light' took ")) << running.error();
 }
 
 // Several processes, started together by a launcher that the program does not support, would all do the same work.

@@ -456,8 +456,8 @@ TEST_F(Truth, SlowRowsAreTold) {
     told.push_back(row);
   };
   EXPECT_EQ(write(request(1), file_, Existing::kRefuse, hooks).slow, 2U);
-  EXPECT_EQ(told, (std::vector<std::string>{"receiver '1,1' on 'floor', source 'light'",
-                                            "receiver '1,1' on 'floor', source 'lamp'"}));
+  EXPECT_EQ(told, (std::vector<std::string>{"receiver 'r1c1' on 'floor', source 'light'",
+                                            "receiver 'r1c1' on 'floor', source 'lamp'"}));
 }
 
 TEST_F(Truth, ProgressGoesFromWhatWasThereToAll) {
