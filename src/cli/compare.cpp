@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
+#include "exactff/diagnosis.h"
 #include "exactff/report.h"
 #include "exactff/study.h"
 #include "flags/comparison.h"
@@ -96,13 +97,21 @@ void print(const report::Outcome& outcome) {
   }
 }
 
+void print_warnings_of(const report::PlannedScene& planned, bool several) {
+  const study::Request& request = planned.request;
+  print_warnings(planned.scene->warnings());
+  print_near_misses(*planned.scene, request.receivers);
+  std::vector<Problem> dark = diagnosis::warnings_of_dark_sources(*planned.scene, request.receivers, request.sources);
+  for (Problem& warning : dark) {
+    if (several) warning.what = planned.title + ": " + warning.what;
+  }
+  print_warnings(dark);
+}
+
 int run(const CompareArguments& args) {
   check_output_folder(args.folder);
   const report::Plan plan = plan_of(args);
-  for (const report::PlannedScene& scene : plan.scenes) {
-    print_warnings(scene.scene->warnings());
-    print_near_misses(*scene.scene, scene.request.receivers);
-  }
+  for (const report::PlannedScene& scene : plan.scenes) print_warnings_of(scene, plan.scenes.size() > 1);
   study::Journal journal(study::journal_of_folder(args.folder), args.existing());
   const std::string kept = "finished work is kept in " + text::printable(journal.path().string()) +
                            "; to continue, run the same command with --resume\n";

@@ -7,6 +7,7 @@
 #include "cli/command.h"
 #include "cli/exit_code.h"
 #include "cli/output.h"
+#include "exactff/diagnosis.h"
 #include "exactff/study.h"
 #include "text/number_text.h"
 
@@ -19,9 +20,9 @@ constexpr int kMostDigits = 10000;
 void warn_if_flipped(const Scene& scene, const PointResult& point) {
   for (const PointTerm& one : point.sources) {
     if (!behind_every_face(one.exact)) continue;
-    std::cerr
-        << "exactff: warning: the receiver is behind every face of '" << shown_name(scene, one.source)
-        << "' (a source emits only from its front, so the form factor is 0); if its faces are flipped, use --flip\n";
+    std::cerr << "exactff: warning: the receiver is behind every face of '" << shown_name(scene, one.source)
+              << "' (a source emits only from its front, so the form factor is 0); if the other side is meant, "
+              << text::printable(diagnosis::advice_to_flip(scene, std::span(&one.source, 1))) << '\n';
   }
 }
 
@@ -109,7 +110,6 @@ void add_receiver_flags(CLI::App& app, PointArguments& args) {
                  "it; auto or "
                  "auto:DISTANCE finds them")
       ->type_name("NAME[:K]");
-  app.add_flag("--flip", args.flip, "Flip the faces of the source, so that they emit from the other side");
   app.add_option("--source", args.sources, "Source patch or face (default: every emitting patch, and their sum)")
       ->type_name("NAME[:K]")
       ->delimiter(',');

@@ -26,7 +26,6 @@ struct PointArguments {
   int digits = 0;
   int precision_cap = ExactOptions{}.precision_cap;
   flags::EngineArgument engine;
-  bool flip = false;
   bool fraction = false;
   bool exact_fraction = false;
   bool plain = false;
@@ -62,7 +61,7 @@ struct PointResult {
   Rgb radiosity = {};  // sum over the sources of rho B F, an estimate in double
 };
 
-// With the sources flipped, if wanted.
+// Prints the scene's warnings.
 [[nodiscard]] Scene load_point_scene(const PointArguments& args);
 [[nodiscard]] PointResult compute_point(const PointArguments& args, const Scene& scene);
 // Says on stderr that x lies near a face that is not its own, and what would follow if it were.

@@ -23,7 +23,7 @@ std::vector<FaceId> own_faces(const PointArguments& args, const Scene& scene, co
   const double tolerance = automatic->tolerance.value_or(face_tolerance(scene, receiver.point));
   std::vector<FaceId> faces = find_faces(scene, receiver, tolerance).faces;
   if (!faces.empty()) return faces;
-  throw InputError({.what = "--on " + args.on + ": no face lies within " + text::rounded(tolerance, 2) +
+  throw InputError({.what = "--on " + args.on + ": no face lies within " + text::rounded_plainly(tolerance, 2) +
                             " of x with a normal within a degree of --normal",
                     .why = "the receiver would lie on no face",
                     .suggestion = "check --at and --normal, or look further away with --on auto:DISTANCE"});
@@ -117,8 +117,7 @@ void require_one(const std::vector<Selection>& sources, const std::string& pictu
 Scene load_point_scene(const PointArguments& args) {
   Scene scene = args.scene.load();
   print_warnings(scene.warnings());
-  if (!args.flip) return scene;
-  return scene.with_flipped(make_sources(args, scene));
+  return scene;
 }
 
 PointResult compute_point(const PointArguments& args, const Scene& scene) {

@@ -14,6 +14,7 @@
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/truth_summary.h"
+#include "exactff/diagnosis.h"
 #include "flags/engine.h"
 #include "flags/receivers.h"
 #include "flags/scene.h"
@@ -152,6 +153,7 @@ class Narrator {
 int write(const TruthArguments& args, truth::Team* team) {
   truth::require_free(args.file, args.existing());  // checked before anything that takes time
   const std::unique_ptr<Job> job = job_of(args, team);
+  print_warnings(diagnosis::warnings_of_dark_sources(job->scene, job->request.receivers, job->request.sources));
   Narrator narrator;
   truth::Summary summary;
   try {

@@ -427,7 +427,10 @@ class PageWriter {
 
   [[nodiscard]] static std::string scene_fact(const SceneChapter& scene) {
     const Study& study = scene.study;
-    return text::html(study.request.scene_name) + ", hash " + study.request.scene->hash() + "; " +
+    const std::string flipped = flipped_names(study), transparent = transparent_names(study);
+    return text::html(study.request.scene_name) + ", hash " + study.request.scene->hash() +
+           (flipped.empty() ? "" : "; flipped: " + text::html(flipped)) +
+           (transparent.empty() ? "" : "; transparent: " + text::html(transparent)) + "; " +
            (study.full_product ? "every combination of the settings of the ray-sampled algorithm"
                                : "ε_B × rays, and sweeps of the other parameters through the base setting") +
            "; set up once per scene: exact method " + text::duration(study.exact_setup_seconds) + ", ray structure " +

@@ -33,5 +33,8 @@ void write_head(const Study& study, std::ostream& out, std::string_view what);
 
 // "light" or "lamp + window".
 [[nodiscard]] std::string source_names(const Study& study);
+// What --flip and --transparent have changed; often empty.
+[[nodiscard]] std::string flipped_names(const Study& study);
+[[nodiscard]] std::string transparent_names(const Study& study);
 
 }  // namespace exactff::report

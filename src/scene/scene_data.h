@@ -24,6 +24,7 @@ struct Scene::Data {
   std::vector<Piece> pieces;           // in the order of their faces
   std::vector<std::uint32_t> corners;  // vertex indices of all pieces
   std::vector<Problem> warnings;
+  std::size_t warnings_of_glass = 0;  // that many come first
 
   mutable std::once_flag places_found;  // see places()
   mutable std::vector<std::uint32_t> places;

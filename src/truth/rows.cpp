@@ -84,11 +84,28 @@ bool Rows::may_be_one_block(Range range) const {
          chunk % request_.shard.count == request_.shard.number - 1;
 }
 
+namespace {
+
+std::string names_line(const Scene& scene, const std::string& key, const std::vector<Selection>& selections) {
+  std::string line;
+  for (const Selection& one : selections)
+    line += (line.empty() ? "# " + key + ": " : " + ") + text::csv_comment(scene.name_of(one));
+  return line.empty() ? line : line + '\n';
+}
+
+std::string changes_of(const Scene& scene) {
+  return names_line(scene, "flipped", scene.flipped()) + names_line(scene, "transparent", scene.transparent());
+}
+
+}  // namespace
+
 std::string Rows::head() const {
+  const Scene& scene = *request_.scene;
   std::ostringstream out;
   out << "# exactff " << kVersion << " truth: form factors, correctly rounded, between proved bounds\n"
-      << "# scene: " << text::csv_comment(request_.scene_name) << ", hash " << request_.scene->hash() << '\n'
-      << "# receivers: " << text::csv_comment(request_.receivers_name) << ", hash " << receivers_hash_ << '\n'
+      << "# scene: " << text::csv_comment(request_.scene_name) << ", hash " << scene.hash() << '\n'
+      << changes_of(scene) << "# receivers: " << text::csv_comment(request_.receivers_name) << ", hash "
+      << receivers_hash_ << '\n'
       << "# sources: ";
   for (std::size_t s = 0; s < source_names_.size(); ++s)
     out << (s > 0 ? " + " : "") << text::csv_comment(source_names_[s]);

@@ -14,6 +14,7 @@ declare -A allowed=(
   [visibility]="receivers scene kernel"
   [contour]="visibility kernel"
   [exact]="contour visibility receivers scene text kernel"
+  [diagnosis]="exact receivers scene text kernel"
   [sampled]="receivers scene kernel"
   [methods]="sampled exact receivers scene text kernel"
   [models]="receivers scene text kernel"

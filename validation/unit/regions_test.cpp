@@ -70,7 +70,7 @@ TEST(Regions, OneFloorGivesTheSameReceiversHoweverItIsCut) {
   const Scene whole = surface(tilted, kSquare, {{0, 1, 2, 3}});
   for (const auto& [u, v] : {std::pair(7, 5), std::pair(1, 1), std::pair(16, 16)}) {
     expect_same_points(grid(whole, u, v), grid(surface(tilted, kSquare, {{0, 1, 2}, {0, 2, 3}}), u, v), 0.0);
-    expect_same_points(grid(whole, u, v), grid(surface(tilted, kSquare, {{3, 0, 1}, {1, 2, 3}}), u, v), 0.0 * u);
+    expect_same_points(grid(whole, u, v), grid(surface(tilted, kSquare, {{0, 1, 3}, {1, 2, 3}}), u, v), 0.0);
     expect_same_points(grid(whole, u, v), grid(fan(tilted, 4), u, v), 0.0);
     expect_same_points(grid(whole, u, v), grid(fan(tilted, 16), u, v), 0.0);
   }
@@ -173,7 +173,7 @@ TEST(Regions, NextToADiagonalBothTrianglesAreOwn) {
   one.on = {FaceId{0}};
   one.point.z -= 1e-9;
   EXPECT_LT(exact_form_factor(scene, one, light).value, 0.9 * both);
-  EXPECT_EQ(receivers[0].on.size(), 1U);
+  EXPECT_EQ(receivers[2].on.size(), 1U);
 }
 
 }  // namespace
