@@ -155,7 +155,7 @@ Command add_compare(CLI::App& app) {
       app.add_subcommand("compare", "Compare approximate methods with the exact values: error and run time");
   args->scene.add_to(*command);
   command->get_option("SCENE")->description(
-      "Wavefront OBJ file, @MODEL for a generated scene, or a .study file with several scenes");
+      "Scene file (OBJ, PLY, STL, OFF, View3D), @MODEL for a generated scene, or a .study file with several scenes");
   command
       ->add_option("--experiment", args->experiments,
                    "Add an experiment to the report; can be repeated: " + experiment_list())

@@ -30,8 +30,10 @@ std::vector<Selection> changed(const Scene& scene, const std::string& flag, cons
 }  // namespace
 
 void SceneArguments::add_to(CLI::App& app) {
-  app.add_option("SCENE", path,
-                 "Wavefront OBJ file, or @MODEL[:SETTING=VALUE,...] for a generated scene: `exactff info @` lists them")
+  app.add_option(
+         "SCENE", path,
+         "File (OBJ, PLY, STL, OFF, View3D), or @MODEL[:SETTING=VALUE,...] for a generated scene: `exactff info @` "
+         "lists them")
       ->required();
   app.add_option("--patches", patches,
                  "What a patch is: groups (g lines; without them, o lines) or faces (each face is a patch NAME:k)")

@@ -33,6 +33,7 @@ class FaceCollector {
   std::size_t cut_ = 0;
   std::size_t unusable_ = 0;
   std::size_t without_area_ = 0;
+  std::size_t transparent_ = 0;
 };
 
 bool FaceCollector::fits(const Face& face) const {
@@ -51,6 +52,7 @@ bool FaceCollector::fits(const Face& face) const {
 
 void FaceCollector::add(FaceId id) {
   const Face& face = scene_.face(id);
+  if (face.transparent) ++transparent_;
   if (face.shape == FaceShape::kSkipped) {
     ++unusable_;
   } else if (face.shape == FaceShape::kZeroArea) {
@@ -117,6 +119,9 @@ void FaceCollector::tell(const std::string& format, Losses& losses) const {
                                                  : format + " has only convex polygons of three or four corners",
                "form factors do not change, numbers of faces do");
   }
+  if (transparent_ > 0)
+    losses.add(faces(transparent_) + "no longer transparent", "no format says so",
+               "name them again with --transparent");
   if (unusable_ > 0)
     losses.add(faces(unusable_) + "left out", "nothing can be computed with them", "see the warnings of the scene");
   if (without_area_ > 0) losses.add(faces(without_area_) + "left out", "they have no area", "numbers of faces change");

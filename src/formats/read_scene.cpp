@@ -14,7 +14,7 @@ namespace exactff {
 
 namespace {
 
-constexpr const char* kPurpose = "an OBJ, PLY, STL, OFF or View3D file";
+constexpr const char* kAnyFormat = "an OBJ, PLY, STL, OFF or View3D file";
 
 }  // namespace
 
@@ -22,7 +22,7 @@ Scene read_scene(std::string_view bytes, const std::filesystem::path& path, cons
   const kernel::StandardArithmetic arithmetic;
   const std::string file = path.string();
   if (bytes.empty())
-    throw InputError({file, 0, "is empty", "there is nothing to compute with", std::string("give ") + kPurpose});
+    throw InputError({file, 0, "is empty", "there is nothing to compute with", std::string("give ") + kAnyFormat});
   if (const auto kind = formats::foreign_kind(bytes)) {
     throw InputError({file, 0, "is " + std::string(kind->name),
                       std::string("exactff reads OBJ, PLY, STL, OFF and View3D"),
@@ -37,7 +37,7 @@ Scene read_scene(std::string_view bytes, const std::filesystem::path& path, cons
     default:
       break;
   }
-  text::require_text(bytes, file, kPurpose);
+  text::require_text(bytes, file, kAnyFormat);
   switch (format) {
     case formats::Format::kStlText:
       return formats::read_stl_text(bytes, path, options);
@@ -51,7 +51,7 @@ Scene read_scene(std::string_view bytes, const std::filesystem::path& path, cons
 }
 
 Scene read_scene(const std::filesystem::path& path, const SceneOptions& options) {
-  return read_scene(text::read_file(path, kPurpose), path, options);
+  return read_scene(text::read_file(path, kAnyFormat), path, options);
 }
 
 }  // namespace exactff

@@ -253,6 +253,14 @@ TEST(RoundTrip, WhatIsLostIsTold) {
   EXPECT_EQ(told(".vs3"), hole + out + out);
 }
 
+TEST(RoundTrip, TransparencyIsLostAndTold) {
+  const Scene scene = read_scene("v 0 0 0\nv 1 0 0\nv 0 1 0\ng a\nf 1 2 3\ng b\nf 3 2 1\n", "s.obj");
+  const Selection a = scene.select("a");
+  std::vector<Problem> losses;
+  (void)again(scene.with_transparent(std::span(&a, 1)), ".obj", Encoding::kDefault, &losses);
+  EXPECT_EQ(words_of(losses), "1 face is no longer transparent\n");
+}
+
 TEST(RoundTrip, NamesThatAFormatCannotHoldAreChangedAndTold) {
   SceneBuilder builder;
   for (const Vec3& v : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}}) (void)builder.add_vertex(v);
