@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <istream>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,18 +14,18 @@
 
 namespace exactff {
 
-// A point with a normal of any non-zero length. `on` holds the receiver's own faces: those of one patch that it lies on.
-// They (all their pieces) neither occlude nor illuminate the point, because the rounded point lies slightly above or
-// below them. Its reflectance is that of the first. A receiver without own faces excludes nothing.
+// A point with a normal of any non-zero length. `on` holds the receiver's own faces: those of one patch that it lies
+// on. They (all their pieces) neither occlude nor illuminate the point, because the rounded point lies slightly above
+// or below them. Its reflectance is that of the first. A receiver without own faces excludes nothing.
 struct Receiver {
   Vec3 point;
   Vec3 normal;
   std::vector<FaceId> on;  // distinct
-  std::string id;  // from a CSV row, or as described at the generators below; may be empty
+  std::string id;          // from a CSV row, or as described at the generators below; may be empty
 };
 
-// The own faces that a text names: "NAME" (a patch of one face), "NAME:k", or "NAME:1+2" for several faces of a patch. A
-// patch whose name is exactly the text has priority. Throws InputError.
+// The own faces that a text names: "NAME" (a patch of one face), "NAME:k", or "NAME:1+2" for several faces of a patch.
+// A patch whose name is exactly the text has priority. Throws InputError.
 [[nodiscard]] std::vector<FaceId> own_faces_named(const Scene& scene, std::string_view name);
 
 // The largest number of receivers that a generator makes; a larger one is most likely a mistake. Beyond it they throw
@@ -89,8 +90,11 @@ enum class GridIds { kCells, kUnique };
 
 // Reads a CSV with the header id,x,y,z,nx,ny,nz,on (`on` empty or NAME:K; the columns id and on may be absent; any
 // order). Fields may be quoted. Empty lines and lines that begin with # are ignored. Numbers are read with correct
-// rounding. Throws one InputError with file:line for every problem.
+// rounding. A truth file (truth.h) is such a file, too: rows for several sources give one receiver. Throws one
+// InputError with file:line for every problem.
 [[nodiscard]] std::vector<Receiver> read_receivers(const std::filesystem::path& path, const Scene& scene);
+// As above, from an open stream, called `name` in messages.
+[[nodiscard]] std::vector<Receiver> read_receivers(std::istream& in, const std::string& name, const Scene& scene);
 
 // The distance of a point from a face's bounding box or from its plane, whichever is larger, over the box's diagonal:
 // an estimate, to find mistyped coordinates. For a face that is not planar, its own deviation is subtracted.

@@ -1,5 +1,7 @@
 #include "flags/scene.h"
 
+#include <iostream>
+
 #include "exactff/models.h"
 #include "exactff/obj.h"
 
@@ -7,7 +9,8 @@ namespace exactff::flags {
 
 void SceneArguments::add_to(CLI::App& app) {
   app.add_option("SCENE", path,
-                 "Wavefront OBJ file, or @MODEL[:SETTING=VALUE,...] for a generated scene: `exactff info @` lists them")
+                 "Wavefront OBJ file, - for standard input, or @MODEL[:SETTING=VALUE,...] for a generated scene: "
+                 "`exactff info @` lists them")
       ->required();
   app.add_option("--patches", patches,
                  "What a patch is: groups (g lines; without them, o lines) or faces (each face is a patch NAME:k)")
@@ -22,6 +25,7 @@ SceneOptions SceneArguments::options() const {
 }
 
 Scene SceneArguments::load() const {
+  if (from_standard_input()) return read_obj(std::cin, kStandardInput, options());
   return path.starts_with('@') ? models::make_scene(path.substr(1), options()) : read_obj(path, options());
 }
 

@@ -8,7 +8,10 @@
 
 namespace exactff::flags {
 
-// SCENE, --patches groups|faces, --skip-bad-faces. SCENE is a file, or @MODEL[:SETTING=VALUE,...] (exactff/models.h). A
+inline constexpr const char* kStandardInput = "standard input";  // what messages call it
+
+// SCENE, --patches groups|faces, --skip-bad-faces. SCENE is a file, "-" for an OBJ
+// file on standard input, or @MODEL[:SETTING=VALUE,...] (exactff/models.h). A
 // name that begins with @ always means a model; write ./@NAME for a file of that name.
 struct SceneArguments {
   std::string path;
@@ -16,6 +19,7 @@ struct SceneArguments {
   bool skip_bad_faces = false;
 
   void add_to(CLI::App& app);
+  [[nodiscard]] bool from_standard_input() const { return path == "-"; }
 
   [[nodiscard]] SceneOptions options() const;
   // Reads or generates the scene. Throws InputError.

@@ -97,8 +97,12 @@ std::string Rows::head() const {
     out << "# shard: " << shard.number << '/' << shard.count << " in chunks of " << kChunkRows
         << " rows, for exactff merge\n";
   }
-  out << "receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper" << (request_.unoccluded ? ",unoccluded" : "")
-      << (request_.visible_fraction ? ",visible_fraction" : "")
+  if (request_.unit_normals) {
+    out << "# unit normals: ux,uy,uz is nx,ny,nz scaled to length 1, correctly rounded; the values belong to "
+           "nx,ny,nz\n";
+  }
+  out << "receiver,on,x,y,z,nx,ny,nz" << (request_.unit_normals ? ",ux,uy,uz" : "") << ",source,exact,lower,upper"
+      << (request_.unoccluded ? ",unoccluded" : "") << (request_.visible_fraction ? ",visible_fraction" : "")
       << ",radiosity_r,radiosity_g,radiosity_b,largest_rho_b,status\n";
   return std::move(out).str();
 }
@@ -123,8 +127,9 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
   exact_form_factor(*request_.scene, receiver, sources_[source], options, results.exact, results.workspace);
   Status status = f.status;
   text::CsvRow line(lines);
-  line << id(row / sources_.size()) << request_.scene->name_of(receiver.on)
-       << receiver.point << receiver.normal << source_names_[source] << f.value << f.lower << f.upper;
+  line << id(row / sources_.size()) << request_.scene->name_of(receiver.on) << receiver.point << receiver.normal;
+  if (request_.unit_normals) line << results.unit_normal.of(receiver.normal);
+  line << source_names_[source] << f.value << f.lower << f.upper;
   if (request_.unoccluded) {
     const FormFactor& free = without_occluders(receiver, sources_[source], results);
     if (free.status == Status::kUnderflow) {
