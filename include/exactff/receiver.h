@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <istream>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,54 +15,124 @@
 
 namespace exactff {
 
-// A point with a normal of any non-zero length. `on` holds the receiver's own faces: those of one patch that it lies
-// on. They (all their pieces) neither occlude nor illuminate the point, because the rounded point lies slightly above
-// or below them. Its reflectance is that of the first. A receiver without own faces excludes nothing.
-struct Receiver {
-  Vec3 point;
-  Vec3 normal;
-  std::vector<FaceId> on;  // distinct
-  std::string id;          // from a CSV row, or as described at the generators below; may be empty
+// A set of faces on which one lattice of receivers lies: faces of one patch that share edges, whose fronts agree, and
+// that deviate from one plane by at most 1e-6 of the set's diameter. A lone face is a region as well.
+struct Region {
+  std::vector<FaceId> faces;  // ascending
 };
 
-// The own faces that a text names: "NAME" (a patch of one face), "NAME:k", or "NAME:1+2" for several faces of a patch.
-// A patch whose name is exactly the text has priority. Throws InputError.
-[[nodiscard]] std::vector<FaceId> own_faces_named(const Scene& scene, std::string_view name);
+// The regions of faces, by their first face. Every face with area belongs to exactly one.
+[[nodiscard]] std::vector<Region> regions(const Scene& scene, std::span<const FaceId> faces);
+// The regions of a patch; of a selected face, that face alone.
+[[nodiscard]] std::vector<Region> regions(const Scene& scene, const Selection& selection);
 
-// The largest number of receivers that a generator makes; a larger one is most likely a mistake. Beyond it they throw
-// InputError.
-inline constexpr std::uint64_t kMostReceivers = std::uint64_t{1} << 22;
-
-// The grid cell with the receiver at its centre; column and row count from 1.
-struct GridCell {
-  FaceId face{};
-  int column = 1;  // along u
-  int row = 1;     // along v
-};
+// "NAME" for all faces with area of a patch, otherwise "NAME:1+2"; of more than four faces "NAME:1+2+3+...".
+[[nodiscard]] std::string name_of(const Scene& scene, const Region& region);
 
 struct GridSize {
   int u = 1;
   int v = 1;
 };
 
-// The id of a cell is "column,row", counted from 1. On several faces these ids repeat; kUnique then puts the face
-// before them: "NAME:k/column,row".
+// A grid of cells on a region. On a convex quadrilateral its cells are those of the bilinear map; otherwise those of
+// the bounding rectangle.
+struct Lattice {
+  Region region;
+  GridSize size;
+  double width = 0.0;   // along u, in the scene's unit; of a quadrilateral: the side between its first two corners
+  double height = 0.0;  // along v
+};
+
+// The cell with the receiver at its centre; column and row count from 1.
+struct GridCell {
+  std::shared_ptr<const Lattice> lattice;
+  int column = 1;  // along u
+  int row = 1;     // along v
+};
+
+// A point with a normal of any non-zero length. `on` holds the receiver's own faces: those of one patch that it lies
+// on. They (all their pieces) neither occlude nor illuminate the point, because the rounded point lies slightly above
+// or below them. Its reflectance is that of the first. A receiver without own faces excludes nothing.
+struct Receiver {
+  Vec3 point;
+  Vec3 normal;
+  std::vector<FaceId> on;                       // distinct
+  std::string id;                               // from a CSV row, or as described at the generators below; may be empty
+  std::optional<GridCell> cell = std::nullopt;  // of a receiver that grid_receivers made
+};
+
+// The own faces that a text names: "NAME" (a patch of one face), "NAME:k", or "NAME:1+2" for several faces of a patch.
+// A patch whose name is exactly the text has priority. Throws InputError.
+[[nodiscard]] std::vector<FaceId> own_faces_named(const Scene& scene, std::string_view name);
+
+// The faces that a receiver given by coordinates was probably meant to lie on. A diagnosis: no value depends on it.
+struct NearFaces {
+  std::vector<FaceId> faces;  // of one patch, the best one first; empty if there is none
+  double distance = 0.0;      // of the point from the plane of the first one, in the scene's unit; an estimate
+  int side = 0;               // exact: 1 if the point is in front of the first one, -1 if behind it, 0 if in its plane
+  bool turned = false;        // the receiver's normal points away from the front of the first one
+};
+
+// Faces that the point lies on or within the tolerance of, and whose normals agree with the receiver's within a degree,
+// either way. The first one is chosen by an agreeing normal, then by distance, then by index. Added are the other faces
+// of its patch for which the same holds and whose fronts agree with its front.
+[[nodiscard]] NearFaces find_faces(const Scene& scene, const Receiver& receiver, double tolerance);
+
+// A tolerance for find_faces: the largest of 1e-6 of the scene's diameter, two units in the last place of the largest
+// coordinate in single precision, and one unit of the last decimal of the point, but of the last at most 1e-3 of the
+// diameter.
+[[nodiscard]] double face_tolerance(const Scene& scene, const Vec3& point);
+
+// Gives each receiver without own faces those of find_faces, with face_tolerance if there is no tolerance. Returns the
+// indices of the receivers that found none.
+std::vector<std::size_t> place_on_faces(const Scene& scene, std::span<Receiver> receivers,
+                                        std::optional<double> tolerance = {});
+
+// Receivers that were probably meant to lie on a face, and do not; and receivers that look away from the front of the
+// face that they lie on. A diagnosis, by find_faces with face_tolerance.
+struct NearMisses {
+  std::size_t behind = 0;          // a face that then hides everything
+  std::size_t in_front = 0;        // of a face, which is then not their own
+  std::size_t turned = 0;          // their normals point away from the front of their own face
+  double furthest = 0.0;           // from the face, of those behind it and in front of it
+  std::vector<std::string> first;  // a few of them in words: "'7', 3.1e-07 behind 'floor:2'"
+
+  [[nodiscard]] bool none() const { return behind + in_front + turned == 0; }
+};
+[[nodiscard]] NearMisses near_misses(const Scene& scene, std::span<const Receiver> receivers);
+// What the near misses are, what follows, and what to do; one sentence each.
+[[nodiscard]] std::vector<std::string> sentences(const NearMisses& misses, std::size_t receivers);
+
+// The largest number of receivers that a generator makes; a larger one is most likely a mistake. Beyond it they throw
+// InputError.
+inline constexpr std::uint64_t kMostReceivers = std::uint64_t{1} << 22;
+
+// The id of a cell is "r7c12": row 7, column 12, counted from 1. On several regions these ids repeat; kUnique then puts
+// the region's first face before them: "NAME:k/r7c12".
 enum class GridIds { kCells, kUnique };
 
-// Receivers at the cell centres of a u x v grid on each of the faces. On a convex quadrilateral the grid is that of its
-// bilinear map. On any other face it is the grid of the bounding rectangle in the face's plane (u along the first edge,
-// v = Newell x u), and only centres inside the face are kept. Computed rationally and rounded once; the normal is the
-// face's Newell vector. u runs fastest.
-// If a face is not planar: the quadrilateral's map is then a curved patch through all four corners, and the rectangle
-// lies in the plane through the mean of the vertices with the Newell vector as its normal. In both cases the point may
-// lie off the face's triangles; the receiver stores the face all the same. Throws InputError if a count is below 1 or
-// there are too many cells.
+// Receivers at the cell centres of a u x v grid on each of the regions. The outline of a region is that of its faces
+// together, without corners on a straight side. It begins at the first corner of the face with the lowest index that
+// lies on it, or, if this corner is on a straight side, at the beginning of that side. If the outline is a convex
+// quadrilateral, the grid is that of its bilinear map. On any other outline it is the grid of the bounding rectangle in
+// the plane of the Newell vector (u along the first edge, v = Newell x u), and only centres inside are kept. Computed
+// rationally and rounded once. u runs fastest.
+//
+// On a region of several faces each centre is put on the face under it along the outline's Newell vector, the first one
+// if there are two. The receiver has that face's normal and stores it first, then the faces of find_faces with
+// face_tolerance. So one floor gives the same receivers, however it is cut into faces: to the last bit if it is exactly
+// planar and begins at the same corner, else to rounding.
+//
+// A lone face that is not planar keeps its centres: those of a quadrilateral lie on a curved patch through all four
+// corners, those of a rectangle in the plane through the mean of the vertices. They may lie off its triangles; the
+// receiver stores the face all the same. Throws InputError if a count is below 1 or there are too many cells.
+[[nodiscard]] std::vector<Receiver> grid_receivers(const Scene& scene, std::span<const Region> on, GridSize size,
+                                                   GridIds ids = GridIds::kCells);
+// A grid on each region of a patch, or on the selected face alone.
+[[nodiscard]] std::vector<Receiver> grid_receivers(const Scene& scene, const Selection& on, GridSize size);
+// A grid on each face, which keeps its own frame.
 [[nodiscard]] std::vector<Receiver> grid_receivers(const Scene& scene, std::span<const FaceId> on, GridSize size,
                                                    GridIds ids = GridIds::kCells);
-[[nodiscard]] std::vector<Receiver> grid_receivers(const Scene& scene, const Selection& on, GridSize size);
-
-// The cell of a receiver that lies on a face and has an id in the format of grid_receivers; otherwise empty.
-[[nodiscard]] std::optional<GridCell> grid_cell(const Receiver& receiver);
 
 // The following functions make receivers on distinct faces; faces without area get none. Each receiver stores its face
 // and has the face's Newell vector as its normal, and no two have the same id. The same call gives the same bits on
@@ -73,11 +144,14 @@ enum class GridIds { kCells, kUnique };
 // but gets no second receiver.
 [[nodiscard]] std::vector<Receiver> vertex_receivers(const Scene& scene, std::span<const FaceId> on);
 
-// One receiver in the middle of each face, with the id "NAME:k". It lies at the mean of the corners if the face is
-// convex; otherwise at the centroid of the area; and if that is not strictly inside the face, at the mean of the
-// corners of the largest convex piece. Decided exactly, computed rationally and rounded once. A face that is not planar
-// is treated as seen along its Newell vector; the point may lie off its triangles, and the receiver stores the face all
-// the same.
+// One receiver in the middle of each region, with the id "NAME:k" of its first face. It lies at the mean of the corners
+// of the outline if that is convex; otherwise at the centroid of the area; and if that is not strictly inside the
+// outline, at the mean of the corners of the largest convex piece. Decided exactly, computed rationally and rounded
+// once. On a region of several faces it is put on the face under it, as by grid_receivers. A lone face that is not
+// planar is treated as seen along its Newell vector; the point may lie off its triangles, and the receiver stores the
+// face all the same.
+[[nodiscard]] std::vector<Receiver> centre_receivers(const Scene& scene, std::span<const Region> on);
+// One receiver in the middle of each face.
 [[nodiscard]] std::vector<Receiver> centre_receivers(const Scene& scene, std::span<const FaceId> on);
 
 // `count` receivers drawn independently. Each lies strictly inside a triangle of a convex piece; the probability of a

@@ -33,6 +33,11 @@ struct Material {
   std::string name;
   Rgb reflectance{1.0, 1.0, 1.0};  // Kd
   Rgb radiosity{0.0, 0.0, 0.0};    // Ke
+  // What the file says about transparency: "d 0.3", "Tr 0.7" or "illum 7"; empty if nothing. No value depends on it;
+  // the scene's warnings name the faces that nevertheless occlude.
+  std::string see_through = {};
+  std::string file = {};  // the place of that statement
+  std::size_t line = 0;
 
   [[nodiscard]] bool emits() const { return radiosity.largest() > 0.0; }
 };
@@ -43,6 +48,13 @@ enum class FaceShape {
   kTriangulated,  // not exactly planar: cut into triangles, each exact
   kZeroArea,      // all vertices on one line: ignored
   kSkipped,       // unusable, dropped on request (--skip-bad-faces)
+};
+
+// What the normals in the file (vn) say about the front of a face. The winding alone decides; this is for diagnoses.
+enum class FileNormals {
+  kNone,        // nothing, or they lie within about 6 degrees of the face's plane
+  kAgree,       // they point to the front
+  kContradict,  // they point to the back
 };
 
 struct Face {
@@ -63,6 +75,8 @@ struct Face {
   double area = 0.0;          // in the square of the scene's unit of length; an estimate, clamped to positive doubles
   double out_of_plane = 0.0;  // largest distance of a vertex from the mean plane, divided by the diameter (estimate)
   bool transparent = false;   // occludes nothing; may be a source, and receivers may lie on it
+  bool flipped = false;       // Scene::with_flipped has turned it round
+  FileNormals file_normals = FileNormals::kNone;
 };
 
 struct Patch {
@@ -127,8 +141,8 @@ class Scene {
   // B_s of a source: its Ke, or 1 in each channel if it emits nothing. Throws InputError if faces of the selection
   // differ in Ke.
   [[nodiscard]] Rgb source_radiosity(const Selection& source) const;
-  // rho_r of a receiver with these own faces (Receiver::on): Kd of the first; (1,1,1) for a receiver that lies on no face.
-  // Throws std::invalid_argument if the scene does not have that face.
+  // rho_r of a receiver with these own faces (Receiver::on): Kd of the first; (1,1,1) for a receiver that lies on no
+  // face. Throws std::invalid_argument if the scene does not have that face.
   [[nodiscard]] Rgb receiver_reflectance(std::span<const FaceId> on) const;
 
   // The same scene with the faces of the selections turned round: their fronts become their backs. A face in several
@@ -140,7 +154,13 @@ class Scene {
   // unchanged. They may still be sources and have receivers on them.
   [[nodiscard]] Scene with_transparent(std::span<const Selection> selections) const;
 
-  // Warnings of the builder, in file order.
+  // What with_flipped and with_transparent have changed: a patch if all its faces with area were changed, else its
+  // faces.
+  [[nodiscard]] std::vector<Selection> flipped() const;
+  [[nodiscard]] std::vector<Selection> transparent() const;
+
+  // Warnings: first those about materials that let light through, but occlude here (Material::see_through); then those
+  // of the builder, in file order.
   [[nodiscard]] std::span<const Problem> warnings() const;
 
   // 64-bit FNV-1a hash over everything that affects values: vertices, rings, names, materials, transparent faces. 16
@@ -156,6 +176,7 @@ class Scene {
  private:
   friend class SceneBuilder;
   explicit Scene(std::unique_ptr<Data> data);
+  void set_warnings_of_glass();
   std::unique_ptr<Data> data_;
 };
 
@@ -184,6 +205,8 @@ class SceneBuilder {
   // may be added later. Throws std::invalid_argument for a patch or material that this builder has not made.
   void add_face(PatchId patch, MaterialId material, std::vector<std::vector<std::uint32_t>> rings,
                 std::size_t line = 0);
+  // The normal that the file states for the face added last, of any length (Face::file_normals).
+  void state_normal(const Vec3& normal);
   void warn(Problem warning);
 
   // Checks every face, triangulates faces that are not planar or not convex, and freezes the scene. Throws one

@@ -46,6 +46,8 @@ struct Request {
   // Adds columns ux,uy,uz: the normal scaled to length 1, each component correctly rounded. The values belong to the
   // exact normal in nx,ny,nz.
   bool unit_normals = false;
+  // Adds two columns: u and v of the receiver on its lattice, from 0 to 1. Every receiver must be the cell of a grid.
+  bool uv = false;
   Engine engine = Engine::kEdges;  // no byte depends on it
   Shard shard;                     // if not 1/1, the file holds the rows of this shard, for merge()
   int threads = 0;                 // 0: as many as this process may use

@@ -2,6 +2,7 @@
 #include <initializer_list>
 #include <limits>
 
+#include "check/grid_ids.h"
 #include "check/table.h"
 #include "exactff/check.h"
 #include "kernel/float_environment.h"
@@ -74,7 +75,7 @@ class CandidateReader {
   }
 
   void take_receiver(CandidateRow& row) {
-    row.receiver = table_.field(receiver_);
+    row.receiver = current_id(table_.field(receiver_));
     if (row.receiver.empty()) {
       table_.complain("the receiver has no id", "its row in the truth cannot be found", "give it an id");
     }

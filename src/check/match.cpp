@@ -4,15 +4,20 @@
 //   2. Match every row of the candidate by receiver and source, or by position and source.
 //   3. No row of the truth may be matched twice. Unless the options allow it, none may be left unmatched.
 #include <algorithm>
+#include <boost/geometry/algorithms/disjoint.hpp>
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <boost/geometry/strategies/strategies.hpp>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
 
-#include "check/position_index.h"
 #include "check/row_keys.h"
 #include "exactff/check.h"
 #include "kernel/float_environment.h"
+#include "kernel/vec.h"
 #include "text/phrases.h"
 #include "text/text_lines.h"
 
@@ -20,6 +25,63 @@ namespace exactff::check {
 namespace {
 
 constexpr std::uint32_t kNothing = std::numeric_limits<std::uint32_t>::max();
+
+namespace bg = boost::geometry;
+using Point = bg::model::point<double, 3, bg::cs::cartesian>;
+using Box = bg::model::box<Point>;
+using Entry = std::pair<Point, std::uint32_t>;
+
+// Normalises v without overflow or underflow, so that its length is near 1. Zero stays zero.
+Vec3 unit(const Vec3& v) {
+  const double largest = kernel::max_norm(v);
+  if (largest == 0.0) return v;
+  const Vec3 scaled{v.x / largest, v.y / largest, v.z / largest};
+  const double length = std::hypot(scaled.x, scaled.y, scaled.z);
+  return {scaled.x / length, scaled.y / length, scaled.z / length};
+}
+
+// Finds rows of the truth by their position: an R-tree, built in one step. A query takes the box around the point and
+// keeps what is within the ball. Unlike a grid of cells, it works with a tolerance of 0 and with coordinates of any
+// size.
+class PositionIndex {
+ public:
+  // With `normals`, the unit normals must be near as well.
+  PositionIndex(const Truth& truth, const MatchOptions& options, bool normals)
+      : truth_(truth), options_(options), normals_(normals) {
+    std::vector<Entry> entries;
+    entries.reserve(truth.rows.size());
+    for (std::uint32_t i = 0; i < truth.rows.size(); ++i) {
+      const Vec3& p = truth.rows[i].point;
+      entries.emplace_back(Point(p.x, p.y, p.z), i);
+    }
+    tree_ = {entries.begin(), entries.end()};
+  }
+
+  // All rows of the source that are near enough to the point, the nearest first; equally near rows in the order of the
+  // truth.
+  [[nodiscard]] std::vector<std::uint32_t> near(const Vec3& point, const Vec3& normal, std::uint32_t source) const {
+    const double t = options_.tolerance;
+    const Box box({point.x - t, point.y - t, point.z - t}, {point.x + t, point.y + t, point.z + t});
+    std::vector<std::pair<double, std::uint32_t>> found;
+    for (auto entry = tree_.qbegin(bg::index::intersects(box)); entry != tree_.qend(); ++entry) {
+      const TruthRow& row = truth_.rows[entry->second];
+      const double away = kernel::distance(row.point, point);
+      if (row.source != source || away > t) continue;
+      if (normals_ && kernel::distance(unit(row.normal), unit(normal)) > options_.normal_tolerance) continue;
+      found.emplace_back(away, entry->second);
+    }
+    std::sort(found.begin(), found.end());
+    std::vector<std::uint32_t> rows;
+    for (const auto& [away, row] : found) rows.push_back(row);
+    return rows;
+  }
+
+ private:
+  const Truth& truth_;
+  const MatchOptions& options_;
+  const bool normals_;
+  bg::index::rtree<Entry, bg::index::linear<16>> tree_;
+};
 
 class Matcher {
  public:
@@ -135,7 +197,7 @@ class Matcher {
     const auto told = [&](std::size_t i) {
       const TruthRow& other = truth_.rows[found[i]];
       return text::in_quotes(other.receiver) + " at a distance of " +
-             text::short_number(distance(other.point, row.point));
+             text::short_number(kernel::distance(other.point, row.point));
     };
     complain(row.line,
              std::to_string(found.size()) + " receivers of the truth match: " + told(0) + " and " + told(1) +

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "check/grid_ids.h"
 #include "check/row_keys.h"
 #include "check/table.h"
 #include "exactff/check.h"
@@ -79,7 +80,7 @@ class TruthReader {
   void take_row() {
     TruthRow row;
     row.line = static_cast<std::uint32_t>(table_.line());
-    row.receiver = table_.field(receiver_);
+    row.receiver = current_id(table_.field(receiver_));
     if (row.receiver.empty()) {
       table_.complain("the receiver has no id", "its row cannot be identified", "give it an id");
     }

@@ -10,18 +10,12 @@
 #include "text/text_lines.h"
 
 namespace exactff::check {
-namespace {
-
-using text::shortest;
-
-}  // namespace
-
 std::string_view to_string(Measure measure) {
   constexpr std::array<std::string_view, 3> kNames = {"absolute error", "relative error", "error in radiosity"};
   return kNames[static_cast<std::size_t>(measure)];
 }
 
-std::string name_of(const Quantile& quantile) { return "quantile " + shortest(quantile.share); }
+std::string name_of(const Quantile& quantile) { return "quantile " + text::shortest(quantile.share); }
 
 std::string name_of(const Verdict& verdict) {
   return verdict.criterion + (verdict.source.empty() ? "" : ", source " + verdict.source);
@@ -33,7 +27,7 @@ std::string name_of(const RowError& row) {
 }
 
 std::string describe(const RowError& row) {
-  std::string text = "exact " + shortest(row.truth) + ", found " + shortest(row.value);
+  std::string text = "exact " + text::shortest(row.truth) + ", found " + text::shortest(row.value);
   if (!std::isfinite(row.value)) return text;
   text += ", error " + text::short_number(row.error, 4) + ", relative " + text::short_number(row.relative, 4);
   if (row.status == Status::kNotCertified) text += ", truth not certified";
@@ -44,10 +38,10 @@ std::string sentence(const Verdict& verdict) {
   std::string text = name_of(verdict) + ": ";
   if (verdict.criterion == "finite") {
     text += verdict.passed ? std::string("every value is a finite number")
-                           : "values that are not finite numbers: " + shortest(verdict.measured);
+                           : "values that are not finite numbers: " + text::shortest(verdict.measured);
   } else {
-    text += shortest(verdict.measured) + (verdict.passed ? " is within the limit " : " is above the limit ") +
-            shortest(verdict.limit);
+    text += text::shortest(verdict.measured) + (verdict.passed ? " is within the limit " : " is above the limit ") +
+            text::shortest(verdict.limit);
   }
   return text + (verdict.worst ? ", worst at " + name_of(*verdict.worst) : "");
 }

@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
+#include "exactff/diagnosis.h"
 #include "exactff/report.h"
 #include "exactff/study.h"
 #include "flags/comparison.h"
@@ -134,17 +135,24 @@ int say_where(const CompareArguments& args) {
   return 0;
 }
 
-void print_notes(const report::PlannedScene& scene, bool several) {
-  print_warnings(scene.scene->warnings());
-  const std::string note = flags::note_on_sources_without_emission(*scene.scene, scene.request.sources);
-  if (!note.empty()) std::cerr << "note: " << text::printable((several ? scene.title + ": " : "") + note) << '\n';
+void print_warnings_of(const report::PlannedScene& planned, bool several) {
+  const study::Request& request = planned.request;
+  print_warnings(planned.scene->warnings());
+  print_near_misses(*planned.scene, request.receivers);
+  std::vector<Problem> dark = diagnosis::warnings_of_dark_sources(*planned.scene, request.receivers, request.sources);
+  for (Problem& warning : dark) {
+    if (several) warning.what = planned.title + ": " + warning.what;
+  }
+  print_warnings(dark);
+  const std::string note = flags::note_on_sources_without_emission(*planned.scene, request.sources);
+  if (!note.empty()) std::cerr << "note: " << text::printable((several ? planned.title + ": " : "") + note) << '\n';
 }
 
 int run(const CompareArguments& args) {
   check_output_folder(args.folder);
   require_free(args);
   const report::Plan plan = plan_of(args);
-  for (const report::PlannedScene& scene : plan.scenes) print_notes(scene, plan.scenes.size() > 1);
+  for (const report::PlannedScene& scene : plan.scenes) print_warnings_of(scene, plan.scenes.size() > 1);
   if (is_done(args, plan)) {
     std::cerr
         << "note: the report is finished and of the same request, so it was left as it is; --force makes it anew\n";

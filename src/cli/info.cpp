@@ -12,6 +12,7 @@
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/text_table.h"
+#include "exactff/diagnosis.h"
 #include "exactff/models.h"
 #include "exactff/version.h"
 #include "flags/scene.h"
@@ -199,35 +200,33 @@ void print_faces(const Scene& scene) {
   print_list("zero area, ignored", numbered_names(scene, FaceShape::kZeroArea));
   print_list("unusable, left out", numbered_names(scene, FaceShape::kSkipped));
   const std::size_t open = scene.open_edge_count();
-  std::cout << "open edges: " << open << (open == 0 ? " (the surface is closed)" : "") << '\n';
+  std::cout << "open edges: " << open
+            << (open == 0 ? " (the surface is closed)" : " (an odd number of faces uses them)") << '\n';
 }
 
-// Of the patches that do not emit, the one with the largest faces; if all emit, the one with the largest faces.
-const PatchSummary& suggested_receiver(const std::vector<PatchSummary>& rows) {
-  const auto rank = [](const PatchSummary& row) {
-    return std::pair(!row.emits, row.area / static_cast<double>(std::max<std::size_t>(1, row.face_count)));
-  };
-  const auto smaller = [&](const PatchSummary& a, const PatchSummary& b) { return rank(a) < rank(b); };
-  return *std::max_element(rows.begin(), rows.end(), smaller);
+void print_findings(const std::vector<diagnosis::Finding>& findings) {
+  for (const diagnosis::Finding& finding : findings)
+    std::cout << "check: " << text::printable(finding.words.message()) << '\n';
 }
 
-void print_suggestion(const Scene& scene, const std::vector<PatchSummary>& rows, const std::string& path) {
-  if (rows.empty()) return;
-  const std::vector<std::string> emitters = emitter_names(scene);
-  std::cout << "next: exactff compare " << text::shell_word(path) << " --on "
-            << text::shell_word(suggested_receiver(rows).name) << " --source "
-            << text::shell_word(emitters.empty() ? rows.front().name : emitters.front())
+void print_suggestion(const Scene& scene, const flags::SceneArguments& arguments) {
+  const std::optional<diagnosis::FirstTry> first = diagnosis::first_try(scene);
+  if (!first) return;
+  std::cout << "next: exactff compare " << text::shell_word(arguments.path) << flags::command_words(arguments)
+            << " --on " << text::shell_word(scene.name_of(first->on)) << " --source "
+            << text::shell_word(scene.name_of(first->source))
             << " --grid 16x16 -o DIR (--source and --on take a patch from the table, or PATCH:k for its k-th face)\n";
 }
 
-void print_text(const Scene& scene, const std::string& path) {
+void print_text(const Scene& scene, const flags::SceneArguments& arguments) {
   const std::vector<PatchSummary> rows = summarise(scene);
   print_patches(scene, rows);
   std::cout << '\n';
   print_totals(scene, rows);
   print_list("emitters", emitter_names(scene));
   print_faces(scene);
-  print_suggestion(scene, rows, path);
+  print_findings(diagnosis::diagnose(scene));
+  print_suggestion(scene, arguments);
 }
 
 // --- for programs ---
@@ -263,11 +262,20 @@ ordered_json faces_to_json(const Scene& scene) {
   return json;
 }
 
-void print_json(const Scene& scene, const std::string& path) {
+ordered_json to_json(const diagnosis::Finding& finding, const Scene& scene) {
+  ordered_json json = {{"kind", diagnosis::name_of(finding.kind)},
+                       {"message", finding.words.message()},
+                       {"objects", ordered_json::array()},
+                       {"flag", finding.flag}};
+  for (const Selection& object : finding.objects) json["objects"].push_back(scene.name_of(object));
+  return json;
+}
+
+void print_json(const Scene& scene, const flags::SceneArguments& arguments) {
   const std::vector<PatchSummary> rows = summarise(scene);
   ordered_json json;
   json["version"] = kVersion;
-  json["scene"] = path;
+  json["scene"] = arguments.path;
   json["hash"] = scene.hash();
   json["vertices"] = scene.vertices().size();
   json["faces"] = scene.faces().size();
@@ -280,6 +288,9 @@ void print_json(const Scene& scene, const std::string& path) {
   json["not_planar"] = faces_to_json(scene);
   json["ignored"] = numbered_names(scene, FaceShape::kZeroArea);
   json["left_out"] = numbered_names(scene, FaceShape::kSkipped);
+  json["findings"] = ordered_json::array();
+  for (const diagnosis::Finding& finding : diagnosis::diagnose(scene))
+    json["findings"].push_back(to_json(finding, scene));
   json["warnings"] = ordered_json::array();
   for (const Problem& warning : scene.warnings()) json["warnings"].push_back(warning.message());
   std::cout << text::json_document(json) << '\n';
@@ -319,7 +330,7 @@ void print(const InfoArguments& arguments) {
   if (arguments.scene.path == "@") return arguments.json ? print_models_json() : print_models();
   const Scene scene = arguments.scene.load();
   print_warnings(scene.warnings());
-  (arguments.json ? print_json : print_text)(scene, arguments.scene.path);
+  (arguments.json ? print_json : print_text)(scene, arguments.scene);
 }
 
 }  // namespace

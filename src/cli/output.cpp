@@ -86,6 +86,12 @@ void check_output(std::ostream& out) {
                     .suggestion = "free some disk space, or send the output elsewhere"});
 }
 
+void print_near_misses(const Scene& scene, std::span<const Receiver> receivers) {
+  for (const std::string& sentence : sentences(near_misses(scene, receivers), receivers.size())) {
+    std::cerr << "warning: " << text::printable(sentence) << '\n';
+  }
+}
+
 void print_warnings(std::span<const Problem> warnings) {
   constexpr std::size_t kPrinted = 20;
   for (const Problem& warning : warnings.first(std::min(warnings.size(), kPrinted))) {

@@ -7,6 +7,7 @@
 #include "cli/command.h"
 #include "cli/exit_code.h"
 #include "cli/output.h"
+#include "exactff/diagnosis.h"
 #include "exactff/study.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
@@ -21,9 +22,9 @@ constexpr int kMostDigits = 10000;
 void warn_if_flipped(const Scene& scene, const PointResult& point) {
   for (const PointTerm& one : point.sources) {
     if (!behind_every_face(one.exact)) continue;
-    std::cerr
-        << "exactff: warning: the receiver is behind every face of '" << shown_name(scene, one.source)
-        << "' (a source emits only from its front, so the form factor is 0); if its faces are flipped, use --flip\n";
+    std::cerr << "exactff: warning: the receiver is behind every face of '" << shown_name(scene, one.source)
+              << "' (a source emits only from its front, so the form factor is 0); if the other side is meant, "
+              << text::printable(diagnosis::advice_to_flip(scene, std::span(&one.source, 1))) << '\n';
   }
 }
 
@@ -105,6 +106,7 @@ int run(const CLI::App& command, const PointArguments& args) {
   const Scene scene = load_point_scene(args);
   const PointResult point = compute_point(args, scene);
   warn_if_off_its_face(scene, point.receiver);
+  warn_of_near_face(scene, point);
   warn_if_flipped(scene, point);
   warn_of_missing_decimals(args, scene, point);
   warn_of_stopped_recursion(scene, point);
@@ -148,9 +150,11 @@ void add_receiver_flags(CLI::App& app, PointArguments& args) {
       ->required()
       ->type_name("NX NY NZ")
       ->check(is_no_flag);
-  app.add_option("--on", args.on, "The receiver lies on this face, which then neither occludes nor illuminates it")
+  app.add_option("--on", args.on,
+                 "The receiver lies on this face, or on several (floor:1+2), which then neither occlude nor illuminate "
+                 "it; auto or "
+                 "auto:DISTANCE finds them")
       ->type_name("NAME[:K]");
-  app.add_flag("--flip", args.flip, "Flip the faces of the source, so that they emit from the other side");
   app.add_option(
          "--source", args.sources,
          "Source patch or face; can be repeated, or separate names by commas; all: a table of every patch, with "

@@ -26,7 +26,6 @@ struct PointArguments {
   int digits = 0;
   int precision_cap = ExactOptions{}.precision_cap;
   flags::EngineArgument engine;
-  bool flip = false;
   bool fraction = false;
   bool exact_fraction = false;
   bool plain = false;
@@ -70,9 +69,11 @@ struct PointResult {
   [[nodiscard]] bool is_mixed() const { return emitters > 0 && emitters < sources.size(); }
 };
 
-// With the sources flipped, if wanted.
+// Prints the scene's warnings.
 [[nodiscard]] Scene load_point_scene(const PointArguments& args);
 [[nodiscard]] PointResult compute_point(const PointArguments& args, const Scene& scene);
+// Says on stderr that x lies near a face that is not its own, and what would follow if it were.
+void warn_of_near_face(const Scene& scene, const PointResult& point);
 
 // `--plain`: "0" is a proved zero; a positive value that rounds to zero prints "0.0".
 [[nodiscard]] std::string plain_value(const FormFactor& result);

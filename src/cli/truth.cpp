@@ -17,6 +17,7 @@
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/truth_summary.h"
+#include "exactff/diagnosis.h"
 #include "flags/engine.h"
 #include "flags/receivers.h"
 #include "flags/scene.h"
@@ -50,6 +51,7 @@ struct TruthArguments {
   bool unoccluded = false;
   bool fraction = false;
   bool unit_normals = false;
+  bool uv = false;
   std::string shard;
   bool resume = false;
   bool force = false;
@@ -92,21 +94,28 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const truth::Team* team)
   print_warnings(job->scene.warnings());
   truth::Request& request = job->request;
   flags::ChosenReceivers receivers = flags::receivers_of(args.receivers, job->scene);
+  if (receivers.without_face > 0) std::cerr << "warning: " << flags::words_on_receivers_without_face(receivers) << '\n';
+  print_near_misses(job->scene, receivers.receivers);
   request.scene = &job->scene;
   request.scene_name = args.scene.from_standard_input() ? std::string(flags::kStandardInput)
                                                         : std::filesystem::path(args.scene.path).filename().string();
   request.receivers = std::move(receivers.receivers);
   request.receivers_name = std::move(receivers.description);
   request.sources = flags::sources_of(args.sources, job->scene);
-  const std::string note = flags::note_on_sources_without_emission(job->scene, request.sources);
-  if (!note.empty()) std::cerr << "note: " << text::printable(note) << '\n';
   request.unoccluded = args.unoccluded;
   request.visible_fraction = args.fraction;
   request.unit_normals = args.unit_normals;
+  request.uv = args.uv;
   request.engine = args.engine.engine();
   request.shard = shard;
   request.threads = args.threads > 0 || team == nullptr ? args.threads : truth::fair_threads(*team);
   return job;
+}
+
+void tell_of_sources(const Job& job) {
+  print_warnings(diagnosis::warnings_of_dark_sources(job.scene, job.request.receivers, job.request.sources));
+  const std::string note = flags::note_on_sources_without_emission(job.scene, job.request.sources);
+  if (!note.empty()) std::cerr << "note: " << text::printable(note) << '\n';
 }
 
 // Prints progress and messages while rows are computed.
@@ -173,6 +182,7 @@ int write_to_standard_output(const TruthArguments& args) {
   const std::string words = "exactff: interrupted; the printed rows are incomplete, and nothing is kept\n";
   const InterruptWatch watch(words);
   const std::unique_ptr<Job> job = job_of(args, nullptr);
+  tell_of_sources(*job);
   Narrator narrator;
   truth::Hooks hooks = narrator.hooks(args.slow_seconds);
   if (::isatty(STDOUT_FILENO) == 1) hooks.progress = {};  // the rows are to be seen
@@ -191,6 +201,7 @@ int write_to_standard_output(const TruthArguments& args) {
 int write(const TruthArguments& args, truth::Team* team) {
   truth::require_free(args.file, args.existing());  // checked before anything that takes time
   const std::unique_ptr<Job> job = job_of(args, team);
+  tell_of_sources(*job);
   Narrator narrator;
   truth::Summary summary;
   try {
@@ -264,6 +275,7 @@ Command add_truth(CLI::App& app) {
   command->add_flag("--unit-normals", args->unit_normals,
                     "Add columns ux,uy,uz: the normal scaled to length 1, correctly rounded; the values belong to the "
                     "exact normals in nx,ny,nz");
+  command->add_flag("--uv", args->uv, "Add columns u,v: the place of a cell on its grid, from 0 to 1");
   command->add_option("--shard", args->shard, "Compute only part I of N, for exactff merge: 1/4 is the first of four")
       ->type_name("I/N");
   CLI::Option* resume = command->add_flag("--resume", args->resume, "Continue an interrupted run, if there is one");

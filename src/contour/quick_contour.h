@@ -19,9 +19,9 @@
 
 #include "contour/quick_vector.h"
 #include "exactff/geometry.h"
+#include "kernel/direction.h"
 #include "kernel/double_double.h"
 #include "kernel/exact_vec.h"
-#include "kernel/fine_direction.h"
 
 namespace exactff::contour {
 

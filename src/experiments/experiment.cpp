@@ -1,25 +1,30 @@
 #include "experiments/experiment.h"
 
 #include <algorithm>
-#include <array>
 
+#include "experiments/closure.h"
+#include "experiments/hemicube_resolution.h"
+#include "experiments/hemicube_scatter.h"
+#include "experiments/karkanis_times.h"
+#include "experiments/nettle_rule.h"
+#include "experiments/small_emitters.h"
 #include "text/nearest_names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 
 namespace exactff::experiments {
 
-#define EXACTFF_EXPERIMENT(function, name, summary) Result function(const Effort&, const Hooks&);
-#include "experiments/list.h"
-#undef EXACTFF_EXPERIMENT
-
 namespace {
 
-constexpr std::array kExperiments = {
-#define EXACTFF_EXPERIMENT(function, name, summary) Experiment{name, summary, &function},
-#include "experiments/list.h"
-#undef EXACTFF_EXPERIMENT
-};
+// In the order of the report.
+constexpr Experiment kExperiments[] = {
+    {"hemicube-scatter", "Karkanis' two plots: hemicube against exact values, triangle by triangle", &hemicube_scatter},
+    {"hemicube-resolution", "hemicube error against resolution, rotation and distance", &hemicube_resolution},
+    {"karkanis-times", "time for all patches from one point against their number, compared with Karkanis' times",
+     &karkanis_times},
+    {"nettle-rule", "Nettle's rule: error against the patch's size over its distance", &nettle_rule},
+    {"small-emitters", "Karkanis' conclusion: many small bright emitters, in radiosity", &small_emitters},
+    {"closure", "a closed room: the form factors from a point to all patches sum to 1", &closure}};
 
 }  // namespace
 
@@ -27,7 +32,7 @@ std::span<const Experiment> all_experiments() { return kExperiments; }
 
 const Experiment& experiment_named(std::string_view name) {
   const auto found = std::ranges::find(kExperiments, name, &Experiment::name);
-  if (found != kExperiments.end()) return *found;
+  if (found != std::end(kExperiments)) return *found;
   std::vector<std::string_view> names;
   for (const Experiment& e : kExperiments) names.push_back(e.name);
   std::vector<std::string> near;

@@ -1,9 +1,9 @@
 // The experiments of the report that do not concern one scene with its grid of receivers: they repeat what Karkanis and
 // Nettle measured or claimed, with exact values.
 //
-// An experiment is one pair of files and one line of list.h. It generates its scenes from fixed seeds and returns
-// sentences, figures and tables. Tables of values are the same bytes on every run and for any number of threads.
-// Results that depend on the clock are in tables of times and in sentences.
+// An experiment is one pair of files and one line of the list in experiment.cpp. It generates its scenes from fixed
+// seeds and returns sentences, figures and tables. Tables of values are the same bytes on every run and for any number
+// of threads. Results that depend on the clock are in tables of times and in sentences.
 #pragma once
 
 #include <span>

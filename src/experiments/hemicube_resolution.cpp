@@ -131,8 +131,7 @@ std::string distance_sentence(const ResolutionCurves& c) {
                      rounded(kUsualResolution) + " pixels, its relative RMS error grows like d to the power " +
                      to_text(turned.slope(kLastLarge)) + " (" + to_text(aligned.slope(kLastLarge)) +
                      " with edges along the rows) while the light covers many pixels";
-  Points points;
-  for (std::size_t i = 0; i < turned.at.size(); ++i) points.emplace_back(turned.at[i], turned.rms[i]);
+  const Points points = turned.points();
   if (const auto far = reaches(points, 0.1)) text += ", reaches 10 % at a distance of " + rounded(*far, 2) + " sides";
   if (const auto far = reaches(points, 1.0))
     text += " and 100 % at " + rounded(*far, 2) + " sides, where the light is about as large as a pixel";
@@ -141,11 +140,7 @@ std::string distance_sentence(const ResolutionCurves& c) {
 
 // ------------------------------------------------------------------------------------------------------------ figures
 
-Series line(std::string title, const ErrorCurve& curve, int style) {
-  Series series{std::move(title), {}, style};
-  for (std::size_t i = 0; i < curve.at.size(); ++i) series.points.emplace_back(curve.at[i], curve.rms[i]);
-  return series;
-}
+Series line(std::string title, const ErrorCurve& curve, int style) { return {std::move(title), curve.points(), style}; }
 
 // A power law through the first point of a curve.
 Series theory(const ErrorCurve& curve, double power, std::string title) {
@@ -207,54 +202,28 @@ CsvFile curve_table(const ResolutionCurves& c, const ResolutionSize& size) {
   return table.finish("hemicube-resolution.csv", "hemicube error against resolution, rotation and distance");
 }
 
-struct Task {
+// One place along a curve.
+struct Place {
   const CurvePlan* plan = nullptr;
   double at = 0.0;
-  std::size_t group = 0;
-  std::vector<double> found;
 };
-
-// Combines the tasks of all groups at one place.
-void add_place(ErrorCurve& curve, std::span<const Task> groups) {
-  std::vector<double> all;
-  for (const Task& task : groups) {
-    curve.rms_by_group[task.group].push_back(root_mean_square(task.found));
-    all.insert(all.end(), task.found.begin(), task.found.end());
-  }
-  curve.rms.push_back(root_mean_square(all));
-  for (double& error : all) error = std::abs(error);
-  curve.median.push_back(study::median(std::move(all)));
-}
 
 }  // namespace
 
-SlopeFit ErrorCurve::slope(double last) const {
-  std::vector<double> slopes;
-  for (const std::vector<double>& group : rms_by_group) {
-    Points points;
-    for (std::size_t i = 0; i < at.size() && at[i] <= last; ++i) points.emplace_back(at[i], group[i]);
-    if (const auto slope = study::fitted_slope(points)) slopes.push_back(*slope);
-  }
-  return mean_slope(slopes);
-}
-
 std::vector<ErrorCurve> error_curves(std::size_t groups, std::span<const CurvePlan> plans, int threads,
                                      const Hooks& hooks) {
-  std::vector<Task> tasks;
+  std::vector<Place> places;
   for (const CurvePlan& plan : plans) {
-    for (const double at : plan.at) {
-      for (std::size_t group = 0; group < groups; ++group) tasks.push_back({&plan, at, group, {}});
-    }
+    for (const double at : plan.at) places.push_back({&plan, at});
   }
-  work::parallel_for(tasks.size(), threads, kResolutionStage, hooks,
-                     [&](std::size_t i) { tasks[i].found = tasks[i].plan->errors(tasks[i].group, tasks[i].at); });
-  std::vector<ErrorCurve> curves;
-  auto task = tasks.begin();
-  for (const CurvePlan& plan : plans) {
-    ErrorCurve& curve = curves.emplace_back(ErrorCurve{plan.at, {}, {}, std::vector<std::vector<double>>(groups)});
-    for (std::size_t place = 0; place < plan.at.size(); ++place, task += static_cast<std::ptrdiff_t>(groups)) {
-      add_place(curve, {task, groups});
-    }
+  std::vector<std::vector<std::vector<double>>> found(places.size(), std::vector<std::vector<double>>(groups));
+  work::parallel_for(places.size() * groups, threads, kResolutionStage, hooks, [&](std::size_t i) {
+    const auto& [plan, at] = places[i / groups];
+    found[i / groups][i % groups] = plan->errors(i % groups, at);
+  });
+  std::vector<ErrorCurve> curves(plans.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    curves[static_cast<std::size_t>(places[i].plan - plans.data())].add_place(places[i].at, found[i]);
   }
   return curves;
 }

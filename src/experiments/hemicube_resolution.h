@@ -24,14 +24,6 @@ struct ResolutionSize {
 // The errors of one group at one place along a curve.
 using ErrorsAt = std::function<std::vector<double>(std::size_t group, double at)>;
 
-struct ErrorCurve {
-  std::vector<double> at;
-  std::vector<double> rms;                        // over all groups
-  std::vector<double> median;                     // of the magnitudes, over all groups
-  std::vector<std::vector<double>> rms_by_group;  // indexed by group, then place
-  // The slope of the log-log line through the places up to `last`.
-  [[nodiscard]] SlopeFit slope(double last) const;
-};
 // What to measure along a curve.
 struct CurvePlan {
   std::vector<double> at;

@@ -206,7 +206,7 @@ std::string bits_sentence(const std::vector<WorkRow>& rows) {
          " values differ without it. On average it leaves " +
          rounded(static_cast<double>(last.looked_at) / last.triangles, 2) +
          " possible occluders per source in the scene of " + std::to_string(last.triangles) + ", instead of " +
-         rounded(static_cast<double>(last.looked_at_without) / last.triangles, 3) + ".";
+         rounded(static_cast<double>(*last.looked_at_without) / last.triangles, 3) + ".";
 }
 
 std::string affordable_sentence(const std::vector<Affordable>& rows, double exact_time, int triangles) {
@@ -257,10 +257,7 @@ CsvFile time_table(const std::vector<TimeRow>& rows, const TimesSize& size) {
           " triangles or all",
       {"triangles", "exact", "exact_without_shaft", "hemicube_100", "rays"});
   for (const TimeRow& row : rows) {
-    auto line = table.row();
-    line << row.triangles << row.with_shaft;
-    row.without_shaft ? line << *row.without_shaft : line << "";
-    line << row.hemicube << row.rays;
+    table.row() << row.triangles << row.with_shaft << row.without_shaft << row.hemicube << row.rays;
   }
   return table.finish("karkanis-times.csv", "time for all patches from one point against their number");
 }
@@ -279,11 +276,7 @@ CsvFile work_table(const std::vector<WorkRow>& rows) {
       "face that may hide it; differences: values that differ without the shaft, empty where not compared",
       {"triangles", "visible", "sum", "looked_at", "looked_at_without_shaft", "differences"});
   for (const WorkRow& row : rows) {
-    auto line = table.row();
-    line << row.triangles << row.visible << row.sum << row.looked_at;
-    row.differences ? line << row.looked_at_without << *row.differences
-                    : line << ""
-                           << "";
+    table.row() << row.triangles << row.visible << row.sum << row.looked_at << row.looked_at_without << row.differences;
   }
   return table.finish("karkanis-times-work.csv", "work and values behind the times");
 }
@@ -316,9 +309,10 @@ WorkRow work_row(int triangles, bool compare) {
   }
   if (!compare) return row;
   const std::vector<FormFactor> without = all_patches(scene, sources, ShaftCulling::kNone, {});
+  row.looked_at_without = 0;
   row.differences = 0;
   for (std::size_t i = 0; i < with.size(); ++i) {
-    row.looked_at_without += without[i].planes.front().tree_candidates;
+    *row.looked_at_without += without[i].planes.front().tree_candidates;
     *row.differences += with[i].value != without[i].value || with[i].status != without[i].status ? 1U : 0U;
   }
   return row;

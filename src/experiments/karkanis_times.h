@@ -27,10 +27,10 @@ struct TimesSize {
 struct WorkRow {
   int triangles = 0;
   std::size_t visible = 0;
-  double sum = 0.0;                             // of the form factors
-  std::uint64_t looked_at = 0;                  // pairs of a source and a face that the shaft's tree leaves
-  std::uint64_t looked_at_without = 0;          // the same without the shaft, if compared
-  std::optional<std::size_t> differences = {};  // values that differ without the shaft, if compared
+  double sum = 0.0;                                     // of the form factors
+  std::uint64_t looked_at = 0;                          // pairs of a source and a face that the shaft's tree leaves
+  std::optional<std::uint64_t> looked_at_without = {};  // the same without the shaft, if compared
+  std::optional<std::size_t> differences = {};          // values that differ without the shaft, if compared
 };
 [[nodiscard]] WorkRow work_row(int triangles, bool compare);
 

@@ -149,32 +149,13 @@ std::vector<double> errors_of(const Configuration& c, double side, const NettleS
 }
 
 // Indexed by way, then configuration.
-using GroupErrors = std::vector<std::vector<double>>;
-
-GroupErrors group_errors(const NettleSize& size, std::size_t group, double side) {
-  GroupErrors by_way(ways(size).size());
+std::vector<std::vector<double>> group_errors(const NettleSize& size, std::size_t group, double side) {
+  std::vector<std::vector<double>> by_way(ways(size).size());
   for (const Configuration& c : configurations(size, group)) {
     const std::vector<double> errors = errors_of(c, side, size);
     for (std::size_t w = 0; w < errors.size(); ++w) by_way[w].push_back(errors[w]);
   }
   return by_way;
-}
-
-NettleCurve curve_of(const NettleSize& size, const std::vector<GroupErrors>& found, std::size_t way_index) {
-  const Way way = ways(size)[way_index];
-  NettleCurve curve{way.kind, way.splits, size.sides, {}, {}, std::vector<std::vector<double>>(size.groups)};
-  for (std::size_t s = 0; s < size.sides.size(); ++s) {
-    std::vector<double> all;
-    for (std::size_t group = 0; group < size.groups; ++group) {
-      const std::vector<double>& own = found[s * size.groups + group][way_index];
-      curve.rms_by_group[group].push_back(root_mean_square(own));
-      all.insert(all.end(), own.begin(), own.end());
-    }
-    curve.rms.push_back(root_mean_square(all));
-    for (double& error : all) error = std::abs(error);
-    curve.p95.push_back(study::percentile(std::move(all), 95.0));
-  }
-  return curve;
 }
 
 // ---------------------------------------------------------------------------------------------------------- sentences
@@ -269,7 +250,7 @@ Axes axes() {
 }
 
 Series theory(const NettleCurve& curve, double power, std::string title) {
-  const double x = curve.sides.front(), y = curve.rms.front();
+  const double x = curve.at.front(), y = curve.rms.front();
   return {std::move(title), {{x, 0.5 * y}, {0.5, 0.5 * y * std::pow(0.5 / x, power)}}, 0};
 }
 
@@ -309,8 +290,8 @@ CsvFile curve_table(const std::vector<NettleCurve>& curves, const NettleSize& si
           std::to_string(size.rays) + " jittered rays a part",
       {"visibility", "splits", "side", "rms", "p95"});
   for (const NettleCurve& c : curves) {
-    for (std::size_t i = 0; i < c.sides.size(); ++i) {
-      table.row() << name_of(c.kind) << c.splits << c.sides[i] << c.rms[i] << c.p95[i];
+    for (std::size_t i = 0; i < c.at.size(); ++i) {
+      table.row() << name_of(c.kind) << c.splits << c.at[i] << c.rms[i] << c.p95[i];
     }
   }
   return table.finish("nettle-rule.csv", "error of Nettle's factor against the patch's size");
@@ -341,30 +322,27 @@ double median_literal_ratio(const NettleSize& size, double side, const std::stri
 
 }  // namespace
 
-Points NettleCurve::points() const {
-  Points list;
-  for (std::size_t i = 0; i < sides.size(); ++i) list.emplace_back(sides[i], rms[i]);
-  return list;
-}
-
 SlopeFit NettleCurve::slope() const {
   constexpr double kSmall = 0.13;
-  std::vector<double> slopes;
-  for (const std::vector<double>& group : rms_by_group) {
-    Points small;
-    for (std::size_t i = 0; i < sides.size() && sides[i] <= kSmall; ++i) small.emplace_back(sides[i], group[i]);
-    if (const auto slope = study::fitted_slope(small)) slopes.push_back(*slope);
-  }
-  return mean_slope(slopes);
+  return ErrorCurve::slope(kSmall);
 }
 
 std::vector<NettleCurve> nettle_curves(const NettleSize& size, int threads, const Hooks& hooks) {
-  std::vector<GroupErrors> found(size.sides.size() * size.groups);
-  work::parallel_for(found.size(), threads, kNettleRuleStage, hooks, [&](std::size_t i) {
-    found[i] = group_errors(size, i % size.groups, size.sides[i / size.groups]);
+  const std::vector<Way> all = ways(size);
+  // Indexed by side, way, then group.
+  std::vector found(size.sides.size(), std::vector(all.size(), std::vector<std::vector<double>>(size.groups)));
+  work::parallel_for(size.sides.size() * size.groups, threads, kNettleRuleStage, hooks, [&](std::size_t i) {
+    const std::size_t side = i / size.groups, group = i % size.groups;
+    auto errors = group_errors(size, group, size.sides[side]);
+    for (std::size_t way = 0; way < all.size(); ++way) found[side][way][group] = std::move(errors[way]);
   });
   std::vector<NettleCurve> curves;
-  for (std::size_t way = 0; way < ways(size).size(); ++way) curves.push_back(curve_of(size, found, way));
+  for (std::size_t way = 0; way < all.size(); ++way) {
+    NettleCurve& curve = curves.emplace_back();
+    curve.kind = all[way].kind;
+    curve.splits = all[way].splits;
+    for (std::size_t side = 0; side < size.sides.size(); ++side) curve.add_place(size.sides[side], found[side][way]);
+  }
   return curves;
 }
 

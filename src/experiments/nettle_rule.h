@@ -27,14 +27,9 @@ enum class NettleCase {
 };
 
 // Relative errors of one way of computation, against the side of the patch.
-struct NettleCurve {
+struct NettleCurve : ErrorCurve {
   NettleCase kind = NettleCase::kFree;
   int splits = 1;
-  std::vector<double> sides;
-  std::vector<double> rms;
-  std::vector<double> p95;                        // 95th percentile of the magnitudes
-  std::vector<std::vector<double>> rms_by_group;  // indexed by group, then side
-  [[nodiscard]] Points points() const;            // side, rms
   // The slope of the log-log line through the sides up to an eighth of the distance.
   [[nodiscard]] SlopeFit slope() const;
 };

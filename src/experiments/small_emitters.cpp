@@ -93,16 +93,22 @@ std::string scene_sentence(const EmitterStudy& study, const EmittersSize& size) 
          " on the floor. Errors are in radiosity, divided by the mean radiosity of " + rounded(study.mean) + ".";
 }
 
+// The first and the last setting of a method family; null if there is none.
+std::pair<const Timed*, const Timed*> ends_of(const std::vector<Timed>& methods, std::string_view family) {
+  const Timed* first = nullptr;
+  const Timed* last = nullptr;
+  for (const Timed& t : methods) {
+    if (!t.errors->choice.starts_with(family)) continue;
+    if (first == nullptr) first = &t;
+    last = &t;
+  }
+  return {first, last};
+}
+
 std::string methods_sentence(const std::vector<Timed>& methods, double exact_seconds) {
   std::string text = "The exact method takes " + duration(exact_seconds) + " per receiver for all lamps.";
   for (const std::string_view family : {"hemicube", "nettle", "area-sampling", "adaptive"}) {
-    const Timed* first = nullptr;
-    const Timed* last = nullptr;
-    for (const Timed& t : methods) {
-      if (!t.errors->choice.starts_with(family)) continue;
-      if (first == nullptr) first = &t;
-      last = &t;
-    }
+    const auto [first, last] = ends_of(methods, family);
     if (first == nullptr) continue;
     text += " " + in_words(*first) + (first == last ? "." : "; " + in_words(*last) + ".");
   }
@@ -123,13 +129,7 @@ std::string in_exact_times(double factor) {
 }
 
 std::string hemicube_verdict(const std::vector<Timed>& methods, double exact_seconds) {
-  const Timed* coarsest = nullptr;
-  const Timed* finest = nullptr;
-  for (const Timed& t : methods) {
-    if (!t.errors->choice.starts_with("hemicube")) continue;
-    if (coarsest == nullptr) coarsest = &t;
-    finest = &t;
-  }
+  const auto [coarsest, finest] = ends_of(methods, "hemicube");
   if (finest == nullptr) return {};
   const std::string verdict = finest->seconds > exact_seconds
                                   ? "Compared with the hemicube, his reference, the exact method is worth it: "

@@ -27,18 +27,13 @@ void SmallScene::add(std::string_view patch, const std::vector<Vec3>& ring) {
 }
 
 Bench::Bench(const methods::Choice& choice, const Scene& scene, std::span<const Selection> sources)
-    : on_scene_(choice.method->prepare(scene)),
-      evaluator_(on_scene_->configure(choice.settings)),
-      estimates_(sources.size()) {
-  for (const Selection& source : sources) {
-    owned_.push_back(on_scene_->prepare_source(source));
-    sources_.push_back(owned_.back().get());
-  }
-}
+    : prepared_(*choice.method, scene, sources),
+      evaluator_(prepared_.scene->configure(choice.settings)),
+      estimates_(sources.size()) {}
 
 std::span<const methods::Estimate> Bench::look_from(const Receiver& receiver) {
   evaluator_->look_from(receiver);
-  evaluator_->form_factors(sources_, estimates_);
+  evaluator_->form_factors(prepared_.sources, estimates_);
   return estimates_;
 }
 
@@ -76,6 +71,36 @@ std::string slope_text(double slope) {
   const long hundredths = std::lround(std::abs(slope) * 100.0);
   const std::string digits = std::to_string(100 + hundredths % 100).substr(1);
   return (slope < 0.0 && hundredths > 0 ? "−" : "") + std::to_string(hundredths / 100) + '.' + digits;
+}
+
+void ErrorCurve::add_place(double place, const std::vector<std::vector<double>>& by_group) {
+  std::vector<double> all;
+  rms_by_group.resize(by_group.size());
+  for (std::size_t group = 0; group < by_group.size(); ++group) {
+    rms_by_group[group].push_back(root_mean_square(by_group[group]));
+    all.insert(all.end(), by_group[group].begin(), by_group[group].end());
+  }
+  at.push_back(place);
+  rms.push_back(root_mean_square(all));
+  for (double& error : all) error = std::abs(error);
+  median.push_back(study::median(all));
+  p95.push_back(study::percentile(std::move(all), 95.0));
+}
+
+Points ErrorCurve::points() const {
+  Points list;
+  for (std::size_t i = 0; i < at.size(); ++i) list.emplace_back(at[i], rms[i]);
+  return list;
+}
+
+SlopeFit ErrorCurve::slope(double last) const {
+  std::vector<double> slopes;
+  for (const std::vector<double>& group : rms_by_group) {
+    Points points;
+    for (std::size_t i = 0; i < at.size() && at[i] <= last; ++i) points.emplace_back(at[i], group[i]);
+    if (const auto slope = study::fitted_slope(points)) slopes.push_back(*slope);
+  }
+  return mean_slope(slopes);
 }
 
 std::optional<double> reaches(const Points& points, double y) {

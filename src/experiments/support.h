@@ -13,6 +13,7 @@
 #include "exactff/methods.h"
 #include "experiments/experiment.h"
 #include "page/plot_script.h"
+#include "study/method_runs.h"
 #include "text/csv_row.h"
 
 namespace exactff::experiments {
@@ -49,10 +50,8 @@ class Bench {
   [[nodiscard]] std::span<const methods::Estimate> look_from(const Receiver& receiver);
 
  private:
-  std::unique_ptr<methods::PreparedScene> on_scene_;
+  study::PreparedMethod prepared_;
   std::unique_ptr<methods::Evaluator> evaluator_;
-  std::vector<std::unique_ptr<methods::PreparedSource>> owned_;
-  std::vector<const methods::PreparedSource*> sources_;
   std::vector<methods::Estimate> estimates_;
 };
 
@@ -84,6 +83,20 @@ struct SlopeFit {
 [[nodiscard]] std::string to_text(const SlopeFit& fit);
 // A slope with two decimals and a true minus sign.
 [[nodiscard]] std::string slope_text(double slope);
+
+// Errors along a curve, measured in independent groups.
+struct ErrorCurve {
+  std::vector<double> at;
+  std::vector<double> rms;                        // over all groups
+  std::vector<double> median, p95;                // of the magnitudes, over all groups
+  std::vector<std::vector<double>> rms_by_group;  // indexed by group, then place
+
+  // Adds the errors at the next place, indexed by group.
+  void add_place(double place, const std::vector<std::vector<double>>& by_group);
+  [[nodiscard]] Points points() const;  // at, rms
+  // The slope of the log-log line through the places up to `last`.
+  [[nodiscard]] SlopeFit slope(double last) const;
+};
 
 // The x at which the polyline through the points, sorted by x, first reaches the value y from below; on log-log axes.
 // Nothing if it never does.

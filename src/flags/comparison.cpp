@@ -225,9 +225,7 @@ std::string command_words(const ComparisonArguments& args) {
   const auto add = [&](const char* flag, const std::string& value) {
     if (!value.empty()) line += std::string(" ") + flag + ' ' + text::shell_word(value);
   };
-  if (args.scene.patches != "groups") add("--patches", args.scene.patches);
-  if (args.scene.skip_bad_faces) line += " --skip-bad-faces";
-  line += command_words(args.receivers) + command_words(args.sources);
+  line += command_words(args.scene) + command_words(args.receivers) + command_words(args.sources);
   add("--eps-b", args.eps_b);
   add("--eps-a", args.eps_a);
   add("--rays", args.rays);

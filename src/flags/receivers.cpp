@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
+#include <string_view>
 #include <unordered_set>
 #include <utility>
 
 #include "flags/lists.h"
 #include "text/escape.h"
+#include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
@@ -25,9 +28,12 @@ std::vector<std::string> placements(const ReceiverArguments& args) {
   return flags;
 }
 
+bool is_auto(const std::string& on) { return on == "auto" || on.starts_with("auto:"); }
+
 void check_file_alone(const ReceiverArguments& args) {
   std::vector<std::string> others = placements(args);
-  if (!args.on.empty()) others.insert(others.begin(), "--on");
+  if (args.per_face) others.emplace_back("--per-face");
+  if (!args.on.empty() && !(args.on.size() == 1 && is_auto(args.on.front()))) others.insert(others.begin(), "--on");
   if (args.file.empty() || others.empty()) return;
   text::refuse("--receivers is given together with " + text::enumerate(others),
                "receivers come either from the file or from a patch", "remove one of them");
@@ -67,40 +73,70 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-std::vector<FaceId> faces_named(const Scene& scene, const std::vector<std::string>& names) {
+// The named faces, and the regions that they make: of a patch those of its faces, of a face that face alone.
+struct Surface {
   std::vector<FaceId> faces;
+  std::vector<Region> regions;
+};
+
+Surface surface_named(const Scene& scene, const std::vector<std::string>& names) {
+  Surface surface;
   std::unordered_set<std::size_t> known;
   for (const Selection& selection : selections_named(scene, names)) {
+    std::ranges::move(regions(scene, selection), std::back_inserter(surface.regions));
     for (const FaceId face : scene.faces_of(selection)) {
       if (!known.insert(index_of(face)).second) {
         text::refuse("--on: '" + scene.name_of(face) + "' is named twice", "every receiver on it would occur twice",
                      "give it once");
       }
-      faces.push_back(face);
+      surface.faces.push_back(face);
     }
   }
-  if (faces.empty()) {
+  if (surface.faces.empty()) {
     text::refuse("--on: no face has area in " + text::in_quotes(joined(names), text::kShownName),
                  "receivers lie on faces", "choose another patch");
   }
-  return faces;
+  return surface;
 }
 
 ChosenReceivers on_faces(const ReceiverArguments& args, const Scene& scene, GridIds grid_ids) {
   const std::string on = joined(args.on);
-  const std::vector<FaceId> faces = faces_named(scene, args.on);
-  if (!args.grid.empty())
-    return {grid_receivers(scene, faces, grid_of(args.grid), grid_ids), on + ", grid " + args.grid};
+  const auto [faces, regions] = surface_named(scene, args.on);
+  const std::string per_face = args.per_face ? ", per face" : "";
+  if (!args.grid.empty()) {
+    const GridSize size = grid_of(args.grid);
+    return {
+        args.per_face ? grid_receivers(scene, faces, size, grid_ids) : grid_receivers(scene, regions, size, grid_ids),
+        on + ", grid " + args.grid + per_face};
+  }
   if (args.vertices) return {vertex_receivers(scene, faces), on + ", vertices"};
-  if (args.centres) return {centre_receivers(scene, faces), on + ", centres"};
+  if (args.centres) {
+    return {args.per_face ? centre_receivers(scene, faces) : centre_receivers(scene, regions),
+            on + ", centres" + per_face};
+  }
   const std::uint64_t count = sample_count(args), seed = sample_seed(args);
   return {sample_receivers(scene, faces, count, seed),
           on + ", " + text::counted(count, "sample") + ", seed " + std::to_string(seed)};
 }
 
-ChosenReceivers in_file(const std::string& file, const Scene& scene) {
-  if (file == "-") return {read_receivers(std::cin, kStandardInput, scene), kStandardInput};
-  return {read_receivers(file, scene), std::filesystem::path(file).filename().string()};
+ChosenReceivers in_file(const ReceiverArguments& args, const Scene& scene) {
+  ChosenReceivers chosen;
+  if (args.file == "-") {
+    chosen = {read_receivers(std::cin, kStandardInput, scene), kStandardInput, {}};
+  } else {
+    chosen = {read_receivers(args.file, scene), std::filesystem::path(args.file).filename().string(), {}};
+  }
+  if (args.on.empty()) return chosen;
+  const auto face = auto_face(args.on.front(), scene);
+  if (!face) {
+    text::refuse("--receivers is given together with --on " + args.on.front() + ", which is a patch of the scene",
+                 "receivers come either from the file or from a patch",
+                 "remove one of them; to find the faces automatically, rename the patch");
+  }
+  chosen.description += ", on " + args.on.front();
+  chosen.without_face = place_on_faces(scene, chosen.receivers, face->tolerance).size();
+  if (chosen.without_face > 0) chosen.description += ", " + std::to_string(chosen.without_face) + " without a face";
+  return chosen;
 }
 
 void check_not_empty(const ReceiverArguments& args, const ChosenReceivers& chosen) {
@@ -112,18 +148,31 @@ void check_not_empty(const ReceiverArguments& args, const ChosenReceivers& chose
 
 }  // namespace
 
+std::optional<AutoFace> auto_face(const std::string& on, const Scene& scene) {
+  if (!is_auto(on) || std::ranges::find(scene.patches(), on, &Patch::name) != scene.patches().end())
+    return std::nullopt;
+  if (on == "auto") return AutoFace{};
+  const text::ParsedNumber distance = text::parse_number(on.substr(std::string_view("auto:").size()));
+  if (distance.fault == text::NumberFault::kNone && distance.value > 0.0) return AutoFace{distance.value};
+  text::refuse("--on " + text::in_quotes(on) + ": the distance is no positive number",
+               "faces further away from a receiver are not considered", "write, for example, --on auto:1e-4");
+}
+
 void add_receiver_options(CLI::App& app, ReceiverArguments& args) {
   app.add_option(
          "--on", args.on,
-         "Patch or face on which the receivers lie; can be repeated, or separate names by commas; all: every patch")
+         "Patch or face on which the receivers lie; can be repeated, or separate names by commas; all: every patch; "
+         "with --receivers: auto or auto:DISTANCE finds the face of each receiver")
       ->type_name("NAME[:K]")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--grid", args.grid,
-                 "A receiver in the centre of each cell of a grid on each face: columns x rows, such as 32x32")
+                 "A receiver in the centre of each cell of a grid on each surface: columns x rows, such as 32x32")
       ->type_name("UxV");
   app.add_flag("--vertices", args.vertices, "A receiver at each vertex of each face, with that face's normal");
-  app.add_flag("--centres", args.centres, "A receiver at the centre of each face");
+  app.add_flag("--centres", args.centres, "A receiver at the centre of each surface");
+  app.add_flag("--per-face", args.per_face,
+               "With --grid or --centres: treat each face by itself, instead of joining neighbours in one plane");
   app.add_option("--samples", args.samples, "N receivers at random, uniformly by area")->type_name("N");
   app.add_option("--sample-seed", args.sample_seed, "Seed of --samples; it does not affect rays (default: 1)")
       ->type_name("S");
@@ -141,6 +190,10 @@ void check_receiver_options(const ReceiverArguments& args) {
                  "add --samples 1000, or remove it");
   }
   if (!args.file.empty()) return;
+  if (args.per_face && args.grid.empty() && !args.centres) {
+    text::refuse("--per-face is given without --grid or --centres", "vertices and samples are always made per face",
+                 "remove it");
+  }
   if (args.on.empty() && placed.empty()) {
     text::refuse("there are no receivers", "values are computed at receivers",
                  "give --on NAME with --grid 32x32, --vertices, --centres or --samples 1000; or --receivers FILE.csv");
@@ -170,9 +223,15 @@ void check_standard_input(const SceneArguments& scene, const ReceiverArguments& 
 
 ChosenReceivers receivers_of(const ReceiverArguments& args, const Scene& scene, GridIds grid_ids) {
   check_receiver_options(args);
-  ChosenReceivers chosen = args.file.empty() ? on_faces(args, scene, grid_ids) : in_file(args.file, scene);
+  ChosenReceivers chosen = args.file.empty() ? on_faces(args, scene, grid_ids) : in_file(args, scene);
   check_not_empty(args, chosen);
   return chosen;
+}
+
+std::string words_on_receivers_without_face(const ChosenReceivers& chosen) {
+  return "--on auto found no face for " + std::to_string(chosen.without_face) + " of " +
+         text::counted(chosen.receivers.size(), "receiver") +
+         ", which now lie on none; --on auto:DISTANCE looks further away";
 }
 
 std::string command_words(const ReceiverArguments& args) {
@@ -184,6 +243,7 @@ std::string command_words(const ReceiverArguments& args) {
   add("--grid", args.grid);
   if (args.vertices) words += " --vertices";
   if (args.centres) words += " --centres";
+  if (args.per_face) words += " --per-face";
   add("--samples", args.samples);
   add("--sample-seed", args.sample_seed);
   add("--receivers", args.file);

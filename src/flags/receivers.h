@@ -1,8 +1,9 @@
 // The flags for receivers, shared by all commands over many receivers: --receivers FILE, or --on NAME with one of
-// --grid, --vertices, --centres, --samples.
+// --grid, --vertices, --centres, --samples. With --receivers, --on auto finds the faces.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct ReceiverArguments {
   std::string grid;
   bool vertices = false;
   bool centres = false;
+  bool per_face = false;
   std::string samples;
   std::string sample_seed;
   std::string file;
@@ -24,8 +26,19 @@ struct ReceiverArguments {
 
 struct ChosenReceivers {
   std::vector<Receiver> receivers;
-  std::string description;  // "floor, grid 32x32", "floor, 1000 samples, seed 1", "points.csv"
+  std::string description;       // "floor, grid 32x32", "floor, 1000 samples, seed 1", "points.csv"
+  std::size_t without_face = 0;  // that --on auto found no face for
 };
+
+// The distance of "auto" or "auto:DISTANCE". No distance: the default tolerance.
+struct AutoFace {
+  std::optional<double> tolerance;
+};
+// What --on says, unless it is the name of a patch. Throws InputError for a distance that is none.
+std::optional<AutoFace> auto_face(const std::string& on, const Scene& scene);
+
+// "--on auto found no face for 3 of 10 receivers; ..."
+std::string words_on_receivers_without_face(const ChosenReceivers& chosen);
 
 void add_receiver_options(CLI::App& app, ReceiverArguments& args);
 

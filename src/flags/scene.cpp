@@ -4,8 +4,33 @@
 
 #include "exactff/models.h"
 #include "exactff/obj.h"
+#include "exactff/scene_files.h"
+#include "flags/lists.h"
+#include "text/escape.h"
+#include "text/refuse.h"
 
 namespace exactff::flags {
+namespace {
+
+CLI::Option* add_names(CLI::App& app, const std::string& flag, std::vector<std::string>& names,
+                       const std::string& meaning) {
+  return app.add_option(flag, names, meaning + "; can be repeated, or separate names by commas")
+      ->type_name("NAME[:K]")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+std::vector<Selection> changed(const Scene& scene, const std::string& flag, const std::vector<std::string>& names) {
+  std::vector<Selection> selections = selections_named(scene, names);
+  for (const Selection& selection : selections) {
+    if (!scene.faces_of(selection).empty()) continue;
+    text::refuse(flag + ": '" + scene.name_of(selection) + "' has no area", "a face without area is ignored",
+                 "remove the name");
+  }
+  return selections;
+}
+
+}  // namespace
 
 void SceneArguments::add_to(CLI::App& app) {
   app.add_option("SCENE", path,
@@ -17,6 +42,9 @@ void SceneArguments::add_to(CLI::App& app) {
       ->check(CLI::IsMember({"groups", "faces"}))
       ->capture_default_str();
   app.add_flag("--skip-bad-faces", skip_bad_faces, "Leave out unusable faces with a warning instead of stopping");
+  add_names(app, "--flip", flip, "Turn this patch or face round: its front becomes its back");
+  add_names(app, "--transparent", transparent,
+            "This patch or face hides nothing; it can still be a source and carry receivers");
 }
 
 SceneOptions SceneArguments::options() const {
@@ -25,8 +53,21 @@ SceneOptions SceneArguments::options() const {
 }
 
 Scene SceneArguments::load() const {
-  if (from_standard_input()) return read_obj(std::cin, kStandardInput, options());
-  return path.starts_with('@') ? models::make_scene(path.substr(1), options()) : read_obj(path, options());
+  Scene scene = from_standard_input()   ? read_obj(std::cin, kStandardInput, options())
+                : path.starts_with('@') ? models::make_scene(path.substr(1), options())
+                                        : read_scene(path, options());
+  if (!flip.empty()) scene = scene.with_flipped(changed(scene, "--flip", flip));
+  if (!transparent.empty()) scene = scene.with_transparent(changed(scene, "--transparent", transparent));
+  return scene;
+}
+
+std::string command_words(const SceneArguments& args) {
+  std::string line;
+  if (args.patches != "groups") line += " --patches " + text::shell_word(args.patches);
+  if (args.skip_bad_faces) line += " --skip-bad-faces";
+  for (const std::string& names : args.flip) line += " --flip " + text::shell_word(names);
+  for (const std::string& names : args.transparent) line += " --transparent " + text::shell_word(names);
+  return line;
 }
 
 }  // namespace exactff::flags

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "exactff/scene.h"
 
@@ -10,20 +11,24 @@ namespace exactff::flags {
 
 inline constexpr const char* kStandardInput = "standard input";  // what messages call it
 
-// SCENE, --patches groups|faces, --skip-bad-faces. SCENE is a file, "-" for an OBJ
-// file on standard input, or @MODEL[:SETTING=VALUE,...] (exactff/models.h). A
-// name that begins with @ always means a model; write ./@NAME for a file of that name.
+// SCENE, --patches groups|faces, --skip-bad-faces, --flip, --transparent. SCENE is a file, "-" for an OBJ file on
+// standard input, or @MODEL[:SETTING=VALUE,...] (exactff/models.h). A name that begins with @ always means a model;
+// write ./@NAME for a file of that name.
 struct SceneArguments {
   std::string path;
   std::string patches = "groups";
   bool skip_bad_faces = false;
+  std::vector<std::string> flip, transparent;  // each a name, a comma list of names, or "all"
 
   void add_to(CLI::App& app);
   [[nodiscard]] bool from_standard_input() const { return path == "-"; }
 
   [[nodiscard]] SceneOptions options() const;
-  // Reads or generates the scene. Throws InputError.
+  // Reads or generates the scene and changes it as --flip and --transparent say. Throws InputError.
   [[nodiscard]] Scene load() const;
 };
+
+// The flags again, each preceded by a blank and quoted for a shell. SCENE is not among them.
+[[nodiscard]] std::string command_words(const SceneArguments& args);
 
 }  // namespace exactff::flags

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "text/number_text.h"
+#include "text/phrases.h"
 
 namespace exactff {
 
@@ -28,6 +29,7 @@ class MtlReader {
   void read_colour(std::string_view keyword, std::string_view values);
   bool read_numbers(std::string_view keyword, const std::vector<std::string_view>& texts, Rgb& colour);
   void check(std::string_view keyword, const Rgb& colour);
+  void read_transparency(std::string_view keyword, std::string_view values);
   void fail(std::string what, std::string why, std::string suggestion);
   void warn(std::string what, std::string why, std::string suggestion);
 
@@ -40,6 +42,7 @@ class MtlReader {
   text::ProblemList& warnings_;
   text::TextLine line_;
   Material current_;     // the material that the current lines belong to
+  bool has_d_ = false;   // it has a line d
   bool counts_ = false;  // false before any newmtl and in a repeated material
   bool started_ = false;
   std::vector<Material> materials_;
@@ -58,6 +61,8 @@ void MtlReader::read_line() {
   std::string_view rest = line_.text;
   const std::string_view keyword = text::take_word(rest);
   if (keyword == "newmtl") return start_material(text::trimmed(rest));
+  const bool transparency = keyword == "d" || keyword == "Tr" || keyword == "illum";
+  if (transparency && started_) read_transparency(keyword, rest);
   if (keyword != "Kd" && keyword != "Ke") return;
   if (!started_)
     return fail(std::string(keyword) + " before any newmtl", "it does not belong to a material", "move it");
@@ -68,6 +73,7 @@ void MtlReader::read_line() {
 void MtlReader::start_material(std::string_view name) {
   started_ = true;
   current_ = Material{std::string(name)};
+  has_d_ = false;
   if (name.empty()) fail("newmtl without a name", "no face can use it", "give the material a name");
   counts_ = names_.insert(current_.name).second;
   if (counts_) {
@@ -117,6 +123,30 @@ void MtlReader::check(std::string_view keyword, const Rgb& colour) {
   if (reflectance && colour.largest() > 1.0) {
     warn(of_material(keyword) + " exceeds 1", "such a surface reflects more than it receives", "correct it");
   }
+}
+
+// Some programs write Tr beside d with the meaning of d, so d counts where both are given. Anything unreadable says
+// nothing, since no value depends on it.
+void MtlReader::read_transparency(std::string_view keyword, std::string_view values) {
+  static constexpr std::array kGlass = {4.0, 6.0, 7.0, 9.0};  // models with glass or refraction
+  const std::vector<std::string_view> texts = text::words(values.substr(0, values.find('#')));
+  const text::ParsedNumber number = text::parse_number(texts.empty() ? std::string_view() : texts.back());
+  if (number.fault != text::NumberFault::kNone) return;
+  const bool by_model = current_.see_through.starts_with("illum");
+  bool glass = false;
+  if (keyword == "illum") {
+    if (!current_.see_through.empty() && !by_model) return;
+    glass = std::ranges::find(kGlass, number.value) != kGlass.end();
+  } else {
+    if (keyword == "Tr" && has_d_) return;
+    has_d_ = has_d_ || keyword == "d";
+    glass = keyword == "d" ? number.value < 1.0 : number.value > 0.0;
+    if (!glass && by_model) return;
+  }
+  current_.see_through = glass ? std::string(keyword) + ' ' + text::shortest(number.value) : std::string();
+  current_.file = glass ? file_ : std::string();
+  current_.line = glass ? line_.number : 0;
+  if (counts_) materials_.back() = current_;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <set>
@@ -16,6 +17,7 @@
 
 #include "exactff/obj.h"
 #include "formats/mtl_reader.h"
+#include "formats/readers.h"
 #include "kernel/float_environment.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
@@ -77,11 +79,11 @@ struct Tally {
 
 bool passed_over(std::string_view keyword) {
   static constexpr std::array kWords = {
-      std::string_view("vt"),     std::string_view("vn"),         std::string_view("vp"),
-      std::string_view("p"),      std::string_view("l"),          std::string_view("s"),
-      std::string_view("mg"),     std::string_view("lod"),        std::string_view("usemap"),
-      std::string_view("maplib"), std::string_view("shadow_obj"), std::string_view("trace_obj"),
-      std::string_view("bevel"),  std::string_view("c_interp"),   std::string_view("d_interp")};
+      std::string_view("vt"),         std::string_view("vp"),        std::string_view("p"),
+      std::string_view("l"),          std::string_view("s"),         std::string_view("mg"),
+      std::string_view("lod"),        std::string_view("usemap"),    std::string_view("maplib"),
+      std::string_view("shadow_obj"), std::string_view("trace_obj"), std::string_view("bevel"),
+      std::string_view("c_interp"),   std::string_view("d_interp")};
   return std::find(kWords.begin(), kWords.end(), keyword) != kWords.end();
 }
 
@@ -96,6 +98,8 @@ class ObjReader {
   void read_line();
   void read_vertex(std::string_view values);
   std::array<double, 3> read_coordinates(std::string_view values);
+  void read_normal(std::string_view values);
+  void add_normal_of(std::string_view corner, Vec3& sum) const;
   void read_face(std::string_view corners);
   std::optional<std::uint32_t> read_corner(std::string_view corner);
   void read_group(std::string_view names);
@@ -125,7 +129,9 @@ class ObjReader {
   text::ProblemList problems_;
 
   std::vector<ObjFace> faces_;
-  std::vector<std::uint32_t> corners_;  // of all faces
+  std::vector<std::uint32_t> corners_;                      // of all faces
+  std::vector<Vec3> normals_;                               // vn
+  std::vector<std::pair<std::size_t, Vec3>> face_normals_;  // index into faces_, sum over its corners; by face
   NameTable groups_{kDefaultPatch};
   NameTable objects_{kDefaultPatch};
   NameTable materials_{kNoMaterial};
@@ -163,6 +169,7 @@ void ObjReader::read_line() {
   const std::string_view keyword = text::take_word(rest);
   if (keyword.empty() || passed_over(keyword)) return;
   if (keyword == "v") return read_vertex(rest);
+  if (keyword == "vn") return read_normal(rest);
   if (keyword == "f" || keyword == "fo") return read_face(rest);
   if (keyword == "g") return read_group(rest);
   if (keyword == "o") {
@@ -213,17 +220,37 @@ std::array<double, 3> ObjReader::read_coordinates(std::string_view values) {
   return xyz;
 }
 
+// No value depends on a normal, so an unreadable one only counts, with a length of 0.
+void ObjReader::read_normal(std::string_view values) {
+  values = before_comment(values);
+  std::array<double, 3> xyz{};
+  for (double& coordinate : xyz) {
+    const text::ParsedNumber number = text::parse_number(text::take_word(values));
+    if (number.fault != text::NumberFault::kNone) {
+      xyz = {};
+      break;
+    }
+    coordinate = number.value;
+  }
+  const double largest = std::max({std::abs(xyz[0]), std::abs(xyz[1]), std::abs(xyz[2])});
+  for (double& coordinate : xyz) coordinate = largest > 0.0 ? coordinate / largest : 0.0;
+  normals_.push_back({xyz[0], xyz[1], xyz[2]});
+}
+
 void ObjReader::read_face(std::string_view corners) {
   ObjFace face = current_;
   face.line = line_.number;
   face.first_corner = corners_.size();
   bool sound = true;
+  Vec3 normal;
   corners = before_comment(corners);
   for (std::string_view word = text::take_word(corners); !word.empty(); word = text::take_word(corners)) {
     const std::optional<std::uint32_t> corner = read_corner(word);
     sound = sound && corner;
     if (corner) corners_.push_back(*corner);
+    if (corner && !normals_.empty()) add_normal_of(word, normal);
   }
+  if (normal != Vec3{}) face_normals_.emplace_back(faces_.size(), normal);
   face.corner_count = corners_.size() - face.first_corner;
   if (corners_.size() > kMostIndices || faces_.size() == kMostIndices) {
     throw InputError({file_, line_.number, "more than 4294967295 faces or corners of faces", "indices have 32 bits",
@@ -248,7 +275,7 @@ IndexText parse_index(std::string_view text, long& index) {
   return error == std::errc() ? IndexText::kNumber : IndexText::kTooLong;
 }
 
-// v, v/vt, v//vn, v/vt/vn, also v/ and v//: only v is used, the others must be numbers.
+// v, v/vt, v//vn, v/vt/vn, also v/ and v//: vt and vn must be numbers.
 bool well_formed_tail(std::string_view tail) {
   if (std::count(tail.begin(), tail.end(), '/') > 2) return false;
   while (!tail.empty()) {
@@ -262,6 +289,19 @@ bool well_formed_tail(std::string_view tail) {
 }
 
 }  // namespace
+
+// The third number of a corner. A vn further down says nothing: all programs write them before the faces.
+void ObjReader::add_normal_of(std::string_view corner, Vec3& sum) const {
+  const std::size_t slash = corner.rfind('/');
+  if (slash == std::string_view::npos || corner.find('/') == slash) return;
+  long index = 0;
+  if (parse_index(corner.substr(slash + 1), index) != IndexText::kNumber || index == 0) return;
+  const auto count = static_cast<long>(normals_.size());
+  const long position = index > 0 ? index - 1 : count + index;
+  if (position < 0 || position >= count) return;
+  const Vec3& normal = normals_[static_cast<std::size_t>(position)];
+  sum = {sum.x + normal.x, sum.y + normal.y, sum.z + normal.z};
+}
 
 // Counted from 0; not yet checked against the end of the vertex list.
 std::optional<std::uint32_t> ObjReader::read_corner(std::string_view corner) {
@@ -393,7 +433,9 @@ void ObjReader::add_materials() {
 void ObjReader::add_faces() {
   const std::vector<std::string>& names = has_groups_ ? groups_.names() : objects_.names();
   std::vector<std::optional<PatchId>> patches(names.size());
-  for (const ObjFace& face : faces_) {
+  auto normal = face_normals_.begin();
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    const ObjFace& face = faces_[i];
     const std::uint32_t name = has_groups_ ? face.group : face.object;
     if (!patches[name]) patches[name] = builder_.patch(names[name]);
     const auto first = corners_.begin() + static_cast<std::ptrdiff_t>(face.first_corner);
@@ -401,26 +443,27 @@ void ObjReader::add_faces() {
     std::vector<std::vector<std::uint32_t>> rings;
     rings.push_back(std::move(ring));
     builder_.add_face(*patches[name], static_cast<MaterialId>(face.material), std::move(rings), face.line);
+    if (normal != face_normals_.end() && normal->first == i) builder_.state_normal((normal++)->second);
   }
 }
 
 constexpr const char* kPurpose = "a Wavefront OBJ file";
 
-Scene read(const std::string& text, const fs::path& path, const SceneOptions& options) {
+}  // namespace
+
+Scene formats::read_obj(std::string_view text, const fs::path& path, const SceneOptions& options) {
   const kernel::StandardArithmetic arithmetic;
   if (text.empty())
     throw InputError({path.string(), 0, "is empty", "there is nothing to compute with", "give a Wavefront OBJ file"});
   return ObjReader(text, path, options).run();
 }
 
-}  // namespace
-
 Scene read_obj(std::istream& in, const fs::path& name, const SceneOptions& options) {
-  return read(text::read_text(in, name.string(), kPurpose), name, options);
+  return formats::read_obj(text::read_text(in, name.string(), kPurpose), name, options);
 }
 
 Scene read_obj(const fs::path& path, const SceneOptions& options) {
-  return read(text::read_text_file(path, kPurpose), path, options);
+  return formats::read_obj(text::read_text_file(path, kPurpose), path, options);
 }
 
 }  // namespace exactff

@@ -4,6 +4,7 @@
 // its normal, which is also a Direction.
 #pragma once
 
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -35,5 +36,13 @@ inline int orientation(const Direction& a, const Direction& b, const Direction& 
 // A convex polygon seen from x. Unless stated otherwise its corners are counter-clockwise as seen from x, that is,
 // det(a, b, c) < 0 for three corners in order.
 using Ring = std::vector<Direction>;
+
+// A direction from x in double-double form, for code that only stores it. Every true component is within `error` of
+// hi + lo (0: exact).
+struct FineDirection {
+  std::array<double, 3> hi{};
+  std::array<double, 3> lo{};
+  double error = 0.0;
+};
 
 }  // namespace exactff::kernel

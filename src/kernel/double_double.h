@@ -35,20 +35,6 @@
 
 namespace exactff::kernel::double_double {
 
-using reals::both;
-using reals::differ;
-using reals::either;
-using reals::Four;
-using reals::FourMask;
-using reals::fused;
-using reals::in_every_lane;
-using reals::in_some_lane;
-using reals::larger;
-using reals::magnitude;
-using reals::root;
-using reals::uniform;
-using reals::where;
-
 template <class Real>
 struct BasicDoubleDouble {
   Real hi{};

@@ -16,7 +16,7 @@
 // Both give the same bits. With four lanes, GCC makes a single instruction for all four only if it may assume rounding
 // to nearest and need not set errno: -fno-rounding-math -fno-math-errno.
 
-namespace exactff::kernel::reals {
+namespace exactff::kernel::double_double {
 
 using lanes::Four;
 using lanes::FourMask;
@@ -64,6 +64,6 @@ EXACTFF_INLINE Four where(const FourMask& condition, const Four& a, const Four& 
 EXACTFF_INLINE bool in_some_lane(const FourMask& condition) { return lanes::lane_bits(condition) != 0; }
 EXACTFF_INLINE bool in_every_lane(const FourMask& condition) { return lanes::all_lanes(condition); }
 
-}  // namespace exactff::kernel::reals
+}  // namespace exactff::kernel::double_double
 
 #pragma GCC diagnostic pop

@@ -83,8 +83,7 @@ class AreaSampling : public Evaluator {
     if (points.empty() || !rays_.aim(source, root, Reach::kVisible, points.size())) return;
     place_by_area(rays_.patch(), points, places_);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Vec3 point{places_.x[i], places_.y[i], places_.z[i]};
-      rays_.add(point, rays_.kernel(point));
+      rays_.add(places_[i], rays_.kernel(places_[i]));
     }
   }
 

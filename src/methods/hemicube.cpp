@@ -12,7 +12,6 @@
 #include <mutex>
 #include <numbers>
 
-#include "kernel/exact_vec.h"
 #include "methods/item_buffer.h"
 #include "methods/method_files.h"
 #include "sampled/plane_side.h"
@@ -89,7 +88,6 @@ class Hemicube : public Evaluator {
 
   void render(const ReceiverView& view);
   void draw(std::uint32_t piece, const ReceiverView& view);
-  [[nodiscard]] int side_of_x(std::uint32_t piece, const ReceiverView& view) const;
   void draw_transparent_faces(const ReceiverView& view);
   template <class Counts>
   void add_up(const Counts& counts);
@@ -192,7 +190,7 @@ void Hemicube::draw(std::uint32_t index, const ReceiverView& view) {
     above = above || points_[v].z > 0.0;
   }
   if (!above) return;
-  const int side = side_of_x(index, view);
+  const int side = side_of_x(view, on_scene_.scaled, piece, on_scene_.normals[index]);
   if (side == 0) return;
   front_[index] = side > 0 ? 1 : 0;
   const Vec3& given = on_scene_.normals[index].value;
@@ -204,18 +202,6 @@ void Hemicube::draw(std::uint32_t index, const ReceiverView& view) {
   const double scale = sign / std::max(distance, std::numeric_limits<double>::min());
   buffer_.draw({corners_, side < 0, frame_(normal) * scale, index});
   ++drawn_;
-}
-
-// +1 if x is in front of the piece's plane, 0 if in it. Exact.
-int Hemicube::side_of_x(std::uint32_t index, const ReceiverView& view) const {
-  const Piece& piece = on_scene_.scene().pieces()[index];
-  const Bounded height = bounded_dot(on_scene_.normals[index], view.point - on_scene_.scaled.points[piece.frame[0]]);
-  if (height.certainly_positive()) return 1;
-  if (height.certainly_negative()) return -1;
-  if (height.certainly_zero()) return 0;
-  const auto vertices = on_scene_.scene().vertices();
-  return kernel::orientation(vertices[piece.frame[0]], vertices[piece.frame[1]], vertices[piece.frame[2]],
-                             view.exact_point);
 }
 
 // Adds up pixels in runs that show the same piece, of the pieces that count.

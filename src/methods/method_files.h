@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "exactff/adaptive.h"
 #include "exactff/methods.h"
 #include "kernel/float_environment.h"
 
@@ -17,6 +18,12 @@ namespace exactff::methods {
 // Upper limits for a single setting, so that a typing error is reported at once and does not cost a long wait.
 inline constexpr std::int64_t kMostSplits = 4096;
 inline constexpr std::int64_t kMostRays = 65536;
+
+// The settings "pattern", "rays" and "seed" of methods that send several rays to a sub-patch (adaptive.cpp).
+[[nodiscard]] SettingSpec pattern_setting();
+[[nodiscard]] SamplePattern pattern_named(std::string_view name);  // one of the setting's words
+// True if a pattern uses the setting: the centre pattern has one ray and no seed, the regular one no seed.
+[[nodiscard]] bool pattern_uses(const Settings& settings, std::string_view setting);
 
 // Method::prepare in the standard arithmetic of all methods, whatever arithmetic the calling thread has set. look_from,
 // form_factor and configure set it themselves.

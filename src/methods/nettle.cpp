@@ -16,10 +16,8 @@
 #include <limits>
 #include <numbers>
 
-#include "methods/even_split.h"
 #include "methods/method_files.h"
 #include "methods/ray_sum.h"
-#include "methods/sample_pattern.h"
 #include "sampled/value_range.h"
 
 namespace exactff::methods {
@@ -79,11 +77,11 @@ class Nettle : public Evaluator {
 
   void add_part(const SubPatch& part, std::uint64_t key) {
     const double share =
-        (literal() ? literal_form_factor(part) : rays_.kernel(centre_of(part)) * area(part)) / plan_.ray_count();
+        (literal() ? literal_form_factor(part) : rays_.kernel(centroid(part)) * area(part)) / plan_.ray_count();
     if (share == 0.0) return;
     plan_.place(part, key, ends_);
     for (std::size_t i = 0; i < static_cast<std::size_t>(ends_.count); ++i) {
-      const Vec3 end{ends_.x[i], ends_.y[i], ends_.z[i]};
+      const Vec3 end = ends_[i];
       const bool counts = literal() || dot(rays_.view().normal, end) > 0.0;
       rays_.add(end, counts ? share : 0.0);
     }
@@ -91,7 +89,7 @@ class Nettle : public Evaluator {
 
   // Not dimensionless: its unit is one over an area, as in the text.
   [[nodiscard]] double literal_form_factor(const SubPatch& part) const {
-    const Vec3 centre = centre_of(part);
+    const Vec3 centre = centroid(part);
     const double squared_distance = dot(centre, centre);
     const double square_scale = scale_ * scale_;
     if (!is_moderate({squared_distance, square_scale, area(part), receiver_area_})) return literal_by_logarithms(part);
@@ -109,7 +107,7 @@ class Nettle : public Evaluator {
 
   // The same where a factor or a product of factors is outside the range of doubles; infinite where the result is.
   [[nodiscard]] double literal_by_logarithms(const SubPatch& part) const {
-    const Vec3 centre = centre_of(part);
+    const Vec3 centre = centroid(part);
     const double distance = length(centre);
     if (distance == 0.0) return 0.0;
     int exponent = 0;

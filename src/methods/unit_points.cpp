@@ -12,8 +12,6 @@ using namespace sampled;
 
 namespace {
 
-constexpr double kUnit32 = 0x1p-32;
-
 UnitPoint sobol_point(std::uint32_t index) {
   std::uint32_t u = 0, v = 0;
   std::uint32_t direction_u = 0x80000000U, direction_v = 0x80000000U;

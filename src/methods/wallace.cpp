@@ -7,7 +7,6 @@
 // The disc keeps the value finite where dA is large compared with r^2.
 #include <numbers>
 
-#include "methods/even_split.h"
 #include "methods/method_files.h"
 #include "methods/ray_sum.h"
 #include "sampled/value_range.h"
@@ -52,7 +51,7 @@ class Wallace : public Evaluator {
  private:
   void add_part(const SubPatch& part, std::uint64_t key) {
     plan_.place(part, key, end_);
-    const Vec3 point{end_.x[0], end_.y[0], end_.z[0]};
+    const Vec3 point = end_[0];
     const double size = area(part);
     const double disc = std::numbers::pi * dot(point, point);
     if (!(disc + size > 0.0)) return;

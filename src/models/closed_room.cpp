@@ -60,14 +60,10 @@ PlainScene make_closed_room(const Settings& settings) {
   PlainScene scene;
   scene.materials = {{"floor", {0.4, 0.3, 0.2}, {}}, {"wall", {0.75, 0.75, 0.7}, {}}, {"lamp", {0, 0, 0}, {10, 10, 9}},
                      {"metal", {0.5, 0.5, 0.5}, {}}, {"wood", {0.5, 0.35, 0.2}, {}},  {"board", {0.6, 0.6, 0.55}, {}}};
-  add_patch(scene, "floor", "floor");
-  for (const char* name : {"wall_left", "wall_right", "wall_back", "wall_front", "ceiling"}) {
-    add_patch(scene, name, "wall");
-  }
+  add_floor_and_walls(scene, kRoom);
   add_patch(scene, "lamp", "lamp");
   add_patch(scene, "table_top", "wood");
   add_patch(scene, "table_legs", "wood");
-  add_floor_and_walls(scene, kRoom);
   settings.word("lamp") == "flush" ? add_flush_lamp(scene) : add_hanging_lamp(scene);
   add_table(scene, kTableTop);
   Random random(static_cast<std::uint64_t>(settings.whole("seed")));

@@ -15,22 +15,12 @@ namespace {
 constexpr Vec3 kHall{10.0, 3.0, 10.0};
 constexpr double kEmitterHeight = 2.875;
 constexpr double kTallestBox = 2.25;
-
-// A point in the middle half of each cell, row by row.
-template <class Add>
-void for_each_cell(Random& random, int count, const Add& add) {
-  const int columns = columns_for(count);
-  const double cell = kHall.x / columns;
-  for (int i = 0; i < count; ++i) {
-    const double x = cell * (i % columns + random.between(0.25, 0.75));
-    const double z = cell * (i / columns + random.between(0.25, 0.75));
-    add(i + 1, x, z, cell);
-  }
-}
+constexpr double kCellMargin = 0.25;
 
 void add_lamps(PlainScene& scene, Random& random, int count, double size) {
-  for_each_cell(random, count, [&](int number, double x, double z, double) {
-    const std::string name = "lamp" + std::to_string(number);
+  int number = 0;
+  for_each_cell(random, count, kHall.x, kCellMargin, [&](double x, double z, double) {
+    const std::string name = "lamp" + std::to_string(++number);
     const double half = size / 2;
     add_patch(scene, name, "lamp");
     add_quad(scene, name, facing_down(x - half, x + half, kEmitterHeight, z - half, z + half));
@@ -38,8 +28,9 @@ void add_lamps(PlainScene& scene, Random& random, int count, double size) {
 }
 
 void add_hiding_boxes(PlainScene& scene, Random& random, int count) {
-  for_each_cell(random, count, [&](int number, double x, double z, double cell) {
-    const std::string name = "box" + std::to_string(number);
+  int number = 0;
+  for_each_cell(random, count, kHall.x, kCellMargin, [&](double x, double z, double cell) {
+    const std::string name = "box" + std::to_string(++number);
     const double largest = std::min(0.75, 0.25 * cell);
     const double half_width = largest * random.between(0.3, 1.0);
     const double half_depth = largest * random.between(0.3, 1.0);
@@ -61,10 +52,6 @@ PlainScene make_emitters(const Settings& settings) {
                      {"wall", {0.75, 0.75, 0.7}, {}},
                      {"lamp", {0, 0, 0}, {bright, bright, bright}},
                      {"board", {0.6, 0.6, 0.55}, {}}};
-  add_patch(scene, "floor", "floor");
-  for (const char* name : {"wall_left", "wall_right", "wall_back", "wall_front", "ceiling"}) {
-    add_patch(scene, name, "wall");
-  }
   add_floor_and_walls(scene, kHall);
   add_quad(scene, "ceiling", ceiling_of(kHall));
   Random random(static_cast<std::uint64_t>(settings.whole("seed")));

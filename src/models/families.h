@@ -6,8 +6,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
-#include <string_view>
 
 #include "models/plain_scene.h"
 
@@ -38,12 +36,5 @@ struct FamilyOptions {
 // A room, in metres, with a window (the emitter and source, patch `window`), a blind of n slats before it, a table and
 // a floor. The receiver lies on the table top. Seed, cover and drop have no effect.
 [[nodiscard]] PlainScene room(const FamilyOptions& options);
-
-struct Family {
-  std::string_view name;
-  std::string_view summary;
-  PlainScene (*make)(const FamilyOptions&);
-};
-[[nodiscard]] std::span<const Family> families();
 
 }  // namespace exactff::models

@@ -31,19 +31,15 @@ struct Tree {
 };
 
 std::vector<Tree> plant(Random& random, int count) {
-  const int columns = columns_for(count);
-  const double cell = kSide / columns;
   std::vector<Tree> trees;
-  for (int i = 0; i < count; ++i) {
+  for_each_cell(random, count, kSide, 0.3, [&](double x, double y, double cell) {
     Tree tree;
-    tree.middle.x = cell * (i % columns + random.between(0.3, 0.7)) - kSide / 2;
-    tree.middle.y = cell * (i / columns + random.between(0.3, 0.7)) - kSide / 2;
-    tree.middle.z = random.between(6.0, 8.0);
+    tree.middle = {x - kSide / 2, y - kSide / 2, random.between(6.0, 8.0)};
     tree.across = std::min(6.0, cell * random.between(0.3, 0.45));
     tree.upward = random.between(2.5, 4.5);
     tree.trunk = std::min(0.3, 0.05 * cell) * random.between(0.5, 1.0);
     trees.push_back(tree);
-  }
+  });
   return trees;
 }
 

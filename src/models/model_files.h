@@ -6,9 +6,17 @@
 
 namespace exactff::models {
 
-#define EXACTFF_MODEL(name) Model name##_model();
-#include "models/list.h"
-#undef EXACTFF_MODEL
+Model blinds_model();
+Model closed_room_model();
+Model emitters_model();
+Model forest_model();
+Model karkanis_model();
+Model lattice_model();
+Model mesh_model();
+Model room_model();
+Model soup_model();
+Model teapot_model();
+Model tiles_model();
 
 // The scene for a text such as "teapot:segments=4", with a comment that says how to generate it again. Throws
 // InputError.

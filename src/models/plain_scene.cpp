@@ -215,10 +215,4 @@ Scene build(const PlainScene& scene, const std::string& name, const SceneOptions
 
 Receiver receiver_of(const PlainScene& scene) { return {scene.point, scene.normal, {}, {}}; }
 
-void scale(PlainScene& scene, double factor) {
-  const auto scaled = [factor](const Vec3& v) { return Vec3{v.x * factor, v.y * factor, v.z * factor}; };
-  for (Vec3& vertex : scene.vertices) vertex = scaled(vertex);
-  scene.point = scaled(scene.point);
-}
-
 }  // namespace exactff::models

@@ -60,8 +60,4 @@ enum class Digits { kShortest, kSeventeen };
 [[nodiscard]] Scene build(const PlainScene& scene, const std::string& name = {}, const SceneOptions& options = {});
 [[nodiscard]] Receiver receiver_of(const PlainScene& scene);
 
-// Multiplies every coordinate by `factor`; the normal stays. Exact for powers of two unless a value overflows or
-// underflows.
-void scale(PlainScene& scene, double factor);
-
 }  // namespace exactff::models

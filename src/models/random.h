@@ -4,8 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <utility>
-#include <vector>
 
 #include "kernel/expect.h"
 
@@ -34,11 +32,6 @@ class Random {
   // Both ends included.
   int integer(int low, int high) { return low + static_cast<int>(below(static_cast<std::size_t>(high - low) + 1)); }
   bool one_in(std::size_t count) { return below(count) == 0; }
-
-  template <class T>
-  void shuffle(std::vector<T>& items) {
-    for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[below(i)]);
-  }
 
  private:
   std::uint64_t state_;

@@ -8,12 +8,11 @@ namespace exactff::models {
 
 namespace {
 
+// In the order in which they are listed.
 const std::vector<Model>& list() {
-  static const std::vector<Model> models = {
-#define EXACTFF_MODEL(name) name##_model(),
-#include "models/list.h"
-#undef EXACTFF_MODEL
-  };
+  static const std::vector<Model> models = {teapot_model(), forest_model(),   closed_room_model(), emitters_model(),
+                                            room_model(),   karkanis_model(), soup_model(),        blinds_model(),
+                                            tiles_model(),  mesh_model(),     lattice_model()};
   return models;
 }
 

@@ -47,6 +47,10 @@ void add_quad(PlainScene& scene, std::string_view name, const Quad& quad) {
 
 void add_floor_and_walls(PlainScene& scene, const Vec3& size) {
   const auto& [w, h, d] = size;
+  add_patch(scene, "floor", "floor");
+  for (const char* name : {"wall_left", "wall_right", "wall_back", "wall_front", "ceiling"}) {
+    add_patch(scene, name, "wall");
+  }
   add_quad(scene, "floor", {{{0, 0, 0}, {0, 0, d}, {w, 0, d}, {w, 0, 0}}});
   add_quad(scene, "wall_left", {{{0, 0, 0}, {0, h, 0}, {0, h, d}, {0, 0, d}}});
   add_quad(scene, "wall_right", {{{w, 0, 0}, {w, 0, d}, {w, h, d}, {w, h, 0}}});

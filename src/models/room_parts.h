@@ -27,9 +27,9 @@ void add_table(PlainScene& scene, const Box& top);
 // The region between two quadrilaterals in one plane, as four trapezoids that share all corners with them.
 void add_frame(PlainScene& scene, std::string_view name, const Quad& outer, const Quad& inner);
 
-// The room between the origin and `size`, with fronts inward: patches `floor` and `wall_left`, `wall_right`,
-// `wall_back` (at high z), `wall_front`. The caller adds the ceiling, with the corners of ceiling_of(), in the order
-// seen from its front.
+// The room between the origin and `size`, with fronts inward: patches `floor`, of the material of that name, and
+// `wall_left`, `wall_right`, `wall_back` (at high z), `wall_front` and `ceiling`, of the material `wall`. The caller
+// fills the ceiling, with the corners of ceiling_of(), in the order seen from its front.
 void add_floor_and_walls(PlainScene& scene, const Vec3& size);
 [[nodiscard]] Quad ceiling_of(const Vec3& size);
 // A level rectangle whose front faces down.

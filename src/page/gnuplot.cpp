@@ -143,12 +143,6 @@ std::string complaint(const Child& child, const fs::path& err) {
   return std::string(text::beginning(contents(err), kShown));
 }
 
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-    text.replace(at, from.size(), to);
-  }
-}
-
 void remove_between(std::string& text, std::string_view begin, std::string_view end) {
   for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at)) {
     const std::size_t close = text.find(end, at + begin.size());
@@ -190,15 +184,16 @@ std::string inlined(std::string_view svg, std::string_view prefix, std::string_v
   remove_between(text, "xmlns=\"", "\"");
   remove_between(text, "xmlns:xlink=\"", "\"");
   const std::string mark(prefix);
-  replace_all(text, "id='", "id='" + mark + '-');
-  replace_all(text, "id=\"", "id=\"" + mark + '-');
-  replace_all(text, "xlink:href='#", "href='#" + mark + '-');
-  replace_all(text, "url(#", "url(#" + mark + '-');
-  replace_all(text, " color=\"black\"", "");
-  replace_all(text, "'black'", "'currentColor'");
-  replace_all(text, "\"black\"", "\"currentColor\"");
-  replace_all(text, "fill=\"#ffffff\"", "fill=\"none\"");  // a background of its own; the page has one for every figure
-  replace_all(text, "stroke-width='0.178'", "stroke-width='0.3'");  // open marks, which are thin on a phone
+  text::replace_all(text, "id='", "id='" + mark + '-');
+  text::replace_all(text, "id=\"", "id=\"" + mark + '-');
+  text::replace_all(text, "xlink:href='#", "href='#" + mark + '-');
+  text::replace_all(text, "url(#", "url(#" + mark + '-');
+  text::replace_all(text, " color=\"black\"", "");
+  text::replace_all(text, "'black'", "'currentColor'");
+  text::replace_all(text, "\"black\"", "\"currentColor\"");
+  text::replace_all(text, "fill=\"#ffffff\"",
+                    "fill=\"none\"");  // a background of its own; the page has one for every figure
+  text::replace_all(text, "stroke-width='0.178'", "stroke-width='0.3'");  // open marks, which are thin on a phone
   text.insert(4, " role=\"img\" aria-label=\"" + text::html(title) + "\"");
   return text;
 }

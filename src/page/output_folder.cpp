@@ -7,22 +7,19 @@
 #include <string>
 #include <system_error>
 
-#include "exactff/error.h"
+#include "text/refuse.h"
 
 namespace exactff::page {
 namespace {
 
 namespace fs = std::filesystem;
+using text::refuse;
 
 // The absolute path without a trailing separator, so that it has a parent and a name.
 fs::path normalised(const fs::path& folder) {
   if (folder.empty()) return {};
   fs::path path = fs::absolute(folder).lexically_normal();
   return path.has_filename() ? path : path.parent_path();
-}
-
-[[noreturn]] void refuse(const fs::path& folder, std::string what, std::string why, std::string suggestion) {
-  throw InputError(Problem{folder.string(), 0, std::move(what), std::move(why), std::move(suggestion)});
 }
 
 bool begins_like_ours(const fs::path& file) {

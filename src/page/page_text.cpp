@@ -28,10 +28,7 @@ std::string prose(std::string text) {
                                       {" %", "&nbsp;%"},
                                       {" µs", "&nbsp;µs"},
                                       {" ms", "&nbsp;ms"}}) {
-    const std::string from = plain, to = marked;
-    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-      text.replace(at, from.size(), to);
-    }
+    text::replace_all(text, plain, marked);
   }
   return text;
 }

@@ -53,7 +53,7 @@ Points drawable(const Points& points, const Axes& axes) {
 }
 
 std::string data_block(const std::string& name, const Points& points) {
-  std::string text = '$' + name + " << END\n";
+  std::string text = name + " << END\n";
   for (const auto& [x, y] : points) text += text::shortest(x) + ' ' + text::shortest(y) + '\n';
   return text + "END\n";
 }
@@ -146,6 +146,32 @@ std::string style_of(const Series& series) {
   return "with linespoints lw 1.8 ps 0.8 " + style;
 }
 
+std::string title_of(const Series& series) {
+  return series.title.empty() ? " notitle" : " title " + text::gnuplot_string(series.title);
+}
+
+// Plots the series that have a point to draw. block(name, points) returns the data of a series, and
+// command(name, series, points) its part of the plot command.
+template <class Block, class Command>
+std::string plot(const Axes& axes, const std::vector<Series>& series, const Block& block, const Command& command) {
+  std::string data, plots;
+  std::vector<std::string> titles;
+  std::vector<Points> drawn;
+  for (const Series& one : series) {
+    Points points = drawable(one.points, axes);
+    if (points.empty()) continue;
+    const std::string name = "$series" + std::to_string(drawn.size());
+    data += block(name, points);
+    plots += (plots.empty() ? "plot " : ", \\\n     ") + command(name, one, points);
+    titles.push_back(one.title);
+    drawn.push_back(std::move(points));
+  }
+  if (plots.empty()) return {};
+  const Key key = key_of(titles);
+  return plot_head(key) + axis_commands(axes, key) + x_range(axes, drawn) + readable_ranges(axes, drawn) + data +
+         plots + '\n';
+}
+
 // The style of a mark over bars. Bars use the first colour.
 std::string mark_style(std::size_t i) {
   constexpr std::array<std::string_view, 4> kColours = {"#D55E00", "#CC79A7", "#009E73", "#E69F00"};
@@ -171,7 +197,7 @@ constexpr const char* kOverCloudStyle = "with linespoints lw 1.6 ps 1.1 lc black
 std::string cloud_command(const std::string& name, const Series& cloud, const Axes& axes, double width) {
   const CloudLook look = cloud_look(cloud.style);
   const std::string colour = " lc rgb '" + std::string(look.colour) + '\'';
-  const std::string title = cloud.title.empty() ? " notitle" : " title " + text::gnuplot_string(cloud.title);
+  const std::string title = title_of(cloud);
   if (!look.dots) return name + " using 1:2 with points pt 2 ps 0.6 lw 1.5" + colour + title;
   const std::string length = axes.log_x ? "$1*0.003" : text::shortest(0.0003 * width);
   return name + " using 1:2:(" + length + "):(0) with vectors nohead lw 2.6" + colour +
@@ -234,46 +260,19 @@ std::string colour_commands(const Map& map) {
 }  // namespace
 
 std::string line_plot(const Axes& axes, const std::vector<Series>& series) {
-  std::string data, plot;
-  std::vector<std::string> titles;
-  std::vector<Points> drawn;
-  for (const Series& line : series) {
-    Points points = drawable(line.points, axes);
-    if (points.empty()) continue;
-    const std::string name = "series" + std::to_string(drawn.size());
-    data += data_block(name, points);
-    plot += (plot.empty() ? "plot " : ", \\\n     ") + ('$' + name) + " using 1:2 " + style_of(line) +
-            (line.title.empty() ? " notitle" : " title " + text::gnuplot_string(line.title));
-    titles.push_back(line.title);
-    drawn.push_back(std::move(points));
-  }
-  if (plot.empty()) return {};
-  const Key key = key_of(titles);
-  return plot_head(key) + axis_commands(axes, key) + x_range(axes, drawn) + readable_ranges(axes, drawn) + data + plot +
-         '\n';
+  return plot(axes, series, data_block, [](const std::string& name, const Series& line, const Points&) {
+    return name + " using 1:2 " + style_of(line) + title_of(line);
+  });
 }
 
 std::string scatter_plot(const Axes& axes, const std::vector<Series>& series) {
-  std::string data, plot;
-  std::vector<std::string> titles;
-  std::vector<Points> drawn;
-  for (const Series& cloud : series) {
-    Points points = drawable(cloud.points, axes);
-    if (points.empty()) continue;
-    const std::string name = "$series" + std::to_string(drawn.size());
-    data += cloud_block(name, points);
-    const std::string style = cloud.style == kOverlay ? kOverCloudStyle : style_of(cloud);
-    const std::string line = name + " using 1:2 " + style + " title " + text::gnuplot_string(cloud.title);
-    plot += (plot.empty() ? "plot " : ", \\\n     ") +
-            (cloud.style > 0 ? cloud_command(name, cloud, axes, points.back().first - points.front().first) : line);
-    titles.push_back(cloud.title);
-    drawn.push_back(std::move(points));
-  }
-  if (plot.empty()) return {};
-  const Key key = key_of(titles);
-  std::string head = plot_head(key);
-  head.insert(head.find(" dynamic"), " rounded");
-  return head + axis_commands(axes, key) + x_range(axes, drawn) + data + plot + '\n';
+  const auto command = [&](const std::string& name, const Series& cloud, const Points& points) {
+    if (cloud.style > 0) return cloud_command(name, cloud, axes, points.back().first - points.front().first);
+    return name + " using 1:2 " + (cloud.style == kOverlay ? kOverCloudStyle : style_of(cloud)) + title_of(cloud);
+  };
+  std::string script = plot(axes, series, cloud_block, command);
+  if (!script.empty()) script.insert(script.find(" dynamic"), " rounded");
+  return script;
 }
 
 std::string bar_plot(const Axes& axes, const std::vector<Bar>& bars, const std::vector<Mark>& marks) {
@@ -302,12 +301,33 @@ std::string bar_plot(const Axes& axes, const std::vector<Bar>& bars, const std::
          '\n';
 }
 
+namespace {
+
+// One line for each cell, by rows: its centre and its value, if it has one.
+std::string cells_of(const Map& map) {
+  std::vector<std::string> values(static_cast<std::size_t>(map.columns) * static_cast<std::size_t>(map.rows), "NaN");
+  for (const MapCell& cell : map.cells) {
+    values[static_cast<std::size_t>(cell.row - 1) * static_cast<std::size_t>(map.columns) +
+           static_cast<std::size_t>(cell.column - 1)] = text::shortest(cell.value);
+  }
+  std::string lines;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto column = static_cast<double>(i % static_cast<std::size_t>(map.columns)) + 0.5;
+    const auto row = static_cast<double>(i / static_cast<std::size_t>(map.columns)) + 0.5;
+    lines += text::shortest(column * (map.width / map.columns)) + ' ' + text::shortest(row * (map.height / map.rows)) +
+             ' ' + values[i] + '\n';
+  }
+  return lines;
+}
+
+}  // namespace
+
 std::string map_plot(const Map& map) {
   std::string text = head(460, 460);
-  text += "set size ratio " + text::shortest(std::clamp(map.height_over_width, 0.4, 1.6)) + '\n';
-  text +=
-      "set xrange [0.5:" + std::to_string(map.columns) + ".5]\nset yrange [0.5:" + std::to_string(map.rows) + ".5]\n";
-  text += "set xlabel 'column of the grid (u)'\nset ylabel 'row of the grid (v)' offset 0.5,0\nset tics nomirror out\n";
+  const double ratio = map.height / map.width;
+  text += "set size ratio " + text::shortest(std::isfinite(ratio) ? std::clamp(ratio, 0.4, 1.6) : 1.0) + '\n';
+  text += "set xrange [0:" + text::shortest(map.width) + "]\nset yrange [0:" + text::shortest(map.height) + "]\n";
+  text += "set xlabel 'u'\nset ylabel 'v' offset 0.5,0\nset tics nomirror out\n";
   text += colour_commands(map);
   text +=
       "set colorbox horizontal user origin graph 0, graph 1.06 size graph 1, graph 0.04\n"
@@ -317,10 +337,7 @@ std::string map_plot(const Map& map) {
       "set lmargin at screen 0.18\nset rmargin at screen 0.94\n"
       "set tmargin at screen 0.83\nset bmargin at screen 0.17\n";
   text += "$cells << END\n";
-  for (const MapCell& cell : map.cells) {
-    text += std::to_string(cell.column) + ' ' + std::to_string(cell.row) + ' ' + text::shortest(cell.value) + '\n';
-  }
-  return text + "END\nplot $cells using 1:2:3 with image pixels notitle\n";
+  return text + cells_of(map) + "END\nplot $cells using 1:2:3 with image pixels notitle\n";
 }
 
 }  // namespace exactff::page

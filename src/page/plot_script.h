@@ -66,10 +66,11 @@ struct Map {
   std::string quantity;  // label of the colour bar
   int columns = 1;
   int rows = 1;
-  double height_over_width = 1.0;
+  double width = 1.0;  // of all columns together
+  double height = 1.0;
   MapColours colours = MapColours::kSequential;
   double largest = 0.0;  // the ends of a diverging scale are +-largest; larger magnitudes get the colours of the ends
-  std::vector<MapCell> cells;
+  std::vector<MapCell> cells;             // others stay blank
   std::vector<std::string> classes = {};  // names of the values 0, 1, ... if the colours stand for classes
 };
 

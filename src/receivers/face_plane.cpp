@@ -1,5 +1,7 @@
 #include "receivers/face_plane.h"
 
+#include <utility>
+
 namespace exactff {
 
 using kernel::ExactVec3;
@@ -14,16 +16,19 @@ Rational quotient(const Integer& numerator, const Integer& denominator) {
 }
 
 FacePlane::FacePlane(const Scene& scene, FaceId id)
-    : points_(face_points(scene.vertices(), scene.face(id).rings)),
-      first_corner_(scene.vertices()[points_.vertex.front()]),
-      normal_(newell(points_, 0, points_.ring_start[1])) {
+    : FacePlane(face_points(scene.vertices(), scene.face(id).rings),
+                scene.vertices()[scene.face(id).rings.front().front()]) {}
+
+FacePlane::FacePlane(FacePoints points, const Vec3& first_corner)
+    : points_(std::move(points)), first_corner_(first_corner), normal_(newell(points_, 0, points_.ring_start[1])) {
   kernel::make_primitive(normal_);
 }
 
-bool FacePlane::is_convex_quadrilateral() const {
-  if (points_.size() != 4) return false;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const ExactVec3 &p = points_.at[i], &q = points_.at[(i + 1) % 4], &r = points_.at[(i + 2) % 4];
+bool FacePlane::is_convex() const {
+  const std::size_t n = points_.size();
+  if (points_.ring_count() != 1) return false;
+  for (std::size_t i = 0; i < n; ++i) {
+    const ExactVec3 &p = points_.at[i], &q = points_.at[(i + 1) % n], &r = points_.at[(i + 2) % n];
     if (sign(dot(normal_, cross(q - p, r - q))) <= 0) return false;
   }
   return true;

@@ -13,12 +13,15 @@ namespace exactff {
 class FacePlane {
  public:
   FacePlane(const Scene& scene, FaceId id);
+  // Of the face with these rings, the first of which is the outer one.
+  FacePlane(FacePoints points, const Vec3& first_corner);
 
   [[nodiscard]] const FacePoints& points() const { return points_; }
   [[nodiscard]] const kernel::ExactVec3& normal() const { return normal_; }  // the Newell vector's direction
 
-  // Four corners and a left turn at each.
-  [[nodiscard]] bool is_convex_quadrilateral() const;
+  // No holes and a left turn at each corner.
+  [[nodiscard]] bool is_convex() const;
+  [[nodiscard]] bool is_convex_quadrilateral() const { return points_.size() == 4 && is_convex(); }
 
   // The first corner plus offset * 2^exponent, each coordinate rounded once.
   [[nodiscard]] Vec3 rounded(const std::array<kernel::Rational, 3>& offset) const;

@@ -1,20 +1,20 @@
-// Grids of receivers on faces.
+// Grids of receivers on regions.
 //
-// The centres of u x v cells on a face, in exact arithmetic, each rounded once at the end. Corners are p_i relative to
-// the first one, n is the Newell vector.
+// The centres of u x v cells on an outline, in exact arithmetic, each rounded once at the end. Corners are p_i relative
+// to the first one, n is the Newell vector.
 //   1. A convex quadrilateral (no holes; convex seen along n): the bilinear map at ((2i+1)/2u, (2j+1)/2v).
-//   2. Any other face: its bounding rectangle along e and f, the frame of face_plane.h.
+//   2. Any other outline: its bounding rectangle along e and f, the frame of face_plane.h.
 //   3. Of the centres of step 2, keep those strictly inside.
+//   4. On several faces, move each centre along n onto the face under it.
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <string_view>
 
 #include "exactff/error.h"
 #include "exactff/receiver.h"
 #include "kernel/float_environment.h"
 #include "receivers/face_plane.h"
-#include "text/numbered_name.h"
+#include "receivers/placing.h"
+#include "receivers/region_shape.h"
 #include "text/phrases.h"
 
 namespace exactff {
@@ -24,53 +24,86 @@ using kernel::ExactVec3;
 using kernel::Integer;
 using kernel::Rational;
 
-// The receivers of one face.
-class FaceGrid {
+// The receivers of one region.
+class RegionGrid {
  public:
-  FaceGrid(const Scene& scene, FaceId id, GridSize size, std::string prefix)
-      : face_(scene.face(id)), id_(id), size_(size), prefix_(std::move(prefix)), plane_(scene, id) {}
+  RegionGrid(const Scene& scene, const Region& region, GridSize size, std::string prefix)
+      : scene_(scene), shape_(scene, region), prefix_(std::move(prefix)), lattice_(std::make_shared<Lattice>()) {
+    lattice_->region = region;
+    lattice_->size = size;
+  }
 
-  void append_to(std::vector<Receiver>& receivers) const {
-    plane_.is_convex_quadrilateral() ? append_bilinear(receivers) : append_rectangle(receivers);
+  void append_to(std::vector<Receiver>& receivers) {
+    plane().is_convex_quadrilateral() ? append_bilinear(receivers) : append_rectangle(receivers);
   }
 
  private:
-  void append_bilinear(std::vector<Receiver>& receivers) const {
-    const std::vector<ExactVec3>& p = plane_.points().at;
-    const Integer whole = Integer(4) * size_.u * size_.v;
-    for (int row = 1; row <= size_.v; ++row) {
-      for (int column = 1; column <= size_.u; ++column) {
+  [[nodiscard]] const FacePlane& plane() const { return shape_.outline(); }
+  [[nodiscard]] GridSize size() const { return lattice_->size; }
+
+  void append_bilinear(std::vector<Receiver>& receivers) {
+    const std::vector<ExactVec3>& p = plane().points().at;
+    lattice_->width = in_the_scenes_unit(length(p[1] - p[0]));
+    lattice_->height = in_the_scenes_unit(length(p[3] - p[0]));
+    const Integer whole = Integer(4) * size().u * size().v;
+    for (int row = 1; row <= size().v; ++row) {
+      for (int column = 1; column <= size().u; ++column) {
         const Integer s = 2 * column - 1, t = 2 * row - 1;
-        const Integer s_rest = 2 * size_.u - s, t_rest = 2 * size_.v - t;
+        const Integer s_rest = 2 * size().u - s, t_rest = 2 * size().v - t;
         const ExactVec3 sum = p[0] * Integer(s_rest * t_rest) + p[1] * Integer(s * t_rest) + p[2] * Integer(s * t) +
                               p[3] * Integer(s_rest * t);
-        append(receivers, {quotient(sum.x, whole), quotient(sum.y, whole), quotient(sum.z, whole)}, column, row);
+        append(receivers, {quotient(sum.x, whole), quotient(sum.y, whole), quotient(sum.z, whole)},
+               {dot(shape_.frame().e(), sum), whole}, {dot(shape_.frame().f(), sum), whole}, {lattice_, column, row});
       }
     }
   }
 
-  void append(std::vector<Receiver>& receivers, const std::array<Rational, 3>& at, int column, int row) const {
+  void append(std::vector<Receiver>& receivers, const std::array<Rational, 3>& at, const FaceFrame::Coordinate& a,
+              const FaceFrame::Coordinate& b, const GridCell& cell) const {
     Receiver receiver;
-    receiver.point = plane_.rounded(at);
-    receiver.normal = face_.newell;
-    receiver.on = {id_};
-    receiver.id = prefix_ + std::to_string(column) + ',' + std::to_string(row);
+    if (lattice_->region.faces.size() == 1) {
+      receiver.point = plane().rounded(at);
+      receiver.on = lattice_->region.faces;
+      receiver.normal = scene_.face(receiver.on.front()).newell;
+    } else if (const auto foot = shape_.foot(at, a, b)) {
+      receiver.point = foot->point;
+      receiver.normal = scene_.face(foot->face).newell;
+      receiver.on = own_faces(scene_, foot->face, foot->point, tolerance_of_computed_points(scene_));
+    } else {
+      return;
+    }
+    receiver.id = prefix_ + 'r' + std::to_string(cell.row) + 'c' + std::to_string(cell.column);
+    receiver.cell = cell;
     receivers.push_back(std::move(receiver));
   }
 
-  void append_rectangle(std::vector<Receiver>& receivers) const {
-    const FaceFrame frame(plane_);
+  void append_rectangle(std::vector<Receiver>& receivers) {
+    const FaceFrame& frame = shape_.frame();
     const Mean mean = mean_of(frame);
     const auto [a_min, a_max] = std::minmax_element(frame.a().begin(), frame.a().end());
     const auto [b_min, b_max] = std::minmax_element(frame.b().begin(), frame.b().end());
-    for (int row = 1; row <= size_.v; ++row) {
+    lattice_->width = in_the_scenes_unit(*a_max - *a_min, length(frame.e()));
+    lattice_->height = in_the_scenes_unit(*b_max - *b_min, length(frame.f()));
+    const bool lone = lattice_->region.faces.size() == 1;
+    for (int row = 1; row <= size().v; ++row) {
       // Multiplies (a, b) by 2u and 2v: the centres are then integers.
-      const FaceFrame::Coordinate b{*b_min * (2 * size_.v) + (*b_max - *b_min) * (2 * row - 1), 2 * size_.v};
-      for (int column = 1; column <= size_.u; ++column) {
-        const FaceFrame::Coordinate a{*a_min * (2 * size_.u) + (*a_max - *a_min) * (2 * column - 1), 2 * size_.u};
-        if (frame.strictly_inside(a, b)) append(receivers, point_at(frame, mean, a, b), column, row);
+      const FaceFrame::Coordinate b{*b_min * (2 * size().v) + (*b_max - *b_min) * (2 * row - 1), 2 * size().v};
+      for (int column = 1; column <= size().u; ++column) {
+        const FaceFrame::Coordinate a{*a_min * (2 * size().u) + (*a_max - *a_min) * (2 * column - 1), 2 * size().u};
+        if (lone && !frame.strictly_inside(a, b)) continue;
+        append(receivers, point_at(frame, mean, a, b), a, b, {lattice_, column, row});
       }
     }
+  }
+
+  // Estimates.
+  [[nodiscard]] double in_the_scenes_unit(const Length& length) const {
+    return to_double({length.mantissa, length.exponent + plane().points().exponent});
+  }
+  [[nodiscard]] double in_the_scenes_unit(const Integer& along_axis, const Length& axis) const {
+    long exponent = 0;
+    const double mantissa = mpz_get_d_2exp(&exponent, along_axis.get_mpz_t());
+    return in_the_scenes_unit({mantissa / axis.mantissa, exponent - axis.exponent});
   }
 
   // Sums over the corners.
@@ -83,8 +116,8 @@ class FaceGrid {
 
   [[nodiscard]] Mean mean_of(const FaceFrame& frame) const {
     Mean mean;
-    mean.count = static_cast<unsigned long>(plane_.points().size());
-    for (const ExactVec3& p : plane_.points().at) mean.p = mean.p + p;
+    mean.count = static_cast<unsigned long>(plane().points().size());
+    for (const ExactVec3& p : plane().points().at) mean.p = mean.p + p;
     for (const Integer& a : frame.a()) mean.a += a;
     for (const Integer& b : frame.b()) mean.b += b;
     return mean;
@@ -105,70 +138,46 @@ class FaceGrid {
     return at;
   }
 
-  const Face& face_;
-  FaceId id_;
-  GridSize size_;
+  const Scene& scene_;
+  RegionShape shape_;
   std::string prefix_;
-  FacePlane plane_;
+  std::shared_ptr<Lattice> lattice_;
 };
 
-bool parse_count(std::string_view text, int& value) {
-  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  return end.ec == std::errc{} && end.ptr == text.data() + text.size();
-}
-
-void check_grid_size(GridSize size, std::size_t faces) {
+void check_grid_size(GridSize size, std::size_t regions) {
   const std::string cells = "a grid of " + std::to_string(size.u) + "x" + std::to_string(size.v) + " cells";
   if (size.u < 1 || size.v < 1) {
     throw InputError({.what = cells,
                       .why = "a grid has at least one column and one row",
                       .suggestion = "write, for example, 32x32"});
   }
-  const std::uint64_t per_face = static_cast<std::uint64_t>(size.u) * static_cast<std::uint64_t>(size.v);
-  if (per_face * (faces > 0 ? 1 : 0) <= kMostReceivers / std::max<std::uint64_t>(faces, 1)) return;
-  throw InputError({.what = cells + " on " + text::counted(faces, "face"),
+  const std::uint64_t each = static_cast<std::uint64_t>(size.u) * static_cast<std::uint64_t>(size.v);
+  if (each * (regions > 0 ? 1 : 0) <= kMostReceivers / std::max<std::uint64_t>(regions, 1)) return;
+  throw InputError({.what = cells + " on " + text::counted(regions, "region"),
                     .why = "the limit is " + std::to_string(kMostReceivers) + " cells in total",
                     .suggestion = "use fewer cells or a smaller patch"});
 }
 
-// The text after "NAME:k/", or the whole id if it has no such prefix.
-std::string_view without_face(std::string_view id) {
-  const std::size_t slash = id.rfind('/');
-  if (slash == std::string_view::npos || !text::numbered_name(id.substr(0, slash))) return id;
-  return id.substr(slash + 1);
-}
-
 }  // namespace
 
-std::vector<Receiver> grid_receivers(const Scene& scene, std::span<const FaceId> on, GridSize size, GridIds ids) {
+std::vector<Receiver> grid_receivers(const Scene& scene, std::span<const Region> on, GridSize size, GridIds ids) {
   const kernel::StandardArithmetic arithmetic;
-  const auto faces = static_cast<std::size_t>(
-      std::count_if(on.begin(), on.end(), [&](FaceId face) { return scene.face(face).piece_count > 0; }));
-  check_grid_size(size, faces);
+  check_grid_size(size, on.size());
   std::vector<Receiver> receivers;
-  for (const FaceId face : on) {
-    if (scene.face(face).piece_count == 0) continue;
-    const bool needs_face = ids == GridIds::kUnique && faces > 1;
-    const std::string prefix = needs_face ? scene.name_of(Selection{scene.face(face).patch, face}) + '/' : "";
-    FaceGrid(scene, face, size, prefix).append_to(receivers);
+  for (const Region& region : on) {
+    const bool needs_face = ids == GridIds::kUnique && on.size() > 1;
+    RegionGrid(scene, region, size, needs_face ? numbered_name_of(scene, region.faces.front()) + '/' : "")
+        .append_to(receivers);
   }
   return receivers;
 }
 
 std::vector<Receiver> grid_receivers(const Scene& scene, const Selection& on, GridSize size) {
-  return grid_receivers(scene, scene.faces_of(on), size);
+  return grid_receivers(scene, regions(scene, on), size);
 }
 
-std::optional<GridCell> grid_cell(const Receiver& receiver) {
-  const std::string_view id = without_face(receiver.id);
-  const std::size_t comma = id.find(',');
-  GridCell cell;
-  if (receiver.on.empty() || comma == std::string_view::npos) return std::nullopt;
-  if (!parse_count(id.substr(0, comma), cell.column) || !parse_count(id.substr(comma + 1), cell.row)) {
-    return std::nullopt;
-  }
-  cell.face = receiver.on.front();
-  return cell.column >= 1 && cell.row >= 1 ? std::optional(cell) : std::nullopt;
+std::vector<Receiver> grid_receivers(const Scene& scene, std::span<const FaceId> on, GridSize size, GridIds ids) {
+  return grid_receivers(scene, lone_regions(scene, on), size, ids);
 }
 
 }  // namespace exactff

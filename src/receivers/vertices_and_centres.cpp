@@ -1,17 +1,19 @@
-// Receivers at the corners and centres of faces.
+// Receivers at the corners of faces and the centres of regions.
 //
-// The centroid of a face, in exact arithmetic and rounded once at the end. The face's convex pieces are fans of
-// triangles p, q, r with the vectors N_t = (q - p) x (r - p); N is the face's Newell vector.
+// The centroid of a region, in exact arithmetic and rounded once at the end. The convex pieces of its faces are fans of
+// triangles p, q, r with the vectors N_t = (q - p) x (r - p); N is the Newell vector of the outline.
 //   1. Each triangle weighs w_t = N.N_t: twice its area as seen along N, up to a factor that is common to all.
 //   2. The centroid is the sum of w_t (p + q + r) over 3 times the sum of w_t.
-//   3. Is it strictly inside the rings, as seen along N? If not, the receiver is at the mean of the
+//   3. Is it strictly inside the outline, as seen along N? If not, the receiver is at the mean of the
 //      corners of the piece that weighs most.
+#include <array>
 #include <unordered_set>
 
 #include "exactff/error.h"
 #include "exactff/receiver.h"
 #include "kernel/float_environment.h"
-#include "receivers/face_plane.h"
+#include "receivers/placing.h"
+#include "receivers/region_shape.h"
 #include "scene/places.h"
 
 namespace exactff {
@@ -20,8 +22,6 @@ namespace {
 using kernel::ExactVec3;
 using kernel::Integer;
 using kernel::Rational;
-
-std::string name_of(const Scene& scene, FaceId face) { return scene.name_of(Selection{scene.face(face).patch, face}); }
 
 // --- Corners -------------------------------------------------------------------------------------------
 
@@ -39,7 +39,7 @@ void check_corner_count(const Scene& scene, std::span<const FaceId> on) {
 
 void append_corners(const Scene& scene, FaceId id, std::vector<Receiver>& receivers) {
   const Face& face = scene.face(id);
-  const std::string prefix = name_of(scene, id) + '/';
+  const std::string prefix = numbered_name_of(scene, id) + '/';
   std::unordered_set<std::uint32_t> visited;
   std::size_t number = 0;
   for (const auto& ring : face.rings) {
@@ -59,23 +59,43 @@ struct Fraction {
   Integer denominator = 0;
 };
 
-// Where the receiver of one face is.
-class FaceCentre {
+// Where the receiver of one region is.
+class RegionCentre {
  public:
-  FaceCentre(const Scene& scene, FaceId id) : scene_(scene), id_(id), plane_(scene, id) {}
+  RegionCentre(const Scene& scene, const Region& region)
+      : scene_(scene), region_(region), shape_(scene, region), plane_(shape_.outline()) {}
 
-  [[nodiscard]] Vec3 find() const {
-    if (is_convex()) return rounded(mean(plane_.points().at));
-    Fraction largest;
-    const Fraction centroid = weigh_pieces(largest);
-    return rounded(is_inside(centroid) ? centroid : largest);
+  [[nodiscard]] Receiver find() const {
+    const Fraction at = centre();
+    const FaceId first = region_.faces.front();
+    const Offset offset = {quotient(at.numerator.x, at.denominator), quotient(at.numerator.y, at.denominator),
+                           quotient(at.numerator.z, at.denominator)};
+    if (region_.faces.size() > 1) {
+      if (const auto foot = shape_.foot(offset, along(shape_.frame().e(), at), along(shape_.frame().f(), at))) {
+        return {foot->point, scene_.face(foot->face).newell,
+                own_faces(scene_, foot->face, foot->point, tolerance_of_computed_points(scene_)),
+                numbered_name_of(scene_, first)};
+      }
+    }
+    return {plane_.rounded(offset), scene_.face(first).newell, {first}, numbered_name_of(scene_, first)};
   }
 
  private:
-  // The single piece of a convex planar face is the face itself.
+  using Offset = std::array<Rational, 3>;
+
+  [[nodiscard]] Fraction centre() const {
+    if (is_convex()) return mean(plane_.points().at);
+    Fraction largest;
+    const Fraction centroid = weigh_pieces(largest);
+    return is_inside(centroid) ? centroid : largest;
+  }
+
+  // As seen along the Newell vector.
   [[nodiscard]] bool is_convex() const {
+    if (region_.faces.size() > 1) return plane_.is_convex();
     if (plane_.is_convex_quadrilateral()) return true;
-    const auto pieces = scene_.pieces_of(id_);
+    // The single piece of a convex planar face is the face itself; it may have corners on a straight side.
+    const auto pieces = scene_.pieces_of(region_.faces.front());
     return pieces.size() == 1 && plane_.points().ring_count() == 1 &&
            pieces.front().corner_count == plane_.points().size();
   }
@@ -84,12 +104,14 @@ class FaceCentre {
   Fraction weigh_pieces(Fraction& largest) const {
     Fraction centroid;
     Integer largest_weight = 0;
-    for (const Piece& piece : scene_.pieces_of(id_)) {
-      const std::vector<ExactVec3> corners = corners_of(piece);
-      const Integer weight = add_piece(corners, centroid);
-      if (weight <= largest_weight) continue;
-      largest_weight = weight;
-      largest = mean(corners);
+    for (const FaceId face : region_.faces) {
+      for (const Piece& piece : scene_.pieces_of(face)) {
+        const std::vector<ExactVec3> corners = corners_of(piece);
+        const Integer weight = add_piece(corners, centroid);
+        if (weight <= largest_weight) continue;
+        largest_weight = weight;
+        largest = mean(corners);
+      }
     }
     return centroid;
   }
@@ -125,24 +147,22 @@ class FaceCentre {
   }
 
   [[nodiscard]] bool is_inside(const Fraction& p) const {
-    const FaceFrame frame(plane_);
-    return frame.strictly_inside({dot(frame.e(), p.numerator), p.denominator},
-                                 {dot(frame.f(), p.numerator), p.denominator});
+    return shape_.frame().strictly_inside(along(shape_.frame().e(), p), along(shape_.frame().f(), p));
   }
 
-  [[nodiscard]] Vec3 rounded(const Fraction& p) const {
-    return plane_.rounded({quotient(p.numerator.x, p.denominator), quotient(p.numerator.y, p.denominator),
-                           quotient(p.numerator.z, p.denominator)});
+  static FaceFrame::Coordinate along(const ExactVec3& axis, const Fraction& p) {
+    return {dot(axis, p.numerator), p.denominator};
   }
 
   const Scene& scene_;
-  FaceId id_;
-  FacePlane plane_;
+  const Region& region_;
+  RegionShape shape_;
+  const FacePlane& plane_;
 };
 
-void check_face_count(std::size_t faces) {
-  if (faces <= kMostReceivers) return;
-  throw InputError({.what = std::to_string(faces) + " faces",
+void check_region_count(std::size_t regions) {
+  if (regions <= kMostReceivers) return;
+  throw InputError({.what = std::to_string(regions) + " faces",
                     .why = "the limit is " + std::to_string(kMostReceivers) + " receivers in total",
                     .suggestion = "use a smaller patch"});
 }
@@ -159,15 +179,16 @@ std::vector<Receiver> vertex_receivers(const Scene& scene, std::span<const FaceI
   return receivers;
 }
 
-std::vector<Receiver> centre_receivers(const Scene& scene, std::span<const FaceId> on) {
+std::vector<Receiver> centre_receivers(const Scene& scene, std::span<const Region> on) {
   const kernel::StandardArithmetic arithmetic;
-  check_face_count(on.size());
+  check_region_count(on.size());
   std::vector<Receiver> receivers;
-  for (const FaceId face : on) {
-    if (scene.face(face).piece_count == 0) continue;
-    receivers.push_back({FaceCentre(scene, face).find(), scene.face(face).newell, {face}, name_of(scene, face)});
-  }
+  for (const Region& region : on) receivers.push_back(RegionCentre(scene, region).find());
   return receivers;
+}
+
+std::vector<Receiver> centre_receivers(const Scene& scene, std::span<const FaceId> on) {
+  return centre_receivers(scene, lone_regions(scene, on));
 }
 
 }  // namespace exactff

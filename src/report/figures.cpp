@@ -6,8 +6,8 @@
 #include <map>
 #include <optional>
 
+#include "kernel/vec.h"
 #include "page/plot_script.h"
-#include "report/method_figures.h"
 #include "study/ladders.h"
 #include "study/settings.h"
 #include "study/statistics.h"
@@ -293,48 +293,33 @@ class FigureMaker {
                          work_series(*line, Parameter::kEpsA))});
   }
 
-  // The receivers on the face with the most grid cells.
+  // The receivers on the lattice with the most of them.
   struct Grid {
-    FaceId face{};
+    std::shared_ptr<const Lattice> lattice;
     std::vector<std::pair<std::size_t, GridCell>> cells;
-    std::size_t other_faces = 0;
-    int columns = 1;
-    int rows = 1;
+    std::size_t other_lattices = 0;
   };
 
   [[nodiscard]] std::optional<Grid> find_grid() const {
-    std::map<FaceId, Grid> by_face;
+    std::vector<Grid> grids;
     for (std::size_t i = 0; i < study_.request.receivers.size(); ++i) {
-      const auto cell = grid_cell(study_.request.receivers[i]);
+      const auto& cell = study_.request.receivers[i].cell;
       if (!cell) return std::nullopt;
-      Grid& grid = by_face[cell->face];
-      grid.face = cell->face;
-      grid.cells.emplace_back(i, *cell);
-      grid.columns = std::max(grid.columns, cell->column);
-      grid.rows = std::max(grid.rows, cell->row);
+      auto grid = std::ranges::find(grids, cell->lattice, &Grid::lattice);
+      if (grid == grids.end()) grid = grids.insert(grids.end(), Grid{cell->lattice, {}, 0});
+      grid->cells.emplace_back(i, *cell);
     }
-    const auto largest = std::max_element(by_face.begin(), by_face.end(), [](const auto& a, const auto& b) {
-      return a.second.cells.size() < b.second.cells.size();
-    });
-    if (largest == by_face.end() || largest->second.columns < 2 || largest->second.rows < 2) return std::nullopt;
-    largest->second.other_faces = by_face.size() - 1;
-    return largest->second;
-  }
-
-  // The ratio of the first two edges of a quadrilateral; 1 for any other face.
-  [[nodiscard]] double height_over_width(const Grid& grid) const {
-    const auto& ring = study_.request.scene->face(grid.face).rings.front();
-    if (ring.size() != 4) return 1.0;
-    const auto corner = [&](std::size_t i) { return study_.request.scene->vertices()[ring[i]]; };
-    const auto length = [](const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); };
-    const double ratio = length(corner(1), corner(2)) / length(corner(0), corner(1));
-    return std::isfinite(ratio) && ratio > 0.0 ? ratio : 1.0;
+    const auto largest = std::ranges::max_element(grids, {}, [](const Grid& grid) { return grid.cells.size(); });
+    if (largest == grids.end() || largest->lattice->size.u < 2 || largest->lattice->size.v < 2) return std::nullopt;
+    largest->other_lattices = grids.size() - 1;
+    return *largest;
   }
 
   template <class ValueOf>
   [[nodiscard]] page::Map map_of(const Grid& grid, std::string quantity, page::MapColours colours,
                                  const ValueOf& value_of) const {
-    page::Map map{std::move(quantity), grid.columns, grid.rows, height_over_width(grid), colours, 0.0, {}};
+    const Lattice& lattice = *grid.lattice;
+    page::Map map{std::move(quantity), lattice.size.u, lattice.size.v, lattice.width, lattice.height, colours, 0.0, {}};
     for (const auto& [i, cell] : grid.cells) map.cells.push_back({cell.column, cell.row, value_of(i)});
     return map;
   }
@@ -365,9 +350,10 @@ class FigureMaker {
       leave_out("false-colour maps", "the receivers are not a grid on a face");
       return;
     }
-    if (grid->other_faces > 0) {
-      leave_out("maps of " + text::counted(grid->other_faces, "other face"),
-                "the maps show " + study_.request.scene->name_of(grid->face) + ", which has the most receivers");
+    if (grid->other_lattices > 0) {
+      leave_out(
+          "maps of " + text::counted(grid->other_lattices, "other face"),
+          "the maps show " + name_of(*study_.request.scene, grid->lattice->region) + ", which has the most receivers");
     }
     add_exact_map(*grid);
     if (const auto shown = shown_method()) {
@@ -388,8 +374,8 @@ class FigureMaker {
       return;
     }
     add({"map-exact", "Exact radiosity",
-         "On " + text::html(study_.request.scene->name_of(grid.face)) +
-             ", largest colour channel. Columns run along the first edge of the face.",
+         "On " + text::html(name_of(*study_.request.scene, grid.lattice->region)) +
+             ", largest colour channel; u runs along the first edge. Lengths are in the scene’s unit.",
          page::map_plot(map), true});
   }
 

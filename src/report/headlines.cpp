@@ -3,8 +3,8 @@
 #include <iterator>
 #include <string>
 
+#include "exactff/report.h"
 #include "kernel/float_environment.h"
-#include "report/figures.h"
 #include "report/studies.h"
 #include "report/verdicts.h"
 #include "study/settings.h"
@@ -153,6 +153,8 @@ std::string silent_sentence(const Study& study) {
 
 std::string no_work_sentence(const Study& study) {
   if (sight_count(study, Sight::kPartly) > 0) return {};
+  if (sight_count(study, Sight::kNothing) == study.exact.size())
+    return "Every form factor is 0, because the source and every receiver face away from each other.";
   return "No receiver sees the source partly hidden, so sampling has almost nothing to decide in this scene.";
 }
 

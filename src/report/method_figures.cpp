@@ -1,10 +1,9 @@
-#include "report/method_figures.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "page/plot_script.h"
+#include "report/figures.h"
 #include "report/verdicts.h"
 #include "study/ladders.h"
 #include "study/statistics.h"

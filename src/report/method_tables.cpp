@@ -1,5 +1,4 @@
-#include "report/method_tables.h"
-
+#include "report/tables.h"
 #include "study/ladders.h"
 #include "study/statistics.h"
 #include "text/csv_row.h"
@@ -91,11 +90,7 @@ void write_fields(const Study& study, std::ostream& out) {
     text::CsvRow row(out);
     row << study.request.receivers[i].id << study.request.receivers[i].point << name_of(exact.sight)
         << exact.visible_fraction << exact.radiosity.largest();
-    if (study.edge_distance.empty()) {
-      row << "";
-    } else {
-      row << study.edge_distance[i];
-    }
+    row << (study.edge_distance.empty() ? std::nullopt : std::optional(study.edge_distance[i]));
     for (const MethodField& field : study.methods.fields) row << field.radiosity_errors[i];
   }
 }
@@ -130,16 +125,13 @@ void write_method_timings(const Study& study, std::ostream& out) {
 const std::vector<StudyTable>& method_tables() {
   static const std::vector<StudyTable> kTables = {
       {"methods.csv", "one row per method and setting at chosen receivers: work and error statistics over the seeds",
-       write_methods, has_cells, Holds::kValues},
-      {"method_seeds.csv", "the same for every seed", write_method_seeds, has_cells, Holds::kValues},
-      {"method_values.csv", "the values of the first seed, receiver by receiver", write_method_values, has_cells,
-       Holds::kValues},
-      {"slopes.csv", "how the error falls with the work, with confidence intervals", write_slopes, has_cells,
-       Holds::kValues},
+       write_methods, has_cells},
+      {"method_seeds.csv", "the same for every seed", write_method_seeds, has_cells},
+      {"method_values.csv", "the values of the first seed, receiver by receiver", write_method_values, has_cells},
+      {"slopes.csv", "how the error falls with the work, with confidence intervals", write_slopes, has_cells},
       {"receivers.csv", "one row per receiver: visibility of the source, and the error of each method", write_fields,
-       has_cells, Holds::kValues},
-      {"profile.csv", "the radiosity along a line, exact and by other methods", write_profile, has_profile,
-       Holds::kValues},
+       has_cells},
+      {"profile.csv", "the radiosity along a line, exact and by other methods", write_profile, has_profile},
       {"method_timings.csv", "one row per method and setting: seconds per receiver", write_method_timings, has_cells,
        Holds::kTimes},
   };

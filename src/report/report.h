@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "page/chapter.h"
+#include "page/figure.h"
 #include "report/studies.h"
 #include "report/tables.h"
 
@@ -28,6 +29,20 @@ struct StudyReport {
 
 // Like write(Study), but the files of a scene begin with its name and an underscore.
 std::vector<std::string> write(const StudyReport& report, const std::filesystem::path& folder, const Hooks& hooks = {});
+
+// What belongs to each scene and each chapter of a report, in their order.
+struct Page {
+  page::DrawnFigures drawn;
+  std::vector<LeftOut> left_out;  // from the study or chapter, and from its figures
+};
+
+struct Pages {
+  std::vector<Page> scenes;
+  std::vector<Page> chapters;
+};
+
+// The report as one HTML page that loads nothing and has no scripts.
+[[nodiscard]] std::string report_page(const StudyReport& report, const Pages& pages);
 
 // The file name of a scene's table.
 [[nodiscard]] std::string file_name(const SceneChapter& scene, const StudyTable& table);

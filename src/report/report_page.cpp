@@ -1,11 +1,10 @@
-#include "report/report_page.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "exactff/report.h"
 #include "page/page_text.h"
 #include "report/identity.h"
+#include "report/report.h"
 #include "report/tables.h"
 #include "report/verdicts.h"
 #include "text/escape.h"
@@ -49,6 +48,9 @@ class ScenePart {
         (study().methods.cells.empty() ? std::string()
                                        : ", " + text::counted(study().methods.ladders.size(), "method") + " compared") +
         ".</p>\n";
+    for (const std::string& sentence : receiver_warnings(study())) {
+      text_ += page::paragraph("Warning: " + text::html(sentence) + ".");
+    }
     answer();
     tiles();
     figures();
@@ -88,11 +90,7 @@ class ScenePart {
 
   void tiles() {
     text_ += "<div class=\"tiles\">\n";
-    if (is_swept()) {
-      sweep_tiles();
-    } else {
-      method_tiles();
-    }
+    is_swept() ? sweep_tiles() : method_tiles();
     text_ += "</div>\n";
   }
 
@@ -103,9 +101,9 @@ class ScenePart {
       const MethodCell* best = most_accurate(study(), l);
       if (best == nullptr || is_exact(study(), *best)) continue;
       const std::string name = text::html(cell_name(study(), *best));
+      const std::string error = text::rounded(100.0 * relative_error(study(), *best), 2) + " %";
       tile(text::duration(best->seconds), name + ", per receiver");
-      tile(text::rounded(100.0 * relative_error(study(), *best), 2) + " %",
-           "RMS error of " + name + ", of the brightest receiver");
+      tile(error, "RMS error of " + name + ", of the brightest receiver");
     }
   }
 
@@ -448,7 +446,10 @@ class PageWriter {
 
   [[nodiscard]] static std::string scene_fact(const SceneChapter& scene) {
     const Study& study = scene.study;
-    return text::html(study.request.scene_name) + ", hash " + study.request.scene->hash() + "; " +
+    const std::string flipped = flipped_names(study), transparent = transparent_names(study);
+    return text::html(study.request.scene_name) + ", hash " + study.request.scene->hash() +
+           (flipped.empty() ? "" : "; flipped: " + text::html(flipped)) +
+           (transparent.empty() ? "" : "; transparent: " + text::html(transparent)) + "; " +
            (study.settings.empty() ? "the methods that were named"
             : study.full_product   ? "every combination of the settings of the ray-sampled algorithm"
                                    : "ε_B × rays, and sweeps of the other parameters through the base setting") +

@@ -1,29 +1,10 @@
-// The parts of a study that reports read.
+// Reports read studies, and use their names without the namespace.
 #pragma once
 
 #include "exactff/study.h"
 
 namespace exactff::report {
 
-using study::ErrorStatistics;
-using study::ExactRow;
-using study::ExactTerm;
-using study::kNotTimed;
-using study::Ladder;
-using study::LadderSlopes;
-using study::MethodCell;
-using study::MethodField;
-using study::MethodStudy;
-using study::name_of;
-using study::Parameter;
-using study::Profile;
-using study::Request;
-using study::SampleRow;
-using study::Sight;
-using study::Slope;
-using study::Study;
-using study::Summary;
-using study::Sweeps;
-using study::TimeSummary;
+using namespace study;
 
 }  // namespace exactff::report

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "exactff/version.h"
-#include "report/method_tables.h"
+#include "report/verdicts.h"
 #include "text/csv_row.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -19,6 +19,10 @@ void write_list(std::ostream& out, std::string_view name, const List& list, cons
   out << '\n';
 }
 
+void write_names(std::ostream& out, std::string_view name, std::string names) {
+  if (!names.empty()) out << "# " << name << ": " << text::csv_comment(std::move(names)) << '\n';
+}
+
 }  // namespace
 
 void write_head(const Study& study, std::ostream& out, std::string_view what) {
@@ -26,9 +30,14 @@ void write_head(const Study& study, std::ostream& out, std::string_view what) {
   const auto number = [](double v) { return text::shortest(v); };
   const auto name = [](auto v) { return name_of(v); };
   out << "# " << text::program_version() << " compare: " << text::csv_comment(std::string(what)) << '\n'
-      << "# scene: " << text::csv_comment(study.request.scene_name) << ", hash " << study.request.scene->hash() << '\n'
-      << "# receivers: " << text::csv_comment(study.request.receivers_name) << '\n'
+      << "# scene: " << text::csv_comment(study.request.scene_name) << ", hash " << study.request.scene->hash() << '\n';
+  write_names(out, "flipped", flipped_names(study));
+  write_names(out, "transparent", transparent_names(study));
+  out << "# receivers: " << text::csv_comment(study.request.receivers_name) << '\n'
       << "# sources: " << text::csv_comment(source_names(study)) << '\n';
+  for (const std::string& sentence : receiver_warnings(study)) {
+    out << "# warning: " << text::csv_comment(sentence) << '\n';
+  }
   if (sweeps.enabled) {
     write_list(out, "eps_B", sweeps.eps_b, number);
     write_list(out, "eps_A", sweeps.eps_a, number);
@@ -168,10 +177,9 @@ const std::vector<StudyTable>& tables() {
   static const std::vector<StudyTable> kTables = [] {
     std::vector<StudyTable> list = {
         {"values.csv", "one row per receiver and setting: exact and approximate value, errors, work", write_values,
-         has_settings, Holds::kValues},
-        {"exact.csv", "one row per receiver and source: the certified value with its bounds", write_exact, always,
-         Holds::kValues},
-        {"summary.csv", "one row per setting: the error statistics", write_summary, has_settings, Holds::kValues},
+         has_settings},
+        {"exact.csv", "one row per receiver and source: the certified value with its bounds", write_exact, always},
+        {"summary.csv", "one row per setting: the error statistics", write_summary, has_settings},
         {"timings.csv", "one row per receiver that was timed and method: the time of a single call", write_timings,
          always, Holds::kTimes},
         {"summary_timings.csv", "one row per setting: time per receiver, and that of the exact method",
@@ -183,12 +191,24 @@ const std::vector<StudyTable>& tables() {
   return kTables;
 }
 
-std::string source_names(const Study& study) {
+namespace {
+
+std::string joined_names(const Scene& scene, std::span<const Selection> selections) {
   std::string names;
-  for (const Selection& source : study.request.sources) {
-    names += (names.empty() ? "" : " + ") + study.request.scene->name_of(source);
-  }
+  for (const Selection& one : selections) names += (names.empty() ? "" : " + ") + scene.name_of(one);
   return names;
+}
+
+}  // namespace
+
+std::string source_names(const Study& study) { return joined_names(*study.request.scene, study.request.sources); }
+
+std::string flipped_names(const Study& study) {
+  return joined_names(*study.request.scene, study.request.scene->flipped());
+}
+
+std::string transparent_names(const Study& study) {
+  return joined_names(*study.request.scene, study.request.scene->transparent());
 }
 
 }  // namespace exactff::report

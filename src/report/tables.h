@@ -25,10 +25,16 @@ struct StudyTable {
 // In the order of the report's list.
 [[nodiscard]] const std::vector<StudyTable>& tables();
 
+// Those that compare the methods.
+[[nodiscard]] const std::vector<StudyTable>& method_tables();
+
 // The comment lines at the beginning of every file.
 void write_head(const Study& study, std::ostream& out, std::string_view what);
 
 // "light" or "lamp + window".
 [[nodiscard]] std::string source_names(const Study& study);
+// What --flip and --transparent have changed; often empty.
+[[nodiscard]] std::string flipped_names(const Study& study);
+[[nodiscard]] std::string transparent_names(const Study& study);
 
 }  // namespace exactff::report

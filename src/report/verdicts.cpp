@@ -198,6 +198,11 @@ void add_range_sentences(const std::string& name, const RangeCount& count, std::
 
 }  // namespace
 
+std::vector<std::string> receiver_warnings(const Study& study) {
+  const std::vector<Receiver>& receivers = study.request.receivers;
+  return sentences(near_misses(*study.request.scene, receivers), receivers.size());
+}
+
 std::vector<std::string> range_sentences(const Study& study) {
   std::vector<RangeCount> of_ladder(study.methods.ladders.size());
   for (const MethodCell& cell : study.methods.cells) {

@@ -47,6 +47,9 @@ inline constexpr std::array kWantedErrors = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
 // more than rounding. One sentence for each that has any. Values are sums over the sources.
 [[nodiscard]] std::vector<std::string> range_sentences(const Study& study);
 
+// Receivers that were probably meant to lie on a face (near_misses), in sentences.
+[[nodiscard]] std::vector<std::string> receiver_warnings(const Study& study);
+
 // A fitted slope in words, with the slope that theory expects, if it expects one.
 [[nodiscard]] std::string slope_words(const Slope& slope, const Ladder& ladder, Sight sight);
 

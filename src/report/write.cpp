@@ -6,7 +6,6 @@
 #include "page/output_folder.h"
 #include "report/figures.h"
 #include "report/report.h"
-#include "report/report_page.h"
 #include "report/tables.h"
 #include "text/escape.h"
 #include "text/phrases.h"

@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "sampled/receiver_view.h"
 #include "scene/scene_data.h"
-#include "scene/shaft_tree.h"
 
 namespace exactff::sampled {
 
@@ -34,16 +34,6 @@ std::vector<std::uint32_t> used_vertices(const Scene& scene) {
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
   return used;
-}
-
-Box bounds_of(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& used) {
-  Box bounds{points[used[0]], points[used[0]]};
-  for (const std::uint32_t v : used) {
-    const Vec3& p = points[v];
-    bounds.low = {std::min(bounds.low.x, p.x), std::min(bounds.low.y, p.y), std::min(bounds.low.z, p.z)};
-    bounds.high = {std::max(bounds.high.x, p.x), std::max(bounds.high.y, p.y), std::max(bounds.high.z, p.z)};
-  }
-  return bounds;
 }
 
 UnitBox unit_box(const Box& bounds, std::size_t pieces) {
@@ -288,7 +278,7 @@ unsigned RayScene::hidden_lanes(const Vec3& origin, const RayEnds& ends, int fir
   alignas(64) int valid[kPacket];
   for (int lane = 0; lane < kPacket; ++lane) {
     const auto i = static_cast<std::size_t>(first + std::min(lane, lanes - 1));
-    const Vec3 from_x{ends.x[i], ends.y[i], ends.z[i]};
+    const Vec3 from_x = ends[i];
     valid[lane] = lane < lanes && (hidden >> lane & 1U) == 0 ? -1 : 0;
     set_ray(rays, lane, brought_into_box(start + from_x * box_.scale), from_x, box_.scale);
   }

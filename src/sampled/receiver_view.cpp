@@ -20,17 +20,6 @@ double normalising_scale(double largest) {
 
 bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-Box box_of(const Scene& scene, const Piece& piece, const std::vector<Vec3>& points) {
-  const auto corners = scene.corners(piece);
-  Box box{points[corners[0]], points[corners[0]]};
-  for (const std::uint32_t v : corners) {
-    const Vec3& p = points[v];
-    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
-  }
-  return box;
-}
-
 // The shaft of one polygon: half-spaces for the query of the tree, then the same tests for each piece.
 class Gatherer {
  public:
@@ -81,7 +70,7 @@ class Gatherer {
     if (outside_slab()) return nullptr;
     const std::vector<Vec3>& p = scene_.points;
     const Normal front = plane_normal(p[piece.frame[0]], p[piece.frame[1]], p[piece.frame[2]]);
-    const int side = side_of_x(piece, front);
+    const int side = side_of_x(view_, scene_, piece, front);
     if (side == 0) return nullptr;
     copy_corners();
     seen_.normal = {-front.value, front.magnitude};
@@ -108,17 +97,6 @@ class Gatherer {
            no_corner_above([&](const Vec3& p) { return bounded_dot(front_, view_.point - p); }) ||
            (horizon_ == Horizon::kClips &&
             no_corner_above([&](const Vec3& p) { return bounded_dot(above_, p - view_.point); }));
-  }
-
-  // +1 if x is in front of the piece's plane, 0 if in it. Exact.
-  [[nodiscard]] int side_of_x(const Piece& piece, const Normal& front) const {
-    const Bounded height = bounded_dot(front, view_.point - scene_.points[piece.frame[0]]);
-    if (height.certainly_positive()) return 1;
-    if (height.certainly_negative()) return -1;
-    if (height.certainly_zero()) return 0;
-    const auto vertices = scene_.scene->vertices();
-    return kernel::orientation(vertices[piece.frame[0]], vertices[piece.frame[1]], vertices[piece.frame[2]],
-                               view_.exact_point);
   }
 
   void copy_corners() {
@@ -153,8 +131,18 @@ ScaledScene::ScaledScene(const Scene& scene_given) : scene(&scene_given) {
   points.reserve(vertices.size());
   for (const Vec3& v : vertices) points.push_back(v * scale);
   std::vector<Box> boxes;
-  for (const Piece& piece : scene->pieces()) boxes.push_back(box_of(*scene, piece, points));
+  for (const Piece& piece : scene->pieces()) boxes.push_back(bounds_of(points, scene->corners(piece)));
   tree = ShaftTree(boxes);
+}
+
+Box bounds_of(const std::vector<Vec3>& points, std::span<const std::uint32_t> indices) {
+  Box box{points[indices[0]], points[indices[0]]};
+  for (const std::uint32_t i : indices) {
+    const Vec3& p = points[i];
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+  }
+  return box;
 }
 
 ReceiverView view_from(const Receiver& receiver, const ScaledScene& scene) {
@@ -196,6 +184,16 @@ bool in_front(const ReceiverView& view, const SourcePlane& plane) {
   if (height.certainly_not_positive()) return false;
   const std::array<Vec3, 3>& f = plane.exact_frame;
   return kernel::orientation(f[0], f[1], f[2], view.exact_point) > 0;
+}
+
+int side_of_x(const ReceiverView& view, const ScaledScene& scene, const Piece& piece, const Normal& front) {
+  const Bounded height = bounded_dot(front, view.point - scene.points[piece.frame[0]]);
+  if (height.certainly_positive()) return 1;
+  if (height.certainly_negative()) return -1;
+  if (height.certainly_zero()) return 0;
+  const auto vertices = scene.scene->vertices();
+  return kernel::orientation(vertices[piece.frame[0]], vertices[piece.frame[1]], vertices[piece.frame[2]],
+                             view.exact_point);
 }
 
 namespace {

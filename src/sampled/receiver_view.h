@@ -26,6 +26,9 @@ struct ScaledScene {
   explicit ScaledScene(const Scene& scene);
 };
 
+// The box around these points.
+[[nodiscard]] Box bounds_of(const std::vector<Vec3>& points, std::span<const std::uint32_t> indices);
+
 struct ReceiverView {
   Vec3 exact_point;  // as given
   Vec3 point;        // scaled
@@ -45,6 +48,10 @@ struct ReceiverView {
 
 // Exact: x is strictly in front of the plane.
 [[nodiscard]] bool in_front(const ReceiverView& view, const SourcePlane& plane);
+
+// +1 if x is in front of the piece's plane, 0 if in it. Exact. `front`: the plane_normal of the piece's frame.
+[[nodiscard]] int side_of_x(const ReceiverView& view, const ScaledScene& scene, const Piece& piece,
+                            const Normal& front);
 
 enum class Horizon { kClips, kIgnored };
 

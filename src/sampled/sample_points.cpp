@@ -4,8 +4,6 @@ namespace exactff::sampled {
 
 namespace {
 
-constexpr double kUnit32 = 0x1p-32;
-
 double radical_inverse_base2(std::uint32_t i) {
   i = (i << 16) | (i >> 16);
   i = ((i & 0x00ff00ffU) << 8) | ((i & 0xff00ff00U) >> 8);
@@ -69,22 +67,17 @@ struct QuadrilateralMap {
   }
 };
 
-Vec3 centroid(const SubPatch& s) {
-  const Vec3 sum = s.corner(0) + s.corner(1) + s.corner(2);
-  return s.shape == PatchShape::kTriangle ? sum * (1.0 / 3.0) : (sum + s.corner(3)) * 0.25;
-}
-
-void set(RayEnds& ends, int i, const Vec3& p) {
-  const auto k = static_cast<std::size_t>(i);
-  ends.x[k] = p.x;
-  ends.y[k] = p.y;
-  ends.z[k] = p.z;
+// Calls act(map) with the map from the unit square to the sub-patch.
+template <class Act>
+void with_map(const SubPatch& s, const Act& act) {
+  if (s.shape == PatchShape::kParallelogram) return act(ParallelogramMap(s));
+  if (s.shape == PatchShape::kTriangle) return act(TriangleMap(s));
+  act(QuadrilateralMap(s));
 }
 
 void pad(RayEnds& ends) {
-  const auto last = static_cast<std::size_t>(ends.count - 1);
-  const Vec3 p{ends.x[last], ends.y[last], ends.z[last]};
-  for (int i = ends.count; i < ends.padded_count; ++i) set(ends, i, p);
+  const auto count = static_cast<std::size_t>(ends.count), padded = static_cast<std::size_t>(ends.padded_count);
+  for (std::size_t i = count; i < padded; ++i) ends.set(i, ends[count - 1]);
 }
 
 }  // namespace
@@ -131,8 +124,6 @@ void SamplePlan::make_hammersley(int rays) {
 
 namespace {
 
-using Point = UnitPoint;
-
 // Runs point_of(cell, i) for every cell and stores the images.
 template <class Cells, class Map, class PointOf>
 void place_all(const Cells& cells, const Map& map, const PointOf& point_of, RayEnds& ends) {
@@ -140,7 +131,7 @@ void place_all(const Cells& cells, const Map& map, const PointOf& point_of, RayE
   double* const y = ends.y.data();
   double* const z = ends.z.data();
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const Point point = point_of(cells[i], i);
+    const UnitPoint point = point_of(cells[i], i);
     const Vec3 p = map(point.u, point.v);
     x[i] = p.x;
     y[i] = p.y;
@@ -153,14 +144,14 @@ void place_all(const Cells& cells, const Map& map, const PointOf& point_of, RayE
 template <class Map>
 void SamplePlan::place_by(const Map& map, std::uint64_t key, RayEnds& ends) const {
   const auto jittered = [key](const Cell& cell, std::size_t i) {
-    const Point r = random_point(key, i);
-    return Point{cell.u + cell.width * r.u, cell.v + cell.height * r.v};
+    const UnitPoint r = random_point(key, i);
+    return UnitPoint{cell.u + cell.width * r.u, cell.v + cell.height * r.v};
   };
   const auto shifted = [shift = random_point(key, 0)](const Cell& cell, std::size_t) {
-    return Point{wrapped(cell.u + shift.u), wrapped(cell.v + shift.v)};
+    return UnitPoint{wrapped(cell.u + shift.u), wrapped(cell.v + shift.v)};
   };
   const auto central = [](const Cell& cell, std::size_t) {
-    return Point{cell.u + 0.5 * cell.width, cell.v + 0.5 * cell.height};
+    return UnitPoint{cell.u + 0.5 * cell.width, cell.v + 0.5 * cell.height};
   };
   if (pattern_ == SamplePattern::kJittered) return place_all(cells_, map, jittered, ends);
   if (pattern_ == SamplePattern::kLowDiscrepancy) return place_all(cells_, map, shifted, ends);
@@ -169,13 +160,9 @@ void SamplePlan::place_by(const Map& map, std::uint64_t key, RayEnds& ends) cons
 
 void SamplePlan::place(const SubPatch& s, std::uint64_t key, RayEnds& ends) const {
   if (pattern_ == SamplePattern::kCentre) {
-    set(ends, 0, centroid(s));
-  } else if (s.shape == PatchShape::kParallelogram) {
-    place_by(ParallelogramMap(s), key, ends);
-  } else if (s.shape == PatchShape::kTriangle) {
-    place_by(TriangleMap(s), key, ends);
+    ends.set(0, centroid(s));
   } else {
-    place_by(QuadrilateralMap(s), key, ends);
+    with_map(s, [&](const auto& map) { place_by(map, key, ends); });
   }
   pad(ends);
 }
@@ -184,13 +171,7 @@ void place_by_area(const SubPatch& s, std::span<const UnitPoint> points, RayEnds
   if (points.empty()) return ends.resize(0);
   ends.resize(static_cast<int>(points.size()));
   const auto given = [](const UnitPoint& point, std::size_t) { return point; };
-  if (s.shape == PatchShape::kParallelogram) {
-    place_all(points, ParallelogramMap(s), given, ends);
-  } else if (s.shape == PatchShape::kTriangle) {
-    place_all(points, TriangleMap(s), given, ends);
-  } else {
-    place_all(points, QuadrilateralMap(s), given, ends);
-  }
+  with_map(s, [&](const auto& map) { place_all(points, map, given, ends); });
   pad(ends);
 }
 

@@ -33,7 +33,15 @@ struct RayEnds {
   int padded_count = 0;
 
   void resize(int rays);
+  void set(std::size_t i, const Vec3& end) {
+    x[i] = end.x;
+    y[i] = end.y;
+    z[i] = end.z;
+  }
+  [[nodiscard]] Vec3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
+
+inline constexpr double kUnit32 = 0x1p-32;
 
 // A point of the unit square.
 struct UnitPoint {
@@ -43,7 +51,6 @@ struct UnitPoint {
 
 // Number `index` of the stream `key`, each coordinate in [0, 1).
 inline UnitPoint random_point(std::uint64_t key, std::uint64_t index) {
-  constexpr double kUnit32 = 0x1p-32;
   const std::uint64_t bits = mixed(key + (index + 1) * kGoldenGamma);
   return {static_cast<double>(static_cast<std::int64_t>(bits >> 32)) * kUnit32,
           static_cast<double>(static_cast<std::int64_t>(bits & 0xffffffffU)) * kUnit32};

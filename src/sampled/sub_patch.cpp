@@ -12,15 +12,6 @@ void set_corner(SubPatch& s, int i, const Vec3& p) {
   s.z[i] = p.z;
 }
 
-SubPatch triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  SubPatch s;
-  set_corner(s, 0, a);
-  set_corner(s, 1, b);
-  set_corner(s, 2, c);
-  set_corner(s, 3, c);
-  return s;
-}
-
 SubPatch quadrilateral(PatchShape shape, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   SubPatch s;
   set_corner(s, 0, a);
@@ -29,6 +20,10 @@ SubPatch quadrilateral(PatchShape shape, const Vec3& a, const Vec3& b, const Vec
   set_corner(s, 3, d);
   s.shape = shape;
   return s;
+}
+
+SubPatch triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return quadrilateral(PatchShape::kTriangle, a, b, c, c);
 }
 
 // This affects only the choice of the sampling map: an area density within 1e-12 of constant counts as constant.
@@ -66,8 +61,58 @@ SubPatch make_sub_patch(std::span<const Vec3> corners) {
 // Half the cross product of the diagonals; a triangle's repeated corner makes one diagonal an edge.
 double area(const SubPatch& s) { return 0.5 * length(cross(s.corner(2) - s.corner(0), s.corner(3) - s.corner(1))); }
 
+Vec3 centroid(const SubPatch& s) {
+  const Vec3 sum = s.corner(0) + s.corner(1) + s.corner(2);
+  return s.shape == PatchShape::kTriangle ? sum * (1.0 / 3.0) : (sum + s.corner(3)) * 0.25;
+}
+
 std::array<SubPatch, 4> split_patch(const SubPatch& s) {
   return s.shape == PatchShape::kTriangle ? split_triangle(s) : split_quadrilateral(s);
+}
+
+namespace {
+
+// The point at i/m of the way from a to b; exact at the ends.
+Vec3 between(const Vec3& a, const Vec3& b, int i, int m) {
+  if (i == 0) return a;
+  if (i == m) return b;
+  return a + (b - a) * (static_cast<double>(i) / m);
+}
+
+void split_triangle(const SubPatch& s, int m, std::vector<SubPatch>& parts) {
+  const Vec3 a = s.corner(0), b = s.corner(1), c = s.corner(2);
+  const auto at = [&](int i, int j) {  // row j of m from ab to c, with m - j steps in it
+    return j == m ? c : between(between(a, c, j, m), between(b, c, j, m), i, m - j);
+  };
+  for (int j = 0; j < m; ++j) {
+    for (int i = 0; i < m - j; ++i) {
+      parts.push_back(make_sub_patch(std::array{at(i, j), at(i + 1, j), at(i, j + 1)}));
+      if (i + 1 < m - j) parts.push_back(make_sub_patch(std::array{at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}));
+    }
+  }
+}
+
+void split_quadrilateral(const SubPatch& s, int m, std::vector<SubPatch>& parts) {
+  const Vec3 a = s.corner(0), b = s.corner(1), c = s.corner(2), d = s.corner(3);
+  const auto at = [&](int i, int j) { return between(between(a, b, i, m), between(d, c, i, m), j, m); };
+  for (int j = 0; j < m; ++j) {
+    for (int i = 0; i < m; ++i) {
+      parts.push_back(make_sub_patch(std::array{at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}));
+    }
+  }
+}
+
+}  // namespace
+
+void split_evenly(const SubPatch& s, int m, std::vector<SubPatch>& parts) {
+  parts.clear();
+  if (m == 1) {
+    parts.push_back(s);
+  } else if (s.shape == PatchShape::kTriangle) {
+    split_triangle(s, m, parts);
+  } else {
+    split_quadrilateral(s, m, parts);
+  }
 }
 
 void clip_by_horizon(std::span<const Vec3> polygon, const Vec3& normal, std::vector<Vec3>& clipped) {

@@ -1,4 +1,4 @@
-// Triangles and quadrilaterals of the source as the recursion splits them.
+// Triangles and quadrilaterals of the source, and ways to split them.
 #pragma once
 
 #include <array>
@@ -28,9 +28,16 @@ struct SubPatch {
 
 [[nodiscard]] double area(const SubPatch& s);
 
+// The centroid of a triangle, the mean of the corners of a quadrilateral.
+[[nodiscard]] Vec3 centroid(const SubPatch& s);
+
 // Tampieri's SplitPatch: four parts of the same shape and orientation that tile s. A triangle is split by the
 // midpoints of its edges; a quadrilateral by those and its centre (the bilinear one).
 [[nodiscard]] std::array<SubPatch, 4> split_patch(const SubPatch& s);
+
+// Replaces `parts` by m^2 parts of the same shape that tile s: triangles similar to a triangle; the cells of the
+// bilinear map of a quadrilateral.
+void split_evenly(const SubPatch& s, int m, std::vector<SubPatch>& parts);
 
 // The part of a convex polygon with normal . corner >= 0, corners relative to the receiving point. Fewer than three
 // corners: nothing is left. `clipped` may not alias `polygon`.

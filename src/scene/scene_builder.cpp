@@ -22,6 +22,7 @@ struct SceneBuilder::State {
   text::ProblemList warnings;
   std::size_t zero_area_count = 0;
   std::size_t first_zero_area = 0;
+  std::vector<std::pair<FaceId, Vec3>> stated_normals;
 
   void check_vertices();
   void check_materials();
@@ -31,6 +32,7 @@ struct SceneBuilder::State {
   void refuse(const Face& face, const FaceFault& fault);
   void add_parts(FaceId id, const std::vector<ConvexPart>& parts);
   void warn_out_of_plane(const Face& face);
+  void judge_normals();
   void warn_zero_area();
   void warn_hidden_names();
   void split_patches();
@@ -98,6 +100,12 @@ void SceneBuilder::add_face(PatchId patch, MaterialId material, std::vector<std:
   data.faces.push_back(std::move(face));
 }
 
+void SceneBuilder::state_normal(const Vec3& normal) {
+  const std::size_t count = state().data->faces.size();
+  if (count == 0) refuse_argument("there is no face yet", "state_normal() is about the face added last");
+  state().stated_normals.emplace_back(static_cast<FaceId>(count - 1), normal);
+}
+
 void SceneBuilder::warn(Problem warning) { state().warnings.add(std::move(warning)); }
 
 Scene SceneBuilder::build() {
@@ -112,11 +120,14 @@ Scene SceneBuilder::build() {
     for (std::size_t i = 0; i < state.data->faces.size(); ++i) state.cut(FaceId(static_cast<std::uint32_t>(i)));
   }
   state.problems.throw_if_any();
+  state.judge_normals();
   state.warn_zero_area();
   if (state.options.patches == PatchMode::kFaces) state.split_patches();
   state.warn_hidden_names();
   state.data->warnings = state.warnings.take("warnings");
-  return Scene(std::move(state.data));
+  Scene scene(std::move(state.data));
+  scene.set_warnings_of_glass();
+  return scene;
 }
 
 void SceneBuilder::State::check_vertices() {
@@ -225,6 +236,30 @@ void SceneBuilder::State::warn_out_of_plane(const Face& face) {
                 "it was cut into " + std::to_string(face.piece_count) +
                     " triangles; a different cut would give a different surface",
                 "use triangles if this matters"});
+}
+
+namespace {
+
+// Zero and anything not finite give a vector without direction.
+Vec3 unit_or_zero(const Vec3& v) {
+  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  if (!(largest > 0.0) || !std::isfinite(largest)) return {};
+  const Vec3 safe{v.x / largest, v.y / largest, v.z / largest};
+  const double length = std::hypot(safe.x, safe.y, safe.z);
+  return {safe.x / length, safe.y / length, safe.z / length};
+}
+
+}  // namespace
+
+void SceneBuilder::State::judge_normals() {
+  constexpr double kBesideThePlane = 0.1;  // the cosine; smoothed normals may lie almost in the plane of a face
+  for (const auto& [id, normal] : stated_normals) {
+    Face& face = data->faces[index_of(id)];
+    const Vec3 a = unit_or_zero(face.newell), b = unit_or_zero(normal);
+    const double cosine = a.x * b.x + a.y * b.y + a.z * b.z;
+    if (std::abs(cosine) <= kBesideThePlane) continue;
+    face.file_normals = cosine > 0.0 ? FileNormals::kAgree : FileNormals::kContradict;
+  }
 }
 
 void SceneBuilder::State::warn_zero_area() {

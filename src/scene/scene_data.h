@@ -8,6 +8,7 @@
 
 #include "exactff/scene.h"
 #include "scene/closed_surfaces.h"
+#include "scene/extent.h"
 #include "scene/shaft_tree.h"
 
 namespace exactff {
@@ -23,6 +24,7 @@ struct Scene::Data {
   std::vector<Piece> pieces;           // in the order of their faces
   std::vector<std::uint32_t> corners;  // vertex indices of all pieces
   std::vector<Problem> warnings;
+  std::size_t warnings_of_glass = 0;  // that many come first
 
   mutable std::once_flag places_found;  // see places()
   mutable std::vector<std::uint32_t> places;
@@ -30,6 +32,8 @@ struct Scene::Data {
   mutable ShaftTree tree;
   mutable std::once_flag surfaces_found;  // see closed_surfaces()
   mutable ClosedSurfaces surfaces;
+  mutable std::once_flag extent_found;  // see extent()
+  mutable Extent extent;
 
  private:
   static SceneId next_id();

@@ -1,11 +1,14 @@
 // Copies of a scene in which some faces are turned round or transparent.
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <set>
 #include <utility>
 
 #include "kernel/float_environment.h"
+#include "scene/glass.h"
 #include "scene/scene_data.h"
+#include "scene/selections.h"
 
 namespace exactff {
 
@@ -14,6 +17,10 @@ namespace {
 void flip(Face& face) {
   for (std::vector<std::uint32_t>& ring : face.rings) std::reverse(ring.begin(), ring.end());
   face.newell = {0.0 - face.newell.x, 0.0 - face.newell.y, 0.0 - face.newell.z};  // never -0
+  face.flipped = !face.flipped;
+  if (face.file_normals != FileNormals::kNone) {
+    face.file_normals = face.file_normals == FileNormals::kAgree ? FileNormals::kContradict : FileNormals::kAgree;
+  }
 }
 
 void flip(Piece& piece, std::vector<std::uint32_t>& corners) {
@@ -33,6 +40,7 @@ std::unique_ptr<Scene::Data> copy_of(const Scene::Data& data) {
   copy->pieces = data.pieces;
   copy->corners = data.corners;
   copy->warnings = data.warnings;
+  copy->warnings_of_glass = data.warnings_of_glass;
   return copy;
 }
 
@@ -65,7 +73,38 @@ Scene Scene::with_transparent(std::span<const Selection> selections) const {
     face.transparent = true;
     for (std::uint32_t p = 0; p < face.piece_count; ++p) copy->pieces[face.first_piece + p].transparent = true;
   }
-  return Scene(std::move(copy));
+  Scene changed(std::move(copy));
+  changed.set_warnings_of_glass();
+  return changed;
+}
+
+void Scene::set_warnings_of_glass() {
+  std::vector<Problem>& warnings = data_->warnings;
+  warnings.erase(warnings.begin(), warnings.begin() + static_cast<std::ptrdiff_t>(data_->warnings_of_glass));
+  std::vector<Problem> glass = warnings_of_opaque_glass(*this);
+  data_->warnings_of_glass = glass.size();
+  warnings.insert(warnings.begin(), std::move_iterator(glass.begin()), std::move_iterator(glass.end()));
+}
+
+namespace {
+
+template <class Changed>
+std::vector<Selection> changed_faces(const Scene& scene, const Changed& changed) {
+  std::vector<FaceId> faces;
+  for (std::size_t i = 0; i < scene.faces().size(); ++i) {
+    if (changed(scene.faces()[i])) faces.push_back(static_cast<FaceId>(i));
+  }
+  return selections_of(scene, faces);
+}
+
+}  // namespace
+
+std::vector<Selection> Scene::flipped() const {
+  return changed_faces(*this, [](const Face& face) { return face.flipped; });
+}
+
+std::vector<Selection> Scene::transparent() const {
+  return changed_faces(*this, [](const Face& face) { return face.transparent; });
 }
 
 }  // namespace exactff

@@ -1,5 +1,3 @@
-#include "stress/figures.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +5,7 @@
 #include <string>
 
 #include "page/plot_script.h"
-#include "stress/tables.h"
+#include "stress/report.h"
 #include "text/phrases.h"
 
 namespace exactff::stress {

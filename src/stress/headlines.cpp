@@ -4,7 +4,6 @@
 
 #include "exactff/stress.h"
 #include "kernel/float_environment.h"
-#include "stress/tables.h"
 #include "text/phrases.h"
 
 namespace exactff::stress {

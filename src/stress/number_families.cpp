@@ -10,30 +10,10 @@ namespace {
 Span scaled(const Span& span, double factor) { return {span.low * factor, span.high * factor}; }
 Span moved(const Span& span, double by) { return {span.low + by, span.high + by}; }
 
-struct Boxed {
-  Vec3 point, normal;
-  Span source_x, source_y;
-  double source_z;
-  Span plate_x, plate_y;
-  double plate_z;
-};
-
-Case plate_before_square(double s, const Boxed& b) {
-  Stage stage(b.point, b.normal);
-  stage.add_level_source(b.source_x, b.source_y, b.source_z);
-  stage.add_level_occluder(b.plate_x, b.plate_y, b.plate_z);
-  const LevelView view(b.point, b.source_z);
-  const Rectangle source = view.shadow(b.source_x, b.source_y, b.source_z);
-  ClosedForm truth(b.normal);
-  truth.add(source);
-  truth.add(intersection(source, view.shadow(b.plate_x, b.plate_y, b.plate_z)), -1);
-  return stage.finish(s, std::move(truth));
-}
-
 // Scales source and plate about the receiver, each by its own factor.
 Case with_factors(double s, double source_factor, double plate_factor) {
   const Span side = scaled({-1, 1}, source_factor);
-  return plate_before_square(s, {{0, 0, 0},
+  return plate_before_source(s, {{0, 0, 0},
                                  kUp,
                                  side,
                                  side,
@@ -50,7 +30,7 @@ Case mixed(double s) { return with_factors(s, s, 1 / s); }
 // Multiples of 1/64, translated by a power of two: every coordinate of the translated scene is exact.
 Case moved_away(double s) {
   const Span side{-1, 1}, plate{-0.265625, 0.296875};
-  return plate_before_square(
+  return plate_before_source(
       s, {{s, -s, s}, kUp, moved(side, s), moved(side, -s), 1 + s, moved(plate, s), moved(plate, -s), 0.5 + s});
 }
 
@@ -58,7 +38,7 @@ Case moved_away(double s) {
 Case short_normal(double s) {
   const double unit = std::ldexp(1.0, -74) / s;
   const Vec3 normal{unit, 2 * unit, 3 * unit};
-  return plate_before_square(s, {{0, 0, 0}, normal, {0, 1}, {0, 1}, 1, {0.15, 0.3}, {0.05, 0.2}, 0.5});
+  return plate_before_source(s, {{0, 0, 0}, normal, {0, 1}, {0, 1}, 1, {0.15, 0.3}, {0.05, 0.2}, 0.5});
 }
 
 }  // namespace

@@ -31,15 +31,7 @@ Case overlap(double s) { return two_plates(s, 0.25 + 1 / s, 0.25); }
 
 // One level plate between the given receiver and the given source.
 Case one_plate(double s, const Vec3& point, double source_z, const Span& x, const Span& y, double z) {
-  Stage stage(point, kUp);
-  stage.add_level_source(kSide, kSide, source_z);
-  stage.add_level_occluder(x, y, z);
-  const LevelView view(point, source_z);
-  const Rectangle source = view.shadow(kSide, kSide, source_z);
-  ClosedForm truth(kUp);
-  truth.add(source);
-  truth.add(intersection(source, view.shadow(x, y, z)), -1);
-  return stage.finish(s, std::move(truth));
+  return plate_before_source(s, {point, kUp, kSide, kSide, source_z, x, y, z});
 }
 
 Case near_receiver(double s) { return one_plate(s, {0, 0, 0}, 1, {-0.25 / s, 0.3 / s}, {-0.2 / s, 0.35 / s}, 0.5 / s); }

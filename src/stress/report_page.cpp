@@ -1,10 +1,7 @@
-#include "stress/report_page.h"
-
 #include <algorithm>
 
-#include "exactff/stress.h"
 #include "page/page_text.h"
-#include "stress/tables.h"
+#include "stress/report.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 

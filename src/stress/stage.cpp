@@ -64,4 +64,16 @@ ClosedForm left_by_strips(const Vec3& normal, const Rectangle& source, std::vect
   return form;
 }
 
+Case plate_before_source(double stiffness, const PlateBeforeSource& p) {
+  Stage stage(p.point, p.normal);
+  stage.add_level_source(p.source_x, p.source_y, p.source_z);
+  stage.add_level_occluder(p.plate_x, p.plate_y, p.plate_z);
+  const LevelView view(p.point, p.source_z);
+  const Rectangle source = view.shadow(p.source_x, p.source_y, p.source_z);
+  ClosedForm truth(p.normal);
+  truth.add(source);
+  truth.add(intersection(source, view.shadow(p.plate_x, p.plate_y, p.plate_z)), -1);
+  return stage.finish(stiffness, std::move(truth));
+}
+
 }  // namespace exactff::stress

@@ -89,4 +89,14 @@ class LevelView {
 // union of their shadows along u.
 [[nodiscard]] ClosedForm left_by_strips(const Vec3& normal, const Rectangle& source, std::vector<Interval> shadows);
 
+// One level plate before a level source.
+struct PlateBeforeSource {
+  Vec3 point, normal;
+  Span source_x, source_y;
+  double source_z;
+  Span plate_x, plate_y;
+  double plate_z;
+};
+[[nodiscard]] Case plate_before_source(double stiffness, const PlateBeforeSource& p);
+
 }  // namespace exactff::stress

@@ -1,5 +1,4 @@
-#include "stress/tables.h"
-
+#include "stress/report.h"
 #include "text/csv_row.h"
 #include "text/phrases.h"
 
@@ -15,10 +14,6 @@ void write_head(std::ostream& out, std::string_view what) {
   out << "# " << text::program_version() << " stress: " << what << '\n';
 }
 
-std::string method_column(Method method, std::string_view suffix) {
-  return std::string(short_name_of(method)) + std::string(suffix);
-}
-
 void write_settings(std::ostream& out) {
   out << "# tampieri: eps_B " << text::shortest(kToleranceShare) << " of the unoccluded form factor, " << kRays
       << " jittered rays, seed 1\n";
@@ -30,19 +25,9 @@ void write_values(const Report& report, std::ostream& out) {
          "# errors below "
       << text::shortest(kTruthIsGoodTo) << ", which is as far as the truth is known, are written 0\n";
   write_settings(out);
-  {
-    CsvRow row(out);
-    row << "family"
-        << "stiffness"
-        << "truth"
-        << "evidence"
-        << "agrees"
-        << "status"
-        << "precision_bits"
-        << "occluders"
-        << "edges";
-    for (Method method : kMethods) row << method_column(method, "_value") << method_column(method, "_error");
-  }
+  out << "family,stiffness,truth,evidence,agrees,status,precision_bits,occluders,edges";
+  for (Method method : kMethods) out << ',' << short_name_of(method) << "_value," << short_name_of(method) << "_error";
+  out << '\n';
   for (const FamilyResult& family : report.families) {
     for (const Row& r : family.rows) {
       CsvRow row(out);
@@ -66,11 +51,7 @@ void write_summary(const Report& report, std::ostream& out) {
   write_head(out, "the largest stiffness up to which each method's error stays below each threshold; 0: not even once");
   out << "# stiffnesses are tried in steps (see values.csv); each number is the last one tried\n";
   write_settings(out);
-  CsvRow(out) << "family"
-              << "method"
-              << "threshold"
-              << "usable_up_to"
-              << "largest_tried";
+  out << "family,method,threshold,usable_up_to,largest_tried\n";
   for (const FamilyResult& family : report.families) {
     for (Method method : kMethods) {
       for (double threshold : kThresholds) {
@@ -83,12 +64,9 @@ void write_summary(const Report& report, std::ostream& out) {
 
 void write_timings(const Report& report, std::ostream& out) {
   write_head(out, "median seconds of one call, preprocessing apart");
-  {
-    CsvRow row(out);
-    row << "family"
-        << "stiffness";
-    for (Method method : kMethods) row << method_column(method, "_seconds");
-  }
+  out << "family,stiffness";
+  for (Method method : kMethods) out << ',' << short_name_of(method) << "_seconds";
+  out << '\n';
   for (const FamilyResult& family : report.families) {
     for (const Row& r : family.rows) {
       CsvRow row(out);

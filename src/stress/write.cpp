@@ -1,12 +1,8 @@
 #include <iterator>
 
-#include "exactff/stress.h"
 #include "kernel/float_environment.h"
-#include "page/figure.h"
 #include "page/output_folder.h"
-#include "stress/figures.h"
-#include "stress/report_page.h"
-#include "stress/tables.h"
+#include "stress/report.h"
 #include "work/file.h"
 #include "work/parallel.h"
 

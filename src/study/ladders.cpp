@@ -21,10 +21,6 @@ std::vector<std::string> parts_of(std::string_view text, char separator) {
   }
 }
 
-[[noreturn]] void refuse(const std::string& what, const std::string& why, const std::string& suggestion) {
-  text::refuse(what, why, suggestion);
-}
-
 // A parsed ladder.
 struct LadderText {
   std::string method;
@@ -47,9 +43,9 @@ struct LadderText {
     for (const auto& [name, values] : settings) {
       if (values.size() < 2) continue;
       if (!found.empty()) {
-        refuse("'" + found + "' and '" + name + "' of " + method + " both have several values",
-               "only one setting of a method can vary at a time",
-               "give one of them a single value, or use two --method options");
+        text::refuse("'" + found + "' and '" + name + "' of " + method + " both have several values",
+                     "only one setting of a method can vary at a time",
+                     "give one of them a single value, or use two --method options");
       }
       found = name;
     }
@@ -115,8 +111,8 @@ Ladder parse_ladder(std::string_view text) {
     if (!repeated) ladder.rungs.push_back(std::move(choice));
   }
   if (ladder.along == "seed") {
-    refuse("the seed of " + taken_apart.method + " has several values", "a study varies the seed by itself",
-           "remove the seed, and give the number of seeds with --method-seeds");
+    text::refuse("the seed of " + taken_apart.method + " has several values", "a study varies the seed by itself",
+                 "remove the seed, and give the number of seeds with --method-seeds");
   }
   ladder.name = ladder_name(taken_apart, *ladder.rungs.front().method, ladder.along);
   return ladder;

@@ -13,7 +13,6 @@
 #include <map>
 
 #include "study/ladders.h"
-#include "study/prepared_method.h"
 #include "study/radiosity.h"
 #include "study/statistics.h"
 #include "text/escape.h"
@@ -102,7 +101,7 @@ class MethodRunner {
     const Ladder& ladder = result_.ladders[l];
     std::optional<PreparedMethod> prepared;
     try {
-      prepared.emplace(*ladder.rungs.front().method, request());
+      prepared.emplace(*ladder.rungs.front().method, scene(), request().sources);
     } catch (const InputError& refusal) {
       left_out_.push_back({"method " + ladder.name, text::csv_comment(refusal.what())});
       return;
@@ -290,6 +289,20 @@ class MethodRunner {
 };
 
 }  // namespace
+
+PreparedMethod::PreparedMethod(const methods::Method& method, const Scene& given, std::span<const Selection> selections)
+    : scene(method.prepare(given)) {
+  for (const Selection& selection : selections) {
+    owned.push_back(scene->prepare_source(selection));
+    sources.push_back(owned.back().get());
+  }
+}
+
+Settings seeded(const methods::Choice& choice, std::uint64_t seed) {
+  Settings settings = choice.settings;
+  if (seed > 0) settings.set("seed", static_cast<std::int64_t>(seed));
+  return settings;
+}
 
 std::vector<std::size_t> choose_receivers(const std::vector<ExactRow>& exact, std::size_t count) {
   std::vector<std::size_t> partly, visible;

@@ -1,10 +1,26 @@
 // Runs the methods of a study that are compared.
 #pragma once
 
+#include <memory>
+#include <span>
+#include <vector>
+
 #include "exactff/study.h"
 #include "study/kept_work.h"
 
 namespace exactff::study {
+
+// A method prepared for a scene and its sources.
+struct PreparedMethod {
+  std::unique_ptr<methods::PreparedScene> scene;
+  std::vector<std::unique_ptr<methods::PreparedSource>> owned;
+  std::vector<const methods::PreparedSource*> sources;
+
+  PreparedMethod(const methods::Method& method, const Scene& given, std::span<const Selection> selections);
+};
+
+// The settings of a choice with this seed; seed 0 leaves them unchanged.
+[[nodiscard]] Settings seeded(const methods::Choice& choice, std::uint64_t seed);
 
 struct MethodResults {
   MethodStudy methods;

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 
+#include "kernel/vec.h"
 #include "study/ladders.h"
-#include "study/prepared_method.h"
+#include "study/method_runs.h"
 #include "study/radiosity.h"
 #include "study/shadow_edges.h"
 #include "study/sight.h"
@@ -20,23 +20,21 @@ constexpr int kBisections = 20;
 constexpr std::size_t kMostCurves = 3;
 
 struct Line {
-  FaceId face{};
+  const Lattice& lattice;
   int row = 0;
-  int columns = 0;
-  int rows = 0;
 };
 
 std::optional<Line> line_through_penumbra(const Study& study) {
-  const auto grid = grid_of(study.request.receivers);
-  if (!grid || grid->size.u < 2) return std::nullopt;
+  const Lattice* const lattice = lattice_of(study.request.receivers);
+  if (lattice == nullptr || lattice->size.u < 2) return std::nullopt;
   std::map<int, int> partly_by_row;
   for (std::size_t i = 0; i < study.exact.size(); ++i) {
-    if (study.exact[i].sight == Sight::kPartly) ++partly_by_row[grid_cell(study.request.receivers[i])->row];
+    if (study.exact[i].sight == Sight::kPartly) ++partly_by_row[study.request.receivers[i].cell->row];
   }
   const auto most = std::max_element(partly_by_row.begin(), partly_by_row.end(),
                                      [](const auto& a, const auto& b) { return a.second < b.second; });
   if (most == partly_by_row.end()) return std::nullopt;
-  return Line{grid->face, most->first, grid->size.u, grid->size.v};
+  return Line{*lattice, most->first};
 }
 
 class Profiler {
@@ -49,7 +47,7 @@ class Profiler {
   std::optional<Profile> along(const Line& line) {
     take_receivers(line);
     if (profile_.receivers.size() < 2) return std::nullopt;
-    profile_.where = "row " + std::to_string(line.row) + " of " + scene().name_of(line.face);
+    profile_.where = "row " + std::to_string(line.row) + " of " + name_of(scene(), line.lattice.region);
     find_exact();
     find_kinks();
     add_curves();
@@ -61,14 +59,13 @@ class Profiler {
   [[nodiscard]] const Scene& scene() const { return *request().scene; }
 
   void take_receivers(const Line& line) {
-    const int finer = std::max(1, kPoints / line.columns);
-    const std::vector<FaceId> on = {line.face};
-    for (Receiver& receiver : grid_receivers(scene(), on, {line.columns * finer, line.rows})) {
-      if (grid_cell(receiver)->row == line.row) profile_.receivers.push_back(std::move(receiver));
+    const GridSize size = line.lattice.size;
+    const GridSize finer{size.u * std::max(1, kPoints / size.u), size.v};
+    for (Receiver& receiver : grid_receivers(scene(), std::span(&line.lattice.region, 1), finer)) {
+      if (receiver.cell->row == line.row) profile_.receivers.push_back(std::move(receiver));
     }
     for (const Receiver& receiver : profile_.receivers) {
-      const Vec3 &p = receiver.point, &q = profile_.receivers.front().point;
-      profile_.position.push_back(std::hypot(p.x - q.x, p.y - q.y, p.z - q.z));
+      profile_.position.push_back(kernel::distance(receiver.point, profile_.receivers.front().point));
     }
   }
 
@@ -128,7 +125,7 @@ class Profiler {
   void add_curve(const Ladder& ladder) {
     const std::size_t rung = ladder.rungs.size() / 2;
     const methods::Choice& choice = ladder.rungs[rung];
-    const PreparedMethod prepared(*choice.method, request());
+    const PreparedMethod prepared(*choice.method, scene(), request().sources);
     const auto evaluator = prepared.scene->configure(choice.settings);
     Profile::Curve curve{rung_name(ladder, rung), {}};
     for (const Receiver& receiver : profile_.receivers) {

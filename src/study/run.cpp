@@ -26,7 +26,6 @@
 #include "study/sight.h"
 #include "study/silent_errors.h"
 #include "study/statistics.h"
-#include "study/sweep_budget.h"
 #include "study/timing.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -43,8 +42,8 @@ void complete(Request& request) {
   }
   if (request.sources.empty()) request.sources = request.scene->emitters();
   if (request.sources.empty()) {
-    throw InputError(Problem{request.scene_name, 0, "no patch emits", "without a source there is nothing to compare",
-                             "name a source with --source"});
+    text::refuse(request.scene_name, "no patch emits", "without a source there is nothing to compare",
+                 "name a source with --source");
   }
   if (request.threads <= 0) request.threads = work::usable_threads();
 }
@@ -54,11 +53,10 @@ constexpr double kMostRadiosity = 1e290;
 
 void require_moderate(double radiosity, const Request& request) {
   if (radiosity <= kMostRadiosity) return;
-  throw InputError(
-      Problem{request.scene_name, 0,
-              "a receiver that sees only the sources would have a radiosity of " + text::shortest(radiosity),
-              "a comparison adds and averages radiosities; sums overflow above " + text::shortest(kMostRadiosity),
-              "reduce the emissions (Ke); form factors do not depend on them"});
+  text::refuse(request.scene_name,
+               "a receiver that sees only the sources would have a radiosity of " + text::shortest(radiosity),
+               "a comparison adds and averages radiosities; sums overflow above " + text::shortest(kMostRadiosity),
+               "reduce the emissions (Ke); form factors do not depend on them");
 }
 
 double mean_face_area(const Request& request) {

@@ -205,10 +205,6 @@ AdaptiveOptions without(AdaptiveOptions setting, Parameter parameter) {
   return setting;
 }
 
-}  // namespace
-
-namespace {
-
 // In the order of the enumerators.
 constexpr std::array<std::string_view, 4> kPatternNames = {"centre", "regular", "jittered", "low-discrepancy"};
 constexpr std::array<std::string_view, 2> kVariantNames = {"mended", "literal"};

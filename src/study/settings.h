@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "exactff/study.h"
@@ -39,6 +40,13 @@ void complete(Sweeps& sweeps, const Work& work);
 // The index of the setting in the list.
 [[nodiscard]] std::optional<std::size_t> find_setting(const std::vector<AdaptiveOptions>& settings,
                                                       const AdaptiveOptions& wanted);
+
+// The settings to leave out: those with the most planned work, but not the base, until the rest fits into
+// Request::sweep_budget. In order of decreasing work. Requires exact values and settings. Work is counted at a few
+// receivers and multiplied by fixed prices, so that the choice depends on the request alone.
+[[nodiscard]] std::vector<std::size_t> over_budget(const Study& study, std::span<const ExactSource> sources,
+                                                   const AdaptiveSolver& solver,
+                                                   std::span<const AdaptiveSource> sampled_sources);
 
 // "ε_B = 0.0123, 16 jittered rays": names the parameters that differ from the base.
 [[nodiscard]] std::string setting_name(const Study& study, std::size_t setting);

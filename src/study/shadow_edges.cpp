@@ -18,26 +18,24 @@ namespace {
 
 namespace bgi = boost::geometry::index;
 using Point = boost::geometry::model::point<double, 3, boost::geometry::cs::cartesian>;
+using kernel::distance;
 using Tree = bgi::rtree<Point, bgi::rstar<16>>;
 
 constexpr int kRasterCells = 16384;
 constexpr int kRasterCellsOfLargeScenes = 4096;
 constexpr std::size_t kLargeScene = 300;  // faces
 
-double distance(const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
-
 class Raster {
  public:
-  Raster(const Request& request, const ReceiverGrid& grid) : request_(request) {
+  Raster(const Request& request, const Lattice& grid) : request_(request) {
     const bool large = request.scene->faces().size() > kLargeScene;
     const int cells = grid.size.u * grid.size.v;
     const int finer = static_cast<int>(std::sqrt((large ? kRasterCellsOfLargeScenes : kRasterCells) / cells));
     size_ = {grid.size.u * std::max(finer, 1), grid.size.v * std::max(finer, 1)};
-    const std::vector<FaceId> on = {grid.face};
-    receivers_ = grid_receivers(*request.scene, on, size_);
+    receivers_ = grid_receivers(*request.scene, std::span(&grid.region, 1), size_);
   }
 
-  // On faces that are not quadrilaterals, some cells are missing.
+  // On surfaces that are not quadrilaterals, some cells are missing.
   [[nodiscard]] bool complete() const {
     return receivers_.size() == static_cast<std::size_t>(size_.u) * static_cast<std::size_t>(size_.v);
   }
@@ -94,16 +92,11 @@ double nearest_distance(const Tree& tree, const Vec3& p) {
 
 }  // namespace
 
-std::optional<ReceiverGrid> grid_of(const std::vector<Receiver>& receivers) {
-  std::optional<ReceiverGrid> grid;
-  for (const Receiver& receiver : receivers) {
-    const auto cell = grid_cell(receiver);
-    if (!cell || (grid && grid->face != cell->face)) return std::nullopt;
-    if (!grid) grid = ReceiverGrid{cell->face, {1, 1}};
-    grid->size.u = std::max(grid->size.u, cell->column);
-    grid->size.v = std::max(grid->size.v, cell->row);
-  }
-  return grid;
+const Lattice* lattice_of(const std::vector<Receiver>& receivers) {
+  if (receivers.empty() || !receivers.front().cell) return nullptr;
+  const Lattice* const lattice = receivers.front().cell->lattice.get();
+  const auto on_it = [&](const Receiver& r) { return r.cell && r.cell->lattice.get() == lattice; };
+  return std::ranges::all_of(receivers, on_it) ? lattice : nullptr;
 }
 
 std::vector<Sight> sights(const Scene& scene, const Receiver& receiver, std::span<const ExactSource> sources) {
@@ -115,9 +108,9 @@ std::vector<Sight> sights(const Scene& scene, const Receiver& receiver, std::spa
 std::variant<ShadowEdges, LeftOut> find_shadow_edges(const Request& request, std::span<const ExactSource> sources,
                                                      const Hooks& hooks) {
   const auto leave_out = [](const char* why) { return LeftOut{"error by distance to the nearest shadow edge", why}; };
-  const auto grid = grid_of(request.receivers);
-  if (!grid) return leave_out("the receivers are not one grid on one face");
-  Raster raster(request, *grid);
+  const Lattice* const lattice = lattice_of(request.receivers);
+  if (lattice == nullptr) return leave_out("the receivers are not one grid on one face");
+  Raster raster(request, *lattice);
   if (!raster.complete()) return leave_out("the face is no quadrilateral");
   raster.classify(sources, hooks);
   const std::vector<Point> edges = raster.edges();

@@ -1,4 +1,4 @@
-// Where on a face the visibility of the sources changes in kind: the edges of umbra and penumbra.
+// Where on a surface the visibility of the sources changes in kind: the edges of umbra and penumbra.
 #pragma once
 
 #include <span>
@@ -8,14 +8,8 @@
 
 namespace exactff::study {
 
-// A grid of receivers on a face.
-struct ReceiverGrid {
-  FaceId face{};
-  GridSize size;
-};
-
-// The one grid that all receivers belong to, if there is one.
-[[nodiscard]] std::optional<ReceiverGrid> grid_of(const std::vector<Receiver>& receivers);
+// The one lattice that all receivers belong to; null if there is none.
+[[nodiscard]] const Lattice* lattice_of(const std::vector<Receiver>& receivers);
 
 // How a receiver sees each source: not at all, hidden, partly hidden or fully visible.
 [[nodiscard]] std::vector<Sight> sights(const Scene& scene, const Receiver& receiver,

@@ -1,5 +1,4 @@
-#include "study/sweep_budget.h"
-
+// Which settings of the sweeps are too expensive for a scene.
 #include <algorithm>
 #include <numeric>
 

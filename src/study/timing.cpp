@@ -6,7 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "study/prepared_method.h"
+#include "study/method_runs.h"
 #include "study/radiosity.h"
 #include "study/statistics.h"
 #include "work/parallel.h"
@@ -139,7 +139,8 @@ class Stopwatch {
     for (std::size_t first = 0, l = 0; l < methods.ladders.size(); ++l) {
       const methods::Choice& choice = methods.ladders[l].rungs.front();
       std::optional<PreparedMethod> prepared;
-      times_.method_setup.push_back(work::seconds_of([&] { prepared.emplace(*choice.method, request()); }));
+      times_.method_setup.push_back(
+          work::seconds_of([&] { prepared.emplace(*choice.method, scene(), request().sources); }));
       for (; first < methods.cells.size() && methods.cells[first].ladder == l; ++first) {
         time_cell(methods.cells[first], *prepared, order);
       }

@@ -32,12 +32,6 @@ void read_assignment(std::string_view text, Settings& settings, std::vector<std:
   settings.set_text(name, trimmed(value));
 }
 
-std::string joined(const std::vector<std::string_view>& names) {
-  std::string list;
-  for (const std::string_view name : names) list += (list.empty() ? "" : ", ") + std::string(name);
-  return list;
-}
-
 }  // namespace
 
 ChoiceText take_apart(std::string_view text) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <string_view>
@@ -29,6 +30,11 @@ class CsvRow {
   CsvRow& operator<<(const Vec3& v) { return *this << v.x << v.y << v.z; }
   CsvRow& operator<<(std::uint64_t count) { return put(std::to_string(count)); }
   CsvRow& operator<<(int count) { return put(std::to_string(count)); }
+  // Nothing becomes an empty field.
+  template <class Value>
+  CsvRow& operator<<(const std::optional<Value>& value) {
+    return value ? *this << *value : put({});
+  }
 
  private:
   CsvRow& put(std::string_view field) {

@@ -3,16 +3,11 @@
 #include <algorithm>
 
 #include "text/characters.h"
+#include "text/phrases.h"
 
 namespace exactff::text {
 
 namespace {
-
-std::string hexadecimal(char32_t code, int digits) {
-  std::string written;
-  for (int shift = 4 * (digits - 1); shift >= 0; shift -= 4) written += "0123456789abcdef"[(code >> shift) & 0xFU];
-  return written;
-}
 
 std::string visible_escape(const Character& c) {
   const bool byte = !c.well_formed || c.code < 0x80;
@@ -26,12 +21,6 @@ void for_each_character(std::string_view text, const Put& put) {
     const Character c = character_at(text, at);
     put(c, text.substr(at, c.bytes));
     at += c.bytes;
-  }
-}
-
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-    text.replace(at, from.size(), to);
   }
 }
 
@@ -58,6 +47,12 @@ std::string ansi_c_quoted(std::string_view text) {
 }
 
 }  // namespace
+
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+}
 
 std::string printable(std::string_view text, std::string_view kept) {
   std::string shown;

@@ -43,4 +43,6 @@ namespace exactff::text {
 // are written as $'\x1b', which bash, zsh and ksh read back.
 [[nodiscard]] std::string shell_word(std::string_view text);
 
+void replace_all(std::string& text, std::string_view from, std::string_view to);  // every occurrence
+
 }  // namespace exactff::text

@@ -2,21 +2,14 @@
 #pragma once
 
 #include <bit>
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
 #include "exactff/geometry.h"
+#include "text/phrases.h"
 
 namespace exactff::text {
-
-// The low bits of a number as `digits` hexadecimal digits.
-inline std::string hexadecimal(std::uint64_t value, std::size_t digits) {
-  std::string text(digits, '0');
-  for (std::size_t i = digits; i-- > 0; value >>= 4U) text[i] = "0123456789abcdef"[value & 15U];
-  return text;
-}
 
 class Fnv1a {
  public:

@@ -4,6 +4,7 @@
 
 #include "text/characters.h"
 #include "text/escape.h"
+#include "text/phrases.h"
 
 namespace exactff::text {
 
@@ -31,9 +32,7 @@ std::string with_escaped_controls(const std::string& document) {
   for (std::size_t at = 0; at < document.size();) {
     const Character c = character_at(document, at);
     if (c.code >= 0x7F && is_control(c.code)) {
-      constexpr const char* kDigits = "0123456789abcdef";
-      safe += "\\u";
-      for (const unsigned shift : {12U, 8U, 4U, 0U}) safe += kDigits[(c.code >> shift) & 0xFU];
+      safe += "\\u" + hexadecimal(c.code, 4);
     } else {
       safe.append(document, at, c.bytes);
     }

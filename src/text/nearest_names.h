@@ -1,4 +1,4 @@
-// Suggestions for a misspelt name.
+// Lists of names, and suggestions for a misspelt one.
 #pragma once
 
 #include <algorithm>
@@ -15,6 +15,14 @@ inline std::string in_lower_case(std::string_view text) {
   std::string lower(text);
   for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return lower;
+}
+
+// "a, b, c"
+template <class Name>
+std::string joined(const std::vector<Name>& names) {
+  std::string list;
+  for (const std::string_view name : names) list += (list.empty() ? "" : ", ") + std::string(name);
+  return list;
 }
 
 // Insertions, deletions and replacements between two words, or any number above `limit` where there are more.

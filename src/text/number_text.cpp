@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 #include "kernel/numbers.h"
+#include "text/nearest_names.h"
 #include "text/text_lines.h"
 
 namespace exactff::text {
@@ -17,12 +18,6 @@ namespace exactff::text {
 namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
 
 // The parts of [+-] whole [. fraction] [e exponent].
 struct Decimal {
@@ -112,7 +107,7 @@ double magnitude_of(const Decimal& number) {
 }
 
 NumberFault fault_of(std::string_view text) {
-  std::string word = lower_case(text);
+  std::string word = in_lower_case(text);
   if (word.starts_with('+') || word.starts_with('-')) word.erase(0, 1);
   if (word.starts_with("nan") || word.starts_with("inf") || word.starts_with("1.#")) return NumberFault::kNotFinite;
   if (word.starts_with("0x")) return NumberFault::kHexadecimal;
@@ -120,9 +115,20 @@ NumberFault fault_of(std::string_view text) {
   return text.find(',') != std::string_view::npos && split(word).valid ? NumberFault::kComma : NumberFault::kNotANumber;
 }
 
+// Nearly all numbers: std::from_chars reads the whole text, and it begins as a number, not as "nan" or "inf".
+std::optional<double> plain_number(std::string_view text) {
+  const char first = text.empty() ? '\0' : text[text.front() == '-' && text.size() > 1 ? 1 : 0];
+  if (!is_digit(first) && first != '.') return std::nullopt;
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value == 0.0 ? 0.0 : value;  // no -0
+}
+
 }  // namespace
 
 ParsedNumber parse_number(std::string_view text) {
+  if (const auto value = plain_number(text)) return {*value, NumberFault::kNone};
   const Decimal number = split(text);
   if (!number.valid) return {0.0, fault_of(text)};
   const double magnitude = magnitude_of(number);

@@ -38,14 +38,18 @@ std::string shortest(double value) {
   return {buffer.data(), end.ptr};
 }
 
+std::string rounded_plainly(double value, int digits) {
+  std::array<char, 64> buffer;
+  const auto end =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
+  return {buffer.data(), end.ptr};
+}
+
 std::string rounded(double value, int digits) {
   if (value == 0.0) return "0";
   const double magnitude = std::abs(value);
   if (magnitude >= 100.0 && magnitude < 1e7) return fixed(value, 0);
-  std::array<char, 64> buffer;
-  const auto end =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
-  return with_power_of_ten({buffer.data(), end.ptr});
+  return with_power_of_ten(short_number(value, digits));
 }
 
 std::string duration(double seconds) {
@@ -88,10 +92,16 @@ std::string counted_of(std::size_t count, std::size_t whole, std::string_view no
 }
 
 std::string short_number(double value, int digits) {
-  std::array<char, 32> buffer;
+  std::array<char, 64> buffer;
   const auto end =
       std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
   return {buffer.data(), end.ptr};
+}
+
+std::string hexadecimal(std::uint64_t value, std::size_t digits) {
+  std::string text(digits, '0');
+  for (std::size_t i = digits; i-- > 0; value >>= 4U) text[i] = "0123456789abcdef"[value & 15U];
+  return text;
 }
 
 std::string program_version() { return std::string("exactff ") + kVersion; }

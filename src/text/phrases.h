@@ -13,6 +13,8 @@ namespace exactff::text {
 
 // For readers: `digits` significant digits, "0.0123", "1.2·10⁻⁷"; numbers from 100 to 10^7 are rounded to units.
 [[nodiscard]] std::string rounded(double value, int digits = 3);
+// The same in plain characters: "1.2e-07".
+[[nodiscard]] std::string rounded_plainly(double value, int digits);
 
 // `digits` significant digits in plain characters, suitable as the value of a flag: "0.0123", "1.2e-07".
 [[nodiscard]] std::string short_number(double value, int digits = 3);
@@ -34,6 +36,9 @@ namespace exactff::text {
 
 // "{c} of {whole} {noun}s", or "every one of ...".
 [[nodiscard]] std::string counted_of(std::size_t count, std::size_t whole, std::string_view noun);
+
+// The low bits of a number as `digits` hexadecimal digits.
+[[nodiscard]] std::string hexadecimal(std::uint64_t value, std::size_t digits);
 
 // The version as all outputs state it: "exactff 0.1.0".
 [[nodiscard]] std::string program_version();

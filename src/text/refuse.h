@@ -1,6 +1,7 @@
-// Refuses input that no file and line belongs to, such as flags that contradict each other.
+// Refuses input that no line belongs to: flags that contradict each other, or a file or folder as a whole.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <utility>
 
@@ -10,6 +11,11 @@ namespace exactff::text {
 
 [[noreturn]] inline void refuse(std::string what, std::string why, std::string suggestion) {
   throw InputError({.what = std::move(what), .why = std::move(why), .suggestion = std::move(suggestion)});
+}
+
+[[noreturn]] inline void refuse(const std::filesystem::path& file, std::string what, std::string why,
+                                std::string suggestion) {
+  throw InputError(Problem{file.string(), 0, std::move(what), std::move(why), std::move(suggestion)});
 }
 
 }  // namespace exactff::text

@@ -1,7 +1,6 @@
 #include "exactff/settings.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -12,30 +11,17 @@
 #include "kernel/float_environment.h"
 #include "text/nearest_names.h"
 #include "text/number_text.h"
+#include "text/phrases.h"
 #include "text/refuse.h"
 
 namespace exactff {
 
 namespace {
 
-template <class Number>
-std::string shortest(Number value) {
-  std::array<char, 64> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  return {buffer.data(), end.ptr};
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
-  return list;
-}
-
-// "from 1 to 10", "of at least 0", or nothing.
-template <class Number>
-std::string range(Number lowest, Number highest, bool bounded_above) {
-  if (bounded_above) return " from " + shortest(lowest) + " to " + shortest(highest);
-  return " of at least " + shortest(lowest);
+// " from 1 to 10", " of at least 0".
+std::string range(const SettingValue& lowest, const SettingValue& highest, bool bounded_above) {
+  if (bounded_above) return " from " + to_string(lowest) + " to " + to_string(highest);
+  return " of at least " + to_string(lowest);
 }
 
 std::int64_t whole_of(double bound) {
@@ -122,20 +108,20 @@ SettingSpec seed_setting() {
 }
 
 std::string allowed(const SettingSpec& spec) {
-  if (std::holds_alternative<std::string>(spec.fallback)) return "one of " + joined(spec.words);
+  if (std::holds_alternative<std::string>(spec.fallback)) return "one of " + text::joined(spec.words);
   if (std::holds_alternative<double>(spec.fallback)) {
     return "a number" + range(spec.lowest, spec.highest, spec.highest < std::numeric_limits<double>::max());
   }
   const std::int64_t lowest = whole_of(spec.lowest), highest = whole_of(spec.highest);
   const std::string bounds = range(lowest, highest, highest < std::numeric_limits<std::int64_t>::max());
   if (spec.multiple_of == 2) return "an even whole number" + bounds;
-  return (spec.multiple_of == 1 ? "a whole number" : "a multiple of " + shortest(spec.multiple_of)) + bounds;
+  return (spec.multiple_of == 1 ? "a whole number" : "a multiple of " + std::to_string(spec.multiple_of)) + bounds;
 }
 
 std::string to_string(const SettingValue& value) {
   if (const auto* word = std::get_if<std::string>(&value)) return *word;
-  if (const auto* whole = std::get_if<std::int64_t>(&value)) return shortest(*whole);
-  return shortest(std::get<double>(value));
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
+  return text::shortest(std::get<double>(value));
 }
 
 Settings::Settings(std::vector<SettingSpec> specs)
@@ -156,14 +142,12 @@ std::size_t Settings::must_find(std::string_view name) const {
   if (place < values_.size()) return place;
   std::vector<std::string_view> names;
   for (const SettingSpec& spec : specs()) names.emplace_back(spec.name);
-  std::string list;
-  for (const std::string_view known : names) list += (list.empty() ? "settings are " : ", ") + std::string(known);
   std::string suggestion;
   for (const std::string_view near : text::nearest_names(names, name, 1)) {
     suggestion = "did you mean " + std::string(near) + "?";
   }
-  text::refuse("there is no setting '" + std::string(name) + "'", names.empty() ? "there are no settings" : list,
-               suggestion);
+  text::refuse("there is no setting '" + std::string(name) + "'",
+               names.empty() ? "there are no settings" : "settings are " + text::joined(names), suggestion);
 }
 
 void Settings::set(std::string_view name, const SettingValue& value) {

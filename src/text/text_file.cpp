@@ -24,10 +24,7 @@ namespace {
   throw InputError({file, 0, "cannot be read to its end", reason, "give " + purpose + " that can be read"});
 }
 
-}  // namespace
-
-std::size_t read_text_block(std::istream& in, std::span<char> block, const std::string& file,
-                            const std::string& purpose) {
+std::size_t read_block(std::istream& in, std::span<char> block, const std::string& file, const std::string& purpose) {
   if (!in) return 0;
   errno = 0;
   try {
@@ -36,8 +33,19 @@ std::size_t read_text_block(std::istream& in, std::span<char> block, const std::
     cannot_read(file, purpose);
   }
   if (in.bad()) cannot_read(file, purpose);
-  const auto count = static_cast<std::size_t>(in.gcount());
-  if (std::memchr(block.data(), '\0', count) != nullptr) refuse_binary(file, {block.data(), count}, purpose);
+  return static_cast<std::size_t>(in.gcount());
+}
+
+}  // namespace
+
+void require_text(std::string_view bytes, const std::string& file, const std::string& purpose) {
+  if (bytes.find('\0') != std::string_view::npos) refuse_binary(file, bytes, purpose);
+}
+
+std::size_t read_text_block(std::istream& in, std::span<char> block, const std::string& file,
+                            const std::string& purpose) {
+  const std::size_t count = read_block(in, block, file, purpose);
+  require_text({block.data(), count}, file, purpose);
   return count;
 }
 
@@ -57,6 +65,18 @@ std::ifstream open_text_file(const std::filesystem::path& path, const std::strin
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError({path.string(), 0, "cannot be opened", std::strerror(errno), "check the path"});
   return in;
+}
+
+std::string read_file(const std::filesystem::path& path, const std::string& purpose) {
+  std::error_code ignored;
+  const bool device = std::filesystem::is_character_file(path, ignored);
+  std::ifstream in = open_text_file(path, purpose);
+  std::string bytes;
+  std::array<char, 1 << 16> block{};
+  const std::string file = path.string();
+  while (const std::size_t count = (device ? read_text_block : read_block)(in, block, file, purpose))
+    bytes.append(block.data(), count);
+  return bytes;
 }
 
 std::string read_text_file(const std::filesystem::path& path, const std::string& purpose) {

@@ -1,4 +1,4 @@
-// Input files as text, read as a whole or refused with the reason.
+// Input files, read as a whole or refused with the reason.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +7,7 @@
 #include <istream>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace exactff::text {
 
@@ -17,7 +18,12 @@ namespace exactff::text {
 // The same from an open stream, called `file` in messages.
 [[nodiscard]] std::string read_text(std::istream& in, const std::string& file, const std::string& purpose);
 
-// The same in two steps, for files that need not be held as a whole. A block is full unless the file ends in it;
+// The same for a file that may be binary. A device is read only if it gives text: it might never end.
+[[nodiscard]] std::string read_file(const std::filesystem::path& path, const std::string& purpose);
+// Throws InputError if the bytes are no text, as read_text_file does.
+void require_text(std::string_view bytes, const std::string& file, const std::string& purpose);
+
+// read_text_file in two steps, for files that need not be held as a whole. A block is full unless the file ends in it;
 // returns 0 at the end.
 [[nodiscard]] std::ifstream open_text_file(const std::filesystem::path& path, const std::string& purpose);
 [[nodiscard]] std::size_t read_text_block(std::istream& in, std::span<char> block, const std::string& file,

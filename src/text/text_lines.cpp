@@ -7,11 +7,11 @@ namespace exactff::text {
 
 namespace {
 
-constexpr std::string_view kBlanks = " \t\v\f\r\n";
+constexpr bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 std::string_view without_comment(std::string_view text) {
   for (std::size_t at = text.find('#'); at != std::string_view::npos; at = text.find('#', at + 1)) {
-    if (at == 0 || kBlanks.find(text[at - 1]) != std::string_view::npos) return text.substr(0, at);
+    if (at == 0 || is_blank(text[at - 1])) return text.substr(0, at);
   }
   return text;
 }
@@ -19,14 +19,18 @@ std::string_view without_comment(std::string_view text) {
 }  // namespace
 
 std::string_view trimmed(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-  return text.substr(0, text.find_last_not_of(kBlanks) + 1);
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
 }
 
 std::string_view take_word(std::string_view& text) {
-  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-  const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
-  text.remove_prefix(word.size());
+  std::size_t begin = 0;
+  while (begin < text.size() && is_blank(text[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < text.size() && !is_blank(text[end])) ++end;
+  const std::string_view word = text.substr(begin, end - begin);
+  text.remove_prefix(end);
   return word;
 }
 
@@ -40,35 +44,45 @@ std::string in_quotes(std::string_view text, std::size_t shown) {
   return "'" + text::printable(text::beginning(text, shown)) + (text.size() > shown ? "...'" : "'");
 }
 
-TextLines::TextLines(std::string_view text) : rest_(text) {
+PlainLines::PlainLines(std::string_view text, std::size_t lines_before) : text_(text), number_(lines_before) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF";  // of the byte order
-  if (rest_.starts_with(kMark)) rest_.remove_prefix(kMark.size());
+  if (text_.starts_with(kMark)) text_.remove_prefix(kMark.size());
+  next_feed_ = std::min(text_.find('\n'), text_.size());
+  next_return_ = std::min(text_.find('\r'), text_.size());
 }
 
-std::string_view TextLines::take_physical() {
-  const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
-  const std::string_view line = rest_.substr(0, end);
-  rest_.remove_prefix(end);
-  cut_off_ = rest_.empty() && !trimmed(line).empty();
-  rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : std::min<std::size_t>(rest_.size(), 1));
-  ++number_;
-  const std::string_view data = without_comment(line);
+bool PlainLines::next(TextLine& line) {
+  if (at_ >= text_.size()) return false;
+  if (next_feed_ < at_) next_feed_ = std::min(text_.find('\n', at_), text_.size());
+  if (next_return_ < at_) next_return_ = std::min(text_.find('\r', at_), text_.size());
+  const std::size_t end = std::min(next_feed_, next_return_);
+  line = {++number_, text_.substr(at_, end - at_)};
+  cut_off_ = end == text_.size() && !trimmed(line.text).empty();
+  at_ = end + (next_feed_ == next_return_ + 1 ? 2 : 1);
+  return true;
+}
+
+bool TextLines::take_physical(TextLine& line) {
+  TextLine physical;
+  if (!lines_.next(physical)) return false;
+  const std::string_view data = without_comment(physical.text);
   // A backslash before a comment joins nothing. It is removed, since it would otherwise be the last character.
-  return data.size() < line.size() && trimmed(data).ends_with('\\') ? data.substr(0, data.rfind('\\')) : trimmed(data);
+  const bool ends_before_comment = data.size() < physical.text.size() && trimmed(data).ends_with('\\');
+  line = {physical.number, ends_before_comment ? data.substr(0, data.rfind('\\')) : trimmed(data)};
+  return true;
 }
 
 bool TextLines::next(TextLine& line) {
-  if (rest_.empty()) return false;
-  line.text = take_physical();
-  line.number = number_;
+  if (!take_physical(line)) return false;
   if (!line.text.ends_with('\\')) return true;
   joined_.clear();
+  const std::size_t number = line.number;
   while (line.text.ends_with('\\')) {
     joined_.append(line.text.substr(0, line.text.size() - 1)).push_back(' ');
-    line.text = rest_.empty() ? std::string_view{} : take_physical();
+    if (!take_physical(line)) line.text = {};
   }
   joined_.append(line.text);
-  line.text = trimmed(joined_);
+  line = {number, trimmed(joined_)};
   return true;
 }
 

@@ -1,4 +1,4 @@
-// The lines and words of OBJ and MTL files, and a list that collects their problems.
+// The lines and words of scene files, and a list that collects their problems.
 #pragma once
 
 #include <algorithm>
@@ -11,27 +11,45 @@
 
 namespace exactff::text {
 
-// A line without comment and outer blanks; lines that end in a backslash are joined with the next by a blank.
 struct TextLine {
-  std::size_t number = 0;  // of its first physical line, from 1
+  std::size_t number = 0;  // from 1
   std::string_view text;   // valid until the next call
 };
 
-// Reads lines that end in LF, CRLF, CR or the end of the text. A comment starts with a '#' at the start of a word
-// and ends with its line, backslash or not. A UTF-8 byte order mark at the start is skipped.
-class TextLines {
+// Reads physical lines, which end in LF, CRLF, CR or the end of the text. Removes only the line ends, and a UTF-8 byte
+// order mark at the start.
+class PlainLines {
  public:
-  explicit TextLines(std::string_view text);
+  // `lines_before` lines of the file precede the text.
+  explicit PlainLines(std::string_view text, std::size_t lines_before = 0);
   bool next(TextLine& line);
-  // After all lines are read: true if the last line is not blank and lacks its line end.
+  // True if the last line read is not blank and lacks its line end.
   bool is_cut_off() const { return cut_off_; }
+  std::size_t bytes_left() const { return text_.size() - std::min(at_, text_.size()); }
 
  private:
-  std::string_view take_physical();
-
-  std::string_view rest_;
-  std::size_t number_ = 0;  // of the last physical line taken
+  std::string_view text_;
+  std::size_t at_ = 0;
+  std::size_t next_feed_;  // positions of the next LF and CR, at_ or later: each is searched for once
+  std::size_t next_return_;
+  std::size_t number_;
   bool cut_off_ = false;
+};
+
+// Reads the lines of OBJ and MTL files without comments and outer blanks. A line that ends in a backslash is joined
+// with the next by a blank; its number is that of the first. A comment starts with a '#' at the start of a word and
+// ends with its physical line, backslash or not.
+class TextLines {
+ public:
+  explicit TextLines(std::string_view text) : lines_(text) {}
+  bool next(TextLine& line);
+  // After all lines are read: true if the last line is not blank and lacks its line end.
+  bool is_cut_off() const { return lines_.is_cut_off(); }
+
+ private:
+  bool take_physical(TextLine& line);
+
+  PlainLines lines_;
   std::string joined_;
 };
 

@@ -70,6 +70,18 @@ void require_free(const fs::path& file, Existing existing) {
   }
 }
 
+namespace {
+
+// Cells of a grid were once named by column and row, "12,7".
+std::string about_old_ids(std::string_view line) {
+  const bool of_grid = line.starts_with("# receivers: ") && line.find(", grid ") != std::string_view::npos;
+  return of_grid ? ". If only the hash differs, the file may be of an older version, which named the cell r7c12 of a "
+                   "grid '12,7'; such a file cannot be continued or merged"
+                 : "";
+}
+
+}  // namespace
+
 void require_same_head(const fs::path& file, std::string_view head, std::string_view other, const std::string& whose,
                        const std::string& suggestion) {
   const std::string_view common =
@@ -81,7 +93,7 @@ void require_same_head(const fs::path& file, std::string_view head, std::string_
                     .line = static_cast<std::size_t>(std::count(common.begin(), common.end(), '\n')) + 1,
                     .what = "belongs to a different request: it says '" + shortened(line_at(head, line)) + "', and " +
                             whose + " '" + shortened(line_at(other, line)) + "'",
-                    .why = "rows of different requests must not be mixed",
+                    .why = "rows of different requests must not be mixed" + about_old_ids(line_at(head, line)),
                     .suggestion = suggestion});
 }
 
@@ -184,6 +196,12 @@ std::vector<Block> RowJournal::blocks() const {
   std::vector<Block> sorted = blocks_;
   std::sort(sorted.begin(), sorted.end(), [](const Block& a, const Block& b) { return a.range.first < b.range.first; });
   return sorted;
+}
+
+void Pace::add(std::uint64_t rows) {
+  if (hooks_.cancelled && hooks_.cancelled()) throw Cancelled();
+  done_ += rows;
+  if (hooks_.progress) hooks_.progress({stage_, done_, total_});
 }
 
 }  // namespace exactff::truth

@@ -2,11 +2,8 @@
 // lost or waits in memory for a slower one. The journal is a CSV file with comment lines between the blocks.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
-#include <functional>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,6 +54,19 @@ class RowJournal {
   std::vector<Block> blocks_;
   std::uint64_t end_ = 0;
   std::uint64_t synced_ = 0;
+};
+
+// Reports progress in rows. Throws Cancelled if the hooks request it.
+class Pace {
+ public:
+  Pace(std::string_view stage, std::uint64_t total, const Hooks& hooks) : stage_(stage), total_(total), hooks_(hooks) {}
+  void add(std::uint64_t rows);
+
+ private:
+  std::string_view stage_;
+  std::uint64_t total_;
+  const Hooks& hooks_;
+  std::uint64_t done_ = 0;
 };
 
 }  // namespace exactff::truth

@@ -7,15 +7,14 @@
 
 #include "kernel/float_environment.h"
 #include "text/phrases.h"
-#include "truth/assemble.h"
-#include "truth/blocks.h"
+#include "text/refuse.h"
 #include "truth/journal.h"
-#include "work/file.h"
 
 namespace exactff::truth {
 namespace {
 
 namespace fs = std::filesystem;
+using text::refuse;
 
 constexpr std::string_view kShardLine = "# shard: ";
 constexpr std::string_view kRowsLine = "# rows: ";
@@ -49,10 +48,6 @@ bool read_shard(std::string_view text, Shard& shard) {
   text.remove_prefix(1);
   return read_number(text, shard.count) && shard.number >= 1 && shard.number <= shard.count &&
          text.starts_with(" in chunks of " + std::to_string(kChunkRows) + " rows");
-}
-
-[[noreturn]] void refuse(const fs::path& file, std::string what, std::string why, std::string suggestion) {
-  throw InputError(Problem{file.string(), 0, std::move(what), std::move(why), std::move(suggestion)});
 }
 
 std::uint64_t chunks_of(const ShardFile& shard) {
@@ -135,7 +130,7 @@ Shards read_all(const std::vector<fs::path>& paths, Pace& pace) {
 }
 
 void require_all(const Shards& shards) {
-  if (shards.empty()) refuse({}, "no shard is named", "there is nothing to merge", "name the files of the shards");
+  if (shards.empty()) refuse("no shard is named", "there is nothing to merge", "name the files of the shards");
   const std::uint64_t count = shards.begin()->second.shard.count;
   if (shards.size() == count) return;
   constexpr std::size_t kMostNamed = 20;
@@ -144,7 +139,7 @@ void require_all(const Shards& shards) {
     if (!shards.contains(number)) missing.push_back(std::to_string(number));
   }
   if (missing.size() > kMostNamed) missing.back() = "more";
-  refuse({}, "of " + text::counted(count, "shard") + " these are missing: " + text::enumerate(missing),
+  refuse("of " + text::counted(count, "shard") + " these are missing: " + text::enumerate(missing),
          "every row is needed", "add these files");
 }
 

@@ -12,6 +12,7 @@
 #include "text/escape.h"
 #include "text/fnv1a.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "work/parallel.h"
 
 namespace exactff::truth {
@@ -35,22 +36,23 @@ std::string hash_of(const std::vector<Receiver>& receivers) {
 
 void complete(Request& request) {
   require_scene(request.scene);
-  const auto refuse = [](std::string file, std::string what, std::string why, std::string suggestion) {
-    throw InputError(Problem{std::move(file), 0, std::move(what), std::move(why), std::move(suggestion)});
-  };
   if (request.receivers.empty()) {
-    refuse({}, "there are no receivers in " + request.receivers_name, "a truth file has a row for each receiver",
-           "use a finer grid or another patch");
+    text::refuse("there are no receivers in " + request.receivers_name, "a truth file has a row for each receiver",
+                 "use a finer grid or another patch");
   }
   if (request.sources.empty()) request.sources = request.scene->emitters();
   if (request.sources.empty()) {
-    refuse(request.scene_name, "no patch emits", "a truth file has a row for each source",
-           "name a source with --source");
+    text::refuse(request.scene_name, "no patch emits", "a truth file has a row for each source",
+                 "name a source with --source");
+  }
+  if (request.uv && !std::ranges::all_of(request.receivers, [](const Receiver& r) { return r.cell.has_value(); })) {
+    text::refuse("the receivers have no u and v", "only the cells of a grid have coordinates on their lattice",
+                 "make the receivers by --grid, or leave out --uv");
   }
   const Shard& shard = request.shard;
   if (shard.number < 1 || shard.number > shard.count) {
-    refuse({}, "there is no shard " + std::to_string(shard.number) + " of " + std::to_string(shard.count),
-           "shards are numbered from 1", "write --shard 1/4 for the first of four");
+    text::refuse("there is no shard " + std::to_string(shard.number) + " of " + std::to_string(shard.count),
+                 "shards are numbered from 1", "write --shard 1/4 for the first of four");
   }
   if (request.threads <= 0) request.threads = work::usable_threads();
 }
@@ -65,6 +67,7 @@ Rows::Rows(Request request) : request_(std::move(request)) {
     radiosities_.push_back(request_.scene->source_radiosity(source));
   }
   receivers_hash_ = hash_of(request_.receivers);
+  near_misses_ = sentences(near_misses(*request_.scene, request_.receivers), request_.receivers.size());
 }
 
 std::uint64_t Rows::shard_rows() const {
@@ -81,11 +84,28 @@ bool Rows::may_be_one_block(Range range) const {
          chunk % request_.shard.count == request_.shard.number - 1;
 }
 
+namespace {
+
+std::string names_line(const Scene& scene, const std::string& key, const std::vector<Selection>& selections) {
+  std::string line;
+  for (const Selection& one : selections)
+    line += (line.empty() ? "# " + key + ": " : " + ") + text::csv_comment(scene.name_of(one));
+  return line.empty() ? line : line + '\n';
+}
+
+std::string changes_of(const Scene& scene) {
+  return names_line(scene, "flipped", scene.flipped()) + names_line(scene, "transparent", scene.transparent());
+}
+
+}  // namespace
+
 std::string Rows::head() const {
+  const Scene& scene = *request_.scene;
   std::ostringstream out;
   out << "# exactff " << kVersion << " truth: form factors, correctly rounded, between proved bounds\n"
-      << "# scene: " << text::csv_comment(request_.scene_name) << ", hash " << request_.scene->hash() << '\n'
-      << "# receivers: " << text::csv_comment(request_.receivers_name) << ", hash " << receivers_hash_ << '\n'
+      << "# scene: " << text::csv_comment(request_.scene_name) << ", hash " << scene.hash() << '\n'
+      << changes_of(scene) << "# receivers: " << text::csv_comment(request_.receivers_name) << ", hash "
+      << receivers_hash_ << '\n'
       << "# sources: ";
   for (std::size_t s = 0; s < source_names_.size(); ++s)
     out << (s > 0 ? " + " : "") << text::csv_comment(source_names_[s]);
@@ -97,17 +117,23 @@ std::string Rows::head() const {
     out << "# shard: " << shard.number << '/' << shard.count << " in chunks of " << kChunkRows
         << " rows, for exactff merge\n";
   }
+  for (const std::string& sentence : near_misses_) out << "# warning: " << text::csv_comment(sentence) << '\n';
   if (request_.unit_normals) {
     out << "# unit normals: ux,uy,uz is nx,ny,nz scaled to length 1, correctly rounded; the values belong to "
            "nx,ny,nz\n";
   }
-  out << "receiver,on,x,y,z,nx,ny,nz" << (request_.unit_normals ? ",ux,uy,uz" : "") << ",source,exact,lower,upper"
-      << (request_.unoccluded ? ",unoccluded" : "") << (request_.visible_fraction ? ",visible_fraction" : "")
+  out << "receiver,on,x,y,z,nx,ny,nz" << (request_.unit_normals ? ",ux,uy,uz" : "") << (request_.uv ? ",u,v" : "")
+      << ",source,exact,lower,upper" << (request_.unoccluded ? ",unoccluded" : "")
+      << (request_.visible_fraction ? ",visible_fraction" : "")
       << ",radiosity_r,radiosity_g,radiosity_b,largest_rho_b,status\n";
   return std::move(out).str();
 }
 
 namespace {
+
+const GridSize& size_of(const Receiver& receiver) { return receiver.cell->lattice->size; }
+// Of the centre of a cell; from 0 to 1, correctly rounded.
+double place_along(int cell, int cells) { return (2.0 * cell - 1.0) / (2.0 * cells); }
 
 // True if no occluder hides anything of what is above the horizon: F is then the same as without occluders.
 bool nothing_in_the_shaft(const FormFactor& result) {
@@ -129,6 +155,10 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
   text::CsvRow line(lines);
   line << id(row / sources_.size()) << request_.scene->name_of(receiver.on) << receiver.point << receiver.normal;
   if (request_.unit_normals) line << results.unit_normal.of(receiver.normal);
+  if (request_.uv) {
+    line << place_along(receiver.cell->column, size_of(receiver).u)
+         << place_along(receiver.cell->row, size_of(receiver).v);
+  }
   line << source_names_[source] << f.value << f.lower << f.upper;
   if (request_.unoccluded) {
     const FormFactor& free = without_occluders(receiver, sources_[source], results);

@@ -60,6 +60,7 @@ class Rows {
   std::vector<std::string> source_names_;
   std::vector<Rgb> radiosities_;  // indexed by source
   std::string receivers_hash_;
+  std::vector<std::string> near_misses_;  // in sentences
 };
 
 // Counts rows by their status, which is the last field of each row.

@@ -10,16 +10,6 @@ using kernel::ExactVec3;
 using kernel::Integer;
 using kernel::Ring;
 
-namespace {
-
-std::vector<int> sides_of(const Ring& ring, const Direction& normal) {
-  std::vector<int> signs(ring.size());
-  std::transform(ring.begin(), ring.end(), signs.begin(), [&](const Direction& t) { return side(normal, t); });
-  return signs;
-}
-
-}  // namespace
-
 // Repeated clips construct corners from constructed corners: without the division the numbers would grow with each
 // clip.
 Direction crossing(const ExactVec3& a, const Integer& da, const ExactVec3& b, const Integer& db) {
@@ -29,7 +19,8 @@ Direction crossing(const ExactVec3& a, const Integer& da, const ExactVec3& b, co
 }
 
 ClipResult clip(Ring& ring, const Direction& normal) {
-  const std::vector<int> signs = sides_of(ring, normal);
+  std::vector<int> signs(ring.size());
+  std::transform(ring.begin(), ring.end(), signs.begin(), [&](const Direction& t) { return side(normal, t); });
   if (std::none_of(signs.begin(), signs.end(), [](int s) { return s > 0; })) {
     ring.clear();
     return ClipResult::kEmpty;

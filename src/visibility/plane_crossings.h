@@ -11,9 +11,9 @@
 #include <optional>
 
 #include "exactff/geometry.h"
+#include "kernel/direction.h"
 #include "kernel/double_double.h"
 #include "kernel/exact_vec.h"
-#include "kernel/fine_direction.h"
 
 namespace exactff::visibility {
 

@@ -2,8 +2,8 @@
 // edge_walk.h and boolean_walk.h. No radiometry.
 #pragma once
 
-#include <boost/container/small_vector.hpp>
 #include <algorithm>
+#include <boost/container/small_vector.hpp>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -27,7 +27,7 @@ struct View {
 
   const Scene& scene;
   Vec3 x;
-  Vec3 n;  // the receiver's normal
+  Vec3 n;                      // the receiver's normal
   std::span<const FaceId> on;  // the receiver's own faces
 
   [[nodiscard]] bool is_own(FaceId face) const { return std::ranges::find(on, face) != on.end(); }

@@ -45,9 +45,9 @@ Vec3 point_at(const Rounded& a, const Rounded& b, const visibility::EdgeParamete
   return a.direction * (1.0 / (1.0 + ratio)) + b.direction * (ratio / (1.0 + ratio));
 }
 
+using kernel::double_double::root;
 using kernel::lanes::Four;
 using kernel::lanes::four;
-using kernel::reals::root;
 
 // The angle of (cosine, sine) for sine >= 0, accurate to some units in the last place. With y / x at most 1, the
 // tangent is that of an angle from 0 to pi / 4 or, if it is above tan(pi / 8), of an angle from -pi / 8 to 0 relative

@@ -111,7 +111,8 @@ TEST(Oracle, AgreesForReceiversOnFaces) {
     const PlainScene plain = random.one_in(2) ? nudged_scene(random) : degenerate_scene(random);
     const Scene scene = generate::build(plain);
     Receiver receiver = generate::receiver_of(plain);
-    for (std::uint64_t own = random.below(4); receiver.on.size() <= own;) receiver.on.push_back(any_face(scene, random));
+    for (std::uint64_t own = random.below(4); receiver.on.size() <= own;)
+      receiver.on.push_back(any_face(scene, random));
     ASSERT_EQ(disagreement(scene, receiver, scene.select(plain.source)), "")
         << "on " << scene.name_of(receiver.on) << ", seed " << seed_of(i) << '\n'
         << generate::to_obj(plain);

@@ -34,7 +34,8 @@ void check(const Scene& scene, const std::vector<Receiver>& receivers) {
   for (const Receiver& receiver : receivers) {
     if (!finite(receiver.point) || !finite(receiver.normal)) fail("a receiver that is not finite");
     if (receiver.normal == Vec3{}) fail("a receiver without a normal");
-    if (!receiver.on.empty() && index_of(receiver.on.front()) >= scene.faces().size()) fail("a receiver on a face that is not there");
+    if (!receiver.on.empty() && index_of(receiver.on.front()) >= scene.faces().size())
+      fail("a receiver on a face that is not there");
     if (receiver.id.empty() || !ids.insert(receiver.id).second) fail("a receiver without an id of its own");
     if (ids.size() > kSolved) continue;
     const FormFactor f = exact_form_factor(scene, receiver, source, {.engine = Engine::kBoth});

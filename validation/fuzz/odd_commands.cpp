@@ -170,6 +170,7 @@ class CommandWriter {
     const std::string& kind = row.value;
     if (!row.choices.empty()) return random_.one_in(40) ? odd_name(random_) : one_of(random_, row.choices);
     if (kind.starts_with("SCENE")) return scene();
+    if (kind == "OUT") return written_scene();
     if (kind == "X Y Z") return coordinate(inputs_.scene.point, place);
     if (kind == "NX NY NZ") return coordinate(inputs_.scene.normal, place);
     if (kind.starts_with("NAME[:K]")) return patch();
@@ -191,7 +192,13 @@ class CommandWriter {
   std::string scene() {
     if (random_.one_in(6)) return odd_model(random_);
     if (table_.name == "compare" && random_.one_in(6)) return "in/run.study";
+    if (random_.one_in(8)) return one_of<std::string>(random_, {"in/scene.ply", "in/scene.stl", "in/scene.vs3"});
     return random_.one_in(40) ? odd_place() : "in/scene.obj";
+  }
+
+  std::string written_scene() {
+    if (random_.one_in(20)) return odd_place();
+    return "out/scene" + one_of<std::string>(random_, {".obj", ".ply", ".stl", ".off", ".vs3", ".dae"});
   }
 
   // Places where no file can be read or written, or should not be.
@@ -321,8 +328,8 @@ cli::ProgramTable own_table() {
 
 std::vector<Words> odd_commands(const cli::ProgramTable& program, const OddInputs& inputs, Random& random) {
   // stress uses its own scenes, and merge reads only a few files.
-  const std::vector<std::string> often = {"point", "point", "point", "compare", "compare",
-                                          "truth", "truth", "check", "check",   "info"};
+  const std::vector<std::string> often = {"point", "point", "point", "compare", "compare", "truth",
+                                          "truth", "check", "check", "info",    "convert"};
   const std::string name =
       random.one_in(6) ? program.commands[random.below(program.commands.size())].name : one_of(random, often);
   if (random.one_in(150))

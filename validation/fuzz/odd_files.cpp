@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "exactff/scene_files.h"
 #include "fuzz/scene_bytes.h"
 #include "generate/families.h"
 #include "support/random_scenes.h"
@@ -90,6 +91,17 @@ void add_scene(OddInputs& inputs, Random& random) {
     }
     inputs.files["in/scene.mtl"] = generate::to_mtl(scene);
     inputs.scene = std::move(scene);
+    return;
+  }
+}
+
+// The same scene in other formats, unless it cannot be built.
+void add_other_formats(OddInputs& inputs) {
+  try {
+    const Scene scene = generate::build(inputs.scene);
+    for (const char* path : {"in/scene.ply", "in/scene.stl", "in/scene.vs3"})
+      inputs.files[path] = scene_files(scene, path).files.back().bytes;
+  } catch (const InputError&) {
     return;
   }
 }
@@ -246,6 +258,7 @@ std::string odd_number(Random& random) {
 OddInputs odd_inputs(Random& random) {
   OddInputs inputs;
   add_scene(inputs, random);
+  add_other_formats(inputs);
   inputs.files["in/receivers.csv"] = odd_receivers(inputs.scene, random);
   add_tables(inputs.files, random);
   inputs.files["in/run.study"] = odd_study(inputs.scene, random);

@@ -170,7 +170,36 @@ def judge_words(data):
         raise Wrong(f"control character {ord(found.group()):#04x}")
 
 
-JUDGES = {".csv": judge_csv, ".json": judge_json, ".svg": judge_xml, ".xml": judge_xml, ".html": judge_html,
+def judge_binary_ply(data):
+    header, _, rest = data.partition(b"end_header\n")
+    vertices, faces = (int(re.search(rb"element %s (\d+)" % name, header).group(1)) for name in (b"vertex", b"face"))
+    if b"property list uchar" not in header:
+        return  # lists of more than 255 corners
+    at = 24 * vertices
+    for _ in range(faces):
+        at += 1 + 4 * rest[at] + (4 if b"property uint patch" in header else 0)
+    if at != len(rest):
+        raise Wrong(f"{len(rest)} bytes of data instead of {at}")
+
+
+# Names in them are the bytes from the scene file, but numbers stand where they are expected.
+def judge_scene(data):
+    if data.startswith(b"ply\nformat binary"):
+        return judge_binary_ply(data)
+    if data[:7] == b"written":
+        if len(data) != 84 + 50 * int.from_bytes(data[80:84], "little"):
+            raise Wrong("binary STL of a wrong length")
+        return
+    if data and not data.endswith(b"\n"):
+        raise Wrong("the last line has no end")
+    for line in data.splitlines():
+        words = line.split()
+        if words and words[0] in (b"v", b"V", b"vertex", b"Kd", b"Ke") and NO_NUMBER.search(line.decode("latin-1")):
+            raise Wrong("a number that is none")
+
+
+SCENES = {extension: judge_scene for extension in (".obj", ".mtl", ".ply", ".stl", ".off", ".vs3")}
+JUDGES = {**SCENES, ".csv": judge_csv, ".json": judge_json, ".svg": judge_xml, ".xml": judge_xml, ".html": judge_html,
           ".part": lambda data: None}
 FORMS = {"json": lambda data: judge_json(data, {"front"}), "plain": judge_plain, "text": judge_words}
 

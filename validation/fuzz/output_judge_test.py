@@ -72,6 +72,15 @@ class Judge(unittest.TestCase):
         self.expect_file("not closed", "a.html", "<p>a")
         self.expect_file("a bare <", "a.html", "<p>1 < 2</p>")
 
+    def test_scenes(self):
+        self.expect_file("", "a.obj", b"g caf\xe9\nv 0 1 2e-3\n")
+        self.expect_file("no end", "a.off", "OFF\n1 0 0\n0 0 0")
+        self.expect_file("a number that is none", "a.obj", "v 0 nan 0\n")
+        self.expect_file("wrong length", "a.stl", b"written".ljust(80) + b"\1\0\0\0")
+        head = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nelement face 1\nproperty list uchar\nend_header\n"
+        self.expect_file("", "a.ply", head.encode() + b"\0" * 24 + b"\3" + b"\0" * 12)
+        self.expect_file("38 bytes of data instead of 37", "a.ply", head.encode() + b"\0" * 24 + b"\3" + b"\0" * 13)
+
     def test_csv(self):
         self.expect_file("", "a.csv", '# c\na,b_error\n1,"x ""y"""\n1,nan\n')
         self.expect_file("a row of 3 fields", "a.csv", "a,b\n1,2,3\n")

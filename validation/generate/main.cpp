@@ -6,7 +6,7 @@
 #include <iostream>
 
 #include "exactff/models.h"
-#include "models/families.h"
+#include "generate/families.h"
 #include "models/model_files.h"
 
 namespace {

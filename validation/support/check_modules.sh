@@ -14,6 +14,7 @@ declare -A allowed=(
   [visibility]="receivers scene kernel"
   [contour]="visibility kernel"
   [exact]="contour visibility receivers scene text kernel"
+  [diagnosis]="exact receivers scene text kernel"
   [sampled]="receivers scene kernel"
   [methods]="sampled exact receivers scene text kernel"
   [models]="receivers scene text kernel"
@@ -31,7 +32,7 @@ declare -A allowed=(
 
 # The module of a public header that is not named after it.
 declare -A home=(
-  [enclosure]=kernel [geometry]=kernel [error]=text [settings]=text [version]=text [progress]=work [obj]=formats
+  [enclosure]=kernel [geometry]=kernel [error]=text [settings]=text [version]=text [progress]=work [obj]=formats [scene_files]=formats
   [receiver]=receivers [record]=visibility [adaptive]=sampled [visibility_svg]=report [testing]=check [team]=truth
 )
 

@@ -80,7 +80,7 @@ std::string disagreement(const FormFactor& result, const OracleResult& truth) {
 Receiver receiver_in(const Scene& scene, const PlainScene& plain) {
   Receiver receiver = generate::receiver_of(plain);
   const auto on = std::ranges::find(scene.patches(), "on", &Patch::name);
-  if (on != scene.patches().end()) receiver.on = on->faces.front();
+  if (on != scene.patches().end()) receiver.on = {on->faces.front()};
   return receiver;
 }
 

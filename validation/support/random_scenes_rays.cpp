@@ -540,7 +540,7 @@ void move(PlainScene& scene, Random& random) {
 void renumber(PlainScene& scene, Random& random) {
   std::vector<std::uint32_t> number(scene.vertices.size());
   std::iota(number.begin(), number.end(), 0u);
-  random.shuffle(number);
+  shuffle(random, number);
   const std::vector<Vec3> old = scene.vertices;
   for (std::size_t i = 0; i < old.size(); ++i) scene.vertices[number[i]] = old[i];
   for (PlainPatch& patch : scene.patches) {

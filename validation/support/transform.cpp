@@ -57,7 +57,7 @@ namespace {
 void shuffle_vertices(PlainScene& scene, Random& random) {
   std::vector<std::uint32_t> order(scene.vertices.size());
   std::iota(order.begin(), order.end(), 0u);
-  random.shuffle(order);
+  shuffle(random, order);
   const std::vector<Vec3> old = scene.vertices;
   for (std::size_t i = 0; i < old.size(); ++i) scene.vertices[order[i]] = old[i];
   for (PlainPatch& patch : scene.patches) {
@@ -82,9 +82,9 @@ bool all_planar(const Scene& scene) {
 
 PlainScene shuffled(const PlainScene& scene, Random& random) {
   PlainScene out = scene;
-  random.shuffle(out.patches);
+  shuffle(random, out.patches);
   for (PlainPatch& patch : out.patches) {
-    random.shuffle(patch.faces);
+    shuffle(random, patch.faces);
     for (PlainFace& face : patch.faces) {
       for (Ring& ring : face.rings) rotate(ring, random);
     }

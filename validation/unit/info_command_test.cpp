@@ -52,7 +52,7 @@ TEST(InfoCommand, ListsPatchesEmittersAndDoubtfulFaces) {
       "bent:1 (off by ",
       "zero area, ignored: bent:2\n",
       "unusable, left out: none\n",
-      "open edges: 8\n",
+      "open edges: 8 (an odd number of faces uses them)\n",
       " --on floor --source lamp --grid 16x16 -o DIR",
   };
   for (const char* line : lines) EXPECT_TRUE(holds(run.output, line)) << line << "\nin\n" << run.output;

@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "methods/even_split.h"
 #include "methods/unit_points.h"
 #include "methods_support.h"
 
@@ -218,7 +217,7 @@ TEST(EvenSplit, PartsTileThePatch) {
     const SubPatch whole = sampled::make_sub_patch(polygon);
     for (const int m : {1, 2, 5}) {
       std::vector<SubPatch> parts;
-      methods::split_evenly(whole, m, parts);
+      sampled::split_evenly(whole, m, parts);
       EXPECT_EQ(parts.size(), static_cast<std::size_t>(m * m));
       double total = 0.0;
       for (const SubPatch& part : parts) {

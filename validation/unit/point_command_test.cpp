@@ -68,7 +68,7 @@ TEST_F(PointCommand, NegativeNumbersAreNumbersAndNotFlags) {
 }
 
 TEST_F(PointCommand, DigitsAreCertifiedDecimals) {
-  EXPECT_EQ(up({"--source", "plate", "--flip", "--plain", "--digits", "30"}).exit_code, 0);
+  EXPECT_EQ(up({"--source", "plate", "--flip", "plate", "--plain", "--digits", "30"}).exit_code, 0);
   const ProgramRun run = up({"--source", "light", "--plain", "--digits", "30"});
   EXPECT_EQ(run.output, "0.314669953518798448298026682526\n");
 }
@@ -78,7 +78,7 @@ TEST_F(PointCommand, FlipTurnsTheSource) {
                                           "0",    "-1", "--source", "light", "--plain"};
   EXPECT_EQ(point(above).output, "0\n");
   std::vector<std::string> flipped = above;
-  flipped.push_back("--flip");
+  flipped.insert(flipped.end(), {"--flip", "light"});
   EXPECT_EQ(point(flipped).output, "0.554126423979572\n");
 }
 

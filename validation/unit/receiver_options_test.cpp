@@ -88,12 +88,12 @@ class ReceiverFlags : public testing::Test {
 TEST_F(ReceiverFlags, AGridIsDescribedAndItsCellsNamed) {
   const Truth run = truth({"--on", "floor", "--grid", "2x1"});
   EXPECT_EQ(run.comment("receivers"), "# receivers: floor, grid 2x1");
-  EXPECT_EQ(run.ids(), (Words{"\"1,1\"", "\"2,1\""}));
+  EXPECT_EQ(run.ids(), (Words{"r1c1", "r1c2"}));
 }
 
 TEST_F(ReceiverFlags, AGridOnSeveralFacesNamesThem) {
   const Truth run = truth({"--on", "lid", "--grid", "1x2"});
-  EXPECT_EQ(run.ids(), (Words{"\"lid:1/1,1\"", "\"lid:2/1,1\"", "\"lid:2/1,2\""}));
+  EXPECT_EQ(run.ids(), (Words{"lid:1/r1c1", "lid:2/r1c1", "lid:2/r2c1"}));
 }
 
 TEST_F(ReceiverFlags, Vertices) {

@@ -455,7 +455,8 @@ TEST(SampleReceivers, FacesFarApartInScaleKeepTheirShares) {
   const double wide = 0x1p500, narrow = 0x1p-500;
   const Scene scene = scene_of({polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}),
                                 polygon({{0, 0, 1}, {wide, 0, 1}, {wide, narrow, 1}, {0, narrow, 1}})});
-  expect_shares(counts_by(samples_of(scene, 2000), 2, [](const Receiver& r) { return index_of(r.on.front()); }), {1, 1});
+  expect_shares(counts_by(samples_of(scene, 2000), 2, [](const Receiver& r) { return index_of(r.on.front()); }),
+                {1, 1});
 }
 
 TEST(SampleReceivers, APowerOfTwoScalesThem) {

@@ -35,8 +35,8 @@ TEST(GridReceivers, CentresOfARectangleAreExactAndURunsFastest) {
   EXPECT_EQ(receivers[0].point, (Vec3{1, 0.5, 0}));
   EXPECT_EQ(receivers[1].point, (Vec3{3, 0.5, 0}));
   EXPECT_EQ(receivers[2].point, (Vec3{1, 1.5, 0}));
-  EXPECT_EQ(receivers[1].id, "2,1");
-  EXPECT_EQ(receivers[3].id, "2,2");
+  EXPECT_EQ(receivers[1].id, "r1c2");
+  EXPECT_EQ(receivers[3].id, "r2c2");
 }
 
 TEST(GridReceivers, RememberTheFaceAndCarryItsNewellVector) {
@@ -79,7 +79,7 @@ TEST(GridReceivers, AnotherFaceKeepsTheCentresInsideItsBoundingRectangle) {
   EXPECT_EQ(receivers[0].point, (Vec3{0.5, 0.5, 0}));
   EXPECT_EQ(receivers[1].point, (Vec3{1.5, 0.5, 0}));
   EXPECT_EQ(receivers[2].point, (Vec3{0.5, 1.5, 0}));
-  EXPECT_EQ(receivers[2].id, "1,2");
+  EXPECT_EQ(receivers[2].id, "r2c1");
 }
 
 TEST(GridReceivers, ACentreOnAnEdgeOrACornerIsNotInside) {
@@ -128,13 +128,24 @@ TEST(GridReceivers, ACountBelowOneIsRefused) {
   EXPECT_THROW((void)grid(scene, 0, 4), InputError);
 }
 
-TEST(GridReceivers, TheCellIsReadBackFromTheId) {
-  const Scene scene = one_face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2, 3}});
-  const auto cell = grid_cell(grid(scene, 5, 5)[7]);
-  ASSERT_TRUE(cell.has_value());
-  EXPECT_EQ(cell->column, 3);
-  EXPECT_EQ(cell->row, 2);
-  EXPECT_FALSE(grid_cell(Receiver{{}, {0, 0, 1}, {}, "3,2"}).has_value());
+TEST(GridReceivers, KnowTheirCell) {
+  const Scene scene = one_face({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}}, {{0, 1, 2, 3}});
+  const Receiver receiver = grid(scene, 5, 5)[7];
+  ASSERT_TRUE(receiver.cell.has_value());
+  EXPECT_EQ(receiver.cell->column, 3);
+  EXPECT_EQ(receiver.cell->row, 2);
+  EXPECT_EQ(receiver.id, "r2c3");
+  EXPECT_EQ(receiver.cell->lattice->size.u, 5);
+  EXPECT_EQ(receiver.cell->lattice->width, 2.0);
+  EXPECT_EQ(receiver.cell->lattice->height, 1.0);
+}
+
+TEST(GridReceivers, TheLatticeOfAnyOtherFaceIsItsBoundingRectangle) {
+  const Scene scene = one_face({{0, 0, 0}, {3, 4, 0}, {0, 0, 2}}, {{0, 1, 2}});
+  const auto receivers = grid(scene, 2, 2);
+  ASSERT_FALSE(receivers.empty());
+  EXPECT_DOUBLE_EQ(receivers[0].cell->lattice->width, 5.0);
+  EXPECT_DOUBLE_EQ(receivers[0].cell->lattice->height, 2.0);
 }
 
 TEST(GridReceivers, OnSeveralFacesIdsMayBeMadeUnique) {
@@ -148,23 +159,18 @@ TEST(GridReceivers, OnSeveralFacesIdsMayBeMadeUnique) {
   const std::vector<FaceId> both = {FaceId{0}, FaceId{1}, FaceId{2}}, one = {FaceId{0}, FaceId{1}};
   const auto receivers = grid_receivers(scene, both, {2, 1}, GridIds::kUnique);
   ASSERT_EQ(receivers.size(), 4U);
-  EXPECT_EQ(receivers[1].id, "slab:1/2,1");
-  EXPECT_EQ(receivers[2].id, "slab:3/1,1");
-  EXPECT_EQ(grid_receivers(scene, both, {2, 1})[2].id, "1,1");
-  EXPECT_EQ(grid_receivers(scene, one, {2, 1}, GridIds::kUnique)[1].id, "2,1");
-  const auto cell = grid_cell(receivers[1]);
-  ASSERT_TRUE(cell.has_value());
-  EXPECT_EQ(cell->column, 2);
-  EXPECT_EQ(cell->row, 1);
+  EXPECT_EQ(receivers[1].id, "slab:1/r1c2");
+  EXPECT_EQ(receivers[2].id, "slab:3/r1c1");
+  EXPECT_EQ(grid_receivers(scene, both, {2, 1})[2].id, "r1c1");
+  EXPECT_EQ(grid_receivers(scene, one, {2, 1}, GridIds::kUnique)[1].id, "r1c2");
 }
 
 TEST(GridReceivers, OtherReceiversHaveNoCell) {
   const Scene scene = one_face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2, 3}});
   const std::vector<FaceId> faces = {FaceId{0}};
-  EXPECT_FALSE(grid_cell(vertex_receivers(scene, faces)[0]).has_value());
-  EXPECT_FALSE(grid_cell(centre_receivers(scene, faces)[0]).has_value());
-  EXPECT_FALSE(grid_cell(sample_receivers(scene, faces, 1, 1)[0]).has_value());
-  EXPECT_FALSE(grid_cell(Receiver{{}, {0, 0, 1}, {FaceId{0}}, "here/3,2"}).has_value());
+  EXPECT_FALSE(vertex_receivers(scene, faces)[0].cell.has_value());
+  EXPECT_FALSE(centre_receivers(scene, faces)[0].cell.has_value());
+  EXPECT_FALSE(sample_receivers(scene, faces, 1, 1)[0].cell.has_value());
 }
 
 class ReceiverFile : public ::testing::Test {
@@ -227,7 +233,7 @@ TEST_F(ReceiverFile, NeedsNeitherIdNorOn) {
 }
 
 TEST_F(ReceiverFile, APatchOfOneFaceNamesThatFace) {
-  EXPECT_EQ(read("x,y,z,nx,ny,nz,on\n1,2,3,0,0,1,lid\n")[0].on, FaceId{2});
+  EXPECT_EQ(read("x,y,z,nx,ny,nz,on\n1,2,3,0,0,1,lid\n")[0].on, std::vector{FaceId{2}});
 }
 
 TEST_F(ReceiverFile, FaultsNameTheLineAndWhatIsWrong) {

@@ -12,10 +12,8 @@
 #include "stress/closed_form.h"
 #include "stress/double_formulas.h"
 #include "stress/family.h"
-#include "stress/figures.h"
-#include "stress/report_page.h"
+#include "stress/report.h"
 #include "stress/stage.h"
-#include "stress/tables.h"
 #include "support/program.h"
 
 namespace exactff::stress {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "exactff/study.h"
-#include "report/report_page.h"
+#include "report/report.h"
 #include "report/verdicts.h"
 #include "study/ladders.h"
 #include "study/method_runs.h"

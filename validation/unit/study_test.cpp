@@ -16,7 +16,7 @@
 #include "exactff/report.h"
 #include "page/gnuplot.h"
 #include "report/figures.h"
-#include "report/report_page.h"
+#include "report/report.h"
 #include "report/tables.h"
 #include "study/settings.h"
 #include "study/silent_errors.h"

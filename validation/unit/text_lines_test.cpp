@@ -40,6 +40,28 @@ TEST(TextLines, WordsAreSeparatedByBlanksAndTabs) {
   EXPECT_TRUE(text::words(" \t").empty());
 }
 
+TEST(PlainLines, NothingIsRemovedButLineEnds) {
+  text::PlainLines lines("\xEF\xBB\xBF a # b \\\r\n\rc\n\r\n \nd", 10);
+  Lines all;
+  for (text::TextLine line; lines.next(line);) {
+    all.emplace_back(line.number, line.text);
+    EXPECT_EQ(lines.is_cut_off(), line.number == 16);
+  }
+  EXPECT_EQ(all, (Lines{{11, " a # b \\"}, {12, ""}, {13, "c"}, {14, ""}, {15, " "}, {16, "d"}}));
+  EXPECT_EQ(lines.bytes_left(), 0U);
+}
+
+TEST(PlainLines, ManyLinesOfEitherEndTakeLinearTime) {
+  for (const char* end : {"\n", "\r", "\r\n"}) {
+    std::string text;
+    for (int i = 0; i < 300'000; ++i) text += end;
+    text::PlainLines lines(text);
+    std::size_t count = 0;
+    for (text::TextLine line; lines.next(line);) ++count;
+    EXPECT_EQ(count, 300'000U);
+  }
+}
+
 TEST(ProblemList, KeepsAThousandAndCountsTheRest) {
   text::ProblemList list;
   for (std::size_t i = 0; i < 1500; ++i) list.add({"f", 1500 - i, "wrong", "", ""});

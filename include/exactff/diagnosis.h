@@ -1,0 +1,63 @@
+// Likely slips of modelling in a scene, and in a question about it. No value depends on anything here, so diagnoses may
+// use estimates and tolerances. Each finding comes with numbers and, where there is one, with the flag that mends it.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exactff/error.h"
+#include "exactff/receiver.h"
+#include "exactff/scene.h"
+
+namespace exactff::diagnosis {
+
+enum class Kind {
+  kNormals,           // normals in the file (vn) contradict the winding
+  kInwardSurface,     // a closed surface looks inward, but encloses nothing, and there are faces outside
+  kUnseenFront,       // no other patch can see the front of a patch
+  kEmitterLooksAway,  // nothing lies before the front of an emitter
+  kDoubledFaces,      // two faces have the same corners and the same front
+  kOppositeFaces,     // two faces have the same corners and opposite fronts
+  kScale,             // coordinates suggest a wrong unit
+};
+[[nodiscard]] std::string_view name_of(Kind kind);  // "unseen-front"
+
+struct Finding {
+  Kind kind{};
+  std::vector<Selection> objects = {};  // what it is about: patches, or faces of patches of which only some are meant
+  std::string flag = {};                // what mends it: "--flip lamp"; empty if no flag does, or if it would be long
+  Problem words = {};                   // words.message() is the sentence
+};
+
+// At most one finding of each kind, in the order of Kind. Transparent and flipped faces are taken as they are.
+//
+// kNormals, kDoubledFaces, kOppositeFaces: complete. kInwardSurface: from volumes and solid angles in doubles.
+// kUnseenFront, kEmitterLooksAway: an estimate. Rays from a few points of a patch, and lines to the faces before it,
+// look for one that another patch can see. A patch that can only be seen through narrow gaps may be reported. The
+// number of rays and lines in a scene is limited, so that 100,000 faces take about a second; patches beyond it are not
+// reported.
+[[nodiscard]] std::vector<Finding> diagnose(const Scene& scene);
+
+// Receivers and a source for a first try: a patch or a face each.
+struct FirstTry {
+  Selection on;
+  Selection source;
+};
+// The source emits if any patch does. Neither is without area, and they are not the same face. Prefers a pair that
+// faces each other. Nothing if the scene has fewer than two faces with area.
+[[nodiscard]] std::optional<FirstTry> first_try(const Scene& scene);
+
+// "turn it round with --flip lamp", or, if that has been done, "leave out --flip for lamp". For a shell.
+[[nodiscard]] std::string advice_to_flip(const Scene& scene, std::span<const Selection> selections);
+
+// Sources that are proved to give 0 at every receiver for a reason that suggests a slip: the receivers are behind the
+// source, the source is below their horizon, or a face on which they lie hides it. One warning for each source, with
+// counts and what to do. `sources` may be empty, for every patch that emits. A source on which all receivers lie is
+// left out if there are others. Of more than 10,000 receivers, 10,000 are looked at.
+[[nodiscard]] std::vector<Problem> warnings_of_dark_sources(const Scene& scene, std::span<const Receiver> receivers,
+                                                            std::span<const Selection> sources);
+
+}  // namespace exactff::diagnosis

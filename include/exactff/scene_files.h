@@ -1,0 +1,57 @@
+// Reads scenes from files of several formats, and writes them.
+//
+// read_scene recognises the format by the content of the file and, where that leaves a choice, by its extension:
+//
+// - Wavefront OBJ with MTL: see obj.h.
+// - PLY, in text and in both binary forms. Faces are polygons. An integer property `patch` (otherwise `material_index`)
+//   of the faces makes patches `patch_N` (`material_N`), or of the name that a comment "patch N NAME" gives.
+// - STL, in text and binary. A solid is a patch, with the rest of its line as its name. A vertex is shared if its
+// doubles
+//   are equal. Fronts follow from the order of the vertices; stored normals are ignored.
+// - OFF, in text.
+// - View3D (.vs3). A surface is a patch; a combined surface belongs to the patch of the other one; obstruction surfaces
+//   form one patch. Kd is 1 - emittance. Subsurfaces are cut from their base exactly, or refused.
+//
+// Files without materials get Kd 1 and Ke 0. Text is read as doubles, correctly rounded, even where a PLY header says
+// float. Files of other known kinds (glTF, VTK, STEP, IFC, FBX, Blender, ...) are refused with the name of a converter.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exactff/scene.h"
+
+namespace exactff {
+
+// Throws one InputError with all problems found, each with a line, or an offset in bytes in a binary file.
+[[nodiscard]] Scene read_scene(const std::filesystem::path& path, const SceneOptions& options = {});
+
+// As above, from the bytes of the file. `path` stands for it in messages, gives the extension and locates MTL files.
+[[nodiscard]] Scene read_scene(std::string_view bytes, const std::filesystem::path& path,
+                               const SceneOptions& options = {});
+
+enum class Encoding {
+  kDefault,  // binary for PLY, text for the others
+  kText,     // PLY, STL
+  kBinary,   // PLY with doubles, little-endian; STL, whose binary form has floats
+};
+
+// The files that hold a scene, and what they do not hold.
+struct SceneFiles {
+  struct File {
+    std::filesystem::path path;
+    std::string bytes;
+  };
+  std::vector<File> files;  // the last one is the one asked for; before it, its MTL file
+  std::vector<Problem> losses;
+};
+
+// The format follows from the extension of `path`: .obj, .ply, .stl, .off or .vs3. Nothing is written. Doubles are kept
+// except in binary STL. Faces that the format cannot hold are cut into polygons that it can, at existing vertices, so
+// that form factors do not change. Throws InputError for another extension, or an encoding that the format lacks.
+[[nodiscard]] SceneFiles scene_files(const Scene& scene, const std::filesystem::path& path,
+                                     Encoding encoding = Encoding::kDefault);
+
+}  // namespace exactff

@@ -1,0 +1,76 @@
+// exactff convert: writes a scene in another format.
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include "cli/command.h"
+#include "cli/output.h"
+#include "exactff/scene_files.h"
+#include "flags/scene.h"
+#include "text/escape.h"
+#include "text/phrases.h"
+
+namespace exactff::cli {
+namespace {
+
+constexpr const char* kConvertFooter =
+    "The extension of OUT says what is written: .obj (with .mtl), .ply, .stl, .off or .vs3 (View3D). Doubles are "
+    "kept,\n"
+    "except in binary STL. What the format does not hold (names, materials, colours, holes, polygons) is listed as\n"
+    "warnings before anything is written. Where faces are cut into smaller ones, at their own vertices, form factors "
+    "do\n"
+    "not change. A file appears complete or not at all.\n"
+    "\n"
+    "Example:\n"
+    "  exactff convert room.obj room.ply\n"
+    "  exactff convert @teapot:segments=4 teapot.stl";
+
+struct ConvertArguments {
+  flags::SceneArguments scene;
+  std::string out;
+  std::string encoding;
+  bool force = false;
+
+  [[nodiscard]] Encoding chosen_encoding() const {
+    return encoding.empty() ? Encoding::kDefault : encoding == "text" ? Encoding::kText : Encoding::kBinary;
+  }
+};
+
+void require_free(const std::filesystem::path& path, bool force) {
+  std::error_code ignored;
+  if (force || !std::filesystem::is_regular_file(path, ignored)) return;
+  throw InputError({path.string(), 0, "already exists", "it may hold something else",
+                    "name another file, or replace it with --force"});
+}
+
+int run(const ConvertArguments& args) {
+  require_free(args.out, args.force);  // checked before anything that takes time
+  const Scene scene = args.scene.load();
+  print_warnings(scene.warnings());
+  const SceneFiles result = scene_files(scene, args.out, args.chosen_encoding());
+  for (const SceneFiles::File& file : result.files) require_free(file.path, args.force);
+  print_warnings(result.losses);
+  for (const SceneFiles::File& file : result.files) write_whole_file(file.path, file.bytes);
+  for (const SceneFiles::File& file : result.files)
+    std::cout << "wrote " << text::printable(file.path.string()) << '\n';
+  check_output(std::cout);
+  return 0;
+}
+
+}  // namespace
+
+Command add_convert(CLI::App& app) {
+  auto args = std::make_shared<ConvertArguments>();
+  CLI::App* command = app.add_subcommand("convert", "Write a scene in another format");
+  args->scene.add_to(*command);
+  command->add_option("OUT", args->out, "File to write: .obj, .ply, .stl, .off or .vs3")->required();
+  command->add_option("--encoding", args->encoding, "Form of PLY (otherwise binary) and STL (otherwise text)")
+      ->check(CLI::IsMember({"text", "binary"}));
+  command->add_flag("--force", args->force, "Replace existing files");
+  command->footer(kConvertFooter);
+  return {command, [args] { return run(*args); }};
+}
+
+}  // namespace exactff::cli

@@ -1,0 +1,107 @@
+#include "formats/mesh_input.h"
+
+#include <charconv>
+#include <limits>
+#include <utility>
+
+#include "text/number_text.h"
+#include "text/phrases.h"
+
+namespace exactff::formats {
+
+namespace {
+
+constexpr std::size_t kMostIndices = std::numeric_limits<std::uint32_t>::max();
+
+}  // namespace
+
+std::optional<std::int64_t> whole_number(std::string_view word) {
+  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+MeshInput::MeshInput(const std::filesystem::path& path, const SceneOptions& options, std::string kind)
+    : file_(path.string()), options_(options), kind_(std::move(kind)), builder_(file_, options) {
+  builder_.add_material({std::string(kNoMaterial)});
+}
+
+Problem MeshInput::problem(const Place& place, std::string what, std::string why, std::string suggestion) const {
+  if (place.byte) what.insert(0, "byte " + std::to_string(*place.byte) + ": ");
+  return {file_, place.line, std::move(what), std::move(why), std::move(suggestion)};
+}
+
+void MeshInput::fail(const Place& place, std::string what, std::string why, std::string suggestion) {
+  problems_.add(problem(place, std::move(what), std::move(why), std::move(suggestion)));
+}
+
+void MeshInput::warn(const Place& place, std::string what, std::string why, std::string suggestion) {
+  builder_.warn(problem(place, std::move(what), std::move(why), std::move(suggestion)));
+}
+
+void MeshInput::give_up(const Place& place, std::string what, std::string why, std::string suggestion) {
+  fail(place, what, why, suggestion);
+  problems_.throw_if_any();
+  throw InputError(problem(place, std::move(what), std::move(why), std::move(suggestion)));
+}
+
+Vec3 MeshInput::take_point(std::string_view& words, std::size_t line, const char* usage) {
+  Vec3 point{};
+  for (double* const coordinate : {&point.x, &point.y, &point.z}) {
+    const std::string_view word = text::take_word(words);
+    if (word.empty()) {
+      fail(at_line(line), "a vertex has fewer than three coordinates", "a point needs all three", usage);
+      break;
+    }
+    const text::ParsedNumber number = text::parse_number(word);
+    if (number.fault != text::NumberFault::kNone)
+      fail(at_line(line), describe(number.fault, word), "a coordinate is one exact number", advice(number.fault));
+    *coordinate = number.value;
+  }
+  return point;
+}
+
+std::uint32_t MeshInput::add_vertex(const Vec3& position, const Place& place) {
+  if (builder_.vertex_count() == kMostIndices)
+    give_up(place, "more than 4294967295 vertices", "indices have 32 bits", "split the scene");
+  return builder_.add_vertex(position);
+}
+
+PatchId MeshInput::default_patch() {
+  if (!default_patch_) default_patch_ = builder_.patch(kDefaultPatch);
+  return *default_patch_;
+}
+
+void MeshInput::add_face(PatchId patch, MaterialId material, std::vector<std::vector<std::uint32_t>> rings,
+                         const Place& place) {
+  if (face_count_++ == kMostIndices)
+    give_up(place, "more than 4294967295 faces", "indices have 32 bits", "split the scene");
+  if (rings.front().size() < 3 && options_.bad_faces == BadFaces::kReject) {
+    fail(place, "a face has " + text::counted(rings.front().size(), "vertex", "vertices"),
+         "a polygon has at least three", "remove it, or skip bad faces with --skip-bad-faces");
+    return;  // the scene will not be built, and a face takes more memory here than in the file
+  }
+  builder_.add_face(patch, material, std::move(rings), place.line);
+}
+
+void MeshInput::add_face(PatchId patch, std::vector<std::uint32_t> ring, const Place& place) {
+  std::vector<std::vector<std::uint32_t>> rings;
+  rings.push_back(std::move(ring));
+  add_face(patch, no_material(), std::move(rings), place);
+}
+
+void MeshInput::warn_if_cut_off(const text::PlainLines& lines, std::size_t last_line) {
+  if (!lines.is_cut_off()) return;
+  warn(at_line(last_line), "the last line does not end with a newline", "the file may have been cut off there",
+       "add a newline if the file is complete");
+}
+
+Scene MeshInput::build() {
+  problems_.throw_if_any();
+  if (face_count_ == 0) give_up({}, "has no faces", "there is nothing to compute with", "is it " + kind_ + "?");
+  return builder_.build();
+}
+
+}  // namespace exactff::formats

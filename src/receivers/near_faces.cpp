@@ -1,0 +1,187 @@
+// Faces that a point given by coordinates lies on or near. All distances are estimates, in coordinates multiplied by a
+// power of two that brings the largest of the scene near 1; the side of a face is exact.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <tuple>
+
+#include "exactff/receiver.h"
+#include "kernel/exact_vec.h"
+#include "kernel/float_environment.h"
+#include "kernel/vec.h"
+#include "receivers/placing.h"
+#include "scene/extent.h"
+#include "scene/shaft_tree.h"
+#include "text/number_text.h"
+#include "text/phrases.h"
+
+namespace exactff {
+namespace {
+
+using kernel::cross;
+using kernel::difference;
+using kernel::dot;
+
+constexpr double kCosOfOneDegree = 0.99984769515639124;
+
+// Zero stays zero.
+Vec3 unit(const Vec3& v) {
+  const double largest = kernel::max_norm(v);
+  if (!(largest > 0.0)) return {};
+  const Vec3 safe{v.x / largest, v.y / largest, v.z / largest};
+  return kernel::scaled(safe, 1.0 / std::hypot(safe.x, safe.y, safe.z));
+}
+
+// A piece as it lies about the point, in scaled coordinates.
+struct Nearby {
+  FaceId face{};
+  Vec3 normal;            // unit
+  double height = 0.0;    // of the point above the plane of the piece
+  double distance = 0.0;  // of the point from the piece
+};
+
+class Search {
+ public:
+  Search(const Scene& scene, const Vec3& point, double tolerance)
+      : scene_(scene),
+        scale_(extent(scene).scale),
+        point_(kernel::scaled(point, scale_)),
+        tolerance_(tolerance * scale_) {
+    const HalfSpace box[] = {{{1, 0, 0}, -tolerance},  {{-1, 0, 0}, -tolerance}, {{0, 1, 0}, -tolerance},
+                             {{0, -1, 0}, -tolerance}, {{0, 0, 1}, -tolerance},  {{0, 0, -1}, -tolerance}};
+    shaft_tree(scene).query(point, box, [&](std::uint32_t piece) {
+      if (const auto found = look_at(scene.pieces()[piece])) found_.push_back(*found);
+      return true;
+    });
+  }
+
+  // Pieces whose plane and whose outline come within the tolerance of the point.
+  [[nodiscard]] const std::vector<Nearby>& found() const { return found_; }
+  [[nodiscard]] double in_the_scenes_unit(double length) const { return length / scale_; }
+
+ private:
+  [[nodiscard]] std::optional<Nearby> look_at(const Piece& piece) const {
+    const auto corners = scene_.corners(piece);
+    const auto corner = [&](std::size_t i) { return kernel::scaled(scene_.vertices()[corners[i]], scale_); };
+    const auto frame = [&](std::size_t i) { return kernel::scaled(scene_.vertices()[piece.frame[i]], scale_); };
+    const Vec3 normal = unit(cross(unit(difference(frame(1), frame(0))), unit(difference(frame(2), frame(1)))));
+    const double height = dot(normal, difference(point_, frame(0)));
+    if (!(std::abs(height) <= tolerance_)) return std::nullopt;
+    double beside = 0.0;  // distance of the foot from the piece
+    bool inside = true;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Vec3 p = corner(i), q = corner(i + 1 < corners.size() ? i + 1 : 0);
+      const Vec3 side = difference(q, p), to_point = difference(point_, p);
+      inside = inside && dot(normal, cross(side, to_point)) >= 0.0;
+      nearest = std::min(nearest, distance_from_side(side, to_point));
+    }
+    if (!inside) beside = std::sqrt(std::max(nearest * nearest - height * height, 0.0));
+    if (!(beside <= tolerance_)) return std::nullopt;
+    return Nearby{piece.face, normal, height, std::hypot(height, beside)};
+  }
+
+  static double distance_from_side(const Vec3& side, const Vec3& to_point) {
+    const double along = dot(side, to_point), square = dot(side, side);
+    const double share = square > 0.0 ? std::clamp(along / square, 0.0, 1.0) : 0.0;
+    const Vec3 off = difference(to_point, kernel::scaled(side, share));
+    return std::hypot(off.x, off.y, off.z);
+  }
+
+  const Scene& scene_;
+  double scale_;
+  Vec3 point_;
+  double tolerance_;
+  std::vector<Nearby> found_;
+};
+
+// Exact: +1 if the point is in front of the nearest piece of the face, 0 if it lies in that plane.
+int side_of(const Scene& scene, const Nearby& near, const Vec3& point) {
+  const auto vertices = scene.vertices();
+  for (const Piece& piece : scene.pieces_of(near.face)) {
+    const auto f = piece.frame;
+    const int side = kernel::orientation(vertices[f[0]], vertices[f[1]], vertices[f[2]], point);
+    if (side == 0 || (side > 0) == (near.height >= 0.0) || scene.face(near.face).piece_count == 1) return side;
+  }
+  return near.height < 0.0 ? -1 : 1;
+}
+
+// One unit of the last decimal with which a program would print the number; 0 for a number without decimals.
+double last_decimal(double value) {
+  const std::string text = text::shortest(value);
+  const std::size_t exponent_at = std::min(text.find('e'), text.size()), dot_at = text.find('.');
+  int places = dot_at < exponent_at ? static_cast<int>(exponent_at - dot_at) - 1 : 0;
+  if (exponent_at < text.size()) places -= std::stoi(text.substr(exponent_at + 1));
+  return places > 0 ? text::parse_number("1e-" + std::to_string(places)).value : 0.0;
+}
+
+double finest_decimal(const Vec3& point) {
+  double finest = 0.0;
+  for (const double c : {point.x, point.y, point.z}) {
+    const double unit = last_decimal(c);
+    if (unit > 0.0) finest = finest == 0.0 ? unit : std::min(finest, unit);
+  }
+  return finest;
+}
+
+}  // namespace
+
+double tolerance_of_computed_points(const Scene& scene) {
+  constexpr double kOfDiameter = 1e-6, kTwoFloatUlps = 0x1p-22;
+  const Extent& size = extent(scene);
+  return std::max(kOfDiameter * size.diameter, kTwoFloatUlps * size.largest);
+}
+
+double face_tolerance(const Scene& scene, const Vec3& point) {
+  constexpr double kMostOfDiameter = 1e-3;
+  return std::max(tolerance_of_computed_points(scene),
+                  std::min(finest_decimal(point), kMostOfDiameter * extent(scene).diameter));
+}
+
+namespace {
+
+// `best` first, then the other faces of its patch whose fronts agree with its front.
+std::vector<FaceId> own_faces(const Scene& scene, const Search& search, const Nearby& best) {
+  std::vector<FaceId> faces = {best.face};
+  for (const Nearby& near : search.found()) {
+    if (scene.face(near.face).patch != scene.face(best.face).patch) continue;
+    if (dot(near.normal, best.normal) < kCosOfOneDegree) continue;
+    if (std::ranges::find(faces, near.face) == faces.end()) faces.push_back(near.face);
+  }
+  std::sort(faces.begin() + 1, faces.end());
+  return faces;
+}
+
+}  // namespace
+
+std::vector<FaceId> own_faces(const Scene& scene, FaceId face, const Vec3& point, double tolerance) {
+  const Search search(scene, point, tolerance);
+  const auto best = std::ranges::find(search.found(), face, &Nearby::face);
+  return best != search.found().end() ? own_faces(scene, search, *best) : std::vector<FaceId>{face};
+}
+
+NearFaces find_faces(const Scene& scene, const Receiver& receiver, double tolerance) {
+  const kernel::StandardArithmetic arithmetic;
+  const Search search(scene, receiver.point, tolerance);
+  const Vec3 normal = unit(receiver.normal);
+  const Nearby* best = nullptr;
+  bool turned = false;
+  const auto rank = [](const Nearby& near, bool is_turned) {
+    return std::tuple(is_turned, near.distance, index_of(near.face));
+  };
+  for (const Nearby& near : search.found()) {
+    const double cosine = dot(normal, near.normal);
+    if (std::abs(cosine) < kCosOfOneDegree) continue;
+    if (best != nullptr && rank(*best, turned) <= rank(near, cosine < 0.0)) continue;
+    best = &near;
+    turned = cosine < 0.0;
+  }
+  if (best == nullptr) return {};
+  return {own_faces(scene, search, *best), search.in_the_scenes_unit(std::abs(best->height)),
+          side_of(scene, *best, receiver.point), turned};
+}
+
+}  // namespace exactff

@@ -1,0 +1,260 @@
+#include "receivers/region_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "kernel/expect.h"
+#include "scene/places.h"
+
+namespace exactff {
+
+using kernel::ExactVec3;
+using kernel::Integer;
+using kernel::Rational;
+using kernel::sign;
+
+namespace {
+
+using VertexRing = std::vector<std::uint32_t>;
+
+// The edges that are not shared, as rings of places.
+class Outline {
+ public:
+  Outline(const Scene& scene, const Region& region) : scene_(scene), places_(places(scene)) {
+    if (region.faces.size() == 1) {
+      rings_ = scene.face(region.faces.front()).rings;
+      return;
+    }
+    for (const FaceId face : region.faces) {
+      for (const VertexRing& ring : scene.face(face).rings) toggle(ring);
+    }
+    while (!edges_.empty()) rings_.push_back(take_ring(edges_.begin()->first));
+    begin_with_the_outer_ring();
+    rotate(rings_.front(), first_corner(region));
+    for (VertexRing& ring : rings_) remove_straight_corners(ring);
+    std::erase_if(rings_, [](const VertexRing& ring) { return ring.size() < 3; });
+    EXACTFF_EXPECT(!rings_.empty());
+  }
+
+  [[nodiscard]] const std::vector<VertexRing>& rings() const { return rings_; }
+
+ private:
+  void toggle(const VertexRing& ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const std::uint32_t from = places_[ring[i]], to = places_[ring[(i + 1) % ring.size()]];
+      if (from == to) continue;
+      const auto back = edges_.find({to, from});
+      if (back == edges_.end()) {
+        edges_.emplace(from, to);
+      } else {
+        edges_.erase(back);
+      }
+    }
+  }
+
+  // Follows the edges until they return to the first place.
+  VertexRing take_ring(std::uint32_t first) {
+    VertexRing ring;
+    std::uint32_t at = first;
+    do {
+      const auto edge = edges_.lower_bound({at, 0});
+      if (edge == edges_.end() || edge->first != at) break;
+      ring.push_back(at);
+      at = edge->second;
+      edges_.erase(edge);
+    } while (at != first);
+    return ring;
+  }
+
+  void begin_with_the_outer_ring() {
+    const FacePoints points = face_points(scene_.vertices(), rings_);
+    std::vector<ExactVec3> areas;
+    ExactVec3 sum;
+    for (std::size_t r = 0; r < rings_.size(); ++r) {
+      areas.push_back(newell(points, points.ring_start[r], points.ring_start[r + 1]));
+      sum = sum + areas.back();
+    }
+    std::size_t outer = 0;
+    for (std::size_t r = 1; r < rings_.size(); ++r) {
+      if (dot(areas[r], sum) > dot(areas[outer], sum)) outer = r;
+    }
+    std::rotate(rings_.begin(), rings_.begin() + static_cast<std::ptrdiff_t>(outer), rings_.end());
+  }
+
+  [[nodiscard]] std::uint32_t first_corner(const Region& region) const {
+    const VertexRing& outer = rings_.front();
+    for (const FaceId face : region.faces) {
+      for (const std::uint32_t v : scene_.face(face).rings.front()) {
+        if (std::ranges::find(outer, places_[v]) != outer.end()) return places_[v];
+      }
+    }
+    return outer.front();
+  }
+
+  static void rotate(VertexRing& ring, std::uint32_t first) {
+    std::rotate(ring.begin(), std::ranges::find(ring, first), ring.end());
+  }
+
+  [[nodiscard]] bool is_straight(const VertexRing& ring, std::size_t i) const {
+    const auto at = [&](std::size_t k) { return scene_.vertices()[ring[k % ring.size()]]; };
+    const ExactVec3 in = kernel::exact_difference(at(i), at(i + ring.size() - 1)).v;
+    const ExactVec3 out = kernel::exact_difference(at(i + 1), at(i)).v;
+    return kernel::is_zero(cross(in, out)) && sign(dot(in, out)) > 0;
+  }
+
+  // A ring that begins on a straight side begins where that side begins afterwards.
+  void remove_straight_corners(VertexRing& ring) const {
+    VertexRing kept;
+    bool first_is_straight = false;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      if (!is_straight(ring, i))
+        kept.push_back(ring[i]);
+      else if (i == 0)
+        first_is_straight = true;
+    }
+    if (first_is_straight && !kept.empty()) std::rotate(kept.begin(), kept.end() - 1, kept.end());
+    ring = std::move(kept);
+  }
+
+  const Scene& scene_;
+  std::span<const std::uint32_t> places_;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges_;
+  std::vector<VertexRing> rings_;
+};
+
+std::vector<VertexRing> with_tiles(const Scene& scene, const Region& region, std::vector<VertexRing> rings) {
+  for (const FaceId face : region.faces) {
+    for (const Piece& piece : scene.pieces_of(face)) {
+      const auto corners = scene.corners(piece);
+      rings.emplace_back(corners.begin(), corners.end());
+    }
+  }
+  return rings;
+}
+
+// The first rings of the points.
+FacePoints first_rings(const FacePoints& points, std::size_t count) {
+  FacePoints first = points;
+  first.ring_start.resize(count + 1);
+  first.vertex.resize(first.ring_start.back());
+  first.at.resize(first.ring_start.back());
+  return first;
+}
+
+// numerator / denominator / 2^bits, with a relative error below 2^-51.
+double as_double(const Integer& numerator, const Integer& denominator, long bits) {
+  long n = 0, d = 0;
+  const double above = mpz_get_d_2exp(&n, numerator.get_mpz_t()), below = mpz_get_d_2exp(&d, denominator.get_mpz_t());
+  return std::ldexp(above / below, static_cast<int>(std::clamp(n - d - bits, -2000L, 2000L)));
+}
+
+long longest(const std::vector<Integer>& values) {
+  std::size_t bits = 0;
+  for (const Integer& value : values) bits = std::max(bits, mpz_sizeinbase(value.get_mpz_t(), 2));
+  return static_cast<long>(bits);
+}
+
+}  // namespace
+
+RegionShape::RegionShape(const Scene& scene, const Region& region)
+    : RegionShape(scene, region, Outline(scene, region).rings()) {}
+
+RegionShape::RegionShape(const Scene& scene, const Region& region, const std::vector<VertexRing>& outline)
+    : points_(face_points(scene.vertices(), with_tiles(scene, region, outline))),
+      outline_(first_rings(points_, outline.size()), scene.vertices()[points_.vertex.front()]),
+      frame_(outline_) {
+  a_bits_ = longest(frame_.a());
+  b_bits_ = longest(frame_.b());
+  std::size_t ring = outline.size();
+  for (const FaceId face : region.faces) {
+    for (std::size_t k = scene.pieces_of(face).size(); k > 0; --k) add_tile(face, ring++);
+  }
+  fill_bins();
+}
+
+void RegionShape::add_tile(FaceId face, std::size_t ring) {
+  const std::size_t first = points_.ring_start[ring], last = points_.ring_start[ring + 1];
+  Tile tile{face, points_.at[first], newell(points_, first, last), {}, {}, {}, {}};
+  if (sign(dot(tile.normal, outline_.normal())) <= 0) return;
+  for (std::size_t i = first; i < last; ++i) {
+    const ExactVec3& p = points_.at[i];
+    planar_ = planar_ && sign(dot(outline_.normal(), p)) == 0;
+    tile.a.push_back(dot(frame_.e(), p));
+    tile.b.push_back(dot(frame_.f(), p));
+  }
+  a_bits_ = std::max(a_bits_, longest(tile.a));
+  b_bits_ = std::max(b_bits_, longest(tile.b));
+  tiles_.push_back(std::move(tile));
+}
+
+void RegionShape::fill_bins() {
+  const Integer one = 1;
+  bins_ = std::clamp<std::size_t>(static_cast<std::size_t>(std::sqrt(static_cast<double>(tiles_.size()))), 1, 256);
+  tiles_in_bin_.resize(bins_ * bins_);
+  for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
+    Tile& tile = tiles_[t];
+    for (const Integer& a : tile.a) tile.x.push_back(as_double(a, one, a_bits_));
+    for (const Integer& b : tile.b) tile.y.push_back(as_double(b, one, b_bits_));
+    constexpr double kMargin = 0x1p-48;
+    const auto [left, right] = std::ranges::minmax(tile.x);
+    const auto [low, high] = std::ranges::minmax(tile.y);
+    for (std::size_t v = bin_of(low - kMargin); v <= bin_of(high + kMargin); ++v) {
+      for (std::size_t u = bin_of(left - kMargin); u <= bin_of(right + kMargin); ++u) {
+        tiles_in_bin_[v * bins_ + u].push_back(t);
+      }
+    }
+  }
+}
+
+// Coordinates lie in [-1, 1].
+std::size_t RegionShape::bin_of(double t) const {
+  const double share = std::clamp(0.5 * (t + 1.0), 0.0, 1.0);
+  return std::min(static_cast<std::size_t>(share * static_cast<double>(bins_)), bins_ - 1);
+}
+
+// Positive: the place lies left of the tile's side that begins at the corner.
+int RegionShape::side(const Tile& tile, std::size_t corner, const Place& place) {
+  const std::size_t next = corner + 1 < tile.a.size() ? corner + 1 : 0;
+  const double rough = (tile.x[next] - tile.x[corner]) * (place.y - tile.y[corner]) -
+                       (tile.y[next] - tile.y[corner]) * (place.x - tile.x[corner]);
+  if (rough > kUncertain) return 1;
+  if (rough < -kUncertain) return -1;
+  const Integer along_a = tile.a[next] - tile.a[corner], along_b = tile.b[next] - tile.b[corner];
+  const Integer to_a = place.a.numerator - tile.a[corner] * place.a.denominator;
+  const Integer to_b = place.b.numerator - tile.b[corner] * place.b.denominator;
+  return sign(Integer(along_a * to_b * place.a.denominator - along_b * to_a * place.b.denominator));
+}
+
+std::optional<RegionShape::Foot> RegionShape::foot(const std::array<Rational, 3>& offset,
+                                                   const FaceFrame::Coordinate& a,
+                                                   const FaceFrame::Coordinate& b) const {
+  const Place place{a, b, as_double(a.numerator, a.denominator, a_bits_),
+                    as_double(b.numerator, b.denominator, b_bits_)};
+  for (const std::uint32_t t : tiles_in_bin_[bin_of(place.y) * bins_ + bin_of(place.x)]) {
+    const Tile& tile = tiles_[t];
+    int least = 1;
+    for (std::size_t i = 0; i < tile.a.size() && least >= 0; ++i) least = std::min(least, side(tile, i, place));
+    if (least < 0) continue;
+    if (least == 0 && !frame_.strictly_inside(a, b)) return std::nullopt;
+    return Foot{tile.face, outline_.rounded(planar_ ? offset : on_plane(tile, offset))};
+  }
+  return std::nullopt;
+}
+
+// Where the line through the point along the outline's normal meets the plane of the tile.
+std::array<Rational, 3> RegionShape::on_plane(const Tile& tile, const std::array<Rational, 3>& offset) const {
+  const ExactVec3& n = outline_.normal();
+  Rational height = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    height += (tile.corner[axis] - offset[static_cast<std::size_t>(axis)]) * tile.normal[axis];
+  }
+  height /= Rational(dot(tile.normal, n));
+  std::array<Rational, 3> at = offset;
+  for (int axis = 0; axis < 3; ++axis) at[static_cast<std::size_t>(axis)] += height * n[axis];
+  return at;
+}
+
+}  // namespace exactff

@@ -1,0 +1,73 @@
+// The faces of a region as one surface: its outline, and the face under a point of it.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "exactff/receiver.h"
+#include "receivers/face_plane.h"
+
+namespace exactff {
+
+// The outline runs as receiver.h says for grid_receivers.
+//
+// A point is located by the signs of determinants in the frame of the outline's plane. Coordinates there are first
+// brought to doubles in [-1, 1], with errors of at most 2^-51: two quotients of integers that are truncated to 53 bits.
+// Differences are then off by 2^-49, products of two of them (at most 4) by 2^-46, and a determinant by less than
+// kUncertain. Signs closer to zero are decided in integers.
+class RegionShape {
+ public:
+  RegionShape(const Scene& scene, const Region& region);
+  RegionShape(const RegionShape&) = delete;
+  RegionShape& operator=(const RegionShape&) = delete;
+
+  [[nodiscard]] const FacePlane& outline() const { return outline_; }
+  [[nodiscard]] const FaceFrame& frame() const { return frame_; }
+
+  struct Foot {
+    FaceId face{};
+    Vec3 point;
+  };
+  // The first face that the point lies on as seen along the outline's normal, and the point of that face, rounded once.
+  // Nothing if the point does not lie strictly inside the outline. `offset` is relative to the outline's first corner,
+  // in units of 2^exponent; a and b are its coordinates in the frame.
+  [[nodiscard]] std::optional<Foot> foot(const std::array<kernel::Rational, 3>& offset, const FaceFrame::Coordinate& a,
+                                         const FaceFrame::Coordinate& b) const;
+
+ private:
+  static constexpr double kUncertain = 0x1p-43;
+
+  // A convex piece of a face that is seen from its front along the outline's normal.
+  struct Tile {
+    FaceId face{};
+    kernel::ExactVec3 corner;
+    kernel::ExactVec3 normal;
+    std::vector<kernel::Integer> a, b;  // of the corners, in the frame
+    std::vector<double> x, y;           // the same as doubles
+  };
+  struct Place {
+    const FaceFrame::Coordinate& a;
+    const FaceFrame::Coordinate& b;
+    double x, y;
+  };
+
+  RegionShape(const Scene& scene, const Region& region, const std::vector<std::vector<std::uint32_t>>& outline);
+  void add_tile(FaceId face, std::size_t ring);
+  void fill_bins();
+  [[nodiscard]] std::size_t bin_of(double t) const;
+  [[nodiscard]] static int side(const Tile& tile, std::size_t corner, const Place& place);
+  [[nodiscard]] std::array<kernel::Rational, 3> on_plane(const Tile& tile,
+                                                         const std::array<kernel::Rational, 3>& offset) const;
+
+  FacePoints points_;  // of the outline, then of each tile as a ring
+  FacePlane outline_;
+  FaceFrame frame_;
+  bool planar_ = true;
+  long a_bits_ = 0, b_bits_ = 0;
+  std::vector<Tile> tiles_;  // by face
+  std::size_t bins_ = 1;     // along each axis
+  std::vector<std::vector<std::uint32_t>> tiles_in_bin_;
+};
+
+}  // namespace exactff

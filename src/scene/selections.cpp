@@ -1,0 +1,61 @@
+#include "scene/selections.h"
+
+#include <algorithm>
+
+#include "text/escape.h"
+#include "text/text_lines.h"
+
+namespace exactff {
+
+std::vector<Selection> selections_of(const Scene& scene, std::vector<FaceId> faces) {
+  std::erase_if(faces, [&](FaceId id) { return scene.face(id).piece_count == 0; });
+  const auto key = [&](FaceId id) { return std::pair(scene.face(id).patch, id); };
+  std::ranges::sort(faces, {}, key);
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  std::vector<Selection> selections;
+  for (auto first = faces.begin(); first != faces.end();) {
+    const PatchId patch = scene.face(*first).patch;
+    const auto last = std::find_if(first, faces.end(), [&](FaceId id) { return scene.face(id).patch != patch; });
+    if (static_cast<std::size_t>(last - first) == scene.faces_of({patch, {}}).size()) {
+      selections.push_back({patch, {}, scene.id()});
+    } else {
+      for (auto face = first; face != last; ++face) selections.push_back({patch, *face, scene.id()});
+    }
+    first = last;
+  }
+  return selections;
+}
+
+std::string flag_words(const Scene& scene, std::string_view flag, std::span<const Selection> selections) {
+  constexpr std::size_t kMostTyped = 24;
+  if (selections.empty() || selections.size() > kMostTyped) return {};
+  std::string words, list;
+  const auto add = [&](const std::string& value) {
+    words += (words.empty() ? "" : " ") + std::string(flag) + ' ' + text::shell_word(value);
+  };
+  for (const Selection& selection : selections) {
+    const std::string name = scene.name_of(selection);
+    if (name.find(',') == std::string::npos) {
+      list += (list.empty() ? "" : ",") + name;
+    } else {
+      add(name);
+    }
+  }
+  if (!list.empty()) add(list);
+  return words;
+}
+
+std::string listed(const Scene& scene, std::span<const Selection> selections) {
+  constexpr std::size_t kShown = 6;
+  std::string text;
+  const std::size_t shown = std::min(kShown, selections.size());
+  const std::size_t others = selections.size() - shown;
+  for (std::size_t i = 0; i < shown; ++i) {
+    const bool last = i + 1 == shown && others == 0;
+    text += i == 0 ? "" : last ? " and " : ", ";
+    text += text::in_quotes(scene.name_of(selections[i]), text::kShownName);
+  }
+  return others == 0 ? text : text + " and " + std::to_string(others) + " more";
+}
+
+}  // namespace exactff

@@ -1,0 +1,24 @@
+// Faces and patches as the words of a flag.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exactff/scene.h"
+
+namespace exactff {
+
+// The faces as selections: a patch if all its faces with area are among them, else its faces. In the order of the
+// scene, each once. `faces` without area are left out.
+[[nodiscard]] std::vector<Selection> selections_of(const Scene& scene, std::vector<FaceId> faces);
+
+// "--flip a,b", for a shell. A name with a comma gets a flag of its own. Empty if there is no selection, or if there
+// are more than anybody wants to type.
+[[nodiscard]] std::string flag_words(const Scene& scene, std::string_view flag, std::span<const Selection> selections);
+
+// "'a', 'b' and 12 more".
+[[nodiscard]] std::string listed(const Scene& scene, std::span<const Selection> selections);
+
+}  // namespace exactff

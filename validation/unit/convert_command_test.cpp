@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "exactff/scene_files.h"
+#include "support/program.h"
+
+namespace exactff {
+namespace {
+
+namespace fs = std::filesystem;
+using validation::RunningProgram;
+using validation::TemporaryDirectory;
+
+struct Ended {
+  int code = -1;
+  std::string error;
+};
+
+class ConvertCommand : public testing::Test {
+ protected:
+  Ended convert(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> words = {"convert"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    const RunningProgram program(EXACTFF_PROGRAM, words, directory_.path() / "error");
+    const int code = program.wait();
+    return {code, program.error()};
+  }
+  [[nodiscard]] std::string path(const std::string& name) const { return (directory_.path() / name).string(); }
+
+  const TemporaryDirectory directory_;
+  const std::string room_ = EXACTFF_DATA_DIR "/scenes/cornell_box.obj";
+};
+
+TEST_F(ConvertCommand, WritesEveryFormat) {
+  const std::size_t faces = read_scene(room_).faces().size();
+  for (const char* name : {"s.obj", "s.ply", "s.off", "s.vs3"}) {
+    EXPECT_EQ(convert({room_, path(name)}).code, 0);
+    EXPECT_EQ(read_scene(path(name)).faces().size(), faces) << name;
+  }
+  EXPECT_EQ(read_scene(path("s.obj")).hash(), read_scene(room_).hash());
+  EXPECT_EQ(convert({"@tiles:n=2", path("t.stl"), "--encoding", "binary"}).code, 0);
+  EXPECT_TRUE(fs::file_size(path("t.stl")) % 50 == 84 % 50);
+}
+
+TEST_F(ConvertCommand, TellsWhatIsLost) {
+  const Ended off = convert({room_, path("s.off")});
+  EXPECT_EQ(off.code, 0);
+  EXPECT_NE(off.error.find("s.off: the patches and their names are lost"), std::string::npos) << off.error;
+  EXPECT_NE(off.error.find("materials are lost"), std::string::npos);
+  EXPECT_EQ(convert({room_, path("s.obj")}).error, "");
+}
+
+TEST_F(ConvertCommand, ExistingFilesAreReplacedOnlyOnRequest) {
+  (void)directory_.write("s.mtl", "mine");
+  const Ended refused = convert({room_, path("s.obj")});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.error.find("s.mtl: already exists"), std::string::npos) << refused.error;
+  EXPECT_FALSE(fs::exists(path("s.obj")));
+  EXPECT_EQ(validation::text_of(directory_.path() / "s.mtl"), "mine");
+  EXPECT_EQ(convert({room_, path("s.obj"), "--force"}).code, 0);
+  EXPECT_EQ(convert({room_, path("s.obj")}).code, 2);
+}
+
+TEST_F(ConvertCommand, NothingIsLeftWhereNothingCanBeWritten) {
+  EXPECT_EQ(convert({room_, path("nowhere/s.ply")}).code, 2);
+  EXPECT_EQ(convert({room_, path("s.dae")}).code, 2);
+  EXPECT_EQ(convert({room_, path("s.off"), "--encoding", "binary"}).code, 2);
+  EXPECT_EQ(convert({path("missing.obj"), path("s.ply")}).code, 2);
+  for (const auto& entry : fs::directory_iterator(directory_.path())) EXPECT_EQ(entry.path().filename(), "error");
+}
+
+TEST_F(ConvertCommand, EveryCommandReadsEveryFormat) {
+  ASSERT_EQ(convert({room_, path("s.ply")}).code, 0);
+  const auto value = [&](const std::string& scene) {
+    return validation::run_program(EXACTFF_PROGRAM, {"point", scene, "--at", "200", "0", "400", "--normal", "0", "1",
+                                                     "0", "--on", "floor", "--source", "light", "--plain"})
+        .output;
+  };
+  EXPECT_EQ(value(path("s.ply")), "0.010822702782492406\n");
+  EXPECT_EQ(value(path("s.ply")), value(room_));
+}
+
+}  // namespace
+}  // namespace exactff

@@ -1,0 +1,37 @@
+// Short forms for the tests of the readers.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "exactff/scene.h"
+
+namespace exactff::validation {
+
+template <class Read>
+std::string error_of(const Read& read) {
+  try {
+    (void)read();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+inline std::string warnings_of(const Scene& scene) {
+  std::string text;
+  for (const Problem& warning : scene.warnings()) text += warning.message() + "\n";
+  return text;
+}
+
+inline std::vector<std::string> patch_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Patch& patch : scene.patches()) names.push_back(patch.name);
+  return names;
+}
+
+inline const std::vector<std::uint32_t>& ring(const Scene& scene, std::size_t face = 0) {
+  return scene.faces()[face].rings.at(0);
+}
+
+}  // namespace exactff::validation

@@ -1,0 +1,288 @@
+// Which format a file has, what the writers keep, and what they say they lose.
+#include "exactff/scene_files.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "exactff/exact.h"
+#include "exactff/models.h"
+#include "exactff/obj.h"
+#include "format_support.h"
+#include "generate/plain_scene.h"
+#include "generate/random.h"
+#include "support/program.h"
+#include "support/random_scenes.h"
+
+namespace exactff {
+namespace {
+
+using validation::error_of;
+using validation::patch_names;
+using validation::TemporaryDirectory;
+using validation::warnings_of;
+
+std::string refusal(const std::string& bytes, const std::string& name = "s") {
+  return error_of([&] { return read_scene(bytes, name); });
+}
+
+TEST(SceneFiles, ForeignKindsAreRefusedByNameAndWithAConverter) {
+  const auto chunk = [](std::string_view bytes) { return std::string(bytes); };
+  const std::pair<std::string, std::string> kinds[] = {
+      {"glTF\2\0\0\0", "a binary glTF file"},
+      {"{\"asset\":{\"version\":\"2.0\"}}", "a glTF file"},
+      {"# vtk DataFile Version 3.0\n", "a legacy VTK file"},
+      {"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">", "a VTK XML file"},
+      {"ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));", "a STEP file"},
+      {"ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('IFC4'));", "an IFC file"},
+      {"Kaydara FBX Binary  ", "an FBX file"},
+      {"; FBX 7.4.0 project file", "an FBX file in text"},
+      {"<?xml version=\"1.0\"?><COLLADA>", "a Collada file"},
+      {"BLENDER-v300", "a Blender file"},
+      {chunk(std::string_view("MM\x0c\0\0\0\2\0\n\0\0\0", 12)), "a 3DS file"},
+      {"  0\r\nSECTION\r\n", "a DXF file"},
+      {std::string(72, ' ') + "S      1\n", "an IGES file"},
+      {"PK\3\4", "a ZIP archive"},
+      {"\x1f\x8b\x08", "a file compressed by gzip"},
+      {"\x89HDF\r\n\x1a\n", "an HDF5 file"},
+      {"#VRML V2.0 utf8\n", "a VRML file"},
+  };
+  for (const auto& [bytes, name] : kinds) {
+    const std::string message = refusal(bytes, "s.obj");
+    EXPECT_TRUE(message.starts_with("s.obj: is " + name)) << message;
+    EXPECT_NE(message.find("; convert it, for example with "), std::string::npos) << message;
+  }
+}
+
+TEST(SceneFiles, TheContentGoesBeforeTheExtension) {
+  const std::string off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  for (const char* name : {"s.off", "s.obj", "s.ply", "s.stl", "s", "s.OFF"})
+    EXPECT_EQ(read_scene(off, name).faces().size(), 1U) << name;
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  for (const char* name : {"s.obj", "s", "s.txt"}) EXPECT_EQ(read_scene(obj, name).faces().size(), 1U) << name;
+  EXPECT_NE(refusal(obj, "s.ply").find("the first line is not 'ply'"), std::string::npos);
+  EXPECT_NE(refusal(obj, "s.STL").find("unknown keyword 'v'"), std::string::npos);
+}
+
+TEST(SceneFiles, WhatIsNoSceneIsRefused) {
+  EXPECT_EQ(refusal(""), "s: is empty (there is nothing to compute with); give an OBJ, PLY, STL, OFF or View3D file");
+  EXPECT_NE(refusal(std::string("\1\2\0\3", 4)).find("is not a text file (it contains zero bytes)"), std::string::npos);
+  const auto file = [](const char* path) { return error_of([&] { return read_scene(path); }); };
+  EXPECT_NE(file("/dev/zero").find("it contains zero bytes"), std::string::npos);
+  EXPECT_NE(file("/dev/null").find("is empty"), std::string::npos);
+  EXPECT_NE(file("/proc/self/mem").find("cannot be read to its end ("), std::string::npos);
+  EXPECT_NE(file("/tmp").find("is a folder"), std::string::npos);
+  EXPECT_NE(file("/nowhere.stl").find("cannot be opened"), std::string::npos);
+}
+
+// The plate hides a part of the upper square from the lower one.
+TEST(SceneFiles, FilesOfOtherProgramsGiveTheSameValues) {
+  const std::string folder = EXACTFF_DATA_DIR "/scenes/formats/";
+  const Receiver receiver{.point = {0.3, 0.6, 0.1}, .normal = {0.1, 0.2, 1.0}, .on = {}, .id = {}};
+  const auto value = [&](const Scene& scene, const std::string& first, const std::string& second) {
+    double sum = 0.0;
+    for (const std::string& name : {first, second}) {
+      if (!name.empty()) sum += exact_form_factor(scene, receiver, ExactSource(scene, scene.select(name))).value;
+    }
+    return sum;
+  };
+  const Scene facet = read_scene(folder + "facet.vs3");
+  const Scene ply = read_scene(folder + "facet_meshio.ply");
+  EXPECT_EQ(value(ply, "default:3", ""), value(facet, "srf3-Z=1", ""));
+  EXPECT_EQ(value(ply, "default:1", ""), value(facet, "srf1-Z=0", ""));
+  EXPECT_GT(value(facet, "srf3-Z=1", ""), 0.1);
+  const Scene stl = read_scene(folder + "facet_admesh.stl");
+  ASSERT_EQ(stl.faces().size(), 16U);
+  EXPECT_NEAR(value(stl, "default:5", "default:6"), value(facet, "srf3-Z=1", ""), 1e-16);
+  const Scene text = read_scene(folder + "facet_admesh_text.stl");
+  for (int k = 1; k <= 16; ++k) {
+    const std::string number = ":" + std::to_string(k);
+    EXPECT_EQ(value(text, text.patches()[0].name + number, ""), value(stl, "default" + number, "")) << number;
+  }
+}
+
+// --- round trips ---
+
+// Writes the scene and reads it again.
+Scene again(const Scene& scene, const std::string& extension, Encoding encoding = Encoding::kDefault,
+            std::vector<Problem>* losses = nullptr) {
+  const TemporaryDirectory directory;
+  const SceneFiles written = scene_files(scene, directory.path() / ("s" + extension), encoding);
+  if (losses != nullptr) *losses = written.losses;
+  for (const SceneFiles::File& file : written.files) (void)directory.write(file.path.filename().string(), file.bytes);
+  return read_scene(written.files.back().path);
+}
+
+std::string words_of(const std::vector<Problem>& problems) {
+  std::string text;
+  for (const Problem& problem : problems) text += problem.what + "\n";
+  return text;
+}
+
+// The corners of all faces as positions, face by face: what every format must keep.
+std::vector<std::vector<Vec3>> corners(const Scene& scene) {
+  std::vector<std::vector<Vec3>> all;
+  for (const Face& face : scene.faces()) {
+    all.emplace_back();
+    for (const auto& ring : face.rings) {
+      for (const std::uint32_t v : ring) all.back().push_back(scene.vertices()[v]);
+    }
+  }
+  return all;
+}
+
+// Triangles with coordinates of all magnitudes, named patches, unused vertices, and some faces without area.
+generate::PlainScene random_triangles(std::uint64_t seed) {
+  generate::Random random(seed);
+  generate::PlainScene scene;
+  const auto coordinate = [&] { return (random.unit() - 0.5) * std::ldexp(1.0, random.integer(-300, 300)); };
+  for (int i = 0; i < 30; ++i) scene.vertices.push_back({coordinate(), coordinate(), coordinate()});
+  for (int patch = 0; patch < 3; ++patch) {
+    for (int i = 0; i < 5; ++i) {
+      generate::Ring ring;
+      for (int k = 0; k < 3; ++k) ring.push_back(static_cast<std::uint32_t>(random.below(30)));
+      scene.patch("patch" + std::to_string(patch)).faces.push_back({{ring}});
+    }
+  }
+  return scene;
+}
+
+TEST(RoundTrip, TextAndBinaryKeepEveryDouble) {
+  for (std::uint64_t i = 0; i < 50; ++i) {
+    const Scene scene = generate::build(random_triangles(validation::seed_of(i)));
+    EXPECT_EQ(again(scene, ".obj").hash(), scene.hash());
+    EXPECT_EQ(again(scene, ".ply").hash(), scene.hash());
+    EXPECT_EQ(again(scene, ".ply", Encoding::kText).hash(), scene.hash());
+    EXPECT_EQ(corners(again(scene, ".off")), corners(scene));
+    EXPECT_EQ(patch_names(again(scene, ".stl")), patch_names(scene));
+    // STL shares vertices at one position, and has no faces without area but triangles.
+    EXPECT_EQ(corners(again(again(scene, ".stl"), ".stl")), corners(again(scene, ".stl")));
+    EXPECT_EQ(again(again(scene, ".vs3"), ".vs3").hash(), again(scene, ".vs3").hash());
+  }
+}
+
+TEST(RoundTrip, EveryModelKeepsItsFormFactors) {
+  for (const char* name : {"room:n=3", "teapot:segments=2", "tiles:n=2", "closed-room"}) {
+    const Scene scene = models::make_scene(name);
+    const Receiver receiver{.point = {0.3, 0.4, 0.5}, .normal = {0.1, 1.0, 0.3}, .on = {}, .id = {}};
+    for (const char* extension : {".obj", ".ply", ".stl", ".vs3"}) {
+      const Scene other = again(scene, extension);
+      ASSERT_EQ(other.patches().size(), scene.patches().size()) << name << extension;
+      for (std::size_t i = 0; i < scene.patches().size(); ++i) {
+        const Selection patch{PatchId(static_cast<std::uint32_t>(i)), std::nullopt};
+        EXPECT_EQ(exact_form_factor(other, receiver, ExactSource(other, patch)).value,
+                  exact_form_factor(scene, receiver, ExactSource(scene, patch)).value)
+            << name << extension;
+      }
+    }
+  }
+}
+
+// Rooms with holes, reflex corners, and corners on straight sides.
+TEST(RoundTrip, RandomScenesKeepTheirFormFactors) {
+  for (std::uint64_t i = 0; i < validation::scaled_count(60); ++i) {
+    generate::Random random(validation::seed_of(i));
+    const generate::PlainScene plain = validation::degenerate_scene(random);
+    const Scene scene = generate::build(plain);
+    const Receiver receiver = generate::receiver_of(plain);
+    const std::string source = plain.source;
+    const auto patch = scene.faces_of(scene.select(source));
+    if (std::ranges::all_of(patch, [&](FaceId id) { return scene.face(id).piece_count == 0; })) continue;
+    const double value = exact_form_factor(scene, receiver, ExactSource(scene, scene.select(source))).value;
+    for (const char* extension : {".obj", ".ply", ".stl", ".vs3"}) {
+      const Scene other = again(scene, extension);
+      EXPECT_EQ(exact_form_factor(other, receiver, ExactSource(other, other.select(source))).value, value)
+          << i << extension;
+    }
+  }
+}
+
+TEST(RoundTrip, MaterialsStayInWavefrontFiles) {
+  SceneBuilder builder;
+  for (const Vec3& v : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}}) (void)builder.add_vertex(v);
+  (void)builder.add_material({"(none)"});
+  (void)builder.add_material({"never used", {0.1, 0.2, 0.3}, {}});
+  const MaterialId lamp = builder.add_material({"lamp", {0.0, 0.0, 0.0}, {17, 12, 4}});
+  builder.add_face(builder.patch("the lamp"), lamp, {{0, 1, 2}});
+  builder.add_face(builder.patch("wall"), MaterialId{0}, {{0, 2, 1}});
+  const Scene scene = builder.build();
+  std::vector<Problem> losses;
+  EXPECT_EQ(again(scene, ".obj", Encoding::kDefault, &losses).hash(), scene.hash());
+  EXPECT_TRUE(losses.empty());
+  EXPECT_EQ(patch_names(again(scene, ".ply", Encoding::kDefault, &losses)), patch_names(scene));
+  EXPECT_EQ(words_of(losses), "Kd and Ke of 2 materials are lost\n");
+  (void)again(scene, ".vs3", Encoding::kDefault, &losses);
+  EXPECT_EQ(words_of(losses),
+            "Ke of 1 material is lost\nKd of 1 material becomes one number within 0 and 1\n"
+            "the patch 'the lamp' is called 'the_lamp'\n");
+  (void)again(scene, ".off", Encoding::kDefault, &losses);
+  EXPECT_EQ(words_of(losses), "Kd and Ke of 2 materials are lost\nthe patches and their names are lost\n");
+}
+
+// A square with a square hole, a square, a triangle with a float that is none, and a bow tie.
+Scene odd_scene() {
+  SceneBuilder builder({}, {.bad_faces = BadFaces::kSkip});
+  for (const Vec3& v : {Vec3{0, 0, 0}, Vec3{4, 0, 0}, Vec3{4, 4, 0}, Vec3{0, 4, 0}, Vec3{1, 1, 0}, Vec3{1, 2, 0},
+                        Vec3{2, 2, 0}, Vec3{2, 1, 0}, Vec3{0.1, 0, 5}})
+    (void)builder.add_vertex(v);
+  const MaterialId none = builder.add_material({"(none)"});
+  const PatchId patch = builder.patch("default");
+  builder.add_face(patch, none, {{0, 1, 2, 3}, {4, 5, 6, 7}});
+  builder.add_face(patch, none, {{4, 5, 6, 7}});
+  builder.add_face(patch, none, {{0, 1, 8}});
+  builder.add_face(patch, none, {{0, 2, 1, 3}});
+  builder.add_face(patch, none, {{0, 1, 1, 0, 1}});
+  return builder.build();
+}
+
+TEST(RoundTrip, WhatIsLostIsTold) {
+  const Scene scene = odd_scene();
+  const auto told = [&](const char* extension, Encoding encoding = Encoding::kDefault) {
+    std::vector<Problem> losses;
+    (void)again(scene, extension, encoding, &losses);
+    return words_of(losses);
+  };
+  const std::string hole = "1 face with holes is cut into polygons without holes\n", out = "1 face is left out\n";
+  EXPECT_EQ(told(".obj"), hole + out);
+  EXPECT_EQ(told(".ply"), hole + out);
+  EXPECT_EQ(told(".off"), hole + out);
+  EXPECT_EQ(told(".stl"), hole + "1 face is cut into smaller polygons\n" + out + out);
+  EXPECT_EQ(told(".stl", Encoding::kBinary),
+            hole + "1 face is cut into smaller polygons\n" + out + out + "1 of 9 vertices is moved by rounding\n");
+  EXPECT_EQ(told(".vs3"), hole + out + out);
+}
+
+TEST(RoundTrip, NamesThatAFormatCannotHoldAreChangedAndTold) {
+  SceneBuilder builder;
+  for (const Vec3& v : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}}) (void)builder.add_vertex(v);
+  const MaterialId none = builder.add_material({"(none)"});
+  for (const char* name : {"a_b", "a b", "#c", "d\\", "e!f", " ", "", "g\nh", "a\tb"})
+    builder.add_face(builder.patch(name), none, {{0, 1, 2}});
+  const Scene scene = builder.build();
+  for (const char* extension : {".obj", ".ply", ".stl", ".vs3"}) {
+    std::vector<Problem> losses;
+    const Scene other = again(scene, extension, Encoding::kDefault, &losses);
+    EXPECT_EQ(other.patches().size(), scene.patches().size()) << extension;
+    EXPECT_EQ(other.patches()[0].name, "a_b");
+    EXPECT_EQ(losses.size(), 1U) << words_of(losses);
+    EXPECT_EQ(warnings_of(other), "");
+  }
+}
+
+TEST(RoundTrip, FilesThatCannotBeAreRefused) {
+  const Scene scene = odd_scene();
+  const auto message = [&](const std::string& path, Encoding encoding = Encoding::kDefault) {
+    return error_of([&] { return scene_files(scene, path, encoding); });
+  };
+  EXPECT_NE(message("s.dae").find("no format is known for the extension '.dae'"), std::string::npos);
+  EXPECT_NE(message("s").find("no format is known for the extension ''"), std::string::npos);
+  EXPECT_NE(message("s.off", Encoding::kBinary).find("the format has no binary form"), std::string::npos);
+  EXPECT_EQ(message("#s.obj"), "no error");  // it needs no MTL file
+  const Scene huge = read_scene("v 0 0 1e39\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "s.obj");
+  EXPECT_NE(error_of([&] { return scene_files(huge, "s.stl", Encoding::kBinary); }).find("exceeds the largest float"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace exactff
