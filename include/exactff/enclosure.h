@@ -21,10 +21,14 @@ class Enclosure {
   Enclosure& operator=(Enclosure&&) noexcept;
   ~Enclosure();
 
+  // Exactly this number, which must be finite.
+  [[nodiscard]] static Enclosure of(double value);
+
   // Sets this to the ball, reusing the memory of this object.
   void set(const Ball& ball);
 
   Enclosure& operator+=(const Enclosure& other);
+  Enclosure& operator-=(const Enclosure& other);  // the same for the difference of two numbers
 
   // The largest double that is not above the ball's lower end, and the smallest that is not below its upper end.
   [[nodiscard]] double lower() const;

@@ -65,7 +65,7 @@ struct ExactOptions {
   bool visible_fraction = false;
   bool exact_fraction = false;  // implies visible_fraction
   bool list_cutters = false;
-  int digits = 0;             // raises the precision until this many decimals are certified, if possible
+  int digits = 0;             // raises the precision until this many significant digits are certified, if possible
   int precision_cap = 65536;  // bits, at least 1 (else InputError)
   const std::vector<FaceId>* only_occluders = nullptr;  // ascending; all other faces are ignored
   ShaftCulling culling = ShaftCulling::kTree;

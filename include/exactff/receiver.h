@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <istream>
 #include <memory>
 #include <optional>
 #include <span>
@@ -163,8 +164,11 @@ enum class GridIds { kCells, kUnique };
 
 // Reads a CSV with the header id,x,y,z,nx,ny,nz,on (`on` empty or NAME:K; the columns id and on may be absent; any
 // order). Fields may be quoted. Empty lines and lines that begin with # are ignored. Numbers are read with correct
-// rounding. Throws one InputError with file:line for every problem.
+// rounding. A truth file (truth.h) is such a file, too: rows for several sources give one receiver. Throws one
+// InputError with file:line for every problem.
 [[nodiscard]] std::vector<Receiver> read_receivers(const std::filesystem::path& path, const Scene& scene);
+// As above, from an open stream, called `name` in messages.
+[[nodiscard]] std::vector<Receiver> read_receivers(std::istream& in, const std::string& name, const Scene& scene);
 
 // The distance of a point from a face's bounding box or from its plane, whichever is larger, over the box's diagonal:
 // an estimate, to find mistyped coordinates. For a face that is not planar, its own deviation is subtracted.

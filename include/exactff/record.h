@@ -34,7 +34,7 @@ enum class Outcome {
   kBelowHorizon,   // no part lies above the receiver's horizon, the plane through x perpendicular to its normal
   kUnoccluded,     // no occluder in the shaft
   kHiddenByOne,    // a single occluder hides everything
-  kPartlyHidden,   // the occluders leave part of the faces visible
+  kPartlyHidden,   // occluders are in the shaft and leave part of the faces visible; see decided_outcome
   kHiddenByUnion,  // the occluders together hide everything, but none of them alone
 };
 [[nodiscard]] std::string_view to_string(Outcome outcome);
@@ -55,6 +55,13 @@ struct PlaneRecord {
   std::uint64_t edges = 0;                    // boundary pieces integrated; the Booleans merge collinear ones
   std::optional<double> visible_fraction;     // on request, correctly rounded
   std::optional<std::string> exact_fraction;  // on request: "p/q"
+  // How many faces hide a part of it, if that was decided exactly: on request (list_cutters), and 0 if the fraction
+  // is 1.
+  std::optional<std::uint64_t> cutters;
 };
+
+// The outcome, but kUnoccluded instead of kPartlyHidden if `cutters` is 0. The search keeps every face as a candidate
+// that no single side of the shaft rules out, so a candidate may hide nothing.
+[[nodiscard]] Outcome decided_outcome(const PlaneRecord& plane);
 
 }  // namespace exactff

@@ -59,6 +59,15 @@ struct Plan {
 // Reads a .study file (data/README.md) and loads its scenes. Throws one InputError with the line of every problem.
 [[nodiscard]] Plan read_study_file(const std::filesystem::path& file, const Effort& effort = {});
 
+// What a finished report in a folder tells about itself.
+enum class Finished {
+  kNone,       // there is no report
+  kOfAnother,  // a report on another plan, by another version, or written by write()
+  kOfThis,     // a report that carry_out() made of the same plan: its values would be the same
+};
+[[nodiscard]] Finished finished_report(const Plan& plan, const std::filesystem::path& folder);
+[[nodiscard]] bool has_report(const std::filesystem::path& folder);
+
 // What was found out, for the user to read.
 struct Outcome {
   struct OfScene {

@@ -34,6 +34,7 @@ struct Sweeps {
   std::vector<std::uint64_t> seeds = {};     // default: 1 .. 10
   std::vector<SamplePattern> patterns = {};  // default: jittered, then the other three
   std::vector<Variant> variants = {};        // default: mended, then literal
+  bool enabled = true;                       // false: the adaptive algorithm is not run on its own
 };
 
 // All combinations of the lists are run if there are at most this many. Otherwise the plane eps_B x rays is run, and
@@ -226,8 +227,8 @@ struct Profile {
 struct Study {
   Request request;  // sources, sweeps and threads filled in
   double largest_rho_b = 0.0;
-  std::vector<AdaptiveOptions> settings;
-  std::size_t base = 0;  // index into settings: the point where the sweeps cross
+  std::vector<AdaptiveOptions> settings;  // none, and no samples, summaries or times, if the sweeps are not enabled
+  std::size_t base = 0;                   // index into settings: the point where the sweeps cross
   bool full_product = false;
   std::vector<ExactRow> exact;                  // by receiver
   std::vector<std::vector<SampleRow>> samples;  // by setting, then receiver

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,9 @@ struct Request {
   bool unoccluded = false;
   // Adds a column: visible area over whole unclipped area, correctly rounded.
   bool visible_fraction = false;
+  // Adds columns ux,uy,uz: the normal scaled to length 1, each component correctly rounded. The values belong to the
+  // exact normal in nx,ny,nz.
+  bool unit_normals = false;
   // Adds two columns: u and v of the receiver on its lattice, from 0 to 1. Every receiver must be the cell of a grid.
   bool uv = false;
   Engine engine = Engine::kEdges;  // no byte depends on it
@@ -89,6 +93,11 @@ void require_free(const std::filesystem::path& file, Existing existing);
 // stay valid: at most a second of work and the current row of each thread are lost.
 Summary write(Request request, const std::filesystem::path& file, Existing existing = Existing::kRefuse,
               const Hooks& hooks = {});
+
+// Computes the rows and writes the same bytes to a stream, each row as soon as those before it are written. Keeps
+// nothing, so there is nothing to continue with. Throws InputError if the request is unusable or for a shard, or if the
+// stream fails; throws Cancelled if the hooks cancel. Whatever is thrown, the rows in the stream are then incomplete.
+Summary write(Request request, std::ostream& out, const Hooks& hooks = {});
 
 // Merges all shards of one request into the same bytes as one write() without shards. The order of the shards does not
 // matter. Throws one InputError that lists all problems: shards that are missing, duplicate, damaged, unfinished or of

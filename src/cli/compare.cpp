@@ -12,6 +12,7 @@
 #include "exactff/report.h"
 #include "exactff/study.h"
 #include "flags/comparison.h"
+#include "flags/sources.h"
 #include "text/escape.h"
 #include "text/refuse.h"
 
@@ -32,8 +33,11 @@ constexpr const char* kCompareFooter =
     "  experiment karkanis-times\n"
     "Settings that cannot affect a scene are left out, and the report says which and why.\n"
     "Times are measured after all values, on one thread.\n"
-    "DIR appears only when it is complete, and replaces an earlier result of this command. Until then, finished\n"
-    "values are kept in DIR.part. After an interruption, the same command with --resume continues from there.\n"
+    "DIR appears only when it is complete. Until then, finished values are kept in DIR.part. After an interruption, "
+    "the\n"
+    "same command with --resume continues from there. A finished DIR is never replaced without --force; with "
+    "--resume,\n"
+    "a finished DIR of the same request stays as it is, so that scripts can always give --resume.\n"
     "\n"
     "Examples:\n"
     "  exactff compare data/scenes/cornell_box.obj --on floor --grid 32x32 -o cornell-report\n"
@@ -63,6 +67,30 @@ std::string command_line(const CompareArguments& args) {
   return line + " -o " + text::shell_word(args.folder);
 }
 
+// A finished folder holds hours of work, as a truth file does. Checked before anything that takes time.
+void require_free(const CompareArguments& args) {
+  if (args.force || args.resume || !report::has_report(args.folder)) return;
+  throw InputError({.file = args.folder,
+                    .what = "holds a finished report",
+                    .why = "a finished result is not replaced by accident",
+                    .suggestion = "name another folder, keep it with --resume if it is of the same request, or replace "
+                                  "it with --force"});
+}
+
+// With --resume: true if the folder is the finished result of this very request.
+bool is_done(const CompareArguments& args, const report::Plan& plan) {
+  std::error_code ignored;
+  if (!args.resume || std::filesystem::exists(study::journal_of_folder(args.folder), ignored)) return false;
+  const report::Finished finished = report::finished_report(plan, args.folder);
+  if (finished == report::Finished::kOfAnother) {
+    throw InputError({.file = args.folder,
+                      .what = "holds the finished report of another request, or of another version of exactff",
+                      .why = "--resume continues the same request and replaces nothing",
+                      .suggestion = "use the same flags as before, name another folder, or replace it with --force"});
+  }
+  return finished == report::Finished::kOfThis;
+}
+
 report::Plan plan_of(const CompareArguments& args) {
   const report::Effort effort{args.abridged, args.threads};
   const std::string& path = args.scene.scene.path;
@@ -76,6 +104,10 @@ report::Plan plan_of(const CompareArguments& args) {
     }
     plan = report::read_study_file(path, effort);
   } else {
+    if (args.scene.unless_abridged) {
+      text::refuse("--unless-abridged has no effect on the command line", "it marks a scene in a study file",
+                   "remove it, or write the scene into a .study file");
+    }
     flags::Comparison one = flags::comparison_of(args.scene, effort.abridged, effort.threads);
     plan.effort = effort;
     plan.add_scene(one.title, std::move(one.scene), std::move(one.request));
@@ -97,6 +129,12 @@ void print(const report::Outcome& outcome) {
   }
 }
 
+int say_where(const CompareArguments& args) {
+  std::cout << "Report: " << text::printable((std::filesystem::path(args.folder) / "report.html").string()) << '\n';
+  check_output(std::cout);
+  return 0;
+}
+
 void print_warnings_of(const report::PlannedScene& planned, bool several) {
   const study::Request& request = planned.request;
   print_warnings(planned.scene->warnings());
@@ -106,12 +144,20 @@ void print_warnings_of(const report::PlannedScene& planned, bool several) {
     if (several) warning.what = planned.title + ": " + warning.what;
   }
   print_warnings(dark);
+  const std::string note = flags::note_on_sources_without_emission(*planned.scene, request.sources);
+  if (!note.empty()) std::cerr << "note: " << text::printable((several ? planned.title + ": " : "") + note) << '\n';
 }
 
 int run(const CompareArguments& args) {
   check_output_folder(args.folder);
+  require_free(args);
   const report::Plan plan = plan_of(args);
   for (const report::PlannedScene& scene : plan.scenes) print_warnings_of(scene, plan.scenes.size() > 1);
+  if (is_done(args, plan)) {
+    std::cerr
+        << "note: the report is finished and of the same request, so it was left as it is; --force makes it anew\n";
+    return say_where(args);
+  }
   study::Journal journal(study::journal_of_folder(args.folder), args.existing());
   const std::string kept = "finished work is kept in " + text::printable(journal.path().string()) +
                            "; to continue, run the same command with --resume\n";
@@ -136,9 +182,7 @@ int run(const CompareArguments& args) {
     if (journal.size() > 0) std::cerr << "note: " << kept;
     throw;
   }
-  std::cout << "Report: " << text::printable((std::filesystem::path(args.folder) / "report.html").string()) << '\n';
-  check_output(std::cout);
-  return 0;
+  return say_where(args);
 }
 
 std::string experiment_list() {
@@ -171,7 +215,9 @@ Command add_compare(CLI::App& app) {
       ->required()
       ->type_name("DIR");
   CLI::Option* resume = command->add_flag("--resume", args->resume, "Continue an interrupted run, if there is one");
-  command->add_flag("--force", args->force, "Start again and discard the work of an interrupted run")->excludes(resume);
+  command
+      ->add_flag("--force", args->force, "Start again: discard the work of an interrupted run, replace a finished DIR")
+      ->excludes(resume);
   command->footer(kCompareFooter);
   return {command, [args] { return run(*args); }};
 }

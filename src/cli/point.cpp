@@ -10,6 +10,8 @@
 #include "exactff/diagnosis.h"
 #include "exactff/study.h"
 #include "text/number_text.h"
+#include "text/phrases.h"
+#include "text/refuse.h"
 
 namespace exactff::cli {
 
@@ -57,7 +59,50 @@ void warn_of_stopped_recursion(const Scene& scene, const PointResult& point) {
   }
 }
 
-int run(const PointArguments& args) {
+std::vector<std::string> given(const CLI::App& command, std::initializer_list<const char*> flags) {
+  std::vector<std::string> found;
+  for (const char* flag : flags) {
+    if (command.get_option(flag)->count() > 0) found.emplace_back(flag);
+  }
+  return found;
+}
+
+void refuse_settings_without_adaptive(const CLI::App& command, const PointArguments& args) {
+  if (args.adaptive) return;
+  const std::vector<std::string> idle =
+      given(command, {"--eps-b", "--eps-a", "--rays", "--seed", "--pattern", "--variant"});
+  if (idle.empty()) return;
+  const bool one = idle.size() == 1;
+  text::refuse(text::enumerate(idle) + (one ? " is" : " are") + " given without --adaptive",
+               std::string(one ? "it is a setting" : "they are settings") +
+                   " of the ray-sampled adaptive algorithm, which does not run",
+               std::string("add --adaptive, or remove ") + (one ? "it" : "them"));
+}
+
+// These change nothing that is printed. A script may give them all the same.
+void warn_of_idle_options(const CLI::App& command, const PointArguments& args) {
+  const auto warn = [&](const std::vector<std::string>& idle, const std::string& why) {
+    if (idle.empty()) return;
+    std::cerr << "exactff: warning: " << text::enumerate(idle) << (idle.size() == 1 ? " has" : " have")
+              << " no effect here (" << why << ")\n";
+  };
+  if (args.plain) {
+    const bool leaves_are_drawn = args.adaptive && !args.svg.empty();
+    std::vector<std::string> idle = given(command, {"--fraction", "--exact-fraction", "--explain"});
+    for (const std::string& flag : given(command, {"--reflectance", "--adaptive"})) {
+      if (!leaves_are_drawn) idle.push_back(flag);
+    }
+    warn(idle, "--plain prints the value alone; remove --plain, or use --json");
+  }
+  if (args.pattern == "centre") warn(given(command, {"--rays"}), "the pattern centre casts one ray per leaf");
+  if (args.pattern == "centre" || args.pattern == "regular") {
+    warn(given(command, {"--seed"}), "the pattern " + args.pattern + " uses no random numbers");
+  }
+}
+
+int run(const CLI::App& command, const PointArguments& args) {
+  refuse_settings_without_adaptive(command, args);
+  warn_of_idle_options(command, args);
   const Scene scene = load_point_scene(args);
   const PointResult point = compute_point(args, scene);
   warn_if_off_its_face(scene, point.receiver);
@@ -110,9 +155,11 @@ void add_receiver_flags(CLI::App& app, PointArguments& args) {
                  "it; auto or "
                  "auto:DISTANCE finds them")
       ->type_name("NAME[:K]");
-  app.add_option("--source", args.sources, "Source patch or face (default: every emitting patch, and their sum)")
-      ->type_name("NAME[:K]")
-      ->delimiter(',');
+  app.add_option(
+         "--source", args.sources,
+         "Source patch or face; can be repeated, or separate names by commas; all: a table of every patch, with "
+         "the sum and what is missing to 1 (default: every emitting patch, and their sum)")
+      ->type_name("NAME[:K]");
   app.add_option(
          "--reflectance", args.reflectance,
          "Reflectance rho of the receiver, one or three values (default: Kd of the face of --on, or 1 without --on)")
@@ -122,14 +169,15 @@ void add_receiver_flags(CLI::App& app, PointArguments& args) {
 }
 
 void add_output_flags(CLI::App& app, PointArguments& args) {
-  app.add_option("--digits", args.digits, "Number of significant digits to certify")->check(CLI::Range(1, kMostDigits));
+  app.add_option("--digits", args.digits, "Number of significant digits to print, each of them certified")
+      ->check(CLI::Range(1, kMostDigits));
   args.engine.add_to(app);
   app.add_option("--precision-cap", args.precision_cap, "Largest precision, in bits, of the contour integral")
       ->check(CLI::Range(32, 1 << 24))
       ->capture_default_str();
   app.add_flag("--fraction", args.fraction, "Also print the visible fraction of the source");
   app.add_flag("--exact-fraction", args.exact_fraction,
-               "Print the visible fractions as exact rationals, one per plane of the source");
+               "Also print the visible fractions as exact rationals, one per plane of the source");
   auto* plain = app.add_flag("--plain", args.plain, "Print only the value: 0 is a proved zero, 0.0 an underflow");
   auto* json = app.add_flag("--json", args.json, "Print JSON");
   plain->excludes(json);
@@ -191,7 +239,7 @@ Command add_point(CLI::App& app) {
   add_receiver_flags(*command, *args);
   add_output_flags(*command, *args);
   add_adaptive_flags(*command, *args);
-  return {command, [args] { return run(*args); }};
+  return {command, [command, args] { return run(*command, *args); }};
 }
 
 }  // namespace exactff::cli

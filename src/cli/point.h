@@ -1,4 +1,4 @@
-// The three parts of `exactff point`: flags and warnings (point.cpp), values, output.
+// The parts of `exactff point`: flags and warnings (point.cpp), values, output, the table of several sources.
 #pragma once
 
 #include <array>
@@ -46,19 +46,27 @@ struct PointTerm {
   };
 
   Selection source = {};
+  bool emits = true;  // otherwise it counts with a radiosity of 1
   FormFactor exact = {};
   std::optional<double> unoccluded = {};
   std::vector<Share> shares = {};
   std::optional<AdaptiveResult> adaptive = {};
   double largest_rho_b = 0.0;
+  Rgb radiosity = {};  // rho B F, an estimate in double
 };
 
 struct PointResult {
   Receiver receiver = {};
   Rgb reflectance = {};
   std::vector<PointTerm> sources = {};
-  Enclosure sum = {};
-  Rgb radiosity = {};  // sum over the sources of rho B F, an estimate in double
+  bool every_patch = false;  // --source all
+  std::size_t emitters = 0;
+  Enclosure sum = {};              // of the form factors of all sources
+  Enclosure sum_of_emitters = {};  // of those that emit
+  Rgb radiosity = {};              // sum of rho B F over the emitters; over all sources if none emits
+  Rgb radiosity_of_others = {};    // over the sources that emit nothing, if others emit
+
+  [[nodiscard]] bool is_mixed() const { return emitters > 0 && emitters < sources.size(); }
 };
 
 // Prints the scene's warnings.
@@ -70,6 +78,12 @@ void warn_of_near_face(const Scene& scene, const PointResult& point);
 // `--plain`: "0" is a proved zero; a positive value that rounds to zero prints "0.0".
 [[nodiscard]] std::string plain_value(const FormFactor& result);
 [[nodiscard]] std::string value_text(const FormFactor& result, int digits);
+// To the precision of --digits, else the nearest double; empty if the ball does not determine it.
+[[nodiscard]] std::optional<std::string> sum_text(const Enclosure& sum, int digits);
+// 1 - sum.
+[[nodiscard]] Enclosure missing_to_one(const Enclosure& sum);
+// One row per source, their sum and what is missing to 1.
+void print_patch_table(const PointArguments& args, const Scene& scene, const PointResult& point);
 void print_point_table(const PointArguments& args, const Scene& scene, const PointResult& point);
 void print_point_json(const PointArguments& args, const Scene& scene, const PointResult& point);
 void draw_point(const PointArguments& args, const Scene& scene, const PointResult& point);

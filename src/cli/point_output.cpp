@@ -38,11 +38,10 @@ void print_stages(const Scene& scene, const PointTerm& one) {
     const PlaneRecord& plane = one.exact.planes[p];
     std::cout << "\n  plane of " << shown_name(scene, plane.faces.front());
     if (plane.faces.size() > 1) std::cout << " and " << plane.faces.size() - 1 << " more faces";
-    std::cout << ": " << to_string(plane.outcome) << '\n';
+    std::cout << ": " << to_string(decided_outcome(plane)) << '\n';
     for (const StageNote& note : stages(plane)) {
       std::cout << "    " << pad(note.stage, 24) << pad(note.ran ? "ran" : "-", 5) << note.note << '\n';
     }
-    if (plane.exact_fraction) std::cout << "    exact visible fraction  " << *plane.exact_fraction << '\n';
   }
   if (one.exact.planes.size() > kMostPlanes) {
     std::cout << "  ... and " << one.exact.planes.size() - kMostPlanes << " more planes (--json has them all)\n";
@@ -64,6 +63,17 @@ void print_shares(const Scene& scene, const PointTerm& one) {
   }
 }
 
+// As a person can copy them: one per plane, however long they are.
+void print_exact_fractions(const Scene& scene, const PointTerm& one) {
+  for (const PlaneRecord& plane : one.exact.planes) {
+    if (!plane.exact_fraction) continue;
+    std::cout << "  exactly      " << *plane.exact_fraction << "  of the plane of "
+              << shown_name(scene, plane.faces.front());
+    if (plane.faces.size() > 1) std::cout << " and " << plane.faces.size() - 1 << " more faces";
+    std::cout << '\n';
+  }
+}
+
 void print_adaptive(const PointTerm& one) {
   const AdaptiveResult& a = *one.adaptive;
   std::cout << "  ray-sampled adaptive: " << shortest(a.form_factor) << " (error "
@@ -78,27 +88,60 @@ void print_source(const PointArguments& args, const Scene& scene, const PointTer
     std::cout << "  visible      " << shortest(*one.exact.visible_fraction) << "  ("
               << to_string(*one.exact.visible_part) << " of it)\n";
   }
+  if (args.exact_fraction) print_exact_fractions(scene, one);
+  if (!one.emits) std::cout << "  emits        nothing (Ke 0), so it counts with a radiosity of 1\n";
   if (one.adaptive) print_adaptive(one);
   if (!args.explain) return;
   print_stages(scene, one);
   print_shares(scene, one);
 }
 
+void print_sum(const PointArguments& args, const std::string& title, const Enclosure& sum) {
+  std::cout << title << "\n  form factor  " << sum_text(sum, args.digits).value_or("between the bounds")
+            << "\n  enclosure    [" << shortest(sum.lower()) << ", " << shortest(sum.upper()) << "]\n";
+}
+
+std::string rgb_text(const Rgb& c) { return shortest(c.r) + ' ' + shortest(c.g) + ' ' + shortest(c.b); }
+
+std::string radiosity_words(const PointResult& point) {
+  const std::size_t others = point.sources.size() - point.emitters;
+  if (others == 0) return "(reflectance x Ke of the source x form factor, per channel)";
+  if (point.emitters == 0) return "(reflectance x 1 x form factor, per channel, since nothing is emitted)";
+  return "(reflectance x Ke x form factor, per channel, over the " + text::counted(point.emitters, "source") +
+         (point.emitters == 1 ? " that emits)" : " that emit)") + "\n  not added         " +
+         rgb_text(point.radiosity_of_others) + "  (from the " + std::to_string(others) +
+         (others == 1 ? " that emits" : " that emit") + " nothing, with a radiosity of 1)";
+}
+
 }  // namespace
+
+std::optional<std::string> sum_text(const Enclosure& sum, int digits) {
+  if (digits > 0) {
+    if (auto decimals = sum.decimals(digits)) return decimals;
+  }
+  const std::optional<double> nearest = sum.nearest();
+  return nearest ? std::optional(shortest(*nearest)) : std::nullopt;
+}
 
 void print_point_table(const PointArguments& args, const Scene& scene, const PointResult& point) {
   std::cout << "receiver " << vec_text(point.receiver.point) << ", normal " << vec_text(point.receiver.normal);
   if (!point.receiver.on.empty()) std::cout << ", on " << text::printable(scene.name_of(point.receiver.on));
   std::cout << "\n\n";
-  for (const PointTerm& one : point.sources) print_source(args, scene, one);
-  if (point.sources.size() > 1) {
-    const std::optional<double> nearest = point.sum.nearest();
-    std::cout << "sum of " << point.sources.size() << " sources\n  form factor  "
-              << (nearest ? shortest(*nearest) : "between the bounds") << "\n  enclosure    ["
-              << shortest(point.sum.lower()) << ", " << shortest(point.sum.upper()) << "]\n";
+  const bool blocks = !point.every_patch || args.explain || args.exact_fraction;
+  for (const PointTerm& one : point.sources) {
+    if (blocks) print_source(args, scene, one);
   }
-  std::cout << "\nradiosity received  " << shortest(point.radiosity.r) << ' ' << shortest(point.radiosity.g) << ' '
-            << shortest(point.radiosity.b) << "  (reflectance x Ke of the source x form factor, per channel)\n";
+  if (point.every_patch) {
+    if (blocks) std::cout << '\n';
+    print_patch_table(args, scene, point);
+  } else if (point.sources.size() > 1) {
+    print_sum(args, "sum of " + text::counted(point.sources.size(), "source"), point.sum);
+    if (point.is_mixed())
+      print_sum(args,
+                "sum of the " + std::to_string(point.emitters) + (point.emitters == 1 ? " that emits" : " that emit"),
+                point.sum_of_emitters);
+  }
+  std::cout << "\nradiosity received  " << rgb_text(point.radiosity) << "  " << radiosity_words(point) << '\n';
 }
 
 namespace {
@@ -110,6 +153,10 @@ nlohmann::ordered_json ball_json(const Enclosure& enclosure) {
   return {{"midpoint", enclosure.midpoint()}, {"radius", enclosure.radius()}};
 }
 
+nlohmann::ordered_json sum_json(const Enclosure& sum) {
+  return {{"lower", sum.lower()}, {"upper", sum.upper()}, {"ball", ball_json(sum)}};
+}
+
 nlohmann::ordered_json plane_json(const Scene& scene, const PlaneRecord& plane) {
   nlohmann::ordered_json faces = nlohmann::ordered_json::array();
   for (const FaceId face : plane.faces) faces.push_back(scene.name_of(face));
@@ -118,7 +165,7 @@ nlohmann::ordered_json plane_json(const Scene& scene, const PlaneRecord& plane) 
     notes.push_back({{"stage", note.stage}, {"ran", note.ran}, {"note", note.note}});
   }
   nlohmann::ordered_json json = {{"faces", faces},
-                                 {"outcome", to_string(plane.outcome)},
+                                 {"outcome", to_string(decided_outcome(plane))},
                                  {"tree_candidates", plane.tree_candidates},
                                  {"candidates", plane.candidates},
                                  {"clipped", plane.clipped},
@@ -145,6 +192,8 @@ nlohmann::ordered_json source_json(const PointArguments& args, const Scene& scen
                                  {"lower", one.exact.lower},
                                  {"upper", one.exact.upper},
                                  {"status", to_string(one.exact.status)},
+                                 {"emits", one.emits},
+                                 {"radiosity", numbers_json(one.radiosity)},
                                  {"ball", ball_json(one.exact.enclosure)},
                                  {"bits", one.exact.precision_bits}};
   if (args.digits > 0) json["decimals"] = value_text(one.exact, args.digits);
@@ -181,7 +230,9 @@ void print_point_json(const PointArguments& args, const Scene& scene, const Poin
   if (!point.receiver.on.empty()) json["receiver"]["on"] = scene.name_of(point.receiver.on);
   json["sources"] = nlohmann::ordered_json::array();
   for (const PointTerm& one : point.sources) json["sources"].push_back(source_json(args, scene, one));
-  json["sum"] = {{"lower", point.sum.lower()}, {"upper", point.sum.upper()}, {"ball", ball_json(point.sum)}};
+  json["sum"] = sum_json(point.sum);
+  if (point.is_mixed()) json["sum_of_emitters"] = sum_json(point.sum_of_emitters);
+  if (point.every_patch) json["missing_to_1"] = sum_json(missing_to_one(point.sum));
   json["radiosity"] = numbers_json(point.radiosity);
   std::cout << text::json_document(json) << '\n';
 }

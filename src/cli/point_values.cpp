@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <utility>
 
 #include "cli/output.h"
 #include "cli/point.h"
 #include "exactff/study.h"
+#include "flags/lists.h"
 #include "flags/receivers.h"
+#include "flags/sources.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 
@@ -36,8 +39,7 @@ Receiver make_receiver(const PointArguments& args, const Scene& scene) {
 }
 
 std::vector<Selection> make_sources(const PointArguments& args, const Scene& scene) {
-  std::vector<Selection> sources;
-  for (const std::string& name : args.sources) sources.push_back(scene.select(name));
+  std::vector<Selection> sources = flags::sources_of({args.sources}, scene);
   if (sources.empty()) sources = scene.emitters();
   if (sources.empty()) {
     throw InputError({.file = args.scene.path,
@@ -86,22 +88,41 @@ AdaptiveOptions adaptive_options(const PointArguments& args) {
 
 PointTerm compute_source(const PointArguments& args, const Scene& scene, const PointResult& point,
                          const ExactSource& source, const std::optional<AdaptiveSolver>& sampler) {
-  PointTerm result{.source = source.selection()};
+  PointTerm result{.source = source.selection(), .emits = flags::emits(scene, source.selection())};
   const ExactOptions options{.engine = args.engine.engine(),
                              .visible_fraction = args.fraction || args.exact_fraction,
                              .exact_fraction = args.exact_fraction,
-                             .list_cutters = args.explain,
+                             .list_cutters = args.explain || !args.svg.empty(),
                              .digits = args.digits,
                              .precision_cap = args.precision_cap};
   result.exact = exact_form_factor(scene, point.receiver, source, options);
   const Rgb b = scene.source_radiosity(result.source);
   const Rgb& rho = point.reflectance;
   result.largest_rho_b = std::max({rho.r * b.r, rho.g * b.g, rho.b * b.b});
+  const double f = result.exact.value;
+  result.radiosity = {rho.r * b.r * f, rho.g * b.g * f, rho.b * b.b * f};
   if (args.explain) add_shares(scene, point.receiver, source, result);
   if (sampler) {
     result.adaptive = sampler->form_factor(point.receiver, result.source, result.largest_rho_b, adaptive_options(args));
   }
   return result;
+}
+
+void add(Rgb& sum, const Rgb& part) { sum = {sum.r + part.r, sum.g + part.g, sum.b + part.b}; }
+
+// Sources that emit nothing count with a radiosity of 1, which cannot be added to the radiosity of lamps.
+void add_up(PointResult& result) {
+  for (const PointTerm& one : result.sources) {
+    result.sum += one.exact.enclosure;
+    if (one.emits) {
+      ++result.emitters;
+      result.sum_of_emitters += one.exact.enclosure;
+      add(result.radiosity, one.radiosity);
+    } else {
+      add(result.radiosity_of_others, one.radiosity);
+    }
+  }
+  if (result.emitters == 0) std::swap(result.radiosity, result.radiosity_of_others);
 }
 
 void require_one(const std::vector<Selection>& sources, const std::string& picture) {
@@ -127,16 +148,12 @@ PointResult compute_point(const PointArguments& args, const Scene& scene) {
   if (args.adaptive) sampler.emplace(scene);
   const std::vector<Selection> sources = make_sources(args, scene);
   if (!args.svg.empty()) require_one(sources, args.svg);
+  result.every_patch = flags::names_all(scene, args.sources);
   for (const Selection& selection : sources) {
     const ExactSource source(scene, selection);
-    PointTerm one = compute_source(args, scene, result, source, sampler);
-    const Rgb b = scene.source_radiosity(selection);
-    result.radiosity.r += result.reflectance.r * b.r * one.exact.value;
-    result.radiosity.g += result.reflectance.g * b.g * one.exact.value;
-    result.radiosity.b += result.reflectance.b * b.b * one.exact.value;
-    result.sum += one.exact.enclosure;
-    result.sources.push_back(std::move(one));
+    result.sources.push_back(compute_source(args, scene, result, source, sampler));
   }
+  add_up(result);
   return result;
 }
 

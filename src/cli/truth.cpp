@@ -1,12 +1,15 @@
 // exactff truth: writes a file of certified values, for comparison with other programs.
 #include "exactff/truth.h"
 
+#include <unistd.h>
+
 #include <charconv>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/exit_code.h"
@@ -35,6 +38,7 @@ constexpr const char* kTruthFooter =
     "--resume continues from there. Scripts can always give --resume; a complete FILE stays as it is.\n"
     "On several machines: run `mpirun -n 4 exactff truth ...` (every process reads the scene and computes; rank 0\n"
     "writes), or start separate jobs with --shard 1/4, 2/4, ... and join their files with `exactff merge`.\n"
+    "In a pipe, `-` as SCENE or --receivers is standard input, and -o - is standard output.\n"
     "Exit codes: 0 done, 2 bad input, 3 done but some rows are not certified, 128 + signal when interrupted.\n"
     "\n"
     "Example:\n"
@@ -46,6 +50,7 @@ struct TruthArguments {
   flags::SourceArguments sources;
   bool unoccluded = false;
   bool fraction = false;
+  bool unit_normals = false;
   bool uv = false;
   std::string shard;
   bool resume = false;
@@ -55,6 +60,7 @@ struct TruthArguments {
   int threads = 0;
   std::string file;
 
+  [[nodiscard]] bool to_standard_output() const { return file == "-"; }
   [[nodiscard]] truth::Existing existing() const {
     return resume ? truth::Existing::kResume : force ? truth::Existing::kReplace : truth::Existing::kRefuse;
   }
@@ -83,6 +89,7 @@ struct Job {
 std::unique_ptr<Job> job_of(const TruthArguments& args, const truth::Team* team) {
   const truth::Shard shard = shard_of(args.shard);
   flags::check_receiver_options(args.receivers);
+  flags::check_standard_input(args.scene, args.receivers);
   auto job = std::make_unique<Job>(Job{args.scene.load(), {}});
   print_warnings(job->scene.warnings());
   truth::Request& request = job->request;
@@ -90,17 +97,25 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const truth::Team* team)
   if (receivers.without_face > 0) std::cerr << "warning: " << flags::words_on_receivers_without_face(receivers) << '\n';
   print_near_misses(job->scene, receivers.receivers);
   request.scene = &job->scene;
-  request.scene_name = std::filesystem::path(args.scene.path).filename().string();
+  request.scene_name = args.scene.from_standard_input() ? std::string(flags::kStandardInput)
+                                                        : std::filesystem::path(args.scene.path).filename().string();
   request.receivers = std::move(receivers.receivers);
   request.receivers_name = std::move(receivers.description);
   request.sources = flags::sources_of(args.sources, job->scene);
   request.unoccluded = args.unoccluded;
   request.visible_fraction = args.fraction;
+  request.unit_normals = args.unit_normals;
   request.uv = args.uv;
   request.engine = args.engine.engine();
   request.shard = shard;
   request.threads = args.threads > 0 || team == nullptr ? args.threads : truth::fair_threads(*team);
   return job;
+}
+
+void tell_of_sources(const Job& job) {
+  print_warnings(diagnosis::warnings_of_dark_sources(job.scene, job.request.receivers, job.request.sources));
+  const std::string note = flags::note_on_sources_without_emission(job.scene, job.request.sources);
+  if (!note.empty()) std::cerr << "note: " << text::printable(note) << '\n';
 }
 
 // Prints progress and messages while rows are computed.
@@ -150,10 +165,43 @@ class Narrator {
   int slow_ = 0;
 };
 
+// What a pipe cannot have.
+void check_standard_output(const TruthArguments& args) {
+  std::vector<std::string> flags;
+  if (!args.shard.empty()) flags.emplace_back("--shard");
+  if (args.resume) flags.emplace_back("--resume");
+  if (args.force) flags.emplace_back("--force");
+  if (flags.empty()) return;
+  throw InputError({.what = text::enumerate(flags) + (flags.size() == 1 ? " is" : " are") + " given with -o -",
+                    .why = "standard output has no journal to continue from, no shards to merge and nothing to replace",
+                    .suggestion = "remove " + std::string(flags.size() == 1 ? "it" : "them") + ", or name a file"});
+}
+
+int write_to_standard_output(const TruthArguments& args) {
+  check_standard_output(args);
+  const std::string words = "exactff: interrupted; the printed rows are incomplete, and nothing is kept\n";
+  const InterruptWatch watch(words);
+  const std::unique_ptr<Job> job = job_of(args, nullptr);
+  tell_of_sources(*job);
+  Narrator narrator;
+  truth::Hooks hooks = narrator.hooks(args.slow_seconds);
+  if (::isatty(STDOUT_FILENO) == 1) hooks.progress = {};  // the rows are to be seen
+  truth::Summary summary;
+  try {
+    summary = truth::write(std::move(job->request), std::cout, hooks);
+  } catch (const Cancelled&) {
+    narrator.clear();
+    std::cerr << words;
+    return 128 + interrupting_signal();
+  }
+  narrator.clear();
+  return warn_of_uncertified(summary);
+}
+
 int write(const TruthArguments& args, truth::Team* team) {
   truth::require_free(args.file, args.existing());  // checked before anything that takes time
   const std::unique_ptr<Job> job = job_of(args, team);
-  print_warnings(diagnosis::warnings_of_dark_sources(job->scene, job->request.receivers, job->request.sources));
+  tell_of_sources(*job);
   Narrator narrator;
   truth::Summary summary;
   try {
@@ -188,14 +236,25 @@ int follow(const TruthArguments& args, truth::Team& team) {
   return truth::follow(team, request, {.cancelled = is_interrupted, .slow_seconds = args.slow_seconds});
 }
 
+// Under mpirun only rank 0 has the standard input, and every rank reads the scene.
+void refuse_pipes_of_a_team(const TruthArguments& args) {
+  const bool scene = args.scene.from_standard_input(), receivers = args.receivers.file == "-";
+  if (!scene && !receivers && !args.to_standard_output()) return;
+  throw InputError({.what = std::string("- stands for ") + (scene || receivers ? "standard input" : "standard output"),
+                    .why = "several processes under mpirun cannot share it",
+                    .suggestion = "name a file, or run exactff without mpirun"});
+}
+
 int run(const TruthArguments& args) {
   std::unique_ptr<truth::Team> team;
   try {
     team = join_team();
+    if (team != nullptr) refuse_pipes_of_a_team(args);
   } catch (const InputError&) {
     if (launched_rank() > 0) return 0;  // rank 0 reports it
     throw;
   }
+  if (args.to_standard_output()) return write_to_standard_output(args);
   const InterruptWatch watch("exactff: interrupted; all finished rows are kept in " +
                              text::printable(truth::journal_of(args.file).string()) +
                              "; to continue, run the same command with --resume\n");
@@ -213,6 +272,9 @@ Command add_truth(CLI::App& app) {
   flags::add_source_options(*command, args->sources);
   command->add_flag("--unoccluded", args->unoccluded, "Add a column: the form factor without occluders");
   command->add_flag("--fraction", args->fraction, "Add a column: the visible fraction of the source");
+  command->add_flag("--unit-normals", args->unit_normals,
+                    "Add columns ux,uy,uz: the normal scaled to length 1, correctly rounded; the values belong to the "
+                    "exact normals in nx,ny,nz");
   command->add_flag("--uv", args->uv, "Add columns u,v: the place of a cell on its grid, from 0 to 1");
   command->add_option("--shard", args->shard, "Compute only part I of N, for exactff merge: 1/4 is the first of four")
       ->type_name("I/N");
@@ -228,7 +290,11 @@ Command add_truth(CLI::App& app) {
                    "Number of threads (default: all; under mpirun: this rank's share of the machine)")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
-  command->add_option("-o,--output", args->file, "CSV file to write")->required()->type_name("FILE");
+  command
+      ->add_option("-o,--output", args->file,
+                   "CSV file to write; - writes to standard output, without journal, --resume or shards")
+      ->required()
+      ->type_name("FILE");
   command->footer(kTruthFooter);
   return {command, [args] { return run(*args); }};
 }

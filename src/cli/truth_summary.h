@@ -12,9 +12,18 @@
 
 namespace exactff::cli {
 
+// Returns the exit code: 3, with a message, if a row is not certified.
+inline int warn_of_uncertified(const truth::Summary& summary) {
+  const std::uint64_t uncertified = summary.with(Status::kNotCertified);
+  if (uncertified == 0) return 0;
+  std::cerr << "exactff: " << text::counted(uncertified, "row")
+            << " could not be certified within the precision cap (their bounds are valid, their values are estimates); "
+               "look for the status 'not certified'\n";
+  return kNotCertified;
+}
+
 // Prints the summary. Returns the exit code: 3 if a row is not certified.
 inline int print_summary(const truth::Summary& summary, const std::string& file) {
-  const std::uint64_t uncertified = summary.with(Status::kNotCertified);
   std::cout << text::counted(summary.rows, "row") << ':';
   const char* separator = " ";
   for (const Status status : {Status::kCertified, Status::kZero, Status::kUnderflow, Status::kNotCertified}) {
@@ -35,11 +44,7 @@ inline int print_summary(const truth::Summary& summary, const std::string& file)
   }
   std::cout << "Truth file: " << text::printable(file) << '\n';
   check_output(std::cout);
-  if (uncertified == 0) return 0;
-  std::cerr << "exactff: " << text::counted(uncertified, "row")
-            << " could not be certified within the precision cap (their bounds are valid, their values are estimates); "
-               "look for the status 'not certified'\n";
-  return kNotCertified;
+  return warn_of_uncertified(summary);
 }
 
 }  // namespace exactff::cli

@@ -141,6 +141,7 @@ void set_bounds(FormFactor& result) {
 
 void note_fraction(PlaneVisibility& plane, const ExactOptions& options) {
   plane.record.visible_fraction = kernel::nearest_double(*plane.fraction);
+  if (*plane.fraction == 1) plane.record.cutters = 0;
   if (options.exact_fraction) plane.record.exact_fraction = kernel::to_string(*plane.fraction);
 }
 
@@ -209,6 +210,7 @@ class Solver {
 
   void look_at(const SourcePlane& plane, PlaneRecord& record) {
     PlaneVisibility seen = find(plane);
+    if (options_.list_cutters) seen.record.cutters = seen.cutters.size();
     something_visible_ = something_visible_ || !seen.boundary.empty();
     memory_.quick.add(seen.boundary);
     if (wants_fraction_) {

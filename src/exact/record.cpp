@@ -33,6 +33,11 @@ std::string_view to_string(Outcome outcome) {
   return kNames[static_cast<std::size_t>(outcome)];
 }
 
+Outcome decided_outcome(const PlaneRecord& plane) {
+  const bool all_visible = plane.outcome == Outcome::kPartlyHidden && plane.cutters == std::uint64_t{0};
+  return all_visible ? Outcome::kUnoccluded : plane.outcome;
+}
+
 namespace {
 
 using text::counted;
@@ -89,13 +94,20 @@ StageNote engine_note(const PlaneRecord& plane) {
                 (by_edges ? "nothing hides them" : "nothing to subtract")};
   }
   const bool nothing = plane.outcome == Outcome::kHiddenByUnion;
+  const bool all = decided_outcome(plane) == Outcome::kUnoccluded;
   if (by_edges) {
     return {stage, true,
-            "the part of each edge that " + counted(plane.candidates, "candidate") + " leave visible" +
-                (nothing ? ": nothing" : "")};
+            "the part of each edge that " + counted(plane.candidates, "candidate") +
+                (plane.candidates == 1 ? " leaves visible" : " leave visible") +
+                (nothing ? ": nothing"
+                 : all   ? ": all of it"
+                         : "")};
   }
   return {stage, true,
-          counted(plane.candidates, "shadow") + " joined and subtracted" + (nothing ? ": nothing left" : "")};
+          counted(plane.candidates, "shadow") + " joined and subtracted" +
+              (nothing ? ": nothing left"
+               : all   ? ": all of it left"
+                       : "")};
 }
 
 StageNote contour_note(const PlaneRecord& plane) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
+#include <utility>
 
 #include "flags/lists.h"
 #include "text/escape.h"
@@ -68,6 +70,44 @@ Variant to_variant(const std::string& text, const std::string& flag) {
                "use mended or literal");
 }
 
+// The flags of the list that were given.
+using GivenFlag = std::pair<const char*, const std::string*>;
+std::vector<std::string> given_of(std::initializer_list<GivenFlag> flags) {
+  std::vector<std::string> given;
+  for (const auto& [flag, value] : flags) {
+    if (!value->empty()) given.emplace_back(flag);
+  }
+  return given;
+}
+
+void refuse_idle(const std::vector<std::string>& flags, const std::string& beside, const std::string& why,
+                 const std::string& suggestion) {
+  if (flags.empty()) return;
+  const bool one = flags.size() == 1;
+  text::refuse(text::enumerate(flags) + (one ? " has" : " have") + " no effect " + beside, why,
+               suggestion + (one ? ", or remove it" : ", or remove them"));
+}
+
+void check_effects(const ComparisonArguments& args) {
+  if (!args.methods.empty() && !args.sweep) {
+    refuse_idle(given_of({{"--eps-b", &args.eps_b},
+                          {"--eps-a", &args.eps_a},
+                          {"--rays", &args.rays},
+                          {"--seeds", &args.seeds},
+                          {"--pattern", &args.pattern},
+                          {"--variant", &args.variant},
+                          {"--sweep-budget", &args.sweep_budget}}),
+                "beside --method", "with --method, the sweep of Tampieri's algorithm over these values does not run",
+                "add --sweep, or write a setting of the method, such as --method adaptive:eps_B=0.1|0.01,rays=16");
+  }
+  if (args.no_methods) {
+    refuse_idle(given_of({{"--method-seeds", &args.method_seeds},
+                          {"--method-receivers", &args.method_receivers},
+                          {"--method-budget", &args.method_budget}}),
+                "beside --no-methods", "no method is compared", "remove --no-methods");
+  }
+}
+
 study::Sweeps sweeps_of(const ComparisonArguments& args) {
   study::Sweeps sweeps;
   sweeps.eps_b = list_of<double>(args.eps_b, "--eps-b", to_tolerance);
@@ -76,6 +116,7 @@ study::Sweeps sweeps_of(const ComparisonArguments& args) {
   sweeps.seeds = list_of<std::uint64_t>(args.seeds, "--seeds", to_whole<std::uint64_t>);
   sweeps.patterns = list_of<SamplePattern>(args.pattern, "--pattern", to_pattern);
   sweeps.variants = list_of<Variant>(args.variant, "--variant", to_variant);
+  sweeps.enabled = args.sweep || args.methods.empty();
   return sweeps;
 }
 
@@ -87,10 +128,27 @@ Number within(Number value, Number lowest, Number highest, const std::string& fl
                meaning, "give a number in this range");
 }
 
+// Of the named methods, and of the exact method, with which they are compared. Empty if none is named.
+std::vector<study::Ladder> ladders_of(const ComparisonArguments& args) {
+  std::vector<study::Ladder> ladders;
+  for (const std::string& text : args.methods) ladders.push_back(study::parse_ladder(text));
+  if (ladders.empty()) return ladders;
+  const auto is_stochastic = [](const study::Ladder& ladder) {
+    return std::ranges::any_of(ladder.rungs, [](const methods::Choice& c) { return c.method->stochastic(c.settings); });
+  };
+  if (!args.method_seeds.empty() && std::ranges::none_of(ladders, is_stochastic)) {
+    refuse_idle({"--method-seeds"}, "here", "none of the named methods uses random numbers",
+                "name a method that does, such as --method area-sampling");
+  }
+  const auto is_exact = [](const study::Ladder& ladder) { return ladder.rungs.front().method->name == "exact"; };
+  if (std::ranges::none_of(ladders, is_exact)) ladders.insert(ladders.begin(), study::parse_ladder("exact"));
+  return ladders;
+}
+
 study::MethodSweep methods_of(const ComparisonArguments& args) {
   study::MethodSweep sweep;
   sweep.enabled = !args.no_methods;
-  for (const std::string& text : args.methods) sweep.ladders.push_back(study::parse_ladder(text));
+  sweep.ladders = ladders_of(args);
   if (!args.method_seeds.empty()) {
     sweep.seeds = within<std::size_t>(to_whole<std::size_t>(args.method_seeds, "--method-seeds"), 1, 10000,
                                       "--method-seeds", "it is the number of seeds for every stochastic method");
@@ -134,12 +192,15 @@ void abridge(study::Request& request) {
 }  // namespace
 
 std::string short_name(const std::string& path) {
+  if (path == "-") return kStandardInput;
   return path.starts_with('@') ? path.substr(1) : std::filesystem::path(path).filename().string();
 }
 
 Comparison comparison_of(ComparisonArguments args, bool abridged, int threads) {
   if (abridged && !args.receivers.grid.empty()) args.receivers.grid = abridged_grid(args.receivers.grid);
   check_receiver_options(args.receivers);
+  check_effects(args);
+  check_standard_input(args.scene, args.receivers);
   Comparison comparison;
   study::Request& request = comparison.request;
   request.sweeps = sweeps_of(args);
@@ -173,6 +234,7 @@ std::string command_words(const ComparisonArguments& args) {
   add("--variant", args.variant);
   for (const std::string& method : args.methods) add("--method", method);
   if (args.no_methods) line += " --no-methods";
+  if (args.sweep) line += " --sweep";
   add("--method-seeds", args.method_seeds);
   add("--method-receivers", args.method_receivers);
   add("--method-budget", args.method_budget);
@@ -203,10 +265,17 @@ void ComparisonArguments::add_to(CLI::App& app) {
   app.add_option("--variant", variant,
                  "literal: the algorithm as printed in 1992; mended: with its faults corrected (default: both)")
       ->type_name("LIST");
-  CLI::Option* method = app.add_option("--method", methods, "A method to compare; can be repeated (default: all)")
-                            ->type_name("METHOD")
-                            ->take_all();
-  app.add_flag("--no-methods", no_methods, "Run only the ray-sampled adaptive algorithm")->excludes(method);
+  CLI::Option* method =
+      app.add_option("--method", methods,
+                     "A method to compare with the exact values; can be repeated (default: all, and the "
+                     "sweep)")
+          ->type_name("METHOD")
+          ->take_all();
+  app.add_flag("--no-methods", no_methods, "Run only the sweep of the ray-sampled adaptive algorithm")
+      ->excludes(method);
+  app.add_flag("--sweep", sweep,
+               "Also run the ray-sampled adaptive algorithm over --eps-b, --eps-a, --rays, --seeds, --pattern and "
+               "--variant, as is done if no --method is given");
   app.add_option("--method-seeds", method_seeds, "Run stochastic methods with seeds 1 to N (default: 30)")
       ->type_name("N");
   app.add_option("--method-receivers", method_receivers,

@@ -22,6 +22,7 @@ struct ComparisonArguments {
   std::string eps_b, eps_a, rays, seeds, pattern, variant;
   std::vector<std::string> methods;
   bool no_methods = false;
+  bool sweep = false;
   std::string method_seeds, method_receivers, method_budget, sweep_budget;
   flags::EngineArgument engine;
   std::string title;

@@ -21,9 +21,12 @@ void add_all(const Scene& scene, std::vector<Selection>& selections) {
   }
 }
 
+bool means_all(const Scene& scene, const std::string& name) {
+  return name == "all" && std::ranges::none_of(scene.patches(), [&](const Patch& p) { return p.name == name; });
+}
+
 void add(const Scene& scene, const std::string& name, std::vector<Selection>& selections) {
-  const auto has_name = [&](const Patch& patch) { return patch.name == name; };
-  if (name == "all" && std::ranges::none_of(scene.patches(), has_name)) return add_all(scene, selections);
+  if (means_all(scene, name)) return add_all(scene, selections);
   selections.push_back(scene.select(name));
 }
 
@@ -50,6 +53,14 @@ std::vector<Selection> selections_named(const Scene& scene, const std::vector<st
     }
   }
   return selections;
+}
+
+bool names_all(const Scene& scene, const std::vector<std::string>& texts) {
+  return std::ranges::any_of(texts, [&](const std::string& text) {
+    const std::vector<std::string> parts = split_list(text);
+    if (parts.size() > 1 && is_a_name(scene, text)) return false;
+    return std::ranges::any_of(parts, [&](const std::string& part) { return means_all(scene, part); });
+  });
 }
 
 }  // namespace exactff::flags

@@ -28,4 +28,7 @@ std::optional<Whole> whole_number(std::string_view text) {
 // InputError for an unknown name.
 std::vector<Selection> selections_named(const Scene& scene, const std::vector<std::string>& texts);
 
+// Whether "all" is among them and means every patch.
+bool names_all(const Scene& scene, const std::vector<std::string>& texts);
+
 }  // namespace exactff::flags

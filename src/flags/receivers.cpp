@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iostream>
 #include <iterator>
 #include <string_view>
 #include <unordered_set>
@@ -119,7 +120,12 @@ ChosenReceivers on_faces(const ReceiverArguments& args, const Scene& scene, Grid
 }
 
 ChosenReceivers in_file(const ReceiverArguments& args, const Scene& scene) {
-  ChosenReceivers chosen{read_receivers(args.file, scene), std::filesystem::path(args.file).filename().string(), {}};
+  ChosenReceivers chosen;
+  if (args.file == "-") {
+    chosen = {read_receivers(std::cin, kStandardInput, scene), kStandardInput, {}};
+  } else {
+    chosen = {read_receivers(args.file, scene), std::filesystem::path(args.file).filename().string(), {}};
+  }
   if (args.on.empty()) return chosen;
   const auto face = auto_face(args.on.front(), scene);
   if (!face) {
@@ -170,7 +176,9 @@ void add_receiver_options(CLI::App& app, ReceiverArguments& args) {
   app.add_option("--samples", args.samples, "N receivers at random, uniformly by area")->type_name("N");
   app.add_option("--sample-seed", args.sample_seed, "Seed of --samples; it does not affect rays (default: 1)")
       ->type_name("S");
-  app.add_option("--receivers", args.file, "CSV file with the columns id,x,y,z,nx,ny,nz,on, instead of --on")
+  app.add_option(
+         "--receivers", args.file,
+         "CSV file with the columns id,x,y,z,nx,ny,nz,on, or a truth file, instead of --on; - for standard input")
       ->type_name("FILE");
 }
 
@@ -205,6 +213,12 @@ void check_receiver_options(const ReceiverArguments& args) {
   if (!args.grid.empty()) (void)grid_of(args.grid);
   if (!args.samples.empty()) (void)sample_count(args);
   (void)sample_seed(args);
+}
+
+void check_standard_input(const SceneArguments& scene, const ReceiverArguments& receivers) {
+  if (!scene.from_standard_input() || receivers.file != "-") return;
+  text::refuse("the scene and the receivers are both to be read from standard input",
+               "where one ends and the other begins is unknown", "name a file for one of them");
 }
 
 ChosenReceivers receivers_of(const ReceiverArguments& args, const Scene& scene, GridIds grid_ids) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "exactff/receiver.h"
+#include "flags/scene.h"
 
 namespace exactff::flags {
 
@@ -43,6 +44,9 @@ void add_receiver_options(CLI::App& app, ReceiverArguments& args);
 
 // Throws InputError if flags are missing or contradict each other. Needs no scene.
 void check_receiver_options(const ReceiverArguments& args);
+
+// Throws InputError if both are to be read from standard input.
+void check_standard_input(const SceneArguments& scene, const ReceiverArguments& receivers);
 
 // Checks the flags, too. Throws InputError, also if the named receivers are none.
 ChosenReceivers receivers_of(const ReceiverArguments& args, const Scene& scene, GridIds grid_ids = GridIds::kUnique);

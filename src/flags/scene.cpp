@@ -1,6 +1,9 @@
 #include "flags/scene.h"
 
+#include <iostream>
+
 #include "exactff/models.h"
+#include "exactff/obj.h"
 #include "exactff/scene_files.h"
 #include "flags/lists.h"
 #include "text/escape.h"
@@ -30,10 +33,9 @@ std::vector<Selection> changed(const Scene& scene, const std::string& flag, cons
 }  // namespace
 
 void SceneArguments::add_to(CLI::App& app) {
-  app.add_option(
-         "SCENE", path,
-         "File (OBJ, PLY, STL, OFF, View3D), or @MODEL[:SETTING=VALUE,...] for a generated scene: `exactff info @` "
-         "lists them")
+  app.add_option("SCENE", path,
+                 "File (OBJ, PLY, STL, OFF, View3D), - for an OBJ file from standard input, or "
+                 "@MODEL[:SETTING=VALUE,...] for a generated scene: `exactff info @` lists them")
       ->required();
   app.add_option("--patches", patches,
                  "What a patch is: groups (g lines; without them, o lines) or faces (each face is a patch NAME:k)")
@@ -51,7 +53,9 @@ SceneOptions SceneArguments::options() const {
 }
 
 Scene SceneArguments::load() const {
-  Scene scene = path.starts_with('@') ? models::make_scene(path.substr(1), options()) : read_scene(path, options());
+  Scene scene = from_standard_input()   ? read_obj(std::cin, kStandardInput, options())
+                : path.starts_with('@') ? models::make_scene(path.substr(1), options())
+                                        : read_scene(path, options());
   if (!flip.empty()) scene = scene.with_flipped(changed(scene, "--flip", flip));
   if (!transparent.empty()) scene = scene.with_transparent(changed(scene, "--transparent", transparent));
   return scene;

@@ -9,9 +9,11 @@
 
 namespace exactff::flags {
 
-// SCENE, --patches groups|faces, --skip-bad-faces, --flip, --transparent. SCENE is a file, or
-// @MODEL[:SETTING=VALUE,...] (exactff/models.h). A name that begins with @ always means a model; write ./@NAME for a
-// file of that name.
+inline constexpr const char* kStandardInput = "standard input";  // what messages call it
+
+// SCENE, --patches groups|faces, --skip-bad-faces, --flip, --transparent. SCENE is a file, "-" for an OBJ file on
+// standard input, or @MODEL[:SETTING=VALUE,...] (exactff/models.h). A name that begins with @ always means a model;
+// write ./@NAME for a file of that name.
 struct SceneArguments {
   std::string path;
   std::string patches = "groups";
@@ -19,6 +21,7 @@ struct SceneArguments {
   std::vector<std::string> flip, transparent;  // each a name, a comma list of names, or "all"
 
   void add_to(CLI::App& app);
+  [[nodiscard]] bool from_standard_input() const { return path == "-"; }
 
   [[nodiscard]] SceneOptions options() const;
   // Reads or generates the scene and changes it as --flip and --transparent say. Throws InputError.

@@ -1,11 +1,14 @@
 #include "flags/sources.h"
 
+#include <algorithm>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "flags/lists.h"
 #include "text/escape.h"
+#include "text/phrases.h"
+#include "text/text_lines.h"
 
 namespace exactff::flags {
 
@@ -28,6 +31,26 @@ std::vector<Selection> sources_of(const SourceArguments& args, const Scene& scen
                       .suggestion = "give it once"});
   }
   return sources;
+}
+
+bool emits(const Scene& scene, const Selection& source) {
+  const std::vector<FaceId> faces = scene.faces_of(source);
+  return std::ranges::any_of(faces, [&](FaceId id) { return scene.material(scene.face(id).material).emits(); });
+}
+
+std::string note_on_sources_without_emission(const Scene& scene, const std::vector<Selection>& sources) {
+  constexpr std::size_t kNamed = 5;
+  std::vector<std::string> names;
+  std::size_t count = 0;
+  for (const Selection& source : sources) {
+    if (emits(scene, source)) continue;
+    if (++count <= kNamed) names.push_back(text::in_quotes(scene.name_of(source)));
+  }
+  if (count == 0) return {};
+  if (count > kNamed) names.push_back(std::to_string(count - kNamed) + " more");
+  return count == 1
+             ? names.front() + " emits nothing (Ke 0): as a named source it counts with a radiosity of 1"
+             : text::enumerate(names) + " emit nothing (Ke 0): as named sources they count with a radiosity of 1 each";
 }
 
 std::string command_words(const SourceArguments& args) {

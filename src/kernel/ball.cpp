@@ -177,6 +177,15 @@ Enclosure& Enclosure::operator+=(const Enclosure& other) {
   return *this;
 }
 
+Enclosure& Enclosure::operator-=(const Enclosure& other) {
+  Ball difference;
+  arb_sub(difference.get(), ball().get(), other.ball().get(), ARF_PREC_EXACT);
+  set(difference);
+  return *this;
+}
+
+Enclosure Enclosure::of(double value) { return Enclosure(kernel::to_ball(value, 0)); }
+
 double Enclosure::lower() const {
   const kernel::StandardArithmetic arithmetic;
   return arf_get_d(Ends(ball()).lower.get(), ARF_RND_FLOOR);

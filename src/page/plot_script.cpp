@@ -115,6 +115,28 @@ std::string x_range(const Axes& axes, const std::vector<Points>& drawn) {
   return "set xrange [" + text::shortest(*low / 1.5) + ':' + text::shortest(*high * 1.5) + "]\n";
 }
 
+// A logarithmic axis of a single value, or one without a power of ten on it, would have no number beside it.
+std::string readable_ranges(const Axes& axes, const std::vector<Points>& drawn) {
+  std::vector<double> xs = axes.marks, ys;
+  for (const Points& points : drawn) {
+    for (const auto& [x, y] : points) {
+      xs.push_back(x);
+      ys.push_back(y);
+    }
+  }
+  std::string text;
+  const auto widen = [&](const char* axis, const std::vector<double>& values, double margin) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    const double below = std::floor(std::log10(*low / margin)), above = std::ceil(std::log10(*high * margin));
+    if (std::ceil(std::log10(*low / margin)) <= std::floor(std::log10(*high * margin))) return;
+    text += std::string("set ") + axis + "range [1e" + std::to_string(static_cast<int>(below)) + ":1e" +
+            std::to_string(static_cast<int>(above)) + "]\n";
+  };
+  if (axes.log_x) widen("x", xs, 1.5);
+  if (axes.log_y) widen("y", ys, 1.0);
+  return text;
+}
+
 std::string style_of(const Series& series) {
   if (series.style == kOverlay) return std::string(kOverlayStyle);
   if (series.style == 0) return "with lines lw 1.2 dt 2 lc rgb '#8A8A8A'";
@@ -146,7 +168,8 @@ std::string plot(const Axes& axes, const std::vector<Series>& series, const Bloc
   }
   if (plots.empty()) return {};
   const Key key = key_of(titles);
-  return plot_head(key) + axis_commands(axes, key) + x_range(axes, drawn) + data + plots + '\n';
+  return plot_head(key) + axis_commands(axes, key) + x_range(axes, drawn) + readable_ranges(axes, drawn) + data +
+         plots + '\n';
 }
 
 // The style of a mark over bars. Bars use the first colour.

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
-#include <unordered_set>
+#include <unordered_map>
 
 #include "exactff/error.h"
 #include "exactff/receiver.h"
@@ -18,10 +18,31 @@ namespace {
 constexpr std::array<std::string_view, 8> kColumns = {"id", "x", "y", "z", "nx", "ny", "nz", "on"};
 constexpr std::size_t kId = 0, kX = 1, kNx = 4, kOn = 7;
 
+// Further columns of truth files, and of the exact.csv of a comparison.
+constexpr std::array<std::string_view, 17> kResultColumns = {"source",
+                                                             "exact",
+                                                             "lower",
+                                                             "upper",
+                                                             "unoccluded",
+                                                             "visible_fraction",
+                                                             "radiosity_r",
+                                                             "radiosity_g",
+                                                             "radiosity_b",
+                                                             "largest_rho_b",
+                                                             "status",
+                                                             "sight",
+                                                             "ux",
+                                                             "uy",
+                                                             "uz",
+                                                             "u",
+                                                             "v"};
+
 class ReceiverTable {
  public:
   ReceiverTable(const std::filesystem::path& path, const Scene& scene)
       : lines_(path, "a CSV file of receivers"), scene_(scene) {}
+  ReceiverTable(std::istream& in, const std::string& name, const Scene& scene)
+      : lines_(in, name, "a CSV file of receivers"), scene_(scene) {}
 
   std::vector<Receiver> read() {
     for (std::string_view line; lines_.next(line);) {
@@ -56,8 +77,11 @@ class ReceiverTable {
     column_.fill(names.size());
     field_count_ = names.size();
     const std::size_t before = problem_count_;
+    const auto has = [&](std::string_view name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+    is_truth_ = has("receiver") && has("source") && has("exact");
     for (std::size_t i = 0; i < names.size(); ++i) {
-      const auto known = std::find(kColumns.begin(), kColumns.end(), names[i]);
+      const auto known = find_column(names[i]);
+      if (known == kColumns.end() && is_truth_ && is_result(names[i])) continue;
       if (known == kColumns.end()) {
         complain("unknown column " + text::in_quotes(names[i]), "a misspelt name would be ignored without any warning",
                  "the columns are id,x,y,z,nx,ny,nz,on");
@@ -76,6 +100,14 @@ class ReceiverTable {
     usable_ = problem_count_ == before;
   }
 
+  // In a truth file, the receiver's id is called `receiver`.
+  [[nodiscard]] decltype(kColumns)::const_iterator find_column(std::string_view name) const {
+    return std::find(kColumns.begin(), kColumns.end(), is_truth_ && name == "receiver" ? kColumns[kId] : name);
+  }
+  static bool is_result(std::string_view name) {
+    return std::find(kResultColumns.begin(), kResultColumns.end(), name) != kResultColumns.end();
+  }
+
   void take_row(const std::vector<std::string>& fields) {
     if (fields.size() != field_count_) {
       complain(std::to_string(fields.size()) + " fields where the header has " + std::to_string(field_count_),
@@ -92,14 +124,23 @@ class ReceiverTable {
     }
     if (column_[kOn] < field_count_ && !fields[column_[kOn]].empty()) receiver.on = faces_named(fields[column_[kOn]]);
     if (column_[kId] < field_count_) receiver.id = fields[column_[kId]];
+    if (is_truth_ && repeats(receiver)) return;
     take_id(receiver.id);
     receivers_.push_back(std::move(receiver));
+  }
+
+  // Whether an earlier row has the same receiver, with another source.
+  [[nodiscard]] bool repeats(const Receiver& receiver) const {
+    const auto found = ids_.find(receiver.id);
+    if (found == ids_.end()) return false;
+    const Receiver& other = receivers_[found->second];
+    return receiver.point == other.point && receiver.normal == other.normal && receiver.on == other.on;
   }
 
   // The id of a row without an id is its number.
   void take_id(std::string& id) {
     if (id.empty()) id = std::to_string(receivers_.size() + 1);
-    if (!ids_.insert(id).second) {
+    if (!ids_.emplace(id, receivers_.size()).second) {
       complain("the id " + text::in_quotes(id) + " is used twice", "rows of the results could not be distinguished",
                "give every receiver a different id, or no id");
     }
@@ -141,9 +182,10 @@ class ReceiverTable {
   std::vector<std::string> fields_;
   bool header_read_ = false;
   bool usable_ = false;
+  bool is_truth_ = false;
   std::size_t field_count_ = 0;
   std::array<std::size_t, kColumns.size()> column_{};  // field_count_ where the column is absent
-  std::unordered_set<std::string> ids_;
+  std::unordered_map<std::string, std::size_t> ids_;   // places in receivers_
   std::vector<Receiver> receivers_;
   text::ProblemList problems_;
   std::size_t problem_count_ = 0;
@@ -154,6 +196,11 @@ class ReceiverTable {
 std::vector<Receiver> read_receivers(const std::filesystem::path& path, const Scene& scene) {
   const kernel::StandardArithmetic arithmetic;
   return ReceiverTable(path, scene).read();
+}
+
+std::vector<Receiver> read_receivers(std::istream& in, const std::string& name, const Scene& scene) {
+  const kernel::StandardArithmetic arithmetic;
+  return ReceiverTable(in, name, scene).read();
 }
 
 }  // namespace exactff

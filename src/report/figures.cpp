@@ -8,6 +8,7 @@
 
 #include "kernel/vec.h"
 #include "page/plot_script.h"
+#include "study/ladders.h"
 #include "study/settings.h"
 #include "study/statistics.h"
 #include "text/escape.h"
@@ -45,6 +46,16 @@ class FigureMaker {
   FigureMaker(const Study& study, std::vector<LeftOut>& left_out) : study_(study), left_out_(left_out) {}
 
   std::vector<page::Figure> make() {
+    if (!study_.settings.empty()) add_sweep_figures();
+    add_method_figures(study_, figures_, left_out_);
+    add_maps();
+    return std::move(figures_);
+  }
+
+ private:
+  [[nodiscard]] const AdaptiveOptions& base() const { return study_.settings[study_.base]; }
+
+  void add_sweep_figures() {
     add_error_against_eps_b();
     add_violations();
     add_work_against_eps_b();
@@ -53,13 +64,7 @@ class FigureMaker {
     add_error_against_rays();
     add_patterns();
     add_error_against_eps_a();
-    add_method_figures(study_, figures_, left_out_);
-    add_maps();
-    return std::move(figures_);
   }
-
- private:
-  [[nodiscard]] const AdaptiveOptions& base() const { return study_.settings[study_.base]; }
 
   [[nodiscard]] page::Points points(const std::vector<std::size_t>& line, Parameter x,
                                     double ErrorStatistics::*y) const {
@@ -319,6 +324,26 @@ class FigureMaker {
     return map;
   }
 
+  // What the maps of a method show: the base setting of the sweeps, else the first method that is not exact.
+  struct Shown {
+    std::string title, name;
+    std::vector<double> errors;  // in radiosity, by receiver
+  };
+
+  [[nodiscard]] std::optional<Shown> shown_method() const {
+    if (!study_.settings.empty()) {
+      Shown shown{"the base setting", study::setting_name(study_, study_.base), {}};
+      for (const SampleRow& row : study_.samples[study_.base]) shown.errors.push_back(row.radiosity_error);
+      return shown;
+    }
+    for (const MethodField& field : study_.methods.fields) {
+      const Ladder& ladder = study_.methods.ladders[field.ladder];
+      if (ladder.rungs.front().method->name == "exact") continue;
+      return Shown{ladder.name, study::rung_name(ladder, field.rung) + ", one seed", field.radiosity_errors};
+    }
+    return std::nullopt;
+  }
+
   void add_maps() {
     const auto grid = find_grid();
     if (!grid) {
@@ -331,11 +356,13 @@ class FigureMaker {
           "the maps show " + name_of(*study_.request.scene, grid->lattice->region) + ", which has the most receivers");
     }
     add_exact_map(*grid);
-    add_approximate_map(*grid);
-    add_error_map(*grid);
-    add_leaves_map(*grid);
+    if (const auto shown = shown_method()) {
+      add_approximate_map(*grid, *shown);
+      add_error_map(*grid, *shown);
+    }
+    if (!study_.settings.empty()) add_leaves_map(*grid);
     add_sight_map(*grid);
-    add_silent_map(*grid);
+    if (!study_.settings.empty()) add_silent_map(*grid);
   }
 
   void add_exact_map(const Grid& grid) {
@@ -352,17 +379,16 @@ class FigureMaker {
          page::map_plot(map), true});
   }
 
-  void add_approximate_map(const Grid& grid) {
-    const auto& samples = study_.samples[study_.base];
+  void add_approximate_map(const Grid& grid, const Shown& shown) {
     // The exact radiosity plus the error of the channel with the largest error: grey scenes have only one channel.
     const page::Map map = map_of(grid, "radiosity", page::MapColours::kSequential, [&](std::size_t i) {
-      return std::max(0.0, study_.exact[i].radiosity.largest() + samples[i].radiosity_error);
+      return std::max(0.0, study_.exact[i].radiosity.largest() + shown.errors[i]);
     });
     const auto lit = [](const page::MapCell& cell) { return cell.value > 0.0; };
     if (std::none_of(map.cells.begin(), map.cells.end(), lit)) return;
-    add({"map-approximate", "Radiosity by the base setting",
-         text::html(study::setting_name(study_, study_.base)) + ": the result of the ray-sampled algorithm.",
-         page::map_plot(map), true});
+    const std::string of = study_.settings.empty() ? "" : ": the result of the ray-sampled algorithm";
+    add({"map-approximate", "Radiosity by " + shown.title, text::html(shown.name) + of + ".", page::map_plot(map),
+         true});
   }
 
   void add_sight_map(const Grid& grid) {
@@ -396,21 +422,20 @@ class FigureMaker {
          page::map_plot(map), true});
   }
 
-  void add_error_map(const Grid& grid) {
-    const auto& samples = study_.samples[study_.base];
+  void add_error_map(const Grid& grid, const Shown& shown) {
     page::Map map = map_of(grid, "approximate − exact (radiosity)", page::MapColours::kDiverging,
-                           [&](std::size_t i) { return samples[i].radiosity_error; });
+                           [&](std::size_t i) { return shown.errors[i]; });
     std::vector<double> magnitudes;
     for (const page::MapCell& cell : map.cells) magnitudes.push_back(std::abs(cell.value));
     map.largest = study::percentile(magnitudes, 99.0);
     if (map.largest == 0.0) map.largest = *std::max_element(magnitudes.begin(), magnitudes.end());
     if (!(map.largest > 0.0)) {
-      leave_out("map of the signed error", "the base setting has no error anywhere");
+      leave_out("map of the signed error", shown.title + " has no error anywhere");
       return;
     }
-    add({"map-error", "Signed error of the base setting",
-         text::html(study::setting_name(study_, study_.base)) + ". Red: too bright; blue: too dark. Errors beyond ±" +
-             text::rounded(map.largest) + " (the 99th percentile) have the colour of that value.",
+    add({"map-error", "Signed error of " + shown.title,
+         text::html(shown.name) + ". Red: too bright; blue: too dark. Errors beyond ±" + text::rounded(map.largest) +
+             " (the 99th percentile) have the colour of that value.",
          page::map_plot(map), true});
   }
 

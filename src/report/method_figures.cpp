@@ -18,7 +18,7 @@ constexpr std::size_t kMostLines = 8;  // more cannot be told apart in one figur
 constexpr const char* kFloor = "set yrange [1e-9<*:]";
 constexpr const char* kRelative = "RMS error / brightest receiver";
 
-// Figures show each method once; its variants are in the tables.
+// If there are many methods, figures show each once; its variants are in the tables.
 bool is_variant(const Ladder& ladder) {
   const methods::Choice& choice = ladder.rungs.front();
   if (choice.method->name == "adaptive" && choice.settings.whole("rays") > 16) return true;
@@ -34,7 +34,8 @@ class MethodFigures {
       : study_(study), figures_(figures), left_out_(left_out), brightest_(study::largest_radiosity(study)) {
     for (std::size_t l = 0; l < methods().ladders.size() && shown_.size() < kMostLines; ++l) {
       const Ladder& ladder = methods().ladders[l];
-      if (ladder.rungs.front().method->name != "exact" && !is_variant(ladder)) shown_.push_back(l);
+      const bool few = methods().ladders.size() <= kMostLines;
+      if (ladder.rungs.front().method->name != "exact" && (few || !is_variant(ladder))) shown_.push_back(l);
     }
   }
 
@@ -77,11 +78,13 @@ class MethodFigures {
     for (const MethodCell* cell : pareto_front(study_)) {
       front.points.emplace_back(1e6 * cell->seconds, relative_error(study_, *cell));
     }
+    const auto drawn = std::ranges::count_if(front.points, [](const auto& point) { return point.second > 0.0; });
     series.push_back(std::move(front));
     page::Axes axes{"time per receiver, µs", kRelative, true, true, {kFloor}, {}};
-    std::string caption = "Each line is a method with increasing effort, at " +
-                          text::counted(methods().receivers.size(), "receiver") +
-                          ". The dashed line joins the settings that no other setting beats in both time and error. ";
+    std::string caption =
+        "Each line is a method with increasing effort, at " + text::counted(methods().receivers.size(), "receiver") +
+        ". " +
+        (drawn > 1 ? "The dashed line joins the settings that no other setting beats in both time and error. " : "");
     if (const MethodCell* exact = exact_cell(study_)) {
       const std::string at = text::shortest(1e6 * exact->seconds);
       axes.marks = {1e6 * exact->seconds};
@@ -90,7 +93,9 @@ class MethodFigures {
       caption +=
           "The exact method has no error; the vertical line is its time, " + text::duration(exact->seconds) + ". ";
     }
-    add({"methods-time", "All methods: error against run time", caption + time_slopes(), page::line_plot(axes, series)},
+    const std::string title =
+        study_.settings.empty() ? "Error against run time" : "All methods: error against run time";
+    add({"methods-time", title, caption + time_slopes(), page::line_plot(axes, series)},
         "no method has an error that a logarithmic axis can show");
   }
 

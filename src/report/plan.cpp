@@ -6,6 +6,7 @@
 #include "experiments/experiment.h"
 #include "kernel/float_environment.h"
 #include "page/chapter.h"
+#include "report/identity.h"
 #include "report/report.h"
 #include "report/verdicts.h"
 #include "text/refuse.h"
@@ -104,6 +105,7 @@ Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, study::
   StudyReport report;
   report.title = plan.title;
   report.command_line = plan.command_line;
+  report.identity = identity_of(plan);
   report.left_out = plan.left_out;
   for (const PlannedScene& scene : plan.scenes) {
     report.scenes.push_back({scene.name, scene.title, study::run(scene.request, titled(scene, hooks), &journal)});

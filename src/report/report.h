@@ -23,6 +23,7 @@ struct StudyReport {
   std::vector<SceneChapter> scenes;
   std::vector<page::Chapter> chapters;
   std::string command_line;
+  std::string identity;           // of the plan (identity.h); empty if there is none
   std::vector<LeftOut> left_out;  // scenes and chapters
 };
 

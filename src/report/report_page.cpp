@@ -3,6 +3,7 @@
 
 #include "exactff/report.h"
 #include "page/page_text.h"
+#include "report/identity.h"
 #include "report/report.h"
 #include "report/tables.h"
 #include "report/verdicts.h"
@@ -42,8 +43,8 @@ class ScenePart {
     text_ +=
         "<p class=\"subtitle\">" + text::counted(study().exact.size(), "receiver") + " (" +
         text::html(study().request.receivers_name) + "), source " + text::html(source_names(study())) + ", " +
-        text::counted(study().request.scene->faces().size(), "face") + ", " +
-        text::counted(study().settings.size(), "setting") + " of the ray-sampled algorithm" +
+        text::counted(study().request.scene->faces().size(), "face") +
+        (is_swept() ? ", " + text::counted(study().settings.size(), "setting") + " of the ray-sampled algorithm" : "") +
         (study().methods.cells.empty() ? std::string()
                                        : ", " + text::counted(study().methods.ladders.size(), "method") + " compared") +
         ".</p>\n";
@@ -56,7 +57,7 @@ class ScenePart {
     needs();
     for (const std::string& sentence : range_sentences(study())) text_ += page::paragraph(text::html(sentence));
     methods_table();
-    settings_table();
+    if (is_swept()) settings_table();
     left_out();
     text_ += "</section>\n";
     return std::move(text_);
@@ -66,6 +67,7 @@ class ScenePart {
 
  private:
   [[nodiscard]] const Study& study() const { return scene_.study; }
+  [[nodiscard]] bool is_swept() const { return !study().settings.empty(); }
   [[nodiscard]] bool partly() const { return study().receivers_by_sight[static_cast<std::size_t>(Sight::kPartly)] > 0; }
 
   void subheading(const std::string& words) { text_ += "<h3 class=\"part\">" + words + "</h3>\n"; }
@@ -87,11 +89,29 @@ class ScenePart {
   }
 
   void tiles() {
+    text_ += "<div class=\"tiles\">\n";
+    is_swept() ? sweep_tiles() : method_tiles();
+    text_ += "</div>\n";
+  }
+
+  // The most accurate setting of each method that was named.
+  void method_tiles() {
+    if (const MethodCell* exact = exact_cell(study())) tile(text::duration(exact->seconds), "exact, per receiver");
+    for (std::size_t l = 0; l < study().methods.ladders.size(); ++l) {
+      const MethodCell* best = most_accurate(study(), l);
+      if (best == nullptr || is_exact(study(), *best)) continue;
+      const std::string name = text::html(cell_name(study(), *best));
+      const std::string error = text::rounded(100.0 * relative_error(study(), *best), 2) + " %";
+      tile(text::duration(best->seconds), name + ", per receiver");
+      tile(error, "RMS error of " + name + ", of the brightest receiver");
+    }
+  }
+
+  void sweep_tiles() {
     const Summary& base = study().summaries[study().base];
     const double exact = partly() ? study().exact_time.median_partly : study().exact_time.median;
     const TimeSummary& base_time = study().times[study().base];
     const std::string where = partly() ? ", source partly hidden" : "";
-    text_ += "<div class=\"tiles\">\n";
     tile(text::duration(exact), "exact, per receiver" + where + " (median)");
     tile(text::duration(partly() ? base_time.median_partly : base_time.median),
          "sampled at the base setting, per receiver" + where + " (median)");
@@ -99,7 +119,6 @@ class ScenePart {
          "of receivers with an error above ε_B at the base setting");
     tile(text::rounded(base.radiosity.rms),
          "RMS error there (radiosity); the tolerance is " + text::rounded(study().settings[study().base].eps_b));
-    text_ += "</div>\n";
   }
 
   void figures() {
@@ -136,11 +155,9 @@ class ScenePart {
       const MethodCell* found = cheapest(study(), wanted, l);
       table.cell(found != nullptr ? text::rounded(found->seconds / exact_seconds, 2) : "–");
     }
-    double best = INFINITY;
-    for (const MethodCell& c : study().methods.cells) {
-      if (c.ladder == l) best = std::min(best, relative_error(study(), c));
-    }
-    table.cell(std::isfinite(best) ? text::rounded(best, 2) : "–");
+    const MethodCell* best = most_accurate(study(), l);
+    const double error = best != nullptr ? relative_error(study(), *best) : INFINITY;
+    table.cell(std::isfinite(error) ? text::rounded(error, 2) : "–");
   }
 
   void methods_table() {
@@ -158,7 +175,8 @@ class ScenePart {
                    signed_number(c.error.mean), signed_number(c.error.p99), signed_number(c.error.worst),
                    text::duration(c.seconds), exact != nullptr ? text::rounded(c.seconds / exact->seconds, 2) : "–"});
     }
-    text_ += "<details><summary>Every method and setting</summary>\n" + table.text() + "</details>\n";
+    text_ += std::string("<details") + (is_swept() ? "" : " open") + "><summary>Every method and setting</summary>\n" +
+             table.text() + "</details>\n";
   }
 
   void settings_table() {
@@ -242,6 +260,7 @@ class PageWriter {
     left_out();
     definitions();
     reproduction();
+    if (!report_.identity.empty()) text_ += identity_line(report_.identity) + '\n';
     text_ += page::page_end();
     return std::move(text_);
   }
@@ -431,8 +450,9 @@ class PageWriter {
     return text::html(study.request.scene_name) + ", hash " + study.request.scene->hash() +
            (flipped.empty() ? "" : "; flipped: " + text::html(flipped)) +
            (transparent.empty() ? "" : "; transparent: " + text::html(transparent)) + "; " +
-           (study.full_product ? "every combination of the settings of the ray-sampled algorithm"
-                               : "ε_B × rays, and sweeps of the other parameters through the base setting") +
+           (study.settings.empty() ? "the methods that were named"
+            : study.full_product   ? "every combination of the settings of the ray-sampled algorithm"
+                                   : "ε_B × rays, and sweeps of the other parameters through the base setting") +
            "; set up once per scene: exact method " + text::duration(study.exact_setup_seconds) + ", ray structure " +
            (study.ray_setup_seconds > 0.0 ? text::duration(study.ray_setup_seconds)
                                           : std::string("not built (no candidate list was long enough to need it)"));

@@ -38,13 +38,15 @@ void write_head(const Study& study, std::ostream& out, std::string_view what) {
   for (const std::string& sentence : receiver_warnings(study)) {
     out << "# warning: " << text::csv_comment(sentence) << '\n';
   }
-  write_list(out, "eps_B", sweeps.eps_b, number);
-  write_list(out, "eps_A", sweeps.eps_a, number);
-  write_list(out, "rays", sweeps.rays, [](int v) { return v; });
-  write_list(out, "seeds", sweeps.seeds, [](std::uint64_t v) { return v; });
-  write_list(out, "patterns", sweeps.patterns, name);
-  write_list(out, "variants", sweeps.variants, name);
-  out << "# settings: " << (study.full_product ? "every combination" : "sweeps through a base") << '\n';
+  if (sweeps.enabled) {
+    write_list(out, "eps_B", sweeps.eps_b, number);
+    write_list(out, "eps_A", sweeps.eps_a, number);
+    write_list(out, "rays", sweeps.rays, [](int v) { return v; });
+    write_list(out, "seeds", sweeps.seeds, [](std::uint64_t v) { return v; });
+    write_list(out, "patterns", sweeps.patterns, name);
+    write_list(out, "variants", sweeps.variants, name);
+    out << "# settings: " << (study.full_product ? "every combination" : "sweeps through a base") << '\n';
+  }
   for (const LeftOut& item : study.left_out) out << "# left out: " << item.what << ": " << item.why << '\n';
 }
 
@@ -167,6 +169,7 @@ void write_summary_timings(const Study& study, std::ostream& out) {
 }
 
 bool always(const Study&) { return true; }
+bool has_settings(const Study& study) { return !study.settings.empty(); }
 
 }  // namespace
 
@@ -174,13 +177,13 @@ const std::vector<StudyTable>& tables() {
   static const std::vector<StudyTable> kTables = [] {
     std::vector<StudyTable> list = {
         {"values.csv", "one row per receiver and setting: exact and approximate value, errors, work", write_values,
-         always},
+         has_settings},
         {"exact.csv", "one row per receiver and source: the certified value with its bounds", write_exact, always},
-        {"summary.csv", "one row per setting: the error statistics", write_summary, always},
+        {"summary.csv", "one row per setting: the error statistics", write_summary, has_settings},
         {"timings.csv", "one row per receiver that was timed and method: the time of a single call", write_timings,
          always, Holds::kTimes},
         {"summary_timings.csv", "one row per setting: time per receiver, and that of the exact method",
-         write_summary_timings, always, Holds::kTimes},
+         write_summary_timings, has_settings, Holds::kTimes},
     };
     for (const StudyTable& table : method_tables()) list.push_back(table);
     return list;

@@ -81,6 +81,15 @@ const MethodCell* cheapest(const Study& study, double wanted, std::optional<std:
   return best;
 }
 
+const MethodCell* most_accurate(const Study& study, std::size_t ladder) {
+  const MethodCell* best = nullptr;
+  for (const MethodCell& cell : study.methods.cells) {
+    if (cell.ladder != ladder) continue;
+    if (best == nullptr || relative_error(study, cell) < relative_error(study, *best)) best = &cell;
+  }
+  return best;
+}
+
 std::vector<const MethodCell*> pareto_front(const Study& study) {
   std::vector<const MethodCell*> cells;
   for (const MethodCell& cell : study.methods.cells) {

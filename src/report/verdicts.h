@@ -28,6 +28,9 @@ inline constexpr std::array kWantedErrors = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
 // The fastest cell among those with an error of at most `wanted`: of one ladder, or of all rivals of the exact method.
 [[nodiscard]] const MethodCell* cheapest(const Study& study, double wanted, std::optional<std::size_t> ladder = {});
 
+// The cell of the ladder with the smallest error; null if none was run.
+[[nodiscard]] const MethodCell* most_accurate(const Study& study, std::size_t ladder);
+
 // The cells that no other cell beats in both time and accuracy, by increasing time. Without the control.
 [[nodiscard]] std::vector<const MethodCell*> pareto_front(const Study& study);
 

@@ -165,7 +165,7 @@ std::string shadow_elements(const Scene& scene, const PanelMap& map, const Plane
 std::string caption(const Scene& scene, const PlaneRecord& record, double y) {
   std::string faces = scene.name_of(record.faces.front());
   if (record.faces.size() > 1) faces += " and " + std::to_string(record.faces.size() - 1) + " more";
-  std::string text = "Plane of " + faces + ": " + std::string(to_string(record.outcome)) + "; " +
+  std::string text = "Plane of " + faces + ": " + std::string(to_string(decided_outcome(record))) + "; " +
                      std::to_string(record.candidates) + " in the shaft, " + std::to_string(record.edges) +
                      " boundary edges";
   return "<text x=\"" + number(kMargin) + "\" y=\"" + number(y + kCaptionHeight * 0.75) + "\">" + text::html(text) +

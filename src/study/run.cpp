@@ -127,7 +127,8 @@ class Runner {
     set_up();
     find_exact_values();
     choose_settings();
-    sample();
+    choose_ladders();
+    if (sweeps().enabled) sample();
     if (request().methods.enabled) look_closer();
     take_times(measure_times(study_, hooks_));
     summarise();
@@ -137,6 +138,7 @@ class Runner {
  private:
   [[nodiscard]] const Request& request() const { return study_.request; }
   [[nodiscard]] const Scene& scene() const { return *study_.request.scene; }
+  [[nodiscard]] const Sweeps& sweeps() const { return study_.request.sweeps; }
   [[nodiscard]] int threads() const { return study_.request.threads; }
 
   void set_up() {
@@ -146,8 +148,10 @@ class Runner {
       areas_.push_back(0.0);
       for (const FaceId face : scene().faces_of(source)) areas_.back() += scene().face(face).area;
     }
-    solver_.emplace(scene());
-    for (const Selection& source : request().sources) sampled_sources_.push_back(solver_->prepare(source));
+    if (sweeps().enabled) {
+      solver_.emplace(scene());
+      for (const Selection& source : request().sources) sampled_sources_.push_back(solver_->prepare(source));
+    }
     for (const Receiver& receiver : request().receivers) {
       double of_all_sources = 0.0;
       for (std::size_t s = 0; s < sources_.size(); ++s) {
@@ -215,6 +219,10 @@ class Runner {
   }
 
   void choose_settings() {
+    if (!sweeps().enabled) {
+      return leave_out({{"the ray-sampled algorithm over its own tolerances",
+                         "the comparison is about named methods (--sweep runs it, too)"}});
+    }
     const Work work{study_.largest_rho_b, mean_face_area(request()), anything_sampled()};
     Sweeps& sweeps = study_.request.sweeps;
     study::complete(sweeps, work);
@@ -224,10 +232,13 @@ class Runner {
     study_.base = plan.base;
     study_.full_product = plan.full_product;
     leave_out_settings(over_budget(study_, sources_, *solver_, sampled_sources_));
+  }
+
+  void choose_ladders() {
     MethodSweep& methods = study_.request.methods;
     if (!methods.enabled) return;
     if (methods.ladders.empty()) methods.ladders = default_ladders(study_.largest_rho_b);
-    leave_out(study::leave_out(methods.ladders, {anything_seen(), work.anything_sampled, work.largest_rho_b}));
+    leave_out(study::leave_out(methods.ladders, {anything_seen(), anything_sampled(), study_.largest_rho_b}));
   }
 
   void leave_out(std::vector<LeftOut> items) { std::ranges::move(items, std::back_inserter(study_.left_out)); }

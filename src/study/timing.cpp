@@ -36,7 +36,7 @@ class Stopwatch {
     choose();
     time_exact();
     for (std::size_t k = 0; k < study_.settings.size(); ++k) time_setting(k);
-    times_.ray_setup = solver_->build_seconds();  // built at the first long candidate list
+    if (solver_) times_.ray_setup = solver_->build_seconds();  // built at the first long candidate list
     time_methods();
     return std::move(times_);
   }
@@ -49,6 +49,7 @@ class Stopwatch {
     times_.exact_setup = work::seconds_of([&] {
       for (const Selection& source : request().sources) sources_.emplace_back(scene(), source);
     });
+    if (study_.settings.empty()) return;
     solver_.emplace(scene());
     for (const Selection& source : request().sources) {
       sampled_sources_.push_back(solver_->prepare(source));

@@ -33,7 +33,12 @@ bool take_quoted(std::string_view line, std::size_t& at, std::string& field) {
 }  // namespace
 
 CsvLines::CsvLines(const std::filesystem::path& path, std::string purpose)
-    : file_(path.string()), purpose_(std::move(purpose)), in_(open_text_file(path, purpose_)) {
+    : file_(path.string()), purpose_(std::move(purpose)), opened_(open_text_file(path, purpose_)), in_(opened_) {
+  pass_byte_order_mark();
+}
+
+CsvLines::CsvLines(std::istream& in, std::string file, std::string purpose)
+    : file_(std::move(file)), purpose_(std::move(purpose)), in_(in) {
   pass_byte_order_mark();
 }
 

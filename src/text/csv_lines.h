@@ -19,6 +19,10 @@ class CsvLines {
  public:
   // `purpose` completes "give ...": "a CSV file of values".
   CsvLines(const std::filesystem::path& path, std::string purpose);
+  // From an open stream, called `file` in messages.
+  CsvLines(std::istream& in, std::string file, std::string purpose);
+  CsvLines(const CsvLines&) = delete;
+  CsvLines& operator=(const CsvLines&) = delete;
 
   // The next line, blank and comment lines included; valid until the next call.
   bool next(std::string_view& line);
@@ -32,7 +36,8 @@ class CsvLines {
 
   std::string file_;
   std::string purpose_;
-  std::ifstream in_;
+  std::ifstream opened_;
+  std::istream& in_;
   std::array<char, 1 << 16> block_{};
   std::size_t at_ = 0;
   std::size_t end_ = 0;

@@ -118,8 +118,13 @@ std::string Rows::head() const {
         << " rows, for exactff merge\n";
   }
   for (const std::string& sentence : near_misses_) out << "# warning: " << text::csv_comment(sentence) << '\n';
-  out << "receiver,on,x,y,z,nx,ny,nz" << (request_.uv ? ",u,v" : "") << ",source,exact,lower,upper"
-      << (request_.unoccluded ? ",unoccluded" : "") << (request_.visible_fraction ? ",visible_fraction" : "")
+  if (request_.unit_normals) {
+    out << "# unit normals: ux,uy,uz is nx,ny,nz scaled to length 1, correctly rounded; the values belong to "
+           "nx,ny,nz\n";
+  }
+  out << "receiver,on,x,y,z,nx,ny,nz" << (request_.unit_normals ? ",ux,uy,uz" : "") << (request_.uv ? ",u,v" : "")
+      << ",source,exact,lower,upper" << (request_.unoccluded ? ",unoccluded" : "")
+      << (request_.visible_fraction ? ",visible_fraction" : "")
       << ",radiosity_r,radiosity_g,radiosity_b,largest_rho_b,status\n";
   return std::move(out).str();
 }
@@ -149,6 +154,7 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
   Status status = f.status;
   text::CsvRow line(lines);
   line << id(row / sources_.size()) << request_.scene->name_of(receiver.on) << receiver.point << receiver.normal;
+  if (request_.unit_normals) line << results.unit_normal.of(receiver.normal);
   if (request_.uv) {
     line << place_along(receiver.cell->column, size_of(receiver).u)
          << place_along(receiver.cell->row, size_of(receiver).v);

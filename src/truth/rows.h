@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "exactff/truth.h"
+#include "truth/unit_normal.h"
 
 namespace exactff::truth {
 
@@ -41,6 +42,7 @@ class Rows {
   struct Results {
     FormFactor exact, unoccluded;
     Workspace workspace;
+    UnitNormal unit_normal;
   };
   // Computes a row and appends its line.
   void append(std::uint64_t row, std::string& lines, Results& results) const;

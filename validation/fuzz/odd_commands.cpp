@@ -89,6 +89,7 @@ class CommandWriter {
     if (random_.one_in(8)) shuffle_later_ = true;
     add_receivers();
     for (const OptionRow& row : table_.options) add_option(row);
+    keep_company();
     if (shuffle_later_ && !table_.positionals.empty() && words_.size() > 1) {
       std::rotate(words_.begin() + 1, words_.begin() + 2, words_.end());  // the first of them last
     }
@@ -132,6 +133,20 @@ class CommandWriter {
     const bool wanted = name == "--family" ||  // all of them take half a minute
                         (row.required || keeps_work_small(row) ? !random_.one_in(100) : random_.one_in(rarity));
     if (wanted) give(row);
+  }
+
+  [[nodiscard]] bool has_any(std::initializer_list<std::string_view> flags) const {
+    return std::ranges::any_of(flags,
+                               [&](std::string_view flag) { return std::ranges::find(words_, flag) != words_.end(); });
+  }
+
+  // Some options are refused without another one.
+  void keep_company() {
+    if (random_.one_in(20)) return;
+    const bool sampled = has_any({"--eps-b", "--eps-a", "--rays", "--seed", "--pattern", "--variant"});
+    if (table_.name == "point" && sampled && !has_any({"--adaptive"})) words_.emplace_back("--adaptive");
+    if (table_.name == "compare" && has_any({"--method"}) && !has_any({"--sweep"})) words_.emplace_back("--sweep");
+    if (has_any({"--method-seeds", "--method-receivers", "--method-budget"})) std::erase(words_, "--no-methods");
   }
 
   void give(const OptionRow& row) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 
 #include "exactff/obj.h"
@@ -248,6 +249,42 @@ TEST_F(ReceiverFile, FaultsNameTheLineAndWhatIsWrong) {
   EXPECT_EQ(fault(head + "a,1,2,3,0,0,1,floor\n"), "2: 'floor' has 2 faces");
   EXPECT_EQ(fault(head + "\"a,1,2,3,0,0,1,\n"), "2: a quotation mark is not closed, or text follows it");
   EXPECT_EQ(fault(head + "a,1,2,3,0,0,1,\na,1,2,4,0,0,1,\n"), "3: the id 'a' is used twice");
+}
+
+// One receiver per receiver of the truth file, however its rows are sorted.
+TEST_F(ReceiverFile, MayBeATruthFile) {
+  const std::string head =
+      "# exactff 0.1.0 truth\nreceiver,on,x,y,z,nx,ny,nz,ux,uy,uz,source,exact,lower,upper,unoccluded,visible_fraction,"
+      "radiosity_r,radiosity_g,radiosity_b,largest_rho_b,status\n";
+  const std::string rest = ",0.5,0.4,0.6,0.5,1,1,1,1,1,certified\n";
+  const std::string a = "\"1,1\",floor:2,1,2,3,0,0,2,0,0,1,", b = "r2c1,,4,5,6,1,0,0,1,0,0,";
+  for (const std::string& rows : {a + "lamp" + rest + a + "sky" + rest + b + "lamp" + rest + b + "sky" + rest,
+                                  a + "lamp" + rest + b + "lamp" + rest + a + "sky" + rest + b + "sky" + rest}) {
+    const auto receivers = read(head + rows);
+    ASSERT_EQ(receivers.size(), 2U);
+    EXPECT_EQ(receivers[0].id, "1,1");
+    EXPECT_EQ(receivers[0].on, std::vector{FaceId{1}});
+    EXPECT_EQ(receivers[0].normal, (Vec3{0, 0, 2})) << "the values belong to this normal, not to the unit normal";
+    EXPECT_EQ(receivers[1].id, "r2c1");
+    EXPECT_EQ(receivers[1].point, (Vec3{4, 5, 6}));
+  }
+  const std::string moved = "\"1,1\",floor:2,1,2,4,0,0,2,0,0,1,";
+  EXPECT_EQ(fault(head + a + "lamp" + rest + moved + "sky" + rest), "4: the id '1,1' is used twice");
+  EXPECT_EQ(fault("id,x,y,z,nx,ny,nz,exact\n"), "1: unknown column 'exact'") << "not a truth file";
+  EXPECT_EQ(fault("receiver,x,y,z,nx,ny,nz,source,exact,exakt\n"), "1: unknown column 'exakt'");
+}
+
+TEST_F(ReceiverFile, MayBeAStream) {
+  std::istringstream in("x,y,z,nx,ny,nz\n1,2,3,0,0,1\n");
+  EXPECT_EQ(read_receivers(in, "a pipe", scene_).size(), 1U);
+  std::istringstream bad("x,y,z,nx,ny,nz\n1,2,3,0,0,0\n");
+  try {
+    (void)read_receivers(bad, "a pipe", scene_);
+    FAIL() << "no fault found";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problems().front().file, "a pipe");
+    EXPECT_EQ(error.problems().front().line, 2U);
+  }
 }
 
 TEST_F(ReceiverFile, AnUnknownFaceIsReportedWithTheLineOfTheReceiver) {

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "exactff/report.h"
+#include "page/plot_script.h"
 #include "support/program.h"
 
 namespace exactff {
@@ -36,7 +37,7 @@ class StudyCommand : public testing::Test {
   // A scene with few methods and little work; its files are beside the study file.
   static std::string line(const std::string& title, const std::string& grid_and_more) {
     return "scene room.obj --on floor --source light --title \"" + title +
-           "\" --eps-b .1,.01 --rays 4 --seeds 1 --pattern jittered --variant mended --method exact "
+           "\" --eps-b .1,.01 --rays 4 --seeds 1 --pattern jittered --variant mended --sweep --method exact "
            "--method hemicube:resolution=8|16|32 --method area-sampling:samples=1|4|16 --method-seeds 3 "
            "--method-receivers 4 --grid " +
            grid_and_more + '\n';
@@ -82,7 +83,155 @@ TEST_F(StudyCommand, WritesTheTablesOfEverySceneAndOneReport) {
     EXPECT_NE(report.find(part), std::string::npos) << part;
   }
   EXPECT_FALSE(fs::exists(journal_));
-  EXPECT_EQ(run(out_), 0) << "an earlier result may be replaced\n" << error_;
+}
+
+// As truth treats a file.
+TEST_F(StudyCommand, AFinishedFolderIsNotReplacedByAccident) {
+  put(line("Room A", "3x3"));
+  EXPECT_EQ(run(out_), 0) << error_;
+  const auto made = fs::last_write_time(out_ / "report.html");
+  EXPECT_EQ(run(out_), 2);
+  EXPECT_EQ(error_,
+            "exactff: " + out_.string() +
+                ": holds a finished report (a finished result is not replaced by accident); name another folder, "
+                "keep it with --resume if it is of the same request, or replace it with --force\n");
+  EXPECT_EQ(run(out_, {"--resume", "--threads", "1"}), 0) << error_;
+  EXPECT_TRUE(error_.ends_with(
+      "\nnote: the report is finished and of the same request, so it was left as it is; --force makes it anew\n"))
+      << error_;
+  EXPECT_EQ(fs::last_write_time(out_ / "report.html"), made);
+  EXPECT_FALSE(fs::exists(journal_));
+  EXPECT_EQ(run(out_, {"--force"}), 0) << error_;
+  EXPECT_NE(fs::last_write_time(out_ / "report.html"), made);
+}
+
+TEST_F(StudyCommand, ResumeLeavesTheResultOfAnotherRequestAlone) {
+  put(line("Room A", "3x3"));
+  EXPECT_EQ(run(out_), 0) << error_;
+  const std::string before = text_of(out_ / "report.html");
+  const std::string one = line("Room A", "3x3");
+  const std::vector<std::string> others = {line("Room A", "3x4"),
+                                           line("Room B", "3x3"),
+                                           one + "experiment closure\n",
+                                           "title Other\n" + one,
+                                           one.substr(0, one.size() - 1) + " --method wallace\n",
+                                           one.substr(0, one.size() - 1) + " --method-budget 3\n"};
+  for (const std::string& other : others) {
+    put(other);
+    EXPECT_EQ(run(out_, {"--resume"}), 2) << other;
+    EXPECT_TRUE(said("out: holds the finished report of another request, or of another version of exactff")) << error_;
+  }
+  put(one);
+  EXPECT_EQ(run(out_, {"--resume", "--abridged"}), 2) << error_;
+  std::ofstream(directory_.path() / "room.obj", std::ios::app) << "v 3 3 3\nv 4 3 3\nv 3 4 3\ng more\nf 13 14 15\n";
+  EXPECT_EQ(run(out_, {"--resume"}), 2) << "another scene under the same name";
+  EXPECT_EQ(text_of(out_ / "report.html"), before);
+  EXPECT_FALSE(fs::exists(journal_));
+}
+
+// --- compare --method X is about X ---------------------------------------------------------------------------
+
+class NamedMethods : public StudyCommand {
+ protected:
+  std::string output(std::vector<std::string> more) const {
+    std::vector<std::string> all = {
+        "compare", directory_.path() / "room.obj", "--on", "floor", "--grid", "4x4", "--source", "light", "-o", out_};
+    all.insert(all.end(), more.begin(), more.end());
+    const fs::path out = directory_.path() / "stdout";
+    const RunningProgram program(EXACTFF_PROGRAM, all, directory_.path() / "stderr", [&] {
+      ::setenv("PATH", "/nonexistent", 1);
+      (void)!std::freopen(out.c_str(), "w", stdout);
+    });
+    code_ = program.wait();
+    error_ = program.error();
+    return text_of(out);
+  }
+  mutable int code_ = -1;
+};
+
+TEST_F(NamedMethods, OneSettingIsComparedWithTheExactValues) {
+  const std::string said = output({"--method", "hemicube:resolution=64"});
+  EXPECT_EQ(code_, 0) << error_;
+  EXPECT_NE(said.find("hemicube, resolution 64: RMS error "), std::string::npos) << said;
+  EXPECT_NE(said.find(" times as long as the exact method (at "), std::string::npos) << said;
+  EXPECT_NE(said.find("The exact form factor takes "), std::string::npos) << said;
+  for (const char* part : {"base setting", "Ray sampling", "tolerance"}) {
+    EXPECT_EQ(said.find(part), std::string::npos) << part << '\n' << said;
+  }
+  for (const char* file : {"exact.csv", "methods.csv", "timings.csv", "method_timings.csv"}) {
+    EXPECT_TRUE(fs::exists(out_ / file)) << file;
+  }
+  for (const char* file : {"values.csv", "summary.csv", "summary_timings.csv"})
+    EXPECT_FALSE(fs::exists(out_ / file)) << file;
+  const std::string methods = text_of(out_ / "methods.csv");
+  EXPECT_NE(methods.find("\nexact,"), std::string::npos) << methods;
+  EXPECT_NE(methods.find("\nhemicube,"), std::string::npos) << methods;
+  EXPECT_EQ(methods.find("# eps_B"), std::string::npos) << methods;
+  const std::string page = text_of(out_ / "report.html");
+  EXPECT_NE(page.find("RMS error of hemicube, resolution 64"), std::string::npos);
+  EXPECT_NE(page.find("the comparison is about named methods (--sweep runs it, too)"), std::string::npos);
+  EXPECT_EQ(page.find("Every setting of the ray-sampled algorithm"), std::string::npos);
+}
+
+// A logarithmic axis of one value would have no number beside it.
+TEST(LinePlot, OfOnePointHasReadableAxesAndTheMark) {
+  const page::Axes axes{"time", "error", true, true, {}, {40.0}};
+  const std::string script = page::line_plot(axes, {{"X", {{60.0, 0.02}}, 1}});
+  EXPECT_NE(script.find("set xrange [1e1:1e2]\nset yrange [1e-2:1e-1]\n"), std::string::npos) << script;
+  const std::string wide = page::line_plot(axes, {{"X", {{6.0, 0.02}, {600.0, 0.2}}, 1}});
+  EXPECT_EQ(wide.find("set xrange [1e"), std::string::npos) << wide;
+  EXPECT_EQ(wide.find("set yrange"), std::string::npos) << wide;
+}
+
+TEST_F(NamedMethods, SweepAddsTheSweep) {
+  const std::string said = output({"--method", "wallace", "--sweep", "--rays", "4", "--eps-b", ".1", "--seeds", "1"});
+  EXPECT_EQ(code_, 0) << error_;
+  EXPECT_NE(said.find("Ray sampling at the base setting"), std::string::npos) << said;
+  EXPECT_TRUE(fs::exists(out_ / "summary.csv"));
+  EXPECT_NE(text_of(out_ / "report.html").find(" --method wallace --sweep"), std::string::npos);
+}
+
+TEST_F(NamedMethods, SeveralSettingsAreFirstAndLast) {
+  const std::string said = output({"--method", "hemicube:resolution=16|32|64"});
+  EXPECT_NE(said.find("\nhemicube, resolution 16: RMS error "), std::string::npos) << said;
+  EXPECT_NE(said.find("\nhemicube, resolution 64: RMS error "), std::string::npos) << said;
+  EXPECT_EQ(said.find("\nhemicube, resolution 32: "), std::string::npos) << said;
+}
+
+TEST_F(NamedMethods, AMethodThatShowsNothingIsSaidToBeLeftOut) {
+  std::ofstream(directory_.path() / "room.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 2\nv 1 0 2\nv 1 1 2\n"
+                                                   "g floor\nf 1 2 3\ng light\nf 4 5 6\n";  // it looks up
+  const std::string said = output({"--method", "hemicube:resolution=64"});
+  EXPECT_EQ(code_, 0) << error_;
+  EXPECT_NE(said.find("Left out: method hemicube, resolution 64, because no receiver sees any part of a source."),
+            std::string::npos)
+      << said;
+}
+
+TEST_F(NamedMethods, OptionsWithoutEffectAreRefused) {
+  (void)output({"--method", "wallace", "--eps-b", ".1", "--sweep-budget", "1"});
+  EXPECT_EQ(code_, 2);
+  EXPECT_EQ(
+      error_,
+      "exactff: --eps-b and --sweep-budget have no effect beside --method (with --method, the sweep of Tampieri's "
+      "algorithm over these values does not run); add --sweep, or write a setting of the method, such as --method "
+      "adaptive:eps_B=0.1|0.01,rays=16, or remove them\n");
+  (void)output({"--no-methods", "--method-seeds", "3"});
+  EXPECT_EQ(code_, 2);
+  EXPECT_TRUE(said("--method-seeds has no effect beside --no-methods (no method is compared)")) << error_;
+  (void)output({"--method", "hemicube", "--method-seeds", "3"});
+  EXPECT_EQ(code_, 2);
+  EXPECT_TRUE(said("--method-seeds has no effect here (none of the named methods uses random numbers)")) << error_;
+  (void)output({"--unless-abridged"});
+  EXPECT_EQ(code_, 2);
+  EXPECT_TRUE(said("--unless-abridged has no effect on the command line")) << error_;
+  EXPECT_FALSE(fs::exists(out_));
+}
+
+TEST_F(NamedMethods, ASourceWithoutEmissionIsMentionedOnce) {
+  (void)output({"--method", "wallace"});
+  EXPECT_TRUE(said("note: 'light' emits nothing (Ke 0): as a named source it counts with a radiosity of 1\n"))
+      << error_;
 }
 
 TEST_F(StudyCommand, LeavesScenesOutOfAnAbridgedReportAndSaysSo) {
@@ -115,8 +264,9 @@ TEST_F(StudyCommand, InterruptedAndResumedHasTheSameValues) {
     ASSERT_GT(size_of(journal_), before);
     EXPECT_FALSE(fs::exists(out_));
     if (signal != SIGKILL) {
-      EXPECT_EQ(running.error(), "exactff: interrupted; finished work is kept in " + journal_.string() +
-                                     "; to continue, run the same command with --resume\n");
+      EXPECT_TRUE(running.error().ends_with("\nexactff: interrupted; finished work is kept in " + journal_.string() +
+                                            "; to continue, run the same command with --resume\n"))
+          << running.error();
     }
   }
   EXPECT_EQ(run(out_), 2) << "neither --resume nor --force";
@@ -200,7 +350,7 @@ TEST_F(StudyCommand, RunsAnExperimentOnceHoweverOftenItIsNamed) {
   const std::size_t first = report.find("id=\"chapter-closure\"");
   ASSERT_NE(first, std::string::npos);
   EXPECT_EQ(report.find("id=\"chapter-closure\"", first + 1), std::string::npos);
-  EXPECT_EQ(run(out_, {"--abridged"}), 0) << "an experiment's tables may be replaced\n" << error_;
+  EXPECT_EQ(run(out_, {"--abridged", "--force"}), 0) << "an experiment's tables may be replaced\n" << error_;
 }
 
 }  // namespace

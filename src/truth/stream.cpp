@@ -1,0 +1,110 @@
+// A truth file as a stream: no journal, no shard. Threads finish pieces of chunks in any order; the calling thread
+// writes them in order.
+#include <chrono>
+#include <map>
+#include <mutex>
+#include <ostream>
+
+#include "exactff/truth.h"
+#include "kernel/float_environment.h"
+#include "text/refuse.h"
+#include "truth/workers.h"
+
+namespace exactff::truth {
+namespace {
+
+constexpr auto kBetweenWrites = std::chrono::milliseconds(20);
+
+class Stream {
+ public:
+  Stream(const Rows& rows, std::ostream& out, const Hooks& hooks)
+      : rows_(rows), out_(out), hooks_(hooks), schedule_(rows, {}) {}
+
+  void run(Summary& summary) {
+    put(rows_.head());
+    Workers workers(
+        rows_, rows_.request().threads, hooks_, [this] { return schedule_.next(); },
+        [this](Finished finished) { keep(std::move(finished)); });
+    for (bool ended = false; !ended;) {
+      ended = workers.wait_for(kBetweenWrites);
+      write_what_is_next(summary);
+    }
+    workers.rethrow();
+    summary.rows_by_status = tally_.by_status();
+  }
+
+ private:
+  void keep(Finished finished) {
+    const std::lock_guard lock(mutex_);
+    done_ += finished.range.rows;
+    waiting_.emplace(finished.range.first, std::move(finished));
+  }
+
+  void write_what_is_next(Summary& summary) {
+    std::map<std::uint64_t, Finished> ready;
+    std::uint64_t done = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      while (!waiting_.empty() && waiting_.begin()->first == next_) {
+        next_ = waiting_.begin()->second.range.end();
+        ready.insert(waiting_.extract(waiting_.begin()));
+      }
+      done = done_;
+    }
+    for (const auto& [first, finished] : ready) {
+      put(finished.lines);
+      tally_.add(finished.lines);
+      tell_slow(finished, summary);
+    }
+    out_.flush();
+    require_written();
+    if (hooks_.progress) hooks_.progress({"rows", done, rows_.count()});
+  }
+
+  void tell_slow(const Finished& finished, Summary& summary) {
+    summary.slow += finished.slow.size();
+    for (const SlowRow& slow : finished.slow) {
+      if (hooks_.slow_row) hooks_.slow_row(rows_.name(slow.row), slow.seconds);
+    }
+  }
+
+  void put(const std::string& text) {
+    out_.write(text.data(), static_cast<std::streamsize>(text.size()));
+    require_written();
+  }
+
+  void require_written() {
+    if (out_) return;
+    text::refuse("the rows could not be written", "the output is incomplete",
+                 "free some disk space, or send the output elsewhere");
+  }
+
+  const Rows& rows_;
+  std::ostream& out_;
+  const Hooks& hooks_;
+  Schedule schedule_;
+  std::mutex mutex_;
+  std::map<std::uint64_t, Finished> waiting_;  // by first row
+  std::uint64_t next_ = 0;
+  std::uint64_t done_ = 0;
+  Tally tally_;
+};
+
+}  // namespace
+
+Summary write(Request request, std::ostream& out, const Hooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
+  const Rows rows(std::move(request));
+  if (rows.request().shard.count > 1) {
+    text::refuse("a shard cannot be written to a stream", "shards are files that exactff merge reads",
+                 "name a file, or compute all rows");
+  }
+  Summary summary;
+  summary.rows = rows.count();
+  const auto start = std::chrono::steady_clock::now();
+  Stream(rows, out, hooks).run(summary);
+  summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return summary;
+}
+
+}  // namespace exactff::truth

@@ -1,0 +1,175 @@
+// exactff truth in pipes: standard input and output, truth files as receivers, unit normals.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include "generate/random.h"
+#include "support/program.h"
+#include "truth/unit_normal.h"
+
+namespace exactff {
+namespace {
+
+namespace fs = std::filesystem;
+using validation::TemporaryDirectory;
+using validation::text_of;
+
+class TruthPipe : public testing::Test {
+ protected:
+  // Runs `exactff truth SCENE` and what follows, in a shell; standard error goes to a file.
+  std::string shell(const std::string& command) const {
+    const std::string program = "exactff() { '" EXACTFF_PROGRAM "' \"$@\"; }; ";
+    const validation::ProgramRun run = validation::run_program(
+        "/bin/sh", {"-c", program + "cd '" + directory_.path().string() + "'; (" + command + ") 2> stderr"});
+    code_ = run.exit_code;
+    error_ = text_of(directory_.path() / "stderr");
+    return run.output;
+  }
+  bool said(const std::string& part) const { return error_.find(part) != std::string::npos; }
+
+  static constexpr const char* kScene = EXACTFF_DATA_DIR "/scenes/cornell_box.obj";
+  const TemporaryDirectory directory_;
+  const std::string truth_ = std::string("exactff truth '") + kScene + "' ";
+  mutable std::string error_;
+  mutable int code_ = -1;
+};
+
+TEST_F(TruthPipe, StandardOutputGetsTheBytesOfTheFile) {
+  const std::string flags = "--on floor,ceiling --grid 20x20 --source light,left --unoccluded ";
+  (void)shell(truth_ + flags + "-o file.csv");
+  EXPECT_EQ(code_, 0) << error_;
+  for (const char* threads : {"1", "3"}) {
+    EXPECT_EQ(shell(truth_ + flags + "-o - --threads " + threads), text_of(directory_.path() / "file.csv"));
+    EXPECT_EQ(code_, 0) << error_;
+  }
+  EXPECT_EQ(error_, "note: 'left' emits nothing (Ke 0): as a named source it counts with a radiosity of 1\n");
+  EXPECT_FALSE(fs::exists(directory_.path() / "-"));
+  EXPECT_FALSE(fs::exists(directory_.path() / "-.part"));
+}
+
+TEST_F(TruthPipe, WhatAPipeCannotHaveIsRefused) {
+  EXPECT_EQ(shell(truth_ + "--on floor --grid 2x2 --shard 1/2 --resume -o -"), "");
+  EXPECT_EQ(code_, 2);
+  EXPECT_EQ(error_,
+            "exactff: --shard and --resume are given with -o - (standard output has no journal to continue from, no "
+            "shards to merge and nothing to replace); remove them, or name a file\n");
+  EXPECT_EQ(shell(truth_ + "--on floor --grid 2x2 --force -o -"), "");
+  EXPECT_TRUE(said("--force is given with -o - ")) << error_;
+}
+
+TEST_F(TruthPipe, AFullDiskIsToldWithWords) {
+  (void)shell(truth_ + "--on floor --grid 20x20 -o - > /dev/full");
+  EXPECT_EQ(code_, 2);
+  EXPECT_TRUE(said("exactff: the rows could not be written (the output is incomplete)")) << error_;
+}
+
+TEST_F(TruthPipe, SceneAndReceiversComeFromStandardInput) {
+  (void)directory_.write("points.csv", "x,y,z,nx,ny,nz,on\n278,0,279,0,1,0,floor\n100,0,100,0,1,0,floor\n");
+  const std::string by_file = shell(truth_ + "--receivers points.csv -o -");
+  const std::string by_pipe = shell("cat points.csv | " + truth_ + "--receivers - -o -");
+  EXPECT_EQ(code_, 0) << error_;
+  EXPECT_NE(by_pipe.find("\n# receivers: standard input, hash "), std::string::npos) << by_pipe;
+  EXPECT_EQ(by_pipe.substr(by_pipe.find(", hash", by_pipe.find("# receivers"))),
+            by_file.substr(by_file.find(", hash", by_file.find("# receivers"))));
+  const std::string folder = fs::path(kScene).parent_path().string();
+  const std::string scene =
+      shell("cd '" + folder + "'; cat cornell_box.obj | exactff truth - --on floor --grid 3x3 -o -");
+  EXPECT_EQ(code_, 0) << error_;
+  EXPECT_TRUE(scene.find("\n# scene: standard input, hash ") != std::string::npos) << scene;
+  const std::string direct = shell(truth_ + "--on floor --grid 3x3 -o -");
+  EXPECT_EQ(scene.substr(scene.find(", hash")), direct.substr(direct.find(", hash")));
+  (void)shell("exactff truth - --receivers - -o -");
+  EXPECT_EQ(code_, 2);
+  EXPECT_TRUE(said("the scene and the receivers are both to be read from standard input")) << error_;
+}
+
+TEST_F(TruthPipe, ATruthFileMayNameTheReceivers) {
+  const std::string flags = "--source light,left ";
+  const std::string first = shell(truth_ + "--on floor,left --grid 5x5 --unit-normals --fraction " + flags + "-o -");
+  (void)directory_.write("first.csv", first);
+  const std::string again = shell(truth_ + "--receivers first.csv --unit-normals --fraction " + flags + "-o -");
+  EXPECT_EQ(code_, 0) << error_;
+  EXPECT_EQ(again.substr(again.find(", hash", again.find("# receivers"))),
+            first.substr(first.find(", hash", first.find("# receivers"))));
+  const std::string piped =
+      shell(truth_ + "--on floor --grid 5x5 --source light -o - | " + truth_ + "--receivers - --source light -o -");
+  EXPECT_EQ(code_, 0) << error_;
+  EXPECT_NE(piped.find("\n# rows: 25\n"), std::string::npos) << piped;
+}
+
+TEST_F(TruthPipe, UnitNormalsAreFurtherColumns) {
+  const std::string flags = "--on left,floor --grid 2x2 --source light -o - ";
+  const std::string plain = shell(truth_ + flags), with = shell(truth_ + flags + "--unit-normals");
+  EXPECT_EQ(plain.find("ux"), std::string::npos);
+  EXPECT_NE(with.find("# unit normals: ux,uy,uz is nx,ny,nz scaled to length 1, correctly rounded"), std::string::npos);
+  std::istringstream lines(with), plain_lines(plain);
+  std::string rest;  // the file without what the flag adds
+  bool rows = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("# unit normals")) continue;
+    if (line.starts_with("receiver,")) {
+      EXPECT_TRUE(line.starts_with("receiver,on,x,y,z,nx,ny,nz,ux,uy,uz,source,exact,")) << line;
+      rows = true;
+    }
+    if (rows) {
+      std::vector<std::string> fields(1);  // ids may hold a comma in quotes
+      bool quoted = false;
+      for (const char c : line) {
+        if (c == '"') quoted = !quoted;
+        if (c == ',' && !quoted) {
+          fields.emplace_back();
+        } else {
+          fields.back() += c;
+        }
+      }
+      if (!line.starts_with("receiver,")) {
+        const double length = std::hypot(std::stod(fields[8]), std::stod(fields[9]), std::stod(fields[10]));
+        EXPECT_NEAR(length, 1.0, 1e-15) << line;
+      }
+      fields.erase(fields.begin() + 8, fields.begin() + 11);
+      line.clear();
+      for (const std::string& field : fields) line += (line.empty() ? "" : ",") + field;
+    }
+    rest += line + '\n';
+  }
+  EXPECT_EQ(rest, plain);
+}
+
+// --- the unit normal -----------------------------------------------------------------------------------------
+
+TEST(UnitNormal, IsCorrectlyRounded) {
+  EXPECT_EQ(truth::unit_normal({3, 4, 0}), (Vec3{0.6, 0.8, 0}));
+  EXPECT_EQ(truth::unit_normal({0, -0x1p-1074, 0}), (Vec3{0, -1, 0}));
+  EXPECT_EQ(truth::unit_normal({-1, 1, 1}),
+            (Vec3{-0.57735026918962576451, 0.57735026918962576451, 0.57735026918962576451}));
+  EXPECT_EQ(truth::unit_normal({1e300, 1e-300, 0}), (Vec3{1, 0, 0})) << "1e-600 rounds to 0";
+  EXPECT_EQ(truth::unit_normal({0x1p1000, 0x1p-74, 0}), (Vec3{1, 0x1p-1074, 0}));
+  EXPECT_EQ(truth::unit_normal({1e308, 1e308, 1e308}).x, 0.57735026918962576451) << "squares would overflow";
+}
+
+// With an error of less than half an ulp, by an independent computation in long double.
+TEST(UnitNormal, IsTheNearestOfEveryNormal) {
+  generate::Random random(7);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 n{random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(-1e-3, 1e-3)};
+    const Vec3 u = truth::unit_normal(n);
+    const long double x = n.x, y = n.y, z = n.z, length = std::sqrt(x * x + y * y + z * z);
+    for (const auto& [exact, found] : {std::pair{x / length, u.x}, {y / length, u.y}, {z / length, u.z}}) {
+      const double ulp = std::nextafter(std::abs(found), 2.0) - std::abs(found);
+      ASSERT_LE(std::abs(static_cast<double>(exact - static_cast<long double>(found))), 0.501 * ulp) << i;
+    }
+  }
+}
+
+TEST(UnitNormal, IsKeptFromRowToRow) {
+  truth::UnitNormal unit;
+  EXPECT_EQ(unit.of({0, 0, 1}), (Vec3{0, 0, 1}));
+  EXPECT_EQ(unit.of({0, 2, 0}), (Vec3{0, 1, 0}));
+  EXPECT_EQ(unit.of({0, 2, 0}), (Vec3{0, 1, 0}));
+  EXPECT_EQ(unit.of({5, 0, 0}), (Vec3{1, 0, 0}));
+}
+
+}  // namespace
+}  // namespace exactff
