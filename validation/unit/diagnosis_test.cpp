@@ -160,13 +160,14 @@ Scene with_emitting_lamp(const std::string& lamp) {
 }
 
 TEST(Diagnosis, FindsLampsThatLookAway) {
-  EXPECT_EQ(kinds_of(with_emitting_lamp("down")), Names{});
+  const Scene down = with_emitting_lamp("down");
+  EXPECT_EQ(kinds_of(down), Names{});
   const Scene up = with_emitting_lamp("up");
   EXPECT_EQ(kinds_of(up), Names{"emitter-looks-away"}) << "the floor sees only the back of the lamp, which is said";
   EXPECT_EQ(sentence(up, Kind::kEmitterLooksAway),
             "emitter 'lamp' looks away from everything (a source emits only from its front, so its form factor is 0 "
             "everywhere); if the other side is meant, turn it round with --flip lamp");
-  const Scene flipped = with_emitting_lamp("down").with_flipped(with_emitting_lamp("down").select("lamp"));
+  const Scene flipped = down.with_flipped(down.select("lamp"));
   EXPECT_EQ(flag(flipped, Kind::kEmitterLooksAway), "") << "no warning suggests what was given";
 }
 

@@ -20,9 +20,9 @@ const std::vector<std::string> kMethods = {
     "exact",
     "exact:engine=boolean",
     "exact:engine=both",
-    "adaptive:eps_b=1e-3,rays=16",
-    "adaptive:eps_b=1e-3,rays=16,variant=literal",
-    "adaptive-exact-visibility:eps_b=1e-3",
+    "adaptive:eps_B=1e-3,rays=16",
+    "adaptive:eps_B=1e-3,rays=16,variant=literal",
+    "adaptive-exact-visibility:eps_B=1e-3",
     "hemicube:resolution=64",
     "nettle:splits=4,rays=4",
     "wallace:splits=8",
@@ -58,14 +58,20 @@ double value_at(const Scene& scene, const Vec3& point, const char* on, const cha
   return estimate(scene, receiver, source, method).form_factor;
 }
 
+// No receiver sees a sample at the edge of a slat, where Embree may decide either way. The control with exact
+// visibility adds up in the order of the tree, so its last bit may differ.
 TEST(Transparent, PatchesHideNothingInAnyMethod) {
   for (const int slats : {0, 40}) {
     const Scene opaque = generate::build(room(true, slats)), without = generate::build(room(false, slats));
     const Scene through = transparent(opaque, "window");
     for (const std::string& method : kMethods) {
-      for (const Vec3& point : {Vec3{0, 0, 0}, Vec3{0.7, -0.3, 0}, Vec3{-1.5, 1.2, 0}}) {
+      for (const Vec3& point : {Vec3{0.013, 0.027, 0}, Vec3{0.7, -0.3, 0}, Vec3{-1.5, 1.2, 0}}) {
         const double truth = value_at(without, point, "floor", "lamp", method);
-        EXPECT_EQ(value_at(through, point, "floor", "lamp", method), truth) << method << ", " << slats << " slats";
+        const double value = value_at(through, point, "floor", "lamp", method);
+        EXPECT_DOUBLE_EQ(value, truth) << method << ", " << slats << " slats";
+        if (method.starts_with("exact")) {
+          EXPECT_EQ(value, truth) << method << ", " << slats << " slats";
+        }
         EXPECT_GT(truth, 0.0) << method;
       }
       EXPECT_LT(value_at(opaque, {0, 0, 0}, "floor", "lamp", method),
@@ -85,6 +91,21 @@ TEST(Transparent, PatchesCanBeSourcesInEveryMethod) {
       EXPECT_GT(value, 0.0) << method;
       EXPECT_EQ(value_at(through, point, "floor", "pane", method), value) << method;
     }
+  }
+}
+
+// Two panes, one behind the other: neither hides the other, not even in one source.
+TEST(Transparent, SourcesDoNotHideThemselves) {
+  PlainScene plain = room(false, 0);
+  add(plain, "panes", square_above(0.7, 1.0));
+  add(plain, "panes", square_above(0.5, 0.6));
+  const Scene opaque = generate::build(plain), through = transparent(opaque, "panes");
+  for (const std::string method : {"exact", "exact:engine=boolean", "hemicube:resolution=64"}) {
+    const auto value = [&](const Scene& scene, const char* source) {
+      return value_at(scene, {0.2, 0.1, 0}, "floor", source, method);
+    };
+    EXPECT_DOUBLE_EQ(value(through, "panes"), value(through, "panes:1") + value(through, "panes:2")) << method;
+    EXPECT_LT(value(opaque, "panes"), 0.9 * value(through, "panes")) << method;
   }
 }
 
@@ -117,7 +138,8 @@ TEST(Transparent, PatchesAreARecordOfTheScene) {
   EXPECT_NE(transparent(opaque, "window:1").hash(), through.hash());
   ASSERT_EQ(through.transparent().size(), 1U);
   EXPECT_EQ(through.name_of(through.transparent().front()), "window");
-  EXPECT_EQ(through.name_of(transparent(opaque, "window:2").transparent().front()), "window:2");
+  const Scene half = transparent(opaque, "window:2");
+  EXPECT_EQ(half.name_of(half.transparent().front()), "window:2");
   EXPECT_TRUE(opaque.transparent().empty());
   const Scene flipped = opaque.with_flipped(opaque.select("plate"));
   ASSERT_EQ(flipped.flipped().size(), 1U);
