@@ -166,7 +166,8 @@ TEST(Diagnosis, FindsLampsThatLookAway) {
   EXPECT_EQ(sentence(up, Kind::kEmitterLooksAway),
             "emitter 'lamp' looks away from everything (a source emits only from its front, so its form factor is 0 "
             "everywhere); if the other side is meant, turn it round with --flip lamp");
-  const Scene flipped = with_emitting_lamp("down").with_flipped(with_emitting_lamp("down").select("lamp"));
+  const Scene down = with_emitting_lamp("down");
+  const Scene flipped = down.with_flipped(down.select("lamp"));
   EXPECT_EQ(flag(flipped, Kind::kEmitterLooksAway), "") << "no warning suggests what was given";
 }
 

@@ -20,9 +20,9 @@ const std::vector<std::string> kMethods = {
     "exact",
     "exact:engine=boolean",
     "exact:engine=both",
-    "adaptive:eps_b=1e-3,rays=16",
-    "adaptive:eps_b=1e-3,rays=16,variant=literal",
-    "adaptive-exact-visibility:eps_b=1e-3",
+    "adaptive:eps_B=1e-3,rays=16",
+    "adaptive:eps_B=1e-3,rays=16,variant=literal",
+    "adaptive-exact-visibility:eps_B=1e-3",
     "hemicube:resolution=64",
     "nettle:splits=4,rays=4",
     "wallace:splits=8",
@@ -117,7 +117,8 @@ TEST(Transparent, PatchesAreARecordOfTheScene) {
   EXPECT_NE(transparent(opaque, "window:1").hash(), through.hash());
   ASSERT_EQ(through.transparent().size(), 1U);
   EXPECT_EQ(through.name_of(through.transparent().front()), "window");
-  EXPECT_EQ(through.name_of(transparent(opaque, "window:2").transparent().front()), "window:2");
+  const Scene half = transparent(opaque, "window:2");
+  EXPECT_EQ(half.name_of(half.transparent().front()), "window:2");
   EXPECT_TRUE(opaque.transparent().empty());
   const Scene flipped = opaque.with_flipped(opaque.select("plate"));
   ASSERT_EQ(flipped.flipped().size(), 1U);
