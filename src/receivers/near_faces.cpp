@@ -69,7 +69,7 @@ class Search {
     const auto corners = scene_.corners(piece);
     const auto corner = [&](std::size_t i) { return kernel::scaled(scene_.vertices()[corners[i]], scale_); };
     const auto frame = [&](std::size_t i) { return kernel::scaled(scene_.vertices()[piece.frame[i]], scale_); };
-    const Vec3 normal = unit(cross(unit(difference(frame(1), frame(0))), unit(difference(frame(2), frame(1)))));
+    const Vec3 normal = normal_of(piece);
     const double height = dot(normal, difference(point_, frame(0)));
     if (!(std::abs(height) <= tolerance_)) return std::nullopt;
     double beside = 0.0;  // distance of the foot from the piece
@@ -84,6 +84,14 @@ class Search {
     if (!inside) beside = std::sqrt(std::max(nearest * nearest - height * height, 0.0));
     if (!(beside <= tolerance_)) return std::nullopt;
     return Nearby{index, piece.face, normal, height, std::hypot(height, beside)};
+  }
+
+  // Of a planar face the Newell vector, which is correctly rounded however thin the piece is.
+  [[nodiscard]] Vec3 normal_of(const Piece& piece) const {
+    const Face& face = scene_.face(piece.face);
+    if (face.shape == FaceShape::kPlanar) return unit(face.newell);
+    const auto frame = [&](std::size_t i) { return kernel::scaled(scene_.vertices()[piece.frame[i]], scale_); };
+    return unit(cross(unit(difference(frame(1), frame(0))), unit(difference(frame(2), frame(1)))));
   }
 
   static double distance_from_side(const Vec3& side, const Vec3& to_point) {
