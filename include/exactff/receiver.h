@@ -75,7 +75,8 @@ struct NearFaces {
 
 // Faces that the point lies on or within the tolerance of, and whose normals agree with the receiver's within a degree,
 // either way. The first one is chosen by an agreeing normal, then by distance, then by index. Added are the other faces
-// of its patch for which the same holds and whose fronts agree with its front.
+// of its patch for which the same holds and whose fronts agree with its front. Faces with a side below 2^-300 of the
+// scene's largest coordinate may be missed.
 [[nodiscard]] NearFaces find_faces(const Scene& scene, const Receiver& receiver, double tolerance);
 
 // A tolerance for find_faces: the largest of 1e-6 of the scene's diameter, two units in the last place of the largest

@@ -40,9 +40,9 @@ void warn_of_near_face(const Scene& scene, const PointResult& point) {
   if (near.faces.empty() || near.side == 0) return;
   const std::string name = scene.name_of(near.faces);
   const bool looks_through = (near.side < 0) != near.turned;
-  std::cerr << "exactff: " << (looks_through ? "warning" : "note") << ": x lies " << text::rounded_plainly(near.distance, 2)
-            << (near.side < 0 ? " behind '" : " in front of '") << text::printable(name) << '\''
-            << (near.turned ? ", turned against its front" : "")
+  std::cerr << "exactff: " << (looks_through ? "warning" : "note") << ": x lies "
+            << text::rounded_plainly(near.distance, 2) << (near.side < 0 ? " behind '" : " in front of '")
+            << text::printable(name) << '\'' << (near.turned ? ", turned against its front" : "")
             << (looks_through ? ", which then hides everything beyond it" : "") << ". With --on "
             << text::shell_word(name) << ' ' << effect_of(scene, point, near.faces) << '\n';
 }

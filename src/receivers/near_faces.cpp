@@ -37,6 +37,7 @@ Vec3 unit(const Vec3& v) {
 
 // A piece as it lies about the point, in scaled coordinates.
 struct Nearby {
+  std::uint32_t piece = 0;
   FaceId face{};
   Vec3 normal;            // unit
   double height = 0.0;    // of the point above the plane of the piece
@@ -53,7 +54,7 @@ class Search {
     const HalfSpace box[] = {{{1, 0, 0}, -tolerance},  {{-1, 0, 0}, -tolerance}, {{0, 1, 0}, -tolerance},
                              {{0, -1, 0}, -tolerance}, {{0, 0, 1}, -tolerance},  {{0, 0, -1}, -tolerance}};
     shaft_tree(scene).query(point, box, [&](std::uint32_t piece) {
-      if (const auto found = look_at(scene.pieces()[piece])) found_.push_back(*found);
+      if (const auto found = look_at(piece)) found_.push_back(*found);
       return true;
     });
   }
@@ -63,11 +64,12 @@ class Search {
   [[nodiscard]] double in_the_scenes_unit(double length) const { return length / scale_; }
 
  private:
-  [[nodiscard]] std::optional<Nearby> look_at(const Piece& piece) const {
+  [[nodiscard]] std::optional<Nearby> look_at(std::uint32_t index) const {
+    const Piece& piece = scene_.pieces()[index];
     const auto corners = scene_.corners(piece);
     const auto corner = [&](std::size_t i) { return kernel::scaled(scene_.vertices()[corners[i]], scale_); };
     const auto frame = [&](std::size_t i) { return kernel::scaled(scene_.vertices()[piece.frame[i]], scale_); };
-    const Vec3 normal = unit(cross(unit(difference(frame(1), frame(0))), unit(difference(frame(2), frame(1)))));
+    const Vec3 normal = normal_of(piece);
     const double height = dot(normal, difference(point_, frame(0)));
     if (!(std::abs(height) <= tolerance_)) return std::nullopt;
     double beside = 0.0;  // distance of the foot from the piece
@@ -81,7 +83,15 @@ class Search {
     }
     if (!inside) beside = std::sqrt(std::max(nearest * nearest - height * height, 0.0));
     if (!(beside <= tolerance_)) return std::nullopt;
-    return Nearby{piece.face, normal, height, std::hypot(height, beside)};
+    return Nearby{index, piece.face, normal, height, std::hypot(height, beside)};
+  }
+
+  // Of a planar face the Newell vector, which is correctly rounded however thin the piece is.
+  [[nodiscard]] Vec3 normal_of(const Piece& piece) const {
+    const Face& face = scene_.face(piece.face);
+    if (face.shape == FaceShape::kPlanar) return unit(face.newell);
+    const auto frame = [&](std::size_t i) { return kernel::scaled(scene_.vertices()[piece.frame[i]], scale_); };
+    return unit(cross(unit(difference(frame(1), frame(0))), unit(difference(frame(2), frame(1)))));
   }
 
   static double distance_from_side(const Vec3& side, const Vec3& to_point) {
@@ -98,15 +108,11 @@ class Search {
   std::vector<Nearby> found_;
 };
 
-// Exact: +1 if the point is in front of the nearest piece of the face, 0 if it lies in that plane.
-int side_of(const Scene& scene, const Nearby& near, const Vec3& point) {
+// Exact: +1 if the point is in front of the piece, 0 if it lies in its plane.
+int side_of(const Scene& scene, std::uint32_t piece, const Vec3& point) {
   const auto vertices = scene.vertices();
-  for (const Piece& piece : scene.pieces_of(near.face)) {
-    const auto f = piece.frame;
-    const int side = kernel::orientation(vertices[f[0]], vertices[f[1]], vertices[f[2]], point);
-    if (side == 0 || (side > 0) == (near.height >= 0.0) || scene.face(near.face).piece_count == 1) return side;
-  }
-  return near.height < 0.0 ? -1 : 1;
+  const auto& frame = scene.pieces()[piece].frame;
+  return kernel::orientation(vertices[frame[0]], vertices[frame[1]], vertices[frame[2]], point);
 }
 
 // One unit of the last decimal with which a program would print the number; 0 for a number without decimals.
@@ -181,7 +187,7 @@ NearFaces find_faces(const Scene& scene, const Receiver& receiver, double tolera
   }
   if (best == nullptr) return {};
   return {own_faces(scene, search, *best), search.in_the_scenes_unit(std::abs(best->height)),
-          side_of(scene, *best, receiver.point), turned};
+          side_of(scene, best->piece, receiver.point), turned};
 }
 
 }  // namespace exactff

@@ -225,6 +225,7 @@ bool gather_occluders(const ScaledScene& scene, const ReceiverView& view, const 
   Gatherer gatherer(scene, view, plane, horizon, gathered);
   const double reach = reach_of(polygon);
   scene.tree.query(view.point, gatherer.shaft(polygon), [&](std::uint32_t piece) {
+    if (scene.scene->pieces()[piece].transparent) return true;
     ++gathered.looked_at;
     if (gathered.looked_at > most) return false;
     const SeenPolygon* seen = gatherer.see(piece);

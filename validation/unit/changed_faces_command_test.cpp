@@ -197,7 +197,7 @@ TEST_F(ChangedFaces, InfoShowsFindingsAndProposesWhatWorks) {
       << mended.output;
   EXPECT_TRUE(mended.printed("--source lamp --grid 16x16 -o DIR")) << mended.output;
   const nlohmann::json json = nlohmann::json::parse(run({"info", room_, "--json", "--transparent", "pane"}).output);
-  ASSERT_EQ(json["findings"].size(), 1U);
+  ASSERT_EQ(json["findings"].size(), 1U) << json["findings"];
   EXPECT_EQ(json["findings"][0]["kind"], "emitter-looks-away");
   EXPECT_EQ(json["findings"][0]["flag"], "--flip lamp");
   EXPECT_EQ(json["findings"][0]["objects"], std::vector<std::string>{"lamp"});
