@@ -144,8 +144,10 @@ std::vector<Finding> diagnose(const Scene& scene) {
     if (finding) findings.push_back(std::move(*finding));
   };
   add(contradicting_normals(scene));
-  add(inward_surfaces(scene));
-  std::ranges::move(unseen_fronts(scene), std::back_inserter(findings));
+  const std::optional<Finding> inward = inward_surfaces(scene);
+  add(inward);
+  const std::vector<Selection> surfaces = inward ? inward->objects : std::vector<Selection>();
+  std::ranges::move(unseen_fronts(scene, surfaces), std::back_inserter(findings));
   std::ranges::move(twin_faces(scene), std::back_inserter(findings));
   add(odd_scale(scene));
   return findings;

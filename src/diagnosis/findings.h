@@ -12,8 +12,9 @@ namespace exactff::diagnosis {
 
 [[nodiscard]] std::optional<Finding> contradicting_normals(const Scene& scene);
 [[nodiscard]] std::optional<Finding> inward_surfaces(const Scene& scene);
-[[nodiscard]] std::vector<Finding> unseen_fronts(const Scene& scene);  // kUnseenFront, kEmitterLooksAway
-[[nodiscard]] std::vector<Finding> twin_faces(const Scene& scene);     // kDoubledFaces, kOppositeFaces
+// kUnseenFront, kEmitterLooksAway. `inward`: the surfaces that inward_surfaces() has found.
+[[nodiscard]] std::vector<Finding> unseen_fronts(const Scene& scene, std::span<const Selection> inward);
+[[nodiscard]] std::vector<Finding> twin_faces(const Scene& scene);  // kDoubledFaces, kOppositeFaces
 [[nodiscard]] std::optional<Finding> odd_scale(const Scene& scene);
 
 }  // namespace exactff::diagnosis

@@ -107,6 +107,13 @@ TEST(Diagnosis, FindsSolidsThatLookInward) {
   EXPECT_EQ(kinds_of(turned.with_flipped(turned.select("solid"))), Names{});
 }
 
+// The floor sees only the back of the solid, but it is the solid that is wrong.
+TEST(Diagnosis, BlamesNobodyElseForASolidThatLooksInward) {
+  const Scene scene = read("v 0 0 0\nv 9 0 0\nv 9 9 0\nv 0 9 0\nv 1 1 1\nv 2 1 1\nv 1 2 1\nv 1 1 2\n" + kFloor +
+                           tetrahedron("solid", 5, false));
+  EXPECT_EQ(kinds_of(scene), Names{"inward-surface"});
+}
+
 TEST(Diagnosis, LetsRoomsAndHollowsLookInward) {
   const std::string lid = "g lid\nf 8 7 6 5\n";
   EXPECT_EQ(kinds_of(read(kVertices + kWalls + kFloor + lid)), Names{});  // an empty room: nothing is outside
