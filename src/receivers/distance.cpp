@@ -11,7 +11,7 @@ namespace {
 // All coordinates are multiplied by this power of two first, so that no difference of large coordinates overflows.
 constexpr double kScale = 0x1p-3;
 
-Vec3 difference(const Vec3& p, const Vec3& q) {
+Vec3 scaled_difference(const Vec3& p, const Vec3& q) {
   return {kScale * p.x - kScale * q.x, kScale * p.y - kScale * q.y, kScale * p.z - kScale * q.z};
 }
 
@@ -40,11 +40,11 @@ double relative_distance_from_face(const Scene& scene, FaceId id, const Vec3& po
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
-  const Vec3 extent = difference(high, low);
+  const Vec3 extent = scaled_difference(high, low);
   const double diagonal = std::hypot(extent.x, extent.y, extent.z);
   const double from_box =
       std::hypot(outside(point.x, low.x, high.x), outside(point.y, low.y, high.y), outside(point.z, low.z, high.z));
-  const double distance = std::max(from_box, distance_from_plane(face, difference(point, first)));
+  const double distance = std::max(from_box, distance_from_plane(face, scaled_difference(point, first)));
   if (distance == 0.0) return 0.0;
   if (diagonal == 0.0) return std::numeric_limits<double>::infinity();
   return std::max(distance / diagonal - face.out_of_plane, 0.0);

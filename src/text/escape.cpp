@@ -24,7 +24,7 @@ void for_each_character(std::string_view text, const Put& put) {
   }
 }
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+bool is_stripped(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 
 bool is_one_word(std::string_view text) {
   return !text.empty() && text.find_first_not_of(
@@ -85,7 +85,7 @@ std::string csv_field(std::string_view text) {
   std::string field(text);
   replace_all(field, "\n", "\\x0a");
   replace_all(field, "\r", "\\x0d");
-  const bool stripped = !field.empty() && (is_blank(field.front()) || is_blank(field.back()));  // by readers
+  const bool stripped = !field.empty() && (is_stripped(field.front()) || is_stripped(field.back()));  // by readers
   if (!stripped && field.find_first_of(",\"#") == std::string::npos) return field;
   replace_all(field, "\"", "\"\"");
   return '"' + field + '"';
