@@ -16,15 +16,33 @@ struct Progress {
   std::size_t total = 0;
 };
 
+// `cancelled` is called from any thread, every few milliseconds, also within a single pair of receiver and source. It
+// must be quick. The polygon Booleans and the building of Embree's trees do not call it; both can take seconds.
 struct Hooks {
   std::function<void(const Progress&)> progress;
-  std::function<bool()> cancelled;  // called between receivers, from any thread
+  std::function<bool()> cancelled;
 };
 
 // Thrown if Hooks::cancelled returned true.
 class Cancelled : public std::runtime_error {
  public:
   Cancelled() : std::runtime_error("cancelled") {}
+};
+
+// During its lifetime, functions without a parameter for hooks use these hooks when this thread calls them:
+// exact_form_factor and every method ask `cancelled`, and so do the functions that make receivers, which also report
+// progress. They throw Cancelled where the answer is true; what they were writing to is then unspecified, but may be
+// used again. Objects nest, and the innermost counts. Keeps a reference.
+class HooksOfThread {
+ public:
+  explicit HooksOfThread(const Hooks& hooks);
+  explicit HooksOfThread(Hooks&&) = delete;
+  ~HooksOfThread();
+  HooksOfThread(const HooksOfThread&) = delete;
+  HooksOfThread& operator=(const HooksOfThread&) = delete;
+
+ private:
+  const Hooks* before_;
 };
 
 // A part of a result that was left out, and why: for example because the scene has nothing for it.

@@ -104,18 +104,25 @@ struct Request {
 struct Report {
   Request request;
   std::vector<FamilyResult> families;
+  std::vector<std::string> unfinished;  // names of the families that the hooks cut off; they are not among the others
 
   // True if every exact value is the truth, rounded, and none has the status kNotCertified.
   [[nodiscard]] bool sound() const;
 };
 
-// Runs the families. Everything except the times depends on the request alone. Throws InputError if there is no family
-// of a given name.
+// Runs the families. Everything except the times depends on the request alone. If the hooks cancel, the result holds
+// the families that are finished. Throws Cancelled if there are none, and InputError if there is no family of a given
+// name.
 [[nodiscard]] Report run(Request request, const Hooks& hooks = {});
 
 // Writes report.html, values.csv, summary.csv and timings.csv in the same way as report::write: all or nothing, and
 // only over an earlier result. Returns notes for the user, such as a missing gnuplot.
 std::vector<std::string> write(const Report& report, const std::filesystem::path& folder, const Hooks& hooks = {});
+
+// What write() leaves of a run that was interrupted: the same files in FOLDER.part, without figures, in milliseconds.
+// They say what is missing. A complete result in FOLDER stays; the next complete one removes FOLDER.part.
+[[nodiscard]] std::filesystem::path part_of(const std::filesystem::path& folder);
+void write_part(const Report& report, const std::filesystem::path& folder);
 
 // The main result in a few sentences.
 [[nodiscard]] std::vector<std::string> headlines(const Report& report);

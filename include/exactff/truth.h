@@ -64,7 +64,7 @@ enum class Existing {
 // any thread.
 struct Hooks {
   std::function<void(const Progress&)> progress = {};  // in rows
-  std::function<bool()> cancelled = {};                // called between rows
+  std::function<bool()> cancelled = {};                // called often, as Hooks of exactff/progress.h
   std::function<void(const std::string&)> note = {};   // notes for the user, such as a damaged journal
   std::function<void(const std::string& row, double seconds)> slow_row = {};  // "receiver '7', source 'light'"
   double slow_seconds = 1.0;  // a row that takes at least this long is slow

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -279,7 +278,7 @@ void draw(const check::Report& report, const std::string& file) {
     const InterruptWatch watch;  // a signal waits until gnuplot's folder is removed
     plot = check::plot_histogram(report, is_interrupted);
   }
-  if (is_interrupted()) ::raise(interrupting_signal());
+  leave_if_interrupted();
   if (!plot.svg.empty()) return write_whole_file(file, plot.svg);
   std::cerr << "note: " << text::printable(file) << " was not drawn: " << text::printable(plot.why_not) << '\n';
 }

@@ -22,6 +22,7 @@ Command add_merge(CLI::App& app);
 Command add_check(CLI::App& app);
 Command add_stress(CLI::App& app);
 Command add_convert(CLI::App& app);
+Command add_help(CLI::App& app);
 Command add_completion(CLI::App& app);
 Command add_manual(CLI::App& app);
 

@@ -69,6 +69,10 @@ std::string command_line(const CompareArguments& args) {
 
 // A finished folder holds hours of work, as a truth file does. Checked before anything that takes time.
 void require_free(const CompareArguments& args) {
+  if (args.folder == "-") {
+    text::refuse("-o - names no folder", "a report is a page and several tables, which no pipe can carry",
+                 "name a folder, or ./- for one of that name");
+  }
   if (args.force || args.resume || !report::has_report(args.folder)) return;
   throw InputError({.file = args.folder,
                     .what = "holds a finished report",
@@ -149,9 +153,9 @@ void print_warnings_of(const report::PlannedScene& planned, bool several) {
 }
 
 int run(const CompareArguments& args) {
-  check_output_folder(args.folder);
   require_free(args);
-  const report::Plan plan = plan_of(args);
+  check_output_folder(args.folder);
+  const report::Plan plan = with_progress([&] { return plan_of(args); });
   for (const report::PlannedScene& scene : plan.scenes) print_warnings_of(scene, plan.scenes.size() > 1);
   if (is_done(args, plan)) {
     std::cerr
@@ -203,7 +207,7 @@ Command add_compare(CLI::App& app) {
   command
       ->add_option("--experiment", args->experiments,
                    "Add an experiment to the report; can be repeated: " + experiment_list())
-      ->type_name("NAME")
+      ->type_name("EXPERIMENT")
       ->delimiter(',')
       ->take_all();
   command->add_flag("--abridged", args->abridged,

@@ -38,30 +38,38 @@ std::string option_names(const CommandTable& command) {
   return spaced(names);
 }
 
-// One of the texts, by what the option takes.
-std::string by_completion(const OptionRow& row, const std::string& choices, const char* files, const char* folders,
-                          const char* nothing) {
+// What the shell is told, by what the option takes.
+struct Offers {
+  std::string choices, words, files, files_and_models, folders, nothing;
+};
+
+std::string by_completion(const OptionRow& row, const Offers& offers) {
   switch (row.completion) {
     case Completion::kChoices:
-      return choices;
+      return offers.choices;
+    case Completion::kWords:
+      return offers.words;
     case Completion::kFiles:
-      return files;
+      return offers.files;
+    case Completion::kFilesAndModels:
+      return offers.files_and_models;
     case Completion::kFolders:
-      return folders;
+      return offers.folders;
     case Completion::kNothing:
       break;
   }
-  return nothing;
+  return offers.nothing;
 }
 
 // --- bash ---
 
 // The words before the cursor determine what it is at: the last option, and how many values it already has. Bash splits
-// "--engine=edges" into three words. A word such as -0.5 is a value. Completion of files is left to readline, which
-// knows about quotes.
+// "--engine=edges" into three words and "@teapot" into two, but replaces both of the latter. A word such as -0.5 is a
+// value. Completion of files is left to readline, which knows about quotes. Of a comma list, the last name is
+// completed.
 constexpr const char* kBashFunction = R"(
 _exactff() {
-  local cur=${COMP_WORDS[COMP_CWORD]} command='' option='' values=0 most=0 offer='' options='' index word
+  local cur=${COMP_WORDS[COMP_CWORD]} command='' option='' values=0 most=0 offer='' options='' index word before=''
   COMPREPLY=()
   for ((index = 1; index < COMP_CWORD; ++index)); do
     word=${COMP_WORDS[index]}
@@ -72,6 +80,7 @@ _exactff() {
     esac
   done
   [[ $cur == = ]] && cur=''
+  [[ ${COMP_WORDS[COMP_CWORD - 1]} == @ ]] && cur=@$cur
 
   _exactff_command "$command"
   [[ -n $option ]] && _exactff_option "$command $option"
@@ -86,6 +95,13 @@ _exactff() {
     '') ;;
     FILES) compopt -o default ;;
     FOLDERS) compopt -o dirnames ;;
+    'FILES '*)
+      if [[ $cur == @* ]]; then COMPREPLY=($(compgen -W "${offer#FILES }" -- "$cur")); else compopt -o default; fi
+      ;;
+    'LIST '*)
+      [[ $cur == *,* ]] && before=${cur%,*},
+      COMPREPLY=($(compgen -P "$before" -W "${offer#LIST }" -- "${cur##*,}"))
+      ;;
     *) COMPREPLY=($(compgen -W "$offer" -- "$cur")) ;;
   esac
 }
@@ -93,7 +109,12 @@ complete -F _exactff exactff
 )";
 
 std::string bash_offer(const OptionRow& row) {
-  return by_completion(row, single_quoted(spaced(row.choices)), "FILES", "FOLDERS", "''");
+  return by_completion(row, {.choices = single_quoted(spaced(row.choices)),
+                             .words = single_quoted("LIST " + spaced(row.words)),
+                             .files = "FILES",
+                             .files_and_models = single_quoted("FILES " + spaced(row.words)),
+                             .folders = "FOLDERS",
+                             .nothing = "''"});
 }
 
 std::string bash_case(const std::string& pattern, const std::string& body) {
@@ -120,7 +141,12 @@ std::string bash_function(const std::string& name, const std::string& cases) {
 // --- zsh ---
 
 std::string zsh_action(const OptionRow& row) {
-  return by_completion(row, "(" + spaced(row.choices) + ")", "_files", "_files -/", " ");
+  return by_completion(row, {.choices = "(" + spaced(row.choices) + ")",
+                             .words = "_sequence compadd - " + spaced(row.words),
+                             .files = "_files",
+                             .files_and_models = "{_files; compadd -- " + spaced(row.words) + "}",
+                             .folders = "_files -/",
+                             .nothing = " "});
 }
 
 std::string zsh_values(const OptionRow& row) {
@@ -177,8 +203,12 @@ fi
 // --- fish ---
 
 std::string fish_takes(const OptionRow& row) {
-  return by_completion(row, " -x -a " + single_quoted(spaced(row.choices)), " -r -F",
-                       " -x -a '(__fish_complete_directories)'", row.most_values > 0 ? " -x" : "");
+  return by_completion(row, {.choices = " -x -a " + single_quoted(spaced(row.choices)),
+                             .words = " -x -a " + single_quoted(spaced(row.words)),
+                             .files = " -r -F",
+                             .files_and_models = " -F -a " + single_quoted(spaced(row.words)),
+                             .folders = " -x -a '(__fish_complete_directories)'",
+                             .nothing = row.most_values > 0 ? " -x" : ""});
 }
 
 std::string fish_text(const std::string& text) { return "'" + with_backslashes(text, "'\\") + "'"; }

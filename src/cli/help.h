@@ -1,12 +1,17 @@
-// Formats the texts of --help from the option tables.
+// Formats the texts of --help from the option tables. (`exactff help` is in help_command.cpp.)
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <string>
 
 namespace exactff::cli {
 
 // For App::formatter. Set it before commands are added, because they inherit it.
 [[nodiscard]] std::shared_ptr<CLI::Formatter> help_formatter();
+
+// Throws InputError if the first word of the command line was meant for a command and there is no such command.
+// Requires all commands in `app`.
+void require_command(const CLI::App& app, const std::string& first_word);
 
 }  // namespace exactff::cli

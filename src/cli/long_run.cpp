@@ -8,6 +8,7 @@
 #include <cstring>
 #include <ctime>
 #include <iostream>
+#include <utility>
 
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -56,19 +57,21 @@ static_assert(std::atomic<int>::is_always_lock_free);  // a signal handler uses 
 // The data for signal handlers: plain, and set before the handlers are installed.
 struct Patience {
   bool ends = false;
-  timer_t timer{};
   std::array<char, 4096> last_words{};
 };
 Patience patience;
+timer_t timer{};
+bool has_timer = false;
 
 void wait_for(long milliseconds) {
   itimerspec time{};
   time.it_value.tv_nsec = milliseconds * 1'000'000;
-  ::timer_settime(patience.timer, 0, &time, nullptr);
+  ::timer_settime(timer, 0, &time, nullptr);
 }
 
+constexpr long kPatience = 400;
+
 void take_note(int signal) {
-  constexpr long kPatience = 400;
   const bool again = interrupted_by.exchange(signal) != 0;
   if (!again && patience.ends) wait_for(kPatience);
   if (!again || work::Unfinished::any()) return;
@@ -78,33 +81,39 @@ void take_note(int signal) {
 
 void lose_patience(int /*signal*/) {
   constexpr long kMoment = 20;
-  if (work::Unfinished::any()) return wait_for(kMoment);
+  if (!patience.ends || work::Unfinished::any()) return wait_for(kMoment);
   const char* words = patience.last_words.data();
   static_cast<void>(!::write(STDERR_FILENO, words, std::strlen(words)));
   ::_exit(128 + interrupted_by);
 }
 
-void make_timer() {
+bool make_timer() {
   sigevent event{};
   event.sigev_notify = SIGEV_SIGNAL;
   event.sigev_signo = SIGALRM;
-  patience.ends = ::timer_create(CLOCK_MONOTONIC, &event, &patience.timer) == 0;
+  return has_timer = ::timer_create(CLOCK_MONOTONIC, &event, &timer) == 0;
+}
+
+void set_last_words(const std::string& words) {
+  const std::size_t size = words.copy(patience.last_words.data(), patience.last_words.size() - 1);
+  patience.last_words[size] = '\0';
 }
 
 }  // namespace
 
 InterruptWatch::InterruptWatch(const std::string& last_words) : InterruptWatch() {
   const std::string clear_line = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
-  const std::string words = (clear_line + last_words).substr(0, patience.last_words.size() - 1);
-  std::copy(words.begin(), words.end(), patience.last_words.begin());
+  set_last_words(clear_line + last_words);
   struct sigaction action {};
   action.sa_handler = lose_patience;
   action.sa_flags = SA_RESTART;
   ::sigaction(SIGALRM, &action, &alarm_before_);
-  make_timer();
+  if (!has_timer) made_timer_ = make_timer();
+  patience.ends = has_timer;
 }
 
-InterruptWatch::InterruptWatch() {
+InterruptWatch::InterruptWatch()
+    : patience_ended_before_(std::exchange(patience.ends, false)), words_before_(patience.last_words.data()) {
   struct sigaction action {};
   action.sa_handler = take_note;
   action.sa_flags = SA_RESTART;
@@ -116,15 +125,36 @@ InterruptWatch::InterruptWatch() {
 }
 
 InterruptWatch::~InterruptWatch() {
-  if (patience.ends) {
-    patience.ends = false;
-    ::timer_delete(patience.timer);
+  patience.ends = false;
+  set_last_words(words_before_);
+  if (made_timer_) {
+    ::timer_delete(timer);
+    has_timer = false;
     ::sigaction(SIGALRM, &alarm_before_, nullptr);
   }
+  patience.ends = patience_ended_before_;
+  if (patience.ends && is_interrupted()) wait_for(kPatience);
   for (std::size_t i = 0; i < kSignals.size(); ++i) ::sigaction(kSignals[i], &before_[i], nullptr);
 }
 
 bool is_interrupted() { return interrupted_by != 0; }
 int interrupting_signal() { return interrupted_by; }
+
+void leave_if_interrupted() {
+  if (is_interrupted()) throw Cancelled();
+}
+
+int unless_interrupted(const std::function<int()>& command) {
+  const std::string said = "exactff: interrupted\n";
+  const InterruptWatch watch(said);
+  const Hooks hooks{{}, is_interrupted};
+  const HooksOfThread stopped(hooks);
+  try {
+    return command();
+  } catch (const Cancelled&) {
+    std::cerr << said;
+    return 128 + interrupting_signal();
+  }
+}
 
 }  // namespace exactff::cli

@@ -4,9 +4,10 @@
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <functional>
 #include <string>
 
-#include "exactff/study.h"
+#include "exactff/progress.h"
 
 namespace exactff::cli {
 
@@ -34,13 +35,14 @@ class ProgressBar {
 };
 
 // During its lifetime, Ctrl-C (SIGINT), SIGTERM and SIGHUP set a flag instead of ending the program. A second signal
-// ends it at once, unless files are being written; the program soon gives that up.
+// ends it at once, unless files are being written; the program soon gives that up. Objects nest, and the innermost
+// counts.
 class InterruptWatch {
  public:
   InterruptWatch();
-  // The work checks the flag between its pieces, and one piece may take long. If the work has not ended 0.4 s after the
-  // signal, the program prints `last_words` and ends with the exit code of the signal. Use this only for work that
-  // survives being killed.
+  // The work checks the flag every few milliseconds, but not everywhere: not while it reads a scene, or in the polygon
+  // Booleans. If the work has not ended 0.4 s after the signal, the program prints `last_words` and ends with the exit
+  // code of the signal. Use this only for work that survives being killed.
   explicit InterruptWatch(const std::string& last_words);
   ~InterruptWatch();
   InterruptWatch(const InterruptWatch&) = delete;
@@ -50,8 +52,27 @@ class InterruptWatch {
   static constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP};
   std::array<struct sigaction, kSignals.size()> before_{};
   struct sigaction alarm_before_ {};
+  bool made_timer_ = false;
+  bool patience_ended_before_;
+  std::string words_before_;
 };
 [[nodiscard]] bool is_interrupted();
 [[nodiscard]] int interrupting_signal();  // 0 if none came
+void leave_if_interrupted();              // throws Cancelled
+
+// Runs a command under a watch. After a signal its computations throw Cancelled; if the command does not catch that,
+// this function says so and returns the exit code of the signal.
+[[nodiscard]] int unless_interrupted(const std::function<int()>& command);
+
+// Calls `prepare`, shows the progress of what it makes (exactff/progress.h), and throws Cancelled after a signal.
+template <class Prepare>
+auto with_progress(const Prepare& prepare) {
+  ProgressBar bar;
+  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  const HooksOfThread shown(hooks);
+  auto prepared = prepare();
+  leave_if_interrupted();
+  return prepared;
+}
 
 }  // namespace exactff::cli

@@ -10,6 +10,7 @@
 #include "cli/exit_code.h"
 #include "cli/help.h"
 #include "cli/launch.h"
+#include "cli/long_run.h"
 #include "cli/memory.h"
 #include "cli/output.h"
 #include "cli/streams.h"
@@ -28,7 +29,8 @@ constexpr const char* kDescription =
     "normal. A source is a patch s. An occluder is a face between them that hides part of s. A value is certified if\n"
     "it is proved to be F rounded to the nearest double.\n"
     "\n"
-    "Start with `exactff info SCENE`, which lists the names of the patches. Then, for example:\n"
+    "`exactff help COMMAND` explains a command and its flags. Start with `exactff info SCENE`, which lists the names\n"
+    "of the patches. Then, for example:\n"
     "  exactff point SCENE --at X Y Z --normal NX NY NZ --source NAME\n"
     "  exactff compare SCENE --on NAME --grid 32x32 -o DIR\n"
     "  exactff truth SCENE --on NAME --grid 32x32 -o truth.csv\n"
@@ -55,13 +57,14 @@ int parse_and_run(int argc, char** argv) {
   app.set_version_flag("--version", std::string("exactff ") + exactff::kVersion);
   app.require_subcommand(0, 1);
   const std::vector<exactff::cli::Command> commands = exactff::cli::add_commands(app);
+  if (argc > 1) exactff::cli::require_command(app, argv[1]);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return end_of_parsing(app, error);
   }
   for (const exactff::cli::Command& command : commands) {
-    if (command.app->parsed()) return command.run();
+    if (command.app->parsed()) return exactff::cli::unless_interrupted(command.run);
   }
   std::cerr << app.help() << "\nGive one of the commands.\n";
   return exactff::cli::kBadInput;

@@ -4,6 +4,8 @@
 #include <array>
 #include <string_view>
 
+#include "cli/known_words.h"
+
 namespace exactff::cli {
 namespace {
 
@@ -77,11 +79,18 @@ std::string described(const CLI::Option& option, const TypeText& type) {
 
 std::string ellipsis(const OptionRow& row) { return row.most_values == kManyValues ? "..." : ""; }
 
+void offer(std::vector<std::string> words, OptionRow& row) {
+  if (words.empty()) return;
+  row.words = std::move(words);
+  row.completion = row.completion == Completion::kFiles ? Completion::kFilesAndModels : Completion::kWords;
+}
+
 // The name of a positional argument says what it is; its type adds nothing.
 OptionRow positional_row(const CLI::Option& option) {
   OptionRow row = option_row(option);
   row.names = {option.get_name(true, false)};
   row.value = row.names.front() + ellipsis(row);
+  offer(known_words(row.names.front()), row);
   return row;
 }
 
@@ -111,6 +120,7 @@ OptionRow option_row(const CLI::Option& option) {
   row.least_values = std::max(1, option.get_items_expected_min());
   row.most_values = std::min(option.get_items_expected_max(), kManyValues);
   row.value = (row.choices.empty() ? type.type : joined(row.choices, '|')) + ellipsis(row);
+  offer(known_words(type.type), row);
   row.repeats = row.most_values == kManyValues || option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll;
   return row;
 }
@@ -119,6 +129,13 @@ ProgramTable program_table(const CLI::App& app) {
   ProgramTable table{command_table(app), {}};
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
     if (!command->get_group().empty()) table.commands.push_back(command_table(*command));
+  }
+  std::vector<std::string> names;
+  for (const CommandTable& command : table.commands) names.push_back(command.name);
+  for (CommandTable& command : table.commands) {
+    for (OptionRow& row : command.positionals) {
+      if (row.value == "COMMAND") offer(names, row);
+    }
   }
   return table;
 }

@@ -8,14 +8,22 @@
 
 namespace exactff::cli {
 
-enum class Completion { kNothing, kChoices, kFiles, kFolders };
+enum class Completion {
+  kNothing,
+  kChoices,
+  kWords,  // one of `words`, with settings, or several separated by commas
+  kFiles,
+  kFilesAndModels,  // the models are `words`
+  kFolders
+};
 
 struct OptionRow {
   std::vector<std::string> names;    // "-o", "--output"; for a positional argument its name
   std::string value;                 // placeholder: "NAME[:K]...", "edges|boolean|both"; empty for a flag
   std::vector<std::string> choices;  // if the value is one of a few
   Completion completion = Completion::kNothing;
-  int least_values = 0;  // words that follow each time the option is given
+  std::vector<std::string> words;  // known names that the value may begin with
+  int least_values = 0;            // words that follow each time the option is given
   int most_values = 0;
   bool repeats = false;
   bool required = false;

@@ -1,7 +1,6 @@
 #include "cli/output.h"
 
 #include <cerrno>
-#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <iostream>
@@ -51,31 +50,21 @@ void write_through(const fs::path& path, const std::string& text) {
   if (!file) cannot_write(path, errno != 0 ? std::strerror(errno) : "opening or writing failed");
 }
 
-// Signals wait for a moment, so that nothing partial is left behind.
-template <class Write>
-void undisturbed(const Write& write) {
-  {
-    const InterruptWatch watch;
-    write();
-  }
-  if (is_interrupted()) ::raise(interrupting_signal());
-}
-
 }  // namespace
 
 void write_whole_file(const fs::path& path, const std::string& text) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) cannot_write(path, "it is a folder");
   if (fs::is_other(path, ignored)) return write_through(path, text);
-  undisturbed([&] {
-    work::WholeFile file(path, {}, work::WholeFile::WhenBusy::kWait);
-    file.append(text);
-    file.commit();
-  });
+  work::WholeFile file(path, {}, work::WholeFile::WhenBusy::kWait);
+  file.append(text);
+  file.commit();
+  leave_if_interrupted();
 }
 
 void check_output_folder(const fs::path& folder) {
-  undisturbed([&] { report::check_output_folder(folder); });
+  report::check_output_folder(folder);
+  leave_if_interrupted();
 }
 
 void check_output(std::ostream& out) {

@@ -31,9 +31,9 @@ void write_whole_file(const std::filesystem::path& path, const std::string& text
 void check_output(std::ostream& out);
 
 // Writes "warning: ..." to stderr for the first 20 warnings, then the number of the others.
+void print_warnings(std::span<const Problem> warnings);
 // Warnings on receivers that were probably meant to lie on a face.
 void print_near_misses(const Scene& scene, std::span<const Receiver> receivers);
-void print_warnings(std::span<const Problem> warnings);
 
 // Throws InputError unless a result can be written to `folder` (exactff/report.h).
 void check_output_folder(const std::filesystem::path& folder);

@@ -18,9 +18,12 @@ namespace {
 
 constexpr const char* kStressFooter =
     "A family is a scene with one number, its stiffness, that makes the scene more and more extreme. Without\n"
-    "--family, all families are run; --list prints their names. For each family, a table shows the relative errors at\n"
-    "each stiffness. The last table shows the largest stiffness up to which each method's error stays below 1e-3,\n"
-    "1e-6 and 1e-12. With -o, the tables are written as CSV, with a report and figures.\n"
+    "--family, all families are run; --list prints their names. A table shows the largest stiffness up to which each\n"
+    "method's error stays below 1e-3, 1e-6 and 1e-12. With --all, a table for each family shows the relative errors "
+    "at\n"
+    "each stiffness. With -o, all tables are written as CSV, with a report and figures. After an interruption "
+    "(Ctrl-C),\n"
+    "the finished families are shown, and with -o they are written to DIR.part.\n"
     "acos, atan2, atan2-difference: Tampieri's contour formula, Eq. (4), in double over the exact visible region.\n"
     "tampieri, tampieri-literal: his ray-sampled algorithm, mended and as printed.\n"
     "Use --threads 1 for the most reliable times.\n"
@@ -34,6 +37,7 @@ struct StressArguments {
   int threads = 0;
   std::string folder;
   bool list = false;
+  bool all = false;
 };
 
 void print_list() {
@@ -66,7 +70,7 @@ void print_family(const stress::FamilyResult& result) {
   std::cout << '\n';
 }
 
-void print_report(const stress::Report& report) {
+void print_stress_summary(const stress::Report& report) {
   std::cout << "Largest stiffness with an error below 1e-3, 1e-6, 1e-12 (all: to the end; –: not even at the start)\n";
   TextTable table;
   table.add_column("family");
@@ -89,6 +93,29 @@ std::string command_line(const StressArguments& args) {
   return line + " -o " + text::shell_word(args.folder);
 }
 
+void print(const StressArguments& args, const stress::Report& report) {
+  if (args.all) {
+    for (const stress::FamilyResult& family : report.families) print_family(family);
+  }
+  print_stress_summary(report);
+  for (const std::string& sentence : stress::headlines(report)) std::cout << sentence << '\n';
+  if (!args.all) std::cout << "--all prints every error.\n";
+}
+
+std::string page_in(const std::filesystem::path& folder) { return text::printable((folder / "report.html").string()); }
+
+// Leaves what is finished in DIR.part, and says so.
+int end_early(const StressArguments& args, const stress::Report& report) {
+  const std::size_t whole = report.families.size() + report.unfinished.size();
+  if (!args.folder.empty()) stress::write_part(report, args.folder);
+  print(args, report);
+  check_output(std::cout);
+  std::cerr << "exactff: interrupted; finished families: " << report.families.size() << " of " << whole;
+  if (!args.folder.empty()) std::cerr << ", kept in " << page_in(stress::part_of(args.folder));
+  std::cerr << "; --family runs single ones\n";
+  return 128 + interrupting_signal();
+}
+
 int run(const StressArguments& args) {
   if (args.list) {
     print_list();
@@ -96,29 +123,29 @@ int run(const StressArguments& args) {
     return 0;
   }
   if (!args.folder.empty()) check_output_folder(args.folder);
-  const std::string given_up = "exactff: interrupted; nothing was written\n";
+  const std::string given_up = "exactff: interrupted; no family is finished, and nothing was written\n";
   const InterruptWatch watch(given_up);
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
   stress::Report report;
   std::vector<std::string> messages;
+  bool complete = false;
   try {
     report =
         stress::run({args.families, args.threads, args.folder.empty() ? std::string() : command_line(args)}, hooks);
-    if (!args.folder.empty()) messages = stress::write(report, args.folder, hooks);
+    complete = report.unfinished.empty();
+    if (complete && !args.folder.empty()) messages = stress::write(report, args.folder, hooks);
   } catch (const Cancelled&) {
     bar.clear();
+    if (complete) return end_early(args, report);
     std::cerr << given_up;
     return 128 + interrupting_signal();
   }
   bar.clear();
+  if (!complete) return end_early(args, report);
   for (const std::string& message : messages) std::cerr << "note: " << text::printable(message) << '\n';
-  for (const stress::FamilyResult& family : report.families) print_family(family);
-  print_report(report);
-  for (const std::string& sentence : stress::headlines(report)) std::cout << sentence << '\n';
-  if (!args.folder.empty()) {
-    std::cout << "Report: " << text::printable((std::filesystem::path(args.folder) / "report.html").string()) << '\n';
-  }
+  print(args, report);
+  if (!args.folder.empty()) std::cout << "Report: " << page_in(args.folder) << '\n';
   check_output(std::cout);
   return report.sound() ? 0 : 1;
 }
@@ -131,8 +158,9 @@ Command add_stress(CLI::App& app) {
       app.add_subcommand("stress", "Show how the methods behave as scenes become more and more extreme");
   command->add_option("--family", args->families, "Families, separated by commas (default: all)")
       ->delimiter(',')
-      ->type_name("NAME");
+      ->type_name("FAMILY");
   command->add_flag("--list", args->list, "List the families and what their stiffness means");
+  command->add_flag("--all", args->all, "Also print the errors at each stiffness, about a thousand lines");
   command->add_option("--threads", args->threads, "Number of threads (default: all); it does not affect the values")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");

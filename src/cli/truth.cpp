@@ -133,9 +133,11 @@ class Narrator {
   // Called when the work has been given up.
   void tell_what_is_kept(const std::string& reason, const std::string& file) const {
     bar_.clear();
-    if (rows_.total == 0) return;  // it had not begun
+    if (rows_.total == 0 && !is_interrupted()) return;  // it had not begun
     std::cerr << "exactff: " << reason << "; ";
-    if (rows_.done == 0) {
+    if (rows_.total == 0) {
+      std::cerr << "no row was begun\n";
+    } else if (rows_.done == 0) {
       std::cerr << "no row was finished; nothing was written\n";
     } else {
       std::cerr << rows_.done << " of " << text::counted(rows_.total, "row") << " are kept in "
@@ -181,13 +183,13 @@ int write_to_standard_output(const TruthArguments& args) {
   check_standard_output(args);
   const std::string words = "exactff: interrupted; the printed rows are incomplete, and nothing is kept\n";
   const InterruptWatch watch(words);
-  const std::unique_ptr<Job> job = job_of(args, nullptr);
-  tell_of_sources(*job);
   Narrator narrator;
   truth::Hooks hooks = narrator.hooks(args.slow_seconds);
   if (::isatty(STDOUT_FILENO) == 1) hooks.progress = {};  // the rows are to be seen
   truth::Summary summary;
   try {
+    const std::unique_ptr<Job> job = with_progress([&] { return job_of(args, nullptr); });
+    tell_of_sources(*job);
     summary = truth::write(std::move(job->request), std::cout, hooks);
   } catch (const Cancelled&) {
     narrator.clear();
@@ -200,11 +202,14 @@ int write_to_standard_output(const TruthArguments& args) {
 
 int write(const TruthArguments& args, truth::Team* team) {
   truth::require_free(args.file, args.existing());  // checked before anything that takes time
-  const std::unique_ptr<Job> job = job_of(args, team);
-  tell_of_sources(*job);
   Narrator narrator;
   truth::Summary summary;
   try {
+    const std::unique_ptr<Job> job = with_progress([&] { return job_of(args, team); });
+    tell_of_sources(*job);
+    const InterruptWatch watch("exactff: interrupted; all finished rows are kept in " +
+                               text::printable(truth::journal_of(args.file).string()) +
+                               "; to continue, run the same command with --resume\n");
     summary =
         truth::write(std::move(job->request), args.file, args.existing(), narrator.hooks(args.slow_seconds), team);
   } catch (const Cancelled&) {
@@ -255,9 +260,7 @@ int run(const TruthArguments& args) {
     throw;
   }
   if (args.to_standard_output()) return write_to_standard_output(args);
-  const InterruptWatch watch("exactff: interrupted; all finished rows are kept in " +
-                             text::printable(truth::journal_of(args.file).string()) +
-                             "; to continue, run the same command with --resume\n");
+  const InterruptWatch watch("exactff: interrupted; no row was begun\n");
   if (team == nullptr) return write(args, nullptr);
   return team->rank() == 0 ? lead(args, *team) : follow(args, *team);
 }

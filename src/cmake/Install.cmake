@@ -5,6 +5,7 @@ include(CMakePackageConfigHelpers)
 
 set(exactff_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/exactff)
 set(exactff_doc_dir ${CMAKE_INSTALL_DATADIR}/doc/exactff)
+set(exactff_examples_dir ${CMAKE_INSTALL_DATADIR}/exactff/examples)
 set(exactff_generated ${PROJECT_BINARY_DIR}/installed)
 
 # --- library ---
@@ -22,6 +23,10 @@ write_basic_package_version_file(${exactff_generated}/exactff-config-version.cma
 install(FILES ${exactff_generated}/exactff-config.cmake ${exactff_generated}/exactff-config-version.cmake
               ${PROJECT_SOURCE_DIR}/src/cmake/ImportLibrary.cmake
   DESTINATION ${exactff_cmake_dir} COMPONENT development)
+
+# A project that uses the library.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/validation/consumer/app/ DESTINATION ${exactff_examples_dir}/project
+  COMPONENT development)
 
 # --- pkg-config ---
 # If there is only a static library, plain `pkg-config --libs` has to name its dependencies. FLINT, Arb and Embree have
@@ -58,8 +63,8 @@ install(TARGETS exactff_program RUNTIME COMPONENT program)
 if(TARGET exactff_mpi)
   install(TARGETS exactff_mpi LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/exactff COMPONENT mpi)
 endif()
-install(FILES ${PROJECT_SOURCE_DIR}/data/scenes/cornell_box.obj ${PROJECT_SOURCE_DIR}/data/scenes/cornell_box.mtl
-  DESTINATION ${exactff_doc_dir}/examples COMPONENT program)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/scenes DESTINATION ${exactff_examples_dir} COMPONENT program
+  FILES_MATCHING PATTERN *.obj PATTERN *.mtl)
 
 # The program writes its manual page and completions itself, from the options that it parses:
 # exactff_install_written(FILE FOLDER ARGUMENT...)

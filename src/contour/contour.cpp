@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "kernel/poll.h"
+
 namespace exactff::contour {
 
 using kernel::ExactVec3;
@@ -37,6 +39,7 @@ void ContourIntegral::add(const BoundaryPiece& piece) {
 Ball ContourIntegral::evaluate(long bits) const {
   Ball sum(bits);
   for (const Term& term : terms_) {
+    kernel::poll();
     const Ball norm = sqrt(to_ball(term.squared_cross, bits));
     const Ball angle = atan2(norm * to_ball(term.parameter_span, bits), to_ball(term.ends_dot, bits));
     sum = sum - angle * to_ball(term.normal_dot, bits) / norm;

@@ -5,6 +5,8 @@
 #include <unordered_set>
 #include <utility>
 
+#include "formats/converted_names.h"
+#include "text/encoding.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 
@@ -20,6 +22,7 @@ class MtlReader {
   std::vector<Material> run(std::string_view text) {
     text::TextLines lines(text);
     while (lines.next(line_)) read_line();
+    if (!converted_.names().empty()) warnings_.add(converted_.warning(file_));
     return std::move(materials_);
   }
 
@@ -45,6 +48,7 @@ class MtlReader {
   bool has_d_ = false;   // it has a line d
   bool counts_ = false;  // false before any newmtl and in a repeated material
   bool started_ = false;
+  ConvertedNames converted_;
   std::vector<Material> materials_;
   std::unordered_set<std::string> names_;
 };
@@ -72,14 +76,16 @@ void MtlReader::read_line() {
 
 void MtlReader::start_material(std::string_view name) {
   started_ = true;
-  current_ = Material{std::string(name)};
+  if (!text::is_utf8(name)) converted_.add(line_.number, name);
+  current_ = Material{text::in_utf8(name)};
   has_d_ = false;
   if (name.empty()) fail("newmtl without a name", "no face can use it", "give the material a name");
   counts_ = names_.insert(current_.name).second;
   if (counts_) {
     materials_.push_back(current_);
   } else {
-    warn("material " + text::in_quotes(name) + " is defined again", "the first definition is used", "remove one");
+    warn("material " + text::in_quotes(current_.name) + " is defined again", "the first definition is used",
+         "remove one");
   }
 }
 

@@ -16,9 +16,11 @@
 #include <utility>
 
 #include "exactff/obj.h"
+#include "formats/converted_names.h"
 #include "formats/mtl_reader.h"
 #include "formats/readers.h"
 #include "kernel/float_environment.h"
+#include "text/encoding.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/text_file.h"
@@ -34,16 +36,18 @@ constexpr std::string_view kDefaultPatch = "default";
 constexpr std::string_view kNoMaterial = "(none)";
 constexpr std::size_t kMostIndices = std::numeric_limits<std::uint32_t>::max();
 
-// Distinct names in the order of their first use.
+// Distinct names in the order of their first use, in UTF-8.
 class NameTable {
  public:
   explicit NameTable(std::string_view first) { index(first); }
 
   std::uint32_t index(std::string_view name) {
     const auto [place, is_new] = index_.emplace(name, static_cast<std::uint32_t>(names_.size()));
-    if (is_new) names_.emplace_back(name);
+    if (is_new) names_.push_back(text::in_utf8(name));
     return place->second;
   }
+  // As it is in the file.
+  bool contains(const std::string& name) const { return index_.contains(name); }
   const std::vector<std::string>& names() const { return names_; }
 
  private:
@@ -102,10 +106,12 @@ class ObjReader {
   void add_normal_of(std::string_view corner, Vec3& sum) const;
   void read_face(std::string_view corners);
   std::optional<std::uint32_t> read_corner(std::string_view corner);
+  std::uint32_t index_in(NameTable& table, std::string_view name);
   void read_group(std::string_view names);
   void use_material(std::string_view name);
 
   void check_indices();
+  void check_names();
   void warn_tallies();
   void read_libraries();
   void read_library(const fs::path& path, std::size_t line);
@@ -141,6 +147,7 @@ class ObjReader {
   std::vector<std::pair<std::size_t, std::string>> libraries_;  // line, names
   std::unordered_map<std::string, Material> defined_;
   bool library_missing_ = false;
+  ConvertedNames converted_;
   Tally several_groups_;
   Tally unread_geometry_;
   Tally unknown_;
@@ -153,6 +160,7 @@ Scene ObjReader::run() {
          "add a newline if the file is complete");
   }
   check_indices();
+  check_names();
   if (faces_.empty() && problems_.empty()) {
     throw InputError({file_, 0, "has no faces", "there is nothing to compute with", "is it a Wavefront OBJ file?"});
   }
@@ -174,7 +182,7 @@ void ObjReader::read_line() {
   if (keyword == "g") return read_group(rest);
   if (keyword == "o") {
     const std::string_view name = text::trimmed(rest);
-    current_.object = objects_.index(name.empty() ? kDefaultPatch : name);
+    current_.object = index_in(objects_, name.empty() ? kDefaultPatch : name);
   } else if (keyword == "usemtl") {
     use_material(text::trimmed(rest));
   } else if (keyword == "mtllib") {
@@ -327,16 +335,21 @@ std::optional<std::uint32_t> ObjReader::read_corner(std::string_view corner) {
   return static_cast<std::uint32_t>(position);
 }
 
+std::uint32_t ObjReader::index_in(NameTable& table, std::string_view name) {
+  if (!text::is_utf8(name)) converted_.add(line_.number, name);
+  return table.index(name);
+}
+
 void ObjReader::read_group(std::string_view names) {
   has_groups_ = true;
   const std::string_view all = text::trimmed(names);
   const std::string_view first = text::take_word(names);
-  current_.group = groups_.index(first.empty() ? kDefaultPatch : first);
+  current_.group = index_in(groups_, first.empty() ? kDefaultPatch : first);
   if (!text::trimmed(names).empty()) several_groups_.add(line_.number, all);
 }
 
 void ObjReader::use_material(std::string_view name) {
-  current_.material = materials_.index(name.empty() ? kNoMaterial : name);
+  current_.material = index_in(materials_, name.empty() ? kNoMaterial : name);
   if (current_.material == material_line_.size()) material_line_.push_back(line_.number);
 }
 
@@ -351,7 +364,20 @@ void ObjReader::check_indices() {
   }
 }
 
+// A file that mixes encodings may have two names that become one.
+void ObjReader::check_names() {
+  for (const std::string& name : converted_.names()) {
+    const std::string converted = text::in_utf8(name);
+    for (const NameTable* table : {&groups_, &objects_, &materials_}) {
+      if (!table->contains(name) || !table->contains(converted)) continue;
+      problems_.add({file_, 0, "the name " + text::in_quotes(converted) + " is written in UTF-8 and in Latin-1",
+                     "they might be meant as two names", "save the file as UTF-8"});
+    }
+  }
+}
+
 void ObjReader::warn_tallies() {
+  if (!converted_.names().empty()) builder_.warn(converted_.warning(file_));
   if (several_groups_.count > 0) {
     warn(several_groups_.first_line, "g " + several_groups_.first + " names several groups" + several_groups_.others(),
          "a face belongs to one patch", "the first name is used");

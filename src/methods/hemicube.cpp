@@ -12,6 +12,7 @@
 #include <mutex>
 #include <numbers>
 
+#include "kernel/poll.h"
 #include "methods/item_buffer.h"
 #include "methods/method_files.h"
 #include "sampled/plane_side.h"
@@ -190,6 +191,7 @@ void Hemicube::draw(std::uint32_t index, const ReceiverView& view) {
     above = above || points_[v].z > 0.0;
   }
   if (!above) return;
+  kernel::poll();
   const int side = side_of_x(view, on_scene_.scaled, piece, on_scene_.normals[index]);
   if (side == 0) return;
   front_[index] = side > 0 ? 1 : 0;

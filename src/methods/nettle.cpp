@@ -16,6 +16,7 @@
 #include <limits>
 #include <numbers>
 
+#include "kernel/poll.h"
 #include "methods/method_files.h"
 #include "methods/ray_sum.h"
 #include "sampled/value_range.h"
@@ -76,6 +77,7 @@ class Nettle : public Evaluator {
   [[nodiscard]] bool literal() const { return area_factor_ != AreaFactor::kSender; }
 
   void add_part(const SubPatch& part, std::uint64_t key) {
+    kernel::poll();
     const double share =
         (literal() ? literal_form_factor(part) : rays_.kernel(centroid(part)) * area(part)) / plan_.ray_count();
     if (share == 0.0) return;

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <utility>
 
+#include "kernel/poll.h"
 #include "sampled/plane_side.h"
 
 namespace exactff::methods {
@@ -177,6 +178,7 @@ void RaySum::add(const Vec3& point, double weight) {
 
 // Old ends serve as padding: their lanes are ignored.
 void RaySum::trace() {
+  kernel::poll();
   rays_ += static_cast<std::uint64_t>(ends_.count);
   for (int first = 0; first < ends_.count; first += RayScene::kPacket) {
     const unsigned hidden = hidden_lanes(first);

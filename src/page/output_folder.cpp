@@ -102,6 +102,17 @@ void require_free_or_ours(const fs::path& folder, const fs::path& target) {
 
 void check_output_folder(const fs::path& folder) { const StagedFolder attempt(folder); }
 
+void remove_result(const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::is_directory(fs::symlink_status(folder, ignored))) return;
+  try {
+    require_replaceable(folder);
+  } catch (const InputError&) {
+    return;
+  }
+  fs::remove_all(folder, ignored);
+}
+
 StagedFolder::StagedFolder(const fs::path& target) : target_(normalised(target)) {
   require_free_or_ours(target, target_);
   unfinished_.emplace();

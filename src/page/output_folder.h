@@ -15,6 +15,9 @@ inline constexpr const char* kReportFile = "report.html";
 // an earlier result.
 void check_output_folder(const std::filesystem::path& folder);
 
+// Removes a folder that contains only files of a result. Anything else, and what cannot be removed, stays.
+void remove_result(const std::filesystem::path& folder);
+
 // A hidden sibling of the target, in which files are prepared. Unless commit() was called, the destructor removes it
 // together with the folders that were created on the way to it. The constructor first removes what killed processes
 // left there.

@@ -12,6 +12,7 @@
 #include "exactff/error.h"
 #include "exactff/receiver.h"
 #include "kernel/float_environment.h"
+#include "kernel/poll.h"
 #include "receivers/face_plane.h"
 #include "receivers/placing.h"
 #include "receivers/region_shape.h"
@@ -27,8 +28,12 @@ using kernel::Rational;
 // The receivers of one region.
 class RegionGrid {
  public:
-  RegionGrid(const Scene& scene, const Region& region, GridSize size, std::string prefix)
-      : scene_(scene), shape_(scene, region), prefix_(std::move(prefix)), lattice_(std::make_shared<Lattice>()) {
+  RegionGrid(const Scene& scene, const Region& region, GridSize size, std::string prefix, kernel::Steps& cells)
+      : scene_(scene),
+        shape_(scene, region),
+        prefix_(std::move(prefix)),
+        cells_(cells),
+        lattice_(std::make_shared<Lattice>()) {
     lattice_->region = region;
     lattice_->size = size;
   }
@@ -48,6 +53,7 @@ class RegionGrid {
     const Integer whole = Integer(4) * size().u * size().v;
     for (int row = 1; row <= size().v; ++row) {
       for (int column = 1; column <= size().u; ++column) {
+        cells_.take();
         const Integer s = 2 * column - 1, t = 2 * row - 1;
         const Integer s_rest = 2 * size().u - s, t_rest = 2 * size().v - t;
         const ExactVec3 sum = p[0] * Integer(s_rest * t_rest) + p[1] * Integer(s * t_rest) + p[2] * Integer(s * t) +
@@ -89,6 +95,7 @@ class RegionGrid {
       // Multiplies (a, b) by 2u and 2v: the centres are then integers.
       const FaceFrame::Coordinate b{*b_min * (2 * size().v) + (*b_max - *b_min) * (2 * row - 1), 2 * size().v};
       for (int column = 1; column <= size().u; ++column) {
+        cells_.take();
         const FaceFrame::Coordinate a{*a_min * (2 * size().u) + (*a_max - *a_min) * (2 * column - 1), 2 * size().u};
         if (lone && !frame.strictly_inside(a, b)) continue;
         append(receivers, point_at(frame, mean, a, b), a, b, {lattice_, column, row});
@@ -141,6 +148,7 @@ class RegionGrid {
   const Scene& scene_;
   RegionShape shape_;
   std::string prefix_;
+  kernel::Steps& cells_;
   std::shared_ptr<Lattice> lattice_;
 };
 
@@ -164,9 +172,11 @@ std::vector<Receiver> grid_receivers(const Scene& scene, std::span<const Region>
   const kernel::StandardArithmetic arithmetic;
   check_grid_size(size, on.size());
   std::vector<Receiver> receivers;
+  const auto columns = static_cast<std::size_t>(size.u), rows = static_cast<std::size_t>(size.v);
+  kernel::Steps cells("receivers", columns * rows * on.size());
   for (const Region& region : on) {
     const bool needs_face = ids == GridIds::kUnique && on.size() > 1;
-    RegionGrid(scene, region, size, needs_face ? numbered_name_of(scene, region.faces.front()) + '/' : "")
+    RegionGrid(scene, region, size, needs_face ? numbered_name_of(scene, region.faces.front()) + '/' : "", cells)
         .append_to(receivers);
   }
   return receivers;

@@ -4,6 +4,7 @@
 
 #include "exactff/receiver.h"
 #include "kernel/float_environment.h"
+#include "kernel/poll.h"
 #include "kernel/vec.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
@@ -29,7 +30,9 @@ bool looks_away_from(const Face& face, const Vec3& normal) {
 std::vector<std::size_t> place_on_faces(const Scene& scene, std::span<Receiver> receivers,
                                         std::optional<double> tolerance) {
   std::vector<std::size_t> without;
+  kernel::Steps steps("faces of receivers", receivers.size());
   for (std::size_t i = 0; i < receivers.size(); ++i) {
+    steps.take();
     Receiver& receiver = receivers[i];
     if (!receiver.on.empty()) continue;
     receiver.on = find_faces(scene, receiver, tolerance.value_or(face_tolerance(scene, receiver.point))).faces;
@@ -45,7 +48,9 @@ NearMisses near_misses(const Scene& scene, std::span<const Receiver> receivers) 
   const auto tell = [&](std::size_t i, const std::string& what, std::vector<std::string>& list) {
     if (list.size() < kMostTold) list.push_back(name_of_receiver(receivers, i) + ", " + what);
   };
+  kernel::Steps steps("faces of receivers", receivers.size());
   for (std::size_t i = 0; i < receivers.size(); ++i) {
+    steps.take();
     const Receiver& receiver = receivers[i];
     if (!receiver.on.empty()) {
       if (!looks_away_from(scene.face(receiver.on.front()), receiver.normal)) continue;

@@ -18,6 +18,7 @@
 #include "exactff/error.h"
 #include "exactff/receiver.h"
 #include "kernel/float_environment.h"
+#include "kernel/poll.h"
 #include "scene/face_points.h"
 
 namespace exactff {
@@ -180,7 +181,9 @@ std::vector<Receiver> sample_receivers(const Scene& scene, std::span<const FaceI
   RandomNumbers numbers(seed);
   std::vector<Receiver> receivers;
   receivers.reserve(count);
+  kernel::Steps samples("receivers", count);
   for (std::uint64_t i = 1; i <= count; ++i) {
+    samples.take();
     const auto chosen = std::upper_bound(sums.begin(), sums.end(), numbers.below(sums.back())) - sums.begin();
     const Triangle& triangle = triangles[static_cast<std::size_t>(chosen)];
     const Vec3 point = point_in(scene, triangle, numbers);

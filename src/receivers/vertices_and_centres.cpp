@@ -12,6 +12,7 @@
 #include "exactff/error.h"
 #include "exactff/receiver.h"
 #include "kernel/float_environment.h"
+#include "kernel/poll.h"
 #include "receivers/placing.h"
 #include "receivers/region_shape.h"
 #include "scene/places.h"
@@ -173,7 +174,9 @@ std::vector<Receiver> vertex_receivers(const Scene& scene, std::span<const FaceI
   const kernel::StandardArithmetic arithmetic;
   check_corner_count(scene, on);
   std::vector<Receiver> receivers;
+  kernel::Steps faces("receivers", on.size());
   for (const FaceId face : on) {
+    faces.take();
     if (scene.face(face).piece_count > 0) append_corners(scene, face, receivers);
   }
   return receivers;
@@ -183,7 +186,11 @@ std::vector<Receiver> centre_receivers(const Scene& scene, std::span<const Regio
   const kernel::StandardArithmetic arithmetic;
   check_region_count(on.size());
   std::vector<Receiver> receivers;
-  for (const Region& region : on) receivers.push_back(RegionCentre(scene, region).find());
+  kernel::Steps centres("receivers", on.size());
+  for (const Region& region : on) {
+    centres.take();
+    receivers.push_back(RegionCentre(scene, region).find());
+  }
   return receivers;
 }
 

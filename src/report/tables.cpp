@@ -29,7 +29,7 @@ void write_head(const Study& study, std::ostream& out, std::string_view what) {
   const Sweeps& sweeps = study.request.sweeps;
   const auto number = [](double v) { return text::shortest(v); };
   const auto name = [](auto v) { return name_of(v); };
-  out << "# " << text::program_version() << " compare: " << text::csv_comment(std::string(what)) << '\n'
+  out << "# " << text::program_version() << " compare: " << text::csv_comment(what) << '\n'
       << "# scene: " << text::csv_comment(study.request.scene_name) << ", hash " << study.request.scene->hash() << '\n';
   write_names(out, "flipped", flipped_names(study));
   write_names(out, "transparent", transparent_names(study));

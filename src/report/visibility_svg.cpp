@@ -18,11 +18,22 @@ namespace {
 
 constexpr double kPanelWidth = 640.0;
 constexpr double kMargin = 24.0;
-constexpr double kCaptionHeight = 44.0;
+constexpr double kTitleHeight = 56.0;
+constexpr double kCaptionHeight = 32.0;
+constexpr double kScaleHeight = 18.0;
 constexpr double kLegendHeight = 64.0;
 constexpr double kLeastAspect = 0.02;
 constexpr double kLargestAspect = 2.0;
 constexpr std::size_t kMostPanels = 12;
+
+// The picture and its legend draw the same thing in the same way.
+constexpr const char* kBelowHorizon = "fill=\"#e9e9e9\" stroke=\"none\"";
+constexpr const char* kHidden = "fill=\"#a9b4c2\" stroke=\"none\"";
+constexpr const char* kShadow = "fill=\"none\" stroke=\"#0072b2\" stroke-width=\"0.8\" stroke-opacity=\"0.7\"";
+constexpr const char* kVisible =
+    "fill=\"#f6d64a\" fill-rule=\"evenodd\" stroke=\"#d55e00\" stroke-width=\"1.8\" stroke-linejoin=\"round\"";
+constexpr const char* kVisibleOutline =
+    "fill=\"none\" stroke=\"#d55e00\" stroke-width=\"1.8\" stroke-linejoin=\"round\"";
 
 struct Pixel {
   double x = 0.0;
@@ -74,6 +85,11 @@ class PanelMap {
     const Pixel flat = flatten(p);
     return {kMargin + (flat.x - low_.x) / size_ * (kPanelWidth - 2 * kMargin),
             kMargin + (high_.y - flat.y) / size_ * (kPanelWidth - 2 * kMargin)};
+  }
+
+  // log10 of the length of a pixel, in the scene's unit. (The length itself may not be a double.)
+  [[nodiscard]] double log_pixel() const {
+    return std::log10(size_ / (kPanelWidth - 2 * kMargin)) + exponent_ * std::log10(2.0);
   }
 
   [[nodiscard]] double height() const {
@@ -151,25 +167,58 @@ std::string leaf_elements(const PanelMap& map, const std::vector<PlaneDrawing>& 
   return result;
 }
 
-std::string shadow_elements(const Scene& scene, const PanelMap& map, const PlaneDrawing& drawing, bool outline_only) {
-  const std::string fill = outline_only ? "fill=\"none\" stroke-width=\"0.5\" stroke-opacity=\"0.6\""
-                                        : "fill=\"#0072b2\" fill-opacity=\"0.25\" stroke-width=\"0.8\"";
+std::string shadow_elements(const Scene& scene, const PanelMap& map, const PlaneDrawing& drawing) {
   std::string result;
   for (const PlaneDrawing::Shadow& shadow : drawing.shadows) {
-    result += "<path d=\"" + path_of(map, shadow.outline.corners) + "\" " + fill + " stroke=\"#0072b2\"><title>" +
+    result += "<path d=\"" + path_of(map, shadow.outline.corners) + "\" " + kShadow + "><title>" +
               text::html(scene.name_of(shadow.face)) + "</title></path>\n";
   }
   return result;
 }
 
+std::string line_of_text(double x, double y, const std::string& text, const char* attributes = "") {
+  return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" " + attributes + ">" + text::html(text) + "</text>\n";
+}
+
 std::string caption(const Scene& scene, const PlaneRecord& record, double y) {
   std::string faces = scene.name_of(record.faces.front());
   if (record.faces.size() > 1) faces += " and " + std::to_string(record.faces.size() - 1) + " more";
-  std::string text = "Plane of " + faces + ": " + std::string(to_string(decided_outcome(record))) + "; " +
-                     std::to_string(record.candidates) + " in the shaft, " + std::to_string(record.edges) +
-                     " boundary edges";
-  return "<text x=\"" + number(kMargin) + "\" y=\"" + number(y + kCaptionHeight * 0.75) + "\">" + text::html(text) +
-         "</text>\n";
+  return line_of_text(kMargin, y + kCaptionHeight * 0.75,
+                      "Plane of " + faces + ": " + std::string(to_string(decided_outcome(record))) + "; " +
+                          text::counted(record.candidates, "face") + " in the shaft; " +
+                          text::counted(record.edges, "edge") + " of the visible region");
+}
+
+// The longest of 1, 2 and 5 times a power of ten that is at most a third as long as the panel is wide.
+struct ScaleBar {
+  double pixels = 0.0;
+  std::string length;
+};
+
+std::string power_of_ten_times(int digit, int exponent) {
+  constexpr int kPlain = 4;
+  const std::string text = std::to_string(digit);
+  if (exponent >= 0 && exponent <= kPlain) return text + std::string(static_cast<std::size_t>(exponent), '0');
+  if (exponent < 0 && exponent >= -kPlain)
+    return "0." + std::string(static_cast<std::size_t>(-exponent - 1), '0') + text;
+  return text + "e" + std::to_string(exponent);
+}
+
+ScaleBar scale_bar(const PanelMap& map) {
+  const double longest = std::log10((kPanelWidth - 2 * kMargin) / 3.0) + map.log_pixel();
+  const auto exponent = static_cast<int>(std::floor(longest));
+  const double rest = longest - exponent;
+  const int digit = rest >= std::log10(5.0) ? 5 : rest >= std::log10(2.0) ? 2 : 1;
+  return {std::pow(10.0, std::log10(digit) + exponent - map.log_pixel()), power_of_ten_times(digit, exponent)};
+}
+
+std::string scale_element(const PanelMap& map, double y) {
+  const ScaleBar bar = scale_bar(map);
+  const double end = kMargin + bar.pixels;
+  const std::string path = "M" + number(kMargin) + ' ' + number(y - 4) + "v8M" + number(kMargin) + ' ' + number(y) +
+                           "H" + number(end) + "M" + number(end) + ' ' + number(y - 4) + "v8";
+  return element(path, "fill=\"none\" stroke=\"#222222\" stroke-width=\"1\"") +
+         line_of_text(end + 8, y + 4, bar.length + " (the scene's unit of length)");
 }
 
 struct Panel {
@@ -182,38 +231,70 @@ Panel draw_panel(const Scene& scene, const std::vector<PlaneDrawing>& drawings, 
   const PlaneDrawing& drawing = drawings[panel];
   const PanelMap map(drawing);
   const bool with_leaves = !leaves.empty();
-  std::string body;
-  body += element(paths_of(map, drawing.source), "fill=\"#e3e3e3\" stroke=\"none\"");
-  if (with_leaves) body += leaf_elements(map, drawings, panel, leaves);
-  if (!with_leaves) {
-    body += element(paths_of(map, drawing.clipped_source), "fill=\"#b9bec6\" stroke=\"none\"");
-    body += element(paths_of(map, drawing.visible), "fill=\"#f6d64a\" fill-rule=\"evenodd\" stroke=\"none\"");
+  std::string body = element(paths_of(map, drawing.source), kBelowHorizon);
+  if (with_leaves) {
+    body += leaf_elements(map, drawings, panel, leaves);
+  } else {
+    body += element(paths_of(map, drawing.clipped_source), kHidden);
   }
-  body += shadow_elements(scene, map, drawing, with_leaves);
-  body += element(paths_of(map, drawing.visible),
-                  "fill=\"none\" stroke=\"#d55e00\" stroke-width=\"1.8\" stroke-linejoin=\"round\"");
+  body += shadow_elements(scene, map, drawing);
+  body += element(paths_of(map, drawing.visible), with_leaves ? kVisibleOutline : kVisible);
   body += element(paths_of(map, drawing.source), "fill=\"none\" stroke=\"#222222\" stroke-width=\"0.8\"");
-  return {body, map.height()};
+  body += scale_element(map, map.height() - kMargin + kScaleHeight);
+  return {body, map.height() + kScaleHeight};
 }
 
-std::string legend_entry(double x, double y, const std::string& swatch, const std::string& text) {
-  return "<rect x=\"" + number(x) + "\" y=\"" + number(y) + "\" width=\"14\" height=\"12\" " + swatch + "/><text x=\"" +
-         number(x + 20) + "\" y=\"" + number(y + 11) + "\">" + text + "</text>\n";
-}
+// Entries from left to right.
+class Legend {
+ public:
+  explicit Legend(double y) : y_(y) {}
+
+  void add(const char* swatch, const std::string& text, double width) {
+    body_ += "<rect x=\"" + number(x_) + "\" y=\"" + number(y_) + "\" width=\"14\" height=\"12\" " + swatch + "/>" +
+             line_of_text(x_ + 20, y_ + 11, text);
+    x_ += width;
+  }
+
+  // The colours of all leaves, from V = 0 to V = 1.
+  void add_leaves() {
+    body_ += "<linearGradient id=\"v\"><stop offset=\"0\" stop-color=\"" + colour_of_visibility(0.0) +
+             "\"/><stop offset=\"1\" stop-color=\"" + colour_of_visibility(1.0) + "\"/></linearGradient>\n<rect x=\"" +
+             number(x_ + 118) + "\" y=\"" + number(y_) + "\" width=\"60\" height=\"12\" fill=\"url(#v)\"/>" +
+             line_of_text(x_, y_ + 11, "leaf, sampled V = 0") + line_of_text(x_ + 184, y_ + 11, "1");
+  }
+
+  [[nodiscard]] const std::string& body() const { return body_; }
+
+ private:
+  double x_ = kMargin;
+  double y_;
+  std::string body_;
+};
 
 std::string legend(double y, bool with_leaves) {
-  std::string result;
-  result += legend_entry(kMargin, y, "fill=\"none\" stroke=\"#d55e00\" stroke-width=\"2\"", "exact visible region");
-  result +=
-      legend_entry(kMargin + 190, y, "fill=\"#0072b2\" fill-opacity=\"0.25\" stroke=\"#0072b2\"", "projected occluder");
+  Legend first(y);
+  first.add(with_leaves ? kVisibleOutline : kVisible, "visible region (exact)", 170);
   if (with_leaves) {
-    result += legend_entry(kMargin + 370, y, "fill=\"" + colour_of_visibility(0.0) + "\"", "leaf, V = 0");
-    result += legend_entry(kMargin + 480, y, "fill=\"" + colour_of_visibility(1.0) + "\"", "leaf, V = 1");
+    first.add(kShadow, "outline of an occluder's shadow", 225);
+    first.add_leaves();
   } else {
-    result += legend_entry(kMargin + 370, y, "fill=\"#b9bec6\"", "hidden");
-    result += legend_entry(kMargin + 450, y, "fill=\"#e3e3e3\"", "below the horizon");
+    first.add(kHidden, "hidden", 80);
+    first.add(kShadow, "outline of an occluder's shadow", 225);
   }
-  return result;
+  Legend second(y + 20);
+  second.add(kBelowHorizon, "below the receiver's horizon", 0);
+  return first.body() + second.body();
+}
+
+std::string coordinates(const Vec3& v) {
+  return "(" + text::shortest(v.x) + ", " + text::shortest(v.y) + ", " + text::shortest(v.z) + ")";
+}
+
+std::string head(double height) {
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kPanelWidth) + ' ' + number(height) +
+         "\" width=\"" + number(kPanelWidth) + "\" height=\"" + number(height) +
+         "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#222222\">\n<rect width=\"100%\" height=\"100%\" "
+         "fill=\"#ffffff\"/>\n";
 }
 
 }  // namespace
@@ -221,8 +302,13 @@ std::string legend(double y, bool with_leaves) {
 std::string visibility_svg(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                            const FormFactor& result, std::span<const Leaf> leaves) {
   const std::vector<PlaneDrawing> drawings = draw_visibility(scene, receiver, source);
-  std::string body;
-  double y = kCaptionHeight;
+  const std::string name = scene.name_of(source.selection());
+  std::string body =
+      line_of_text(kMargin, 24, "The plane of '" + name + "', as seen from the receiver",
+                   "font-size=\"14\" font-weight=\"bold\"") +
+      line_of_text(kMargin, 44,
+                   "receiver " + coordinates(receiver.point) + "; form factor " + text::shortest(result.value));
+  double y = kTitleHeight;
   std::size_t panels = 0;
   std::size_t left_out = 0;
   for (std::size_t i = 0; i < drawings.size(); ++i) {
@@ -238,20 +324,12 @@ std::string visibility_svg(const Scene& scene, const Receiver& receiver, const E
     y += panel.height;
   }
   if (left_out > 0) {
-    body += "<text x=\"" + number(kMargin) + "\" y=\"" + number(y + 16) + "\">" + std::to_string(left_out) +
-            (left_out == 1 ? " plane" : " planes") + " not drawn (not facing the receiver, or too many)</text>\n";
+    body += line_of_text(kMargin, y + 16,
+                         text::counted(left_out, "plane") + " not drawn (not facing the receiver, or too many)");
     y += 24;
   }
   body += legend(y + 8, !leaves.empty());
-  const double height = y + kLegendHeight;
-  const std::string title = "Seen from the receiver: " + text::html(scene.name_of(source.selection())) +
-                            ", form factor " + text::shortest(result.value);
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kPanelWidth) + ' ' + number(height) +
-         "\" width=\"" + number(kPanelWidth) + "\" height=\"" + number(height) +
-         "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#222222\">\n<rect width=\"100%\" height=\"100%\" "
-         "fill=\"#ffffff\"/>\n<text x=\"" +
-         number(kMargin) + "\" y=\"28\" font-size=\"14\" font-weight=\"bold\">" + title + "</text>\n" + body +
-         "</svg>\n";
+  return head(y + kLegendHeight) + body + "</svg>\n";
 }
 
 }  // namespace exactff

@@ -17,6 +17,7 @@
 #include <string>
 
 #include "kernel/float_environment.h"
+#include "kernel/poll.h"
 #include "sampled/closed_form.h"
 #include "sampled/patch_visibility.h"
 #include "sampled/sampled_scene.h"
@@ -192,7 +193,14 @@ class Recursion {
     ++result_.leaves_by_depth[level];
     if (options_.record_leaves) record(s, v.value, f, depth, reason);
     if (v.candidates.size() > 0) occluders_.drop(v.candidates);
+    if (result_.leaves + result_.rays >= next_poll_) poll();
     return v.value * f;
+  }
+
+  void poll() {
+    constexpr std::uint64_t kPerPoll = 4'096;
+    next_poll_ = result_.leaves + result_.rays + kPerPoll;
+    kernel::poll();
   }
 
   void record(const SubPatch& s, double v, double f, int depth, LeafReason reason) {
@@ -212,6 +220,7 @@ class Recursion {
   Workspace& work_;
   OccluderSet& occluders_ = work_.gathered.occluders;
   AdaptiveResult& result_;
+  std::uint64_t next_poll_ = 0;  // in leaves and rays
   CandidateRange blurred_;
 };
 

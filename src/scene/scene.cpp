@@ -10,6 +10,7 @@
 #include "scene/misuse.h"
 #include "scene/places.h"
 #include "scene/scene_data.h"
+#include "text/encoding.h"
 #include "text/fnv1a.h"
 #include "text/nearest_names.h"
 #include "text/numbered_name.h"
@@ -83,6 +84,7 @@ Selection Scene::select(std::string_view name) const {
   const auto parts = text::numbered_name(name);
   const auto owner = parts ? by_name.find(parts->patch) : by_name.end();
   if (owner == by_name.end()) {
+    if (!text::is_utf8(name)) return select(text::in_utf8(name));  // as the readers of scenes do with names
     throw InputError({data().file, 0, "there is no patch named " + text::in_quotes(name, text::kShownName),
                       "names must match exactly", choice_of_names(*this, parts ? parts->patch : name)});
   }

@@ -47,6 +47,10 @@ class PageWriter {
         "compute unless something is very near, very far, very thin or almost aligned. Each family below is a scene "
         "with one number, its stiffness, that makes it more and more extreme. Up to which stiffness is each method "
         "usable?");
+    if (!report_.unfinished.empty()) {
+      text_ += paragraph("<strong>Incomplete.</strong> The run was interrupted. Not finished: " +
+                         html(text::enumerate(report_.unfinished)) + ".");
+    }
     text_ += "<p><strong>The answer.</strong></p>\n<ul class=\"answer\">\n";
     for (const std::string& sentence : headlines(report_)) text_ += "<li>" + page::prose(html(sentence)) + "</li>\n";
     text_ += "</ul>\n";

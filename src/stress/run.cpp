@@ -8,8 +8,10 @@
 //   5. Measure times: the median of several calls within a time limit.
 // The place of a scene in the report is its index, so that nothing but the times depends on the number of threads.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "exactff/adaptive.h"
 #include "kernel/ball.h"
@@ -176,12 +178,26 @@ std::vector<const Family*> selected(const std::vector<std::string>& names) {
   return list;
 }
 
+void keep_finished(std::span<const std::atomic<std::size_t>> rows, Report& report) {
+  std::vector<FamilyResult> kept;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    FamilyResult& family = report.families[i];
+    if (rows[i] == family.rows.size()) {
+      kept.push_back(std::move(family));
+    } else {
+      report.unfinished.emplace_back(family.family.name);
+    }
+  }
+  if (kept.empty()) throw Cancelled();
+  report.families = std::move(kept);
+}
+
 }  // namespace
 
 Report run(Request request, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
   if (request.threads <= 0) request.threads = work::usable_threads();
-  Report report{std::move(request), {}};
+  Report report{std::move(request), {}, {}};
   struct Place {
     const Family* family;
     std::size_t result, row;
@@ -192,11 +208,17 @@ Report run(Request request, const Hooks& hooks) {
     for (std::size_t row = 0; row < count; ++row) places.push_back({family, report.families.size(), row});
     report.families.push_back({family->info, std::vector<Row>(count)});
   }
-  work::parallel_for(places.size(), report.request.threads, "stiff scenes", hooks, [&](std::size_t i) {
-    const Place& place = places[i];
-    const Case scene_case = place.family->make(place.family->stiffnesses[place.row]);
-    Trial(scene_case, report.families[place.result].rows[place.row]).run();
-  });
+  std::vector<std::atomic<std::size_t>> finished(report.families.size());  // rows
+  try {
+    work::parallel_for(places.size(), report.request.threads, "stiff scenes", hooks, [&](std::size_t i) {
+      const Place& place = places[i];
+      const Case scene_case = place.family->make(place.family->stiffnesses[place.row]);
+      Trial(scene_case, report.families[place.result].rows[place.row]).run();
+      ++finished[place.result];
+    });
+  } catch (const Cancelled&) {
+    keep_finished(finished, report);
+  }
   return report;
 }
 

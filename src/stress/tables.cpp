@@ -10,8 +10,11 @@ using text::CsvRow;
 
 constexpr int kPrintedDigits = 30;
 
-void write_head(std::ostream& out, std::string_view what) {
+void write_head(const Report& report, std::ostream& out, std::string_view what) {
   out << "# " << text::program_version() << " stress: " << what << '\n';
+  if (!report.unfinished.empty()) {
+    out << "# incomplete: the run was interrupted; not finished: " << text::enumerate(report.unfinished) << '\n';
+  }
 }
 
 void write_settings(std::ostream& out) {
@@ -20,7 +23,7 @@ void write_settings(std::ostream& out) {
 }
 
 void write_values(const Report& report, std::ostream& out) {
-  write_head(out, "every family, stiffness and method");
+  write_head(report, out, "every family, stiffness and method");
   out << "# error: |value - truth| / truth; where the truth is 0, |value| over the unoccluded form factor\n"
          "# errors below "
       << text::shortest(kTruthIsGoodTo) << ", which is as far as the truth is known, are written 0\n";
@@ -48,7 +51,8 @@ void write_values(const Report& report, std::ostream& out) {
 }
 
 void write_summary(const Report& report, std::ostream& out) {
-  write_head(out, "the largest stiffness up to which each method's error stays below each threshold; 0: not even once");
+  write_head(report, out,
+             "the largest stiffness up to which each method's error stays below each threshold; 0: not even once");
   out << "# stiffnesses are tried in steps (see values.csv); each number is the last one tried\n";
   write_settings(out);
   out << "family,method,threshold,usable_up_to,largest_tried\n";
@@ -63,7 +67,7 @@ void write_summary(const Report& report, std::ostream& out) {
 }
 
 void write_timings(const Report& report, std::ostream& out) {
-  write_head(out, "median seconds of one call, preprocessing apart");
+  write_head(report, out, "median seconds of one call, preprocessing apart");
   out << "family,stiffness";
   for (Method method : kMethods) out << ',' << short_name_of(method) << "_seconds";
   out << '\n';

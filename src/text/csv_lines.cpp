@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "exactff/error.h"
+#include "text/encoding.h"
 #include "text/text_file.h"
 #include "text/text_lines.h"
 
@@ -98,6 +99,7 @@ bool split_csv_line(std::string_view line, std::vector<std::string>& fields) {
     if (at == line.size()) break;
   }
   fields.resize(count);
+  if (!is_utf8(line)) std::ranges::transform(fields, fields.begin(), in_utf8);
   return true;
 }
 

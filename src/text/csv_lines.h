@@ -49,7 +49,9 @@ class CsvLines {
 [[nodiscard]] bool is_csv_comment(std::string_view line);
 
 // The fields of one line, without outer blanks unless quoted; a quotation mark within quotes is written twice. Returns
-// false if a quote is not closed within its line, or text follows a closing quote. Reuses the memory of `fields`.
+// false if a quote is not closed within its line, or text follows a closing quote. Reuses the memory of `fields`. A
+// field that is not UTF-8 is converted (text/encoding.h): names match those of scenes, and of files that older versions
+// and other programs wrote in Latin-1.
 [[nodiscard]] bool split_csv_line(std::string_view line, std::vector<std::string>& fields);
 
 }  // namespace exactff::text

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "text/characters.h"
+#include "text/encoding.h"
 #include "text/phrases.h"
 
 namespace exactff::text {
@@ -82,7 +83,7 @@ std::string utf8(std::string_view text) {
 }
 
 std::string csv_field(std::string_view text) {
-  std::string field(text);
+  std::string field = in_utf8(text);
   replace_all(field, "\n", "\\x0a");
   replace_all(field, "\r", "\\x0d");
   const bool stripped = !field.empty() && (is_stripped(field.front()) || is_stripped(field.back()));  // by readers
@@ -91,10 +92,11 @@ std::string csv_field(std::string_view text) {
   return '"' + field + '"';
 }
 
-std::string csv_comment(std::string text) {
+std::string csv_comment(std::string_view text) {
+  std::string comment = in_utf8(text);
   std::ranges::replace_if(
-      text, [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return text;
+      comment, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return comment;
 }
 
 std::string github_message(std::string_view text) {

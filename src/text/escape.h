@@ -4,8 +4,8 @@
 // the language. A control character becomes a visible escape, and so does a byte that is not UTF-8: \x1b and \xe9 for a
 // byte, \u202e for a character beyond ASCII. It does not become a question mark or U+FFFD, so that different names stay
 // different and a reader sees their content. A backslash that is already in a name is not changed, so the escapes are
-// for human readers and cannot be reversed. CSV and JSON must be read back: CSV keeps every byte except line breaks,
-// JSON every character.
+// for human readers and cannot be reversed. CSV and JSON must be read back: both keep every character, CSV except line
+// breaks. CSV converts what is not UTF-8 (text/encoding.h), as the readers of scenes do with names.
 #pragma once
 
 #include <string>
@@ -24,12 +24,12 @@ namespace exactff::text {
 // text/json_document.h.
 [[nodiscard]] std::string utf8(std::string_view text);
 
-// One field of a CSV row, quoted where it must be (RFC 4180). Reads back as the same bytes, except for line breaks,
-// which become visible escapes: a row is one line.
+// One field of a CSV row, in UTF-8, quoted where it must be (RFC 4180). Reads back as the same text, except for line
+// breaks, which become visible escapes: a row is one line.
 [[nodiscard]] std::string csv_field(std::string_view text);
 
-// For a comment line of a CSV file, which a line break would end: line breaks become blanks.
-[[nodiscard]] std::string csv_comment(std::string text);
+// For a comment line of a CSV file, in UTF-8. A line break would end it: line breaks become blanks.
+[[nodiscard]] std::string csv_comment(std::string_view text);
 
 // Message and property of a workflow command of GitHub Actions. Line feeds stay, in the form that the runner expects.
 [[nodiscard]] std::string github_message(std::string_view text);

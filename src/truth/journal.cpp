@@ -74,7 +74,7 @@ namespace {
 
 // Cells of a grid were once named by column and row, "12,7".
 std::string about_old_ids(std::string_view line) {
-  const bool of_grid = line.starts_with("# receivers: ") && line.find(", grid ") != std::string_view::npos;
+  const bool of_grid = line.starts_with("# receivers: ") && line.find(", grid") != std::string_view::npos;
   return of_grid ? ". If only the hash differs, the file may be of an older version, which named the cell r7c12 of a "
                    "grid '12,7'; such a file cannot be continued or merged"
                  : "";

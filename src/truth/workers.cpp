@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "exactff/progress.h"
+
 namespace exactff::truth {
 namespace {
 
@@ -65,6 +67,8 @@ Workers::Workers(const Rows& rows, int threads, const Hooks& hooks, Take take, D
 Workers::~Workers() { stop(); }
 
 void Workers::work() {
+  const exactff::Hooks polled{{}, hooks_.cancelled};
+  const HooksOfThread within_rows(polled);
   try {
     while (!must_stop()) {
       const std::optional<Range> range = take_();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/poll.h"
 #include "scene/closed_surfaces.h"
 #include "scene/scene_data.h"
 #include "visibility/plane_frame.h"
@@ -18,6 +19,7 @@ using kernel::Ring;
 namespace {
 
 constexpr unsigned kSidePlanesBeforeEdges = 2;
+constexpr std::uint64_t kCandidatesPerPoll = 1'024;
 constexpr Sides kInside{.certain = true, .some_above_each = true, .all_above_each = true};
 
 double largest(const Approx3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
@@ -185,6 +187,7 @@ bool EdgeWalk::gather_occluders() {
     make_side_planes(source);
     for_each_candidate(view_, work_.shaft, request_.culling, [&](std::uint32_t piece, bool inside) {
       hidden = visit(piece, source, inside);
+      if (result_.record.tree_candidates % kCandidatesPerPoll == 0) kernel::poll();
       return !hidden;
     });
   }
@@ -386,6 +389,7 @@ Rational EdgeWalk::fraction() {
   const PlaneFrame frame(plane_.normal.exact, source);
   Rational doubled;
   result_.boundary.for_each_piece([&](const BoundaryPiece& piece) {
+    kernel::poll();
     const Point2 p = frame.to_plane(piece.a * piece.begin.l + piece.b * piece.begin.m);
     const Point2 q = frame.to_plane(piece.a * piece.end.l + piece.b * piece.end.m);
     doubled += p.u * q.v - q.u * p.v;

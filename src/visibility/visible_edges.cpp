@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "kernel/lanes.h"
+#include "kernel/poll.h"
 
 namespace exactff::visibility {
 
@@ -20,6 +21,9 @@ constexpr Parameter kEnd{1.0, 0.0F, Parameter::kAtEnd};
 // Pairs per edge. At about 8 ns each, they take as long as the Booleans take for an edge.
 constexpr std::uint64_t kMostUnsortedPairs = 6'000;
 
+// Between two polls: less than a millisecond by the filter, some milliseconds in exact arithmetic.
+constexpr std::uint64_t kPairsPerPoll = 8'192;
+
 constexpr std::size_t kMostToInsert = 16;
 
 // Counts four bits. std::popcount is a function call where the processor may lack the instruction.
@@ -29,11 +33,12 @@ std::uint64_t bit_count(unsigned bits) { return (0x4332322132212110U >> (4 * bit
 
 bool VisibleEdges::find(std::size_t source_count) {
   parts_.clear();
-  pairs_ = undecided_pairs_ = 0;
+  pairs_ = undecided_pairs_ = next_poll_ = 0;
   exact_.clear(outlines_.edges().size());
   // 1. Silhouettes.
   drop_inner_edges(source_count);
   // 2. The grid.
+  kernel::poll();
   grid_.build(outlines_, source_count, dropped_);
   if (grid_.unsorted_pairs(outlines_) > kMostUnsortedPairs * outlines_.edges().size()) return false;
   // 3. and 4. Edge by edge.
@@ -131,6 +136,11 @@ EXACTFF_INLINE void VisibleEdges::set_corners(Run& run) const {
   run.size = Four{a.size, b.size, c.size, d.size};
 }
 
+void VisibleEdges::poll() {
+  next_poll_ = pairs_ + kPairsPerPoll;
+  kernel::poll();
+}
+
 // Run by run.
 EXACTFF_CLONES void VisibleEdges::trace_outline(OutlineId id, std::size_t source_count) {
   const Outline& outline = outlines_.outline(id);
@@ -144,6 +154,7 @@ EXACTFF_CLONES void VisibleEdges::trace_outline(OutlineId id, std::size_t source
     if (run.wanted == 0) continue;
     set_corners(run);
     trace(run, source_count);
+    if (pairs_ >= next_poll_) poll();
   }
 }
 

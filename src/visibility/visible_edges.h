@@ -133,6 +133,7 @@ class VisibleEdges {
     Intervals intervals;
   };
   void drop_inner_edges(std::size_t source_count);
+  void poll();
   void trace_outline(OutlineId id, std::size_t source_count);
   void set_corners(Run& run) const;
   void trace(Run& run, std::size_t source_count);
@@ -176,6 +177,7 @@ class VisibleEdges {
   std::array<Cuts, kBatch> batch_;     // by some of these
   std::vector<Part> parts_;
   std::uint64_t pairs_ = 0, undecided_pairs_ = 0;
+  std::uint64_t next_poll_ = 0;  // in pairs
   ExactParameters exact_;
   // By edge of the run: the intervals removed, and the intervals with the source on the left and on the right.
   std::array<std::vector<Interval>, kRunCorners> removed_, left_, right_;

@@ -9,6 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "kernel/poll.h"
+
 namespace exactff::work {
 namespace {
 
@@ -16,13 +18,17 @@ class SharedLoop {
  public:
   SharedLoop(std::size_t count, std::string_view stage, const Hooks& hooks,
              const std::function<void(std::size_t)>& body)
-      : count_(count), stage_(stage), hooks_(hooks), body_(body) {}
+      : count_(count), stage_(stage), hooks_(hooks), body_(body) {
+    const Hooks* const callers = kernel::hooks_of_thread;
+    polled_.cancelled = hooks.cancelled || callers == nullptr ? hooks.cancelled : callers->cancelled;
+  }
 
   // The loop of one thread: takes the next index until none is left or any thread has thrown.
   void work() {
+    const HooksOfThread hooks(polled_);
     try {
       for (std::size_t i = next_++; i < count_ && !stop_; i = next_++) {
-        require_not_cancelled(hooks_);
+        kernel::poll();
         body_(i);
         report();
       }
@@ -52,6 +58,7 @@ class SharedLoop {
   const std::size_t count_;
   const std::string_view stage_;
   const Hooks& hooks_;
+  Hooks polled_;  // by the bodies: without progress, which is that of this loop
   const std::function<void(std::size_t)>& body_;
   std::atomic<std::size_t> next_{0};
   std::atomic<bool> stop_{false};
@@ -71,6 +78,7 @@ int usable_threads() {
 
 void require_not_cancelled(const Hooks& hooks) {
   if (hooks.cancelled && hooks.cancelled()) throw Cancelled();
+  kernel::poll();
 }
 
 void parallel_for(std::size_t count, int threads, std::string_view stage, const Hooks& hooks,

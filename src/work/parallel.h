@@ -12,11 +12,12 @@ namespace exactff::work {
 // the machine has.
 [[nodiscard]] int usable_threads();
 
-// Throws Cancelled if the hooks request it.
+// Throws Cancelled if the hooks request it, these or those of the thread.
 void require_not_cancelled(const Hooks& hooks);
 
 // Calls body(i) once for every i below count. Progress is reported under a lock. When all threads have ended, the first
-// exception of a body is rethrown; so is Cancelled.
+// exception of a body is rethrown; so is Cancelled. What the body calls asks hooks.cancelled, too, or else that of the
+// calling thread's hooks.
 void parallel_for(std::size_t count, int threads, std::string_view stage, const Hooks& hooks,
                   const std::function<void(std::size_t)>& body);
 

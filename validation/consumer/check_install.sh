@@ -29,16 +29,19 @@ quietly "installing" env DESTDIR="$work/stage" cmake --install "$build" --prefix
 mv "$work/stage/opt/first" "$prefix"
 [ -z "$(find "$work/stage" -type f)" ] || fail "files were installed outside the prefix: $(find "$work/stage" -type f)"
 
+examples=share/exactff/examples
 for file in bin/exactff include/exactff/exact.h include/exactff/version.h share/man/man1/exactff.1 \
   share/bash-completion/completions/exactff share/zsh/site-functions/_exactff \
-  share/fish/vendor_completions.d/exactff.fish share/doc/exactff/LICENSE share/doc/exactff/examples/cornell_box.obj; do
+  share/fish/vendor_completions.d/exactff.fish share/doc/exactff/LICENSE \
+  $examples/scenes/{cornell_box,blinds_room}.{obj,mtl} $examples/project/{CMakeLists.txt,main.cpp,room.obj}; do
   [ -s "$prefix/$file" ] || fail "$file is not installed"
 done
 programs=$(find "$prefix" -type f -perm /111 ! -name '*.so*' -printf '%P\n')
 [ "$programs" = bin/exactff ] || fail "programs other than exactff are installed: $programs"
 ! grep -rIl --fixed-strings -e "$top" -e "$build" "$prefix" || fail "these files name the folder that they were built in"
 
-quietly "running the program" "$prefix/bin/exactff" point "$here/app/room.obj" --at 0 0 0 --normal 0 0 1 --source lamp
+quietly "running the program" "$prefix/bin/exactff" point "$prefix/$examples/scenes/cornell_box.obj" \
+  --at 278 0 279.6 --normal 0 1 0 --on floor --source light
 quietly "reading the completion" bash -n "$prefix/share/bash-completion/completions/exactff"
 if command -v groff > /dev/null; then
   quietly "reading the manual page" groff -man -Tutf8 -ww -z "$prefix/share/man/man1/exactff.1"
@@ -46,9 +49,9 @@ if command -v groff > /dev/null; then
 fi
 
 export CMAKE_PREFIX_PATH=$prefix
-quietly "find_package: configuring" cmake -S "$here/app" -B "$work/app"
+quietly "find_package: configuring the installed example" cmake -S "$prefix/$examples/project" -B "$work/app"
 quietly "find_package: building" cmake --build "$work/app"
-quietly "find_package: running" "$work/app/consumer" "$here/app/room.obj"
+quietly "find_package: running" "$work/app/consumer" "$prefix/$examples/project/room.obj"
 grep "^exactff $version: " "$work/log" || fail "the headers are not those of $version"
 mkdir "$work/older"
 printf 'cmake_minimum_required(VERSION 3.25)\nproject(older LANGUAGES CXX)\nfind_package(exactff 0.0 REQUIRED)\n' \

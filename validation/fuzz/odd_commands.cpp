@@ -175,6 +175,7 @@ class CommandWriter {
     if (kind == "NX NY NZ") return coordinate(inputs_.scene.normal, place);
     if (kind.starts_with("NAME[:K]")) return patch();
     if (kind.starts_with("UxV")) return grid();
+    if (kind == "COMMAND") return random_.one_in(4) ? odd_name(random_) : one_of(random_, row.words);
     if (kind.starts_with("METHOD")) return random_.one_in(20) ? odd_name(random_) : odd_method(random_);
     if (kind == "DIR") return random_.one_in(20) ? odd_place() : "out/folder";
     if (row.completion == cli::Completion::kFiles && kind != "TEXT") return file(row);
@@ -333,8 +334,14 @@ std::vector<Words> odd_commands(const cli::ProgramTable& program, const OddInput
   const std::string name =
       random.one_in(6) ? program.commands[random.below(program.commands.size())].name : one_of(random, often);
   if (random.one_in(150))
-    return {one_of<Words>(
-        random, {{"completion", "bash"}, {"completion", "fish"}, {"manual"}, {"--help"}, {}, {name, "--help"}})};
+    return {one_of<Words>(random, {{"completion", "bash"},
+                                   {"completion", "fish"},
+                                   {"manual"},
+                                   {"--help"},
+                                   {},
+                                   {name, "--help"},
+                                   {"help"},
+                                   {"help", name}})};
   const Words command = CommandWriter(table_of(program, name), inputs, random).write();
   std::vector<Words> steps = preparation(command, inputs, random);
   steps.push_back(command);

@@ -135,7 +135,10 @@ def judge_html(data):
 
 
 def judge_csv(data):
-    lines = data.decode("utf-8", "surrogateescape").split("\n")  # names are the bytes from the scene file
+    try:
+        lines = data.decode("utf-8").split("\n")
+    except UnicodeDecodeError as error:
+        raise Wrong(f"not UTF-8 ({error.reason})") from None
     if lines.pop() != "":
         raise Wrong("the last line has no end")
     rows = csv.reader(io.StringIO("\n".join(line for line in lines if not line.startswith("#"))), strict=True)
@@ -164,11 +167,9 @@ def judge_plain(data):
         raise Wrong("--plain prints a number outside [0, 1]")
 
 
-# Names reach a terminal as they are in the files, which need not be UTF-8; they must not control it.
+# Names reach a terminal in UTF-8, whatever the files hold; they must not control it.
 def judge_words(data):
-    found = CONTROL.search(data.decode("latin-1"))
-    if found:
-        raise Wrong(f"control character {ord(found.group()):#04x}")
+    text_of(data)
 
 
 def judge_binary_ply(data):

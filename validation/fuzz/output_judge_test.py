@@ -38,7 +38,7 @@ class Judge(unittest.TestCase):
         self.write("stdout", "a caf\u00e9 and its \u00b5\n")
         self.expect("")
         self.write("stdout", b"Latin-1: caf\xe9\n")
-        self.expect("")
+        self.expect("stdout: not UTF-8")
         self.write("stdout", "\x1b[31m")
         self.expect("stdout: control character 0x1b")
 
@@ -83,6 +83,7 @@ class Judge(unittest.TestCase):
 
     def test_csv(self):
         self.expect_file("", "a.csv", '# c\na,b_error\n1,"x ""y"""\n1,nan\n')
+        self.expect_file("not UTF-8", "a.csv", b"a\ncaf\xe9\n")
         self.expect_file("a row of 3 fields", "a.csv", "a,b\n1,2,3\n")
         self.expect_file("column a has nan", "a.csv", "a,b\nnan,2\n")
         self.expect_file("no end", "a.csv", "a,b\n1,2")

@@ -18,8 +18,8 @@ declare -A allowed=(
   [sampled]="receivers scene kernel"
   [methods]="sampled exact receivers scene text kernel"
   [models]="receivers scene text kernel"
-  [work]="text"
-  [page]="work text"
+  [work]="text kernel"
+  [page]="work text kernel"
   [study]="methods sampled exact receivers scene work text kernel"
   [experiments]="study models methods exact page work text kernel"
   [flags]="study models formats receivers exact scene text"
@@ -32,7 +32,7 @@ declare -A allowed=(
 
 # The module of a public header that is not named after it.
 declare -A home=(
-  [enclosure]=kernel [geometry]=kernel [error]=text [settings]=text [version]=text [progress]=work [obj]=formats [scene_files]=formats
+  [enclosure]=kernel [geometry]=kernel [progress]=kernel [error]=text [settings]=text [version]=text [obj]=formats [scene_files]=formats
   [receiver]=receivers [record]=visibility [adaptive]=sampled [visibility_svg]=report [testing]=check [team]=truth
 )
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/program.h"
+#include "text/encoding.h"
 
 namespace exactff {
 namespace {
@@ -18,14 +19,15 @@ namespace {
 namespace fs = std::filesystem;
 using validation::text_of;
 
-// A Latin-1 letter, escape, a C1 control in UTF-8 and as a byte, a right-to-left mark, an overlong slash, HTML markup.
-const std::string kLight = "l\xE4mp\x1B[31m\xC2\x9B\x9B\xE2\x80\xAE\xC0\xAF<&>\"'%";
+// Escape, a C1 control, a right-to-left mark, HTML markup; not UTF-8: Latin-1, an overlong slash, half a surrogate
+// pair.
+const std::string kLight = "l\u00E4mp\x1B[31m\xC2\x9B\xE2\x80\xAE<&>\"'%";
 const std::string kFloor = "fl\x07oor\x7F,::error::\xED\xA0\x80";
-const std::string kShownLight = "l\\xe4mp\\x1b[31m\\u009b\\x9b\\u202e\\xc0\\xaf<&>\"'%";
+const std::string kShownLight = "l\u00E4mp\\x1b[31m\\u009b\\u202e<&>\"'%";
 const std::string kRoom =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 2\nv 1 0 2\nv 1 1 2\nv 0 1 2\nv .2 .2 1\nv .8 .2 1\nv .8 .8 1\n"
     "g " +
-    kFloor + "\nf 1 2 3 4\ng " + kLight + "\nf 8 7 6 5\ng b\xFC\nf 9 10 11\n";
+    kFloor + "\nf 1 2 3 4\ng " + kLight + "\nf 8 7 6 5\ng b\xFC\x1B\x81\xC0\xAF\nf 9 10 11\n";
 
 struct Ran {
   int exit_code = 0;
@@ -88,6 +90,13 @@ TEST_F(HostileNames, AreSeenInLists) {
   expect_harmless({"info", room_, "--patches", "faces"});
 }
 
+TEST_F(HostileNames, AreToldOnceIfTheyAreNotUtf8) {
+  const std::string error = expect_harmless({"info", room_}).error;
+  const std::size_t told = error.find("is not written in UTF-8, nor is 1 other name (it is read as Latin-1");
+  EXPECT_NE(told, std::string::npos) << error;
+  EXPECT_EQ(error.find("is not written in UTF-8", told + 1), std::string::npos) << error;
+}
+
 TEST_F(HostileNames, AreSeenInResults) {
   const Ran result = expect_harmless(point({"--explain", "--adaptive"}));
   EXPECT_NE(result.output.find("source " + kShownLight), std::string::npos) << result.output;
@@ -106,7 +115,8 @@ TEST_F(HostileNames, AreSeenInComplaints) {
 
 TEST_F(HostileNames, ArriveInJson) {
   const auto list = nlohmann::json::parse(expect_harmless({"info", room_, "--json"}).output);
-  EXPECT_EQ(list["patches"][1]["name"], "l\\xe4mp\x1B[31m\u009B\\x9b\u202E\\xc0\\xaf<&>\"'%");
+  EXPECT_EQ(list["patches"][1]["name"], kLight);
+  EXPECT_EQ(list["patches"][2]["name"], "b\u00FC\x1B\u0081\u00C0\u00AF");
   const auto result = nlohmann::json::parse(expect_harmless(point({"--json", "--explain"})).output);
   EXPECT_EQ(result["sources"][0]["source"], list["patches"][1]["name"]);
 }
@@ -116,12 +126,13 @@ TEST_F(HostileNames, ArriveInPictures) {
   expect_harmless(point({"--svg", picture.string()}));
   const std::string svg = text_of(picture);
   EXPECT_TRUE(is_harmless(svg));
-  EXPECT_NE(svg.find("l\\xe4mp\\x1b[31m\\u009b\\x9b\\u202e\\xc0\\xaf&lt;&amp;&gt;&quot;'%"), std::string::npos) << svg;
+  EXPECT_NE(svg.find("l\u00E4mp\\x1b[31m\\u009b\\u202e&lt;&amp;&gt;&quot;'%"), std::string::npos) << svg;
 }
 
 TEST_F(HostileNames, AreReadBackFromTruthFiles) {
   const std::string file = truth().string();
-  EXPECT_NE(text_of(file).find("\"r\x1B\xE4,::error::\""), std::string::npos) << "bytes stay as they are";
+  EXPECT_NE(text_of(file).find("\"r\x1B\u00E4,::error::\""), std::string::npos) << "Latin-1 is converted";
+  EXPECT_TRUE(text::is_utf8(text_of(file))) << "and so is the name of the scene's file";
   const fs::path junit = directory_.path() / "j.xml", json = directory_.path() / "j.json";
   expect_harmless({"check", file, file, "--max-abs", "0", "--junit", junit.string(), "--json", json.string()});
   EXPECT_TRUE(is_harmless(text_of(junit)));
@@ -147,9 +158,10 @@ TEST_F(HostileNames, AreSeenInReports) {
   expect_harmless({"compare", room_, "--receivers", receivers_, "--source", kLight, "--no-methods", "--eps-b", ".1",
                    "--threads", "1", "-o", folder.string()});
   std::string page = text_of(folder / "report.html");
-  EXPECT_NE(page.find("l\\xe4mp\\x1b[31m"), std::string::npos);
+  EXPECT_NE(page.find("l\u00E4mp\\x1b[31m"), std::string::npos);
   std::replace(page.begin(), page.end(), '\t', ' ');  // of gnuplot
   EXPECT_TRUE(is_harmless(page));
+  for (const auto& file : fs::directory_iterator(folder)) EXPECT_TRUE(text::is_utf8(text_of(file))) << file;
 }
 
 }  // namespace

@@ -54,6 +54,42 @@ TEST(ObjReader, EveryFormOfACornerIsRead) {
   }
 }
 
+TEST(ObjReader, NamesInLatin1AreConvertedAndToldOnce) {
+  const Scene scene = read(kSquare + "g T\xFCr\nf 1 2 3\ng W\xE4nde\nf 1 2 4\ng T\xFCr\nf 1 3 4\n");
+  ASSERT_EQ(scene.patches().size(), 2U);
+  EXPECT_EQ(scene.patches()[0].name, "T\u00FCr");
+  EXPECT_EQ(scene.patches()[1].name, "W\u00E4nde");
+  EXPECT_EQ(warnings_of(scene),
+            "s.obj:5: the name 'T\u00FCr' is not written in UTF-8, nor is 1 other name (it is read as Latin-1 "
+            "(Windows-1252)); save the file as UTF-8 if the name looks wrong\n");
+  for (const char* name : {"T\u00FCr:2", "T\xFCr:2"}) EXPECT_EQ(scene.name_of(scene.select(name)), "T\u00FCr:2");
+  EXPECT_TRUE(read(kSquare + "g T\u00FCr\nf 1 2 3\n").warnings().empty());
+}
+
+TEST(ObjReader, NamesInTwoEncodingsAreRefusedWhereTheyWouldBecomeOne) {
+  const std::string refusal =
+      "s.obj: the name 'T\u00FCr' is written in UTF-8 and in Latin-1 (they might be meant as two names); save the file "
+      "as "
+      "UTF-8";
+  EXPECT_EQ(error_of(kSquare + "g T\xFCr\nf 1 2 3\ng T\u00FCr\nf 1 2 4\n"), refusal);
+  EXPECT_EQ(error_of(kSquare + "usemtl T\u00FCr\nf 1 2 3\nusemtl T\xFCr\nf 1 2 4\n"), refusal);
+  EXPECT_EQ(error_of(kSquare + "usemtl T\xFCr\ng T\u00FCr\nf 1 2 3\n"), "no error") << "a material and a group";
+}
+
+TEST(ObjReader, MaterialsMatchWhateverTheEncodingOfEitherFile) {
+  const TemporaryDirectory directory;
+  for (const std::string mtl : {"l\xFC.mtl", "u.mtl"}) {
+    const std::string name = mtl == "u.mtl" ? "L\u00E4mp" : "L\xE4mp";
+    (void)directory.write(mtl, "newmtl " + name + "\nKe 3 2 1\n");
+    for (const std::string used : {"L\u00E4mp", "L\xE4mp"}) {
+      const Scene scene =
+          read_obj(directory.write("s.obj", "mtllib " + mtl + "\n" + kSquare + "usemtl " + used + "\nf 1 2 3\n"));
+      EXPECT_EQ(scene.emitters().size(), 1U) << mtl << ' ' << used;
+      EXPECT_EQ(scene.warnings().size(), (mtl == "u.mtl" ? 0U : 1U) + (used == "L\xE4mp" ? 1U : 0U));
+    }
+  }
+}
+
 TEST(ObjReader, NegativeIndicesCountFromTheEndSoFar) {
   const Scene scene = read(kSquare + "f -4 -3 -2\nv 5 5 5\nf -4/1 -3/1 -1/1\n");
   EXPECT_EQ(ring(scene, 0), (Ring{0, 1, 2}));

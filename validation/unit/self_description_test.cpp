@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "exactff/models.h"
+#include "exactff/stress.h"
 #include "support/program.h"
 
 namespace exactff {
@@ -114,6 +116,32 @@ TEST(Completion, BashOffersNothingForNumbers) {
   EXPECT_EQ(offered_by_bash({"exactff", "point", "room.obj", "--digits", ""}), Offers{});
 }
 
+TEST(Completion, BashOffersNamesThatTheProgramKnows) {
+  EXPECT_EQ(offered_by_bash({"exactff", "help", "s"}), Offers{"stress"});
+  EXPECT_EQ(offered_by_bash({"exactff", "compare", "room.obj", "--method", "hemi"}), Offers{"hemicube"});
+  EXPECT_EQ(offered_by_bash({"exactff", "compare", "room.obj", "--experiment", "clo"}), Offers{"closure"});
+  EXPECT_EQ(offered_by_bash({"exactff", "stress", "--family", "crack-"}), Offers{"crack-ulp"});
+  EXPECT_EQ(offered_by_bash({"exactff", "stress", "--family", "shrink,crack-"}), Offers{"shrink,crack-ulp"});
+  EXPECT_EQ(offered_by_bash({"exactff", "stress", "--family", ""}).size(), stress::families().size());
+}
+
+// Bash splits the word at the @, and yet replaces all of it.
+TEST(Completion, BashOffersModelsAfterAnAtSign) {
+  EXPECT_EQ(offered_by_bash({"exactff", "info", "@", "tea"}), Offers{"@teapot"});
+  EXPECT_EQ(offered_by_bash({"exactff", "truth", "--on", "floor", "@", "ka"}), Offers{"@karkanis"});
+  EXPECT_EQ(offered_by_bash({"exactff", "point", "@"}).size(), models::all_models().size());
+}
+
+TEST(Completion, ZshAndFishOfferTheSameNames) {
+  for (const char* shell : {"zsh", "fish"}) {
+    const std::string script = output_of({"completion", shell});
+    for (const char* names : {"exact adaptive ", " hemicube ", "@teapot @forest", "karkanis-times nettle-rule",
+                              " crack crack-ulp ", "info point compare truth merge check stress help"}) {
+      EXPECT_NE(script.find(names), std::string::npos) << shell << ": " << names;
+    }
+  }
+}
+
 TEST(Completion, RefusesAShellThatItDoesNotKnow) {
   EXPECT_EQ(run_program(EXACTFF_PROGRAM, {"completion", "csh"}).exit_code, 2);
 }
@@ -137,6 +165,35 @@ TEST(Help, TellsChoicesDefaultsAndWhatIsRequired) {
     EXPECT_NE(help.find(part), std::string::npos) << part << "\nin\n" << help;
   }
   for (const char* part : {"TEXT:{", "INT in [", "REQUIRED"}) EXPECT_EQ(help.find(part), std::string::npos) << part;
+}
+
+TEST(Help, IsACommandToo) {
+  EXPECT_EQ(output_of({"help"}), output_of({"--help"}));
+  for (const std::string& command : commands()) EXPECT_EQ(output_of({"help", command}), output_of({command, "--help"}));
+}
+
+std::string refusal_of(const std::vector<std::string>& arguments) {
+  const validation::TemporaryDirectory directory;
+  const validation::RunningProgram run(EXACTFF_PROGRAM, arguments, directory.path() / "stderr");
+  EXPECT_EQ(run.wait(), 2);
+  return run.error();
+}
+
+const std::string kCommands = " (the commands are info, point, compare, truth, merge, check, stress and help); ";
+
+TEST(Commands, MisspeltGetASuggestion) {
+  EXPECT_EQ(refusal_of({"poitn", "room.obj", "--at", "0", "0", "0"}),
+            "exactff: there is no command 'poitn'" + kCommands + "did you mean point?\n");
+  EXPECT_EQ(refusal_of({"Compare"}), "exactff: there is no command 'Compare'" + kCommands + "did you mean compare?\n");
+  EXPECT_EQ(refusal_of({"help", "streess"}),
+            "exactff: there is no command 'streess'" + kCommands + "did you mean stress?\n");
+  EXPECT_EQ(refusal_of({"radiosity"}),
+            "exactff: there is no command 'radiosity'" + kCommands + "`exactff help` explains them\n");
+}
+
+TEST(Commands, ASceneIsNotACommand) {
+  EXPECT_EQ(refusal_of({"@teapot"}), "exactff: there is no command '@teapot'" + kCommands +
+                                         "give the command first, for example exactff info SCENE\n");
 }
 
 TEST(Help, TellsNoneOfTheParsersOwnNotation) {

@@ -243,6 +243,36 @@ TEST(Stress, StopsWhenItIsCancelled) {
   EXPECT_THROW((void)run({{"shrink"}, 2, {}}, {{}, [] { return true; }}), Cancelled);
 }
 
+// Cancelled after `rows` finished scenes.
+Report interrupted_run(std::size_t rows, const std::vector<std::string>& families) {
+  std::atomic<std::size_t> done = 0;
+  return run({families, 1, {}}, {[&](const Progress& p) { done = p.done; }, [&] { return done >= rows; }});
+}
+
+TEST(Stress, KeepsTheFamiliesThatAreFinishedWhenItIsCancelled) {
+  const Report whole = run({{"overlap"}, 1, {}});
+  const std::size_t rows = whole.families.front().rows.size();
+  const Report report = interrupted_run(rows, {"overlap", "shrink", "crack"});
+  ASSERT_EQ(report.families.size(), 1U);
+  EXPECT_EQ(values_of(report), values_of(whole));
+  EXPECT_EQ(report.unfinished, (std::vector<std::string>{"shrink", "crack"}));
+  EXPECT_THROW((void)interrupted_run(rows - 1, {"overlap", "shrink"}), Cancelled);
+
+  const TemporaryDirectory directory;
+  const std::filesystem::path folder = directory.path() / "out", part = part_of(folder);
+  EXPECT_EQ(part, directory.path() / "out.part");
+  write_part(report, folder);
+  EXPECT_FALSE(std::filesystem::exists(folder));
+  const std::string said = "# incomplete: the run was interrupted; not finished: shrink and crack\n";
+  for (const char* table : {"values.csv", "summary.csv", "timings.csv"}) {
+    EXPECT_NE(validation::text_of(part / table).find(said), std::string::npos) << table;
+  }
+  EXPECT_NE(validation::text_of(part / "report.html").find("Not finished: shrink and crack."), std::string::npos);
+  (void)write(whole, folder);
+  EXPECT_FALSE(std::filesystem::exists(part)) << "a complete result removes it";
+  EXPECT_EQ(validation::text_of(folder / "values.csv").find("incomplete"), std::string::npos);
+}
+
 TEST(Stress, TheReportHoldsEveryFamilyAndFetchesNothing) {
   const Report report = run({{"crack", "crack-ulp"}, 2, "exactff stress <&>"});
   page::DrawnFigures drawn;
@@ -277,6 +307,19 @@ TEST(StressCommand, WritesItsFilesAndReplacesThem) {
     EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(folder) / file)) << file;
   }
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(directory.path()), {}), 1) << "nothing beside the folder";
+}
+
+TEST(StressCommand, PrintsASummaryAndOnRequestEverything) {
+  const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
+  const std::vector<std::string> arguments = {"stress", "--family", "overlap", "--threads", "1"};
+  const auto summary = run_program(EXACTFF_PROGRAM, arguments);
+  EXPECT_LT(lines(summary.output), 15) << summary.output;
+  EXPECT_NE(summary.output.find("--all prints every error.\n"), std::string::npos) << summary.output;
+  std::vector<std::string> with_all = arguments;
+  with_all.emplace_back("--all");
+  const auto all = run_program(EXACTFF_PROGRAM, with_all);
+  EXPECT_GT(lines(all.output), lines(summary.output) + 28) << all.output;
+  EXPECT_NE(all.output.find("truth: closed form"), std::string::npos);
 }
 
 TEST(StressCommand, RefusesAnUnknownFamily) {

@@ -222,6 +222,8 @@ TEST_F(NamedMethods, OptionsWithoutEffectAreRefused) {
   (void)output({"--method", "hemicube", "--method-seeds", "3"});
   EXPECT_EQ(code_, 2);
   EXPECT_TRUE(said("--method-seeds has no effect here (none of the named methods uses random numbers)")) << error_;
+  EXPECT_EQ(run("-"), 2);
+  EXPECT_TRUE(said("-o - names no folder (a report is a page and several tables, which no pipe can carry)")) << error_;
   (void)output({"--unless-abridged"});
   EXPECT_EQ(code_, 2);
   EXPECT_TRUE(said("--unless-abridged has no effect on the command line")) << error_;

@@ -6,12 +6,14 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "support/program.h"
 #include "text/characters.h"
 #include "text/csv_lines.h"
+#include "text/encoding.h"
 #include "text/escape.h"
 #include "text/json_document.h"
 
@@ -186,10 +188,32 @@ void expect_reads_back(const std::string& text) {
   std::vector<std::string> fields;
   ASSERT_TRUE(text::split_csv_line("first," + csv_field(text) + ",last", fields)) << printable(text);
   ASSERT_EQ(fields.size(), 3U) << printable(text);
-  EXPECT_EQ(fields[1], text) << printable(text);
+  EXPECT_EQ(fields[1], in_utf8(text)) << printable(text);
+  EXPECT_TRUE(is_utf8(csv_field(text))) << printable(text);
+  EXPECT_TRUE(is_utf8(csv_comment(text))) << printable(text);
 }
 
-TEST(Csv, ReadsBackEveryByteButLineBreaks) {
+TEST(Encoding, Utf8StaysAndAnythingElseIsTakenForWindows1252) {
+  EXPECT_EQ(in_utf8("Fenster-S\u00FCd \u7A93 \U0001F600"), "Fenster-S\u00FCd \u7A93 \U0001F600");
+  EXPECT_EQ(in_utf8("T\xFCr"), "T\u00FCr");
+  EXPECT_EQ(in_utf8("5 \x80 \x96 \x9F\xFF"), "5 \u20AC \u2013 \u0178\u00FF");
+  EXPECT_EQ(in_utf8("\x81"), "\u0081") << "a byte without a character";
+  EXPECT_EQ(in_utf8("\u00E9\xE9"), "\u00C3\u00A9\u00E9") << "as a whole, not byte by byte";
+  std::set<std::string> converted;
+  for (int byte = 0x80; byte < 0x100; ++byte) {
+    const std::string text = in_utf8(std::string(1, static_cast<char>(byte)));
+    EXPECT_TRUE(is_utf8(text)) << byte;
+    EXPECT_TRUE(converted.insert(text).second) << byte;
+  }
+}
+
+TEST(Encoding, KnowsUtf8) {
+  EXPECT_TRUE(is_utf8(""));
+  EXPECT_TRUE(is_utf8("plain \u00FC \U0001F600"));
+  for (const Broken& one : broken()) EXPECT_FALSE(is_utf8("a" + one.bytes)) << one.shown;
+}
+
+TEST(Csv, ReadsBackEveryTextButLineBreaks) {
   for (const std::string& text : awkward()) {
     if (text.find_first_of("\r\n") == std::string::npos) expect_reads_back(text);
   }
@@ -199,7 +223,7 @@ TEST(Csv, ReadsBackEveryByteButLineBreaks) {
   EXPECT_EQ(csv_comment("a\r\nb"), "a  b");
 }
 
-TEST(Csv, ReadsBackRandomBytes) {
+TEST(Csv, ReadsBackRandomBytesInUtf8) {
   std::mt19937 random(1);
   for (int i = 0; i < 2000; ++i) {
     std::string text;

@@ -377,6 +377,19 @@ TEST_F(Truth, ACompleteFileIsLeftAsItIs) {
       << refusal(request(3), Existing::kResume);
 }
 
+TEST_F(Truth, AFileWithTheOldNamesOfCellsIsRefusedByName) {
+  Request old = request(3);
+  for (Receiver& receiver : old.receivers) {
+    receiver.id = std::to_string(receiver.cell->column) + ',' + std::to_string(receiver.cell->row);
+  }
+  (void)write(old, file_);
+  EXPECT_NE(refusal(request(3), Existing::kResume)
+                .find("the file may be of an older version, which named the cell r7c12 of a grid '12,7'; such a file "
+                      "cannot be continued or merged"),
+            std::string::npos)
+      << refusal(request(3), Existing::kResume);
+}
+
 TEST_F(Truth, AForeignFileIsNoJournal) {
   for (const char* text : {"dear diary\n", "# exactff 0.0.1 truth\nreceiver\n", "\n", "#"}) {
     write_text(journal_, text);

@@ -1,0 +1,207 @@
+// Long computations ask on the way whether to go on, and Ctrl-C ends the program at once.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include "exactff/adaptive.h"
+#include "exactff/exact.h"
+#include "exactff/methods.h"
+#include "exactff/models.h"
+#include "exactff/progress.h"
+#include "exactff/receiver.h"
+#include "support/program.h"
+#include "unit/sanitized.h"
+#include "work/parallel.h"
+
+namespace exactff {
+namespace {
+
+using validation::RunningProgram;
+using validation::TemporaryDirectory;
+
+// Cancels at the n-th question.
+struct Patience {
+  explicit Patience(std::size_t most = ~std::size_t{0}) : most(most) {}
+  std::size_t most;
+  std::atomic<std::size_t> asked = 0;
+  Hooks hooks{{}, [this] { return ++asked > most; }};
+};
+
+const Receiver kUp{.point = {0, 0, 0}, .normal = {0, 0, 1}, .on = {}, .id = ""};
+
+class OnePair : public testing::Test {
+ protected:
+  FormFactor value(Workspace& workspace) const {
+    FormFactor result;
+    exact_form_factor(scene_, kUp, source_, {}, result, workspace);
+    return result;
+  }
+  const Scene scene_ = models::make_scene("soup:n=3000,floor=0");
+  const ExactSource source_{scene_, scene_.select("source")};
+};
+
+TEST_F(OnePair, CanBeCancelledAtEveryQuestion) {
+  Workspace workspace;
+  const FormFactor undisturbed = value(workspace);
+  Patience endless;
+  {
+    const HooksOfThread asked(endless.hooks);
+    EXPECT_EQ(value(workspace).value, undisturbed.value);
+  }
+  ASSERT_GT(endless.asked, 20U) << "a pair of some milliseconds";
+  for (std::size_t most = 0; most < endless.asked; most += 3) {
+    const Patience short_one(most);
+    const HooksOfThread asked(short_one.hooks);
+    EXPECT_THROW((void)value(workspace), Cancelled) << most;
+  }
+  const FormFactor again = value(workspace);  // in the memory that the cancelled calls have left
+  EXPECT_EQ(again.value, undisturbed.value);
+  EXPECT_EQ(again.enclosure.midpoint(), undisturbed.enclosure.midpoint());
+  EXPECT_EQ(again.planes.front().pairs, undisturbed.planes.front().pairs);
+}
+
+TEST_F(OnePair, OfManyDigitsIsCancelledInTheContour) {
+  Patience few(0);
+  const auto digits = [&](int count) { return exact_form_factor(scene_, kUp, source_, {.digits = count}); };
+  Patience endless, more;
+  {
+    const HooksOfThread asked(endless.hooks);
+    (void)digits(10);
+  }
+  {
+    const HooksOfThread asked(more.hooks);
+    (void)digits(100);
+  }
+  EXPECT_GT(more.asked, endless.asked + 100U);
+}
+
+TEST_F(OnePair, OfEveryMethodCanBeCancelled) {
+  for (const char* text : {"exact", "adaptive:eps_b=1e-6", "hemicube:resolution=64", "nettle:splits=16,rays=256",
+                           "wallace:splits=64", "area-sampling:samples=4096"}) {
+    const methods::Choice choice = methods::parse(text);
+    const auto on_scene = choice.method->prepare(scene_);
+    const auto source = on_scene->prepare_source(scene_.select("source"));
+    const auto evaluator = on_scene->configure(choice.settings);
+    const double undisturbed = evaluator->form_factor(kUp, *source).form_factor;
+    Patience patience(1);
+    {
+      const HooksOfThread asked(patience.hooks);
+      EXPECT_THROW((void)evaluator->form_factor(kUp, *source), Cancelled) << text;
+    }
+    EXPECT_EQ(evaluator->form_factor(kUp, *source).form_factor, undisturbed) << text;
+  }
+}
+
+TEST(HooksOfThreads, NestAndEnd) {
+  const Scene scene = models::make_scene("soup:n=10");
+  const ExactSource source(scene, scene.select("source"));
+  const Patience outer(0);
+  const HooksOfThread cancelled(outer.hooks);
+  {
+    Patience inner;
+    const HooksOfThread not_cancelled(inner.hooks);
+    EXPECT_EQ(exact_form_factor(scene, kUp, source).status, Status::kCertified);
+    EXPECT_GT(inner.asked, 0U);
+  }
+  EXPECT_THROW((void)exact_form_factor(scene, kUp, source), Cancelled);
+}
+
+TEST(HooksOfThreads, HoldForTheThreadsOfALoop) {
+  const Scene scene = models::make_scene("soup:n=10");
+  const ExactSource source(scene, scene.select("source"));
+  const auto body = [&](std::size_t) { (void)exact_form_factor(scene, kUp, source); };
+  const Patience patience(5);
+  EXPECT_THROW(work::parallel_for(100, 2, "pairs", patience.hooks, body), Cancelled);
+  const HooksOfThread callers(patience.hooks);
+  EXPECT_THROW(work::parallel_for(100, 2, "pairs", {}, body), Cancelled) << "without hooks of its own";
+}
+
+TEST(Receivers, CanBeCancelledAndTellTheirProgress) {
+  const Scene scene = models::make_scene("soup:n=3000");
+  const std::vector<FaceId> floor = scene.faces_of(scene.select("floor")),
+                            occluders = scene.faces_of(scene.select("occ"));
+  const auto make = {
+      std::function([&] {
+        return grid_receivers(scene, floor, {40, 50});
+      }),
+      std::function([&] { return vertex_receivers(scene, occluders); }),
+      std::function([&] { return centre_receivers(scene, occluders); }),
+      std::function([&] { return sample_receivers(scene, floor, 2000, 1); }),
+  };
+  for (const auto& receivers : make) {
+    std::vector<Progress> told;
+    const Hooks telling{[&](const Progress& p) { told.push_back(p); }, {}};
+    std::size_t count = 0;
+    {
+      const HooksOfThread during(telling);
+      count = receivers().size();
+    }
+    ASSERT_GE(told.size(), 7U);
+    for (const Progress& p : told) {
+      EXPECT_EQ(p.stage, "receivers");
+      EXPECT_LE(p.done, p.total);
+    }
+    EXPECT_EQ(told[6].done, 7U * 256U);
+    EXPECT_LE(told.front().total, count);
+    const Patience patience(3);
+    const HooksOfThread during(patience.hooks);
+    EXPECT_THROW((void)receivers(), Cancelled);
+    EXPECT_EQ(patience.asked, 4U);
+  }
+}
+
+// --- the program ---
+
+class Interruption : public testing::Test {
+ protected:
+  // Sends the signal when the program has computed for a while. Returns what it said.
+  std::string interrupted(const std::vector<std::string>& arguments, int signal = SIGINT) const {
+    const RunningProgram run(EXACTFF_PROGRAM, arguments, directory_.path() / "stderr");
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    EXPECT_FALSE(run.has_ended()) << run.error();
+    const auto sent = std::chrono::steady_clock::now();
+    run.send(signal);
+    EXPECT_EQ(run.wait(), 128 + signal);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - sent;
+    EXPECT_LT(took.count(), kSanitized ? 10.0 : 2.0) << "half a second; the machine may be busy";
+    return run.error();
+  }
+
+  const TemporaryDirectory directory_;
+};
+
+std::vector<std::string> long_point(const std::string& scene, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> all = {"point",    scene, "--at", "0", "0",        "0",
+                                  "--normal", "0",   "0",    "1", "--source", "source"};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+TEST_F(Interruption, EndsOnePairOfAHundredThousandOccluders) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    EXPECT_EQ(interrupted(long_point("@soup:n=100000,cover=30"), signal), "exactff: interrupted\n");
+  }
+}
+
+TEST_F(Interruption, EndsThePolygonBooleansAsWell) {
+  EXPECT_EQ(interrupted(long_point("@soup:n=20000", {"--engine", "boolean"})), "exactff: interrupted\n");
+}
+
+TEST_F(Interruption, EndsTheMakingOfReceivers) {
+  const std::string file = (directory_.path() / "truth.csv").string();
+  EXPECT_EQ(interrupted({"truth", "@soup:n=10", "--on", "floor", "--grid", "2000x2000", "-o", file}),
+            "exactff: interrupted; no row was begun\n");
+  EXPECT_EQ(interrupted({"compare", "@soup:n=10", "--on", "floor", "--samples", "4000000", "-o",
+                         (directory_.path() / "out").string()}),
+            "exactff: interrupted\n");
+  EXPECT_FALSE(std::filesystem::exists(file));
+  EXPECT_FALSE(std::filesystem::exists(file + ".part"));
+}
+
+}  // namespace
+}  // namespace exactff
