@@ -259,8 +259,8 @@ class Legend {
   void add_leaves() {
     body_ += "<linearGradient id=\"v\"><stop offset=\"0\" stop-color=\"" + colour_of_visibility(0.0) +
              "\"/><stop offset=\"1\" stop-color=\"" + colour_of_visibility(1.0) + "\"/></linearGradient>\n<rect x=\"" +
-             number(x_ + 118) + "\" y=\"" + number(y_) + "\" width=\"60\" height=\"12\" fill=\"url(#v)\"/>" +
-             line_of_text(x_, y_ + 11, "leaf, sampled V = 0") + line_of_text(x_ + 184, y_ + 11, "1");
+             number(x_ + 136) + "\" y=\"" + number(y_) + "\" width=\"60\" height=\"12\" fill=\"url(#v)\"/>" +
+             line_of_text(x_, y_ + 11, "leaf, sampled V = 0") + line_of_text(x_ + 202, y_ + 11, "1");
   }
 
   [[nodiscard]] const std::string& body() const { return body_; }

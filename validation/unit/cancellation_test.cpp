@@ -26,7 +26,7 @@ using validation::TemporaryDirectory;
 
 // Cancels at the n-th question.
 struct Patience {
-  explicit Patience(std::size_t most = ~std::size_t{0}) : most(most) {}
+  explicit Patience(std::size_t questions = ~std::size_t{0}) : most(questions) {}
   std::size_t most;
   std::atomic<std::size_t> asked = 0;
   Hooks hooks{{}, [this] { return ++asked > most; }};
@@ -81,7 +81,7 @@ TEST_F(OnePair, OfManyDigitsIsCancelledInTheContour) {
 }
 
 TEST_F(OnePair, OfEveryMethodCanBeCancelled) {
-  for (const char* text : {"exact", "adaptive:eps_b=1e-6", "hemicube:resolution=64", "nettle:splits=16,rays=256",
+  for (const char* text : {"exact", "adaptive:eps_B=1e-6", "hemicube:resolution=64", "nettle:splits=16,rays=256",
                            "wallace:splits=64", "area-sampling:samples=4096"}) {
     const methods::Choice choice = methods::parse(text);
     const auto on_scene = choice.method->prepare(scene_);
