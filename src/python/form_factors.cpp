@@ -1,0 +1,204 @@
+// Exact form factors: of arrays of receivers, and of one pair with everything that is known about it.
+#include "exactff/batch.h"
+#include "exactff/visibility_svg.h"
+#include "python/bindings.h"
+#include "python/interrupt.h"
+
+namespace exactff::python {
+namespace {
+
+void bind_enclosure(py::module_& module) {
+  py::class_<Enclosure>(module, "Enclosure")
+      .def_static("of", &Enclosure::of, py::arg("value"))
+      .def_property_readonly("midpoint", &Enclosure::midpoint)
+      .def_property_readonly("radius", &Enclosure::radius)
+      .def_property_readonly("lower", &Enclosure::lower)
+      .def_property_readonly("upper", &Enclosure::upper)
+      .def_property_readonly("nearest", &Enclosure::nearest)
+      .def("decimals", &Enclosure::decimals, py::arg("digits"))
+      .def("contains", py::overload_cast<double>(&Enclosure::contains, py::const_), py::arg("value"))
+      .def(
+          "plus", [](Enclosure a, const Enclosure& b) { return a += b; }, py::arg("other"))
+      .def(
+          "minus", [](Enclosure a, const Enclosure& b) { return a -= b; }, py::arg("other"));
+}
+
+// --- arrays ---
+
+// Arrays (receivers, sources) that threads fill without the GIL.
+struct Table {
+  template <class Value>
+  static py::array_t<Value> make(std::size_t rows, std::size_t columns) {
+    return py::array_t<Value>({static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(columns)});
+  }
+};
+
+struct Columns {
+  double* value = nullptr;
+  double* lower = nullptr;
+  double* upper = nullptr;
+  double* fraction = nullptr;
+  std::int8_t* status = nullptr;
+  std::int32_t* bits = nullptr;
+
+  void set(std::size_t at, const FormFactor& f) const {
+    value[at] = f.value;
+    status[at] = static_cast<std::int8_t>(f.status);
+    if (fraction != nullptr) fraction[at] = f.visible_fraction.value_or(0.0);
+    if (lower == nullptr) return;
+    lower[at] = f.lower;
+    upper[at] = f.upper;
+    bits[at] = f.precision_bits;
+  }
+};
+
+std::vector<std::shared_ptr<const ExactSource>> sources_of(const SharedScene& scene,
+                                                           const std::vector<std::string>& names) {
+  std::vector<std::shared_ptr<const ExactSource>> sources;
+  for (const Selection& selection : scene.selections(names)) sources.push_back(scene.source(selection));
+  return sources;
+}
+
+// value, status, and if `full` lower, upper, bits; fraction if requested. None for what was not.
+py::tuple form_factors_of(const SharedScene& scene, const Numbers& points, const Numbers& normals, const Integers& on,
+                          const std::vector<std::string>& names, bool full, bool fraction, int precision_cap,
+                          int threads, const py::object& progress) {
+  const ArrayReceivers receivers(points, normals, on);
+  const auto sources = sources_of(scene, names);
+  std::vector<const ExactSource*> list;
+  for (const auto& source : sources) list.push_back(source.get());
+  const std::size_t rows = receivers.count(), columns = list.size();
+  Numbers value = Table::make<double>(rows, columns);
+  py::array_t<std::int8_t> status = Table::make<std::int8_t>(rows, columns);
+  Columns out{.value = value.mutable_data(), .status = status.mutable_data()};
+  py::object lower = py::none(), upper = py::none(), bits = py::none(), fractions = py::none();
+  if (full) {
+    Numbers low = Table::make<double>(rows, columns), high = Table::make<double>(rows, columns);
+    py::array_t<std::int32_t> precision = Table::make<std::int32_t>(rows, columns);
+    out.lower = low.mutable_data();
+    out.upper = high.mutable_data();
+    out.bits = precision.mutable_data();
+    lower = std::move(low);
+    upper = std::move(high);
+    bits = std::move(precision);
+  }
+  if (fraction) {
+    Numbers share = Table::make<double>(rows, columns);
+    out.fraction = share.mutable_data();
+    fractions = std::move(share);
+  }
+  Interrupt interrupt(progress);
+  interrupt.run([&] {
+    batch::exact_form_factors(
+        scene.scene(), {rows, [&](std::size_t i, Receiver& receiver) { receivers.get(i, receiver); }}, list,
+        {.visible_fraction = fraction, .precision_cap = precision_cap}, {threads, interrupt.hooks()},
+        [&](std::size_t i, std::size_t s, const FormFactor& f) { out.set(i * columns + s, f); });
+  });
+  return py::make_tuple(value, status, lower, upper, bits, fractions);
+}
+
+// --- one pair ---
+
+// One result, with what is needed to ask for more.
+class Pair {
+ public:
+  Pair(std::shared_ptr<const SharedScene> scene, Receiver receiver, std::shared_ptr<const ExactSource> source,
+       const ExactOptions& options)
+      : scene_(std::move(scene)), receiver_(std::move(receiver)), source_(std::move(source)) {
+    Interrupt interrupt;
+    interrupt.run([&] { exact_form_factor(scene_->scene(), receiver_, *source_, options, result_); });
+  }
+
+  [[nodiscard]] const FormFactor& result() const { return result_; }
+  [[nodiscard]] const Scene& scene() const { return scene_->scene(); }
+  [[nodiscard]] std::string source_name() const { return scene().name_of(source_->selection()); }
+
+  [[nodiscard]] std::string svg() const {
+    Interrupt interrupt;
+    return interrupt.run([&] {
+      const FormFactor drawn = exact_form_factor(scene(), receiver_, *source_, {.list_cutters = true});
+      return visibility_svg(scene(), receiver_, *source_, drawn, {});
+    });
+  }
+
+ private:
+  std::shared_ptr<const SharedScene> scene_;
+  Receiver receiver_;
+  std::shared_ptr<const ExactSource> source_;
+  FormFactor result_;
+};
+
+std::shared_ptr<Pair> pair_of(const std::shared_ptr<SharedScene>& scene, const std::array<double, 3>& point,
+                              const std::array<double, 3>& normal, const std::vector<std::uint32_t>& on,
+                              const std::string& source, bool fraction, bool list_cutters, int digits,
+                              int precision_cap, const std::optional<std::vector<std::uint32_t>>& only_occluders) {
+  Receiver receiver{{point[0], point[1], point[2]}, {normal[0], normal[1], normal[2]}, {}, {}};
+  for (const std::uint32_t face : on) receiver.on.push_back(static_cast<FaceId>(face));
+  std::vector<FaceId> only;
+  for (const std::uint32_t face : only_occluders.value_or(std::vector<std::uint32_t>{})) {
+    only.push_back(static_cast<FaceId>(face));
+  }
+  const ExactOptions options{.visible_fraction = fraction,
+                             .exact_fraction = fraction,
+                             .list_cutters = list_cutters,
+                             .digits = digits,
+                             .precision_cap = precision_cap,
+                             .only_occluders = only_occluders ? &only : nullptr};
+  return std::make_shared<Pair>(scene, std::move(receiver), scene->source(scene->scene().select(source)), options);
+}
+
+py::list planes_of(const Pair& pair) {
+  py::list planes;
+  for (const PlaneRecord& plane : pair.result().planes) {
+    py::list faces, notes;
+    for (const FaceId face : plane.faces) faces.append(pair.scene().name_of(face));
+    for (const StageNote& note : stages(plane)) notes.append(py::make_tuple(note.stage, note.ran, note.note));
+    planes.append(py::make_tuple(faces, std::string(to_string(decided_outcome(plane))), notes, plane.exact_fraction));
+  }
+  return planes;
+}
+
+std::vector<std::size_t> cutters_of(const Pair& pair) {
+  std::vector<std::size_t> indices;
+  for (const FaceId face : pair.result().cutters) indices.push_back(index_of(face));
+  return indices;
+}
+
+std::optional<std::string> visible_part_of(const Pair& pair) {
+  if (!pair.result().visible_part) return std::nullopt;
+  return std::string(to_string(*pair.result().visible_part));
+}
+
+void bind_pair(py::module_& module) {
+  py::class_<Pair, std::shared_ptr<Pair>>(module, "Pair")
+      .def_property_readonly("value", [](const Pair& p) { return p.result().value; })
+      .def_property_readonly("lower", [](const Pair& p) { return p.result().lower; })
+      .def_property_readonly("upper", [](const Pair& p) { return p.result().upper; })
+      .def_property_readonly("status", [](const Pair& p) { return static_cast<int>(p.result().status); })
+      .def_property_readonly("enclosure", [](const Pair& p) { return p.result().enclosure; })
+      .def_property_readonly("visible_fraction", [](const Pair& p) { return p.result().visible_fraction; })
+      .def_property_readonly("visible_part", &visible_part_of)
+      .def_property_readonly("precision_bits", [](const Pair& p) { return p.result().precision_bits; })
+      .def_property_readonly("behind", [](const Pair& p) { return behind_every_face(p.result()); })
+      .def_property_readonly("source", &Pair::source_name)
+      .def("planes", &planes_of)
+      .def("cutters", &cutters_of)
+      .def("svg", &Pair::svg);
+}
+
+}  // namespace
+
+void bind_form_factors(py::module_& module) {
+  bind_enclosure(module);
+  bind_pair(module);
+  module.def("form_factors", &form_factors_of, py::arg("scene"), py::arg("points"), py::arg("normals"), py::arg("on"),
+             py::arg("sources"), py::arg("full"), py::arg("fraction"), py::arg("precision_cap"), py::arg("threads"),
+             py::arg("progress"));
+  module.def("form_factor", &pair_of, py::arg("scene"), py::arg("point"), py::arg("normal"), py::arg("on"),
+             py::arg("source"), py::arg("fraction"), py::arg("list_cutters"), py::arg("digits"),
+             py::arg("precision_cap"), py::arg("only_occluders"));
+  module.def(
+      "status_name", [](int status) { return std::string(to_string(static_cast<Status>(status))); }, py::arg("status"));
+}
+
+}  // namespace exactff::python
