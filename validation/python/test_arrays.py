@@ -131,7 +131,7 @@ def test_a_point_behind_its_floor_warns_unless_it_is_on_it():
     below = POINTS - [0.0, 1e-9, 0.0]
     with pytest.warns(exactff.ModellingWarning, match="behind"):
         assert not values(below, NORMALS, None).any()
-    assert values(below, NORMALS, "auto").all()
+    assert np.allclose(values(below, NORMALS, "auto"), TRUE, rtol=1e-6, atol=0.0)
     with pytest.warns(exactff.ModellingWarning, match="found no face for 12 of 12"):
         values(POINTS + [0.0, 50.0, 0.0], NORMALS, "auto")
 

@@ -84,14 +84,14 @@ TRUTH = "exactff.truth(scene, floor, sys.argv[1], existing='replace', progress=t
 @pytest.mark.parametrize("call", [FORM_FACTORS.format(0), FORM_FACTORS.format(1), METHOD, TRUTH],
                          ids=["threads", "one thread", "method", "truth"])
 def test_ctrl_c_within_half_a_second(call, tmp_path):
-    child = subprocess.Popen([sys.executable, "-c", LONG.replace("WORK", call), str(tmp_path / "t.csv")],
-                             stdout=subprocess.PIPE, text=True)
-    assert child.stdout.readline() == "at work\n"
-    sent = time.monotonic()
-    child.send_signal(signal.SIGINT)
-    rest = child.stdout.read()
-    waited = time.monotonic() - sent
-    assert child.wait() == 0 and rest.splitlines()[-1] == "interrupted", rest
+    command = [sys.executable, "-c", LONG.replace("WORK", call), str(tmp_path / "t.csv")]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdout.readline() == "at work\n"
+        sent = time.monotonic()
+        child.send_signal(signal.SIGINT)
+        rest = child.stdout.read()
+        waited = time.monotonic() - sent
+    assert child.returncode == 0 and rest.splitlines()[-1] == "interrupted", rest
     # Twice the promise, because the tests share the machine; the end of the interpreter is included.
     assert waited < 1.0
 
@@ -168,5 +168,6 @@ def test_mistakes_of_a_program_raise():
 
 
 def test_jemalloc_is_not_loaded():
-    maps = open(f"/proc/{os.getpid()}/maps").read()
+    with open(f"/proc/{os.getpid()}/maps") as file:
+        maps = file.read()
     assert "_exactff" in maps and "jemalloc" not in maps

@@ -25,7 +25,7 @@ def _first(name: str, bad: NDArray[np.bool_]) -> str:
 
 
 def _array(value: Any, name: str) -> NDArray[Any]:
-    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+    if isinstance(value, np.ma.MaskedArray) and np.any(np.asarray(value.mask)):
         refuse(f"{name}: the array has masked elements", "a masked element has no value", "give an array without them")
     try:
         array = np.asarray(value)

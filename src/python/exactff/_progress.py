@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
+import importlib.util
 import sys
 import time
 from typing import Any, Callable, Iterator, Optional, Union
@@ -25,9 +27,7 @@ class _Bar:
         if self._bar is None:
             if time.monotonic() - self._start < _PATIENCE:
                 return
-            from tqdm.auto import tqdm
-
-            self._bar = tqdm(total=total, unit=self._unit)
+            self._bar = importlib.import_module("tqdm.auto").tqdm(total=total, unit=self._unit)
         self._bar.update(done - self._bar.n)
 
     def close(self) -> None:
@@ -36,8 +36,6 @@ class _Bar:
 
 
 def _has_tqdm() -> bool:
-    import importlib.util
-
     return importlib.util.find_spec("tqdm") is not None
 
 
