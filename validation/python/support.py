@@ -24,6 +24,12 @@ def program(*arguments, code=0):
     return done.stdout
 
 
+def run(*command, **more):
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, **more)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
 def open_scene(name):
     return exactff.Scene.from_model(name[1:]) if name.startswith("@") else exactff.Scene.read(name)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Sequence, Union
 
 import numpy as np
@@ -87,7 +88,7 @@ def receivers(points: ArrayLike, normals: ArrayLike) -> tuple[tuple[int, ...], F
 
 def _rows(array: NDArray[Any], shape: tuple[int, ...], row: tuple[int, ...]) -> NDArray[Any]:
     whole = np.broadcast_to(array, shape + row)
-    return whole if len(shape) == 1 else whole.reshape((int(np.prod(shape, dtype=np.int64)),) + row)
+    return whole if len(shape) == 1 else whole.reshape((math.prod(shape),) + row)
 
 
 def whole_numbers(value: Any, name: str) -> Ints:
@@ -107,8 +108,8 @@ def face_rows(value: Ints, shape: tuple[int, ...], faces: int) -> Ints:
     """Own faces of each receiver as (n, k), from an array of the receivers' shape, or with one more axis; -1: none."""
     if value.size and (int(value.max()) >= faces or int(value.min()) < -1):
         bad = (value >= faces) | (value < -1)
-        refuse(f"{_first('on', bad)} is {value[bad][0]}", f"faces are numbered from 0 to {faces - 1}; -1 stands for none",
-               "check the array")
+        refuse(f"{_first('on', bad)} is {value[bad][0]}",
+               f"faces are numbered from 0 to {faces - 1}; -1 stands for none", "check the array")
     try:
         if value.ndim <= len(shape):
             return _rows(value[..., np.newaxis], shape, (1,))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-import warnings as _warnings
-from typing import NamedTuple, NoReturn
+import sys
+import warnings
+from types import FrameType
+from typing import NamedTuple, NoReturn, Optional
 
 from . import _exactff
 
@@ -31,7 +33,8 @@ class InputError(ValueError):
 
 
 class ModellingWarning(UserWarning):
-    """The input is legal, but may not be what was meant: a point a hair behind its floor, or a value that is not certified."""
+    """The input is legal, but may not be what was meant: a point a hair behind its floor, say. Also: a value that is
+    not certified."""
 
 
 _exactff._set_input_error(InputError)
@@ -45,6 +48,10 @@ def refuse(what: str, why: str = "", suggestion: str = "") -> NoReturn:
     raise error
 
 
-def warn(message: str, level: int = 4) -> None:
-    """Warns at the line of the user's program that called a public function."""
-    _warnings.warn(message, ModellingWarning, stacklevel=level)
+def warn(message: str) -> None:
+    """Warns at the line of the user's program that called into the package."""
+    frame: Optional[FrameType] = sys._getframe(1)
+    level = 2
+    while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == __package__:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, ModellingWarning, stacklevel=level)

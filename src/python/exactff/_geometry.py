@@ -29,11 +29,18 @@ def build(vertices: Any, faces: Any, patch: Any, names: Any, materials: Optional
                "correct the index")
     patch_of_face, patch_names = _patches(patch, names, len(starts) - 1)
     rows = _materials(materials, patch_names)
-    return _exactff.Scene.build(points, corners, starts, patch_of_face, patch_of_face, patch_names, rows, skip_bad_faces)
+    return _exactff.Scene.build(points, corners, starts, patch_of_face, patch_of_face, patch_names, rows,
+                                skip_bad_faces)
 
 
 def _faces(faces: Any) -> tuple[Ints, Ints]:
     """All corners in a row, and where each face begins in it."""
+    if not isinstance(faces, np.ndarray):
+        faces = list(faces)
+        if faces and all(isinstance(one, (int, np.integer)) for one in faces):
+            faces = np.array(faces)
+        elif len({np.size(face) for face in faces}) == 1:
+            faces = whole_numbers(faces, "faces")
     if isinstance(faces, np.ndarray) and faces.ndim == 1 and faces.dtype != object:
         return _padded_faces(whole_numbers(faces, "faces"))
     if isinstance(faces, np.ndarray) and faces.ndim == 2:
@@ -41,16 +48,18 @@ def _faces(faces: Any) -> tuple[Ints, Ints]:
         lengths = np.full(len(table), table.shape[1])
         corners = table.ravel()
     else:
-        rows = [whole_numbers(face, f"faces[{f}]") for f, face in enumerate(faces)]
-        for f, row in enumerate(rows):
-            if row.ndim != 1:
-                refuse(f"faces[{f}] has the shape {row.shape}", "a face is a row of vertices", "give one row for each face")
-        lengths = np.array([len(row) for row in rows], dtype=np.int64)
-        corners = np.concatenate(rows) if rows else np.empty(0, np.int64)
+        lengths = np.array([np.size(face) for face in faces], dtype=np.int64)
+        corners = whole_numbers([corner for face in faces for corner in _row(face)], "corners of faces")
     few = np.flatnonzero(lengths < 3)
     if few.size:
         refuse(f"faces[{int(few[0])}] has {int(lengths[few[0]])} vertices", "a face has at least 3", "remove it")
     return corners, np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
+
+
+def _row(face: Any) -> Any:
+    if np.ndim(face) != 1:
+        refuse(f"the face {face!r} is no row of vertices", "a face is a row of vertex indices", "give one row for each face")
+    return face
 
 
 def _padded_faces(row: Ints) -> tuple[Ints, Ints]:
@@ -61,7 +70,7 @@ def _padded_faces(row: Ints) -> tuple[Ints, Ints]:
         count = values[at]
         if count < 3 or at + count >= len(values):
             refuse(f"faces[{at}] is {count}, as the number of vertices of face {len(starts) - 1}",
-                   "an array of one axis is [n, n vertices, n, ...]", "give an array (m, 3), or rows of different lengths")
+                   "an array of one axis is [n, n vertices, n, ...]", "give an array (m, 3), or a list of rows")
         corners += values[at + 1 : at + 1 + count]
         starts.append(len(corners))
         at += count + 1
@@ -109,7 +118,8 @@ def _materials(materials: Optional[Mapping[str, MaterialLike]],
     given = dict(materials or {})
     for name in given:
         if name not in patches:
-            refuse(f"materials: there is no patch {name!r}", "a material belongs to a patch", f"choose of {list(patches)}")
+            refuse(f"materials: there is no patch {name!r}", "a material belongs to a patch",
+                   f"choose from {list(patches)}")
     return [_material(name, given.get(name, Material())) for name in patches]
 
 
@@ -127,7 +137,8 @@ def _material(patch: str, given: MaterialLike) -> tuple[str, list[float], list[f
 def _colour(value: Any, name: str, most: float) -> list[float]:
     array: Floats = numbers(value, name)
     if array.shape not in ((), (1,), (3,)):
-        refuse(f"{name} has the shape {array.shape}", "it is one number, or three for red, green and blue", "give one or three")
+        refuse(f"{name} has the shape {array.shape}", "it is one number, or three for red, green and blue",
+               "give one or three")
     if (array < 0.0).any() or (array > most).any():
         refuse(f"{name} is {value!r}", f"it is {'from 0 to 1' if most == 1.0 else 'at least 0'}", "correct it")
     return [float(c) for c in np.broadcast_to(array, (3,))]

@@ -190,7 +190,8 @@ class _Again:
 
 
 def _explanation(f: FormFactor, pair: _exactff.Pair, ask: _Again) -> str:
-    lines = [f"source {f.source}", f"  form factor  {f.value!r}  ({f.status})", f"  enclosure    [{f.lower!r}, {f.upper!r}]"]
+    lines = [f"source {f.source}", f"  form factor  {f.value!r}  ({f.status})",
+             f"  enclosure    [{f.lower!r}, {f.upper!r}]"]
     for faces, outcome, notes, _ in pair.planes():
         more = f" and {len(faces) - 1} more faces" if len(faces) > 1 else ""
         lines += ["", f"  plane of {faces[0]}{more}: {outcome}"]

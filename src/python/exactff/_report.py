@@ -50,7 +50,8 @@ class Report(NamedTuple):
     def __str__(self) -> str:
         lines = _table([("patch", "faces", "area", "front", "emits"), *map(_row, self.patches)])
         lines += ["", f"{len(self.patches)} patches, {self.face_count} faces, {self.vertex_count} vertices",
-                  _listed("emitters", self.emitters), _listed("not exactly planar, cut into triangles", self.not_planar),
+                  _listed("emitters", self.emitters),
+                  _listed("not exactly planar, cut into triangles", self.not_planar),
                   _listed("zero area, ignored", self.ignored), _listed("unusable, left out", self.left_out),
                   f"open edges: {self.open_edges}"]
         lines += [f"check: {finding.message}" for finding in self.findings]

@@ -55,7 +55,7 @@ class Scene:
         self._scene = scene
         self.name = name
         for warning in scene.warnings():
-            warn(warning, level=5)
+            warn(warning)
 
     @classmethod
     def _made(cls, scene: _exactff.Scene, name: str) -> Scene:
@@ -283,7 +283,7 @@ class Scene:
         missing = int(np.count_nonzero(status == Status.NOT_CERTIFIED))
         if missing:
             warn(f"{missing} of {status.size} values are not certified (the precision cap was reached); "
-                 "full=True tells which, with valid bounds", level=3)
+                 "full=True tells which, with valid bounds")
         size = shape + (len(names),)
         if lower is None or upper is None or bits is None:
             return value.reshape(size)
@@ -346,7 +346,8 @@ class Scene:
             tolerance = self._automatic(on)
             if tolerance is not False:
                 return self._found(tolerance, p, n, threads)
-            return np.broadcast_to(np.array(self._scene.own_faces(on), np.int64), (len(p), len(self._scene.own_faces(on))))
+            faces = np.array(self._scene.own_faces(on), np.int64)
+            return np.broadcast_to(faces, (len(p), len(faces)))
         if isinstance(on, (list, tuple)) and any(not isinstance(one, (int, np.integer)) for one in on):
             return self._listed(on, shape)
         return _arrays.face_rows(_arrays.whole_numbers(on, "on"), shape, self._scene.face_count())

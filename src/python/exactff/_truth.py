@@ -42,11 +42,12 @@ def truth(scene: Scene, receivers: Receivers, path: Union[str, os.PathLike[str]]
     if existing not in ("refuse", "resume", "replace"):
         refuse(f"existing is {existing!r}", "", "choose 'refuse', 'resume' or 'replace'")
     wanted = {"unoccluded": unoccluded, "visible_fraction": fraction, "unit_normals": unit_normals, "uv": uv}
+    count = _arrays.thread_count(threads)
     with shown(progress, "row") as tell:
         rows, by_status, resumed, seconds = _exactff.write_truth(
             scene._scene, scene.name, receivers._list, receivers.name, scene._sources(sources), os.fspath(path),
-            existing, [column for column, is_wanted in wanted.items() if is_wanted], _arrays.thread_count(threads), tell)
+            existing, [column for column, is_wanted in wanted.items() if is_wanted], count, tell)
     certified, zero, underflow, not_certified = by_status
     if not_certified:
-        warn(f"{not_certified} of {rows} rows are not certified", level=3)
+        warn(f"{not_certified} of {rows} rows are not certified")
     return TruthSummary(rows, certified, zero, underflow, not_certified, resumed, seconds)
