@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "exactff/batch.h"
 #include "exactff/exact.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
@@ -57,6 +58,9 @@ class ArrayReceivers {
   [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(points_.shape(0)); }
   void get(std::size_t i, Receiver& receiver) const;
   [[nodiscard]] std::vector<Receiver> list() const;
+  [[nodiscard]] batch::Receivers in_batch() const {  // keeps a reference
+    return {count(), [this](std::size_t i, Receiver& receiver) { get(i, receiver); }};
+  }
 
  private:
   py::detail::unchecked_reference<double, 2> points_, normals_;

@@ -25,76 +25,82 @@ void bind_enclosure(py::module_& module) {
 
 // --- arrays ---
 
-// Arrays (receivers, sources) that threads fill without the GIL.
-struct Table {
-  template <class Value>
-  static py::array_t<Value> make(std::size_t rows, std::size_t columns) {
-    return py::array_t<Value>({static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(columns)});
-  }
-};
+template <class Value>
+using Table = py::array_t<Value>;
 
-struct Columns {
-  double* value = nullptr;
-  double* lower = nullptr;
-  double* upper = nullptr;
-  double* fraction = nullptr;
-  std::int8_t* status = nullptr;
-  std::int32_t* bits = nullptr;
-
-  void set(std::size_t at, const FormFactor& f) const {
-    value[at] = f.value;
-    status[at] = static_cast<std::int8_t>(f.status);
-    if (fraction != nullptr) fraction[at] = f.visible_fraction.value_or(0.0);
-    if (lower == nullptr) return;
-    lower[at] = f.lower;
-    upper[at] = f.upper;
-    bits[at] = f.precision_bits;
-  }
-};
-
-std::vector<std::shared_ptr<const ExactSource>> sources_of(const SharedScene& scene,
-                                                           const std::vector<std::string>& names) {
-  std::vector<std::shared_ptr<const ExactSource>> sources;
-  for (const Selection& selection : scene.selections(names)) sources.push_back(scene.source(selection));
-  return sources;
+template <class Value>
+Table<Value> table(std::size_t rows, std::size_t columns) {
+  return Table<Value>({static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(columns)});
 }
 
-// value, status, and if `full` lower, upper, bits; fraction if requested. None for what was not.
+// Results in arrays (receivers, sources), which threads fill without the GIL.
+class Tables {
+ public:
+  Tables(std::size_t rows, std::size_t columns, bool full, bool fraction)
+      : value_(table<double>(rows, columns)), status_(table<std::int8_t>(rows, columns)) {
+    if (full) {
+      lower_ = table<double>(rows, columns);
+      upper_ = table<double>(rows, columns);
+      bits_ = table<std::int32_t>(rows, columns);
+    }
+    if (fraction) fraction_ = table<double>(rows, columns);
+    columns_ = {value_.mutable_data(),
+                status_.mutable_data(),
+                full ? lower_->mutable_data() : nullptr,
+                full ? upper_->mutable_data() : nullptr,
+                full ? bits_->mutable_data() : nullptr,
+                fraction ? fraction_->mutable_data() : nullptr};
+  }
+
+  void set(std::size_t at, const FormFactor& f) const {
+    columns_.value[at] = f.value;
+    columns_.status[at] = static_cast<std::int8_t>(f.status);
+    if (columns_.fraction != nullptr) columns_.fraction[at] = f.visible_fraction.value_or(0.0);
+    if (columns_.lower == nullptr) return;
+    columns_.lower[at] = f.lower;
+    columns_.upper[at] = f.upper;
+    columns_.bits[at] = f.precision_bits;
+  }
+
+  // None for what was not requested.
+  [[nodiscard]] py::tuple tuple() const { return py::make_tuple(value_, status_, lower_, upper_, bits_, fraction_); }
+
+ private:
+  struct Columns {
+    double* value = nullptr;
+    std::int8_t* status = nullptr;
+    double* lower = nullptr;
+    double* upper = nullptr;
+    std::int32_t* bits = nullptr;
+    double* fraction = nullptr;
+  };
+
+  Table<double> value_;
+  Table<std::int8_t> status_;
+  std::optional<Table<double>> lower_, upper_, fraction_;
+  std::optional<Table<std::int32_t>> bits_;
+  Columns columns_;
+};
+
+// Value, status, lower, upper, bits, fraction.
 py::tuple form_factors_of(const SharedScene& scene, const Numbers& points, const Numbers& normals, const Integers& on,
                           const std::vector<std::string>& names, bool full, bool fraction, int precision_cap,
                           int threads, const py::object& progress) {
   const ArrayReceivers receivers(points, normals, on);
-  const auto sources = sources_of(scene, names);
+  std::vector<std::shared_ptr<const ExactSource>> sources;
   std::vector<const ExactSource*> list;
-  for (const auto& source : sources) list.push_back(source.get());
-  const std::size_t rows = receivers.count(), columns = list.size();
-  Numbers value = Table::make<double>(rows, columns);
-  py::array_t<std::int8_t> status = Table::make<std::int8_t>(rows, columns);
-  Columns out{.value = value.mutable_data(), .status = status.mutable_data()};
-  py::object lower = py::none(), upper = py::none(), bits = py::none(), fractions = py::none();
-  if (full) {
-    Numbers low = Table::make<double>(rows, columns), high = Table::make<double>(rows, columns);
-    py::array_t<std::int32_t> precision = Table::make<std::int32_t>(rows, columns);
-    out.lower = low.mutable_data();
-    out.upper = high.mutable_data();
-    out.bits = precision.mutable_data();
-    lower = std::move(low);
-    upper = std::move(high);
-    bits = std::move(precision);
+  for (const Selection& selection : scene.selections(names)) {
+    list.push_back(sources.emplace_back(scene.source(selection)).get());
   }
-  if (fraction) {
-    Numbers share = Table::make<double>(rows, columns);
-    out.fraction = share.mutable_data();
-    fractions = std::move(share);
-  }
+  const Tables out(receivers.count(), list.size(), full, fraction);
   Interrupt interrupt(progress);
   interrupt.run([&] {
     batch::exact_form_factors(
-        scene.scene(), {rows, [&](std::size_t i, Receiver& receiver) { receivers.get(i, receiver); }}, list,
-        {.visible_fraction = fraction, .precision_cap = precision_cap}, {threads, interrupt.hooks()},
-        [&](std::size_t i, std::size_t s, const FormFactor& f) { out.set(i * columns + s, f); });
+        scene.scene(), receivers.in_batch(), list, {.visible_fraction = fraction, .precision_cap = precision_cap},
+        {threads, interrupt.hooks()},
+        [&](std::size_t i, std::size_t s, const FormFactor& f) { out.set(i * list.size() + s, f); });
   });
-  return py::make_tuple(value, status, lower, upper, bits, fractions);
+  return out.tuple();
 }
 
 // --- one pair ---

@@ -27,9 +27,8 @@ Numbers estimates(const std::string& text, const SharedScene& scene, const Numbe
       sources.push_back(on_scene->prepare_source(selection));
       list.push_back(sources.back().get());
     }
-    batch::form_factors(*on_scene, choice.settings,
-                        {rows, [&](std::size_t i, Receiver& receiver) { receivers.get(i, receiver); }}, list,
-                        {threads, interrupt.hooks()}, [&](std::size_t i, std::span<const methods::Estimate> found) {
+    batch::form_factors(*on_scene, choice.settings, receivers.in_batch(), list, {threads, interrupt.hooks()},
+                        [&](std::size_t i, std::span<const methods::Estimate> found) {
                           std::ranges::transform(found, out + i * columns, &methods::Estimate::form_factor);
                         });
   });

@@ -119,9 +119,8 @@ Integers find(const SharedScene& scene, const Numbers& points, const Numbers& no
   std::vector<std::vector<FaceId>> found(receivers.count());
   Interrupt interrupt;
   interrupt.run([&] {
-    batch::find_faces(
-        scene.scene(), {receivers.count(), [&](std::size_t i, Receiver& receiver) { receivers.get(i, receiver); }},
-        tolerance, {threads, interrupt.hooks()}, [&](std::size_t i, const NearFaces& near) { found[i] = near.faces; });
+    batch::find_faces(scene.scene(), receivers.in_batch(), tolerance, {threads, interrupt.hooks()},
+                      [&](std::size_t i, const NearFaces& near) { found[i] = near.faces; });
   });
   return padded(
       found, [](const std::vector<FaceId>& faces) -> const auto& { return faces; });
