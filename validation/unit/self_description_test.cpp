@@ -188,6 +188,8 @@ TEST(Commands, MisspeltGetASuggestion) {
   EXPECT_EQ(refusal_of({"Compare"}), "exactff: there is no command 'Compare'" + kCommands + "did you mean compare?\n");
   EXPECT_EQ(refusal_of({"help", "streess"}),
             "exactff: there is no command 'streess'" + kCommands + "did you mean stress?\n");
+  EXPECT_EQ(refusal_of({"help", "-5"}),
+            "exactff: there is no command '-5'" + kCommands + "`exactff help` explains them\n");
   EXPECT_EQ(refusal_of({"radiosity"}),
             "exactff: there is no command 'radiosity'" + kCommands + "`exactff help` explains them\n");
 }
