@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "kernel/vec.h"
@@ -25,7 +26,6 @@ constexpr double kLegendHeight = 64.0;
 constexpr double kLeastAspect = 0.02;
 constexpr double kLargestAspect = 2.0;
 constexpr std::size_t kMostPanels = 12;
-constexpr std::size_t kMostLeaves = 50'000;
 
 // The picture and its legend draw the same thing in the same way.
 constexpr const char* kBelowHorizon = "fill=\"#e9e9e9\" stroke=\"none\"";
@@ -156,38 +156,11 @@ std::string colour_of_visibility(double visibility) {
   return text.data();
 }
 
-// The leaves down to the depth to which at most kMostLeaves can be drawn: the largest ones.
-class DrawnLeaves {
- public:
-  explicit DrawnLeaves(std::span<const Leaf> leaves) : leaves_(leaves) {
-    std::vector<std::size_t> of_depth;
-    for (const Leaf& leaf : leaves) {
-      const auto depth = static_cast<std::size_t>(leaf.depth);
-      if (of_depth.size() <= depth) of_depth.resize(depth + 1);
-      ++of_depth[depth];
-    }
-    for (std::size_t drawn = 0; end_ < of_depth.size() && drawn + of_depth[end_] <= kMostLeaves; ++end_) {
-      drawn += of_depth[end_];
-      left_out_ -= of_depth[end_];
-    }
-  }
-
-  [[nodiscard]] bool empty() const { return leaves_.empty(); }
-  [[nodiscard]] std::span<const Leaf> all() const { return leaves_; }
-  [[nodiscard]] bool is_drawn(const Leaf& leaf) const { return static_cast<std::size_t>(leaf.depth) < end_; }
-  [[nodiscard]] std::size_t left_out() const { return left_out_; }
-
- private:
-  std::span<const Leaf> leaves_;
-  std::size_t end_ = 0;  // of the depths that are drawn
-  std::size_t left_out_ = leaves_.size();
-};
-
 std::string leaf_elements(const PanelMap& map, const std::vector<PlaneDrawing>& drawings, std::size_t panel,
-                          const DrawnLeaves& leaves) {
+                          std::span<const Leaf> leaves) {
   std::string result;
-  for (const Leaf& leaf : leaves.all()) {
-    if (!leaves.is_drawn(leaf) || study::plane_of(leaf, drawings) != &drawings[panel]) continue;
+  for (const Leaf& leaf : leaves) {
+    if (study::plane_of(leaf, drawings) != &drawings[panel]) continue;
     const std::span<const Vec3> corners(leaf.corners.data(), static_cast<std::size_t>(leaf.corner_count));
     result += element(path_of(map, corners),
                       "fill=\"" + colour_of_visibility(leaf.visibility) + "\" stroke=\"#ffffff\" stroke-width=\"0.4\"");
@@ -255,7 +228,7 @@ struct Panel {
 };
 
 Panel draw_panel(const Scene& scene, const std::vector<PlaneDrawing>& drawings, std::size_t panel,
-                 const DrawnLeaves& leaves) {
+                 std::span<const Leaf> leaves) {
   const PlaneDrawing& drawing = drawings[panel];
   const PanelMap map(drawing);
   const bool with_leaves = !leaves.empty();
@@ -328,8 +301,8 @@ std::string head(double height) {
 }  // namespace
 
 std::string visibility_svg(const Scene& scene, const Receiver& receiver, const ExactSource& source,
-                           const FormFactor& result, std::span<const Leaf> all_leaves) {
-  const DrawnLeaves leaves(all_leaves);
+                           const FormFactor& result, const AdaptiveResult* sampled) {
+  const std::span<const Leaf> leaves = sampled == nullptr ? std::span<const Leaf>() : sampled->leaf_list;
   const std::vector<PlaneDrawing> drawings = draw_visibility(scene, receiver, source);
   const std::string name = scene.name_of(source.selection());
   std::string body =
@@ -357,9 +330,9 @@ std::string visibility_svg(const Scene& scene, const Receiver& receiver, const E
                          text::counted(left_out, "plane") + " not drawn (not facing the receiver, or too many)");
     y += 24;
   }
-  if (leaves.left_out() > 0) {
+  if (sampled != nullptr && leaves.size() < sampled->leaves) {
     body += line_of_text(kMargin, y + 16,
-                         text::counted(leaves.left_out(), "leaf", "leaves") + " not drawn (too many and too small)");
+                         text::counted(sampled->leaves - leaves.size(), "leaf", "leaves") + " not drawn (too small)");
     y += 24;
   }
   body += legend(y + 8, !leaves.empty());

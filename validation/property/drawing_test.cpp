@@ -6,11 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
-#include <vector>
 
 #include "exactff/exact.h"
-#include "exactff/models.h"
 #include "exactff/visibility_svg.h"
 #include "support/oracle_check.h"
 #include "support/random_scenes.h"
@@ -126,9 +123,13 @@ void expect_drawn_as_found(const PlainScene& plain) {
   const std::vector<PlaneDrawing> drawings = draw_visibility(scene, receiver, source);
   ASSERT_EQ(drawings.size(), found.planes.size());
   for (std::size_t p = 0; p < drawings.size(); ++p) expect_drawn_as_found(drawings[p], found.planes[p]);
-  const std::string svg = visibility_svg(scene, receiver, source, found, {});
+  const std::string svg = visibility_svg(scene, receiver, source, found);
   EXPECT_EQ(svg.find("nan"), std::string::npos);
   EXPECT_EQ(svg.find("inf"), std::string::npos);
+  AdaptiveResult sampled;
+  sampled.leaves = 3;
+  EXPECT_NE(visibility_svg(scene, receiver, source, found, &sampled).find(">3 leaves not drawn (too small)<"),
+            std::string::npos);
 }
 
 class Drawing : public testing::TestWithParam<RandomFamily> {};
@@ -170,30 +171,6 @@ TEST(HiddenByOne, IsDrawnAsTheWholeSource) {
     if (HasFailure()) return;
   }
   EXPECT_GT(lids, 20);
-}
-
-// A picture of millions of leaves would take gigabytes.
-TEST(Drawing, LeavesOutTheSmallestLeavesOfTooMany) {
-  const Scene scene = models::make_scene("mesh:n=1,floor=0");
-  const ExactSource source(scene, scene.select("source"));
-  const Receiver up{.point = {0, 0, 0}, .normal = {0, 0, 1}, .on = {}, .id = ""};
-  const FormFactor found = exact_form_factor(scene, up, source);
-  const std::vector<Vec3> corners = draw_visibility(scene, up, source).front().source.front().corners;
-  Leaf leaf;
-  std::copy_n(corners.begin(), 3, leaf.corners.begin());
-  leaf.corner_count = 3;
-  leaf.depth = 1;
-  std::vector<Leaf> leaves(50'020, leaf);
-  const auto drawn = [&] {
-    const std::string svg = visibility_svg(scene, up, source, found, leaves);
-    return std::pair(svg.size(), svg.find("not drawn (too many and too small)") != std::string::npos);
-  };
-  EXPECT_LT(drawn().first, 100'000U);
-  for (std::size_t i = 0; i < 20; ++i) leaves[i].depth = 2;
-  EXPECT_GT(drawn().first, 5'000'000U);
-  EXPECT_TRUE(drawn().second);
-  leaves.resize(50'000);
-  EXPECT_FALSE(drawn().second);
 }
 
 }  // namespace
