@@ -123,7 +123,7 @@ class Pair {
     Interrupt interrupt;
     return interrupt.run([&] {
       const FormFactor drawn = exact_form_factor(scene(), receiver_, *source_, {.list_cutters = true});
-      return visibility_svg(scene(), receiver_, *source_, drawn, {});
+      return visibility_svg(scene(), receiver_, *source_, drawn);
     });
   }
 

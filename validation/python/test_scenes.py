@@ -1,7 +1,6 @@
 """Scenes: from files, arrays and models; what they contain; errors."""
 
 import json
-import sys
 import types
 
 import numpy as np
@@ -18,7 +17,8 @@ def build(faces, **more):
 
 
 def test_read_takes_every_format_and_paths():
-    facet = [exactff.Scene.read(SCENES / "formats" / name) for name in ("facet_meshio.ply", "facet_admesh.stl", "facet.vs3")]
+    names = ("facet_meshio.ply", "facet_admesh.stl", "facet.vs3")
+    facet = [exactff.Scene.read(SCENES / "formats" / name) for name in names]
     assert [len(scene.vertices) for scene in facet] == [len(facet[0].vertices)] * 3
     assert exactff.Scene.read(CORNELL).names[0] == "floor"
     assert "tall_block:1" in exactff.Scene.read(CORNELL, patches="faces").names
@@ -119,12 +119,14 @@ def test_the_report_says_what_info_says():
 
 def test_a_lamp_that_looks_away_is_found_and_turned():
     vertices = square(1.0) + square(0.0, 3.0)
-    wrong = exactff.Scene(vertices, [[0, 1, 2, 3], [4, 5, 6, 7]], ["lamp", "floor"], materials={"lamp": {"radiosity": 1}})
+    materials = {"lamp": {"radiosity": 1}}
+    wrong = exactff.Scene(vertices, [[0, 1, 2, 3], [4, 5, 6, 7]], ["lamp", "floor"], materials=materials)
     findings = wrong.report().findings
     assert any(f.flag == "--flip lamp" and "lamp" in f.objects for f in findings), findings
     right = wrong.with_flipped("lamp")
     assert right.flipped == ("lamp",) and not right.report().findings and right.fronts[0].tolist() == [0, 0, -1]
-    assert wrong.form_factors([0, 0, 0], [0, 0, 1], on="floor") == 0 < right.form_factors([0, 0, 0], [0, 0, 1], on="floor")
+    at = ([0, 0, 0], [0, 0, 1])
+    assert wrong.form_factors(*at, on="floor") == 0 < right.form_factors(*at, on="floor")
     assert wrong.with_flipped() is wrong
 
 
@@ -163,5 +165,4 @@ def test_names_beyond_ascii():
 
 def test_a_patch_object_of_the_lamp():
     patch = lamp_above().patches[0]
-    assert (patch.name, patch.area, patch.front, patch.emits, patch.faces) == ("lamp", 1.0, (0.0, 0.0, -1.0), True, (0,))
-    assert sys.getsizeof(patch) > 0
+    assert patch[:4] == ("lamp", (0,), 1.0, (0.0, 0.0, -1.0)) and patch.emits

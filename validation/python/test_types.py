@@ -19,7 +19,8 @@ def test_the_package_is_typed(tmp_path):
                     "scene = exactff.Scene.read('room.obj')\n"
                     "values: 'np.ndarray' = scene.form_factors([[0, 0, 0]], [0, 0, 1], ['light'], on='auto')\n"
                     "word: str = scene.form_factor([0, 0, 0], [0, 0, 1]).enclosure.midpoint\n")
-    run(sys.executable, "-m", "mypy", "--strict", "--cache-dir", tmp_path / "cache", "-p", "exactff", cwd=PACKAGE.parent)
+    mypy = (sys.executable, "-m", "mypy", "--cache-dir", tmp_path / "cache")
+    run(*mypy, "--strict", "-p", "exactff", cwd=PACKAGE.parent)
     environment = {**os.environ, "MYPYPATH": str(PACKAGE.parent)}
-    run(sys.executable, "-m", "mypy", "--cache-dir", tmp_path / "cache", user, env=environment)
+    run(*mypy, user, env=environment)
     assert (PACKAGE / "py.typed").exists()

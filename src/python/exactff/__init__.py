@@ -10,15 +10,29 @@ Form factors are pure numbers; lengths are in the unit of the scene. Every coord
 double. Errors in the input raise :class:`InputError`; likely slips of modelling warn as :class:`ModellingWarning`.
 """
 
+try:
+    from . import _exactff
+except ImportError as error:
+    import pathlib
+    import sys
+
+    found = ", ".join(file.name for file in pathlib.Path(__file__).parent.glob("_exactff*.so")) or "is missing"
+    raise ImportError(
+        f"the compiled part of exactff ({found}) cannot be loaded by {sys.executable}, Python {sys.version.split()[0]}: "
+        f"{error}. Start the Python that CMake named ('Python: ON, for ...'), or build with -DPython_EXECUTABLE=PYTHON "
+        "for another one that has NumPy"
+    ) from error
+
 from . import methods
 from ._check import CheckReport, Distribution, RowError, Verdict, check
 from ._errors import InputError, ModellingWarning, Problem
-from ._exactff import version as __version__
 from ._pair import Drawing, Enclosure, FormFactor, FormFactors, Status
 from ._receivers import Receivers
 from ._report import Finding, Material, Patch, Report
 from ._scene import Scene
 from ._truth import TruthSummary, truth
+
+__version__ = _exactff.version
 
 __all__ = [
     "CheckReport", "Distribution", "Drawing", "Enclosure", "Finding", "FormFactor", "FormFactors", "InputError",

@@ -58,7 +58,8 @@ def _faces(faces: Any) -> tuple[Ints, Ints]:
 
 def _row(face: Any) -> Any:
     if np.ndim(face) != 1:
-        refuse(f"the face {face!r} is no row of vertices", "a face is a row of vertex indices", "give one row for each face")
+        refuse(f"the face {face!r} is no row of vertices", "a face is a row of vertex indices",
+               "give one row for each face")
     return face
 
 
