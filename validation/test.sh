@@ -13,7 +13,8 @@ cd "$top"
 test_optimised() {
   validation/setup.sh libboost-mpi-dev libopenmpi-dev openmpi-bin \
     chromium chromium-driver python3-selenium clang-format \
-    python3-pytest python3-mpmath python3-tqdm python3-matplotlib python3-meshio mypy python3-venv
+    python3-pytest python3-mpmath python3-tqdm python3-matplotlib python3-meshio mypy python3-venv \
+    python3-setuptools python3-wheel
   # These are for tests of a build option, of reports, of the layout, and of the package for Python.
   validation/build.sh build -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON -DEXACTFF_QUICK_BUILD=ON
   ctest --test-dir build --output-on-failure --parallel 2
