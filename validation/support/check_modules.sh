@@ -20,12 +20,13 @@ declare -A allowed=(
   [models]="receivers scene text kernel"
   [work]="text kernel"
   [page]="work text kernel"
+  [vtk]="receivers scene work text kernel"
   [study]="methods sampled exact receivers scene work text kernel"
   [experiments]="study models methods exact page work text kernel"
   [flags]="study models formats receivers exact scene text"
-  [report]="flags experiments study sampled exact page work text kernel"
+  [report]="flags experiments vtk study sampled exact page work text kernel"
   [stress]="sampled exact receivers scene page work text kernel"
-  [truth]="exact receivers scene work text kernel"
+  [truth]="vtk exact receivers scene work text kernel"
   [check]="exact page work text kernel"
   [cli]="flags work text"  # and all public headers
 )
