@@ -136,7 +136,7 @@ TEST(Completion, ZshAndFishOfferTheSameNames) {
   for (const char* shell : {"zsh", "fish"}) {
     const std::string script = output_of({"completion", shell});
     for (const char* names : {"exact adaptive ", " hemicube ", "@teapot @forest", "karkanis-times nettle-rule",
-                              " crack crack-ulp ", "info point compare truth merge check stress help"}) {
+                              " crack crack-ulp ", "info point compare truth merge check stress convert help"}) {
       EXPECT_NE(script.find(names), std::string::npos) << shell << ": " << names;
     }
   }
@@ -179,7 +179,8 @@ std::string refusal_of(const std::vector<std::string>& arguments) {
   return run.error();
 }
 
-const std::string kCommands = " (the commands are info, point, compare, truth, merge, check, stress and help); ";
+const std::string kCommands =
+    " (the commands are info, point, compare, truth, merge, check, stress, convert and help); ";
 
 TEST(Commands, MisspeltGetASuggestion) {
   EXPECT_EQ(refusal_of({"poitn", "room.obj", "--at", "0", "0", "0"}),
@@ -187,6 +188,8 @@ TEST(Commands, MisspeltGetASuggestion) {
   EXPECT_EQ(refusal_of({"Compare"}), "exactff: there is no command 'Compare'" + kCommands + "did you mean compare?\n");
   EXPECT_EQ(refusal_of({"help", "streess"}),
             "exactff: there is no command 'streess'" + kCommands + "did you mean stress?\n");
+  EXPECT_EQ(refusal_of({"help", "-5"}),
+            "exactff: there is no command '-5'" + kCommands + "`exactff help` explains them\n");
   EXPECT_EQ(refusal_of({"radiosity"}),
             "exactff: there is no command 'radiosity'" + kCommands + "`exactff help` explains them\n");
 }
