@@ -45,6 +45,9 @@ struct Lattice {
   // Of the quadrilateral or the bounding rectangle, each rounded once: where u and v are (0, 0), (1, 0), (1, 1), (0,
   // 1).
   std::array<Vec3, 4> corners;
+  // The corners of a convex outline that is no quadrilateral, each rounded once; empty for any other one. It cuts
+  // cells.
+  std::vector<Vec3> convex_outline;
 };
 
 // The cell with the receiver at its centre; column and row count from 1.

@@ -44,10 +44,11 @@ struct Content {
 };
 
 // Writes two files: the receivers to `file`, and the scene to scene_file(file). A receiver that is the cell of a grid
-// becomes the quadrilateral of its cell on the lattice (Lattice::corners), any other one a vertex. Cells are in the
-// order of the receivers, except that vertices come first; the array "receiver" counts from 0. The scene's cells are
-// the pieces of its faces. Arrays of text (names, `about`) are in .vtp files only: meshio cannot read them. Each file
-// appears complete or not at all. Throws InputError if a file cannot be written, and Cancelled if the hooks cancel.
+// becomes the quadrilateral of its cell on the lattice (Lattice::corners), cut by a convex outline; any other one
+// becomes a vertex. Cells are in the order of the receivers, except that vertices come first; the array "receiver"
+// counts from 0. The scene's cells are the pieces of its faces. Arrays of text (names, `about`) are in .vtp files only:
+// meshio cannot read them. Each file appears complete or not at all. Throws InputError if a file cannot be written, and
+// Cancelled if the hooks cancel.
 void write(const Content& content, const std::filesystem::path& file, const Hooks& hooks = {});
 
 // "map_scene.vtp" for "map.vtp".

@@ -94,7 +94,7 @@ std::vector<std::string> FurtherFiles::flags() const {
 }
 
 void check_further_files(const FurtherFiles& files, const fs::path& result, bool may_replace) {
-  std::vector<Output> before = {{"-o", result}};
+  std::vector<Output> before = {{"-o", result}, {"the journal of -o", result.string() + ".part"}};
   for (const Output& output : outputs(files)) {
     require_regular(output);
     if (output.flag == "--vtk") vtk::require_extension(output.file);

@@ -95,6 +95,11 @@ class RegionGrid {
     for (const auto& [a, b] : {std::pair{a_min, b_min}, {a_max, b_min}, {a_max, b_max}, {a_min, b_max}}) {
       lattice_->corners[corner++] = plane().rounded(point_at(frame, mean, {*a, 1}, {*b, 1}));
     }
+    if (plane().is_convex()) {
+      for (const ExactVec3& p : plane().points().at) {
+        lattice_->convex_outline.push_back(plane().rounded({p.x, p.y, p.z}));
+      }
+    }
     const bool lone = lattice_->region.faces.size() == 1;
     for (int row = 1; row <= size().v; ++row) {
       // Multiplies (a, b) by 2u and 2v: the centres are then integers.

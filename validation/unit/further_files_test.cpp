@@ -63,7 +63,7 @@ TEST_F(FurtherFiles, AreNotWrittenWhereTheyCannotBe) {
   expect_refused(truth({"-o", csv, "--npy", csv}), "is given for two outputs (-o and --npy)");
   expect_refused(truth({"-o", csv, "--npy", path("./x/../t_scene.vtp"), "--vtk", path("t.vtp")}),
                  "is given for two outputs (--npy and the scene of --vtk)");
-  expect_refused(truth({"-o", csv, "--npy", csv + ".part"}), "is given for two outputs");
+  expect_refused(truth({"-o", csv, "--npy", csv + ".part"}), "is given for two outputs (the journal of -o and --npy)");
   expect_refused(truth({"-o", "-", "--npy", path("t.npy")}), "--npy is given with -o -");
   expect_refused(truth({"-o", "-", "--npy", path("t.npy"), "--vtk", path("t.vtp")}), "--npy and --vtk are given");
   expect_refused(truth({"-o", csv, "--npy", path("t.npy"), "--shard", "1/2"}), "give --npy to exactff merge");
