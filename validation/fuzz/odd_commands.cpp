@@ -229,7 +229,7 @@ class CommandWriter {
   std::string file(const OptionRow& row) {
     static const std::regex kWritten(R"(\b([Ww]rite|[Dd]raw|[Rr]ecord)\b)");
     if (random_.one_in(30)) return odd_place();
-    if (std::regex_search(row.description, kWritten)) return "out/" + extension_named(row.names.back());
+    if (std::regex_search(row.description, kWritten)) return "out/" + written_name(row.names.back());
     if (row.names.back() == "TRUTH") return "in/truth.csv";
     if (row.names.back() == "CANDIDATE") return "in/candidate.csv";
     if (row.names.back() == "SHARD") return "in/shard" + std::to_string(++shards_) + ".csv";
@@ -237,7 +237,9 @@ class CommandWriter {
     return "in/receivers.csv";
   }
 
-  static std::string extension_named(const std::string& option) {
+  std::string written_name(const std::string& option) {
+    if (option == "--npy") return "values.npy";
+    if (option == "--vtk") return one_of<std::string>(random_, {"cells.vtp", "cells.vtu", "cells.vtp", "cells.vtk"});
     if (option == "--junit") return "junit.xml";
     if (option == "--json" || option == "--write-baseline") return option.substr(2) + ".json";
     return option == "--svg" || option == "--plot" ? option.substr(2) + ".svg" : "table.csv";

@@ -6,6 +6,7 @@ FOLDER, FORM and EXIT CODE with tabs between: FOLDER holds stdout, stderr and th
 output is: json, plain, text, or cut where it may end anywhere. Every file below out is judged by its extension.
 """
 
+import base64
 import csv
 import html.parser
 import io
@@ -200,9 +201,29 @@ def judge_scene(data):
             raise Wrong("a number that is none")
 
 
+def judge_vtk(data):
+    judge_xml(data)
+    for text in re.findall(rb'format="binary">\n(.*)\n</DataArray>', data):
+        try:
+            array = base64.b64decode(text, validate=True)
+        except ValueError:
+            raise Wrong("an array that is not base64") from None
+        if len(array) < 8 or int.from_bytes(array[:8], "little") != len(array) - 8:
+            raise Wrong("an array of a wrong length")
+
+
+def judge_npy(data):
+    header = data[10:10 + int.from_bytes(data[8:10], "little")]
+    shape = re.search(rb"'shape': \((\d+), (\d+)\)", header)
+    if data[:8] != b"\x93NUMPY\1\0" or not shape or b"'<f8'" not in header:
+        raise Wrong("no NumPy array of doubles and two axes")
+    if len(data) - 10 - len(header) != 8 * int(shape.group(1)) * int(shape.group(2)):
+        raise Wrong("a NumPy array of another size")
+
+
 SCENES = {extension: judge_scene for extension in (".obj", ".mtl", ".ply", ".stl", ".off", ".vs3")}
 JUDGES = {**SCENES, ".csv": judge_csv, ".json": judge_json, ".svg": judge_xml, ".xml": judge_xml, ".html": judge_html,
-          ".part": lambda data: None}
+          ".part": lambda data: None, ".vtp": judge_vtk, ".vtu": judge_vtk, ".npy": judge_npy}
 FORMS = {"json": lambda data: judge_json(data, {"front"}), "plain": judge_plain, "text": judge_words}
 
 
