@@ -66,7 +66,7 @@ def test_the_gil_is_released():
 
 LONG = """
 import sys, time, exactff
-scene = exactff.Scene.from_model("teapot:segments=12")
+scene = exactff.Scene.from_model("teapot:segments=24")
 floor = scene.receivers("floor", grid=(400, 400))
 def tell(done, total):
     if done: print("at work", flush=True)
