@@ -4,6 +4,8 @@ set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # a project that adds this one as a f
 find_package(Threads REQUIRED)
 find_package(CGAL 5.5 REQUIRED)
 find_package(embree 3.13 REQUIRED)
+find_package(OpenEXR REQUIRED)
+find_package(PNG REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 include(ImportLibrary)
