@@ -25,6 +25,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -90,6 +91,9 @@ class View {
   double tangent_ = 1.0;
 };
 
+// The camera and size as flags of exactff render.
+[[nodiscard]] std::string flags_of(const View& view);
+
 // A camera that shows the whole scene from its most open side: of the directions along the axes and between them, the
 // one from which the largest share of a test picture shows fronts. If hardly any fronts are seen from outside, as of a
 // closed room, the camera stands in a corner of the scene's box. `up` and `fov` are those of the given camera.
@@ -103,6 +107,8 @@ struct Hit {
   FaceId face{};
   bool back = false;  // the ray meets the face's back
   Vec3 point;         // the exact point, each coordinate rounded to the nearest double
+
+  friend bool operator==(const Hit&, const Hit&) = default;
 };
 
 // The first face that the ray meets, decided exactly; of several at the same distance, the one of lowest index.
@@ -166,7 +172,7 @@ struct Picture {
   std::vector<Shows> shows;          // of several points: the greatest
   std::vector<Layer> layers;         // on request
   std::uint64_t not_certified = 0;   // points at which a channel reached the precision cap; their bounds are valid
-  double seconds = 0.0;              // sum of the times that the threads spent
+  double seconds = 0.0;              // processor time of all threads
   std::vector<std::pair<std::string, std::string>> metadata;  // name and text, for image files
 
   [[nodiscard]] std::size_t pixels() const { return shows.size(); }
@@ -191,6 +197,8 @@ struct Errors {
 };
 inline constexpr double kWrong = 0.1;
 [[nodiscard]] Errors errors_of(const Picture& judged, const Picture& truth);
+// judged - truth, channel by channel.
+[[nodiscard]] Picture difference(const Picture& judged, const Picture& truth);
 
 // ------------------------------------------------------------------------------------------------------- image files
 

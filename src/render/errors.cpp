@@ -51,13 +51,17 @@ void set_statistics(Errors& errors, std::vector<double> magnitudes, std::vector<
   errors.rms = errors.worst * std::sqrt(squares / static_cast<double>(magnitudes.size()));
 }
 
+void require_same_size(const Picture& judged, const Picture& truth) {
+  if (judged.size.width != truth.size.width || judged.size.height != truth.size.height) {
+    throw std::invalid_argument("the two pictures differ in size");
+  }
+}
+
 }  // namespace
 
 Errors errors_of(const Picture& judged, const Picture& truth) {
   const kernel::StandardArithmetic arithmetic;
-  if (judged.size.width != truth.size.width || judged.size.height != truth.size.height) {
-    throw std::invalid_argument("the two pictures differ in size");
-  }
+  require_same_size(judged, truth);
   Errors errors;
   errors.signed_errors.assign(truth.pixels(), kNaN);
   errors.is_wrong.assign(truth.pixels(), false);
@@ -73,6 +77,28 @@ Errors errors_of(const Picture& judged, const Picture& truth) {
   }
   set_statistics(errors, std::move(magnitudes), std::move(relative));
   return errors;
+}
+
+namespace {
+
+std::string method_of(const Picture& picture) {
+  const auto found = std::ranges::find(picture.metadata, "method", &std::pair<std::string, std::string>::first);
+  return found == picture.metadata.end() ? "the other picture" : found->second;
+}
+
+}  // namespace
+
+Picture difference(const Picture& judged, const Picture& truth) {
+  const kernel::StandardArithmetic arithmetic;
+  require_same_size(judged, truth);
+  Picture picture;
+  picture.size = truth.size;
+  picture.shows = truth.shows;
+  picture.metadata = judged.metadata;
+  picture.metadata.emplace_back("difference", "this method minus " + method_of(truth));
+  picture.values.reserve(truth.values.size());
+  for (std::size_t i = 0; i < truth.values.size(); ++i) picture.values.push_back(judged.values[i] - truth.values[i]);
+  return picture;
 }
 
 double colour_scale(const Errors& errors) {

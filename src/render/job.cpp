@@ -126,12 +126,16 @@ std::string words_of(const Vec3& v) {
   return text::shortest(v.x) + ' ' + text::shortest(v.y) + ' ' + text::shortest(v.z);
 }
 
-std::string words_of(const View& view) {
+}  // namespace
+
+std::string flags_of(const View& view) {
   const Camera& camera = view.camera();
   return "--eye " + words_of(camera.eye) + " --look " + words_of(camera.look) + " --up " + words_of(camera.up) +
          (camera.ortho ? " --ortho " + text::shortest(*camera.ortho) : " --fov " + text::shortest(camera.fov)) +
          " --size " + std::to_string(view.size().width) + 'x' + std::to_string(view.size().height);
 }
+
+namespace {
 
 std::string names_of(const Scene& scene, const std::vector<Selection>& selections) {
   std::string names;
@@ -152,7 +156,7 @@ Metadata Job::metadata() const {
   Metadata metadata = {{"software", text::program_version()},
                        {"scene", text::printable(request_.scene_name)},
                        {"scene hash", scene.hash()},
-                       {"camera", words_of(request_.view)},
+                       {"camera", flags_of(request_.view)},
                        {"quantity", std::string(name_of(request_.quantity)) + ", in " + unit_of(request_)},
                        {"Ke", request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity"},
                        {"sides", request_.sides == Sides::kBoth ? "both" : "front"},

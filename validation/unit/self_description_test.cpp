@@ -179,7 +179,8 @@ std::string refusal_of(const std::vector<std::string>& arguments) {
   return run.error();
 }
 
-const std::string kCommands = " (the commands are info, point, compare, truth, merge, check, stress and help); ";
+const std::string kCommands =
+    " (the commands are info, point, render, compare, truth, merge, check, stress, convert and help); ";
 
 TEST(Commands, MisspeltGetASuggestion) {
   EXPECT_EQ(refusal_of({"poitn", "room.obj", "--at", "0", "0", "0"}),
