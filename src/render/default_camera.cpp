@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 
 #include "exactff/render.h"
 #include "kernel/float_environment.h"
@@ -85,17 +86,22 @@ Camera camera_within(const Box& box, int corner, const Camera& like) {
   return camera;
 }
 
-// The share of a test picture that shows fronts.
+// The share of a test picture that shows fronts. Between views that show as much, the number of patches decides.
 double fronts_seen(const Scene& scene, const Camera& camera) {
   const View view(camera, {kTestSide, kTestSide});
   int fronts = 0;
+  std::set<PatchId> patches;
   for (int row = 0; row < kTestSide; ++row) {
     for (int column = 0; column < kTestSide; ++column) {
       const auto hit = first_hit(scene, view.ray(column + 0.5, row + 0.5));
-      if (hit && !hit->back) ++fronts;
+      if (!hit || hit->back) continue;
+      ++fronts;
+      patches.insert(scene.face(hit->face).patch);
     }
   }
-  return static_cast<double>(fronts) / (kTestSide * kTestSide);
+  constexpr double kOfPatches = 1e-3;
+  const double share = static_cast<double>(fronts) / (kTestSide * kTestSide);
+  return share * (1.0 + kOfPatches * static_cast<double>(patches.size()));
 }
 
 bool is_usable(const Camera& camera) {
@@ -120,7 +126,7 @@ struct Best {
 
 // The six axes count more than the directions between them, of which those from above come first.
 void look_from_outside(const Scene& scene, const Box& box, const Camera& like, const Size& size, Best& best) {
-  constexpr double kBetween = 0.95, kFromBelow = 0.8, kAlongUp = 0.85;
+  constexpr double kBetween = 0.95, kFromBelow = 0.8, kAlongUp = 0.3;
   const Vec3 up = unit(like.up);
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {

@@ -137,7 +137,8 @@ class Search {
     const Depth depth = depth_of(numerator, denominator);
     if (best_ && depth.low > best_->depth.high) return;
     if (!is_pierced(piece, facing)) return;
-    if (!best_ || is_better(index, depth)) best_ = Best{index, facing > 0, depth};
+    const Best found{index, facing > 0, depth};
+    if (!best_ || is_better(found)) best_ = found;
   }
 
   [[nodiscard]] const Vec3& corner(std::uint32_t index) const { return scene_.vertices()[index]; }
@@ -165,11 +166,15 @@ class Search {
     return true;
   }
 
-  [[nodiscard]] bool is_better(std::uint32_t index, const Depth& depth) const {
-    if (depth.high < best_->depth.low) return true;
-    if (depth.low > best_->depth.high) return false;
-    const int order = compare(exact_depth(index), exact_depth(best_->piece));
-    return order < 0 || (order == 0 && scene_.pieces()[index].face < scene_.pieces()[best_->piece].face);
+  // Two triangles of one face that is not planar may meet in an edge with different sides towards the ray: the front is
+  // better.
+  [[nodiscard]] bool is_better(const Best& other) const {
+    if (other.depth.high < best_->depth.low) return true;
+    if (other.depth.low > best_->depth.high) return false;
+    const int order = compare(exact_depth(other.piece), exact_depth(best_->piece));
+    if (order != 0) return order < 0;
+    const FaceId face = scene_.pieces()[other.piece].face, best_face = scene_.pieces()[best_->piece].face;
+    return face != best_face ? face < best_face : best_->back && !other.back;
   }
 
   [[nodiscard]] ExactDepth exact_depth(std::uint32_t index) const {

@@ -44,14 +44,21 @@ class BruteForce {
       const Rational facing = dot(polygon.normal, d);
       if (sgn(facing) == 0) continue;
       const Rational t = (polygon.offset - dot(polygon.normal, o)) / facing;
-      if (sgn(t) <= 0 || (best && (t > best->t || (t == best->t && polygon.face >= best->face)))) continue;
+      const bool back = sgn(facing) > 0;
+      if (sgn(t) <= 0 || (best && !is_better(t, polygon.face, back, *best))) continue;
       const Vector point{o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]};
-      if (contains(polygon, point)) best = Met{polygon.face, sgn(facing) > 0, t, point};
+      if (contains(polygon, point)) best = Met{polygon.face, back, t, point};
     }
     return best;
   }
 
  private:
+  // Nearer; then the lower index; then the front, where triangles of one face meet.
+  static bool is_better(const Rational& t, FaceId face, bool back, const Met& best) {
+    if (t != best.t) return t < best.t;
+    return face != best.face ? face < best.face : best.back && !back;
+  }
+
   // Requires a point in the plane. The boundary belongs to the face.
   static bool contains(const Polygon& polygon, const Vector& point) {
     int drop = 0;
