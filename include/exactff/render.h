@@ -113,7 +113,8 @@ struct Hit {
 
 // The first face that the ray meets, decided exactly; of several at the same distance, the one of lowest index.
 // Transparent faces are passed, and so is a face that the ray meets edge-on (in whose plane it runs). A face has its
-// boundary. Where two triangles of a face that is not planar meet, their front counts. A face on which the ray begins is not met. Safe to call from several threads.
+// boundary. Where two triangles of a face that is not planar meet, their front counts. A face on which the ray begins
+// is not met. Safe to call from several threads.
 [[nodiscard]] std::optional<Hit> first_hit(const Scene& scene, const Ray& ray);
 
 // The receiver at the point of a hit, as receivers made on a face are: with the face's Newell vector as its normal,
@@ -212,8 +213,8 @@ struct Colours {
 [[nodiscard]] double automatic_exposure(const Picture& picture);
 // In sRGB.
 [[nodiscard]] Colours developed(const Picture& picture, double exposure);
-// Errors in colours: white is none, red too bright, blue too dark; full colour from `scale` on. Regions of wrong pixels
-// are outlined.
+// Errors in colours: white is none, red too bright, blue too dark; full colour from `scale` on. Regions in which
+// most pixels are wrong are outlined.
 [[nodiscard]] Colours coloured(const Errors& errors, const Size& size, double scale);
 // The 99th percentile of the errors, or the worst one if that is 0; 1 if there is none.
 [[nodiscard]] double colour_scale(const Errors& errors);

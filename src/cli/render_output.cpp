@@ -60,7 +60,7 @@ render::Colours strip_of(const Rendered& rendered, double exposure) {
       Panel{render::developed(rendered.picture, exposure), {name_of_picture(rendered.picture), took(rendered.picture)}},
       Panel{render::developed(*rendered.judged, exposure), {rendered.judged_name, took(*rendered.judged)}},
       Panel{render::coloured(*rendered.errors, rendered.picture.size, scale),
-            {"error: red too bright, blue too dark, full at " + text::short_number(scale, 2),
+            {"error: red too bright, blue too dark (full colour at " + text::short_number(scale, 2) + ")",
              "RMS " + text::short_number(rendered.errors->rms, 2) + "; " + wrong_words(*rendered.errors)}}};
   return render::strip(panels);
 }

@@ -35,31 +35,47 @@ Colour colour_of(double error, double scale) {
   return between(kWhite, error > 0.0 ? kBright : kDark, std::min(std::abs(error) / scale, 1.0));
 }
 
-// A wrong pixel beside one that is not, in a place where most pixels are wrong: not every speck of noise is outlined.
+// Around the regions in which most pixels are wrong. Specks of noise have no outline of their own.
 class Outline {
  public:
-  Outline(const Errors& errors, const Size& size) : errors_(errors), size_(size) {}
+  Outline(const Errors& errors, const Size& size) : size_(size), wrong_before_(count(size.width + 1, size.height + 1)) {
+    for (int row = 0; row < size.height; ++row) {
+      std::uint32_t in_row = 0;
+      for (int column = 0; column < size.width; ++column) {
+        in_row += errors.is_wrong[count(row, size.width) + static_cast<std::size_t>(column)] ? 1 : 0;
+        before(column + 1, row + 1) = before(column + 1, row) + in_row;
+      }
+    }
+  }
 
   [[nodiscard]] bool passes(int column, int row) const {
-    if (!wrong(column, row)) return false;
-    int around = 0;
-    for (int y = -1; y <= 1; ++y) {
-      for (int x = -1; x <= 1; ++x) around += wrong(column + x, row + y) ? 1 : 0;
-    }
-    constexpr int kRegion = 5;  // of 9
-    if (around < kRegion) return false;
-    return !wrong(column - 1, row) || !wrong(column + 1, row) || !wrong(column, row - 1) || !wrong(column, row + 1);
+    if (!mostly_wrong(column, row)) return false;
+    return !mostly_wrong(column - 1, row) || !mostly_wrong(column + 1, row) || !mostly_wrong(column, row - 1) ||
+           !mostly_wrong(column, row + 1);
   }
 
  private:
-  [[nodiscard]] bool wrong(int column, int row) const {
-    if (column < 0 || row < 0 || column >= size_.width || row >= size_.height) return false;
-    return errors_.is_wrong[static_cast<std::size_t>(row) * static_cast<std::size_t>(size_.width) +
-                            static_cast<std::size_t>(column)];
+  static std::size_t count(int a, int b) { return static_cast<std::size_t>(a) * static_cast<std::size_t>(b); }
+  // The number of wrong pixels above and to the left of this corner.
+  std::uint32_t& before(int column, int row) {
+    return wrong_before_[count(row, size_.width + 1) + static_cast<std::size_t>(column)];
+  }
+  [[nodiscard]] std::uint32_t before(int column, int row) const {
+    return wrong_before_[count(row, size_.width + 1) + static_cast<std::size_t>(column)];
   }
 
-  const Errors& errors_;
+  // Of the square around the pixel, as far as it lies in the picture.
+  [[nodiscard]] bool mostly_wrong(int column, int row) const {
+    if (column < 0 || row < 0 || column >= size_.width || row >= size_.height) return true;  // no outline at the rim
+    constexpr int kReach = 3;
+    const int left = std::max(column - kReach, 0), right = std::min(column + kReach + 1, size_.width);
+    const int top = std::max(row - kReach, 0), bottom = std::min(row + kReach + 1, size_.height);
+    const std::uint32_t wrong = before(right, bottom) - before(left, bottom) - before(right, top) + before(left, top);
+    return 2 * wrong > static_cast<std::uint32_t>((right - left) * (bottom - top));
+  }
+
   Size size_;
+  std::vector<std::uint32_t> wrong_before_;
 };
 
 }  // namespace

@@ -157,7 +157,7 @@ TEST(Picture, DoesNotDependOnThreadsAndResumes) {
   study::Journal journal(directory.path() / "tiles", study::Journal::Existing::kRefuse);
   int asked_for = 0;
   asked.threads = 1;
-  const Hooks stop{{}, [&] { return ++asked_for > 300; }};
+  const Hooks stop{{}, [&] { return ++asked_for > 2500; }};
   EXPECT_THROW((void)render(asked, stop, &journal), Cancelled);
   const std::size_t kept = journal.size();
   EXPECT_GT(kept, 0U);
@@ -203,7 +203,7 @@ TEST(Picture, SeveralPointsAreTheMeanOfAFinerPicture) {
       const double mean = value(coarse, column, row);
       ASSERT_EQ(std::isnan(mean), !any);
       if (!any) continue;
-      EXPECT_NEAR(mean, sum / 9.0, 1e-15 * mean);
+      EXPECT_NEAR(mean, sum / 9.0, 1e-9 * mean);  // the rays differ by rounding
       const std::size_t at = 3 * static_cast<std::size_t>(10 * row + column);
       EXPECT_LE(coarse.lower[at], mean);
       EXPECT_GE(coarse.upper[at], mean);
@@ -270,9 +270,11 @@ TEST(Picture, RefusesTooMuch) {
   asked = request(8, 8);
   asked.spp = 65;
   EXPECT_THROW((void)render(asked), InputError);
-  const Scene dark = models::make_scene("karkanis:n=3").with_flipped(std::vector<Selection>());
-  Request unlit{.scene = &dark};
-  if (dark.emitters().empty()) EXPECT_THROW((void)render(unlit), InputError);
+  generate::PlainScene plain;
+  plain.add_ring(plain.patch("floor"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  const Scene dark = generate::build(plain);
+  const Request unlit{.scene = &dark};
+  EXPECT_THROW((void)render(unlit), InputError);
 }
 
 TEST(DefaultCamera, LooksIntoTheOpenSide) {
@@ -295,8 +297,9 @@ TEST(Colours, ExposureBringsTheBrightestToWhite) {
   const Colours colours = developed(picture, exposure);
   std::size_t full = 0, lit = 0;
   for (std::size_t i = 0; i < picture.pixels(); ++i) {
-    if (picture.shows[i] == Shows::kEmitter) EXPECT_EQ(colours.bytes[3 * i], 255);
-    if (picture.shows[i] == Shows::kNothing) EXPECT_EQ(colours.bytes[3 * i], 0);
+    const int red = colours.bytes[3 * i];
+    EXPECT_TRUE(picture.shows[i] != Shows::kEmitter || red == 255);
+    EXPECT_TRUE(picture.shows[i] != Shows::kNothing || red == 0);
     if (picture.shows[i] != Shows::kFace) continue;
     ++lit;
     const double largest =
