@@ -173,15 +173,42 @@ render::Request request_of(const RenderArguments& args, const Scene& scene, std:
   return request;
 }
 
-// The journal beside the image. A device has none.
+// Everything that the tiles depend on.
+std::string identity_of(const render::Request& request, const std::optional<methods::Choice>& against) {
+  std::string all = request.scene->hash() + '\n' + render::flags_of(request.view) + '\n' +
+                    std::string(render::name_of(request.quantity)) + '\n';
+  for (const Selection& source : request.sources) all += request.scene->name_of(source) + '\n';
+  all += (request.method ? request.method->text() : "exact") + '\n' + (against ? against->text() : "") + '\n';
+  for (const int number : {static_cast<int>(request.ke), static_cast<int>(request.sides), request.spp,
+                           static_cast<int>(request.bounds), static_cast<int>(request.layers)}) {
+    all += std::to_string(number) + ' ';
+  }
+  return all;
+}
+
+// The journal beside the image. A device has none. Its first record says to which image its tiles belong.
 class Kept {
  public:
-  explicit Kept(const RenderArguments& args) {
+  Kept(const RenderArguments& args, const std::string& identity) {
+    constexpr const char* kRequest = "request";
     std::error_code ignored;
     if (std::filesystem::is_other(args.image, ignored)) return;
     journal_.emplace(study::journal_of_folder(args.image), args.existing());
-    before_ = journal_->size();
+    const std::optional<std::string> found = journal_->find(kRequest);
+    if (found && *found != identity) {
+      throw InputError({.file = journal_->path().string(),
+                        .what = "holds finished tiles of another image",
+                        .why = "tiles of different images cannot be mixed",
+                        .suggestion = "use the same flags as before, name another image, or start again with --force"});
+    }
+    if (!found) journal_->add(kRequest, identity);
+    before_ = journal_->size() - 1;
   }
+  ~Kept() {
+    if (journal_ && !has_some()) journal_->remove();
+  }
+  Kept(const Kept&) = delete;
+  Kept& operator=(const Kept&) = delete;
 
   [[nodiscard]] study::Journal* journal() { return journal_ ? &*journal_ : nullptr; }
   [[nodiscard]] std::string words() const {
@@ -189,11 +216,14 @@ class Kept {
     return "finished tiles are kept in " + text::printable(journal_->path().string()) +
            "; to continue, run the same command with --resume\n";
   }
-  [[nodiscard]] bool has_some() const { return journal_ && journal_->size() > 0; }
+  [[nodiscard]] bool has_some() const { return journal_ && journal_->size() > 1; }
   void done() {
     if (!journal_) return;
     journal_->remove();
-    if (before_ > 0) std::cerr << "note: " << text::counted(before_, "finished tile") << " were reused\n";
+    if (before_ > 0) {
+      std::cerr << "note: " << text::counted(before_, "finished tile") << (before_ == 1 ? " was" : " were")
+                << " reused\n";
+    }
   }
 
  private:
@@ -222,23 +252,24 @@ int run(const RenderArguments& args) {
   const render::Request request = with_progress([&] { return request_of(args, scene, method); });
   const std::string note = flags::note_on_sources_without_emission(scene, request.sources);
   if (!note.empty()) std::cerr << "note: " << text::printable(note) << '\n';
-  Kept kept(args);
+  Kept kept(args, identity_of(request, against));
   const InterruptWatch watch("exactff: interrupted; " + kept.words());
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  const RenderFiles files{args.image, args.doubles, args.bounds, args.exposure, args.strip};
   Rendered result;
   try {
     result = rendered(request, against, hooks, kept.journal());
     bar.clear();
     leave_if_interrupted();
-    write_files({args.image, args.doubles, args.bounds, args.exposure, args.strip}, result);
+    write_files(files, result);
   } catch (const Cancelled&) {
     bar.clear();
     std::cerr << "exactff: interrupted; " << (kept.has_some() ? kept.words() : "nothing was written\n");
     return 128 + interrupting_signal();
   }
   kept.done();
-  print_rendered(request, result, args.image, args.eye.empty());
+  print_rendered(request, result, files, args.eye.empty());
   check_output(std::cout);
   return warn_of_uncertified_points(result);
 }

@@ -124,7 +124,7 @@ void write_files(const RenderFiles& files, const Rendered& rendered) {
   write_whole_file(files.image, image);
 }
 
-void print_rendered(const render::Request& request, const Rendered& rendered, const std::string& image,
+void print_rendered(const render::Request& request, const Rendered& rendered, const RenderFiles& files,
                     bool tell_camera) {
   const render::Picture& picture = rendered.picture;
   std::cout << picture.size.width << " x " << picture.size.height << " pixels: " << words_of_pixels(picture) << '\n';
@@ -137,10 +137,12 @@ void print_rendered(const render::Request& request, const Rendered& rendered, co
     std::cout << "errors: " << error_words(errors) << "; relative: median "
               << text::short_number(errors.relative_median) << ", 99th percentile "
               << text::short_number(errors.relative_p99) << "; " << wrong_words(errors) << '\n';
-  } else if (render::image_kind(image) == render::ImageKind::kPng) {
+  }
+  const bool develops = render::image_kind(files.image) == render::ImageKind::kPng && (files.strip || !rendered.errors);
+  if (develops && !files.exposure) {
     std::cout << "automatic exposure: " << text::short_number(render::automatic_exposure(picture), 6) << '\n';
   }
-  std::cout << "Image: " << text::printable(image) << '\n';
+  std::cout << "Image: " << text::printable(files.image) << '\n';
 }
 
 int warn_of_uncertified_points(const Rendered& rendered) {

@@ -11,7 +11,7 @@ namespace exactff::render {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kInfinitelyWrong = std::numeric_limits<double>::infinity();
 
 struct PixelError {
   double error = 0.0;
@@ -23,7 +23,7 @@ PixelError error_of(const double* judged, const double* truth) {
   PixelError worst;
   for (int c = 0; c < 3; ++c) {
     const double error = judged[c] - truth[c];
-    if (!std::isfinite(error)) return {kInfinite, kInfinite};
+    if (!std::isfinite(error)) return {kInfinitelyWrong, kInfinitelyWrong};
     if (std::abs(error) <= std::abs(worst.error)) continue;
     worst = {error, std::abs(error) / std::abs(truth[c])};
   }

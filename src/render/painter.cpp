@@ -10,7 +10,7 @@
 namespace exactff::render {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNothingMet = std::numeric_limits<double>::quiet_NaN();
 
 // Without any light: what is proved to be black, or nothing at all.
 exact::Channels dark(double value) {
@@ -20,7 +20,7 @@ exact::Channels dark(double value) {
 
 bool is_zero(const Rgb& colour) { return colour == Rgb{}; }
 
-Vec3 unit(const Vec3& v) {
+Vec3 unit_length(const Vec3& v) {
   const Vec3 safe = kernel::scaled(v, 1.0 / kernel::max_norm(v));
   return kernel::scaled(safe, 1.0 / std::hypot(safe.x, safe.y, safe.z));
 }
@@ -44,7 +44,7 @@ void Painter::look_along(const Ray& ray, Sample& sample) {
   const std::optional<Hit> hit = first_hit(*request.scene, ray);
   const bool black = !hit || (hit->back && request.sides == Sides::kFront);
   Shows shows = !hit ? Shows::kNothing : black ? Shows::kBack : Shows::kFace;
-  exact::Channels channels = dark(hit ? 0.0 : kNaN);
+  exact::Channels channels = dark(hit ? 0.0 : kNothingMet);
   if (!black) {
     const exact::LightFormula formula = job_.formula(hit->face, hit->back);
     if (!is_zero(formula.emitted)) shows = Shows::kEmitter;
@@ -101,7 +101,7 @@ void Painter::add_layers(const Ray& ray, const Hit* hit, bool dark, Sample& samp
   }
   const Scene& scene = *job_.request().scene;
   const Face& face = scene.face(hit->face);
-  const Vec3 front = unit(face.newell), normal = hit->back ? kernel::scaled(front, -1.0) : front;
+  const Vec3 front = unit_length(face.newell), normal = hit->back ? kernel::scaled(front, -1.0) : front;
   numbers.insert(numbers.end(), {hit->point.x, hit->point.y, hit->point.z, normal.x, normal.y, normal.z,
                                  kernel::distance(hit->point, ray.origin), static_cast<double>(index_of(hit->face) + 1),
                                  static_cast<double>(index_of(face.patch) + 1)});

@@ -109,7 +109,7 @@ class Brush {
 
   // The bounds are means as well, moved outward by one double for the rounding.
   void append_mean(std::vector<double>& numbers) {
-    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    constexpr double kUpwards = std::numeric_limits<double>::infinity();
     double shows = 0.0;
     for (const auto& part : parts_) shows = std::max(shows, part[Job::kShows]);
     numbers.push_back(shows);
@@ -119,7 +119,7 @@ class Brush {
       double value = shows == 0.0 ? std::numeric_limits<double>::quiet_NaN() : mean(column_);
       const bool all_zero = std::ranges::all_of(column_, [](double part) { return part == 0.0; });
       if (i >= Job::kLower && i < Job::kUpper && !all_zero) value = std::max(0.0, std::nextafter(value, -1.0));
-      if (i >= Job::kUpper && !all_zero) value = std::nextafter(value, kInfinite);
+      if (i >= Job::kUpper && !all_zero) value = std::nextafter(value, kUpwards);
       numbers.push_back(value);
     }
   }
@@ -205,7 +205,8 @@ Picture render(const Request& request, const Hooks& hooks, study::Journal* journ
   Brushes brushes(job);
   std::mutex mutex;
   const int threads = request.threads > 0 ? request.threads : work::usable_threads();
-  work::parallel_for(tiles.count(), threads, "tiles", hooks, [&](std::size_t index) {
+  const std::string stage = request.method ? "tiles, " + request.method->method->name : "tiles";
+  work::parallel_for(tiles.count(), threads, stage, hooks, [&](std::size_t index) {
     TileResult result;
     const Tile tile = tiles[index];
     kept.get(

@@ -118,6 +118,9 @@ TEST_F(RenderCommand, ContinuesAfterAnInterruption) {
   const Ended refused = render(long_run);
   EXPECT_EQ(refused.code, 2);
   EXPECT_NE(refused.error.find("finished work of an interrupted run"), std::string::npos) << refused.error;
+  const Ended other = render({"--size", "8x8", "-o", path("a.exr"), "--resume"});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_NE(other.error.find("tiles of another image"), std::string::npos) << other.error;
   Words again = long_run;
   again.emplace_back("--resume");
   const Ended resumed = render(again);
