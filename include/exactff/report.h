@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "exactff/error.h"
 #include "exactff/progress.h"
 #include "exactff/study.h"
 
@@ -34,7 +35,8 @@ struct PlannedScene {
   std::string name;   // letters, digits and hyphens, for the names of files; empty: the report is on this scene alone
   std::string title;  // "Cornell box"
   std::shared_ptr<const Scene> scene;
-  study::Request request;  // of this scene
+  study::Request request;         // of this scene
+  std::vector<Problem> warnings;  // for the user, of how the request was made
 };
 
 // What a report is to cover: scenes, and experiments that bring their own scenes.
@@ -47,7 +49,8 @@ struct Plan {
   std::string command_line;  // shown in the last section of the report
 
   // Gives the scene a name that no other has.
-  void add_scene(std::string scene_title, std::shared_ptr<const Scene> scene, study::Request request);
+  void add_scene(std::string scene_title, std::shared_ptr<const Scene> scene, study::Request request,
+                 std::vector<Problem> warnings = {});
   // "all" stands for every experiment. Drops repetitions. Throws InputError for an unknown name.
   void add_experiments(const std::vector<std::string>& names);
 };

@@ -2,7 +2,6 @@
 // exact visible region and, if present, the leaves of the adaptive recursion.
 #pragma once
 
-#include <span>
 #include <string>
 
 #include "exactff/adaptive.h"
@@ -10,8 +9,9 @@
 
 namespace exactff {
 
-// Returns a self-contained SVG document. `leaves` may be empty. Planes that x does not face are left out, with a note.
+// Returns a self-contained SVG document. With `sampled`, it shows the leaves in its leaf_list. Leaves that are not in
+// the list, and planes that x does not face, are left out, with a note.
 [[nodiscard]] std::string visibility_svg(const Scene& scene, const Receiver& receiver, const ExactSource& source,
-                                         const FormFactor& result, std::span<const Leaf> leaves);
+                                         const FormFactor& result, const AdaptiveResult* sampled = nullptr);
 
 }  // namespace exactff

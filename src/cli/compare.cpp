@@ -114,7 +114,7 @@ report::Plan plan_of(const CompareArguments& args) {
     }
     flags::Comparison one = flags::comparison_of(args.scene, effort.abridged, effort.threads);
     plan.effort = effort;
-    plan.add_scene(one.title, std::move(one.scene), std::move(one.request));
+    plan.add_scene(one.title, std::move(one.scene), std::move(one.request), std::move(one.warnings));
     if (args.experiments.empty()) plan.scenes.front().name.clear();
     if (!args.experiments.empty()) plan.title = one.title;
   }
@@ -142,6 +142,7 @@ int say_where(const CompareArguments& args) {
 void print_warnings_of(const report::PlannedScene& planned, bool several) {
   const study::Request& request = planned.request;
   print_warnings(planned.scene->warnings());
+  print_warnings(planned.warnings);
   print_near_misses(*planned.scene, request.receivers);
   std::vector<Problem> dark = diagnosis::warnings_of_dark_sources(*planned.scene, request.receivers, request.sources);
   for (Problem& warning : dark) {

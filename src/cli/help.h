@@ -10,8 +10,8 @@ namespace exactff::cli {
 // For App::formatter. Set it before commands are added, because they inherit it.
 [[nodiscard]] std::shared_ptr<CLI::Formatter> help_formatter();
 
-// Throws InputError if the first word of the command line was meant for a command and there is no such command.
+// Throws InputError if there is no such command.
 // Requires all commands in `app`.
-void require_command(const CLI::App& app, const std::string& first_word);
+void require_command(const CLI::App& app, const std::string& name);
 
 }  // namespace exactff::cli

@@ -57,9 +57,8 @@ int print_help(const CLI::App& app, const std::string& command) {
 
 }  // namespace
 
-void require_command(const CLI::App& app, const std::string& first_word) {
-  if (first_word.starts_with('-') || command_named(app, first_word) != nullptr) return;
-  refuse_command(app, first_word);
+void require_command(const CLI::App& app, const std::string& name) {
+  if (command_named(app, name) == nullptr) refuse_command(app, name);
 }
 
 Command add_help(CLI::App& app) {

@@ -3,10 +3,8 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "cli/command.h"
 #include "cli/long_run.h"
@@ -14,6 +12,7 @@
 #include "cli/text_table.h"
 #include "exactff/diagnosis.h"
 #include "exactff/models.h"
+#include "exactff/summary.h"
 #include "exactff/version.h"
 #include "flags/scene.h"
 #include "text/escape.h"
@@ -40,81 +39,12 @@ std::string counted(std::size_t count, const std::string& one, const std::string
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
-Vec3 scaled(const Vec3& v, double factor) { return {v.x * factor, v.y * factor, v.z * factor}; }
-Vec3 sum(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-
-// Zero stays zero. First scales the largest component to about 1, so that nothing overflows or underflows.
-Vec3 unit(const Vec3& v) {
-  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  if (largest == 0.0) return v;
-  const Vec3 safe{v.x / largest, v.y / largest, v.z / largest};
-  return scaled(safe, 1.0 / std::hypot(safe.x, safe.y, safe.z));
-}
-
-// One row of the table.
-struct PatchSummary {
-  std::string name;
-  std::size_t face_count = 0;  // including ignored faces
-  double area = 0.0;
-  std::optional<Vec3> front;          // mean unit normal; empty if the faces have different directions
-  std::vector<MaterialId> materials;  // in the order of first use
-  bool emits = false;
-};
-
-std::vector<MaterialId> materials_of(const Scene& scene, const Patch& patch) {
-  std::vector<MaterialId> used;
-  std::set<MaterialId> seen;
-  for (const FaceId face : patch.faces) {
-    const MaterialId material = scene.face(face).material;
-    if (seen.insert(material).second) used.push_back(material);
-  }
-  return used;
-}
-
-std::optional<Vec3> common_front(const Scene& scene, const std::vector<FaceId>& faces) {
-  constexpr double kSameWay = 0.999;  // the cosine of about 2.6 degrees
-  Vec3 mean;
-  for (const FaceId face : faces) mean = sum(mean, unit(scene.face(face).newell));
-  mean = unit(mean);
-  for (const FaceId face : faces) {
-    const Vec3 n = unit(scene.face(face).newell);
-    if (n.x * mean.x + n.y * mean.y + n.z * mean.z < kSameWay) return std::nullopt;
-  }
-  return faces.empty() ? std::nullopt : std::optional(mean);
-}
-
-// An estimate. Clamped to finite numbers, as the areas of faces are.
-double sum_of_areas(double a, double b) { return std::min(a + b, std::numeric_limits<double>::max()); }
-
-PatchSummary summarise(const Scene& scene, PatchId id) {
-  const Patch& patch = scene.patch(id);
-  const std::vector<FaceId> faces = scene.faces_of({id, {}});
-  PatchSummary summary{patch.name, patch.faces.size(), 0.0, common_front(scene, faces), materials_of(scene, patch)};
-  for (const FaceId face : faces) {
-    summary.area = sum_of_areas(summary.area, scene.face(face).area);
-    summary.emits = summary.emits || scene.material(scene.face(face).material).emits();
-  }
-  return summary;
-}
-
-std::vector<PatchSummary> summarise(const Scene& scene) {
-  std::vector<PatchSummary> rows;
-  for (std::size_t i = 0; i < scene.patches().size(); ++i) rows.push_back(summarise(scene, static_cast<PatchId>(i)));
-  return rows;
-}
-
 std::vector<FaceId> faces_of_shape(const Scene& scene, FaceShape shape) {
   std::vector<FaceId> result;
   for (std::size_t i = 0; i < scene.faces().size(); ++i) {
     if (scene.faces()[i].shape == shape) result.push_back(static_cast<FaceId>(i));
   }
   return result;
-}
-
-double total_area(const std::vector<PatchSummary>& rows) {
-  double area = 0.0;
-  for (const PatchSummary& row : rows) area = sum_of_areas(area, row.area);
-  return area;
 }
 
 // --- for people ---

@@ -57,7 +57,7 @@ int parse_and_run(int argc, char** argv) {
   app.set_version_flag("--version", std::string("exactff ") + exactff::kVersion);
   app.require_subcommand(0, 1);
   const std::vector<exactff::cli::Command> commands = exactff::cli::add_commands(app);
-  if (argc > 1) exactff::cli::require_command(app, argv[1]);
+  if (argc > 1 && *argv[1] != '-') exactff::cli::require_command(app, argv[1]);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -134,7 +134,9 @@ ProgramTable program_table(const CLI::App& app) {
   for (const CommandTable& command : table.commands) names.push_back(command.name);
   for (CommandTable& command : table.commands) {
     for (OptionRow& row : command.positionals) {
-      if (row.value == "COMMAND") offer(names, row);
+      if (row.value != "COMMAND") continue;
+      row.words = names;
+      row.completion = Completion::kWords;
     }
   }
   return table;

@@ -15,6 +15,7 @@
 namespace exactff::cli {
 
 inline constexpr std::uint64_t kMostPointLeaves = 10'000'000;  // takes some seconds
+inline constexpr std::uint64_t kMostDrawnLeaves = 50'000;
 
 struct PointArguments {
   flags::SceneArguments scene;

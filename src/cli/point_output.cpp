@@ -239,10 +239,9 @@ void print_point_json(const PointArguments& args, const Scene& scene, const Poin
 
 void draw_point(const PointArguments& args, const Scene& scene, const PointResult& point) {
   const PointTerm& one = point.sources.front();
-  const std::span<const Leaf> leaves =
-      one.adaptive ? std::span<const Leaf>(one.adaptive->leaf_list) : std::span<const Leaf>();
+  const AdaptiveResult* const sampled = one.adaptive ? &*one.adaptive : nullptr;
   const ExactSource source(scene, one.source);
-  write_whole_file(args.svg, visibility_svg(scene, point.receiver, source, one.exact, leaves));
+  write_whole_file(args.svg, visibility_svg(scene, point.receiver, source, one.exact, sampled));
 }
 
 }  // namespace exactff::cli

@@ -82,6 +82,7 @@ AdaptiveOptions adaptive_options(const PointArguments& args) {
   options.pattern = *study::pattern_named(args.pattern);
   options.variant = *study::variant_named(args.variant);
   options.record_leaves = !args.svg.empty();  // for the drawing only: there can be millions
+  options.most_recorded_leaves = kMostDrawnLeaves;
   options.most_leaves = kMostPointLeaves;
   return options;
 }

@@ -94,7 +94,7 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const truth::Team* team)
   print_warnings(job->scene.warnings());
   truth::Request& request = job->request;
   flags::ChosenReceivers receivers = flags::receivers_of(args.receivers, job->scene);
-  if (receivers.without_face > 0) std::cerr << "warning: " << flags::words_on_receivers_without_face(receivers) << '\n';
+  print_warnings(flags::warnings_of_receivers_without_face(receivers));
   print_near_misses(job->scene, receivers.receivers);
   request.scene = &job->scene;
   request.scene_name = args.scene.from_standard_input() ? std::string(flags::kStandardInput)

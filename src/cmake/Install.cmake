@@ -1,5 +1,5 @@
 # cmake --install. All installed paths are relative, so that an installed tree may be moved. Components: program, mpi
-# (what the program loads under mpirun), library (what a program linked with the shared library needs to run),
+# (what the program loads under mpirun), python, library (what a program linked with the shared library needs to run),
 # development.
 include(CMakePackageConfigHelpers)
 

@@ -1,6 +1,6 @@
 # Debian packages: `cpack -G DEB` in a build folder. There is one package for the program and one for compiling other
-# programs. If they were built, there is also one for running under mpirun, and with BUILD_SHARED_LIBS one for the
-# library. Tests and benchmarks are not installed, so no package has them.
+# programs. If they were built, there are also one for Python, one for running under mpirun, and with BUILD_SHARED_LIBS
+# one for the library. Tests and benchmarks are not installed, so no package has them.
 set(EXACTFF_PACKAGE_CONTACT "exactff developers <exactff@example.org>" CACHE STRING
     "Whom the Debian packages name as their maintainer: NAME <ADDRESS>")
 
@@ -31,6 +31,16 @@ if(EXACTFF_PROGRAM)
   set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS gnuplot-nox)  # draws the figures of the reports
   set(CPACK_DEBIAN_PROGRAM_DESCRIPTION ${about})
 endif()
+if(EXACTFF_HAS_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")  # the module is for one version of Python
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-exactff)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+      "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${next_minor}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-tqdm, python3-matplotlib")
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "${about}\n.\nThis package holds the module for Python.")
+endif()
 if(TARGET exactff_mpi)
   list(APPEND CPACK_COMPONENTS_ALL mpi)
   set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS exactff-mpi)
@@ -56,6 +66,9 @@ if(library_type STREQUAL "SHARED_LIBRARY")
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${library_dir})
   set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libexactff${soversion} (= ${PROJECT_VERSION})")
   set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libexactff${soversion} (= ${PROJECT_VERSION})")
+  if(EXACTFF_HAS_PYTHON)
+    string(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS ", libexactff${soversion} (= ${PROJECT_VERSION})")
+  endif()
 else()
   set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
       "libgmp-dev, libmpfr-dev, libflint-dev, libflint-arb-dev, libembree-dev, libopenexr-dev, libpng-dev")  # dependencies of a static library

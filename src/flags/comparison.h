@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "exactff/error.h"
 #include "exactff/study.h"
 #include "flags/engine.h"
 #include "flags/receivers.h"
@@ -35,6 +36,7 @@ struct Comparison {
   std::string title;
   std::shared_ptr<const Scene> scene;
   study::Request request;
+  std::vector<Problem> warnings;  // of its receivers
 };
 
 // Loads the scene and completes the request. `abridged` makes grids coarser, and reduces the settings that are not

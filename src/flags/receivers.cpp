@@ -228,10 +228,12 @@ ChosenReceivers receivers_of(const ReceiverArguments& args, const Scene& scene, 
   return chosen;
 }
 
-std::string words_on_receivers_without_face(const ChosenReceivers& chosen) {
-  return "--on auto found no face for " + std::to_string(chosen.without_face) + " of " +
-         text::counted(chosen.receivers.size(), "receiver") +
-         ", which now lie on none; --on auto:DISTANCE looks further away";
+std::vector<Problem> warnings_of_receivers_without_face(const ChosenReceivers& chosen) {
+  if (chosen.without_face == 0) return {};
+  return {{.what = "--on auto found no face for " + std::to_string(chosen.without_face) + " of " +
+                   text::counted(chosen.receivers.size(), "receiver"),
+           .why = "they now lie on none",
+           .suggestion = "--on auto:DISTANCE looks further away"}};
 }
 
 std::string command_words(const ReceiverArguments& args) {

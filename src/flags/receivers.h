@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "exactff/error.h"
 #include "exactff/receiver.h"
 #include "flags/scene.h"
 
@@ -38,7 +39,7 @@ struct AutoFace {
 std::optional<AutoFace> auto_face(const std::string& on, const Scene& scene);
 
 // "--on auto found no face for 3 of 10 receivers; ..."
-std::string words_on_receivers_without_face(const ChosenReceivers& chosen);
+std::vector<Problem> warnings_of_receivers_without_face(const ChosenReceivers& chosen);
 
 void add_receiver_options(CLI::App& app, ReceiverArguments& args);
 

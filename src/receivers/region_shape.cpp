@@ -5,7 +5,6 @@
 #include <set>
 #include <utility>
 
-#include "kernel/expect.h"
 #include "kernel/vec.h"
 #include "scene/extent.h"
 #include "scene/places.h"
@@ -21,7 +20,8 @@ namespace {
 
 using VertexRing = std::vector<std::uint32_t>;
 
-constexpr double kStraight = 1e-6;  // of the size of the outline
+constexpr double kStraight = 1e-6;   // of the size of the outline,
+constexpr double kMostSlender = 64;  // if that is at most so many times its width
 
 // The edges that are not shared, as rings of places. What is a straight side is an estimate: it has no effect on where
 // a receiver lies, only on where cells are.
@@ -38,10 +38,7 @@ class Outline {
     while (!edges_.empty()) rings_.push_back(take_ring(edges_.begin()->first));
     begin_with_the_outer_ring();
     rotate(rings_.front(), first_corner(region));
-    const double tolerance = kStraight * size_of(rings_.front());
-    for (VertexRing& ring : rings_) ring = without_straight_corners(ring, tolerance);
-    std::erase_if(rings_, [](const VertexRing& ring) { return ring.size() < 3; });
-    EXACTFF_EXPECT(!rings_.empty());
+    straighten();
   }
 
   [[nodiscard]] const std::vector<VertexRing>& rings() const { return rings_; }
@@ -138,6 +135,26 @@ class Outline {
     kept[furthest] = 1;
     keep_corners(ring, first, furthest, tolerance, kept);
     keep_corners(ring, furthest, last, tolerance, kept);
+  }
+
+  // Drops slits. A region that is hardly more than a slit itself keeps its corners.
+  void straighten() {
+    const VertexRing outer = rings_.front();
+    const double size = size_of(outer), width = area_of(outer) / size;
+    const double tolerance = kStraight * std::min(size, kMostSlender * width);
+    for (VertexRing& ring : rings_) ring = without_straight_corners(ring, tolerance);
+    if (rings_.front().size() < 3) rings_.front() = outer;
+    std::erase_if(rings_, [](const VertexRing& ring) { return ring.size() < 3; });
+  }
+
+  [[nodiscard]] double area_of(const VertexRing& ring) const {
+    Vec3 sum;
+    for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
+      const Vec3 a = kernel::difference(at(ring[i]), at(ring[0])), b = kernel::difference(at(ring[i + 1]), at(ring[0]));
+      const Vec3 doubled = kernel::cross(a, b);
+      sum = {sum.x + doubled.x, sum.y + doubled.y, sum.z + doubled.z};
+    }
+    return 0.5 * std::sqrt(kernel::dot(sum, sum));
   }
 
   // A ring that begins on a straight side begins where that side begins afterwards.

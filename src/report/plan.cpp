@@ -75,9 +75,11 @@ std::vector<std::string> experiment_names() {
   return names;
 }
 
-void Plan::add_scene(std::string scene_title, std::shared_ptr<const Scene> scene, study::Request request) {
+void Plan::add_scene(std::string scene_title, std::shared_ptr<const Scene> scene, study::Request request,
+                     std::vector<Problem> warnings) {
   std::string name = file_word(scene_title, scenes);
-  scenes.push_back({std::move(name), std::move(scene_title), std::move(scene), std::move(request)});
+  scenes.push_back(
+      {std::move(name), std::move(scene_title), std::move(scene), std::move(request), std::move(warnings)});
 }
 
 void Plan::add_experiments(const std::vector<std::string>& names) {

@@ -135,7 +135,8 @@ void add_scene(const StudyLine& line, const std::string& file, Plan& plan) {
     return;
   }
   flags::Comparison comparison = flags::comparison_of(std::move(args), plan.effort.abridged, plan.effort.threads);
-  plan.add_scene(std::move(comparison.title), std::move(comparison.scene), std::move(comparison.request));
+  plan.add_scene(std::move(comparison.title), std::move(comparison.scene), std::move(comparison.request),
+                 std::move(comparison.warnings));
 }
 
 }  // namespace

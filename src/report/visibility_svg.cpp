@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "kernel/vec.h"
@@ -300,7 +301,8 @@ std::string head(double height) {
 }  // namespace
 
 std::string visibility_svg(const Scene& scene, const Receiver& receiver, const ExactSource& source,
-                           const FormFactor& result, std::span<const Leaf> leaves) {
+                           const FormFactor& result, const AdaptiveResult* sampled) {
+  const std::span<const Leaf> leaves = sampled == nullptr ? std::span<const Leaf>() : sampled->leaf_list;
   const std::vector<PlaneDrawing> drawings = draw_visibility(scene, receiver, source);
   const std::string name = scene.name_of(source.selection());
   std::string body =
@@ -326,6 +328,11 @@ std::string visibility_svg(const Scene& scene, const Receiver& receiver, const E
   if (left_out > 0) {
     body += line_of_text(kMargin, y + 16,
                          text::counted(left_out, "plane") + " not drawn (not facing the receiver, or too many)");
+    y += 24;
+  }
+  if (sampled != nullptr && leaves.size() < sampled->leaves) {
+    body += line_of_text(kMargin, y + 16,
+                         text::counted(sampled->leaves - leaves.size(), "leaf", "leaves") + " not drawn (too small)");
     y += 24;
   }
   body += legend(y + 8, !leaves.empty());

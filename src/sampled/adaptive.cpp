@@ -10,6 +10,7 @@
 // (not in Variant::kLiteral); a source of several faces is the sum of them, each with its own recursion.
 #include "exactff/adaptive.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <limits>
@@ -191,7 +192,7 @@ class Recursion {
     ++result_.leaves_by_reason[static_cast<std::size_t>(reason)];
     if (result_.leaves_by_depth.size() <= level) result_.leaves_by_depth.resize(level + 1);
     ++result_.leaves_by_depth[level];
-    if (options_.record_leaves) record(s, v.value, f, depth, reason);
+    if (options_.record_leaves && depth <= deepest_recorded_) record(s, v.value, f, depth, reason);
     if (v.candidates.size() > 0) occluders_.drop(v.candidates);
     if (result_.leaves + result_.rays >= next_poll_) poll();
     return v.value * f;
@@ -209,6 +210,15 @@ class Recursion {
       entry.corners[i] = (s.corner(i) + view_.point) * (1.0 / solver_.scene.scale);
     }
     result_.leaf_list.push_back(entry);
+    while (options_.most_recorded_leaves != 0 && result_.leaf_list.size() > options_.most_recorded_leaves)
+      drop_deepest();
+  }
+
+  void drop_deepest() {
+    std::vector<Leaf>& leaves = result_.leaf_list;
+    const int deepest = std::ranges::max_element(leaves, {}, &Leaf::depth)->depth;
+    std::erase_if(leaves, [&](const Leaf& leaf) { return leaf.depth == deepest; });
+    deepest_recorded_ = deepest - 1;
   }
 
   const SampledScene& solver_;
@@ -221,6 +231,7 @@ class Recursion {
   OccluderSet& occluders_ = work_.gathered.occluders;
   AdaptiveResult& result_;
   std::uint64_t next_poll_ = 0;  // in leaves and rays
+  int deepest_recorded_ = std::numeric_limits<int>::max();
   CandidateRange blurred_;
 };
 

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# check_install.sh BUILD-FOLDER COMPILER VERSION: installs the build into a temporary folder, moves that elsewhere, checks
+# check_install.sh BUILD-FOLDER COMPILER VERSION [PYTHON]: installs the build into a temporary folder, moves that elsewhere, checks
 # what is in it, and builds and runs other people's projects against it: through find_package, pkg-config, as a
-# folder of a larger project (configured only; it would build the library again), and with GoogleTest.
+# folder of a larger project (configured only; it would build the library again), with GoogleTest, and from PYTHON.
 set -euo pipefail
 
 build=$1
 export CXX=$2
 version=$3
+python=${4:-}
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 top=$(cd "$here/../.." && pwd)
 work=$(mktemp -d)
@@ -46,6 +47,15 @@ quietly "reading the completion" bash -n "$prefix/share/bash-completion/completi
 if command -v groff > /dev/null; then
   quietly "reading the manual page" groff -man -Tutf8 -ww -z "$prefix/share/man/man1/exactff.1"
   [ ! -s "$work/log" ] || { cat "$work/log"; fail "the manual page has faults"; }
+fi
+
+if [ -n "$python" ]; then
+  package=$(find "$prefix" -path '*/exactff/__init__.py')
+  [ -s "$prefix/$examples/python/cornell_map.py" ] || fail "the examples for Python are not installed"
+  quietly "importing the Python package" env PYTHONPATH="${package%/exactff/__init__.py}" "$python" -B -c \
+    'import sys, exactff; print(exactff.Scene.read(sys.argv[1]).form_factor([278, 0, 279.6], [0, 1, 0], on="floor"))' \
+    "$prefix/$examples/scenes/cornell_box.obj"
+  grep -q "certified" "$work/log" || fail "the installed Python package computes nothing"
 fi
 
 export CMAKE_PREFIX_PATH=$prefix

@@ -121,6 +121,27 @@ TEST(Adaptive, CountsAddUp) {
   EXPECT_GT(result.shaft_tests, 0U);
 }
 
+// A picture of millions of leaves would take gigabytes.
+TEST(Adaptive, RecordsTheLargestLeavesIfThereAreTooMany) {
+  AdaptiveOptions options;
+  options.eps_b = 1e-4;
+  options.record_leaves = true;
+  const PlainScene plain = generate::blinds({.n = 12});
+  const AdaptiveResult all = solve(plain, options);
+  options.most_recorded_leaves = all.leaves / 2;
+  const AdaptiveResult some = solve(plain, options);
+  EXPECT_EQ(some.leaves, all.leaves);
+  EXPECT_EQ(some.form_factor, all.form_factor);
+  std::uint64_t down_to_depth = 0;
+  std::size_t depth = 0;
+  for (; down_to_depth + all.leaves_by_depth[depth] <= all.leaves / 2; ++depth) {
+    down_to_depth += all.leaves_by_depth[depth];
+  }
+  ASSERT_GT(down_to_depth, 0U);
+  EXPECT_EQ(some.leaf_list.size(), down_to_depth);
+  EXPECT_LT(std::ranges::max_element(some.leaf_list, {}, &Leaf::depth)->depth, static_cast<int>(depth));
+}
+
 TEST(Adaptive, LeavesTileTheSourceAndTheirSharesAddUp) {
   AdaptiveOptions options;
   options.eps_b = 1e-4;

@@ -175,7 +175,7 @@ TEST_F(PointWords, AnOutcomeAgreesWithTheOccludersListedBelowAHorizon) {
 TEST_F(PointWords, TheDrawingSaysTheSame) {
   const std::string file = (directory_.path() / "view.svg").string();
   EXPECT_EQ(up({"--source", "light", "--svg", file}).exit_code, 0);
-  EXPECT_TRUE(holds(text_of(file), "Plane of light: unoccluded; 1 in the shaft")) << text_of(file);
+  EXPECT_TRUE(holds(text_of(file), "Plane of light: unoccluded; 1 face in the shaft")) << text_of(file);
 }
 
 TEST_F(PointWords, ExactFractionsArePrinted) {

@@ -86,6 +86,19 @@ TEST(Regions, RoundedCoordinatesGiveTheSameReceiversToRounding) {
   expect_same_points(whole, grid(fifty, 8, 8), 2e-6);
 }
 
+// From a square to a needle that is far narrower than the tolerance for straight sides.
+TEST(Regions, NeedlesHaveReceiversAsWell) {
+  for (int k = 0; k <= 40; ++k) {
+    SCOPED_TRACE(k);
+    const Map flattened = [k](double u, double v) { return tilted(u, std::ldexp(v, -k)); };
+    const Scene whole = surface(flattened, kSquare, {{0, 1, 2, 3}}), many = fan(flattened, 4);
+    const std::vector<Region> found = regions(many, many.select("floor"));
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(centre_receivers(many, found).size(), 1U);
+    expect_same_points(grid(whole, 3, 2), grid(many, 3, 2), 0.0);
+  }
+}
+
 TEST(Regions, AreJoinedOnlyByEdges) {
   const std::vector<std::pair<double, double>> corners = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {2, 1}, {2, 2}, {1, 2}};
   const Scene corner_to_corner = surface(tilted, corners, {{0, 1, 2, 3}, {2, 4, 5, 6}});

@@ -136,7 +136,7 @@ TEST(Completion, ZshAndFishOfferTheSameNames) {
   for (const char* shell : {"zsh", "fish"}) {
     const std::string script = output_of({"completion", shell});
     for (const char* names : {"exact adaptive ", " hemicube ", "@teapot @forest", "karkanis-times nettle-rule",
-                              " crack crack-ulp ", "info point compare truth merge check stress help"}) {
+                              " crack crack-ulp ", "info point render compare truth merge check stress convert help"}) {
       EXPECT_NE(script.find(names), std::string::npos) << shell << ": " << names;
     }
   }
@@ -188,6 +188,8 @@ TEST(Commands, MisspeltGetASuggestion) {
   EXPECT_EQ(refusal_of({"Compare"}), "exactff: there is no command 'Compare'" + kCommands + "did you mean compare?\n");
   EXPECT_EQ(refusal_of({"help", "streess"}),
             "exactff: there is no command 'streess'" + kCommands + "did you mean stress?\n");
+  EXPECT_EQ(refusal_of({"help", "-5"}),
+            "exactff: there is no command '-5'" + kCommands + "`exactff help` explains them\n");
   EXPECT_EQ(refusal_of({"radiosity"}),
             "exactff: there is no command 'radiosity'" + kCommands + "`exactff help` explains them\n");
 }

@@ -254,7 +254,10 @@ TEST(Stress, KeepsTheFamiliesThatAreFinishedWhenItIsCancelled) {
   const std::size_t rows = whole.families.front().rows.size();
   const Report report = interrupted_run(rows, {"overlap", "shrink", "crack"});
   ASSERT_EQ(report.families.size(), 1U);
-  EXPECT_EQ(values_of(report), values_of(whole));
+  std::string values = values_of(report);
+  const std::string said = "# incomplete: the run was interrupted; not finished: shrink and crack\n";
+  for (std::size_t at = 0; (at = values.find(said)) != std::string::npos;) values.erase(at, said.size());
+  EXPECT_EQ(values, values_of(whole));
   EXPECT_EQ(report.unfinished, (std::vector<std::string>{"shrink", "crack"}));
   EXPECT_THROW((void)interrupted_run(rows - 1, {"overlap", "shrink"}), Cancelled);
 
@@ -263,7 +266,6 @@ TEST(Stress, KeepsTheFamiliesThatAreFinishedWhenItIsCancelled) {
   EXPECT_EQ(part, directory.path() / "out.part");
   write_part(report, folder);
   EXPECT_FALSE(std::filesystem::exists(folder));
-  const std::string said = "# incomplete: the run was interrupted; not finished: shrink and crack\n";
   for (const char* table : {"values.csv", "summary.csv", "timings.csv"}) {
     EXPECT_NE(validation::text_of(part / table).find(said), std::string::npos) << table;
   }

@@ -398,15 +398,17 @@ TEST(ResumedStudy, TakesWhatTheJournalHas) {
   const Scene scene = small_room(true);
   Request request = small_request(scene, 1);
   validation::scatter(request);
-  std::size_t asked = 0;
-  const Hooks until_some{{}, [&] { return ++asked > 30; }};
+  std::size_t asked = 0, finished = 0;
+  const Hooks until_some{{}, [&] { return ++asked > 150; }};
   {
     Journal journal(file, Existing::kRefuse);
     EXPECT_THROW((void)run(request, until_some, &journal), Cancelled);
-    EXPECT_EQ(journal.size(), 30U);
+    finished = journal.size();
+    EXPECT_GT(finished, 20U);
+    EXPECT_LT(finished, 40U);
   }
   Journal journal(file, Existing::kResume);
-  EXPECT_EQ(journal.size(), 30U);
+  EXPECT_EQ(journal.size(), finished);
   const std::string before = validation::text_of(file);
   expect_same_values(run(request), run(request, {}, &journal), "");
   EXPECT_EQ(journal.size(), 40U);

@@ -19,7 +19,8 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   if(EXISTS ${root}/share/zsh/site-functions)
     file(RENAME ${root}/share/zsh/site-functions ${root}/share/zsh/vendor-completions)
   endif()
-  if(EXISTS ${root}/bin/exactff)
-    file(RPATH_REMOVE FILE ${root}/bin/exactff)  # the library is where the system looks anyway
-  endif()
+  file(GLOB linked ${root}/bin/exactff ${root}/lib/python3/dist-packages/exactff/*.so)
+  foreach(file IN LISTS linked)
+    file(RPATH_REMOVE FILE ${file})  # the library is where the system looks anyway
+  endforeach()
 endforeach()

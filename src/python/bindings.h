@@ -1,0 +1,78 @@
+// The parts of the Python module exactff._exactff. The package in exactff/ is what users see: it checks arrays, and its
+// docstrings explain everything; this module expects what the package gives it.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactff/batch.h"
+#include "exactff/exact.h"
+#include "exactff/receiver.h"
+#include "exactff/scene.h"
+
+PYBIND11_MAKE_OPAQUE(std::vector<exactff::Receiver>)
+
+namespace exactff::python {
+
+namespace py = pybind11;
+
+using Numbers = py::array_t<double>;
+using Integers = py::array_t<std::int64_t>;
+
+// A scene, with the data of the sources that were used last.
+class SharedScene {
+ public:
+  explicit SharedScene(Scene scene) : scene_(std::move(scene)) {}
+
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] std::shared_ptr<const ExactSource> source(const Selection& selection) const;
+  // Every patch that emits, if there are no names. Throws InputError for a name that the scene does not have.
+  [[nodiscard]] std::vector<Selection> selections(const std::vector<std::string>& names) const;
+
+ private:
+  Scene scene_;
+  mutable std::mutex mutex_;
+  mutable std::map<std::string, std::shared_ptr<const ExactSource>> sources_;  // by name
+};
+
+// Text that may not be UTF-8, such as a message that names a file.
+[[nodiscard]] py::str shown(const std::string& text);
+[[nodiscard]] py::tuple to_tuple(const Problem& problem);
+[[nodiscard]] py::tuple to_tuple(const Vec3& v);
+[[nodiscard]] py::tuple to_tuple(const Rgb& colour);
+
+// Receivers in arrays: points and normals (n, 3), own faces (n, k), where -1 stands for none. Their `get` needs no GIL;
+// the arrays must outlive this object.
+class ArrayReceivers {
+ public:
+  ArrayReceivers(const Numbers& points, const Numbers& normals, const Integers& on);
+
+  [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(points_.shape(0)); }
+  void get(std::size_t i, Receiver& receiver) const;
+  [[nodiscard]] std::vector<Receiver> list() const;
+  [[nodiscard]] batch::Receivers in_batch() const {  // keeps a reference
+    return {count(), [this](std::size_t i, Receiver& receiver) { get(i, receiver); }};
+  }
+
+ private:
+  py::detail::unchecked_reference<double, 2> points_, normals_;
+  py::detail::unchecked_reference<std::int64_t, 2> on_;
+};
+
+void bind_errors(py::module_& module);
+void bind_scene(py::module_& module);
+void bind_receivers(py::module_& module);
+void bind_form_factors(py::module_& module);
+void bind_methods(py::module_& module);
+void bind_truth(py::module_& module);
+void bind_check(py::module_& module);
+
+}  // namespace exactff::python

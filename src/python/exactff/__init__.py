@@ -1,0 +1,41 @@
+"""Exact form factors (view factors) from points to polygonal patches, with proof.
+
+>>> import exactff
+>>> room = exactff.Scene.read("data/scenes/cornell_box.obj")
+>>> f = room.form_factor([200, 0, 400], [0, 1, 0], "light", on="floor")
+>>> f.value, str(f.status)
+(0.010822702782492406, 'certified')
+
+Form factors are pure numbers; lengths are in the unit of the scene. Every coordinate means exactly the value of its
+double. Errors in the input raise :class:`InputError`; likely slips of modelling warn as :class:`ModellingWarning`.
+"""
+
+try:
+    from . import _exactff
+except ImportError as error:
+    import pathlib
+    import sys
+
+    found = ", ".join(file.name for file in pathlib.Path(__file__).parent.glob("_exactff*.so")) or "is missing"
+    raise ImportError(
+        f"the compiled part of exactff ({found}) cannot be loaded by {sys.executable}, Python {sys.version.split()[0]}: "
+        f"{error}. Start the Python that CMake named ('Python: ON, for ...'), or build with -DPython_EXECUTABLE=PYTHON "
+        "for another one that has NumPy"
+    ) from error
+
+from . import methods
+from ._check import CheckReport, Distribution, RowError, Verdict, check
+from ._errors import InputError, ModellingWarning, Problem
+from ._pair import Drawing, Enclosure, FormFactor, FormFactors, Status
+from ._receivers import Receivers
+from ._report import Finding, Material, Patch, Report
+from ._scene import Scene
+from ._truth import TruthSummary, truth
+
+__version__ = _exactff.version
+
+__all__ = [
+    "CheckReport", "Distribution", "Drawing", "Enclosure", "Finding", "FormFactor", "FormFactors", "InputError",
+    "Material", "ModellingWarning", "Patch", "Problem", "Receivers", "Report", "RowError", "Scene", "Status",
+    "TruthSummary", "Verdict", "__version__", "check", "methods", "truth",
+]

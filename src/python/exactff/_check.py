@@ -1,0 +1,149 @@
+"""Comparisons of other values with true ones."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from typing import Any, Literal, Mapping, NamedTuple, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _exactff
+from ._errors import refuse
+from ._pair import FormFactors, Status
+
+_Path = Union[str, "os.PathLike[str]"]
+
+
+class Distribution(NamedTuple):
+    """Statistics of the magnitudes of errors. A quantile is by nearest rank."""
+
+    median: float
+    p90: float
+    p99: float
+    p999: float
+    max: float
+    rms: float
+
+
+class Verdict(NamedTuple):
+    """One limit, and whether it holds."""
+
+    criterion: str
+    source: str  #: empty: all sources together
+    measured: float
+    limit: float
+    passed: bool
+    sentence: str
+
+
+class RowError(NamedTuple):
+    """The error of one value. For arrays, `receiver` is the index of the receiver."""
+
+    receiver: str
+    source: str
+    truth: float
+    value: float
+    error: float
+    relative: float
+
+
+@dataclass(frozen=True)
+class CheckReport:
+    """The result of :func:`check`. ``bool(report)`` tells whether it passed."""
+
+    passed: bool
+    rows: int
+    not_finite: int  #: values that are NaN or infinite
+    leaks: int  #: rows where the truth is 0 and the value is not
+    bias: float  #: signed mean error
+    absolute: Distribution
+    relative: Distribution
+    verdicts: tuple[Verdict, ...]
+    worst: tuple[RowError, ...]  #: worst first
+    warnings: tuple[str, ...]
+    message: str  #: the limits that are exceeded, and the worst rows
+    json: Mapping[str, Any]  #: everything, as ``exactff check --json`` writes it
+
+    def __bool__(self) -> bool:
+        return self.passed
+
+    def raise_if_failed(self) -> None:
+        """Raises AssertionError with the message, for tests."""
+        if not self.passed:
+            raise AssertionError(self.message)
+
+
+def check(truth: Union[_Path, FormFactors, ArrayLike], values: Union[_Path, ArrayLike], *,
+          max_abs: Optional[float] = None, max_rel: Optional[float] = None, rms: Optional[float] = None,
+          eps_b: Optional[float] = None, quantiles: Optional[Mapping[float, float]] = None, per_source: bool = False,
+          relative_floor: float = 0.0, worst: int = 10, truth_column: str = "exact", value_column: str = "",
+          match: Literal["receiver", "position"] = "receiver", tolerance: float = 0.0,
+          partial: bool = False) -> CheckReport:
+    """Compares values with true ones.
+
+    Parameters
+    ----------
+    truth : a truth file; or the result of :meth:`Scene.form_factors`, best with ``full=True``
+    values : a CSV file (only with a truth file), matched by receiver or by position; or an array: for a truth file one
+        value for each row, in order; otherwise of the same shape. NaN and infinite values count as failures.
+    max_abs, max_rel, rms : limits of the errors; an error equal to its limit passes
+    eps_b : limit of the error in radiosity, the error times the largest rho B; needs a truth file
+    quantiles : {0.99: 1e-3}: at least this share of the errors is at most that
+    per_source : every source must meet every limit
+    relative_floor : relative errors are relative to the truth or to this, whichever is larger
+    match, tolerance, partial, truth_column, value_column : as of ``exactff check``
+
+    Errors of values that are not certified are measured from the nearest point of their enclosure.
+    """
+    if match not in ("receiver", "position"):
+        refuse(f"match is {match!r}", "", "choose 'receiver' or 'position'")
+    limits = _exactff.Limits()
+    limits.max_abs, limits.max_rel, limits.rms, limits.eps_b = max_abs, max_rel, rms, eps_b
+    limits.quantiles = list((quantiles or {}).items())
+    limits.per_source, limits.relative_floor, limits.worst = per_source, relative_floor, worst
+    if not isinstance(truth, (str, os.PathLike)):
+        return _arrays_report(truth, values, limits)
+    if isinstance(values, (str, os.PathLike)):
+        return _report(_exactff.check_files(os.fspath(truth), os.fspath(values), truth_column, value_column,
+                                            match == "position", tolerance, partial, limits))
+    return _report(_exactff.check_values(os.fspath(truth), np.ascontiguousarray(_any_numbers(values)).ravel(),
+                                         truth_column, limits))
+
+
+def _any_numbers(values: Any) -> Any:
+    """Candidates of any precision; NaN is theirs to have."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "iuf" or array.dtype.itemsize > 8:
+        refuse(f"values: the type {array.dtype} is not taken", "form factors are real numbers in double precision",
+               "convert it yourself: values.astype(numpy.float64)")
+    return array.astype(np.float64)
+
+
+def _arrays_report(truth: Any, values: Any, limits: _exactff.Limits) -> CheckReport:
+    if isinstance(values, (str, os.PathLike)):
+        refuse("values is a file, and truth is not", "rows of a file are matched with a truth file",
+               "write the truth with exactff.truth, or give arrays")
+    candidates = _any_numbers(values)
+    if not isinstance(truth, FormFactors):
+        exact = _any_numbers(truth)
+        certified = np.full(exact.shape, Status.CERTIFIED, np.int8)
+        columns = exact.shape[-1] if exact.ndim > 1 else 1
+        names = tuple(str(s) for s in range(columns)) if columns > 1 else ("",)
+        truth = FormFactors(exact, exact, exact, certified, np.zeros(exact.shape, np.int32), None, names)
+    if candidates.shape != truth.value.shape:
+        refuse(f"values has the shape {candidates.shape}, and truth {truth.value.shape}", "each value has its truth",
+               "give arrays of the same shape")
+    table = (-1, len(truth.sources))
+    parts = [np.reshape(part, table) for part in (truth.value, truth.lower, truth.upper, truth.status)]
+    return _report(_exactff.check_arrays(parts[0], parts[1], parts[2], parts[3], list(truth.sources),
+                                         np.ascontiguousarray(candidates).ravel(), limits))
+
+
+def _report(result: Any) -> CheckReport:
+    passed, rows, not_finite, leaks, bias, absolute, relative, verdicts, worst, warnings, message, text = result
+    return CheckReport(passed, rows, not_finite, leaks, bias, Distribution(*absolute), Distribution(*relative),
+                       tuple(Verdict(*v) for v in verdicts), tuple(RowError(*row) for row in worst), tuple(warnings),
+                       message, json.loads(text))

@@ -1,0 +1,222 @@
+"""Results: one form factor with its proof, and arrays of them."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+from typing import Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _exactff
+from ._arrays import Floats
+from ._errors import refuse
+
+_MOST_SHARES = 20
+_MOST_DIGITS = 10000
+
+
+class Status(enum.IntEnum):
+    """How far a value is proved."""
+
+    CERTIFIED = 0  #: the true form factor, rounded to the nearest double
+    ZERO = 1  #: the form factor is proved to be exactly 0
+    UNDERFLOW = 2  #: it is positive and rounds to 0
+    NOT_CERTIFIED = 3  #: the precision cap was reached; the enclosure is valid all the same
+
+    def __str__(self) -> str:
+        return _exactff.status_name(int(self))
+
+
+class Enclosure:
+    """A ball that is proved to contain a real number: every number within ``radius`` of ``midpoint`` may be it.
+
+    ``midpoint`` and ``radius`` are decimal strings that mean exactly what they say: ``fractions.Fraction(e.midpoint)``
+    and ``mpmath.mpf(e.midpoint)`` take them. Balls can be added and subtracted; rounded values cannot.
+    """
+
+    def __init__(self, ball: _exactff.Enclosure) -> None:
+        self._ball = ball
+
+    @property
+    def midpoint(self) -> str:
+        """The midpoint, as a decimal string."""
+        return self._ball.midpoint
+
+    @property
+    def radius(self) -> str:
+        """The radius, as a decimal string."""
+        return self._ball.radius
+
+    @property
+    def lower(self) -> float:
+        """The largest double that is not above the ball's lower end."""
+        return self._ball.lower
+
+    @property
+    def upper(self) -> float:
+        """The smallest double that is not below the ball's upper end."""
+        return self._ball.upper
+
+    @property
+    def nearest(self) -> Optional[float]:
+        """The double to which every number in the ball rounds; None if they do not all round to the same one."""
+        return self._ball.nearest
+
+    def decimals(self, digits: int) -> Optional[str]:
+        """The number to so many significant digits, correctly rounded; None if the ball does not determine them."""
+        if not 1 <= digits <= _MOST_DIGITS:
+            refuse(f"digits is {digits}", f"it is a whole number from 1 to {_MOST_DIGITS}", "ask for fewer digits")
+        return self._ball.decimals(digits)
+
+    def __contains__(self, value: float) -> bool:
+        return self._ball.contains(value)
+
+    def __add__(self, other: Enclosure) -> Enclosure:
+        return Enclosure(self._ball.plus(other._ball)) if isinstance(other, Enclosure) else NotImplemented
+
+    def __sub__(self, other: Enclosure) -> Enclosure:
+        return Enclosure(self._ball.minus(other._ball)) if isinstance(other, Enclosure) else NotImplemented
+
+    def __repr__(self) -> str:
+        return f"<exactff.Enclosure {self.midpoint} +/- {self.radius}>"
+
+
+class Drawing:
+    """A picture in SVG. A notebook shows it; ``save`` writes it."""
+
+    def __init__(self, svg: str) -> None:
+        self.svg = svg
+
+    def _repr_svg_(self) -> str:
+        return self.svg
+
+    def save(self, path: str) -> None:
+        """Writes the SVG document to a file."""
+        with open(path, "w", encoding="utf-8") as out:
+            out.write(self.svg)
+
+    def __repr__(self) -> str:
+        return f"<exactff.Drawing: {len(self.svg)} characters of SVG>"
+
+
+class FormFactor:
+    """The exact form factor from one receiver to one source. ``float(f)`` is its value.
+
+    Made by :meth:`Scene.form_factor`. If ``status`` is certified, ``value`` is the true form factor, rounded to the
+    nearest double (ties to even), and ``lower`` and ``upper`` are its neighbours. ``enclosure`` always contains the
+    true form factor.
+    """
+
+    def __init__(self, pair: _exactff.Pair, ask: _Again) -> None:
+        self._pair = pair
+        self._ask = ask
+
+    @property
+    def value(self) -> float:
+        """Exact: the form factor, correctly rounded; a pure number in [0, 1]."""
+        return self._pair.value
+
+    @property
+    def lower(self) -> float:
+        """Encloses: a double that is not above the form factor."""
+        return self._pair.lower
+
+    @property
+    def upper(self) -> float:
+        """Encloses: a double that is not below the form factor."""
+        return self._pair.upper
+
+    @property
+    def status(self) -> Status:
+        """How far the value is proved."""
+        return Status(self._pair.status)
+
+    @property
+    def enclosure(self) -> Enclosure:
+        """Encloses: a ball that contains the form factor."""
+        return Enclosure(self._pair.enclosure)
+
+    @property
+    def source(self) -> str:
+        """The name of the source."""
+        return self._pair.source
+
+    @property
+    def precision_bits(self) -> int:
+        """The precision of the last evaluation of the contour integral; 0 if none was needed."""
+        return self._pair.precision_bits
+
+    @property
+    def visible_fraction(self) -> Optional[float]:
+        """Exact: visible over whole area of the source, correctly rounded; None unless ``fraction=True``."""
+        return self._pair.visible_fraction
+
+    @property
+    def visible_part(self) -> Optional[str]:
+        """``none``, ``some`` or ``all`` of the source, decided exactly; None unless ``fraction=True``."""
+        return self._pair.visible_part
+
+    def explain(self) -> str:
+        """What was computed and why, in words: the stages for each plane of the source, and the occluders that hide a
+        part of it, with the share of the unoccluded form factor that each hides alone (estimates)."""
+        return _explanation(self, self._ask(list_cutters=True), self._ask)
+
+    def draw(self) -> Drawing:
+        """The source as the receiver sees it: shadows of the occluders, and the exact visible region. Coordinates in
+        the picture are rounded."""
+        return Drawing(self._pair.svg())
+
+    def __float__(self) -> float:
+        return self.value
+
+    def __repr__(self) -> str:
+        return f"<exactff.FormFactor to {self.source!r}: {self.value!r} ({self.status})>"
+
+
+class _Again:
+    """Computes the same pair with other options."""
+
+    def __init__(self, scene: _exactff.Scene, point: tuple[float, ...], normal: tuple[float, ...], on: list[int],
+                 source: str) -> None:
+        self.scene = scene
+        self._fixed = (point, normal, on, source)
+
+    def __call__(self, fraction: bool = False, list_cutters: bool = False, digits: int = 0, precision_cap: int = 65536,
+                 only_occluders: Optional[list[int]] = None) -> _exactff.Pair:
+        return _exactff.form_factor(self.scene, *self._fixed, fraction, list_cutters, digits, precision_cap,
+                                    only_occluders)
+
+
+def _explanation(f: FormFactor, pair: _exactff.Pair, ask: _Again) -> str:
+    lines = [f"source {f.source}", f"  form factor  {f.value!r}  ({f.status})",
+             f"  enclosure    [{f.lower!r}, {f.upper!r}]"]
+    for faces, outcome, notes, _ in pair.planes():
+        more = f" and {len(faces) - 1} more faces" if len(faces) > 1 else ""
+        lines += ["", f"  plane of {faces[0]}{more}: {outcome}"]
+        lines += [f"    {stage:<24}{'ran' if ran else '-':<5}{note}".rstrip() for stage, ran, note in notes]
+    cutters = pair.cutters()
+    lines += ["", f"  occluders that hide a part of it: {len(cutters)}"]
+    free = ask(only_occluders=[]).value
+    if free > 0.0:
+        shares = [(1.0 - ask(only_occluders=[face]).value / free, face) for face in cutters[:_MOST_SHARES]]
+        for share, face in sorted(shares, key=lambda one: -one[0]):
+            lines.append(f"    {ask.scene.face_name(face):<28}hides {100.0 * share:.3g} % alone")
+        if len(cutters) > _MOST_SHARES:
+            lines.append(f"    ... and {len(cutters) - _MOST_SHARES} more")
+    lines.append(f"  unoccluded form factor: {free!r}")
+    return "\n".join(lines)
+
+
+@dataclass(frozen=True)
+class FormFactors:
+    """Exact form factors of many receivers, as arrays of shape (receivers, sources)."""
+
+    value: Floats  #: exact: correctly rounded where certified
+    lower: Floats  #: encloses: not above the true value
+    upper: Floats  #: encloses: not below the true value
+    status: NDArray[np.int8]  #: see :class:`Status`
+    precision_bits: NDArray[np.int32]  #: of the last evaluation of the contour integral; 0 if none was needed
+    fraction: Optional[Floats]  #: exact: visible over whole area; None unless ``fraction=True``
+    sources: tuple[str, ...]  #: names of the columns

@@ -1,0 +1,424 @@
+"""Scenes, and the form factors in them."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Literal, Mapping, Optional, Sequence, Union, overload
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _arrays, _exactff, _geometry
+from ._arrays import Floats, Ints, Names
+from ._errors import refuse, warn
+from ._pair import FormFactor, FormFactors, Status, _Again
+from ._progress import Progress, shown
+from ._receivers import Receivers
+from ._report import Finding, Material, Patch, Report
+
+#: Own faces: None, "auto", "auto:DISTANCE", a name ("floor", "floor:2", "floor:1+2"), indices of faces, or a list of
+#: these for each receiver.
+On = Union[None, str, int, ArrayLike, Sequence[Any]]
+
+_MOST_LOOKED_AT = 10_000  # receivers, for near misses
+_MOST_BITS = 1 << 24
+
+
+class Scene:
+    """Named patches of planar polygonal faces with materials. Immutable; threads may share it.
+
+    Coordinates are float64, in any unit of length, and each means exactly the value of its double. The front of a face
+    is the side from which its vertices run counter-clockwise. A source emits from its front; an occluder blocks light
+    from both sides.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64
+    faces : (m, 3) or (m, 4) integers, rows of different lengths, or PyVista's padded array ``mesh.faces``
+    patch : an integer, or a name, for each face; without it, all faces are one patch
+    names : names of the patches, as a list or a dict by the integers in `patch`; default ``patch_N``
+    materials : a dict by patch name of :class:`Material`, or of dicts with ``reflectance`` (Kd, default 1) and
+        ``radiosity`` (Ke, default 0); one number each, or three for red, green and blue
+    skip_bad_faces : leave out unusable faces (self-crossing, say) with a warning instead of raising
+
+    Raises InputError with all problems.
+    """
+
+    _scene: _exactff.Scene
+
+    def __init__(self, vertices: ArrayLike, faces: Any, patch: Any = None, names: Any = None,
+                 materials: Optional[Mapping[str, Union[Material, Mapping[str, Any]]]] = None, *,
+                 skip_bad_faces: bool = False) -> None:
+        self._take(_geometry.build(vertices, faces, patch, names, materials, skip_bad_faces), "arrays")
+
+    def _take(self, scene: _exactff.Scene, name: str) -> None:
+        self._scene = scene
+        self.name = name
+        for warning in scene.warnings():
+            warn(warning)
+
+    @classmethod
+    def _made(cls, scene: _exactff.Scene, name: str) -> Scene:
+        made = cls.__new__(cls)
+        made._take(scene, name)
+        return made
+
+    @classmethod
+    def read(cls, path: Union[str, os.PathLike[str]], *, patches: Literal["groups", "faces"] = "groups",
+             skip_bad_faces: bool = False) -> Scene:
+        """Reads an OBJ, PLY, STL, OFF or View3D file. ``patches="faces"`` makes every face a patch NAME:k.
+
+        Raises InputError with every problem and its line. Warnings of the file are ModellingWarning."""
+        if patches not in ("groups", "faces"):
+            refuse(f"patches is {patches!r}", "", "choose 'groups' or 'faces'")
+        made = _exactff.Scene.read(os.fspath(path), patches == "faces", skip_bad_faces)
+        return cls._made(made, os.path.basename(os.fspath(path)))
+
+    @classmethod
+    def from_model(cls, text: str, *, patches: Literal["groups", "faces"] = "groups") -> Scene:
+        """A generated scene, such as ``"teapot:segments=8"``; ``exactff info @`` lists the models. The same text gives
+        the same bits on every machine."""
+        return cls._made(_exactff.Scene.from_model(text, patches == "faces"), "@" + text)
+
+    # --- what it contains ---
+
+    @property
+    def vertices(self) -> Floats:
+        """(n, 3): all vertices. A copy."""
+        return self._scene.vertices()
+
+    @property
+    def patches(self) -> tuple[Patch, ...]:
+        """The patches: name, faces, area, front, materials."""
+        return tuple(_patch(row) for row in self._scene.patches())
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the patches."""
+        return tuple(row[0] for row in self._scene.patches())
+
+    @property
+    def emitters(self) -> tuple[str, ...]:
+        """The names of the patches that emit: the sources, if none are named."""
+        return tuple(self._scene.emitters())
+
+    @property
+    def areas(self) -> Floats:
+        """(m,): areas of the faces, in the square of the unit of length. Estimates."""
+        return self._scene.areas()
+
+    @property
+    def fronts(self) -> Floats:
+        """(m, 3): unit normals of the faces. Estimates; 0 for a face without area."""
+        return self._scene.fronts()
+
+    @property
+    def patch_of_face(self) -> Ints:
+        """(m,): index into `patches`."""
+        return self._scene.patch_of_face()
+
+    def rings(self, face: int) -> list[list[int]]:
+        """The vertices of a face: the outer ring, then its holes."""
+        return self._scene.rings(face)
+
+    def face_name(self, face: int) -> str:
+        """``NAME:k``, or ``NAME`` for a patch of one face."""
+        return self._scene.face_name(face)
+
+    def faces_of(self, name: str) -> list[int]:
+        """Indices of the faces of ``NAME`` or ``NAME:k``, without ignored ones."""
+        return self._scene.faces_of(name)
+
+    @property
+    def hash(self) -> str:
+        """16 hexadecimal digits: a hash of everything that affects values."""
+        return self._scene.hash()
+
+    def report(self) -> Report:
+        """What ``exactff info`` says: the patches, and likely slips of modelling. No value depends on it."""
+        scene = self._scene
+        return Report(patches=self.patches, emitters=self.emitters, face_count=scene.face_count(),
+                      vertex_count=len(self.vertices), not_planar=tuple(scene.faces_of_shape(1)),
+                      ignored=tuple(scene.faces_of_shape(2)), left_out=tuple(scene.faces_of_shape(3)),
+                      open_edges=scene.open_edges(),
+                      findings=tuple(Finding(kind, message, tuple(objects), flag)
+                                     for kind, message, objects, flag in scene.findings()),
+                      warnings=tuple(scene.warnings()))
+
+    # --- other scenes ---
+
+    def with_flipped(self, *names: str) -> Scene:
+        """The same scene with these patches or faces turned round: their fronts become their backs."""
+        return self._changed(self._scene.with_flipped, names)
+
+    def with_transparent(self, *names: str) -> Scene:
+        """The same scene with these patches or faces transparent: they hide nothing. They may still be sources, and
+        have receivers on them."""
+        return self._changed(self._scene.with_transparent, names)
+
+    def _changed(self, change: Any, names: Sequence[str]) -> Scene:
+        if not names:
+            return self
+        changed = Scene.__new__(Scene)
+        changed._scene, changed.name = change(list(names)), self.name
+        return changed
+
+    @property
+    def flipped(self) -> tuple[str, ...]:
+        """What `with_flipped` has turned."""
+        return tuple(self._scene.flipped())
+
+    @property
+    def transparent(self) -> tuple[str, ...]:
+        """What `with_transparent` has made transparent."""
+        return tuple(self._scene.transparent())
+
+    # --- receivers ---
+
+    def receivers(self, on: Union[str, Sequence[str]], *, grid: Union[None, int, tuple[int, int]] = None,
+                  vertices: bool = False, centres: bool = False, samples: int = 0, seed: int = 1,
+                  per_face: bool = False) -> Receivers:
+        """Receivers on patches or faces, as the program's ``--on`` makes them. Give one of
+
+        grid : (columns, rows), at the centres of the cells of each region (neighbouring faces in one plane)
+        vertices : at every corner of every face
+        centres : one in the middle of each region
+        samples : so many at random, uniformly by area, by `seed`
+
+        ``per_face=True`` takes each face by itself. The receivers remember their own faces (:attr:`Receivers.on`)."""
+        names = [on] if isinstance(on, str) else list(on)
+        if not names:
+            refuse("on names no patch", "receivers lie on patches", "name one")
+        if (grid is not None) + bool(vertices) + bool(centres) + (samples > 0) != 1:
+            refuse("give one of grid, vertices, centres and samples", "each places the receivers in a different way",
+                   "for example grid=(32, 32)")
+        where = ",".join(names)
+        make = _exactff.ReceiverList
+        if grid is not None:
+            u, v = (grid, grid) if isinstance(grid, int) else grid
+            made, name = make.grid(self._scene, names, u, v, per_face), f"{where}, grid {u}x{v}"
+        elif vertices:
+            made, name = make.vertices(self._scene, names), f"{where}, vertices"
+        elif centres:
+            made, name = make.centres(self._scene, names, per_face), f"{where}, centres"
+        else:
+            made, name = make.samples(self._scene, names, samples, seed), f"{where}, {samples} samples, seed {seed}"
+        return Receivers(made, name)
+
+    def read_receivers(self, path: Union[str, os.PathLike[str]]) -> Receivers:
+        """Reads a CSV file with the columns id,x,y,z,nx,ny,nz,on, or a truth file."""
+        made = _exactff.ReceiverList.read(self._scene, os.fspath(path))
+        return Receivers(made, os.path.basename(os.fspath(path)))
+
+    def receivers_at(self, points: ArrayLike, normals: ArrayLike, on: On = None, ids: Sequence[str] = ()) -> Receivers:
+        """Receivers from arrays, for :func:`exactff.truth`."""
+        shape, p, n = _arrays.receivers(points, normals)
+        if ids and len(ids) != len(p):
+            refuse(f"there are {len(ids)} ids and {len(p)} receivers", "each receiver has one", "give as many, or none")
+        made = _exactff.ReceiverList.from_arrays(p, n, self._own_faces(on, shape, p, n, 0), list(ids))
+        return Receivers(made, "arrays")
+
+    def faces_at(self, points: ArrayLike, normals: ArrayLike, tolerance: Optional[float] = None, *,
+                 threads: int = 0) -> Ints:
+        """The faces that receivers were probably meant to lie on, as (n, k) indices filled up with -1: those within
+        `tolerance` whose normals agree within a degree. An estimate. Default: about 1e-6 of the scene's size."""
+        shape, p, n = _arrays.receivers(points, normals)
+        found = _exactff.find_faces(self._scene, p, n, tolerance, _arrays.thread_count(threads))
+        return found.reshape(shape + found.shape[1:])
+
+    # --- form factors ---
+
+    @overload
+    def form_factors(self, points: ArrayLike, normals: ArrayLike, sources: Names = None, on: On = None, *,
+                     threads: int = 0, transparent: Names = None, fraction: Literal[False] = False,
+                     full: Literal[False] = False, progress: Progress = None, precision_cap: int = 65536) -> Floats: ...
+
+    @overload
+    def form_factors(self, points: ArrayLike, normals: ArrayLike, sources: Names = None, on: On = None, *,
+                     threads: int = 0, transparent: Names = None, fraction: bool = False, full: bool = False,
+                     progress: Progress = None, precision_cap: int = 65536) -> Union[Floats, FormFactors]: ...
+
+    def form_factors(self, points: ArrayLike, normals: ArrayLike, sources: Names = None, on: On = None, *,
+                     threads: int = 0, transparent: Names = None, fraction: bool = False, full: bool = False,
+                     progress: Progress = None, precision_cap: int = 65536) -> Union[Floats, FormFactors]:
+        """Exact form factors from receivers to sources.
+
+        F is the share of the diffuse light leaving a point that reaches the source directly: the integral over the
+        visible part of the source of max(0, cos th_r) max(0, cos th_s) / (pi r^2), a pure number in [0, 1].
+
+        Parameters
+        ----------
+        points : (n, 3), in the scene's unit of length; any leading shape and any strides
+        normals : (n, 3) of any length but 0, or (3,) for all; broadcast against `points`
+        sources : names ``NAME`` or ``NAME:k``; "all" for every patch; default: every patch that emits
+        on : own faces, which neither hide nor light the receiver: None, a name such as "floor" or "floor:1+2" for
+            all; "auto" (or "auto:DISTANCE") to find them; an integer array of the receivers' shape, or with one more
+            axis for several faces each, where -1 stands for none; or a list with a name, indices or None for each
+        threads : 0 for as many as this process may use; no value depends on it
+        transparent : patches or faces that hide nothing, here only
+        fraction : also compute the visible fractions; implies `full`
+        full : return :class:`FormFactors` with bounds, status and precision
+        progress : None for a bar of tqdm on a terminal; True, False, or a function of (done, total)
+        precision_cap : the largest precision, in bits
+
+        Returns
+        -------
+        (n, sources) float64. Exact: each is the true F, rounded to the nearest double. Values that could not be
+        certified raise a ModellingWarning; ``full=True`` tells which they are.
+
+        Raises InputError for arrays that are not finite or would have to be rounded, and for unknown names.
+        KeyboardInterrupt comes within half a second. The GIL is released.
+
+        Source: F. Tampieri, "Accurate Form-Factor Computation", Graphics Gems III (1992), Eq. (4).
+        """
+        scene = self if transparent is None else self.with_transparent(*_arrays_names(transparent))
+        shape, p, n = _arrays.receivers(points, normals)
+        names = self._sources(sources)
+        count = _arrays.thread_count(threads)
+        own = scene._own_faces(on, shape, p, n, count)
+        scene._warn_of_misses(p, n, own)
+        with shown(progress, "receiver") as tell:
+            value, status, lower, upper, bits, share = _exactff.form_factors(
+                scene._scene, p, n, own, names, full or fraction, fraction, _bits(precision_cap), count, tell)
+        missing = int(np.count_nonzero(status == Status.NOT_CERTIFIED))
+        if missing:
+            warn(f"{missing} of {status.size} values are not certified (the precision cap was reached); "
+                 "full=True tells which, with valid bounds")
+        size = shape + (len(names),)
+        if lower is None or upper is None or bits is None:
+            return value.reshape(size)
+        return FormFactors(value.reshape(size), lower.reshape(size), upper.reshape(size), status.reshape(size),
+                           bits.reshape(size), None if share is None else share.reshape(size), tuple(names))
+
+    def form_factor(self, point: ArrayLike, normal: ArrayLike, source: Optional[str] = None, on: On = None, *,
+                    transparent: Names = None, fraction: bool = False, digits: int = 0,
+                    precision_cap: int = 65536) -> FormFactor:
+        """The exact form factor of one pair, with its proof, an explanation and a drawing.
+
+        Parameters are those of :meth:`form_factors`. `source` may be left out if one patch emits. `digits` raises the
+        precision until so many significant digits are proved: ``f.enclosure.decimals(digits)``.
+        """
+        scene = self if transparent is None else self.with_transparent(*_arrays_names(transparent))
+        shape, p, n = _arrays.receivers(point, normal)
+        if shape != ():
+            refuse(f"there are receivers of shape {shape}", "form_factor is for one", "use form_factors")
+        own = scene._own_faces(on, shape, p, n, 1)
+        scene._warn_of_misses(p, n, own)
+        ask = _Again(scene._scene, tuple(p[0].tolist()), tuple(n[0].tolist()), [int(f) for f in own[0] if f >= 0],
+                     self._source(source))
+        return FormFactor(ask(fraction=fraction, digits=digits, precision_cap=_bits(precision_cap)), ask)
+
+    # --- names and own faces ---
+
+    def _source(self, name: Optional[str]) -> str:
+        if name is None:
+            emitters = self.emitters
+            if len(emitters) != 1:
+                refuse(f"{len(emitters)} patches emit", "without a name, the only patch that emits is the source",
+                       "name the source")
+            return emitters[0]
+        if not isinstance(name, str):
+            refuse(f"source is {name!r}", "it is the name of a patch or face", "for example 'light'")
+        return name
+
+    def _sources(self, sources: Names) -> list[str]:
+        if sources is None:
+            names = list(self.emitters)
+            if not names:
+                refuse("no patch of the scene emits", "without sources, every emitting patch is one",
+                       "name them: sources=['window']")
+            return names
+        names = _arrays_names(sources)
+        if names == ["all"] and "all" not in self.names:
+            names = [patch.name for patch in self.patches if patch.area > 0.0]
+        if not names:
+            refuse("sources is empty", "there would be no values", "name a patch, or leave it out")
+        twice = [name for i, name in enumerate(names) if name in names[:i]]
+        if twice:
+            refuse(f"the source {twice[0]!r} is named twice", "its light would count twice", "give it once")
+        return names
+
+    def _own_faces(self, on: On, shape: tuple[int, ...], p: Floats, n: Floats, threads: int) -> Ints:
+        """(receivers, k) indices, -1 for none."""
+        if on is None:
+            return np.empty((len(p), 0), np.int64)
+        if isinstance(on, str):
+            tolerance = self._automatic(on)
+            if tolerance is not False:
+                return self._found(tolerance, p, n, threads)
+            faces = np.array(self._scene.own_faces(on), np.int64)
+            return np.broadcast_to(faces, (len(p), len(faces)))
+        if isinstance(on, (list, tuple)) and any(not isinstance(one, (int, np.integer)) for one in on):
+            return self._listed(on, shape)
+        return _arrays.face_rows(_arrays.whole_numbers(on, "on"), shape, self._scene.face_count())
+
+    def _automatic(self, on: str) -> Union[None, float, Literal[False]]:
+        """The tolerance of "auto" or "auto:DISTANCE" (None: the default); False for a name."""
+        if not (on == "auto" or on.startswith("auto:")) or "auto" in self.names:
+            return False
+        if on == "auto":
+            return None
+        try:
+            tolerance = float(on[5:])
+        except ValueError:
+            tolerance = -1.0
+        if not 0.0 <= tolerance < float("inf"):
+            refuse(f"on is {on!r}", "auto:DISTANCE has a distance of at least 0", "write, for example, auto:0.001")
+        return tolerance
+
+    def _found(self, tolerance: Optional[float], p: Floats, n: Floats, threads: int) -> Ints:
+        found = _exactff.find_faces(self._scene, p, n, tolerance, threads)
+        without = int(np.count_nonzero((found < 0).all(axis=1)))
+        if without:
+            warn(f"on='auto' found no face for {without} of {len(p)} receivers, which now lie on none; "
+                 "'auto:DISTANCE' looks further away")
+        return found
+
+    def _listed(self, on: Sequence[Any], shape: tuple[int, ...]) -> Ints:
+        """One entry for each receiver: None, a name, an index, or indices."""
+        if shape != (len(on),):
+            refuse(f"on has {len(on)} entries, and there are receivers of shape {shape}",
+                   "a list gives the own faces of each receiver", "give as many entries as receivers")
+        by_name: dict[str, list[int]] = {}
+        rows: list[list[int]] = []
+        for i, one in enumerate(on):
+            if one is None or one == "":
+                rows.append([])
+            elif isinstance(one, str):
+                if one not in by_name:
+                    by_name[one] = self._scene.own_faces(one)
+                rows.append(by_name[one])
+            else:
+                rows.append(np.atleast_1d(_arrays.whole_numbers(one, f"on[{i}]")).tolist())
+        width = max(map(len, rows), default=0)
+        table = np.array([row + [-1] * (width - len(row)) for row in rows], np.int64).reshape(len(rows), width)
+        return _arrays.face_rows(table, shape, self._scene.face_count())
+
+    def _warn_of_misses(self, p: Floats, n: Floats, own: Ints) -> None:
+        """Of points a hair behind or before a face, which nobody means."""
+        step = -(-len(p) // _MOST_LOOKED_AT) if len(p) else 1
+        for sentence in _exactff.near_misses(self._scene, p[::step], n[::step], own[::step]):
+            warn(sentence)
+
+    def __repr__(self) -> str:
+        return (f"<exactff.Scene {self.name!r}: {len(self.names)} patches, {self._scene.face_count()} faces, "
+                f"{len(self.emitters)} of them emit>")
+
+
+def _patch(row: Any) -> Patch:
+    name, faces, area, front, materials, emits = row
+    return Patch(name, tuple(faces), area, front, tuple(Material(kd, ke, m) for m, kd, ke in materials), emits)
+
+
+def _arrays_names(names: Names) -> list[str]:
+    listed = [names] if isinstance(names, str) else list(names or [])
+    for name in listed:
+        if not isinstance(name, str):
+            refuse(f"{name!r} is no name", "patches and faces have names: NAME or NAME:k", "give strings")
+    return listed
+
+
+def _bits(precision_cap: int) -> int:
+    if not 32 <= precision_cap <= _MOST_BITS:
+        refuse(f"precision_cap is {precision_cap}", f"it is from 32 to {_MOST_BITS} bits", "leave it out")
+    return int(precision_cap)

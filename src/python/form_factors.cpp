@@ -1,0 +1,210 @@
+// Exact form factors: of arrays of receivers, and of one pair with everything that is known about it.
+#include "exactff/batch.h"
+#include "exactff/visibility_svg.h"
+#include "python/bindings.h"
+#include "python/interrupt.h"
+
+namespace exactff::python {
+namespace {
+
+void bind_enclosure(py::module_& module) {
+  py::class_<Enclosure>(module, "Enclosure")
+      .def_static("of", &Enclosure::of, py::arg("value"))
+      .def_property_readonly("midpoint", &Enclosure::midpoint)
+      .def_property_readonly("radius", &Enclosure::radius)
+      .def_property_readonly("lower", &Enclosure::lower)
+      .def_property_readonly("upper", &Enclosure::upper)
+      .def_property_readonly("nearest", &Enclosure::nearest)
+      .def("decimals", &Enclosure::decimals, py::arg("digits"))
+      .def("contains", py::overload_cast<double>(&Enclosure::contains, py::const_), py::arg("value"))
+      .def(
+          "plus", [](Enclosure a, const Enclosure& b) { return a += b; }, py::arg("other"))
+      .def(
+          "minus", [](Enclosure a, const Enclosure& b) { return a -= b; }, py::arg("other"));
+}
+
+// --- arrays ---
+
+template <class Value>
+using Table = py::array_t<Value>;
+
+template <class Value>
+Table<Value> table(std::size_t rows, std::size_t columns) {
+  return Table<Value>({static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(columns)});
+}
+
+// Results in arrays (receivers, sources), which threads fill without the GIL.
+class Tables {
+ public:
+  Tables(std::size_t rows, std::size_t columns, bool full, bool fraction)
+      : value_(table<double>(rows, columns)), status_(table<std::int8_t>(rows, columns)) {
+    if (full) {
+      lower_ = table<double>(rows, columns);
+      upper_ = table<double>(rows, columns);
+      bits_ = table<std::int32_t>(rows, columns);
+    }
+    if (fraction) fraction_ = table<double>(rows, columns);
+    columns_ = {value_.mutable_data(),
+                status_.mutable_data(),
+                full ? lower_->mutable_data() : nullptr,
+                full ? upper_->mutable_data() : nullptr,
+                full ? bits_->mutable_data() : nullptr,
+                fraction ? fraction_->mutable_data() : nullptr};
+  }
+
+  void set(std::size_t at, const FormFactor& f) const {
+    columns_.value[at] = f.value;
+    columns_.status[at] = static_cast<std::int8_t>(f.status);
+    if (columns_.fraction != nullptr) columns_.fraction[at] = f.visible_fraction.value_or(0.0);
+    if (columns_.lower == nullptr) return;
+    columns_.lower[at] = f.lower;
+    columns_.upper[at] = f.upper;
+    columns_.bits[at] = f.precision_bits;
+  }
+
+  // None for what was not requested.
+  [[nodiscard]] py::tuple tuple() const { return py::make_tuple(value_, status_, lower_, upper_, bits_, fraction_); }
+
+ private:
+  struct Columns {
+    double* value = nullptr;
+    std::int8_t* status = nullptr;
+    double* lower = nullptr;
+    double* upper = nullptr;
+    std::int32_t* bits = nullptr;
+    double* fraction = nullptr;
+  };
+
+  Table<double> value_;
+  Table<std::int8_t> status_;
+  std::optional<Table<double>> lower_, upper_, fraction_;
+  std::optional<Table<std::int32_t>> bits_;
+  Columns columns_;
+};
+
+// Value, status, lower, upper, bits, fraction.
+py::tuple form_factors_of(const SharedScene& scene, const Numbers& points, const Numbers& normals, const Integers& on,
+                          const std::vector<std::string>& names, bool full, bool fraction, int precision_cap,
+                          int threads, const py::object& progress) {
+  const ArrayReceivers receivers(points, normals, on);
+  std::vector<std::shared_ptr<const ExactSource>> sources;
+  std::vector<const ExactSource*> list;
+  for (const Selection& selection : scene.selections(names)) {
+    list.push_back(sources.emplace_back(scene.source(selection)).get());
+  }
+  const Tables out(receivers.count(), list.size(), full, fraction);
+  Interrupt interrupt(progress);
+  interrupt.run([&] {
+    batch::exact_form_factors(
+        scene.scene(), receivers.in_batch(), list, {.visible_fraction = fraction, .precision_cap = precision_cap},
+        {threads, interrupt.hooks()},
+        [&](std::size_t i, std::size_t s, const FormFactor& f) { out.set(i * list.size() + s, f); });
+  });
+  return out.tuple();
+}
+
+// --- one pair ---
+
+// One result, with what is needed to ask for more.
+class Pair {
+ public:
+  Pair(std::shared_ptr<const SharedScene> scene, Receiver receiver, std::shared_ptr<const ExactSource> source,
+       const ExactOptions& options)
+      : scene_(std::move(scene)), receiver_(std::move(receiver)), source_(std::move(source)) {
+    Interrupt interrupt;
+    interrupt.run([&] { exact_form_factor(scene_->scene(), receiver_, *source_, options, result_); });
+  }
+
+  [[nodiscard]] const FormFactor& result() const { return result_; }
+  [[nodiscard]] const Scene& scene() const { return scene_->scene(); }
+  [[nodiscard]] std::string source_name() const { return scene().name_of(source_->selection()); }
+
+  [[nodiscard]] std::string svg() const {
+    Interrupt interrupt;
+    return interrupt.run([&] {
+      const FormFactor drawn = exact_form_factor(scene(), receiver_, *source_, {.list_cutters = true});
+      return visibility_svg(scene(), receiver_, *source_, drawn);
+    });
+  }
+
+ private:
+  std::shared_ptr<const SharedScene> scene_;
+  Receiver receiver_;
+  std::shared_ptr<const ExactSource> source_;
+  FormFactor result_;
+};
+
+std::shared_ptr<Pair> pair_of(const std::shared_ptr<SharedScene>& scene, const std::array<double, 3>& point,
+                              const std::array<double, 3>& normal, const std::vector<std::uint32_t>& on,
+                              const std::string& source, bool fraction, bool list_cutters, int digits,
+                              int precision_cap, const std::optional<std::vector<std::uint32_t>>& only_occluders) {
+  Receiver receiver{{point[0], point[1], point[2]}, {normal[0], normal[1], normal[2]}, {}, {}};
+  for (const std::uint32_t face : on) receiver.on.push_back(static_cast<FaceId>(face));
+  std::vector<FaceId> only;
+  for (const std::uint32_t face : only_occluders.value_or(std::vector<std::uint32_t>{})) {
+    only.push_back(static_cast<FaceId>(face));
+  }
+  const ExactOptions options{.visible_fraction = fraction,
+                             .exact_fraction = fraction,
+                             .list_cutters = list_cutters,
+                             .digits = digits,
+                             .precision_cap = precision_cap,
+                             .only_occluders = only_occluders ? &only : nullptr};
+  return std::make_shared<Pair>(scene, std::move(receiver), scene->source(scene->scene().select(source)), options);
+}
+
+py::list planes_of(const Pair& pair) {
+  py::list planes;
+  for (const PlaneRecord& plane : pair.result().planes) {
+    py::list faces, notes;
+    for (const FaceId face : plane.faces) faces.append(pair.scene().name_of(face));
+    for (const StageNote& note : stages(plane)) notes.append(py::make_tuple(note.stage, note.ran, note.note));
+    planes.append(py::make_tuple(faces, std::string(to_string(decided_outcome(plane))), notes, plane.exact_fraction));
+  }
+  return planes;
+}
+
+std::vector<std::size_t> cutters_of(const Pair& pair) {
+  std::vector<std::size_t> indices;
+  for (const FaceId face : pair.result().cutters) indices.push_back(index_of(face));
+  return indices;
+}
+
+std::optional<std::string> visible_part_of(const Pair& pair) {
+  if (!pair.result().visible_part) return std::nullopt;
+  return std::string(to_string(*pair.result().visible_part));
+}
+
+void bind_pair(py::module_& module) {
+  py::class_<Pair, std::shared_ptr<Pair>>(module, "Pair")
+      .def_property_readonly("value", [](const Pair& p) { return p.result().value; })
+      .def_property_readonly("lower", [](const Pair& p) { return p.result().lower; })
+      .def_property_readonly("upper", [](const Pair& p) { return p.result().upper; })
+      .def_property_readonly("status", [](const Pair& p) { return static_cast<int>(p.result().status); })
+      .def_property_readonly("enclosure", [](const Pair& p) { return p.result().enclosure; })
+      .def_property_readonly("visible_fraction", [](const Pair& p) { return p.result().visible_fraction; })
+      .def_property_readonly("visible_part", &visible_part_of)
+      .def_property_readonly("precision_bits", [](const Pair& p) { return p.result().precision_bits; })
+      .def_property_readonly("behind", [](const Pair& p) { return behind_every_face(p.result()); })
+      .def_property_readonly("source", &Pair::source_name)
+      .def("planes", &planes_of)
+      .def("cutters", &cutters_of)
+      .def("svg", &Pair::svg);
+}
+
+}  // namespace
+
+void bind_form_factors(py::module_& module) {
+  bind_enclosure(module);
+  bind_pair(module);
+  module.def("form_factors", &form_factors_of, py::arg("scene"), py::arg("points"), py::arg("normals"), py::arg("on"),
+             py::arg("sources"), py::arg("full"), py::arg("fraction"), py::arg("precision_cap"), py::arg("threads"),
+             py::arg("progress"));
+  module.def("form_factor", &pair_of, py::arg("scene"), py::arg("point"), py::arg("normal"), py::arg("on"),
+             py::arg("source"), py::arg("fraction"), py::arg("list_cutters"), py::arg("digits"),
+             py::arg("precision_cap"), py::arg("only_occluders"));
+  module.def(
+      "status_name", [](int status) { return std::string(to_string(static_cast<Status>(status))); }, py::arg("status"));
+}
+
+}  // namespace exactff::python

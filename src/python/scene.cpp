@@ -1,0 +1,255 @@
+#include "exactff/scene.h"
+
+#include <pybind11/stl/filesystem.h>
+
+#include "exactff/diagnosis.h"
+#include "exactff/models.h"
+#include "exactff/scene_files.h"
+#include "exactff/summary.h"
+#include "python/bindings.h"
+#include "python/interrupt.h"
+
+namespace exactff::python {
+
+std::shared_ptr<const ExactSource> SharedScene::source(const Selection& selection) const {
+  constexpr std::size_t kMostKept = 256;
+  const std::string name = scene_.name_of(selection);
+  const std::lock_guard lock(mutex_);
+  if (const auto found = sources_.find(name); found != sources_.end()) return found->second;
+  if (sources_.size() >= kMostKept) sources_.clear();
+  return sources_.emplace(name, std::make_shared<const ExactSource>(scene_, selection)).first->second;
+}
+
+std::vector<Selection> SharedScene::selections(const std::vector<std::string>& names) const {
+  if (names.empty()) return scene_.emitters();
+  std::vector<Selection> selections;
+  for (const std::string& name : names) selections.push_back(scene_.select(name));
+  return selections;
+}
+
+namespace {
+
+using Shared = std::shared_ptr<SharedScene>;
+
+Shared shared(Scene scene) { return std::make_shared<SharedScene>(std::move(scene)); }
+
+SceneOptions options_of(bool by_faces, bool skip_bad_faces) {
+  return {skip_bad_faces ? BadFaces::kSkip : BadFaces::kReject, by_faces ? PatchMode::kFaces : PatchMode::kGroups};
+}
+
+Shared read_file(const std::filesystem::path& path, bool by_faces, bool skip_bad_faces) {
+  const py::gil_scoped_release released;
+  return shared(read_scene(path, options_of(by_faces, skip_bad_faces)));
+}
+
+Shared from_model(const std::string& text, bool by_faces) {
+  const py::gil_scoped_release released;
+  return shared(models::make_scene(text, options_of(by_faces, false)));
+}
+
+// Faces are runs of `corners`, face f from starts[f] to starts[f + 1].
+struct FaceArrays {
+  Integers corners, starts, patches, materials;
+};
+
+struct MaterialRow {
+  std::string name;
+  std::array<double, 3> reflectance, radiosity;
+};
+
+Shared build(const Numbers& vertices, const FaceArrays& faces, const std::vector<std::string>& patch_names,
+             const std::vector<MaterialRow>& materials, SceneOptions options) {
+  SceneBuilder builder({}, options);
+  std::vector<PatchId> patches;
+  std::vector<MaterialId> material_ids;
+  for (const std::string& name : patch_names) patches.push_back(builder.patch(name));
+  for (const MaterialRow& row : materials) {
+    const std::array<double, 3>&kd = row.reflectance, &ke = row.radiosity;
+    material_ids.push_back(builder.add_material(
+        {.name = row.name, .reflectance = {kd[0], kd[1], kd[2]}, .radiosity = {ke[0], ke[1], ke[2]}}));
+  }
+  const auto points = vertices.unchecked<2>();
+  const auto corners = faces.corners.unchecked<1>(), starts = faces.starts.unchecked<1>(),
+             patch_of = faces.patches.unchecked<1>(), material_of = faces.materials.unchecked<1>();
+  const py::gil_scoped_release released;
+  for (py::ssize_t v = 0; v < points.shape(0); ++v) builder.add_vertex({points(v, 0), points(v, 1), points(v, 2)});
+  for (py::ssize_t f = 0; f < patch_of.shape(0); ++f) {
+    std::vector<std::uint32_t> ring;
+    for (std::int64_t c = starts(f); c < starts(f + 1); ++c) ring.push_back(static_cast<std::uint32_t>(corners(c)));
+    builder.add_face(patches[static_cast<std::size_t>(patch_of(f))],
+                     material_ids[static_cast<std::size_t>(material_of(f))], {std::move(ring)});
+  }
+  return shared(builder.build());
+}
+
+std::vector<std::string> names_of(const Scene& scene, const std::vector<Selection>& selections) {
+  std::vector<std::string> names;
+  for (const Selection& selection : selections) names.push_back(scene.name_of(selection));
+  return names;
+}
+
+Numbers vertices_of(const SharedScene& self) {
+  const std::span<const Vec3> vertices = self.scene().vertices();
+  Numbers result({static_cast<py::ssize_t>(vertices.size()), py::ssize_t{3}});
+  auto out = result.mutable_unchecked<2>();
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const auto row = static_cast<py::ssize_t>(v);
+    out(row, 0) = vertices[v].x;
+    out(row, 1) = vertices[v].y;
+    out(row, 2) = vertices[v].z;
+  }
+  return result;
+}
+
+// One number of every face.
+template <class Value, class Get>
+py::array_t<Value> of_faces(const SharedScene& self, const Get& get) {
+  const std::span<const Face> faces = self.scene().faces();
+  py::array_t<Value> result(static_cast<py::ssize_t>(faces.size()));
+  Value* const out = result.mutable_data();
+  for (std::size_t f = 0; f < faces.size(); ++f) out[f] = get(faces[f]);
+  return result;
+}
+
+Numbers fronts_of(const SharedScene& self) {
+  const std::span<const Face> faces = self.scene().faces();
+  Numbers result({static_cast<py::ssize_t>(faces.size()), py::ssize_t{3}});
+  double* out = result.mutable_data();
+  for (const Face& face : faces) {
+    const Vec3 front = unit_vector(face.newell);
+    *out++ = front.x;
+    *out++ = front.y;
+    *out++ = front.z;
+  }
+  return result;
+}
+
+FaceId face_at(const Scene& scene, std::int64_t index) {
+  if (index >= 0 && static_cast<std::size_t>(index) < scene.faces().size()) return static_cast<FaceId>(index);
+  throw py::index_error("there is no face " + std::to_string(index));
+}
+
+py::list patches_of(const SharedScene& self) {
+  const Scene& scene = self.scene();
+  py::list rows;
+  for (std::size_t i = 0; i < scene.patches().size(); ++i) {
+    const auto id = static_cast<PatchId>(i);
+    const PatchSummary row = summarise(scene, id);
+    py::list faces, materials;
+    for (const FaceId face : scene.patch(id).faces) faces.append(index_of(face));
+    for (const MaterialId material : row.materials) {
+      const Material& one = scene.material(material);
+      materials.append(py::make_tuple(one.name, to_tuple(one.reflectance), to_tuple(one.radiosity)));
+    }
+    rows.append(py::make_tuple(row.name, faces, row.area,
+                               row.front ? py::object(to_tuple(*row.front)) : py::object(py::none()), materials,
+                               row.emits));
+  }
+  return rows;
+}
+
+py::list findings_of(const SharedScene& self) {
+  Interrupt interrupt;
+  const auto findings = interrupt.run([&] { return diagnosis::diagnose(self.scene()); });
+  py::list rows;
+  for (const diagnosis::Finding& finding : findings) {
+    rows.append(py::make_tuple(std::string(diagnosis::name_of(finding.kind)), shown(finding.words.message()),
+                               names_of(self.scene(), finding.objects), finding.flag));
+  }
+  return rows;
+}
+
+py::list warnings_of(const SharedScene& self) {
+  py::list rows;
+  for (const Problem& warning : self.scene().warnings()) rows.append(shown(warning.message()));
+  return rows;
+}
+
+std::vector<std::string> faces_of_shape(const SharedScene& self, int shape) {
+  std::vector<std::string> names;
+  const std::span<const Face> faces = self.scene().faces();
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const Selection face{faces[i].patch, static_cast<FaceId>(i)};
+    if (faces[i].shape == static_cast<FaceShape>(shape)) names.push_back(self.scene().name_of(face));
+  }
+  return names;
+}
+
+std::vector<std::size_t> own_faces(const SharedScene& self, const std::string& name) {
+  std::vector<std::size_t> indices;
+  for (const FaceId face : own_faces_named(self.scene(), name)) indices.push_back(index_of(face));
+  return indices;
+}
+
+Shared with_flipped(const SharedScene& self, const std::vector<std::string>& names) {
+  return shared(self.scene().with_flipped(self.selections(names)));
+}
+
+Shared with_transparent(const SharedScene& self, const std::vector<std::string>& names) {
+  return shared(self.scene().with_transparent(self.selections(names)));
+}
+
+}  // namespace
+
+void bind_scene(py::module_& module) {
+  py::class_<SharedScene, Shared>(module, "Scene")
+      .def_static("read", &read_file, py::arg("path"), py::arg("by_faces"), py::arg("skip_bad_faces"))
+      .def_static("from_model", &from_model, py::arg("text"), py::arg("by_faces"))
+      .def_static(
+          "build",
+          [](const Numbers& vertices, const Integers& corners, const Integers& starts, const Integers& patches,
+             const Integers& materials, const std::vector<std::string>& patch_names,
+             const std::vector<std::tuple<std::string, std::array<double, 3>, std::array<double, 3>>>& rows,
+             bool skip_bad_faces) {
+            std::vector<MaterialRow> list;
+            for (const auto& [name, kd, ke] : rows) list.push_back({name, kd, ke});
+            return build(vertices, {corners, starts, patches, materials}, patch_names, list,
+                         options_of(false, skip_bad_faces));
+          },
+          py::arg("vertices"), py::arg("corners"), py::arg("starts"), py::arg("patches"), py::arg("materials"),
+          py::arg("patch_names"), py::arg("material_rows"), py::arg("skip_bad_faces"))
+      .def("vertices", &vertices_of)
+      .def("areas", [](const SharedScene& s) { return of_faces<double>(s, [](const Face& f) { return f.area; }); })
+      .def("fronts", &fronts_of)
+      .def("patch_of_face",
+           [](const SharedScene& s) {
+             return of_faces<std::int64_t>(s,
+                                           [](const Face& f) { return static_cast<std::int64_t>(index_of(f.patch)); });
+           })
+      .def(
+          "rings",
+          [](const SharedScene& s, std::int64_t face) { return s.scene().face(face_at(s.scene(), face)).rings; },
+          py::arg("face"))
+      .def("face_count", [](const SharedScene& s) { return s.scene().faces().size(); })
+      .def("piece_count", [](const SharedScene& s) { return s.scene().pieces().size(); })
+      .def(
+          "face_name",
+          [](const SharedScene& s, std::int64_t face) { return s.scene().name_of(face_at(s.scene(), face)); },
+          py::arg("face"))
+      .def("own_faces", &own_faces, py::arg("name"))
+      .def(
+          "faces_of",
+          [](const SharedScene& s, const std::string& name) {
+            std::vector<std::size_t> indices;
+            for (const FaceId face : s.scene().faces_of(s.scene().select(name))) indices.push_back(index_of(face));
+            return indices;
+          },
+          py::arg("name"))
+      .def("patches", &patches_of)
+      .def("emitters", [](const SharedScene& s) { return names_of(s.scene(), s.scene().emitters()); })
+      .def("with_flipped", &with_flipped, py::arg("names"))
+      .def("with_transparent", &with_transparent, py::arg("names"))
+      .def("flipped", [](const SharedScene& s) { return names_of(s.scene(), s.scene().flipped()); })
+      .def("transparent", [](const SharedScene& s) { return names_of(s.scene(), s.scene().transparent()); })
+      .def("warnings", &warnings_of)
+      .def("findings", &findings_of)
+      .def("faces_of_shape", &faces_of_shape, py::arg("shape"))
+      .def("open_edges",
+           [](const SharedScene& s) {
+             const py::gil_scoped_release released;
+             return s.scene().open_edge_count();
+           })
+      .def("hash", [](const SharedScene& s) { return s.scene().hash(); });
+}
+
+}  // namespace exactff::python

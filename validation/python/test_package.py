@@ -1,0 +1,113 @@
+"""The package: stubs, docstrings, examples, the blocks in the documents."""
+
+import ast
+import inspect
+import pathlib
+import re
+import sys
+
+import pytest
+
+import exactff
+import exactff._exactff as compiled
+from support import CORNELL, SCENES, SOURCE, run
+
+PACKAGE = pathlib.Path(exactff.__file__).parent
+EXAMPLES = SOURCE / "src" / "python" / "examples"
+
+
+def arguments_in_docstring(function):
+    """pybind11 puts the signature into the first line."""
+    inside = function.__doc__.splitlines()[0].split("(", 1)[1].rsplit(") ->", 1)[0]
+    return [name for name in re.findall(r"(?:^|, )(\w+): ", inside) if name != "self"]
+
+
+def stubs_of(body):
+    return {node.name: node for node in body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+
+
+def compare(stub, real, where):
+    names = [argument.arg for argument in stub.args.args if argument.arg != "self"]
+    assert names == arguments_in_docstring(real), where
+
+
+def test_stubs_are_those_of_the_compiled_module():
+    tree = stubs_of(ast.parse((PACKAGE / "_exactff.pyi").read_text()).body)
+    hidden = {"__doc__", "__file__", "__loader__", "__name__", "__package__", "__spec__", "version"}
+    assert set(tree) == set(vars(compiled)) - hidden
+    for name, stub in tree.items():
+        real = getattr(compiled, name)
+        if isinstance(stub, ast.FunctionDef):
+            compare(stub, real, name)
+            continue
+        members = {key for key in vars(real) if not key.startswith("_") or key in ("__len__",)}
+        attributes = {node.target.id for node in stub.body if isinstance(node, ast.AnnAssign)}
+        methods = stubs_of(stub.body)
+        assert members == (set(methods) | attributes) - {"__init__"}, name
+        for key, method in methods.items():
+            if key in members and not isinstance(vars(real)[key], property):
+                compare(method, getattr(real, key), f"{name}.{key}")
+
+
+def public_things():
+    for name in exactff.__all__:
+        thing = getattr(exactff, name)
+        if name not in ("__version__", "methods"):
+            yield name, thing
+        if inspect.isclass(thing):
+            own = {key: value for key, value in vars(thing).items() if not key.startswith("_")}
+            yield from ((f"{name}.{key}", value) for key, value in own.items()
+                        if inspect.isfunction(value) or isinstance(value, (property, classmethod)))
+    yield from ((f"methods.{name}", getattr(exactff.methods, name)) for name in exactff.methods.__all__)
+
+
+def test_everything_public_has_a_docstring():
+    without = [name for name, thing in public_things() if not inspect.getdoc(thing)]
+    assert not without and exactff.__version__ in (SOURCE / "CMakeLists.txt").read_text()
+
+
+def test_the_map_of_the_cornell_box(tmp_path):
+    printed = run(sys.executable, EXAMPLES / "cornell_map.py", CORNELL, tmp_path / "map.png")
+    assert printed.startswith("6400 cells, brightest 0.0")
+    assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_mesh_for_paraview(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    out = tmp_path / "blocks.vtu"
+    run(sys.executable, EXAMPLES / "paraview_mesh.py", CORNELL, "tall_block", "light", out)
+    mesh = meshio.read(out)
+    scene = exactff.Scene.read(CORNELL)
+    at = scene.receivers("tall_block", centres=True, per_face=True)
+    exact = scene.form_factors(at.points, at.normals, "light", at.on)
+    assert sum(len(block.data) for block in mesh.cells) == len(exact)
+    assert sorted(v for block in mesh.cell_data["form_factor"] for v in block) == sorted(exact[:, 0])
+
+
+def test_examples_are_short():
+    assert all(len(file.read_text().splitlines()) <= 30 for file in EXAMPLES.glob("*.py"))
+
+
+def blocks(document):
+    text = (SOURCE / document).read_text()
+    return re.findall(r"```python\n(.*?)```(?:\n\nprints\n\n((?:    [^\n]*\n)+))?", text, re.S)
+
+
+def test_the_block_in_the_documents_prints_what_it_says():
+    with_output = [(code, printed) for code, printed in blocks("include/README.md") if printed]
+    code, printed = with_output[0]
+    assert len(code.splitlines()) == 10
+    expected = [line[4:] for line in printed.rstrip().splitlines()]
+    assert run(sys.executable, "-c", code, cwd=SOURCE).splitlines() == expected
+
+
+def test_the_lines_in_the_readme_run():
+    code, _ = blocks("README.md")[0]
+    assert len(code.splitlines()) <= 4
+    run(sys.executable, "-c", code, cwd=SOURCE)
+
+
+def test_the_doctest_of_the_package():
+    code = "import doctest, exactff, sys; sys.exit(doctest.testmod(exactff).failed)"
+    run(sys.executable, "-c", code, cwd=SOURCE)
+    assert SCENES.is_dir()

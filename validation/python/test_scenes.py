@@ -1,0 +1,168 @@
+"""Scenes: from files, arrays and models; what they contain; errors."""
+
+import json
+import types
+
+import numpy as np
+import pytest
+
+import exactff
+from support import BLINDS, CORNELL, SCENES, lamp_above, program, same_bits, square
+
+VERTICES = np.array(square(0.0) + square(1.0))
+
+
+def build(faces, **more):
+    return exactff.Scene(VERTICES, faces, **more)
+
+
+def test_read_takes_every_format_and_paths():
+    names = ("facet_meshio.ply", "facet_admesh.stl", "facet.vs3")
+    facet = [exactff.Scene.read(SCENES / "formats" / name) for name in names]
+    assert [len(scene.vertices) for scene in facet] == [len(facet[0].vertices)] * 3
+    assert exactff.Scene.read(CORNELL).names[0] == "floor"
+    assert "tall_block:1" in exactff.Scene.read(CORNELL, patches="faces").names
+
+
+def test_a_scene_from_arrays_is_that_of_the_file():
+    read = exactff.Scene.read(CORNELL)
+    faces = [read.rings(face)[0] for face in range(len(read.areas))]
+    materials = {patch.name: patch.materials[0] for patch in read.patches}
+    made = exactff.Scene(read.vertices, faces, read.patch_of_face, read.names, materials)
+    assert made.names == read.names and made.emitters == read.emitters == ("light",)
+    assert same_bits(made.areas, read.areas) and same_bits(made.fronts, read.fronts)
+    at = read.receivers("floor", grid=4)
+    assert same_bits(*(scene.form_factors(at.points, at.normals, "all", at.on) for scene in (made, read)))
+
+
+def test_faces_in_every_form():
+    quads = np.array([[0, 1, 2, 3], [4, 5, 6, 7]])
+    same = build(quads).hash
+    padded = np.array([4, 0, 1, 2, 3, 4, 4, 5, 6, 7])
+    for faces in (quads.tolist(), quads.astype(np.uint8), [tuple(row) for row in quads], padded, padded[::1]):
+        assert build(faces).hash == same
+    mixed = build([[0, 1, 2], [4, 5, 6, 7]])
+    assert same_bits(mixed.areas, [0.5, 1.0]) and mixed.rings(1) == [[4, 5, 6, 7]]
+    assert build(quads[:, :3]).areas.tolist() == [0.5, 0.5]
+
+
+def test_the_faces_of_a_pyvista_mesh_are_taken():
+    """PyVista is no package of Debian 12; its `faces` is this array."""
+    mesh = types.SimpleNamespace(points=VERTICES.astype(np.float32), faces=np.array([3, 0, 1, 2, 4, 4, 5, 6, 7]))
+    assert exactff.Scene(mesh.points, mesh.faces).areas.tolist() == [0.5, 1.0]
+
+
+def test_patches_and_names():
+    quads = [[0, 1, 2, 3], [4, 5, 6, 7]]
+    assert build(quads).names == ("default",) and build(quads, names="all").names == ("all",)
+    assert build(quads, patch=[7, 3]).names == ("patch_3", "patch_7")
+    assert build(quads, patch=[1, 0], names=["a", "b"]).patch_of_face.tolist() == [1, 0]
+    assert build(quads, patch=[5, 9], names={5: "x", 9: "y"}).names == ("x", "y")
+    assert build(quads, patch=["top", "bottom"]).names == ("top", "bottom")
+    lamp = build(quads, patch=["a", "b"], materials={"a": {"radiosity": (1, 2, 3)}, "b": exactff.Material(0.5)})
+    assert lamp.emitters == ("a",) and lamp.patches[1].materials[0].reflectance == (0.5, 0.5, 0.5)
+
+
+@pytest.mark.parametrize("arguments, words", [
+    (dict(faces=[[0, 1, 8]]), r"faces\[0\] has the vertex 8 \(vertices are numbered from 0 to 7\)"),
+    (dict(faces=[[0, 1, 2], [0, -1, 2]]), r"faces\[1\] has the vertex -1"),
+    (dict(faces=[[0, 1]]), r"faces\[0\] has 2 vertices"),
+    (dict(faces=np.zeros((1, 3))), "indices are whole numbers"),
+    (dict(faces=np.array([4, 0, 1, 2])), "as the number of vertices of face 0"),
+    (dict(faces=[[0, 1, 2]], patch=[0, 1]), "there are 1 faces"),
+    (dict(faces=[[0, 1, 2]], patch=[2], names=["a"]), "patch 2 has no name"),
+    (dict(faces=[[0, 1, 2]], names=["a", "b"]), "no patch of each face"),
+    (dict(faces=[[0, 1, 2]], materials={"lamp": {}}), "there is no patch 'lamp'"),
+    (dict(faces=[[0, 1, 2]], materials={"default": {"Ke": 1}}), "reflectance, radiosity and name"),
+    (dict(faces=[[0, 1, 2]], materials={"default": {"reflectance": 2}}), "from 0 to 1"),
+    (dict(faces=[[0, 1, 2]], materials={"default": {"radiosity": np.nan}}), "is nan"),
+    (dict(faces=[[0, 2, 1, 3]]), "default"),  # a bow tie
+])
+def test_bad_arrays_are_refused_with_words(arguments, words):
+    with pytest.raises(exactff.InputError, match=words):
+        exactff.Scene(VERTICES, **arguments)
+
+
+def test_skipped_faces_warn():
+    bow = np.array([[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
+    with pytest.warns(exactff.ModellingWarning):
+        scene = exactff.Scene(bow, [[0, 1, 2, 3], [0, 2, 4]], skip_bad_faces=True)
+    assert scene.report().left_out == ("default:1",)
+
+
+def test_files_with_errors(tmp_path):
+    bad = tmp_path / "bad.obj"
+    bad.write_text("v 0 0 x\nf 1 2 3\n")
+    with pytest.raises(exactff.InputError) as caught:
+        exactff.Scene.read(bad)
+    assert [problem.line for problem in caught.value.problems] == [1, 2, 2] and "bad.obj:1:" in str(caught.value)
+    with pytest.raises(exactff.InputError, match="nowhere.obj"):
+        exactff.Scene.read("nowhere.obj")
+    with pytest.raises(exactff.InputError, match="teapot"):
+        exactff.Scene.from_model("teapto")
+    with pytest.raises(exactff.InputError, match="choose"):
+        exactff.Scene.read(CORNELL, patches="face")
+
+
+def test_the_report_says_what_info_says():
+    for path in (CORNELL, BLINDS):
+        scene, info = exactff.Scene.read(path), json.loads(program("info", path, "--json"))
+        report = scene.report()
+        assert [p.name for p in report.patches] == [p["name"] for p in info["patches"]]
+        assert [p.area for p in report.patches] == [p["area"] for p in info["patches"]]
+        assert [p.front and list(p.front) for p in report.patches] == [p["front"] for p in info["patches"]]
+        assert [p.emits for p in report.patches] == [p["emits"] for p in info["patches"]]
+        assert (report.open_edges, list(report.emitters)) == (info["open_edges"], info["emitters"])
+        assert [f.message for f in report.findings] == [f["message"] for f in info["findings"]]
+        assert scene.hash == info["hash"] and all(p.name in str(report) for p in report.patches)
+
+
+def test_a_lamp_that_looks_away_is_found_and_turned():
+    vertices = square(1.0) + square(0.0, 3.0)
+    materials = {"lamp": {"radiosity": 1}}
+    wrong = exactff.Scene(vertices, [[0, 1, 2, 3], [4, 5, 6, 7]], ["lamp", "floor"], materials=materials)
+    findings = wrong.report().findings
+    assert any(f.flag == "--flip lamp" and "lamp" in f.objects for f in findings), findings
+    right = wrong.with_flipped("lamp")
+    assert right.flipped == ("lamp",) and not right.report().findings and right.fronts[0].tolist() == [0, 0, -1]
+    at = ([0, 0, 0], [0, 0, 1])
+    assert wrong.form_factors(*at, on="floor") == 0 < right.form_factors(*at, on="floor")
+    assert wrong.with_flipped() is wrong
+
+
+def test_names_and_indices():
+    scene = exactff.Scene.read(CORNELL)
+    assert scene.face_name(scene.faces_of("tall_block")[0]) == "tall_block:1"
+    assert "Scene 'cornell_box.obj': 8 patches" in repr(scene)
+    for index in (-1, 10**9):
+        with pytest.raises(IndexError, match="there is no face"):
+            scene.face_name(index)
+    with pytest.raises(exactff.InputError, match="ceiling"):
+        scene.faces_of("celing")
+
+
+def test_receivers_of_every_kind(tmp_path):
+    scene = exactff.Scene.read(CORNELL)
+    assert len(scene.receivers("floor", grid=3)) == 9 and scene.receivers("floor", grid=(2, 1)).ids == ["r1c1", "r1c2"]
+    assert len(scene.receivers(["floor", "back"], centres=True)) == 2
+    assert len(scene.receivers("tall_block", vertices=True)) == 20
+    drawn = scene.receivers("floor", samples=5, seed=3)
+    assert same_bits(drawn.points[:3], scene.receivers("floor", samples=3, seed=3).points)
+    with pytest.raises(exactff.InputError, match="give one of grid"):
+        scene.receivers("floor")
+    file = tmp_path / "r.csv"
+    file.write_text("id,x,y,z,nx,ny,nz,on\na,200,0,400,0,1,0,floor\n")
+    read = scene.read_receivers(file)
+    assert read.ids == ["a"] and read.on.tolist() == [[scene.faces_of("floor")[0]]] and "r.csv" in repr(read)
+
+
+def test_names_beyond_ascii():
+    scene = build([[0, 1, 2, 3], [4, 5, 6, 7]], patch=["Lämpchen", "床"])
+    assert scene.names == ("Lämpchen", "床")
+    with pytest.raises(exactff.InputError, match="床"):
+        scene.faces_of("床:9")
+
+
+def test_a_patch_object_of_the_lamp():
+    patch = lamp_above().patches[0]
+    assert patch[:4] == ("lamp", (0,), 1.0, (0.0, 0.0, -1.0)) and patch.emits

@@ -1,0 +1,26 @@
+"""Types, by mypy."""
+
+import os
+import pathlib
+import sys
+
+import pytest
+
+import exactff
+from support import run
+
+PACKAGE = pathlib.Path(exactff.__file__).parent
+
+
+def test_the_package_is_typed(tmp_path):
+    pytest.importorskip("mypy")
+    user = tmp_path / "user.py"
+    user.write_text("import exactff\nimport numpy as np\n"
+                    "scene = exactff.Scene.read('room.obj')\n"
+                    "values: 'np.ndarray' = scene.form_factors([[0, 0, 0]], [0, 0, 1], ['light'], on='auto')\n"
+                    "word: str = scene.form_factor([0, 0, 0], [0, 0, 1]).enclosure.midpoint\n")
+    mypy = (sys.executable, "-m", "mypy", "--cache-dir", tmp_path / "cache")
+    run(*mypy, "--strict", "-p", "exactff", cwd=PACKAGE.parent)
+    environment = {**os.environ, "MYPYPATH": str(PACKAGE.parent)}
+    run(*mypy, user, env=environment)
+    assert (PACKAGE / "py.typed").exists()

@@ -1,0 +1,99 @@
+"""Bit for bit the values of the program."""
+
+import numpy as np
+import pytest
+
+import exactff
+from support import BLINDS, CORNELL, UP, column, lamp_above, open_scene, program, same_bits, square, truth_rows
+
+STATUS = {"certified": 0, "zero": 1, "underflow": 2, "not certified": 3}
+
+CASES = [
+    (CORNELL, "floor", "12x12", ["light", "tall_block"]),
+    (BLINDS, "floor", "5x5", ["window"]),
+    ("@soup:n=60,seed=3", "floor", "6x6", ["source"]),
+    ("@lattice:n=80,seed=5", "floor", "8x8", ["source"]),
+    ("@tiles:n=40", "floor", "8x8", ["source"]),
+    ("@karkanis:n=30,seed=2", "floor", "5x5", ["source"]),
+    ("@closed-room", "floor", "6x6", ["lamp"]),
+]
+
+
+@pytest.mark.filterwarnings("ignore:.*have no area:exactff.ModellingWarning")
+@pytest.mark.parametrize("scene, on, grid, sources", CASES, ids=lambda case: str(case).split("/")[-1])
+def test_values_are_those_of_a_truth_file(tmp_path, scene, on, grid, sources):
+    file = tmp_path / "truth.csv"
+    named = [word for source in sources for word in ("--source", source)]
+    program("truth", scene, "--on", on, "--grid", grid, *named, "--fraction", "-o", file)
+    rows = truth_rows(file)
+    opened = open_scene(scene)
+    receivers = opened.receivers(on, grid=tuple(map(int, grid.split("x"))))
+    found = opened.form_factors(receivers.points, receivers.normals, sources, receivers.on, fraction=True)
+    count = len(sources)
+    assert found.value.dtype == np.float64 and found.value.shape == (len(receivers), count)
+    assert same_bits(receivers.points[:, 0], [float(row["x"]) for row in rows[::count]])
+    for name, values in [("exact", found.value), ("lower", found.lower), ("upper", found.upper),
+                         ("visible_fraction", found.fraction)]:
+        assert same_bits(values, column(rows, name, count)), name
+    assert [STATUS[row["status"]] for row in rows] == found.status.ravel().tolist()
+    assert found.value.any() and found.sources == tuple(sources)
+    plain = opened.form_factors(receivers.points, receivers.normals, sources, receivers.on)
+    assert same_bits(plain, found.value)
+
+
+@pytest.mark.filterwarnings("ignore::exactff.ModellingWarning")
+def test_degenerate_receivers_by_coordinates_give_the_bits_of_the_program(tmp_path):
+    """Points on corners, edges and planes of a scene of small whole coordinates."""
+    random = np.random.default_rng(7)
+    points = random.integers(-4, 5, (60, 3)) / 4.0
+    normals = random.integers(-2, 3, (60, 3)).astype(np.float64)
+    normals[~normals.any(axis=1)] = UP
+    file = tmp_path / "receivers.csv"
+    lines = [",".join(map(repr, [*p, *n])) for p, n in zip(points.tolist(), normals.tolist())]
+    file.write_text("x,y,z,nx,ny,nz\n" + "\n".join(lines) + "\n")
+    for model in ("@lattice:n=60,seed=2", "@tiles:n=30", "@soup:n=40,seed=9"):
+        out = tmp_path / "truth.csv"
+        program("truth", model, "--receivers", file, "--force", "-o", out)
+        scene = open_scene(model)
+        found = scene.form_factors(points, normals, full=True)
+        rows = truth_rows(out)
+        assert same_bits(found.value, column(rows, "exact", len(scene.emitters)))
+        assert [STATUS[row["status"]] for row in rows] == found.status.ravel().tolist()
+
+
+def test_threads_and_size_of_a_batch_change_no_bit():
+    scene = exactff.Scene.read(CORNELL)
+    receivers = scene.receivers("floor", grid=(20, 20))
+    one = scene.form_factors(receivers.points, receivers.normals, "all", receivers.on, threads=1)
+    assert one.shape == (400, 8)
+    for threads in (0, 2, 5):
+        many = scene.form_factors(receivers.points, receivers.normals, "all", receivers.on, threads=threads)
+        assert same_bits(one, many)
+    parts = [scene.form_factors(receivers.points[i], receivers.normals[i], "all", receivers.on[i : i + 1].ravel())
+             for i in range(5)]
+    assert same_bits(one[:5], parts)
+
+
+def tiny_lamp(side):
+    return exactff.Scene(square(1.0, side), [[3, 2, 1, 0]], names="lamp")
+
+
+def test_every_status():
+    status = exactff.Status
+    seen = lamp_above().form_factors([0, 0, 0], [0, 0, 1], full=True)
+    assert seen.status.tolist() == [status.CERTIFIED] and seen.lower[0] < seen.value[0] < seen.upper[0]
+    hidden = lamp_above((0.5, 2.0)).form_factors([0, 0, 0], [0, 0, 1], full=True, fraction=True)
+    assert hidden.status.tolist() == [status.ZERO]
+    assert (hidden.value[0], hidden.upper[0], hidden.fraction[0]) == (0.0, 0.0, 0.0)
+    far = tiny_lamp(2e-170).form_factors([0, 0, 0], [0, 0, 1], "lamp", full=True)
+    assert far.status.tolist() == [status.UNDERFLOW] and far.value[0] == 0.0 < far.upper[0]
+
+
+def test_values_that_are_not_certified_warn_and_keep_valid_bounds():
+    scene = tiny_lamp(2e-30)
+    true = scene.form_factors([0, 0, 0], [0, 0, 1], "lamp")
+    with pytest.warns(exactff.ModellingWarning, match="1 of 1 values are not certified"):
+        capped = scene.form_factors([0, 0, 0], [0, 0, 1], "lamp", full=True, precision_cap=40)
+    assert capped.status.tolist() == [exactff.Status.NOT_CERTIFIED] and capped.precision_bits.tolist() == [40]
+    assert capped.lower[0] <= true[0] <= capped.upper[0]
+    assert str(exactff.Status(3)) == "not certified"
