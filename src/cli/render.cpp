@@ -239,7 +239,7 @@ Rendered rendered(const render::Request& request, const std::optional<methods::C
   judged.method = against;
   judged.bounds = render::Bounds::kNone;
   result.judged = render::render(judged, hooks, journal);
-  result.judged_name = against->short_text();
+  result.judged_name = against->text();
   result.errors = render::errors_of(*result.judged, result.picture);
   return result;
 }

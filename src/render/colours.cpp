@@ -67,7 +67,7 @@ class Outline {
   // Of the square around the pixel, as far as it lies in the picture.
   [[nodiscard]] bool mostly_wrong(int column, int row) const {
     if (column < 0 || row < 0 || column >= size_.width || row >= size_.height) return true;  // no outline at the rim
-    constexpr int kReach = 3;
+    constexpr int kReach = 5;
     const int left = std::max(column - kReach, 0), right = std::min(column + kReach + 1, size_.width);
     const int top = std::max(row - kReach, 0), bottom = std::min(row + kReach + 1, size_.height);
     const std::uint32_t wrong = before(right, bottom) - before(left, bottom) - before(right, top) + before(left, top);
