@@ -1,6 +1,7 @@
 // Receivers: the points, with normals, for which form factors are computed.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <istream>
@@ -41,6 +42,12 @@ struct Lattice {
   GridSize size;
   double width = 0.0;   // along u, in the scene's unit; of a quadrilateral: the side between its first two corners
   double height = 0.0;  // along v
+  // Of the quadrilateral or the bounding rectangle, each rounded once: where u and v are (0, 0), (1, 0), (1, 1), (0,
+  // 1).
+  std::array<Vec3, 4> corners;
+  // The corners of a convex outline that is no quadrilateral, each rounded once; empty for any other one. It cuts
+  // cells.
+  std::vector<Vec3> convex_outline;
 };
 
 // The cell with the receiver at its centre; column and row count from 1.

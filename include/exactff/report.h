@@ -21,6 +21,10 @@ void check_output_folder(const std::filesystem::path& folder);
 // user, such as a missing gnuplot.
 std::vector<std::string> write(const study::Study& study, const std::filesystem::path& folder, const Hooks& hooks = {});
 
+// Writes the exact values, and the value and the error of each setting that was run at every receiver, for ParaView
+// (vtk::write): the settings of the adaptive algorithm, and of each method that of MethodField.
+void write_vtk(const study::Study& study, const std::filesystem::path& file, const Hooks& hooks = {});
+
 // The main result in a few sentences.
 [[nodiscard]] std::vector<std::string> headlines(const study::Study& study);
 
@@ -46,7 +50,8 @@ struct Plan {
   std::vector<std::string> experiments;  // names
   std::vector<LeftOut> left_out;         // scenes that an abridged report leaves out
   Effort effort;
-  std::string command_line;  // shown in the last section of the report
+  std::string command_line;   // shown in the last section of the report
+  std::filesystem::path vtk;  // the file of write_vtk for the only scene; empty: none
 
   // Gives the scene a name that no other has.
   void add_scene(std::string scene_title, std::shared_ptr<const Scene> scene, study::Request request,

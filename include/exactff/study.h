@@ -196,6 +196,7 @@ struct MethodField {
   std::size_t ladder = 0;
   std::size_t rung = 0;
   std::vector<double> radiosity_errors;
+  std::vector<double> form_factors;
 };
 
 // The comparison of the methods. A ladder stops before the rung whose counted work (rays, pixels, ...), at a fixed

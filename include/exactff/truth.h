@@ -105,4 +105,14 @@ Summary write(Request request, std::ostream& out, const Hooks& hooks = {});
 Summary merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& file,
               Existing existing = Existing::kRefuse, const Hooks& hooks = {});
 
+// Writes the values of a complete truth file as a NumPy array of float64 with a row for each receiver and a column for
+// each source, in the order of the file: NaN where a value is not certified. The array appears complete or not at all,
+// and replaces another file. Throws InputError if a file cannot be read or written, and Cancelled.
+void write_npy(const std::filesystem::path& truth_file, const std::filesystem::path& file, const Hooks& hooks = {});
+
+// Writes the values of a complete truth file for ParaView: see vtk::write. `request` is the one that the file was made
+// from. Visible fractions are written if the file has them.
+void write_vtk(const Request& request, const std::filesystem::path& truth_file, const std::filesystem::path& file,
+               const Hooks& hooks = {});
+
 }  // namespace exactff::truth

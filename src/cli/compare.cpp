@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/further_files.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "exactff/diagnosis.h"
@@ -14,7 +15,9 @@
 #include "flags/comparison.h"
 #include "flags/sources.h"
 #include "text/escape.h"
+#include "text/phrases.h"
 #include "text/refuse.h"
+#include "text/text_lines.h"
 
 namespace exactff::cli {
 namespace {
@@ -51,6 +54,7 @@ struct CompareArguments {
   std::string folder;
   bool resume = false;
   bool force = false;
+  FurtherFiles further;
 
   [[nodiscard]] study::Journal::Existing existing() const {
     return resume  ? study::Journal::Existing::kResume
@@ -64,6 +68,7 @@ std::string command_line(const CompareArguments& args) {
   for (const std::string& name : args.experiments) line += " --experiment " + text::shell_word(name);
   if (args.abridged) line += " --abridged";
   if (args.threads > 0) line += " --threads " + std::to_string(args.threads);
+  if (!args.further.vtk.empty()) line += " --vtk " + text::shell_word(args.further.vtk);
   return line + " -o " + text::shell_word(args.folder);
 }
 
@@ -79,6 +84,26 @@ void require_free(const CompareArguments& args) {
                     .why = "a finished result is not replaced by accident",
                     .suggestion = "name another folder, keep it with --resume if it is of the same request, or replace "
                                   "it with --force"});
+}
+
+void check_outputs(const CompareArguments& args) {
+  require_free(args);
+  check_output_folder(args.folder);
+  if (!args.further.vtk.empty() && report::is_study_file(args.scene.scene.path)) {
+    text::refuse("--vtk is given with a study file", "a VTK file shows the receivers of one scene",
+                 "compare each scene by itself, or leave out --vtk");
+  }
+  check_further_files(args.further, args.folder, args.force || args.resume);
+}
+
+// A finished report has tables only, and the files of --vtk were made before it.
+void require_vtk_of_finished(const CompareArguments& args) {
+  std::error_code ignored;
+  const std::string& file = args.further.vtk;
+  if (file.empty() || std::filesystem::exists(file, ignored)) return;
+  text::refuse(args.folder, "holds the finished report, and " + text::in_quotes(file) + " is not there",
+               "the report does not keep the values of every method at every receiver",
+               "compute both again with --force");
 }
 
 // With --resume: true if the folder is the finished result of this very request.
@@ -120,6 +145,7 @@ report::Plan plan_of(const CompareArguments& args) {
   }
   plan.add_experiments(args.experiments);
   plan.command_line = command_line(args);
+  plan.vtk = args.further.vtk;
   return plan;
 }
 
@@ -135,6 +161,7 @@ void print(const report::Outcome& outcome) {
 
 int say_where(const CompareArguments& args) {
   std::cout << "Report: " << text::printable((std::filesystem::path(args.folder) / "report.html").string()) << '\n';
+  print_further_files(args.further);
   check_output(std::cout);
   return 0;
 }
@@ -154,11 +181,11 @@ void print_warnings_of(const report::PlannedScene& planned, bool several) {
 }
 
 int run(const CompareArguments& args) {
-  require_free(args);
-  check_output_folder(args.folder);
+  check_outputs(args);
   const report::Plan plan = with_progress([&] { return plan_of(args); });
   for (const report::PlannedScene& scene : plan.scenes) print_warnings_of(scene, plan.scenes.size() > 1);
   if (is_done(args, plan)) {
+    require_vtk_of_finished(args);
     std::cerr
         << "note: the report is finished and of the same request, so it was left as it is; --force makes it anew\n";
     return say_where(args);
@@ -219,6 +246,7 @@ Command add_compare(CLI::App& app) {
   command->add_option("-o,--output", args->folder, "Folder for the report and the tables")
       ->required()
       ->type_name("DIR");
+  args->further.add_vtk_to(*command);
   CLI::Option* resume = command->add_flag("--resume", args->resume, "Continue an interrupted run, if there is one");
   command
       ->add_flag("--force", args->force, "Start again: discard the work of an interrupted run, replace a finished DIR")

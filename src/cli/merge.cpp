@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/further_files.h"
 #include "cli/long_run.h"
 #include "cli/truth_summary.h"
 #include "exactff/truth.h"
+#include "text/escape.h"
 
 namespace exactff::cli {
 namespace {
@@ -25,10 +27,12 @@ struct MergeArguments {
   std::vector<std::string> shards;
   bool force = false;
   std::string file;
+  FurtherFiles further;
 };
 
 int run(const MergeArguments& args) {
-  const std::string given_up = "exactff: interrupted; nothing was written\n";
+  check_further_files(args.further, args.file, args.force);
+  std::string given_up = "exactff: interrupted; nothing was written\n";
   const InterruptWatch watch(given_up);
   ProgressBar bar;
   const truth::Hooks hooks{.progress = [&](const Progress& progress) { bar.show(progress); },
@@ -37,13 +41,15 @@ int run(const MergeArguments& args) {
   try {
     summary = truth::merge({args.shards.begin(), args.shards.end()}, args.file,
                            args.force ? truth::Existing::kReplace : truth::Existing::kRefuse, hooks);
+    given_up = "exactff: interrupted; " + text::printable(args.file) + " is complete, the NumPy file was not written\n";
+    if (!args.further.npy.empty()) truth::write_npy(args.file, args.further.npy, hooks);
   } catch (const Cancelled&) {
     bar.clear();
     std::cerr << given_up;
     return 128 + interrupting_signal();
   }
   bar.clear();
-  return print_summary(summary, args.file);
+  return print_summary(summary, args.file, args.further);
 }
 
 }  // namespace
@@ -54,6 +60,7 @@ Command add_merge(CLI::App& app) {
   command->add_option("SHARD", args->shards, "Files written by exactff truth --shard")->required()->type_name("FILE");
   command->add_flag("--force", args->force, "Replace an existing file");
   command->add_option("-o,--output", args->file, "CSV file to write")->required()->type_name("FILE");
+  args->further.add_npy_to(*command);
   command->footer(kMergeFooter);
   return {command, [args] { return run(*args); }};
 }

@@ -13,6 +13,7 @@
 
 #include "cli/command.h"
 #include "cli/exit_code.h"
+#include "cli/further_files.h"
 #include "cli/launch.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
@@ -38,6 +39,7 @@ constexpr const char* kTruthFooter =
     "--resume continues from there. Scripts can always give --resume; a complete FILE stays as it is.\n"
     "On several machines: run `mpirun -n 4 exactff truth ...` (every process reads the scene and computes; rank 0\n"
     "writes), or start separate jobs with --shard 1/4, 2/4, ... and join their files with `exactff merge`.\n"
+    "--npy and --vtk make their files from the finished FILE; --resume makes them again, also from a merged FILE.\n"
     "In a pipe, `-` as SCENE or --receivers is standard input, and -o - is standard output.\n"
     "Exit codes: 0 done, 2 bad input, 3 done but some rows are not certified, 128 + signal when interrupted.\n"
     "\n"
@@ -59,6 +61,7 @@ struct TruthArguments {
   flags::EngineArgument engine;
   int threads = 0;
   std::string file;
+  FurtherFiles further;
 
   [[nodiscard]] bool to_standard_output() const { return file == "-"; }
   [[nodiscard]] truth::Existing existing() const {
@@ -169,6 +172,11 @@ class Narrator {
 
 // What a pipe cannot have.
 void check_standard_output(const TruthArguments& args) {
+  if (const std::vector<std::string> further = args.further.flags(); !further.empty()) {
+    throw InputError({.what = text::enumerate(further) + (further.size() == 1 ? " is" : " are") + " given with -o -",
+                      .why = "these files are made from the finished truth file",
+                      .suggestion = "name a file, for example -o truth.csv"});
+  }
   std::vector<std::string> flags;
   if (!args.shard.empty()) flags.emplace_back("--shard");
   if (args.resume) flags.emplace_back("--resume");
@@ -200,18 +208,50 @@ int write_to_standard_output(const TruthArguments& args) {
   return warn_of_uncertified(summary);
 }
 
+// Before anything that takes time.
+void check_outputs(const TruthArguments& args) {
+  truth::require_free(args.file, args.existing());
+  const std::vector<std::string> further = args.further.flags();
+  if (further.empty()) return;
+  if (!args.shard.empty()) {
+    const bool npy = args.further.vtk.empty();
+    throw InputError({.what = text::enumerate(further) + (further.size() == 1 ? " is" : " are") + " given with --shard",
+                      .why = "a shard has only a part of the rows",
+                      .suggestion = npy ? "give --npy to exactff merge"
+                                        : "after exactff merge, run this command without --shard, with --resume and -o "
+                                          "FILE for the merged file"});
+  }
+  check_further_files(args.further, args.file, args.existing() != truth::Existing::kRefuse);
+}
+
+// Returns 0, or the exit code of the signal that interrupted it.
+int write_further_files(const TruthArguments& args, const truth::Request& request, truth::Hooks hooks) {
+  const std::string words = "exactff: interrupted; " + text::printable(args.file) +
+                            " is complete; for the other files, run the same command with --resume\n";
+  const InterruptWatch watch(words);
+  try {
+    if (!args.further.npy.empty()) truth::write_npy(args.file, args.further.npy, hooks);
+    if (!args.further.vtk.empty()) truth::write_vtk(request, args.file, args.further.vtk, hooks);
+    return 0;
+  } catch (const Cancelled&) {
+    std::cerr << words;
+    return 128 + interrupting_signal();
+  }
+}
+
 int write(const TruthArguments& args, truth::Team* team) {
-  truth::require_free(args.file, args.existing());  // checked before anything that takes time
+  check_outputs(args);
   Narrator narrator;
   truth::Summary summary;
+  std::unique_ptr<Job> job;
   try {
-    const std::unique_ptr<Job> job = with_progress([&] { return job_of(args, team); });
+    job = with_progress([&] { return job_of(args, team); });
     tell_of_sources(*job);
     const InterruptWatch watch("exactff: interrupted; all finished rows are kept in " +
                                text::printable(truth::journal_of(args.file).string()) +
                                "; to continue, run the same command with --resume\n");
-    summary =
-        truth::write(std::move(job->request), args.file, args.existing(), narrator.hooks(args.slow_seconds), team);
+    truth::Request request = args.further.vtk.empty() ? std::move(job->request) : job->request;
+    summary = truth::write(std::move(request), args.file, args.existing(), narrator.hooks(args.slow_seconds), team);
   } catch (const Cancelled&) {
     narrator.tell_what_is_kept("interrupted", args.file);
     return 128 + (interrupting_signal() != 0 ? interrupting_signal() : SIGTERM);  // another rank was interrupted
@@ -219,8 +259,9 @@ int write(const TruthArguments& args, truth::Team* team) {
     narrator.tell_what_is_kept("stopped by the error below", args.file);
     throw;
   }
+  const int interrupted = write_further_files(args, job->request, narrator.hooks(args.slow_seconds));
   narrator.clear();
-  return print_summary(summary, args.file);
+  return interrupted != 0 ? interrupted : print_summary(summary, args.file, args.further);
 }
 
 // Errors are printed before the followers are dismissed: mpirun may then end this process, too.
@@ -298,6 +339,8 @@ Command add_truth(CLI::App& app) {
                    "CSV file to write; - writes to standard output, without journal, --resume or shards")
       ->required()
       ->type_name("FILE");
+  args->further.add_npy_to(*command);
+  args->further.add_vtk_to(*command);
   command->footer(kTruthFooter);
   return {command, [args] { return run(*args); }};
 }

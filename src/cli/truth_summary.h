@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cli/exit_code.h"
+#include "cli/further_files.h"
 #include "cli/output.h"
 #include "exactff/truth.h"
 #include "text/escape.h"
@@ -23,7 +24,7 @@ inline int warn_of_uncertified(const truth::Summary& summary) {
 }
 
 // Prints the summary. Returns the exit code: 3 if a row is not certified.
-inline int print_summary(const truth::Summary& summary, const std::string& file) {
+inline int print_summary(const truth::Summary& summary, const std::string& file, const FurtherFiles& further) {
   std::cout << text::counted(summary.rows, "row") << ':';
   const char* separator = " ";
   for (const Status status : {Status::kCertified, Status::kZero, Status::kUnderflow, Status::kNotCertified}) {
@@ -43,6 +44,7 @@ inline int print_summary(const truth::Summary& summary, const std::string& file)
     std::cout << "all rows were already computed\n";
   }
   std::cout << "Truth file: " << text::printable(file) << '\n';
+  print_further_files(further);
   check_output(std::cout);
   return warn_of_uncertified(summary);
 }

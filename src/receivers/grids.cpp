@@ -50,6 +50,7 @@ class RegionGrid {
     const std::vector<ExactVec3>& p = plane().points().at;
     lattice_->width = in_the_scenes_unit(length(p[1] - p[0]));
     lattice_->height = in_the_scenes_unit(length(p[3] - p[0]));
+    for (std::size_t i = 0; i < p.size(); ++i) lattice_->corners[i] = plane().rounded({p[i].x, p[i].y, p[i].z});
     const Integer whole = Integer(4) * size().u * size().v;
     for (int row = 1; row <= size().v; ++row) {
       for (int column = 1; column <= size().u; ++column) {
@@ -90,6 +91,15 @@ class RegionGrid {
     const auto [b_min, b_max] = std::minmax_element(frame.b().begin(), frame.b().end());
     lattice_->width = in_the_scenes_unit(*a_max - *a_min, length(frame.e()));
     lattice_->height = in_the_scenes_unit(*b_max - *b_min, length(frame.f()));
+    std::size_t corner = 0;
+    for (const auto& [a, b] : {std::pair{a_min, b_min}, {a_max, b_min}, {a_max, b_max}, {a_min, b_max}}) {
+      lattice_->corners[corner++] = plane().rounded(point_at(frame, mean, {*a, 1}, {*b, 1}));
+    }
+    if (plane().is_convex()) {
+      for (const ExactVec3& p : plane().points().at) {
+        lattice_->convex_outline.push_back(plane().rounded({p.x, p.y, p.z}));
+      }
+    }
     const bool lone = lattice_->region.faces.size() == 1;
     for (int row = 1; row <= size().v; ++row) {
       // Multiplies (a, b) by 2u and 2v: the centres are then integers.

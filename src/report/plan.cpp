@@ -9,6 +9,7 @@
 #include "report/identity.h"
 #include "report/report.h"
 #include "report/verdicts.h"
+#include "text/phrases.h"
 #include "text/refuse.h"
 #include "work/parallel.h"
 
@@ -104,6 +105,10 @@ Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, study::
                               : "an abridged report leaves out the scenes marked --unless-abridged",
         plan.left_out.empty() ? "add a scene or an experiment" : "remove --abridged, or mark fewer scenes");
   }
+  if (!plan.vtk.empty() && plan.scenes.size() != 1) {
+    text::refuse("the report has " + text::counted(plan.scenes.size(), "scene") + ", and --vtk one file",
+                 "a file shows the receivers of one scene", "compare each scene by itself, or leave out --vtk");
+  }
   StudyReport report;
   report.title = plan.title;
   report.command_line = plan.command_line;
@@ -115,6 +120,7 @@ Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, study::
   for (const std::string& name : plan.experiments) {
     report.chapters.push_back(run_experiment(experiments::experiment_named(name), plan.effort, journal, hooks));
   }
+  if (!plan.vtk.empty()) write_vtk(report.scenes.front().study, plan.vtk, hooks);
   Outcome outcome = outcome_of(report);
   outcome.notes = write(report, folder, hooks);
   return outcome;

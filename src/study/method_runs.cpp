@@ -230,7 +230,7 @@ class MethodRunner {
   void add_field(std::size_t l, std::size_t rungs, const PreparedMethod& prepared) {
     const Ladder& ladder = result_.ladders[l];
     if (rungs == 0 || ladder.rungs.front().method->name == "exact") return;
-    MethodField field{l, std::min(ladder.rungs.size() / 2, rungs - 1), {}};
+    MethodField field{l, std::min(ladder.rungs.size() / 2, rungs - 1), {}, {}};
     const methods::Choice& choice = ladder.rungs[field.rung];
     const std::uint64_t seed = choice.method->stochastic(choice.settings) ? 1 : 0;
     kept_.get(
@@ -238,16 +238,19 @@ class MethodRunner {
         [&] {
           const std::size_t count = study_.exact.size();
           field.radiosity_errors.assign(count, 0.0);
+          field.form_factors = field.radiosity_errors;
           work::parallel_for((count + kReceiversPerTask - 1) / kReceiversPerTask, request().threads, ladder.name,
                              hooks_, [&](std::size_t t) {
                                const auto evaluator = prepared.scene->configure(seeded(choice, seed));
                                for (std::size_t i = t * kReceiversPerTask;
                                     i < std::min((t + 1) * kReceiversPerTask, count); ++i) {
-                                 field.radiosity_errors[i] = evaluate(*evaluator, prepared, i).radiosity_error;
+                                 const Outcome outcome = evaluate(*evaluator, prepared, i);
+                                 field.radiosity_errors[i] = outcome.radiosity_error;
+                                 field.form_factors[i] = outcome.form_factor;
                                }
                              });
         },
-        [&](auto& words) { words(field.radiosity_errors); });
+        [&](auto& words) { words(field.radiosity_errors, field.form_factors); });
     result_.fields.push_back(std::move(field));
   }
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include <utility>
 
 #include "work/file.h"
+#include "work/little_endian.h"
 
 namespace exactff::work {
 
@@ -39,15 +39,6 @@ inline constexpr std::string_view kNpyType<std::uint8_t> = "|u1";
 
 // The number of elements; throws InputError if it is more than a std::size_t holds.
 [[nodiscard]] std::size_t npy_count(std::span<const std::size_t> shape);
-
-template <class T>
-[[nodiscard]] std::string little_endian(std::span<const T> values) {
-  std::string bytes(reinterpret_cast<const char*>(values.data()), values.size_bytes());
-  if constexpr (std::endian::native == std::endian::big) {
-    for (std::size_t i = 0; i < bytes.size(); i += sizeof(T)) std::reverse(&bytes[i], &bytes[i] + sizeof(T));
-  }
-  return bytes;
-}
 
 // An array that is written element by element, in C order.
 template <class T>

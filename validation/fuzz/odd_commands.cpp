@@ -253,7 +253,7 @@ class CommandWriter {
     if (random_.one_in(30)) return odd_place();
     if (table_.name == "render" && row.required)
       return one_of<std::string>(random_, {"out/image.png", "out/image.exr"});
-    if (std::regex_search(row.description, kWritten)) return "out/" + extension_named(row.names.back());
+    if (std::regex_search(row.description, kWritten)) return "out/" + written_name(row.names.back());
     if (row.names.back() == "TRUTH") return "in/truth.csv";
     if (row.names.back() == "CANDIDATE") return "in/candidate.csv";
     if (row.names.back() == "SHARD") return "in/shard" + std::to_string(++shards_) + ".csv";
@@ -261,7 +261,9 @@ class CommandWriter {
     return "in/receivers.csv";
   }
 
-  static std::string extension_named(const std::string& option) {
+  std::string written_name(const std::string& option) {
+    if (option == "--npy") return "values.npy";
+    if (option == "--vtk") return one_of<std::string>(random_, {"cells.vtp", "cells.vtu", "cells.vtp", "cells.vtk"});
     if (option == "--junit") return "junit.xml";
     if (option == "--json" || option == "--write-baseline") return option.substr(2) + ".json";
     if (option == "--double" || option == "--bounds") return option.substr(2) + ".npy";

@@ -6,6 +6,7 @@ FOLDER, FORM and EXIT CODE with tabs between: FOLDER holds stdout, stderr and th
 output is: json, plain, text, or cut where it may end anywhere. Every file below out is judged by its extension.
 """
 
+import base64
 import csv
 import html.parser
 import io
@@ -229,21 +230,33 @@ def judge_exr(data):
         raise Wrong("OpenEXR without pixels")
 
 
+def judge_vtk(data):
+    judge_xml(data)
+    for text in re.findall(rb'format="binary">\n(.*)\n</DataArray>', data):
+        try:
+            array = base64.b64decode(text, validate=True)
+        except ValueError:
+            raise Wrong("an array that is not base64") from None
+        if len(array) < 8 or int.from_bytes(array[:8], "little") != len(array) - 8:
+            raise Wrong("an array of a wrong length")
+
+
 def judge_npy(data):
     header = data[10:10 + int.from_bytes(data[8:10], "little")]
     shape = re.search(rb"'shape': \(([0-9, ]*)\)", header)
-    if not data.startswith(b"\x93NUMPY\x01\x00") or not shape:
-        raise Wrong("not NumPy")
+    if data[:8] != b"\x93NUMPY\1\0" or not shape or b"'<f8'" not in header:
+        raise Wrong("no NumPy array of doubles")
     count = 8
     for extent in shape.group(1).replace(b",", b" ").split():
         count *= int(extent)
     if len(data) != 10 + len(header) + count:
-        raise Wrong("NumPy file of a wrong length")
+        raise Wrong("a NumPy array of another size")
 
 
 SCENES = {extension: judge_scene for extension in (".obj", ".mtl", ".ply", ".stl", ".off", ".vs3")}
 JUDGES = {**SCENES, ".csv": judge_csv, ".json": judge_json, ".svg": judge_xml, ".xml": judge_xml, ".html": judge_html,
-          ".png": judge_png, ".exr": judge_exr, ".npy": judge_npy, ".part": lambda data: None}
+          ".png": judge_png, ".exr": judge_exr, ".npy": judge_npy, ".vtp": judge_vtk, ".vtu": judge_vtk,
+          ".part": lambda data: None}
 FORMS = {"json": lambda data: judge_json(data, {"front"}), "plain": judge_plain, "text": judge_words}
 
 

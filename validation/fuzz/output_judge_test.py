@@ -65,7 +65,7 @@ class Judge(unittest.TestCase):
         self.expect_file("not OpenEXR", "a.exr", b"x")
         npy = b"\x93NUMPY\x01\x00\x3a\x00{'descr': '<f8', 'fortran_order': False, 'shape': (2,), }\n"
         self.expect_file("", "a.npy", npy + bytes(16))
-        self.expect_file("wrong length", "a.npy", npy + bytes(15))
+        self.expect_file("another size", "a.npy", npy + bytes(15))
 
     def test_json(self):
         self.expect_file("", "a.json", '{"a": [1, 2e-300]}\n')
@@ -103,6 +103,17 @@ class Judge(unittest.TestCase):
         self.expect_file("column a has nan", "a.csv", "a,b\nnan,2\n")
         self.expect_file("no end", "a.csv", "a,b\n1,2")
         self.expect_file("not CSV", "a.csv", 'a,b\n"1"x,2\n')
+
+    def test_arrays(self):
+        vtk = '<VTKFile><DataArray format="binary">\n%s\n</DataArray></VTKFile>'
+        self.expect_file("", "a.vtp", vtk % "AQAAAAAAAAAH")
+        self.expect_file("wrong length", "a.vtu", vtk % "AgAAAAAAAAAH")
+        self.expect_file("not base64", "a.vtp", vtk % "A")
+        self.expect_file("not XML", "a.vtp", "<VTKFile>")
+        head = b"\x93NUMPY\1\0%c\0{'descr': '<f8', 'shape': (1, 2), }"
+        self.expect_file("", "a.npy", head % (len(head) - 11) + b"\0" * 16)
+        self.expect_file("another size", "a.npy", head % (len(head) - 11) + b"\0" * 8)
+        self.expect_file("no NumPy array", "a.npy", b"x" * 100)
 
     def test_leftovers(self):
         self.expect_file("half-written", "a.svg.whole", "")

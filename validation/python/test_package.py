@@ -67,6 +67,7 @@ def test_everything_public_has_a_docstring():
 
 
 def test_the_map_of_the_cornell_box(tmp_path):
+    pytest.importorskip("matplotlib")
     printed = run(sys.executable, EXAMPLES / "cornell_map.py", CORNELL, tmp_path / "map.png")
     assert printed.startswith("6400 cells, brightest 0.0")
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")

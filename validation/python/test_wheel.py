@@ -5,6 +5,8 @@ import pathlib
 import shutil
 import sys
 
+import pytest
+
 import exactff
 from support import SOURCE, run
 
@@ -14,6 +16,7 @@ PACKAGE = pathlib.Path(exactff.__file__).parent
 def test_a_wheel_is_installed_and_works(tmp_path):
     """From the module of this build; validation/wheel.sh compiles it."""
     tree = tmp_path / "tree" / "src" / "python"
+    pytest.importorskip("wheel")
     made = shutil.ignore_patterns("_skbuild", "build", "*.egg-info")
     shutil.copytree(SOURCE / "src" / "python", tree, ignore=made)
     shutil.copy(SOURCE / "CMakeLists.txt", tmp_path / "tree")

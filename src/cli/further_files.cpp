@@ -1,0 +1,115 @@
+#include "cli/further_files.h"
+
+#include <iostream>
+#include <system_error>
+
+#include "exactff/error.h"
+#include "exactff/vtk.h"
+#include "text/escape.h"
+#include "text/refuse.h"
+#include "work/file.h"
+
+namespace exactff::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Output {
+  std::string flag;
+  fs::path file;
+};
+
+std::vector<Output> outputs(const FurtherFiles& files) {
+  std::vector<Output> list;
+  if (!files.npy.empty()) list.push_back({"--npy", files.npy});
+  if (!files.vtk.empty()) list.push_back({"--vtk", files.vtk});
+  if (!files.vtk.empty()) list.push_back({"the scene of --vtk", vtk::scene_file(files.vtk)});
+  return list;
+}
+
+void require_regular(const Output& output) {
+  std::error_code ignored;
+  const bool folder = fs::is_directory(output.file, ignored), device = fs::is_other(output.file, ignored);
+  if (output.file != "-" && !folder && !device && output.file.has_filename()) return;
+  text::refuse(output.file,
+               std::string(folder   ? "is a folder"
+                           : device ? "is a device"
+                                    : "is not the name of a file") +
+                   " (" + output.flag + ')',
+               "the file appears when it is complete, under a name of its own", "name a file on a disk");
+}
+
+// The place itself, also of a file that does not exist yet.
+fs::path place(const fs::path& file) {
+  std::error_code error;
+  fs::path found = fs::weakly_canonical(fs::absolute(file, error), error);
+  return error ? file : found;
+}
+
+void require_apart(const Output& output, const Output& other) {
+  std::error_code ignored;
+  if (place(output.file) != place(other.file) && !fs::equivalent(output.file, other.file, ignored)) return;
+  text::refuse(output.file, "is given for two outputs (" + other.flag + " and " + output.flag + ')',
+               "one would replace the other", "name another file");
+}
+
+void require_outside(const Output& output, const fs::path& folder) {
+  const fs::path relative = place(output.file).lexically_relative(place(folder));
+  if (relative.empty() || *relative.begin() == "..") return;
+  text::refuse(output.file, "lies in the folder of the result (" + output.flag + ')',
+               "the folder appears as a whole and replaces the one before", "name a file in another folder");
+}
+
+void require_writable(const Output& output, bool may_replace) {
+  std::error_code ignored;
+  if (!may_replace && fs::exists(output.file, ignored)) {
+    text::refuse(output.file, "already exists (" + output.flag + ')', "a result is not replaced by accident",
+                 "name another file, or replace it with --force");
+  }
+  const work::WholeFile probe(output.file);
+}
+
+}  // namespace
+
+void FurtherFiles::add_npy_to(CLI::App& app) {
+  app.add_option("--npy", npy,
+                 "Also write the values as a NumPy array: float64, a row for each receiver and a column for each "
+                 "source; NaN where not certified")
+      ->type_name("FILE");
+}
+
+void FurtherFiles::add_vtk_to(CLI::App& app) {
+  app.add_option("--vtk", vtk,
+                 "Also write the values at the receivers' cells for ParaView, as NAME.vtp or NAME.vtu, and the scene "
+                 "as NAME_scene.vtp or .vtu")
+      ->type_name("FILE");
+}
+
+std::vector<std::string> FurtherFiles::flags() const {
+  std::vector<std::string> given;
+  if (!npy.empty()) given.emplace_back("--npy");
+  if (!vtk.empty()) given.emplace_back("--vtk");
+  return given;
+}
+
+void check_further_files(const FurtherFiles& files, const fs::path& result, bool may_replace) {
+  std::vector<Output> before = {{"-o", result}, {"the journal of -o", result.string() + ".part"}};
+  for (const Output& output : outputs(files)) {
+    require_regular(output);
+    if (output.flag == "--vtk") vtk::require_extension(output.file);
+    for (const Output& other : before) require_apart(output, other);
+    require_outside(output, result);
+    require_writable(output, may_replace);
+    before.push_back(output);
+  }
+}
+
+void print_further_files(const FurtherFiles& files) {
+  if (!files.npy.empty()) std::cout << "NumPy file: " << text::printable(files.npy) << '\n';
+  if (files.vtk.empty()) return;
+  std::cout << "VTK files: " << text::printable(files.vtk) << ", "
+            << text::printable(vtk::scene_file(files.vtk).string()) << '\n';
+}
+
+}  // namespace exactff::cli

@@ -1,0 +1,164 @@
+// --npy and --vtk of truth, merge and compare: what is written, resumed, interrupted and refused.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "exactff/truth.h"
+#include "support/program.h"
+
+namespace exactff {
+namespace {
+
+namespace fs = std::filesystem;
+using validation::text_of;
+using Words = std::vector<std::string>;
+
+class FurtherFiles : public testing::Test {
+ protected:
+  [[nodiscard]] std::string path(const std::string& name) const { return (directory_.path() / name).string(); }
+  [[nodiscard]] Words truth(const Words& more, const std::string& grid = "6x6") const {
+    Words words = {"truth", kScene, "--on", "floor", "--grid", grid};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  // Returns the exit code; standard error is in error().
+  int run(const Words& words) {
+    const validation::RunningProgram running(EXACTFF_PROGRAM, words, path("stderr"));
+    const int code = running.wait();
+    error_ = running.error();
+    fs::remove(path("stderr"));
+    return code;
+  }
+  void expect_refused(const Words& words, const std::string& what) {
+    EXPECT_EQ(run(words), 2) << what;
+    EXPECT_NE(error_.find(what), std::string::npos) << error_;
+    EXPECT_EQ(std::distance(fs::directory_iterator(directory_.path()), {}), before_) << error_;
+  }
+  [[nodiscard]] std::vector<double> doubles(const std::string& name) const {
+    const std::string bytes = text_of(path(name));
+    std::vector<double> values((bytes.size() - 128) / sizeof(double));
+    std::memcpy(values.data(), &bytes[128], values.size() * sizeof(double));
+    return values;
+  }
+
+  static constexpr const char* kScene = EXACTFF_DATA_DIR "/scenes/cornell_box.obj";
+  const validation::TemporaryDirectory directory_{validation::memory_folder()};
+  std::string error_;
+  long before_ = 0;
+};
+
+TEST_F(FurtherFiles, AreNotWrittenWhereTheyCannotBe) {
+  const std::string csv = path("t.csv");
+  expect_refused(truth({"-o", csv, "--npy", path("none/t.npy")}), "No such file or directory");
+  expect_refused(truth({"-o", csv, "--npy", directory_.path()}), "is a folder (--npy)");
+  expect_refused(truth({"-o", csv, "--npy", "/dev/null"}), "is a device (--npy)");
+  expect_refused(truth({"-o", csv, "--npy", "-"}), "is not the name of a file (--npy)");
+  expect_refused(truth({"-o", csv, "--vtk", path("t.vtk")}), "does not end in .vtp or .vtu");
+  expect_refused(truth({"-o", csv, "--npy", csv}), "is given for two outputs (-o and --npy)");
+  expect_refused(truth({"-o", csv, "--npy", path("./t_scene.vtp"), "--vtk", path("t.vtp")}),
+                 "is given for two outputs (--npy and the scene of --vtk)");
+  expect_refused(truth({"-o", csv, "--npy", csv + ".part"}), "is given for two outputs (the journal of -o and --npy)");
+  expect_refused(truth({"-o", "-", "--npy", path("t.npy")}), "--npy is given with -o -");
+  expect_refused(truth({"-o", "-", "--npy", path("t.npy"), "--vtk", path("t.vtp")}), "--npy and --vtk are given");
+  expect_refused(truth({"-o", csv, "--npy", path("t.npy"), "--shard", "1/2"}), "give --npy to exactff merge");
+  expect_refused(truth({"-o", csv, "--vtk", path("t.vtp"), "--shard", "1/2"}), "with --resume and -o FILE");
+  expect_refused({"compare", "some.study", "-o", path("report"), "--vtk", path("t.vtp")},
+                 "--vtk is given with a study");
+  expect_refused(
+      {"compare", kScene, "--on", "floor", "--grid", "2x2", "-o", path("report"), "--vtk", path("report/t.vtp")},
+      "lies in the folder of the result");
+}
+
+TEST_F(FurtherFiles, AreReplacedOnlyWithForceOrResume) {
+  before_ = 1;
+  for (const char* name : {"t.npy", "t_scene.vtp"}) {
+    std::ofstream(path(name)) << "precious";
+    expect_refused(truth({"-o", path("t.csv"), "--npy", path("t.npy"), "--vtk", path("t.vtp")}), "already exists");
+    EXPECT_EQ(text_of(path(name)), "precious");
+    fs::remove(path(name));
+  }
+  std::ofstream(path("t.npy")) << "old";
+  EXPECT_EQ(run(truth({"-o", path("t.csv"), "--npy", path("t.npy"), "--force"})), 0);
+  EXPECT_EQ(doubles("t.npy").size(), 36U);
+}
+
+TEST_F(FurtherFiles, HaveTheSameBytesForAnyThreadsAndAreMadeAgainByResume) {
+  const auto words = [&](const std::string& name, const Words& more) {
+    Words all = truth({"--source", "light,back", "-o", path(name + ".csv"), "--npy", path(name + ".npy"), "--vtk",
+                       path(name + ".vtu")});
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  ASSERT_EQ(run(words("a", {"--threads", "1"})), 0);
+  ASSERT_EQ(run(words("b", {"--threads", "3"})), 0);
+  fs::remove(path("b.vtu"));
+  std::ofstream(path("b.npy")) << "half";
+  ASSERT_EQ(run(words("b", {"--resume"})), 0);
+  for (const char* name : {".csv", ".npy", ".vtu", "_scene.vtu"}) {
+    EXPECT_EQ(text_of(path(std::string("a") + name)), text_of(path(std::string("b") + name))) << name;
+  }
+  EXPECT_EQ(doubles("a.npy").size(), 72U);
+}
+
+TEST_F(FurtherFiles, OfMergedShardsAreThoseOfOneRun) {
+  ASSERT_EQ(run(truth({"--source", "light,back", "-o", path("a.csv"), "--npy", path("a.npy")}, "12x12")), 0);
+  for (const char* k : {"1", "2"}) {
+    ASSERT_EQ(run(truth({"--source", "light,back", "-o", path(k), "--shard", std::string(k) + "/2"}, "12x12")), 0);
+  }
+  ASSERT_EQ(run({"merge", path("2"), path("1"), "-o", path("b.csv"), "--npy", path("b.npy")}), 0);
+  EXPECT_EQ(text_of(path("a.npy")), text_of(path("b.npy")));
+  EXPECT_EQ(run({"merge", path("2"), path("1"), "-o", path("c.csv"), "--npy", path("b.npy")}), 2);
+  EXPECT_FALSE(fs::exists(path("c.csv")));
+}
+
+TEST_F(FurtherFiles, AreWholeOrAbsentWhateverMomentASignalComes) {
+  for (int milliseconds = 5; milliseconds < 400; milliseconds *= 2) {
+    const validation::RunningProgram running(
+        EXACTFF_PROGRAM,
+        truth({"-o", path("t.csv"), "--npy", path("t.npy"), "--vtk", path("t.vtp"), "--resume"}, "60x60"),
+        path("stderr"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    running.send(SIGINT);
+    const int code = running.wait();
+    EXPECT_TRUE(code == 0 || code == 128 + SIGINT) << running.error();
+    for (const auto& entry : fs::directory_iterator(directory_.path())) {
+      EXPECT_NE(entry.path().extension(), ".whole") << milliseconds;
+    }
+  }
+  ASSERT_EQ(run(truth({"-o", path("t.csv"), "--npy", path("t.npy"), "--vtk", path("t.vtp"), "--resume"}, "60x60")), 0);
+  EXPECT_EQ(doubles("t.npy").size(), 3600U);
+}
+
+TEST_F(FurtherFiles, HaveNoNumberWhereAValueIsNotCertified) {
+  const std::string head = "# exactff\nreceiver,source,exact,lower,upper,radiosity_r,radiosity_g,radiosity_b,status\n";
+  const fs::path file = directory_.write("t.csv", head +
+                                                      "a,s,0.5,0.25,0.75,0,0,0,not certified\n"
+                                                      "a,t,0.25,0.125,0.5,0,0,0,certified\n"
+                                                      "b,s,0,0,0,0,0,0,zero\nb,t,0,0,5e-324,0,0,0,underflow\n");
+  truth::write_npy(file, path("t.npy"));
+  const std::vector<double> values = doubles("t.npy");
+  ASSERT_EQ(values.size(), 4U);
+  EXPECT_TRUE(std::isnan(values[0]));
+  EXPECT_EQ(std::vector(values.begin() + 1, values.end()), (std::vector<double>{0.25, 0.0, 0.0}));
+  EXPECT_NE(text_of(path("t.npy")).find("'shape': (2, 2), }"), std::string::npos);
+}
+
+TEST_F(FurtherFiles, AreRefusedForFilesThatHoldOtherRows) {
+  const std::string head = "# exactff\nreceiver,source,exact,lower,upper,radiosity_r,radiosity_g,radiosity_b,status\n";
+  for (const char* rows : {"a,s,0,0,0,0,0,0,zero\na,t,0,0,0,0,0,0,zero\nb,s,0,0,0,0,0,0,zero\n",  // one is missing
+                           "a,s,0,0,0,0,0,0,zero\na,t,0,0,0,0,0,0,zero\nb,u,0,0,0,0,0,0,zero\nb,s,0,0,0,0,0,0,zero\n",
+                           "a,s,0,0,0,0,0,0\n", "a,s,x,0,0,0,0,0,zero\n", "a,s,0,0,0,0,0,0,zer\n", ""}) {
+    const fs::path file = directory_.write("t.csv", head + rows);
+    EXPECT_THROW(truth::write_npy(file, path("t.npy")), InputError) << rows;
+    EXPECT_FALSE(fs::exists(path("t.npy"))) << rows;
+  }
+}
+
+}  // namespace
+}  // namespace exactff
