@@ -7,6 +7,7 @@ packages=(
   g++ cmake ninja-build
   libcgal-dev libboost-dev libgmp-dev libmpfr-dev libflint-dev libflint-arb-dev  # exact geometry, certified contour
   libembree-dev                                                                  # shadow rays
+  libopenexr-dev libpng-dev                                                      # images
   libjemalloc-dev                                                                # the program's allocator
   libcli11-dev nlohmann-json3-dev gnuplot-nox                                    # program and report
   pybind11-dev python3-dev python3-numpy                                         # the package for Python

@@ -12,11 +12,11 @@ cd "$top"
 # EXACTFF_QUICK_BUILD compiles sources together. The build with sanitizers still compiles every source by itself.
 test_optimised() {
   validation/setup.sh libboost-mpi-dev libopenmpi-dev openmpi-bin \
-    chromium chromium-driver python3-selenium clang-format \
+    chromium chromium-driver python3-selenium clang-format python3-openimageio \
     python3-pytest python3-mpmath python3-tqdm python3-matplotlib python3-meshio mypy python3-venv \
     python3-setuptools python3-wheel python3-vtk9
-  # These are for tests of a build option, of reports, of the layout, of the package for Python, and of files for
-  # ParaView.
+  # These are for tests of a build option, of reports, of the layout, of images, of the package for Python, and of files
+  # for ParaView.
   validation/build.sh build -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON -DEXACTFF_QUICK_BUILD=ON
   ctest --test-dir build --output-on-failure --parallel 2
 }

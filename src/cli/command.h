@@ -20,6 +20,7 @@ Command add_compare(CLI::App& app);
 Command add_truth(CLI::App& app);
 Command add_merge(CLI::App& app);
 Command add_check(CLI::App& app);
+Command add_render(CLI::App& app);
 Command add_stress(CLI::App& app);
 Command add_convert(CLI::App& app);
 Command add_help(CLI::App& app);

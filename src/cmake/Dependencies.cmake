@@ -4,6 +4,12 @@ set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # a project that adds this one as a f
 find_package(Threads REQUIRED)
 find_package(CGAL 5.5 REQUIRED)
 find_package(embree 3.13 REQUIRED)
+# Debian's package of Imath, which OpenEXR uses, tells at length that its library for Python is not installed.
+set(exactff_log_level ${CMAKE_MESSAGE_LOG_LEVEL})
+set(CMAKE_MESSAGE_LOG_LEVEL NOTICE)
+find_package(OpenEXR REQUIRED)
+set(CMAKE_MESSAGE_LOG_LEVEL ${exactff_log_level})
+find_package(PNG REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 include(ImportLibrary)

@@ -32,7 +32,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/validation/consumer/app/ DESTINATION ${e
 # If there is only a static library, plain `pkg-config --libs` has to name its dependencies. FLINT, Arb and Embree have
 # no .pc file in Debian 12.
 if(library_type STREQUAL "STATIC_LIBRARY")
-  set(pc_requires "mpfr gmpxx gmp")
+  set(pc_requires "OpenEXR libpng mpfr gmpxx gmp")
   set(pc_libraries " -lflint-arb -lflint -lembree3 -pthread")
 endif()
 set(pc_prefix ${CMAKE_INSTALL_PREFIX})

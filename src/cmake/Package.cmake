@@ -71,6 +71,6 @@ if(library_type STREQUAL "SHARED_LIBRARY")
   endif()
 else()
   set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-      "libgmp-dev, libmpfr-dev, libflint-dev, libflint-arb-dev, libembree-dev")  # dependencies of a static library
+      "libgmp-dev, libmpfr-dev, libflint-dev, libflint-arb-dev, libembree-dev, libopenexr-dev, libpng-dev")  # dependencies of a static library
 endif()
 include(CPack)

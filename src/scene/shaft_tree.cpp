@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include "kernel/lanes.h"
 #include "scene/scene_data.h"
@@ -95,6 +97,34 @@ ShaftTree::ShaftTree(std::span<const Box> boxes) : order_(boxes.size()) {
   build(boxes, 0, static_cast<std::uint32_t>(boxes.size()));
   boxes_.reserve(boxes.size());
   for (const std::uint32_t index : order_) boxes_.push_back(boxes[index]);
+}
+
+// Components below this are not divided by: the ray then counts as meeting the slab everywhere.
+RaySlabs::RaySlabs(const Vec3& from, const Vec3& along) {
+  constexpr double kLeast = 0x1p-500;
+  for (int i = 0; i < 3; ++i) {
+    const double slope = coordinate(along, i);
+    axes_[i] = {coordinate(from, i), std::abs(slope) >= kLeast ? 1.0 / slope : 0.0, slope == 0.0};
+  }
+}
+
+// The difference, the inverse and the product are each rounded once, so a t is within 3u (1 + 3u), u = 2^-53, of its
+// value or within 2^-1074 if it underflows. The bounds are moved outward by more than that. A difference that overflows
+// gives an infinite t; the largest double is a lower bound for it.
+double RaySlabs::entry(const Box& box) const {
+  constexpr double kMore = 1.0 + 0x1p-50, kLess = 1.0 - 0x1p-50, kTiny = 0x1p-1060;
+  double near = 0.0, far = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    const Axis& axis = axes_[i];
+    const double low = coordinate(box.low, i), high = coordinate(box.high, i);
+    if (axis.fixed && (axis.from < low || axis.from > high)) return kMissed;
+    if (axis.inverse == 0.0) continue;
+    double first = (low - axis.from) * axis.inverse, last = (high - axis.from) * axis.inverse;
+    if (axis.inverse < 0.0) std::swap(first, last);
+    near = std::max(near, first * (first > 0.0 ? kLess : kMore) - kTiny);
+    far = std::min(far, last * (last > 0.0 ? kMore : kLess) + kTiny);
+  }
+  return near <= far ? std::min(near, std::numeric_limits<double>::max()) : kMissed;
 }
 
 // Median split along the longest axis; ties by index, so that the tree is the same on every machine.

@@ -7,7 +7,9 @@
 #include <array>
 #include <boost/container/small_vector.hpp>
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "exactff/geometry.h"
@@ -48,6 +50,24 @@ class HalfSpaceGroups {
   boost::container::small_vector<Group, 3> groups_;
 };
 
+// The points from + t along, t >= 0, prepared for tests against boxes.
+class RaySlabs {
+ public:
+  RaySlabs(const Vec3& from, const Vec3& along);
+
+  // Not above the smallest t at which the ray meets the box; kMissed if it certainly meets it nowhere.
+  static constexpr double kMissed = std::numeric_limits<double>::infinity();
+  [[nodiscard]] double entry(const Box& box) const;
+
+ private:
+  struct Axis {
+    double from = 0.0;
+    double inverse = 0.0;  // 1 / along; 0: see `fixed`
+    bool fixed = false;    // along is 0: the coordinate does not change
+  };
+  std::array<Axis, 3> axes_;
+};
+
 class ShaftTree {
  public:
   ShaftTree() = default;
@@ -85,6 +105,33 @@ class ShaftTree {
         for (std::uint32_t i = node.first; i < end; ++i) {
           const std::uint64_t own = node.count > 1 ? crossed_groups(boxes_[i], apex, shaft, crossed) : crossed;
           if (own != kOutside && !visit(order_[i], own == 0 && may_be_inside)) return;
+        }
+      }
+    }
+  }
+
+  // Calls visit(index) for every box that the ray may meet at a t of at most the limit, nearer parts of the tree first.
+  // visit returns the limit for the boxes that follow.
+  template <class Visit>
+  void along_ray(const RaySlabs& ray, const Visit& visit) const {
+    if (nodes_.empty()) return;
+    double limit = std::numeric_limits<double>::max();
+    std::pair<double, std::uint32_t> stack[kDepthLimit];
+    int size = 0;
+    stack[size++] = {ray.entry(nodes_[0].box), 0};
+    while (size > 0) {
+      const auto [entry, at] = stack[--size];
+      if (entry > limit) continue;
+      const Node& node = nodes_[at];
+      if (node.count > kLeafSize) {
+        std::pair<double, std::uint32_t> near{ray.entry(nodes_[at + 1].box), at + 1};
+        std::pair<double, std::uint32_t> far{ray.entry(nodes_[node.right].box), node.right};
+        if (far.first < near.first) std::swap(near, far);
+        stack[size++] = far;
+        stack[size++] = near;
+      } else {
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+          if (ray.entry(boxes_[i]) <= limit) limit = visit(order_[i]);
         }
       }
     }

@@ -105,9 +105,9 @@ class CommandWriter {
   }
   // Without these options, a command takes seconds.
   static bool keeps_work_small(const OptionRow& row) {
-    static const std::vector<std::string> kFrugal = {"--family",        "--eps-b",        "--rays",
-                                                     "--seeds",         "--method-seeds", "--method-receivers",
-                                                     "--method-budget", "--sweep-budget", "--threads"};
+    static const std::vector<std::string> kFrugal = {
+        "--family",           "--eps-b",         "--rays",         "--seeds",   "--method-seeds",
+        "--method-receivers", "--method-budget", "--sweep-budget", "--threads", "--size"};
     return std::ranges::find(kFrugal, row.names.back()) != kFrugal.end();
   }
 
@@ -146,6 +146,13 @@ class CommandWriter {
     const bool sampled = has_any({"--eps-b", "--eps-a", "--rays", "--seed", "--pattern", "--variant"});
     if (table_.name == "point" && sampled && !has_any({"--adaptive"})) words_.emplace_back("--adaptive");
     if (table_.name == "compare" && has_any({"--method"}) && !has_any({"--sweep"})) words_.emplace_back("--sweep");
+    if (table_.name == "render") {
+      if (has_any({"--eye"}) != has_any({"--look"})) {
+        const std::string missing = has_any({"--eye"}) ? "--look" : "--eye";
+        give(*std::ranges::find_if(table_.options, [&](const OptionRow& row) { return row.names.back() == missing; }));
+      }
+      if (has_any({"--strip"}) && !has_any({"--against"})) words_.insert(words_.end(), {"--against", quick_method()});
+    }
     if (has_any({"--method-seeds", "--method-receivers", "--method-budget"})) std::erase(words_, "--no-methods");
   }
 
@@ -176,6 +183,8 @@ class CommandWriter {
     if (kind.starts_with("NAME[:K]")) return patch();
     if (kind.starts_with("UxV")) return grid();
     if (kind == "COMMAND") return random_.one_in(4) ? odd_name(random_) : one_of(random_, row.words);
+    if (kind == "WxH") return image_size();
+    if (kind.starts_with("METHOD") && table_.name == "render") return quick_method();
     if (kind.starts_with("METHOD")) return random_.one_in(20) ? odd_name(random_) : odd_method(random_);
     if (kind == "DIR") return random_.one_in(20) ? odd_place() : "out/folder";
     if (row.completion == cli::Completion::kFiles && kind != "TEXT") return file(row);
@@ -186,7 +195,8 @@ class CommandWriter {
     if (kind == "X,Y,Z" || kind == "NX,NY,NZ")
       return one_of<std::string>(random_, {"x,y,z", "x,y", "nx,ny,nz", "\"x\",y,z", "\"", "x,x,x"});
     if (kind == "N" || kind == "S" || kind == "INT" || kind == "UINT") return whole(row);
-    if (contains_any(kind, {"SECONDS", "LIMIT", "DISTANCE", "NUMBER", "SHARE", "FLOAT"})) return number();
+    if (contains_any(kind, {"SECONDS", "LIMIT", "DISTANCE", "NUMBER", "SHARE", "FLOAT", "DEGREES", "LENGTH"}))
+      return number();
     return word(row);
   }
 
@@ -225,10 +235,24 @@ class CommandWriter {
     return std::to_string(random_.integer(1, 4)) + 'x' + std::to_string(random_.integer(1, 4));
   }
 
+  std::string image_size() {
+    if (random_.one_in(15)) return odd_number(random_) + "x" + odd_number(random_);
+    return std::to_string(random_.integer(1, 6)) + 'x' + std::to_string(random_.integer(1, 6));
+  }
+
+  // For every pixel, without a budget.
+  std::string quick_method() {
+    return one_of<std::string>(
+        random_, {"hemicube:resolution=8", "adaptive:eps_B=0.5,rays=2", "nettle", "wallace", "area-sampling:samples=4",
+                  "exact", "hemicube:resolution=3", odd_name(random_)});
+  }
+
   // An output if the description says that something is written there.
   std::string file(const OptionRow& row) {
     static const std::regex kWritten(R"(\b([Ww]rite|[Dd]raw|[Rr]ecord)\b)");
     if (random_.one_in(30)) return odd_place();
+    if (table_.name == "render" && row.required)
+      return one_of<std::string>(random_, {"out/image.png", "out/image.exr"});
     if (std::regex_search(row.description, kWritten)) return "out/" + written_name(row.names.back());
     if (row.names.back() == "TRUTH") return "in/truth.csv";
     if (row.names.back() == "CANDIDATE") return "in/candidate.csv";
@@ -242,6 +266,7 @@ class CommandWriter {
     if (option == "--vtk") return one_of<std::string>(random_, {"cells.vtp", "cells.vtu", "cells.vtp", "cells.vtk"});
     if (option == "--junit") return "junit.xml";
     if (option == "--json" || option == "--write-baseline") return option.substr(2) + ".json";
+    if (option == "--double" || option == "--bounds") return option.substr(2) + ".npy";
     return option == "--svg" || option == "--plot" ? option.substr(2) + ".svg" : "table.csv";
   }
 

@@ -15,6 +15,7 @@ import pathlib
 import re
 import sys
 import xml.parsers.expat
+import zlib
 from decimal import Decimal, InvalidOperation
 
 csv.field_size_limit(1 << 30)
@@ -201,6 +202,34 @@ def judge_scene(data):
             raise Wrong("a number that is none")
 
 
+# Chunks with the right checksums, and as many bytes of pixels as the size says.
+def judge_png(data):
+    if not data.startswith(b"\x89PNG\r\n\x1a\n"):
+        raise Wrong("not PNG")
+    at, pixels, last, size = 8, b"", b"", b""
+    while at < len(data):
+        length, last = int.from_bytes(data[at:at + 4], "big"), data[at + 4:at + 8]
+        body, checksum = data[at + 8:at + 8 + length], data[at + 8 + length:at + 12 + length]
+        if zlib.crc32(last + body).to_bytes(4, "big") != checksum:
+            raise Wrong(f"PNG chunk {last} is damaged")
+        pixels += body if last == b"IDAT" else b""
+        size = body if last == b"IHDR" else size
+        at += 12 + length
+    width, height = int.from_bytes(size[:4], "big"), int.from_bytes(size[4:8], "big")
+    if last != b"IEND" or len(zlib.decompress(pixels)) != height * (1 + 3 * width):
+        raise Wrong("PNG is cut off")
+
+
+# The header, and that the table of offsets leads into the file.
+def judge_exr(data):
+    if not data.startswith(b"\x76\x2f\x31\x01\x02") or b"channels\0chlist\0" not in data:
+        raise Wrong("not OpenEXR")
+    table = data.find(b"screenWindowWidth\0float\0") + 34
+    first = int.from_bytes(data[table:table + 8], "little")
+    if not table < first < len(data):
+        raise Wrong("OpenEXR without pixels")
+
+
 def judge_vtk(data):
     judge_xml(data)
     for text in re.findall(rb'format="binary">\n(.*)\n</DataArray>', data):
@@ -214,16 +243,20 @@ def judge_vtk(data):
 
 def judge_npy(data):
     header = data[10:10 + int.from_bytes(data[8:10], "little")]
-    shape = re.search(rb"'shape': \((\d+), (\d+)\)", header)
+    shape = re.search(rb"'shape': \(([0-9, ]*)\)", header)
     if data[:8] != b"\x93NUMPY\1\0" or not shape or b"'<f8'" not in header:
-        raise Wrong("no NumPy array of doubles and two axes")
-    if len(data) - 10 - len(header) != 8 * int(shape.group(1)) * int(shape.group(2)):
+        raise Wrong("no NumPy array of doubles")
+    count = 8
+    for extent in shape.group(1).replace(b",", b" ").split():
+        count *= int(extent)
+    if len(data) != 10 + len(header) + count:
         raise Wrong("a NumPy array of another size")
 
 
 SCENES = {extension: judge_scene for extension in (".obj", ".mtl", ".ply", ".stl", ".off", ".vs3")}
 JUDGES = {**SCENES, ".csv": judge_csv, ".json": judge_json, ".svg": judge_xml, ".xml": judge_xml, ".html": judge_html,
-          ".part": lambda data: None, ".vtp": judge_vtk, ".vtu": judge_vtk, ".npy": judge_npy}
+          ".png": judge_png, ".exr": judge_exr, ".npy": judge_npy, ".vtp": judge_vtk, ".vtu": judge_vtk,
+          ".part": lambda data: None}
 FORMS = {"json": lambda data: judge_json(data, {"front"}), "plain": judge_plain, "text": judge_words}
 
 

@@ -4,6 +4,7 @@
 import pathlib
 import tempfile
 import unittest
+import zlib
 
 import output_judge
 
@@ -51,6 +52,20 @@ class Judge(unittest.TestCase):
         for text, fragment in (("0\n", ""), ("4.9e-324\n", ""), ("1.5\n", "outside"), ("nan\n", "outside"), ("x\n", "no number")):
             self.write("stdout", text)
             self.expect(fragment, form="plain")
+
+    def test_images(self):
+        def chunk(kind, body):
+            return len(body).to_bytes(4, "big") + kind + body + zlib.crc32(kind + body).to_bytes(4, "big")
+        size = (2).to_bytes(4, "big") + (1).to_bytes(4, "big") + bytes([8, 2, 0, 0, 0])
+        png = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", size) + chunk(b"IDAT", zlib.compress(bytes(7)))
+        self.expect_file("", "a.png", png + chunk(b"IEND", b""))
+        self.expect_file("cut off", "a.png", png)
+        self.expect_file("damaged", "a.png", png.replace(b"\x08\x02", b"\x08\x03") + chunk(b"IEND", b""))
+        self.expect_file("not PNG", "a.png", b"x")
+        self.expect_file("not OpenEXR", "a.exr", b"x")
+        npy = b"\x93NUMPY\x01\x00\x3a\x00{'descr': '<f8', 'fortran_order': False, 'shape': (2,), }\n"
+        self.expect_file("", "a.npy", npy + bytes(16))
+        self.expect_file("another size", "a.npy", npy + bytes(15))
 
     def test_json(self):
         self.expect_file("", "a.json", '{"a": [1, 2e-300]}\n')

@@ -171,8 +171,10 @@ void write_files(const Files& files, const fs::path& folder) {
 
 // --- the same bytes ---
 
-// In the folder of a study, only files without times are promised to be equal (exactff/study.h).
+// In the folder of a study, only files without times are promised to be equal (exactff/study.h). A strip of pictures
+// shows times, too.
 bool is_promised(const fs::path& file, const Words& words) {
+  if (words.front() == "render") return file.extension() != ".png" || !given(words, "--strip");
   if (words.front() != "compare" && words.front() != "stress") return true;
   return words.front() == "compare" && file.extension() == ".csv" &&
          std::ranges::any_of(std::array{"values", "exact", "summary"}, [&](const std::string& name) {
@@ -198,8 +200,8 @@ std::string difference(const fs::path& one, const fs::path& other, const Words& 
     if (same->second != text) return name + " has other bytes the second time";
   }
   if (first.size() != second.size()) return "other files the second time";
-  const bool prints_times =
-      words.front() == "compare" || words.front() == "truth" || words.front() == "merge" || words.front() == "stress";
+  const bool prints_times = std::ranges::any_of(std::array{"compare", "truth", "merge", "stress", "render"},
+                                                [&](const std::string& command) { return words.front() == command; });
   return !prints_times && text_of(one / "stdout") != text_of(other / "stdout") ? "stdout differs the second time" : "";
 }
 
@@ -264,8 +266,8 @@ class Trial {
   // An interrupted run, when resumed, gives the bytes of an undisturbed run.
   std::string resume() {
     const Words& last = case_.commands.back();
-    const bool can =
-        (last.front() == "truth" || last.front() == "compare") && !given(last, "--resume") && !given(last, "--force");
+    const bool can = (last.front() == "truth" || last.front() == "compare" || last.front() == "render") &&
+                     !given(last, "--resume") && !given(last, "--force");
     if (!can || ended_.code != 128 + case_.signal) return {};
     Words resumed = last;
     resumed.insert(resumed.begin() + 1,

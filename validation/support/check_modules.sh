@@ -23,6 +23,7 @@ declare -A allowed=(
   [vtk]="receivers scene work text kernel"
   [study]="methods sampled exact receivers scene work text kernel"
   [experiments]="study models methods exact page work text kernel"
+  [render]="study methods exact receivers scene work text kernel"
   [flags]="study models formats receivers exact scene text"
   [report]="flags experiments vtk study sampled exact page work text kernel"
   [stress]="sampled exact receivers scene page work text kernel"
@@ -67,7 +68,7 @@ done < <(grep -rHoE --exclude-dir=_skbuild '^#include "[a-z_]+/[a-z_]+' src incl
 
 while read -r line; do
   complain "a public header names a library: $line"
-done < <(grep -rnE --exclude-dir=_skbuild --include='*.h' '\b(CGAL|gmp|gmpxx|mpfr|flint|arb_|embree|CLI)\b' include || true)
+done < <(grep -rnE --exclude-dir=_skbuild --include='*.h' '\b(CGAL|gmp|gmpxx|mpfr|flint|arb_|embree|Imf|png_|CLI)\b' include || true)
 
 while read -r line; do
   complain "only src/kernel may call Arb: $line"

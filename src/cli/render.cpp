@@ -1,0 +1,362 @@
+// exactff render: exact images of the direct light in a scene.
+#include "exactff/render.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/exit_code.h"
+#include "cli/long_run.h"
+#include "cli/output.h"
+#include "cli/render_output.h"
+#include "flags/engine.h"
+#include "flags/lists.h"
+#include "flags/scene.h"
+#include "flags/sources.h"
+#include "text/escape.h"
+#include "text/number_text.h"
+#include "text/phrases.h"
+#include "text/refuse.h"
+#include "text/text_lines.h"
+
+namespace exactff::cli {
+namespace {
+
+constexpr const char* kRenderFooter =
+    "Each pixel shows the first face that its ray meets, decided exactly, and the light that this point receives\n"
+    "directly from all sources, correctly rounded: soft shadows without noise. IMAGE is OpenEXR (.exr, 32-bit linear\n"
+    "values) or PNG (.png, in sRGB, for looking). Backs of faces are black.\n"
+    "Without --eye and --look, the camera shows the whole scene from its most open side and is printed, so that it "
+    "can\n"
+    "be changed.\n"
+    "With --against METHOD, IMAGE shows the errors of this method: white is none, red too bright, blue too dark; "
+    "regions\n"
+    "that are wrong by over 10 % are outlined. --strip shows the picture, that of the method and the errors beside "
+    "each\n"
+    "other. A METHOD is a name with settings, as for `exactff compare`: adaptive:eps_B=0.01,rays=16.\n"
+    "Until IMAGE is complete, finished tiles are kept in IMAGE.part. After an interruption, the same command with\n"
+    "--resume continues from there. The numbers do not depend on threads or interruptions.\n"
+    "Exit codes: 0 done, 2 bad input, 3 done but some pixels are not certified, 128 + signal when interrupted.\n"
+    "\n"
+    "Examples:\n"
+    "  exactff render data/scenes/cornell_box.obj --eye 278 273 -800 --look 278 273 0 --fov 39.3 -o cornell.png\n"
+    "  exactff render data/scenes/blinds_room.obj --against hemicube --strip -o blinds.png";
+
+using ThreeNumbers = std::vector<std::string>;
+
+struct RenderArguments {
+  flags::SceneArguments scene;
+  flags::SourceArguments sources;
+  ThreeNumbers eye, look, up;
+  double fov = render::Camera{}.fov;
+  std::optional<double> ortho;
+  std::string size = "512x512";
+  int spp = 1;
+  bool two_sided = false;
+  std::string quantity = "radiance";
+  std::string ke = "radiosity";
+  std::string method, against;
+  bool strip = false;
+  bool layers = false;
+  std::optional<double> exposure;
+  std::string doubles, bounds;
+  flags::EngineArgument engine;
+  int threads = 0;
+  bool resume = false;
+  bool force = false;
+  std::string image;
+
+  [[nodiscard]] study::Journal::Existing existing() const {
+    return resume  ? study::Journal::Existing::kResume
+           : force ? study::Journal::Existing::kReplace
+                   : study::Journal::Existing::kRefuse;
+  }
+};
+
+Vec3 vector_of(const ThreeNumbers& words, const std::string& flag) {
+  return {parse_finite(words[0], flag), parse_finite(words[1], flag), parse_finite(words[2], flag)};
+}
+
+render::Size size_of(const std::string& text) {
+  const std::size_t cross = text.find('x');
+  const auto width = flags::whole_number<int>(text.substr(0, cross));
+  const auto height = cross == std::string::npos ? std::nullopt : flags::whole_number<int>(text.substr(cross + 1));
+  if (width && height) return {*width, *height};
+  text::refuse("--size: " + text::in_quotes(text) + " is not a size", "a picture has a width and a height in pixels",
+               "write WIDTHxHEIGHT: --size 512x512");
+}
+
+// The camera as far as it is given.
+render::Camera given_camera(const RenderArguments& args) {
+  render::Camera camera;
+  if (args.eye.empty() != args.look.empty()) {
+    text::refuse(std::string(args.eye.empty() ? "--look" : "--eye") + " is given without " +
+                     (args.eye.empty() ? "--eye" : "--look"),
+                 "a camera stands at one point and looks at another", "give both, or neither for a view of the whole");
+  }
+  if (!args.eye.empty()) {
+    camera.eye = vector_of(args.eye, "--eye");
+    camera.look = vector_of(args.look, "--look");
+  }
+  if (!args.up.empty()) camera.up = vector_of(args.up, "--up");
+  camera.fov = args.fov;
+  camera.ortho = args.ortho;
+  return camera;
+}
+
+render::Quantity quantity_named(const std::string& name) {
+  for (const auto quantity :
+       {render::Quantity::kRadiosity, render::Quantity::kIrradiance, render::Quantity::kFormFactor}) {
+    if (render::name_of(quantity) == name) return quantity;
+  }
+  return render::Quantity::kRadiance;
+}
+
+// What can be refused before the scene is read.
+void check_arguments(const RenderArguments& args) {
+  const render::Camera camera = given_camera(args);
+  const render::Size size = size_of(args.size);
+  if (!args.eye.empty()) render::View(camera, size);
+  const render::ImageKind kind = render::image_kind(args.image);
+  if (args.strip && args.against.empty()) {
+    text::refuse("--strip is given without --against", "a strip shows a method beside the exact picture",
+                 "add --against METHOD");
+  }
+  if (args.strip && kind == render::ImageKind::kExr) {
+    text::refuse(args.image, "a strip is a picture to look at", "an EXR file holds numbers", "name a .png file");
+  }
+  if (args.exposure && kind == render::ImageKind::kExr) {
+    text::refuse("--exposure is given with an EXR file", "its numbers are not scaled", "leave it out");
+  }
+  if (args.exposure && !args.against.empty() && !args.strip) {
+    text::refuse("--exposure is given with --against", "errors have a colour scale of their own", "leave it out");
+  }
+  if (args.layers && (kind != render::ImageKind::kExr || !args.against.empty())) {
+    text::refuse("--layers needs an EXR file and no --against", "a PNG file and a picture of errors have no layers",
+                 "name a .exr file, without --against");
+  }
+  check_files({args.image}, {args.doubles, args.bounds});
+}
+
+// Checked before the scene is read, since the name may be misspelt.
+std::optional<methods::Choice> method_named(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  return methods::parse(text);
+}
+
+render::Request request_of(const RenderArguments& args, const Scene& scene, std::optional<methods::Choice> method) {
+  render::Request request{.scene = &scene};
+  request.scene_name = args.scene.from_standard_input() ? std::string(flags::kStandardInput)
+                                                        : std::filesystem::path(args.scene.path).filename().string();
+  const render::Size size = size_of(args.size);
+  render::Camera camera = given_camera(args);
+  if (args.eye.empty()) camera = render::default_camera(scene, camera, size);
+  request.view = render::View(camera, size);
+  request.sources = flags::sources_of(args.sources, scene);
+  request.method = std::move(method);
+  request.quantity = quantity_named(args.quantity);
+  request.ke = args.ke == "radiance" ? render::KeMeans::kRadiance : render::KeMeans::kRadiosity;
+  request.sides = args.two_sided ? render::Sides::kBoth : render::Sides::kFront;
+  request.spp = args.spp;
+  request.bounds = args.bounds.empty() ? render::Bounds::kNone : render::Bounds::kAll;
+  request.layers = args.layers ? render::Layers::kAll : render::Layers::kNone;
+  request.engine = args.engine.engine();
+  request.threads = args.threads;
+  return request;
+}
+
+// Everything that the tiles depend on.
+std::string identity_of(const render::Request& request, const std::optional<methods::Choice>& against) {
+  std::string all = request.scene->hash() + '\n' + render::flags_of(request.view) + '\n' +
+                    std::string(render::name_of(request.quantity)) + '\n';
+  for (const Selection& source : request.sources) all += request.scene->name_of(source) + '\n';
+  all += (request.method ? request.method->text() : "exact") + '\n' + (against ? against->text() : "") + '\n';
+  for (const int number : {static_cast<int>(request.ke), static_cast<int>(request.sides), request.spp,
+                           static_cast<int>(request.bounds), static_cast<int>(request.layers)}) {
+    all += std::to_string(number) + ' ';
+  }
+  return all;
+}
+
+// The journal beside the image. A device has none. Its first record says to which image its tiles belong.
+class Kept {
+ public:
+  Kept(const RenderArguments& args, const std::string& identity) {
+    constexpr const char* kRequest = "request";
+    std::error_code ignored;
+    if (std::filesystem::is_other(args.image, ignored)) return;
+    journal_.emplace(study::journal_of_folder(args.image), args.existing());
+    const std::optional<std::string> found = journal_->find(kRequest);
+    if (found && *found != identity) {
+      throw InputError({.file = journal_->path().string(),
+                        .what = "holds finished tiles of another image",
+                        .why = "tiles of different images cannot be mixed",
+                        .suggestion = "use the same flags as before, name another image, or start again with --force"});
+    }
+    if (!found) journal_->add(kRequest, identity);
+    before_ = journal_->size() - 1;
+  }
+  ~Kept() {
+    if (journal_ && !has_some()) journal_->remove();
+  }
+  Kept(const Kept&) = delete;
+  Kept& operator=(const Kept&) = delete;
+
+  [[nodiscard]] study::Journal* journal() { return journal_ ? &*journal_ : nullptr; }
+  [[nodiscard]] std::string words() const {
+    if (!journal_) return "nothing is kept\n";
+    return "finished tiles are kept in " + text::printable(journal_->path().string()) +
+           "; to continue, run the same command with --resume\n";
+  }
+  [[nodiscard]] bool has_some() const { return journal_ && journal_->size() > 1; }
+  void done() {
+    if (!journal_) return;
+    journal_->remove();
+    if (before_ > 0) {
+      std::cerr << "note: " << text::counted(before_, "finished tile") << (before_ == 1 ? " was" : " were")
+                << " reused\n";
+    }
+  }
+
+ private:
+  std::optional<study::Journal> journal_;
+  std::size_t before_ = 0;
+};
+
+Rendered rendered(const render::Request& request, const std::optional<methods::Choice>& against, const Hooks& hooks,
+                  study::Journal* journal) {
+  Rendered result{.picture = render::render(request, hooks, journal)};
+  if (!against) return result;
+  render::Request judged = request;
+  judged.method = against;
+  judged.bounds = render::Bounds::kNone;
+  result.judged = render::render(judged, hooks, journal);
+  result.judged_name = against->text();
+  result.errors = render::errors_of(*result.judged, result.picture);
+  return result;
+}
+
+int run(const RenderArguments& args) {
+  check_arguments(args);
+  const auto method = method_named(args.method), against = method_named(args.against);
+  const Scene scene = with_progress([&] { return args.scene.load(); });
+  print_warnings(scene.warnings());
+  const render::Request request = with_progress([&] { return request_of(args, scene, method); });
+  const std::string note = flags::note_on_sources_without_emission(scene, request.sources);
+  if (!note.empty()) std::cerr << "note: " << text::printable(note) << '\n';
+  Kept kept(args, identity_of(request, against));
+  const InterruptWatch watch("exactff: interrupted; " + kept.words());
+  ProgressBar bar;
+  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  const RenderFiles files{args.image, args.doubles, args.bounds, args.exposure, args.strip};
+  Rendered result;
+  try {
+    result = rendered(request, against, hooks, kept.journal());
+    bar.clear();
+    leave_if_interrupted();
+    write_files(files, result);
+  } catch (const Cancelled&) {
+    bar.clear();
+    std::cerr << "exactff: interrupted; " << (kept.has_some() ? kept.words() : "nothing was written\n");
+    return 128 + interrupting_signal();
+  }
+  kept.done();
+  print_rendered(request, result, files, args.eye.empty());
+  check_output(std::cout);
+  return warn_of_uncertified_points(result);
+}
+
+std::string three_numbers(const std::string& text) {
+  return text.starts_with("--") ? "needs three numbers; found '" + text + "' among them" : "";
+}
+
+std::string is_positive(const std::string& text) {
+  const text::ParsedNumber number = text::parse_number(text);
+  return number.fault == text::NumberFault::kNone && number.value > 0.0 ? ""
+                                                                        : "'" + text + "' is not a positive number";
+}
+
+void add_camera_flags(CLI::App& app, RenderArguments& args) {
+  const auto add_vector = [&](const std::string& flag, ThreeNumbers& numbers, const std::string& meaning) {
+    app.add_option(flag, numbers, meaning)->expected(3)->type_name("X Y Z")->check(three_numbers);
+  };
+  add_vector("--eye", args.eye, "Where the camera stands (default: where it shows the whole scene)");
+  add_vector("--look", args.look, "The point that it looks at");
+  add_vector("--up", args.up, "The direction that points upwards in the picture (default: 0 1 0)");
+  app.add_option("--fov", args.fov, "Vertical angle of view in degrees")
+      ->capture_default_str()
+      ->type_name("DEGREES")
+      ->check(is_positive);
+  app.add_option("--ortho", args.ortho, "Parallel rays; the picture has this height in the scene's unit")
+      ->type_name("LENGTH")
+      ->check(is_positive);
+  app.add_option("--size", args.size, "Width and height in pixels")->type_name("WxH")->capture_default_str();
+  app.add_option("--spp", args.spp,
+                 "Anti-aliasing: a pixel is the mean of the exact values at the centres of N x N parts of it")
+      ->check(CLI::Range(1, 64))
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+void add_value_flags(CLI::App& app, RenderArguments& args) {
+  app.add_flag("--two-sided", args.two_sided, "Light the backs of faces, too, instead of showing them black");
+  app.add_option("--quantity", args.quantity,
+                 "What a pixel holds: the radiance B / pi, the radiosity B, the irradiance, or the sum of form factors")
+      ->check(CLI::IsMember({"radiance", "radiosity", "irradiance", "form-factor"}))
+      ->capture_default_str();
+  app.add_option("--ke", args.ke, "What Ke means in the scene")
+      ->check(CLI::IsMember({"radiosity", "radiance"}))
+      ->capture_default_str();
+  app.add_option("--method", args.method, "Render by this method instead of exactly")->type_name("METHOD");
+  app.add_option("--against", args.against, "Show and print the errors of this method")->type_name("METHOD");
+  app.add_flag("--strip", args.strip, "With --against: the picture, that of the method and the errors side by side");
+}
+
+void add_output_flags(CLI::App& app, RenderArguments& args) {
+  app.add_flag("--layers", args.layers,
+               "EXR: add form factor, visible part and fraction of each source, position, normal, distance, face and "
+               "patch");
+  app.add_option("--exposure", args.exposure, "PNG: multiply by this factor (default: the 99th percentile becomes 0.8)")
+      ->type_name("NUMBER")
+      ->check(is_positive);
+  app.add_option(
+         "--double", args.doubles,
+         "Also write the numbers as a NumPy file of doubles, shape (height, width, 3), NaN where nothing is met")
+      ->type_name("FILE");
+  app.add_option("--bounds", args.bounds,
+                 "Also write their proved bounds as a NumPy file, shape (2, height, width, 3): lower, upper")
+      ->type_name("FILE");
+}
+
+}  // namespace
+
+Command add_render(CLI::App& app) {
+  auto args = std::make_shared<RenderArguments>();
+  CLI::App* command = app.add_subcommand("render", "Render an exact image of the direct light, with soft shadows");
+  args->scene.add_to(*command);
+  add_camera_flags(*command, *args);
+  flags::add_source_options(*command, args->sources);
+  add_value_flags(*command, *args);
+  add_output_flags(*command, *args);
+  args->engine.add_to(*command);
+  command->add_option("--threads", args->threads, "Number of threads (default: all); it does not affect the values")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+  command->add_option("-o,--output", args->image, "Image to write, .exr or .png; an existing one is replaced")
+      ->required()
+      ->type_name("FILE");
+  CLI::Option* resume = command->add_flag("--resume", args->resume, "Continue an interrupted run, if there is one");
+  command->add_flag("--force", args->force, "Start again: discard the tiles of an interrupted run")->excludes(resume);
+  command->footer(kRenderFooter);
+  return {command, [args] { return run(*args); }};
+}
+
+}  // namespace exactff::cli

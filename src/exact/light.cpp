@@ -1,0 +1,100 @@
+#include "exact/light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kernel/float_environment.h"
+
+namespace exactff::exact {
+namespace {
+
+double component(const Rgb& colour, int channel) {
+  return channel == 0 ? colour.r : channel == 1 ? colour.g : colour.b;
+}
+
+constexpr long kFirstBits = 128;  // more than the balls of the double-double tier have
+constexpr int kFirstDigits = 40;
+constexpr int kMostDigits = 20000;  // more than 65,536 bits determine
+
+CertifiedNumber certified(double value) {
+  return {value, std::max(0.0, std::nextafter(value, -1.0)),
+          std::nextafter(value, std::numeric_limits<double>::infinity()), true};
+}
+
+CertifiedNumber not_certified(const Ball& ball) {
+  const Enclosure enclosure(ball);
+  return {kernel::nearest_to_midpoint(ball), std::max(0.0, enclosure.lower()), enclosure.upper(), false};
+}
+
+}  // namespace
+
+Light::Light(const Scene& scene, std::span<const Selection> sources, std::vector<Rgb> radiosities)
+    : scene_(scene), radiosities_(std::move(radiosities)) {
+  for (const Selection& source : sources) sources_.emplace_back(scene, source);
+}
+
+Channels Light::at(const Receiver& receiver, const LightFormula& formula, const ExactOptions& options,
+                   Results& results) const {
+  const kernel::StandardArithmetic arithmetic;
+  results.factors.resize(sources_.size());
+  results.finer.clear();
+  for (std::size_t s = 0; s < sources_.size(); ++s) {
+    exact_form_factor(scene_, receiver, sources_[s], options, results.factors[s], results.workspace);
+  }
+  Channels channels;
+  for (int c = 0; c < 3; ++c) {
+    int same = 0;
+    while (same < c && !same_weights(formula, same, c)) ++same;
+    channels[c] = same < c ? channels[same] : channel(receiver, formula, c, options, results);
+  }
+  return channels;
+}
+
+bool Light::same_weights(const LightFormula& formula, int a, int b) const {
+  return component(formula.emitted, a) == component(formula.emitted, b) &&
+         component(formula.reflectance, a) == component(formula.reflectance, b) &&
+         std::ranges::all_of(radiosities_, [&](const Rgb& r) { return component(r, a) == component(r, b); });
+}
+
+bool Light::is_zero(const std::vector<FormFactor>& factors, const LightFormula& formula, int channel) const {
+  if (component(formula.emitted, channel) != 0.0) return false;
+  if (component(formula.reflectance, channel) == 0.0) return true;
+  for (std::size_t s = 0; s < factors.size(); ++s) {
+    if (factors[s].status != Status::kZero && component(radiosities_[s], channel) != 0.0) return false;
+  }
+  return true;
+}
+
+Ball Light::ball(const std::vector<FormFactor>& factors, const LightFormula& formula, int channel, long bits) const {
+  Ball received(bits);
+  for (std::size_t s = 0; s < factors.size(); ++s) {
+    if (factors[s].status == Status::kZero) continue;
+    received.add_product(kernel::to_ball(component(radiosities_[s], channel), bits), factors[s].enclosure.ball());
+  }
+  Ball leaving = kernel::to_ball(component(formula.emitted, channel), bits);
+  leaving.add_product(kernel::to_ball(component(formula.reflectance, channel), bits), received);
+  return formula.pi_power == 0  ? leaving
+         : formula.pi_power > 0 ? leaving * kernel::pi(bits)
+                                : leaving / kernel::pi(bits);
+}
+
+CertifiedNumber Light::channel(const Receiver& receiver, const LightFormula& formula, int channel,
+                               const ExactOptions& options, Results& results) const {
+  if (is_zero(results.factors, formula, channel)) return {};
+  Ball best = ball(results.factors, formula, channel, kFirstBits);
+  if (const auto nearest = Enclosure(best).nearest()) return certified(*nearest);
+  ExactOptions finer = options;
+  finer.visible_fraction = finer.exact_fraction = finer.list_cutters = false;
+  results.finer.resize(sources_.size());
+  for (finer.digits = kFirstDigits; finer.digits <= kMostDigits; finer.digits *= 2) {
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      exact_form_factor(scene_, receiver, sources_[s], finer, results.finer[s], results.workspace);
+    }
+    best = ball(results.finer, formula, channel, 4L * finer.digits + kFirstBits);
+    if (const auto nearest = Enclosure(best).nearest()) return certified(*nearest);
+  }
+  return not_certified(best);
+}
+
+}  // namespace exactff::exact

@@ -1,0 +1,63 @@
+// The light of several sources at one point: sums of form factors with weights, correctly rounded in each channel.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "exactff/exact.h"
+#include "kernel/ball.h"
+
+namespace exactff::exact {
+
+// One channel is  pi^pi_power (emitted + reflectance * sum over sources of radiosity * F).
+struct LightFormula {
+  Rgb emitted = {};
+  Rgb reflectance{1.0, 1.0, 1.0};
+  int pi_power = 0;  // -1, 0 or 1
+};
+
+struct CertifiedNumber {
+  double value = 0.0;  // correctly rounded if certified
+  double lower = 0.0;  // if certified, the neighbours of value; both 0 if the number is proved to be 0
+  double upper = 0.0;
+  bool certified = true;
+};
+using Channels = std::array<CertifiedNumber, 3>;
+
+// The sources with their weights. Immutable; threads may share it. Keeps a reference to the scene.
+class Light {
+ public:
+  // `radiosities`: one for each source, finite and not negative.
+  Light(const Scene& scene, std::span<const Selection> sources, std::vector<Rgb> radiosities);
+
+  // Objects that a thread reuses from point to point.
+  struct Results {
+    std::vector<FormFactor> factors;  // of the last point, by source
+    std::vector<FormFactor> finer;    // the same with more digits, where a channel needed them
+    Workspace workspace;
+  };
+
+  // Computes all form factors, then the channels. Numbers in the formula must be finite and not negative.
+  //
+  // Raises the precision until both ends of each channel's ball round to the same double. A channel is not certified if
+  // a form factor would need more than 65,536 bits for that: if the channel were exactly halfway between two doubles.
+  [[nodiscard]] Channels at(const Receiver& receiver, const LightFormula& formula, const ExactOptions& options,
+                            Results& results) const;
+
+  [[nodiscard]] std::size_t sources() const { return sources_.size(); }
+
+ private:
+  [[nodiscard]] Ball ball(const std::vector<FormFactor>& factors, const LightFormula& formula, int channel,
+                          long bits) const;
+  [[nodiscard]] CertifiedNumber channel(const Receiver& receiver, const LightFormula& formula, int channel,
+                                        const ExactOptions& options, Results& results) const;
+  [[nodiscard]] bool is_zero(const std::vector<FormFactor>& factors, const LightFormula& formula, int channel) const;
+  [[nodiscard]] bool same_weights(const LightFormula& formula, int a, int b) const;
+
+  const Scene& scene_;
+  std::vector<ExactSource> sources_;
+  std::vector<Rgb> radiosities_;
+};
+
+}  // namespace exactff::exact

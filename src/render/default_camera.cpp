@@ -1,0 +1,172 @@
+// A camera for a scene of which nothing is known. Test pictures of few pixels decide where it stands: nothing else
+// tells on which side a room is open.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+
+#include "exactff/render.h"
+#include "kernel/float_environment.h"
+#include "kernel/vec.h"
+
+namespace exactff::render {
+namespace {
+
+using kernel::cross;
+using kernel::difference;
+using kernel::dot;
+using kernel::scaled;
+
+constexpr int kTestSide = 24;
+
+struct Extents {
+  Vec3 low, high;
+
+  // Without overflow.
+  [[nodiscard]] Vec3 at(double x, double y, double z) const {
+    return {low.x * (1.0 - x) + high.x * x, low.y * (1.0 - y) + high.y * y, low.z * (1.0 - z) + high.z * z};
+  }
+};
+
+Extents extents_of(const Scene& scene) {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  Extents box{{kMost, kMost, kMost}, {-kMost, -kMost, -kMost}};
+  for (const Piece& piece : scene.pieces()) {
+    for (const std::uint32_t v : scene.corners(piece)) {
+      const Vec3& p = scene.vertices()[v];
+      box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+      box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+    }
+  }
+  return box;
+}
+
+Vec3 to_unit(const Vec3& v) { return scaled(v, 1.0 / std::hypot(v.x, v.y, v.z)); }
+
+// Far enough away in this direction to show every corner of the box; with parallel rays, outside the box.
+Camera camera_from(const Extents& box, const Vec3& direction, const Camera& like, const Size& size) {
+  Camera camera = like;
+  camera.look = box.at(0.5, 0.5, 0.5);
+  Vec3 up = to_unit(like.up);
+  const Vec3 away = to_unit(direction);
+  if (kernel::max_norm(cross(away, up)) < 1e-3) up = std::abs(up.y) > 0.5 ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
+  camera.up = up;
+  const Vec3 right = to_unit(cross(scaled(away, -1.0), up)), upward = cross(right, scaled(away, -1.0));
+  constexpr double kMargin = 1.05;
+  const double tangent = std::tan(like.fov * std::numbers::pi / 360.0) / kMargin;
+  const double aspect = static_cast<double>(size.width) / size.height;
+  double distance = 0.0, half_height = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 p = difference(box.at(corner & 1, corner >> 1 & 1, corner >> 2 & 1), camera.look);
+    const double across = std::max(std::abs(dot(p, right)) / aspect, std::abs(dot(p, upward)));
+    distance = std::max(distance, dot(p, away) + across / tangent);
+    half_height = std::max(half_height, kMargin * across);
+  }
+  camera.eye = {camera.look.x + distance * away.x, camera.look.y + distance * away.y,
+                camera.look.z + distance * away.z};
+  if (camera.ortho) camera.ortho = 2.0 * half_height;
+  return camera;
+}
+
+// From near a corner of the box, at a fifth of its height from the top, to a point low on the other side.
+Camera camera_within(const Extents& box, int corner, const Camera& like) {
+  constexpr double kNear = 0.04, kAbove = 0.72, kBelow = 0.36;
+  Camera camera = like;
+  const double a = (corner & 1) != 0 ? 1.0 - kNear : kNear, b = (corner & 2) != 0 ? 1.0 - kNear : kNear;
+  const Vec3 up = to_unit(like.up);
+  const auto place = [&](double first, double second, double height) {
+    if (std::abs(up.z) > 0.7) return box.at(first, second, up.z > 0.0 ? height : 1.0 - height);
+    if (std::abs(up.x) > 0.7) return box.at(up.x > 0.0 ? height : 1.0 - height, first, second);
+    return box.at(first, up.y >= 0.0 ? height : 1.0 - height, second);
+  };
+  camera.eye = place(a, b, kAbove);
+  camera.look = place(1.0 - a, 1.0 - b, kBelow);
+  camera.ortho.reset();
+  return camera;
+}
+
+// The share of a test picture that shows fronts. Between views that show as much, the number of patches decides.
+double fronts_seen(const Scene& scene, const Camera& camera) {
+  const View view(camera, {kTestSide, kTestSide});
+  int fronts = 0;
+  std::set<PatchId> patches;
+  for (int row = 0; row < kTestSide; ++row) {
+    for (int column = 0; column < kTestSide; ++column) {
+      const auto hit = first_hit(scene, view.ray(column + 0.5, row + 0.5));
+      if (!hit || hit->back) continue;
+      ++fronts;
+      patches.insert(scene.face(hit->face).patch);
+    }
+  }
+  constexpr double kOfPatches = 1e-3;
+  const double share = static_cast<double>(fronts) / (kTestSide * kTestSide);
+  return share * (1.0 + kOfPatches * static_cast<double>(patches.size()));
+}
+
+bool is_usable(const Camera& camera) {
+  try {
+    View(camera, Size{1, 1});
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+struct Best {
+  Camera camera;
+  double score = -1.0;
+
+  void offer(const Scene& scene, const Camera& candidate, double weight) {
+    if (!is_usable(candidate)) return;
+    const double seen = weight * fronts_seen(scene, candidate);
+    if (seen > score) *this = {candidate, seen};
+  }
+};
+
+// The six axes count more than the directions between them, of which those from above come first.
+void look_from_outside(const Scene& scene, const Extents& box, const Camera& like, const Size& size, Best& best) {
+  constexpr double kBetween = 0.95, kFromBelow = 0.8, kAlongUp = 0.3;
+  const Vec3 up = to_unit(like.up);
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int z = -1; z <= 1; ++z) {
+        const Vec3 direction{1.0 * x, 1.0 * y, 1.0 * z};
+        if (direction == Vec3{}) continue;
+        const double height = dot(to_unit(direction), up);
+        const double weight = height < -0.1                                 ? kFromBelow
+                              : height > 0.9                                ? kAlongUp
+                              : std::abs(x) + std::abs(y) + std::abs(z) > 1 ? kBetween
+                                                                            : 1.0;
+        best.offer(scene, camera_from(box, direction, like, size), weight);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Camera default_camera(const Scene& scene, const Camera& like, const Size& size) {
+  const kernel::StandardArithmetic arithmetic;
+  Camera test = like;  // the given numbers are refused with words, not left out of the search
+  test.eye = {0, 0, 0};
+  const Vec3 across = cross(like.up, Vec3{1, 0, 0});
+  test.look = kernel::max_norm(across) > 0.0 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  View(test, size);
+  Best best;
+  if (scene.pieces().empty()) return test;
+  const Extents box = extents_of(scene);
+  look_from_outside(scene, box, like, size, best);
+  constexpr double kHardlyAny = 0.02;
+  if (best.score < kHardlyAny && !like.ortho) {
+    for (int corner = 0; corner < 4; ++corner) best.offer(scene, camera_within(box, corner, like), 1.0);
+  }
+  if (best.score < 0.0) {
+    throw InputError({.what = "no camera was found that shows the scene",
+                      .why = "its coordinates are too large or too close together for a view of the whole",
+                      .suggestion = "give a camera with --eye and --look"});
+  }
+  return best.camera;
+}
+
+}  // namespace exactff::render

@@ -1,0 +1,190 @@
+#include "render/job.h"
+
+#include <algorithm>
+#include <map>
+
+#include "exactff/version.h"
+#include "kernel/float_environment.h"
+#include "scene/misuse.h"
+#include "study/kept_work.h"
+#include "text/escape.h"
+#include "text/phrases.h"
+#include "text/refuse.h"
+#include "text/text_lines.h"
+
+namespace exactff::render {
+
+std::string_view name_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::kRadiance:
+      return "radiance";
+    case Quantity::kRadiosity:
+      return "radiosity";
+    case Quantity::kIrradiance:
+      return "irradiance";
+    case Quantity::kFormFactor:
+      return "form-factor";
+  }
+  return {};
+}
+
+Job::Job(const Request& request) : request_(request) {
+  require_scene(request_.scene);
+  sources_ = request_.sources.empty() ? request_.scene->emitters() : request_.sources;
+  if (sources_.empty()) {
+    text::refuse(request_.scene_name, "no patch emits", "the picture would be black", "name a source with --source");
+  }
+  prepare_sources();
+  require_possible();
+  if (!request_.method) {
+    light_ = std::make_unique<exact::Light>(*request_.scene, sources_, weights_);
+    return;
+  }
+  prepared_ = request_.method->method->prepare(*request_.scene);
+  for (const Selection& source : sources_) {
+    prepared_sources_.push_back(prepared_->prepare_source(source));
+    source_pointers_.push_back(prepared_sources_.back().get());
+  }
+}
+
+void Job::prepare_sources() {
+  constexpr double kMost = 1e290;
+  Rgb sum;
+  for (const Selection& source : sources_) {
+    const Rgb radiosity = request_.scene->source_radiosity(source);
+    sum = {sum.r + radiosity.r, sum.g + radiosity.g, sum.b + radiosity.b};
+    weights_.push_back(request_.quantity == Quantity::kFormFactor ? Rgb{1.0, 1.0, 1.0} : radiosity);
+  }
+  for (const Material& material : request_.scene->materials()) {
+    const Rgb &kd = material.reflectance, &ke = material.radiosity;
+    const double least = std::min({kd.r, kd.g, kd.b, ke.r, ke.g, ke.b});
+    if (least >= 0.0 && kd.largest() * sum.largest() + ke.largest() <= kMost && sum.largest() <= kMost) continue;
+    text::refuse(request_.scene_name, "the light is negative or too strong: material " + text::in_quotes(material.name),
+                 "radiosities are added, and Kd, Ke and their sums must be between 0 and 1e290",
+                 "give Kd and Ke in other units");
+  }
+}
+
+void Job::require_possible() const {
+  constexpr double kMostBytes = 8e9;
+  if (request_.spp < 1 || request_.spp > 64) {
+    text::refuse("a pixel has " + std::to_string(request_.spp) + " x " + std::to_string(request_.spp) + " points",
+                 "the number along a side is between 1 and 64", "give a number such as 4");
+  }
+  if (request_.layers == Layers::kAll && (request_.spp > 1 || request_.method)) {
+    text::refuse(request_.spp > 1 ? "layers are requested of pixels with several points"
+                                  : "layers are requested of a picture by an approximate method",
+                 request_.spp > 1 ? "a mean of positions or face numbers means nothing" : "they hold exact results",
+                 request_.spp > 1 ? "leave out --layers or --spp" : "leave out --layers or --method");
+  }
+  if (request_.bounds == Bounds::kAll && request_.method) {
+    text::refuse("bounds are requested of a picture by an approximate method", "such a method proves nothing",
+                 "leave out --bounds or --method");
+  }
+  const Size& size = request_.view.size();
+  const double bytes = 8.0 * size.width * size.height * static_cast<double>(numbers_per_pixel());
+  if (bytes <= kMostBytes) return;
+  text::refuse("the picture needs " + text::rounded(bytes / 1e9) + " GB of memory",
+               "a picture is kept in memory, and at most 8 GB are used for it", "make it smaller, or ask for less");
+}
+
+std::size_t Job::numbers_per_pixel() const {
+  return kLower + (request_.bounds == Bounds::kAll ? 6 : 0) + layers().size();
+}
+
+std::vector<std::string> Job::source_names() const {
+  constexpr std::size_t kLongest = 200;  // of an OpenEXR file: 255 bytes for a channel
+  std::vector<std::string> names;
+  std::map<std::string, int> used;
+  for (std::size_t s = 0; s < sources_.size(); ++s) {
+    std::string name = text::printable(request_.scene->name_of(sources_[s]));
+    if (name.empty() || name.size() > kLongest) name = "source" + std::to_string(s + 1);
+    if (const int times = used[name]++; times > 0) name += '#' + std::to_string(times + 1);
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+std::vector<Layer> Job::layers() const {
+  std::vector<Layer> layers;
+  if (request_.layers == Layers::kNone) return layers;
+  for (const std::string& name : source_names()) {
+    layers.push_back({"F." + name, false, {}});
+    layers.push_back({"visible." + name, true, {}});
+    layers.push_back({"fraction." + name, false, {}});
+  }
+  for (const char* name : {"position.X", "position.Y", "position.Z", "normal.X", "normal.Y", "normal.Z", "distance"}) {
+    layers.push_back({name, false, {}});
+  }
+  for (const char* name : {"id.face", "id.patch"}) layers.push_back({name, true, {}});
+  return layers;
+}
+
+namespace {
+
+std::string words_of(const Vec3& v) {
+  return text::shortest(v.x) + ' ' + text::shortest(v.y) + ' ' + text::shortest(v.z);
+}
+
+}  // namespace
+
+std::string flags_of(const View& view) {
+  const Camera& camera = view.camera();
+  return "--eye " + words_of(camera.eye) + " --look " + words_of(camera.look) + " --up " + words_of(camera.up) +
+         (camera.ortho ? " --ortho " + text::shortest(*camera.ortho) : " --fov " + text::shortest(camera.fov)) +
+         " --size " + std::to_string(view.size().width) + 'x' + std::to_string(view.size().height);
+}
+
+namespace {
+
+std::string names_of(const Scene& scene, const std::vector<Selection>& selections) {
+  std::string names;
+  for (const Selection& one : selections) names += (names.empty() ? "" : " + ") + text::printable(scene.name_of(one));
+  return names;
+}
+
+std::string unit_of(const Request& request) {
+  if (request.quantity == Quantity::kFormFactor) return "a pure number";
+  const bool radiance = request.quantity == Quantity::kRadiance, ke_is_radiance = request.ke == KeMeans::kRadiance;
+  return radiance == ke_is_radiance ? "the unit of Ke" : radiance ? "the unit of Ke / pi" : "the unit of Ke * pi";
+}
+
+}  // namespace
+
+Metadata Job::metadata() const {
+  const Scene& scene = *request_.scene;
+  Metadata metadata = {{"software", text::program_version()},
+                       {"scene", text::printable(request_.scene_name)},
+                       {"scene hash", scene.hash()},
+                       {"camera", flags_of(request_.view)},
+                       {"quantity", std::string(name_of(request_.quantity)) + ", in " + unit_of(request_)},
+                       {"Ke", request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity"},
+                       {"sides", request_.sides == Sides::kBoth ? "both" : "front"},
+                       {"sources", names_of(scene, sources_)},
+                       {"method", request_.method ? request_.method->text() : "exact, correctly rounded"},
+                       {"points per pixel", std::to_string(request_.spp * request_.spp)}};
+  if (const auto flipped = scene.flipped(); !flipped.empty())
+    metadata.emplace_back("flipped", names_of(scene, flipped));
+  if (const auto clear = scene.transparent(); !clear.empty()) {
+    metadata.emplace_back("transparent", names_of(scene, clear));
+  }
+  return metadata;
+}
+
+std::string Job::hash() const {
+  std::string all = request_.bounds == Bounds::kAll ? "bounds" : "";
+  if (request_.layers == Layers::kAll) all += " layers";
+  for (const auto& [name, value] : metadata()) all += '\n' + name + '=' + value;
+  return study::short_hash(all);
+}
+
+exact::LightFormula Job::formula(FaceId face, bool back) const {
+  const bool ke_is_radiance = request_.ke == KeMeans::kRadiance;
+  if (request_.quantity == Quantity::kFormFactor) return {};
+  if (request_.quantity == Quantity::kIrradiance) return {.pi_power = ke_is_radiance ? 1 : 0};
+  const Material& material = request_.scene->material(request_.scene->face(face).material);
+  const int power = request_.quantity == Quantity::kRadiosity ? 0 : -1;
+  return {back ? Rgb{} : material.radiosity, material.reflectance, power + (ke_is_radiance ? 1 : 0)};
+}
+
+}  // namespace exactff::render

@@ -1,0 +1,77 @@
+// A checked request, with everything precomputed that depends on the scene and the sources alone; and the values of
+// single points.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "exact/light.h"
+#include "exactff/render.h"
+
+namespace exactff::render {
+
+// Threads may share it.
+class Job {
+ public:
+  // Throws InputError as render().
+  explicit Job(const Request& request);
+
+  [[nodiscard]] const Request& request() const { return request_; }
+  [[nodiscard]] std::vector<Layer> layers() const;  // without values
+  [[nodiscard]] Metadata metadata() const;
+  // Of everything that the numbers depend on.
+  [[nodiscard]] std::string hash() const;
+
+  // The numbers of a pixel: what it shows, its value, then on request lower, upper and layers.
+  static constexpr std::size_t kShows = 0, kValue = 1, kLower = 4, kUpper = 7;
+  [[nodiscard]] std::size_t numbers_per_pixel() const;
+
+  // What leaves a face on the side that is seen, in the quantity of the request.
+  [[nodiscard]] exact::LightFormula formula(FaceId face, bool back) const;
+  [[nodiscard]] const std::vector<Selection>& sources() const { return sources_; }
+  [[nodiscard]] const std::vector<Rgb>& weights() const { return weights_; }  // B_s, or 1
+  [[nodiscard]] const exact::Light& light() const { return *light_; }
+  [[nodiscard]] const methods::PreparedScene* prepared() const { return prepared_.get(); }
+  [[nodiscard]] const std::vector<const methods::PreparedSource*>& prepared_sources() const { return source_pointers_; }
+
+ private:
+  void require_possible() const;
+  void prepare_sources();
+  [[nodiscard]] std::vector<std::string> source_names() const;
+
+  Request request_;
+  std::vector<Selection> sources_;
+  std::vector<Rgb> weights_;
+  std::unique_ptr<exact::Light> light_;
+  std::unique_ptr<methods::PreparedScene> prepared_;
+  std::vector<std::unique_ptr<methods::PreparedSource>> prepared_sources_;
+  std::vector<const methods::PreparedSource*> source_pointers_;
+};
+
+// The numbers of one point, in the order of Job.
+struct Sample {
+  std::vector<double> numbers;
+  bool certified = true;
+};
+
+// Computes single points. One for each thread.
+class Painter {
+ public:
+  explicit Painter(const Job& job);
+
+  void look_along(const Ray& ray, Sample& sample);
+
+ private:
+  [[nodiscard]] exact::Channels light_at(const Receiver& receiver, const exact::LightFormula& formula);
+  [[nodiscard]] exact::Channels light_by_method(const Receiver& receiver, const exact::LightFormula& formula);
+  void add_layers(const Ray& ray, const Hit* hit, bool dark, Sample& sample) const;
+
+  const Job& job_;
+  ExactOptions options_;
+  exact::Light::Results results_;
+  std::unique_ptr<methods::Evaluator> evaluator_;
+  std::vector<methods::Estimate> estimates_;
+};
+
+}  // namespace exactff::render

@@ -1,0 +1,110 @@
+// The values of single points.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "kernel/vec.h"
+#include "render/job.h"
+
+namespace exactff::render {
+namespace {
+
+constexpr double kNothingMet = std::numeric_limits<double>::quiet_NaN();
+
+// Without any light: what is proved to be black, or nothing at all.
+exact::Channels dark(double value) {
+  const exact::CertifiedNumber number{value, value, value, true};
+  return {number, number, number};
+}
+
+bool is_zero(const Rgb& colour) { return colour == Rgb{}; }
+
+Vec3 unit_length(const Vec3& v) {
+  const Vec3 safe = kernel::scaled(v, 1.0 / kernel::max_norm(v));
+  return kernel::scaled(safe, 1.0 / std::hypot(safe.x, safe.y, safe.z));
+}
+
+double of_visible(const FormFactor& factor) {
+  return static_cast<double>(factor.visible_part.value_or(VisiblePart::kNothing));
+}
+
+}  // namespace
+
+Painter::Painter(const Job& job) : job_(job) {
+  options_.engine = job.request().engine;
+  options_.visible_fraction = job.request().layers == Layers::kAll;
+  if (job.prepared() == nullptr) return;
+  evaluator_ = job.prepared()->configure(job.request().method->settings);
+  estimates_.resize(job.sources().size());
+}
+
+void Painter::look_along(const Ray& ray, Sample& sample) {
+  const Request& request = job_.request();
+  const std::optional<Hit> hit = first_hit(*request.scene, ray);
+  const bool black = !hit || (hit->back && request.sides == Sides::kFront);
+  Shows shows = !hit ? Shows::kNothing : black ? Shows::kBack : Shows::kFace;
+  exact::Channels channels = dark(hit ? 0.0 : kNothingMet);
+  if (!black) {
+    const exact::LightFormula formula = job_.formula(hit->face, hit->back);
+    if (!is_zero(formula.emitted)) shows = Shows::kEmitter;
+    channels = light_at(receiver_at(*request.scene, *hit), formula);
+  }
+  sample.numbers.clear();
+  sample.numbers.push_back(static_cast<double>(shows));
+  for (const auto& channel : channels) sample.numbers.push_back(channel.value);
+  if (request.bounds == Bounds::kAll) {
+    for (const auto& channel : channels) sample.numbers.push_back(channel.lower);
+    for (const auto& channel : channels) sample.numbers.push_back(channel.upper);
+  }
+  sample.certified = std::ranges::all_of(channels, &exact::CertifiedNumber::certified);
+  if (request.layers == Layers::kAll) add_layers(ray, hit ? &*hit : nullptr, black, sample);
+}
+
+exact::Channels Painter::light_at(const Receiver& receiver, const exact::LightFormula& formula) {
+  if (evaluator_ != nullptr) return light_by_method(receiver, formula);
+  return job_.light().at(receiver, formula, options_, results_);
+}
+
+exact::Channels Painter::light_by_method(const Receiver& receiver, const exact::LightFormula& formula) {
+  evaluator_->look_from(receiver);
+  evaluator_->form_factors(job_.prepared_sources(), estimates_);
+  Rgb received;
+  for (std::size_t s = 0; s < estimates_.size(); ++s) {
+    const double f = estimates_[s].form_factor;
+    const Rgb& weight = job_.weights()[s];
+    received = {received.r + weight.r * f, received.g + weight.g * f, received.b + weight.b * f};
+  }
+  const double factor = formula.pi_power == 0 ? 1.0 : formula.pi_power > 0 ? std::numbers::pi : 1.0 / std::numbers::pi;
+  const auto channel = [&](double emitted, double reflectance, double arriving) {
+    const double value = factor * (emitted + reflectance * arriving);
+    return exact::CertifiedNumber{value, value, value, true};
+  };
+  return {channel(formula.emitted.r, formula.reflectance.r, received.r),
+          channel(formula.emitted.g, formula.reflectance.g, received.g),
+          channel(formula.emitted.b, formula.reflectance.b, received.b)};
+}
+
+void Painter::add_layers(const Ray& ray, const Hit* hit, bool dark, Sample& sample) const {
+  std::vector<double>& numbers = sample.numbers;
+  for (std::size_t s = 0; s < job_.sources().size(); ++s) {
+    if (dark) {
+      numbers.insert(numbers.end(), {0.0, 0.0, 0.0});
+    } else {
+      const FormFactor& factor = results_.factors[s];
+      numbers.insert(numbers.end(), {factor.value, of_visible(factor), factor.visible_fraction.value_or(0.0)});
+    }
+  }
+  if (hit == nullptr) {
+    numbers.insert(numbers.end(), 9, 0.0);
+    return;
+  }
+  const Scene& scene = *job_.request().scene;
+  const Face& face = scene.face(hit->face);
+  const Vec3 front = unit_length(face.newell), normal = hit->back ? kernel::scaled(front, -1.0) : front;
+  numbers.insert(numbers.end(), {hit->point.x, hit->point.y, hit->point.z, normal.x, normal.y, normal.z,
+                                 kernel::distance(hit->point, ray.origin), static_cast<double>(index_of(hit->face) + 1),
+                                 static_cast<double>(index_of(face.patch) + 1)});
+}
+
+}  // namespace exactff::render

@@ -1,0 +1,134 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <thread>
+
+#include "support/program.h"
+
+namespace exactff {
+namespace {
+
+namespace fs = std::filesystem;
+using validation::RunningProgram;
+using validation::TemporaryDirectory;
+using validation::text_of;
+
+class RenderCommand : public testing::Test {
+ protected:
+  struct Ended {
+    int code = -1;
+    std::string error;
+  };
+  using Words = std::vector<std::string>;
+
+  [[nodiscard]] Words words(const Words& more) const {
+    Words all = {"render", room_};
+    all.insert(all.end(), more.begin(), more.end());
+    if (std::ranges::find(more, "--size") == more.end()) all.insert(all.end(), {"--size", "9x7"});
+    return all;
+  }
+  [[nodiscard]] Ended render(const Words& more) const {
+    const RunningProgram program(EXACTFF_PROGRAM, words(more), directory_.path() / "error");
+    const int code = program.wait();
+    return {code, program.error()};
+  }
+  [[nodiscard]] std::string path(const std::string& name) const { return (directory_.path() / name).string(); }
+  [[nodiscard]] std::size_t files() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(directory_.path()), fs::directory_iterator()));
+  }
+
+  const TemporaryDirectory directory_;
+  const std::string room_ = EXACTFF_DATA_DIR "/scenes/cornell_box.obj";
+};
+
+TEST_F(RenderCommand, WritesEveryFile) {
+  EXPECT_EQ(render({"-o", path("a.png"), "--double", path("a.npy"), "--bounds", path("b.npy")}).code, 0);
+  EXPECT_TRUE(text_of(path("a.png")).starts_with("\x89PNG"));
+  EXPECT_NE(text_of(path("a.png")).find("cornell_box.obj"), std::string::npos);
+  EXPECT_NE(text_of(path("a.npy")).find("(7, 9, 3)"), std::string::npos);
+  EXPECT_NE(text_of(path("b.npy")).find("(2, 7, 9, 3)"), std::string::npos);
+  EXPECT_EQ(render({"-o", path("a.exr"), "--layers"}).code, 0);
+  EXPECT_TRUE(text_of(path("a.exr")).starts_with("\x76\x2f\x31\x01"));
+  EXPECT_NE(text_of(path("a.exr")).find("id.face"), std::string::npos);
+  EXPECT_EQ(files(), 5U);  // with the file of errors: nothing else is left
+}
+
+TEST_F(RenderCommand, AnImageIsReplacedAndIsTheSameForAnyNumberOfThreads) {
+  EXPECT_EQ(render({"-o", path("a.exr"), "--threads", "1"}).code, 0);
+  const std::string first = text_of(path("a.exr"));
+  EXPECT_EQ(render({"-o", path("a.exr"), "--threads", "4", "--resume"}).code, 0);
+  EXPECT_EQ(text_of(path("a.exr")), first);
+}
+
+TEST_F(RenderCommand, ComparesMethods) {
+  const auto run = validation::run_program(
+      EXACTFF_PROGRAM, words({"-o", path("d.png"), "--against", "hemicube:resolution=8", "--strip"}));
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_NE(run.output.find("errors: RMS "), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("wrong by over 10 %"), std::string::npos) << run.output;
+  EXPECT_EQ(render({"-o", path("e.exr"), "--against", "exact"}).code, 0);
+  EXPECT_NE(text_of(path("e.exr")).find("minus exact"), std::string::npos);
+}
+
+TEST_F(RenderCommand, BadInputIsRefusedWithWords) {
+  const auto refused = [&](const Words& more, const std::string& fragment) {
+    const Ended ended = render(more);
+    EXPECT_EQ(ended.code, 2) << fragment;
+    EXPECT_NE(ended.error.find(fragment), std::string::npos) << ended.error;
+  };
+  const std::string image = path("x.png");
+  refused({"-o", path("x.jpg")}, "unknown extension .jpg");
+  refused({"-o", path("nowhere/x.png")}, "cannot be written");
+  refused({"-o", directory_.path().string() + "/.png/"}, "extension");
+  refused({"-o", image, "--eye", "1", "2", "3"}, "--eye is given without --look");
+  refused({"-o", image, "--eye", "1", "2", "3", "--look", "1", "2", "3"}, "are the same");
+  refused({"-o", image, "--eye", "1", "2", "3", "--look", "1", "9", "3"}, "parallel to the line of sight");
+  refused({"-o", image, "--eye", "1", "2", "x", "--look", "1", "9", "3"}, "'x'");
+  refused({"-o", image, "--eye", "1", "2", "--look", "1", "9", "3"}, "3 required");
+  refused({"-o", image, "--fov", "180"}, "angle of view");
+  refused({"-o", image, "--fov", "0"}, "not a positive number");
+  refused({"-o", image, "--size", "12"}, "is not a size");
+  refused({"-o", image, "--size", "0x4"}, "0x4 pixels");
+  refused({"-o", image, "--size", "60000x60000"}, "GB of memory");
+  refused({"-o", image, "--double", path("x.txt")}, "does not end in .npy");
+  refused({"-o", image, "--double", path("x.npy"), "--bounds", path("./x.npy")}, "named for two results");
+  refused({"-o", image, "--strip"}, "--strip is given without --against");
+  refused({"-o", image, "--layers"}, "--layers needs an EXR file");
+  refused({"-o", path("x.exr"), "--exposure", "2"}, "not scaled");
+  refused({"-o", path("x.exr"), "--layers", "--spp", "2"}, "several points");
+  refused({"-o", image, "--method", "nothing"}, "nothing");
+  refused({"-o", image, "--source", "floor", "--source", "floor"}, "named twice");
+  EXPECT_EQ(files(), 1U);  // the file of errors
+}
+
+TEST_F(RenderCommand, ContinuesAfterAnInterruption) {
+  const Words long_run = {"--size", "600x600", "--spp", "2", "-o", path("a.exr")};
+  RunningProgram program(EXACTFF_PROGRAM, words(long_run), directory_.path() / "error");
+  while (validation::size_of(path("a.exr.part")) < 100'000 && !program.has_ended()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  program.send(SIGINT);
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(program.wait(), 128 + SIGINT);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
+  EXPECT_NE(program.error().find("--resume"), std::string::npos);
+  EXPECT_FALSE(fs::exists(path("a.exr")));
+  const Ended refused = render(long_run);
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.error.find("finished work of an interrupted run"), std::string::npos) << refused.error;
+  const Ended other = render({"--size", "8x8", "-o", path("a.exr"), "--resume"});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_NE(other.error.find("tiles of another image"), std::string::npos) << other.error;
+  Words again = long_run;
+  again.emplace_back("--resume");
+  const Ended resumed = render(again);
+  EXPECT_EQ(resumed.code, 0);
+  EXPECT_NE(resumed.error.find("were reused"), std::string::npos);
+  EXPECT_TRUE(fs::exists(path("a.exr")));
+  EXPECT_FALSE(fs::exists(path("a.exr.part")));
+}
+
+}  // namespace
+}  // namespace exactff

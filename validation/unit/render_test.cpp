@@ -1,0 +1,350 @@
+#include "exactff/render.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "exactff/models.h"
+#include "exactff/obj.h"
+#include "generate/plain_scene.h"
+#include "support/complaint.h"
+#include "support/program.h"
+
+namespace exactff::render {
+namespace {
+
+using validation::TemporaryDirectory;
+
+const Scene& cornell_box() {
+  static const Scene scene = read_obj(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
+  return scene;
+}
+
+Camera cornell_camera() { return {.eye = {278, 273, -800}, .look = {278, 273, 0}, .fov = 39.3}; }
+
+Request request(int width, int height) {
+  return {.scene = &cornell_box(), .scene_name = "box", .view = View(cornell_camera(), {width, height})};
+}
+
+double value(const Picture& picture, int column, int row, std::size_t channel = 0) {
+  return picture.values.at(3 * static_cast<std::size_t>(row * picture.size.width + column) + channel);
+}
+
+bool same(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::ranges::equal(a, b, [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
+TEST(View, RaysAreTheDocumentedDoubles) {
+  const View view({.eye = {1, 2, 3}, .look = {4, 6, 15}, .up = {0, 2, 0}, .fov = 90.0}, {3, 2});
+  // w = (3, 4, 12) / 13; the tangent of 45 degrees is 1.
+  const double m = 12.0, x = 3 / m, y = 4 / m, z = 1.0, length = std::sqrt((x * x + y * y) + z * z);
+  const Vec3 w{x / length, y / length, z / length};
+  const Vec3 across{w.y * 0.0 - w.z * 1.0, w.z * 0.0 - w.x * 0.0, w.x * 1.0 - w.y * 0.0};
+  const double most = std::abs(across.x);
+  const Vec3 safe{across.x / most, across.y / most, across.z / most};
+  const double size = std::sqrt((safe.x * safe.x + safe.y * safe.y) + safe.z * safe.z);
+  const Vec3 a{safe.x / size, safe.y / size, safe.z / size};
+  const Vec3 b{a.y * w.z - a.z * w.y, a.z * w.x - a.x * w.z, a.x * w.y - a.y * w.x};
+  const double s = (2.0 * 0.5 - 3.0) / 2.0, r = (2.0 - 2.0 * 1.5) / 2.0;
+  const Ray ray = view.ray(0.5, 1.5);
+  EXPECT_EQ(ray.origin, (Vec3{1, 2, 3}));
+  EXPECT_EQ(ray.direction.x, (w.x + s * a.x) + r * b.x);
+  EXPECT_EQ(ray.direction.y, (w.y + s * a.y) + r * b.y);
+  EXPECT_EQ(ray.direction.z, (w.z + s * a.z) + r * b.z);
+}
+
+TEST(View, LooksAlongZWithXToTheLeft) {
+  const View view(cornell_camera(), {64, 64});
+  EXPECT_GT(view.ray(0.5, 32).direction.x, 0.0);  // the left of the picture
+  EXPECT_GT(view.ray(32, 0.5).direction.y, 0.0);  // its top
+  EXPECT_EQ(view.ray(32, 32).direction, (Vec3{0, 0, 1}));
+}
+
+TEST(View, ParallelRaysHaveTheHeightOfThePicture) {
+  const View view({.eye = {0, 0, 10}, .ortho = 8.0}, {4, 4});
+  EXPECT_EQ(view.ray(0.0, 0.0).origin, (Vec3{-4, 4, 10}));
+  EXPECT_EQ(view.ray(4.0, 4.0).origin, (Vec3{4, -4, 10}));
+  EXPECT_EQ(view.ray(1.0, 3.0).direction, (Vec3{0, 0, -1}));
+}
+
+TEST(View, RefusesCamerasWithoutAPicture) {
+  const auto complaint = [](const Camera& camera, const Size& size) {
+    try {
+      View(camera, size);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const Camera good = cornell_camera();
+  Camera camera = good;
+  EXPECT_EQ(complaint(good, {1, 65536}), "");
+  EXPECT_NE(complaint(good, {0, 5}).find("the picture is 0x5 pixels"), std::string::npos);
+  EXPECT_NE(complaint(good, {65537, 5}).find("between 1 and 65536"), std::string::npos);
+  camera.look = camera.eye;
+  EXPECT_NE(complaint(camera, {4, 4}).find("are the same"), std::string::npos);
+  camera = good;
+  camera.up = {0, 0, -3};
+  EXPECT_NE(complaint(camera, {4, 4}).find("parallel to the line of sight"), std::string::npos);
+  for (const double fov : {0.0, 180.0, -5.0, std::nan("")}) {
+    camera = good;
+    camera.fov = fov;
+    EXPECT_NE(complaint(camera, {4, 4}).find("angle of view"), std::string::npos) << fov;
+  }
+  camera = good;
+  camera.eye.x = std::nan("");
+  EXPECT_NE(complaint(camera, {4, 4}).find("not finite"), std::string::npos);
+  camera = {.eye = {0, 0, -1.7e308}, .look = {0, 0, 1.7e308}};
+  EXPECT_NE(complaint(camera, {4, 4}).find("too far apart"), std::string::npos);
+}
+
+TEST(Picture, HoldsWhatOneReceiverReceives) {
+  Request one = request(32, 32);
+  one.quantity = Quantity::kRadiosity;
+  const Picture picture = render(one);
+  const ExactSource light(cornell_box(), cornell_box().select("light"));
+  int compared = 0;
+  for (int row = 0; row < 32; row += 3) {
+    for (int column = 0; column < 32; column += 3) {
+      const auto hit = first_hit(cornell_box(), one.view.ray(column + 0.5, row + 0.5));
+      if (!hit || cornell_box().face(hit->face).patch == cornell_box().select("light").patch) continue;
+      const Receiver receiver = receiver_at(cornell_box(), *hit);
+      const double f = exact_form_factor(cornell_box(), receiver, light).value;
+      const Rgb rho = cornell_box().receiver_reflectance(receiver.on);
+      EXPECT_NEAR(value(picture, column, row, 0), rho.r * 17 * f, 1e-15 * rho.r * 17);
+      EXPECT_NEAR(value(picture, column, row, 2), rho.b * 4 * f, 1e-15 * rho.b * 4);
+      if (f > 0.0) ++compared;
+    }
+  }
+  EXPECT_GT(compared, 50);
+}
+
+TEST(Picture, QuantitiesAgree) {
+  Request asked = request(16, 16);
+  const Picture radiance = render(asked);
+  asked.quantity = Quantity::kRadiosity;
+  const Picture radiosity = render(asked);
+  asked.quantity = Quantity::kIrradiance;
+  const Picture irradiance = render(asked);
+  asked.quantity = Quantity::kFormFactor;
+  const Picture factor = render(asked);
+  asked.quantity = Quantity::kRadiance;
+  asked.ke = KeMeans::kRadiance;
+  const Picture bright = render(asked);
+  for (std::size_t i = 0; i < radiance.values.size(); ++i) {
+    if (std::isnan(radiance.values[i])) continue;
+    const double b = radiosity.values[i];
+    EXPECT_NEAR(radiance.values[i], b / std::numbers::pi, 1e-15 * b);
+    EXPECT_EQ(bright.values[i], b);  // pi Ke / pi
+    const double ke = i % 3 == 0 ? 17 : i % 3 == 1 ? 12 : 4;
+    EXPECT_NEAR(irradiance.values[i], ke * factor.values[i], 1e-15 * ke);
+  }
+}
+
+TEST(Picture, DoesNotDependOnThreadsAndResumes) {
+  const TemporaryDirectory directory;
+  Request asked = request(40, 33);
+  asked.bounds = Bounds::kAll;
+  asked.layers = Layers::kAll;
+  asked.threads = 1;
+  const Picture one = render(asked);
+  asked.threads = 3;
+  const Picture three = render(asked);
+  EXPECT_TRUE(same(one.values, three.values));
+  EXPECT_EQ(exr_of(one), exr_of(three));
+  // Stops after some tiles, and continues.
+  study::Journal journal(directory.path() / "tiles", study::Journal::Existing::kRefuse);
+  int asked_for = 0;
+  asked.threads = 1;
+  const Hooks stop{{}, [&] { return ++asked_for > 2500; }};
+  EXPECT_THROW((void)render(asked, stop, &journal), Cancelled);
+  const std::size_t kept = journal.size();
+  EXPECT_GT(kept, 0U);
+  const Picture resumed = render(asked, {}, &journal);
+  EXPECT_GT(journal.size(), kept);
+  EXPECT_TRUE(same(one.values, resumed.values));
+  EXPECT_TRUE(same(one.lower, resumed.lower));
+  for (std::size_t k = 0; k < one.layers.size(); ++k) {
+    EXPECT_TRUE(same(one.layers[k].values, resumed.layers[k].values)) << one.layers[k].name;
+  }
+}
+
+TEST(Picture, BoundsAreTheNeighbours) {
+  Request asked = request(12, 12);
+  asked.bounds = Bounds::kAll;
+  const Picture picture = render(asked);
+  int positive = 0;
+  for (std::size_t i = 0; i < picture.values.size(); ++i) {
+    const double v = picture.values[i];
+    if (std::isnan(v)) continue;
+    EXPECT_EQ(picture.lower[i], v == 0.0 ? 0.0 : std::nextafter(v, 0.0));
+    EXPECT_EQ(picture.upper[i], v == 0.0 ? 0.0 : std::nextafter(v, 1e300));
+    if (v > 0.0) ++positive;
+  }
+  EXPECT_GT(positive, 100);
+}
+
+TEST(Picture, SeveralPointsAreTheMeanOfAFinerPicture) {
+  const Picture fine = render(request(30, 30));
+  Request asked = request(10, 10);
+  asked.spp = 3;
+  asked.bounds = Bounds::kAll;
+  const Picture coarse = render(asked);
+  for (int row = 0; row < 10; ++row) {
+    for (int column = 0; column < 10; ++column) {
+      double sum = 0.0;
+      bool any = false;
+      for (int k = 0; k < 9; ++k) {
+        const double part = value(fine, 3 * column + k % 3, 3 * row + k / 3);
+        any = any || !std::isnan(part);
+        sum += std::isnan(part) ? 0.0 : part;
+      }
+      const double mean = value(coarse, column, row);
+      ASSERT_EQ(std::isnan(mean), !any);
+      if (!any) continue;
+      EXPECT_NEAR(mean, sum / 9.0, 1e-9 * mean);  // the rays differ by rounding
+      const std::size_t at = 3 * static_cast<std::size_t>(10 * row + column);
+      EXPECT_LE(coarse.lower[at], mean);
+      EXPECT_GE(coarse.upper[at], mean);
+    }
+  }
+}
+
+// A square lamp above a square that looks down, and one that looks up.
+Scene two_squares() {
+  generate::PlainScene plain;
+  plain.materials.push_back({.name = "lamp", .reflectance = {0, 0, 0}, .radiosity = {2, 2, 2}});
+  plain.add_ring(plain.patch("up"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  plain.add_ring(plain.patch("down"), {{2, 0, 0}, {2, 1, 0}, {3, 1, 0}, {3, 0, 0}});
+  plain.patch("lamp").material = "lamp";
+  plain.add_ring(plain.patch("lamp"), {{0, 0, 4}, {0, 1, 4}, {3, 1, 4}, {3, 0, 4}});
+  return generate::build(plain);
+}
+
+TEST(Picture, BacksAreBlackUnlessFacesHaveTwoSides) {
+  const Scene scene = two_squares();
+  Request asked{.scene = &scene, .view = View({.eye = {1.5, 0.5, 2}, .look = {1.5, 0.5, 0}, .ortho = 1.0}, {8, 2})};
+  const Picture front = render(asked);
+  asked.sides = Sides::kBoth;
+  const Picture both = render(asked);
+  EXPECT_EQ(front.shows[1], Shows::kFace);
+  EXPECT_EQ(front.shows[6], Shows::kBack);
+  EXPECT_EQ(front.shows[3], Shows::kNothing);
+  EXPECT_TRUE(std::isnan(value(front, 3, 0)));
+  EXPECT_EQ(value(front, 6, 0), 0.0);
+  EXPECT_GT(value(both, 6, 0), 0.0);
+  EXPECT_EQ(value(both, 1, 0), value(front, 1, 0));
+  // The lamp from its back: it emits from its front only.
+  asked.view = View({.eye = {1.5, 0.5, 8}, .look = {1.5, 0.5, 0}, .ortho = 1.0}, {2, 2});
+  const Picture above = render(asked);
+  EXPECT_EQ(above.shows[0], Shows::kFace);
+  EXPECT_EQ(value(above, 0, 0), 0.0);
+  asked.view = View({.eye = {1.5, 0.5, 2}, .look = {1.5, 0.5, 9}, .ortho = 1.0}, {2, 2});
+  EXPECT_NEAR(value(render(asked), 0, 0), 2.0 / std::numbers::pi, 1e-15);
+}
+
+TEST(Picture, OfAMethodIsItsEstimate) {
+  Request asked = request(8, 8);
+  const Picture exact = render(asked);
+  asked.method = methods::parse("exact");
+  const Picture control = render(asked);
+  const Errors none = errors_of(control, exact);
+  EXPECT_LT(none.worst, 1e-15);
+  EXPECT_EQ(none.wrong, 0U);
+  asked.method = methods::parse("hemicube:resolution=16");
+  const Errors some = errors_of(render(asked), exact);
+  EXPECT_GT(some.worst, 1e-4);
+  EXPECT_GE(some.worst, some.p99);
+  EXPECT_GE(some.p99, some.rms);
+  EXPECT_GT(some.wrong, 0U);
+  EXPECT_LT(some.pixels, exact.pixels() + 1);
+  asked.layers = Layers::kAll;
+  EXPECT_THROW((void)render(asked), InputError);
+}
+
+TEST(Picture, RefusesTooMuch) {
+  Request asked = request(8, 8);
+  asked.view = View(cornell_camera(), {65536, 65536});
+  EXPECT_THROW((void)render(asked), InputError);
+  asked = request(8, 8);
+  asked.spp = 65;
+  EXPECT_THROW((void)render(asked), InputError);
+  generate::PlainScene plain;
+  plain.add_ring(plain.patch("floor"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  const Scene dark = generate::build(plain);
+  const Request unlit{.scene = &dark};
+  EXPECT_THROW((void)render(unlit), InputError);
+}
+
+TEST(DefaultCamera, LooksIntoTheOpenSide) {
+  const Size size{16, 16};
+  const Camera camera = default_camera(cornell_box(), {}, size);
+  EXPECT_LT(camera.eye.z, -500.0);
+  EXPECT_NEAR(camera.eye.x, 278, 1);
+  // Turned by a quarter about y, the open side is at x = 0.
+  const Scene room = read_obj(EXACTFF_DATA_DIR "/scenes/blinds_room.obj");
+  const Camera inside = default_camera(room, {}, size);
+  EXPECT_GT(inside.eye.x, 0.0);
+  EXPECT_LT(inside.eye.x, 4.0);
+  const View view(inside, size);
+  for (int row = 0; row < 16; ++row) EXPECT_FALSE(first_hit(room, view.ray(8, row + 0.5))->back);
+}
+
+TEST(Colours, ExposureBringsTheBrightestToWhite) {
+  const Picture picture = render(request(48, 48));
+  const double exposure = automatic_exposure(picture);
+  const Colours colours = developed(picture, exposure);
+  std::size_t full = 0, lit = 0;
+  for (std::size_t i = 0; i < picture.pixels(); ++i) {
+    const int red = colours.bytes[3 * i];
+    EXPECT_TRUE(picture.shows[i] != Shows::kEmitter || red == 255);
+    EXPECT_TRUE(picture.shows[i] != Shows::kNothing || red == 0);
+    if (picture.shows[i] != Shows::kFace) continue;
+    ++lit;
+    const double largest =
+        exposure * std::max({picture.values[3 * i], picture.values[3 * i + 1], picture.values[3 * i + 2]});
+    if (largest > 0.8) ++full;
+  }
+  EXPECT_LE(full, lit / 80);
+  EXPECT_GT(full, 0U);
+  // sRGB: 0.5 is 188.
+  Picture grey = picture;
+  grey.values.assign(grey.values.size(), 0.5);
+  EXPECT_EQ(developed(grey, 1.0).bytes[0], 188);
+}
+
+TEST(Colours, ErrorsAreWhiteRedAndBlue) {
+  Errors errors;
+  errors.signed_errors = {0.0, 0.5, -0.5, 9.0, std::nan(""), -9.0};
+  errors.is_wrong.assign(6, false);
+  const Colours colours = coloured(errors, {6, 1}, 1.0);
+  const auto at = [&](std::size_t pixel, std::size_t c) { return int{colours.bytes[3 * pixel + c]}; };
+  EXPECT_EQ(at(0, 0) + at(0, 1) + at(0, 2), 3 * 255);
+  EXPECT_GT(at(1, 0), at(1, 2) + 20);
+  EXPECT_GT(at(2, 2), at(2, 0) + 20);
+  EXPECT_LT(at(3, 1), at(1, 1));
+  EXPECT_LT(at(5, 0), at(2, 0));
+  EXPECT_EQ(at(4, 0), at(4, 2));
+}
+
+TEST(Strip, ShowsPicturesAboveTheirCaptions) {
+  const Colours red{{40, 20}, std::vector<std::uint8_t>(3 * 40 * 20, 9)};
+  const std::vector<std::pair<Colours, std::vector<std::string>>> panels = {{red, {"a"}}, {red, {"bcd efg hij", "k"}}};
+  const Colours strip_of_two = strip(panels);
+  EXPECT_GE(strip_of_two.size.width, 80);
+  EXPECT_GT(strip_of_two.size.height, 20 + 4 * 8);  // the second caption is broken into lines
+  EXPECT_EQ(strip_of_two.bytes.front(), 9);
+  EXPECT_EQ(strip_of_two.bytes.back(), 255);
+  EXPECT_NE(std::ranges::count(strip_of_two.bytes, 30), 0);
+}
+
+TEST(ImageKind, GoesByTheExtension) {
+  EXPECT_EQ(image_kind("a/b.exr"), ImageKind::kExr);
+  EXPECT_EQ(image_kind("B.PNG"), ImageKind::kPng);
+  EXPECT_THROW((void)image_kind("a.jpg"), InputError);
+  EXPECT_THROW((void)image_kind("a"), InputError);
+}
+
+}  // namespace
+}  // namespace exactff::render
