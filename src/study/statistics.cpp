@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "kernel/expect.h"
 
@@ -58,22 +60,32 @@ double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+  return values.size() % 2 == 1 ? values[half] : std::midpoint(values[half - 1], values[half]);
 }
 
 double mean(std::span<const double> values) {
   if (values.empty()) return 0.0;
+  const auto n = static_cast<double>(values.size());
   double sum = 0.0;
   for (double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
+  if (std::isfinite(sum)) return sum / n;
+  sum = 0.0;
+  for (double v : values) sum += v / n;  // near the largest double, where nothing is lost by it
+  return sum;
 }
 
 double mean_half_width(std::span<const double> values) {
   if (values.size() < 2) return 0.0;
   const double middle = mean(values), n = static_cast<double>(values.size());
+  const double factor = boost::math::quantile(boost::math::students_t(n - 1.0), 0.975);
   double squares = 0.0;
   for (const double v : values) squares += (v - middle) * (v - middle);
-  return boost::math::quantile(boost::math::students_t(n - 1.0), 0.975) * std::sqrt(squares / (n - 1.0) / n);
+  if (std::isfinite(squares)) return factor * std::sqrt(squares / (n - 1.0) / n);
+  constexpr double kSmaller = 0x1p-600;  // squares of such deviations overflow
+  squares = 0.0;
+  for (const double v : values) squares += (v * kSmaller - middle * kSmaller) * (v * kSmaller - middle * kSmaller);
+  const double half_width = factor * std::sqrt(squares / (n - 1.0) / n) / kSmaller;
+  return std::min(half_width, std::numeric_limits<double>::max());
 }
 
 std::optional<double> fitted_slope(std::span<const std::pair<double, double>> points) {

@@ -67,6 +67,19 @@ TEST(Statistics, TheRmsOfTinyErrorsDoesNotUnderflow) {
   EXPECT_NEAR(error_statistics(errors).rms / 1e-200, std::sqrt(12.5), 1e-15 * 10);
 }
 
+// The literal variant of Nettle's method has such errors in scenes of 1e76.
+TEST(Statistics, ErrorsNearTheLargestDoubleDoNotOverflow) {
+  const std::vector<double> errors = {0x1p1023, 0x1p1023, 0x1.8p1023, -0x1.8p1023};
+  const ErrorStatistics s = error_statistics(errors);
+  EXPECT_EQ(s.mean, 0x1p1022);
+  EXPECT_EQ(s.worst, 0x1.8p1023);
+  EXPECT_LE(s.rms, s.worst);
+  EXPECT_EQ(median(errors), 0x1p1023);
+  EXPECT_TRUE(std::isfinite(mean_half_width(errors)));
+  EXPECT_NEAR(mean_half_width(std::vector{0x1p600, -0x1p600}) / mean_half_width(std::vector{1.0, -1.0}), 0x1p600,
+              0x1p550);
+}
+
 TEST(Statistics, PercentilesAreOfTheNearestRank) {
   std::vector<double> values;
   for (int i = 100; i >= 1; --i) values.push_back(i);
