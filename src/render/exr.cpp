@@ -51,13 +51,13 @@ std::uint32_t bits_of(double value, bool whole) {
 std::vector<Channel> channels_of(const Picture& picture) {
   std::vector<Channel> channels;
   for (std::size_t c = 0; c < 3; ++c) {
-    Channel& channel = channels.emplace_back(std::string(1, "RGB"[c]), false, std::vector<std::uint32_t>());
+    Channel& channel = channels.emplace_back(Channel{std::string(1, "RGB"[c]), false, {}});
     channel.bits.reserve(picture.pixels());
     for (std::size_t i = 0; i < picture.pixels(); ++i)
       channel.bits.push_back(bits_of(picture.values[3 * i + c], false));
   }
   for (const Layer& layer : picture.layers) {
-    Channel& channel = channels.emplace_back(layer.name, layer.whole, std::vector<std::uint32_t>());
+    Channel& channel = channels.emplace_back(Channel{layer.name, layer.whole, {}});
     channel.bits.reserve(picture.pixels());
     for (const double value : layer.values) channel.bits.push_back(bits_of(value, layer.whole));
   }

@@ -155,7 +155,7 @@ void append(std::vector<double>& list, const Rgb& c) { list.insert(list.end(), {
 std::vector<std::size_t> cell_order(std::span<const Receiver> receivers) {
   std::vector<std::size_t> order(receivers.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::ranges::stable_partition(order, [&](std::size_t i) { return !receivers[i].cell; });
+  std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return !receivers[i].cell; });
   return order;
 }
 
