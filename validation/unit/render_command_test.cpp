@@ -104,7 +104,7 @@ TEST_F(RenderCommand, BadInputIsRefusedWithWords) {
 }
 
 TEST_F(RenderCommand, ContinuesAfterAnInterruption) {
-  const Words long_run = {"--size", "600x600", "--spp", "2", "-o", path("a.exr")};
+  const Words long_run = {"--size", "300x300", "--spp", "2", "-o", path("a.exr")};
   RunningProgram program(EXACTFF_PROGRAM, words(long_run), directory_.path() / "error");
   while (validation::size_of(path("a.exr.part")) < 100'000 && !program.has_ended()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
