@@ -66,7 +66,7 @@ def test_the_gil_is_released():
 
 LONG = """
 import sys, time, exactff
-scene = exactff.Scene.from_model("teapot:segments=24")
+scene = exactff.Scene.from_model("teapot:segments=12")
 floor = scene.receivers("floor", grid=(400, 400))
 def tell(done, total):
     if done: print("at work", flush=True)
@@ -91,7 +91,7 @@ def test_ctrl_c_within_half_a_second(call, tmp_path):
         child.send_signal(signal.SIGINT)
         rest = child.stdout.read()
         waited = time.monotonic() - sent
-    assert child.returncode == 0 and rest.splitlines()[-1] == "interrupted", rest
+    assert child.returncode == 0 and rest.endswith("interrupted\n"), rest  # perhaps in the middle of "at work"
     # Twice the promise, because the tests share the machine; the end of the interpreter is included.
     assert waited < 1.0
 
