@@ -1,0 +1,400 @@
+#include "whole_view/view_edges.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "kernel/lanes.h"
+#include "kernel/poll.h"
+
+namespace exactff::whole_view {
+
+using Edge = Outlines::Edge;
+using Outline = Outlines::Outline;
+
+void ViewEdges::find(const visibility::View& view, Wholes wholes) {
+  start(view);
+  gather(view, wholes);
+  windows_.find(outlines_, depths_.all());
+  trace_all();
+  examine_rivals();
+  for (std::size_t i = 0; i < piercings_.size(); ++i) trace_piercing(Piercing(piercings_[i]));
+  work_.outlines = whole_.size();
+  work_.windows = windows_.count();
+  work_.pierced = piercings_.size();
+}
+
+// Window by window, so that outlines that follow one another mostly have the same neighbours, which are then in the
+// caches.
+void ViewEdges::trace_all() {
+  traced_.assign(whole_.size(), 0);
+  for (std::uint32_t window = 0; window < windows_.count(); ++window) {
+    if (window % 64 == 0) kernel::poll();
+    for (const Windows::Seat& seat : windows_.seats(window)) {
+      if (traced_[seat.outline] != 0) continue;
+      traced_[seat.outline] = 1;
+      trace_outline(seat.outline);
+    }
+  }
+}
+
+void ViewEdges::add_near(OutlineId outline) {
+  if (seen_in_[outline] == run_) return;
+  seen_in_[outline] = run_;
+  near_.push_back(outline);
+}
+
+// The outlines of all windows that some of the edges may cross.
+void ViewEdges::find_near(OutlineId outline, Lines lines) {
+  ++run_;
+  near_.clear();
+  seen_in_[outline] = run_;
+  for (const Windows::Place& place : windows_.windows_of(outline)) {
+    if ((place.lines & lines) == 0) continue;
+    const Windows::Seat& own = windows_.seat(place);
+    for (const Windows::Seat& seat : windows_.seats(place.at)) {
+      if (!seat.is_beside(own)) add_near(seat.outline);
+    }
+  }
+  for (const Windows::Place& place : windows_.hidden_by(outline)) {
+    if ((place.lines & lines) != 0) add_near(place.at);
+  }
+}
+
+void ViewEdges::trace_outline(OutlineId id) {
+  const Outline outline = outlines_.outline(id);
+  Lines seen = 0;
+  for (const Windows::Place& place : windows_.windows_of(id)) seen |= place.lines;
+  if (seen == 0) return;
+  if (outline.count > kRunCorners) note_rivals(id);
+  const unsigned step = outline.count <= kRunCorners ? outline.count : kRunCorners - 1;
+  for (unsigned at = 0; at < outline.count; at += step) {
+    Run run{.owner = id};
+    run.first = outline.first + at;
+    run.edges = std::min(step, outline.count - at);
+    Lines lines = 0;
+    for (unsigned k = 0; k < run.edges; ++k) {
+      const Lines bit = Lines{1} << std::min(at + k, Windows::kLastLine);
+      lines |= bit;
+      if ((seen & bit) == 0) continue;
+      const EdgeId partner = partner_[run.first + k];
+      const bool skip = partner != kNoEdge &&
+                        (outlines_.edge(partner).outline < id || whole_[outlines_.edge(partner).outline] == whole_[id]);
+      (skip ? run.skipped : run.wanted) |= 1U << k;
+    }
+    if ((run.wanted | run.skipped) == 0) continue;
+    find_near(id, lines);
+    set_run(run);
+    trace(run);
+  }
+}
+
+void ViewEdges::set_run(Run& run) const {
+  const auto id = [&](unsigned k) {
+    const Edge& edge = outlines_.edge(run.first + std::min(k, run.edges - 1));
+    return k < run.edges ? edge.a : edge.b;
+  };
+  const CornerId i = id(0), j = id(1), k = id(2), l = id(3);
+  const Outlines::Corner &a = outlines_.corner(i), &b = outlines_.corner(j), &c = outlines_.corner(k),
+                         &d = outlines_.corner(l);
+  run.x = Four{a.t.x, b.t.x, c.t.x, d.t.x};
+  run.y = Four{a.t.y, b.t.y, c.t.y, d.t.y};
+  run.z = Four{a.t.z, b.t.z, c.t.z, d.t.z};
+  run.size = Four{a.size, b.size, c.size, d.size};
+  run.id = FourMask{i, j, k, l};
+  const InverseDepth& depth = depths_.of(run.owner);
+  run.w = depth.slope.x * run.x + depth.slope.y * run.y + depth.slope.z * run.z;
+  run.w_error = depth.error * run.size;
+}
+
+// All edges of the run, and again if an edge that was to be skipped has a third edge in its plane.
+void ViewEdges::trace(Run& run) {
+  for (bool again = true; again;) {
+    const unsigned wanted = run.wanted;
+    run.forced = 0;
+    for (unsigned k = 0; k < run.edges; ++k) {
+      hidden_[k].clear();
+      backgrounds_[k].clear();
+    }
+    look_at_near(run);
+    again = run.forced != 0;
+    const unsigned left = run.wanted;
+    run.wanted = wanted | run.forced;
+    run.skipped &= ~run.forced;
+    if (again) continue;
+    for (unsigned k = 0; k < run.edges; ++k) {
+      if ((left >> k & 1U) != 0) finish(run, k, {kBegin, kEnd});
+    }
+  }
+}
+
+namespace {
+
+unsigned both_ends(unsigned corners) { return corners & (corners >> 1U | corners << 3U) & 15U; }
+unsigned ends(unsigned corners) { return (corners | corners >> 1U | corners << 3U) & 15U; }
+
+}  // namespace
+
+// Bit k of a set of edges stands for the edge from corner k to the next one.
+EXACTFF_INLINE void ViewEdges::look_at(Run& run, OutlineId by) {
+  using namespace kernel::lanes;
+  Cuts cuts;
+  const Outline& o = outlines_.outline(by);
+  ++work_.pairs;
+  if (!cut(run, outlines_.edges().subspan(o.first, o.count), o.first, cuts)) return;
+  cuts.by = by;
+  const unsigned special = (cuts.unsure | cuts.coincident) & (run.wanted | run.skipped);
+  if (cuts.apart && special == 0) return;
+  const InverseDepth& depth = depths_.of(by);
+  const Four difference = depth.slope.x * run.x + depth.slope.y * run.y + depth.slope.z * run.z - run.w;
+  const Four error = depth.error * run.size + run.w_error;
+  cuts.nearer = lane_bits(difference > error) & ~cuts.same;
+  cuts.further = lane_bits(difference < -error) & ~cuts.same;
+  const bool clear = (cuts.nearer | cuts.same) == 15U || (cuts.further | cuts.same) == 15U;
+  if (!cuts.apart && (!clear || cuts.same == 15U) && outlines_.outline(run.owner).count <= kRunCorners) {
+    rivals_.emplace_back(std::min(run.owner, by), std::max(run.owner, by));
+  }
+  for (unsigned bits = (cuts.covered | cuts.coincident | cuts.unsure) & (run.wanted | run.skipped); bits != 0;
+       bits &= bits - 1) {
+    resolve(run, static_cast<unsigned>(std::countr_zero(bits)), cuts);
+  }
+}
+
+EXACTFF_CLONES void ViewEdges::look_at_near(Run& run) {
+  for (const OutlineId by : near_) look_at(run, by);
+}
+
+// As in visible_edges.cpp, where the errors are derived. A corner that is an end of a line has height 0 above it,
+// exactly: it lies neither below nor above. An edge with both ends on a line coincides with it; one with one end on a
+// line and the other below it is not covered at all. False where the outline certainly covers nothing, on either side.
+EXACTFF_INLINE bool ViewEdges::cut(const Run& run, std::span<const Edge> lines, EdgeId first, Cuts& cuts) {
+  using namespace kernel::lanes;
+  const Four size_of_both = run.size + next_lane(run.size);
+  Parameters begin{four(0.0), four(0.0), four_whole(Parameter::kAtBegin)};
+  Parameters end{four(1.0), four(0.0), four_whole(Parameter::kAtEnd)};
+  FourMask outside = four_whole(0), sure = four_whole(-1), coincident = four_whole(0), reversed = four_whole(0),
+           same = four_whole(0);
+  bool apart = false;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const Edge& line = lines[i];
+    const FourMask at_a = run.id == four_whole(line.a), at_b = run.id == four_whole(line.b), on_line = at_a | at_b;
+    const FourMask on_line_next{on_line[1], on_line[2], on_line[3], on_line[0]};
+    same |= at_a;
+    const Four height = line.normal.x * run.x + line.normal.y * run.y + line.normal.z * run.z;
+    const Four error = line.error * size_of_both;
+    if (all_lanes((height < -error) & ~on_line)) return false;
+    const Four a = pick(on_line, four(0.0), height), b = next_lane(a);
+    const FourMask certain_a = on_line | (absolute(a) > error), certain_b = on_line_next | (absolute(b) > error);
+    const FourMask known = certain_a & certain_b;
+    const FourMask below_a = a < 0.0, below_b = b < 0.0, on_both = on_line & on_line_next;
+    const FourMask at_or_below_a = a <= 0.0, at_or_below_b = b <= 0.0;
+    apart = apart || all_lanes(certain_a & at_or_below_a);
+    outside |= known & at_or_below_a & at_or_below_b & ~on_both;
+    coincident |= on_both;
+    reversed |= on_both & at_b;
+    const FourMask crosses = (below_a ^ below_b) & ~(on_line | on_line_next);
+    const Four inverse = 1.0 / (a - b);
+    const Four value = a * inverse, value_error = error * absolute(inverse) * 4.0 + 0x1p-50;
+    const Four beyond = value - pick(below_b, end.value, begin.value);
+    const Four beyond_error = value_error + pick(below_b, end.error, begin.error);
+    const FourMask before = beyond < 0.0;
+    sure &= known & ~(crosses & ~(absolute(beyond) > beyond_error));
+    const FourMask id = four_whole(static_cast<std::int64_t>(first + i));
+    const FourMask enters = crosses & below_a & ~before, leaves = crosses & below_b & before;
+    begin = {pick(enters, value, begin.value), pick(enters, value_error, begin.error), pick(enters, id, begin.line)};
+    end = {pick(leaves, value, end.value), pick(leaves, value_error, end.error), pick(leaves, id, end.line)};
+  }
+  const Four length = end.value - begin.value, length_error = end.error + begin.error;
+  coincident &= ~outside;
+  outside |= sure & (-length > length_error);
+  const FourMask covered = ~outside & ~coincident & sure & (length > length_error);
+  cuts.apart = apart;
+  cuts.covered = lane_bits(covered);
+  cuts.coincident = lane_bits(coincident);
+  cuts.reversed = lane_bits(reversed);
+  cuts.unsure = lane_bits(~(outside | coincident | covered));
+  cuts.same = lane_bits(same);
+  cuts.begin = begin;
+  cuts.end = end;
+  return true;
+}
+
+visibility::EdgeCovers::Interval ViewEdges::interval(const Cuts& cuts, unsigned k) const {
+  const auto parameter = [&](const Parameters& of) -> Parameter {
+    const auto line = static_cast<EdgeId>(of.line[k]);
+    return {of.value[k], visibility::rounded_up(of.error[k]), line < Parameter::kAtBegin ? line_[line] : line};
+  };
+  return {parameter(cuts.begin), parameter(cuts.end)};
+}
+
+bool ViewEdges::cover(const Run& run, unsigned k, const Cuts& cuts, Cover& result) {
+  if ((cuts.coincident >> k & 1U) != 0) {
+    const bool right = (cuts.reversed >> k & 1U) != 0;
+    result = {.left = !right, .right = right, .coincides = true, .interval = {kBegin, kEnd}};
+    return true;
+  }
+  if ((cuts.unsure >> k & 1U) != 0) {
+    ++work_.undecided;
+    return cover_exactly(run.first + k, cuts.by, result);
+  }
+  result = {.left = true, .right = true, .coincides = false, .interval = interval(cuts, k)};
+  return true;
+}
+
+// True if the outline's plane may hold the edge, so that it may be nearer on one side of it only.
+bool ViewEdges::may_hold(unsigned k, const Cuts& cuts) { return (ends(cuts.nearer | cuts.further) >> k & 1U) == 0; }
+
+bool ViewEdges::holds(const Run& run, unsigned k, const Cuts& cuts) {
+  if (!may_hold(k, cuts)) return false;
+  const Edge edge = outlines_.edge(run.first + k);
+  return depths_.compare(outlines_, cuts.by, run.owner, edge.a) == 0 &&
+         depths_.compare(outlines_, cuts.by, run.owner, edge.b) == 0;
+}
+
+void ViewEdges::resolve(Run& run, unsigned k, const Cuts& cuts) {
+  const unsigned bit = 1U << k;
+  const EdgeId partner = partner_[run.first + k];
+  const bool is_partner = partner != kNoEdge && outlines_.edge(partner).outline == cuts.by;
+  const bool is_skipped = (run.skipped & bit) != 0;
+  if (is_skipped && (cuts.covered & bit) != 0 && !may_hold(k, cuts)) return;
+  if ((cuts.coincident & bit) != 0 && is_partner) return;  // known
+  Cover found;
+  if (!cover(run, k, cuts, found)) return;
+  if (is_skipped) {
+    if (!is_partner && (found.coincides || holds(run, k, cuts))) run.forced |= bit;
+    return;
+  }
+  if (found.coincides && is_partner) return;
+  if (found.left) {
+    if ((both_ends(cuts.nearer | cuts.same) & bit) != 0 && (both_ends(cuts.same) & bit) == 0) {
+      hide(run, k, found.interval);
+      return;
+    }
+    if ((both_ends(cuts.further | cuts.same) & bit) == 0 || (both_ends(cuts.same) & bit) != 0) {
+      hide_where_nearer(run, k, cuts.by, found.interval);
+      if ((run.wanted & bit) == 0) return;
+    }
+  }
+  if (!found.right || (partner != kNoEdge && !found.coincides && (cuts.covered & bit) != 0 &&
+                       (both_ends(cuts.further | cuts.same) & bit) != 0 && (both_ends(cuts.same) & bit) == 0)) {
+    return;  // behind the partner
+  }
+  backgrounds_[k].push_back({cuts.by, !found.left, found.interval});
+}
+
+void ViewEdges::hide(Run& run, unsigned k, const Interval& interval) {
+  if (interval.begin.line == Parameter::kAtBegin && interval.end.line == Parameter::kAtEnd) {
+    run.wanted &= ~(1U << k);
+  } else {
+    hidden_[k].push_back(interval);
+  }
+}
+
+void ViewEdges::hide_where_nearer(Run& run, unsigned k, OutlineId by, const Interval& interval) {
+  const EdgeId edge = run.first + k;
+  const Order along = order(by, run.owner, edge, run.owner, Side::kLeft);
+  if (along.at_a > 0 && along.at_b > 0) return hide(run, k, interval);
+  if (along.at_a < 0 && along.at_b < 0) return;
+  const Parameter crossing = crossing_of(edge, line_between(by, run.owner));
+  Interval nearer = interval;
+  if (along.at_a > 0) {
+    if (compare(edge, crossing, nearer.end) < 0) nearer.end = crossing;
+  } else {
+    if (compare(edge, crossing, nearer.begin) > 0) nearer.begin = crossing;
+  }
+  if (compare(edge, nearer.begin, nearer.end) < 0) hide(run, k, nearer);
+}
+
+// What is left of the allowed interval between the hidden ones.
+void ViewEdges::finish(const Run& run, unsigned k, const Interval& allowed) {
+  const EdgeId edge = run.first + k;
+  std::vector<Interval>& hidden = hidden_[k];
+  if (hidden.size() > 1) sort(edge, hidden);
+  Parameter reached = allowed.begin;
+  for (const Interval& h : hidden) {
+    if (compare(edge, h.begin, allowed.end) >= 0) break;
+    if (compare(edge, h.begin, reached) > 0) find_right(run, k, {reached, h.begin});
+    if (compare(edge, h.end, reached) > 0) reached = h.end;
+  }
+  if (compare(edge, reached, allowed.end) < 0) find_right(run, k, {reached, allowed.end});
+}
+
+// The nearest background of each part of a visible interval.
+void ViewEdges::find_right(const Run& run, unsigned k, const Interval& visible) {
+  const EdgeId edge = run.first + k;
+  Background first{kNothing, false, visible};
+  if (partner_[edge] != kNoEdge) {
+    first.outline = outlines_.edge(partner_[edge]).outline;
+    first.coincides = true;
+  }
+  if (backgrounds_[k].empty()) return keep(run, edge, first);
+  if (backgrounds_[k].size() == 1 && first.outline == kNothing) {
+    return keep_around(run, edge, visible, backgrounds_[k].front());
+  }
+  envelope_.assign(1, first);
+  for (const Background& background : backgrounds_[k]) put_in(run, edge, background);
+  std::size_t last = 0;
+  for (std::size_t i = 1; i < envelope_.size(); ++i) {
+    if (envelope_[i].outline == envelope_[last].outline && envelope_[i].coincides == envelope_[last].coincides) {
+      envelope_[last].interval.end = envelope_[i].interval.end;
+    } else {
+      envelope_[++last] = envelope_[i];
+    }
+  }
+  envelope_.resize(last + 1);
+  for (const Background& right : envelope_) keep(run, edge, right);
+}
+
+// The only background, and nothing before and after it.
+void ViewEdges::keep_around(const Run& run, EdgeId edge, const Interval& visible, const Background& only) {
+  const auto& [begin, end] = visible;
+  const Parameter from = compare(edge, only.interval.begin, begin) > 0 ? only.interval.begin : begin;
+  const Parameter to = compare(edge, only.interval.end, end) < 0 ? only.interval.end : end;
+  if (compare(edge, from, to) >= 0) return keep(run, edge, {kNothing, false, visible});
+  if (compare(edge, begin, from) < 0) keep(run, edge, {kNothing, false, {begin, from}});
+  keep(run, edge, {only.outline, only.coincides, {from, to}});
+  if (compare(edge, to, end) < 0) keep(run, edge, {kNothing, false, {to, end}});
+}
+
+// Puts a background in where it is nearer than those found so far.
+void ViewEdges::put_in(const Run& run, EdgeId edge, const Background& background) {
+  next_envelope_.clear();
+  const auto add = [&](const Background& of, const Parameter& begin, const Parameter& end) {
+    if (compare(edge, begin, end) < 0) next_envelope_.push_back({of.outline, of.coincides, {begin, end}});
+  };
+  for (const Background& known : envelope_) {
+    const auto [begin, end] = known.interval;
+    const Parameter from = compare(edge, background.interval.begin, begin) > 0 ? background.interval.begin : begin;
+    const Parameter to = compare(edge, background.interval.end, end) < 0 ? background.interval.end : end;
+    if (compare(edge, from, to) >= 0) {
+      next_envelope_.push_back(known);
+      continue;
+    }
+    add(known, begin, from);
+    const Order nearer = known.outline == kNothing
+                             ? Order{1, 1}
+                             : order(background.outline, known.outline, edge, run.owner, Side::kRight);
+    if (nearer.at_a == nearer.at_b) {
+      add(nearer.at_a > 0 ? background : known, from, to);
+    } else {
+      const Parameter crossing = crossing_of(edge, line_between(background.outline, known.outline));
+      const Parameter middle = compare(edge, crossing, from) <= 0 ? from
+                               : compare(edge, crossing, to) >= 0 ? to
+                                                                  : crossing;
+      add(nearer.at_a > 0 ? background : known, from, middle);
+      add(nearer.at_a > 0 ? known : background, middle, to);
+    }
+    add(known, to, end);
+  }
+  envelope_.swap(next_envelope_);
+}
+
+void ViewEdges::keep(const Run& run, EdgeId edge, const Background& right) {
+  if (run.other != kNothing && right.outline != run.other) return;  // not where this pair is seen
+  if (right.coincides && right.outline < run.owner) return;         // its own edge counts
+  const bool on_horizon = right.outline == kNothing && run.other == kNothing &&
+                          horizon_side_[outlines_.edge(edge).a] == 0 && horizon_side_[outlines_.edge(edge).b] == 0;
+  parts_.push_back({edge, right.interval.begin, right.interval.end});
+  sides_.push_back({run.owner, right.outline, on_horizon});
+}
+
+}  // namespace exactff::whole_view

@@ -1,0 +1,104 @@
+// Splits the directions around x into windows in which few faces are seen.
+//
+// A window is a cell of one of the six faces of a cube around x, whose axes are those of the space: the directions
+// (s, u, v), (v, s, u) or (u, v, s), s = +-1, with u and v in two intervals within [-1, 1]. It is the convex cone of
+// its four corners, whose coordinates are exact. A window starts as a cube's face and is split into four until few
+// edges of outlines cross it.
+//
+// An outline stays in a window unless it is proved to be outside (all four corners of the window certainly outside one
+// of its lines, or its bounds in the cell's coordinates certainly beyond the cell) or hidden there: by an outline that
+// covers the whole window and is certainly nearer in its four corners, and so, w being linear (depths.h), in all its
+// directions.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "whole_view/depths.h"
+
+namespace exactff::whole_view {
+
+class Windows {
+ public:
+  using Lines = std::uint32_t;  // a bit for each of an outline's first 31 edges, the last bit for all others
+  static constexpr unsigned kLastLine = 31;
+
+  // An outline that is seen in a window, perhaps in part, with the edges that may cross the window.
+  struct Seat {
+    OutlineId outline = 0;
+    Lines lines = 0;
+    // Bounds of the whole outline in the window's coordinates, widened. Of two outlines whose bounds are disjoint in
+    // some window, neither covers anything of the other's edges.
+    float u_low = 0.0F, u_high = 0.0F, v_low = 0.0F, v_high = 0.0F;
+
+    [[nodiscard]] bool is_beside(const Seat& other) const {
+      return u_low > other.u_high || u_high < other.u_low || v_low > other.v_high || v_high < other.v_low;
+    }
+  };
+  // The same from the outline's side. Of a hidden outline `at` is the outline that hides it, otherwise the window, in
+  // which the outline has this seat.
+  struct Place {
+    std::uint32_t at = 0;
+    Lines lines = 0;
+    std::uint32_t seat = 0;
+  };
+
+  void find(const Outlines& outlines, std::span<const InverseDepth> depths);
+
+  [[nodiscard]] std::span<const Seat> seats(std::uint32_t window) const {
+    return std::span(seats_).subspan(window_begin_[window], window_begin_[window + 1] - window_begin_[window]);
+  }
+  [[nodiscard]] const Seat& seat(const Place& place) const { return seats_[place.seat]; }
+  [[nodiscard]] std::span<const Place> windows_of(OutlineId outline) const { return seen_.of(outline); }
+  [[nodiscard]] std::span<const Place> hidden_by(OutlineId outline) const { return hidden_.of(outline); }
+  // Outlines that cover a window together, neither certainly nearer than the other.
+  [[nodiscard]] std::span<const std::pair<OutlineId, OutlineId>> rivals() const { return rivals_; }
+  [[nodiscard]] std::size_t count() const { return window_begin_.size() - 1; }
+
+ private:
+  using Member = Seat;
+  struct Window {
+    int axis = 0;
+    double sign = 1.0;
+    double u_low = 0.0, u_high = 0.0, v_low = 0.0, v_high = 0.0;
+  };
+  // Places in the order of outlines.
+  class Index {
+   public:
+    struct Entry {
+      OutlineId outline;
+      Place place;
+    };
+    void clear() { entries_.clear(); }
+    void add(OutlineId outline, const Place& place) { entries_.push_back({outline, place}); }
+    void sort(std::size_t outlines);
+    [[nodiscard]] std::span<const Place> of(OutlineId outline) const {
+      return std::span(places_).subspan(begin_[outline], begin_[outline + 1] - begin_[outline]);
+    }
+
+   private:
+    std::vector<Entry> entries_;
+    std::vector<std::uint32_t> begin_, next_;
+    std::vector<Place> places_;
+  };
+
+  void start(const Window& face);
+  [[nodiscard]] bool enters_face(const Outlines::Outline& outline, const Window& face, Member& member) const;
+  void split(const Window& window, std::size_t first, int depth, int stuck);
+  void filter(const Window& window, std::size_t first, std::size_t last);
+  [[nodiscard]] std::size_t drop_hidden(const Window& window, std::size_t first);
+  void keep(std::size_t first);
+
+  const Outlines* outlines_ = nullptr;
+  std::span<const InverseDepth> depths_;
+  std::vector<Member> members_;  // a stack: those of a window follow those of the window it is part of
+  std::vector<Seat> seats_;
+  std::vector<std::uint32_t> window_begin_;
+  Index seen_, hidden_;
+  std::vector<std::pair<OutlineId, OutlineId>> rivals_;
+};
+
+}  // namespace exactff::whole_view

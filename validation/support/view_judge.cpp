@@ -1,0 +1,154 @@
+#include "support/view_judge.h"
+
+#include <gmpxx.h>
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "kernel/exact_vec.h"
+#include "whole_view/view_edges.h"
+
+namespace exactff::validation {
+
+using kernel::ExactVec3;
+using kernel::Integer;
+using whole_view::ViewEdges;
+
+ExactSource whole_patch(const Scene& scene, std::size_t patch) {
+  return {scene, Selection{.patch = static_cast<PatchId>(patch), .face = {}, .scene = scene.id()}};
+}
+
+const SeenPatch* find_patch(const WholeView& seen, std::size_t patch) {
+  const auto at = std::ranges::find(seen.patches, static_cast<PatchId>(patch), &SeenPatch::patch);
+  return at == seen.patches.end() ? nullptr : &*at;
+}
+
+void expect_patches_as_the_solver(const Scene& scene, const Receiver& receiver) {
+  const WholeView seen = view(scene, receiver);
+  for (std::size_t p = 0; p < scene.patches().size(); ++p) {
+    const FormFactor f = exact_form_factor(scene, receiver, whole_patch(scene, p));
+    const SeenPatch* patch = find_patch(seen, p);
+    expect_same_bits(patch ? patch->form_factor : ViewShare{}, f, scene.patches()[p].name);
+    if (patch != nullptr && !patch->stacked) expect_same_bits(patch->share, f, scene.patches()[p].name);
+  }
+}
+
+void expect_shares_to_add_up(const Scene& scene, const Receiver& receiver) {
+  const WholeView seen = view(scene, receiver);
+  Enclosure sum = seen.back.enclosure;
+  sum += seen.open.enclosure;
+  double values = seen.back.value + seen.open.value;
+  for (const SeenPatch& patch : seen.patches) {
+    sum += patch.share.enclosure;
+    values += patch.share.value;
+  }
+  EXPECT_TRUE(sum.contains(1.0)) << sum.midpoint();
+  EXPECT_NEAR(values, 1.0, 1e-12);
+}
+
+namespace {
+
+// The sign of the first number that is not zero.
+int first_sign(const Integer& a, const Integer& b) { return sgn(a) != 0 ? sgn(a) : sgn(b); }
+
+// A direction m, moved by an infinitely small part of `aside`.
+struct NearDirection {
+  ExactVec3 m, aside;
+};
+
+struct Plane {
+  FaceId face{};
+  ExactVec3 normal;              // away from x
+  mpq_class offset;              // > 0
+  std::vector<ExactVec3> sides;  // inward
+};
+
+std::vector<Plane> planes_of(const Scene& scene, const Receiver& receiver) {
+  std::vector<Plane> result;
+  for (const Piece& piece : scene.pieces()) {
+    if (piece.transparent || std::ranges::find(receiver.on, piece.face) != receiver.on.end()) continue;
+    std::vector<ExactVec3> corners;
+    long exponent = 10000;
+    const auto at = [&](std::uint32_t vertex) {
+      return kernel::exact_difference(scene.vertices()[vertex], receiver.point);
+    };
+    for (const std::uint32_t vertex : scene.corners(piece)) exponent = std::min(exponent, at(vertex).exponent);
+    const auto corner = [&](std::uint32_t vertex) {
+      kernel::ScaledVec3 t = at(vertex);
+      if (!is_zero(t.v)) lower_exponent(t, exponent);
+      return t.v;
+    };
+    const ExactVec3 a = corner(piece.frame[0]), b = corner(piece.frame[1]), c = corner(piece.frame[2]);
+    Plane plane{.face = piece.face, .normal = cross(b - a, c - a), .offset = {}, .sides = {}};
+    const Integer offset = dot(plane.normal, a);
+    if (sgn(offset) == 0) continue;
+    plane.offset = kernel::times_power_of_two(mpq_class(abs(offset)), exponent);
+    if (sgn(offset) < 0) kernel::negate(plane.normal);
+    for (const std::uint32_t vertex : scene.corners(piece)) corners.push_back(corner(vertex));
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      ExactVec3 side = cross(corners[k], corners[(k + 1) % corners.size()]);
+      if (sgn(offset) < 0) kernel::negate(side);
+      plane.sides.push_back(std::move(side));
+    }
+    result.push_back(std::move(plane));
+  }
+  return result;
+}
+
+bool covers(const Plane& plane, const NearDirection& d) {
+  return std::ranges::all_of(plane.sides,
+                             [&](const ExactVec3& side) { return first_sign(dot(side, d.m), dot(side, d.aside)) > 0; });
+}
+
+std::optional<FaceId> seen_in(const std::vector<Plane>& planes, const NearDirection& d) {
+  const Plane* best = nullptr;
+  mpq_class best_depth, best_aside;
+  for (const Plane& plane : planes) {
+    if (!covers(plane, d)) continue;
+    const mpq_class depth = dot(plane.normal, d.m) / plane.offset, aside = dot(plane.normal, d.aside) / plane.offset;
+    const bool nearer = best == nullptr || depth > best_depth || (depth == best_depth && aside > best_aside);
+    if (!nearer) continue;  // of equal ones the first
+    best = &plane;
+    best_depth = depth;
+    best_aside = aside;
+  }
+  return best == nullptr ? std::nullopt : std::optional(best->face);
+}
+
+std::string name_of(const Scene& scene, const std::optional<FaceId>& face) {
+  return face ? scene.name_of(*face) : "nothing";
+}
+
+}  // namespace
+
+void expect_sides_as_rational_numbers_find(const Scene& scene, const Receiver& receiver) {
+  const visibility::View from(scene, receiver);
+  ViewEdges edges;
+  edges.find(from, ViewEdges::Wholes::kFaces);
+  const std::vector<Plane> planes = planes_of(scene, receiver);
+  const ExactVec3 up = from.normal().exact;
+  for (std::size_t i = 0; i < edges.parts().size(); ++i) {
+    const auto piece = edges.exact(edges.parts()[i]);
+    const ExactVec3 p = piece.a * piece.begin.l + piece.b * piece.begin.m,
+                    q = piece.a * piece.end.l + piece.b * piece.end.m;
+    ASSERT_GT(sgn(Integer(piece.begin.l * piece.end.m - piece.begin.m * piece.end.l)), 0);
+    const Integer up_p = dot(up, p), up_q = dot(up, q);
+    ASSERT_GE(sgn(up_p), 0);
+    ASSERT_GE(sgn(up_q), 0);
+    // Not the middle, so that no accident of symmetry puts it onto another line.
+    const NearDirection left{p * Integer(5) + q * Integer(7), cross(piece.b, piece.a)};
+    NearDirection right = left;
+    kernel::negate(right.aside);
+    const auto face = [&](whole_view::OutlineId o) -> std::optional<FaceId> {
+      return o == whole_view::kNothing ? std::nullopt : std::optional(edges.face(o));
+    };
+    const ViewEdges::Sides& sides = edges.sides()[i];
+    EXPECT_EQ(name_of(scene, face(sides.left)), name_of(scene, seen_in(planes, left))) << "left of arc " << i;
+    EXPECT_EQ(sides.on_horizon, sgn(up_p) == 0 && sgn(up_q) == 0 && !face(sides.right)) << "arc " << i;
+    if (sides.on_horizon) continue;
+    EXPECT_EQ(name_of(scene, face(sides.right)), name_of(scene, seen_in(planes, right))) << "right of arc " << i;
+  }
+}
+
+}  // namespace exactff::validation

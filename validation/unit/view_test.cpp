@@ -1,0 +1,302 @@
+// The whole view by hand: scenes where what is seen is known, each judged in full (support/view_judge.h).
+#include "exactff/view.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "exactff/obj.h"
+#include "generate/plain_scene.h"
+#include "support/view_judge.h"
+
+namespace exactff {
+namespace {
+
+using generate::PlainScene;
+using Ring = std::vector<Vec3>;
+
+// Patches of one face each, in this order. Counter-clockwise as seen from below looks down.
+struct Named {
+  const char* name;
+  Ring ring;
+};
+
+PlainScene plain_of(const std::vector<Named>& faces, double scale = 1.0) {
+  PlainScene plain;
+  for (const Named& face : faces) {
+    Ring ring = face.ring;
+    for (Vec3& v : ring) v = {v.x * scale, v.y * scale, v.z * scale};
+    plain.add_ring(plain.patch(face.name), ring);
+  }
+  return plain;
+}
+
+Ring square(double low_x, double low_y, double high_x, double high_y, double z) {  // looks down
+  return {{low_x, low_y, z}, {low_x, high_y, z}, {high_x, high_y, z}, {high_x, low_y, z}};
+}
+
+Ring reversed(Ring ring) {
+  std::reverse(ring.begin(), ring.end());
+  return ring;
+}
+
+Receiver looking_up(const Vec3& x = {0, 0, 0}) { return {.point = x, .normal = {0, 0, 1}, .on = {}, .id = {}}; }
+
+void judge(const Scene& scene, const Receiver& receiver) {
+  validation::expect_patches_as_the_solver(scene, receiver);
+  validation::expect_shares_to_add_up(scene, receiver);
+  validation::expect_sides_as_rational_numbers_find(scene, receiver);
+}
+
+WholeView judged(const Scene& scene, const Receiver& receiver) {
+  judge(scene, receiver);
+  return view(scene, receiver);
+}
+
+const SeenPatch& patch_of(const WholeView& seen, const Scene& scene, const std::string& name) {
+  const SeenPatch* patch = validation::find_patch(seen, index_of(scene.select(name).patch));
+  if (patch == nullptr) throw std::runtime_error(name + " is not seen");
+  return *patch;
+}
+
+bool is_seen(const WholeView& seen, const Scene& scene, const std::string& name) {
+  return validation::find_patch(seen, index_of(scene.select(name).patch)) != nullptr;
+}
+
+TEST(View, OfNothingIsOpen) {
+  const Scene scene = generate::build(plain_of({{"below", square(-1, -1, 1, 1, -1)}}));
+  const WholeView seen = judged(scene, looking_up());
+  EXPECT_TRUE(seen.patches.empty());
+  EXPECT_EQ(seen.open.value, 1.0);
+  EXPECT_EQ(seen.open.status, Status::kCertified);
+  EXPECT_EQ(seen.back.status, Status::kZero);
+}
+
+TEST(View, FromInsideASolidIsItsBacks) {
+  PlainScene plain;
+  const Ring lid = reversed(square(-1, -1, 1, 1, 1));
+  plain.add_ring(plain.patch("box"), lid);
+  for (const Ring& side :
+       {Ring{{-1, -1, -1}, {1, -1, -1}, {1, -1, 1}, {-1, -1, 1}}, Ring{{1, -1, -1}, {1, 1, -1}, {1, 1, 1}, {1, -1, 1}},
+        Ring{{1, 1, -1}, {-1, 1, -1}, {-1, 1, 1}, {1, 1, 1}}, Ring{{-1, 1, -1}, {-1, -1, -1}, {-1, -1, 1}, {-1, 1, 1}},
+        square(-1, -1, 1, 1, -1)}) {
+    plain.add_ring(plain.patch("box"), side);
+  }
+  const Scene scene = generate::build(plain);
+  const WholeView seen = judged(scene, looking_up({0.25, 0.5, -0.125}));
+  EXPECT_TRUE(seen.patches.empty());
+  EXPECT_EQ(seen.back.value, 1.0);
+  EXPECT_EQ(seen.open.status, Status::kZero);
+}
+
+// Each plane is in front of the other one on one side.
+TEST(View, OfPiercingFacesHasTheirCommonLineAsAnEdge) {
+  const Scene scene = generate::build(plain_of({{"rising", {{-1, -1, 1}, {-1, 1, 1}, {1, 1, 3}, {1, -1, 3}}},
+                                                {"falling", {{-1, -1, 3}, {-1, 1, 3}, {1, 1, 1}, {1, -1, 1}}}}));
+  const WholeView seen = judged(scene, looking_up());
+  const SeenPatch &left = patch_of(seen, scene, "rising"), &right = patch_of(seen, scene, "falling");
+  EXPECT_GT(left.share.value, 0.1);
+  EXPECT_EQ(left.share.value, right.share.value);
+  const WholeView arcs = view(scene, looking_up(), {.arcs = true});
+  EXPECT_EQ(std::ranges::count_if(arcs.arcs, [](const ViewArc& arc) { return arc.right && arc.left != arc.right; }), 1);
+  EXPECT_EQ(arcs.record.pierced, 1U);
+}
+
+TEST(View, OfThreePlanesThroughOneLineHasItOnce) {
+  const Scene scene = generate::build(plain_of({{"rising", {{-1, -1, 1}, {-1, 1, 1}, {1, 1, 3}, {1, -1, 3}}},
+                                                {"falling", {{-1, -1, 3}, {-1, 1, 3}, {1, 1, 1}, {1, -1, 1}}},
+                                                {"level", square(-1, -1, 1, 1, 2)},
+                                                {"half", square(0, -1, 1, 1, 2)}}));
+  judge(scene, looking_up());
+  judge(scene, looking_up({0.25, 0.125, 0}));
+}
+
+TEST(View, OfFacesThatHideEachOtherInACircleIsExact) {
+  const auto bar = [](double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    const auto at = [&](double u, double v, double z) { return Vec3{c * u - s * v, s * u + c * v, z}; };
+    return Ring{at(-3, 0.5, 1.25), at(3, 0.5, 2.75), at(3, 1, 2.75)};
+  };
+  const Scene scene = generate::build(plain_of({{"a", bar(0)}, {"b", bar(2.1)}, {"c", bar(4.2)}}));
+  judge(scene, looking_up());
+  judge(scene, {.point = {0, 0, 4}, .normal = {0, 0, -1}, .on = {}, .id = {}});
+}
+
+TEST(View, OfAStackOfCoplanarFacesIsTheLowestAndEachFormFactorIsWhole) {
+  const Scene scene = generate::build(plain_of({{"low", square(-1, -1, 1, 1, 1)},
+                                                {"high", square(-1, -1, 1, 1, 1)},
+                                                {"shifted", square(0, -1, 2, 1, 1)},
+                                                {"turned", reversed(square(-1, -1, 3, 1, 1))}}));
+  const WholeView seen = judged(scene, looking_up());
+  const SeenPatch &low = patch_of(seen, scene, "low"), &high = patch_of(seen, scene, "high");
+  EXPECT_EQ(high.share.status, Status::kZero);
+  validation::expect_same_bits(high.form_factor, low.share, "high");
+  validation::expect_same_bits(low.form_factor, low.share, "low");
+  EXPECT_TRUE(high.stacked);
+  const SeenPatch& shifted = patch_of(seen, scene, "shifted");
+  EXPECT_LT(shifted.share.value, shifted.form_factor.value);
+  EXPECT_GT(shifted.share.value, 0.0);
+  EXPECT_GT(seen.back.value, 0.0);  // the part of `turned` that nothing lower covers
+}
+
+TEST(View, OfADoubledFaceIsItsFrontOrItsBackByIndex) {
+  const Ring down = square(-1, -1, 1, 1, 1);
+  const Scene front_first = generate::build(plain_of({{"sheet", down}, {"sheet", reversed(down)}}));
+  const WholeView front = judged(front_first, looking_up());
+  EXPECT_EQ(front.back.status, Status::kZero);
+  const Scene back_first = generate::build(plain_of({{"sheet", reversed(down)}, {"sheet", down}}));
+  const WholeView back = judged(back_first, looking_up());
+  validation::expect_same_bits(back.back, front.patches.front().share, "back");
+  EXPECT_EQ(back.patches.front().share.status, Status::kZero);
+  validation::expect_same_bits(back.patches.front().form_factor, front.patches.front().form_factor, "sheet");
+}
+
+// Both have an edge in the plane x = 0, at different depths.
+TEST(View, OfAlignedEdgesAtDifferentDepthsHasOneArc) {
+  for (const bool near_first : {true, false}) {
+    std::vector<Named> faces = {{"near", square(0, -1, 1, 1, 1)}, {"far", square(-4, -4, 0, 4, 2)}};
+    if (!near_first) std::swap(faces[0], faces[1]);
+    const Scene scene = generate::build(plain_of(faces));
+    judge(scene, looking_up());
+    const WholeView seen = view(scene, looking_up(), {.arcs = true});
+    EXPECT_EQ(std::ranges::count_if(seen.arcs, [](const ViewArc& arc) { return arc.right.has_value(); }), 1);
+  }
+}
+
+// A mesh has shared edges, which are looked at once. Another mesh with edges that partly lie on them must not be
+// overlooked, at the same depth, nearer or further.
+TEST(View, OfMeshesWhoseEdgesLieOnEachOtherIsExact) {
+  for (const double z : {0.5, 1.0, 2.0}) {
+    PlainScene plain = plain_of({{"left", square(-1, -1, 0, 1, 1)}, {"right", square(0, -1, 1, 1, 1)}});
+    generate::PlainPatch& other = plain.patch("other");
+    plain.add_ring(other, square(-0.5 * z, 0, 0, 0.5 * z, z));
+    plain.add_ring(other, square(0, 0, 0.5 * z, 0.5 * z, z));
+    plain.add_ring(plain.patch("more"), square(-0.5 * z, -0.5 * z, 0, 0, z));
+    const Scene scene = generate::build(plain);
+    judge(scene, looking_up());
+    judge(scene, looking_up({0.125, 0.25, 0.0625}));
+  }
+}
+
+// A face that holds a shared edge of a mesh is nearer on one side of it only.
+TEST(View, OfAFaceThroughASharedEdgeIsExact) {
+  PlainScene plain;
+  generate::PlainPatch& mesh = plain.patch("mesh");
+  plain.add_ring(mesh, square(-1, -1, 0, 1, 1));
+  plain.add_ring(mesh, square(0, -1, 1, 1, 1));
+  plain.add_ring(plain.patch("blade"), {{-1, -2, 0.5}, {-1, 2, 0.5}, {1, 2, 1.5}, {1, -2, 1.5}});
+  const Scene scene = generate::build(plain);
+  judge(scene, looking_up());
+  EXPECT_GT(patch_of(view(scene, looking_up()), scene, "mesh").share.value, 0.0);
+}
+
+Scene room() {
+  const double s = 4;
+  return generate::build(plain_of({{"floor", reversed(square(0, 0, s, s, 0))},
+                                   {"ceiling", square(0, 0, s, s, s)},
+                                   {"south", {{0, 0, 0}, {0, 0, s}, {s, 0, s}, {s, 0, 0}}},
+                                   {"north", {{0, s, 0}, {s, s, 0}, {s, s, s}, {0, s, s}}},
+                                   {"west", {{0, 0, 0}, {0, s, 0}, {0, s, s}, {0, 0, s}}},
+                                   {"east", {{s, 0, 0}, {s, 0, s}, {s, s, s}, {s, s, 0}}},
+                                   {"table", square(1, 1, 3, 3, 1)}}));
+}
+
+TEST(View, FromEdgesAndCornersOfARoomAddsUpToOne) {
+  const Scene scene = room();
+  const std::vector<Vec3> points = {{0, 0, 0}, {0, 0, 2}, {4, 4, 4}, {2, 0, 4},
+                                    {1, 1, 1}, {2, 1, 1}, {1, 2, 0}, {4, 2, 1}};
+  for (const Vec3& x : points) {
+    for (const Vec3& n : {Vec3{0, 0, 1}, Vec3{1, 1, 1}, Vec3{-1, -2, -3}, Vec3{1, 0, 0}, Vec3{0.125, -1, 0.5}}) {
+      SCOPED_TRACE(testing::Message() << x.x << ' ' << x.y << ' ' << x.z << " / " << n.x << ' ' << n.y << ' ' << n.z);
+      judge(scene, {.point = x, .normal = n, .on = {}, .id = {}});
+    }
+  }
+}
+
+TEST(View, LeavesOutOwnAndTransparentFaces) {
+  const Scene scene = room();
+  Receiver below_table = looking_up({2, 2, 1});
+  below_table.on = scene.faces_of(scene.select("table"));
+  const WholeView seen = judged(scene, below_table);
+  EXPECT_FALSE(is_seen(seen, scene, "table"));
+  EXPECT_EQ(seen.back.status, Status::kZero);
+  EXPECT_EQ(seen.open.status, Status::kZero);
+  const std::vector<Selection> glass{scene.select("ceiling"), scene.select("table")};
+  const Scene through = scene.with_transparent(glass);
+  const WholeView open = view(through, looking_up({2, 2, 0.5}));
+  EXPECT_FALSE(is_seen(open, through, "ceiling"));
+  const WholeView roofed = view(scene, below_table);
+  EXPECT_NEAR(open.open.value + patch_of(open, through, "east").share.value * 4, 1.0, 1e-12);
+  EXPECT_GT(open.open.value, 0.25);
+  EXPECT_EQ(roofed.patches.size(), 5U);
+}
+
+TEST(View, KeepsItsBitsWhenScaledByPowersOfTwo) {
+  const std::vector<Named> faces = {{"near", square(-0.5, -0.25, 1, 0.75, 1)},
+                                    {"far", {{-3, -3, 2}, {-3, 3, 2.5}, {4, -1, 2}}},
+                                    {"wall", {{1, -1, -1}, {1, -1, 3}, {1, 2, 3}, {1, 2, -1}}}};
+  const WholeView one = judged(generate::build(plain_of(faces)), looking_up());
+  for (const int power : {-1000, -500, 500, 1000}) {
+    SCOPED_TRACE(power);
+    const Scene scene = generate::build(plain_of(faces, std::ldexp(1.0, power)));
+    const WholeView seen = judged(scene, looking_up());
+    ASSERT_EQ(seen.patches.size(), one.patches.size());
+    for (std::size_t i = 0; i < seen.patches.size(); ++i) {
+      validation::expect_same_bits(seen.patches[i].share, one.patches[i].share, "patch");
+    }
+    validation::expect_same_bits(seen.open, one.open, "open");
+  }
+}
+
+TEST(View, OfDistancesFarApartIsExact) {
+  judge(generate::build(plain_of({{"tiny", square(-0x1p-700, -0x1p-700, 0x1p-700, 0x1p-701, 0x1p-700)},
+                                  {"usual", square(-2, -1, 3, 1, 1)},
+                                  {"huge", square(-0x1p800, -0x1p800, 0x1p800, 0x1p800, 0x1p800)},
+                                  {"wall", {{0.5, -1, -1}, {0.5, -1, 3}, {0.5, 2, 3}, {0.5, 2, -1}}}})),
+        looking_up());
+}
+
+TEST(View, HasTheSameBitsInAUsedWorkspace) {
+  const Scene first = room(), second = read_obj(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
+  Workspace workspace;
+  WholeView result;
+  const Receiver on_floor{.point = {200, 0, 400}, .normal = {0, 1, 0}, .on = {FaceId{0}}, .id = {}};
+  for (int i = 0; i < 2; ++i) {
+    view(first, looking_up({1, 1.5, 0.5}), {}, result, workspace);
+    view(second, on_floor, {}, result, workspace);
+  }
+  const WholeView fresh = view(second, on_floor);
+  ASSERT_EQ(result.patches.size(), fresh.patches.size());
+  for (std::size_t i = 0; i < fresh.patches.size(); ++i) {
+    EXPECT_EQ(result.patches[i].share.enclosure.midpoint(), fresh.patches[i].share.enclosure.midpoint());
+  }
+  judge(second, on_floor);
+}
+
+TEST(View, HasBallsForAnyPrecision) {
+  const Scene scene = room();
+  const WholeView seen = view(scene, looking_up({1, 2, 0.5}));
+  for (const int cap : {1, 8, 64, 300}) {
+    const WholeView coarse = view(scene, looking_up({1, 2, 0.5}), {.precision_cap = cap});
+    ASSERT_EQ(coarse.patches.size(), seen.patches.size());
+    for (std::size_t i = 0; i < seen.patches.size(); ++i) {
+      EXPECT_TRUE(coarse.patches[i].share.enclosure.overlaps(seen.patches[i].share.enclosure));
+    }
+  }
+  const WholeView fine = view(scene, looking_up({1, 2, 0.5}), {.digits = 60});
+  for (const SeenPatch& patch : fine.patches) EXPECT_TRUE(patch.share.enclosure.decimals(60));
+}
+
+TEST(View, RefusesWhatHasNoView) {
+  const Scene scene = room(), other = room();
+  EXPECT_THROW((void)view(scene, {.point = {0, 0, NAN}, .normal = {0, 0, 1}, .on = {}, .id = {}}), InputError);
+  EXPECT_THROW((void)view(scene, {.point = {0, 0, 1}, .normal = {0, 0, 0}, .on = {}, .id = {}}), InputError);
+  EXPECT_THROW((void)view(scene, looking_up(), {.precision_cap = 0}), InputError);
+  EXPECT_THROW((void)view(scene, {.point = {0, 0, 1}, .normal = {0, 0, 1}, .on = {FaceId{99}}, .id = {}}),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace exactff
