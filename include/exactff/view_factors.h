@@ -1,0 +1,71 @@
+// View factors from patch to patch.
+//
+//   F_ij = (1 / A_i) * integral over patch i of F(x -> j) dA
+//
+// F(x -> j) is the form factor of exact.h from a point x of patch i to patch j, with all occluders in between. A patch
+// of several faces counts as their union in every oriented plane. At a point of a face, this face does not occlude, and
+// neither does what lies in its plane or behind it; every other face does, those of both patches included.
+//
+// Method. Patch i is cut into convex cells on which the visible boundary of patch j has the same corners and edges from
+// every point. This is proved by exact signs at the cells' corners. F(x -> j) is then analytic inside a cell, and Gauss
+// quadrature converges fast.
+// Source: G. Walton, "Calculation of Obstructed View Factors by Adaptive Integration", NISTIR 6925 (2002), for the
+// problem; Tampieri's Eq. (4) for the point factor.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "exactff/progress.h"
+#include "exactff/scene.h"
+
+namespace exactff {
+
+// What is known about a view factor.
+enum class Claim {
+  // The visible boundary is proved for every cell. The error of quadrature is estimated: four times the difference of
+  // two Gauss rules, or, closer to an edge than 1.5 radii of the cell, the cell's whole area. Where the order of edges
+  // could not be decided on a cell (event cells), a bound is added.
+  kTopologyProved,
+  kZero,  // proved: no point of one patch sees a point of the other
+};
+[[nodiscard]] std::string_view to_string(Claim claim);  // "topology-proved", "zero"
+
+struct ViewFactorOptions {
+  double accuracy = 1e-6;       // of F_ij and of F_ji: upper - lower is at most this
+  std::size_t budget = 100000;  // cells; where they do not suffice, the result keeps its width
+};
+
+struct ViewFactor {
+  double value = 0.0;  // F_ij, a pure number in [0, 1]
+  double lower = 0.0, upper = 0.0;
+  double area_from = 0.0, area_to = 0.0;  // A_i, A_j, in the square of the scene's unit of length
+  Claim claim = Claim::kZero;
+  bool accurate = true;  // within the accuracy asked for
+  std::size_t cells = 0, event_cells = 0;
+};
+
+// The factor from one patch, or face, to another, or to itself. `lower` and `upper` are as strong as the claim. Throws
+// InputError for a patch without area or an accuracy that is not positive, and Cancelled.
+[[nodiscard]] ViewFactor view_factor(const Scene& scene, const Selection& from, const Selection& to,
+                                     const ViewFactorOptions& options = {});
+
+struct ViewFactorMatrix {
+  std::vector<Selection> from, to;
+  std::vector<ViewFactor> entries;  // row by row: from `from[0]` to each of `to`, ...
+
+  [[nodiscard]] const ViewFactor& at(std::size_t row, std::size_t column) const {
+    return entries[row * to.size() + column];
+  }
+};
+
+// All factors between two lists of patches. Where both directions of a pair are asked for and all faces are planar, one
+// is computed, and A_i F_ij = A_j F_ji gives the other. threads = 0: all. The result does not depend
+// on their number.
+[[nodiscard]] ViewFactorMatrix view_factor_matrix(const Scene& scene, std::span<const Selection> from,
+                                                  std::span<const Selection> to, const ViewFactorOptions& options = {},
+                                                  int threads = 0, const Hooks& hooks = {});
+
+}  // namespace exactff

@@ -1,0 +1,50 @@
+// Cells: convex polygons in the receiver's plane, cut exactly.
+//
+// A corner is the point that the receiver's plane shares with the planes of two sides. Sides are planes of the scene,
+// or planes of two or three of its points, so that however often a cell is cut, its numbers do not grow.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "kernel/vec.h"
+#include "view_factors/polygons.h"
+
+namespace exactff::view_factors {
+
+struct Cell {
+  std::vector<Point> corners;                       // counter-clockwise as seen from the receiver's front
+  std::vector<std::shared_ptr<const Plane>> sides;  // side i leads from corner i to the next
+};
+
+// The sides' planes are positive outside.
+[[nodiscard]] Cell cell_of(const Points& points, const Ring& ring, const Plane& receiver);
+
+// The sign that an affine function, zero on the plane, has everywhere inside the cell; 0 if it vanishes there.
+// kMixed: it has both signs inside.
+inline constexpr int kMixed = 2;
+[[nodiscard]] int sign_inside(const Plane& plane, const Cell& cell);
+
+// The two parts of a cell. Requires that the plane has both signs inside.
+struct Halves {
+  Cell negative, positive;
+};
+[[nodiscard]] Halves cut(const Cell& cell, const Plane& receiver, const std::shared_ptr<const Plane>& by,
+                         const Units& units);
+
+// --- Estimates ---
+
+[[nodiscard]] inline double length(const Vec3& a) { return std::sqrt(kernel::dot(a, a)); }
+[[nodiscard]] double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b);
+[[nodiscard]] std::vector<Vec3> rounded(const std::vector<Point>& points);
+// Of a planar polygon; in squares of the unit of Point::at.
+[[nodiscard]] double area(const std::vector<Vec3>& ring);
+[[nodiscard]] inline double area(const Cell& cell) { return area(rounded(cell.corners)); }
+// The smaller of the two parts' areas, over the whole.
+[[nodiscard]] double balance(const Cell& cell, const Plane& plane);
+// A plane across the cell, perpendicular to the axis along which it is widest, at a short number near its middle.
+[[nodiscard]] std::shared_ptr<const Plane> bisector(const Cell& cell, const Units& units);
+
+}  // namespace exactff::view_factors

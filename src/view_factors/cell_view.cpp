@@ -1,0 +1,326 @@
+#include "view_factors/cell_view.h"
+
+#include <algorithm>
+
+#include "view_factors/crossing_order.h"
+
+namespace exactff::view_factors {
+namespace {
+
+constexpr std::int8_t kUnasked = 3;
+constexpr std::size_t kSource = static_cast<std::size_t>(-1);  // the owner of an edge, beside the occluders
+
+const Edge& next(const Ring& ring, std::size_t i) { return ring[(i + 1) % ring.size()]; }
+const Edge& previous(const Ring& ring, std::size_t i) { return ring[(i + ring.size() - 1) % ring.size()]; }
+
+}  // namespace
+
+CellView::CellView(const Sight& sight)
+    : sight_(sight), point_count_(sight.points.point_count()), planes_(sight.points.line_count() * point_count_) {
+  for (const Occluder& occluder : sight.occluders) {
+    reversed_.push_back(reversed(occluder.ring));
+    occluder_planes_.push_back(std::make_shared<const Plane>(occluder.plane));
+  }
+}
+
+KnownSigns CellView::nothing_known() const {
+  return {std::vector<std::int8_t>(planes_.size(), kUnasked),
+          std::vector<std::int8_t>(sight_.occluders.size(), kUnasked),
+          std::vector<bool>(sight_.occluders.size(), false)};
+}
+
+const std::shared_ptr<const Plane>& CellView::plane(LineId line, PointId point) {
+  std::shared_ptr<const Plane>& plane = planes_[line * point_count_ + point];
+  if (plane == nullptr) {
+    const Points& points = sight_.points;
+    const Line& ends = points.line(line);
+    plane =
+        std::make_shared<const Plane>(make_plane(join(points[ends.a], points[ends.b], points[point]), points.units()));
+  }
+  return plane;
+}
+
+// +1: left of the line, from its first point to its second.
+int CellView::raw_side(LineId line, PointId point) {
+  const Line& ends = sight_.points.line(line);
+  if (point == ends.a || point == ends.b) return 0;
+  std::int8_t& known = known_->of_points[line * point_count_ + point];
+  if (known != kUnasked) return known;
+  const int sign = sign_inside(*plane(line, point), *cell_);
+  if (sign == kMixed) {
+    doubts_.push_back(plane(line, point));
+  } else {
+    known = static_cast<std::int8_t>(sign);
+  }
+  return sign;
+}
+
+// +1: the point is seen on the left of the edge.
+int CellView::side(const Edge& edge, PointId point) {
+  const int raw = raw_side(edge.line, point);
+  return raw == kMixed || edge.along ? raw : -raw;
+}
+
+// True if all of `other` is seen on the right of an edge of the ring, or on it.
+bool CellView::is_beside(const Ring& ring, const Ring& other) {
+  return std::ranges::any_of(ring, [&](const Edge& edge) {
+    return std::ranges::all_of(other, [&](const Edge& corner) { return side(edge, corner.from) <= 0; });
+  });
+}
+
+// True if all of `other` is seen inside the ring.
+bool CellView::holds(const Ring& ring, const Ring& other) {
+  return std::ranges::all_of(ring, [&](const Edge& edge) {
+    return std::ranges::all_of(other, [&](const Edge& corner) {
+      const int s = side(edge, corner.from);
+      return s == 0 || s == 1;
+    });
+  });
+}
+
+const Ring& CellView::ring_of(std::size_t occluder) const {
+  return known_->facing[occluder] > 0 ? sight_.occluders[occluder].ring : reversed_[occluder];
+}
+
+void CellView::commit_doubts() {
+  cuts_.insert(cuts_.end(), doubts_.begin(), doubts_.end());
+  doubts_.clear();
+}
+
+// Finds how the occluder faces the cell and whether it can cover anything. True if it hides the whole source.
+bool CellView::sort_out(std::size_t occluder) {
+  if (known_->beside[occluder]) return false;
+  std::int8_t& facing = known_->facing[occluder];
+  if (facing == kUnasked || facing == kMixed) {
+    facing = static_cast<std::int8_t>(sign_inside(*occluder_planes_[occluder], *cell_));
+  }
+  bool beside = facing == 0 || is_beside(sight_.source, sight_.occluders[occluder].ring);
+  if (!beside && facing != kMixed) {
+    beside = is_beside(ring_of(occluder), sight_.source);
+    if (!beside && holds(ring_of(occluder), sight_.source)) return true;
+  }
+  known_->beside[occluder] = beside;
+  doubts_.clear();
+  if (!beside && facing == kMixed) cuts_.push_back(occluder_planes_[occluder]);
+  return false;
+}
+
+// The common part of an edge and of the interval in which its line lies between the lines `in` and `out`.
+CellView::Covered CellView::between(const Edge& edge, const Edge& in, const Edge& out) {
+  const int from_in = side(in, edge.from), to_in = side(in, edge.to);
+  const int from_out = side(out, edge.from), to_out = side(out, edge.to);
+  for (const int s : {from_in, to_in, from_out, to_out}) {
+    if (s == kMixed) return {Overlap::kUnknown};
+  }
+  Interval interval{{edge.from, {}}, {edge.to, {}}};
+  const bool from_inside = from_in >= 0 && from_out >= 0, to_inside = to_in >= 0 && to_out >= 0;
+  if (from_inside ? from_out == 0 : !(from_in < 0 && to_in > 0)) return {Overlap::kNone};
+  if (to_inside ? to_in == 0 : !(from_out > 0 && to_out < 0)) return {Overlap::kNone};
+  if (!from_inside) interval.from.line = in.line;
+  if (!to_inside) interval.to.line = out.line;
+  return {from_inside && to_inside ? Overlap::kAll : Overlap::kPart, interval};
+}
+
+// The part of the edge inside the ring; if the edge runs along an edge of the ring, the part along that.
+CellView::Covered CellView::overlap(const Edge& edge, const Ring& ring, Along& along) {
+  along = Along::kNo;
+  bool inside = true, known = true;
+  std::optional<std::size_t> common;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const int from = side(ring[i], edge.from), to = side(ring[i], edge.to);
+    if (from == kMixed || to == kMixed) {
+      known = false;
+    } else if (from == 0 && to == 0) {
+      common = i;
+    } else if (from <= 0 && to <= 0) {
+      return {Overlap::kNone};
+    } else {
+      inside = inside && from >= 0 && to >= 0;
+    }
+  }
+  if (common) {
+    const int body = side(edge, next(ring, *common).to);
+    if (body == kMixed) return {Overlap::kUnknown};
+    along = body > 0 ? Along::kSameSide : Along::kOppositeSide;
+    const Edge& before = previous(ring, *common);
+    const Edge& after = next(ring, *common);
+    return body > 0 ? between(edge, before, after) : between(edge, after, before);
+  }
+  if (known && inside) return {Overlap::kAll, {{edge.from, {}}, {edge.to, {}}}};
+  const Edge* in = nullptr;
+  const Edge* out = nullptr;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const int here = side(edge, ring[i].from), there = side(edge, ring[i].to);
+    if (here == kMixed || there == kMixed) return {Overlap::kUnknown};
+    if (here > 0 && there <= 0) in = &ring[i];
+    if (here < 0 && there >= 0) out = &ring[i];
+  }
+  if (in == nullptr || out == nullptr) return {Overlap::kNone};
+  return between(edge, *in, *out);
+}
+
+// Whether an overlap along a common edge counts as covered: see the rules of the header.
+bool CellView::covers(Along along, std::size_t owner, std::size_t other) const {
+  if (along == Along::kNo) return true;
+  if (owner == kSource) return along == Along::kSameSide;
+  return along == Along::kOppositeSide || other < owner;
+}
+
+void CellView::look_at_edge(const Edge& edge, std::size_t owner) {
+  doubts_.clear();
+  covers_.clear();
+  Covered base{Overlap::kAll, {{edge.from, {}}, {edge.to, {}}}};
+  Along along = Along::kNo;
+  if (owner != kSource) base = overlap(edge, sight_.source, along);
+  if (base.kind == Overlap::kNone || (base.kind != Overlap::kUnknown && along != Along::kNo)) return;
+  bool known = base.kind != Overlap::kUnknown;
+  for (std::size_t other = 0; other < sight_.occluders.size(); ++other) {
+    if (other == owner || known_->beside[other]) continue;
+    const std::size_t doubts = doubts_.size();
+    const Covered covered = overlap(edge, ring_of(other), along);
+    if (covered.kind == Overlap::kUnknown) {
+      known = false;
+      continue;
+    }
+    doubts_.resize(doubts);
+    if (covered.kind == Overlap::kNone || !covers(along, owner, other)) continue;
+    if (covered.kind == Overlap::kAll) return;
+    covers_.push_back(covered.interval);
+  }
+  if (known) {
+    doubts_.clear();
+    const std::size_t emitted = parts_.size();
+    if (!emit_uncovered(edge, base.interval, owner == kSource ? 1 : -1)) {
+      parts_.resize(emitted);
+      find_all_undecided(edge, base.interval);
+    }
+  }
+  commit_doubts();
+}
+
+// Sign of det(N_e, N_g, N_h) on the cell. If two lines share a point v, h = (v, w) or (w, v) say,
+// N_g x N_h is a multiple of v - x, and the determinant is a product of two signs of the first kind.
+int CellView::order_of_lines(LineId e, LineId g, LineId h) {
+  if (e == g || g == h || h == e) return 0;
+  const LineId lines[] = {e, g, h};
+  for (int i = 0; i < 3; ++i) {
+    const LineId one = lines[i], first = lines[(i + 1) % 3], second = lines[(i + 2) % 3];  // a cyclic permutation
+    const Line& p = sight_.points.line(first);
+    const Line& q = sight_.points.line(second);
+    for (const bool from_v : {true, false}) {
+      const PointId v = from_v ? q.a : q.b, w = from_v ? q.b : q.a;
+      if (v != p.a && v != p.b) continue;
+      const std::size_t doubts = doubts_.size();
+      const int at_v = raw_side(one, v), at_w = raw_side(first, w);
+      if (at_v == 0 || at_w == 0) {
+        doubts_.resize(doubts);
+        return 0;
+      }
+      if (at_v == kMixed || at_w == kMixed) return kMixed;
+      return from_v ? at_v * at_w : -at_v * at_w;
+    }
+  }
+  const int sign = crossing_order(sight_.points, *cell_, e, g, h);
+  if (sign == kMixed) {
+    CrossingTriple triple{e, g, h};
+    std::ranges::sort(triple);
+    triples_.push_back(triple);
+  }
+  return sign;
+}
+
+// -1, 0, +1: p is before, at, after q on the edge.
+int CellView::order(const Edge& edge, const End& p, const End& q) {
+  if (p == q) return 0;
+  const auto is_start = [&](const End& end) { return !end.line && end.vertex == edge.from; };
+  const auto is_end = [&](const End& end) { return !end.line && end.vertex == edge.to; };
+  if (is_start(p) || is_end(q)) return -1;
+  if (is_start(q) || is_end(p)) return 1;
+  const int sign = order_of_lines(edge.line, *p.line, *q.line);
+  if (sign == 0 || sign == kMixed) return sign;
+  // q is after p iff the edge leaves both lines to the same side and the determinant is positive: with the edge from a
+  // to b, the crossing with h is +-N_e x N_h, + if a is on the right of h.
+  const int right_of_p = -raw_side(*p.line, edge.from), right_of_q = -raw_side(*q.line, edge.from);
+  const int edge_sign = edge.along ? 1 : -1;
+  return -edge_sign * sign * right_of_p * right_of_q;
+}
+
+// Every order of two crossings on the edge that is undecided, whether or not it has been asked for.
+void CellView::find_all_undecided(const Edge& edge, const Interval& base) {
+  std::vector<LineId> lines;
+  const auto add = [&](const End& end) {
+    if (end.line) lines.push_back(*end.line);
+  };
+  add(base.from);
+  add(base.to);
+  for (const Interval& cover : covers_) {
+    add(cover.from);
+    add(cover.to);
+  }
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    for (std::size_t j = i + 1; j < lines.size(); ++j) (void)order_of_lines(edge.line, lines[i], lines[j]);
+  }
+}
+
+// Goes along the edge from one covered stretch to the next. False if an order is undecided.
+bool CellView::emit_uncovered(const Edge& edge, const Interval& base, int sign) {
+  End at = base.from;
+  const auto emit_to = [&](const End& end) { parts_.push_back({edge, at, end, sign}); };
+  for (;;) {
+    bool moved = false;
+    std::optional<End> nearest;
+    for (const Interval& cover : covers_) {
+      const int starts = order(edge, cover.from, at);
+      const int ends = order(edge, cover.to, at);
+      if (ends == -1 || ends == 0) continue;
+      if (starts == kMixed || ends == kMixed) return false;
+      if (starts <= 0) {
+        at = cover.to;
+        moved = true;
+        break;
+      }
+      const int nearer = nearest ? order(edge, cover.from, *nearest) : -1;
+      if (nearer == kMixed) return false;
+      if (nearer < 0) nearest = cover.from;
+    }
+    const int left = order(edge, at, base.to);
+    if (left == kMixed) return false;
+    if (left >= 0) return true;
+    if (moved) continue;
+    if (!nearest) {
+      emit_to(base.to);
+      return true;
+    }
+    const int within = order(edge, *nearest, base.to);
+    if (within == kMixed) return false;
+    if (within >= 0) {
+      emit_to(base.to);
+      return true;
+    }
+    emit_to(*nearest);
+    at = *nearest;
+  }
+}
+
+CellView::Outcome CellView::look(const Cell& cell, KnownSigns& known) {
+  cell_ = &cell;
+  known_ = &known;
+  parts_.clear();
+  cuts_.clear();
+  doubts_.clear();
+  triples_.clear();
+  for (std::size_t i = 0; i < sight_.occluders.size(); ++i) {
+    if (!sort_out(i)) continue;
+    cuts_.clear();
+    return Outcome::kKnown;
+  }
+  if (!cuts_.empty()) return Outcome::kCut;
+  for (const Edge& edge : sight_.source) look_at_edge(edge, kSource);
+  for (std::size_t i = 0; i < sight_.occluders.size(); ++i) {
+    if (known.beside[i]) continue;
+    for (const Edge& edge : ring_of(i)) look_at_edge(edge, i);
+  }
+  return !cuts_.empty() ? Outcome::kCut : !triples_.empty() ? Outcome::kCrossings : Outcome::kKnown;
+}
+
+}  // namespace exactff::view_factors

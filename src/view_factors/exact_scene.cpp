@@ -1,0 +1,61 @@
+#include "view_factors/exact_scene.h"
+
+#include <algorithm>
+
+#include "kernel/poll.h"
+#include "scene/places.h"
+
+namespace exactff::view_factors {
+namespace {
+
+// Without corners that lie between their neighbours on a line.
+std::vector<std::uint32_t> true_corners(std::vector<std::uint32_t> corners, const std::vector<Point>& points) {
+  for (std::size_t i = 0; i < corners.size() && corners.size() > 2;) {
+    const std::size_t count = corners.size();
+    const Point& before = points[corners[(i + count - 1) % count]];
+    const Point& after = points[corners[(i + 1) % count]];
+    if (is_zero(join(before, points[corners[i]], after))) {
+      corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(i));
+      i = i == 0 ? 0 : i - 1;
+    } else {
+      ++i;
+    }
+  }
+  return corners;
+}
+
+}  // namespace
+
+void Box::include(const Vec3& v) {
+  low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+  high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+}
+
+bool Box::is_apart_from(const Box& other) const {
+  constexpr double kRoundings = 0x1p-50;  // no coordinate exceeds 1
+  const auto apart = [](double high_end, double low_end) { return high_end + kRoundings < low_end; };
+  return apart(high.x, other.low.x) || apart(high.y, other.low.y) || apart(high.z, other.low.z) ||
+         apart(other.high.x, low.x) || apart(other.high.y, low.y) || apart(other.high.z, low.z);
+}
+
+ExactScene::ExactScene(const Scene& scene_in)
+    : scene(scene_in), units(Units::of(scene_in.vertices())), vertices(scene_in.vertices().size()) {
+  const auto place_of = places(scene);
+  pieces.reserve(scene.pieces().size());
+  for (const Piece& piece : scene.pieces()) {
+    kernel::poll();
+    ExactPiece made{piece.face, piece.transparent, {}, {}, {}};
+    for (const std::uint32_t corner : scene.corners(piece)) {
+      const std::uint32_t place = place_of[corner];
+      if (sgn(vertices[place].exact[3]) == 0) vertices[place] = point_of(scene.vertices()[place], units);
+      made.corners.push_back(place);
+      made.box.include(vertices[place].at);
+    }
+    made.corners = true_corners(std::move(made.corners), vertices);
+    made.plane =
+        make_plane(join(vertices[made.corners[0]], vertices[made.corners[1]], vertices[made.corners[2]]), units);
+    pieces.push_back(std::move(made));
+  }
+}
+
+}  // namespace exactff::view_factors

@@ -1,0 +1,57 @@
+// Points and planes in exact homogeneous coordinates, for the cells of a receiver (cell.h).
+//
+// A point (x, y, z, w), w > 0, is the point (x, y, z) / w in integer units; a plane (a, b, c, d) holds the points with
+// a x + b y + c z + d w = 0. Joining three points and cutting three planes are the same 3 x 3 minors.
+//
+// Each also has doubles for filters and for integration, in units of 2^shift integer units: then no coordinate of the
+// scene exceeds 1. Every one of them has a relative error of at most u = 2^-53, up to one positive factor for a plane;
+// an underflow adds at most 2^-1074. Four products carry at most 3u each and their sums at most 3u: the
+// total is below 8u of the sum of the magnitudes, as certified_sign requires.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "kernel/filter.h"
+#include "kernel/numbers.h"
+
+namespace exactff::view_factors {
+
+using kernel::Integer;
+using Homogeneous = std::array<Integer, 4>;
+
+// How the doubles of a scene become integers: coordinate * 2^-exponent; and the integers the doubles of filters.
+struct Units {
+  long exponent = 0;
+  long shift = 0;
+
+  [[nodiscard]] static Units of(std::span<const Vec3> vertices);
+};
+
+struct Point {
+  Homogeneous exact;
+  Vec3 at;  // in units of 2^shift
+};
+
+struct Plane {
+  Homogeneous exact;
+  std::array<double, 4> rounded{};
+};
+
+[[nodiscard]] Point point_of(const Vec3& vertex, const Units& units);
+[[nodiscard]] Point make_point(Homogeneous exact, const Units& units);  // any w other than zero
+[[nodiscard]] Plane make_plane(Homogeneous exact, const Units& units);
+
+// The plane through three points; positive on the side from which they run counter-clockwise. All zero if they lie on
+// one line.
+[[nodiscard]] Homogeneous join(const Point& a, const Point& b, const Point& c);
+// The point that three planes share; all zero if there is none, or more than one.
+[[nodiscard]] Homogeneous meet(const Plane& a, const Plane& b, const Plane& c);
+[[nodiscard]] bool is_zero(const Homogeneous& a);
+[[nodiscard]] Homogeneous opposite(Homogeneous a);
+
+// -1, 0, +1: the side of the plane on which the point lies.
+[[nodiscard]] int side_of(const Plane& plane, const Point& point);
+
+}  // namespace exactff::view_factors

@@ -1,0 +1,262 @@
+#include "view_factors/pair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "kernel/poll.h"
+#include "kernel/vec.h"
+#include "text/phrases.h"
+#include "view_factors/quadrature.h"
+
+namespace exactff::view_factors {
+namespace {
+
+using kernel::difference;
+using kernel::distance;
+using kernel::dot;
+
+constexpr double kSlack = 1.0 + 0x1p-40;      // more than the roundings of an estimated bound
+constexpr double kLargestMismatch = 0x1p-16;  // of the self-check, whose point is rounded
+constexpr double kStepAside = 0x1p-30;        // in units of Point::at
+constexpr double kLeastMargin = 0x1p-24;      // the same
+
+Point middle(const Point& p, const Point& q, const Units& units) {
+  Homogeneous sum;
+  for (std::size_t i = 0; i < 3; ++i) sum[i] = p.exact[i] * q.exact[3] + q.exact[i] * p.exact[3];
+  sum[3] = 2 * p.exact[3] * q.exact[3];
+  return make_point(std::move(sum), units);
+}
+
+// An exact point inside the cell.
+Point point_inside(const Cell& cell, const Units& units) {
+  return middle(cell.corners[0], middle(cell.corners[1], cell.corners[2], units), units);
+}
+
+double radius_about(const Cell& cell, const Vec3& centre) {
+  double radius = 0.0;
+  for (const Point& corner : cell.corners) radius = std::max(radius, distance(corner.at, centre));
+  return radius * kSlack;
+}
+
+double distance_from_sides(const Cell& cell, const Vec3& x) {
+  double least = HUGE_VAL;
+  for (std::size_t i = 0; i < cell.corners.size(); ++i) {
+    const Vec3& next = cell.corners[(i + 1) % cell.corners.size()].at;
+    least = std::min(least, distance_to_segment(x, cell.corners[i].at, next));
+  }
+  return least;
+}
+
+// Whether the difference of two rules tells their error. Where an edge is nearer than this, F may have a peak that both
+// rules miss. At 1.5 radii, two points more divide the error by 2.6^4 = 46.
+bool is_resolved(const Cell& cell, const Formula& formula) {
+  constexpr double kLeastDistance = 1.5;  // in radii of the cell
+  Vec3 centre;
+  for (const Point& corner : cell.corners) {
+    const double share = 1.0 / static_cast<double>(cell.corners.size());
+    centre = {centre.x + share * corner.at.x, centre.y + share * corner.at.y, centre.z + share * corner.at.z};
+  }
+  return formula.distance_to_edges(centre) >= kLeastDistance * radius_about(cell, centre);
+}
+
+// The one that halves the cell best; the first of equal ones.
+const std::shared_ptr<const Plane>& best_cut(const Cell& cell, const std::vector<std::shared_ptr<const Plane>>& cuts) {
+  std::size_t best = 0;
+  double most = -1.0;
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
+    const double share = balance(cell, *cuts[i]);
+    if (share <= most) continue;
+    most = share;
+    best = i;
+  }
+  return cuts[best];
+}
+
+// The value of a ball, with as many bits as it takes to make it small.
+template <class Function>
+double precise(const Function& f) {
+  constexpr long kFirstBits = 192, kMostBits = 12288, kEnough = 60, kBitsForZero = 768;
+  constexpr double kTiny = 0x1p-100;
+  for (long bits = kFirstBits;; bits *= 2) {
+    const Ball ball = f(bits);
+    const double value = kernel::nearest_to_midpoint(ball);
+    const bool tiny = std::abs(value) < kTiny && bits >= kBitsForZero;  // perhaps exactly 0
+    if (kernel::certain_bits(ball) >= kEnough || tiny || bits >= kMostBits) return std::isnan(value) ? 0.0 : value;
+  }
+}
+
+}  // namespace
+
+Pair::Pair(const Scene& scene, Sight sight, FaceId receiver_face, const ExactSource* whole, const Limits& limits)
+    : scene_(scene),
+      sight_(std::move(sight)),
+      receiver_face_(receiver_face),
+      whole_(whole),
+      limits_(limits),
+      view_(sight_) {}
+
+std::vector<Share> Pair::cells(std::size_t budget) {
+  budget_ = budget;
+  std::vector<Share> shares;
+  look(sight_.root, view_.nothing_known(), shares);
+  return shares;
+}
+
+// The exact point of the receiver's plane that the place stands for, where rounding it would matter.
+double Pair::value_at(const Formula& formula, const Cell& cell, const Vec3& x, const Place& place) const {
+  const Evaluated quick = formula.at(x);
+  if (quick.rounding <= limits_.rounding) return quick.value;
+  return precise([&](long bits) {
+    const auto corner = [&](std::size_t i) { return ball_point(cell.corners[i], bits); };
+    const auto toward = [](const Ball& a, const Ball& b, const Ball& t) { return a + (b - a) * t; };
+    const Ball s = kernel::to_ball(place.s, bits), t = kernel::to_ball(place.t, bits);
+    const BallPoint a = corner(0), b = corner(place.i), c = corner(place.i + 1);
+    const auto coordinate = [&](Ball BallPoint::*axis) { return toward(a.*axis, toward(b.*axis, c.*axis, t), s); };
+    return formula.at(BallPoint{coordinate(&BallPoint::x), coordinate(&BallPoint::y), coordinate(&BallPoint::z)});
+  });
+}
+
+double Pair::value_at(const Formula& formula, const Point& x) const {
+  const Evaluated quick = formula.at(x.at);
+  if (quick.rounding <= limits_.rounding) return quick.value;
+  return precise([&](long bits) { return formula.at(ball_point(x, bits)); });
+}
+
+// Depth first: the cells that wait are the siblings of those on the way.
+void Pair::look(Cell cell, KnownSigns known, std::vector<Share>& shares) {
+  kernel::poll();
+  ++cells_made_;
+  const CellView::Outcome outcome = view_.look(cell, known);
+  if (outcome == CellView::Outcome::kKnown && view_.parts().empty()) return;
+  if (add_if_negligible(cell, known, shares)) return;
+  switch (outcome) {
+    case CellView::Outcome::kKnown:
+      return add_smooth(std::move(cell), std::make_shared<const Formula>(sight_, view_.parts()), shares);
+    case CellView::Outcome::kCrossings:
+      return add_event(std::move(cell), std::move(known), std::vector(view_.triples()), shares);
+    case CellView::Outcome::kCut:
+      break;
+  }
+  if (cells_made_ >= budget_) return add_event(std::move(cell), std::move(known), {}, shares);
+  const std::shared_ptr<const Plane> by = best_cut(cell, view_.cuts());
+  Halves halves = cut(cell, sight_.receiver, by, sight_.points.units());
+  look(std::move(halves.negative), known, shares);
+  look(std::move(halves.positive), std::move(known), shares);
+}
+
+bool Pair::add_if_negligible(Cell& cell, KnownSigns& known, std::vector<Share>& shares) const {
+  const double size = area(cell);
+  if (!(size <= limits_.negligible_area)) return false;
+  const double half = 0.5 * size;
+  shares.push_back({std::move(cell), std::move(known), nullptr, half, half});
+  return true;
+}
+
+// By the rule of six points; the error is estimated from the rule of five, or is the whole cell.
+Pair::Integrated Pair::integrated(const Formula& formula, const Cell& cell) const {
+  const std::vector<Vec3> ring = rounded(cell.corners);
+  const auto f = [&](const Vec3& x, const Place& place) { return value_at(formula, cell, x, place); };
+  const double six = integral_over<6>(ring, f), five = integral_over<5>(ring, f);
+  const double error = 4.0 * std::abs(six - five);
+  return {six, is_resolved(cell, formula) ? error : std::max(error, area(cell))};
+}
+
+void Pair::add_smooth(Cell cell, std::shared_ptr<const Formula> formula, std::vector<Share>& shares) {
+  const auto [integral, error] = integrated(*formula, cell);
+  if (whole_ != nullptr) check(cell, *formula);
+  shares.push_back({std::move(cell), {}, std::move(formula), integral, error});
+}
+
+// From every point, F differs from its value at the centre by at most the slope times the distance: visibility in a
+// direction changes only where an edge sweeps over it. An edge at distance d or more that is seen under the angle w
+// contributes at most w / (pi d) to the slope.
+double Pair::slope_bound(const KnownSigns& known, const Vec3& centre, double radius) const {
+  double sum = 0.0;
+  const auto add = [&](const Ring& ring) {
+    for (const Edge& edge : ring) {
+      const Vec3& a = sight_.points[edge.from].at;
+      const Vec3& b = sight_.points[edge.to].at;
+      const double nearest = distance_to_segment(centre, a, b) - radius;
+      const double angle = std::min(std::numbers::pi, distance(a, b) / nearest);
+      sum += nearest > 0.0 ? angle / nearest : HUGE_VAL;
+    }
+  };
+  add(sight_.source);
+  for (std::size_t i = 0; i < sight_.occluders.size(); ++i) {
+    if (!known.beside[i]) add(sight_.occluders[i].ring);
+  }
+  return sum / std::numbers::pi * kSlack;
+}
+
+// By the formula of a point inside, and a bound on how far F can be from it elsewhere.
+void Pair::add_event(Cell cell, KnownSigns known, const std::vector<CrossingTriple>& triples,
+                     std::vector<Share>& shares) {
+  const Point centre = point_inside(cell, sight_.points.units());
+  const Cell at_centre{{centre}, {}};
+  KnownSigns at_point = view_.nothing_known();
+  (void)view_.look(at_centre, at_point);  // at a single point every sign is known
+  const Formula formula(sight_, view_.parts());
+  const double size = area(cell);
+  if (const double bound = triples.empty() ? HUGE_VAL : event_bound(sight_.points, cell, centre.at, triples);
+      bound < 1.0) {
+    const auto [integral, error] = integrated(formula, cell);
+    shares.push_back({std::move(cell), std::move(known), nullptr, integral, error + bound * size});
+    return;
+  }
+  const double value = std::clamp(value_at(formula, centre), 0.0, 1.0);
+  const double radius = radius_about(cell, centre.at);
+  const double bound = std::min(slope_bound(known, centre.at, radius) * radius, std::max(value, 1.0 - value));
+  shares.push_back({std::move(cell), std::move(known), nullptr, value * size, bound * size});
+}
+
+std::vector<Share> Pair::halves(Share share) {
+  std::vector<Share> result;
+  const std::shared_ptr<const Plane> by = bisector(share.cell, sight_.points.units());
+  if (by == nullptr) {
+    share.narrow = true;
+    result.push_back(std::move(share));
+    return result;
+  }
+  Halves parts = cut(share.cell, sight_.receiver, by, sight_.points.units());
+  if (share.formula != nullptr) {
+    cells_made_ += 2;
+    add_smooth(std::move(parts.negative), share.formula, result);
+    add_smooth(std::move(parts.positive), share.formula, result);
+  } else {
+    look(std::move(parts.negative), share.known, result);
+    look(std::move(parts.positive), std::move(share.known), result);
+  }
+  return result;
+}
+
+// The point of the exact solver is rounded, and may lie on the other side of a face that is a rounding away from the
+// receiver's plane. So points a little above and below are also tried.
+void Pair::check(const Cell& cell, const Formula& formula) const {
+  const Units& units = sight_.points.units();
+  const int exponent = static_cast<int>(units.exponent + units.shift);
+  const Vec3 inside = point_inside(cell, units).at;
+  for (const double x : {inside.x, inside.y, inside.z}) {
+    if (std::ldexp(std::ldexp(x, exponent), -exponent) != x) return;  // the point is no double in the scene's unit
+  }
+  const auto& plane = sight_.receiver.rounded;
+  const Vec3 normal{plane[0], plane[1], plane[2]};  // its largest component is about 1
+  const auto [found, rounding] = formula.at(inside);
+  // Where rounding may have moved the point to another cell, or matters, it means nothing.
+  if (rounding > kLargestMismatch || distance_from_sides(cell, inside) < kLeastMargin) return;
+  double exact = 0.0;
+  for (const double above : {0.0, kStepAside, -kStepAside}) {
+    const auto coordinate = [&](double x, double n) { return std::ldexp(x + above * n, exponent); };
+    const Vec3 point{coordinate(inside.x, normal.x), coordinate(inside.y, normal.y), coordinate(inside.z, normal.z)};
+    exact =
+        exact_form_factor(scene_, {.point = point, .normal = normal, .on = {receiver_face_}, .id = {}}, *whole_).value;
+    if (std::abs(found - exact) <= kLargestMismatch) return;
+  }
+  throw std::logic_error("a view factor's cell on " + scene_.name_of(receiver_face_) + " sees " +
+                         text::shortest(found) + " of " + scene_.name_of(whole_->selection()) + ", its point sees " +
+                         text::shortest(exact));
+}
+
+}  // namespace exactff::view_factors

@@ -1,0 +1,66 @@
+// One convex part seen from another: its cells and their integrals.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "exactff/exact.h"
+#include "view_factors/cell_view.h"
+#include "view_factors/formula.h"
+#include "view_factors/quadrature.h"
+#include "view_factors/sight.h"
+
+namespace exactff::view_factors {
+
+// A cell with the integral of the point factor over it, in squares of the unit of Point::at.
+struct Share {
+  Cell cell;
+  KnownSigns known;                        // of an event cell
+  std::shared_ptr<const Formula> formula;  // null for an event cell: the boundary is not constant on it
+  double integral = 0.0;
+  double error = 0.0;   // of the integral: an estimate, and for an event cell a bound besides
+  bool narrow = false;  // too narrow in double to be cut
+};
+
+class Pair {
+ public:
+  struct Limits {
+    double rounding = 0.0;         // larger estimates of the rounding error of F ask for balls
+    double negligible_area = 0.0;  // on smaller cells F is only known to lie in [0, 1]
+  };
+  // Where the source part is a whole face, `whole` is that face: a point factor to it checks each cell.
+  Pair(const Scene& scene, Sight sight, FaceId receiver_face, const ExactSource* whole, const Limits& limits);
+
+  // Cuts the receiver until every cell is smooth, an event cell, or sees nothing; the last are left out. Gives up
+  // after `budget` cells: what is left then counts as event cells.
+  [[nodiscard]] std::vector<Share> cells(std::size_t budget);
+  // The two halves of a cell, without parts that see nothing.
+  [[nodiscard]] std::vector<Share> halves(Share share);
+  [[nodiscard]] std::size_t cells_made() const { return cells_made_; }
+
+ private:
+  void look(Cell cell, KnownSigns known, std::vector<Share>& shares);
+  void add_smooth(Cell cell, std::shared_ptr<const Formula> formula, std::vector<Share>& shares);
+  // `triples`: all that is undecided; if empty, more may be.
+  void add_event(Cell cell, KnownSigns known, const std::vector<CrossingTriple>& triples, std::vector<Share>& shares);
+  struct Integrated {
+    double integral, error;
+  };
+  [[nodiscard]] Integrated integrated(const Formula& formula, const Cell& cell) const;
+  bool add_if_negligible(Cell& cell, KnownSigns& known, std::vector<Share>& shares) const;
+  [[nodiscard]] double value_at(const Formula& formula, const Cell& cell, const Vec3& x, const Place& place) const;
+  [[nodiscard]] double value_at(const Formula& formula, const Point& x) const;
+  void check(const Cell& cell, const Formula& formula) const;
+  [[nodiscard]] double slope_bound(const KnownSigns& known, const Vec3& centre, double radius) const;
+
+  const Scene& scene_;
+  Sight sight_;
+  FaceId receiver_face_;
+  const ExactSource* whole_;
+  Limits limits_;
+  CellView view_;
+  std::size_t cells_made_ = 0, budget_ = 0;
+};
+
+}  // namespace exactff::view_factors

@@ -1,0 +1,87 @@
+#include "view_factors/patch_parts.h"
+
+#include "visibility/source_plane.h"
+
+namespace exactff::view_factors {
+namespace {
+
+// A part with the tables that clipping needs.
+struct Clippable {
+  Points points;
+  Ring ring;
+
+  Clippable(const Part& part, const Units& units) : points(units) {
+    std::vector<PointId> corners;
+    for (const Point& corner : part.corners) corners.push_back(points.add(corner));
+    ring = points.ring(corners);
+  }
+  [[nodiscard]] Part part(FaceId face, const Ring& of) const {
+    Part result{face, {}, false};
+    for (const Edge& edge : of) result.corners.push_back(points[edge.from]);
+    return result;
+  }
+};
+
+// The planes through the sides of a convex polygon, perpendicular to it; positive outside.
+std::vector<Plane> sides_of(const Part& part, const Units& units) {
+  const Clippable clippable(part, units);
+  const Plane plane = clippable.points.plane_of(clippable.ring);
+  std::vector<Plane> sides;
+  for (const auto& side : cell_of(clippable.points, clippable.ring, plane).sides) sides.push_back(*side);
+  return sides;
+}
+
+// What of the part lies outside the convex polygon with these sides.
+std::vector<Part> outside(const Part& part, const std::vector<Plane>& sides, const Units& units) {
+  Clippable rest(part, units);
+  std::vector<Part> result;
+  for (std::uint32_t i = 0; i < sides.size(); ++i) {
+    const Ring beyond = rest.points.clipped(rest.ring, sides[i], 2 * i);
+    if (!beyond.empty()) result.push_back(rest.part(part.face, beyond));
+    rest.ring = rest.points.clipped(rest.ring, make_plane(opposite(sides[i].exact), units), 2 * i);
+    if (rest.ring.empty()) return result;
+  }
+  return result;
+}
+
+std::vector<Part> outside(const std::vector<Part>& parts, const std::vector<Plane>& sides, const Units& units) {
+  std::vector<Part> result;
+  for (const Part& part : parts) {
+    for (Part& kept : outside(part, sides, units)) result.push_back(std::move(kept));
+  }
+  return result;
+}
+
+Part whole(const ExactScene& scene, const ExactPiece& piece) {
+  Part part{piece.face, {}, true};
+  for (const std::uint32_t corner : piece.corners) part.corners.push_back(scene.vertices[corner]);
+  return part;
+}
+
+}  // namespace
+
+std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch) {
+  std::vector<Part> result;
+  for (const visibility::SourcePlane& plane : visibility::group_by_plane(scene.scene, scene.scene.faces_of(patch))) {
+    std::vector<const ExactPiece*> earlier;
+    for (const std::uint32_t id : plane.pieces) {
+      const ExactPiece& piece = scene.pieces[id];
+      std::vector<Part> left{whole(scene, piece)};
+      for (const ExactPiece* other : earlier) {
+        if (piece.face == other->face || piece.box.is_apart_from(other->box)) continue;
+        left = outside(left, sides_of(whole(scene, *other), scene.units), scene.units);
+      }
+      earlier.push_back(&piece);
+      result.insert(result.end(), left.begin(), left.end());
+    }
+  }
+  return result;
+}
+
+double area_of(const std::vector<Part>& parts) {
+  double sum = 0.0;
+  for (const Part& part : parts) sum += area(rounded(part.corners));
+  return sum;
+}
+
+}  // namespace exactff::view_factors

@@ -1,0 +1,16 @@
+// A patch as convex parts that do not overlap.
+#pragma once
+
+#include <vector>
+
+#include "view_factors/sight.h"
+
+namespace exactff::view_factors {
+
+// The patch's pieces; of pieces that overlap in one oriented plane, each point belongs to the first.
+[[nodiscard]] std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch);
+
+// In squares of the unit of Point::at: an estimate within a few roundings.
+[[nodiscard]] double area_of(const std::vector<Part>& parts);
+
+}  // namespace exactff::view_factors

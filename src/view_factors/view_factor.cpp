@@ -1,0 +1,252 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "exactff/view_factors.h"
+#include "kernel/float_environment.h"
+#include "text/phrases.h"
+#include "text/refuse.h"
+#include "view_factors/pair.h"
+#include "view_factors/patch_parts.h"
+#include "work/parallel.h"
+
+namespace exactff {
+namespace view_factors {
+namespace {
+
+constexpr std::size_t kStepsBetweenSums = 4096;
+constexpr double kShareOfRounding = 0x1p-10;    // of the accuracy
+constexpr double kShareOfNegligible = 0x1p-24;  // of the error that is allowed
+constexpr double kRounding = 0x1p-44;           // relative: more than the roundings of formula and sums in usual scenes
+
+struct Waiting {
+  Share share;
+  std::size_t pair;
+  std::size_t number;  // ties: the older one first
+};
+
+bool is_less_urgent(const Waiting& a, const Waiting& b) {
+  return a.share.error != b.share.error ? a.share.error < b.share.error : a.number > b.number;
+}
+
+// All pairs of parts of two patches, refined together until the sum of their errors is small enough.
+class Integral {
+ public:
+  Integral(const ExactScene& scene, const std::vector<Part>& from, const std::vector<Part>& to,
+           const Selection& to_patch, const ViewFactorOptions& options, double target)
+      : budget_(options.budget) {
+    const Pair::Limits limits{options.accuracy * kShareOfRounding, target * kShareOfNegligible};
+    for (const Part& source : to) add_source(scene.scene, source, to_patch);
+    for (const Part& receiver : from) {
+      for (std::size_t i = 0; i < to.size(); ++i) {
+        std::optional<Sight> sight = sight_of(scene, receiver, to[i], receiver.face);
+        if (!sight) continue;
+        pairs_.push_back(
+            std::make_unique<Pair>(scene.scene, std::move(*sight), receiver.face, sources_[i].get(), limits));
+        const std::size_t left = budget_ > cells_ ? budget_ - cells_ : 0;
+        work_on(pairs_.size() - 1, [&](Pair& pair) { return pair.cells(left); });
+      }
+    }
+  }
+
+  // error <= target, or the budget is used up.
+  void refine(double target) {
+    for (std::size_t steps = 0; !waiting_.empty() && cells_ < budget_;) {
+      if (running_error_ <= target || ++steps % kStepsBetweenSums == 0) {
+        running_error_ = error();  // without the roundings of its updates
+        if (running_error_ <= target) return;
+      }
+      if (!(waiting_.front().share.error > 0.0)) return;
+      std::ranges::pop_heap(waiting_, is_less_urgent);
+      Waiting worst = std::move(waiting_.back());
+      waiting_.pop_back();
+      running_error_ -= worst.share.error;
+      work_on(worst.pair, [&](Pair& pair) { return pair.halves(std::move(worst.share)); });
+    }
+  }
+
+  [[nodiscard]] double integral() const { return sum_of(&Share::integral); }
+  [[nodiscard]] double error() const { return sum_of(&Share::error); }
+  [[nodiscard]] bool is_zero() const { return waiting_.empty() && settled_.empty(); }
+  [[nodiscard]] std::size_t cells() const { return cells_; }
+  [[nodiscard]] std::size_t event_cells() const {
+    const auto is_event = [](const Share& share) { return share.formula == nullptr; };
+    return static_cast<std::size_t>(std::ranges::count_if(waiting_, is_event, &Waiting::share) +
+                                    std::ranges::count_if(settled_, is_event));
+  }
+
+ private:
+  // A part that is a whole face checks the cells that see it.
+  void add_source(const Scene& scene, const Part& part, const Selection& patch) {
+    const bool whole = part.is_piece && scene.pieces_of(part.face).size() == 1;
+    Selection face = patch;
+    face.face = part.face;
+    sources_.push_back(whole ? std::make_unique<ExactSource>(scene, face) : nullptr);
+  }
+
+  // Takes the shares that the call makes of the pair.
+  template <class Call>
+  void work_on(std::size_t id, const Call& call) {
+    Pair& pair = *pairs_[id];
+    const std::size_t before = pair.cells_made();
+    for (Share& share : call(pair)) {
+      running_error_ += share.error;
+      if (share.narrow) {
+        settled_.push_back(std::move(share));
+        continue;
+      }
+      waiting_.push_back({std::move(share), id, made_++});
+      std::ranges::push_heap(waiting_, is_less_urgent);
+    }
+    cells_ += pair.cells_made() - before;
+  }
+
+  [[nodiscard]] double sum_of(double Share::*member) const {
+    double sum = 0.0;
+    for (const Waiting& w : waiting_) sum += w.share.*member;
+    for (const Share& share : settled_) sum += share.*member;
+    return sum;
+  }
+
+  std::size_t budget_;
+  std::vector<std::unique_ptr<ExactSource>> sources_;
+  std::vector<std::unique_ptr<Pair>> pairs_;
+  std::vector<Waiting> waiting_;  // a heap
+  std::vector<Share> settled_;    // narrow ones
+  double running_error_ = 0.0;
+  std::size_t made_ = 0;
+  std::size_t cells_ = 0;
+};
+
+void check_accuracy(double accuracy) {
+  if (accuracy > 0.0) return;
+  text::refuse("the accuracy of a view factor is " + text::shortest(accuracy), "it bounds an error",
+               "give a positive number; the default is 1e-6");
+}
+
+// A patch, prepared once.
+struct Prepared {
+  Selection patch;
+  std::vector<Part> parts;
+  double area = 0.0;       // in the scene's unit of length, squared
+  double unit_area = 0.0;  // in squares of the unit of Point::at
+  bool planar = true;
+};
+
+Prepared prepare(const ExactScene& scene, const Selection& patch) {
+  Prepared result{patch, parts_of(scene, patch), 0.0, 0.0, true};
+  result.unit_area = area_of(result.parts);
+  result.area = std::ldexp(result.unit_area, static_cast<int>(2 * (scene.units.exponent + scene.units.shift)));
+  if (!(result.unit_area > 0.0)) {
+    text::refuse("patch " + scene.scene.name_of(patch) +
+                     " has no area, or none in double precision beside the rest of the scene",
+                 "a view factor is a mean over the patch", "leave the patch out");
+  }
+  for (const FaceId face : scene.scene.faces_of(patch)) {
+    result.planar = result.planar && scene.scene.face(face).shape == FaceShape::kPlanar;
+  }
+  return result;
+}
+
+ViewFactor factor(const ExactScene& scene, const Prepared& from, const Prepared& to, const ViewFactorOptions& options) {
+  ViewFactor result;
+  result.area_from = from.area;
+  result.area_to = to.area;
+  const double target = 0.5 * options.accuracy * std::min(from.unit_area, to.unit_area);
+  Integral integral(scene, from.parts, to.parts, to.patch, options, target);
+  result.cells = integral.cells();
+  if (integral.is_zero()) return result;
+  integral.refine(target);
+  result.claim = Claim::kTopologyProved;
+  result.value = std::clamp(integral.integral() / from.unit_area, 0.0, 1.0);
+  const double error = integral.error() / from.unit_area + kRounding * result.value;
+  result.lower = std::max(0.0, result.value - error);
+  result.upper = std::min(1.0, result.value + error);
+  result.accurate = integral.error() <= target;
+  result.cells = integral.cells();
+  result.event_cells = integral.event_cells();
+  return result;
+}
+
+// By A_i F_ij = A_j F_ji.
+ViewFactor reversed(const ViewFactor& f, const Prepared& from, const Prepared& to) {
+  ViewFactor result = f;
+  std::swap(result.area_from, result.area_to);
+  const double ratio = from.unit_area / to.unit_area;
+  result.value = std::min(1.0, f.value * ratio);
+  result.lower = std::min(1.0, f.lower * ratio * (1.0 - kRounding));
+  result.upper = std::min(1.0, f.upper * ratio * (1.0 + kRounding));
+  return result;
+}
+
+// Of each entry: the entry whose transpose it is, if that is computed instead.
+std::vector<std::optional<std::size_t>> transposes(const std::vector<Prepared>& from, const std::vector<Prepared>& to) {
+  std::map<std::pair<std::pair<PatchId, std::optional<FaceId>>, std::pair<PatchId, std::optional<FaceId>>>, std::size_t>
+      known;
+  const auto key = [](const Prepared& p) { return std::pair(p.patch.patch, p.patch.face); };
+  std::vector<std::optional<std::size_t>> result(from.size() * to.size());
+  for (std::size_t e = 0; e < result.size(); ++e) {
+    const Prepared &i = from[e / to.size()], &j = to[e % to.size()];
+    if (!i.planar || !j.planar) continue;
+    if (const auto other = known.find({key(j), key(i)}); other != known.end()) {
+      result[e] = other->second;
+    } else {
+      known.emplace(std::pair(key(i), key(j)), e);
+    }
+  }
+  return result;
+}
+
+std::vector<Prepared> prepared(const ExactScene& scene, std::span<const Selection> patches) {
+  std::vector<Prepared> result;
+  for (const Selection& patch : patches) result.push_back(prepare(scene, patch));
+  return result;
+}
+
+}  // namespace
+}  // namespace view_factors
+
+std::string_view to_string(Claim claim) {
+  switch (claim) {
+    case Claim::kTopologyProved:
+      return "topology-proved";
+    case Claim::kZero:
+      return "zero";
+  }
+  return {};
+}
+
+ViewFactor view_factor(const Scene& scene, const Selection& from, const Selection& to,
+                       const ViewFactorOptions& options) {
+  return view_factor_matrix(scene, {&from, 1}, {&to, 1}, options, 1).entries.front();
+}
+
+ViewFactorMatrix view_factor_matrix(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
+                                    const ViewFactorOptions& options, int threads, const Hooks& hooks) {
+  using namespace view_factors;
+  const kernel::StandardArithmetic arithmetic;
+  if (threads <= 0) threads = work::usable_threads();
+  check_accuracy(options.accuracy);
+  const ExactScene exact(scene);
+  const std::vector<Prepared> rows = prepared(exact, from), columns = prepared(exact, to);
+  const std::vector<std::optional<std::size_t>> transpose_of = transposes(rows, columns);
+  ViewFactorMatrix result{{from.begin(), from.end()}, {to.begin(), to.end()}, {}};
+  result.entries.resize(rows.size() * columns.size());
+  work::parallel_for(result.entries.size(), threads, "view factors", hooks, [&](std::size_t e) {
+    if (transpose_of[e]) return;
+    const kernel::StandardArithmetic of_thread;
+    result.entries[e] = factor(exact, rows[e / columns.size()], columns[e % columns.size()], options);
+  });
+  for (std::size_t e = 0; e < result.entries.size(); ++e) {
+    if (!transpose_of[e]) continue;
+    const std::size_t other = *transpose_of[e];
+    result.entries[e] = reversed(result.entries[other], rows[other / columns.size()], columns[other % columns.size()]);
+  }
+  return result;
+}
+
+}  // namespace exactff

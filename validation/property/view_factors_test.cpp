@@ -1,0 +1,178 @@
+// View factors from patch to patch on random scenes of every family and in closed rooms, judged by means of exact point
+// factors at random points, by the other direction, and by row sums.
+#include "exactff/view_factors.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exactff/exact.h"
+#include "exactff/receiver.h"
+#include "kernel/exact_vec.h"
+#include "property/closed_rooms.h"
+#include "support/random_scenes.h"
+
+namespace exactff::validation {
+namespace {
+
+using generate::Random;
+
+Selection patch_of(const Scene& scene, std::size_t index) { return {static_cast<PatchId>(index), {}, scene.id()}; }
+
+bool lies_in_plane_of(const Scene& scene, const Face& face, const Piece& piece) {
+  const auto& v = scene.vertices();
+  return std::ranges::all_of(face.rings.front(), [&](std::uint32_t corner) {
+    return kernel::orientation(v[piece.frame[0]], v[piece.frame[1]], v[piece.frame[2]], v[corner]) == 0;
+  });
+}
+
+constexpr double kRoundings = 1.0 + 0x1p-30;  // of areas, which may be denormal
+
+struct Mean {
+  double value = 0.0;
+  double standard_error = 0.0;
+};
+
+// Of point factors at independent points. Every face in the plane of the point's face is its own, since rounding may
+// have moved the point to the other side of it.
+Mean mean_of_points(const Scene& scene, const Selection& from, const Selection& to, std::uint64_t count,
+                    std::uint64_t seed) {
+  const ExactSource source(scene, to);
+  double sum = 0.0, squares = 0.0;
+  for (Receiver& receiver : sample_receivers(scene, scene.faces_of(from), count, seed)) {
+    const Piece& piece = scene.pieces_of(receiver.on.front()).front();
+    for (std::size_t f = 0; f < scene.faces().size(); ++f) {
+      const auto face = static_cast<FaceId>(f);
+      const bool has_area = !scene.pieces_of(face).empty();
+      if (face != receiver.on.front() && has_area && lies_in_plane_of(scene, scene.face(face), piece)) {
+        receiver.on.push_back(face);
+      }
+    }
+    const double value = exact_form_factor(scene, receiver, source).value;
+    sum += value;
+    squares += value * value;
+  }
+  const auto n = static_cast<double>(count);
+  const double mean = sum / n;
+  return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1.0))};
+}
+
+bool has_area(const Scene& scene, const Selection& patch) { return !scene.faces_of(patch).empty(); }
+
+bool is_planar(const Scene& scene, const Selection& patch) {
+  return std::ranges::all_of(scene.faces_of(patch),
+                             [&](FaceId face) { return scene.face(face).shape == FaceShape::kPlanar; });
+}
+
+// Coplanar faces that overlap would weigh twice in the sample.
+bool has_one_face(const Scene& scene, const Selection& patch) { return scene.faces_of(patch).size() == 1; }
+
+// Nothing where the area of a patch is no double beside the rest of the scene.
+std::optional<ViewFactor> factor_of(const Scene& scene, const Selection& from, const Selection& to,
+                                    const ViewFactorOptions& options) {
+  try {
+    return view_factor(scene, from, to, options);
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("has no area"), std::string::npos) << error.what();
+    return std::nullopt;
+  }
+}
+
+class RandomFamilies : public testing::TestWithParam<std::size_t> {};
+
+// Families on the edge of rounding are judged by the other direction alone: their rounded points see other things.
+TEST_P(RandomFamilies, ViewFactorsAgreeWithPointsAndWithTheOtherDirection) {
+  const RandomFamily& family = random_families()[GetParam()];
+  const ViewFactorOptions options{.accuracy = 1e-2, .budget = 200};
+  for (std::uint64_t s = 0; s < scaled_count(3); ++s) {
+    Random random(seed_of(s));
+    const Scene scene = generate::build(family.make(random));
+    for (int pair = 0; pair < 2; ++pair) {
+      const Selection from = patch_of(scene, random.below(scene.patches().size()));
+      const Selection to = pair == 0 ? scene.select("source") : patch_of(scene, random.below(scene.patches().size()));
+      if (!has_area(scene, from) || !has_area(scene, to)) continue;
+      const std::optional<ViewFactor> found = factor_of(scene, from, to, options);
+      if (!found) continue;
+      const ViewFactor& forth = *found;
+      EXPECT_LE(0.0, forth.lower);
+      EXPECT_LE(forth.lower, forth.value);
+      EXPECT_LE(forth.value, forth.upper);
+      EXPECT_LE(forth.upper, 1.0);
+      EXPECT_EQ(forth.claim == Claim::kZero, forth.upper == 0.0);
+      if (!is_planar(scene, from) || !is_planar(scene, to)) continue;
+      const ViewFactor back = view_factor(scene, to, from, options);
+      const double ratio = back.area_from / forth.area_from;  // F_ij = F_ji A_j / A_i
+      if (!(ratio > 0x1p-300 && ratio < 0x1p300)) continue;
+      EXPECT_LE(back.lower * ratio, forth.upper * kRoundings)
+          << family.name << ' ' << s << ' ' << scene.name_of(from) << " -> " << scene.name_of(to);
+      EXPECT_LE(forth.lower, back.upper * ratio * kRoundings)
+          << family.name << ' ' << s << ' ' << scene.name_of(from) << " -> " << scene.name_of(to);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, RandomFamilies, testing::Range(std::size_t{0}, random_families().size()),
+                         [](const auto& param) { return std::string(random_families()[param.param].name); });
+
+TEST(ViewFactors, AgreeWithMeansOfPointFactors) {
+  const ViewFactorOptions options{.accuracy = 1e-3, .budget = 2000};
+  std::size_t judged = 0;
+  for (std::uint64_t s = 0; s < scaled_count(60); ++s) {
+    Random random(seed_of(s));
+    const Scene scene = generate::build(s % 2 == 0 ? degenerate_scene(random) : generic_scene(random));
+    const Selection to = scene.select("source");
+    const Selection from = patch_of(scene, random.below(scene.patches().size()));
+    if (!has_area(scene, from) || !has_area(scene, to) || !has_one_face(scene, from)) continue;
+    const ViewFactor f = view_factor(scene, from, to, options);
+    const Mean mean = mean_of_points(scene, from, to, 512, s);
+    EXPECT_LE(f.lower - 5.0 * mean.standard_error - 1e-9, mean.value) << s << ' ' << scene.name_of(from);
+    EXPECT_GE(f.upper + 5.0 * mean.standard_error + 1e-9, mean.value) << s << ' ' << scene.name_of(from);
+    judged += f.value > 0.0 ? 1 : 0;
+  }
+  EXPECT_GE(judged, 5U);
+}
+
+// Every wall sees walls and things only, and no thing from behind.
+TEST(ViewFactors, OfClosedRoomsAddUpToOne) {
+  for (std::uint64_t s = 0; s < scaled_count(6); ++s) {
+    Random random(seed_of(s));
+    const Scene scene = generate::build(random_building(random).scene);
+    const Selection from = patch_of(scene, 0);
+    double lower = 0.0, upper = 0.0;
+    for (std::size_t j = 0; j < scene.patches().size(); ++j) {
+      if (!has_area(scene, patch_of(scene, j))) continue;
+      const ViewFactor f = view_factor(scene, from, patch_of(scene, j), {.accuracy = 1e-3, .budget = 3000});
+      lower += f.lower;
+      upper += f.upper;
+    }
+    EXPECT_LE(lower, 1.0) << s;
+    EXPECT_GE(upper, 1.0 - 1e-12) << s;
+  }
+}
+
+// A box that stands on the floor: its base hides what lies under it, and its sides begin in the floor's plane.
+TEST(ViewFactors, ABoxOnTheFloorHidesTheFloorUnderIt) {
+  generate::PlainScene scene;
+  add_room(scene, box({0, 0, 0}, {4, 4, 4}));
+  add_thing(scene, box({1, 1, 0}, {2, 2, 1}));
+  const Scene built = generate::build(scene);
+  for (std::size_t i = 0; i < built.patches().size(); ++i) {
+    double lower = 0.0, upper = 0.0;
+    const Selection from = patch_of(built, i);
+    for (std::size_t j = 0; j < built.patches().size(); ++j) {
+      const ViewFactor f = view_factor(built, from, patch_of(built, j));
+      lower += f.lower;
+      upper += f.upper;
+    }
+    // Of the floor, a sixteenth lies under the box and sees nothing. So does the base, a sixth of the box.
+    EXPECT_LE(lower, 1.0);
+    EXPECT_GE(upper + 1e-12, built.patches()[i].name == "things" ? 5.0 / 6.0 : 15.0 / 16.0);
+  }
+}
+
+}  // namespace
+}  // namespace exactff::validation

@@ -1,0 +1,220 @@
+// View factors from patch to patch with known values.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "exactff/scene_files.h"
+#include "exactff/view_factors.h"
+#include "generate/plain_scene.h"
+#include "support/program.h"
+
+namespace exactff {
+namespace {
+
+using generate::PlainScene;
+
+Selection named(const Scene& scene, const char* name) { return scene.select(name); }
+
+void add(PlainScene& scene, const char* name, const std::vector<Vec3>& corners) {
+  scene.add_ring(scene.patch(name), corners);
+}
+
+// Squares of this side, `gap` apart, fronts facing: "below" and "above".
+PlainScene plates(double side, double gap) {
+  PlainScene scene;
+  add(scene, "below", {{0, 0, 0}, {side, 0, 0}, {side, side, 0}, {0, side, 0}});
+  add(scene, "above", {{0, side, gap}, {side, side, gap}, {side, 0, gap}, {0, 0, gap}});
+  return scene;
+}
+
+// A square plate between them, centred.
+PlainScene plates_with_plate(double side, double plate, double height) {
+  PlainScene scene = plates(side, 1.0);
+  const double low = 0.5 * (side - plate), high = 0.5 * (side + plate);
+  add(scene, "plate", {{low, low, height}, {high, low, height}, {high, high, height}, {low, high, height}});
+  return scene;
+}
+
+void expect_factor(const Scene& scene, const char* from, const char* to, double accuracy, double truth) {
+  const ViewFactor f = view_factor(scene, named(scene, from), named(scene, to), {.accuracy = accuracy});
+  EXPECT_TRUE(f.accurate);
+  EXPECT_EQ(f.claim, Claim::kTopologyProved);
+  EXPECT_LE(f.lower, truth);
+  EXPECT_GE(f.upper, truth);
+  EXPECT_LE(f.upper - f.lower, accuracy * 1.001);
+  EXPECT_LE(f.lower, f.value);
+  EXPECT_LE(f.value, f.upper);
+}
+
+TEST(ViewFactor, OfParallelSquaresIsTheKnownOne) {
+  const Scene near = generate::build(plates(1.0, 1.0));
+  for (const double accuracy : {1e-3, 1e-6, 1e-10}) {
+    expect_factor(near, "below", "above", accuracy, 0.199824895698387383041599251193);
+  }
+  expect_factor(generate::build(plates(2.0, 1.0)), "below", "above", 1e-10, 0.415253283577146735374144917);
+  expect_factor(generate::build(plates(1.0, 10.0)), "below", "above", 1e-10, 0.00316205683875760162512871788517);
+  expect_factor(generate::build(plates(1.0, 100.0)), "below", "above", 1e-10, 3.18288667328291964442604e-5);
+  expect_factor(generate::build(plates(1.0, 1000.0)), "below", "above", 1e-10, 3.18309673977380257770e-7);
+}
+
+TEST(ViewFactor, OfSquaresWithACommonEdgeIsTheKnownOne) {
+  PlainScene scene;
+  add(scene, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  add(scene, "wall", {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}});
+  for (const double accuracy : {1e-3, 1e-6, 1e-10}) {
+    expect_factor(generate::build(scene), "floor", "wall", accuracy, 0.200043776075403154239600187202);
+    expect_factor(generate::build(scene), "wall", "floor", accuracy, 0.200043776075403154239600187202);
+  }
+}
+
+TEST(ViewFactor, WithAPlateBetweenIsTheKnownOne) {
+  for (const double accuracy : {1e-3, 1e-6, 1e-10}) {
+    expect_factor(generate::build(plates_with_plate(1.0, 0.5, 0.75)), "below", "above", accuracy,
+                  0.115620602132415020312711990740);
+    expect_factor(generate::build(plates_with_plate(2.0, 0.9, 0.75)), "below", "above", accuracy,
+                  0.2828875141866424869);
+  }
+}
+
+TEST(ViewFactor, OfTheLShapedRoomIsTheKnownOneAndRowsAddUpToOne) {
+  const Scene scene = read_scene(EXACTFF_DATA_DIR "/scenes/formats/test4.vs3");
+  const std::vector<Selection> all = [&] {
+    std::vector<Selection> patches;
+    for (std::size_t i = 0; i < scene.patches().size(); ++i) patches.push_back({PatchId(i), {}, scene.id()});
+    return patches;
+  }();
+  const ViewFactorMatrix matrix = view_factor_matrix(scene, all, all, {.accuracy = 1e-8});
+  EXPECT_LE(matrix.at(0, 5).lower, 0.1823559036685958);
+  EXPECT_GE(matrix.at(0, 5).upper, 0.1823559036685958);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    double lower = 0.0, upper = 0.0;
+    for (std::size_t j = 0; j < all.size(); ++j) {
+      lower += matrix.at(i, j).lower;
+      upper += matrix.at(i, j).upper;
+    }
+    EXPECT_LE(lower, 1.0);
+    EXPECT_GE(upper, 1.0);
+    EXPECT_LT(upper - lower, 1e-7);
+  }
+}
+
+// The matrix has the values of single calls, whatever the number of threads.
+TEST(ViewFactor, OfAMatrixIsThatOfItsPair) {
+  const Scene scene = generate::build(plates_with_plate(1.0, 0.5, 0.75));
+  const std::vector<Selection> all{named(scene, "below"), named(scene, "above"), named(scene, "plate")};
+  const ViewFactorMatrix one = view_factor_matrix(scene, all, all, {}, 1),
+                         four = view_factor_matrix(scene, all, all, {}, 4);
+  for (std::size_t e = 0; e < one.entries.size(); ++e) {
+    EXPECT_EQ(one.entries[e].value, four.entries[e].value);
+    EXPECT_EQ(one.entries[e].lower, four.entries[e].lower);
+    EXPECT_EQ(one.entries[e].upper, four.entries[e].upper);
+  }
+  const ViewFactor pair = view_factor(scene, all[0], all[1]), back = view_factor(scene, all[1], all[0]);
+  EXPECT_EQ(one.at(0, 1).value, pair.value);
+  EXPECT_LE(std::abs(one.at(1, 0).value - back.value), back.upper - back.lower);
+}
+
+TEST(ViewFactor, ProvesZeros) {
+  PlainScene scene = plates(1.0, 1.0);
+  add(scene, "back", {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}});             // looks down
+  add(scene, "lid", {{-1, -1, 0.5}, {2, -1, 0.5}, {2, 2, 0.5}, {-1, 2, 0.5}});  // hides all
+  add(scene, "half", {{0, 0, 0.25}, {0.5, 0, 0.25}, {0.5, 1, 0.25}, {0, 1, 0.25}});
+  const Scene built = generate::build(scene);
+  const auto claim = [&](const char* from, const char* to) {
+    const ViewFactor f = view_factor(built, named(built, from), named(built, to));
+    EXPECT_EQ(f.claim == Claim::kZero, f.upper == 0.0);
+    return f.claim;
+  };
+  EXPECT_EQ(claim("below", "above"), Claim::kZero);
+  EXPECT_EQ(claim("back", "above"), Claim::kZero);
+  EXPECT_EQ(claim("below", "below"), Claim::kZero);
+  EXPECT_EQ(claim("lid", "above"), Claim::kTopologyProved);
+}
+
+TEST(ViewFactor, SplittingAPatchAddsUp) {
+  const Scene whole = generate::build(plates_with_plate(1.0, 0.5, 0.75));
+  PlainScene cut;
+  add(cut, "left", {{0, 0, 0}, {0.375, 0, 0}, {0.375, 1, 0}, {0, 1, 0}});
+  add(cut, "right", {{0.375, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.375, 1, 0}});
+  add(cut, "both", {{0, 0, 0}, {0.375, 0, 0}, {0.375, 1, 0}, {0, 1, 0}});
+  add(cut, "both", {{0.25, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.25, 1, 0}});  // overlaps: a point counts once
+  PlainScene rest = plates_with_plate(1.0, 0.5, 0.75);
+  for (const char* name : {"above", "plate"}) {
+    for (const generate::PlainFace& face : rest.patch(name).faces) {
+      std::vector<Vec3> corners;
+      for (const std::uint32_t v : face.rings.front()) corners.push_back(rest.vertices[v]);
+      add(cut, name, corners);
+    }
+  }
+  const Scene split = generate::build(cut);
+  const ViewFactor f = view_factor(whole, named(whole, "below"), named(whole, "above"), {.accuracy = 1e-9});
+  const ViewFactor left = view_factor(split, named(split, "left"), named(split, "above"), {.accuracy = 1e-9});
+  const ViewFactor right = view_factor(split, named(split, "right"), named(split, "above"), {.accuracy = 1e-9});
+  const ViewFactor both = view_factor(split, named(split, "both"), named(split, "above"), {.accuracy = 1e-9});
+  EXPECT_NEAR(0.375 * left.value + 0.625 * right.value, f.value, 1e-9);
+  EXPECT_NEAR(both.value, f.value, 1e-9);
+  EXPECT_NEAR(both.area_from, 1.0, 1e-15);
+}
+
+TEST(ViewFactor, KeepsItsWidthWhereTheBudgetIsUsedUp) {
+  PlainScene scene = plates(1.0, 1.0);
+  // Three triangles whose edges cross one another in the view: event cells.
+  add(scene, "a", {{0.1, 0.1, 0.3}, {0.9, 0.2, 0.4}, {0.4, 0.8, 0.35}});
+  add(scene, "b", {{0.2, 0.05, 0.5}, {0.95, 0.6, 0.55}, {0.3, 0.9, 0.6}});
+  add(scene, "c", {{0.5, 0.1, 0.7}, {0.8, 0.9, 0.65}, {0.1, 0.5, 0.75}});
+  const Scene built = generate::build(scene);
+  const Selection from = named(built, "below"), to = named(built, "above");
+  const ViewFactor fine = view_factor(built, from, to, {.accuracy = 1e-4});
+  EXPECT_TRUE(fine.accurate);
+  EXPECT_GT(fine.event_cells, 0U);
+  const ViewFactor coarse = view_factor(built, from, to, {.accuracy = 1e-4, .budget = 50});
+  EXPECT_FALSE(coarse.accurate);
+  EXPECT_GT(coarse.upper - coarse.lower, 1e-4);
+  EXPECT_LE(coarse.lower, fine.upper);
+  EXPECT_GE(coarse.upper, fine.lower);
+}
+
+TEST(ViewFactor, RefusesWhatHasNoMeaning) {
+  PlainScene scene = plates(1.0, 1.0);
+  add(scene, "line", {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
+  const Scene built = generate::build(scene);
+  const Selection below = named(built, "below");
+  EXPECT_THROW((void)view_factor(built, below, named(built, "line")), InputError);
+  EXPECT_THROW((void)view_factor(built, named(built, "line"), below), InputError);
+  EXPECT_THROW((void)view_factor(built, below, below, {.accuracy = 0.0}), InputError);
+  EXPECT_THROW((void)view_factor(built, below, below, {.accuracy = std::nan("")}), InputError);
+  const Scene other = generate::build(plates(1.0, 1.0));
+  EXPECT_THROW((void)view_factor(other, below, below), std::invalid_argument);
+}
+
+// --- The command ---
+
+TEST(MatrixCommand, PrintsAndWritesTheSameNumbers) {
+  const validation::TemporaryDirectory folder;
+  const std::string file = (folder.path() / "m.csv").string();
+  const std::string scene = EXACTFF_DATA_DIR "/scenes/formats/test4.vs3";
+  const auto run = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "matrix");
+    return validation::run_program(EXACTFF_PROGRAM, arguments);
+  };
+  const validation::ProgramRun plain = run({scene, "--plain", "-o", file});
+  EXPECT_EQ(plain.exit_code, 0);
+  EXPECT_EQ(std::ranges::count(plain.output, '\n'), 64);
+  EXPECT_NE(plain.output.find("srf-1\tsrf-1\t0\t0\tzero\n"), std::string::npos);
+  const std::string written = validation::text_of(file);
+  EXPECT_EQ(std::ranges::count(written, '\n'), 3 + 64);
+  EXPECT_NE(written.find("\nsrf-1,srf-6,0.18235"), std::string::npos);
+  EXPECT_EQ(run({scene, "--plain", "--threads", "3"}).output, plain.output);
+  EXPECT_NE(run({scene, "--from", "srf-1"}).output.find("0.182356"), std::string::npos);
+  EXPECT_EQ(run({scene, "-o", file}).exit_code, 2);  // the file exists
+  EXPECT_EQ(run({scene, "-o", file, "--force"}).exit_code, 0);
+  EXPECT_EQ(run({scene, "--accuracy", "-1"}).exit_code, 2);
+  EXPECT_EQ(run({scene, "--to", "nobody"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace exactff
