@@ -8,6 +8,7 @@
 
 #include "kernel/vec.h"
 #include "page/plot_script.h"
+#include "report/strip.h"
 #include "study/ladders.h"
 #include "study/settings.h"
 #include "study/statistics.h"
@@ -58,12 +59,9 @@ class FigureMaker {
   void add_sweep_figures() {
     add_error_against_eps_b();
     add_violations();
-    add_work_against_eps_b();
     add_silent_errors();
     add_error_against_time();
     add_error_against_rays();
-    add_patterns();
-    add_error_against_eps_a();
   }
 
   [[nodiscard]] page::Points points(const std::vector<std::size_t>& line, Parameter x,
@@ -154,28 +152,6 @@ class FigureMaker {
          page::line_plot({kEpsB, "receivers with |error| > ε_B, %", true, false, {"set yrange [0:*<100]"}}, series)});
   }
 
-  // Mean counts per receiver, over all receivers.
-  [[nodiscard]] std::vector<page::Series> work_series(const std::vector<std::size_t>& line, Parameter x) const {
-    const auto count = static_cast<double>(study_.exact.size());
-    page::Series leaves{"leaves", {}, 1}, rays{"rays", {}, 2};
-    for (const std::size_t k : line) {
-      const double at = parameter_of(study_.settings[k], x);
-      leaves.points.emplace_back(at, static_cast<double>(study_.summaries[k].leaves) / count);
-      rays.points.emplace_back(at, static_cast<double>(study_.summaries[k].rays) / count);
-    }
-    return {leaves, rays};
-  }
-
-  void add_work_against_eps_b() {
-    const std::string title = "Leaves and rays against the tolerance ε_B";
-    const auto line = sweep(study_.base, Parameter::kEpsB, title);
-    if (!line) return;
-    add({"work-eps-b", title,
-         "Average work per receiver, with " + std::to_string(base().rays) + ' ' + std::string(name_of(base().pattern)) +
-             " rays per undecided leaf.",
-         page::line_plot({kEpsB, "per receiver", true, true, {}}, work_series(*line, Parameter::kEpsB))});
-  }
-
   void add_silent_errors() {
     const std::string title = "Silent errors against the tolerance ε_B";
     const auto line = sweep(study_.base, Parameter::kEpsB, title);
@@ -210,19 +186,14 @@ class FigureMaker {
       return std::pair(time_of(study_.times[k]), partly ? s.radiosity_partly.rms : s.radiosity.rms);
     });
     const double exact = time_of(study_.exact_time);
-    const std::string at = text::shortest(exact);
-    page::Axes axes{"time per receiver, µs (median)", "RMS error (radiosity)", true, true, {}, {exact}};
-    axes.extra = {"set arrow from " + at + ", graph 0 to " + at + ", graph 1 nohead lw 2.5 lc rgb '#D55E00'",
-                  "set label 'exact: error 0' at " + at +
-                      ", graph 0.98 rotate by 90 right offset character -0.8,0 tc rgb '#D55E00'"};
-    // The exact method's line has a colour of its own; no series here uses it.
-    for (page::Series& one : series) one.style = one.style == 1 ? 1 : one.style + 1;
-    add({"time", "Error against run time",
+    page::Axes axes{"time per receiver, µs (median)", "RMS error (radiosity)", true, true, {}, {}};
+    axes.marks = {{"exact: error 0", exact}};
+    add({"time", "Tampieri’s algorithm: error against run time",
          std::string("The median time of one call and the RMS error, over the receivers that ") +
              (partly ? "see the source partly hidden" : "were compared") +
-             ". Each line is one number of rays with varying ε_B. The exact method has no error. The vertical line is "
-             "its time, " +
-             text::duration(exact * 1e-6) + ": settings to the right of it take longer and are less accurate.",
+             ". Each line is one number of rays with varying ε_B. The vertical line is the median time of the exact "
+             "method at the same receivers, " +
+             text::duration(exact * 1e-6) + "; the time at the head of the chapter is a mean.",
          page::line_plot(axes, series)});
   }
 
@@ -242,55 +213,6 @@ class FigureMaker {
     return std::string("The RMS error falls as the number of rays to the power ") + (*slope < 0.0 ? "−" : "") +
            text::rounded(std::abs(*slope), 2) +
            " (least squares); random sampling of a fixed set of leaves would give −0.5.";
-  }
-
-  void add_patterns() {
-    const std::string title = "Sample patterns";
-    std::vector<page::Series> series;
-    int style = 0;
-    for (SamplePattern pattern : study_.request.sweeps.patterns) {
-      page::Series one{std::string(name_of(pattern)), {}, ++style};
-      for (std::size_t k = 0; k < study_.settings.size(); ++k) {
-        if (!differs_by_pattern_and_rays(study_.settings[k], pattern)) continue;
-        one.points.emplace_back(study_.settings[k].rays, study_.summaries[k].radiosity.rms);
-      }
-      series.push_back(std::move(one));
-    }
-    if (series.size() < 2) return;
-    add({"patterns", title,
-         "RMS error at ε_B = " + text::rounded(base().eps_b) +
-             " for each sample pattern, which is where in a leaf its rays end. One ray at the centre is the cheapest "
-             "choice.",
-         page::line_plot({"rays per undecided leaf", "RMS error (radiosity)", true, true, {}}, series)});
-  }
-
-  [[nodiscard]] bool differs_by_pattern_and_rays(const AdaptiveOptions& s, SamplePattern pattern) const {
-    AdaptiveOptions wanted = base();
-    wanted.pattern = pattern;
-    wanted.rays = s.rays;
-    return study::same_setting(s, wanted);
-  }
-
-  void add_error_against_eps_a() {
-    const std::string title = "Achieved error against the area limit ε_A";
-    AdaptiveOptions start = base();
-    const auto& eps_b = study_.request.sweeps.eps_b;
-    const auto& rays = study_.request.sweeps.rays;
-    start.eps_b = *std::min_element(eps_b.begin(), eps_b.end());
-    if (start.pattern != SamplePattern::kCentre) start.rays = *std::max_element(rays.begin(), rays.end());
-    const auto from = study::find_setting(study_.settings, start);
-    const auto line = sweep(from.value_or(study_.base), Parameter::kEpsA, title);
-    if (!line) return;
-    add({"eps-a", title,
-         "At the smallest tolerance, ε_B = " + text::rounded(start.eps_b) + ", and " +
-             text::counted(static_cast<std::uint64_t>(start.rays), "ray") +
-             ", so that the area of a leaf ends the recursion. This axis cannot show ε_A = 0; the table does.",
-         page::line_plot({"smallest area ε_A (square of the scene’s unit)", kError, true, true, {}},
-                         error_series(*line, Parameter::kEpsA))});
-    add({"work-eps-a", "Leaves and rays against the area limit ε_A",
-         "Average work per receiver, at the ε_B and number of rays of the previous figure.",
-         page::line_plot({"smallest area ε_A (square of the scene’s unit)", "per receiver", true, true, {}},
-                         work_series(*line, Parameter::kEpsA))});
   }
 
   // The receivers on the lattice with the most of them.
@@ -324,26 +246,6 @@ class FigureMaker {
     return map;
   }
 
-  // What the maps of a method show: the base setting of the sweeps, else the first method that is not exact.
-  struct Shown {
-    std::string title, name;
-    std::vector<double> errors;  // in radiosity, by receiver
-  };
-
-  [[nodiscard]] std::optional<Shown> shown_method() const {
-    if (!study_.settings.empty()) {
-      Shown shown{"the base setting", study::setting_name(study_, study_.base), {}};
-      for (const SampleRow& row : study_.samples[study_.base]) shown.errors.push_back(row.radiosity_error);
-      return shown;
-    }
-    for (const MethodField& field : study_.methods.fields) {
-      const Ladder& ladder = study_.methods.ladders[field.ladder];
-      if (ladder.rungs.front().method->name == "exact") continue;
-      return Shown{ladder.name, study::rung_name(ladder, field.rung) + ", one seed", field.radiosity_errors};
-    }
-    return std::nullopt;
-  }
-
   void add_maps() {
     const auto grid = find_grid();
     if (!grid) {
@@ -356,11 +258,10 @@ class FigureMaker {
           "the maps show " + name_of(*study_.request.scene, grid->lattice->region) + ", which has the most receivers");
     }
     add_exact_map(*grid);
-    if (const auto shown = shown_method()) {
+    if (const auto shown = shown_method(study_)) {
       add_approximate_map(*grid, *shown);
       add_error_map(*grid, *shown);
     }
-    if (!study_.settings.empty()) add_leaves_map(*grid);
     add_sight_map(*grid);
     if (!study_.settings.empty()) add_silent_map(*grid);
   }
@@ -387,8 +288,8 @@ class FigureMaker {
     const auto lit = [](const page::MapCell& cell) { return cell.value > 0.0; };
     if (std::none_of(map.cells.begin(), map.cells.end(), lit)) return;
     const std::string of = study_.settings.empty() ? "" : ": the result of the ray-sampled algorithm";
-    add({"map-approximate", "Radiosity by " + shown.title, text::html(shown.name) + of + ".", page::map_plot(map),
-         true});
+    add({"map-approximate", "Radiosity by " + shown.title, text::html(shown.name) + of + ", one seed.",
+         page::map_plot(map), true});
   }
 
   void add_sight_map(const Grid& grid) {
@@ -436,21 +337,6 @@ class FigureMaker {
     add({"map-error", "Signed error of " + shown.title,
          text::html(shown.name) + ". Red: too bright; blue: too dark. Errors beyond ±" + text::rounded(map.largest) +
              " (the 99th percentile) have the colour of that value.",
-         page::map_plot(map), true});
-  }
-
-  void add_leaves_map(const Grid& grid) {
-    const auto& samples = study_.samples[study_.base];
-    const auto leaves = [&](std::size_t i) { return static_cast<double>(samples[i].leaves); };
-    const page::Map map = map_of(grid, "leaves", page::MapColours::kLogarithmic, leaves);
-    const auto many = [](const page::MapCell& cell) { return cell.value > 1.0; };
-    if (std::none_of(map.cells.begin(), map.cells.end(), many)) {
-      leave_out("map of the leaves", "the base setting never splits the source");
-      return;
-    }
-    add({"map-leaves", "Number of leaves",
-         "Number of leaves into which the base setting splits the source. One leaf: the source is fully visible or "
-         "fully hidden, or the algorithm assumes so.",
          page::map_plot(map), true});
   }
 

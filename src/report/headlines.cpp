@@ -159,6 +159,7 @@ std::string no_work_sentence(const Study& study) {
 }
 
 std::vector<std::string> sweep_sentences(const Study& study) {
+  if (study.settings.empty()) return {};
   return {base_sentence(study),      tolerance_sentence(study), seeds_sentence(study), violations_sentence(study),
           crossover_sentence(study), variant_sentence(study),   silent_sentence(study)};
 }
@@ -201,6 +202,14 @@ std::vector<std::string> named_method_sentences(const Study& study) {
 }
 
 }  // namespace
+
+std::vector<std::string> sweep_findings(const Study& study) {
+  if (study.settings.empty()) return {};
+  std::vector<std::string> sentences = {seeds_sentence(study),   violations_sentence(study), crossover_sentence(study),
+                                        variant_sentence(study), silent_sentence(study),     no_work_sentence(study)};
+  std::erase(sentences, "");
+  return sentences;
+}
 
 std::vector<std::string> headlines(const Study& study) {
   const kernel::StandardArithmetic arithmetic;

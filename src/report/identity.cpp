@@ -45,6 +45,11 @@ class Identity {
     }
   }
 
+  void add(const PlannedField& field) {
+    add(field.file.filename().string());
+    add(field.digest);
+  }
+
   void add(const PlannedScene& scene) {
     add(scene.name);
     add(scene.title);
@@ -93,6 +98,7 @@ std::string identity_of(const Plan& plan) {
   identity.add(plan.title);
   identity.add(plan.scenes);
   identity.add(plan.experiments);
+  identity.add(plan.fields);
   identity.add(plan.left_out);
   identity.add(std::uint64_t{plan.effort.abridged});
   return identity.digits();

@@ -5,7 +5,6 @@
 #include "page/plot_script.h"
 #include "report/figures.h"
 #include "report/verdicts.h"
-#include "study/ladders.h"
 #include "study/statistics.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -81,45 +80,17 @@ class MethodFigures {
     const auto drawn = std::ranges::count_if(front.points, [](const auto& point) { return point.second > 0.0; });
     series.push_back(std::move(front));
     page::Axes axes{"time per receiver, µs", kRelative, true, true, {kFloor}, {}};
-    std::string caption =
+    if (const MethodCell* exact = exact_cell(study_)) axes.marks = {{"exact: error 0", 1e6 * exact->seconds}};
+    const std::string caption =
         "Each line is a method with increasing effort, at " + text::counted(methods().receivers.size(), "receiver") +
-        ". " +
-        (drawn > 1 ? "The dashed line joins the settings that no other setting beats in both time and error. " : "");
-    if (const MethodCell* exact = exact_cell(study_)) {
-      const std::string at = text::shortest(1e6 * exact->seconds);
-      axes.marks = {1e6 * exact->seconds};
-      axes.extra = {kFloor, "set arrow from " + at + ", graph 0 to " + at + ", graph 1 nohead lw 2.5 lc rgb '#8A8A8A'",
-                    "set label 'exact: error 0' at " + at + ", graph 0.98 rotate by 90 right offset character -0.8,0"};
-      caption +=
-          "The exact method has no error; the vertical line is its time, " + text::duration(exact->seconds) + ". ";
-    }
-    const std::string title =
-        study_.settings.empty() ? "Error against run time" : "All methods: error against run time";
-    add({"methods-time", title, caption + time_slopes(), page::line_plot(axes, series)},
+        "; the vertical line is the exact method." +
+        (drawn > 1 ? " The dashed line joins the settings that no other setting beats in both time and error." : "");
+    add({"methods-time", "Error against run time", caption, page::line_plot(axes, series)},
         "no method has an error that a logarithmic axis can show");
-  }
-
-  // Exponents p of error = c time^p for each method, fitted by least squares over its settings.
-  [[nodiscard]] std::string time_slopes() const {
-    std::vector<std::string> words;
-    for (const std::size_t l : shown_) {
-      page::Points points;
-      for (const MethodCell& cell : methods().cells) {
-        if (cell.ladder == l) points.emplace_back(cell.seconds, relative_error(study_, cell));
-      }
-      const auto slope = points.size() >= 3 ? study::fitted_slope(points) : std::nullopt;
-      if (slope) {
-        words.push_back(methods().ladders[l].name + ' ' + (*slope < 0.0 ? "−" : "") +
-                        text::rounded(std::abs(*slope), 2));
-      }
-    }
-    if (words.empty()) return {};
-    return "The error falls as time to the power: " + text::html(text::enumerate(words)) + " (least squares).";
   }
 
   void add_convergence(Sight sight, const char* id, const char* title) {
     std::vector<page::Series> series;
-    std::vector<std::string> words;
     int style = 0;
     for (const std::size_t l : shown_) {
       const auto& slope = sight == Sight::kPartly ? methods().slopes[l].partly : methods().slopes[l].visible;
@@ -132,15 +103,10 @@ class MethodFigures {
         one.points.emplace_back(cell.work, e.rms / brightest_);
       }
       series.push_back(std::move(one));
-      words.push_back(slope_words(*slope, methods().ladders[l], sight));
     }
-    std::string list;
-    for (const std::string& word : words) list += "<br>" + text::html(word) + '.';
     add({id, title,
          "Error against the number of samples per receiver (hemicube: pixels; adaptive: leaves plus rays, or leaves "
-         "plus exact visible fractions). Fitted exponents, with 95 % confidence intervals over the seeds for "
-         "stochastic methods:" +
-             list,
+         "plus exact visible fractions). The table has the fitted exponents.",
          page::line_plot({"samples, pixels, or leaves and rays", kRelative, true, true, {kFloor}, {}}, series)},
         sight == Sight::kPartly ? "no receiver sees the source partly hidden, or fewer than three settings were run"
                                 : "no receiver sees the whole source, or fewer than three settings were run");
@@ -184,15 +150,6 @@ class MethodFigures {
     return series;
   }
 
-  [[nodiscard]] std::string middle_settings() const {
-    std::vector<std::string> names;
-    for (const MethodField& field : methods().fields) {
-      if (std::find(shown_.begin(), shown_.end(), field.ladder) == shown_.end()) continue;
-      names.push_back(study::rung_name(methods().ladders[field.ladder], field.rung));
-    }
-    return "Each method at its middle setting, with one seed: " + text::html(text::enumerate(names)) + ".";
-  }
-
   void add_by_fraction() {
     if (study_.request.scene->faces().size() > study::kMostFacesForFractions) {
       leave_out("Error by how much of the source is visible",
@@ -208,8 +165,8 @@ class MethodFigures {
     };
     add({"by-fraction", "Error by how much of the source is visible",
          "Receivers are grouped into bins by the exact visible share of the source’s area: nothing, tenths, all. Bins "
-         "with fewer than three receivers are left out. " +
-             middle_settings(),
+         "with fewer than three receivers are left out. Each method at its middle setting (see the table), with one "
+         "seed.",
          page::line_plot(
              {"visible share of the source, %", kRelative, false, true, {"set xrange [-3:103]", kFloor}, {}},
              binned(bin_of))},

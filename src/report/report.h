@@ -2,11 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "page/chapter.h"
 #include "page/figure.h"
+#include "report/field.h"
+#include "report/strip.h"
 #include "report/studies.h"
 #include "report/tables.h"
 
@@ -22,6 +25,7 @@ struct StudyReport {
   std::string title;  // empty: the title of the only scene
   std::vector<SceneChapter> scenes;
   std::vector<page::Chapter> chapters;
+  std::vector<FieldResults> fields;
   std::string command_line;
   std::string identity;           // of the plan (identity.h); empty if there is none
   std::vector<LeftOut> left_out;  // scenes and chapters
@@ -34,11 +38,13 @@ std::vector<std::string> write(const StudyReport& report, const std::filesystem:
 struct Page {
   page::DrawnFigures drawn;
   std::vector<LeftOut> left_out;  // from the study or chapter, and from its figures
+  std::optional<Strip> strip = {};
 };
 
 struct Pages {
   std::vector<Page> scenes;
   std::vector<Page> chapters;
+  std::vector<Page> fields;
 };
 
 // The report as one HTML page that loads nothing and has no scripts.

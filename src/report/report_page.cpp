@@ -1,10 +1,13 @@
 #include <algorithm>
-#include <cmath>
+#include <cctype>
+#include <functional>
+#include <set>
 
 #include "exactff/report.h"
 #include "page/page_text.h"
 #include "report/identity.h"
 #include "report/report.h"
+#include "report/scene_part.h"
 #include "report/tables.h"
 #include "report/verdicts.h"
 #include "text/escape.h"
@@ -16,234 +19,6 @@ namespace {
 using page::HtmlTable;
 using enum HtmlTable::Kind;
 
-std::string figure_group(const page::DrawnFigures& drawn, bool maps) {
-  std::string group;
-  for (const page::DrawnFigure& one : drawn.figures) {
-    if (one.figure.map != maps || one.svg.empty()) continue;
-    group += "<figure id=\"" + one.figure.id + "\">\n<h3>" + page::prose(text::html(one.figure.title)) + "</h3>\n" +
-             one.svg + "\n<figcaption>" + page::prose(one.figure.caption) + "</figcaption>\n</figure>\n";
-  }
-  if (group.empty()) return {};
-  return std::string("<div class=\"figures") + (maps ? " maps" : "") + "\">\n" + group + "</div>\n";
-}
-
-std::string left_out_list(const std::vector<LeftOut>& items) {
-  std::string text = "<ul>\n";
-  for (const LeftOut& item : items)
-    text += "<li>" + page::prose(text::html(item.what) + ": " + text::html(item.why)) + ".</li>\n";
-  return text + "</ul>\n";
-}
-
-class ScenePart {
- public:
-  ScenePart(const SceneChapter& scene, const Page& page, bool alone) : scene_(scene), page_(page), alone_(alone) {}
-
-  std::string write() {
-    text_ = "<section class=\"scene\" id=\"" + anchor(scene_) + "\">\n<h2>" + text::html(scene_.title) + "</h2>\n";
-    text_ +=
-        "<p class=\"subtitle\">" + text::counted(study().exact.size(), "receiver") + " (" +
-        text::html(study().request.receivers_name) + "), source " + text::html(source_names(study())) + ", " +
-        text::counted(study().request.scene->faces().size(), "face") +
-        (is_swept() ? ", " + text::counted(study().settings.size(), "setting") + " of the ray-sampled algorithm" : "") +
-        (study().methods.cells.empty() ? std::string()
-                                       : ", " + text::counted(study().methods.ladders.size(), "method") + " compared") +
-        ".</p>\n";
-    for (const std::string& sentence : receiver_warnings(study())) {
-      text_ += page::paragraph("Warning: " + text::html(sentence) + ".");
-    }
-    answer();
-    tiles();
-    figures();
-    needs();
-    for (const std::string& sentence : range_sentences(study())) text_ += page::paragraph(text::html(sentence));
-    methods_table();
-    if (is_swept()) settings_table();
-    left_out();
-    text_ += "</section>\n";
-    return std::move(text_);
-  }
-
-  static std::string anchor(const SceneChapter& scene) { return scene.name.empty() ? "scene" : "scene-" + scene.name; }
-
- private:
-  [[nodiscard]] const Study& study() const { return scene_.study; }
-  [[nodiscard]] bool is_swept() const { return !study().settings.empty(); }
-  [[nodiscard]] bool partly() const { return study().receivers_by_sight[static_cast<std::size_t>(Sight::kPartly)] > 0; }
-
-  void subheading(const std::string& words) { text_ += "<h3 class=\"part\">" + words + "</h3>\n"; }
-
-  void answer() {
-    if (alone_) {
-      for (const std::string& sentence : method_sentences(study())) {
-        text_ += "<p class=\"quote\">" + page::prose(text::html(sentence)) + "</p>\n";
-      }
-    }
-    text_ += "<ul class=\"answer\">\n";
-    for (const std::string& sentence : headlines(study()))
-      text_ += "<li>" + page::prose(text::html(sentence)) + "</li>\n";
-    text_ += "</ul>\n";
-  }
-
-  void tile(const std::string& number, const std::string& words) {
-    text_ += "<div class=\"tile\"><b>" + number + "</b><span>" + page::prose(words) + "</span></div>\n";
-  }
-
-  void tiles() {
-    text_ += "<div class=\"tiles\">\n";
-    is_swept() ? sweep_tiles() : method_tiles();
-    text_ += "</div>\n";
-  }
-
-  // The most accurate setting of each method that was named.
-  void method_tiles() {
-    if (const MethodCell* exact = exact_cell(study())) tile(text::duration(exact->seconds), "exact, per receiver");
-    for (std::size_t l = 0; l < study().methods.ladders.size(); ++l) {
-      const MethodCell* best = most_accurate(study(), l);
-      if (best == nullptr || is_exact(study(), *best)) continue;
-      const std::string name = text::html(cell_name(study(), *best));
-      const std::string error = text::rounded(100.0 * relative_error(study(), *best), 2) + " %";
-      tile(text::duration(best->seconds), name + ", per receiver");
-      tile(error, "RMS error of " + name + ", of the brightest receiver");
-    }
-  }
-
-  void sweep_tiles() {
-    const Summary& base = study().summaries[study().base];
-    const double exact = partly() ? study().exact_time.median_partly : study().exact_time.median;
-    const TimeSummary& base_time = study().times[study().base];
-    const std::string where = partly() ? ", source partly hidden" : "";
-    tile(text::duration(exact), "exact, per receiver" + where + " (median)");
-    tile(text::duration(partly() ? base_time.median_partly : base_time.median),
-         "sampled at the base setting, per receiver" + where + " (median)");
-    tile(text::share(base.violations, study().exact.size()),
-         "of receivers with an error above ε_B at the base setting");
-    tile(text::rounded(base.radiosity.rms),
-         "RMS error there (radiosity); the tolerance is " + text::rounded(study().settings[study().base].eps_b));
-  }
-
-  void figures() {
-    if (!page_.drawn.none.empty()) text_ += page::paragraph(text::html(page_.drawn.none));
-    text_ += figure_group(page_.drawn, false);
-    const std::string maps = figure_group(page_.drawn, true);
-    if (!maps.empty()) subheading("Maps over the grid of receivers");
-    text_ += maps;
-  }
-
-  // One row per method: its least time for every wanted error, as a multiple of the exact method's time.
-  void needs() {
-    const MethodCell* exact = exact_cell(study());
-    if (exact == nullptr || study().methods.cells.size() < 2) return;
-    subheading("Time that each method needs");
-    text_ += page::paragraph(
-        "Time that each method needs to be accurate to a given error, as a multiple of the time of the exact method (" +
-        text::duration(exact->seconds) +
-        " per receiver). The error is the RMS error over the chosen receivers and seeds, divided by the radiosity of "
-        "the brightest receiver. A dash means that no setting that was run reached this error.");
-    HtmlTable table;
-    table.column("method", kText);
-    for (const double wanted : kWantedErrors) table.column(power_of_ten(wanted));
-    table.column("best error");
-    for (std::size_t l = 0; l < study().methods.ladders.size(); ++l) needs_row(table, l, exact->seconds);
-    text_ += table.text() + '\n';
-  }
-
-  void needs_row(HtmlTable& table, std::size_t l, double exact_seconds) const {
-    const Ladder& ladder = study().methods.ladders[l];
-    table.row(ladder.rungs.front().method->name == "exact" ? "exact" : "");
-    table.cell(text::html(ladder.name), kText);
-    for (const double wanted : kWantedErrors) {
-      const MethodCell* found = cheapest(study(), wanted, l);
-      table.cell(found != nullptr ? text::rounded(found->seconds / exact_seconds, 2) : "–");
-    }
-    const MethodCell* best = most_accurate(study(), l);
-    const double error = best != nullptr ? relative_error(study(), *best) : INFINITY;
-    table.cell(std::isfinite(error) ? text::rounded(error, 2) : "–");
-  }
-
-  void methods_table() {
-    if (study().methods.cells.empty()) return;
-    HtmlTable table;
-    table.column("method", kText);
-    table.columns(
-        {"work", "seeds", "RMS", "partly hidden", "visible", "mean", "p99", "worst", "time per receiver", "exact ×"});
-    const MethodCell* exact = exact_cell(study());
-    for (const MethodCell& c : study().methods.cells) {
-      table.row(is_exact(study(), c) ? "exact" : "");
-      table.cell(text::html(cell_name(study(), c)), kText);
-      table.cells({text::rounded(c.work), c.seeds.front() == 0 ? "–" : std::to_string(c.seeds.size()),
-                   signed_number(c.error.rms), signed_number(c.error_partly.rms), signed_number(c.error_visible.rms),
-                   signed_number(c.error.mean), signed_number(c.error.p99), signed_number(c.error.worst),
-                   text::duration(c.seconds), exact != nullptr ? text::rounded(c.seconds / exact->seconds, 2) : "–"});
-    }
-    text_ += std::string("<details") + (is_swept() ? "" : " open") + "><summary>Every method and setting</summary>\n" +
-             table.text() + "</details>\n";
-  }
-
-  void settings_table() {
-    text_ += std::string("<details") + (alone_ && study().methods.cells.empty() ? " open" : "") +
-             "><summary>Every setting of the ray-sampled algorithm</summary>\n";
-    text_ += page::paragraph(
-        "Errors are in radiosity, approximate minus exact, over all receivers. The marked row is the base setting; "
-        "each sweep varies one parameter of it. “Off” is the share of receivers whose error exceeds ε_B. “Silent” "
-        "counts the leaves with a silent error: all their rays agreed, and were wrong for a part of the leaf. Times "
-        "are per receiver" +
-        std::string(partly() ? "; the last column covers only receivers that see the source partly hidden." : "."));
-    HtmlTable table;
-    table.columns({"#", "ε_B", "rays"});
-    table.column("pattern", kText);
-    table.columns({"ε_A", "seed"});
-    table.column("variant", kText);
-    table.columns({"RMS", "mean", "p99", "worst", "off", "leaves", "rays traced", "silent", "median time"});
-    if (partly()) table.column("median, partly hidden");
-    exact_row(table);
-    for (std::size_t k = 0; k < study().settings.size(); ++k) setting_row(table, k);
-    text_ += table.text() + "</details>\n";
-  }
-
-  void exact_row(HtmlTable& table) const {
-    table.row("exact");
-    table.cell("");
-    table.cell("exact", kText, 6);
-    table.cells({"0", "0", "0", "0", "0 %", "", "", ""});
-    times(table, study().exact_time);
-  }
-
-  void times(HtmlTable& table, const TimeSummary& t) const {
-    table.cell(text::duration(t.median));
-    if (partly()) table.cell(text::duration(t.median_partly));
-  }
-
-  void setting_row(HtmlTable& table, std::size_t k) const {
-    const AdaptiveOptions& s = study().settings[k];
-    const Summary& summary = study().summaries[k];
-    table.row(k == study().base ? "base" : "");
-    table.cells({std::to_string(k + 1), text::rounded(s.eps_b), std::to_string(s.rays)});
-    table.cell(std::string(name_of(s.pattern)), kText);
-    table.cells({text::rounded(s.eps_a), std::to_string(s.seed)});
-    table.cell(std::string(name_of(s.variant)), kText);
-    const ErrorStatistics& e = summary.radiosity;
-    table.cells({signed_number(e.rms), signed_number(e.mean), signed_number(e.p99), signed_number(e.worst),
-                 text::share(summary.violations, study().exact.size()), std::to_string(summary.leaves),
-                 std::to_string(summary.rays), std::to_string(summary.silent_leaves)});
-    times(table, study().times[k]);
-  }
-
-  static std::string signed_number(double value) {
-    return value < 0.0 ? "−" + text::rounded(-value) : text::rounded(value);
-  }
-
-  void left_out() {
-    if (page_.left_out.empty()) return;
-    subheading("What was left out, and why");
-    text_ += left_out_list(page_.left_out);
-  }
-
-  const SceneChapter& scene_;
-  const Page& page_;
-  const bool alone_;
-  std::string text_;
-};
-
 class PageWriter {
  public:
   PageWriter(const StudyReport& report, const Pages& pages) : report_(report), pages_(pages) {}
@@ -254,8 +29,9 @@ class PageWriter {
     contents();
     if (has_overview()) overview();
     for (std::size_t i = 0; i < report_.scenes.size(); ++i) {
-      text_ += ScenePart(report_.scenes[i], pages_.scenes[i], alone()).write();
+      text_ += scene_part(report_.scenes[i], pages_.scenes[i]);
     }
+    for (std::size_t i = 0; i < report_.fields.size(); ++i) text_ += field_part(report_.fields[i], pages_.fields[i]);
     for (std::size_t i = 0; i < report_.chapters.size(); ++i) chapter(report_.chapters[i], pages_.chapters[i]);
     left_out();
     definitions();
@@ -266,7 +42,9 @@ class PageWriter {
   }
 
  private:
-  [[nodiscard]] bool alone() const { return report_.scenes.size() == 1 && report_.chapters.empty(); }
+  [[nodiscard]] bool alone() const {
+    return report_.scenes.size() == 1 && report_.chapters.empty() && report_.fields.empty();
+  }
 
   [[nodiscard]] std::string title() const {
     if (!report_.title.empty()) return text::html(report_.title);
@@ -284,20 +62,20 @@ class PageWriter {
 
   void question() {
     text_ += page::paragraph(
-        "<strong>The question.</strong> The light that a point receives from a polygonal source depends on the part of "
-        "the source that is visible from the point. Most programs approximate this part. Tampieri’s adaptive algorithm "
-        "(1992) uses shadow rays and splits the source until a tolerance ε_B is met; the hemicube uses pixels; other "
-        "methods use sample points. This page compares them with the exact values. How large is the true error? How "
-        "often is the tolerance broken? How long does each method take?");
+        "How much light does a point receive from a polygonal source when other faces hide a part of it? This page "
+        "compares approximate methods with the exact values: how large is the true error, and how long does each "
+        "method take?");
   }
 
   void contents() {
+    if (alone()) return;
     text_ += "<nav class=\"contents\" aria-label=\"Contents\"><ul>\n";
     const auto link = [&](const std::string& to, const std::string& words) {
       text_ += "<li><a href=\"#" + to + "\">" + words + "</a></li>\n";
     };
     if (has_overview()) link("overview", "Which method for which error");
-    for (const SceneChapter& scene : report_.scenes) link(ScenePart::anchor(scene), text::html(scene.title));
+    for (const SceneChapter& scene : report_.scenes) link(anchor_of(scene), text::html(scene.title));
+    for (const FieldResults& field : report_.fields) link(anchor_of(field), text::html(field.title));
     for (const page::Chapter& chapter : report_.chapters) link("chapter-" + chapter.name, text::html(chapter.title));
     if (!report_.left_out.empty()) link("left-out", "What this report leaves out, and why");
     link("words", "Terms and sources");
@@ -314,13 +92,6 @@ class PageWriter {
   void overview() {
     text_ += "<section id=\"overview\">\n" + page::heading("Which method for which error");
     recommendations();
-    for (const SceneChapter& scene : report_.scenes) {
-      const std::vector<std::string> sentences = method_sentences(scene.study);
-      if (sentences.empty()) continue;
-      text_ += "<p class=\"quote\"><strong>" + text::html(scene.title) + ".</strong> ";
-      for (const std::string& sentence : sentences) text_ += page::prose(text::html(sentence)) + ' ';
-      text_ += "</p>\n";
-    }
     text_ += "</section>\n";
   }
 
@@ -336,19 +107,21 @@ class PageWriter {
         "For each scene and error: the fastest method and setting that is accurate to this error, and its time per "
         "receiver. The error is the RMS error over the chosen receivers and seeds, divided by the radiosity of the "
         "brightest receiver.");
-    HtmlTable table("recommend");
-    table.column("scene");
-    for (const double wanted : kWantedErrors) table.column(power_of_ten(wanted));
+    HtmlTable table(HtmlTable::Shape::kWide);
+    table.column("scene", kText);
+    for (const double wanted : kWantedErrors) table.column(power_of_ten(wanted), kText);
     for (const SceneChapter& scene : report_.scenes) {
       const MethodCell* exact = exact_cell(scene.study);
       if (exact == nullptr) continue;
       table.row();
-      table.cell(text::html(scene.title));
+      table.cell(text::html(scene.title), kText);
       for (const double wanted : kWantedErrors) {
         const MethodCell* best = cheapest(scene.study, wanted);
         if (best == nullptr || best->seconds > exact->seconds) best = exact;
         const std::string name = text::html(cell_name(scene.study, *best));
-        table.cell((best == exact ? "<strong>" + name + "</strong>" : name) + ", " + text::duration(best->seconds));
+        table.cell(
+            page::prose(best == exact ? "<strong>" + name + "</strong>" : name) + ", " + text::duration(best->seconds),
+            kText);
       }
     }
     text_ += table.text() + '\n';
@@ -357,12 +130,54 @@ class PageWriter {
   void chapter(const page::Chapter& chapter, const Page& page) {
     text_ +=
         "<section class=\"scene\" id=\"chapter-" + chapter.name + "\">\n<h2>" + text::html(chapter.title) + "</h2>\n";
-    for (const std::string& words : chapter.paragraphs) text_ += page::paragraph(text::html(words));
-    if (!page.drawn.none.empty()) text_ += page::paragraph(text::html(page.drawn.none));
-    text_ += figure_group(page.drawn, false) + figure_group(page.drawn, true);
-    if (!page.left_out.empty())
-      text_ += "<h3 class=\"part\">What was left out, and why</h3>\n" + left_out_list(page.left_out);
+    experiment_part(chapter, page);
     text_ += "</section>\n";
+  }
+
+  // A sentence, a figure or two, then the findings and further figures, folded.
+  void experiment_part(const page::Chapter& chapter, const Page& page) {
+    if (!chapter.paragraphs.empty()) {
+      const std::string opening = opening_sentence(chapter.paragraphs.front());
+      text_ += "<p class=\"verdict\">" + page::prose(text::html(opening)) + "</p>\n";
+    }
+    if (!page.drawn.none.empty()) text_ += page::paragraph(text::html(page.drawn.none));
+    constexpr std::size_t kShown = 2;
+    std::set<std::string> shown;
+    for (const page::DrawnFigure& one : page.drawn.figures) {
+      if (shown.size() < kShown && !one.figure.map) shown.insert(one.figure.id);
+    }
+    const auto is_shown = [&](const page::Figure& figure) { return shown.contains(figure.id); };
+    text_ += figure_group(page.drawn, is_shown);
+    std::string findings;
+    for (const std::string& words : chapter.paragraphs) findings += page::paragraph(text::html(words));
+    for (const page::NumberTable& table : chapter.tables) findings += number_table(table);
+    text_ += page::fold("What was done and found", findings);
+    text_ += page::fold("Further figures", figure_group(page.drawn, std::not_fn(is_shown)));
+    if (!page.left_out.empty()) text_ += page::fold("What was left out, and why", left_out_list(page.left_out));
+  }
+
+  static std::string number_table(const page::NumberTable& numbers) {
+    using Table = page::HtmlTable;
+    Table table(numbers.columns.size() > 3 ? Table::Shape::kWide : Table::Shape::kNarrow);
+    const auto kind = [](std::size_t column) { return column == 0 ? Table::Kind::kText : Table::Kind::kNumber; };
+    for (std::size_t i = 0; i < numbers.columns.size(); ++i) table.column(text::html(numbers.columns[i]), kind(i));
+    for (const std::vector<std::string>& row : numbers.rows) {
+      table.row();
+      for (std::size_t i = 0; i < row.size(); ++i) table.cell(page::prose(text::html(row[i])), kind(i));
+    }
+    return page::paragraph("<strong>" + page::prose(text::html(numbers.title)) + "</strong>") + table.text() + '\n';
+  }
+
+  // The first sentence that is no list of numbers. A full stop ends a sentence if a capital follows.
+  static std::string opening_sentence(const std::string& text) {
+    std::size_t begin = 0;
+    for (std::size_t at = text.find(". "); at != std::string::npos; at = text.find(". ", at + 1)) {
+      if (at + 2 >= text.size() || std::isupper(static_cast<unsigned char>(text[at + 2])) == 0) continue;
+      const std::string sentence = text.substr(begin, at + 1 - begin);
+      if (sentence.find(';') == std::string::npos) return sentence;
+      begin = at + 2;
+    }
+    return text.substr(begin);
   }
 
   void define(const std::string& term, const std::string& meaning) {
@@ -370,7 +185,9 @@ class PageWriter {
   }
 
   void definitions() {
-    text_ += "<section id=\"words\">\n" + page::heading("Terms and sources") + "<dl>\n";
+    text_ +=
+        "<section id=\"words\">\n" + page::heading("Terms and sources") +
+        "<details>\n<summary>What the words of this page mean, and where the methods were published</summary>\n<dl>\n";
     define("Form factor F",
            "The share of the diffuse light leaving the receiving point that reaches the source directly: the integral "
            "of cos θ_r cos θ_s / (π r²) over the visible part of the source, where r is the distance and θ_r and θ_s "
@@ -425,7 +242,7 @@ class PageWriter {
            "122–138.<br>"
            "M. F. Cohen and D. P. Greenberg, “The Hemi-Cube: A Radiosity Solution for Complex Environments”, "
            "<em>Computer Graphics</em> 19(3) (SIGGRAPH ’85), pp. 31–40.");
-    text_ += "</dl>\n</section>\n";
+    text_ += "</dl>\n</details>\n</section>\n";
   }
 
   void reproduction() {
@@ -440,7 +257,7 @@ class PageWriter {
         "All values are the same in every run and for any number of threads. Times are not. They were measured on one "
         "thread, after all values had been computed. Each time is the median of three calls, after a first call with "
         "the same arguments.");
-    files();
+    text_ += page::fold("Files in this folder", files());
     text_ += "</section>\n";
   }
 
@@ -458,12 +275,10 @@ class PageWriter {
                                           : std::string("not built (no candidate list was long enough to need it)"));
   }
 
-  void files() {
-    text_ +=
-        "<p>Files in this folder:</p>\n"
-        "<ul>\n";
+  [[nodiscard]] std::string files() const {
+    std::string list = "<ul>\n";
     const auto item = [&](const std::string& file, const std::string& holds) {
-      text_ += "<li><code>" + text::html(file) + "</code>: " + text::html(holds) + "</li>\n";
+      list += "<li><code>" + text::html(file) + "</code>: " + text::html(holds) + "</li>\n";
     };
     for (const StudyTable& table : tables()) {
       const bool anywhere = std::any_of(report_.scenes.begin(), report_.scenes.end(),
@@ -473,17 +288,17 @@ class PageWriter {
            std::string(table.holds));
     }
     for (const page::Chapter& chapter : report_.chapters) {
-      for (const auto* list : {&chapter.values, &chapter.times}) {
-        for (const page::CsvFile& table : *list) item(table.file, table.holds);
+      for (const auto* files : {&chapter.values, &chapter.times}) {
+        for (const page::CsvFile& table : *files) item(table.file, table.holds);
       }
     }
-    text_ += "</ul>\n";
-    if (report_.scenes.size() < 2) return;
+    list += "</ul>\n";
+    if (report_.scenes.size() < 2) return list;
     std::vector<std::string> names;
     for (const SceneChapter& scene : report_.scenes) {
       names.push_back("<code>" + text::html(scene.name) + "</code> (" + text::html(scene.title) + ')');
     }
-    text_ += "<p>SCENE stands for " + text::enumerate(names) + ".</p>\n";
+    return list + "<p>SCENE stands for " + text::enumerate(names) + ".</p>\n";
   }
 
   const StudyReport& report_;

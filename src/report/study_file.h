@@ -5,9 +5,10 @@
 //   scene cornell_box.obj --on floor --grid 32x32 --title "Cornell box"
 //   scene @karkanis:n=200 --on ... --unless-abridged
 //   experiment karkanis-times nettle-rule
+//   field ../field/cycles.csv
 //
 // A scene line has the words and flags that `exactff compare` takes for one scene (flags/comparison.h). Files are
-// looked up in the folder of the study.
+// looked up in the folder of the study. A field line names a file of measured results (field.h).
 #pragma once
 
 #include <filesystem>
@@ -27,6 +28,7 @@ struct StudyFile {
   std::string title;
   std::vector<StudyLine> scenes;
   std::vector<StudyLine> experiments;
+  std::vector<StudyLine> fields;
 };
 
 // Throws InputError with everything that is wrong in the syntax of the file. Flags are checked later, by the code that

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "study/ladders.h"
+#include "study/settings.h"
 #include "study/statistics.h"
 #include "text/phrases.h"
 
@@ -134,14 +135,20 @@ std::string cost_sentence(const Study& study, const MethodCell& exact) {
          (missed > 0.0 ? ", and no other setting that was run is accurate to " + power_of_ten(missed) : "") + '.';
 }
 
-// The error that other methods reach in the time of the exact one.
-std::string overtaking_sentence(const Study& study, const MethodCell& exact) {
+// The most accurate of the cells that are at least as fast as the exact method; null if there is none.
+const MethodCell* best_in_time(const Study& study, const MethodCell& exact) {
   const MethodCell* within = nullptr;
   for (const MethodCell& cell : study.methods.cells) {
     if (!is_rival(study, cell) || !is_timed(cell) || cell.seconds > exact.seconds) continue;
     if (!std::isfinite(relative_error(study, cell))) continue;
     if (within == nullptr || relative_error(study, cell) < relative_error(study, *within)) within = &cell;
   }
+  return within;
+}
+
+// The error that other methods reach in the time of the exact one.
+std::string overtaking_sentence(const Study& study, const MethodCell& exact) {
+  const MethodCell* within = best_in_time(study, exact);
   if (within == nullptr) return "No setting of another method is as fast as the exact method.";
   return "For errors below " + text::rounded(100.0 * relative_error(study, *within), 2) +
          " % of the brightest receiver (RMS), the exact method is the fastest: no other setting that is at least as "
@@ -150,6 +157,66 @@ std::string overtaking_sentence(const Study& study, const MethodCell& exact) {
 }
 
 }  // namespace
+
+double exact_seconds(const Study& study) {
+  const MethodCell* exact = exact_cell(study);
+  return exact != nullptr && is_timed(*exact) ? exact->seconds : study.exact_time.mean;
+}
+
+namespace {
+
+// The setting that a verdict recommends where its error will do.
+struct Alternative {
+  std::string name;
+  double error = INFINITY;  // RMS, relative to the brightest receiver
+  double seconds = 0.0;
+};
+
+std::optional<Alternative> alternative_of_methods(const Study& study, const MethodCell& exact) {
+  const MethodCell* within = best_in_time(study, exact);
+  if (within == nullptr) return std::nullopt;
+  return Alternative{cell_name(study, *within), relative_error(study, *within), within->seconds};
+}
+
+std::optional<Alternative> alternative_of_sweeps(const Study& study, double brightest) {
+  std::optional<Alternative> best;
+  for (std::size_t k = 0; k < study.settings.size(); ++k) {
+    const double error = study.summaries[k].radiosity.rms / brightest;
+    if (!(study.times[k].mean <= study.exact_time.mean) || !std::isfinite(error)) continue;
+    if (best && best->error <= error) continue;
+    best = Alternative{"Tampieri’s algorithm (" + study::setting_name(study, k) + ")", error, study.times[k].mean};
+  }
+  return best;
+}
+
+}  // namespace
+
+std::string verdict(const Study& study) {
+  const double brightest = study::largest_radiosity(study);
+  if (!(brightest > 0.0)) return "Use any method: every form factor of this scene is 0, and all of them find that out.";
+  const MethodCell* exact = exact_cell(study);
+  const bool compared = exact != nullptr && is_timed(*exact) && study.methods.cells.size() > 1;
+  if (!compared && study.settings.empty()) {
+    return "Use the exact method: it takes " + text::duration(exact_seconds(study)) +
+           " per receiver, and no other method was run that could be compared with it.";
+  }
+  const auto other = compared ? alternative_of_methods(study, *exact) : alternative_of_sweeps(study, brightest);
+  if (!other) {
+    return "Use the exact method whatever error you accept: it takes " + text::duration(exact_seconds(study)) +
+           " per receiver, and no setting of another method that was run is as fast.";
+  }
+  const std::string faster = text::rounded(100.0 * other->seconds / exact_seconds(study), 2) + " % of its time";
+  constexpr double kRounding = 1e-12;
+  if (other->error < kRounding) {
+    return "Use " + other->name + " in a scene like this, where it errs by rounding alone, in " + faster +
+           "; use the exact method (" + text::duration(exact_seconds(study)) +
+           " per receiver) when every digit must be proved.";
+  }
+  const std::string error = text::rounded(100.0 * other->error, 2) + " %";
+  return "Use the exact method (" + text::duration(exact_seconds(study)) +
+         " per receiver) when the RMS error must stay below " + error + " of the brightest receiver; when " + error +
+         " will do, use " + other->name + ", in " + faster + ".";
+}
 
 std::vector<std::string> method_sentences(const Study& study) {
   const MethodCell* exact = exact_cell(study);
@@ -227,18 +294,18 @@ std::vector<std::string> range_sentences(const Study& study) {
   return sentences;
 }
 
-std::string slope_words(const Slope& slope, const Ladder& ladder, Sight sight) {
-  std::string text = ladder.name + ": " + signed_text(slope.exponent);
-  if (slope.seeds > 1) text += " (" + signed_text(slope.low) + " to " + signed_text(slope.high) + ")";
+SlopeWords slope_words(const Slope& slope, const Ladder& ladder, Sight sight) {
+  SlopeWords words{signed_text(slope.exponent), {}, {}};
+  if (slope.seeds > 1) words.fitted += " (" + signed_text(slope.low) + " to " + signed_text(slope.high) + ")";
   const auto expected = expectation(ladder, sight);
-  if (!expected) return text;
+  if (!expected) return words;
   constexpr double kClose = 0.1;
   const double off = slope.exponent - expected->exponent;
-  text += std::string(", theory ") + expected->words;
-  if (std::abs(off) <= std::max(kClose, 0.5 * (slope.high - slope.low))) return text;
-  return text + "; " +
-         (off > 0.0 ? "shallower, because " + std::string(why_shallower(sight))
-                    : "steeper, because " + std::string(why_steeper(sight)));
+  words.theory = expected->words;
+  if (std::abs(off) <= std::max(kClose, 0.5 * (slope.high - slope.low))) return words;
+  words.reason = off > 0.0 ? "shallower, because " + std::string(why_shallower(sight))
+                           : "steeper, because " + std::string(why_steeper(sight));
+  return words;
 }
 
 }  // namespace exactff::report

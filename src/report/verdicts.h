@@ -39,6 +39,16 @@ inline constexpr std::array kWantedErrors = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
 // "1e-4" in typeset form: "10⁻⁴".
 [[nodiscard]] std::string power_of_ten(double value);
 
+// The time of an exact value that a chapter states: seconds per receiver on average, over the receivers at which the
+// methods are compared, or over all if none are.
+[[nodiscard]] double exact_seconds(const Study& study);
+
+// One sentence that says when to use the exact method and when another one.
+[[nodiscard]] std::string verdict(const Study& study);
+
+// What the runs of Tampieri's algorithm over its settings show, in sentences; empty without such runs.
+[[nodiscard]] std::vector<std::string> sweep_findings(const Study& study);
+
 // One or two sentences that can be quoted: the cost of an exact value, and what the other methods need for a similar
 // accuracy.
 [[nodiscard]] std::vector<std::string> method_sentences(const Study& study);
@@ -50,7 +60,11 @@ inline constexpr std::array kWantedErrors = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
 // Receivers that were probably meant to lie on a face (near_misses), in sentences.
 [[nodiscard]] std::vector<std::string> receiver_warnings(const Study& study);
 
-// A fitted slope in words, with the slope that theory expects, if it expects one.
-[[nodiscard]] std::string slope_words(const Slope& slope, const Ladder& ladder, Sight sight);
+// A fitted slope: "−0.75 (−0.8 to −0.7)"; the slope that theory expects, if it expects one: "−3/4 with one shadow edge
+// across the source"; and, if they differ, the reason.
+struct SlopeWords {
+  std::string fitted, theory, reason;
+};
+[[nodiscard]] SlopeWords slope_words(const Slope& slope, const Ladder& ladder, Sight sight);
 
 }  // namespace exactff::report

@@ -6,6 +6,8 @@
 #include "page/output_folder.h"
 #include "report/figures.h"
 #include "report/report.h"
+#include "report/scene_part.h"
+#include "report/strip.h"
 #include "report/tables.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -78,11 +80,18 @@ std::vector<std::string> write(const StudyReport& report, const fs::path& folder
     write_tables(scene, staged.path(), hooks);
     std::vector<LeftOut> left_out = scene.study.left_out;
     std::vector<page::Figure> wanted = figures(scene.study, left_out);
+    std::optional<Strip> strip = strip_of(scene.study, left_out, hooks);
     pages.scenes.push_back(drawer.draw(std::move(wanted), std::move(left_out), scene.name));
+    pages.scenes.back().strip = std::move(strip);
   }
   for (const page::Chapter& chapter : report.chapters) {
     write_tables(chapter, staged.path());
     pages.chapters.push_back(drawer.draw(chapter.figures, chapter.left_out, chapter.name));
+  }
+  for (const FieldResults& field : report.fields) {
+    std::vector<LeftOut> left_out;
+    std::vector<page::Figure> wanted = field_figures(field, left_out);
+    pages.fields.push_back(drawer.draw(std::move(wanted), std::move(left_out), anchor_of(field)));
   }
   work::write_file(staged.path() / page::kReportFile, [&](std::ostream& out) { out << report_page(report, pages); });
   work::require_not_cancelled(hooks);
