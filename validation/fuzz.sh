@@ -40,7 +40,7 @@ run() {
 export -f run
 export seconds build work findings
 
-targets=(solver obj ply stl off view3d receivers check study truth_journal study_journal)
+targets=(solver obj ply stl off view3d receivers exr check study truth_journal study_journal)
 run_program() {
   mkdir "$work/program"
   rm -rf "$findings"/program-*

@@ -14,7 +14,7 @@ render() {  # NAME SCENE [FLAG...]
 
 box=(data/scenes/cornell_box.obj --eye 278 273 -800 --look 278 273 0 --fov 39.30764811610662)
 # The rays of area-sampling take about as long as the exact values.
-render cornell_box_strip "${box[@]}" --size 224x224 --against area-sampling:samples=64 --strip
+render cornell_box_strip "${box[@]}" --size 224x224 --against area-sampling:samples=64 --strip --times
 render cornell_box "${box[@]}" --size 400x400 --spp 3
 render blinds_room data/scenes/blinds_room.obj --eye 3.7 1.75 4.5 --look 0.9 0.95 0.2 --fov 48 --size 400x300 --spp 2 --exposure 6
 render blind_penumbra @room:n=6 --eye 2 1.5 1.2 --look 0 1.5 1.2 --ortho 2.7 --size 320x300 --exposure 9

@@ -27,6 +27,7 @@
 #include "exactff/error.h"
 #include "exactff/exact.h"
 #include "exactff/geometry.h"
+#include "exactff/pixels.h"
 
 namespace exactff::check {
 
@@ -54,6 +55,7 @@ struct Truth {
   std::vector<std::string> faces;    // faces that receivers lie on; the first name is empty and stands for none
   bool has_points = false;
   bool has_normals = false;
+  bool is_image = false;  // receivers are pixels, sources are channels
   std::vector<TruthRow> rows;
 
   [[nodiscard]] const std::string& source_of(const TruthRow& row) const { return sources[row.source]; }
@@ -62,8 +64,9 @@ struct Truth {
 
 // Reads a file of `exactff truth`, the exact.csv of `exactff compare`, or any CSV with the columns receiver (or id) and
 // exact. Optional columns: source, on, x,y,z, nx,ny,nz, lower, upper, status, largest_rho_b and radiosity_r, _g, _b.
-// `column` names the column with the true values if it is not `exact`, such as unoccluded or radiosity_g. Throws one
-// InputError with file:line for every problem, including rows that occur twice.
+// `column` names the column with the true values if it is not `exact`, such as unoccluded or radiosity_g. A total
+// (total_r, _g, _b) is one value for all sources: only the first row of each receiver counts. Throws one InputError
+// with file:line for every problem, including rows that occur twice.
 [[nodiscard]] Truth read_truth(const std::filesystem::path& path, const std::string& column = "exact");
 
 // --- Candidate -----------------------------------------------------------------------------------------------------
@@ -127,6 +130,28 @@ struct Measured {
 [[nodiscard]] std::vector<Measured> match(const Truth& truth, const Candidate& candidate,
                                           const MatchOptions& options = {});
 
+// --- Images --------------------------------------------------------------------------------------------------------
+
+// Names of layers or channels (pixels::ExrFile::find). Empty: R, G, B.
+struct ImageLayers {
+  std::string truth = {};
+  std::string candidate = {};
+};
+
+// Two OpenEXR images, pixel by pixel. Pixels are matched by their coordinates.
+struct Images {
+  Truth truth;                   // a row for each pixel and channel whose true value is finite
+  std::vector<Measured> values;  // in its order
+  std::string candidate_file;
+  pixels::Window window;             // of the truth
+  std::size_t channels = 3;          // 1 or 3
+  std::vector<float> exact, theirs;  // `channels` for each pixel of the window; NaN where there is none
+};
+// Throws InputError if a file cannot be read, if channels are missing, or if the candidate lacks a pixel that the truth
+// has, unless `partial`; throws Cancelled.
+[[nodiscard]] Images read_images(const std::filesystem::path& truth, const std::filesystem::path& candidate,
+                                 const ImageLayers& layers = {}, bool partial = false);
+
 // --- Judging -------------------------------------------------------------------------------------------------------
 
 enum class Measure { kAbsolute, kRelative, kRadiosity };
@@ -142,8 +167,9 @@ struct Quantile {
 struct Criteria {
   std::optional<double> max_abs = {};
   std::optional<double> max_rel = {};
-  std::optional<double> rms = {};    // of the absolute errors
-  std::optional<double> eps_b = {};  // bound on the error in radiosity
+  std::optional<double> rms = {};           // of the absolute errors
+  std::optional<double> eps_b = {};         // bound on the error in radiosity
+  std::optional<double> relative_mse = {};  // of images
   std::vector<Quantile> quantiles = {};
   bool per_source = false;      // every source must meet every limit, which implies that all together do
   double relative_floor = 0.0;  // relative errors are relative to the truth or to this, whichever is larger
@@ -161,6 +187,9 @@ struct Distribution {
   double rms = 0.0;
 };
 
+// As papers on denoising have it: e is the error, t the truth.
+inline constexpr double kRelativeMseEpsilon = 0.01;
+
 // Statistics over the rows with a finite value.
 struct Statistics {
   std::size_t rows = 0;        // all rows
@@ -170,6 +199,7 @@ struct Statistics {
   Distribution absolute;
   Distribution relative;
   std::optional<Distribution> radiosity;  // if rho B is known for every row
+  std::optional<double> relative_mse;     // of images: the mean of e^2 / (t^2 + kRelativeMseEpsilon)
   double largest_value = 0.0;             // of the truth
   double largest_radiosity = 0.0;
 };
@@ -188,8 +218,9 @@ struct RowError {
 };
 
 struct Verdict {
-  std::string criterion;  // "finite", "max-abs", "max-rel", "rms", "eps-b", "quantile 0.99", "baseline rms"
-  std::string source;     // empty: all sources together
+  std::string
+      criterion;  // "finite", "max-abs", "max-rel", "rms", "eps-b", "relative-mse", "quantile 0.99", "baseline rms"
+  std::string source;  // empty: all sources together
   double measured = 0.0;
   double limit = 0.0;
   bool passed = false;

@@ -83,8 +83,11 @@ struct NearFaces {
 // Faces that the point lies on or within the tolerance of, and whose normals agree with the receiver's within a degree,
 // either way. The first one is chosen by an agreeing normal, then by distance, then by index. Added are the other faces
 // of its patch for which the same holds and whose fronts agree with its front. Faces with a side below 2^-300 of the
-// scene's largest coordinate may be missed.
-[[nodiscard]] NearFaces find_faces(const Scene& scene, const Receiver& receiver, double tolerance);
+// scene's largest coordinate may be missed. kAny: whatever the normals are; the one that agrees best comes first, of
+// those with fronts on the receiver's side if there are any.
+enum class Normals { kAgree, kAny };
+[[nodiscard]] NearFaces find_faces(const Scene& scene, const Receiver& receiver, double tolerance,
+                                   Normals normals = Normals::kAgree);
 
 // A tolerance for find_faces: the largest of 1e-6 of the scene's diameter, two units in the last place of the largest
 // coordinate in single precision, and one unit of the last decimal of the point, but of the last at most 1e-3 of the

@@ -32,6 +32,7 @@
 #include "exactff/exact.h"
 #include "exactff/methods.h"
 #include "exactff/progress.h"
+#include "exactff/quantity.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
 #include "exactff/study.h"
@@ -123,16 +124,11 @@ struct Hit {
 
 // ----------------------------------------------------------------------------------------------------------- picture
 
-enum class Quantity {
-  kRadiance,    // B / pi
-  kRadiosity,   // B
-  kIrradiance,  // sum of B_s F_s: what arrives, whatever the face reflects or emits
-  kFormFactor,  // sum of F_s, in every channel
-};
-[[nodiscard]] std::string_view name_of(Quantity quantity);
+using exactff::KeMeans;
+using exactff::name_of;
+using exactff::Quantity;
 
-enum class KeMeans { kRadiosity, kRadiance };  // kRadiance: B_s is pi Ke, and a face emits pi Ke
-enum class Sides { kFront, kBoth };            // kBoth: the back of a face is lit as its front, but emits nothing
+enum class Sides { kFront, kBoth };  // kBoth: the back of a face is lit as its front, but emits nothing
 enum class Layers { kNone, kAll };
 enum class Bounds { kNone, kAll };
 

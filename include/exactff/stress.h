@@ -73,6 +73,7 @@ struct Row {
   std::uint64_t occluders = 0;    // faces besides the source
   std::uint64_t edges = 0;        // of the visible region's boundary
   bool agrees = false;            // the exact value is the truth, rounded
+  double tolerance = 0.0;         // eps_B of Tampieri's algorithm: kToleranceShare of the unoccluded form factor
   std::array<Answer, kMethodCount> answers;
 
   [[nodiscard]] const Answer& of(Method method) const { return answers[static_cast<std::size_t>(method)]; }
@@ -94,6 +95,12 @@ inline constexpr std::array<double, 3> kThresholds = {1e-3, 1e-6, 1e-12};
 // The largest stiffness such that the error stays below the threshold from the first row up to it; 0 if that fails in
 // the first row.
 [[nodiscard]] double usable_up_to(const FamilyResult& result, Method method, double threshold);
+
+// Whether a method is given a tolerance, and is therefore judged by it and not by the thresholds.
+[[nodiscard]] bool has_tolerance(Method method);
+// The largest stiffness such that |value - F| <= tolerance from the first row up to it; 0 if that fails in the first
+// row.
+[[nodiscard]] double kept_up_to(const FamilyResult& result, Method method);
 
 struct Request {
   std::vector<std::string> families;  // empty: all
@@ -137,7 +144,8 @@ void write_part(const Report& report, const std::filesystem::path& folder);
 // such stiffness, or "–".
 [[nodiscard]] std::string reach_text(const FamilyResult& result, Method method, double threshold);
 
-// The same for every threshold: "10⁸ · 10⁵ · 100", or "all". Adds "(refused)" if the method then refuses the scene.
+// The same for every threshold: "10⁸ · 10⁵ · 100", or "all". Of a method with a tolerance: up to which stiffness it
+// keeps it. Adds "(refused)" if the method then refuses the scene.
 [[nodiscard]] std::string reaches_text(const FamilyResult& result, Method method);
 
 }  // namespace exactff::stress

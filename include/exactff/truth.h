@@ -13,11 +13,14 @@
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "exactff/exact.h"
+#include "exactff/pixels.h"
 #include "exactff/progress.h"
+#include "exactff/quantity.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
 
@@ -48,9 +51,13 @@ struct Request {
   bool unit_normals = false;
   // Adds two columns: u and v of the receiver on its lattice, from 0 to 1. Every receiver must be the cell of a grid.
   bool uv = false;
-  Engine engine = Engine::kEdges;  // no byte depends on it
-  Shard shard;                     // if not 1/1, the file holds the rows of this shard, for merge()
-  int threads = 0;                 // 0: as many as this process may use
+  // Adds columns total_r,total_g,total_b: this quantity from all sources together, taken from their balls and rounded
+  // once, as an image shows it (render.h). The value is repeated in the rows of all sources of a receiver.
+  std::optional<Quantity> total = {};
+  KeMeans ke = KeMeans::kRadiosity;  // of the totals
+  Engine engine = Engine::kEdges;    // no byte depends on it
+  Shard shard;                       // if not 1/1, the file holds the rows of this shard, for merge()
+  int threads = 0;                   // 0: as many as this process may use
 };
 
 // What to do if there is already a file or a journal. Both may hold hours of work.
@@ -106,13 +113,20 @@ Summary merge(const std::vector<std::filesystem::path>& shards, const std::files
               Existing existing = Existing::kRefuse, const Hooks& hooks = {});
 
 // Writes the values of a complete truth file as a NumPy array of float64 with a row for each receiver and a column for
-// each source, in the order of the file: NaN where a value is not certified. The array appears complete or not at all,
-// and replaces another file. Throws InputError if a file cannot be read or written, and Cancelled.
+// each source, in the order of the file, then three columns for the totals if the file has them: NaN where a value is
+// not certified. The array appears complete or not at all, and replaces another file. Throws InputError if a file
+// cannot be read or written, and Cancelled.
 void write_npy(const std::filesystem::path& truth_file, const std::filesystem::path& file, const Hooks& hooks = {});
 
 // Writes the values of a complete truth file for ParaView: see vtk::write. `request` is the one that the file was made
-// from. Visible fractions are written if the file has them.
+// from. Visible fractions and totals are written if the file has them.
 void write_vtk(const Request& request, const std::filesystem::path& truth_file, const std::filesystem::path& file,
+               const Hooks& hooks = {});
+
+// Writes the totals of a complete truth file as an OpenEXR image in the pixels of `frame`, whose receivers the file
+// has: channels R, G and B in 32 bits, NaN where there is no certified value, and `mark` (pixels::Mark). Throws
+// InputError if the file has no totals or other receivers, or cannot be read or written, and Cancelled.
+void write_exr(const pixels::Frame& frame, const std::filesystem::path& truth_file, const std::filesystem::path& file,
                const Hooks& hooks = {});
 
 }  // namespace exactff::truth

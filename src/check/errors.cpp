@@ -113,7 +113,7 @@ std::vector<double> Errors::sorted_magnitudes(const std::vector<Index>& among, M
 Statistics Errors::statistics(const std::vector<Index>& among) const {
   Statistics result;
   bool rho_b_known = true;
-  double sum = 0.0;
+  double sum = 0.0, relative_squares = 0.0;
   result.rows = among.size();
   for (const Index i : among) {
     const TruthRow& truth = truth_row(i);
@@ -126,10 +126,14 @@ Statistics Errors::statistics(const std::vector<Index>& among) const {
       continue;
     }
     sum += error_[i];
+    relative_squares += error_[i] * error_[i] / (truth.value * truth.value + kRelativeMseEpsilon);
     if (truth.value == 0.0 && error_[i] != 0.0) ++result.leaks;
   }
   const std::size_t finite = result.rows - result.not_finite;
   if (finite > 0) result.bias = sum / static_cast<double>(finite);
+  if (truth_.is_image) {
+    result.relative_mse = finite > 0 ? relative_squares / static_cast<double>(finite) : 0.0;
+  }
   result.absolute = distribution(sorted_magnitudes(among, Measure::kAbsolute));
   result.relative = distribution(sorted_magnitudes(among, Measure::kRelative));
   if (rho_b_known) result.radiosity = distribution(sorted_magnitudes(among, Measure::kRadiosity));

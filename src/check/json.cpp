@@ -27,6 +27,7 @@ ordered_json to_json(const Statistics& s) {
   ordered_json json = {{"rows", s.rows},         {"not_finite", s.not_finite},      {"leaks", s.leaks},
                        {"bias", number(s.bias)}, {"absolute", to_json(s.absolute)}, {"relative", to_json(s.relative)}};
   if (s.radiosity) json["radiosity"] = to_json(*s.radiosity);
+  if (s.relative_mse) json["relative_mse"] = number(*s.relative_mse);
   return json;
 }
 

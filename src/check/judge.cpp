@@ -28,6 +28,7 @@ void check_criteria(const Criteria& criteria) {
   require_limit(criteria.max_rel, "max-rel");
   require_limit(criteria.rms, "rms");
   require_limit(criteria.eps_b, "eps-b");
+  require_limit(criteria.relative_mse, "relative-mse");
   require_limit(criteria.relative_floor, "the relative floor");
   for (const Quantile& quantile : criteria.quantiles) {
     require_limit(quantile.limit, name_of(quantile));
@@ -52,6 +53,7 @@ class Judge {
     report_.identity = identity();
     describe_rows();
     require_rho_b();
+    require_image();
     add_finiteness();
     for (std::size_t s = 0; criteria_.per_source && s < report_.sources.size(); ++s) {
       add_verdicts(report_.sources[s], report_.by_source[s], rows_of_[s]);
@@ -104,6 +106,12 @@ class Judge {
                       "use a truth file with the column largest_rho_b, or use --max-abs"});
   }
 
+  void require_image() const {
+    if (!criteria_.relative_mse || truth_.is_image) return;
+    throw InputError({truth_.file, 0, "is not an image", "--relative-mse limits an error of images",
+                      "compare two .exr files, or use --rms"});
+  }
+
   void add_finiteness() {
     Verdict verdict{"finite", {}, static_cast<double>(report_.overall.not_finite), 0.0, true, {}};
     verdict.passed = report_.overall.not_finite == 0;
@@ -117,6 +125,9 @@ class Judge {
     if (criteria_.rms) add("rms", *criteria_.rms, source, statistics.absolute.rms, Measure::kAbsolute);
     if (criteria_.eps_b) {
       add_largest("eps-b", criteria_.eps_b, source, statistics.radiosity->max, rows, Measure::kRadiosity);
+    }
+    if (criteria_.relative_mse) {
+      add("relative-mse", *criteria_.relative_mse, source, *statistics.relative_mse, Measure::kAbsolute);
     }
     if (criteria_.quantiles.empty()) return;
     const std::vector<double> magnitudes = errors_.sorted_magnitudes(rows, Measure::kAbsolute);

@@ -14,6 +14,7 @@ namespace exactff::check {
 namespace {
 
 constexpr std::array<std::string_view, 3> kChannels = {"radiosity_r", "radiosity_g", "radiosity_b"};
+constexpr std::array<std::string_view, 3> kTotals = {"total_r", "total_g", "total_b"};
 constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 
 class TruthReader {
@@ -44,7 +45,8 @@ class TruthReader {
     const std::string advice = "give a file written by `exactff truth`, or exact.csv of `exactff compare`";
     receiver_ = table_.needed_column({"receiver", "id"}, "it identifies the rows", advice);
     value_ = table_.needed_column({truth_.column}, "it contains the true values", advice);
-    source_ = table_.column("source").value_or(kNoColumn);
+    is_total_ = std::ranges::find(kTotals, truth_.column) != kTotals.end();
+    source_ = is_total_ ? kNoColumn : table_.column("source").value_or(kNoColumn);
     on_ = table_.column("on").value_or(kNoColumn);
     status_ = table_.column("status").value_or(kNoColumn);
     rho_b_ = table_.column("largest_rho_b").value_or(kNoColumn);
@@ -84,6 +86,7 @@ class TruthReader {
     if (row.receiver.empty()) {
       table_.complain("the receiver has no id", "its row cannot be identified", "give it an id");
     }
+    if (is_total_ && is_repeated(row.receiver)) return;
     row.source = sources_.number_of(source_ == kNoColumn ? std::string() : table_.field(source_));
     row.on = on_ == kNoColumn ? 0 : faces_.number_of(table_.field(on_));
     if (truth_.has_points) row.point = table_.vector(point_);
@@ -91,6 +94,11 @@ class TruthReader {
     take_value(row);
     row.largest_rho_b = rho_b();
     truth_.rows.push_back(std::move(row));
+  }
+
+  // The rows of a receiver follow each other, one for each source, and a total is the same in all of them.
+  [[nodiscard]] bool is_repeated(const std::string& receiver) const {
+    return !truth_.rows.empty() && truth_.rows.back().receiver == receiver;
   }
 
   void take_value(TruthRow& row) {
@@ -149,6 +157,7 @@ class TruthReader {
   std::size_t lower_ = kNoColumn, upper_ = kNoColumn;
   std::array<std::size_t, 3> point_{}, normal_{}, channels_{};
   bool is_radiosity_ = false;
+  bool is_total_ = false;
   bool has_channels_ = false;
 };
 

@@ -12,10 +12,12 @@
 #include <utility>
 #include <vector>
 
+#include "cli/check_images.h"
 #include "cli/command.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/text_table.h"
+#include "exactff/pixels.h"
 #include "text/csv_lines.h"
 #include "text/escape.h"
 #include "text/number_text.h"
@@ -37,12 +39,15 @@ constexpr const char* kCheckFooter =
     "by more than --slack and by more than 4 units in the last place. A program that draws new random numbers in\n"
     "every run needs a slack such as 0.2, or a fixed seed.\n"
     "With --baseline, --write-baseline writes the file only if nothing got worse.\n"
+    "Two EXR images are compared pixel by pixel, in each channel: pixels are receivers, channels are sources. A pixel\n"
+    "of the truth that is not a finite number does not count. --error-image shows where the errors are.\n"
     "Exit codes: 0 passed, 1 failed, 2 bad input.\n"
     "\n"
     "Examples:\n"
     "  exactff check truth.csv mine.csv --max-abs 1e-4 --quantile 0.99=1e-6 --junit check.xml\n"
     "  exactff check truth.csv mine.csv --match position --tolerance 1e-6 --value-column ff\n"
-    "  exactff check truth.csv mine.csv --baseline accuracy.json";
+    "  exactff check truth.csv mine.csv --baseline accuracy.json\n"
+    "  exactff check truth.exr mine.exr --rms 1e-3 --error-image errors.png";
 
 struct CheckArguments {
   std::string truth, candidate;
@@ -56,8 +61,11 @@ struct CheckArguments {
   bool per_source = false;
   std::string baseline, write_baseline, slack = "1e-9";
   std::size_t worst = 10;
-  std::string plot, junit, json;
+  std::string plot, junit, json, error_image;
+  std::string relative_mse;
   bool github = false;
+
+  [[nodiscard]] bool are_images() const { return pixels::is_exr(truth) && pixels::is_exr(candidate); }
 };
 
 double to_limit(const std::string& text, const std::string& flag) {
@@ -100,6 +108,7 @@ check::Criteria criteria_of(const CheckArguments& args) {
   criteria.max_rel = to_optional_limit(args.max_rel, "--max-rel");
   criteria.rms = to_optional_limit(args.rms, "--rms");
   criteria.eps_b = to_optional_limit(args.eps_b, "--eps-b");
+  criteria.relative_mse = to_optional_limit(args.relative_mse, "--relative-mse");
   criteria.relative_floor = to_limit(args.relative_floor, "--relative-floor");
   for (const std::string& text : args.quantiles) criteria.quantiles.push_back(to_quantile(text));
   criteria.per_source = args.per_source;
@@ -142,13 +151,47 @@ auto both(const First& first, const Second& second) {
   return std::pair(std::move(*a), std::move(*b));
 }
 
-check::Report report_of(const CheckArguments& args) {
+// Two images, or neither.
+void require_comparable(const CheckArguments& args) {
+  const bool truth = pixels::is_exr(args.truth), candidate = pixels::is_exr(args.candidate);
+  check_error_image(args.error_image, truth && candidate);
+  if (truth != candidate) {
+    text::refuse(truth ? args.candidate : args.truth, "is no OpenEXR file, and the file to compare it with is one",
+                 "images are compared with images", "give two .exr files, or two tables");
+  }
+  if (!truth) return;
+  const CheckArguments without;
+  const bool by_rows = args.match != without.match || !args.columns.receiver.empty() || !args.columns.source.empty() ||
+                       args.position_columns != without.position_columns ||
+                       args.normal_columns != without.normal_columns || args.tolerance != without.tolerance ||
+                       args.normal_tolerance != without.normal_tolerance;
+  if (by_rows) {
+    text::refuse("a flag that matches rows is given with two images", "pixels are matched by their coordinates",
+                 "remove --match, --receiver-column, --source-column, the tolerances and the columns of coordinates");
+  }
+}
+
+// The images, too, if they are wanted for a picture of the errors.
+check::Report report_of_images(const CheckArguments& args, std::optional<check::Images>& images) {
+  const CheckArguments without;
+  const check::ImageLayers layers{args.truth_column == without.truth_column ? "" : args.truth_column,
+                                  args.columns.value};
+  images = check::read_images(args.truth, args.candidate, layers, args.partial);
+  return check::judge(images->truth, images->values, criteria_of(args), images->candidate_file);
+}
+
+check::Report report_of_tables(const CheckArguments& args) {
   const check::Criteria criteria = criteria_of(args);
   const check::MatchOptions options = match_options_of(args);
   const check::CandidateColumns columns = columns_of(args);
   const auto [truth, candidate] = both([&] { return check::read_truth(args.truth, args.truth_column); },
                                        [&] { return check::read_candidate(args.candidate, columns, options.by); });
-  check::Report report = check::judge(truth, check::match(truth, candidate, options), criteria, candidate.file);
+  return check::judge(truth, check::match(truth, candidate, options), criteria, candidate.file);
+}
+
+check::Report report_of(const CheckArguments& args, std::optional<check::Images>& images) {
+  require_comparable(args);
+  check::Report report = args.are_images() ? report_of_images(args, images) : report_of_tables(args);
   if (!args.baseline.empty()) check::hold_against_baseline(report, args.baseline, to_limit(args.slack, "--slack"));
   return report;
 }
@@ -180,6 +223,10 @@ void print_distribution(const check::Report& report) {
     add_all(table, report.sources[s], report.by_source[s]);
   }
   table.print(std::cout);
+  if (report.overall.relative_mse) {
+    std::cout << "Relative MSE, the mean of e^2 / (t^2 + " << text::shortest(check::kRelativeMseEpsilon)
+              << "): " << text::short_number(*report.overall.relative_mse) << '\n';
+  }
   if (report.overall.leaks > 0) {
     std::cout << "Truth is 0, but value is not: " << text::counted(report.overall.leaks, "row") << '\n';
   }
@@ -217,7 +264,7 @@ void print_worst(const check::Report& report) {
     const check::RowError& row = report.worst[i];
     table.add_row({std::to_string(i + 1), row.receiver, row.source, text::shortest(row.truth),
                    text::shortest(row.value), text::short_number(row.error), text::short_number(row.relative),
-                   std::to_string(row.line)});
+                   row.line > 0 ? std::to_string(row.line) : std::string()});
   }
   table.print(std::cout);
   std::cout << '\n';
@@ -305,8 +352,10 @@ void record(const CheckArguments& args, const check::Report& report) {
 }
 
 int run_check(const CheckArguments& args) {
-  const check::Report report = report_of(args);
+  std::optional<check::Images> images;
+  const check::Report report = report_of(args, images);
   write_files(args, report);
+  if (images && !args.error_image.empty()) write_error_image(args.error_image, *images);
   print(args, report);
   record(args, report);
   if (args.github) std::cout << check::github_annotations(report);
@@ -328,7 +377,8 @@ int run(const CheckArguments& args) {
 void add_matching(CLI::App& command, CheckArguments& args) {
   command
       .add_option("--value-column", args.columns.value,
-                  "The candidate's column to judge (default: value, approximate or exact)")
+                  "The candidate's column to judge (default: value, approximate or exact); of an image its layer or "
+                  "channel (default: R, G, B)")
       ->type_name("NAME");
   command
       .add_option("--receiver-column", args.columns.receiver,
@@ -339,8 +389,10 @@ void add_matching(CLI::App& command, CheckArguments& args) {
                   "The candidate's column of sources (default: source); needed only if the truth has several")
       ->type_name("NAME");
   command
-      .add_option("--truth-column", args.truth_column,
-                  "The truth's column to compare with, such as unoccluded or radiosity_g")
+      .add_option(
+          "--truth-column", args.truth_column,
+          "The truth's column to compare with, such as unoccluded, radiosity_g or total_g; of an image its layer "
+          "or channel")
       ->capture_default_str()
       ->type_name("NAME");
   command.add_option("--match", args.match, "How rows are matched: by the receiver's id or by its position")
@@ -368,6 +420,8 @@ void add_criteria(CLI::App& command, CheckArguments& args) {
   command.add_option("--max-rel", args.max_rel, "Limit for every relative error")->type_name("LIMIT");
   command.add_option("--rms", args.rms, "Limit for the root mean square of the absolute errors")->type_name("LIMIT");
   command.add_option("--eps-b", args.eps_b, "Limit for every error in radiosity")->type_name("LIMIT");
+  command.add_option("--relative-mse", args.relative_mse, "Of two images: limit for the relative mean square error")
+      ->type_name("LIMIT");
   command
       .add_option(
           "--quantile", args.quantiles,
@@ -388,6 +442,10 @@ void add_criteria(CLI::App& command, CheckArguments& args) {
 }
 
 void add_outputs(CLI::App& command, CheckArguments& args) {
+  command
+      .add_option("--error-image", args.error_image,
+                  "Of two images: write candidate minus truth as .exr, or in colours as .png")
+      ->type_name("FILE");
   command.add_option("--worst", args.worst, "Number of rows to list, worst first")
       ->capture_default_str()
       ->type_name("N");
@@ -403,10 +461,14 @@ Command add_check(CLI::App& app) {
   auto args = std::make_shared<CheckArguments>();
   CLI::App* command =
       app.add_subcommand("check", "Compare the values of another program with a truth file: pass or fail");
-  command->add_option("TRUTH", args->truth, "File written by `exactff truth`, or exact.csv of `exactff compare`")
+  command
+      ->add_option("TRUTH", args->truth,
+                   "File written by `exactff truth`, or exact.csv of `exactff compare`; or an EXR image")
       ->required()
       ->type_name("FILE");
-  command->add_option("CANDIDATE", args->candidate, "CSV file of the values to judge")->required()->type_name("FILE");
+  command->add_option("CANDIDATE", args->candidate, "CSV file of the values to judge, or an EXR image")
+      ->required()
+      ->type_name("FILE");
   add_matching(*command, *args);
   add_criteria(*command, *args);
   add_outputs(*command, *args);

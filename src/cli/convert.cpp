@@ -38,19 +38,12 @@ struct ConvertArguments {
   }
 };
 
-void require_free(const std::filesystem::path& path, bool force) {
-  std::error_code ignored;
-  if (force || !std::filesystem::is_regular_file(path, ignored)) return;
-  throw InputError({path.string(), 0, "already exists", "it may hold something else",
-                    "name another file, or replace it with --force"});
-}
-
 int run(const ConvertArguments& args) {
-  require_free(args.out, args.force);  // checked before anything that takes time
+  require_free_file(args.out, args.force);  // checked before anything that takes time
   const Scene scene = args.scene.load();
   print_warnings(scene.warnings());
   const SceneFiles result = scene_files(scene, args.out, args.chosen_encoding());
-  for (const SceneFiles::File& file : result.files) require_free(file.path, args.force);
+  for (const SceneFiles::File& file : result.files) require_free_file(file.path, args.force);
   print_warnings(result.losses);
   for (const SceneFiles::File& file : result.files) write_whole_file(file.path, file.bytes);
   for (const SceneFiles::File& file : result.files)

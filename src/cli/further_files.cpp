@@ -6,6 +6,7 @@
 #include "exactff/error.h"
 #include "exactff/vtk.h"
 #include "text/escape.h"
+#include "text/nearest_names.h"
 #include "text/refuse.h"
 #include "work/file.h"
 
@@ -25,6 +26,7 @@ std::vector<Output> outputs(const FurtherFiles& files) {
   if (!files.npy.empty()) list.push_back({"--npy", files.npy});
   if (!files.vtk.empty()) list.push_back({"--vtk", files.vtk});
   if (!files.vtk.empty()) list.push_back({"the scene of --vtk", vtk::scene_file(files.vtk)});
+  if (!files.exr.empty()) list.push_back({"--exr", files.exr});
   return list;
 }
 
@@ -86,10 +88,18 @@ void FurtherFiles::add_vtk_to(CLI::App& app) {
       ->type_name("FILE");
 }
 
+void FurtherFiles::add_exr_to(CLI::App& app) {
+  app.add_option("--exr", exr,
+                 "Also write the totals as an OpenEXR image, in the pixels that --receivers FILE.exr has; NaN where "
+                 "there is no value")
+      ->type_name("FILE");
+}
+
 std::vector<std::string> FurtherFiles::flags() const {
   std::vector<std::string> given;
   if (!npy.empty()) given.emplace_back("--npy");
   if (!vtk.empty()) given.emplace_back("--vtk");
+  if (!exr.empty()) given.emplace_back("--exr");
   return given;
 }
 
@@ -98,6 +108,10 @@ void check_further_files(const FurtherFiles& files, const fs::path& result, bool
   for (const Output& output : outputs(files)) {
     require_regular(output);
     if (output.flag == "--vtk") vtk::require_extension(output.file);
+    if (output.flag == "--exr" && text::in_lower_case(output.file.extension().string()) != ".exr") {
+      text::refuse(output.file, "does not end in .exr (--exr)", "it is an OpenEXR file, which others recognise by that",
+                   "name a .exr file");
+    }
     for (const Output& other : before) require_apart(output, other);
     require_outside(output, result);
     require_writable(output, may_replace);
@@ -107,9 +121,11 @@ void check_further_files(const FurtherFiles& files, const fs::path& result, bool
 
 void print_further_files(const FurtherFiles& files) {
   if (!files.npy.empty()) std::cout << "NumPy file: " << text::printable(files.npy) << '\n';
-  if (files.vtk.empty()) return;
-  std::cout << "VTK files: " << text::printable(files.vtk) << ", "
-            << text::printable(vtk::scene_file(files.vtk).string()) << '\n';
+  if (!files.vtk.empty()) {
+    std::cout << "VTK files: " << text::printable(files.vtk) << ", "
+              << text::printable(vtk::scene_file(files.vtk).string()) << '\n';
+  }
+  if (!files.exr.empty()) std::cout << "EXR file: " << text::printable(files.exr) << '\n';
 }
 
 }  // namespace exactff::cli

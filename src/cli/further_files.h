@@ -1,4 +1,4 @@
-// Files that truth, merge and compare write besides their result: --npy and --vtk.
+// Files that truth, merge and compare write besides their result: --npy, --vtk and --exr.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,9 +11,11 @@ namespace exactff::cli {
 struct FurtherFiles {
   std::string npy;
   std::string vtk;
+  std::string exr;
 
   void add_npy_to(CLI::App& app);
   void add_vtk_to(CLI::App& app);
+  void add_exr_to(CLI::App& app);
   // The flags that are given: "--npy", "--vtk".
   [[nodiscard]] std::vector<std::string> flags() const;
 };

@@ -52,6 +52,13 @@ void write_through(const fs::path& path, const std::string& text) {
 
 }  // namespace
 
+void require_free_file(const fs::path& path, bool force) {
+  std::error_code ignored;
+  if (force || !fs::is_regular_file(path, ignored)) return;
+  throw InputError({path.string(), 0, "already exists", "it may hold something else",
+                    "name another file, or replace it with --force"});
+}
+
 void write_whole_file(const fs::path& path, const std::string& text) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) cannot_write(path, "it is a folder");

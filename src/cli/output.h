@@ -27,6 +27,9 @@ std::string shown_name(const Scene& scene, const Named& named) {
 // Writes a file beside `path` and renames it: the file appears complete or not at all. Throws InputError.
 void write_whole_file(const std::filesystem::path& path, const std::string& text);
 
+// Throws InputError if the file exists, unless it may be replaced. Pipes and devices may always be written to.
+void require_free_file(const std::filesystem::path& path, bool force);
+
 // Throws InputError if the printed text could not be written, for example because the disk is full.
 void check_output(std::ostream& out);
 

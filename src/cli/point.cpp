@@ -28,18 +28,6 @@ void warn_if_flipped(const Scene& scene, const PointResult& point) {
   }
 }
 
-// A typing error in --at or --on would otherwise go unnoticed.
-void warn_if_off_its_face(const Scene& scene, const Receiver& receiver) {
-  constexpr double kFar = 0.01;
-  if (receiver.on.empty()) return;
-  const double distance = relative_distance_from_face(scene, receiver.on.front(), receiver.point);
-  if (distance <= kFar) return;
-  std::cerr << "exactff: warning: --at is " << percent(distance) << " of the size of face '"
-            << shown_name(scene, receiver.on.front())
-            << "' away from that face (a receiver on a face is neither occluded nor illuminated by it); check --at and "
-               "--on\n";
-}
-
 void warn_of_missing_decimals(const PointArguments& args, const Scene& scene, const PointResult& point) {
   for (const PointTerm& one : point.sources) {
     if (args.digits == 0 || one.exact.status == Status::kZero || one.exact.enclosure.decimals(args.digits)) continue;
@@ -126,11 +114,6 @@ int run(const CLI::App& command, const PointArguments& args) {
   return certified ? 0 : kNotCertified;
 }
 
-// Otherwise, if numbers are missing, the flag that follows would be read as one of them.
-std::string is_no_flag(const std::string& text) {
-  return text.starts_with("--") ? "needs three numbers; found '" + text + "' among them" : "";
-}
-
 // A NaN passes every range check, since all its comparisons are false.
 std::string is_a_number(const std::string& text) {
   return text::parse_number(text).fault == text::NumberFault::kNone ? ""
@@ -145,16 +128,7 @@ std::string is_a_tolerance(const std::string& text) {
 }
 
 void add_receiver_flags(CLI::App& app, PointArguments& args) {
-  app.add_option("--at", args.at, "The receiver's point")->required()->type_name("X Y Z")->check(is_no_flag);
-  app.add_option("--normal", args.normal, "The receiver's normal, of any length except zero")
-      ->required()
-      ->type_name("NX NY NZ")
-      ->check(is_no_flag);
-  app.add_option("--on", args.on,
-                 "The receiver lies on this face, or on several (floor:1+2), which then neither occlude nor illuminate "
-                 "it; auto or "
-                 "auto:DISTANCE finds them")
-      ->type_name("NAME[:K]");
+  args.receiver.add_to(app);
   app.add_option(
          "--source", args.sources,
          "Source patch or face; can be repeated, or separate names by commas; all: a table of every patch, with "

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/one_receiver.h"
 #include "exactff/adaptive.h"
 #include "exactff/exact.h"
 #include "exactff/receiver.h"
@@ -19,9 +20,7 @@ inline constexpr std::uint64_t kMostDrawnLeaves = 50'000;
 
 struct PointArguments {
   flags::SceneArguments scene;
-  std::array<std::string, 3> at;
-  std::array<std::string, 3> normal;
-  std::string on;
+  OneReceiver receiver;
   std::vector<std::string> sources;
   std::vector<double> reflectance;
   int digits = 0;

@@ -1,9 +1,6 @@
 // The face that the receiver of exactff point was probably meant to lie on.
-#include <iostream>
-
 #include "cli/output.h"
 #include "cli/point.h"
-#include "text/escape.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 
@@ -25,26 +22,10 @@ std::string effect_of(const Scene& scene, const PointResult& point, const std::v
   return text.empty() ? "no form factor changes" : text;
 }
 
-void warn_of_turned_normal(const Scene& scene, const Receiver& receiver) {
-  if (near_misses(scene, std::span(&receiver, 1)).turned == 0) return;
-  std::cerr << "exactff: warning: the normal points away from the front of '"
-            << text::printable(scene.name_of(receiver.on)) << "', so the receiver looks through its back\n";
-}
-
 }  // namespace
 
 void warn_of_near_face(const Scene& scene, const PointResult& point) {
-  const Receiver& receiver = point.receiver;
-  if (!receiver.on.empty()) return warn_of_turned_normal(scene, receiver);
-  const NearFaces near = find_faces(scene, receiver, face_tolerance(scene, receiver.point));
-  if (near.faces.empty() || near.side == 0) return;
-  const std::string name = scene.name_of(near.faces);
-  const bool looks_through = (near.side < 0) != near.turned;
-  std::cerr << "exactff: " << (looks_through ? "warning" : "note") << ": x lies "
-            << text::rounded_plainly(near.distance, 2) << (near.side < 0 ? " behind '" : " in front of '")
-            << text::printable(name) << '\'' << (near.turned ? ", turned against its front" : "")
-            << (looks_through ? ", which then hides everything beyond it" : "") << ". With --on "
-            << text::shell_word(name) << ' ' << effect_of(scene, point, near.faces) << '\n';
+  warn_of_near_face(scene, point.receiver, [&](const std::vector<FaceId>& on) { return effect_of(scene, point, on); });
 }
 
 }  // namespace exactff::cli

@@ -5,7 +5,6 @@
 #include "cli/point.h"
 #include "exactff/study.h"
 #include "flags/lists.h"
-#include "flags/receivers.h"
 #include "flags/sources.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
@@ -15,28 +14,6 @@ namespace exactff::cli {
 namespace {
 
 constexpr std::size_t kMostSharesComputed = 200;
-
-Vec3 to_vec3(const std::array<std::string, 3>& text, const std::string& flag) {
-  return {parse_finite(text[0], flag), parse_finite(text[1], flag), parse_finite(text[2], flag)};
-}
-
-std::vector<FaceId> own_faces(const PointArguments& args, const Scene& scene, const Receiver& receiver) {
-  const auto automatic = flags::auto_face(args.on, scene);
-  if (!automatic) return own_faces_named(scene, args.on);
-  const double tolerance = automatic->tolerance.value_or(face_tolerance(scene, receiver.point));
-  std::vector<FaceId> faces = find_faces(scene, receiver, tolerance).faces;
-  if (!faces.empty()) return faces;
-  throw InputError({.what = "--on " + args.on + ": no face lies within " + text::rounded_plainly(tolerance, 2) +
-                            " of x with a normal within a degree of --normal",
-                    .why = "the receiver would lie on no face",
-                    .suggestion = "check --at and --normal, or look further away with --on auto:DISTANCE"});
-}
-
-Receiver make_receiver(const PointArguments& args, const Scene& scene) {
-  Receiver receiver{to_vec3(args.at, "--at"), to_vec3(args.normal, "--normal"), {}, ""};
-  if (!args.on.empty()) receiver.on = own_faces(args, scene, receiver);
-  return receiver;
-}
 
 std::vector<Selection> make_sources(const PointArguments& args, const Scene& scene) {
   std::vector<Selection> sources = flags::sources_of({args.sources}, scene);
@@ -143,7 +120,7 @@ Scene load_point_scene(const PointArguments& args) {
 }
 
 PointResult compute_point(const PointArguments& args, const Scene& scene) {
-  PointResult result{.receiver = make_receiver(args, scene)};
+  PointResult result{.receiver = args.receiver.make(scene)};
   result.reflectance = make_reflectance(args, scene, result.receiver);
   std::optional<AdaptiveSolver> sampler;
   if (args.adaptive) sampler.emplace(scene);

@@ -65,6 +65,7 @@ struct RenderArguments {
   std::string ke = "radiosity";
   std::string method, against;
   bool strip = false;
+  bool times = false;
   bool layers = false;
   std::optional<double> exposure;
   std::string doubles, bounds;
@@ -112,14 +113,6 @@ render::Camera given_camera(const RenderArguments& args) {
   return camera;
 }
 
-render::Quantity quantity_named(const std::string& name) {
-  for (const auto quantity :
-       {render::Quantity::kRadiosity, render::Quantity::kIrradiance, render::Quantity::kFormFactor}) {
-    if (render::name_of(quantity) == name) return quantity;
-  }
-  return render::Quantity::kRadiance;
-}
-
 // What can be refused before the scene is read.
 void check_arguments(const RenderArguments& args) {
   const render::Camera camera = given_camera(args);
@@ -129,6 +122,9 @@ void check_arguments(const RenderArguments& args) {
   if (args.strip && args.against.empty()) {
     text::refuse("--strip is given without --against", "a strip shows a method beside the exact picture",
                  "add --against METHOD");
+  }
+  if (args.times && !args.strip) {
+    text::refuse("--times is given without --strip", "only a strip shows times", "add --strip, or remove it");
   }
   if (args.strip && kind == render::ImageKind::kExr) {
     text::refuse(args.image, "a strip is a picture to look at", "an EXR file holds numbers", "name a .png file");
@@ -162,7 +158,7 @@ render::Request request_of(const RenderArguments& args, const Scene& scene, std:
   request.view = render::View(camera, size);
   request.sources = flags::sources_of(args.sources, scene);
   request.method = std::move(method);
-  request.quantity = quantity_named(args.quantity);
+  request.quantity = quantity_named(args.quantity).value_or(Quantity::kRadiance);
   request.ke = args.ke == "radiance" ? render::KeMeans::kRadiance : render::KeMeans::kRadiosity;
   request.sides = args.two_sided ? render::Sides::kBoth : render::Sides::kFront;
   request.spp = args.spp;
@@ -256,7 +252,7 @@ int run(const RenderArguments& args) {
   const InterruptWatch watch("exactff: interrupted; " + kept.words());
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
-  const RenderFiles files{args.image, args.doubles, args.bounds, args.exposure, args.strip};
+  const RenderFiles files{args.image, args.doubles, args.bounds, args.exposure, args.strip, args.times};
   Rendered result;
   try {
     result = rendered(request, against, hooks, kept.journal());
@@ -318,6 +314,7 @@ void add_value_flags(CLI::App& app, RenderArguments& args) {
   app.add_option("--method", args.method, "Render by this method instead of exactly")->type_name("METHOD");
   app.add_option("--against", args.against, "Show and print the errors of this method")->type_name("METHOD");
   app.add_flag("--strip", args.strip, "With --against: the picture, that of the method and the errors side by side");
+  app.add_flag("--times", args.times, "With --strip: add processor times, which differ from run to run");
 }
 
 void add_output_flags(CLI::App& app, RenderArguments& args) {

@@ -53,12 +53,17 @@ std::string name_of_picture(const render::Picture& picture) {
   return found == picture.metadata.end() ? "" : found->second.substr(0, found->second.find(", correctly"));
 }
 
-render::Colours strip_of(const Rendered& rendered, double exposure) {
+// Without times, the same input gives the same bytes.
+render::Colours strip_of(const RenderFiles& files, const Rendered& rendered, double exposure) {
   const double scale = render::colour_scale(*rendered.errors);
+  const auto caption = [&](const std::string& name, const render::Picture& picture) {
+    return files.times ? std::vector{name, took(picture)} : std::vector{name};
+  };
   using Panel = std::pair<render::Colours, std::vector<std::string>>;
   const std::array<Panel, 3> panels = {
-      Panel{render::developed(rendered.picture, exposure), {name_of_picture(rendered.picture), took(rendered.picture)}},
-      Panel{render::developed(*rendered.judged, exposure), {rendered.judged_name, took(*rendered.judged)}},
+      Panel{render::developed(rendered.picture, exposure),
+            caption(name_of_picture(rendered.picture), rendered.picture)},
+      Panel{render::developed(*rendered.judged, exposure), caption(rendered.judged_name, *rendered.judged)},
       Panel{render::coloured(*rendered.errors, rendered.picture.size, scale),
             {"error: red too bright, blue too dark (full colour at " + text::short_number(scale, 2) + ")",
              "RMS " + text::short_number(rendered.errors->rms, 2) + "; " + wrong_words(*rendered.errors)}}};
@@ -69,7 +74,7 @@ std::string image_bytes(const RenderFiles& files, const Rendered& rendered) {
   const bool png = render::image_kind(files.image) == render::ImageKind::kPng;
   const auto exposure = [&] { return files.exposure ? *files.exposure : render::automatic_exposure(rendered.picture); };
   const render::Metadata& metadata = rendered.picture.metadata;
-  if (files.strip) return render::png_of(strip_of(rendered, exposure()), metadata);
+  if (files.strip) return render::png_of(strip_of(files, rendered, exposure()), metadata);
   if (rendered.errors) {
     if (!png) return render::exr_of(render::difference(*rendered.judged, rendered.picture));
     const double scale = render::colour_scale(*rendered.errors);

@@ -24,7 +24,9 @@
 #include "flags/scene.h"
 #include "flags/sources.h"
 #include "text/escape.h"
+#include "text/nearest_names.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "text/text_lines.h"
 
 namespace exactff::cli {
@@ -39,12 +41,16 @@ constexpr const char* kTruthFooter =
     "--resume continues from there. Scripts can always give --resume; a complete FILE stays as it is.\n"
     "On several machines: run `mpirun -n 4 exactff truth ...` (every process reads the scene and computes; rank 0\n"
     "writes), or start separate jobs with --shard 1/4, 2/4, ... and join their files with `exactff merge`.\n"
-    "--npy and --vtk make their files from the finished FILE; --resume makes them again, also from a merged FILE.\n"
+    "--npy, --vtk and --exr make their files from the finished FILE; --resume makes them again, also from a merged "
+    "FILE.\n"
+    "The visible points of another renderer's pixels: --receivers GBUFFER.exr --on auto, with layers for position (in\n"
+    "world coordinates) and normal, 32-bit, one sample a pixel. --exr writes the exact values in the same pixels.\n"
     "In a pipe, `-` as SCENE or --receivers is standard input, and -o - is standard output.\n"
     "Exit codes: 0 done, 2 bad input, 3 done but some rows are not certified, 128 + signal when interrupted.\n"
     "\n"
-    "Example:\n"
-    "  exactff truth data/scenes/cornell_box.obj --on floor --grid 200x200 -o truth.csv";
+    "Examples:\n"
+    "  exactff truth data/scenes/cornell_box.obj --on floor --grid 200x200 -o truth.csv\n"
+    "  exactff truth data/scenes/cornell_box.obj --receivers gbuffer.exr --on auto -o truth.csv --exr truth.exr";
 
 struct TruthArguments {
   flags::SceneArguments scene;
@@ -54,6 +60,7 @@ struct TruthArguments {
   bool fraction = false;
   bool unit_normals = false;
   bool uv = false;
+  std::string total, ke;
   std::string shard;
   bool resume = false;
   bool force = false;
@@ -64,6 +71,9 @@ struct TruthArguments {
   FurtherFiles further;
 
   [[nodiscard]] bool to_standard_output() const { return file == "-"; }
+  [[nodiscard]] std::optional<Quantity> quantity() const {
+    return quantity_named(total.empty() && !further.exr.empty() ? "radiance" : total);
+  }
   [[nodiscard]] truth::Existing existing() const {
     return resume ? truth::Existing::kResume : force ? truth::Existing::kReplace : truth::Existing::kRefuse;
   }
@@ -87,6 +97,7 @@ truth::Shard shard_of(const std::string& text) {
 struct Job {
   Scene scene;
   truth::Request request;
+  std::optional<pixels::Frame> frame = {};  // if the receivers are pixels
 };
 
 std::unique_ptr<Job> job_of(const TruthArguments& args, const truth::Team* team) {
@@ -97,18 +108,21 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const truth::Team* team)
   print_warnings(job->scene.warnings());
   truth::Request& request = job->request;
   flags::ChosenReceivers receivers = flags::receivers_of(args.receivers, job->scene);
-  print_warnings(flags::warnings_of_receivers_without_face(receivers));
+  print_warnings(flags::warnings_of_receivers(receivers));
   print_near_misses(job->scene, receivers.receivers);
   request.scene = &job->scene;
   request.scene_name = args.scene.from_standard_input() ? std::string(flags::kStandardInput)
                                                         : std::filesystem::path(args.scene.path).filename().string();
   request.receivers = std::move(receivers.receivers);
   request.receivers_name = std::move(receivers.description);
+  job->frame = std::move(receivers.frame);
   request.sources = flags::sources_of(args.sources, job->scene);
   request.unoccluded = args.unoccluded;
   request.visible_fraction = args.fraction;
   request.unit_normals = args.unit_normals;
   request.uv = args.uv;
+  request.total = args.quantity();
+  request.ke = args.ke == "radiance" ? KeMeans::kRadiance : KeMeans::kRadiosity;
   request.engine = args.engine.engine();
   request.shard = shard;
   request.threads = args.threads > 0 || team == nullptr ? args.threads : truth::fair_threads(*team);
@@ -170,6 +184,20 @@ class Narrator {
   int slow_ = 0;
 };
 
+void check_totals(const TruthArguments& args) {
+  if (!args.ke.empty() && !args.quantity()) {
+    text::refuse("--ke is given without --total", "only totals depend on it", "add --total radiance, or remove it");
+  }
+  if (!args.further.exr.empty() && !flags::are_pixels(args.receivers)) {
+    text::refuse("--exr is given, but the receivers are not the pixels of an image",
+                 "each pixel shows the value at its own point", "add --receivers FILE.exr, or use --npy or --vtk");
+  }
+  if (text::in_lower_case(std::filesystem::path(args.file).extension().string()) == ".exr") {
+    text::refuse(std::filesystem::path(args.file), "is named as an image", "-o is the truth file, which is CSV",
+                 "write -o FILE.csv --exr " + text::shell_word(args.file));
+  }
+}
+
 // What a pipe cannot have.
 void check_standard_output(const TruthArguments& args) {
   if (const std::vector<std::string> further = args.further.flags(); !further.empty()) {
@@ -188,6 +216,7 @@ void check_standard_output(const TruthArguments& args) {
 }
 
 int write_to_standard_output(const TruthArguments& args) {
+  check_totals(args);
   check_standard_output(args);
   const std::string words = "exactff: interrupted; the printed rows are incomplete, and nothing is kept\n";
   const InterruptWatch watch(words);
@@ -210,11 +239,12 @@ int write_to_standard_output(const TruthArguments& args) {
 
 // Before anything that takes time.
 void check_outputs(const TruthArguments& args) {
+  check_totals(args);
   truth::require_free(args.file, args.existing());
   const std::vector<std::string> further = args.further.flags();
   if (further.empty()) return;
   if (!args.shard.empty()) {
-    const bool npy = args.further.vtk.empty();
+    const bool npy = args.further.vtk.empty() && args.further.exr.empty();
     throw InputError({.what = text::enumerate(further) + (further.size() == 1 ? " is" : " are") + " given with --shard",
                       .why = "a shard has only a part of the rows",
                       .suggestion = npy ? "give --npy to exactff merge"
@@ -225,13 +255,14 @@ void check_outputs(const TruthArguments& args) {
 }
 
 // Returns 0, or the exit code of the signal that interrupted it.
-int write_further_files(const TruthArguments& args, const truth::Request& request, truth::Hooks hooks) {
+int write_further_files(const TruthArguments& args, const Job& job, truth::Hooks hooks) {
   const std::string words = "exactff: interrupted; " + text::printable(args.file) +
                             " is complete; for the other files, run the same command with --resume\n";
   const InterruptWatch watch(words);
   try {
     if (!args.further.npy.empty()) truth::write_npy(args.file, args.further.npy, hooks);
-    if (!args.further.vtk.empty()) truth::write_vtk(request, args.file, args.further.vtk, hooks);
+    if (!args.further.vtk.empty()) truth::write_vtk(job.request, args.file, args.further.vtk, hooks);
+    if (!args.further.exr.empty()) truth::write_exr(*job.frame, args.file, args.further.exr, hooks);
     return 0;
   } catch (const Cancelled&) {
     std::cerr << words;
@@ -259,7 +290,7 @@ int write(const TruthArguments& args, truth::Team* team) {
     narrator.tell_what_is_kept("stopped by the error below", args.file);
     throw;
   }
-  const int interrupted = write_further_files(args, job->request, narrator.hooks(args.slow_seconds));
+  const int interrupted = write_further_files(args, *job, narrator.hooks(args.slow_seconds));
   narrator.clear();
   return interrupted != 0 ? interrupted : print_summary(summary, args.file, args.further);
 }
@@ -320,6 +351,14 @@ Command add_truth(CLI::App& app) {
                     "Add columns ux,uy,uz: the normal scaled to length 1, correctly rounded; the values belong to the "
                     "exact normals in nx,ny,nz");
   command->add_flag("--uv", args->uv, "Add columns u,v: the place of a cell on its grid, from 0 to 1");
+  command
+      ->add_option(
+          "--total", args->total,
+          "Add columns total_r,total_g,total_b: this quantity from all sources together, correctly rounded, as "
+          "exactff render shows it (with --exr: radiance)")
+      ->check(CLI::IsMember({"radiance", "radiosity", "irradiance", "form-factor"}));
+  command->add_option("--ke", args->ke, "What Ke means in the scene, for totals (default: radiosity)")
+      ->check(CLI::IsMember({"radiosity", "radiance"}));
   command->add_option("--shard", args->shard, "Compute only part I of N, for exactff merge: 1/4 is the first of four")
       ->type_name("I/N");
   CLI::Option* resume = command->add_flag("--resume", args->resume, "Continue an interrupted run, if there is one");
@@ -341,6 +380,7 @@ Command add_truth(CLI::App& app) {
       ->type_name("FILE");
   args->further.add_npy_to(*command);
   args->further.add_vtk_to(*command);
+  args->further.add_exr_to(*command);
   command->footer(kTruthFooter);
   return {command, [args] { return run(*args); }};
 }

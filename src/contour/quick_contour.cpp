@@ -272,6 +272,16 @@ void add_terms(std::span<const QuickPiece> pieces, std::span<const QuickLine> li
   for (std::size_t k = 0; k < kLanes; ++k) sums[k] = lane(sum, k);
 }
 
+EXACTFF_CLONES
+void terms_of(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines, const AngleConstants& known,
+              std::span<Bounded> result) {
+  for (std::size_t i = 0; i < pieces.size(); i += kLanes) {
+    const std::size_t count = std::min(kLanes, pieces.size() - i);
+    const FourBounded found = terms(pieces.subspan(i, count), lines, known);
+    for (std::size_t k = 0; k < count; ++k) result[i + k] = lane(found, k);
+  }
+}
+
 std::array<double, 3> scaled_normal(const Vec3& n) {
   int exponent = 0;
   std::frexp(std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)}), &exponent);
@@ -291,9 +301,15 @@ void QuickContour::add(std::span<const QuickPiece> pieces, std::span<const Quick
   add_terms(pieces, lines, angle_constants(), sums_);
 }
 
-QuickContour::Value QuickContour::value() const {
+void QuickContour::find_terms(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines,
+                              std::span<Bounded> terms) const {
+  terms_of(pieces, lines, angle_constants(), terms);
+}
+
+QuickContour::Value QuickContour::value() const { return value((sums_[0] + sums_[1]) + (sums_[2] + sums_[3])); }
+
+QuickContour::Value QuickContour::value(const Bounded& sum) const {
   const Vector normal = vector_of<double>(normal_);
-  const Bounded sum = (sums_[0] + sums_[1]) + (sums_[2] + sums_[3]);
   const Bounded f = -sum / (square_root(dot(normal, normal)) * (2.0 * constant(angle_constants().pi)));
   const double error = kInflation * f.error;
   if (!std::isfinite(f.hi) || !std::isfinite(f.lo) || !std::isfinite(error)) return {0.0, 0.0, kDeclined.error};

@@ -71,6 +71,10 @@ class QuickContour {
   // Adds pieces. They may run from b towards a. `lines` must have been made by this contour.
   void add(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines);
 
+  // The term of each piece instead, to be added by the caller; `terms` has the same length as `pieces`.
+  void find_terms(std::span<const QuickPiece> pieces, std::span<const QuickLine> lines,
+                  std::span<kernel::double_double::Bounded> terms) const;
+
   // |F - (hi + lo)| <= error for the closed loops added so far, where hi is the double nearest to hi + lo. The error is
   // infinite if a piece was declined: a and b, c and d, or p and q are too close to one line with x, a crossing is too
   // close to a or b, or corners are too large or too small.
@@ -80,6 +84,8 @@ class QuickContour {
     double error = 0.0;
   };
   [[nodiscard]] Value value() const;
+  // The same for a sum of terms.
+  [[nodiscard]] Value value(const kernel::double_double::Bounded& sum) const;
 
  private:
   std::array<double, 3> normal_{};  // largest component in [1/2, 1)

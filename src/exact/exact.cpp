@@ -13,10 +13,12 @@
 #include <stdexcept>
 
 #include "contour/contour.h"
+#include "exact/certified.h"
 #include "exact/fraction.h"
 #include "exact/source_planes.h"
 #include "exact/workspace.h"
 #include "kernel/float_environment.h"
+#include "kernel/vec.h"
 #include "scene/misuse.h"
 #include "visibility/visible_boundary.h"
 
@@ -46,7 +48,7 @@ namespace {
 
 void check_receiver(const Receiver& receiver) {
   for (const Vec3& v : {receiver.point, receiver.normal}) {
-    if (std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) continue;
+    if (kernel::is_finite(v)) continue;
     throw InputError({.what = "the receiver's point or normal is not finite",
                       .why = "a form factor needs a point and a direction",
                       .suggestion = "give three finite numbers for each"});
@@ -56,6 +58,13 @@ void check_receiver(const Receiver& receiver) {
                       .why = "it has no direction, so the horizon is not defined",
                       .suggestion = "give a normal of any length other than zero"});
   }
+}
+
+void check_precision_cap(int cap) {
+  if (cap >= 1) return;
+  throw InputError({.what = "the precision cap is " + std::to_string(cap) + " bits",
+                    .why = "a ball (interval) needs at least one bit",
+                    .suggestion = "give a cap of at least 1; the default is 65536"});
 }
 
 }  // namespace
@@ -68,15 +77,24 @@ void check_arguments(const Scene& scene, const Receiver& receiver, const ExactSo
   for (const FaceId face : receiver.on) require_face(scene, face);
 }
 
+void check_view_arguments(const Scene& scene, const Receiver& receiver, int precision_cap) {
+  check_precision_cap(precision_cap);
+  check_receiver(receiver);
+  for (const FaceId face : receiver.on) require_face(scene, face);
+}
+
 }  // namespace exact
 
 namespace {
 
-void check_options(const ExactOptions& options) {
-  if (options.precision_cap >= 1) return;
-  throw InputError({.what = "the precision cap is " + std::to_string(options.precision_cap) + " bits",
-                    .why = "a ball (interval) needs at least one bit",
-                    .suggestion = "give a cap of at least 1; the default is 65536"});
+void check_options(const Scene& scene, const ExactOptions& options) {
+  check_precision_cap(options.precision_cap);
+  const std::vector<FaceId>* only = options.only_occluders;
+  if (only == nullptr || only->empty()) return;
+  if (!std::is_sorted(only->begin(), only->end())) {
+    refuse_argument("only_occluders is not in ascending order", "a search by halves would miss faces");
+  }
+  require_face(scene, only->back());
 }
 
 void set_count(std::vector<PlaneRecord>& records, std::size_t count, std::vector<PlaneRecord>& spare) {
@@ -107,38 +125,6 @@ void set_record(PlaneRecord& record, PlaneRecord&& found, const std::vector<Face
   record = std::move(found);
 }
 
-constexpr int kFirstBits = 96;  // enough for all but the near-degenerate
-
-bool has_decimals(const Enclosure& enclosure, int digits) {
-  return digits <= 0 || enclosure.decimals(digits).has_value();
-}
-
-// Raises the precision until the ball determines the double and the requested decimals, or the cap is reached. The
-// status refers to the double: decimals may stay undecided if F is a decimal tie, such as 1/8 to two digits.
-void certify(const contour::ContourIntegral& contour, const ExactOptions& options, FormFactor& result) {
-  for (int bits = std::min(kFirstBits, options.precision_cap);; bits = std::min(2 * bits, options.precision_cap)) {
-    const Ball ball = contour.evaluate(bits);
-    result.enclosure.set(ball);
-    result.precision_bits = bits;
-    const std::optional<double> nearest = result.enclosure.nearest();
-    result.value = nearest ? *nearest : std::clamp(kernel::nearest_to_midpoint(ball), 0.0, 1.0);
-    result.status = !nearest ? Status::kNotCertified : result.value == 0.0 ? Status::kUnderflow : Status::kCertified;
-    if (nearest && has_decimals(result.enclosure, options.digits)) return;
-    if (bits >= options.precision_cap) return;
-  }
-}
-
-// With very few bits a ball may contain every number; its midpoint and ends are then NaN.
-void set_bounds(FormFactor& result) {
-  if (result.status == Status::kZero) return;  // [0, 0]
-  const bool certified = result.status != Status::kNotCertified;
-  const double below = certified ? std::nextafter(result.value, -1.0) : result.enclosure.lower();
-  const double above = certified ? std::nextafter(result.value, 2.0) : result.enclosure.upper();
-  result.lower = std::isnan(below) ? 0.0 : std::clamp(below, 0.0, 1.0);
-  result.upper = std::isnan(above) ? 1.0 : std::clamp(above, 0.0, 1.0);
-  if (std::isnan(result.value)) result.value = 0.5 * (result.lower + result.upper);
-}
-
 void note_fraction(PlaneVisibility& plane, const ExactOptions& options) {
   plane.record.visible_fraction = kernel::nearest_double(*plane.fraction);
   if (*plane.fraction == 1) plane.record.cutters = 0;
@@ -162,17 +148,6 @@ void set_fraction(const std::vector<PlaneShare>& shares, FormFactor& result) {
 void sort_unique(std::vector<FaceId>& faces) {
   std::sort(faces.begin(), faces.end());
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-}
-
-// Takes the value from the double-double tier. False if that tier does not determine it.
-bool certify_quickly(const exact::QuickTier& quick, const ExactOptions& options, FormFactor& result) {
-  result.enclosure.set(quick.ball());
-  result.precision_bits = exact::QuickTier::kBits;
-  const std::optional<double> nearest = result.enclosure.nearest();
-  if (!nearest || !has_decimals(result.enclosure, options.digits)) return false;
-  result.value = *nearest;
-  result.status = result.value == 0.0 ? Status::kUnderflow : Status::kCertified;
-  return true;
 }
 
 // Runs one engine on one receiver and one source.
@@ -199,7 +174,7 @@ class Solver {
     for (std::size_t p = 0; p < planes_.size(); ++p) look_at(planes_[p], result_.planes[p]);
     sort_unique(result_.cutters);
     if (something_visible_) integrate();
-    set_bounds(result_);
+    exact::set_bounds(result_);
     if (wants_fraction_) set_fraction(shares_, result_);
   }
 
@@ -223,7 +198,10 @@ class Solver {
   }
 
   void integrate() {
-    if (options_.precision_cap >= exact::QuickTier::kBits && certify_quickly(memory_.quick, options_, result_)) return;
+    if (options_.precision_cap >= exact::QuickTier::kBits &&
+        exact::is_determined(memory_.quick.ball(), exact::QuickTier::kBits, options_.digits, result_)) {
+      return;
+    }
     contour::ContourIntegral contour(view_.normal().exact);
     const auto add = [&](const visibility::BoundaryPiece& piece) { contour.add(piece); };
     if (planes_.size() == 1) {
@@ -231,7 +209,7 @@ class Solver {
     } else {
       for (const SourcePlane& plane : planes_) find(plane).boundary.for_each_piece(add);
     }
-    certify(contour, options_, result_);
+    exact::certify([&](long bits) { return contour.evaluate(bits); }, options_.digits, options_.precision_cap, result_);
   }
 
   const Scene& scene_;
@@ -287,7 +265,7 @@ void exact_form_factor(const Scene& scene, const Receiver& receiver, const Exact
 void exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                        const ExactOptions& options, FormFactor& result, Workspace& workspace) {
   const kernel::StandardArithmetic arithmetic;
-  check_options(options);
+  check_options(scene, options);
   exact::check_arguments(scene, receiver, source);
   const bool both = options.engine == Engine::kBoth;
   Workspace::Memory& memory = workspace.memory();

@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "kernel/float_environment.h"
+#include "text/refuse.h"
+#include "text/text_lines.h"
 
 namespace exactff::exact {
 namespace {
@@ -28,6 +30,37 @@ CertifiedNumber not_certified(const Ball& ball) {
 }
 
 }  // namespace
+
+LightFormula light_formula(const Scene& scene, std::span<const FaceId> on, Side side, Quantity quantity, KeMeans ke) {
+  const bool ke_is_radiance = ke == KeMeans::kRadiance;
+  if (quantity == Quantity::kFormFactor) return {};
+  if (quantity == Quantity::kIrradiance) return {.pi_power = ke_is_radiance ? 1 : 0};
+  const int power = (quantity == Quantity::kRadiosity ? 0 : -1) + (ke_is_radiance ? 1 : 0);
+  const bool emits = !on.empty() && side == Side::kFront;
+  return {emits ? scene.material(scene.face(on.front()).material).radiosity : Rgb{}, scene.receiver_reflectance(on),
+          power};
+}
+
+std::vector<Rgb> light_weights(const Scene& scene, std::span<const Selection> sources, Quantity quantity,
+                               const std::string& scene_name) {
+  constexpr double kMost = 1e290;
+  std::vector<Rgb> weights;
+  Rgb sum;
+  for (const Selection& source : sources) {
+    const Rgb radiosity = scene.source_radiosity(source);
+    sum = {sum.r + radiosity.r, sum.g + radiosity.g, sum.b + radiosity.b};
+    weights.push_back(quantity == Quantity::kFormFactor ? Rgb{1.0, 1.0, 1.0} : radiosity);
+  }
+  for (const Material& material : scene.materials()) {
+    const Rgb &kd = material.reflectance, &ke = material.radiosity;
+    const double least = std::min({kd.r, kd.g, kd.b, ke.r, ke.g, ke.b});
+    if (least >= 0.0 && kd.largest() * sum.largest() + ke.largest() <= kMost && sum.largest() <= kMost) continue;
+    text::refuse(scene_name, "the light is negative or too strong: material " + text::in_quotes(material.name),
+                 "radiosities are added, and Kd, Ke and their sums must be between 0 and 1e290",
+                 "give Kd and Ke in other units");
+  }
+  return weights;
+}
 
 Light::Light(const Scene& scene, std::span<const Selection> sources, std::vector<Rgb> radiosities)
     : scene_(scene), radiosities_(std::move(radiosities)) {

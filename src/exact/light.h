@@ -3,9 +3,11 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "exactff/exact.h"
+#include "exactff/quantity.h"
 #include "kernel/ball.h"
 
 namespace exactff::exact {
@@ -16,6 +18,16 @@ struct LightFormula {
   Rgb reflectance{1.0, 1.0, 1.0};
   int pi_power = 0;  // -1, 0 or 1
 };
+
+enum class Side { kFront, kBack };
+// What a point shows that lies on these faces, of which the first counts: its back reflects as its front, but does not
+// emit. A point on no face reflects everything.
+[[nodiscard]] LightFormula light_formula(const Scene& scene, std::span<const FaceId> on, Side side, Quantity quantity,
+                                         KeMeans ke);
+// B_s of each source, or 1 for form factors. Throws InputError if the light of the scene, called `scene_name`, is
+// negative or so strong that sums could overflow.
+[[nodiscard]] std::vector<Rgb> light_weights(const Scene& scene, std::span<const Selection> sources, Quantity quantity,
+                                             const std::string& scene_name);
 
 struct CertifiedNumber {
   double value = 0.0;  // correctly rounded if certified

@@ -8,11 +8,12 @@ namespace exactff::exact {
 using contour::QuickContour;
 using contour::QuickCorner;
 using contour::QuickPiece;
+using kernel::double_double::Bounded;
 using visibility::CornerId;
+using visibility::EdgeCovers;
 using visibility::EdgeId;
 using visibility::Outlines;
 using visibility::Parameter;
-using visibility::VisibleEdges;
 
 namespace {
 
@@ -36,12 +37,15 @@ void QuickTier::add(const visibility::VisibleBoundary& boundary) {
   if (boundary.edges() == nullptr) {
     declined_ = true;
   } else {
-    add(*boundary.edges());
+    visibility::VisibleEdges& found = *boundary.edges();
+    for_each_batch(found, found.parts(), [&] { contour_.add(pieces_, lines_); });
   }
 }
 
 // Neighbouring parts share lines, so recent lines are worth keeping; all lines together would not fit into the cache.
-void QuickTier::add(VisibleEdges& found) {
+// Calls take() after each batch.
+template <class Take>
+void QuickTier::for_each_batch(EdgeCovers& found, std::span<const EdgeCovers::Part> parts, const Take& take) {
   static_assert(Parameter::kAtBegin == QuickPiece::kAtA && Parameter::kAtEnd == QuickPiece::kAtB);
   constexpr std::size_t kBatch = 64, kMostLines = 8192;
   Outlines& outlines = found.outlines();
@@ -50,20 +54,29 @@ void QuickTier::add(VisibleEdges& found) {
   line_index_.clear(outlines.edges().size());
   forget_lines();
   const auto end = [&](EdgeId line) { return line < Parameter::kAtBegin ? number_of_line(outlines, line) : line; };
-  for (std::span<const VisibleEdges::Part> parts = found.parts(); !parts.empty();) {
+  while (!parts.empty()) {
     if (edges_.size() >= kMostLines) forget_lines();
     // 1. Number the lines and corners of a batch.
     const std::size_t count = std::min(kBatch, parts.size());
     pieces_.clear();
-    for (const VisibleEdges::Part& part : parts.first(count)) {
+    for (const EdgeCovers::Part& part : parts.first(count)) {
       pieces_.push_back({number_of_line(outlines, part.edge), end(part.begin.line), end(part.end.line)});
     }
     // 2. Make the lines that are new.
     make_lines();
     // 3. Add the parts.
-    contour_.add(pieces_, lines_);
+    take();
     parts = parts.subspan(count);
   }
+}
+
+void QuickTier::find_terms(EdgeCovers& found, std::span<const EdgeCovers::Part> parts, std::vector<Bounded>& terms) {
+  terms.resize(parts.size());
+  std::size_t done = 0;
+  for_each_batch(found, parts, [&] {
+    contour_.find_terms(pieces_, lines_, std::span(terms).subspan(done, pieces_.size()));
+    done += pieces_.size();
+  });
 }
 
 std::uint32_t QuickTier::number_of_line(Outlines& outlines, EdgeId id) {
@@ -91,6 +104,11 @@ void QuickTier::forget_lines() {
   edges_.clear();
   made_ = 0;
   line_index_.restart();
+}
+
+Ball QuickTier::ball(const Bounded& sum) const {
+  const QuickContour::Value value = contour_.value(sum);
+  return kernel::ball_around(value.hi, value.lo, value.error);
 }
 
 Ball QuickTier::ball() const {

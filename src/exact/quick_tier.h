@@ -27,11 +27,19 @@ class QuickTier {
   // Adds the boundary of one plane's visible region. Declines what the Booleans found.
   void add(const visibility::VisibleBoundary& boundary);
 
+  // The term of each of these parts in Eq. (4), to be added by the caller.
+  void find_terms(visibility::EdgeCovers& found, std::span<const visibility::EdgeCovers::Part> parts,
+                  std::vector<kernel::double_double::Bounded>& terms);
+  // Encloses F for a sum of terms.
+  [[nodiscard]] Ball ball(const kernel::double_double::Bounded& sum) const;
+
   // Encloses F; its radius is at least the proved error. The ball contains every number if anything was declined.
   [[nodiscard]] Ball ball() const;
 
  private:
-  void add(visibility::VisibleEdges& edges);
+  template <class Take>
+  void for_each_batch(visibility::EdgeCovers& found, std::span<const visibility::EdgeCovers::Part> parts,
+                      const Take& take);
   [[nodiscard]] std::uint32_t number_of_line(visibility::Outlines& outlines, visibility::EdgeId id);
   [[nodiscard]] std::uint32_t number_of_corner(visibility::Outlines& outlines, visibility::CornerId id);
   void make_lines();

@@ -1,6 +1,7 @@
 // The memory behind a Workspace.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "exact/quick_tier.h"
@@ -10,10 +11,16 @@
 namespace exactff {
 
 struct Workspace::Memory {
+  // Memory of a module that builds upon this one.
+  struct Guest {
+    virtual ~Guest() = default;
+  };
+
   visibility::EdgeWorkspace edges;
   exact::QuickTier quick;
   // Sources differ in their number of planes: records that one source does not need are kept for the next one.
   std::vector<PlaneRecord> spare_records;
+  std::unique_ptr<Guest> view;  // of the whole view
 };
 
 }  // namespace exactff

@@ -83,15 +83,19 @@ std::string exact_sentence(const ClosureStudy& study) {
          rounded(study.widest, 2) + ".";
 }
 
-std::string others_sentence(const ClosureStudy& study) {
-  std::string text = "RMS closure error, and RMS error of a single form factor:";
+std::string others_sentence() {
+  return "The hemicube closes by construction, because its pixels sum to 1 whatever they show. Its closure says "
+         "nothing "
+         "about the accuracy of its values.";
+}
+
+NumberTable error_table(const ClosureStudy& study) {
+  NumberTable table{
+      "RMS errors of the sum and of a single form factor", {"method", "of the sum", "of a form factor"}, {}};
   for (const ClosureErrors& m : study.methods) {
-    text += (&m == study.methods.data() ? " " : "; ") + methods::parse(m.choice).short_text() + " " +
-            rounded(m.rms, 2) + " and " + rounded(m.single_rms, 2);
+    table.rows.push_back({methods::parse(m.choice).short_text(), rounded(m.rms, 2), rounded(m.single_rms, 2)});
   }
-  return text +
-         ". The hemicube closes by construction, because its pixels sum to 1 whatever they show. Its closure says "
-         "nothing about the accuracy of its values.";
+  return table;
 }
 
 CsvFile table_of(const ClosureStudy& study, const ClosureSize& size) {
@@ -129,7 +133,8 @@ Result closure(const ClosureSize& size, int threads, const Hooks& hooks) {
   const ClosureStudy study = closure_study(size, threads, hooks);
   return {.name = "closure",
           .title = "Closure: all patches of a closed room",
-          .paragraphs = {exact_sentence(study), others_sentence(study)},
+          .paragraphs = {exact_sentence(study), others_sentence()},
+          .tables = {error_table(study)},
           .values = {table_of(study, size)}};
 }
 

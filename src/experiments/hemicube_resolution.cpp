@@ -89,20 +89,27 @@ constexpr double kAll = 1e300;
 // Up to this distance the light is larger than ten pixels at every place.
 constexpr double kLastLarge = 12;
 
-std::string resolution_sentence(const ResolutionCurves& c) {
-  const auto ends = [](const ErrorCurve& curve) {
-    return rounded(curve.rms.front(), 2) + " at " + rounded(curve.at.front()) + " pixels, " +
-           rounded(curve.rms.back(), 2) + " at " + rounded(curve.at.back());
+std::string resolution_sentence() {
+  return "With increasing resolution n, errors fall like a power of n. Theory: an edge along a row of pixels gains or "
+         "loses all its pixels at once; the error is the width of a pixel, n⁻¹. Along an edge in general position, "
+         "pixels err in both directions; the error lies between n⁻³ᐟ² (independent pixel errors) and n⁻² (regularly "
+         "alternating ones).";
+}
+
+NumberTable resolution_table(const ResolutionCurves& c) {
+  const auto at = [](double resolution) { return "at " + rounded(resolution) + " pixels"; };
+  const ErrorCurve& first = c.triangles_by_resolution;
+  NumberTable table{"RMS errors: of F for the triangles, relative for a square light",
+                    {"subject", "power of n", at(first.at.front()), at(first.at.back())},
+                    {}};
+  const auto put = [&](std::string name, const ErrorCurve& curve) {
+    table.rows.push_back(
+        {std::move(name), to_text(curve.slope(kAll)), rounded(curve.rms.front(), 2), rounded(curve.rms.back(), 2)});
   };
-  return "With increasing resolution n, the RMS error of the triangles' form factors falls like n to the power " +
-         to_text(c.triangles_by_resolution.slope(kAll)) + " (" + ends(c.triangles_by_resolution) +
-         "). The relative error of a square light with edges along the rows of pixels falls like n to the power " +
-         to_text(c.aligned_by_resolution.slope(kAll)) + " (" + ends(c.aligned_by_resolution) +
-         "). For the same light turned by " + rounded(kTurned) + "°, the power is " +
-         to_text(c.turned_by_resolution.slope(kAll)) + " (" + ends(c.turned_by_resolution) +
-         "). Theory: an edge along a row gains or loses all its pixels at once; the error is the width of a pixel, "
-         "n⁻¹. Along an edge in general position, pixels err in both directions; the error lies between n⁻³ᐟ² "
-         "(independent pixel errors) and n⁻² (regularly alternating ones).";
+  put("triangles", c.triangles_by_resolution);
+  put("light, edges along the rows of pixels", c.aligned_by_resolution);
+  put("light, turned by " + rounded(kTurned) + "°", c.turned_by_resolution);
+  return table;
 }
 
 std::string rotation_sentence(const ResolutionCurves& c) {
@@ -259,7 +266,8 @@ Result hemicube_resolution(const ResolutionSize& size, int threads, const Hooks&
   const ResolutionCurves curves = resolution_curves(size, threads, hooks);
   return {.name = "hemicube-resolution",
           .title = "The hemicube against resolution, rotation and distance",
-          .paragraphs = {resolution_sentence(curves), rotation_sentence(curves), distance_sentence(curves)},
+          .paragraphs = {resolution_sentence(), rotation_sentence(curves), distance_sentence(curves)},
+          .tables = {resolution_table(curves)},
           .figures = figures(curves),
           .values = {curve_table(curves, size)}};
 }

@@ -74,28 +74,34 @@ std::string scene_sentence(std::span<const ScatterPoint> points, const ScatterSi
 }
 
 std::string missed_sentence(std::span<const ScatterPoint> points, const ScatterSize& size) {
-  std::string text;
-  for (std::size_t r = 0; r < size.resolutions.size(); ++r) {
-    const Counts counts = count(points, r);
-    text += (r == 0 ? "With " : " With ") + pixels_text(size.resolutions[r]) + " pixels, the hemicube misses " +
-            std::to_string(counts.missed) + " of the visible triangles completely (" +
-            text::share(counts.missed, counts.visible) + ")";
-    if (counts.missed > 0) {
-      text += ", the largest of them with F = " + rounded(counts.largest_missed, 2) + " (its largest pixel has " +
-              rounded(largest_pixel(size.resolutions[r]), 2) + ")";
-    }
-    text += '.';
-  }
-  return text;
+  const Counts counts = count(points, 0);
+  return "With " + pixels_text(size.resolutions.front()) + " pixels, the hemicube misses " +
+         std::to_string(counts.missed) + " of the visible triangles completely (" +
+         text::share(counts.missed, counts.visible) + ").";
 }
 
-std::string decades_sentence(std::span<const ScatterDecade> decades) {
-  std::string text = "Normalised error |hemicube − exact| / exact, median and 99th percentile, by the size of F:";
-  for (const ScatterDecade& d : decades) {
-    text += (&d == decades.data() ? " " : "; ") + power_of_ten(d.exponent) + " to " + power_of_ten(d.exponent + 1) +
-            " (" + counted(d.visible, "triangle") + "): " + percent(d.median) + " and " + percent(d.p99);
+NumberTable missed_table(std::span<const ScatterPoint> points, const ScatterSize& size) {
+  NumberTable table{"Visible triangles that the hemicube misses",
+                    {"pixels", "missed", "share", "the largest missed F", "F of the largest pixel"},
+                    {}};
+  for (std::size_t r = 0; r < size.resolutions.size(); ++r) {
+    const Counts counts = count(points, r);
+    table.rows.push_back(
+        {pixels_text(size.resolutions[r]), std::to_string(counts.missed), text::share(counts.missed, counts.visible),
+         counts.missed == 0 ? "" : rounded(counts.largest_missed, 2), rounded(largest_pixel(size.resolutions[r]), 2)});
   }
-  return text + '.';
+  return table;
+}
+
+NumberTable decades_of(std::span<const ScatterDecade> decades) {
+  NumberTable table{"Normalised error |hemicube − exact| / exact, by the size of F",
+                    {"F", "triangles", "median", "99th percentile"},
+                    {}};
+  for (const ScatterDecade& d : decades) {
+    table.rows.push_back({power_of_ten(d.exponent) + " to " + power_of_ten(d.exponent + 1), std::to_string(d.visible),
+                          percent(d.median), percent(d.p99)});
+  }
+  return table;
 }
 
 std::string trend_sentence(std::span<const ScatterPoint> points, const ScatterSize& size) {
@@ -238,9 +244,9 @@ std::vector<double> scatter_slopes(std::span<const ScatterPoint> points, const S
 Result hemicube_scatter(const ScatterSize& size, int threads, const Hooks& hooks) {
   const std::vector<ScatterPoint> points = scatter_points(size, threads, hooks);
   Result result{.name = "hemicube-scatter", .title = "Karkanis' two plots: hemicube against exact"};
-  result.paragraphs = {scene_sentence(points, size), missed_sentence(points, size),
-                       decades_sentence(scatter_decades(points, 0)), trend_sentence(points, size)};
+  result.paragraphs = {scene_sentence(points, size), missed_sentence(points, size), trend_sentence(points, size)};
   std::erase(result.paragraphs, "");
+  result.tables = {missed_table(points, size), decades_of(scatter_decades(points, 0))};
   result.figures = {value_figure(points, size.resolutions.front()), error_figure(points, size)};
   result.values = {point_table(points, size), decade_table(points, size)};
   return result;

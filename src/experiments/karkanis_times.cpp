@@ -162,18 +162,26 @@ std::string large_number(double value) {
 }
 
 std::string against_him(const std::vector<TimeRow>& rows) {
-  std::string text = "Time for the certified form factors of all triangles from one point, on one thread:";
+  std::string text = "The certified form factors of all triangles from one point, on one thread";
+  const TimeRow* at = row_at(rows, kHis.back().triangles);
+  if (at == nullptr) return text + '.';
+  return text + ", take " + duration(at->with_shaft) + " for " + std::to_string(at->triangles) +
+         " triangles, where Karkanis needed about 8 hours on a 300 MHz Pentium II, " +
+         large_number(kHis.back().seconds / at->with_shaft) + " times as long.";
+}
+
+NumberTable times_table(const std::vector<TimeRow>& rows, const TimesSize& size) {
+  NumberTable table{
+      "Time for all triangles from one point",
+      {"triangles", "exact", "without the shaft", "Karkanis 1999", "hemicube 100", rounded(size.rays) + " rays each"},
+      {}};
   for (const TimeRow& row : rows) {
-    text += (&row == rows.data() ? " " : "; ") + counted(static_cast<std::uint64_t>(row.triangles), "triangle") + " " +
-            duration(row.with_shaft);
-    if (row.without_shaft) text += " (without the shaft " + duration(*row.without_shaft) + ")";
+    const auto his = std::ranges::find(kHis, row.triangles, &HisTime::triangles);
+    table.rows.push_back({std::to_string(row.triangles), duration(row.with_shaft),
+                          row.without_shaft ? duration(*row.without_shaft) : "",
+                          his == kHis.end() ? "" : duration(his->seconds), duration(row.hemicube), duration(row.rays)});
   }
-  if (const TimeRow* at = row_at(rows, kHis.back().triangles)) {
-    text += ". Karkanis needed about 8 hours for " + std::to_string(kHis.back().triangles) +
-            " triangles on a 300 MHz Pentium II: " + large_number(kHis.back().seconds / at->with_shaft) +
-            " times as long";
-  }
-  return text + '.';
+  return table;
 }
 
 std::string exponents_sentence(const std::vector<TimeRow>& rows) {
@@ -333,6 +341,7 @@ Result karkanis_times(const TimesSize& size, const Hooks& hooks) {
   result.paragraphs = {against_him(times), exponents_sentence(times), bits_sentence(work), others_sentence(times, size),
                        at == nullptr ? "" : affordable_sentence(affordable, at->with_shaft, size.affordable_at)};
   std::erase(result.paragraphs, "");
+  result.tables = {times_table(times, size)};
   result.figures = {figure(times, size.rays)};
   result.values = {work_table(work)};
   result.times = {time_table(times, size), affordable_table(affordable, size.affordable_at)};

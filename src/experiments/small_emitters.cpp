@@ -80,11 +80,6 @@ struct Timed {
 
 // ---------------------------------------------------------------------------------------------------------- sentences
 
-std::string in_words(const Timed& t) {
-  return t.errors->choice + " in " + duration(t.seconds) + " with an RMS error of " + percent(t.errors->rms) + " and " +
-         percent(t.errors->worst) + " at worst";
-}
-
 std::string scene_sentence(const EmitterStudy& study, const EmittersSize& size) {
   return "A test of Karkanis' conclusion that accurate form factors pay off for small, bright emitters: a hall has " +
          counted(static_cast<std::uint64_t>(size.lamps), "lamp") +
@@ -105,14 +100,15 @@ std::pair<const Timed*, const Timed*> ends_of(const std::vector<Timed>& methods,
   return {first, last};
 }
 
-std::string methods_sentence(const std::vector<Timed>& methods, double exact_seconds) {
-  std::string text = "The exact method takes " + duration(exact_seconds) + " per receiver for all lamps.";
-  for (const std::string_view family : {"hemicube", "nettle", "area-sampling", "adaptive"}) {
-    const auto [first, last] = ends_of(methods, family);
-    if (first == nullptr) continue;
-    text += " " + in_words(*first) + (first == last ? "." : "; " + in_words(*last) + ".");
+NumberTable methods_table(const std::vector<Timed>& methods, double exact_seconds) {
+  NumberTable table{"All settings: time per receiver for all lamps, and errors over the mean radiosity",
+                    {"method", "time", "exact ×", "RMS error", "worst"},
+                    {{"exact", duration(exact_seconds), "1", "0 %", "0 %"}}};
+  for (const Timed& t : methods) {
+    table.rows.push_back({t.errors->choice, duration(t.seconds), rounded(t.seconds / exact_seconds, 2),
+                          percent(t.errors->rms), percent(t.errors->worst)});
   }
-  return text;
+  return table;
 }
 
 const Timed* cheapest_within(const std::vector<Timed>& methods, double error) {
@@ -142,17 +138,27 @@ std::string hemicube_verdict(const std::vector<Timed>& methods, double exact_sec
 
 std::string ray_verdict(const std::vector<Timed>& methods, double exact_seconds) {
   std::string text =
-      "Compared with rays, for which a small lamp is the easiest case, it depends on the required error:";
-  bool first = true;
+      "Compared with rays, for which a small lamp is the easiest case, it depends on the required error: ";
+  constexpr double kWanted = 1e-3;
+  const Timed* cheapest = cheapest_within(methods, kWanted);
+  text += "for " + percent(kWanted) + " ";
+  return text + (cheapest == nullptr
+                     ? "none of these settings is accurate enough."
+                     : cheapest->errors->choice + " takes " + in_exact_times(cheapest->seconds / exact_seconds) + ".");
+}
+
+NumberTable needs_table(const std::vector<Timed>& methods, double exact_seconds) {
+  NumberTable table{"The fastest setting for a required error", {"RMS error", "setting", "time", "exact ×"}, {}};
   for (const double wanted : {1e-2, 1e-3, 1e-4, 1e-5}) {
     const Timed* cheapest = cheapest_within(methods, wanted);
-    text += std::string(first ? " " : "; ") + "for " + percent(wanted) + " ";
-    text += cheapest == nullptr
-                ? "none of these settings is accurate enough"
-                : cheapest->errors->choice + " takes " + in_exact_times(cheapest->seconds / exact_seconds);
-    first = false;
+    if (cheapest == nullptr) {
+      table.rows.push_back({percent(wanted), "exact", duration(exact_seconds), "1"});
+    } else {
+      table.rows.push_back({percent(wanted), cheapest->errors->choice, duration(cheapest->seconds),
+                            rounded(cheapest->seconds / exact_seconds, 2)});
+    }
   }
-  return text + ".";
+  return table;
 }
 
 // ------------------------------------------------------------------------------------------------------------- figure
@@ -244,8 +250,9 @@ Result small_emitters(const EmittersSize& size, int threads, const Hooks& hooks)
   }
   return {.name = "small-emitters",
           .title = "Many small bright emitters",
-          .paragraphs = {scene_sentence(study, size), methods_sentence(timed, exact_seconds),
-                         hemicube_verdict(timed, exact_seconds), ray_verdict(timed, exact_seconds)},
+          .paragraphs = {scene_sentence(study, size), hemicube_verdict(timed, exact_seconds),
+                         ray_verdict(timed, exact_seconds)},
+          .tables = {needs_table(timed, exact_seconds), methods_table(timed, exact_seconds)},
           .figures = {figure(timed, exact_seconds)},
           .values = {value_table(study, hall), error_table(study)},
           .times = {time_table(timed, exact_seconds)}};

@@ -70,6 +70,7 @@ class Bench {
 
 // ------------------------------------------------------------------------------------------------------------ slopes
 
+using page::NumberTable;
 using page::Points;
 
 struct SlopeFit {

@@ -213,7 +213,7 @@ Comparison comparison_of(ComparisonArguments args, bool abridged, int threads) {
   request.engine = args.engine.engine();
   request.threads = threads;
   ChosenReceivers chosen = receivers_of(args.receivers, *comparison.scene);
-  comparison.warnings = warnings_of_receivers_without_face(chosen);
+  comparison.warnings = warnings_of_receivers(chosen);
   request.receivers = std::move(chosen.receivers);
   request.receivers_name = std::move(chosen.description);
   if (abridged) abridge(request);

@@ -10,6 +10,7 @@
 
 #include "flags/lists.h"
 #include "text/escape.h"
+#include "text/nearest_names.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -119,20 +120,47 @@ ChosenReceivers on_faces(const ReceiverArguments& args, const Scene& scene, Grid
           on + ", " + text::counted(count, "sample") + ", seed " + std::to_string(seed)};
 }
 
+// What --on says of receivers that come from a file.
+std::optional<AutoFace> face_of_file(const ReceiverArguments& args, const Scene& scene) {
+  if (args.on.empty()) return std::nullopt;
+  if (const auto face = auto_face(args.on.front(), scene)) return face;
+  text::refuse("--receivers is given together with --on " + args.on.front() + ", which is a patch of the scene",
+               "receivers come either from the file or from a patch",
+               "remove one of them; to find the faces automatically, rename the patch");
+}
+
+ChosenReceivers in_image(const ReceiverArguments& args, const Scene& scene) {
+  pixels::GBuffer gbuffer = pixels::read_gbuffer(pixels::ExrFile(args.file), args.layers);
+  ChosenReceivers chosen;
+  chosen.description = std::filesystem::path(args.file).filename().string() + ", " + gbuffer.layers;
+  if (const auto face = face_of_file(args, scene)) {
+    pixels::place_on_faces(scene, gbuffer, face->tolerance);
+    chosen.description += ", on " + args.on.front();
+    chosen.warnings = pixels::warnings_of(gbuffer);
+  }
+  const pixels::Frame& frame = gbuffer.frame;
+  const auto add = [&](pixels::Mark mark, const std::string& what) {
+    if (const std::size_t count = frame.count(mark); count > 0)
+      chosen.description += ", " + std::to_string(count) + ' ' + what;
+  };
+  add(pixels::Mark::kNothing, "without a hit");
+  add(pixels::Mark::kNoFace, "without a face");
+  add(pixels::Mark::kShadingNormal, "with a shading normal");
+  chosen.receivers = std::move(gbuffer.receivers);
+  chosen.frame = std::move(gbuffer.frame);
+  return chosen;
+}
+
 ChosenReceivers in_file(const ReceiverArguments& args, const Scene& scene) {
+  if (are_pixels(args)) return in_image(args, scene);
   ChosenReceivers chosen;
   if (args.file == "-") {
     chosen = {read_receivers(std::cin, kStandardInput, scene), kStandardInput, {}};
   } else {
     chosen = {read_receivers(args.file, scene), std::filesystem::path(args.file).filename().string(), {}};
   }
-  if (args.on.empty()) return chosen;
-  const auto face = auto_face(args.on.front(), scene);
-  if (!face) {
-    text::refuse("--receivers is given together with --on " + args.on.front() + ", which is a patch of the scene",
-                 "receivers come either from the file or from a patch",
-                 "remove one of them; to find the faces automatically, rename the patch");
-  }
+  const auto face = face_of_file(args, scene);
+  if (!face) return chosen;
   chosen.description += ", on " + args.on.front();
   chosen.without_face = place_on_faces(scene, chosen.receivers, face->tolerance).size();
   if (chosen.without_face > 0) chosen.description += ", " + std::to_string(chosen.without_face) + " without a face";
@@ -147,6 +175,12 @@ void check_not_empty(const ReceiverArguments& args, const ChosenReceivers& chose
 }
 
 }  // namespace
+
+bool are_pixels(const ReceiverArguments& args) {
+  return !args.file.empty() && args.file != "-" &&
+         (pixels::is_exr(args.file) ||
+          text::in_lower_case(std::filesystem::path(args.file).extension().string()) == ".exr");
+}
 
 std::optional<AutoFace> auto_face(const std::string& on, const Scene& scene) {
   if (!is_auto(on) || std::ranges::find(scene.patches(), on, &Patch::name) != scene.patches().end())
@@ -176,15 +210,26 @@ void add_receiver_options(CLI::App& app, ReceiverArguments& args) {
   app.add_option("--samples", args.samples, "N receivers at random, uniformly by area")->type_name("N");
   app.add_option("--sample-seed", args.sample_seed, "Seed of --samples; it does not affect rays (default: 1)")
       ->type_name("S");
-  app.add_option(
-         "--receivers", args.file,
-         "CSV file with the columns id,x,y,z,nx,ny,nz,on, or a truth file, instead of --on; - for standard input")
+  app.add_option("--receivers", args.file,
+                 "CSV file with the columns id,x,y,z,nx,ny,nz,on, or a truth file, instead of --on; - for standard "
+                 "input; or an "
+                 "EXR file with the visible point and normal of each pixel")
       ->type_name("FILE");
+  app.add_option("--position-layer", args.layers.position,
+                 "Layer of the points in an EXR file, in world coordinates (default: position or P)")
+      ->type_name("LAYER");
+  app.add_option("--normal-layer", args.layers.normal, "Layer of the normals in an EXR file (default: normal or N)")
+      ->type_name("LAYER");
 }
 
 void check_receiver_options(const ReceiverArguments& args) {
   const std::vector<std::string> placed = placements(args);
   check_file_alone(args);
+  if (!(args.layers.position.empty() && args.layers.normal.empty()) && !are_pixels(args)) {
+    text::refuse(std::string(args.layers.position.empty() ? "--normal-layer" : "--position-layer") +
+                     " is given without an image",
+                 "it names a layer of an EXR file", "add --receivers FILE.exr, or remove it");
+  }
   if (!args.sample_seed.empty() && args.samples.empty()) {
     text::refuse("--sample-seed is given without --samples", "only --samples draws receivers at random",
                  "add --samples 1000, or remove it");
@@ -228,8 +273,8 @@ ChosenReceivers receivers_of(const ReceiverArguments& args, const Scene& scene, 
   return chosen;
 }
 
-std::vector<Problem> warnings_of_receivers_without_face(const ChosenReceivers& chosen) {
-  if (chosen.without_face == 0) return {};
+std::vector<Problem> warnings_of_receivers(const ChosenReceivers& chosen) {
+  if (chosen.without_face == 0) return chosen.warnings;
   return {{.what = "--on auto found no face for " + std::to_string(chosen.without_face) + " of " +
                    text::counted(chosen.receivers.size(), "receiver"),
            .why = "they now lie on none",
@@ -249,6 +294,8 @@ std::string command_words(const ReceiverArguments& args) {
   add("--samples", args.samples);
   add("--sample-seed", args.sample_seed);
   add("--receivers", args.file);
+  add("--position-layer", args.layers.position);
+  add("--normal-layer", args.layers.normal);
   return words;
 }
 

@@ -1,5 +1,6 @@
 // The flags for receivers, shared by all commands over many receivers: --receivers FILE, or --on NAME with one of
-// --grid, --vertices, --centres, --samples. With --receivers, --on auto finds the faces.
+// --grid, --vertices, --centres, --samples. With --receivers, --on auto finds the faces. FILE may be an image that
+// holds visible points.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "exactff/error.h"
+#include "exactff/pixels.h"
 #include "exactff/receiver.h"
 #include "flags/scene.h"
 
@@ -23,13 +25,19 @@ struct ReceiverArguments {
   std::string samples;
   std::string sample_seed;
   std::string file;
+  pixels::GBufferLayers layers;  // of a file that is an image
 };
 
 struct ChosenReceivers {
   std::vector<Receiver> receivers;
-  std::string description;       // "floor, grid 32x32", "floor, 1000 samples, seed 1", "points.csv"
-  std::size_t without_face = 0;  // that --on auto found no face for
+  std::string description;                  // "floor, grid 32x32", "floor, 1000 samples, seed 1", "points.csv"
+  std::size_t without_face = 0;             // that --on auto found no face for
+  std::optional<pixels::Frame> frame = {};  // if the receivers are pixels of an image
+  std::vector<Problem> warnings = {};       // about the image
 };
+
+// Whether --receivers names an image, as its bytes or its name say.
+[[nodiscard]] bool are_pixels(const ReceiverArguments& args);
 
 // The distance of "auto" or "auto:DISTANCE". No distance: the default tolerance.
 struct AutoFace {
@@ -38,8 +46,8 @@ struct AutoFace {
 // What --on says, unless it is the name of a patch. Throws InputError for a distance that is none.
 std::optional<AutoFace> auto_face(const std::string& on, const Scene& scene);
 
-// "--on auto found no face for 3 of 10 receivers; ..."
-std::vector<Problem> warnings_of_receivers_without_face(const ChosenReceivers& chosen);
+// "--on auto found no face for 3 of 10 receivers; ...", and the warnings about an image.
+std::vector<Problem> warnings_of_receivers(const ChosenReceivers& chosen);
 
 void add_receiver_options(CLI::App& app, ReceiverArguments& args);
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <bit>
 #include <cctype>
-#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -14,6 +13,7 @@
 #include "formats/position_table.h"
 #include "formats/readers.h"
 #include "formats/stl_layout.h"
+#include "kernel/vec.h"
 #include "text/phrases.h"
 
 namespace exactff::formats {
@@ -172,8 +172,6 @@ std::array<Vec3, 3> corners_at(std::string_view bytes, std::size_t offset) {
           Vec3{values[6], values[7], values[8]}};
 }
 
-bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
 }  // namespace
 
 Scene read_stl_text(std::string_view text, const std::filesystem::path& path, const SceneOptions& options) {
@@ -198,7 +196,7 @@ Scene read_stl_binary(std::string_view bytes, const std::filesystem::path& path,
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t offset = StlLayout::kHead + i * StlLayout::kTriangle;
     const std::array<Vec3, 3> corners = corners_at(bytes, offset);
-    if (std::all_of(corners.begin(), corners.end(), is_finite)) {
+    if (std::all_of(corners.begin(), corners.end(), kernel::is_finite)) {
       triangles.add(patch, corners, at_byte(offset));
     } else {
       input.fail(at_byte(offset), "triangle " + std::to_string(i + 1) + " has a coordinate that is not finite",

@@ -8,6 +8,10 @@ namespace {
 template <class Words>
 void fields(Words& words, Chapter& chapter) {
   words(chapter.name, chapter.title, chapter.paragraphs);
+  words.list(chapter.tables, [&](NumberTable& table) {
+    words(table.title, table.columns);
+    words.list(table.rows, [&](std::vector<std::string>& row) { words(row); });
+  });
   words.list(chapter.figures, [&](Figure& f) { words(f.id, f.title, f.caption, f.script, f.map); });
   for (auto* tables : {&chapter.values, &chapter.times}) {
     words.list(*tables, [&](CsvFile& table) { words(table.file, table.holds, table.csv); });

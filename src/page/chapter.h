@@ -18,11 +18,19 @@ struct CsvFile {
   std::string csv;
 };
 
+// Numbers that a sentence could not hold. The first column is text. All texts are plain.
+struct NumberTable {
+  std::string title;
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;
+};
+
 // Results that do not concern one scene and its receivers.
 struct Chapter {
   std::string name;                          // letters, digits and hyphens
   std::string title;                         // a heading
   std::vector<std::string> paragraphs = {};  // what was done and found; plain text that can be quoted
+  std::vector<NumberTable> tables = {};      // behind the paragraphs
   std::vector<Figure> figures = {};
   std::vector<CsvFile> values = {};  // the same bytes on every run
   std::vector<CsvFile> times = {};

@@ -1,10 +1,12 @@
 #include "page/page_text.h"
 
+#include <algorithm>
 #include <ctime>
 #include <fstream>
 #include <thread>
 
 #include "page/style.h"
+#include "text/base64.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 
@@ -44,6 +46,17 @@ std::string facts_table(const Facts& facts) {
   return text + "</table></div>\n";
 }
 
+std::string fold(const std::string& title, const std::string& content) {
+  if (content.empty()) return {};
+  return "<details>\n<summary>" + prose(title) + "</summary>\n" + content + "</details>\n";
+}
+
+std::string png_source(std::string_view png) {
+  text::Base64 base64;
+  std::string text = "data:image/png;base64," + base64.append(png);
+  return text + base64.finish();
+}
+
 namespace {
 
 // ` class="name"`, or nothing.
@@ -51,21 +64,27 @@ std::string class_of(const std::string& name) { return name.empty() ? name : " c
 
 }  // namespace
 
-HtmlTable::HtmlTable(const std::string& name)
-    : text_("<div class=\"wide\"><table" + class_of(name) + ">\n<thead><tr>") {}
+HtmlTable::HtmlTable(Shape shape)
+    : shape_(shape),
+      text_("<div class=\"wide\"><table" + class_of(shape == Shape::kWide ? "cards" : "") + ">\n<thead><tr>") {}
 
 void HtmlTable::column(const std::string& heading, Kind kind) {
   text_ += "<th" + class_of(kind == Kind::kText ? "text" : "") + '>' + prose(heading) + "</th>";
+  headings_.push_back(heading);
 }
 
 void HtmlTable::row(const std::string& name) {
   text_ += (in_head_ ? "</tr></thead>\n<tbody>\n<tr" : "</tr>\n<tr") + class_of(name) + '>';
   in_head_ = false;
+  column_ = 0;
 }
 
 void HtmlTable::cell(const std::string& content, Kind kind, int span) {
-  text_ += "<td" + class_of(kind == Kind::kText ? "text" : "") +
-           (span > 1 ? " colspan=\"" + std::to_string(span) + '"' : std::string()) + '>' + content + "</td>";
+  text_ += "<td" + class_of(kind == Kind::kText ? "text" : "");
+  if (span > 1) text_ += " colspan=\"" + std::to_string(span) + '"';
+  if (shape_ == Shape::kWide && column_ < headings_.size()) text_ += " data-label=\"" + headings_[column_] + '"';
+  text_ += '>' + content + "</td>";
+  column_ += static_cast<std::size_t>(span);
 }
 
 std::string HtmlTable::text() const {

@@ -3,6 +3,7 @@
 
 #include <initializer_list>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,17 +18,26 @@ namespace exactff::page {
 [[nodiscard]] std::string paragraph(const std::string& html);
 [[nodiscard]] std::string heading(const std::string& html);
 
+// A part that readers open if they want it: closed on a screen, open in print. `title` and `content` are HTML; empty if
+// there is no content. An id in the content is found by links even while the part is closed.
+[[nodiscard]] std::string fold(const std::string& title, const std::string& content);
+
+// The source of an <img>: a PNG file inside the page.
+[[nodiscard]] std::string png_source(std::string_view png);
+
 // Pairs of a name and its description (HTML).
 using Facts = std::vector<std::pair<std::string, std::string>>;
 [[nodiscard]] std::string facts_table(const Facts& facts);
 
 // A table, written from left to right and from top to bottom: first its columns, then row after row. All texts are
-// HTML.
+// HTML; headings have no tags.
 class HtmlTable {
  public:
   enum class Kind { kNumber, kText };
+  // kNarrow: fits on a phone. kWide: a phone shows each row as a card, each number behind the heading of its column.
+  enum class Shape { kNarrow, kWide };
 
-  explicit HtmlTable(const std::string& name = {});
+  explicit HtmlTable(Shape shape = Shape::kNarrow);
   void column(const std::string& heading, Kind kind = Kind::kNumber);
   void columns(std::initializer_list<const char*> headings) {
     for (const char* heading : headings) column(heading);
@@ -40,8 +50,11 @@ class HtmlTable {
   [[nodiscard]] std::string text() const;  // without a line end after it
 
  private:
+  Shape shape_;
   std::string text_;
   bool in_head_ = true;
+  std::vector<std::string> headings_;
+  std::size_t column_ = 0;  // of the next cell
 };
 
 // Facts about this program and this machine.

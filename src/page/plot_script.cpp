@@ -14,12 +14,12 @@ namespace {
 
 // The colours of Okabe and Ito, which can be distinguished with every common colour blindness, then the page's text
 // colour and a grey. Marks and dashes differ as well, for print. Their yellow is left out: it cannot be seen on white.
-// The light colours come late, and the last four lines are dashed, so that the eighth line is not mistaken for the
+// The light colours come late, and the last five lines are dashed, so that the eighth line is not mistaken for the
 // first.
-constexpr std::array<std::string_view, 8> kLineStyles = {
+constexpr std::array<std::string_view, 9> kLineStyles = {
     "lc rgb '#0072B2' pt 7 dt 1",  "lc rgb '#D55E00' pt 5 dt 1",       "lc rgb '#009E73' pt 9 dt 1",
     "lc rgb '#CC79A7' pt 13 dt 1", "lc rgb '#E69F00' pt 11 dt (16,4)", "lc rgb '#56B4E9' pt 6 dt (8,3)",
-    "lc black pt 4 dt (12,3,2,3)", "lc rgb '#8A8A8A' pt 2 dt (4,3)"};
+    "lc black pt 4 dt (12,3,2,3)", "lc rgb '#8A8A8A' pt 2 dt (4,3)",   "lc rgb '#9467BD' pt 8 dt (6,4)"};
 // For a line that may coincide with another: the other line stays visible through its open marks.
 constexpr std::string_view kOverlayStyle = "with linespoints lw 1.2 ps 1.3 lc rgb '#CC79A7' pt 12 dt 3";
 
@@ -104,10 +104,19 @@ std::string axis_commands(const Axes& axes, const Key& key) {
   return text;
 }
 
+// The places of the marks that the x axis can show.
+std::vector<double> drawn_marks(const Axes& axes) {
+  std::vector<double> places;
+  for (const Mark& mark : axes.marks) {
+    if (std::isfinite(mark.x) && (mark.x > 0.0 || !axes.log_x)) places.push_back(mark.x);
+  }
+  return places;
+}
+
 // Otherwise a logarithmic axis would extend to the next power of ten.
 std::string x_range(const Axes& axes, const std::vector<Points>& drawn) {
   if (!axes.log_x) return {};
-  std::vector<double> all = axes.marks;
+  std::vector<double> all = drawn_marks(axes);
   for (const Points& points : drawn) {
     for (const auto& point : points) all.push_back(point.first);
   }
@@ -117,7 +126,7 @@ std::string x_range(const Axes& axes, const std::vector<Points>& drawn) {
 
 // A logarithmic axis of a single value, or one without a power of ten on it, would have no number beside it.
 std::string readable_ranges(const Axes& axes, const std::vector<Points>& drawn) {
-  std::vector<double> xs = axes.marks, ys;
+  std::vector<double> xs = drawn_marks(axes), ys;
   for (const Points& points : drawn) {
     for (const auto& [x, y] : points) {
       xs.push_back(x);
@@ -150,6 +159,14 @@ std::string title_of(const Series& series) {
   return series.title.empty() ? " notitle" : " title " + text::gnuplot_string(series.title);
 }
 
+// Of a mark between lines and points; bars have marks of several styles.
+constexpr const char* kMarkStyle = "lw 2.5 dt 1 lc rgb '#8A8A8A'";
+
+std::string vertical_line(double x, const std::string& style) {
+  const std::string at = text::shortest(x);
+  return "set arrow from " + at + ", graph 0 to " + at + ", graph 1 nohead front " + style + '\n';
+}
+
 // Plots the series that have a point to draw. block(name, points) returns the data of a series, and
 // command(name, series, points) its part of the plot command.
 template <class Block, class Command>
@@ -167,9 +184,16 @@ std::string plot(const Axes& axes, const std::vector<Series>& series, const Bloc
     drawn.push_back(std::move(points));
   }
   if (plots.empty()) return {};
+  std::string arrows;
+  for (const double at : drawn_marks(axes)) arrows += vertical_line(at, kMarkStyle);
+  for (const Mark& mark : axes.marks) {
+    if (arrows.empty()) break;
+    plots += std::string(", \\\n     keyentry with lines ") + kMarkStyle + " title " + text::gnuplot_string(mark.title);
+    titles.push_back(mark.title);
+  }
   const Key key = key_of(titles);
-  return plot_head(key) + axis_commands(axes, key) + x_range(axes, drawn) + readable_ranges(axes, drawn) + data +
-         plots + '\n';
+  return plot_head(key) + axis_commands(axes, key) + x_range(axes, drawn) + readable_ranges(axes, drawn) + arrows +
+         data + plots + '\n';
 }
 
 // The style of a mark over bars. Bars use the first colour.
@@ -238,6 +262,20 @@ std::string colour_range(double low, double middle, double high) {
          mark(middle) + ", " + mark(high) + ") offset 0,2.1 nomirror scale 0\n";
 }
 
+// One swatch for each class: a palette in steps, from viridis.
+std::string class_palette(std::size_t count) {
+  constexpr std::array<std::string_view, 10> kColours = {"#440154", "#482878", "#3e4989", "#31688e", "#26828e",
+                                                         "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"};
+  std::string steps;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string colour(kColours[i * (kColours.size() - 1) / std::max<std::size_t>(count - 1, 1)]);
+    for (const std::size_t end : {i, i + 1}) {
+      steps += (steps.empty() ? "" : ", ") + std::to_string(end) + " '" + colour + "'";
+    }
+  }
+  return "set palette defined (" + steps + ")\n";
+}
+
 std::string colour_commands(const Map& map) {
   if (map.colours == MapColours::kDiverging) {
     return std::string(kDiverging) + colour_range(-map.largest, 0.0, map.largest);
@@ -247,13 +285,11 @@ std::string colour_commands(const Map& map) {
     for (std::size_t i = 0; i < map.classes.size(); ++i) {
       marks += (i > 0 ? ", " : "") + text::gnuplot_string(map.classes[i]) + ' ' + std::to_string(i);
     }
-    return std::string(kViridis) + "set cbrange [0:" + std::to_string(map.classes.size() - 1) + "]\nset cbtics (" +
+    return class_palette(map.classes.size()) +
+           "set cbrange [-0.5:" + text::shortest(static_cast<double>(map.classes.size()) - 0.5) + "]\nset cbtics (" +
            marks + ") offset 0,2.1 nomirror scale 0\n";
   }
   const double largest = largest_value(map);
-  if (map.colours == MapColours::kLogarithmic && largest > 10.0) {
-    return std::string(kViridis) + "set logscale cb\n" + colour_range(1.0, std::round(std::sqrt(largest)), largest);
-  }
   return std::string(kViridis) + colour_range(0.0, 0.5 * largest, largest);
 }
 
@@ -288,10 +324,10 @@ std::string bar_plot(const Axes& axes, const std::vector<Bar>& bars, const std::
   if (data.empty()) return {};
   for (std::size_t i = 0; i < marks.size(); ++i) {
     if (!is_drawable(marks[i].x)) continue;
-    const std::string at = text::shortest(marks[i].x), style = mark_style(i);
+    const std::string style = mark_style(i);
     ends.emplace_back(marks[i].x, 0.0);
     titles.push_back(marks[i].title);
-    arrows += "set arrow from " + at + ", graph 0 to " + at + ", graph 1 nohead front " + style + '\n';
+    arrows += vertical_line(marks[i].x, style);
     keys += ", \\\n     keyentry with lines " + style + " title " + text::gnuplot_string(marks[i].title);
   }
   const Key key = key_of(titles);

@@ -20,13 +20,19 @@ struct Series {
   Drawn drawn = Drawn::kLineAndMarks;  // used if the style is 1 or more
 };
 
+// A vertical line.
+struct Mark {
+  std::string title;
+  double x = 0.0;
+};
+
 struct Axes {
   std::string x;
   std::string y;
   bool log_x = true;
   bool log_y = true;
   std::vector<std::string> extra = {};  // further commands
-  std::vector<double> marks = {};       // values that the x axis must include
+  std::vector<Mark> marks = {};         // named in the legend, where no line or point can cover the name
 };
 
 // Lines with marks. Points that a logarithmic axis cannot show are left out, and so are series without points. Empty if
@@ -44,12 +50,6 @@ struct Bar {
   double height = 0.0;
 };
 
-// A vertical line.
-struct Mark {
-  std::string title;
-  double x = 0.0;
-};
-
 // Bars from 0, with marks over them. Values that a logarithmic x axis cannot show are left out. Empty if no bar
 // remains.
 [[nodiscard]] std::string bar_plot(const Axes& axes, const std::vector<Bar>& bars, const std::vector<Mark>& marks);
@@ -60,7 +60,7 @@ struct MapCell {
   double value = 0.0;
 };
 
-enum class MapColours { kSequential, kDiverging, kLogarithmic, kClasses };
+enum class MapColours { kSequential, kDiverging, kClasses };
 
 struct Map {
   std::string quantity;  // label of the colour bar

@@ -169,25 +169,25 @@ std::vector<FaceId> own_faces(const Scene& scene, FaceId face, const Vec3& point
   return best != search.found().end() ? own_faces(scene, search, *best) : std::vector<FaceId>{face};
 }
 
-NearFaces find_faces(const Scene& scene, const Receiver& receiver, double tolerance) {
+NearFaces find_faces(const Scene& scene, const Receiver& receiver, double tolerance, Normals normals) {
   const kernel::StandardArithmetic arithmetic;
   const Search search(scene, receiver.point, tolerance);
   const Vec3 normal = unit(receiver.normal);
   const Nearby* best = nullptr;
-  bool turned = false;
-  const auto rank = [](const Nearby& near, bool is_turned) {
-    return std::tuple(is_turned, near.distance, index_of(near.face));
-  };
+  using Rank = std::tuple<bool, double, double, std::size_t>;
+  Rank least;
   for (const Nearby& near : search.found()) {
     const double cosine = dot(normal, near.normal);
-    if (std::abs(cosine) < kCosOfOneDegree) continue;
-    if (best != nullptr && rank(*best, turned) <= rank(near, cosine < 0.0)) continue;
+    if (normals == Normals::kAgree && std::abs(cosine) < kCosOfOneDegree) continue;
+    const double off = normals == Normals::kAgree ? 0.0 : -std::abs(cosine);
+    const Rank rank(cosine < 0.0, off, near.distance, index_of(near.face));
+    if (best != nullptr && least <= rank) continue;
     best = &near;
-    turned = cosine < 0.0;
+    least = rank;
   }
   if (best == nullptr) return {};
   return {own_faces(scene, search, *best), search.in_the_scenes_unit(std::abs(best->height)),
-          side_of(scene, best->piece, receiver.point), turned};
+          side_of(scene, best->piece, receiver.point), std::get<0>(least)};
 }
 
 }  // namespace exactff

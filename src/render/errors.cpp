@@ -6,6 +6,7 @@
 
 #include "exactff/render.h"
 #include "kernel/float_environment.h"
+#include "study/statistics.h"
 
 namespace exactff::render {
 namespace {
@@ -30,21 +31,17 @@ PixelError error_of(const double* judged, const double* truth) {
   return worst;
 }
 
-// Of sorted values: the smallest one that at least this share of them does not exceed.
-double quantile(const std::vector<double>& sorted, double share) {
-  if (sorted.empty()) return 0.0;
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
-  return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
+double percentile(const std::vector<double>& values, double percent) {
+  return values.empty() ? 0.0 : study::percentile(values, percent);
 }
 
-void set_statistics(Errors& errors, std::vector<double> magnitudes, std::vector<double> relative) {
+void set_statistics(Errors& errors, std::vector<double> magnitudes, const std::vector<double>& relative) {
   std::ranges::sort(magnitudes);
-  std::ranges::sort(relative);
   errors.pixels = magnitudes.size();
-  errors.p99 = quantile(magnitudes, 0.99);
-  errors.worst = quantile(magnitudes, 1.0);
-  errors.relative_median = quantile(relative, 0.5);
-  errors.relative_p99 = quantile(relative, 0.99);
+  errors.p99 = percentile(magnitudes, 99.0);
+  errors.worst = percentile(magnitudes, 100.0);
+  errors.relative_median = percentile(relative, 50.0);
+  errors.relative_p99 = percentile(relative, 99.0);
   if (!(errors.worst > 0.0)) return;
   double squares = 0.0;  // in units of the worst, so that nothing overflows
   for (const double magnitude : magnitudes) squares += magnitude / errors.worst * (magnitude / errors.worst);
@@ -75,7 +72,7 @@ Errors errors_of(const Picture& judged, const Picture& truth) {
     magnitudes.push_back(std::abs(pixel.error));
     relative.push_back(pixel.relative);
   }
-  set_statistics(errors, std::move(magnitudes), std::move(relative));
+  set_statistics(errors, std::move(magnitudes), relative);
   return errors;
 }
 

@@ -24,6 +24,7 @@
 #include "kernel/exact_vec.h"
 #include "kernel/filter.h"
 #include "kernel/float_environment.h"
+#include "kernel/vec.h"
 #include "receivers/placing.h"
 #include "scene/shaft_tree.h"
 #include "text/refuse.h"
@@ -265,7 +266,7 @@ Vec3 Search::point_on(const Piece& piece) const {
 std::optional<Hit> first_hit(const Scene& scene, const Ray& ray) {
   const kernel::StandardArithmetic arithmetic;
   for (const Vec3& v : {ray.origin, ray.direction}) {
-    if (std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) continue;
+    if (kernel::is_finite(v)) continue;
     text::refuse("the ray's origin or direction is not finite", "a ray needs a point and a direction",
                  "give three finite numbers for each");
   }

@@ -14,27 +14,13 @@
 
 namespace exactff::render {
 
-std::string_view name_of(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::kRadiance:
-      return "radiance";
-    case Quantity::kRadiosity:
-      return "radiosity";
-    case Quantity::kIrradiance:
-      return "irradiance";
-    case Quantity::kFormFactor:
-      return "form-factor";
-  }
-  return {};
-}
-
 Job::Job(const Request& request) : request_(request) {
   require_scene(request_.scene);
   sources_ = request_.sources.empty() ? request_.scene->emitters() : request_.sources;
   if (sources_.empty()) {
     text::refuse(request_.scene_name, "no patch emits", "the picture would be black", "name a source with --source");
   }
-  prepare_sources();
+  weights_ = exact::light_weights(*request_.scene, sources_, request_.quantity, request_.scene_name);
   require_possible();
   if (!request_.method) {
     light_ = std::make_unique<exact::Light>(*request_.scene, sources_, weights_);
@@ -44,24 +30,6 @@ Job::Job(const Request& request) : request_(request) {
   for (const Selection& source : sources_) {
     prepared_sources_.push_back(prepared_->prepare_source(source));
     source_pointers_.push_back(prepared_sources_.back().get());
-  }
-}
-
-void Job::prepare_sources() {
-  constexpr double kMost = 1e290;
-  Rgb sum;
-  for (const Selection& source : sources_) {
-    const Rgb radiosity = request_.scene->source_radiosity(source);
-    sum = {sum.r + radiosity.r, sum.g + radiosity.g, sum.b + radiosity.b};
-    weights_.push_back(request_.quantity == Quantity::kFormFactor ? Rgb{1.0, 1.0, 1.0} : radiosity);
-  }
-  for (const Material& material : request_.scene->materials()) {
-    const Rgb &kd = material.reflectance, &ke = material.radiosity;
-    const double least = std::min({kd.r, kd.g, kd.b, ke.r, ke.g, ke.b});
-    if (least >= 0.0 && kd.largest() * sum.largest() + ke.largest() <= kMost && sum.largest() <= kMost) continue;
-    text::refuse(request_.scene_name, "the light is negative or too strong: material " + text::in_quotes(material.name),
-                 "radiosities are added, and Kd, Ke and their sums must be between 0 and 1e290",
-                 "give Kd and Ke in other units");
   }
 }
 
@@ -143,26 +111,21 @@ std::string names_of(const Scene& scene, const std::vector<Selection>& selection
   return names;
 }
 
-std::string unit_of(const Request& request) {
-  if (request.quantity == Quantity::kFormFactor) return "a pure number";
-  const bool radiance = request.quantity == Quantity::kRadiance, ke_is_radiance = request.ke == KeMeans::kRadiance;
-  return radiance == ke_is_radiance ? "the unit of Ke" : radiance ? "the unit of Ke / pi" : "the unit of Ke * pi";
-}
-
 }  // namespace
 
 Metadata Job::metadata() const {
   const Scene& scene = *request_.scene;
-  Metadata metadata = {{"software", text::program_version()},
-                       {"scene", text::printable(request_.scene_name)},
-                       {"scene hash", scene.hash()},
-                       {"camera", flags_of(request_.view)},
-                       {"quantity", std::string(name_of(request_.quantity)) + ", in " + unit_of(request_)},
-                       {"Ke", request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity"},
-                       {"sides", request_.sides == Sides::kBoth ? "both" : "front"},
-                       {"sources", names_of(scene, sources_)},
-                       {"method", request_.method ? request_.method->text() : "exact, correctly rounded"},
-                       {"points per pixel", std::to_string(request_.spp * request_.spp)}};
+  Metadata metadata = {
+      {"software", text::program_version()},
+      {"scene", text::printable(request_.scene_name)},
+      {"scene hash", scene.hash()},
+      {"camera", flags_of(request_.view)},
+      {"quantity", std::string(name_of(request_.quantity)) + ", in " + unit_of(request_.quantity, request_.ke)},
+      {"Ke", request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity"},
+      {"sides", request_.sides == Sides::kBoth ? "both" : "front"},
+      {"sources", names_of(scene, sources_)},
+      {"method", request_.method ? request_.method->text() : "exact, correctly rounded"},
+      {"points per pixel", std::to_string(request_.spp * request_.spp)}};
   if (const auto flipped = scene.flipped(); !flipped.empty())
     metadata.emplace_back("flipped", names_of(scene, flipped));
   if (const auto clear = scene.transparent(); !clear.empty()) {
@@ -179,12 +142,8 @@ std::string Job::hash() const {
 }
 
 exact::LightFormula Job::formula(FaceId face, bool back) const {
-  const bool ke_is_radiance = request_.ke == KeMeans::kRadiance;
-  if (request_.quantity == Quantity::kFormFactor) return {};
-  if (request_.quantity == Quantity::kIrradiance) return {.pi_power = ke_is_radiance ? 1 : 0};
-  const Material& material = request_.scene->material(request_.scene->face(face).material);
-  const int power = request_.quantity == Quantity::kRadiosity ? 0 : -1;
-  return {back ? Rgb{} : material.radiosity, material.reflectance, power + (ke_is_radiance ? 1 : 0)};
+  return exact::light_formula(*request_.scene, std::span(&face, 1), back ? exact::Side::kBack : exact::Side::kFront,
+                              request_.quantity, request_.ke);
 }
 
 }  // namespace exactff::render

@@ -37,7 +37,6 @@ class Job {
 
  private:
   void require_possible() const;
-  void prepare_sources();
   [[nodiscard]] std::vector<std::string> source_names() const;
 
   Request request_;

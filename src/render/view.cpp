@@ -16,8 +16,7 @@ namespace {
 
 using kernel::cross;
 using kernel::difference;
-
-bool is_finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+using kernel::is_finite;
 
 // Requires a vector other than zero.
 Vec3 unit(const Vec3& v) {

@@ -1,18 +1,14 @@
 // Pictures to files.
-#include <algorithm>
-#include <cctype>
-
 #include "exactff/render.h"
 #include "text/escape.h"
+#include "text/nearest_names.h"
 #include "text/refuse.h"
 #include "work/file.h"
 
 namespace exactff::render {
 
 ImageKind image_kind(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = text::in_lower_case(file.extension().string());
   if (extension == ".exr") return ImageKind::kExr;
   if (extension == ".png") return ImageKind::kPng;
   text::refuse(file, extension.empty() ? "has no extension" : "has the unknown extension " + text::printable(extension),

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "kernel/exact_vec.h"
+#include "kernel/vec.h"
 #include "sampled/plane_side.h"
 #include "scene/misuse.h"
 
@@ -17,8 +18,6 @@ namespace {
 double normalising_scale(double largest) {
   return largest > 0.0 ? std::ldexp(1.0, -std::clamp(std::ilogb(largest) + 1, -1022, 1022)) : 1.0;
 }
-
-bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 // The shaft of one polygon: half-spaces for the query of the tree, then the same tests for each piece.
 class Gatherer {
@@ -147,7 +146,7 @@ Box bounds_of(const std::vector<Vec3>& points, std::span<const std::uint32_t> in
 
 ReceiverView view_from(const Receiver& receiver, const ScaledScene& scene) {
   for (const FaceId face : receiver.on) require_face(*scene.scene, face);
-  if (!finite(receiver.point) || !finite(receiver.normal)) {
+  if (!kernel::is_finite(receiver.point) || !kernel::is_finite(receiver.normal)) {
     throw InputError(Problem{{},
                              0,
                              "receiver '" + receiver.id + "' has a coordinate that is not finite",

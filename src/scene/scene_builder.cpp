@@ -7,6 +7,7 @@
 
 #include "kernel/expect.h"
 #include "kernel/float_environment.h"
+#include "kernel/vec.h"
 #include "scene/misuse.h"
 #include "scene/scene_data.h"
 #include "scene/triangulation.h"
@@ -133,7 +134,7 @@ Scene SceneBuilder::build() {
 void SceneBuilder::State::check_vertices() {
   for (std::size_t i = 0; i < data->vertices.size(); ++i) {
     const Vec3& v = data->vertices[i];
-    if (std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) continue;
+    if (kernel::is_finite(v)) continue;
     problems.add({data->file, 0, "vertex " + std::to_string(i + 1) + " is not finite",
                   "a coordinate is one exact number", "give finite coordinates"});
   }

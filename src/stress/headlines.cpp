@@ -73,13 +73,25 @@ std::size_t refusals(const Report& report, Method method) {
   return count;
 }
 
+std::string thresholds_kept(const Report& report, Method method) {
+  return " keeps its error below 10⁻³ to the end in " + std::to_string(families_kept(report, method, kThresholds[0])) +
+         " of " + counted(report.families.size(), "family", "families") + ", below 10⁻⁶ in " +
+         std::to_string(families_kept(report, method, kThresholds[1])) + " and below 10⁻¹² in " +
+         std::to_string(families_kept(report, method, kThresholds[2]));
+}
+
+std::string tolerance_kept(const Report& report, Method method) {
+  const auto kept = std::count_if(report.families.begin(), report.families.end(), [&](const FamilyResult& family) {
+    return kept_up_to(family, method) == family.rows.back().stiffness;
+  });
+  return " keeps the tolerance that it was given (" + text::rounded(kToleranceShare) +
+         " of the unoccluded form factor) to the end in " + std::to_string(kept) + " of " +
+         counted(report.families.size(), "family", "families");
+}
+
 std::string method_sentence(const Report& report, Method method) {
-  const std::size_t whole = report.families.size();
-  std::string text = std::string(name_of(method)) + " keeps its error below 10⁻³ to the end in " +
-                     std::to_string(families_kept(report, method, kThresholds[0])) + " of " +
-                     counted(whole, "family", "families") + ", below 10⁻⁶ in " +
-                     std::to_string(families_kept(report, method, kThresholds[1])) + " and below 10⁻¹² in " +
-                     std::to_string(families_kept(report, method, kThresholds[2]));
+  std::string text = std::string(name_of(method)) +
+                     (has_tolerance(method) ? tolerance_kept(report, method) : thresholds_kept(report, method));
   if (const std::size_t refused = refusals(report, method); refused > 0) {
     text += "; it refuses " + counted(refused, "scene") + " because single precision would merge corners";
   }

@@ -51,6 +51,19 @@ double usable_up_to(const FamilyResult& result, Method method, double threshold)
   return last;
 }
 
+bool has_tolerance(Method method) { return method == Method::kAdaptive || method == Method::kAdaptiveLiteral; }
+
+double kept_up_to(const FamilyResult& result, Method method) {
+  double last = 0.0;
+  for (const Row& row : result.rows) {
+    const Answer& answer = row.of(method);
+    const double error = std::abs(answer.value - row.truth.nearest().value_or(row.truth.lower()));
+    if (answer.refused || !(error <= row.tolerance)) break;  // also for NaN
+    last = row.stiffness;
+  }
+  return last;
+}
+
 bool Report::sound() const {
   return std::all_of(families.begin(), families.end(), [](const FamilyResult& family) {
     return std::all_of(family.rows.begin(), family.rows.end(),
@@ -75,16 +88,14 @@ std::string error_text(const Answer& answer) {
   return answer.error == 0.0 ? "0" : text::rounded(answer.error, 2);
 }
 
-std::string reach_text(const FamilyResult& result, Method method, double threshold) {
-  const double reach = usable_up_to(result, method, threshold);
+namespace {
+
+std::string words_of(const FamilyResult& result, double reach) {
   return !result.rows.empty() && reach == result.rows.back().stiffness ? "all" : stiffness_text(reach);
 }
 
-namespace {
-
-// Whether the method stops keeping to the first threshold because it refuses the scene.
-bool next_is_refused(const FamilyResult& result, Method method) {
-  const double reach = usable_up_to(result, method, kThresholds.front());
+// Whether the method refuses the scene after the last one at which it is good enough.
+bool next_is_refused(const FamilyResult& result, Method method, double reach) {
   for (const Row& row : result.rows) {
     if (row.stiffness > reach) return row.of(method).refused;
   }
@@ -93,16 +104,22 @@ bool next_is_refused(const FamilyResult& result, Method method) {
 
 }  // namespace
 
+std::string reach_text(const FamilyResult& result, Method method, double threshold) {
+  return words_of(result, usable_up_to(result, method, threshold));
+}
+
 std::string reaches_text(const FamilyResult& result, Method method) {
   std::string text;
-  bool all = true;
-  for (double threshold : kThresholds) {
-    const std::string reach = reach_text(result, method, threshold);
-    all = all && reach == "all";
-    text += (text.empty() ? "" : " · ") + reach;
+  double reach = kept_up_to(result, method);
+  if (has_tolerance(method)) {
+    text = words_of(result, reach);
+  } else {
+    reach = usable_up_to(result, method, kThresholds.front());
+    for (const double threshold : kThresholds)
+      text += (text.empty() ? "" : " · ") + reach_text(result, method, threshold);
+    if (text == "all · all · all") return "all";
   }
-  if (all) return "all";
-  return next_is_refused(result, method) ? text + " (refused)" : text;
+  return next_is_refused(result, method, reach) ? text + " (refused)" : text;
 }
 
 }  // namespace exactff::stress

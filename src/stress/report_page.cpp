@@ -58,37 +58,36 @@ class PageWriter {
   }
 
   void summary() {
-    text_ += heading("Largest stiffness with an error below 10⁻³, 10⁻⁶ and 10⁻¹²");
+    text_ += heading("Up to which stiffness each method is usable");
     text_ += paragraph(
-        "Each cell has three numbers, one per threshold: the stiffness up to which the error stays below the "
-        "threshold, starting at the least extreme scene. “all”: to the end of the family; “–”: not even at the start; "
-        "“refused”: the method refuses the scene. Stiffness grows in steps, above 10<sup>16</sup> in steps of twenty "
-        "decades; a cell shows the last step that passed.");
-    text_ += paragraph(
-        "Eq. (4) in double gets the exact visible region, so difficulties in finding the region do not affect it. "
-        "Tampieri’s algorithm runs with a tolerance for the absolute error, " +
+        "The exact method and Eq. (4) in double: three numbers, the stiffness up to which the relative error stays "
+        "below 10⁻³, 10⁻⁶ and 10⁻¹², starting at the least extreme scene. Tampieri’s algorithm: the stiffness up to "
+        "which its error stays within the tolerance that it was given, " +
         text::rounded(kToleranceShare) +
-        " of the unoccluded form factor. It is not meant to reach 10⁻⁶ or 10⁻¹², or an error relative to F. Around "
-        "10⁻³ its cells depend on where its random rays hit. Families end before F leaves the range of normal "
-        "doubles.");
-    HtmlTable table;
+        " of the unoccluded form factor; near the tolerance this depends on where its random rays hit. “all”: to the "
+        "end of the family; “–”: not even at the start; “refused”: the method then refuses the scene.");
+    HtmlTable table(HtmlTable::Shape::kWide);
     table.column("family", kText);
     table.column("ends at");
-    for (Method method : kMethods) table.column(html(name_of(method)));
+    for (Method method : kMethods) table.column(html(name_of(method)), kText);
     for (const FamilyResult& family : report_.families) {
       table.row();
       table.cell("<a href=\"#" + html(family.family.name) + "\">" + html(family.family.title) + "</a>", kText);
       table.cell(stiffness_text(family.rows.back().stiffness));
       for (Method method : kMethods) {
         const std::string reaches = reaches_text(family, method);
-        table.cell(reaches == "all" ? "<b>all</b>" : reaches);
+        table.cell(reaches == "all" ? "<b>all</b>" : reaches, kText);
       }
     }
     text_ += table.text() + '\n';
   }
 
   void how_to_read() {
-    text_ += heading("How to read the figures");
+    text_ += heading("The families");
+    text_ += paragraph(
+        "Each family opens to its figures and values. Stiffness grows in steps, above 10<sup>16</sup> in steps of "
+        "twenty decades; families end before F leaves the range of normal doubles. Eq. (4) in double gets the exact "
+        "visible region, so difficulties in finding the region do not affect it.");
     text_ += paragraph(
         "Stiffness grows from left to right; above 10<sup>16</sup> the axis is compressed by a factor of eighteen. "
         "Errors below 10<sup>−18</sup> and above 10<sup>3</sup> are drawn at these values. A line ends where its "
@@ -99,14 +98,16 @@ class PageWriter {
 
   void section(const FamilyResult& result) {
     const FamilyInfo& family = result.family;
-    text_ += "<h2 id=\"" + html(family.name) + "\">" + html(family.title) + "</h2>\n";
-    text_ += paragraph(html(family.about) + " <em>Stiffness: " + html(family.stiffness) +
-                       ". Truth: " + html(to_string(family.evidence)) + ".</em>");
-    figures(family);
+    std::string content = "<div id=\"" + html(family.name) + "\">\n";
+    content += paragraph(html(family.about) + " <em>Stiffness: " + html(family.stiffness) +
+                         ". Truth: " + html(to_string(family.evidence)) + ".</em>");
+    content += figures(family);
     if (const int bits = constant_bits(result); bits > 0) {
-      text_ += paragraph("The proof needed " + std::to_string(bits) + " bits in every scene.");
+      content += paragraph("The proof needed " + std::to_string(bits) + " bits in every scene.");
     }
-    text_ += "<details><summary>Every value</summary>\n" + values_table(result) + "\n</details>\n";
+    content += page::fold("Every value", values_table(result) + '\n') + "</div>\n";
+    const bool agrees = std::ranges::all_of(result.rows, &Row::agrees);
+    text_ += page::fold(html(family.title) + (agrees ? "" : ": <b>disagrees with the truth</b>"), content);
   }
 
   static int constant_bits(const FamilyResult& result) {
@@ -116,17 +117,17 @@ class PageWriter {
     return same ? bits : 0;
   }
 
-  void figures(const FamilyInfo& family) {
+  [[nodiscard]] std::string figures(const FamilyInfo& family) const {
     std::string group;
     for (const auto& [figure, svg] : drawn_.figures) {
       if (!figure.id.starts_with(std::string(family.name) + '.')) continue;
       group += "<figure id=\"" + figure.id + "\">\n<h3>" + html(figure.title) + "</h3>\n" + svg + "\n</figure>\n";
     }
-    if (!group.empty()) text_ += "<div class=\"figures maps\">\n" + group + "</div>\n";
+    return group.empty() ? group : "<div class=\"figures maps\">\n" + group + "</div>\n";
   }
 
   static std::string values_table(const FamilyResult& result) {
-    HtmlTable table;
+    HtmlTable table(HtmlTable::Shape::kWide);
     table.columns({"stiffness", "form factor", "status", "exact, bits", "edges", "exact, time"});
     for (Method method : kMethods) table.column("error, " + html(short_name_of(method)));
     for (const Row& row : result.rows) {
@@ -146,7 +147,7 @@ class PageWriter {
   }
 
   void definitions() {
-    text_ += heading("Definitions") + "<dl>\n";
+    text_ += heading("Definitions") + "<details>\n<summary>Errors, methods and sources</summary>\n<dl>\n";
     define("Relative error",
            "|value − F| / F; if F is 0, |value| / unoccluded form factor. F comes from closed forms for rectangles, "
            "from a symmetry, or, where neither exists, from the exact method’s own enclosure. The closed forms are "
@@ -169,7 +170,7 @@ class PageWriter {
            "printed: it does not clip at the horizon, works in single precision, and returns 0 for perpendicular "
            "pairs. Mended: these faults are corrected. Shadow rays are traced in single precision, so both variants "
            "refuse scenes whose corners single precision would merge.");
-    text_ += "</dl>\n";
+    text_ += "</dl>\n</details>\n";
   }
 
   void reproduction() {

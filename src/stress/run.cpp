@@ -86,6 +86,7 @@ class Trial {
     region_is_whole_ = result.planes.front().outcome == Outcome::kUnoccluded;
     const std::vector<FaceId> none;
     unoccluded_ = exact({.digits = kTruthDigits, .only_occluders = &none}).enclosure;
+    row_.tolerance = kToleranceShare * unoccluded_.upper();
     row_.truth = case_.truth ? case_.truth->value() : exact({.digits = kTruthDigits}).enclosure;
     // A ball of radius 0 about 0 is a proved zero.
     zero_ = row_.truth.lower() == 0.0 && row_.truth.upper() == 0.0;
@@ -127,7 +128,7 @@ class Trial {
       const AdaptiveSolver solver(case_.scene);
       const AdaptiveSource source = solver.prepare(source_.selection());
       AdaptiveOptions options;
-      options.eps_b = kToleranceShare * unoccluded_.upper();
+      options.eps_b = row_.tolerance;
       options.rays = kRays;
       for (const auto& [method, variant] :
            {std::pair{Method::kAdaptive, Variant::kMended}, {Method::kAdaptiveLiteral, Variant::kLiteral}}) {

@@ -9,12 +9,20 @@
 
 namespace exactff::study {
 
-[[nodiscard]] inline Rgb times(const Rgb& a, const Rgb& b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
-[[nodiscard]] inline Rgb times(const Rgb& a, double s) { return {a.r * s, a.g * s, a.b * s}; }
+// Radiosities and errors near the largest double overflow. An infinity times 0 is 0 here, as its true value times 0
+// would be, and a sum that has become infinite stays so: neither is NaN, unless a value was.
+[[nodiscard]] inline double product(double a, double b) {
+  return (std::isinf(a) && b == 0.0) || (a == 0.0 && std::isinf(b)) ? 0.0 : a * b;
+}
+[[nodiscard]] inline Rgb times(const Rgb& a, const Rgb& b) {
+  return {product(a.r, b.r), product(a.g, b.g), product(a.b, b.b)};
+}
+[[nodiscard]] inline Rgb times(const Rgb& a, double s) { return times(a, Rgb{s, s, s}); }
 inline void add(Rgb& sum, const Rgb& term) {
-  sum.r += term.r;
-  sum.g += term.g;
-  sum.b += term.b;
+  const auto add_to = [](double& total, double x) { total = std::isinf(total) && std::isinf(x) ? total : total + x; };
+  add_to(sum.r, term.r);
+  add_to(sum.g, term.g);
+  add_to(sum.b, term.b);
 }
 
 // The component of largest magnitude, with its sign.

@@ -5,7 +5,7 @@
 // byte, \u202e for a character beyond ASCII. It does not become a question mark or U+FFFD, so that different names stay
 // different and a reader sees their content. A backslash that is already in a name is not changed, so the escapes are
 // for human readers and cannot be reversed. CSV and JSON must be read back: both keep every character, CSV except line
-// breaks. CSV converts what is not UTF-8 (text/encoding.h), as the readers of scenes do with names.
+// breaks. CSV output converts text that is not UTF-8 (text/encoding.h), just as scene readers convert names.
 #pragma once
 
 #include <string>

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "exactff/version.h"
+#include "kernel/exact_vec.h"
 #include "scene/misuse.h"
 #include "text/csv_row.h"
 #include "text/escape.h"
@@ -66,6 +67,10 @@ Rows::Rows(Request request) : request_(std::move(request)) {
     source_names_.push_back(request_.scene->name_of(source));
     radiosities_.push_back(request_.scene->source_radiosity(source));
   }
+  if (request_.total) {
+    light_.emplace(*request_.scene, request_.sources,
+                   exact::light_weights(*request_.scene, request_.sources, *request_.total, request_.scene_name));
+  }
   receivers_hash_ = hash_of(request_.receivers);
   near_misses_ = sentences(near_misses(*request_.scene, request_.receivers), request_.receivers.size());
 }
@@ -122,10 +127,15 @@ std::string Rows::head() const {
     out << "# unit normals: ux,uy,uz is nx,ny,nz scaled to length 1, correctly rounded; the values belong to "
            "nx,ny,nz\n";
   }
+  if (request_.total) {
+    out << "# total: " << name_of(*request_.total) << ", in " << unit_of(*request_.total, request_.ke)
+        << ", of all sources together, correctly rounded; Ke is a "
+        << (request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity") << '\n';
+  }
   out << "receiver,on,x,y,z,nx,ny,nz" << (request_.unit_normals ? ",ux,uy,uz" : "") << (request_.uv ? ",u,v" : "")
       << ",source,exact,lower,upper" << (request_.unoccluded ? ",unoccluded" : "")
-      << (request_.visible_fraction ? ",visible_fraction" : "")
-      << ",radiosity_r,radiosity_g,radiosity_b,largest_rho_b,status\n";
+      << (request_.visible_fraction ? ",visible_fraction" : "") << ",radiosity_r,radiosity_g,radiosity_b,largest_rho_b"
+      << (request_.total ? ",total_r,total_g,total_b" : "") << ",status\n";
   return std::move(out).str();
 }
 
@@ -143,17 +153,24 @@ bool nothing_in_the_shaft(const FormFactor& result) {
   });
 }
 
+// Exact: whether the normal points away from the front of the receiver's first face.
+exact::Side side_of(const Scene& scene, const Receiver& receiver) {
+  static constexpr Vec3 kOrigin;
+  if (receiver.on.empty()) return exact::Side::kFront;
+  const Vec3& front = scene.face(receiver.on.front()).newell;
+  return kernel::exact_sign_of_dot(front, {kOrigin, receiver.normal}) < 0 ? exact::Side::kBack : exact::Side::kFront;
+}
+
 }  // namespace
 
 void Rows::append(std::uint64_t row, std::string& lines, Results& results) const {
-  const Receiver& receiver = request_.receivers[row / sources_.size()];
-  const std::size_t source = row % sources_.size();
-  const ExactOptions options{.engine = request_.engine, .visible_fraction = request_.visible_fraction};
-  const FormFactor& f = results.exact;
-  exact_form_factor(*request_.scene, receiver, sources_[source], options, results.exact, results.workspace);
-  Status status = f.status;
+  const std::size_t number = row / sources_.size(), source = row % sources_.size();
+  const Receiver& receiver = request_.receivers[number];
+  const FormFactor& f = factor(number, source, results);
+  Status status = f.status;  // a row is only as good as its worst value
+  const auto keep_worst = [&](bool certified) { status = certified ? status : Status::kNotCertified; };
   text::CsvRow line(lines);
-  line << id(row / sources_.size()) << request_.scene->name_of(receiver.on) << receiver.point << receiver.normal;
+  line << id(number) << request_.scene->name_of(receiver.on) << receiver.point << receiver.normal;
   if (request_.unit_normals) line << results.unit_normal.of(receiver.normal);
   if (request_.uv) {
     line << place_along(receiver.cell->column, size_of(receiver).u)
@@ -161,23 +178,49 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
   }
   line << source_names_[source] << f.value << f.lower << f.upper;
   if (request_.unoccluded) {
-    const FormFactor& free = without_occluders(receiver, sources_[source], results);
+    const FormFactor& free = without_occluders(receiver, sources_[source], f, results);
     if (free.status == Status::kUnderflow) {
       line << "0.0";
     } else {
       line << free.value;
     }
-    if (free.status == Status::kNotCertified) status = free.status;  // a row is only as good as its worst value
+    keep_worst(free.status != Status::kNotCertified);
   }
   if (request_.visible_fraction) line << f.visible_fraction.value_or(0.0);
   const Rgb rho = request_.scene->receiver_reflectance(receiver.on), b = radiosities_[source];
   line << rho.r * b.r * f.value << rho.g * b.g * f.value << rho.b * b.b * f.value
-       << std::max({rho.r * b.r, rho.g * b.g, rho.b * b.b}) << to_string(status);
+       << std::max({rho.r * b.r, rho.g * b.g, rho.b * b.b});
+  if (light_) {
+    for (const exact::CertifiedNumber& total : results.totals) {
+      line << total.value;
+      keep_worst(total.certified);
+    }
+  }
+  line << to_string(status);
 }
 
-const FormFactor& Rows::without_occluders(const Receiver& receiver, const ExactSource& source, Results& results) const {
+// Sets the totals, too, if they are requested.
+const FormFactor& Rows::factor(std::size_t receiver, std::size_t source, Results& results) const {
+  const Receiver& at = request_.receivers[receiver];
+  const ExactOptions options{.engine = request_.engine, .visible_fraction = request_.visible_fraction};
+  if (!light_) {
+    exact_form_factor(*request_.scene, at, sources_[source], options, results.exact, results.workspace);
+    return results.exact;
+  }
+  if (results.lit != receiver) {
+    const exact::LightFormula formula =
+        exact::light_formula(*request_.scene, at.on, side_of(*request_.scene, at), *request_.total, request_.ke);
+    results.lit.reset();
+    results.totals = light_->at(at, formula, options, results.light);
+    results.lit = receiver;
+  }
+  return results.light.factors[source];
+}
+
+const FormFactor& Rows::without_occluders(const Receiver& receiver, const ExactSource& source, const FormFactor& with,
+                                          Results& results) const {
   static const std::vector<FaceId> kNone;
-  if (nothing_in_the_shaft(results.exact)) return results.exact;
+  if (nothing_in_the_shaft(with)) return with;
   const ExactOptions options{.engine = request_.engine, .only_occluders = &kNone};
   exact_form_factor(*request_.scene, receiver, source, options, results.unoccluded, results.workspace);
   return results.unoccluded;

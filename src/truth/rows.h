@@ -3,10 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "exact/light.h"
 #include "exactff/truth.h"
 #include "truth/unit_normal.h"
 
@@ -43,6 +45,9 @@ class Rows {
     FormFactor exact, unoccluded;
     Workspace workspace;
     UnitNormal unit_normal;
+    exact::Light::Results light;  // at this receiver
+    exact::Channels totals;
+    std::optional<std::size_t> lit;
   };
   // Computes a row and appends its line.
   void append(std::uint64_t row, std::string& lines, Results& results) const;
@@ -52,13 +57,15 @@ class Rows {
 
  private:
   [[nodiscard]] std::string id(std::size_t receiver) const;
+  [[nodiscard]] const FormFactor& factor(std::size_t receiver, std::size_t source, Results& results) const;
   [[nodiscard]] const FormFactor& without_occluders(const Receiver& receiver, const ExactSource& source,
-                                                    Results& results) const;
+                                                    const FormFactor& with, Results& results) const;
 
   Request request_;
   std::vector<ExactSource> sources_;
   std::vector<std::string> source_names_;
-  std::vector<Rgb> radiosities_;  // indexed by source
+  std::vector<Rgb> radiosities_;       // indexed by source
+  std::optional<exact::Light> light_;  // for the totals
   std::string receivers_hash_;
   std::vector<std::string> near_misses_;  // in sentences
 };

@@ -6,12 +6,14 @@
 #include <limits>
 #include <utility>
 
+#include "exactff/pixels.h"
 #include "exactff/truth.h"
 #include "exactff/vtk.h"
 #include "kernel/float_environment.h"
 #include "text/csv_lines.h"
 #include "text/refuse.h"
 #include "truth/journal.h"
+#include "work/file.h"
 #include "work/npy_file.h"
 #include "work/parallel.h"
 
@@ -28,7 +30,12 @@ struct Values {
   double exact = 0.0, lower = 0.0, upper = 0.0;
   Status status = Status::kCertified;
   double visible_fraction = 0.0;
-  Rgb radiosity;
+  Rgb radiosity, total;
+
+  // The number, or NaN where it is only an estimate.
+  [[nodiscard]] double certified(double number) const {
+    return status == Status::kNotCertified ? std::numeric_limits<double>::quiet_NaN() : number;
+  }
 };
 
 // Reads the rows of a truth file in order.
@@ -45,6 +52,7 @@ class ValueReader {
     source_ = column("source");
     status_ = column("status");
     fraction_ = column("visible_fraction");
+    totals_ = {column("total_r"), column("total_g"), column("total_b")};
     numbers_ = {column("exact"),       column("lower"),       column("upper"),
                 column("radiosity_r"), column("radiosity_g"), column("radiosity_b")};
     if (source_ == kNoColumn || status_ == kNoColumn || std::ranges::find(numbers_, kNoColumn) != numbers_.end()) {
@@ -54,6 +62,7 @@ class ValueReader {
   }
 
   [[nodiscard]] bool has_fractions() const { return fraction_ != kNoColumn; }
+  [[nodiscard]] bool has_totals() const { return std::ranges::find(totals_, kNoColumn) == totals_.end(); }
 
   bool next() {
     const std::size_t columns = columns_ == 0 ? fields_.size() : columns_;
@@ -71,7 +80,8 @@ class ValueReader {
   [[nodiscard]] Values values() const {
     std::array<double, 6> n{};
     for (std::size_t i = 0; i < n.size(); ++i) n[i] = number(numbers_[i]);
-    return {n[0], n[1], n[2], status(), has_fractions() ? number(fraction_) : 0.0, {n[3], n[4], n[5]}};
+    const Rgb total = has_totals() ? Rgb{number(totals_[0]), number(totals_[1]), number(totals_[2])} : Rgb{};
+    return {n[0], n[1], n[2], status(), has_fractions() ? number(fraction_) : 0.0, {n[3], n[4], n[5]}, total};
   }
 
   [[noreturn]] void damaged() const {
@@ -101,6 +111,7 @@ class ValueReader {
   std::vector<std::string> fields_;
   std::size_t columns_ = 0, source_ = 0, status_ = 0, fraction_ = 0;
   std::array<std::size_t, 6> numbers_{};
+  std::array<std::size_t, 3> totals_{};
 };
 
 // The sources of the first receiver: the rows before its first source returns.
@@ -130,13 +141,17 @@ Shape shape_of(const fs::path& file, const Hooks& hooks) {
 void write_npy(const fs::path& truth_file, const fs::path& file, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
   const Shape shape = shape_of(truth_file, hooks);
-  const std::array extents{shape.rows / shape.sources.size(), shape.sources.size()};
-  work::NpyFile<double> array(file, extents);
   ValueReader reader(truth_file);
+  const std::size_t sources = shape.sources.size();
+  const std::array extents{shape.rows / sources, sources + (reader.has_totals() ? 3 : 0)};
+  work::NpyFile<double> array(file, extents);
   Pace pace("writing the NumPy file", shape.rows, hooks);
   for (std::size_t row = 0; row < shape.rows && reader.next(); ++row) {
     const Values values = reader.values();
-    array.append(values.status == Status::kNotCertified ? std::numeric_limits<double>::quiet_NaN() : values.exact);
+    array.append(values.certified(values.exact));
+    if (reader.has_totals() && row % sources == sources - 1) {
+      for (const double total : {values.total.r, values.total.g, values.total.b}) array.append(values.certified(total));
+    }
     if ((row + 1) % kRowsBetweenChecks == 0) pace.add(kRowsBetweenChecks);
   }
   pace.add(0);
@@ -144,6 +159,12 @@ void write_npy(const fs::path& truth_file, const fs::path& file, const Hooks& ho
 }
 
 namespace {
+
+void require_receivers(const Shape& shape, std::size_t receivers, const fs::path& truth_file) {
+  if (shape.rows == receivers * shape.sources.size()) return;
+  text::refuse(truth_file, "has values of other receivers", "each place shows the values of its receiver",
+               "use the flags with which the file was made");
+}
 
 void add(vtk::SourceValues& list, const Values& values, bool has_fractions) {
   list.exact.push_back(values.exact);
@@ -154,21 +175,24 @@ void add(vtk::SourceValues& list, const Values& values, bool has_fractions) {
   list.radiosity.push_back(values.radiosity);
 }
 
-std::vector<vtk::SourceValues> values_of(const fs::path& truth_file, const Request& request, const Hooks& hooks) {
+// What the cells show.
+std::vector<vtk::Field> fields_of(const fs::path& truth_file, const Request& request, const Hooks& hooks) {
   const Shape shape = shape_of(truth_file, hooks);
-  if (shape.rows != request.receivers.size() * shape.sources.size()) {
-    text::refuse(truth_file, "has values of other receivers", "each cell shows the values of its receiver",
-                 "use the flags with which the file was made");
-  }
+  require_receivers(shape, request.receivers.size(), truth_file);
   std::vector<vtk::SourceValues> list;
   for (const std::string& source : shape.sources) list.push_back({source, {}, {}, {}, {}, {}, {}});
+  std::vector<double> totals;
   ValueReader reader(truth_file);
   Pace pace("reading rows", shape.rows, hooks);
   for (std::size_t row = 0; row < shape.rows && reader.next(); ++row) {
-    add(list[row % list.size()], reader.values(), reader.has_fractions());
+    const Values values = reader.values();
+    add(list[row % list.size()], values, reader.has_fractions());
+    if (row % list.size() == 0) totals.insert(totals.end(), {values.total.r, values.total.g, values.total.b});
     if ((row + 1) % kRowsBetweenChecks == 0) pace.add(kRowsBetweenChecks);
   }
-  return list;
+  std::vector<vtk::Field> fields = vtk::fields_of(std::move(list));
+  if (reader.has_totals()) fields.push_back({"total", 3, std::move(totals)});
+  return fields;
 }
 
 // The comments at the head of the file.
@@ -185,9 +209,32 @@ void write_vtk(const Request& request, const fs::path& truth_file, const fs::pat
   const kernel::StandardArithmetic arithmetic;
   const vtk::Content content{.scene = request.scene,
                              .receivers = request.receivers,
-                             .fields = vtk::fields_of(values_of(truth_file, request, hooks)),
+                             .fields = fields_of(truth_file, request, hooks),
                              .about = about(truth_file)};
   vtk::write(content, file, {{}, hooks.cancelled});
+}
+
+void write_exr(const pixels::Frame& frame, const fs::path& truth_file, const fs::path& file, const Hooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
+  const Shape shape = shape_of(truth_file, hooks);
+  require_receivers(shape, frame.pixels.size(), truth_file);
+  ValueReader reader(truth_file);
+  if (!reader.has_totals()) {
+    text::refuse(truth_file, "has no totals", "a pixel shows the light of all sources together",
+                 "compute it again with --total radiance and --force");
+  }
+  pixels::FrameValues values(frame);
+  Pace pace("writing the image", shape.rows, hooks);
+  for (std::size_t row = 0; row < shape.rows && reader.next(); ++row) {
+    if (row % shape.sources.size() == 0) {
+      const Values one = reader.values();
+      values.set(row / shape.sources.size(), one.total, one.status != Status::kNotCertified);
+    }
+    if ((row + 1) % kRowsBetweenChecks == 0) pace.add(kRowsBetweenChecks);
+  }
+  work::WholeFile whole(file);
+  whole.append(values.exr(about(truth_file)));
+  whole.commit();
 }
 
 }  // namespace exactff::truth

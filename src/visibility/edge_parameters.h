@@ -31,8 +31,10 @@ class ExactParameters {
   // Forgets all parameters, in the existing memory.
   void clear(std::size_t edges) {
     count_ = 0;
-    stored_at_.resize(4 * edges);
+    grow(edges);
   }
+  // Makes room for edges that were added since.
+  void grow(std::size_t edges) { stored_at_.resize(4 * edges); }
 
   [[nodiscard]] const EdgeParameter& of(Outlines& outlines, EdgeId edge, const Parameter& p);
   // Where the line crosses the edge.

@@ -55,6 +55,7 @@ void Outlines::start(const Scene& scene, const Vec3& x, double unit) {
   corners_.clear();
   origins_.clear();
   exact_count_ = 0;
+  further_count_ = 0;
   normal_a_ = normal_b_ = kNone;
   fine_.clear();
   edges_.clear();
@@ -98,6 +99,14 @@ void Outlines::set_horizon(const Vec3& normal) {
   kernel::set_difference(horizon_, normal, Vec3{});
 }
 
+Outlines::Plane Outlines::add_plane(const ExactVec3& normal, const Vec3& point) {
+  if (further_planes_.size() == further_count_) further_planes_.emplace_back();
+  FurtherPlane& plane = further_planes_[further_count_];
+  plane.normal = normal;
+  plane.crossings.start(x_, fine_normal(normal), point, scale_exponent_);
+  return static_cast<Plane>(kNamedPlanes + further_count_++);
+}
+
 CornerId Outlines::add_crossing(Plane plane, std::uint32_t p, std::uint32_t q) {
   Origin origin{.p = p, .q = q, .plane = plane};
   if (const auto fine = crossings(plane).fine(position(p), position(q))) {
@@ -115,20 +124,29 @@ CornerId Outlines::add_crossing(Plane plane, std::uint32_t p, std::uint32_t q) {
   return corner;
 }
 
+EXACTFF_INLINE Outlines::Edge Outlines::edge_between(CornerId a, CornerId b, OutlineId outline) const {
+  const Approx3 &p = corners_[a].t, &q = corners_[b].t;
+  return {a,
+          b,
+          outline,
+          {q.y * p.z - q.z * p.y, q.z * p.x - q.x * p.z, q.x * p.y - q.y * p.x},
+          kSideError * corners_[a].size * corners_[b].size};
+}
+
 OutlineId Outlines::add(std::span<const CornerId> corners, bool whole) {
   const auto outline = static_cast<OutlineId>(outlines_.size());
   outlines_.push_back(
       {static_cast<EdgeId>(edges_.size()), static_cast<std::uint32_t>(corners.size()), whole, false, 0});
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const CornerId a = corners[i], b = corners[i + 1 == corners.size() ? 0 : i + 1];
-    const Approx3 &p = corners_[a].t, &q = corners_[b].t;
-    edges_.push_back({a,
-                      b,
-                      outline,
-                      {q.y * p.z - q.z * p.y, q.z * p.x - q.x * p.z, q.x * p.y - q.y * p.x},
-                      kSideError * corners_[a].size * corners_[b].size});
+    edges_.push_back(edge_between(a, b, outline));
   }
   return outline;
+}
+
+EdgeId Outlines::add_edge(CornerId a, CornerId b) {
+  edges_.push_back(edge_between(a, b, kNone));
+  return static_cast<EdgeId>(edges_.size() - 1);
 }
 
 void Outlines::remove_last() {
@@ -167,11 +185,21 @@ int Outlines::side_by_filter(const Approx3& normal, CornerId t) const {
   return c.size == c.size ? kernel::sign_of_dot(normal, c.t) : kernel::kUncertain;
 }
 
+// True if two coordinates of three vertices agree: the vertices then lie on one line, and x with them in one plane.
+bool Outlines::are_on_axis_line(const Edge& edge, CornerId t) const {
+  const Origin &a = origins_[edge.a], &b = origins_[edge.b], &c = origins_[t];
+  if (!a.is_vertex() || !b.is_vertex() || !c.is_vertex()) return false;
+  const Vec3 &p = vertices_[a.p], &q = vertices_[b.p], &r = vertices_[c.p];
+  const int agree = static_cast<int>(p.x == q.x && q.x == r.x) + static_cast<int>(p.y == q.y && q.y == r.y) +
+                    static_cast<int>(p.z == q.z && q.z == r.z);
+  return agree >= 2;
+}
+
 int Outlines::side(const Edge& edge, CornerId t) {
   const Height h = height(edge, t);
   if (h.value > h.error) return 1;
   if (h.value < -h.error) return -1;
-  if (t == edge.a || t == edge.b) return 0;
+  if (t == edge.a || t == edge.b || are_on_axis_line(edge, t)) return 0;
   set_exact_height(height_, edge, t);
   return kernel::sign(height_);
 }

@@ -67,9 +67,11 @@ class Outlines {
   // position are one corner. `unit`: a length of the order of the distances that matter.
   void start(const Scene& scene, const Vec3& x, double unit);
   // The planes that add_crossing refers to. The exact normal of the source's plane must outlive their use.
-  enum class Plane : std::uint8_t { kSource, kHorizon };
+  enum class Plane : std::uint32_t { kSource, kHorizon };
   void set_source_plane(const kernel::ExactVec3& normal, const FineNormal& fine_normal, const Vec3& point);
   void set_horizon(const Vec3& normal);
+  // A further plane, through a point.
+  [[nodiscard]] Plane add_plane(const kernel::ExactVec3& normal, const Vec3& point);
 
   // Replaces the contents of `corners` by the corners at these vertices.
   void corners_of(std::span<const std::uint32_t> vertices, std::vector<CornerId>& corners);
@@ -77,6 +79,9 @@ class Outlines {
   [[nodiscard]] CornerId add_crossing(Plane plane, std::uint32_t p, std::uint32_t q);
   // Counter-clockwise as x sees it. `whole`: all of a piece of the scene.
   OutlineId add(std::span<const CornerId> corners, bool whole);
+
+  // An edge of no outline.
+  EdgeId add_edge(CornerId a, CornerId b);
 
   void remove_last();
   void set_inside_source(OutlineId id) { outlines_[id].inside_source = true; }
@@ -135,10 +140,23 @@ class Outlines {
   };
   CornerId corner_of_vertex(std::uint32_t any_vertex);
   CornerId add_corner(const kernel::Approx3& t, double size, const Origin& origin);
-  [[nodiscard]] PlaneCrossings& crossings(Plane plane) { return crossings_[std::size_t(plane)]; }
-  [[nodiscard]] const kernel::ExactVec3& exact_normal(Plane plane) const {
-    return plane == Plane::kSource ? *normal_ : horizon_.v;
+  static constexpr std::size_t kNamedPlanes = 2;
+  struct FurtherPlane {
+    PlaneCrossings crossings;
+    kernel::ExactVec3 normal;
+  };
+  [[nodiscard]] PlaneCrossings& crossings(Plane plane) {
+    const auto index = static_cast<std::size_t>(plane);
+    return index < kNamedPlanes ? crossings_[index] : further_planes_[index - kNamedPlanes].crossings;
   }
+  [[nodiscard]] const kernel::ExactVec3& exact_normal(Plane plane) const {
+    const auto index = static_cast<std::size_t>(plane);
+    return index >= kNamedPlanes     ? further_planes_[index - kNamedPlanes].normal
+           : plane == Plane::kSource ? *normal_
+                                     : horizon_.v;
+  }
+  [[nodiscard]] Edge edge_between(CornerId a, CornerId b, OutlineId outline) const;
+  [[nodiscard]] bool are_on_axis_line(const Edge& edge, CornerId t) const;
   // Computed at first use and kept in exact_.
   [[nodiscard]] const kernel::ScaledVec3& scaled(CornerId id);
 
@@ -155,7 +173,9 @@ class Outlines {
   kernel::ExactVec3 edge_normal_;                 // of the edge last queried exactly,
   CornerId normal_a_ = kNone, normal_b_ = kNone;  // from a to b
   std::vector<FineDirection> fine_;
-  std::array<PlaneCrossings, 2> crossings_;    // by plane
+  std::array<PlaneCrossings, kNamedPlanes> crossings_;  // by plane
+  std::deque<FurtherPlane> further_planes_;             // the first further_count_; the rest is spare memory
+  std::size_t further_count_ = 0;
   const kernel::ExactVec3* normal_ = nullptr;  // of the source's plane
   kernel::ScaledVec3 horizon_;                 // its normal
   std::vector<Edge> edges_;

@@ -71,8 +71,9 @@ Bounded leading(const Integer& number, long bits) {
   if (kernel::sign(number) == 0) return {};
   long exponent = 0;
   const double first = mpz_get_d_2exp(&exponent, number.get_mpz_t());
-  Integer rest = number;
-  Integer head = Integer(std::ldexp(first, 53));
+  thread_local Integer rest, head;  // kept, so that nothing is allocated
+  rest = number;
+  head = std::ldexp(first, 53);
   if (exponent >= 53) {
     head <<= static_cast<unsigned long>(exponent - 53);
   } else {

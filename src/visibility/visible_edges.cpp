@@ -15,16 +15,11 @@ using Outline = Outlines::Outline;
 
 namespace {
 
-constexpr Parameter kBegin{0.0, 0.0F, Parameter::kAtBegin};
-constexpr Parameter kEnd{1.0, 0.0F, Parameter::kAtEnd};
-
 // Pairs per edge. At about 8 ns each, they take as long as the Booleans take for an edge.
 constexpr std::uint64_t kMostUnsortedPairs = 6'000;
 
 // Between two polls: less than a millisecond by the filter, some milliseconds in exact arithmetic.
 constexpr std::uint64_t kPairsPerPoll = 8'192;
-
-constexpr std::size_t kMostToInsert = 16;
 
 // Counts four bits. std::popcount is a function call where the processor may lack the instruction.
 std::uint64_t bit_count(unsigned bits) { return (0x4332322132212110U >> (4 * bits)) & 0xFU; }
@@ -76,20 +71,6 @@ void VisibleEdges::drop_inner_edges(std::size_t source_count) {
       if (edges[first].a != edges[id].a) dropped_[first] = 1;  // it runs the other way
       line_[id] = first;
     }
-  }
-}
-
-EXACTFF_INLINE void VisibleEdges::sort(EdgeId edge, std::vector<Interval>& intervals) {
-  const auto comes_first = [&](const Interval& a, const Interval& b) { return compare(edge, a.begin, b.begin) < 0; };
-  if (intervals.size() > kMostToInsert) {
-    std::sort(intervals.begin(), intervals.end(), comes_first);
-    return;
-  }
-  for (std::size_t i = 1; i < intervals.size(); ++i) {
-    const Interval inserted = intervals[i];
-    std::size_t at = i;
-    for (; at > 0 && comes_first(inserted, intervals[at - 1]); --at) intervals[at] = intervals[at - 1];
-    intervals[at] = inserted;
   }
 }
 
@@ -399,68 +380,6 @@ bool VisibleEdges::cover(const Run& run, unsigned k, const Cuts& cuts, Cover& re
   return true;
 }
 
-// The exact signs of the heights of the edge's ends above the line, and the crossing if the signs differ.
-//
-// The crossing's error, in the notation of the proof above. With heights in doubles: D >= 4e, so that the quotient
-// differs by at most 2e / D; sum and division err by 2u, and 2^-50 is 8u, which leaves a margin for the test of D and
-// for differences of parameters. With exact heights: two mantissas truncated to 53 bits and their quotient err by 5u of
-// l / m, which moves
-// m / (l + m) by less than 2u; two more roundings make 4u of at most 1, and 2^-49 is 16u. An exponent that is clamped
-// moves it by less than 2^-1000.
-void VisibleEdges::cut_exactly(EdgeId edge_id, EdgeId line, int& sign_a, int& sign_b, Parameter& crossing) {
-  const Edge edge = outlines_.edge(edge_id), f = outlines_.edge(line);
-  sign_a = outlines_.side(f, edge.a);
-  sign_b = outlines_.side(f, edge.b);
-  if (sign_a * sign_b >= 0) return;
-  const Height a = outlines_.height(f, edge.a), b = outlines_.height(f, edge.b);
-  const double sum = std::abs(a.value) + std::abs(b.value), error = std::max(a.error, b.error);
-  if (std::abs(a.value) > a.error && std::abs(b.value) > b.error && sum > 4.0 * error) {
-    crossing = {std::abs(a.value) / sum, rounded_up(2.0 * error / sum + 0x1p-50), line_[line]};
-    return;
-  }
-  const EdgeParameter& at = exact_.crossing(outlines_, edge_id, line_[line]);
-  long l_exponent = 0, m_exponent = 0;
-  const double l_mantissa = mpz_get_d_2exp(&l_exponent, at.l.get_mpz_t());
-  const double m_mantissa = mpz_get_d_2exp(&m_exponent, at.m.get_mpz_t());
-  // In the scale of the doubles, which is that of the other crossings.
-  const long exponent = l_exponent + outlines_.exponent(edge.b) - m_exponent - outlines_.exponent(edge.a);
-  const double l_over_m = std::ldexp(l_mantissa / m_mantissa, static_cast<int>(std::clamp(exponent, -2000L, 2000L)));
-  crossing = {1.0 / (1.0 + l_over_m), 0x1p-49F, line_[line]};
-}
-
-bool VisibleEdges::lies_left(const Edge& edge, OutlineId outline) {
-  const Outline& o = outlines_.outline(outline);
-  for (EdgeId f = o.first; f < o.first + o.count; ++f) {
-    const int side = outlines_.side(edge, outlines_.edge(f).a);
-    if (side != 0) return side > 0;
-  }
-  return true;  // an outline without area: impossible
-}
-
-bool VisibleEdges::cover_exactly(EdgeId edge, OutlineId outline, Cover& result) {
-  const Outline& o = outlines_.outline(outline);
-  Interval& interval = result.interval;
-  interval = {kBegin, kEnd};
-  result.coincides = false;
-  for (EdgeId line = o.first; line < o.first + o.count; ++line) {
-    int sign_a = 0, sign_b = 0;
-    Parameter crossing;
-    cut_exactly(edge, line, sign_a, sign_b, crossing);
-    if (sign_a <= 0 && sign_b <= 0) {
-      if (sign_a < 0 || sign_b < 0) return false;
-      result.coincides = true;
-      continue;
-    }
-    if (sign_a < 0 && compare(edge, interval.begin, crossing) < 0) interval.begin = crossing;
-    if (sign_b < 0 && compare(edge, crossing, interval.end) < 0) interval.end = crossing;
-    if (compare(edge, interval.begin, interval.end) >= 0) return false;
-  }
-  const bool on_left = result.coincides && lies_left(outlines_.edge(edge), outline);
-  result.left = !result.coincides || on_left;
-  result.right = !result.coincides || !on_left;
-  return true;
-}
-
 // The union, as disjoint intervals in order.
 void VisibleEdges::merge(EdgeId edge, std::vector<Interval>& intervals) {
   if (intervals.size() < 2) return;
@@ -474,12 +393,6 @@ void VisibleEdges::merge(EdgeId edge, std::vector<Interval>& intervals) {
     }
   }
   intervals.resize(last + 1);
-}
-
-BoundaryPiece VisibleEdges::exact(const Part& part) {
-  const Edge& edge = outlines_.edge(part.edge);
-  const auto at = [&](const Parameter& p) { return exact_.of(outlines_, part.edge, p); };
-  return {outlines_.exact(edge.a), outlines_.exact(edge.b), at(part.begin), at(part.end)};
 }
 
 }  // namespace exactff::visibility

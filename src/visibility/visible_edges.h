@@ -30,7 +30,7 @@
 #include <vector>
 
 #include "kernel/lane_types.h"
-#include "visibility/edge_parameters.h"
+#include "visibility/edge_covers.h"
 #include "visibility/outline_grid.h"
 #include "visibility/outlines.h"
 
@@ -64,17 +64,8 @@ class EdgeTable {
 };
 
 // A workspace: its memory is reused from one call to the next.
-class VisibleEdges {
+class VisibleEdges : public EdgeCovers {
  public:
-  // A part of the boundary of V, V to its left.
-  struct Part {
-    EdgeId edge = 0;
-    Parameter begin, end;
-  };
-
-  Outlines& outlines() { return outlines_; }
-  [[nodiscard]] const Outlines& outlines() const { return outlines_; }
-
   // True if the occluder covers every corner of the source, and therefore all of it.
   [[nodiscard]] bool hides_all(OutlineId occluder, std::size_t source_count);
 
@@ -83,11 +74,11 @@ class VisibleEdges {
   // Returns false, with nothing found, if the grid fails to separate so many occluders and edges that the Booleans are
   // the better method.
   [[nodiscard]] bool find(std::size_t source_count);
+  // Each has V to its left.
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
   // Pairs of an edge and an outline: those examined, and those for which the filter was not certain.
   [[nodiscard]] std::uint64_t pairs() const { return pairs_; }
   [[nodiscard]] std::uint64_t undecided_pairs() const { return undecided_pairs_; }
-  [[nodiscard]] BoundaryPiece exact(const Part& part);
 
  private:
   static constexpr unsigned kRunCorners = 4;
@@ -96,9 +87,6 @@ class VisibleEdges {
   using FourMask = kernel::lanes::FourMask;
   using LineBits = Outlines::LineBits;
 
-  struct Interval {
-    Parameter begin, end;
-  };
   // One parameter for each edge of a run. Equal lines are not yet replaced by their representative (line_).
   struct Parameters {
     Four value{}, error{};
@@ -106,12 +94,6 @@ class VisibleEdges {
   };
   struct Intervals {
     Parameters begin, end;
-  };
-  // What an outline covers along an edge, on each side of it.
-  struct Cover {
-    bool left = false, right = false;
-    bool coincides = false;  // it has an edge on the line
-    Interval interval;
   };
   // Consecutive edges of an outline with up to four corners between them: all edges of a triangle or a quadrilateral,
   // otherwise three. Edge k runs from the corner in lane k to that in the next lane, lane 0 after the last; unused
@@ -155,30 +137,18 @@ class VisibleEdges {
   void cut(const Run& run, OutlineId outline, Cuts& cuts, LineBits skipped = 0);
   // The part of an edge that is covered; false if none.
   [[nodiscard]] bool cover(const Run& run, unsigned k, const Cuts& cuts, Cover& result);
-  [[nodiscard]] bool cover_exactly(EdgeId edge, OutlineId outline, Cover& result);
-  void cut_exactly(EdgeId edge, EdgeId line, int& sign_a, int& sign_b, Parameter& crossing);
-  [[nodiscard]] bool lies_left(const Outlines::Edge& edge, OutlineId outline);
   void keep_rest(EdgeId id, bool reversed, const Interval& allowed, std::span<const Interval> removed);
   void keep(EdgeId id, bool reversed, const Parameter& begin, const Parameter& end);
 
-  [[nodiscard]] int compare(EdgeId edge, const Parameter& p, const Parameter& q) {
-    const double difference = p.value - q.value, error = p.error + q.error;
-    if (std::abs(difference) > error) return difference > 0.0 ? 1 : -1;
-    return p.line == q.line ? 0 : exact_.compare(outlines_, edge, p, q);
-  }
-  void sort(EdgeId edge, std::vector<Interval>& intervals);
   void merge(EdgeId edge, std::vector<Interval>& intervals);
 
-  Outlines outlines_;
   OutlineGrid grid_;
   std::vector<std::uint8_t> dropped_;  // by edge
-  std::vector<EdgeId> line_;           // by edge: the first edge between the same two corners
   std::span<const OutlineId> near_;    // occluders that the current run may meet
   std::array<Cuts, kBatch> batch_;     // by some of these
   std::vector<Part> parts_;
   std::uint64_t pairs_ = 0, undecided_pairs_ = 0;
   std::uint64_t next_poll_ = 0;  // in pairs
-  ExactParameters exact_;
   // By edge of the run: the intervals removed, and the intervals with the source on the left and on the right.
   std::array<std::vector<Interval>, kRunCorners> removed_, left_, right_;
   EdgeTable table_;  // of drop_inner_edges

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <set>
 #include <span>
 #include <string_view>
 
 #include "exactff/vtk.h"
+#include "text/base64.h"
 #include "text/escape.h"
+#include "text/nearest_names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "work/little_endian.h"
@@ -21,44 +22,6 @@ namespace exactff::vtk {
 namespace {
 
 constexpr int kVertex = 1, kTriangle = 5, kPolygon = 7, kQuadrilateral = 9;  // VTK's types of cells
-
-// Appends bytes as one base64 text.
-class Base64 {
- public:
-  explicit Base64(work::WholeFile& file) : file_(file) {}
-
-  void append(std::string_view bytes) {
-    rest_ += bytes;
-    const std::size_t whole = rest_.size() / 3 * 3;
-    encode(std::string_view(rest_).substr(0, whole));
-    rest_.erase(0, whole);
-  }
-  void finish() {
-    const std::size_t missing = (3 - rest_.size() % 3) % 3;
-    rest_.append(missing, '\0');
-    encode(rest_);
-    text_.replace(text_.size() - missing, missing, missing, '=');
-    file_.append(text_);
-  }
-
- private:
-  void encode(std::string_view bytes) {
-    file_.append(text_);
-    text_.clear();
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-      const auto byte = [&](std::size_t k) {
-        return static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i + k]));
-      };
-      const std::uint32_t three = byte(0) << 16U | byte(1) << 8U | byte(2);
-      for (const unsigned shift : {18U, 12U, 6U, 0U}) text_ += kDigits[three >> shift & 63U];
-    }
-  }
-
-  static constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  work::WholeFile& file_;
-  std::string rest_;  // fewer than three bytes, between calls
-  std::string text_;  // not yet in the file
-};
 
 template <class T>
 constexpr std::string_view kTypeName = {};
@@ -85,14 +48,14 @@ class Document {
   template <class T>
   void numbers(const std::string& name, std::size_t components, std::span<const T> values) {
     open(kTypeName<T>, name, components, values.size() / components);
-    Base64 text(file_);
+    text::Base64 base64;
     const std::uint64_t bytes = values.size_bytes();
-    text.append(work::little_endian(std::span(&bytes, 1)));
+    file_.append(base64.append(work::little_endian(std::span(&bytes, 1))));
     constexpr std::size_t kPiece = 1 << 16;
     for (std::size_t i = 0; i < values.size(); i += kPiece) {
-      text.append(work::little_endian(values.subspan(i, std::min(kPiece, values.size() - i))));
+      file_.append(base64.append(work::little_endian(values.subspan(i, std::min(kPiece, values.size() - i)))));
     }
-    text.finish();
+    file_.append(base64.finish());
     line("\n</DataArray>");
   }
 
@@ -101,11 +64,11 @@ class Document {
     std::string all;
     for (const std::string& value : values) all += text::printable(value) + '\0';
     open("String", name, 1, values.size());
-    Base64 text(file_);
+    text::Base64 base64;
     const std::uint64_t bytes = all.size();
-    text.append(work::little_endian(std::span(&bytes, 1)));
-    text.append(all);
-    text.finish();
+    file_.append(base64.append(work::little_endian(std::span(&bytes, 1))));
+    file_.append(base64.append(all));
+    file_.append(base64.finish());
     line("\n</DataArray>");
   }
 
@@ -209,9 +172,7 @@ void put_unstructured(const DataSet& data, Document& document) {
 }  // namespace
 
 Format format_of(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = text::in_lower_case(file.extension().string());
   if (extension == ".vtp") return Format::kPolygons;
   if (extension == ".vtu") return Format::kUnstructured;
   text::refuse(file, "the name does not end in .vtp or .vtu", "programs tell VTK's files apart by their names",

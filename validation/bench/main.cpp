@@ -14,6 +14,7 @@ int main(int argc, char** argv) try {
   exactff::bench::add_rays();
   exactff::bench::add_memory();
   exactff::bench::add_cornell();
+  exactff::bench::add_view();
   return benchmark::RunSpecifiedBenchmarks() > 0 ? 0 : 2;  // 0: the filter matches nothing
 } catch (const std::exception& error) {
   std::fprintf(stderr, "exactff_bench: %s\n", error.what());

@@ -8,5 +8,6 @@ void add_contour();  // contour/terms, contour/arb96, contour/arb128, contour/ar
 void add_rays();     // rays/coherent, rays/incoherent, rays/scattered, rays/build
 void add_memory();   // memory; meaningful only in a process of its own
 void add_cornell();  // cornell/ENGINE/CLASS, cornell/throughput
+void add_view();     // view/loop, view/sweep, view/contour
 
 }  // namespace exactff::bench

@@ -207,6 +207,20 @@ void print_cornell(const Results& results) {
               text(throughput("1", "cpu_time") / throughput("2", "cpu_time") / Maybe(0.5)).c_str());
 }
 
+void print_view(const Results& results) {
+  print_head("All faces from one point, ms: one by one, in one sweep, and the contour of its arcs alone.",
+             {"scene", "faces seen", "arcs", "loop", "sweep", "loop / sweep", "contour"});
+  for (const std::string scene : {"karkanis/500", "karkanis/1000", "karkanis/10000", "karkanis/100000", "covered/10000",
+                                  "room/400", "room/1600"}) {
+    const auto ms = [&](const char* subject) {
+      return results.microseconds(std::string("view/") + subject + '/' + scene) / Maybe(1e3);
+    };
+    const auto figure = [&](const char* key) { return text(results.figure("view/sweep/" + scene, key)); };
+    print_row({scene, figure("seen"), figure("arcs"), text(ms("loop")), text(ms("sweep")),
+               text(ms("loop") / ms("sweep")), text(ms("contour"))});
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -216,6 +230,7 @@ int main(int argc, char** argv) try {
   print_growth(results);
   print_contour(results);
   print_cornell(results);
+  print_view(results);
   return results.sound() ? 0 : 1;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "exactff_bench_tables: %s\n", error.what());

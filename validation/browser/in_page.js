@@ -209,6 +209,54 @@
     return [];
   };
 
+  // --- What a reader finds first, and what is folded ---
+
+  check.chapters_open_with_a_verdict = () =>
+    list('section.scene').flatMap((chapter) => {
+      const [title, first] = chapter.children;
+      const name = `the chapter '${brief(words(title))}'`;
+      if (!first || !first.matches('p.verdict') || !words(first)) return [`${name} does not open with a verdict`];
+      // A sentence ends with a full stop before a capital, or at the end.
+      const sentences = words(first).split(/[.?!] (?=[A-Z])/).length;
+      return sentences === 1 && /[.?!]$/.test(words(first)) ? [] :
+        [`${name} opens with ${sentences} sentences instead of one`];
+    });
+
+  check.is_no_taller = (most) => {
+    const height = document.documentElement.scrollHeight;
+    return height <= most ? [] : [`the page is ${height} px tall, over ${most}`];
+  };
+
+  check.everything_is_unfolded = () =>
+    list('details').flatMap((fold) => {
+      const hidden = list(':scope > :not(summary)', fold).find((part) => !shown(part));
+      return hidden ? [`the part '${brief(words(fold.querySelector('summary') || fold))}' is folded`] : [];
+    });
+
+  // A reader of a phone does not see that a table scrolls.
+  check.no_column_is_cut = () =>
+    list('table').filter(shown).flatMap((table) => {
+      const frame = table.parentElement, needed = table.getBoundingClientRect().width;
+      const cut = frame.scrollWidth > frame.clientWidth + 1 || needed > frame.clientWidth + 1;
+      return cut ? [`the table '${brief(words(table.querySelector('th, td')))}' is cut: it needs ` +
+                    `${Math.ceil(Math.max(needed, frame.scrollWidth))} px of ${frame.clientWidth}`] : [];
+    });
+
+  // Gnuplot draws marks as <use>. Those of the legend stand beside their words.
+  check.no_mark_covers_a_label = () =>
+    list('figure').filter(shown).flatMap((figure) => {
+      const marks = list('svg use, svg circle', figure).filter((mark) => !mark.closest(kUndrawn) && shown(mark));
+      const boxes = marks.map((mark) => mark.getBoundingClientRect());
+      const covered = labels_of(figure).find((label) => {
+        const box = label.getBoundingClientRect();
+        return boxes.some((mark) => {
+          const x = (mark.left + mark.right) / 2, y = (mark.top + mark.bottom) / 2;
+          return x > box.left && x < box.right && y > box.top && y < box.bottom;
+        });
+      });
+      return covered ? [`${name_of(figure)} draws a mark over '${brief(words(covered))}'`] : [];
+    });
+
   check.running_text_is_large = (least) => {
     const size = parseFloat(getComputedStyle(document.body).fontSize);
     return size >= least ? [] : [`running text is ${size} px large`];

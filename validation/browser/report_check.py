@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Opens a report in headless Chromium and checks that a reader gets to see it.
 
-Usage: report_check.py REPORT.html [--screenshots DIR] [--chromium FILE] [--chromedriver FILE]
+Usage: report_check.py REPORT.html [--tallest PIXELS] [--screenshots DIR] [--chromium FILE] [--chromedriver FILE]
 
-Every figure has drawn; nothing is fetched; the page reads on a phone and on a screen, light and dark, and in print; its
+Every chapter opens with a verdict; every figure has drawn; nothing is fetched; the page reads on a phone and on a screen, light and dark, and in print; its
 references resolve. Screenshots of the whole page are left in DIR. Needs Debian's chromium, chromium-driver and
 python3-selenium; no network. Exit code 0: all is well; 1: complaints, one a line; 2: the check could not be made.
 """
@@ -88,6 +88,10 @@ class Reader:
         found = self.driver.execute_script(f"{IN_PAGE}\nreturn report_check.{name}(...arguments)", *arguments)
         self.complaints += [text if anywhere else f"{text} ({self.condition})" for text in found]
 
+    def unfold(self):
+        """Opens what is folded: it is checked as well."""
+        self.driver.execute_script("document.querySelectorAll('details').forEach((fold) => { fold.open = true; })")
+
     def log(self):
         return [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
 
@@ -148,9 +152,26 @@ def check_layout(reader, width, scheme, medium="screen"):
     reader.check("marks_are_told_from_paper", MARK_CONTRAST)
 
 
-def check_report(driver, page, screenshots=None):
-    """All complaints about the page, each once."""
+def check_folded(reader, tallest, screenshots):
+    """The page as it opens, before a reader unfolds anything; printed, it is unfolded."""
+    reader.check("chapters_open_with_a_verdict", anywhere=True)
+    reader.view(SCREEN)
+    if tallest:
+        reader.check("is_no_taller", tallest)
+    for width in (SCREEN, PHONE):
+        reader.view(width)
+        reader.check("no_column_is_cut")
+        if screenshots:
+            save(reader.pictures(), screenshots, f"{'phone' if width == PHONE else 'screen'}-folded")
+    reader.view(PAPER, medium="print")
+    reader.check("everything_is_unfolded")
+
+
+def check_report(driver, page, screenshots=None, tallest=None):
+    """All complaints about the page, each once. `tallest`: its height on a screen as it opens, in pixels."""
     reader = Reader(driver, page)
+    check_folded(reader, tallest, screenshots)
+    reader.unfold()
     reader.check("page_is_described", anywhere=True)
     reader.check("ids_are_unique", anywhere=True)
     reader.check("references_resolve", anywhere=True)
@@ -163,6 +184,8 @@ def check_report(driver, page, screenshots=None):
         if width == PHONE:
             reader.check("running_text_is_large", LEAST_RUNNING_TEXT)
             reader.check("lettering_can_be_read", LEAST_LETTERING)
+            reader.check("no_column_is_cut")
+            reader.check("no_mark_covers_a_label")
             reader.check_marks_show(pictures)
         if screenshots:
             save(pictures, screenshots, f"{'phone' if width == PHONE else 'screen'}-{scheme}")
@@ -175,6 +198,7 @@ def check_report(driver, page, screenshots=None):
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("report", type=pathlib.Path, metavar="REPORT.html")
+    parser.add_argument("--tallest", type=int, metavar="PIXELS", help="height of the page on a screen, as it opens")
     parser.add_argument("--screenshots", type=pathlib.Path, metavar="DIR", help="where pictures of the page are left")
     add_browser_arguments(parser)
     return parser.parse_args()
@@ -194,7 +218,7 @@ def main():
         for old in arguments.screenshots.glob("*.png"):
             old.unlink()
     with browser(arguments.chromium, arguments.chromedriver) as driver:
-        complaints = check_report(driver, arguments.report, arguments.screenshots)
+        complaints = check_report(driver, arguments.report, arguments.screenshots, arguments.tallest)
     for complaint in complaints:
         print(f"{arguments.report.name}: {complaint}")
     print(f"{arguments.report}: " + (f"{len(complaints)} complaints" if complaints else "reads well"))

@@ -12,6 +12,7 @@ import tempfile
 import report_check
 
 SOUND = pathlib.Path(__file__).with_name("sound.html")
+SOUND_HEIGHT = 1200  # pixels on a screen: its two figures stand below each other
 CURVE = '<path id="line" d="M60 240 L200 90 L370 60" stroke="#0072b2" stroke-width="2" fill="none"/>'
 DATA = '<path class="data" d="M60 240 L370 60" stroke-width="2"/>'
 
@@ -55,7 +56,17 @@ FAULTS = {
                               "the page fetches https://example.org/c.json"),
     "a script that fails": ("<h1", "<script>nowhere()</script><h1", "nowhere is not defined"),
     "overflow on a phone": ("<h1", '<div style="width: 600px">Broad</div><h1', "<div> 'Broad' reaches to"),
-    "a table without its box": ('<div class="wide">', "<div>", "<td> 'A table that is wider"),
+    "a table without its box": ('<div class="wide"><table>', "<div><table style='white-space: nowrap'>",
+                                "<td> 'A table that wraps"),
+    "a cut column": ("<table>", '<table style="white-space: nowrap">', "the table 'A table that wraps on a phone"),
+    "a chapter without a verdict": ('<p class="verdict">', "<p>", "the chapter 'Verdict' does not open with a verdict"),
+    "figures before the verdict": ("<h2>Verdict</h2>", "<h2>Verdict</h2><p>Some numbers first.</p>",
+                                   "the chapter 'Verdict' does not open with a verdict"),
+    "a verdict of two sentences": ("when it rains.", "when it rains. It is dry.", "opens with 2 sentences"),
+    "a page that never ends": ("<h1", '<div style="height: 900px"></div><h1', f"px tall, over {SOUND_HEIGHT}"),
+    "a fold that print keeps": ("details::details-content", "details.none::details-content",
+                                "the part 'More' is folded (print)"),
+    "a mark over a label": (DATA, DATA + '<circle cx="235" cy="20" r="4"/>', "draws a mark over 'RMS'"),
     "no viewport": ('<meta name="viewport" content="width=device-width, initial-scale=1">', "", "it names no viewport"),
     "overflow in print": (".wide td { white-space: normal; }", ".wide { width: 60rem; }", "reaches to 976 px (print)"),
     "overlapping figures": ("<style>", "<style>#plot { margin-top: -12rem }",
@@ -75,7 +86,7 @@ FAULTS = {
 def check_text(driver, folder, text):
     page = folder / "page.html"
     page.write_text(text, encoding="utf-8")
-    return report_check.check_report(driver, page)
+    return report_check.check_report(driver, page, tallest=SOUND_HEIGHT)
 
 
 def failure(driver, folder, fault):

@@ -27,8 +27,8 @@ void check_words(const std::vector<std::string>& words) {
 }
 
 void check(const report::StudyFile& study) {
-  if (study.scenes.empty() && study.experiments.empty()) fail("a study of nothing is accepted");
-  for (const auto* lines : {&study.scenes, &study.experiments}) {
+  if (study.scenes.empty() && study.experiments.empty() && study.fields.empty()) fail("a study of nothing is accepted");
+  for (const auto* lines : {&study.scenes, &study.experiments, &study.fields}) {
     std::size_t before = 0;
     for (const report::StudyLine& line : *lines) {
       if (line.words.empty() || line.number <= before) fail("a line without words, or out of order");

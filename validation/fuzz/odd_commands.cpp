@@ -119,7 +119,10 @@ class CommandWriter {
     if (places.empty() || random_.one_in(30)) return;
     const OptionRow& chosen = *one_of(random_, places);
     give(chosen);
-    if (chosen.names.back() == "--receivers") return;
+    if (chosen.names.back() == "--receivers") {
+      if (random_.one_in(2)) words_.insert(words_.end(), {"--on", "auto"});
+      return;
+    }
     for (const OptionRow& row : table_.options) {
       if (row.names.back() == "--on") give(row);
     }
@@ -128,7 +131,8 @@ class CommandWriter {
   void add_option(const OptionRow& row) {
     const std::string& name = row.names.back();
     if (contains_any(name, {"--help", "--experiment"})) return;  // an experiment takes half a minute
-    const bool told = places_receivers(row) || (name == "--on" && words_.front() != "point");
+    const bool told =
+        places_receivers(row) || (name == "--on" && words_.front() != "point" && words_.front() != "view");
     const std::size_t rarity = row.required ? 1 : keeps_work_small(row) ? 1 : told ? 40 : row.value.empty() ? 5 : 7;
     const bool wanted = name == "--family" ||  // all of them take half a minute
                         (row.required || keeps_work_small(row) ? !random_.one_in(100) : random_.one_in(rarity));
@@ -142,6 +146,8 @@ class CommandWriter {
 
   // Some options are refused without another one.
   void keep_company() {
+    // By default, a matrix may take many minutes.
+    if (table_.name == "matrix" && !has_any({"--budget"})) words_.insert(words_.end(), {"--budget", "20"});
     if (random_.one_in(20)) return;
     const bool sampled = has_any({"--eps-b", "--eps-a", "--rays", "--seed", "--pattern", "--variant"});
     if (table_.name == "point" && sampled && !has_any({"--adaptive"})) words_.emplace_back("--adaptive");
@@ -151,7 +157,11 @@ class CommandWriter {
         const std::string missing = has_any({"--eye"}) ? "--look" : "--eye";
         give(*std::ranges::find_if(table_.options, [&](const OptionRow& row) { return row.names.back() == missing; }));
       }
+      if (has_any({"--times"}) && !has_any({"--strip"})) words_.emplace_back("--strip");
       if (has_any({"--strip"}) && !has_any({"--against"})) words_.insert(words_.end(), {"--against", quick_method()});
+    }
+    if (has_any({"--exr", "--position-layer", "--normal-layer"})) {
+      std::ranges::replace(words_, "in/receivers.csv", "in/gbuffer.exr");
     }
     if (has_any({"--method-seeds", "--method-receivers", "--method-budget"})) std::erase(words_, "--no-methods");
   }
@@ -254,15 +264,17 @@ class CommandWriter {
     if (table_.name == "render" && row.required)
       return one_of<std::string>(random_, {"out/image.png", "out/image.exr"});
     if (std::regex_search(row.description, kWritten)) return "out/" + written_name(row.names.back());
-    if (row.names.back() == "TRUTH") return "in/truth.csv";
-    if (row.names.back() == "CANDIDATE") return "in/candidate.csv";
+    if (row.names.back() == "TRUTH") return are_images_ ? "in/truth.exr" : "in/truth.csv";
+    if (row.names.back() == "CANDIDATE") return are_images_ ? "in/candidate.exr" : "in/candidate.csv";
     if (row.names.back() == "SHARD") return "in/shard" + std::to_string(++shards_) + ".csv";
     if (row.names.back() == "--baseline") return "in/baseline.json";
-    return "in/receivers.csv";
+    return random_.one_in(4) ? "in/gbuffer.exr" : "in/receivers.csv";
   }
 
   std::string written_name(const std::string& option) {
     if (option == "--npy") return "values.npy";
+    if (option == "--exr") return "values.exr";
+    if (option == "--error-image") return one_of<std::string>(random_, {"errors.exr", "errors.png", "errors.jpg"});
     if (option == "--vtk") return one_of<std::string>(random_, {"cells.vtp", "cells.vtu", "cells.vtp", "cells.vtk"});
     if (option == "--junit") return "junit.xml";
     if (option == "--json" || option == "--write-baseline") return option.substr(2) + ".json";
@@ -297,8 +309,11 @@ class CommandWriter {
     if (row.names.back() == "--rays" || row.names.back() == "--seeds")
       return random_.one_in(4) ? "1,4" : small_whole(random_, 1, 4);
     if (row.names.back() == "--title") return odd_name(random_);
+    if (row.value == "LAYER")
+      return one_of<std::string>(random_, {"position", "normal", "P", "normal", "Nrmal", odd_name(random_)});
     if (contains_any(row.names.back(), {"column"}))
-      return one_of<std::string>(random_, {"value", "receiver", "exact", "source", "other", odd_name(random_)});
+      return one_of<std::string>(random_,
+                                 {"value", "receiver", "exact", "source", "other", "R", "view", odd_name(random_)});
     const std::vector<std::string> words = words_in(row.description);
     if (row.names.back().starts_with("--eps")) return tolerance() + (random_.one_in(4) ? "," + tolerance() : "");
     if (words.empty()) return number() + (random_.one_in(4) ? "," + number() : "");
@@ -309,6 +324,7 @@ class CommandWriter {
   const OddInputs& inputs_;
   Random& random_;
   Words words_;
+  const bool are_images_ = random_.one_in(4);  // the files of check
   int shards_ = 0;
   bool shuffle_later_ = false;
 };
@@ -356,8 +372,8 @@ cli::ProgramTable own_table() {
 
 std::vector<Words> odd_commands(const cli::ProgramTable& program, const OddInputs& inputs, Random& random) {
   // stress uses its own scenes, and merge reads only a few files.
-  const std::vector<std::string> often = {"point", "point", "point", "compare", "compare", "truth",
-                                          "truth", "check", "check", "info",    "convert"};
+  const std::vector<std::string> often = {"point", "point", "point", "view",  "view", "compare", "compare",
+                                          "truth", "truth", "check", "check", "info", "convert", "matrix"};
   const std::string name =
       random.one_in(6) ? program.commands[random.below(program.commands.size())].name : one_of(random, often);
   if (random.one_in(150))

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 
+#include "exactff/pixels.h"
 #include "exactff/scene_files.h"
 #include "fuzz/scene_bytes.h"
 #include "generate/families.h"
@@ -138,6 +141,48 @@ std::string odd_receivers(const PlainScene& scene, Random& random) {
   return text;
 }
 
+float odd_float(Random& random, double near) {
+  if (!random.one_in(30)) return static_cast<float>(near + (random.one_in(3) ? 0.0 : (random.unit() - 0.5) * 0.25));
+  return one_of<float>(random, {0.0F, -0.0F, 1e-45F, 3e38F, std::numeric_limits<float>::infinity(),
+                                std::numeric_limits<float>::quiet_NaN()});
+}
+
+void add_channels(pixels::Image& image, const std::vector<std::pair<std::string, double>>& channels, Random& random) {
+  for (const auto& [name, near] : channels) {
+    pixels::Numbers& channel = image.channels.emplace_back(pixels::Numbers{name, pixels::Kind::kFloat, {}});
+    if (random.one_in(40)) channel.kind = pixels::Kind::kWhole;
+    for (std::size_t i = 0; i < image.data.pixels(); ++i) {
+      channel.bits.push_back(std::bit_cast<std::uint32_t>(odd_float(random, near)));
+    }
+  }
+}
+
+// Visible points near the scene's receiver, a truth and the values of another program.
+void add_images(OddInputs& inputs, Random& random) {
+  const pixels::Window data{random.integer(-2, 2), random.integer(-2, 2), random.integer(1, 5), random.integer(1, 20)};
+  const pixels::Window display{0, 0, 5, 20};
+  const Vec3 &p = inputs.scene.point, &n = inputs.scene.normal;
+  const std::string view = random.one_in(4) ? odd_name(random) + '.' : "";
+  const std::string position = view + (random.one_in(3) ? "P" : "position") + '.', normal = view + "normal.";
+  pixels::Image points{data, display, {}, {{"key", odd_name(random)}}};
+  add_channels(points,
+               {{position + "X", p.x},
+                {position + "Y", p.y},
+                {position + "Z", p.z},
+                {normal + "X", n.x},
+                {normal + "Y", n.y},
+                {normal + "Z", n.z}},
+               random);
+  if (random.one_in(4)) add_channels(points, {{"A", 1.0}}, random);
+  inputs.files["in/gbuffer.exr"] = pixels::exr_of(points);
+  for (const char* path : {"in/truth.exr", "in/candidate.exr"}) {
+    pixels::Image image{random.one_in(8) ? display : data, display, {}, {}};
+    const std::string layer = random.one_in(3) ? "view." : "";
+    add_channels(image, {{layer + "R", 0.5}, {layer + "G", 0.25}, {layer + "B", 0.0}}, random);
+    inputs.files[path] = pixels::exr_of(image);
+  }
+}
+
 // A truth file with few rows and the values of another program for them, by id and by position.
 void add_tables(Files& files, Random& random) {
   const bool rho = random.one_in(2), positions = !random.one_in(3), bounds = random.one_in(2);
@@ -261,6 +306,7 @@ OddInputs odd_inputs(Random& random) {
   add_other_formats(inputs);
   inputs.files["in/receivers.csv"] = odd_receivers(inputs.scene, random);
   add_tables(inputs.files, random);
+  add_images(inputs, random);
   inputs.files["in/run.study"] = odd_study(inputs.scene, random);
   inputs.files["in/baseline.json"] = kBaseline;
   for (auto& [path, text] : inputs.files) {

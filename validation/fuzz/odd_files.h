@@ -1,6 +1,6 @@
 // Random input files for the whole program, as a careless or hostile user might write them: scenes of the random
-// families with names that may break a reader of the outputs, receivers, truth and candidate tables, baselines, study
-// files.
+// families with names that may break a reader of the outputs, receivers, truth and candidate tables and images,
+// baselines, study files.
 #pragma once
 
 #include <map>

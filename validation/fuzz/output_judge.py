@@ -220,11 +220,12 @@ def judge_png(data):
         raise Wrong("PNG is cut off")
 
 
-# The header, and that the table of offsets leads into the file.
+# The header, and that the table of offsets, which follows the header's last attribute, leads into the file.
 def judge_exr(data):
     if not data.startswith(b"\x76\x2f\x31\x01\x02") or b"channels\0chlist\0" not in data:
         raise Wrong("not OpenEXR")
-    table = data.find(b"screenWindowWidth\0float\0") + 34
+    last = b"screenWindowWidth\0float\0\x04\0\0\0"
+    table = data.find(last) + len(last) + 4 + 1  # its value, then the zero that ends the header
     first = int.from_bytes(data[table:table + 8], "little")
     if not table < first < len(data):
         raise Wrong("OpenEXR without pixels")

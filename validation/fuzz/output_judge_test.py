@@ -63,6 +63,9 @@ class Judge(unittest.TestCase):
         self.expect_file("damaged", "a.png", png.replace(b"\x08\x02", b"\x08\x03") + chunk(b"IEND", b""))
         self.expect_file("not PNG", "a.png", b"x")
         self.expect_file("not OpenEXR", "a.exr", b"x")
+        exr = b"\x76\x2f\x31\x01\x02\0\0\0channels\0chlist\0\x01\0\0\0\0screenWindowWidth\0float\0\x04\0\0\0\0\0\x80\x3f\0"
+        self.expect_file("", "a.exr", exr + (len(exr) + 8).to_bytes(8, "little") + b"x")
+        self.expect_file("without pixels", "a.exr", exr + (len(exr) + 8).to_bytes(8, "little"))
         npy = b"\x93NUMPY\x01\x00\x3a\x00{'descr': '<f8', 'fortran_order': False, 'shape': (2,), }\n"
         self.expect_file("", "a.npy", npy + bytes(16))
         self.expect_file("another size", "a.npy", npy + bytes(15))

@@ -14,21 +14,24 @@ declare -A allowed=(
   [visibility]="receivers scene kernel"
   [contour]="visibility kernel"
   [exact]="contour visibility receivers scene text kernel"
+  [whole_view]="exact contour visibility receivers scene text kernel"
+  [view_factors]="exact visibility receivers scene work text kernel"
   [diagnosis]="exact receivers scene text kernel"
   [sampled]="receivers scene kernel"
   [methods]="sampled exact receivers scene text kernel"
   [models]="receivers scene text kernel"
   [work]="text kernel"
   [page]="work text kernel"
+  [pixels]="receivers scene text kernel"
   [vtk]="receivers scene work text kernel"
   [study]="methods sampled exact receivers scene work text kernel"
-  [experiments]="study models methods exact page work text kernel"
-  [render]="study methods exact receivers scene work text kernel"
-  [flags]="study models formats receivers exact scene text"
-  [report]="flags experiments vtk study sampled exact page work text kernel"
+  [experiments]="study models methods whole_view exact page work text kernel"
+  [render]="pixels study methods exact receivers scene work text kernel"
+  [flags]="pixels study models formats receivers exact scene text"
+  [report]="render flags experiments vtk study methods sampled exact page work text kernel"
   [stress]="sampled exact receivers scene page work text kernel"
-  [truth]="vtk exact receivers scene work text kernel"
-  [check]="exact page work text kernel"
+  [truth]="pixels vtk exact receivers scene work text kernel"
+  [check]="pixels exact page work text kernel"
   [batch]="methods exact receivers scene work text kernel"
   [python]=""  # and all public headers
   [cli]="flags work text"  # and all public headers
@@ -36,8 +39,8 @@ declare -A allowed=(
 
 # The module of a public header that is not named after it.
 declare -A home=(
-  [enclosure]=kernel [geometry]=kernel [progress]=kernel [error]=text [summary]=scene [settings]=text [version]=text [obj]=formats [scene_files]=formats
-  [receiver]=receivers [record]=visibility [adaptive]=sampled [visibility_svg]=report [testing]=check [team]=truth
+  [enclosure]=kernel [geometry]=kernel [progress]=kernel [error]=text [summary]=scene [settings]=text [version]=text [quantity]=exact [obj]=formats [scene_files]=formats
+  [receiver]=receivers [record]=visibility [adaptive]=sampled [view]=whole_view [visibility_svg]=report [testing]=check [team]=truth
 )
 
 failures=0

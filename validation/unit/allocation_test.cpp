@@ -17,7 +17,9 @@
 #include "exact/quick_tier.h"
 #include "exact/source_planes.h"
 #include "exactff/exact.h"
+#include "exactff/models.h"
 #include "exactff/obj.h"
+#include "exactff/view.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
 #include "kernel/ball.h"
@@ -240,6 +242,41 @@ TEST(Allocation, IsNotMadeWhereSourcesTakeTurns) {
   const auto is_partly_hidden = [](const Second& second) { return second.outcome == Outcome::kPartlyHidden; };
   EXPECT_GT(count_if(seconds, is_partly_hidden), 0U);
   EXPECT_GT(count_if(seconds, [&](const Second& s) { return s.horizon_clipped && is_partly_hidden(s); }), 0U);
+}
+
+// Piercing triangles, the clipped walls of a room, and a mesh that lines up with x.
+TEST(Allocation, IsNotMadeForAWholeView) {
+  std::vector<Scene> scenes;
+  for (const char* name : {"karkanis:n=60,seed=2", "soup:n=200"}) scenes.push_back(models::make_scene(name));
+  scenes.push_back(read_obj(EXACTFF_DATA_DIR "/scenes/cornell_box.obj"));
+  Workspace workspace;
+  WholeView seen;
+  std::size_t count = 0, compared = 0, pierced = 0;
+  for (const bool counts : {false, true}) {
+    Random random(3);
+    for (int i = 0; i < 30; ++i) {
+      const Scene& scene = scenes[static_cast<std::size_t>(i) % scenes.size()];
+      const double size = i % 3 == 2 ? 500.0 : 1.0;
+      const Receiver receiver{.point = {size * random.between(0.1, 0.9), size * random.between(0.1, 0.9), 0.25 * size},
+                              .normal = {random.between(-1, 1), random.between(-1, 1), 1.0},
+                              .on = {},
+                              .id = {}};
+      const std::uint64_t allocations = allocations_of([&] { view(scene, receiver, {}, seen, workspace); });
+      if (!counts) continue;
+      ++count;
+      pierced += seen.record.pierced;
+      const auto took_arb = [](const ViewShare& share) { return share.precision_bits > exact::QuickTier::kBits; };
+      if (took_arb(seen.back) || took_arb(seen.open) || std::ranges::any_of(seen.patches, [&](const SeenPatch& patch) {
+            return patch.stacked || took_arb(patch.share);
+          })) {
+        continue;
+      }
+      ++compared;
+      EXPECT_EQ(allocations, 0U) << "view " << i;
+    }
+  }
+  EXPECT_GE(2 * compared, count);
+  EXPECT_GT(pierced, 0U);
 }
 
 }  // namespace

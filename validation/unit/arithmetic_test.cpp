@@ -22,11 +22,14 @@
 #include "exactff/methods.h"
 #include "exactff/models.h"
 #include "exactff/obj.h"
+#include "exactff/pixels.h"
 #include "exactff/receiver.h"
 #include "exactff/report.h"
 #include "exactff/stress.h"
 #include "exactff/study.h"
 #include "exactff/truth.h"
+#include "exactff/view.h"
+#include "exactff/view_factors.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
 #include "study_support.h"
@@ -113,11 +116,30 @@ class Record {
     text_ << to_string(f.status) << ' ' << f.enclosure.midpoint() << ' ' << f.enclosure.radius() << ' ';
     for (const PlaneRecord& plane : f.planes) text_ << to_string(plane.outcome) << ' ' << plane.edges << ' ';
   }
+  void add(const ViewFactor& f) {
+    for (const double number : {f.value, f.lower, f.upper, f.area_from, f.area_to}) add(number);
+  }
   void add(const std::vector<PlaneDrawing>& drawings) {
     for (const PlaneDrawing& drawing : drawings) {
       for (const Loop& loop : drawing.visible) {
         for (const Vec3& corner : loop.corners) add(corner);
       }
+    }
+  }
+  void add(const WholeView& seen) {
+    const auto share = [&](const ViewShare& of) {
+      for (const double number : {of.value, of.lower, of.upper}) add(number);
+      text_ << to_string(of.status) << ' ' << of.enclosure.midpoint() << ' ' << of.enclosure.radius() << ' ';
+    };
+    for (const SeenPatch& patch : seen.patches) {
+      share(patch.share);
+      share(patch.form_factor);
+    }
+    share(seen.back);
+    share(seen.open);
+    for (const ViewArc& arc : seen.arcs) {
+      add(arc.from);
+      add(arc.to);
     }
   }
   [[nodiscard]] std::string text() const { return text_.str(); }
@@ -147,6 +169,8 @@ void add_scene(const Scene& scene, const Task& task, Record& record) {
   const Receiver receiver = generate::receiver_of(task.plain);
   record.add(exact_form_factor(scene, receiver, source, {.visible_fraction = true}));
   record.add(draw_visibility(scene, receiver, source));
+  record.add(view(scene, receiver, {.arcs = true}));
+  if (has_area) record.add(view_factor(scene, scene.select(scene.patches().back().name), selection, {0.1, 20}));
 }
 
 std::string all_of(const Task& task) {
@@ -302,6 +326,7 @@ TEST(ThreadsArithmetic, ChangesNoTruthFile) {
   request.scene_name = "room";
   request.receivers = grid_receivers(scene, scene.select("floor"), {9, 9});
   request.unoccluded = request.visible_fraction = true;
+  request.total = Quantity::kRadiance;
   request.threads = 2;
   const auto write = [&] {
     truth::write(request, whole, truth::Existing::kReplace);
@@ -314,6 +339,35 @@ TEST(ThreadsArithmetic, ChangesNoTruthFile) {
     return std::string();
   };
   expect_the_same(joint_settings(), write, [&] { return validation::text_of(whole) + validation::text_of(merged); });
+}
+
+// Points are read from an image, placed on their faces, valued, and the values are written and compared.
+TEST(ThreadsArithmetic, ChangesNoImage) {
+  const validation::TemporaryDirectory directory;
+  const Scene scene = validation::small_room(true);
+  pixels::Image image{{0, 0, 2, 1}, {0, 0, 2, 1}, {}, {}};
+  for (const auto& [name, value] :
+       {std::pair{"P.X", 0.3F}, {"P.Y", 0.1F}, {"P.Z", 1e-40F}, {"N.X", 1e-42F}, {"N.Y", 0.0F}, {"N.Z", 0.7F}}) {
+    image.channels.push_back({name, pixels::Kind::kFloat, std::vector(2, std::bit_cast<std::uint32_t>(value))});
+  }
+  const std::filesystem::path points = directory.write("points.exr", pixels::exr_of(image)),
+                              table = directory.path() / "truth.csv", values = directory.path() / "truth.exr";
+  truth::Request request;
+  request.scene = &scene;
+  request.scene_name = "room";
+  request.total = Quantity::kRadiance;
+  request.threads = 1;
+  const auto write = [&] {
+    pixels::GBuffer gbuffer = pixels::read_gbuffer(pixels::ExrFile(points));
+    pixels::place_on_faces(scene, gbuffer);
+    request.receivers = std::move(gbuffer.receivers);
+    truth::write(request, table, truth::Existing::kReplace);
+    truth::write_exr(gbuffer.frame, table, values);
+    const check::Images images = check::read_images(values, values);
+    const check::Report report = check::judge(images.truth, images.values, {.relative_mse = 1.0});
+    return pixels::exr_of(image) + check::json_text(report);
+  };
+  expect_the_same(joint_settings(), write, [&] { return validation::text_of(table) + validation::text_of(values); });
 }
 
 TEST(ThreadsArithmetic, ChangesNoCheck) {

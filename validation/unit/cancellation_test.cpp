@@ -192,6 +192,12 @@ TEST_F(Interruption, EndsThePolygonBooleansAsWell) {
   EXPECT_EQ(interrupted(long_point("@soup:n=20000", {"--engine", "boolean"})), "exactff: interrupted\n");
 }
 
+TEST_F(Interruption, EndsAWholeView) {
+  EXPECT_EQ(
+      interrupted({"view", "@soup:n=30000", "--at", "0", "0", "0", "--normal", "0", "0", "1", "--digits", "3000"}),
+      "exactff: interrupted\n");
+}
+
 TEST_F(Interruption, EndsTheMakingOfReceivers) {
   const std::string file = (directory_.path() / "truth.csv").string();
   EXPECT_EQ(interrupted({"truth", "@soup:n=10", "--on", "floor", "--grid", "2000x2000", "-o", file}),

@@ -14,6 +14,7 @@
 #include "experiments/karkanis_times.h"
 #include "experiments/nettle_rule.h"
 #include "experiments/small_emitters.h"
+#include "experiments/whole_view_times.h"
 #include "page/plot_script.h"
 
 namespace exactff::experiments {
@@ -24,7 +25,7 @@ const Hooks kNoHooks;
 // --- what they share -----------------------------------------------------------------------------------
 
 TEST(Experiments, AreFoundByNameAndNearlyByAnother) {
-  ASSERT_EQ(all_experiments().size(), 6U);
+  ASSERT_EQ(all_experiments().size(), 7U);
   for (const Experiment& e : all_experiments()) EXPECT_EQ(&experiment_named(e.name), &e);
   try {
     (void)experiment_named("nettle");
@@ -87,7 +88,11 @@ std::vector<SmallRun> small_runs() {
   const auto room = [](int threads, const Hooks& hooks) {
     return closure(ClosureSize{.receivers = 4, .choices = {"hemicube", "nettle:rays=4"}}, threads, hooks);
   };
-  return {{"scatter", scatter}, {"resolution", resolution}, {"nettle", nettle}, {"emitters", emitters}, {"room", room}};
+  const auto whole_view = [](int, const Hooks& hooks) {
+    return whole_view_times({.triangles = {5, 20}, .models = {{"closed-room:boxes=1", "floor"}}, .points = 2}, hooks);
+  };
+  return {{"scatter", scatter}, {"resolution", resolution}, {"nettle", nettle}, {"emitters", emitters},
+          {"room", room},       {"whole view", whole_view}};
 }
 
 TEST(Experiments, GiveTheSameBytesOfValuesForAnyNumberOfThreads) {
@@ -281,6 +286,17 @@ TEST(Closure, ExactBallsHoldOneAndTheHemicubeClosesThoughItsValuesErr) {
   EXPECT_LT(study.methods[0].worst, 1e-12);
   EXPECT_GT(study.methods[0].single_rms, 1e-5);
   EXPECT_GT(study.methods[1].rms, 1e-3);
+}
+
+TEST(WholeViewTimes, SeeAsManyTrianglesAsTheSolverAndAddUpToOne) {
+  const std::vector<WholeViewRow> rows =
+      whole_view_rows({.triangles = {30, 200}, .models = {{"closed-room:boxes=2", "ceiling"}}, .points = 3}, kNoHooks);
+  ASSERT_EQ(rows.size(), 5U);
+  for (const WholeViewRow& row : rows) EXPECT_TRUE(row.holds_one) << row.scene;
+  EXPECT_EQ(rows[0].seen, work_row(30, false).visible + 1);  // and the source behind them
+  EXPECT_EQ(rows[1].seen, work_row(200, false).visible + 1);
+  EXPECT_GT(rows[2].open, 0.05);
+  EXPECT_EQ(rows[4].open, 0.0);
 }
 
 // --- the plot they need --------------------------------------------------------------------------------

@@ -142,6 +142,18 @@ TEST(Misuse, AReceiverOnAFaceThatIsNotThereIsRefused) {
   }
 }
 
+TEST(Misuse, OccludersOutOfOrderOrNotThereAreRefused) {
+  const Scene scene = room();
+  const ExactSource source(scene, scene.select("lamp"));
+  const auto solve_with = [&](const std::vector<FaceId>& only) {
+    return exact_form_factor(scene, kBelow, source, {.only_occluders = &only}).value;
+  };
+  expect_refused("only_occluders is not in ascending order", [&] { (void)solve_with({FaceId{2}, FaceId{0}}); });
+  expect_refused("there is no face 3", [&] { (void)solve_with({FaceId{0}, FaceId{3}}); });
+  EXPECT_EQ(solve_with({FaceId{0}, FaceId{1}, FaceId{2}}), exact_form_factor(scene, kBelow, source).value);
+  EXPECT_GT(solve_with({}), solve_with({FaceId{0}, FaceId{1}, FaceId{2}}));
+}
+
 TEST(Misuse, MovedFromObjectsSaySo) {
   Scene scene = room();
   const Selection lamp = scene.select("lamp");

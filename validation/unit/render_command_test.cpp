@@ -68,6 +68,8 @@ TEST_F(RenderCommand, ComparesMethods) {
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_NE(run.output.find("errors: RMS "), std::string::npos) << run.output;
   EXPECT_NE(run.output.find("wrong by over 10 %"), std::string::npos) << run.output;
+  EXPECT_EQ(render({"-o", path("again.png"), "--against", "hemicube:resolution=8", "--strip"}).code, 0);
+  EXPECT_EQ(text_of(path("again.png")), text_of(path("d.png")));  // no times
   EXPECT_EQ(render({"-o", path("e.exr"), "--against", "exact"}).code, 0);
   EXPECT_NE(text_of(path("e.exr")).find("minus exact"), std::string::npos);
 }
@@ -95,6 +97,7 @@ TEST_F(RenderCommand, BadInputIsRefusedWithWords) {
   refused({"-o", image, "--double", path("x.txt")}, "does not end in .npy");
   refused({"-o", image, "--double", path("x.npy"), "--bounds", path("./x.npy")}, "named for two results");
   refused({"-o", image, "--strip"}, "--strip is given without --against");
+  refused({"-o", image, "--times"}, "--times is given without --strip");
   refused({"-o", image, "--layers"}, "--layers needs an EXR file");
   refused({"-o", path("x.exr"), "--exposure", "2"}, "not scaled");
   refused({"-o", path("x.exr"), "--layers", "--spp", "2"}, "several points");

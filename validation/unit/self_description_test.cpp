@@ -135,8 +135,9 @@ TEST(Completion, BashOffersModelsAfterAnAtSign) {
 TEST(Completion, ZshAndFishOfferTheSameNames) {
   for (const char* shell : {"zsh", "fish"}) {
     const std::string script = output_of({"completion", shell});
-    for (const char* names : {"exact adaptive ", " hemicube ", "@teapot @forest", "karkanis-times nettle-rule",
-                              " crack crack-ulp ", "info point render compare truth merge check stress convert help"}) {
+    for (const char* names :
+         {"exact adaptive ", " hemicube ", "@teapot @forest", "karkanis-times whole-view nettle-rule",
+          " crack crack-ulp ", "info point view matrix render compare truth merge check stress convert help"}) {
       EXPECT_NE(script.find(names), std::string::npos) << shell << ": " << names;
     }
   }
@@ -180,7 +181,7 @@ std::string refusal_of(const std::vector<std::string>& arguments) {
 }
 
 const std::string kCommands =
-    " (the commands are info, point, render, compare, truth, merge, check, stress, convert and help); ";
+    " (the commands are info, point, view, matrix, render, compare, truth, merge, check, stress, convert and help); ";
 
 TEST(Commands, MisspeltGetASuggestion) {
   EXPECT_EQ(refusal_of({"poitn", "room.obj", "--at", "0", "0", "0"}),

@@ -168,14 +168,15 @@ TEST_F(NamedMethods, OneSettingIsComparedWithTheExactValues) {
   EXPECT_NE(methods.find("\nhemicube,"), std::string::npos) << methods;
   EXPECT_EQ(methods.find("# eps_B"), std::string::npos) << methods;
   const std::string page = text_of(out_ / "report.html");
-  EXPECT_NE(page.find("RMS error of hemicube, resolution 64"), std::string::npos);
+  EXPECT_NE(page.find("<p class=\"verdict\">Use the exact method"), std::string::npos);
+  EXPECT_NE(page.find("hemicube, resolution 64.</strong>"), std::string::npos) << "the pictures show it";
   EXPECT_NE(page.find("the comparison is about named methods (--sweep runs it, too)"), std::string::npos);
-  EXPECT_EQ(page.find("Every setting of the ray-sampled algorithm"), std::string::npos);
+  EXPECT_EQ(page.find("Every setting of Tampieri’s algorithm"), std::string::npos);
 }
 
 // A logarithmic axis of one value would have no number beside it.
 TEST(LinePlot, OfOnePointHasReadableAxesAndTheMark) {
-  const page::Axes axes{"time", "error", true, true, {}, {40.0}};
+  const page::Axes axes{"time", "error", true, true, {}, {{"exact", 40.0}}};
   const std::string script = page::line_plot(axes, {{"X", {{60.0, 0.02}}, 1}});
   EXPECT_NE(script.find("set xrange [1e1:1e2]\nset yrange [1e-2:1e-1]\n"), std::string::npos) << script;
   const std::string wide = page::line_plot(axes, {{"X", {{6.0, 0.02}, {600.0, 0.2}}, 1}});

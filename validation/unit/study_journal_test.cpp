@@ -324,6 +324,7 @@ TEST(Words, ThatAreNoEnumeratorAreTorn) {
 page::Chapter a_chapter() {
   page::Chapter chapter{.name = "name", .title = "A title"};
   chapter.paragraphs = {"One.", "", "Three, with ε."};
+  chapter.tables = {{"Numbers", {"of", "a"}, {{"x", "1"}, {"y", ""}}}};
   chapter.figures = {{"f1", "Figure", "caption", "plot 1\n", false}, {"f2", "Map", "<b>", "plot 2\n", true}};
   chapter.values = {{"name.csv", "what it holds", "# exactff\nx\n1\n"}};
   chapter.times = {{"times.csv", "seconds", "s\n"}, {"t2.csv", "", ""}};
@@ -338,6 +339,10 @@ TEST(ChapterBytes, ReadBackAsTheyWereWritten) {
   EXPECT_EQ(back->name, "name");
   EXPECT_EQ(back->title, "A title");
   EXPECT_EQ(back->paragraphs, chapter.paragraphs);
+  ASSERT_EQ(back->tables.size(), 1U);
+  EXPECT_EQ(back->tables[0].title, "Numbers");
+  EXPECT_EQ(back->tables[0].columns, chapter.tables[0].columns);
+  EXPECT_EQ(back->tables[0].rows, chapter.tables[0].rows);
   ASSERT_EQ(back->figures.size(), 2U);
   EXPECT_EQ(back->figures[0].script, "plot 1\n");
   EXPECT_EQ(back->figures[1].id, "f2");

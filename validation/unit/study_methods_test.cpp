@@ -699,6 +699,39 @@ TEST_F(Verdicts, SayWhatTheOthersNeed) {
                 "setting that is at least as fast is more accurate than this (best: wallace, splits 1)."}));
 }
 
+TEST_F(Verdicts, NameTheErrorFromWhichOnAnotherIsFaster) {
+  add_exact();
+  add_hemicube();
+  add_wallace();
+  add_control();
+  EXPECT_EQ(report::verdict(study_),
+            "Use the exact method (100 µs per receiver) when the RMS error must stay below 20 % of the brightest "
+            "receiver; when 20 % will do, use wallace, splits 1, in 50 % of its time.");
+}
+
+TEST_F(Verdicts, AreForExactWhereNothingIsAsFast) {
+  add_exact();
+  EXPECT_NE(report::verdict(study_).find("no other method was run"), std::string::npos) << report::verdict(study_);
+  add("hemicube:resolution=64", {{0.05, 2e-4}});
+  EXPECT_EQ(report::verdict(study_),
+            "Use the exact method whatever error you accept: it takes 100 µs per receiver, and no setting of another "
+            "method that was run is as fast.");
+}
+
+TEST_F(Verdicts, GrantAMethodThatErrsByRoundingAlone) {
+  add_exact();
+  add("wallace:splits=1", {{1e-15, 5e-5}});
+  EXPECT_EQ(report::verdict(study_),
+            "Use wallace, splits 1 in a scene like this, where it errs by rounding alone, in 50 % of its time; use the "
+            "exact method (100 µs per receiver) when every digit must be proved.");
+}
+
+TEST_F(Verdicts, OfADarkSceneSaySo) {
+  study_.exact[0].radiosity = {};
+  add_exact();
+  EXPECT_NE(report::verdict(study_).find("every form factor of this scene is 0"), std::string::npos);
+}
+
 TEST_F(Verdicts, SayThatNoOtherIsRightOrAsFast) {
   add_exact();
   add("hemicube:resolution=64", {{0.05, 2e-4}});
@@ -731,15 +764,18 @@ TEST(SlopeWords, SayWhetherTheoryAgrees) {
   const Ladder random = parse_ladder("area-sampling:pattern=random,samples=4|16");
   const Ladder stratified = parse_ladder("area-sampling:pattern=stratified,samples=4|16");
   const Ladder hemicube = parse_ladder("hemicube:resolution=8|16");
-  EXPECT_EQ(report::slope_words({-0.51, -0.53, -0.49, 30, 5}, random, Sight::kPartly),
-            "area, random: −0.51 (−0.53 to −0.49), theory −1/2");
-  EXPECT_EQ(report::slope_words({-0.75, -0.8, -0.7, 30, 5}, stratified, Sight::kPartly),
-            "area, stratified: −0.75 (−0.8 to −0.7), theory −3/4 with one shadow edge across the source");
-  EXPECT_EQ(report::slope_words({-1.0, -1.0, -1.0, 1, 5}, hemicube, Sight::kVisible), "hemicube: −1");
-  const std::string shallow = report::slope_words({-0.55, -0.56, -0.54, 30, 5}, stratified, Sight::kPartly);
-  EXPECT_NE(shallow.find("; shallower, because "), std::string::npos) << shallow;
-  const std::string steep = report::slope_words({-1.3, -1.31, -1.29, 30, 5}, stratified, Sight::kVisible);
-  EXPECT_NE(steep.find("theory −1 where nothing is discontinuous; steeper, because "), std::string::npos) << steep;
+  const auto words = [](const Slope& slope, const Ladder& ladder, Sight sight) {
+    const report::SlopeWords said = report::slope_words(slope, ladder, sight);
+    return said.fitted + " | " + said.theory + " | " + said.reason;
+  };
+  EXPECT_EQ(words({-0.51, -0.53, -0.49, 30, 5}, random, Sight::kPartly), "−0.51 (−0.53 to −0.49) | −1/2 | ");
+  EXPECT_EQ(words({-0.75, -0.8, -0.7, 30, 5}, stratified, Sight::kPartly),
+            "−0.75 (−0.8 to −0.7) | −3/4 with one shadow edge across the source | ");
+  EXPECT_EQ(words({-1.0, -1.0, -1.0, 1, 5}, hemicube, Sight::kVisible), "−1 |  | ");
+  const std::string shallow = words({-0.55, -0.56, -0.54, 30, 5}, stratified, Sight::kPartly);
+  EXPECT_NE(shallow.find(" | shallower, because "), std::string::npos) << shallow;
+  const std::string steep = words({-1.3, -1.31, -1.29, 30, 5}, stratified, Sight::kVisible);
+  EXPECT_NE(steep.find("−1 where nothing is discontinuous | steeper, because "), std::string::npos) << steep;
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "report/figures.h"
 #include "report/report.h"
 #include "report/tables.h"
+#include "study/radiosity.h"
 #include "study/settings.h"
 #include "study/silent_errors.h"
 #include "study/statistics.h"
@@ -433,14 +434,16 @@ TEST(Study, AReportOnSeveralScenesAndChaptersHoldsThemAll) {
   undrawn.add("two", "Room & 2", whole_study());
   page::Chapter chapter{.name = "a-chapter", .title = "What was <found>"};
   chapter.paragraphs = {"One is less than two: 1 < 2."};
+  chapter.tables = {{"Numbers & names", {"name", "number"}, {{"a < b", "17.5"}}}};
   chapter.values = {{"a-chapter.csv", "a number", "# of one\nx\n1\n"}};
   undrawn.report.chapters.push_back(chapter);
   undrawn.pages.chapters.emplace_back().left_out.push_back({"the rest", "it is < nothing"});
   undrawn.report.left_out.push_back({"Room <3>", "this report is abridged"});
   const std::string text = undrawn.text();
-  for (const char* part : {"Two &lt;rooms&gt;", "Room 1", "Room &amp; 2", "What was &lt;found&gt;", "1 &lt; 2.",
-                           "a-chapter.csv", "the rest", "it is &lt; nothing", "Room &lt;3&gt;", "SCENE_values.csv",
-                           "SCENE_profile.csv", "<code>two</code> (Room &amp; 2)"}) {
+  for (const char* part :
+       {"Two &lt;rooms&gt;", "Room 1", "Room &amp; 2", "What was &lt;found&gt;", "1 &lt; 2.", "Numbers &amp; names",
+        "a &lt; b", ">17.5<", "a-chapter.csv", "the rest", "it is &lt; nothing", "Room &lt;3&gt;", "SCENE_values.csv",
+        "SCENE_profile.csv", "<code>two</code> (Room &amp; 2)"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part;
   }
   std::set<std::string> ids;
@@ -583,6 +586,16 @@ TEST(Study, RefusesABaseSettingThatWouldNotEnd) {
     EXPECT_NE(std::string(error.what()).find("would take more than"), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("use a larger --eps-b"), std::string::npos) << error.what();
   }
+}
+
+TEST(Study, RadiositiesThatOverflowAreNotNan) {
+  const double most = std::numeric_limits<double>::max(), infinity = std::numeric_limits<double>::infinity();
+  const Rgb error = times(Rgb{most, most, 1.0}, 5.0);
+  EXPECT_EQ(error, (Rgb{infinity, infinity, 5.0}));
+  EXPECT_EQ(times(Rgb{0.0, 0.5, 1.0}, error), (Rgb{0.0, infinity, 5.0}));
+  Rgb sum = error;
+  add(sum, times(Rgb{most, -most, 1.0}, -5.0));
+  EXPECT_EQ(sum, (Rgb{infinity, infinity, 0.0}));
 }
 
 }  // namespace

@@ -395,7 +395,7 @@ class Scene:
         return _arrays.face_rows(table, shape, self._scene.face_count())
 
     def _warn_of_misses(self, p: Floats, n: Floats, own: Ints) -> None:
-        """Of points a hair behind or before a face, which nobody means."""
+        """Warns of points slightly behind or in front of a face: these are probably slips."""
         step = -(-len(p) // _MOST_LOOKED_AT) if len(p) else 1
         for sentence in _exactff.near_misses(self._scene, p[::step], n[::step], own[::step]):
             warn(sentence)

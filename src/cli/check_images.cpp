@@ -1,0 +1,70 @@
+#include "cli/check_images.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "cli/output.h"
+#include "exactff/pixels.h"
+#include "exactff/render.h"
+#include "text/phrases.h"
+#include "text/refuse.h"
+
+namespace exactff::cli {
+namespace {
+
+// A number that is not one stands for no value.
+std::string exr_of_errors(const check::Images& images) {
+  pixels::Image image{images.window, images.window, {}, {}};
+  image.about = {{"software", text::program_version()},
+                 {"difference", images.candidate_file + " minus " + images.truth.file}};
+  for (std::size_t c = 0; c < images.channels; ++c) {
+    pixels::Numbers& channel = image.channels.emplace_back();
+    channel.name = images.truth.sources[c];
+    for (std::size_t i = c; i < images.exact.size(); i += images.channels) {
+      channel.bits.push_back(std::bit_cast<std::uint32_t>(images.theirs[i] - images.exact[i]));
+    }
+  }
+  return pixels::exr_of(image);
+}
+
+// A single channel is shown in all three.
+std::string png_of_errors(const check::Images& images) {
+  render::Picture exact, theirs;
+  exact.size = theirs.size = {images.window.width, images.window.height};
+  for (std::size_t i = 0; i < images.window.pixels(); ++i) {
+    bool compared = false;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t at = images.channels * i + (images.channels == 3 ? c : 0);
+      const bool counts = !std::isnan(images.exact[at]);
+      compared = compared || counts;
+      exact.values.push_back(counts ? images.exact[at] : 0.0);
+      theirs.values.push_back(counts ? images.theirs[at] : 0.0);
+    }
+    exact.shows.push_back(compared ? render::Shows::kFace : render::Shows::kNothing);
+  }
+  theirs.shows = exact.shows;
+  const render::Errors errors = render::errors_of(theirs, exact);
+  const double scale = render::colour_scale(errors);
+  return render::png_of(render::coloured(errors, exact.size, scale),
+                        {{"software", text::program_version()},
+                         {"difference", images.candidate_file + " minus " + images.truth.file},
+                         {"full colour at", text::shortest(scale)}});
+}
+
+}  // namespace
+
+void check_error_image(const std::string& file, bool are_images) {
+  if (file.empty()) return;
+  static_cast<void>(render::image_kind(file));
+  if (are_images) return;
+  text::refuse("--error-image is given, but the files are tables", "only images have pixels to show",
+               "compare two .exr files, or use --plot");
+}
+
+void write_error_image(const std::string& file, const check::Images& images) {
+  const bool png = render::image_kind(file) == render::ImageKind::kPng;
+  write_whole_file(file, png ? png_of_errors(images) : exr_of_errors(images));
+}
+
+}  // namespace exactff::cli

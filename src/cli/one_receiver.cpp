@@ -1,0 +1,89 @@
+#include "cli/one_receiver.h"
+
+#include <iostream>
+#include <span>
+
+#include "cli/output.h"
+#include "flags/receivers.h"
+#include "text/escape.h"
+#include "text/number_text.h"
+#include "text/phrases.h"
+
+namespace exactff::cli {
+
+namespace {
+
+// Otherwise, if numbers are missing, the flag that follows would be read as one of them.
+std::string is_no_flag(const std::string& text) {
+  return text.starts_with("--") ? "needs three numbers; found '" + text + "' among them" : "";
+}
+
+Vec3 to_vec3(const std::array<std::string, 3>& text, const std::string& flag) {
+  return {parse_finite(text[0], flag), parse_finite(text[1], flag), parse_finite(text[2], flag)};
+}
+
+std::vector<FaceId> own_faces(const std::string& on, const Scene& scene, const Receiver& receiver) {
+  const auto automatic = flags::auto_face(on, scene);
+  if (!automatic) return own_faces_named(scene, on);
+  const double tolerance = automatic->tolerance.value_or(face_tolerance(scene, receiver.point));
+  std::vector<FaceId> faces = find_faces(scene, receiver, tolerance).faces;
+  if (!faces.empty()) return faces;
+  throw InputError({.what = "--on " + on + ": no face lies within " + text::rounded_plainly(tolerance, 2) +
+                            " of x with a normal within a degree of --normal",
+                    .why = "the receiver would lie on no face",
+                    .suggestion = "check --at and --normal, or look further away with --on auto:DISTANCE"});
+}
+
+void warn_of_turned_normal(const Scene& scene, const Receiver& receiver) {
+  if (near_misses(scene, std::span(&receiver, 1)).turned == 0) return;
+  std::cerr << "exactff: warning: the normal points away from the front of '"
+            << text::printable(scene.name_of(receiver.on)) << "', so the receiver looks through its back\n";
+}
+
+}  // namespace
+
+void OneReceiver::add_to(CLI::App& app) {
+  app.add_option("--at", at, "The receiver's point")->required()->type_name("X Y Z")->check(is_no_flag);
+  app.add_option("--normal", normal, "The receiver's normal, of any length except zero")
+      ->required()
+      ->type_name("NX NY NZ")
+      ->check(is_no_flag);
+  app.add_option("--on", on,
+                 "The receiver lies on this face, or on several (floor:1+2), which then neither occlude nor illuminate "
+                 "it; auto or "
+                 "auto:DISTANCE finds them")
+      ->type_name("NAME[:K]");
+}
+
+Receiver OneReceiver::make(const Scene& scene) const {
+  Receiver receiver{to_vec3(at, "--at"), to_vec3(normal, "--normal"), {}, ""};
+  if (!on.empty()) receiver.on = own_faces(on, scene, receiver);
+  return receiver;
+}
+
+void warn_if_off_its_face(const Scene& scene, const Receiver& receiver) {
+  constexpr double kFar = 0.01;
+  if (receiver.on.empty()) return;
+  const double distance = relative_distance_from_face(scene, receiver.on.front(), receiver.point);
+  if (distance <= kFar) return;
+  std::cerr << "exactff: warning: --at is " << percent(distance) << " of the size of face '"
+            << shown_name(scene, receiver.on.front())
+            << "' away from that face (a receiver on a face is neither occluded nor illuminated by it); check --at and "
+               "--on\n";
+}
+
+void warn_of_near_face(const Scene& scene, const Receiver& receiver,
+                       const std::function<std::string(const std::vector<FaceId>&)>& effect) {
+  if (!receiver.on.empty()) return warn_of_turned_normal(scene, receiver);
+  const NearFaces near = find_faces(scene, receiver, face_tolerance(scene, receiver.point));
+  if (near.faces.empty() || near.side == 0) return;
+  const std::string name = scene.name_of(near.faces);
+  const bool looks_through = (near.side < 0) != near.turned;
+  std::cerr << "exactff: " << (looks_through ? "warning" : "note") << ": x lies "
+            << text::rounded_plainly(near.distance, 2) << (near.side < 0 ? " behind '" : " in front of '")
+            << text::printable(name) << '\'' << (near.turned ? ", turned against its front" : "")
+            << (looks_through ? ", which then hides everything beyond it" : "") << ". With --on "
+            << text::shell_word(name) << ' ' << effect(near.faces) << '\n';
+}
+
+}  // namespace exactff::cli

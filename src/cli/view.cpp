@@ -1,0 +1,260 @@
+// exactff view: the whole view from one receiver.
+#include "exactff/view.h"
+
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "cli/command.h"
+#include "cli/exit_code.h"
+#include "cli/one_receiver.h"
+#include "cli/output.h"
+#include "cli/point.h"
+#include "cli/text_table.h"
+#include "exactff/version.h"
+#include "flags/scene.h"
+#include "text/csv_row.h"
+#include "text/json_document.h"
+#include "text/number_text.h"
+#include "text/phrases.h"
+
+namespace exactff::cli {
+
+namespace {
+
+constexpr int kMostViewDigits = 10000;
+constexpr const char* kBack = "(back)";
+constexpr const char* kOpen = "(open)";
+
+struct ViewArguments {
+  flags::SceneArguments scene;
+  OneReceiver receiver;
+  int digits = 0;
+  int precision_cap = ViewOptions{}.precision_cap;
+  std::string engine = "edges";
+  bool plain = false;
+  bool json = false;
+  bool csv = false;
+};
+
+FormFactor as_form_factor(const ViewShare& share) {
+  FormFactor f;
+  f.value = share.value;
+  f.lower = share.lower;
+  f.upper = share.upper;
+  f.status = share.status;
+  f.enclosure = share.enclosure;
+  f.precision_bits = share.precision_bits;
+  return f;
+}
+
+bool differ(const SeenPatch& patch) {
+  return patch.share.value != patch.form_factor.value || patch.share.status != patch.form_factor.status;
+}
+
+// --- The per-source solver as referee ---
+
+void compare_with_solver(const ViewArguments& args, const Scene& scene, const Receiver& receiver,
+                         const WholeView& seen) {
+  auto next = seen.patches.begin();
+  for (std::size_t p = 0; p < scene.patches().size(); ++p) {
+    const Selection patch{.patch = static_cast<PatchId>(p), .face = {}, .scene = scene.id()};
+    const std::vector<FaceId> faces = scene.faces_of(patch);
+    const bool clear = std::ranges::any_of(faces, [&](FaceId face) { return scene.face(face).transparent; });
+    const FormFactor f =
+        exact_form_factor(scene, receiver, {scene, patch},
+                          {.engine = Engine::kBoth, .digits = args.digits, .precision_cap = args.precision_cap});
+    const bool is_seen = next != seen.patches.end() && next->patch == patch.patch;
+    const ViewShare found = is_seen ? next->form_factor : ViewShare{};
+    if (is_seen) ++next;
+    if (clear || f.status == Status::kNotCertified || found.status == Status::kNotCertified) continue;
+    if (found.value == f.value && found.status == f.status && found.enclosure.overlaps(f.enclosure)) continue;
+    throw std::logic_error("the sweep and the per-source solver disagree on '" + scene.name_of(patch) +
+                           "': " + found.enclosure.midpoint() + " and " + f.enclosure.midpoint());
+  }
+}
+
+// --- Output ---
+
+std::string number(const ViewArguments& args, const ViewShare& share) {
+  return args.digits > 0 ? value_text(as_form_factor(share), args.digits) : plain_value(as_form_factor(share));
+}
+
+template <class Visit>
+void for_each_share(const Scene& scene, const WholeView& seen, const Visit& visit) {
+  for (const SeenPatch& patch : seen.patches) visit(scene.patch(patch.patch).name, patch.share, &patch);
+  visit(kBack, seen.back, static_cast<const SeenPatch*>(nullptr));
+  visit(kOpen, seen.open, static_cast<const SeenPatch*>(nullptr));
+}
+
+void print_plain(const ViewArguments& args, const Scene& scene, const WholeView& seen) {
+  for_each_share(scene, seen, [&](const std::string& name, const ViewShare& share, const SeenPatch* patch) {
+    std::cout << text::printable(name) << '\t' << number(args, patch ? patch->form_factor : share) << '\n';
+  });
+}
+
+std::string place_text(const Vec3& v) {
+  return '(' + text::shortest(v.x) + ", " + text::shortest(v.y) + ", " + text::shortest(v.z) + ')';
+}
+
+std::string receiver_text(const Scene& scene, const Receiver& receiver) {
+  const std::string on = receiver.on.empty() ? "" : ", on " + scene.name_of(receiver.on);
+  return place_text(receiver.point) + ", normal " + place_text(receiver.normal) + on;
+}
+
+void print_table(const ViewArguments& args, const Scene& scene, const Receiver& receiver, const WholeView& seen) {
+  std::vector<const SeenPatch*> by_size;
+  for (const SeenPatch& patch : seen.patches) by_size.push_back(&patch);
+  std::ranges::stable_sort(by_size, std::ranges::greater{}, [](const SeenPatch* patch) { return patch->share.value; });
+  const bool stacked = std::ranges::any_of(seen.patches, differ);
+  std::cout << "receiver " << text::printable(receiver_text(scene, receiver)) << "\n\n";
+  TextTable table;
+  table.add_column("patch");
+  table.add_column(stacked ? "share of the view" : "form factor");
+  if (stacked) table.add_column("form factor");
+  table.add_column("status");
+  const auto add = [&](const std::string& name, const ViewShare& share, const ViewShare* form_factor) {
+    std::vector<std::string> cells{name, number(args, share)};
+    if (stacked) cells.push_back(form_factor ? number(args, *form_factor) : "");
+    cells.emplace_back(to_string(share.status));
+    table.add_row(std::move(cells));
+  };
+  for (const SeenPatch* patch : by_size) add(scene.patch(patch->patch).name, patch->share, &patch->form_factor);
+  add(kBack, seen.back, nullptr);
+  add(kOpen, seen.open, nullptr);
+  table.print(std::cout);
+  Enclosure fronts;
+  for (const SeenPatch& patch : seen.patches) fronts += patch.share.enclosure;
+  std::cout << "\nfronts  "
+            << sum_text(fronts, args.digits)
+                   .value_or("between " + text::shortest(fronts.lower()) + " and " + text::shortest(fronts.upper()))
+            << "  (of " << text::counted(seen.patches.size(), "patch", "patches")
+            << "; with (back), backs of faces, and (open), directions that meet nothing: 1)\n";
+  if (stacked) {
+    std::cout << "Coplanar faces overlap: the lowest index is seen, but each counts fully in its form factor.\n";
+  }
+}
+
+void print_csv(const ViewArguments& args, const Scene& scene, const Receiver& receiver, const WholeView& seen) {
+  std::cout << "# exactff " << kVersion << " view: shares of what is seen, correctly rounded, between proved bounds\n"
+            << "# scene hash " << scene.hash() << "; receiver " << text::printable(receiver_text(scene, receiver))
+            << '\n'
+            << "name,share,lower,upper,status,form_factor\n";
+  for_each_share(scene, seen, [&](const std::string& name, const ViewShare& share, const SeenPatch* patch) {
+    text::CsvRow row(std::cout);
+    row << text::printable(name) << number(args, share) << share.lower << share.upper << to_string(share.status)
+        << (patch ? number(args, patch->form_factor) : std::string());
+  });
+}
+
+nlohmann::ordered_json share_json(const ViewArguments& args, const ViewShare& share) {
+  nlohmann::ordered_json json = {
+      {"value", share.value},
+      {"lower", share.lower},
+      {"upper", share.upper},
+      {"status", to_string(share.status)},
+      {"ball", {{"midpoint", share.enclosure.midpoint()}, {"radius", share.enclosure.radius()}}},
+      {"bits", share.precision_bits}};
+  if (args.digits > 0) json["decimals"] = number(args, share);
+  return json;
+}
+
+nlohmann::ordered_json numbers(const Vec3& v) { return nlohmann::ordered_json::array({v.x, v.y, v.z}); }
+
+void print_json(const ViewArguments& args, const Scene& scene, const Receiver& receiver, const WholeView& seen) {
+  nlohmann::ordered_json json = {
+      {"program", "exactff"},
+      {"version", kVersion},
+      {"scene", args.scene.path},
+      {"scene_hash", scene.hash()},
+      {"receiver", {{"point", numbers(receiver.point)}, {"normal", numbers(receiver.normal)}}}};
+  if (!receiver.on.empty()) json["receiver"]["on"] = scene.name_of(receiver.on);
+  json["patches"] = nlohmann::ordered_json::array();
+  for (const SeenPatch& patch : seen.patches) {
+    nlohmann::ordered_json one = {{"patch", scene.patch(patch.patch).name}};
+    one.update(share_json(args, patch.share));
+    if (differ(patch)) one["form_factor"] = share_json(args, patch.form_factor);
+    json["patches"].push_back(one);
+  }
+  json["back"] = share_json(args, seen.back);
+  json["open"] = share_json(args, seen.open);
+  const ViewRecord& work = seen.record;
+  json["work"] = {{"outlines", work.outlines},   {"windows", work.windows}, {"pairs", work.pairs},
+                  {"undecided", work.undecided}, {"pierced", work.pierced}, {"arcs", work.arcs}};
+  std::cout << text::json_document(json) << '\n';
+}
+
+int run(const ViewArguments& args) {
+  const Scene scene = args.scene.load();
+  print_warnings(scene.warnings());
+  const Receiver receiver = args.receiver.make(scene);
+  const ViewOptions options{.digits = args.digits, .precision_cap = args.precision_cap};
+  const WholeView seen = view(scene, receiver, options);
+  if (args.engine == "both") compare_with_solver(args, scene, receiver, seen);
+  warn_if_off_its_face(scene, receiver);
+  warn_of_near_face(scene, receiver, [&](const std::vector<FaceId>& on) {
+    Receiver there = receiver;
+    there.on = on;
+    const WholeView other = view(scene, there, options);
+    return "it sees " + text::counted(other.patches.size(), "patch", "patches") + " instead of " +
+           std::to_string(seen.patches.size());
+  });
+  if (args.plain) {
+    print_plain(args, scene, seen);
+  } else if (args.json) {
+    print_json(args, scene, receiver, seen);
+  } else if (args.csv) {
+    print_csv(args, scene, receiver, seen);
+  } else {
+    print_table(args, scene, receiver, seen);
+  }
+  check_output(std::cout);
+  bool certified = true;
+  for_each_share(scene, seen, [&](const std::string&, const ViewShare& share, const SeenPatch* patch) {
+    certified = certified && share.status != Status::kNotCertified &&
+                (patch == nullptr || patch->form_factor.status != Status::kNotCertified);
+  });
+  return certified ? 0 : kNotCertified;
+}
+
+void add_output_flags(CLI::App& app, ViewArguments& args) {
+  app.add_option("--digits", args.digits, "Number of significant digits to print, each of them certified")
+      ->check(CLI::Range(1, kMostViewDigits));
+  app.add_option("--engine", args.engine,
+                 "edges: one sweep over all edges; both: also compare every patch with the per-source solver, by edges "
+                 "and by Booleans; it does not affect the values")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"edges", "both"}));
+  app.add_option("--precision-cap", args.precision_cap, "Largest precision, in bits, of the contour integral")
+      ->check(CLI::Range(32, 1 << 24))
+      ->capture_default_str();
+  auto* plain =
+      app.add_flag("--plain", args.plain, "Print one line per patch: name, tab, form factor; then (back) and (open)");
+  auto* json = app.add_flag("--json", args.json, "Print JSON");
+  auto* csv = app.add_flag("--csv", args.csv, "Print CSV");
+  plain->excludes(json)->excludes(csv);
+  json->excludes(csv);
+}
+
+}  // namespace
+
+Command add_view(CLI::App& app) {
+  auto args = std::make_shared<ViewArguments>();
+  CLI::App* command =
+      app.add_subcommand("view", "Compute what one receiver sees in all directions: every patch's form factor");
+  command->footer(
+      "What is seen in a direction is the nearest face that is not the receiver's own; of coplanar faces the one with\n"
+      "the lowest index. Fronts count for their patch, backs for (back), and directions that meet nothing for (open).\n"
+      "Together they are exactly 1. Patches that are not listed have a form factor of exactly 0. The exit code is 3\n"
+      "if a value is not certified within --precision-cap.\n"
+      "\n"
+      "Example:\n"
+      "  exactff view data/scenes/cornell_box.obj --at 200 0 400 --normal 0 1 0 --on floor");
+  args->scene.add_to(*command);
+  args->receiver.add_to(*command);
+  add_output_flags(*command, *args);
+  return {command, [args] { return run(*args); }};
+}
+
+}  // namespace exactff::cli

@@ -1,0 +1,276 @@
+// Results that another renderer was measured to have, as a chapter of a report; and the pictures of a scene's chapter.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "exactff/models.h"
+#include "exactff/report.h"
+#include "report/field.h"
+#include "report/report.h"
+#include "report/scene_part.h"
+#include "report/strip.h"
+#include "study_support.h"
+#include "support/program.h"
+
+namespace exactff::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kHead =
+    "setting,about,samples,runs,seconds,cpu_seconds,us_per_pixel,exact_seconds,exact_cpu_seconds,exact_us_per_pixel,"
+    "pixels,left_out,mean_ratio,median_ratio,rms,rms_of_brightest,relative_mse,p99_of_brightest,worst_of_brightest,"
+    "image\n";
+constexpr const char* kRow =
+    "fair,\"lamp, sampled\",16,3,2,4,10,0.5,1,5,900,100,1.001,1,0.002,0.001,1e-4,0.006,0.02,\n";
+constexpr const char* kNaive = "naive,as it comes,16,3,1,2,4,0.5,1,5,900,100,0.9,0.95,0.2,0.1,0.01,0.6,0.9,\n";
+// The signature is all that is looked at.
+constexpr std::string_view kPng = "\x89PNG\r\n\x1a\nand so on";
+
+class FieldFile : public ::testing::Test {
+ protected:
+  [[nodiscard]] fs::path put(const std::string& text) const { return directory_.write("cycles.csv", text); }
+  [[nodiscard]] FieldResults read(const std::string& text) const { return read_field(put(text)); }
+  [[nodiscard]] std::string complaint(const std::string& text) const {
+    try {
+      (void)read(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "none";
+  }
+  static std::string with(std::string row, const std::string& from, const std::string& to) {
+    return row.replace(row.find(from), from.size(), to);
+  }
+
+  const validation::TemporaryDirectory directory_;
+};
+
+TEST_F(FieldFile, HoldsRowsTitleCommandAndNotes) {
+  std::ofstream(directory_.path() / "map.png", std::ios::binary) << kPng;
+  const FieldResults field =
+      read(std::string("# title: A renderer\n# command: validation/field/cycles.sh\n# version 3.4\n") + kHead + kRow +
+           with(kNaive, "0.9,\n", "0.9,map.png\n"));
+  EXPECT_EQ(field.name, "cycles");
+  EXPECT_EQ(field.title, "A renderer");
+  EXPECT_EQ(field.command, "validation/field/cycles.sh");
+  EXPECT_EQ(field.notes, std::vector<std::string>{"version 3.4"});
+  ASSERT_EQ(field.rows.size(), 2U);
+  EXPECT_EQ(field.rows[0].about, "lamp, sampled");
+  EXPECT_EQ(field.rows[0].samples, 16.0);
+  EXPECT_EQ(field.rows[0].relative_mse, 1e-4);
+  EXPECT_EQ(field.rows[0].png, "");
+  EXPECT_EQ(field.rows[1].png, kPng);
+}
+
+TEST_F(FieldFile, ColumnsMayComeInAnyOrder) {
+  std::string head = kHead, row = kRow;
+  head.insert(head.size() - 1, ",setting");
+  head.erase(0, 8);
+  row.insert(row.size() - 1, ",last");
+  row.erase(0, 5);
+  EXPECT_EQ(read(head + row).rows.front().setting, "last");
+}
+
+TEST_F(FieldFile, TellsEverythingThatIsWrongWithItsLine) {
+  const std::string head = kHead;
+  const std::pair<std::string, std::string> table[] = {
+      {"", "the file has no header"},
+      {head, "the file has no row"},
+      {with(head, "worst_of", "worse_of") + kRow, "cycles.csv:1: there is no column 'worse_of_brightest'"},
+      {with(head, "samples", "simples") + kRow, "cycles.csv:1: the column 'samples' is missing"},
+      {with(head, "p99_of_brightest", "rms") + kRow, "cycles.csv:1: the column 'rms' is given twice"},
+      {head + kRow + "a,b\n", "cycles.csv:3: the row has 2 fields, the header 20"},
+      {head + with(kRow, ",16,", ",many,"), "cycles.csv:2: samples: 'many' is no"},
+      {head + with(kRow, ",16,", ",0,"), "cycles.csv:2: samples is '0'"},
+      {head + with(kRow, ",16,", ",nan,"), "cycles.csv:2: samples: 'nan'"},
+      {head + with(kRow, ",10,", ",-10,"), "cycles.csv:2: us_per_pixel is '-10'"},
+      {head + with(kRow, "fair", ""), "cycles.csv:2: the row has no setting"},
+      {head + with(kRow, "\"lamp", "\"lamp\" x"), "cycles.csv:2: a quote is not closed"},
+      {head + with(kRow, "0.02,\n", "0.02,none.png\n"), "cycles.csv:2: image 'none.png'"},
+      {head + with(kRow, "0.02,\n", "0.02,../a.png\n"), "cycles.csv:2: image '../a.png' is in another folder"},
+      {head + with(kRow, "0.02,\n", "0.02,cycles.csv\n"), "cycles.csv:2: image 'cycles.csv' is no PNG file"},
+  };
+  for (const auto& [text, expected] : table) {
+    const std::string said = complaint(text);
+    EXPECT_NE(said.find(expected), std::string::npos) << expected << '\n' << said;
+  }
+}
+
+TEST_F(FieldFile, SaysWhenToUseExactImages) {
+  EXPECT_EQ(
+      verdict(read(std::string(kHead) + kRow)),
+      "Use exact images (5 µs a pixel) whatever error you accept: no setting of the renderer was as fast; its most "
+      "accurate setting, fair (lamp, sampled) with 16 samples a pixel, takes 2 times as long and still errs by 0.1 %.");
+  EXPECT_EQ(verdict(read(std::string(kHead) + kRow + kNaive)),
+            "Use exact images (5 µs a pixel) when the RMS error must stay below 10 % of the brightest pixel, which the "
+            "renderer reaches in the same time; its most accurate setting, fair (lamp, sampled) with 16 samples a "
+            "pixel, takes 2 times "
+            "as long and still errs by 0.1 %.");
+  EXPECT_EQ(verdict(read(std::string(kHead) + kNaive)),
+            "Use exact images (5 µs a pixel) when the RMS error must stay below 10 % of the brightest pixel; otherwise "
+            "the renderer, whose most accurate setting, naive (as it comes) with 16 samples a pixel, takes 80 % of "
+            "their time.");
+}
+
+TEST_F(FieldFile, MayLackWhatAnotherRendererDoesNotState) {
+  const FieldResults field = read(
+      "setting,samples,us_per_pixel,exact_us_per_pixel,mean_ratio,rms_of_brightest,black_share\n"
+      "fast,4,1,8,0.99,0.01,\nslow,64,16,8,1.0,0.001,\n");
+  EXPECT_TRUE(std::isnan(field.rows[0].worst_of_brightest));
+  EXPECT_TRUE(std::isnan(field.rows[0].black_share));
+  EXPECT_FALSE(field.processor_time);
+  const std::string text = field_part(field, {});
+  EXPECT_EQ(text.find("nan"), std::string::npos) << text;
+  EXPECT_EQ(text.find("worst"), std::string::npos) << text;
+  EXPECT_NE(text.find("Times are wall times"), std::string::npos) << text;
+}
+
+TEST_F(FieldFile, CountsProcessorTimeIfOtherProgramsKeptTheMachineBusy) {
+  const std::string head =
+      "setting,samples,seconds,cpu_seconds,us_per_pixel,exact_seconds,exact_cpu_seconds,exact_us_per_pixel,pixels,"
+      "left_out,mean_ratio,rms_of_brightest,load\n";
+  const FieldResults busy = read(head + "a,4,9,0.5,9000,8,0.25,8000,900,100,1,0.01,14\n");
+  EXPECT_TRUE(busy.processor_time);
+  EXPECT_EQ(busy.rows.front().time, 0.0005);
+  EXPECT_EQ(busy.rows.front().exact_time, 0.00025);
+  EXPECT_NE(field_part(busy, {}).find("busy (load up to 14), so times are processor times"), std::string::npos)
+      << field_part(busy, {});
+  EXPECT_NE(verdict(busy).find("(250 µs a pixel)"), std::string::npos) << verdict(busy);
+  const FieldResults idle = read(head + "a,4,9,17,9000,8,0.25,8000,900,100,1,0.01,14\n");
+  EXPECT_FALSE(idle.processor_time);
+  EXPECT_EQ(idle.rows.front().time, 0.009);
+  EXPECT_FALSE(read(head + "a,4,9,0.5,9000,8,0.25,8000,900,100,1,0.01,1.5\n").processor_time);
+}
+
+TEST_F(FieldFile, NamesTheSettingsWhoseErrorIsBias) {
+  const std::string text = bias_note(
+      read("setting,samples,us_per_pixel,exact_us_per_pixel,mean_ratio,rms_of_brightest,noise_of_brightest,"
+           "bias_of_brightest\n"
+           "fair,4,1,8,1,0.01,0.001,0.002\nfair,16,4,8,1,0.005,0.002,0.001\ndark,16,4,8,0.9,0.02,0.002,0.02\n"));
+  EXPECT_TRUE(
+      text.ends_with("More samples do not help dark: more of the error is bias than noise, up to 2 % of the "
+                     "brightest pixel."))
+      << text;
+}
+
+// The file of the repository is what the script writes.
+TEST(Field, ResultsOfTheRepositoryAreRead) {
+  const FieldResults field = read_field(EXACTFF_DATA_DIR "/field/cycles.csv");
+  EXPECT_FALSE(field.command.empty());
+  EXPECT_FALSE(field.maps.empty());
+  EXPECT_GT(field.rows.size(), 10U);
+}
+
+TEST_F(FieldFile, BecomesAChapterThatHoldsEveryRowAndPicture) {
+  std::ofstream(directory_.path() / "map.png", std::ios::binary) << kPng;
+  const FieldResults field = read(std::string("# title: A <renderer>\n# command: a & b\n# on paper\n") + kHead + kRow +
+                                  with(kNaive, "0.9,\n", "0.9,map.png\n"));
+  std::vector<LeftOut> left_out;
+  EXPECT_EQ(field_figures(field, left_out).size(), 2U);
+  const std::string text = field_part(field, {});
+  for (const char* part :
+       {"<h2>A &lt;renderer&gt;</h2>\n<p class=\"verdict\">Use exact images", "a &amp; b", "on paper", "lamp, sampled",
+        "data:image/png;base64,iVBORw0KGgphbmQgc28gb24=\"", "data-label=\"samples\">16<", ">0.9<"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << '\n' << text;
+  }
+}
+
+TEST_F(FieldFile, IsALineOfAStudy) {
+  (void)put(std::string(kHead) + kRow);
+  const fs::path study = directory_.write("a.study", "title T\nfield cycles.csv\n");
+  const Plan plan = read_study_file(study);
+  ASSERT_EQ(plan.fields.size(), 1U);
+  const std::string digest = plan.fields.front().digest;
+  study::Journal journal(directory_.path() / "out.part", study::Journal::Existing::kRefuse);
+  (void)carry_out(plan, directory_.path() / "out", journal);
+  const std::string page = validation::text_of(directory_.path() / "out" / "report.html");
+  EXPECT_NE(page.find("<section class=\"scene\" id=\"field-cycles\">"), std::string::npos);
+  EXPECT_NE(page.find("<a href=\"#field-cycles\">"), std::string::npos);
+  EXPECT_EQ(finished_report(plan, directory_.path() / "out"), Finished::kOfThis);
+  (void)put(std::string(kHead) + kNaive);
+  EXPECT_EQ(finished_report(read_study_file(study), directory_.path() / "out"), Finished::kOfAnother);
+  EXPECT_NE(read_study_file(study).fields.front().digest, digest);
+}
+
+TEST_F(FieldFile, ThatIsWrongIsNamedWithTheLineOfTheStudy) {
+  (void)put(std::string(kHead));
+  const std::pair<const char*, const char*> table[] = {
+      {"field none.csv\n", "a.study:1: "},
+      {"title T\nfield cycles.csv\n", "a.study:2: "},
+      {"field a.csv b.csv\n", "a.study:1: a field line names 2 files"},
+  };
+  for (const auto& [text, expected] : table) {
+    try {
+      (void)read_study_file(directory_.write("a.study", text));
+      ADD_FAILURE() << text;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+    }
+  }
+}
+
+// ------------------------------------------------------------------------------------------- pictures of a scene
+
+study::Study room_study(const Scene& scene, int threads, const char* method, const char* source = "lamp") {
+  study::Request request;
+  request.scene = &scene;
+  request.scene_name = "room";
+  request.receivers = grid_receivers(scene, scene.select("floor"), {3, 3});
+  request.receivers_name = "floor, grid 3x3";
+  request.sources = {scene.select(source)};
+  request.sweeps.enabled = false;
+  request.methods.ladders = {study::parse_ladder("exact"), study::parse_ladder(method)};
+  request.methods.seeds = 2;
+  request.threads = threads;
+  request.seconds_for_a_time = 0.001;
+  return study::run(std::move(request));
+}
+
+TEST(Strip, HasTheSameBytesForAnyNumberOfThreads) {
+  const Scene scene = validation::small_room(true);
+  std::vector<Strip> strips;
+  for (const int threads : {1, 2}) {
+    std::vector<LeftOut> left_out;
+    const auto strip = strip_of(room_study(scene, threads, "area-sampling:samples=4"), left_out, {});
+    ASSERT_TRUE(strip) << left_out.front().why;
+    EXPECT_TRUE(left_out.empty());
+    strips.push_back(*strip);
+  }
+  EXPECT_EQ(strips[0].exact, strips[1].exact);
+  EXPECT_EQ(strips[0].method, strips[1].method);
+  EXPECT_EQ(strips[0].error, strips[1].error);
+  EXPECT_NE(strips[0].exact, strips[0].method);
+  EXPECT_GT(strips[0].rms, 0.0);
+  EXPECT_EQ(strips[0].outlined, "floor");
+}
+
+// From outside, the default camera sees the back of the source and the unlit sides of the triangles.
+TEST(Strip, ShowsReceiversFromTheirFrontWhereTheDefaultCameraDoesNot) {
+  const Scene scene = models::make_scene("karkanis:n=20");
+  std::vector<LeftOut> left_out;
+  const auto strip = strip_of(room_study(scene, 1, "area-sampling:samples=4", "source"), left_out, {});
+  ASSERT_TRUE(strip) << left_out.front().why;
+  EXPECT_EQ(strip->outlined, "floor");
+  EXPECT_GT(strip->rms, 0.0);
+}
+
+TEST(Strip, OfAMethodThatTakesTooLongIsLeftOutAndSaysWhy) {
+  const Scene scene = validation::small_room(true);
+  std::vector<LeftOut> left_out;
+  EXPECT_FALSE(strip_of(room_study(scene, 1, "hemicube:resolution=2048"), left_out, {}));
+  ASSERT_EQ(left_out.size(), 1U);
+  EXPECT_NE(left_out.front().why.find("they would take too long"), std::string::npos) << left_out.front().why;
+}
+
+TEST(Strip, StopsWhenItIsCancelled) {
+  const Scene scene = validation::small_room(true);
+  const study::Study study = room_study(scene, 1, "area-sampling:samples=4");
+  std::vector<LeftOut> left_out;
+  EXPECT_THROW((void)strip_of(study, left_out, {{}, [] { return true; }}), Cancelled);
+}
+
+}  // namespace
+}  // namespace exactff::report

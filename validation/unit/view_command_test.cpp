@@ -1,0 +1,119 @@
+// exactff view as scripts use it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/program.h"
+
+namespace exactff {
+namespace {
+
+using validation::ProgramRun;
+using validation::run_program;
+using validation::TemporaryDirectory;
+
+// A light [-1,1]^2 at z = 1 that looks down, a plate before it that looks up, and a wall below the horizon.
+const std::string kScene =
+    "v -1 1 1\nv 1 1 1\nv 1 -1 1\nv -1 -1 1\n"
+    "v -.25 -.25 .5\nv .25 -.25 .5\nv .25 .25 .5\nv -.25 .25 .5\n"
+    "v -9 -9 -1\nv 9 -9 -1\nv 9 9 -1\nv -9 9 -1\n"
+    "g light\nf 1 2 3 4\ng plate\nf 5 6 7 8\ng floor\nf 9 10 11 12\ng twin\nf 1 2 3 4\n";
+
+struct ViewCommand : testing::Test {
+  TemporaryDirectory directory;
+  std::string scene = directory.write("a.obj", kScene).string();
+
+  [[nodiscard]] ProgramRun up(std::vector<std::string> flags) const {
+    std::vector<std::string> arguments = {"view", scene, "--at", "0", "0", "0", "--normal", "0", "0", "1"};
+    arguments.insert(arguments.end(), flags.begin(), flags.end());
+    return run_program(EXACTFF_PROGRAM, arguments);
+  }
+
+  // What it says on stderr.
+  [[nodiscard]] std::string complaint(const std::vector<std::string>& at, const std::string& up) const {
+    const validation::RunningProgram program(EXACTFF_PROGRAM,
+                                             {"view", scene, "--at", at[0], at[1], at[2], "--normal", "0", "0", up},
+                                             directory.path() / "errors");
+    (void)program.wait();
+    return program.error();
+  }
+};
+
+TEST_F(ViewCommand, PlainPrintsNameTabValueThenBackAndOpen) {
+  const ProgramRun run = up({"--plain"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_TRUE(run.output.starts_with("light\t0.31466995351879845\ntwin\t0.31466995351879845\n(back)\t")) << run.output;
+  std::istringstream lines(run.output);
+  std::vector<std::string> names;
+  double sum = 0.0;
+  for (std::string line; std::getline(lines, line);) {
+    names.push_back(line.substr(0, line.find('\t')));
+    if (names.back() != "twin") sum += std::stod(line.substr(line.find('\t') + 1));
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"light", "twin", "(back)", "(open)"}));
+  EXPECT_NEAR(sum, 1.0, 1e-15);
+}
+
+TEST_F(ViewCommand, PlainGivesThePointCommandsValue) {
+  const ProgramRun point = run_program(EXACTFF_PROGRAM, {"point", scene, "--at", "0", "0", "0", "--normal", "0", "0",
+                                                         "1", "--source", "light", "--plain"});
+  EXPECT_EQ("light\t" + point.output, up({"--plain"}).output.substr(0, point.output.size() + 6));
+}
+
+TEST_F(ViewCommand, TableTellsSharesFromFormFactorsOnlyWhereTheyDiffer) {
+  const std::string stacked = up({}).output;
+  EXPECT_NE(stacked.find("share of the view"), std::string::npos) << stacked;
+  EXPECT_NE(stacked.find("Coplanar faces overlap"), std::string::npos);
+  const ProgramRun clear = up({"--transparent", "twin"});
+  EXPECT_EQ(clear.output.find("share of the view"), std::string::npos) << clear.output;
+  EXPECT_NE(clear.output.find("(open)"), std::string::npos);
+}
+
+TEST_F(ViewCommand, JsonHasEveryPatchSeenAndTheRest) {
+  const nlohmann::json json = nlohmann::json::parse(up({"--json", "--digits", "30"}).output);
+  ASSERT_EQ(json["patches"].size(), 2U);
+  EXPECT_EQ(json["patches"][0]["patch"], "light");
+  EXPECT_EQ(json["patches"][0]["decimals"], "0.314669953518798448298026682526");
+  EXPECT_EQ(json["patches"][1]["value"], 0.0);
+  EXPECT_EQ(json["patches"][1]["form_factor"]["status"], "certified");
+  EXPECT_EQ(json["back"]["status"], "certified");
+  EXPECT_GT(json["open"]["value"], 0.0);
+  EXPECT_GT(json["work"]["arcs"], 0);
+}
+
+TEST_F(ViewCommand, CsvHasOneRowForEachLineOfPlain) {
+  const std::string text = up({"--csv"}).output;
+  EXPECT_NE(text.find("name,share,lower,upper,status,form_factor\nlight,0.31466995351879845,"), std::string::npos)
+      << text;
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 7);
+}
+
+TEST_F(ViewCommand, BothEnginesAgree) {
+  EXPECT_EQ(up({"--engine", "both", "--plain"}).output, up({"--plain"}).output);
+  EXPECT_EQ(run_program(EXACTFF_PROGRAM, {"view", EXACTFF_DATA_DIR "/scenes/cornell_box.obj", "--at", "200", "0", "400",
+                                          "--normal", "0", "1", "0", "--on", "floor", "--engine", "both"})
+                .exit_code,
+            0);
+}
+
+TEST_F(ViewCommand, SaysWhatIsWrong) {
+  EXPECT_EQ(up({"--plain", "--json"}).exit_code, 2);
+  EXPECT_NE(complaint({"0", "0", "0"}, "0").find("the receiver's normal is (0, 0, 0)"), std::string::npos);
+  EXPECT_EQ(up({"--on", "nowhere"}).exit_code, 2);
+  const std::string near = complaint({"0", "0", "-1.0000001"}, "1");
+  EXPECT_NE(near.find("behind 'floor', which then hides everything beyond it. With --on floor it sees 2 patches"),
+            std::string::npos)
+      << near;
+}
+
+TEST_F(ViewCommand, IsNotCertifiedUnderALowCap) {
+  const ProgramRun run = up({"--precision-cap", "32", "--plain"});
+  EXPECT_EQ(run.exit_code, 3) << run.output;
+}
+
+}  // namespace
+}  // namespace exactff
