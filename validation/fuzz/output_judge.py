@@ -3,7 +3,8 @@
 
 Reads requests from standard input, one a line, and answers each with one line: what is wrong, or nothing. A request is
 FOLDER, FORM and EXIT CODE with tabs between: FOLDER holds stdout, stderr and the folder out; FORM says what standard
-output is: json, plain, text, or cut where it may end anywhere. Every file below out is judged by its extension.
+output is: json, plain, text, or cut where it may end anywhere. Every file below out is judged by its first bytes where
+these tell what it is, else by its extension.
 """
 
 import base64
@@ -258,6 +259,8 @@ SCENES = {extension: judge_scene for extension in (".obj", ".mtl", ".ply", ".stl
 JUDGES = {**SCENES, ".csv": judge_csv, ".json": judge_json, ".svg": judge_xml, ".xml": judge_xml, ".html": judge_html,
           ".png": judge_png, ".exr": judge_exr, ".npy": judge_npy, ".vtp": judge_vtk, ".vtu": judge_vtk,
           ".part": lambda data: None}
+# These are written under any name that the user gives them.
+SIGNATURES = {b"# exactff ": judge_csv, b"\x93NUMPY": judge_npy, b"\x76\x2f\x31\x01": judge_exr, b"\x89PNG": judge_png}
 FORMS = {"json": lambda data: judge_json(data, {"front"}), "plain": judge_plain, "text": judge_words}
 
 
@@ -268,9 +271,9 @@ def judge_file(path, code):
         raise Wrong("a journal left behind by a finished run")
     if path.is_file():
         data = path.read_bytes()
-        # Under any name that the user gives it. A journal may end in the middle of a row.
-        is_table = path.suffix == ".csv" or (path.suffix != ".part" and data.startswith(b"# exactff "))
-        (judge_csv if is_table else JUDGES.get(path.suffix, text_of))(data)
+        # A journal may end in the middle of a row.
+        by_content = [judge for begin, judge in SIGNATURES.items() if data.startswith(begin) and path.suffix != ".part"]
+        (by_content or [JUDGES.get(path.suffix, text_of)])[0](data)
 
 
 def judge(folder, form, code):

@@ -69,6 +69,8 @@ class Judge(unittest.TestCase):
         npy = b"\x93NUMPY\x01\x00\x3a\x00{'descr': '<f8', 'fortran_order': False, 'shape': (2,), }\n"
         self.expect_file("", "a.npy", npy + bytes(16))
         self.expect_file("another size", "a.npy", npy + bytes(15))
+        self.expect_file("", "a\x1b[31m", npy + bytes(16))
+        self.expect_file("another size", "a\x1b[31m", npy + bytes(15))
 
     def test_json(self):
         self.expect_file("", "a.json", '{"a": [1, 2e-300]}\n')
