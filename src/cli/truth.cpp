@@ -302,9 +302,10 @@ int lead(const TruthArguments& args, truth::Team& team) {
   return exit_code;
 }
 
-// Prints nothing: the leader reports all errors.
+// Prints nothing, not even when it is interrupted: the leader reports all errors.
 int follow(const TruthArguments& args, truth::Team& team) {
   std::cerr.rdbuf(nullptr);
+  const InterruptWatch silent("");
   std::unique_ptr<Job> job;
   const auto request = [&] {
     job = job_of(args, &team);
@@ -334,7 +335,12 @@ int run(const TruthArguments& args) {
   if (args.to_standard_output()) return write_to_standard_output(args);
   const InterruptWatch watch("exactff: interrupted; no row was begun\n");
   if (team == nullptr) return write(args, nullptr);
-  return team->rank() == 0 ? lead(args, *team) : follow(args, *team);
+  const int exit_code = team->rank() == 0 ? lead(args, *team) : follow(args, *team);
+  // All is said. While a process waits here for the others to finish, mpirun may end it because another exit code is
+  // not 0; that is no interruption to tell of.
+  const InterruptWatch silent("");
+  team.reset();
+  return exit_code;
 }
 
 }  // namespace

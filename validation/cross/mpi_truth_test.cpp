@@ -33,8 +33,11 @@ class MpiTruth : public testing::Test {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
-  RunningProgram start(const std::vector<std::string>& arguments) const {
-    std::vector<std::string> all{"--oversubscribe", "-n", "4", EXACTFF_PROGRAM};
+  RunningProgram start(const std::vector<std::string>& arguments,
+                       const std::vector<std::string>& launch_options = {}) const {
+    std::vector<std::string> all{"--oversubscribe", "-n", "4"};
+    all.insert(all.end(), launch_options.begin(), launch_options.end());
+    all.push_back(EXACTFF_PROGRAM);
     all.insert(all.end(), arguments.begin(), arguments.end());
     return {EXACTFF_MPIRUN, all, directory_.path() / "stderr", [] {
               ::setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
@@ -98,6 +101,14 @@ TEST_F(MpiTruth, WhatIsWrongIsToldOnce) {
     EXPECT_FALSE(fs::exists(file_));
     EXPECT_FALSE(fs::exists(journal_));
   }
+}
+
+// mpirun ends what still runs when another process has ended with an exit code other than 0: here rank 0, once the
+// error is told. That is no interruption to report.
+TEST_F(MpiTruth, ASlowEndIsNoInterruption) {
+  const RunningProgram run = start(truth("flor", file_, {}), {"-x", "LD_PRELOAD=" EXACTFF_SLOW_FINALIZE});
+  EXPECT_EQ(run.wait(), 2);
+  EXPECT_EQ(count(run.error(), "exactff: "), 1U) << run.error();
 }
 
 }  // namespace
