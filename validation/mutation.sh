@@ -16,7 +16,7 @@ folder=${EXACTFF_MUTATION_FOLDER:-$top/build/mutation}
 source=$folder/source
 build=$folder/build
 log=$folder/log
-test_seconds=120   # a test that takes longer hangs
+test_seconds=300   # a test that takes longer hangs
 suite_seconds=900  # and so does a suite
 
 # apply FAULT FOLDER [OPTION...]: applies the patch without fuzz; only line numbers may have changed.
