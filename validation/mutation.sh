@@ -86,7 +86,7 @@ first_failure() {
     sed -E 's/ Timeout$/ (hangs)/; s/ $//'
 }
 
-# The test that detected the fault when it was planted before, according to the table in mutation/README.md.
+# The test that detected the fault when it was planted before, by the table in mutation/README.md; without its parameter.
 known_test() {
   sed -nE "s/^\| \`$1\` \|.*\| \`([^\`]+)\`.*\|$/\1/p" "$patches/README.md"
 }
@@ -102,7 +102,7 @@ verdict() {
     return 1
   fi
   known=$(known_test "$name")
-  [ "$count" = no ] && [ -n "$known" ] && { suite "$log/$name.test" --tests-regex "^$known\$" || status=$?; }
+  [ "$count" = no ] && [ -n "$known" ] && { suite "$log/$name.test" --tests-regex "^$known" || status=$?; }
   [ "$status" -ne 0 ] || suite "$log/$name.test" "${suite_options[@]}" || status=$?
   case $status in
     0) echo "SURVIVES"; return 1 ;;
