@@ -26,6 +26,25 @@ double short_number_near(double low, double high) {
   return std::round(middle / step) * step;
 }
 
+// The smaller of the parts' areas, over the whole, of the parts where a function is negative and where it is not.
+template <class Value>
+double smaller_share(const Cell& cell, const Value& value) {
+  std::vector<Vec3> positive;
+  const std::size_t count = cell.corners.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3& p = cell.corners[i].at;
+    const Vec3& q = cell.corners[(i + 1) % count].at;
+    const double here = value(p), next = value(q);
+    if (here >= 0.0) positive.push_back(p);
+    if ((here < 0.0) == (next < 0.0)) continue;
+    const double t = here / (here - next);
+    positive.push_back({p.x + t * (q.x - p.x), p.y + t * (q.y - p.y), p.z + t * (q.z - p.z)});
+  }
+  const double whole = area(cell);
+  const double part = whole > 0.0 ? area(positive) / whole : 0.0;
+  return std::min(part, 1.0 - part);
+}
+
 }  // namespace
 
 Cell cell_of(const Points& points, const Ring& ring, const Plane& receiver) {
@@ -45,14 +64,7 @@ Cell cell_of(const Points& points, const Ring& ring, const Plane& receiver) {
 }
 
 int sign_inside(const Plane& plane, const Cell& cell) {
-  int found = 0;
-  for (const Point& corner : cell.corners) {
-    const int side = side_of(plane, corner);
-    if (side == 0 || side == found) continue;
-    if (found != 0) return kMixed;
-    found = side;
-  }
-  return found;
+  return common_sign(cell, [&](const Point& corner) { return side_of(plane, corner); });
 }
 
 Halves cut(const Cell& cell, const Plane& receiver, const std::shared_ptr<const Plane>& by, const Units& units) {
@@ -101,20 +113,15 @@ double area(const std::vector<Vec3>& ring) {
 }
 
 double balance(const Cell& cell, const Plane& plane) {
-  std::vector<Vec3> positive;
-  const std::size_t count = cell.corners.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec3& p = cell.corners[i].at;
-    const Vec3& q = cell.corners[(i + 1) % count].at;
-    const double here = value_at(plane, p), next = value_at(plane, q);
-    if (here >= 0.0) positive.push_back(p);
-    if ((here < 0.0) == (next < 0.0)) continue;
-    const double t = here / (here - next);
-    positive.push_back({p.x + t * (q.x - p.x), p.y + t * (q.y - p.y), p.z + t * (q.z - p.z)});
-  }
-  const double whole = area(cell);
-  const double part = whole > 0.0 ? area(positive) / whole : 0.0;
-  return std::min(part, 1.0 - part);
+  return smaller_share(cell, [&](const Vec3& p) { return value_at(plane, p); });
+}
+
+double balance_at_most(const Cell& cell, const RoundedPlane& plane) {
+  constexpr double kCertain = 0x1p20, kMargin = 0x1p-10;
+  const bool says_something =
+      std::ranges::any_of(cell.corners, [&](const Point& corner) { return plane.is_beyond(corner.at, kCertain); });
+  if (!says_something) return 1.0;
+  return smaller_share(cell, [&](const Vec3& p) { return plane.height(p); }) + kMargin;
 }
 
 std::shared_ptr<const Plane> bisector(const Cell& cell, const Units& units) {

@@ -27,6 +27,19 @@ struct Cell {
 inline constexpr int kMixed = 2;
 [[nodiscard]] int sign_inside(const Plane& plane, const Cell& cell);
 
+// The same from the function's sign at a corner.
+template <class SignAt>
+int common_sign(const Cell& cell, const SignAt& sign_at) {
+  int found = 0;
+  for (const Point& corner : cell.corners) {
+    const int sign = sign_at(corner);
+    if (sign == 0 || sign == found) continue;
+    if (found != 0) return kMixed;
+    found = sign;
+  }
+  return found;
+}
+
 // The two parts of a cell. Requires that the plane has both signs inside.
 struct Halves {
   Cell negative, positive;
@@ -44,6 +57,8 @@ struct Halves {
 [[nodiscard]] inline double area(const Cell& cell) { return area(rounded(cell.corners)); }
 // The smaller of the two parts' areas, over the whole.
 [[nodiscard]] double balance(const Cell& cell, const Plane& plane);
+// More than that, from an estimate of the plane; 1 if it says nothing.
+[[nodiscard]] double balance_at_most(const Cell& cell, const RoundedPlane& plane);
 // A plane across the cell, perpendicular to the axis along which it is widest, at a short number near its middle.
 [[nodiscard]] std::shared_ptr<const Plane> bisector(const Cell& cell, const Units& units);
 

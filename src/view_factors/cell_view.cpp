@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
+#include "kernel/poll.h"
 #include "view_factors/crossing_order.h"
 
 namespace exactff::view_factors {
 namespace {
 
-constexpr std::int8_t kUnasked = 3;
+constexpr std::uint64_t kManySigns = 1 << 18;                  // a cell that asks for more is cut by what it has
+constexpr std::uint64_t kSignsForAnOrder = 16;                 // the work that it takes
 constexpr std::size_t kSource = static_cast<std::size_t>(-1);  // the owner of an edge, beside the occluders
 
 const Edge& next(const Ring& ring, std::size_t i) { return ring[(i + 1) % ring.size()]; }
@@ -15,44 +17,43 @@ const Edge& previous(const Ring& ring, std::size_t i) { return ring[(i + ring.si
 
 }  // namespace
 
-CellView::CellView(const Sight& sight)
-    : sight_(sight), point_count_(sight.points.point_count()), planes_(sight.points.line_count() * point_count_) {
-  for (const Occluder& occluder : sight.occluders) {
-    reversed_.push_back(reversed(occluder.ring));
-    occluder_planes_.push_back(std::make_shared<const Plane>(occluder.plane));
-  }
+CellView::CellView(const Sight& sight, PairMemory& memory, std::size_t id) : sight_(sight), memory_(memory), id_(id) {
+  for (const Occluder& occluder : sight.occluders) reversed_.push_back(reversed(occluder.ring));
 }
 
-KnownSigns CellView::nothing_known() const {
-  return {std::vector<std::int8_t>(planes_.size(), kUnasked),
-          std::vector<std::int8_t>(sight_.occluders.size(), kUnasked),
-          std::vector<bool>(sight_.occluders.size(), false)};
+Candidates CellView::all_candidates() const {
+  Candidates all(sight_.occluders.size());
+  for (std::uint32_t i = 0; i < all.size(); ++i) all[i].occluder = i;
+  return all;
 }
 
-const std::shared_ptr<const Plane>& CellView::plane(LineId line, PointId point) {
-  std::shared_ptr<const Plane>& plane = planes_[line * point_count_ + point];
-  if (plane == nullptr) {
-    const Points& points = sight_.points;
-    const Line& ends = points.line(line);
-    plane =
-        std::make_shared<const Plane>(make_plane(join(points[ends.a], points[ends.b], points[point]), points.units()));
-  }
-  return plane;
+// By the filter at each corner, else by the exact plane.
+int CellView::sign_on_cell(LineId line, PointId point) {
+  const Points& points = sight_.points;
+  const Line& ends = points.line(line);
+  const RoundedPlane filter(points[ends.a].at, points[ends.b].at, points[point].at);
+  const Plane* exact = nullptr;
+  return common_sign(*cell_, [&](const Point& corner) {
+    const int side = filter.side_of(corner.at);
+    if (side != kernel::kUncertain) return side;
+    if (exact == nullptr) exact = memory_.plane(points, line, point).get();
+    return side_of(*exact, corner);
+  });
 }
 
 // +1: left of the line, from its first point to its second.
 int CellView::raw_side(LineId line, PointId point) {
   const Line& ends = sight_.points.line(line);
   if (point == ends.a || point == ends.b) return 0;
-  std::int8_t& known = known_->of_points[line * point_count_ + point];
-  if (known != kUnasked) return known;
-  const int sign = sign_inside(*plane(line, point), *cell_);
-  if (sign == kMixed) {
-    doubts_.push_back(plane(line, point));
-  } else {
-    known = static_cast<std::int8_t>(sign);
+  ++work_;
+  int sign = memory_.sign(line, point);
+  if (sign == kUnasked) {
+    sign = sign_on_cell(line, point);
+    memory_.keep_sign(line, point, sign);
   }
-  return sign;
+  if (sign < kMixed) return sign;
+  doubts_.push_back({line, point});
+  return kMixed;
 }
 
 // +1: the point is seen on the left of the edge.
@@ -78,30 +79,48 @@ bool CellView::holds(const Ring& ring, const Ring& other) {
   });
 }
 
-const Ring& CellView::ring_of(std::size_t occluder) const {
-  return known_->facing[occluder] > 0 ? sight_.occluders[occluder].ring : reversed_[occluder];
+const Ring& CellView::ring_of(const Candidate& candidate) const {
+  return candidate.facing > 0 ? sight_.occluders[candidate.occluder].ring : reversed_[candidate.occluder];
 }
 
-void CellView::commit_doubts() {
-  cuts_.insert(cuts_.end(), doubts_.begin(), doubts_.end());
+void CellView::consider_cut(const std::shared_ptr<const Plane>& plane) {
+  const double share = balance(*cell_, *plane);
+  if (share <= best_balance_) return;
+  best_balance_ = share;
+  best_cut_ = plane;
+}
+
+// A plane is made exactly only if its estimate may beat the best one so far.
+void CellView::consider_doubts() {
+  const Points& points = sight_.points;
+  for (const auto& [line, point] : doubts_) {
+    if (memory_.sign(line, point) == kMixedAndSeen) continue;
+    memory_.keep_sign(line, point, kMixedAndSeen);
+    const Line& ends = points.line(line);
+    const RoundedPlane estimate(points[ends.a].at, points[ends.b].at, points[point].at);
+    if (balance_at_most(*cell_, estimate) < best_balance_) continue;
+    consider_cut(memory_.plane(points, line, point));
+  }
   doubts_.clear();
 }
 
-// Finds how the occluder faces the cell and whether it can cover anything. True if it hides the whole source.
-bool CellView::sort_out(std::size_t occluder) {
-  if (known_->beside[occluder]) return false;
-  std::int8_t& facing = known_->facing[occluder];
-  if (facing == kUnasked || facing == kMixed) {
-    facing = static_cast<std::int8_t>(sign_inside(*occluder_planes_[occluder], *cell_));
-  }
-  bool beside = facing == 0 || is_beside(sight_.source, sight_.occluders[occluder].ring);
+// Finds how the occluder faces the cell and whether it can cover anything. True if it hides the whole source. One that
+// covers nothing then faces neither side.
+bool CellView::sort_out(Candidate& candidate) {
+  const Occluder& occluder = sight_.occluders[candidate.occluder];
+  std::int8_t& facing = candidate.facing;
+  if (facing == kUnasked || facing == kMixed) facing = static_cast<std::int8_t>(sign_inside(*occluder.plane, *cell_));
+  bool beside = facing == 0 || is_beside(sight_.source, occluder.ring);
   if (!beside && facing != kMixed) {
-    beside = is_beside(ring_of(occluder), sight_.source);
-    if (!beside && holds(ring_of(occluder), sight_.source)) return true;
+    beside = is_beside(ring_of(candidate), sight_.source);
+    if (!beside && holds(ring_of(candidate), sight_.source)) return true;
   }
-  known_->beside[occluder] = beside;
   doubts_.clear();
-  if (!beside && facing == kMixed) cuts_.push_back(occluder_planes_[occluder]);
+  if (beside) {
+    facing = 0;
+  } else if (facing == kMixed) {
+    consider_cut({std::shared_ptr<const Plane>(), occluder.plane});
+  }
   return false;
 }
 
@@ -174,10 +193,11 @@ void CellView::look_at_edge(const Edge& edge, std::size_t owner) {
   if (owner != kSource) base = overlap(edge, sight_.source, along);
   if (base.kind == Overlap::kNone || (base.kind != Overlap::kUnknown && along != Along::kNo)) return;
   bool known = base.kind != Overlap::kUnknown;
-  for (std::size_t other = 0; other < sight_.occluders.size(); ++other) {
-    if (other == owner || known_->beside[other]) continue;
+  for (const Candidate& candidate : *candidates_) {
+    const std::size_t other = candidate.occluder;
+    if (other == owner) continue;
     const std::size_t doubts = doubts_.size();
-    const Covered covered = overlap(edge, ring_of(other), along);
+    const Covered covered = overlap(edge, ring_of(candidate), along);
     if (covered.kind == Overlap::kUnknown) {
       known = false;
       continue;
@@ -195,7 +215,7 @@ void CellView::look_at_edge(const Edge& edge, std::size_t owner) {
       find_all_undecided(edge, base.interval);
     }
   }
-  commit_doubts();
+  consider_doubts();
 }
 
 // Sign of det(N_e, N_g, N_h) on the cell. If two lines share a point v, h = (v, w) or (w, v) say,
@@ -220,6 +240,7 @@ int CellView::order_of_lines(LineId e, LineId g, LineId h) {
       return from_v ? at_v * at_w : -at_v * at_w;
     }
   }
+  work_ += kSignsForAnOrder;
   const int sign = crossing_order(sight_.points, *cell_, e, g, h);
   if (sign == kMixed) {
     CrossingTriple triple{e, g, h};
@@ -302,25 +323,42 @@ bool CellView::emit_uncovered(const Edge& edge, const Interval& base, int sign) 
   }
 }
 
-CellView::Outcome CellView::look(const Cell& cell, KnownSigns& known) {
+// False if it stopped early, with a cut.
+bool CellView::look_at_edges() {
+  const std::uint64_t before = work_;
+  const auto look_at_ring = [&](const Ring& ring, std::size_t owner) {
+    for (const Edge& edge : ring) {
+      if (work_ - before > kManySigns) {
+        if (best_cut_ != nullptr) return false;
+        kernel::poll();
+      }
+      look_at_edge(edge, owner);
+    }
+    return true;
+  };
+  if (!look_at_ring(sight_.source, kSource)) return false;
+  return std::ranges::all_of(*candidates_, [&](const Candidate& c) { return look_at_ring(ring_of(c), c.occluder); });
+}
+
+CellView::Outcome CellView::look(const Cell& cell, std::size_t depth, Candidates& candidates) {
+  memory_.enter(depth);
   cell_ = &cell;
-  known_ = &known;
+  candidates_ = &candidates;
   parts_.clear();
-  cuts_.clear();
+  best_cut_.reset();
+  best_balance_ = -1.0;
   doubts_.clear();
   triples_.clear();
-  for (std::size_t i = 0; i < sight_.occluders.size(); ++i) {
-    if (!sort_out(i)) continue;
-    cuts_.clear();
-    return Outcome::kKnown;
+  for (Candidate& candidate : candidates) {
+    if (sort_out(candidate)) {
+      best_cut_.reset();
+      return Outcome::kKnown;
+    }
   }
-  if (!cuts_.empty()) return Outcome::kCut;
-  for (const Edge& edge : sight_.source) look_at_edge(edge, kSource);
-  for (std::size_t i = 0; i < sight_.occluders.size(); ++i) {
-    if (known.beside[i]) continue;
-    for (const Edge& edge : ring_of(i)) look_at_edge(edge, i);
-  }
-  return !cuts_.empty() ? Outcome::kCut : !triples_.empty() ? Outcome::kCrossings : Outcome::kKnown;
+  std::erase_if(candidates, [](const Candidate& c) { return c.facing == 0; });
+  if (best_cut_ != nullptr) return Outcome::kCut;
+  if (!look_at_edges()) return Outcome::kCut;
+  return best_cut_ != nullptr ? Outcome::kCut : !triples_.empty() ? Outcome::kCrossings : Outcome::kKnown;
 }
 
 }  // namespace exactff::view_factors

@@ -5,9 +5,9 @@
 // edges that lie inside the source and that no other shadow covers. Which parts these are depends on two kinds of
 // signs:
 //
-// - on which side of an edge a vertex is seen. For an edge (a, b) and a vertex v this is the side of the plane (a, b,
-// v)
-//   on which x lies, an affine function of x: its sign at the corners of a convex cell decides it for the whole cell;
+// - on which side of an edge a vertex is seen. For an edge (a, b) and a vertex v this is the side of the plane
+//   (a, b, v) on which x lies, an affine function of x: its sign at the corners of a convex cell decides it for the
+//   whole cell;
 // - in which order an edge e meets two others, g and h: the sign of f(x) = det(N_e, N_g, N_h), where
 //   N = (a - x) x (b - x). The terms of third order cancel, so f is quadratic in x. With its polar form,
 //   b(y, z) = 2 f((y + z) / 2) - (f(y) + f(z)) / 2, a point x = sum of l_i c_i of the cell has f(x) = sum of
@@ -32,6 +32,7 @@
 #include <vector>
 
 #include "view_factors/event_bound.h"
+#include "view_factors/pair_memory.h"
 #include "view_factors/sight.h"
 
 namespace exactff::view_factors {
@@ -51,30 +52,39 @@ struct BoundaryPart {
   int sign = 1;
 };
 
-// Signs that are known for a cell are known for its parts: copies of this go from a cell to its parts. A sign that is
-// mixed on the cell is not kept.
-struct KnownSigns {
-  std::vector<std::int8_t> of_points;  // for every line and point
-  std::vector<std::int8_t> facing;     // for every occluder: the side of its plane on which the cell lies
-  std::vector<bool> beside;            // for every occluder: it covers nothing
+// An occluder that may cover something of the source, and the side of its plane on which the cell lies. What covers
+// nothing for a cell covers nothing for its parts, so these inherit the list.
+struct Candidate {
+  std::uint32_t occluder = 0;
+  std::int8_t facing = kUnasked;
 };
+using Candidates = std::vector<Candidate>;  // by ascending index
 
 class CellView {
  public:
-  explicit CellView(const Sight& sight);
+  // Keeps references. `id` tells the pairs apart that share the memory.
+  CellView(const Sight& sight, PairMemory& memory, std::size_t id);
 
   enum class Outcome {
     kKnown,      // parts() is the boundary of the visible region from every point inside the cell
-    kCut,        // one of cuts() decides more
+    kCut,        // best_cut() decides more
     kCrossings,  // only orders of crossings are undecided
   };
-  [[nodiscard]] Outcome look(const Cell& cell, KnownSigns& known);
-  [[nodiscard]] KnownSigns nothing_known() const;
+  // To be called before the first look at the parts of a cell that is not the last one looked at.
+  void start() { memory_.start(id_, sight_.points.line_count(), sight_.points.point_count()); }
+  // `depth`: of the cell below the one at which start() was called; each cell is a part of the last one at the depth
+  // before. Takes out candidates that turn out to cover nothing.
+  [[nodiscard]] Outcome look(const Cell& cell, std::size_t depth, Candidates& candidates);
+  [[nodiscard]] Candidates all_candidates() const;
 
   [[nodiscard]] const std::vector<BoundaryPart>& parts() const { return parts_; }
-  [[nodiscard]] const std::vector<std::shared_ptr<const Plane>>& cuts() const { return cuts_; }
+  // Of all planes that decide more, the one that halves the cell best; the first of equal ones. Where very many signs
+  // have been asked for, of those that were found by then.
+  [[nodiscard]] const std::shared_ptr<const Plane>& best_cut() const { return best_cut_; }
   // Of kCrossings: all lines whose order is undecided.
   [[nodiscard]] const std::vector<CrossingTriple>& triples() const { return triples_; }
+  // How often a sign has been asked for so far.
+  [[nodiscard]] std::uint64_t work() const { return work_; }
 
  private:
   enum class Overlap { kNone, kPart, kAll, kUnknown };
@@ -87,33 +97,42 @@ class CellView {
   };
   enum class Along { kNo, kSameSide, kOppositeSide };
 
-  const std::shared_ptr<const Plane>& plane(LineId line, PointId point);
+  // An edge's line and a point, whose plane cuts the cell.
+  struct Doubt {
+    LineId line;
+    PointId point;
+  };
+
+  int sign_on_cell(LineId line, PointId point);
   int raw_side(LineId line, PointId point);
   int side(const Edge& edge, PointId point);
   bool is_beside(const Ring& ring, const Ring& other);
   bool holds(const Ring& ring, const Ring& other);
-  bool sort_out(std::size_t occluder);
+  bool sort_out(Candidate& candidate);
   Covered overlap(const Edge& edge, const Ring& ring, Along& along);
   Covered between(const Edge& edge, const Edge& in, const Edge& out);
-  const Ring& ring_of(std::size_t occluder) const;
+  const Ring& ring_of(const Candidate& candidate) const;
   void look_at_edge(const Edge& edge, std::size_t owner);
+  [[nodiscard]] bool look_at_edges();
   bool covers(Along along, std::size_t owner, std::size_t other) const;
   int order(const Edge& edge, const End& p, const End& q);
   int order_of_lines(LineId e, LineId g, LineId h);
   [[nodiscard]] bool emit_uncovered(const Edge& edge, const Interval& base, int sign);
   void find_all_undecided(const Edge& edge, const Interval& base);
-  void commit_doubts();
+  void consider_cut(const std::shared_ptr<const Plane>& plane);
+  void consider_doubts();
 
   const Sight& sight_;
-  std::size_t point_count_;
-  std::vector<std::shared_ptr<const Plane>> planes_;  // for every line and point, made when asked for
-  std::vector<Ring> reversed_;                        // of every occluder
-  std::vector<std::shared_ptr<const Plane>> occluder_planes_;
+  PairMemory& memory_;
+  std::size_t id_;
+  std::vector<Ring> reversed_;  // of every occluder
 
   const Cell* cell_ = nullptr;
-  KnownSigns* known_ = nullptr;
-  std::vector<std::shared_ptr<const Plane>> doubts_;  // undecided signs since the last question
-  std::vector<std::shared_ptr<const Plane>> cuts_;
+  const Candidates* candidates_ = nullptr;
+  std::uint64_t work_ = 0;
+  std::vector<Doubt> doubts_;  // undecided signs since the last question
+  std::shared_ptr<const Plane> best_cut_;
+  double best_balance_ = -1.0;
   std::vector<Interval> covers_;
   std::vector<BoundaryPart> parts_;
   std::vector<CrossingTriple> triples_;

@@ -10,6 +10,8 @@
 namespace exactff::view_factors {
 namespace {
 
+constexpr double kSubtractionError = 0x1p-51;  // of a component of a difference of two points, each rounded once
+
 Integer integer_of(double value, const Units& units) {
   const kernel::BinaryDouble parts = kernel::decompose(value);
   Integer result(parts.mantissa);
@@ -100,6 +102,31 @@ int side_of(const Plane& plane, const Point& point) {
   Integer value = plane.exact[3] * point.exact[3];
   for (int i = 0; i < 3; ++i) value += plane.exact[i] * point.exact[i];
   return sgn(value);
+}
+
+RoundedPlane::RoundedPlane(const Vec3& a, const Vec3& b, const Vec3& c) : origin_(a) {
+  const Vec3 ab = kernel::difference(b, a), ac = kernel::difference(c, a);
+  normal_ = kernel::cross(ab, ac);
+  const double size_b = kernel::max_norm(ab) + kSubtractionError, size_c = kernel::max_norm(ac) + kSubtractionError;
+  product_ = size_b * size_c;
+  sum_ = size_b + size_c;
+}
+
+double RoundedPlane::height(const Vec3& x) const { return kernel::dot(normal_, kernel::difference(x, origin_)); }
+
+double RoundedPlane::error_at(const Vec3& from_origin) const {
+  return 0x1p-46 * (product_ + sum_ * (kernel::max_norm(from_origin) + kSubtractionError));
+}
+
+int RoundedPlane::side_of(const Vec3& x) const {
+  const Vec3 ax = kernel::difference(x, origin_);
+  const double value = kernel::dot(normal_, ax), error = error_at(ax);
+  return value > error ? 1 : value < -error ? -1 : kernel::kUncertain;
+}
+
+bool RoundedPlane::is_beyond(const Vec3& x, double errors) const {
+  const Vec3 ax = kernel::difference(x, origin_);
+  return std::abs(kernel::dot(normal_, ax)) > errors * error_at(ax);
 }
 
 }  // namespace exactff::view_factors

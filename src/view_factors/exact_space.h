@@ -54,4 +54,29 @@ struct Plane {
 // -1, 0, +1: the side of the plane on which the point lies.
 [[nodiscard]] int side_of(const Plane& plane, const Point& point);
 
+// A filter for the side of the plane through three points, before the plane is made exactly.
+//
+// With u = 2^-53: coordinates are at most 1 and rounded once, so each component of a difference of two points errs by
+// at most e = 4u. Let A, B, C bound the components of the three differences and their true values: their largest
+// magnitudes, plus e. Each of the six products of det(b - a, c - a, x - a) errs by at most e S, S = AB + BC + CA.
+// Rounding the products and their sum adds at most 6u to each, 36u ABC <= 25u S, since A, B, C are below 2 + 2e. The
+// total is at most 49u S, and the filter decides beyond 2^-46 S = 128u S. An underflow is negligible beside S >= 3 e^2.
+class RoundedPlane {
+ public:
+  RoundedPlane(const Vec3& a, const Vec3& b, const Vec3& c);
+
+  // Up to rounding, a positive multiple of the distance.
+  [[nodiscard]] double height(const Vec3& x) const;
+  // kernel::kUncertain: the filter declines.
+  [[nodiscard]] int side_of(const Vec3& x) const;
+  // The point's height is certainly larger, on either side, than so many times its error.
+  [[nodiscard]] bool is_beyond(const Vec3& x, double errors) const;
+
+ private:
+  [[nodiscard]] double error_at(const Vec3& from_origin) const;
+
+  Vec3 origin_, normal_;
+  double product_ = 0.0, sum_ = 0.0;  // AB and A + B
+};
+
 }  // namespace exactff::view_factors

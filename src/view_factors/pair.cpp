@@ -22,6 +22,8 @@ constexpr double kSlack = 1.0 + 0x1p-40;      // more than the roundings of an e
 constexpr double kLargestMismatch = 0x1p-16;  // of the self-check, whose point is rounded
 constexpr double kStepAside = 0x1p-30;        // in units of Point::at
 constexpr double kLeastMargin = 0x1p-24;      // the same
+constexpr std::uint64_t kSignsForACell = 1 << 14;
+constexpr std::size_t kCrowd = 256;  // occluders; an event cell of more is not worth a look at its centre
 
 Point middle(const Point& p, const Point& q, const Units& units) {
   Homogeneous sum;
@@ -62,19 +64,6 @@ bool is_resolved(const Cell& cell, const Formula& formula) {
   return formula.distance_to_edges(centre) >= kLeastDistance * radius_about(cell, centre);
 }
 
-// The one that halves the cell best; the first of equal ones.
-const std::shared_ptr<const Plane>& best_cut(const Cell& cell, const std::vector<std::shared_ptr<const Plane>>& cuts) {
-  std::size_t best = 0;
-  double most = -1.0;
-  for (std::size_t i = 0; i < cuts.size(); ++i) {
-    const double share = balance(cell, *cuts[i]);
-    if (share <= most) continue;
-    most = share;
-    best = i;
-  }
-  return cuts[best];
-}
-
 // The value of a ball, with as many bits as it takes to make it small.
 template <class Function>
 double precise(const Function& f) {
@@ -90,18 +79,22 @@ double precise(const Function& f) {
 
 }  // namespace
 
-Pair::Pair(const Scene& scene, Sight sight, FaceId receiver_face, const ExactSource* whole, const Limits& limits)
+Pair::Pair(const Scene& scene, Sight sight, FaceId receiver_face, const ExactSource* whole, const Limits& limits,
+           PairMemory& memory, std::size_t id)
     : scene_(scene),
       sight_(std::move(sight)),
       receiver_face_(receiver_face),
       whole_(whole),
       limits_(limits),
-      view_(sight_) {}
+      view_(sight_, memory, id) {}
+
+std::size_t Pair::cost() const { return cells_made_ + static_cast<std::size_t>(view_.work() / kSignsForACell); }
 
 std::vector<Share> Pair::cells(std::size_t budget) {
   budget_ = budget;
   std::vector<Share> shares;
-  look(sight_.root, view_.nothing_known(), shares);
+  view_.start();
+  look(sight_.root, 0, view_.all_candidates(), shares);
   return shares;
 }
 
@@ -126,32 +119,31 @@ double Pair::value_at(const Formula& formula, const Point& x) const {
 }
 
 // Depth first: the cells that wait are the siblings of those on the way.
-void Pair::look(Cell cell, KnownSigns known, std::vector<Share>& shares) {
+void Pair::look(Cell cell, std::size_t depth, Candidates candidates, std::vector<Share>& shares) {
   kernel::poll();
   ++cells_made_;
-  const CellView::Outcome outcome = view_.look(cell, known);
+  const CellView::Outcome outcome = view_.look(cell, depth, candidates);
   if (outcome == CellView::Outcome::kKnown && view_.parts().empty()) return;
-  if (add_if_negligible(cell, known, shares)) return;
+  if (add_if_negligible(cell, candidates, shares)) return;
   switch (outcome) {
     case CellView::Outcome::kKnown:
       return add_smooth(std::move(cell), std::make_shared<const Formula>(sight_, view_.parts()), shares);
     case CellView::Outcome::kCrossings:
-      return add_event(std::move(cell), std::move(known), std::vector(view_.triples()), shares);
+      return add_event(std::move(cell), depth, std::move(candidates), std::vector(view_.triples()), shares);
     case CellView::Outcome::kCut:
       break;
   }
-  if (cells_made_ >= budget_) return add_event(std::move(cell), std::move(known), {}, shares);
-  const std::shared_ptr<const Plane> by = best_cut(cell, view_.cuts());
-  Halves halves = cut(cell, sight_.receiver, by, sight_.points.units());
-  look(std::move(halves.negative), known, shares);
-  look(std::move(halves.positive), std::move(known), shares);
+  if (cost() >= budget_) return add_event(std::move(cell), depth, std::move(candidates), {}, shares);
+  Halves halves = cut(cell, sight_.receiver, view_.best_cut(), sight_.points.units());
+  look(std::move(halves.negative), depth + 1, candidates, shares);
+  look(std::move(halves.positive), depth + 1, std::move(candidates), shares);
 }
 
-bool Pair::add_if_negligible(Cell& cell, KnownSigns& known, std::vector<Share>& shares) const {
+bool Pair::add_if_negligible(Cell& cell, Candidates& candidates, std::vector<Share>& shares) const {
   const double size = area(cell);
   if (!(size <= limits_.negligible_area)) return false;
   const double half = 0.5 * size;
-  shares.push_back({std::move(cell), std::move(known), nullptr, half, half});
+  shares.push_back({std::move(cell), std::move(candidates), nullptr, half, half});
   return true;
 }
 
@@ -173,7 +165,7 @@ void Pair::add_smooth(Cell cell, std::shared_ptr<const Formula> formula, std::ve
 // From every point, F differs from its value at the centre by at most the slope times the distance: visibility in a
 // direction changes only where an edge sweeps over it. An edge at distance d or more that is seen under the angle w
 // contributes at most w / (pi d) to the slope.
-double Pair::slope_bound(const KnownSigns& known, const Vec3& centre, double radius) const {
+double Pair::slope_bound(const Candidates& candidates, const Vec3& centre, double radius) const {
   double sum = 0.0;
   const auto add = [&](const Ring& ring) {
     for (const Edge& edge : ring) {
@@ -185,31 +177,33 @@ double Pair::slope_bound(const KnownSigns& known, const Vec3& centre, double rad
     }
   };
   add(sight_.source);
-  for (std::size_t i = 0; i < sight_.occluders.size(); ++i) {
-    if (!known.beside[i]) add(sight_.occluders[i].ring);
-  }
+  for (const Candidate& candidate : candidates) add(sight_.occluders[candidate.occluder].ring);
   return sum / std::numbers::pi * kSlack;
 }
 
 // By the formula of a point inside, and a bound on how far F can be from it elsewhere.
-void Pair::add_event(Cell cell, KnownSigns known, const std::vector<CrossingTriple>& triples,
+void Pair::add_event(Cell cell, std::size_t depth, Candidates candidates, const std::vector<CrossingTriple>& triples,
                      std::vector<Share>& shares) {
+  const double size = area(cell);
+  if (triples.empty() && candidates.size() > kCrowd) {
+    shares.push_back({std::move(cell), std::move(candidates), nullptr, 0.5 * size, 0.5 * size});
+    return;
+  }
   const Point centre = point_inside(cell, sight_.points.units());
   const Cell at_centre{{centre}, {}};
-  KnownSigns at_point = view_.nothing_known();
-  (void)view_.look(at_centre, at_point);  // at a single point every sign is known
+  Candidates of_centre = candidates;
+  (void)view_.look(at_centre, depth + 1, of_centre);  // at a single point every sign is known
   const Formula formula(sight_, view_.parts());
-  const double size = area(cell);
   if (const double bound = triples.empty() ? HUGE_VAL : event_bound(sight_.points, cell, centre.at, triples);
       bound < 1.0) {
     const auto [integral, error] = integrated(formula, cell);
-    shares.push_back({std::move(cell), std::move(known), nullptr, integral, error + bound * size});
+    shares.push_back({std::move(cell), std::move(candidates), nullptr, integral, error + bound * size});
     return;
   }
   const double value = std::clamp(value_at(formula, centre), 0.0, 1.0);
   const double radius = radius_about(cell, centre.at);
-  const double bound = std::min(slope_bound(known, centre.at, radius) * radius, std::max(value, 1.0 - value));
-  shares.push_back({std::move(cell), std::move(known), nullptr, value * size, bound * size});
+  const double bound = std::min(slope_bound(candidates, centre.at, radius) * radius, std::max(value, 1.0 - value));
+  shares.push_back({std::move(cell), std::move(candidates), nullptr, value * size, bound * size});
 }
 
 std::vector<Share> Pair::halves(Share share) {
@@ -226,8 +220,9 @@ std::vector<Share> Pair::halves(Share share) {
     add_smooth(std::move(parts.negative), share.formula, result);
     add_smooth(std::move(parts.positive), share.formula, result);
   } else {
-    look(std::move(parts.negative), share.known, result);
-    look(std::move(parts.positive), std::move(share.known), result);
+    view_.start();
+    look(std::move(parts.negative), 1, share.candidates, result);
+    look(std::move(parts.positive), 1, std::move(share.candidates), result);
   }
   return result;
 }

@@ -16,11 +16,19 @@ namespace exactff::view_factors {
 // A cell with the integral of the point factor over it, in squares of the unit of Point::at.
 struct Share {
   Cell cell;
-  KnownSigns known;                        // of an event cell
+  Candidates candidates;                   // of an event cell
   std::shared_ptr<const Formula> formula;  // null for an event cell: the boundary is not constant on it
   double integral = 0.0;
   double error = 0.0;   // of the integral: an estimate, and for an event cell a bound besides
   bool narrow = false;  // too narrow in double to be cut
+  bool is_event = formula == nullptr;
+
+  // For a share that will not be cut.
+  void keep_numbers_only() {
+    cell = {};
+    candidates = {};
+    formula = nullptr;
+  }
 };
 
 class Pair {
@@ -29,30 +37,35 @@ class Pair {
     double rounding = 0.0;         // larger estimates of the rounding error of F ask for balls
     double negligible_area = 0.0;  // on smaller cells F is only known to lie in [0, 1]
   };
-  // Where the source part is a whole face, `whole` is that face: a point factor to it checks each cell.
-  Pair(const Scene& scene, Sight sight, FaceId receiver_face, const ExactSource* whole, const Limits& limits);
+  // Where the source part is a whole face, `whole` is that face: a point factor to it checks each cell. `id` tells the
+  // pairs apart that share the memory.
+  Pair(const Scene& scene, Sight sight, FaceId receiver_face, const ExactSource* whole, const Limits& limits,
+       PairMemory& memory, std::size_t id);
 
-  // Cuts the receiver until every cell is smooth, an event cell, or sees nothing; the last are left out. Gives up
-  // after `budget` cells: what is left then counts as event cells.
+  // Cuts the receiver until every cell is smooth, an event cell, or sees nothing; the last are left out. Gives up when
+  // cost() reaches the budget: what is left then counts as event cells.
   [[nodiscard]] std::vector<Share> cells(std::size_t budget);
   // The two halves of a cell, without parts that see nothing.
   [[nodiscard]] std::vector<Share> halves(Share share);
   [[nodiscard]] std::size_t cells_made() const { return cells_made_; }
+  // In cells; one that asks for very many signs counts for several.
+  [[nodiscard]] std::size_t cost() const;
 
  private:
-  void look(Cell cell, KnownSigns known, std::vector<Share>& shares);
+  void look(Cell cell, std::size_t depth, Candidates candidates, std::vector<Share>& shares);
   void add_smooth(Cell cell, std::shared_ptr<const Formula> formula, std::vector<Share>& shares);
   // `triples`: all that is undecided; if empty, more may be.
-  void add_event(Cell cell, KnownSigns known, const std::vector<CrossingTriple>& triples, std::vector<Share>& shares);
+  void add_event(Cell cell, std::size_t depth, Candidates candidates, const std::vector<CrossingTriple>& triples,
+                 std::vector<Share>& shares);
   struct Integrated {
     double integral, error;
   };
   [[nodiscard]] Integrated integrated(const Formula& formula, const Cell& cell) const;
-  bool add_if_negligible(Cell& cell, KnownSigns& known, std::vector<Share>& shares) const;
+  bool add_if_negligible(Cell& cell, Candidates& candidates, std::vector<Share>& shares) const;
   [[nodiscard]] double value_at(const Formula& formula, const Cell& cell, const Vec3& x, const Place& place) const;
   [[nodiscard]] double value_at(const Formula& formula, const Point& x) const;
   void check(const Cell& cell, const Formula& formula) const;
-  [[nodiscard]] double slope_bound(const KnownSigns& known, const Vec3& centre, double radius) const;
+  [[nodiscard]] double slope_bound(const Candidates& candidates, const Vec3& centre, double radius) const;
 
   const Scene& scene_;
   Sight sight_;

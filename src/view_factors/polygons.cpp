@@ -5,7 +5,12 @@
 namespace exactff::view_factors {
 
 PointId Points::add(Point point) {
-  points_.push_back(std::move(point));
+  own_.push_back(std::move(point));
+  return refer_to(own_.back());
+}
+
+PointId Points::refer_to(const Point& point) {
+  points_.push_back(&point);
   return static_cast<PointId>(points_.size() - 1);
 }
 
@@ -23,7 +28,7 @@ Ring Points::ring(const std::vector<PointId>& corners) {
 }
 
 Plane Points::plane_of(const Ring& ring) const {
-  return make_plane(join(points_[ring[0].from], points_[ring[1].from], points_[ring[2].from]), units_);
+  return make_plane(join((*this)[ring[0].from], (*this)[ring[1].from], (*this)[ring[2].from]), units_);
 }
 
 PointId Points::crossing(const Edge& edge, const Plane& plane, std::uint32_t name) {
@@ -31,13 +36,13 @@ PointId Points::crossing(const Edge& edge, const Plane& plane, std::uint32_t nam
   if (is_new) {
     const auto height = [&](PointId id) {
       Integer sum;
-      for (std::size_t i = 0; i < 4; ++i) sum += plane.exact[i] * points_[id].exact[i];
+      for (std::size_t i = 0; i < 4; ++i) sum += plane.exact[i] * points_[id]->exact[i];
       return sum;
     };
     const Line& line = lines_[edge.line];
     const Integer a = height(line.a), b = height(line.b);
     Homogeneous point;
-    for (std::size_t i = 0; i < 4; ++i) point[i] = points_[line.a].exact[i] * b - points_[line.b].exact[i] * a;
+    for (std::size_t i = 0; i < 4; ++i) point[i] = points_[line.a]->exact[i] * b - points_[line.b]->exact[i] * a;
     add(make_point(std::move(point), units_));
   }
   return place->second;
@@ -45,7 +50,7 @@ PointId Points::crossing(const Edge& edge, const Plane& plane, std::uint32_t nam
 
 Ring Points::clipped(const Ring& ring, const Plane& plane, std::uint32_t name) {
   std::vector<int> sides;
-  for (const Edge& e : ring) sides.push_back(side_of(plane, points_[e.from]));
+  for (const Edge& e : ring) sides.push_back(side_of(plane, *points_[e.from]));
   if (std::ranges::all_of(sides, [](int s) { return s >= 0; })) {
     return std::ranges::any_of(sides, [](int s) { return s > 0; }) ? ring : Ring{};
   }
@@ -67,6 +72,13 @@ Ring Points::clipped(const Ring& ring, const Plane& plane, std::uint32_t name) {
     break;
   }
   return result;
+}
+
+void Points::complete() {
+  line_of_.clear();
+  crossing_of_.clear();
+  points_.shrink_to_fit();
+  lines_.shrink_to_fit();
 }
 
 }  // namespace exactff::view_factors

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <utility>
 #include <vector>
@@ -40,27 +41,33 @@ using Ring = std::vector<Edge>;
 class Points {
  public:
   explicit Points(const Units& units) : units_(units) {}
+  Points(Points&&) = default;
+  Points& operator=(Points&&) = default;
 
   [[nodiscard]] const Units& units() const { return units_; }
   [[nodiscard]] std::size_t point_count() const { return points_.size(); }
   [[nodiscard]] std::size_t line_count() const { return lines_.size(); }
-  [[nodiscard]] const Point& operator[](PointId id) const { return points_[id]; }
+  [[nodiscard]] const Point& operator[](PointId id) const { return *points_[id]; }
   [[nodiscard]] const Line& line(LineId id) const { return lines_[id]; }
 
   PointId add(Point point);
+  PointId refer_to(const Point& point);  // which must stay where it is
   // The polygon with these corners, none of which lies in the middle of a straight side.
   Ring ring(const std::vector<PointId>& corners);
   // The part of the polygon on the positive side of the plane; empty if it has no area. `name` tells planes apart:
   // where one cuts a line that it has cut before, the point is the same.
   Ring clipped(const Ring& ring, const Plane& plane, std::uint32_t name);
   [[nodiscard]] Plane plane_of(const Ring& ring) const;
+  // Frees what only further rings need.
+  void complete();
 
  private:
   Edge edge(PointId from, PointId to);
   PointId crossing(const Edge& edge, const Plane& plane, std::uint32_t name);
 
   Units units_;
-  std::vector<Point> points_;
+  std::deque<Point> own_;  // keeps its elements in place
+  std::vector<const Point*> points_;
   std::vector<Line> lines_;
   std::map<std::pair<PointId, PointId>, LineId> line_of_;
   std::map<std::pair<LineId, std::uint32_t>, PointId> crossing_of_;

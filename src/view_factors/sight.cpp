@@ -28,6 +28,7 @@ class Maker {
       for (const Edge& edge : *ring) between_.include(points[edge.from].at);
     }
     for (const ExactPiece& piece : scene_.pieces) add_occluder(piece);
+    points.complete();
     return std::move(sight_);
   }
 
@@ -38,18 +39,28 @@ class Maker {
     return sight_.points.ring(corners);
   }
 
-  // A corner of the two parts keeps its identity where it is a vertex of an occluder.
-  PointId known(const Point& point) {
+  // The corner of the two parts at this place.
+  [[nodiscard]] std::optional<PointId> corner_at(const Point& point) const {
     const auto count = std::min<PointId>(corners_of_parts_, static_cast<PointId>(sight_.points.point_count()));
     for (PointId id = 0; id < count; ++id) {
       if (sight_.points[id].exact == point.exact) return id;
     }
-    return sight_.points.add(point);
+    return std::nullopt;
   }
 
+  PointId known(const Point& point) {
+    const std::optional<PointId> corner = corner_at(point);
+    return corner ? *corner : sight_.points.add(point);
+  }
+
+  // A corner of the two parts keeps its identity where it is a vertex of an occluder.
   PointId vertex(std::uint32_t index) {
     const auto [place, is_new] = vertex_.try_emplace(index, 0);
-    if (is_new) place->second = known(scene_.vertices[index]);
+    if (is_new) {
+      const Point& point = scene_.vertices[index];
+      const std::optional<PointId> corner = corner_at(point);
+      place->second = corner ? *corner : sight_.points.refer_to(point);
+    }
     return place->second;
   }
 
@@ -71,7 +82,7 @@ class Maker {
     const Ring above = points.clipped(points.ring(corners), sight_.receiver, kByReceiver);
     if (above.empty()) return;
     Ring ring = points.clipped(above, source_plane_, kBySource);
-    if (!ring.empty()) sight_.occluders.push_back({std::move(ring), piece.plane});
+    if (!ring.empty()) sight_.occluders.push_back({std::move(ring), &piece.plane});
   }
 
   const ExactScene& scene_;

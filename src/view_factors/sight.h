@@ -11,11 +11,11 @@
 namespace exactff::view_factors {
 
 struct Occluder {
-  Ring ring;  // counter-clockwise as seen from the positive side of the plane
-  Plane plane;
+  Ring ring;           // counter-clockwise as seen from the positive side of the plane
+  const Plane* plane;  // of the scene
 };
 
-// A receiver's points see a source's points if the segment between them meets no occluder.
+// A receiver's points see a source's points if the segment between them meets no occluder. Refers to the scene.
 struct Sight {
   explicit Sight(const Units& units) : points(units) {}
 

@@ -19,9 +19,10 @@ namespace view_factors {
 namespace {
 
 constexpr std::size_t kStepsBetweenSums = 4096;
-constexpr double kShareOfRounding = 0x1p-10;    // of the accuracy
-constexpr double kShareOfNegligible = 0x1p-24;  // of the error that is allowed
-constexpr double kRounding = 0x1p-44;           // relative: more than the roundings of formula and sums in usual scenes
+constexpr double kShareOfRounding = 0x1p-10;               // of the accuracy
+constexpr double kShareOfNegligible = 0x1p-24;             // of the error that is allowed
+constexpr std::size_t kMostPoints = std::size_t{1} << 20;  // of all pairs of parts: some 200 MB
+constexpr double kRounding = 0x1p-44;  // relative: more than the roundings of formula and sums in usual scenes
 
 struct Waiting {
   Share share;
@@ -36,31 +37,35 @@ bool is_less_urgent(const Waiting& a, const Waiting& b) {
 // All pairs of parts of two patches, refined together until the sum of their errors is small enough.
 class Integral {
  public:
-  Integral(const ExactScene& scene, const std::vector<Part>& from, const std::vector<Part>& to,
+  // `area`: of `from`.
+  Integral(const ExactScene& scene, const std::vector<Part>& from, double area, const std::vector<Part>& to,
            const Selection& to_patch, const ViewFactorOptions& options, double target)
-      : budget_(options.budget) {
+      : area_(area), budget_(options.budget), least_error_(target / (4.0 * static_cast<double>(budget_))) {
     const Pair::Limits limits{options.accuracy * kShareOfRounding, target * kShareOfNegligible};
     for (const Part& source : to) add_source(scene.scene, source, to_patch);
     for (const Part& receiver : from) {
       for (std::size_t i = 0; i < to.size(); ++i) {
         std::optional<Sight> sight = sight_of(scene, receiver, to[i], receiver.face);
         if (!sight) continue;
-        pairs_.push_back(
-            std::make_unique<Pair>(scene.scene, std::move(*sight), receiver.face, sources_[i].get(), limits));
-        const std::size_t left = budget_ > cells_ ? budget_ - cells_ : 0;
-        work_on(pairs_.size() - 1, [&](Pair& pair) { return pair.cells(left); });
+        points_ += sight->points.point_count();
+        if (cost_ >= budget_ || points_ > kMostPoints) {
+          give_up();
+          return;
+        }
+        add_pair(std::make_unique<Pair>(scene.scene, std::move(*sight), receiver.face, sources_[i].get(), limits,
+                                        memory_, pairs_.size()));
       }
     }
   }
 
   // error <= target, or the budget is used up.
   void refine(double target) {
-    for (std::size_t steps = 0; !waiting_.empty() && cells_ < budget_;) {
+    for (std::size_t steps = 0; !waiting_.empty() && cost_ < budget_;) {
       if (running_error_ <= target || ++steps % kStepsBetweenSums == 0) {
         running_error_ = error();  // without the roundings of its updates
         if (running_error_ <= target) return;
       }
-      if (!(waiting_.front().share.error > 0.0)) return;
+      if (!(waiting_.front().share.error >= least_error_)) return;
       std::ranges::pop_heap(waiting_, is_less_urgent);
       Waiting worst = std::move(waiting_.back());
       waiting_.pop_back();
@@ -69,12 +74,12 @@ class Integral {
     }
   }
 
-  [[nodiscard]] double integral() const { return sum_of(&Share::integral); }
-  [[nodiscard]] double error() const { return sum_of(&Share::error); }
-  [[nodiscard]] bool is_zero() const { return waiting_.empty() && settled_.empty(); }
+  [[nodiscard]] double integral() const { return gave_up_ ? 0.5 * area_ : sum_of(&Share::integral); }
+  [[nodiscard]] double error() const { return gave_up_ ? 0.5 * area_ : sum_of(&Share::error); }
+  [[nodiscard]] bool is_zero() const { return waiting_.empty() && settled_.empty() && !gave_up_; }
   [[nodiscard]] std::size_t cells() const { return cells_; }
   [[nodiscard]] std::size_t event_cells() const {
-    const auto is_event = [](const Share& share) { return share.formula == nullptr; };
+    const auto is_event = [](const Share& share) { return share.is_event; };
     return static_cast<std::size_t>(std::ranges::count_if(waiting_, is_event, &Waiting::share) +
                                     std::ranges::count_if(settled_, is_event));
   }
@@ -88,21 +93,41 @@ class Integral {
     sources_.push_back(whole ? std::make_unique<ExactSource>(scene, face) : nullptr);
   }
 
-  // Takes the shares that the call makes of the pair.
+  void add_pair(std::unique_ptr<Pair> pair) {
+    pairs_.push_back(std::move(pair));
+    const std::size_t made = made_;
+    const std::size_t left = budget_ - cost_;
+    work_on(pairs_.size() - 1, [&](Pair& p) { return p.cells(left); });
+    if (made_ == made) pairs_.back().reset();
+  }
+
+  // With the number of pairs at hand alone, nothing but 0 <= F <= 1 is known.
+  void give_up() {
+    waiting_.clear();
+    settled_.clear();
+    pairs_.clear();
+    gave_up_ = true;
+  }
+
+  // Takes the shares that the call makes of the pair. No more than 4 * budget_ are ever made, so the worst of them has
+  // an error of at least least_error_ while they exceed the target: of others, only the numbers are needed.
   template <class Call>
   void work_on(std::size_t id, const Call& call) {
     Pair& pair = *pairs_[id];
-    const std::size_t before = pair.cells_made();
+    const std::size_t cells = pair.cells_made(), cost = pair.cost();
     for (Share& share : call(pair)) {
+      ++made_;
       running_error_ += share.error;
+      if (share.error < least_error_) share.keep_numbers_only();
       if (share.narrow) {
         settled_.push_back(std::move(share));
         continue;
       }
-      waiting_.push_back({std::move(share), id, made_++});
+      waiting_.push_back({std::move(share), id, made_});
       std::ranges::push_heap(waiting_, is_less_urgent);
     }
-    cells_ += pair.cells_made() - before;
+    cells_ += pair.cells_made() - cells;
+    cost_ += pair.cost() - cost;
   }
 
   [[nodiscard]] double sum_of(double Share::*member) const {
@@ -112,14 +137,19 @@ class Integral {
     return sum;
   }
 
+  double area_;
   std::size_t budget_;
+  double least_error_;
+  PairMemory memory_;
   std::vector<std::unique_ptr<ExactSource>> sources_;
-  std::vector<std::unique_ptr<Pair>> pairs_;
-  std::vector<Waiting> waiting_;  // a heap
-  std::vector<Share> settled_;    // narrow ones
+  std::vector<std::unique_ptr<Pair>> pairs_;  // null: sees nothing
+  std::vector<Waiting> waiting_;              // a heap
+  std::vector<Share> settled_;                // narrow ones
   double running_error_ = 0.0;
-  std::size_t made_ = 0;
-  std::size_t cells_ = 0;
+  std::size_t made_ = 0;  // shares
+  std::size_t cells_ = 0, cost_ = 0;
+  std::size_t points_ = 0;  // of all sights
+  bool gave_up_ = false;
 };
 
 void check_accuracy(double accuracy) {
@@ -146,6 +176,11 @@ Prepared prepare(const ExactScene& scene, const Selection& patch) {
                      " has no area, or none in double precision beside the rest of the scene",
                  "a view factor is a mean over the patch", "leave the patch out");
   }
+  if (!(result.area > 0.0 && std::isfinite(result.area))) {
+    text::refuse("patch " + scene.scene.name_of(patch) + " has no area that a double can hold: it is " +
+                     (result.area > 0.0 ? "above 1.8e308" : "below 4.9e-324"),
+                 "areas are part of the result", "scale the scene; view factors do not depend on its unit of length");
+  }
   for (const FaceId face : scene.scene.faces_of(patch)) {
     result.planar = result.planar && scene.scene.face(face).shape == FaceShape::kPlanar;
   }
@@ -157,7 +192,7 @@ ViewFactor factor(const ExactScene& scene, const Prepared& from, const Prepared&
   result.area_from = from.area;
   result.area_to = to.area;
   const double target = 0.5 * options.accuracy * std::min(from.unit_area, to.unit_area);
-  Integral integral(scene, from.parts, to.parts, to.patch, options, target);
+  Integral integral(scene, from.parts, from.unit_area, to.parts, to.patch, options, target);
   result.cells = integral.cells();
   if (integral.is_zero()) return result;
   integral.refine(target);

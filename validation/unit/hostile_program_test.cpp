@@ -340,6 +340,17 @@ TEST_F(HostileProgram, TheEndOfMemoryIsTold) {
   EXPECT_TRUE(run.error().starts_with("exactff: out of memory (")) << run.error();
 }
 
+// What a pair of patches remembers is limited, however many edges lie between them.
+TEST_F(HostileProgram, AMatrixNeedsLittleMemoryWhateverLiesBetween) {
+  if (kSanitized) GTEST_SKIP() << "address space cannot be limited here";
+  for (const char* scene : {"@soup:n=3000,cover=3", "@tiles:n=40"}) {
+    const Running run =
+        start({"matrix", scene, "--from", "floor", "--to", "source", "--budget", "30", "--threads", "1", "--plain"},
+              [] { limit(RLIMIT_AS, 400 << 20); });
+    EXPECT_EQ(run.wait(), 0) << scene << '\n' << run.error();
+  }
+}
+
 // With coordinates so far apart, only the exact numbers need much memory; GMP itself would abort.
 TEST_F(HostileProgram, TheEndOfMemoryIsToldByExactNumbersToo) {
   if (kSanitized) GTEST_SKIP() << "address space cannot be limited here";

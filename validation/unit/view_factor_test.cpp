@@ -191,6 +191,26 @@ TEST(ViewFactor, RefusesWhatHasNoMeaning) {
   EXPECT_THROW((void)view_factor(other, below, below), std::invalid_argument);
 }
 
+// View factors do not depend on the unit of length, but areas must be doubles.
+TEST(ViewFactor, RefusesAreasThatNoDoubleHolds) {
+  for (const double side : {0x1p500, 0x1p-500}) {
+    const Scene built = generate::build(plates(side, side));
+    const ViewFactor f = view_factor(built, named(built, "below"), named(built, "above"));
+    EXPECT_NEAR(f.value, 0.199824895698387, 1e-6);
+    EXPECT_EQ(f.area_from, side * side);
+  }
+  for (const double side : {1e300, 0x1p-600}) {
+    const Scene built = generate::build(plates(side, side));
+    try {
+      (void)view_factor(built, named(built, "below"), named(built, "above"));
+      FAIL() << side;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("patch below has no area that a double can hold"), std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 // --- The command ---
 
 TEST(MatrixCommand, PrintsAndWritesTheSameNumbers) {
