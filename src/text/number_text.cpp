@@ -22,7 +22,6 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 // The parts of [+-] whole [. fraction] [e exponent].
 struct Decimal {
   bool negative = false;
-  std::string_view unsigned_text;
   std::string_view whole;
   std::string_view fraction;
   std::string_view exponent;  // with its sign
@@ -47,7 +46,6 @@ Decimal split(std::string_view text) {
   std::string_view rest = text;
   number.negative = text.starts_with('-');
   take(rest, "+-");
-  number.unsigned_text = rest;
   number.whole = take_digits(rest);
   if (take(rest, ".")) number.fraction = take_digits(rest);
   bool exponent_complete = true;
@@ -87,7 +85,7 @@ Digits significant(const Decimal& number) {
   return digits;
 }
 
-// The values that from_chars could not represent: far outside the range of doubles, or near its ends.
+// For what from_chars does not read: values far outside the range of doubles, or near its ends.
 double rounded_exactly(const Digits& digits) {
   const long magnitude = digits.exponent + static_cast<long>(digits.text.size());  // value < 10^magnitude
   if (digits.text.empty() || magnitude < -400) return 0.0;
@@ -99,13 +97,6 @@ double rounded_exactly(const Digits& digits) {
   return kernel::nearest_double(kernel::Rational(mantissa, power));
 }
 
-double magnitude_of(const Decimal& number) {
-  const std::string_view text = number.unsigned_text;
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? value : rounded_exactly(significant(number));
-}
-
 NumberFault fault_of(std::string_view text) {
   std::string word = in_lower_case(text);
   if (word.starts_with('+') || word.starts_with('-')) word.erase(0, 1);
@@ -115,10 +106,12 @@ NumberFault fault_of(std::string_view text) {
   return text.find(',') != std::string_view::npos && split(word).valid ? NumberFault::kComma : NumberFault::kNotANumber;
 }
 
-// Nearly all numbers: std::from_chars reads the whole text, and it begins as a number, not as "nan" or "inf".
+// Nearly all numbers: std::from_chars reads the whole text except for a plus sign, and it begins as a number, not as
+// "nan" or "inf".
 std::optional<double> plain_number(std::string_view text) {
-  const char first = text.empty() ? '\0' : text[text.front() == '-' && text.size() > 1 ? 1 : 0];
-  if (!is_digit(first) && first != '.') return std::nullopt;
+  const std::size_t sign = text.starts_with('+') || text.starts_with('-') ? 1 : 0;
+  if (sign == text.size() || (!is_digit(text[sign]) && text[sign] != '.')) return std::nullopt;
+  if (text.front() == '+') text.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
@@ -131,7 +124,7 @@ ParsedNumber parse_number(std::string_view text) {
   if (const auto value = plain_number(text)) return {*value, NumberFault::kNone};
   const Decimal number = split(text);
   if (!number.valid) return {0.0, fault_of(text)};
-  const double magnitude = magnitude_of(number);
+  const double magnitude = rounded_exactly(significant(number));
   if (std::isinf(magnitude)) return {0.0, NumberFault::kTooLarge};
   return {number.negative && magnitude != 0.0 ? -magnitude : magnitude, NumberFault::kNone};
 }

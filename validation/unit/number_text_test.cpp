@@ -52,6 +52,8 @@ TEST(NumberText, ReadsDecimalsWithCorrectRounding) {
     const text::ParsedNumber number = text::parse_number(entry.text);
     EXPECT_EQ(number.fault, text::NumberFault::kNone) << entry.text;
     EXPECT_EQ(std::bit_cast<std::uint64_t>(number.value), std::bit_cast<std::uint64_t>(entry.value)) << entry.text;
+    if (entry.text.find_first_of("+-") == 0) continue;
+    EXPECT_EQ(text::parse_number("+" + entry.text).value, entry.value) << entry.text;
   }
 }
 
