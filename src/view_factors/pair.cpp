@@ -18,12 +18,12 @@ using kernel::difference;
 using kernel::distance;
 using kernel::dot;
 
-constexpr double kSlack = 1.0 + 0x1p-40;      // more than the roundings of an estimated bound
-constexpr double kLargestMismatch = 0x1p-16;  // of the self-check, whose point is rounded
-constexpr double kStepAside = 0x1p-30;        // in units of Point::at
-constexpr double kLeastMargin = 0x1p-24;      // the same
-constexpr std::uint64_t kSignsForACell = 1 << 14;
-constexpr std::size_t kCrowd = 256;  // occluders; an event cell of more is not worth a look at its centre
+constexpr double kSlack = 1.0 + 0x1p-40;           // more than the roundings of an estimated bound
+constexpr double kLargestMismatch = 0x1p-16;       // of the self-check, whose point is rounded
+constexpr double kStepAside = 0x1p-30;             // in units of Point::at
+constexpr double kLeastMargin = 0x1p-24;           // the same
+constexpr std::uint64_t kSignsForACell = 1 << 15;  // more than where few occluders lie between
+constexpr std::size_t kCrowd = 256;                // occluders; an event cell of more is not worth a look at its centre
 
 Point middle(const Point& p, const Point& q, const Units& units) {
   Homogeneous sum;
@@ -88,7 +88,12 @@ Pair::Pair(const Scene& scene, Sight sight, FaceId receiver_face, const ExactSou
       limits_(limits),
       view_(sight_, memory, id) {}
 
-std::size_t Pair::cost() const { return cells_made_ + static_cast<std::size_t>(view_.work() / kSignsForACell); }
+CellView::Outcome Pair::view(const Cell& cell, std::size_t depth, Candidates& candidates) {
+  const std::uint64_t before = view_.work();
+  const CellView::Outcome outcome = view_.look(cell, depth, candidates);
+  extra_cost_ += static_cast<std::size_t>((view_.work() - before) / kSignsForACell);
+  return outcome;
+}
 
 std::vector<Share> Pair::cells(std::size_t budget) {
   budget_ = budget;
@@ -122,7 +127,7 @@ double Pair::value_at(const Formula& formula, const Point& x) const {
 void Pair::look(Cell cell, std::size_t depth, Candidates candidates, std::vector<Share>& shares) {
   kernel::poll();
   ++cells_made_;
-  const CellView::Outcome outcome = view_.look(cell, depth, candidates);
+  const CellView::Outcome outcome = view(cell, depth, candidates);
   if (outcome == CellView::Outcome::kKnown && view_.parts().empty()) return;
   if (add_if_negligible(cell, candidates, shares)) return;
   switch (outcome) {
@@ -192,7 +197,7 @@ void Pair::add_event(Cell cell, std::size_t depth, Candidates candidates, const 
   const Point centre = point_inside(cell, sight_.points.units());
   const Cell at_centre{{centre}, {}};
   Candidates of_centre = candidates;
-  (void)view_.look(at_centre, depth + 1, of_centre);  // at a single point every sign is known
+  (void)view(at_centre, depth + 1, of_centre);  // at a single point every sign is known
   const Formula formula(sight_, view_.parts());
   if (const double bound = triples.empty() ? HUGE_VAL : event_bound(sight_.points, cell, centre.at, triples);
       bound < 1.0) {

@@ -49,9 +49,10 @@ class Pair {
   [[nodiscard]] std::vector<Share> halves(Share share);
   [[nodiscard]] std::size_t cells_made() const { return cells_made_; }
   // In cells; one that asks for very many signs counts for several.
-  [[nodiscard]] std::size_t cost() const;
+  [[nodiscard]] std::size_t cost() const { return cells_made_ + extra_cost_; }
 
  private:
+  CellView::Outcome view(const Cell& cell, std::size_t depth, Candidates& candidates);
   void look(Cell cell, std::size_t depth, Candidates candidates, std::vector<Share>& shares);
   void add_smooth(Cell cell, std::shared_ptr<const Formula> formula, std::vector<Share>& shares);
   // `triples`: all that is undecided; if empty, more may be.
@@ -73,7 +74,7 @@ class Pair {
   const ExactSource* whole_;
   Limits limits_;
   CellView view_;
-  std::size_t cells_made_ = 0, budget_ = 0;
+  std::size_t cells_made_ = 0, extra_cost_ = 0, budget_ = 0;
 };
 
 }  // namespace exactff::view_factors
