@@ -4,9 +4,10 @@
 #   fuzz.sh [SECONDS]  for each target, default 60
 #
 # Builds build/clang: Clang, AddressSanitizer, UndefinedBehaviorSanitizer and libFuzzer. EXACTFF_BUILD names another
-# build folder. Each target starts from data/fuzz/TARGET and a fresh working corpus; fuzz_solver also from the reference
-# and regression cases. Two targets run at a time. Ends with a summary; the exit code is 1 if there is a finding. A
-# finding of fuzz_solver is shrunk to a case that becomes a test when it is moved into data/regression.
+# build folder. Each target starts from data/fuzz/TARGET and a fresh working corpus; fuzz_solver and fuzz_view, which
+# share a corpus, also from the reference and regression cases. Two targets run at a time. Ends with a summary; the exit
+# code is 1 if there is a finding. A finding of fuzz_solver is shrunk to a case that becomes a test when it is moved into
+# data/regression.
 #
 # For the whole program there is no libFuzzer target: fuzz_program generates its own cases and keeps one of each kind of
 # finding. EXACTFF_SEED, default 1, numbers them.
@@ -28,10 +29,12 @@ mkdir -p "$work/temporary" "$findings"
 "$build/exactff_fuzz_seed" "$work/solver-seeds" data/reference/*.json data/regression/*.json
 
 run() {
-  local target=$1 corpora=("$work/$1" "data/fuzz/$1") options=(-max_total_time="$seconds" -max_len=4096 -timeout=60
+  local target=$1 corpus=$1
+  [ "$target" != view ] || corpus=solver
+  local corpora=("$work/$1" "data/fuzz/$corpus") options=(-max_total_time="$seconds" -max_len=4096 -timeout=60
     -rss_limit_mb=2048 -report_slow_units=60 -print_final_stats=1 -artifact_prefix="$findings/$1-")
   mkdir "$work/$target"
-  [ ! -d "$work/$target-seeds" ] || corpora+=("$work/$target-seeds")
+  [ ! -d "$work/$corpus-seeds" ] || corpora+=("$work/$corpus-seeds")
   [ ! -f "validation/fuzz/$target.dict" ] || options+=(-dict="validation/fuzz/$target.dict")
   rm -f "$findings/$target"-*
   TMPDIR=$work/temporary "$build/fuzz_$target" "${options[@]}" "${corpora[@]}" > "$work/$target.log" 2>&1 ||
@@ -40,7 +43,7 @@ run() {
 export -f run
 export seconds build work findings
 
-targets=(solver obj ply stl off view3d receivers exr check study truth_journal study_journal)
+targets=(solver view obj ply stl off view3d receivers exr check study truth_journal study_journal)
 run_program() {
   mkdir "$work/program"
   rm -rf "$findings"/program-*

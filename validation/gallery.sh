@@ -22,4 +22,6 @@ render closed_room @closed-room:lamp=hanging --fov 62 --size 400x300 --spp 2
 render emitters @emitters --fov 60 --size 400x300 --spp 2
 render teapot @teapot:segments=12 --eye 4 -8 6.5 --look 0.1 0 1.3 --up 0 0 1 --fov 36 --size 400x300 --spp 2 --exposure 28
 render forest @forest:n=1500,trees=9,cover=0.6 --two-sided --eye 12 -13 1.7 --look -4 5 3.4 --up 0 0 1 --fov 55 --size 256x192
+build/exactff view data/scenes/cornell_box.obj --at 240 0 300 --normal 0 1 0 --on floor --up 0 0 1 --plain \
+  --svg "$out/cornell_box_view.svg" > /dev/null
 ls -l "$out"

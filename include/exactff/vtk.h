@@ -51,6 +51,9 @@ struct Content {
 // Cancelled if the hooks cancel.
 void write(const Content& content, const std::filesystem::path& file, const Hooks& hooks = {});
 
+// Writes the scene alone, as above.
+void write(const Scene& scene, const std::filesystem::path& file, const Hooks& hooks = {});
+
 // "map_scene.vtp" for "map.vtp".
 [[nodiscard]] std::filesystem::path scene_file(const std::filesystem::path& file);
 

@@ -13,15 +13,6 @@ namespace exactff::cli {
 
 namespace {
 
-// Otherwise, if numbers are missing, the flag that follows would be read as one of them.
-std::string is_no_flag(const std::string& text) {
-  return text.starts_with("--") ? "needs three numbers; found '" + text + "' among them" : "";
-}
-
-Vec3 to_vec3(const std::array<std::string, 3>& text, const std::string& flag) {
-  return {parse_finite(text[0], flag), parse_finite(text[1], flag), parse_finite(text[2], flag)};
-}
-
 std::vector<FaceId> own_faces(const std::string& on, const Scene& scene, const Receiver& receiver) {
   const auto automatic = flags::auto_face(on, scene);
   if (!automatic) return own_faces_named(scene, on);
@@ -56,7 +47,7 @@ void OneReceiver::add_to(CLI::App& app) {
 }
 
 Receiver OneReceiver::make(const Scene& scene) const {
-  Receiver receiver{to_vec3(at, "--at"), to_vec3(normal, "--normal"), {}, ""};
+  Receiver receiver{parse_vector(at, "--at"), parse_vector(normal, "--normal"), {}, ""};
   if (!on.empty()) receiver.on = own_faces(on, scene, receiver);
   return receiver;
 }

@@ -32,6 +32,14 @@ double parse_finite(const std::string& text, const std::string& flag) {
                     .suggestion = "give three numbers, for example " + flag + " 0 0.5 -1e-3"});
 }
 
+Vec3 parse_vector(std::span<const std::string> words, const std::string& flag) {
+  return {parse_finite(words[0], flag), parse_finite(words[1], flag), parse_finite(words[2], flag)};
+}
+
+std::string is_no_flag(const std::string& text) {
+  return text.starts_with("--") ? "needs three numbers; found '" + text + "' among them" : "";
+}
+
 namespace {
 
 [[noreturn]] void cannot_write(const fs::path& path, const std::string& reason) {

@@ -17,6 +17,10 @@ std::string pad(const std::string& text, std::size_t width);
 
 // Parses a finite double with correct rounding. The InputError for other texts names the flag.
 double parse_finite(const std::string& text, const std::string& flag);
+// The same for the three words of a vector.
+Vec3 parse_vector(std::span<const std::string> words, const std::string& flag);
+// A check of each of the words: if numbers are missing, the flag that follows would be read as one of them.
+std::string is_no_flag(const std::string& text);
 
 // For a terminal.
 template <class Named>

@@ -82,10 +82,6 @@ struct RenderArguments {
   }
 };
 
-Vec3 vector_of(const ThreeNumbers& words, const std::string& flag) {
-  return {parse_finite(words[0], flag), parse_finite(words[1], flag), parse_finite(words[2], flag)};
-}
-
 render::Size size_of(const std::string& text) {
   const std::size_t cross = text.find('x');
   const auto width = flags::whole_number<int>(text.substr(0, cross));
@@ -104,10 +100,10 @@ render::Camera given_camera(const RenderArguments& args) {
                  "a camera stands at one point and looks at another", "give both, or neither for a view of the whole");
   }
   if (!args.eye.empty()) {
-    camera.eye = vector_of(args.eye, "--eye");
-    camera.look = vector_of(args.look, "--look");
+    camera.eye = parse_vector(args.eye, "--eye");
+    camera.look = parse_vector(args.look, "--look");
   }
-  if (!args.up.empty()) camera.up = vector_of(args.up, "--up");
+  if (!args.up.empty()) camera.up = parse_vector(args.up, "--up");
   camera.fov = args.fov;
   camera.ortho = args.ortho;
   return camera;
@@ -270,10 +266,6 @@ int run(const RenderArguments& args) {
   return warn_of_uncertified_points(result);
 }
 
-std::string three_numbers(const std::string& text) {
-  return text.starts_with("--") ? "needs three numbers; found '" + text + "' among them" : "";
-}
-
 std::string is_positive(const std::string& text) {
   const text::ParsedNumber number = text::parse_number(text);
   return number.fault == text::NumberFault::kNone && number.value > 0.0 ? ""
@@ -282,7 +274,7 @@ std::string is_positive(const std::string& text) {
 
 void add_camera_flags(CLI::App& app, RenderArguments& args) {
   const auto add_vector = [&](const std::string& flag, ThreeNumbers& numbers, const std::string& meaning) {
-    app.add_option(flag, numbers, meaning)->expected(3)->type_name("X Y Z")->check(three_numbers);
+    app.add_option(flag, numbers, meaning)->expected(3)->type_name("X Y Z")->check(is_no_flag);
   };
   add_vector("--eye", args.eye, "Where the camera stands (default: where it shows the whole scene)");
   add_vector("--look", args.look, "The point that it looks at");

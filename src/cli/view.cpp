@@ -2,8 +2,10 @@
 #include "exactff/view.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "cli/command.h"
@@ -12,10 +14,14 @@
 #include "cli/output.h"
 #include "cli/point.h"
 #include "cli/text_table.h"
+#include "exactff/scene_files.h"
 #include "exactff/version.h"
+#include "exactff/view_regions.h"
+#include "exactff/vtk.h"
 #include "flags/scene.h"
 #include "text/csv_row.h"
 #include "text/json_document.h"
+#include "text/nearest_names.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 
@@ -36,6 +42,9 @@ struct ViewArguments {
   bool plain = false;
   bool json = false;
   bool csv = false;
+  std::string svg, projection = "nusselt", mesh;
+  std::vector<std::string> up;  // three numbers, or none
+  bool force = false;
 };
 
 FormFactor as_form_factor(const ViewShare& share) {
@@ -162,7 +171,20 @@ nlohmann::ordered_json share_json(const ViewArguments& args, const ViewShare& sh
 
 nlohmann::ordered_json numbers(const Vec3& v) { return nlohmann::ordered_json::array({v.x, v.y, v.z}); }
 
-void print_json(const ViewArguments& args, const Scene& scene, const Receiver& receiver, const WholeView& seen) {
+nlohmann::ordered_json regions_json(const Scene& scene, const VisibilityMesh& mesh) {
+  auto json = nlohmann::ordered_json::array();
+  for (const SeenRegion& region : mesh.regions) {
+    nlohmann::ordered_json one = {{"face", scene.name_of(region.face)}};
+    if (region.triangle > 0) one["triangle"] = region.triangle;
+    one["front"] = region.front;
+    one["fraction"] = region.fraction;
+    json.push_back(std::move(one));
+  }
+  return json;
+}
+
+void print_json(const ViewArguments& args, const Scene& scene, const Receiver& receiver, const WholeView& seen,
+                const std::optional<VisibilityMesh>& mesh) {
   nlohmann::ordered_json json = {
       {"program", "exactff"},
       {"version", kVersion},
@@ -182,16 +204,55 @@ void print_json(const ViewArguments& args, const Scene& scene, const Receiver& r
   const ViewRecord& work = seen.record;
   json["work"] = {{"outlines", work.outlines},   {"windows", work.windows}, {"pairs", work.pairs},
                   {"undecided", work.undecided}, {"pierced", work.pierced}, {"arcs", work.arcs}};
+  if (mesh) json["regions"] = regions_json(scene, *mesh);
   std::cout << text::json_document(json) << '\n';
 }
 
+// --- Files ---
+
+ViewPictureOptions picture_options(const ViewArguments& args) {
+  ViewPictureOptions options;
+  if (args.projection == "fisheye") options.projection = ViewProjection::kFisheye;
+  if (!args.up.empty()) options.up = parse_vector(args.up, "--up");
+  return options;
+}
+
+bool is_for_vtk(const std::filesystem::path& file) {
+  const std::string extension = text::in_lower_case(file.extension().string());
+  return extension == ".vtp" || extension == ".vtu";
+}
+
+void write_mesh(const ViewArguments& args, const Scene& scene, const VisibilityMesh& mesh) {
+  const Scene triangles = to_scene(scene, mesh);
+  if (mesh.flat > 0) {
+    std::cerr << "exactff: warning: " << text::counted(mesh.flat, "triangle") << " of the mesh "
+              << (mesh.flat == 1 ? "is" : "are") << " left out: rounding the corners leaves no area\n";
+  }
+  if (is_for_vtk(args.mesh)) return vtk::write(triangles, args.mesh);
+  const SceneFiles result = scene_files(triangles, args.mesh);
+  for (const SceneFiles::File& file : result.files) require_free_file(file.path, args.force);
+  print_warnings(result.losses);
+  for (const SceneFiles::File& file : result.files) write_whole_file(file.path, file.bytes);
+}
+
+void write_files(const ViewArguments& args, const Scene& scene, const Receiver& receiver,
+                 const std::optional<VisibilityMesh>& mesh) {
+  const std::string picture = args.svg.empty() ? "" : view_svg(scene, receiver, picture_options(args));
+  if (mesh) write_mesh(args, scene, *mesh);
+  if (!args.svg.empty()) write_whole_file(args.svg, picture);
+}
+
 int run(const ViewArguments& args) {
+  if (!args.mesh.empty()) require_free_file(args.mesh, args.force);
   const Scene scene = args.scene.load();
   print_warnings(scene.warnings());
   const Receiver receiver = args.receiver.make(scene);
   const ViewOptions options{.digits = args.digits, .precision_cap = args.precision_cap};
   const WholeView seen = view(scene, receiver, options);
   if (args.engine == "both") compare_with_solver(args, scene, receiver, seen);
+  std::optional<VisibilityMesh> mesh;
+  if (!args.mesh.empty()) mesh = visibility_mesh(scene, receiver);
+  write_files(args, scene, receiver, mesh);
   warn_if_off_its_face(scene, receiver);
   warn_of_near_face(scene, receiver, [&](const std::vector<FaceId>& on) {
     Receiver there = receiver;
@@ -203,7 +264,7 @@ int run(const ViewArguments& args) {
   if (args.plain) {
     print_plain(args, scene, seen);
   } else if (args.json) {
-    print_json(args, scene, receiver, seen);
+    print_json(args, scene, receiver, seen, mesh);
   } else if (args.csv) {
     print_csv(args, scene, receiver, seen);
   } else {
@@ -237,6 +298,28 @@ void add_output_flags(CLI::App& app, ViewArguments& args) {
   json->excludes(csv);
 }
 
+void add_file_flags(CLI::App& app, ViewArguments& args) {
+  CLI::Option* svg = app.add_option("--svg", args.svg,
+                                    "Draw all that the receiver sees above its horizon, with its normal in the middle")
+                         ->type_name("FILE");
+  app.add_option("--projection", args.projection,
+                 "nusselt: areas in the picture are form factors times pi; fisheye: stereographic, which keeps angles")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"nusselt", "fisheye"}))
+      ->needs(svg);
+  CLI::Option* mesh =
+      app.add_option("--mesh", args.mesh,
+                     "Write the visible regions in space, cut into triangles: .obj, .ply, .stl, .off, .vs3, .vtp or "
+                     ".vtu; --json then has their exact shares of the faces")
+          ->type_name("FILE");
+  app.add_flag("--force", args.force, "Replace an existing file of --mesh")->needs(mesh);
+  app.add_option("--up", args.up, "The direction that points upwards in the picture (default: 0 1 0)")
+      ->expected(3)
+      ->type_name("X Y Z")
+      ->check(is_no_flag)
+      ->needs(svg);
+}
+
 }  // namespace
 
 Command add_view(CLI::App& app) {
@@ -250,10 +333,11 @@ Command add_view(CLI::App& app) {
       "if a value is not certified within --precision-cap.\n"
       "\n"
       "Example:\n"
-      "  exactff view data/scenes/cornell_box.obj --at 200 0 400 --normal 0 1 0 --on floor");
+      "  exactff view data/scenes/cornell_box.obj --at 200 0 400 --normal 0 1 0 --on floor --svg view.svg");
   args->scene.add_to(*command);
   args->receiver.add_to(*command);
   add_output_flags(*command, *args);
+  add_file_flags(*command, *args);
   return {command, [args] { return run(*args); }};
 }
 

@@ -35,9 +35,7 @@ struct Subject {
 
 Subject make_subject(std::size_t group, int triangles) {
   Subject subject{karkanis_scene(triangles, group + 1), {}};
-  for (const ExactSource& source : exact_sources(subject.scene.scene, subject.scene.triangles)) {
-    subject.exact.push_back(exact_form_factor(subject.scene.scene, subject.scene.receiver, source).value);
-  }
+  subject.exact = exact_values(subject.scene.scene, subject.scene.receiver, subject.scene.triangles);
   return subject;
 }
 

@@ -24,8 +24,7 @@ std::string pixels_text(int resolution) { return std::to_string(resolution) + " 
 std::vector<ScatterPoint> points_of_scene(int number, const ScatterSize& size) {
   const KarkanisScene scene = karkanis_scene(size.triangles, static_cast<std::uint64_t>(number));
   std::vector<ScatterPoint> points;
-  for (const ExactSource& triangle : exact_sources(scene.scene, scene.triangles)) {
-    const double exact = exact_form_factor(scene.scene, scene.receiver, triangle).value;
+  for (const double exact : exact_values(scene.scene, scene.receiver, scene.triangles)) {
     points.push_back({number, static_cast<int>(points.size()) + 1, exact, {}});
   }
   for (const int resolution : size.resolutions) {

@@ -5,6 +5,7 @@
 #include <locale>
 
 #include "exactff/models.h"
+#include "exactff/view.h"
 #include "kernel/expect.h"
 #include "study/statistics.h"
 #include "text/phrases.h"
@@ -42,6 +43,16 @@ std::vector<double> values_of(std::string_view choice, const Scene& scene, const
   Bench bench(methods::parse(choice), scene, sources);
   std::vector<double> values;
   for (const methods::Estimate& estimate : bench.look_from(receiver)) values.push_back(estimate.form_factor);
+  return values;
+}
+
+std::vector<double> exact_values(const Scene& scene, const Receiver& receiver, std::span<const Selection> faces) {
+  std::vector<double> of_face(scene.faces().size());
+  for (const SeenPatch& seen : view(scene, receiver, {.faces = true}).patches) {
+    of_face[index_of(*seen.face)] = seen.form_factor.value;
+  }
+  std::vector<double> values;
+  for (const Selection& face : faces) values.push_back(of_face[index_of(face.face.value())]);
   return values;
 }
 

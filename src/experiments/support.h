@@ -58,6 +58,11 @@ class Bench {
 [[nodiscard]] std::vector<double> values_of(std::string_view choice, const Scene& scene, const Receiver& receiver,
                                             std::span<const Selection> sources);
 
+// The exact values of single faces, from one sweep over all that the receiver sees (exactff/view.h): the same bits as
+// one source after another.
+[[nodiscard]] std::vector<double> exact_values(const Scene& scene, const Receiver& receiver,
+                                               std::span<const Selection> faces);
+
 [[nodiscard]] std::vector<ExactSource> exact_sources(const Scene& scene, std::span<const Selection> sources);
 
 [[nodiscard]] double root_mean_square(std::span<const double> errors);

@@ -42,6 +42,16 @@ int turning(const visibility::View& view, const Piece& piece) {
   return filtered != kUncertain ? filtered : kernel::orientation(view.x, vertex(0), vertex(1), vertex(2));
 }
 
+std::uint32_t whole_of(const Scene& scene, std::uint32_t piece, ViewEdges::Wholes wholes) {
+  const FaceId id = scene.pieces()[piece].face;
+  const Face& face = scene.face(id);
+  if (wholes == ViewEdges::Wholes::kPatches) return static_cast<std::uint32_t>(index_of(face.patch));
+  if (wholes == ViewEdges::Wholes::kPlanes && face.shape == FaceShape::kTriangulated) {
+    return static_cast<std::uint32_t>(scene.faces().size()) + piece;
+  }
+  return static_cast<std::uint32_t>(index_of(id));
+}
+
 }  // namespace
 
 void ViewEdges::start(const visibility::View& view) {
@@ -73,10 +83,8 @@ void ViewEdges::gather(const visibility::View& view, Wholes wholes) {
     if (piece.transparent || (!view.on.empty() && view.is_own(piece.face))) return true;
     const int facing = turning(view, piece);
     if (facing == 0) return true;
-    const auto face = static_cast<std::uint32_t>(index_of(piece.face));
-    const auto patch = static_cast<std::uint32_t>(index_of(view.scene.face(piece.face).patch));
-    const std::uint32_t front = wholes == Wholes::kPatches ? patch : face;
-    add(view, piece, facing > 0 && wholes != Wholes::kFaces ? kAllBacks : front, facing);
+    const bool back_apart = wholes == Wholes::kFaces || wholes == Wholes::kPlanes;
+    add(view, piece, facing > 0 && !back_apart ? kAllBacks : whole_of(view.scene, index, wholes), facing);
     return true;
   });
   find_partners();

@@ -60,6 +60,7 @@ class ViewEdges : public visibility::EdgeCovers {
     kPatches,  // the fronts of each patch; all backs
     kFronts,   // the front of each face; all backs
     kFaces,    // each face
+    kPlanes,   // each face, and each triangle of a face that is not planar
   };
 
   void find(const visibility::View& view, Wholes wholes);
@@ -67,7 +68,9 @@ class ViewEdges : public visibility::EdgeCovers {
   [[nodiscard]] std::span<const Part> parts() const { return parts_; }
   [[nodiscard]] std::span<const Sides> sides() const { return sides_; }
   [[nodiscard]] std::size_t outline_count() const { return whole_.size(); }
-  [[nodiscard]] FaceId face(OutlineId outline) const { return depths_.piece(outline).face; }
+  [[nodiscard]] const Piece& piece(OutlineId outline) const { return depths_.piece(outline); }
+  [[nodiscard]] FaceId face(OutlineId outline) const { return piece(outline).face; }
+  [[nodiscard]] std::uint32_t whole(OutlineId outline) const { return whole_[outline]; }
   [[nodiscard]] bool shows_front(OutlineId outline) const { return front_[outline] != 0; }
   // Overlapping outlines in one plane that belong to different wholes.
   [[nodiscard]] std::span<const std::pair<OutlineId, OutlineId>> stacked() const { return stacked_; }

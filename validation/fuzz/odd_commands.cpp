@@ -152,6 +152,11 @@ class CommandWriter {
     const bool sampled = has_any({"--eps-b", "--eps-a", "--rays", "--seed", "--pattern", "--variant"});
     if (table_.name == "point" && sampled && !has_any({"--adaptive"})) words_.emplace_back("--adaptive");
     if (table_.name == "compare" && has_any({"--method"}) && !has_any({"--sweep"})) words_.emplace_back("--sweep");
+    if (table_.name == "view") {
+      if (has_any({"--projection", "--up"}) && !has_any({"--svg"}))
+        words_.insert(words_.end(), {"--svg", "out/view.svg"});
+      if (has_any({"--force"}) && !has_any({"--mesh"})) words_.insert(words_.end(), {"--mesh", "out/mesh.obj"});
+    }
     if (table_.name == "render") {
       if (has_any({"--eye"}) != has_any({"--look"})) {
         const std::string missing = has_any({"--eye"}) ? "--look" : "--eye";
@@ -275,6 +280,7 @@ class CommandWriter {
     if (option == "--npy") return "values.npy";
     if (option == "--exr") return "values.exr";
     if (option == "--error-image") return one_of<std::string>(random_, {"errors.exr", "errors.png", "errors.jpg"});
+    if (option == "--mesh") return one_of<std::string>(random_, {"mesh.obj", "mesh.ply", "mesh.vtp", "mesh.png"});
     if (option == "--vtk") return one_of<std::string>(random_, {"cells.vtp", "cells.vtu", "cells.vtp", "cells.vtk"});
     if (option == "--junit") return "junit.xml";
     if (option == "--json" || option == "--write-baseline") return option.substr(2) + ".json";

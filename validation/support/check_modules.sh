@@ -40,7 +40,7 @@ declare -A allowed=(
 # The module of a public header that is not named after it.
 declare -A home=(
   [enclosure]=kernel [geometry]=kernel [progress]=kernel [error]=text [summary]=scene [settings]=text [version]=text [quantity]=exact [obj]=formats [scene_files]=formats
-  [receiver]=receivers [record]=visibility [adaptive]=sampled [view]=whole_view [visibility_svg]=report [testing]=check [team]=truth
+  [receiver]=receivers [record]=visibility [adaptive]=sampled [view]=whole_view [view_regions]=whole_view [visibility_svg]=report [testing]=check [team]=truth
 )
 
 failures=0

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "exactff/exact.h"
+#include "exactff/scene_files.h"
 #include "support/program.h"
 
 namespace exactff {
@@ -108,6 +110,46 @@ TEST_F(ViewCommand, SaysWhatIsWrong) {
   EXPECT_NE(near.find("behind 'floor', which then hides everything beyond it. With --on floor it sees 2 patches"),
             std::string::npos)
       << near;
+}
+
+TEST_F(ViewCommand, DrawsAllThatItSees) {
+  for (const char* projection : {"nusselt", "fisheye"}) {
+    const std::string file = (directory.path() / (std::string(projection) + ".svg")).string();
+    EXPECT_EQ(up({"--svg", file, "--projection", projection, "--up", "1", "1", "0"}).exit_code, 0);
+    const std::string svg = validation::text_of(file);
+    for (const char* part : {"<g class=\"front\"><title>light</title>", "<g class=\"back\"><title>plate</title>",
+                             "<g class=\"open\"><title>(open)</title>", "id=\"horizon\"", "A320 "}) {
+      EXPECT_NE(svg.find(part), std::string::npos) << part;
+    }
+    EXPECT_EQ(svg.find("twin"), std::string::npos) << "it lies in the plane of the light, which comes first";
+  }
+  EXPECT_EQ(up({"--projection", "fisheye"}).exit_code, 2);
+  EXPECT_EQ(up({"--svg", (directory.path() / "up.svg").string(), "--up", "0", "0", "0"}).exit_code, 2);
+}
+
+// The plate hides a square of side 1 of the light, whose side is 2.
+TEST_F(ViewCommand, WritesTheVisibleRegionsAsAScene) {
+  const std::string file = (directory.path() / "seen.obj").string();
+  const nlohmann::json json = nlohmann::json::parse(up({"--mesh", file, "--json"}).output);
+  EXPECT_EQ(json["regions"].dump(), R"([{"face":"light","fraction":"3/4","front":true},)"
+                                    R"({"face":"plate","fraction":"1","front":false}])");
+  const Scene seen = read_scene(file);
+  ASSERT_EQ(seen.patches().size(), 2U);
+  EXPECT_EQ(seen.patches()[0].name, "light");
+  EXPECT_EQ(seen.patches()[1].name, "plate (back)");
+  double area = 0.0;
+  for (const FaceId face : seen.patches()[0].faces) area += seen.face(face).area;
+  EXPECT_EQ(area, 3.0);
+  const FormFactor light =
+      exact_form_factor(seen, {.point = {}, .normal = {0, 0, 1}, .on = {}, .id = {}}, {seen, seen.select("light")});
+  EXPECT_EQ(light.value, 0.31466995351879845);
+
+  EXPECT_EQ(up({"--mesh", file}).exit_code, 2) << "it is there";
+  EXPECT_EQ(up({"--mesh", file, "--force"}).exit_code, 0);
+  const std::filesystem::path vtk = directory.path() / "seen.vtp";
+  EXPECT_EQ(up({"--mesh", vtk.string()}).exit_code, 0);
+  EXPECT_NE(validation::text_of(vtk).find("type=\"PolyData\""), std::string::npos);
+  EXPECT_EQ(up({"--mesh", (directory.path() / "seen.png").string()}).exit_code, 2);
 }
 
 TEST_F(ViewCommand, IsNotCertifiedUnderALowCap) {

@@ -1,0 +1,307 @@
+// A picture of the whole view. In the picture's plane, a is to the right and b upwards; with the unit normal n, a x b
+// is -n, since the picture is seen from x. A direction d is drawn at (d . a, d . b) times a factor: 1 (Nusselt) or
+// 1 / (1 + d . n) (stereographic).
+//
+// Let m be the unit normal of a plane through x. Its directions above the horizon lie
+//   - on the ellipse around the middle with the half axes 1, along n x m, and |m . n| (Nusselt);
+//   - on the circle of radius 1 / |m . n| (stereographic): with p = (d . a, d . b) / (1 + d . n), m . d = 0 is
+//     |p - m_t / (m . n)|^2 = 1 / (m . n)^2, m_t the part of m in the picture's plane.
+// With m on the left, both turn counter-clockwise where m . n > 0. Where an arc is flat to 1e-5 pixels it is a line.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <compare>
+#include <cstdio>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "exact/lift.h"
+#include "exact/source_planes.h"
+#include "exactff/view_regions.h"
+#include "kernel/float_environment.h"
+#include "kernel/vec.h"
+#include "text/escape.h"
+#include "text/phrases.h"
+#include "whole_view/regions.h"
+
+namespace exactff {
+
+namespace {
+
+using kernel::cross;
+using kernel::dot;
+using kernel::scaled;
+using whole_view::OutlineId;
+using whole_view::Regions;
+using whole_view::Side;
+using whole_view::SideLoop;
+using whole_view::ViewEdges;
+
+constexpr double kRadius = 320.0, kCentreX = 344.0, kCentreY = 392.0, kWidth = 688.0, kHeight = 760.0;
+constexpr double kFlat = 1e-5;
+constexpr int kDecimals = 5;
+constexpr const char* kSky = "#dce8f2";
+
+Vec3 sum(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+
+Vec3 unit(const Vec3& a) {
+  const Vec3 b = scaled(a, std::ldexp(1.0, -std::ilogb(kernel::max_norm(a))));  // squares neither overflow nor vanish
+  return scaled(b, 1.0 / std::sqrt(dot(b, b)));
+}
+
+std::string number(double value, int decimals = kDecimals) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  std::string result = text.data();
+  result.erase(result.find_last_not_of('0') + 1);
+  if (result.back() == '.') result.pop_back();
+  return result == "-0" ? "0" : result;
+}
+
+// --- From directions to pixels ---
+
+struct Pixel {
+  double x = 0.0, y = 0.0;
+};
+
+std::string text_of(const Pixel& p) { return number(p.x) + ' ' + number(p.y); }
+
+class Disk {
+ public:
+  Disk(const Vec3& normal, const ViewPictureOptions& options) : n_(unit(normal)), projection_(options.projection) {
+    constexpr double kParallel = 1e-6;
+    Vec3 up = unit(options.up);
+    if (kernel::max_norm(cross(n_, up)) < kParallel) up = std::abs(up.y) > 0.5 ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
+    a_ = unit(cross(n_, up));
+    b_ = cross(a_, n_);
+  }
+
+  [[nodiscard]] Pixel at(const Vec3& d) const {
+    const double factor = projection_ == ViewProjection::kNusselt ? kRadius : kRadius / (1.0 + dot(d, n_));
+    return {kCentreX + factor * dot(d, a_), kCentreY - factor * dot(d, b_)};
+  }
+
+  // From the pixel of p to that of q, unit directions in the plane with the normal m: at most a quarter turn at a time,
+  // so that the two pixels determine the arc well.
+  [[nodiscard]] std::string arc(const Vec3& p, const Vec3& q, const Vec3& m) const {
+    constexpr double kQuarter = 1e-9;
+    if (dot(p, q) < -kQuarter) {
+      const Vec3 middle = cross(p, m);
+      return piece(p, middle, m) + piece(middle, q, m);
+    }
+    return piece(p, q, m);
+  }
+
+ private:
+  [[nodiscard]] std::string piece(const Vec3& p, const Vec3& q, const Vec3& m) const {
+    const Pixel from = at(p), to = at(q), middle = at(unit(sum(p, q)));
+    const double u = to.x - from.x, v = to.y - from.y, length = std::hypot(u, v);
+    const double off = u * (middle.y - from.y) - v * (middle.x - from.x);
+    if (!(std::abs(off) > kFlat * length)) return 'L' + text_of(to);
+    const double slope = dot(m, n_);
+    const char* const sweep = slope < 0.0 ? " 0 1 " : " 0 0 ";  // in SVG, y grows downwards
+    if (projection_ == ViewProjection::kFisheye) {
+      const std::string radius = number(kRadius / std::abs(slope));
+      return 'A' + radius + ' ' + radius + " 0" + sweep + text_of(to);
+    }
+    const Vec3 along = cross(n_, m);
+    const double degrees = std::atan2(-dot(along, b_), dot(along, a_)) * 180.0 / M_PI;
+    constexpr int kAngleDecimals = 7;
+    return 'A' + number(kRadius) + ' ' + number(kRadius * std::abs(slope)) + ' ' + number(degrees, kAngleDecimals) +
+           sweep + text_of(to);
+  }
+
+  Vec3 n_, a_, b_;
+  ViewProjection projection_;
+};
+
+// --- Colours ---
+
+std::string colour_text(const Rgb& linear) {
+  const auto level = [](double value) {
+    return static_cast<int>(std::lround(255.0 * std::pow(std::clamp(value, 0.0, 1.0), 1.0 / 2.2)));
+  };
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "#%02x%02x%02x", level(linear.r), level(linear.g), level(linear.b));
+  return text.data();
+}
+
+// As if lit from one side, so that faces of different slopes can be told apart; a back looks as if in the shade.
+std::string colour_of(const Scene& scene, FaceId id, bool front) {
+  const Face& face = scene.face(id);
+  const Material& material = scene.material(face.material);
+  if (front && material.emits()) {
+    const double most = material.radiosity.largest();
+    const auto warm = [&](double channel) { return 0.7 + 0.3 * channel / most; };
+    return colour_text({warm(material.radiosity.r), warm(material.radiosity.g), warm(material.radiosity.b)});
+  }
+  constexpr Vec3 kLight{0.36, 0.8, 0.48};
+  const Vec3 normal = unit(face.newell);
+  const double shade = front ? 0.8 + 0.2 * dot(normal, kLight) : 0.35 - 0.1 * dot(normal, kLight);
+  const Rgb& kd = material.reflectance;
+  return colour_text({kd.r * shade, kd.g * shade, kd.b * shade});
+}
+
+// --- The picture ---
+
+class Picture {
+ public:
+  Picture(const Scene& scene, const Receiver& receiver, const ViewPictureOptions& options)
+      : scene_(scene),
+        receiver_(receiver),
+        options_(options),
+        view_(scene, receiver),
+        disk_(exact::rounded(view_.normal().exact), options) {
+    edges_.find(view_, ViewEdges::Wholes::kFaces);
+  }
+
+  std::string draw() {
+    std::string body = head() + fills() + outlines();
+    const std::string circle = "<circle id=\"horizon\" cx=\"" + number(kCentreX) + "\" cy=\"" + number(kCentreY) +
+                               "\" r=\"" + number(kRadius) + "\" fill=\"none\" stroke=\"#222222\"/>\n";
+    const std::string x = number(kCentreX), y = number(kCentreY);
+    return body + circle + "<path id=\"normal\" d=\"M" + number(kCentreX - 4) + ' ' + y + "h8M" + x + ' ' +
+           number(kCentreY - 4) +
+           "v8\" fill=\"none\" stroke=\"#222222\"><title>the receiver's normal</title></path>\n" + "</svg>\n";
+  }
+
+ private:
+  // What is filled alike.
+  struct Fill {
+    std::uint32_t patch = 0;
+    bool back = false;
+    std::string colour;
+    friend auto operator<=>(const Fill&, const Fill&) = default;
+  };
+
+  [[nodiscard]] std::uint32_t patch_of(OutlineId outline) const {
+    return static_cast<std::uint32_t>(index_of(scene_.face(edges_.face(outline)).patch));
+  }
+
+  [[nodiscard]] static std::string line_of_text(double y, const std::string& text, const char* attributes) {
+    return "<text x=\"24\" y=\"" + number(y) + "\" " + attributes + ">" + text::html(text::printable(text)) +
+           "</text>\n";
+  }
+
+  [[nodiscard]] std::string head() const {
+    const auto triple = [](const Vec3& v) {
+      return '(' + text::shortest(v.x) + ", " + text::shortest(v.y) + ", " + text::shortest(v.z) + ')';
+    };
+    const std::string on = receiver_.on.empty() ? "" : ", on " + scene_.name_of(receiver_.on);
+    const bool nusselt = options_.projection == ViewProjection::kNusselt;
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + number(kWidth) + ' ' + number(kHeight) +
+           "\" width=\"" + number(kWidth) + "\" height=\"" + number(kHeight) +
+           "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#222222\">\n<rect width=\"100%\" height=\"100%\" "
+           "fill=\"#ffffff\"/>\n" +
+           line_of_text(24, "All that the receiver sees", "font-size=\"14\" font-weight=\"bold\"") +
+           line_of_text(42, triple(receiver_.point) + ", normal " + triple(receiver_.normal) + on, "") +
+           line_of_text(58,
+                        nusselt ? "Nusselt's projection: the share of the disk that a patch takes is its form factor"
+                                : "stereographic fisheye: angles are true",
+                        "fill=\"#555555\"");
+  }
+
+  [[nodiscard]] Vec3 direction(std::uint32_t corner) const { return directions_[corner]; }
+
+  [[nodiscard]] std::string path_of(const SideLoop& loop) const {
+    std::string path = 'M' + text_of(disk_.at(direction(loop.front().from)));
+    for (const Side& side : loop) path += disk_.arc(direction(side.from), direction(side.to), unit(side.inward));
+    return path + 'Z';
+  }
+
+  [[nodiscard]] Regions regions_by(const Regions::ThingOf& thing_of) {
+    Regions regions(edges_, view_.normal().exact, thing_of);
+    directions_.clear();
+    for (std::uint32_t c = 0; c < regions.corner_count(); ++c) {
+      directions_.push_back(unit(exact::rounded(regions.corner(c).exact)));
+    }
+    return regions;
+  }
+
+  // A group for each patch, for its backs, and for what is open.
+  std::string fills() {
+    std::map<Fill, std::uint32_t> number_of;
+    const auto fill_of = [&](OutlineId o) {
+      const bool front = edges_.shows_front(o);
+      return Fill{patch_of(o), !front, colour_of(scene_, edges_.face(o), front)};
+    };
+    for (OutlineId o = 0; o < edges_.outline_count(); ++o) number_of.emplace(fill_of(o), 0);
+    std::vector<const Fill*> fills;
+    for (auto& [fill, index] : number_of) {
+      index = static_cast<std::uint32_t>(fills.size());
+      fills.push_back(&fill);
+    }
+    const Regions regions = regions_by([&](OutlineId o) { return number_of.at(fill_of(o)); });
+    std::string result;
+    const Fill* group = nullptr;
+    for (const whole_view::Region& region : regions.regions()) {
+      const bool open = region.thing == Regions::kOpen;
+      const Fill sky{0, false, kSky};
+      const Fill& fill = open ? sky : *fills[region.thing];
+      if (open || group == nullptr || group->patch != fill.patch || group->back != fill.back) {
+        if (!result.empty()) result += "</g>\n";
+        result += open ? "<g class=\"open\"><title>(open)</title>\n"
+                       : "<g class=\"" + std::string(fill.back ? "back" : "front") + "\"><title>" +
+                             text::html(text::printable(scene_.patches()[fill.patch].name)) + "</title>\n";
+      }
+      group = open ? nullptr : &fill;
+      result += "<path fill=\"" + fill.colour + "\" stroke=\"" + fill.colour +
+                "\" stroke-width=\"0.4\" fill-rule=\"evenodd\" d=\"";
+      for (const SideLoop& loop : region.loops) result += path_of(loop);
+      result += "\"/>\n";
+    }
+    return result.empty() ? "" : result + "</g>\n";
+  }
+
+  // Each arc between two patches once.
+  std::string outlines() {
+    const Regions regions =
+        regions_by([&](OutlineId o) { return 2 * patch_of(o) + (edges_.shows_front(o) ? 0U : 1U); });
+    std::set<std::pair<std::uint32_t, std::uint32_t>> drawn;
+    std::string path;
+    for (const whole_view::Region& region : regions.regions()) {
+      for (const SideLoop& loop : region.loops) {
+        bool moved = false;
+        for (const Side& side : loop) {
+          const bool is_new = drawn.insert(std::minmax(side.from, side.to)).second;
+          if (!is_new) {
+            moved = false;
+            continue;
+          }
+          if (!moved) path += 'M' + text_of(disk_.at(direction(side.from)));
+          path += disk_.arc(direction(side.from), direction(side.to), unit(side.inward));
+          moved = true;
+        }
+      }
+    }
+    return "<path id=\"outlines\" fill=\"none\" stroke=\"#222222\" stroke-width=\"0.7\" stroke-linejoin=\"round\" "
+           "d=\"" +
+           path + "\"/>\n";
+  }
+
+  const Scene& scene_;
+  const Receiver& receiver_;
+  const ViewPictureOptions& options_;
+  const visibility::View view_;
+  const Disk disk_;
+  ViewEdges edges_;
+  std::vector<Vec3> directions_;  // by corner
+};
+
+}  // namespace
+
+std::string view_svg(const Scene& scene, const Receiver& receiver, const ViewPictureOptions& options) {
+  const kernel::StandardArithmetic arithmetic;
+  exact::check_view_arguments(scene, receiver, 1);
+  if (!kernel::is_finite(options.up) || kernel::max_norm(options.up) == 0.0) {
+    throw InputError({.what = "the direction that points upwards in the picture is not finite or zero",
+                      .why = "it says how to turn the picture",
+                      .suggestion = "give a vector other than zero"});
+  }
+  return Picture(scene, receiver, options).draw();
+}
+
+}  // namespace exactff

@@ -1,0 +1,188 @@
+// Regions in space: exact corners in the plane of each region (visibility/plane_frame.h) give its area and its
+// triangles, and their points are rounded once.
+#include <algorithm>
+#include <map>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "exact/lift.h"
+#include "exact/source_planes.h"
+#include "exactff/view_regions.h"
+#include "kernel/float_environment.h"
+#include "kernel/poll.h"
+#include "scene/misuse.h"
+#include "whole_view/regions.h"
+#include "whole_view/triangles.h"
+
+namespace exactff {
+
+namespace {
+
+using kernel::ExactVec3;
+using visibility::Point2;
+using whole_view::OutlineId;
+using whole_view::Region;
+using whole_view::Regions;
+using whole_view::SideLoop;
+using whole_view::ViewEdges;
+
+// --- The region of one face ---
+
+// Twice the area of a face, or of one triangle of it, in the frame.
+kernel::Rational doubled_area_of(std::span<const Piece> pieces, const visibility::View& view,
+                                 const visibility::PlaneFrame& frame) {
+  kernel::Rational sum;
+  for (const Piece& piece : pieces) {
+    visibility::Polygon2 polygon;
+    for (const std::uint32_t corner : view.scene.corners(piece)) {
+      polygon.push_back(frame.to_plane(kernel::exact_difference(view.scene.vertices()[corner], view.x).v));
+    }
+    sum += visibility::doubled_area(polygon);
+  }
+  return sum;
+}
+
+// The corners of a region, each once, and its loops as indices of them.
+struct Corners {
+  std::vector<const kernel::Direction*> directions;
+  std::vector<std::vector<std::uint32_t>> loops;
+};
+
+Corners corners_of(const Region& region, const Regions& regions) {
+  Corners result;
+  std::map<std::uint32_t, std::uint32_t> index;
+  for (const SideLoop& loop : region.loops) {
+    result.loops.emplace_back();
+    for (const whole_view::Side& side : loop) {
+      const auto [at, is_new] = index.try_emplace(side.from, static_cast<std::uint32_t>(result.directions.size()));
+      if (is_new) result.directions.push_back(&regions.corner(side.from));
+      result.loops.back().push_back(at->second);
+    }
+  }
+  return result;
+}
+
+class MeshMaker {
+ public:
+  MeshMaker(const Scene& scene, const Receiver& receiver) : scene_(scene), view_(scene, receiver) {
+    edges_.find(view_, ViewEdges::Wholes::kPlanes);
+  }
+
+  VisibilityMesh run() {
+    const Regions regions(edges_, view_.normal().exact, [&](OutlineId o) { return edges_.whole(o); });
+    std::map<std::uint32_t, OutlineId> outline_of;
+    for (OutlineId o = 0; o < edges_.outline_count(); ++o) outline_of.try_emplace(edges_.whole(o), o);
+    std::vector<std::pair<OutlineId, const Region*>> by_face;
+    for (const Region& region : regions.regions()) {
+      if (region.thing != Regions::kOpen) by_face.emplace_back(outline_of.at(region.thing), &region);
+    }
+    std::ranges::stable_sort(by_face, {}, [&](const auto& one) { return edges_.face(one.first); });
+    for (const auto& [outline, region] : by_face) {
+      kernel::poll();
+      add(outline, corners_of(*region, regions));
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  void add(OutlineId outline, const Corners& corners) {
+    const Piece& seen = edges_.piece(outline);
+    const Face& face = scene_.face(seen.face);
+    const bool planar = face.shape != FaceShape::kTriangulated;
+    const bool front = edges_.shows_front(outline);
+    const auto pieces = planar ? scene_.pieces_of(seen.face) : std::span(&seen, 1);
+    const auto triangle = static_cast<std::uint32_t>(&seen - &scene_.pieces()[face.first_piece]) + 1U;
+
+    const auto vertices = scene_.vertices();
+    const auto side = [&](int k) {
+      return kernel::exact_difference(vertices[seen.frame[k]], vertices[seen.frame[0]]).v;
+    };
+    ExactVec3 towards_x = cross(side(1), side(2));
+    if (!front) kernel::negate(towards_x);
+    kernel::Ring ring;
+    for (const kernel::Direction* corner : corners.directions) ring.push_back(*corner);
+    const visibility::PlaneFrame frame(towards_x, std::span(&ring, 1));
+    std::vector<Point2> points;
+    for (const kernel::Direction& corner : ring) points.push_back(frame.to_plane(corner.exact));
+
+    const auto triangles = whole_view::triangles_of(points, corners.loops);
+    mesh_.regions.push_back(
+        {.face = seen.face,
+         .triangle = planar ? 0U : triangle,
+         .front = front,
+         .fraction = kernel::to_string(fraction_of(triangles, points, doubled_area_of(pieces, view_, frame)))});
+    const exact::Lift lift(towards_x, vertices[seen.frame[0]], view_.x);
+    std::vector<std::uint32_t> placed;
+    for (const kernel::Direction& corner : ring) placed.push_back(point_at(lift(corner.exact)));
+    // Counter-clockwise in the frame is so as seen from x if it keeps the orientation; a back is seen from behind.
+    if (!front) kernel::negate(towards_x);
+    add_triangles(triangles, placed, frame.keeps_orientation() == front, towards_x);
+  }
+
+  [[nodiscard]] static kernel::Rational fraction_of(std::span<const whole_view::TriangleCorners> triangles,
+                                                    std::span<const Point2> points, const kernel::Rational& whole) {
+    kernel::Rational sum;
+    for (const auto& [a, b, c] : triangles) sum += visibility::doubled_area({points[a], points[b], points[c]});
+    return sum / abs(whole);
+  }
+
+  std::uint32_t point_at(const Vec3& p) {
+    const auto [at, is_new] =
+        point_at_.try_emplace(std::tuple(p.x, p.y, p.z), static_cast<std::uint32_t>(mesh_.points.size()));
+    if (is_new) mesh_.points.push_back(p);
+    return at->second;
+  }
+
+  void add_triangles(std::span<const whole_view::TriangleCorners> triangles, std::span<const std::uint32_t> placed,
+                     bool keep, const ExactVec3& normal) {
+    const auto region = static_cast<std::uint32_t>(mesh_.regions.size() - 1);
+    for (const auto& [a, b, c] : triangles) {
+      const std::array<std::uint32_t, 3> corners{placed[a], placed[keep ? b : c], placed[keep ? c : b]};
+      const auto& [p, q, r] = corners;
+      const ExactVec3 side = kernel::exact_difference(mesh_.points[q], mesh_.points[p]).v,
+                      other = kernel::exact_difference(mesh_.points[r], mesh_.points[p]).v;
+      if (sgn(dot(normal, cross(side, other))) > 0) {
+        mesh_.triangles.push_back({region, corners});
+      } else {
+        ++mesh_.flat;
+      }
+    }
+  }
+
+  const Scene& scene_;
+  const visibility::View view_;
+  ViewEdges edges_;
+  VisibilityMesh mesh_;
+  std::map<std::tuple<double, double, double>, std::uint32_t> point_at_;
+};
+
+}  // namespace
+
+VisibilityMesh visibility_mesh(const Scene& scene, const Receiver& receiver) {
+  const kernel::StandardArithmetic arithmetic;
+  exact::check_view_arguments(scene, receiver, 1);
+  return MeshMaker(scene, receiver).run();
+}
+
+Scene to_scene(const Scene& scene, const VisibilityMesh& mesh) {
+  if (mesh.triangles.empty()) {
+    throw InputError({.what = "the receiver sees nothing of the scene",
+                      .why = "a mesh of what it sees has no triangles",
+                      .suggestion = "turn --normal, or move --at"});
+  }
+  SceneBuilder builder;
+  for (const Vec3& point : mesh.points) builder.add_vertex(point);
+  for (const Material& material : scene.materials()) builder.add_material(material);
+  for (const VisibilityMesh::Triangle& triangle : mesh.triangles) {
+    const SeenRegion& region = mesh.regions[triangle.region];
+    const Face& face = scene.face(region.face);
+    std::string name = scene.patch(face.patch).name;
+    if (!region.front) name += " (back)";
+    builder.add_face(builder.patch(name), face.material,
+                     {std::vector<std::uint32_t>(triangle.corners.begin(), triangle.corners.end())});
+  }
+  return builder.build();
+}
+
+}  // namespace exactff

@@ -1,0 +1,75 @@
+// The regions of a whole view on scenes of every random family and on models (support/region_judge.h): the areas of
+// pictures are form factors, and the areas of visible regions are those that CGAL's Booleans find face by face.
+#include <gtest/gtest.h>
+
+#include "exactff/models.h"
+#include "support/oracle_check.h"
+#include "support/random_scenes.h"
+#include "support/region_judge.h"
+
+namespace exactff::validation {
+namespace {
+
+using generate::PlainScene;
+using generate::Random;
+
+class ViewRegions : public testing::TestWithParam<RandomFamily> {
+ protected:
+  // Calls check(scene, receiver) for scenes of the family until one fails.
+  template <class Check>
+  static void for_each_scene(std::uint64_t divisor, const Check& check) {
+    for (std::uint64_t i = 0; i < scaled_count(1 + GetParam().count / divisor); ++i) {
+      SCOPED_TRACE("seed " + std::to_string(seed_of(i)));
+      Random random(seed_of(i));
+      const PlainScene plain = GetParam().make(random);
+      const Scene scene = generate::build(plain);
+      check(scene, receiver_in(scene, plain));
+      if (HasFailure()) {
+        ADD_FAILURE() << generate::to_obj(plain, {}, generate::Digits::kSeventeen);
+        return;
+      }
+    }
+  }
+};
+
+TEST_P(ViewRegions, HaveTheSharesOfPatchesAsTheirAreasInPictures) { for_each_scene(2, expect_picture_of_shares); }
+
+TEST_P(ViewRegions, HaveTheAreasThatTheBooleansFind) { for_each_scene(4, expect_regions_as_booleans_find); }
+
+class ViewRegionsOfModel : public testing::TestWithParam<const char*> {
+ protected:
+  // From points near a corner of the scene, some of them that corner.
+  template <class Check>
+  static void for_each_receiver(std::uint64_t count, const Check& check) {
+    const Scene scene = models::make_scene(GetParam());
+    for (std::uint64_t i = 0; i < scaled_count(count); ++i) {
+      SCOPED_TRACE("seed " + std::to_string(seed_of(i)));
+      Random random(seed_of(i));
+      const int last = static_cast<int>(scene.vertices().size()) - 1;
+      const Vec3& near = scene.vertices()[static_cast<std::size_t>(random.integer(0, last))];
+      const double reach = random.one_in(3) ? 0.0 : 0.25;
+      const auto off = [&] { return random.between(-reach, reach); };
+      check(scene, Receiver{.point = {near.x + off(), near.y + off(), near.z + off()},
+                            .normal = random.one_in(2) ? Vec3{0, 0, 1} : Vec3{random.between(-1, 1), -0.5, 0.25},
+                            .on = {},
+                            .id = {}});
+    }
+  }
+};
+
+TEST_P(ViewRegionsOfModel, HaveTheSharesOfPatchesAsTheirAreasInPictures) {
+  for_each_receiver(4, expect_picture_of_shares);
+}
+
+TEST_P(ViewRegionsOfModel, HaveTheAreasThatTheBooleansFind) { for_each_receiver(3, expect_regions_as_booleans_find); }
+
+INSTANTIATE_TEST_SUITE_P(All, ViewRegionsOfModel,
+                         testing::Values("teapot:segments=2", "forest:n=100,trees=2", "closed-room:boxes=4",
+                                         "emitters:n=9", "karkanis:n=80", "soup:n=60,cover=3", "blinds:n=12",
+                                         "tiles:n=6,drop=7", "mesh:n=100", "lattice:n=70,cover=4"));
+
+INSTANTIATE_TEST_SUITE_P(RandomScenes, ViewRegions, testing::ValuesIn(random_families()),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace exactff::validation
