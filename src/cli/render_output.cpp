@@ -65,8 +65,8 @@ render::Colours strip_of(const RenderFiles& files, const Rendered& rendered, dou
             caption(name_of_picture(rendered.picture), rendered.picture)},
       Panel{render::developed(*rendered.judged, exposure), caption(rendered.judged_name, *rendered.judged)},
       Panel{render::coloured(*rendered.errors, rendered.picture.size, scale),
-            {"error: red too bright, blue too dark (full colour at " + text::short_number(scale, 2) + ")",
-             "RMS " + text::short_number(rendered.errors->rms, 2) + "; " + wrong_words(*rendered.errors)}}};
+            {"error: red too bright, blue too dark", "full colour at " + text::short_number(scale, 2),
+             "RMS " + text::short_number(rendered.errors->rms, 2), wrong_words(*rendered.errors)}}};
   return render::strip(panels);
 }
 

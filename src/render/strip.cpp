@@ -7,8 +7,9 @@
 namespace exactff::render {
 namespace {
 
-constexpr int kGap = 6;     // between pictures, and above captions
-constexpr int kBorder = 6;  // left of captions, and below them
+constexpr int kGap = 6;                // between pictures
+constexpr int kBorder = 6;             // around captions
+constexpr int kWidthForEachDot = 132;  // of a picture: a dot of a letter is one pixel more for each
 constexpr std::uint8_t kPaper = 255, kInk = 30;
 
 using Panel = std::pair<Colours, std::vector<std::string>>;
@@ -26,15 +27,16 @@ class Sheet {
     }
   }
 
-  void write(const std::string& line, int left, int top, int right) {
+  // The dots of the letters are squares of `dot` pixels. Letters that reach beyond `right` are left out.
+  void write(const std::string& line, int left, int top, int right, int dot) {
     for (const char letter : line) {
-      if (left + kLetterWidth > right) return;
-      for (int row = 0; row < kLetterHeight; ++row) {
-        for (int column = 0; column < kLetterWidth; ++column) {
-          if (has_dot(letter, column, row)) std::fill_n(at(left + column, top + row), 3, kInk);
+      if (left + dot * kLetterWidth > right) return;
+      for (int row = 0; row < dot * kLetterHeight; ++row) {
+        for (int column = 0; column < dot * kLetterWidth; ++column) {
+          if (has_dot(letter, column / dot, row / dot)) std::fill_n(at(left + column, top + row), 3, kInk);
         }
       }
-      left += kLetterWidth;
+      left += dot * kLetterWidth;
     }
   }
 
@@ -48,15 +50,15 @@ class Sheet {
   Colours colours_;
 };
 
-// Broken between words, so that the lines fit into this many letters.
+// Broken after blanks, commas and colons, or anywhere in longer words, so that a line has at most this many letters.
 std::vector<std::string> broken(const std::vector<std::string>& lines, std::size_t most) {
   std::vector<std::string> result;
   for (std::string rest : lines) {
     while (rest.size() > most) {
-      std::size_t end = rest.find_last_of(" ,", most);
-      if (end == std::string::npos || end == 0) end = most - 1;
-      result.push_back(rest.substr(0, end + 1));
-      rest.erase(0, end + 1);
+      const std::size_t before = rest[most] == ' ' ? most : rest.find_last_of(" ,:", most - 1);
+      const std::size_t end = before == std::string::npos ? most : before + 1;
+      result.push_back(rest.substr(0, std::min(end, most)));
+      rest.erase(0, end);
     }
     result.push_back(std::move(rest));
   }
@@ -65,30 +67,35 @@ std::vector<std::string> broken(const std::vector<std::string>& lines, std::size
 
 }  // namespace
 
+// As captions are pictures, their letters grow with the pictures.
 Colours strip(std::span<const Panel> panels) {
-  std::vector<std::vector<std::string>> captions;
   Size size{-kGap, 0};
-  std::size_t lines = 0;
+  int narrowest = kLongestSide;
   for (const auto& [picture, caption] : panels) {
-    const int letters = std::max(1, (picture.size.width - 2 * kBorder) / kLetterWidth);
-    captions.push_back(broken(caption, static_cast<std::size_t>(letters)));
-    lines = std::max(lines, captions.back().size());
+    narrowest = std::min(narrowest, picture.size.width);
     size.width += picture.size.width + kGap;
     size.height = std::max(size.height, picture.size.height);
   }
-  const int picture_height = size.height;
-  size.height += kGap + static_cast<int>(lines) * kLetterHeight + kBorder;
+  const int dot = std::max(1, narrowest / kWidthForEachDot);
+  std::vector<std::vector<std::string>> captions;
+  std::size_t lines = 0;
+  for (const auto& [picture, caption] : panels) {
+    const int letters = std::max(1, (picture.size.width - 2 * kBorder) / (dot * kLetterWidth));
+    captions.push_back(broken(caption, static_cast<std::size_t>(letters)));
+    lines = std::max(lines, captions.back().size());
+  }
+  const int line_height = dot * kLetterHeight, picture_height = size.height;
+  size.height += static_cast<int>(lines) * line_height + 2 * kBorder;
   Sheet sheet(size);
   int left = 0;
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    const Colours& picture = panels[i].first;
-    sheet.paste(picture, left);
-    int top = picture_height + kGap;
+    sheet.paste(panels[i].first, left);
+    int top = picture_height + kBorder;
     for (const std::string& line : captions[i]) {
-      sheet.write(line, left + kBorder, top, left + picture.size.width);
-      top += kLetterHeight;
+      sheet.write(line, left + kBorder, top, left + panels[i].first.size.width, dot);
+      top += line_height;
     }
-    left += picture.size.width + kGap;
+    left += panels[i].first.size.width + kGap;
   }
   return sheet.take();
 }

@@ -339,6 +339,45 @@ TEST(Strip, ShowsPicturesAboveTheirCaptions) {
   EXPECT_NE(std::ranges::count(strip_of_two.bytes, 30), 0);
 }
 
+// Up to the last column with ink in the rows from `top` on.
+int inked_width(const Colours& sheet, int top) {
+  int width = 0;
+  for (int column = 0; column < sheet.size.width; ++column) {
+    for (int row = top; row < sheet.size.height; ++row) {
+      if (sheet.bytes[3 * static_cast<std::size_t>(row * sheet.size.width + column)] == 30) width = column + 1;
+    }
+  }
+  return width;
+}
+
+TEST(Strip, LettersGrowWithThePictures) {
+  const auto letters_of = [](int width) {
+    const Colours grey{{width, 10}, std::vector<std::uint8_t>(static_cast<std::size_t>(3 * width * 10), 99)};
+    const std::vector<std::pair<Colours, std::vector<std::string>>> panels = {{grey, {"HHHHHHHHHH"}}};
+    return inked_width(strip(panels), 10) - 6;  // and the border
+  };
+  EXPECT_EQ(letters_of(200), 10 * 6 - 1);
+  EXPECT_EQ(letters_of(300), 2 * letters_of(200));
+  EXPECT_EQ(letters_of(800), 6 * letters_of(200));
+}
+
+// Nothing is lost where a line is broken or ends.
+TEST(Strip, NoLetterIsCut) {
+  for (const int width : {45, 131, 150, 264, 300, 527, 640}) {
+    const Colours grey{{width, 4}, std::vector<std::uint8_t>(static_cast<std::size_t>(3 * width * 4), 99)};
+    const auto ink_of = [&](const std::string& caption) {
+      const std::vector<std::pair<Colours, std::vector<std::string>>> panels = {{grey, {caption}}};
+      return std::ranges::count(strip(panels).bytes, 30);
+    };
+    const auto letter = ink_of("H");
+    for (const char* text :
+         {"HHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHH", "HHHH HHHHHHHHHHHHHHHHHHHH HHHHHH HHHHHH HHHHHHH"}) {
+      const std::string caption = text;
+      EXPECT_EQ(ink_of(caption), letter * std::ranges::count(caption, 'H')) << width;
+    }
+  }
+}
+
 TEST(ImageKind, GoesByTheExtension) {
   EXPECT_EQ(image_kind("a/b.exr"), ImageKind::kExr);
   EXPECT_EQ(image_kind("B.PNG"), ImageKind::kPng);
