@@ -1,5 +1,5 @@
 // Triangles in clusters, like the leaves of trees: ellipsoids of leaves above trunks, between the ground and the sky.
-// Metres; z up.
+// Metres; z up. The sky is as large as the ground; or, with a sun, both reach to the horizon.
 //
 // 1. The ground is divided into a square grid. Each tree stands in a cell, off its middle, and its crown is about as
 //    wide as the cell.
@@ -8,10 +8,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <tuple>
+#include <utility>
 
 #include "kernel/vec.h"
 #include "models/model_files.h"
 #include "models/random.h"
+#include "models/room_parts.h"
 #include "models/square_grid.h"
 
 namespace exactff::models {
@@ -22,6 +26,14 @@ constexpr double kSide = 40.0;  // side of ground and sky
 constexpr double kSkyHeight = 16.0;
 constexpr double kLongestLeaf = 1.0;  // from the centre of a leaf to a corner
 constexpr int kMostLeaves = 10'000'000;
+
+// With a sun. From the middle of the ground, its middle is seen in the direction (-2, -1, 2) / 3.
+constexpr double kPlainSide = 8192.0;
+constexpr double kHighSky = 1024.0;
+constexpr Vec3 kSun{-896.0, -448.0, 896.0};
+constexpr double kSunDistance = 1344.0;
+constexpr double kSunSize = 0.0093;        // its diameter / its distance: half a degree
+constexpr Rgb kSunlight{3.0, 2.75, 2.25};  // the irradiance of the ground from the whole sun
 
 struct Tree {
   Vec3 middle;  // centre of the crown
@@ -76,16 +88,23 @@ std::vector<Vec3> leaf(Random& random, const Tree& tree, double radius) {
   return {plus(middle, times(u, radius)), plus(low, side), plus(low, times(side, -1.0))};
 }
 
+// A level square. Its front faces up.
+Quad level_square(double x, double y, double half, double z) {
+  return {{{x - half, y - half, z}, {x + half, y - half, z}, {x + half, y + half, z}, {x - half, y + half, z}}};
+}
+
+// The sides of a prism; fronts outward if the base is seen counter-clockwise from above.
+void add_sides(PlainScene& scene, std::string_view name, const Quad& base, double top) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3 &a = base[i], &b = base[(i + 1) % 4];
+    scene.add_ring(scene.patch(name), {a, b, {b.x, b.y, top}, {a.x, a.y, top}});
+  }
+}
+
 // The sides of a prism that extends from the ground up into the crown.
 void add_trunk(PlainScene& scene, const Tree& tree) {
   const auto& [x, y, top] = tree.middle;
-  const double t = tree.trunk;
-  const std::array<std::array<double, 2>, 4> plan{{{x - t, y - t}, {x + t, y - t}, {x + t, y + t}, {x - t, y + t}}};
-  for (std::size_t i = 0; i < 4; ++i) {
-    const auto& a = plan[i];
-    const auto& b = plan[(i + 1) % 4];
-    scene.add_ring(scene.patch("trunks"), {{a[0], a[1], 0}, {b[0], b[1], 0}, {b[0], b[1], top}, {a[0], a[1], top}});
-  }
+  add_sides(scene, "trunks", level_square(x, y, tree.trunk, 0.0), top);
 }
 
 // The distance from the centre of a leaf to its corners for which n leaves have `cover` times the area of the ground.
@@ -94,43 +113,81 @@ double leaf_radius(int n, double cover) {
   return std::min(kLongestLeaf, std::sqrt(area / (3 * std::sqrt(0.1875))));
 }
 
+Quad turned(const Quad& q) { return {{q[0], q[3], q[2], q[1]}}; }
+
+void add_flat_sky(PlainScene& scene) {
+  scene.materials.push_back({"sky", {0, 0, 0}, {1, 1, 1}});
+  add_quad(scene, "sky", turned(level_square(0.0, 0.0, kSide / 2, kSkyHeight)));
+}
+
+// Twelve corners, at equal angles as seen from the middle of the ground, in a level plane, so that they are exactly
+// planar: along (2, 1) the polygon is 3/2 as long as across.
+std::vector<Vec3> sun(double radius) {
+  const double h = std::sqrt(0.75);
+  const double step = radius / std::sqrt(5.0);
+  std::vector<Vec3> corners;
+  std::array<std::array<double, 2>, 3> quarter{{{1.0, 0.0}, {h, -0.5}, {0.5, -h}}};
+  for (int turn = 0; turn < 4; ++turn) {
+    for (auto& [along, across] : quarter) {
+      corners.push_back({kSun.x + step * (3.0 * along - across), kSun.y + step * (1.5 * along + 2.0 * across), kSun.z});
+      std::tie(along, across) = std::pair(across, -along);  // clockwise, so that the front faces down
+    }
+  }
+  return corners;
+}
+
+// A box of sky on a plain around the ground, and the sun in it.
+void add_sun_and_sky(PlainScene& scene) {
+  constexpr double kPi = std::numbers::pi;
+  constexpr double kFactor = kSunSize * kSunSize / (2 * kPi);  // of the ground to the sun
+  const Quad plain = level_square(0.0, 0.0, kPlainSide / 2, 0.0);
+  scene.materials.push_back({"sky", {0, 0, 0}, {0.5, 0.65, 0.9}});
+  scene.materials.push_back({"sun", {0, 0, 0}, {kSunlight.r / kFactor, kSunlight.g / kFactor, kSunlight.b / kFactor}});
+  add_quad(scene, "sky", turned(level_square(0.0, 0.0, kPlainSide / 2, kHighSky)));
+  add_sides(scene, "sky", turned(plain), kHighSky);
+  add_patch(scene, "plain", "soil");
+  add_frame(scene, "plain", plain, level_square(0.0, 0.0, kSide / 2, 0.0));
+  add_patch(scene, "sun", "sun");
+  scene.add_ring(scene.patch("sun"), sun(kSunDistance * kSunSize / 2));
+}
+
 PlainScene make_forest(const Settings& settings) {
-  constexpr double h = kSide / 2;
   const int n = static_cast<int>(settings.whole("n"));
   Random random(static_cast<std::uint64_t>(settings.whole("seed")));
   const std::vector<Tree> trees = plant(random, static_cast<int>(settings.whole("trees")));
   const double radius = leaf_radius(n, settings.number("cover"));
   PlainScene scene;
-  scene.materials = {{"soil", {0.3, 0.25, 0.2}, {}},
-                     {"bark", {0.25, 0.2, 0.15}, {}},
-                     {"leaf", {0.2, 0.45, 0.1}, {}},
-                     {"sky", {0, 0, 0}, {1, 1, 1}}};
+  scene.materials = {{"soil", {0.3, 0.25, 0.2}, {}}, {"bark", {0.25, 0.2, 0.15}, {}}, {"leaf", {0.2, 0.45, 0.1}, {}}};
   scene.patches = {{"ground", "soil", {}}, {"trunks", "bark", {}}, {"leaves", "leaf", {}}, {"sky", "sky", {}}};
-  scene.add_ring(scene.patch("ground"), {{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}});
+  add_quad(scene, "ground", level_square(0.0, 0.0, kSide / 2, 0.0));
   for (const Tree& tree : trees) add_trunk(scene, tree);
   PlainPatch& leaves = scene.patch("leaves");
   for (int i = 0; i < n; ++i) {
     scene.add_ring(leaves, leaf(random, trees[static_cast<std::size_t>(i) % trees.size()], radius));
   }
-  scene.add_ring(scene.patch("sky"),
-                 {{-h, -h, kSkyHeight}, {-h, h, kSkyHeight}, {h, h, kSkyHeight}, {h, -h, kSkyHeight}});
-  scene.source = "sky";
+  const bool has_sun = settings.word("light") == "sun";
+  has_sun ? add_sun_and_sky(scene) : add_flat_sky(scene);
+  scene.source = has_sun ? "sun" : "sky";
   return scene;
 }
 
 }  // namespace
 
 Model forest_model() {
-  return {.name = "forest",
-          .summary =
-              "trees with n triangular leaves between the ground and the sky, 40 x 40 m (ground, trunks, leaves, sky)",
-          .settings =
-              {whole_setting("n", 10'000, 1, kMostLeaves, "leaves"), whole_setting("trees", 25, 1, 10'000, "trees"),
-               number_setting(
-                   "cover", 2.0, 1e-3, 100.0,
-                   "total area of the leaves / area of the ground; less if leaves would be longer than about a metre"),
-               seed_setting()},
-          .make = &make_forest};
+  return {
+      .name = "forest",
+      .summary =
+          "trees with n triangular leaves between the ground and the sky, 40 x 40 m (ground, trunks, leaves, sky; with "
+          "a sun also plain, sun)",
+      .settings =
+          {whole_setting("n", 10'000, 1, kMostLeaves, "leaves"), whole_setting("trees", 25, 1, 10'000, "trees"),
+           number_setting(
+               "cover", 2.0, 1e-3, 100.0,
+               "total area of the leaves / area of the ground; less if leaves would be longer than about a metre"),
+           word_setting("light", {"sky", "sun"},
+                        "sky: as large as the ground; sun: half a degree wide, far away, and a sky all around"),
+           seed_setting()},
+      .make = &make_forest};
 }
 
 }  // namespace exactff::models

@@ -166,5 +166,10 @@ TEST(Pictures, AgreeWithRaysUnderLeaves) {
           {.eye = {5, 5, 1.5}, .look = {20, 20, 0}, .up = {0, 0, 1}, .fov = 60});
 }
 
+TEST(Pictures, AgreeWithRaysInSunlight) {
+  compare(models::make_scene("forest:n=150,trees=2,light=sun"),
+          {.eye = {5, 5, 1.5}, .look = {20, 20, 0}, .up = {0, 0, 1}, .fov = 60});
+}
+
 }  // namespace
 }  // namespace exactff::validation

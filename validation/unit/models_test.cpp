@@ -10,6 +10,7 @@
 
 #include "exactff/exact.h"
 #include "exactff/obj.h"
+#include "exactff/view.h"
 #include "generate/families.h"
 #include "models/model_files.h"
 #include "support/complaint.h"
@@ -22,12 +23,19 @@ using models::make_scene;
 using models::Model;
 
 // Each model, small.
-const std::vector<std::string> kSmall = {"teapot:segments=2",   "forest:n=50,trees=3",
-                                         "closed-room:boxes=3", "closed-room:lamp=hanging",
-                                         "emitters:n=5",        "room:n=3",
-                                         "karkanis:n=20",       "soup:n=20",
-                                         "blinds:n=4",          "tiles:n=3",
-                                         "mesh:n=30",           "lattice:n=20"};
+const std::vector<std::string> kSmall = {"teapot:segments=2",
+                                         "forest:n=50,trees=3",
+                                         "forest:n=50,trees=3,light=sun",
+                                         "closed-room:boxes=3",
+                                         "closed-room:lamp=hanging",
+                                         "emitters:n=5",
+                                         "room:n=3",
+                                         "karkanis:n=20",
+                                         "soup:n=20",
+                                         "blinds:n=4",
+                                         "tiles:n=3",
+                                         "mesh:n=30",
+                                         "lattice:n=20"};
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -94,6 +102,7 @@ TEST(Models, TheFirstCommentMakesTheSceneAgain) {
 TEST(Models, BitsAreTheSameOnEveryMachine) {
   const std::map<std::string, std::string> hashes = {{"teapot:segments=3", "39a0f0f183acde91"},
                                                      {"forest:n=100", "61fe630f2369489b"},
+                                                     {"forest:n=100,light=sun", "b1903b1eb3fa870e"},
                                                      {"closed-room", "f059258cc9a42927"},
                                                      {"emitters", "4ceb02fae85e5271"},
                                                      {"karkanis:n=200,seed=3", "b07491c610f656b9"}};
@@ -330,6 +339,50 @@ TEST(ForestModel, LeavesHaveTheAreaAskedForAndHangBetweenGroundAndSky) {
 TEST(ForestModel, FewLeavesDoNotGrowWithoutEnd) {
   const Scene scene = make_scene("forest:n=3");
   for (const Vec3& p : corners_of(scene, "leaves")) EXPECT_TRUE(p.z > 0.0 && p.z < 16.0) << p.z;
+}
+
+// The test of bits pins the scene with the sky alone; the sun adds to it.
+TEST(ForestModel, WithASunTheForestIsTheSame) {
+  const Scene sky = make_scene("forest:n=80,trees=3"), sun = make_scene("forest:n=80,trees=3,light=sun");
+  for (const char* patch : {"ground", "trunks", "leaves"}) EXPECT_EQ(corners_of(sun, patch), corners_of(sky, patch));
+  EXPECT_EQ(sky.patches().size(), 4U);
+  EXPECT_EQ(sun.emitters().size(), 2U);
+}
+
+Receiver on_the_ground(double x, double y) {
+  return {.point = {x, y, 0.0}, .normal = {0.0, 0.0, 1.0}, .on = {}, .id = {}};
+}
+
+// Half a degree wide; the ground receives what the model says, and a level receiver F = sin^2 a cos(th) of a cone of
+// half angle a. The polygon has 3 / pi of the area of its circle.
+TEST(ForestModel, TheSunIsHalfADegreeWide) {
+  const Scene scene = make_scene("forest:n=1,trees=1,light=sun");
+  const Selection sun = scene.select("sun");
+  EXPECT_EQ(scene.face(scene.faces_of(sun)[0]).shape, FaceShape::kPlanar);
+  const FormFactor f = exact_form_factor(scene, on_the_ground(19.0, -19.0), ExactSource(scene, sun));
+  const double sine = std::sin(0.00465);
+  EXPECT_NEAR(f.value, sine * sine * (2.0 / 3.0) * 3.0 / 3.14159265, 0.07 * f.value);
+  EXPECT_NEAR(scene.source_radiosity(sun).r * f.value, 3.0, 0.2);
+  double widest = 0.0;
+  for (const Vec3& a : corners_of(scene, "sun")) {
+    for (const Vec3& b : corners_of(scene, "sun")) {
+      const double cosine = (a.x * b.x + a.y * b.y + a.z * b.z) / std::hypot(a.x, a.y, a.z) / std::hypot(b.x, b.y, b.z);
+      widest = std::max(widest, std::acos(std::min(cosine, 1.0)));
+    }
+  }
+  EXPECT_NEAR(widest, 0.0093, 1e-4);
+}
+
+TEST(ForestModel, NothingIsOpenUnderTheSun) {
+  const Scene scene = make_scene("forest:n=60,trees=2,light=sun");
+  EXPECT_TRUE(scene.warnings().empty());
+  for (const Vec3 normal : {Vec3{0, 0, 1}, Vec3{1, 0.25, 0.5}, Vec3{-0.5, 1, -0.25}}) {
+    WholeView seen;
+    Workspace workspace;
+    view(scene, {.point = {0.5, 0.25, 1.0}, .normal = normal, .on = {}, .id = {}}, {}, seen, workspace);
+    EXPECT_EQ(seen.open.value, 0.0);
+    EXPECT_GT(seen.patches.size(), 2U);
+  }
 }
 
 // --- the closed room ---
