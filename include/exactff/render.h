@@ -97,7 +97,7 @@ class View {
 
 // A camera that shows the whole scene from its most open side: of the directions along the axes and between them, the
 // one from which the largest share of a test picture shows fronts. If hardly any fronts are seen from outside, as of a
-// closed room, the camera stands in a corner of the scene's box. `up` and `fov` are those of the given camera.
+// closed room, the camera stands in a corner of the scene's box. `up`, `fov` and `ortho` are those of the given camera.
 [[nodiscard]] Camera default_camera(const Scene& scene, const Camera& like, const Size& size);
 
 // ------------------------------------------------------------------------------------------------- first face and
@@ -214,7 +214,7 @@ struct Colours {
 [[nodiscard]] Colours coloured(const Errors& errors, const Size& size, double scale);
 // The 99th percentile of the errors, or the worst one if that is 0; 1 if there is none.
 [[nodiscard]] double colour_scale(const Errors& errors);
-// Pictures side by side, each above its caption.
+// Pictures side by side, each above its caption, in letters that grow with the pictures.
 [[nodiscard]] Colours strip(std::span<const std::pair<Colours, std::vector<std::string>>> panels);
 
 enum class ImageKind { kExr, kPng };

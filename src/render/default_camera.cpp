@@ -166,6 +166,7 @@ Camera default_camera(const Scene& scene, const Camera& like, const Size& size) 
                       .why = "its coordinates are too large or too close together for a view of the whole",
                       .suggestion = "give a camera with --eye and --look"});
   }
+  best.camera.ortho = like.ortho;  // a height that is given counts, whatever it shows
   return best.camera;
 }
 

@@ -291,6 +291,10 @@ TEST(DefaultCamera, LooksIntoTheOpenSide) {
   for (int row = 0; row < 16; ++row) EXPECT_FALSE(first_hit(room, view.ray(8, row + 0.5))->back);
 }
 
+TEST(DefaultCamera, KeepsAHeightThatIsGiven) {
+  EXPECT_EQ(default_camera(cornell_box(), {.ortho = 100.0}, {16, 16}).ortho, 100.0);
+}
+
 TEST(Colours, ExposureBringsTheBrightestToWhite) {
   const Picture picture = render(request(48, 48));
   const double exposure = automatic_exposure(picture);
