@@ -12,6 +12,7 @@
 #include "text/refuse.h"
 #include "view_factors/pair.h"
 #include "view_factors/patch_parts.h"
+#include "view_factors/sampled_factor.h"
 #include "work/parallel.h"
 
 namespace exactff {
@@ -19,9 +20,11 @@ namespace view_factors {
 namespace {
 
 constexpr std::size_t kStepsBetweenSums = 4096;
+constexpr std::size_t kCellsOfAPoint = 4;                  // that cost about as much as a point factor in a crowd
 constexpr double kShareOfRounding = 0x1p-10;               // of the accuracy
 constexpr double kShareOfNegligible = 0x1p-24;             // of the error that is allowed
 constexpr std::size_t kMostPoints = std::size_t{1} << 20;  // of all pairs of parts: some 200 MB
+constexpr double kRoundedPoints = 0x1p-30;                 // see near_planes.h
 constexpr double kRounding = 0x1p-44;  // relative: more than the roundings of formula and sums in usual scenes
 
 struct Waiting {
@@ -187,6 +190,21 @@ Prepared prepare(const ExactScene& scene, const Selection& patch) {
   return result;
 }
 
+// If the cells of a crowd tell less than statistics.
+void sample_if_better(const ExactScene& scene, const Prepared& from, const Prepared& to,
+                      const ViewFactorOptions& options, double target, ViewFactor& result) {
+  const SampledIntegral sampled =
+      sampled_integral(scene, from.parts, to.patch, options.budget / kCellsOfAPoint, target);
+  const double value = sampled.value / from.unit_area, error = sampled.error / from.unit_area + kRoundedPoints;
+  const double lower = std::max(0.0, value - error), upper = std::min(1.0, value + error);
+  if (!(upper - lower < result.upper - result.lower)) return;
+  result.claim = Claim::kStatistical;
+  result.value = std::clamp(value, 0.0, 1.0);
+  result.lower = lower;
+  result.upper = upper;
+  result.accurate = error * from.unit_area <= target;
+}
+
 ViewFactor factor(const ExactScene& scene, const Prepared& from, const Prepared& to, const ViewFactorOptions& options) {
   ViewFactor result;
   result.area_from = from.area;
@@ -204,6 +222,7 @@ ViewFactor factor(const ExactScene& scene, const Prepared& from, const Prepared&
   result.accurate = integral.error() <= target;
   result.cells = integral.cells();
   result.event_cells = integral.event_cells();
+  if (!result.accurate && options.sample_crowds) sample_if_better(scene, from, to, options, target, result);
   return result;
 }
 
@@ -247,6 +266,8 @@ std::vector<Prepared> prepared(const ExactScene& scene, std::span<const Selectio
 
 std::string_view to_string(Claim claim) {
   switch (claim) {
+    case Claim::kStatistical:
+      return "statistical";
     case Claim::kTopologyProved:
       return "topology-proved";
     case Claim::kZero:

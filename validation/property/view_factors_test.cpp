@@ -87,7 +87,7 @@ class RandomFamilies : public testing::TestWithParam<std::size_t> {};
 // Families on the edge of rounding are judged by the other direction alone: their rounded points see other things.
 TEST_P(RandomFamilies, ViewFactorsAgreeWithPointsAndWithTheOtherDirection) {
   const RandomFamily& family = random_families()[GetParam()];
-  const ViewFactorOptions options{.accuracy = 1e-2, .budget = 200};
+  const ViewFactorOptions options{.accuracy = 1e-2, .budget = 200, .sample_crowds = false};
   for (std::uint64_t s = 0; s < scaled_count(3); ++s) {
     Random random(seed_of(s));
     const Scene scene = generate::build(family.make(random));
@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(All, RandomFamilies, testing::Range(std::size_t{0}, ran
                          [](const auto& param) { return std::string(random_families()[param.param].name); });
 
 TEST(ViewFactors, AgreeWithMeansOfPointFactors) {
-  const ViewFactorOptions options{.accuracy = 1e-3, .budget = 2000};
+  const ViewFactorOptions options{.accuracy = 1e-3, .budget = 2000, .sample_crowds = false};
   std::size_t judged = 0;
   for (std::uint64_t s = 0; s < scaled_count(60); ++s) {
     Random random(seed_of(s));
@@ -136,6 +136,25 @@ TEST(ViewFactors, AgreeWithMeansOfPointFactors) {
   EXPECT_GE(judged, 5U);
 }
 
+// With a single cell every pair is a crowd. Its interval is judged by the cells of a larger budget.
+TEST(ViewFactors, OfCrowdsHoldTheFactor) {
+  std::size_t judged = 0;
+  for (std::uint64_t s = 0; s < scaled_count(60); ++s) {
+    Random random(seed_of(s));
+    const Scene scene = generate::build(s % 2 == 0 ? degenerate_scene(random) : generic_scene(random));
+    const Selection to = scene.select("source");
+    const Selection from = patch_of(scene, random.below(scene.patches().size()));
+    if (!has_area(scene, from) || !has_area(scene, to)) continue;
+    const ViewFactor truth = view_factor(scene, from, to, {.accuracy = 1e-4, .budget = 1000, .sample_crowds = false});
+    const ViewFactor f = view_factor(scene, from, to, {.accuracy = 1e-9, .budget = 1});
+    if (f.claim != Claim::kStatistical) continue;
+    EXPECT_LE(f.lower, truth.upper) << s << ' ' << scene.name_of(from);
+    EXPECT_GE(f.upper, truth.lower) << s << ' ' << scene.name_of(from);
+    ++judged;
+  }
+  EXPECT_GE(judged, 5U);
+}
+
 // Every wall sees walls and things only, and no thing from behind.
 TEST(ViewFactors, OfClosedRoomsAddUpToOne) {
   for (std::uint64_t s = 0; s < scaled_count(6); ++s) {
@@ -145,7 +164,8 @@ TEST(ViewFactors, OfClosedRoomsAddUpToOne) {
     double lower = 0.0, upper = 0.0;
     for (std::size_t j = 0; j < scene.patches().size(); ++j) {
       if (!has_area(scene, patch_of(scene, j))) continue;
-      const ViewFactor f = view_factor(scene, from, patch_of(scene, j), {.accuracy = 1e-3, .budget = 3000});
+      const ViewFactor f =
+          view_factor(scene, from, patch_of(scene, j), {.accuracy = 1e-3, .budget = 3000, .sample_crowds = false});
       lower += f.lower;
       upper += f.upper;
     }

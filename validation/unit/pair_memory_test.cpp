@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "kernel/filter.h"
 #include "generate/random.h"
+#include "kernel/filter.h"
 #include "view_factors/cell.h"
 
 namespace exactff::view_factors {

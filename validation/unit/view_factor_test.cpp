@@ -171,11 +171,48 @@ TEST(ViewFactor, KeepsItsWidthWhereTheBudgetIsUsedUp) {
   const ViewFactor fine = view_factor(built, from, to, {.accuracy = 1e-4});
   EXPECT_TRUE(fine.accurate);
   EXPECT_GT(fine.event_cells, 0U);
-  const ViewFactor coarse = view_factor(built, from, to, {.accuracy = 1e-4, .budget = 50});
+  const ViewFactor coarse = view_factor(built, from, to, {.accuracy = 1e-4, .budget = 50, .sample_crowds = false});
   EXPECT_FALSE(coarse.accurate);
+  EXPECT_EQ(coarse.claim, Claim::kTopologyProved);
   EXPECT_GT(coarse.upper - coarse.lower, 1e-4);
   EXPECT_LE(coarse.lower, fine.upper);
   EXPECT_GE(coarse.upper, fine.lower);
+}
+
+// With a single cell, everything is a crowd.
+TEST(ViewFactor, OfACrowdIsStatistical) {
+  const Scene built = generate::build(plates_with_plate(1.0, 0.5, 0.75));
+  const std::vector<Selection> below{named(built, "below")}, above{named(built, "above")};
+  const auto matrix = [&](double accuracy, std::size_t budget, int threads) {
+    return view_factor_matrix(built, below, above, {.accuracy = accuracy, .budget = budget}, threads).entries.front();
+  };
+  const ViewFactor f = matrix(1e-9, 1, 1);
+  EXPECT_EQ(f.claim, Claim::kStatistical);
+  EXPECT_FALSE(f.accurate);
+  EXPECT_LE(f.lower, 0.115620602132415020312711990740);
+  EXPECT_GE(f.upper, 0.115620602132415020312711990740);
+  EXPECT_GT(f.upper - f.lower, 1e-5);
+  EXPECT_LT(f.upper - f.lower, 0.05);
+  const ViewFactor again = matrix(1e-9, 1, 4);
+  EXPECT_EQ(f.lower, again.lower);
+  EXPECT_EQ(f.upper, again.upper);
+  const ViewFactor enough = matrix(0.05, 1, 1);
+  EXPECT_TRUE(enough.accurate);
+  EXPECT_LE(enough.upper - enough.lower, 0.05);
+}
+
+// Nothing is seen through a gap that no point of the sample looks through; the width says how much there may be.
+TEST(ViewFactor, OfACrowdIsNeverCertainOfWhatItHasNotMet) {
+  PlainScene scene = plates(1.0, 1.0);
+  constexpr double kGap = 0x1p-20, kHeight = 0x1p-6;
+  add(scene, "lid", {{kGap, -9, kHeight}, {9, -9, kHeight}, {9, 9, kHeight}, {kGap, 9, kHeight}});
+  const Scene built = generate::build(scene);
+  const ViewFactor f =
+      view_factor(built, named(built, "below"), named(built, "above"), {.accuracy = 1e-9, .budget = 1});
+  const ViewFactor truth = view_factor(built, named(built, "below"), named(built, "above"), {.accuracy = 1e-9});
+  EXPECT_GT(truth.lower, 0.0);
+  EXPECT_LE(f.lower, truth.lower);
+  EXPECT_GE(f.upper, truth.upper);
 }
 
 TEST(ViewFactor, RefusesWhatHasNoMeaning) {

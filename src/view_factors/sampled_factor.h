@@ -1,0 +1,33 @@
+// View factors by statistics, for patches with so much in between that cells do not suffice.
+//
+// The receiver's parts are cut into strata of about the same area. In each, two independent triples of points are
+// drawn. The points of a triple have the same three weights in turn at the corners of a small triangle, so their
+// mean is exact where F is linear. A point's F is the exact solver's (exact.h). The mean of a stratum's two triples has
+// a variance that (difference / 2)^2 estimates without bias. The strata's variances add up; their sum has an estimated
+// number of degrees of freedom (Welch, Biometrika 34, 1947), for which Student's t gives the interval.
+//
+// Several looks, each at four times the strata of the one before, with points of its own, until one is accurate enough.
+// Each has its share of the risk, so that with the whole level all of them are right: the narrowest is the result.
+//
+// Rounding. The solver's receivers are doubles, a hair off the receiver's plane. Faces in this plane are their own, as
+// they are for the exact point. Where a point has moved to the other side of a face that is nearly in this plane, and
+// near it, only 0 <= F <= 1 is used.
+#pragma once
+
+#include "view_factors/patch_parts.h"
+
+namespace exactff::view_factors {
+
+inline constexpr double kRisk = 1e-6;  // of all looks together: the probability that the interval misses the factor
+
+// The integral of the point factor over the receiver, in squares of the unit of Point::at.
+struct SampledIntegral {
+  double value = 0.0;
+  double error = 0.0;
+};
+
+// Takes at most some `budget` points, but at least 216. Stops at an error of `target`. Deterministic.
+[[nodiscard]] SampledIntegral sampled_integral(const ExactScene& scene, const std::vector<Part>& from,
+                                               const Selection& to, std::size_t budget, double target);
+
+}  // namespace exactff::view_factors
