@@ -53,6 +53,10 @@ void write(const Content& content, const std::filesystem::path& file, const Hook
 
 // Writes the scene alone, as above.
 void write(const Scene& scene, const std::filesystem::path& file, const Hooks& hooks = {});
+// Writes the scene alone, with values at its faces: fields have their numbers for each face of the scene, by index.
+// Throws as `write` does.
+void write_faces(const Scene& scene, const std::vector<Field>& fields, std::vector<std::string> about,
+                 const std::filesystem::path& file, const Hooks& hooks = {});
 
 // "map_scene.vtp" for "map.vtp".
 [[nodiscard]] std::filesystem::path scene_file(const std::filesystem::path& file);

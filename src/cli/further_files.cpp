@@ -16,10 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Output {
-  std::string flag;
-  fs::path file;
-};
+using Output = OutputFile;
 
 std::vector<Output> outputs(const FurtherFiles& files) {
   std::vector<Output> list;
@@ -114,6 +111,17 @@ void check_further_files(const FurtherFiles& files, const fs::path& result, bool
     }
     for (const Output& other : before) require_apart(output, other);
     require_outside(output, result);
+    require_writable(output, may_replace);
+    before.push_back(output);
+  }
+}
+
+void check_output_files(const std::vector<OutputFile>& files, std::vector<OutputFile> before, bool may_replace) {
+  for (const OutputFile& output : files) {
+    if (output.file.empty()) continue;
+    require_regular(output);
+    if (output.flag == "--vtk") vtk::require_extension(output.file);
+    for (const OutputFile& other : before) require_apart(output, other);
     require_writable(output, may_replace);
     before.push_back(output);
   }

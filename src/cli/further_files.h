@@ -1,4 +1,4 @@
-// Files that truth, merge and compare write besides their result: --npy, --vtk and --exr.
+// Files that commands write besides their result: --npy, --vtk, --exr and others.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -19,6 +19,13 @@ struct FurtherFiles {
   // The flags that are given: "--npy", "--vtk".
   [[nodiscard]] std::vector<std::string> flags() const;
 };
+
+struct OutputFile {
+  std::string flag;
+  std::filesystem::path file;
+};
+// As check_further_files, for files beside others (`before`) that are checked already.
+void check_output_files(const std::vector<OutputFile>& files, std::vector<OutputFile> before, bool may_replace);
 
 // Called before anything that takes time. Throws InputError unless each file can be written beside `result`, a file or
 // a folder: if a file is no regular file, exists already and may not be replaced, has no place to be written, is the

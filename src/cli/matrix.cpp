@@ -1,21 +1,25 @@
 // exactff matrix: view factors from patch to patch.
+#include "exactff/matrix.h"
+
 #include <algorithm>
+#include <cmath>
 #include <iostream>
+#include <limits>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/further_files.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/text_table.h"
 #include "exactff/version.h"
-#include "exactff/view_factors.h"
+#include "exactff/vtk.h"
 #include "flags/lists.h"
 #include "flags/scene.h"
-#include "text/csv_row.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 
 namespace exactff::cli {
 namespace {
@@ -26,47 +30,62 @@ constexpr const char* kMatrixFooter =
     "proved\n"
     "on every cell of the patch, the error of the quadrature is estimated from two rules. An entry that needs more\n"
     "cells than --budget keeps its width, and a warning says so.\n"
+    "With --backs and --to all,sky each row also has what meets the backs of faces, and what is open. Then it must "
+    "add\n"
+    "up to 1; if a row does not, the exit code is 1.\n"
+    "View3D's output has six decimals and no bounds; its rows add up to 1 only within that. EnergyPlus reads the "
+    "names\n"
+    "of patches as names of surfaces.\n"
     "\n"
-    "Example:\n"
-    "  exactff matrix data/scenes/cornell_box.obj --from light --to floor,ceiling --accuracy 1e-4";
+    "Examples:\n"
+    "  exactff matrix data/scenes/cornell_box.obj --from light --to floor,ceiling --accuracy 1e-4\n"
+    "  exactff matrix data/scenes/formats/test4.vs3 --backs --to all,sky --npz build/factors.npz";
 
 constexpr std::size_t kMostShown = 12;  // rows and columns of the printed table
 
 struct MatrixArguments {
   flags::SceneArguments scene;
   std::vector<std::string> from{"all"}, to{"all"};
-  ViewFactorOptions options;
+  matrix::Options options;
   bool plain = false;
-  std::string csv;
+  std::string csv, npz, view3d, energyplus, vtk;
+  std::string zone = "Zone 1";
   bool force = false;
-  int threads = 0;
 };
 
+// Takes "sky" out of the columns, unless a patch has this name.
+bool take_sky(const Scene& scene, std::vector<std::string>& texts) {
+  const auto is_patch = [&](const std::string& name) {
+    return std::ranges::any_of(scene.patches(), [&](const Patch& patch) { return patch.name == name; });
+  };
+  std::vector<std::string> kept;
+  bool found = false;
+  for (const std::string& text : texts) {
+    for (const std::string& name : is_patch(text) ? std::vector{text} : flags::split_list(text)) {
+      const bool is_sky = name == "sky" && !is_patch(name);
+      found = found || is_sky;
+      if (!is_sky) kept.push_back(name);
+    }
+  }
+  if (found) texts = kept;
+  return found;
+}
+
 template <class Visit>
-void for_each_entry(const ViewFactorMatrix& matrix, const Visit& visit) {
-  for (std::size_t i = 0; i < matrix.from.size(); ++i) {
-    for (std::size_t j = 0; j < matrix.to.size(); ++j) visit(matrix.from[i], matrix.to[j], matrix.at(i, j));
+void for_each_entry(const Scene& scene, const matrix::Matrix& matrix, const Visit& visit) {
+  const ViewFactorMatrix& all = matrix.factors;
+  for (std::size_t i = 0; i < all.from.size(); ++i) {
+    for (std::size_t j = 0; j < all.to.size(); ++j) visit(i, shown_name(scene, all.to[j]), all.at(i, j));
+    if (!matrix.back.empty()) visit(i, std::string(matrix::kBack), matrix.back[i]);
+    if (!matrix.open.empty()) visit(i, std::string(matrix::kOpen), matrix.open[i]);
   }
 }
 
-void print_plain(const Scene& scene, const ViewFactorMatrix& matrix) {
-  for_each_entry(matrix, [&](const Selection& from, const Selection& to, const ViewFactor& f) {
-    std::cout << shown_name(scene, from) << '\t' << shown_name(scene, to) << '\t' << text::shortest(f.lower) << '\t'
+void print_plain(const Scene& scene, const matrix::Matrix& matrix) {
+  for_each_entry(scene, matrix, [&](std::size_t i, const std::string& to, const ViewFactor& f) {
+    std::cout << shown_name(scene, matrix.factors.from[i]) << '\t' << to << '\t' << text::shortest(f.lower) << '\t'
               << text::shortest(f.upper) << '\t' << to_string(f.claim) << '\n';
   });
-}
-
-std::string csv_of(const MatrixArguments& args, const Scene& scene, const ViewFactorMatrix& matrix) {
-  std::ostringstream out;
-  out << "# exactff " << kVersion << " matrix: view factors from patch to patch, areas in the scene's unit squared\n"
-      << "# scene hash " << scene.hash() << "; accuracy " << text::shortest(args.options.accuracy) << ", budget "
-      << args.options.budget << " cells\n"
-      << "from,to,factor,lower,upper,claim,accurate,area_from,area_to,cells,event_cells\n";
-  for_each_entry(matrix, [&](const Selection& from, const Selection& to, const ViewFactor& f) {
-    text::CsvRow(out) << scene.name_of(from) << scene.name_of(to) << f.value << f.lower << f.upper << to_string(f.claim)
-                      << (f.accurate ? "yes" : "no") << f.area_from << f.area_to << f.cells << f.event_cells;
-  });
-  return std::move(out).str();
 }
 
 std::string factor_text(const ViewFactor& f) {
@@ -74,63 +93,174 @@ std::string factor_text(const ViewFactor& f) {
   return text::rounded(f.value, 6) + (f.accurate ? "" : " *");
 }
 
-// A row's factors add up to 1 if its patch sees nothing else, no back of a face and nothing open.
-void print_table(const Scene& scene, const ViewFactorMatrix& matrix) {
+std::string sum_text(const matrix::Sum& sum) {
+  return text::rounded(0.5 * (sum.lower + sum.upper), 6) + " +- " + text::rounded(0.5 * (sum.upper - sum.lower), 1);
+}
+
+void print_table(const Scene& scene, const matrix::Matrix& matrix) {
+  const ViewFactorMatrix& all = matrix.factors;
+  const std::vector<matrix::Sum> sums = row_sums(matrix);
+  const std::size_t columns = std::min(all.to.size(), kMostShown), rows = std::min(all.from.size(), kMostShown);
   TextTable table;
   table.add_column("from \\ to");
-  const std::size_t columns = std::min(matrix.to.size(), kMostShown), rows = std::min(matrix.from.size(), kMostShown);
-  for (std::size_t j = 0; j < columns; ++j) table.add_column(shown_name(scene, matrix.to[j]));
+  for (std::size_t j = 0; j < columns; ++j) table.add_column(shown_name(scene, all.to[j]));
+  if (!matrix.back.empty()) table.add_column(std::string(matrix::kBack));
+  if (!matrix.open.empty()) table.add_column(std::string(matrix::kOpen));
   table.add_column("sum of row");
   for (std::size_t i = 0; i < rows; ++i) {
-    std::vector<std::string> cells{shown_name(scene, matrix.from[i])};
-    double lower = 0.0, upper = 0.0;
-    for (std::size_t j = 0; j < matrix.to.size(); ++j) {
-      const ViewFactor& f = matrix.at(i, j);
-      if (j < columns) cells.push_back(factor_text(f));
-      lower += f.lower;
-      upper += f.upper;
-    }
-    cells.push_back(text::rounded(0.5 * (lower + upper), 6) + " +- " + text::rounded(0.5 * (upper - lower), 1));
+    std::vector<std::string> cells{shown_name(scene, all.from[i])};
+    for (std::size_t j = 0; j < columns; ++j) cells.push_back(factor_text(all.at(i, j)));
+    if (!matrix.back.empty()) cells.push_back(factor_text(matrix.back[i]));
+    if (!matrix.open.empty()) cells.push_back(factor_text(matrix.open[i]));
+    cells.push_back(sum_text(sums[i]));
     table.add_row(std::move(cells));
   }
   table.print(std::cout);
-  if (rows < matrix.from.size() || columns < matrix.to.size()) {
-    std::cout << "\n(the first " << rows << " of " << matrix.from.size() << " rows and " << columns << " of "
-              << matrix.to.size() << " columns; --plain and -o have all)\n";
+  if (rows < all.from.size() || columns < all.to.size()) {
+    std::cout << "\n(the first " << rows << " of " << all.from.size() << " rows and " << columns << " of "
+              << all.to.size() << " columns; --plain and -o have all)\n";
   }
 }
 
-void warn_of_width(const MatrixArguments& args, const ViewFactorMatrix& matrix) {
-  const auto wide = std::ranges::count_if(matrix.entries, [](const ViewFactor& f) { return !f.accurate; });
-  if (wide == 0) return;
-  print_warnings(std::vector<Problem>{
-      {.what = text::counted(static_cast<std::uint64_t>(wide), "entry", "entries") + (wide == 1 ? " is" : " are") +
-               " wider than the accuracy " + text::shortest(args.options.accuracy),
-       .why =
-           "the budget of " + std::to_string(args.options.budget) + " cells is used up; their bounds hold all the same",
-       .suggestion = "give more cells by --budget, or ask for less by --accuracy"}});
+void warn(const std::string& what, const std::string& why, const std::string& suggestion) {
+  print_warnings(std::vector<Problem>{{.what = what, .why = why, .suggestion = suggestion}});
 }
 
-int run(const MatrixArguments& args) {
+void warn_of_width(const MatrixArguments& args, const matrix::Matrix& matrix) {
+  const auto wide_of = [](const std::vector<ViewFactor>& list) {
+    return std::ranges::count_if(list, [](const ViewFactor& f) { return !f.accurate; });
+  };
+  const auto wide = wide_of(matrix.factors.entries) + wide_of(matrix.back) + wide_of(matrix.open);
+  if (wide == 0) return;
+  const ViewFactorOptions& options = args.options.factors;
+  warn(text::counted(static_cast<std::uint64_t>(wide), "entry", "entries") + (wide == 1 ? " is" : " are") +
+           " wider than the accuracy " + text::shortest(options.accuracy),
+       "the budget of " + std::to_string(options.budget) + " cells is used up; their bounds hold all the same",
+       "give more cells by --budget, or ask for less by --accuracy");
+}
+
+// Whether all rows hold 1. Those that need not are not tested.
+bool test_rows(const MatrixArguments& args, const Scene& scene, const matrix::Matrix& matrix) {
+  const std::vector<std::string> reasons = reasons_against_one(scene, matrix);
+  if (!reasons.empty()) {
+    if (!args.plain) std::cout << "\nRows need not add up to 1: " << text::enumerate(reasons) << ".\n";
+    return true;
+  }
+  const std::vector<matrix::Sum> sums = row_sums(matrix);
+  bool all = true;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    if (sums[i].lower <= 1.0 && 1.0 <= sums[i].upper) continue;
+    all = false;
+    warn("the row of " + scene.name_of(matrix.factors.from[i]) + " adds up to between " +
+             text::shortest(sums[i].lower) + " and " + text::shortest(sums[i].upper),
+         "with back and open it must add up to 1, so a bound of it does not hold", "please report the scene");
+  }
+  if (all && !args.plain) std::cout << "\nEvery row adds up to 1 within its bounds.\n";
+  return all;
+}
+
+// --- Files ---
+
+void check_files(const MatrixArguments& args) {
   if (!args.csv.empty()) require_free_file(args.csv, args.force);
+  std::vector<OutputFile> before;
+  if (!args.csv.empty()) before.push_back({"-o", args.csv});
+  check_output_files(
+      {{"--npz", args.npz}, {"--view3d", args.view3d}, {"--energyplus", args.energyplus}, {"--vtk", args.vtk}}, before,
+      args.force);
+}
+
+void check_row_of_vtk(const MatrixArguments& args, const std::vector<Selection>& from) {
+  if (args.vtk.empty() || from.size() == 1) return;
+  text::refuse("--vtk is given, and " + text::counted(from.size(), "row"), "the file shows one row on the scene",
+               "name one patch by --from");
+}
+
+void write_vtk(const MatrixArguments& args, const Scene& scene, const matrix::Matrix& matrix) {
+  const ViewFactorMatrix& all = matrix.factors;
+  const std::vector<double> none(scene.faces().size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> value = none, lower = none, upper = none;
+  for (std::size_t j = 0; j < all.to.size(); ++j) {
+    for (const FaceId face : scene.faces_of(all.to[j])) {
+      value[index_of(face)] = all.at(0, j).value;
+      lower[index_of(face)] = all.at(0, j).lower;
+      upper[index_of(face)] = all.at(0, j).upper;
+    }
+  }
+  vtk::write_faces(scene, {{"factor", 1, value}, {"lower", 1, lower}, {"upper", 1, upper}},
+                   {"exactff " + std::string(kVersion) + ", view factors from " + scene.name_of(all.from.front())},
+                   args.vtk);
+}
+
+void write_files(const MatrixArguments& args, const Scene& scene, const matrix::Matrix& matrix) {
+  const auto write_text = [](const std::string& file, const auto& text) {
+    if (!file.empty()) write_whole_file(file, text());
+  };
+  write_text(args.csv, [&] { return csv_text(scene, matrix, args.options.factors); });
+  if (!args.npz.empty()) write_npz(scene, matrix, args.npz);
+  write_text(args.view3d, [&] { return view3d_text(scene, matrix); });
+  write_text(args.energyplus, [&] { return energyplus_text(scene, matrix, args.zone); });
+  if (!args.vtk.empty()) write_vtk(args, scene, matrix);
+  if (args.view3d.empty()) return;
+  warn("View3D's output holds six decimals, no bounds and no names", "factors below 5e-7 become 0",
+       "use -o or --npz where more is needed");
+}
+
+void print_files(const MatrixArguments& args) {
+  const std::vector<std::pair<const char*, const std::string*>> files = {{"Matrix", &args.csv},
+                                                                         {"NumPy file", &args.npz},
+                                                                         {"View3D file", &args.view3d},
+                                                                         {"EnergyPlus file", &args.energyplus},
+                                                                         {"VTK file", &args.vtk}};
+  for (const auto& [what, file] : files) {
+    if (!file->empty()) std::cout << what << ": " << text::printable(*file) << '\n';
+  }
+}
+
+// Before anything that takes time, what the files cannot hold is refused.
+void check_content(const MatrixArguments& args, const Scene& scene, const std::vector<Selection>& from,
+                   const std::vector<Selection>& to) {
+  check_row_of_vtk(args, from);
+  const matrix::Matrix empty{{from, to, std::vector<ViewFactor>(from.size() * to.size())}, {}, {}};
+  if (!args.view3d.empty()) (void)view3d_text(scene, empty);
+  if (!args.energyplus.empty()) (void)energyplus_text(scene, empty, args.zone);
+}
+
+int run(MatrixArguments args) {
+  check_files(args);
   const Scene scene = args.scene.load();
   print_warnings(scene.warnings());
+  args.options.open = take_sky(scene, args.to);
   const std::vector<Selection> from = flags::selections_named(scene, args.from),
                                to = flags::selections_named(scene, args.to);
+  check_content(args, scene, from, to);
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
-  const ViewFactorMatrix matrix = view_factor_matrix(scene, from, to, args.options, args.threads, hooks);
+  const matrix::Matrix matrix = compute(scene, from, to, args.options, hooks);
   bar.clear();
   warn_of_width(args, matrix);
-  if (!args.csv.empty()) write_whole_file(args.csv, csv_of(args, scene, matrix));
-  if (args.plain) {
-    print_plain(scene, matrix);
-  } else {
-    print_table(scene, matrix);
-    if (!args.csv.empty()) std::cout << "\nMatrix: " << text::printable(args.csv) << '\n';
-  }
+  write_files(args, scene, matrix);
+  args.plain ? print_plain(scene, matrix) : print_table(scene, matrix);
+  const bool sound = test_rows(args, scene, matrix);
+  if (!args.plain) print_files(args);
   check_output(std::cout);
-  return 0;
+  return sound ? 0 : 1;
+}
+
+void add_outputs(CLI::App& command, MatrixArguments& args) {
+  command.add_option("-o,--output", args.csv, "Write a CSV file")->type_name("FILE");
+  command.add_option("--npz", args.npz, "Write the arrays of a sparse matrix for NumPy and SciPy")->type_name("FILE");
+  command.add_option("--view3d", args.view3d, "Write the matrix as View3D does, with six decimals")->type_name("FILE");
+  CLI::Option* energyplus =
+      command.add_option("--energyplus", args.energyplus, "Write view factors for the input file of EnergyPlus")
+          ->type_name("FILE");
+  command.add_option("--zone", args.zone, "Name of EnergyPlus' zone")
+      ->type_name("TEXT")
+      ->needs(energyplus)
+      ->capture_default_str();
+  command.add_option("--vtk", args.vtk, "Write the one row that --from names, on the scene, as NAME.vtp or NAME.vtu")
+      ->type_name("FILE");
+  command.add_flag("--force", args.force, "Replace existing files");
 }
 
 }  // namespace
@@ -143,16 +273,20 @@ Command add_matrix(CLI::App& app) {
   command->add_option("--from", args->from, "Rows: patches or faces, a name, a comma list of names, or all")
       ->type_name("NAME")
       ->capture_default_str();
-  command->add_option("--to", args->to, "Columns, in the same way")->type_name("NAME")->capture_default_str();
-  command->add_option("--accuracy", args->options.accuracy, "Largest width of an entry, for F_ij and for F_ji")
+  command->add_option("--to", args->to, "Columns, in the same way; sky is what is open")
+      ->type_name("NAME")
       ->capture_default_str();
-  command->add_option("--budget", args->options.budget, "Largest number of cells for an entry")
+  command->add_flag("--backs", args->options.backs, "Also compute what meets the backs of faces");
+  command->add_option("--accuracy", args->options.factors.accuracy, "Largest width of an entry, for F_ij and for F_ji")
+      ->capture_default_str();
+  command->add_option("--budget", args->options.factors.budget, "Largest number of cells for an entry")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
       ->capture_default_str();
   command->add_flag("--plain", args->plain, "Print a line for each entry: FROM, TO, LOWER, UPPER, CLAIM, with tabs");
-  command->add_option("-o,--output", args->csv, "Write a CSV file")->type_name("FILE");
-  command->add_flag("--force", args->force, "Replace an existing file");
-  command->add_option("--threads", args->threads, "Number of threads (default: all); it does not affect the values")
+  add_outputs(*command, *args);
+  command
+      ->add_option("--threads", args->options.threads,
+                   "Number of threads (default: all); it does not affect the values")
       ->check(CLI::Range(0, 1024));
   return {command, [args] { return run(*args); }};
 }

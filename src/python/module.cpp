@@ -12,4 +12,5 @@ PYBIND11_MODULE(_exactff, module) {
   bind_methods(module);
   bind_truth(module);
   bind_check(module);
+  bind_view_factors(module);
 }

@@ -11,13 +11,18 @@ namespace {
 
 template <class T>
 std::vector<T> in_order(const std::vector<T>& values, std::size_t components, const std::vector<std::size_t>& order) {
-  if (values.size() != components * order.size()) throw std::invalid_argument("a field has not a value per receiver");
   std::vector<T> sorted;
-  sorted.reserve(values.size());
+  sorted.reserve(components * order.size());
   for (const std::size_t i : order) {
     for (std::size_t c = 0; c < components; ++c) sorted.push_back(values[i * components + c]);
   }
   return sorted;
+}
+
+void require_tuples(const Field& field, std::size_t count) {
+  const std::size_t numbers = std::visit([](const auto& values) { return values.size(); }, field.values);
+  if (numbers == field.components * count) return;
+  throw std::invalid_argument("a field has not a value for each receiver or face");
 }
 
 Array array_of(const Field& field, const std::vector<std::size_t>& order) {
@@ -29,7 +34,10 @@ Array array_of(const Field& field, const std::vector<std::size_t>& order) {
 DataSet data_of(const Content& content) {
   const std::vector<std::size_t> order = cell_order(content.receivers);
   DataSet data = cells_of(*content.scene, content.receivers, order);
-  for (const Field& field : content.fields) data.of_cells.push_back(array_of(field, order));
+  for (const Field& field : content.fields) {
+    require_tuples(field, order.size());
+    data.of_cells.push_back(array_of(field, order));
+  }
   if (!content.fields.empty()) data.shown = content.fields.front().name;
   if (!content.about.empty()) data.of_file.push_back({"about", 1, content.about});
   return data;
@@ -75,6 +83,25 @@ std::filesystem::path scene_file(const std::filesystem::path& file) {
 }
 
 void require_extension(const std::filesystem::path& file) { static_cast<void>(format_of(file)); }
+
+void write_faces(const Scene& scene, const std::vector<Field>& fields, std::vector<std::string> about,
+                 const std::filesystem::path& file, const Hooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
+  const Format format = format_of(file);
+  work::WholeFile cells(file);
+  std::vector<std::size_t> face_of_cell;
+  for (const Piece& piece : scene.pieces()) face_of_cell.push_back(index_of(piece.face));
+  DataSet data = cells_of(scene);
+  for (const Field& field : fields) {
+    require_tuples(field, scene.faces().size());
+    data.of_cells.push_back(array_of(field, face_of_cell));
+  }
+  if (!fields.empty()) data.shown = fields.front().name;
+  if (!about.empty()) data.of_file.push_back({"about", 1, std::move(about)});
+  append(data, format, cells, hooks);
+  work::require_not_cancelled(hooks);
+  cells.commit();
+}
 
 void write(const Content& content, const std::filesystem::path& file, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;

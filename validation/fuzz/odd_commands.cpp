@@ -147,6 +147,7 @@ class CommandWriter {
   // Some options are refused without another one.
   void keep_company() {
     // By default, a matrix may take many minutes.
+    if (table_.name == "matrix" && has_any({"--zone"})) words_.insert(words_.end(), {"--energyplus", "out/zone.txt"});
     if (table_.name == "matrix" && !has_any({"--budget"})) words_.insert(words_.end(), {"--budget", "20"});
     if (random_.one_in(20)) return;
     const bool sampled = has_any({"--eps-b", "--eps-a", "--rays", "--seed", "--pattern", "--variant"});
@@ -279,6 +280,8 @@ class CommandWriter {
   std::string written_name(const std::string& option) {
     if (option == "--npy") return "values.npy";
     if (option == "--exr") return "values.exr";
+    if (option == "--npz") return "matrix.npz";
+    if (option == "--view3d" || option == "--energyplus") return option.substr(2) + ".txt";
     if (option == "--error-image") return one_of<std::string>(random_, {"errors.exr", "errors.png", "errors.jpg"});
     if (option == "--mesh") return one_of<std::string>(random_, {"mesh.obj", "mesh.ply", "mesh.vtp", "mesh.png"});
     if (option == "--vtk") return one_of<std::string>(random_, {"cells.vtp", "cells.vtu", "cells.vtp", "cells.vtk"});

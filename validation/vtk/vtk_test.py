@@ -311,5 +311,59 @@ class OddFiles(Case):
             self.check_exact(read.array, rows_of(self.path("t.csv"))[::2], "s")
 
 
+class MatrixFiles(Case):
+    SCENE = DATA / "scenes/formats/test4.vs3"
+
+    def matrix(self, *words):
+        self.run_program("matrix", self.SCENE, "--accuracy", "1e-4", "-o", self.path("m.csv"), *words)
+        return rows_of(self.path("m.csv"))
+
+    def test_arrays_of_a_sparse_matrix(self):
+        rows = self.matrix("--backs", "--npz", self.path("m.npz"))
+        with numpy.load(self.path("m.npz")) as file:
+            arrays = {name: file[name] for name in file.files}
+        shape = tuple(arrays["shape"])
+        self.assertEqual(shape, (8, 8))
+        between = [row for row in rows if row["to"] not in ("(back)", "(open)")]
+        dense, radius, claim = numpy.zeros(shape), numpy.zeros(shape), numpy.full(shape, "zero", dtype="U20")
+        for i in range(shape[0]):
+            part = slice(arrays["indptr"][i], arrays["indptr"][i + 1])
+            dense[i, arrays["indices"][part]] = arrays["data"][part]
+            radius[i, arrays["indices"][part]] = arrays["radius"][part]
+            claim[i, arrays["indices"][part]] = arrays["claim"][part]
+        self.same(dense.ravel(), floats(between, "factor"))
+        self.assertTrue((dense.ravel() - radius.ravel() <= floats(between, "lower")).all())
+        self.assertTrue((dense.ravel() + radius.ravel() >= floats(between, "upper")).all())
+        self.assertLess(radius.max(), 1.1e-4)
+        self.assertEqual(list(claim.ravel()), [row["claim"] for row in between])
+        self.assertEqual(list(arrays["from"]), [row["from"] for row in between[::8]])
+        self.assertEqual(list(arrays["to"]), [row["to"] for row in between[:8]])
+        self.same(arrays["area_from"], floats(between[::8], "area_from"))
+        self.same(arrays["area_to"], floats(between[:8], "area_to"))
+        self.same(arrays["back"], floats([row for row in rows if row["to"] == "(back)"], "factor"))
+        self.assertNotIn("open", arrays)
+        try:
+            import scipy.sparse
+        except ImportError:
+            return
+        self.same(scipy.sparse.load_npz(self.path("m.npz")).toarray(), dense)
+
+    def test_names_in_any_letters(self):
+        self.path("odd.obj").write_bytes("v 0 0 0\nv 1 0 0\nv 0 1 0\ng \u00e9\u4e2d\U0001d11e\nf 1 2 3\n".encode())
+        self.run_program("matrix", self.path("odd.obj"), "--npz", self.path("m.npz"))
+        with numpy.load(self.path("m.npz")) as file:
+            self.assertEqual(list(file["from"]), ["\u00e9\u4e2d\U0001d11e"])
+            self.assertEqual(len(file["data"]), 0)
+
+    def test_a_row_on_the_scene(self):
+        rows = self.matrix("--from", "srf-1", "--vtk", self.path("row.vtp"))
+        read = Read(self.path("row.vtp"))
+        place = {row["to"]: k for k, row in enumerate(rows)}
+        names = read.of_file("patch names")
+        order = [place[names[patch]] for patch in read.array("patch")]
+        for name, column in ("factor", "factor"), ("lower", "lower"), ("upper", "upper"):
+            self.same(read.array(name), floats(rows, column)[order])
+
+
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)

@@ -31,11 +31,13 @@ from ._receivers import Receivers
 from ._report import Finding, Material, Patch, Report
 from ._scene import Scene
 from ._truth import TruthSummary, truth
+from ._views import SeenPatch, Share, View, ViewFactor, ViewFactorMatrix, view, view_factor, view_factor_matrix
 
 __version__ = _exactff.version
 
 __all__ = [
     "CheckReport", "Distribution", "Drawing", "Enclosure", "Finding", "FormFactor", "FormFactors", "InputError",
-    "Material", "ModellingWarning", "Patch", "Problem", "Receivers", "Report", "RowError", "Scene", "Status",
-    "TruthSummary", "Verdict", "__version__", "check", "methods", "truth",
+    "Material", "ModellingWarning", "Patch", "Problem", "Receivers", "Report", "RowError", "Scene", "SeenPatch", "Share",
+    "Status", "TruthSummary", "Verdict", "View", "ViewFactor", "ViewFactorMatrix", "__version__", "check", "methods",
+    "truth", "view", "view_factor", "view_factor_matrix",
 ]

@@ -1,0 +1,76 @@
+// A matrix of view factors with what its rows see besides patches, and its files for other programs.
+//
+// A ray from a point of a patch meets the front of a face, the back of one, or nothing. So the factors of a row to all
+// patches, the factor to the backs and the factor to what is open add up to 1, unless faces are transparent or fronts
+// of different patches overlap in one plane. Each of the three is computed by itself.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exactff/progress.h"
+#include "exactff/scene.h"
+#include "exactff/view_factors.h"
+
+namespace exactff::matrix {
+
+struct Options {
+  ViewFactorOptions factors;
+  bool backs = false;  // also compute what meets the backs of faces
+  bool open = false;   // also compute what meets nothing
+  int threads = 0;     // 0: all; does not affect the result
+};
+
+struct Matrix {
+  ViewFactorMatrix factors;
+  // For each row: the factor to the backs of all faces that are not transparent, and the share that meets nothing.
+  // Empty if not asked for. As strong as their claims. Where a front lies on a back, seen from the same side, the
+  // front counts. The area_to of `open` means nothing.
+  std::vector<ViewFactor> back, open;
+};
+
+// Throws what view_factor_matrix throws; and InputError for `open` in a scene so large that doubles end near it.
+[[nodiscard]] Matrix compute(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
+                             const Options& options = {}, const Hooks& hooks = {});
+
+// The sum of each row with its back and open, rounded outward: an enclosure as strong as the row's weakest claim.
+struct Sum {
+  double lower = 0.0;
+  double upper = 0.0;
+};
+[[nodiscard]] std::vector<Sum> row_sums(const Matrix& matrix);
+
+// Why rows need not add up to 1: "what meets backs is not computed". Empty: every row adds up to 1.
+[[nodiscard]] std::vector<std::string> reasons_against_one(const Scene& scene, const Matrix& matrix);
+
+// The weaker of two claims, the one to be made of a sum.
+[[nodiscard]] Claim weaker(Claim a, Claim b);
+
+// --- Files ---------------------------------------------------------------------------------------------------------
+
+// Names of the additional columns.
+inline constexpr std::string_view kBack = "(back)";
+inline constexpr std::string_view kOpen = "(open)";
+
+// A row for each entry: from,to,factor,lower,upper,claim,accurate,area_from,area_to,cells,event_cells. Doubles read
+// back to the same bits.
+[[nodiscard]] std::string csv_text(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options);
+
+// Writes the arrays of a sparse matrix (CSR) for NumPy and SciPy: scipy.sparse.load_npz(path) gives the factors.
+// `radius`, in the order of `data`: data - radius and data + radius are bounds. `claim` likewise. `from` and `to` are
+// names; `area_from`, `area_to`; if computed, `back`, `back_radius`, `open`, `open_radius` for each row. Proved zeros
+// are left out. The file appears complete or not at all. Throws InputError if it cannot be written.
+void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::path& path);
+
+// The output of View3D in its text format (0): areas, rows, emittances (1 - Kd) without names. It holds six decimals.
+// Throws InputError unless rows and columns are the same patches.
+[[nodiscard]] std::string view3d_text(const Scene& scene, const Matrix& matrix);
+
+// An object ZoneProperty:UserViewFactors:bySurfaceName for the input file of EnergyPlus. Throws InputError unless rows
+// and columns are the same patches, or for a name that such a file cannot hold.
+[[nodiscard]] std::string energyplus_text(const Scene& scene, const Matrix& matrix, const std::string& zone);
+
+}  // namespace exactff::matrix

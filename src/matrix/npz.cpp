@@ -1,0 +1,72 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "exactff/matrix.h"
+#include "work/npz_file.h"
+
+namespace exactff::matrix {
+namespace {
+
+// [value - radius, value + radius] holds the bounds.
+double radius_of(const ViewFactor& f) {
+  const double radius = std::max(f.upper - f.value, f.value - f.lower);
+  return radius == 0.0 ? 0.0 : std::nextafter(radius, std::numeric_limits<double>::infinity());
+}
+
+void add_column(work::NpzFile& file, const std::string& name, const std::vector<ViewFactor>& column) {
+  if (column.empty()) return;
+  std::vector<double> values, radii;
+  for (const ViewFactor& f : column) {
+    values.push_back(f.value);
+    radii.push_back(radius_of(f));
+  }
+  file.add(name, values);
+  file.add(name + "_radius", radii);
+}
+
+void add_names(work::NpzFile& file, const char* name, const Scene& scene, const std::vector<Selection>& patches) {
+  std::vector<std::string> names;
+  for (const Selection& patch : patches) names.push_back(scene.name_of(patch));
+  file.add_texts(name, names);
+}
+
+}  // namespace
+
+void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::path& path) {
+  const ViewFactorMatrix& all = matrix.factors;
+  std::vector<double> values, radii, area_from, area_to;
+  std::vector<std::int64_t> columns, starts{0};
+  std::vector<std::string> claims;
+  for (std::size_t i = 0; i < all.from.size(); ++i) {
+    for (std::size_t j = 0; j < all.to.size(); ++j) {
+      const ViewFactor& f = all.at(i, j);
+      if (j == 0) area_from.push_back(f.area_from);
+      if (i == 0) area_to.push_back(f.area_to);
+      if (f.claim == Claim::kZero) continue;
+      values.push_back(f.value);
+      radii.push_back(radius_of(f));
+      columns.push_back(static_cast<std::int64_t>(j));
+      claims.emplace_back(to_string(f.claim));
+    }
+    starts.push_back(static_cast<std::int64_t>(values.size()));
+  }
+  work::NpzFile file(path);
+  file.add_word("format", "csr");
+  file.add("shape", std::vector{static_cast<std::int64_t>(all.from.size()), static_cast<std::int64_t>(all.to.size())});
+  file.add("indptr", starts);
+  file.add("indices", columns);
+  file.add("data", values);
+  file.add("radius", radii);
+  file.add_texts("claim", claims);
+  add_names(file, "from", scene, all.from);
+  add_names(file, "to", scene, all.to);
+  file.add("area_from", area_from);
+  file.add("area_to", area_to);
+  add_column(file, "back", matrix.back);
+  add_column(file, "open", matrix.open);
+  file.commit();
+}
+
+}  // namespace exactff::matrix

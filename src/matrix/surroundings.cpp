@@ -1,0 +1,179 @@
+#include "matrix/surroundings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "kernel/poll.h"
+#include "matrix/coplanar.h"
+#include "text/refuse.h"
+#include "visibility/source_plane.h"
+
+namespace exactff::matrix {
+namespace {
+
+// The scene again, to be added to.
+class Copy {
+ public:
+  explicit Copy(const Scene& scene) : scene_(scene), builder_({}, {.bad_faces = BadFaces::kSkip}) {
+    for (const Vec3& vertex : scene.vertices()) builder_.add_vertex(vertex);
+    for (const Material& material : scene.materials()) builder_.add_material(material);
+    for (const Patch& patch : scene.patches()) (void)builder_.patch(patch.name);
+    for (const Face& face : scene.faces()) builder_.add_face(face.patch, face.material, rings_of(face));
+    for (std::size_t f = 0; f < scene.faces().size(); ++f) {
+      if (scene.faces()[f].transparent) add_transparent(scene.faces()[f].patch, static_cast<FaceId>(f));
+    }
+  }
+
+  // A patch with a name of its own.
+  Selection add_patch(std::string name) {
+    while (std::ranges::any_of(scene_.patches(), [&](const Patch& p) { return p.name == name; })) name += '\'';
+    return {builder_.patch(name), {}};
+  }
+  std::uint32_t add_vertex(const Vec3& vertex) { return builder_.add_vertex(vertex); }
+
+  // A transparent face with the material of the first face.
+  void add_face(const Selection& patch, std::vector<std::uint32_t> corners) {
+    add_transparent(patch.patch, static_cast<FaceId>(scene_.faces().size() + added_++));
+    builder_.add_face(patch.patch, scene_.faces().front().material, {std::move(corners)});
+  }
+
+  Scene take() { return builder_.build().with_transparent(transparent_); }
+
+ private:
+  using Rings = std::vector<std::vector<std::uint32_t>>;
+  // A face that was left out stays so, whatever vertices are added.
+  static Rings rings_of(const Face& face) { return face.piece_count > 0 ? face.rings : Rings{{0, 0, 0}}; }
+
+  void add_transparent(PatchId patch, FaceId face) { transparent_.push_back({patch, face}); }
+
+  const Scene& scene_;
+  SceneBuilder builder_;
+  std::vector<Selection> transparent_;
+  std::size_t added_ = 0;
+};
+
+std::vector<std::uint32_t> corners_of(const Scene& scene, const Piece& piece) {
+  const auto corners = scene.corners(piece);
+  return {corners.begin(), corners.end()};
+}
+
+std::vector<std::uint32_t> reversed_corners_of(const Scene& scene, const Piece& piece) {
+  std::vector<std::uint32_t> corners = corners_of(scene, piece);
+  std::ranges::reverse(corners);
+  return corners;
+}
+
+std::vector<FaceId> faces_with_area(const Scene& scene) {
+  std::vector<FaceId> faces;
+  for (std::size_t f = 0; f < scene.faces().size(); ++f) {
+    if (scene.faces()[f].piece_count > 0) faces.push_back(static_cast<FaceId>(f));
+  }
+  return faces;
+}
+
+// The pieces of a scene and their backs that lie in one oriented plane, as indices of pieces.
+struct SharedPlane {
+  std::vector<std::uint32_t> fronts, backs;
+};
+
+// Pieces that are not transparent.
+std::vector<SharedPlane> planes_of(const Scene& scene) {
+  Copy copy(scene);
+  const Selection backs = copy.add_patch("backs");
+  for (const Piece& piece : scene.pieces()) copy.add_face(backs, reversed_corners_of(scene, piece));
+  const Scene both = copy.take();
+  const auto count = static_cast<std::uint32_t>(scene.pieces().size());
+  std::vector<SharedPlane> result;
+  for (const visibility::SourcePlane& plane : visibility::group_by_plane(both, faces_with_area(both))) {
+    SharedPlane& shared = result.emplace_back();
+    for (const std::uint32_t piece : plane.pieces) {
+      if (scene.pieces()[piece % count].transparent) continue;
+      (piece < count ? shared.fronts : shared.backs).push_back(piece % count);
+    }
+  }
+  return result;
+}
+
+// Backs with a front on them are left out. Returns whether others overlap with a front in part.
+bool sort_out(const Scene& scene, SharedPlane& plane) {
+  const auto pieces = scene.pieces();
+  std::erase_if(plane.backs, [&](std::uint32_t back) {
+    return std::ranges::any_of(
+        plane.fronts, [&](std::uint32_t front) { return have_same_corners(scene, pieces[front], pieces[back]); });
+  });
+  return std::ranges::any_of(plane.backs, [&](std::uint32_t back) {
+    kernel::poll();
+    return std::ranges::any_of(plane.fronts,
+                               [&](std::uint32_t front) { return overlap(scene, pieces[front], pieces[back]); });
+  });
+}
+
+}  // namespace
+
+SceneWithBacks with_backs(const Scene& scene) {
+  Copy copy(scene);
+  std::optional<Selection> backs, both, fronts;
+  const auto patch = [&](std::optional<Selection>& selection, const char* name) -> const Selection& {
+    if (!selection) selection = copy.add_patch(name);
+    return *selection;
+  };
+  for (SharedPlane& plane : planes_of(scene)) {
+    const bool in_part = sort_out(scene, plane);
+    for (const std::uint32_t back : plane.backs) {
+      const Selection& where = in_part ? patch(both, "backs and fronts") : patch(backs, "backs");
+      copy.add_face(where, reversed_corners_of(scene, scene.pieces()[back]));
+    }
+    for (const std::uint32_t front : plane.fronts) {
+      if (!in_part) break;
+      copy.add_face(patch(both, "backs and fronts"), corners_of(scene, scene.pieces()[front]));
+      copy.add_face(patch(fronts, "fronts"), corners_of(scene, scene.pieces()[front]));
+    }
+  }
+  return {copy.take(), backs, both, fronts};
+}
+
+// The tetrahedron with corners c + s (1, 1, 1), c + s (1, -1, -1), ... holds the cube of half side s / 3 about c.
+SceneWithSky with_sky(const Scene& scene) {
+  std::array<double, 3> centre{};
+  double half = 0.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto at = [&](const Vec3& v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
+    const auto [low, high] = std::ranges::minmax(scene.vertices(), {}, at);
+    centre[axis] = 0.5 * at(low) + 0.5 * at(high);
+    half = std::max(half, 0.5 * at(high) - 0.5 * at(low));
+  }
+  const double s = std::ldexp(1.0, std::ilogb(half) + 6);  // 32 half sides or more: roundings do not matter
+  Copy copy(scene);
+  const Selection sky = copy.add_patch("sky");
+  std::array<std::uint32_t, 4> corners{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3 corner{centre[0] + (i < 2 ? s : -s), centre[1] + (i % 2 == 0 ? s : -s),
+                      centre[2] + (i == 0 || i == 3 ? s : -s)};
+    if (!std::isfinite(corner.x) || !std::isfinite(corner.y) || !std::isfinite(corner.z)) {
+      text::refuse("the scene is too large for a sky around it", "doubles end near 1.8e308", "scale the scene down");
+    }
+    corners[i] = copy.add_vertex(corner);
+  }
+  for (const std::array<std::size_t, 3>& f : {std::array<std::size_t, 3>{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}) {
+    copy.add_face(sky, {corners[f[0]], corners[f[1]], corners[f[2]]});
+  }
+  return {copy.take(), sky};
+}
+
+bool have_fronts_in_common(const Scene& scene) {
+  const auto patch_of = [&](std::uint32_t piece) { return scene.face(scene.pieces()[piece].face).patch; };
+  for (const visibility::SourcePlane& plane : visibility::group_by_plane(scene, faces_with_area(scene))) {
+    for (std::size_t i = 0; i < plane.pieces.size(); ++i) {
+      kernel::poll();
+      for (std::size_t j = 0; j < i; ++j) {
+        const std::uint32_t a = plane.pieces[i], b = plane.pieces[j];
+        if (patch_of(a) != patch_of(b) && overlap(scene, scene.pieces()[a], scene.pieces()[b])) return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace exactff::matrix

@@ -1,0 +1,230 @@
+"""What is seen: view factors from patch to patch, and the whole view from one point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Callable, Iterator, Mapping, NamedTuple, Optional
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _arrays, _exactff
+from ._arrays import Floats, Names
+from ._errors import refuse, warn
+from ._pair import Status
+from ._progress import Progress, shown
+from ._scene import On, Scene
+
+_MOST_BITS = 1 << 24
+
+
+class ViewFactor(NamedTuple):
+    """The view factor from one patch to another. ``lower`` and ``upper`` are as strong as ``claim`` says."""
+
+    value: float  #: a pure number in [0, 1]
+    lower: float
+    upper: float
+    claim: str  #: "zero" (proved), "topology-proved" (what is seen is proved, the error of quadrature is estimated), ...
+    accurate: bool  #: upper - lower is at most the accuracy, in both directions
+    area_from: float  #: in the square of the scene's unit of length
+    area_to: float
+    cells: int
+    event_cells: int  #: cells on which the order of three edges is undecided
+
+    def __float__(self) -> float:
+        return self.value
+
+
+@dataclass(frozen=True)
+class ViewFactorMatrix:
+    """View factors between patches, as arrays. Made by :func:`view_factor_matrix`.
+
+    ``lower`` and ``upper`` are as strong as ``claim`` says. ``row_sums`` (n, 2) are bounds of the sums of the rows, with
+    ``back`` and ``open`` if they were computed. Where ``reasons_against_one`` is empty, every row adds up to 1.
+    """
+
+    from_names: tuple[str, ...]
+    to_names: tuple[str, ...]
+    value: Floats  #: (n, m)
+    lower: Floats  #: (n, m)
+    upper: Floats  #: (n, m)
+    claim: NDArray[np.str_]  #: (n, m)
+    accurate: NDArray[np.bool_]  #: (n, m)
+    areas_from: Floats  #: (n,)
+    areas_to: Floats  #: (m,)
+    back: Optional[tuple[ViewFactor, ...]]  #: for each row what meets backs of faces
+    open: Optional[tuple[ViewFactor, ...]]  #: for each row what meets nothing
+    row_sums: Floats
+    reasons_against_one: tuple[str, ...]
+
+    def __getitem__(self, names: tuple[str, str]) -> ViewFactor:
+        """``matrix["floor", "light"]``."""
+        for name, known in zip(names, (self.from_names, self.to_names)):
+            if name not in known:
+                raise KeyError(name)
+        return self._entries[self.from_names.index(names[0])][self.to_names.index(names[1])]
+
+    _entries: tuple[tuple[ViewFactor, ...], ...]
+
+
+class Share(NamedTuple):
+    """A share of the light leaving a point, as exact as a form factor: rounded once, with its neighbours as bounds."""
+
+    value: float
+    lower: float
+    upper: float
+    status: Status
+
+    def __float__(self) -> float:
+        return self.value
+
+
+class SeenPatch(NamedTuple):
+    """A patch in a view."""
+
+    form_factor: Share  #: as :meth:`Scene.form_factor` gives it, in every bit
+    share: Share  #: of the view; differs only where `stacked`
+    stacked: bool  #: coplanar faces overlap
+
+
+class View(Mapping[str, SeenPatch]):
+    """All that a receiver sees: ``view["light"]``. Patches that it does not see are left out. Made by :func:`view`.
+
+    The shares of all patches, ``back`` (backs of faces) and ``open`` (nothing) add up to 1.
+    """
+
+    def __init__(self, patches: dict[str, SeenPatch], back: Share, open: Share) -> None:
+        self._patches = patches
+        self.back = back
+        self.open = open
+
+    def __getitem__(self, name: str) -> SeenPatch:
+        return self._patches[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._patches)
+
+    def __len__(self) -> int:
+        return len(self._patches)
+
+    def __repr__(self) -> str:
+        return f"<exactff.View of {len(self)}, open {self.open.value:.3g}, back {self.back.value:.3g}>"
+
+
+def _accuracy(accuracy: float) -> float:
+    value = float(accuracy)
+    if not 0.0 < value < float("inf"):
+        refuse(f"accuracy is {accuracy!r}", "it bounds an error", "give a positive number; the default is 1e-6")
+    return value
+
+
+def _budget(budget: int) -> int:
+    if isinstance(budget, bool) or not isinstance(budget, (int, np.integer)) or not 1 <= budget <= 2**32:
+        refuse(f"budget is {budget!r}", "it is a number of cells", "give a whole number from 1 to 2^32")
+    return int(budget)
+
+
+def _warn_of_width(wide: int, accuracy: float, budget: int) -> None:
+    if wide:
+        warn(f"{wide} view factor{'s are' if wide > 1 else ' is'} wider than the accuracy {accuracy:g} (the budget of "
+             f"{budget} cells is used up; bounds hold all the same)")
+
+
+def view_factor(scene: Scene, a: str, b: str, accuracy: float = 1e-6, *, budget: int = 100_000) -> ViewFactor:
+    """The view factor from patch `a` to patch `b`: the mean over `a` of the form factor from a point to `b`.
+
+    Parameters
+    ----------
+    a, b : names of patches or faces, ``NAME`` or ``NAME:k``
+    accuracy : the largest width ``upper - lower``, for the factor and for the one from `b` to `a`
+    budget : the largest number of cells; where it is used up, a ModellingWarning says so and the result keeps its width
+
+    Raises InputError for unknown names and for patches without area. The GIL is released, and Ctrl-C answered.
+    """
+    for name in (a, b):
+        if not isinstance(name, str):
+            refuse(f"a patch is {name!r}", "it is the name of a patch or face", "for example 'light'")
+    f = ViewFactor(*_exactff.view_factor(scene._scene, a, b, _accuracy(accuracy), _budget(budget)))
+    _warn_of_width(int(not f.accurate), accuracy, budget)
+    return f
+
+
+def _patches(scene: Scene, names: Names, what: str) -> list[str]:
+    if names is None:
+        return [patch.name for patch in scene.patches if patch.area > 0.0]
+    listed = [names] if isinstance(names, str) else list(names)
+    for name in listed:
+        if not isinstance(name, str):
+            refuse(f"{what} holds {name!r}", "it lists names of patches or faces", "for example ['floor', 'light']")
+    return listed
+
+
+def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Names = None, *, accuracy: float = 1e-6,
+                       budget: int = 100_000, backs: bool = False, sky: bool = False, threads: int = 0,
+                       progress: Progress = None) -> ViewFactorMatrix:
+    """All view factors between two lists of patches, the values of ``exactff matrix`` bit for bit.
+
+    Parameters
+    ----------
+    from_patches, to_patches : names of the rows and columns; default: every patch with area
+    accuracy, budget : of each entry, as in :func:`view_factor`
+    backs, sky : also compute what meets the backs of faces, and what is open
+    threads : 0 for as many as this process may use; no value depends on it
+    progress : None for a bar of tqdm on a terminal; True, False, or a function of (done, total)
+
+    Returns arrays of shape (rows, columns). Raises InputError; entries wider than the accuracy are a ModellingWarning.
+    """
+    rows, columns = _patches(scene, from_patches, "from_patches"), _patches(scene, to_patches, "to_patches")
+    with shown(progress, "view factor") as tell:
+        entries, back, free, sums, reasons = _exactff.view_factor_matrix(
+            scene._scene, rows, columns, _accuracy(accuracy), _budget(budget), bool(backs), bool(sky),
+            _arrays.thread_count(threads), tell)
+    table = [ViewFactor(*entry) for entry in entries]
+    shape = (len(rows), len(columns))
+
+    def array(get: Callable[[ViewFactor], Any], kind: Any) -> Any:
+        return np.array([get(f) for f in table], kind).reshape(shape)
+
+    lists = [tuple(ViewFactor(*f) for f in one) if wanted else None for one, wanted in ((back, backs), (free, sky))]
+    wide = sum(not f.accurate for one in (table, *(one for one in lists if one)) for f in one)
+    _warn_of_width(wide, accuracy, budget)
+    by_rows = tuple(tuple(table[i * shape[1]:(i + 1) * shape[1]]) for i in range(shape[0]))
+    return ViewFactorMatrix(
+        tuple(rows), tuple(columns), array(lambda f: f.value, np.float64), array(lambda f: f.lower, np.float64),
+        array(lambda f: f.upper, np.float64), array(lambda f: f.claim, np.str_), array(lambda f: f.accurate, np.bool_),
+        np.array([row[0].area_from for row in by_rows if row]),
+        np.array([f.area_to for f in by_rows[0]] if by_rows else []), lists[0], lists[1],
+        np.array(sums, np.float64).reshape(-1, 2), tuple(reasons), by_rows)
+
+
+def view(scene: Scene, at: ArrayLike, normal: ArrayLike, on: On = None, *, patches: str = "groups", digits: int = 0,
+         precision_cap: int = 65536) -> View:
+    """All that a receiver sees, patch by patch, with the backs of faces and what is open.
+
+    Parameters
+    ----------
+    at : (3,), a point in the scene's unit of length
+    normal : (3,), of any length but 0
+    on : own faces, as in :meth:`Scene.form_factors`
+    patches : "groups", or "faces" for a value for each face
+    digits : raise the precision until so many significant digits are proved
+
+    Every form factor is exact: the bits that :meth:`Scene.form_factor` gives. Raises InputError; the GIL is released.
+    """
+    if patches not in ("groups", "faces"):
+        refuse(f"patches is {patches!r}", "", "choose 'groups' or 'faces'")
+    shape, p, n = _arrays.receivers(at, normal)
+    if shape != ():
+        refuse(f"there are receivers of shape {shape}", "view is for one", "call it for each")
+    own = scene._own_faces(on, shape, p, n, 1)
+    scene._warn_of_misses(p, n, own)
+    if not 1 <= precision_cap <= _MOST_BITS:
+        refuse(f"precision_cap is {precision_cap}", f"it is a number of bits from 1 to {_MOST_BITS}", "leave it out")
+    rows, back, free = _exactff.view(scene._scene, tuple(p[0].tolist()), tuple(n[0].tolist()),
+                                     [int(f) for f in own[0] if f >= 0], patches == "faces", digits, precision_cap)
+
+    def share(row: tuple[float, float, float, int]) -> Share:
+        return Share(row[0], row[1], row[2], Status(row[3]))
+
+    seen = {name: SeenPatch(share(f), share(s), stacked) for name, f, s, stacked in rows}
+    return View(seen, share(back), share(free))

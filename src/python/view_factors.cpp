@@ -1,0 +1,88 @@
+// View factors from patch to patch, and the whole view from one receiver.
+#include "exactff/view_factors.h"
+
+#include "exactff/matrix.h"
+#include "exactff/view.h"
+#include "python/bindings.h"
+#include "python/interrupt.h"
+
+namespace exactff::python {
+namespace {
+
+// Value, lower, upper, claim, accurate, area_from, area_to, cells, event_cells.
+py::tuple to_tuple(const ViewFactor& f) {
+  return py::make_tuple(f.value, f.lower, f.upper, std::string(to_string(f.claim)), f.accurate, f.area_from, f.area_to,
+                        f.cells, f.event_cells);
+}
+
+py::tuple view_factor_of(const SharedScene& scene, const std::string& from, const std::string& to, double accuracy,
+                         std::size_t budget) {
+  const Scene& in = scene.scene();
+  const Selection i = in.select(from), j = in.select(to);
+  Interrupt interrupt;
+  return to_tuple(interrupt.run([&] { return view_factor(in, i, j, {.accuracy = accuracy, .budget = budget}); }));
+}
+
+py::list to_list(const std::vector<ViewFactor>& factors) {
+  py::list list;
+  for (const ViewFactor& f : factors) list.append(to_tuple(f));
+  return list;
+}
+
+// Entries row by row, backs, what is open, sums of rows (lower, upper), reasons against 1.
+py::tuple view_factor_matrix_of(const SharedScene& scene, const std::vector<std::string>& from,
+                                const std::vector<std::string>& to, double accuracy, std::size_t budget, bool backs,
+                                bool open, int threads, const py::object& progress) {
+  const Scene& in = scene.scene();
+  std::vector<Selection> rows, columns;
+  for (const std::string& name : from) rows.push_back(in.select(name));
+  for (const std::string& name : to) columns.push_back(in.select(name));
+  const matrix::Options options{
+      .factors = {.accuracy = accuracy, .budget = budget}, .backs = backs, .open = open, .threads = threads};
+  Interrupt interrupt(progress);
+  std::vector<std::string> reasons;
+  const matrix::Matrix made = interrupt.run([&] {
+    matrix::Matrix computed = matrix::compute(in, rows, columns, options, interrupt.hooks());
+    reasons = reasons_against_one(in, computed);
+    return computed;
+  });
+  py::list sums;
+  for (const matrix::Sum& sum : row_sums(made)) sums.append(py::make_tuple(sum.lower, sum.upper));
+  return py::make_tuple(to_list(made.factors.entries), to_list(made.back), to_list(made.open), sums, reasons);
+}
+
+// Value, lower, upper, status.
+py::tuple to_tuple(const ViewShare& share) {
+  return py::make_tuple(share.value, share.lower, share.upper, static_cast<int>(share.status));
+}
+
+// For each patch or face that is seen: name, form factor, share, stacked. Then back and open.
+py::tuple view_of(const SharedScene& scene, const std::array<double, 3>& point, const std::array<double, 3>& normal,
+                  const std::vector<std::uint32_t>& on, bool faces, int digits, int precision_cap) {
+  const Scene& in = scene.scene();
+  Receiver receiver{{point[0], point[1], point[2]}, {normal[0], normal[1], normal[2]}, {}, {}};
+  for (const std::uint32_t face : on) receiver.on.push_back(static_cast<FaceId>(face));
+  Interrupt interrupt;
+  const WholeView seen = interrupt.run(
+      [&] { return view(in, receiver, {.faces = faces, .digits = digits, .precision_cap = precision_cap}); });
+  py::list rows;
+  for (const SeenPatch& patch : seen.patches) {
+    rows.append(py::make_tuple(in.name_of(Selection{patch.patch, patch.face}), to_tuple(patch.form_factor),
+                               to_tuple(patch.share), patch.stacked));
+  }
+  return py::make_tuple(rows, to_tuple(seen.back), to_tuple(seen.open));
+}
+
+}  // namespace
+
+void bind_view_factors(py::module_& module) {
+  module.def("view_factor", &view_factor_of, py::arg("scene"), py::arg("from_patch"), py::arg("to_patch"),
+             py::arg("accuracy"), py::arg("budget"));
+  module.def("view_factor_matrix", &view_factor_matrix_of, py::arg("scene"), py::arg("from_patches"),
+             py::arg("to_patches"), py::arg("accuracy"), py::arg("budget"), py::arg("backs"), py::arg("open"),
+             py::arg("threads"), py::arg("progress"));
+  module.def("view", &view_of, py::arg("scene"), py::arg("point"), py::arg("normal"), py::arg("on"), py::arg("faces"),
+             py::arg("digits"), py::arg("precision_cap"));
+}
+
+}  // namespace exactff::python

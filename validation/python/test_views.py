@@ -1,0 +1,106 @@
+"""View factors from patch to patch, and the whole view."""
+
+import csv
+
+import numpy as np
+import pytest
+
+import exactff
+from support import CORNELL, POINT, SCENES, UP, lamp_above, program, same_bits
+
+L_ROOM = str(SCENES / "formats" / "test4.vs3")
+ROOM = exactff.Scene.read(CORNELL)
+
+
+def test_a_view_factor_is_the_programs():
+    scene = exactff.Scene.read(L_ROOM)
+    f = exactff.view_factor(scene, "srf-1", "srf-6", 1e-8)
+    line = program("matrix", L_ROOM, "--from", "srf-1", "--to", "srf-6", "--accuracy", "1e-8", "--plain").split("\t")
+    assert (f.lower, f.upper, f.claim) == (float(line[2]), float(line[3]), line[4].strip())
+    assert f.lower <= 0.1823559036685958 <= f.upper and f.lower <= float(f) <= f.upper
+    assert f.accurate and f.area_from == 9.0 and f.upper - f.lower <= 1.01e-8
+    zero = exactff.view_factor(scene, "srf-1", "srf-1")
+    assert zero.claim == "zero" and zero.upper == 0.0
+
+
+def test_a_matrix_is_the_programs(tmp_path):
+    scene = exactff.Scene.read(L_ROOM)
+    told = []
+    matrix = exactff.view_factor_matrix(scene, accuracy=1e-4, progress=lambda done, total: told.append((done, total)))
+    program("matrix", L_ROOM, "--accuracy", "1e-4", "-o", tmp_path / "m.csv")
+    with open(tmp_path / "m.csv", newline="") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    between = [row for row in rows if not row["to"].startswith("(")]
+    for array, column in (matrix.value, "factor"), (matrix.lower, "lower"), (matrix.upper, "upper"):
+        assert array.shape == (8, 8) and same_bits(array.ravel(), [float(row[column]) for row in between])
+    assert list(matrix.claim.ravel()) == [row["claim"] for row in between] and matrix.accurate.all()
+    assert matrix.from_names == matrix.to_names == scene.names
+    assert told[-1][0] == told[-1][1] and matrix.row_sums.shape == (8, 2)
+    assert (matrix.row_sums[:, 0] <= 1).all() and (matrix.row_sums[:, 1] >= 1).all()
+    assert matrix["srf-1", "srf-6"].value == matrix.value[0, 5]
+    with pytest.raises(KeyError):
+        matrix["srf-1", "srf-9"]
+    power = matrix.areas_from[:, None] * matrix.value
+    np.testing.assert_allclose(power, power.T, atol=1e-3)  # A_i F_ij = A_j F_ji
+    np.testing.assert_array_equal(matrix.areas_from, matrix.areas_to)
+
+
+def test_rows_with_back_and_open_add_up_to_one():
+    lamp = lamp_above((0.5, 1.0))
+    matrix = exactff.view_factor_matrix(lamp, accuracy=1e-3, backs=True, sky=True)
+    assert matrix.reasons_against_one == () and matrix.back is not None and matrix.open is not None
+    assert (matrix.row_sums[:, 0] <= 1).all() and (matrix.row_sums[:, 1] >= 1).all()
+    assert matrix.open[0].value == pytest.approx(1 - matrix.value[0, 1], abs=2e-3)
+
+
+def test_some_rows_and_columns():
+    lamp = lamp_above((0.5, 1.0))
+    matrix = exactff.view_factor_matrix(lamp, "lamp", ["plates", "lamp"])
+    assert matrix.value.shape == (1, 2) and matrix.back is None and matrix.open is None
+    assert len(matrix.reasons_against_one) == 2
+    assert exactff.view_factor_matrix(lamp, "lamp", []).value.shape == (1, 0)
+
+
+def test_a_budget_that_is_used_up_warns():
+    with pytest.warns(exactff.ModellingWarning, match="wider than the accuracy 1e-09"):
+        f = exactff.view_factor(ROOM, "floor", "tall_block", 1e-9, budget=2)
+    assert not f.accurate and f.upper - f.lower > 1e-9
+
+
+@pytest.mark.parametrize("call", [
+    lambda: exactff.view_factor(ROOM, "floor", "nobody"),
+    lambda: exactff.view_factor(ROOM, "floor", 3),
+    lambda: exactff.view_factor(ROOM, "floor", "light", 0.0),
+    lambda: exactff.view_factor(ROOM, "floor", "light", float("nan")),
+    lambda: exactff.view_factor(ROOM, "floor", "light", budget=0),
+    lambda: exactff.view_factor(ROOM, "floor", "light", budget=1.5),
+    lambda: exactff.view_factor_matrix(ROOM, ["floor", None]),
+    lambda: exactff.view(ROOM, POINT, [0, 0, 0]),
+    lambda: exactff.view(ROOM, [POINT, POINT], UP),
+    lambda: exactff.view(ROOM, POINT, UP, on="nobody"),
+    lambda: exactff.view(ROOM, POINT, UP, patches="pieces"),
+])
+def test_bad_arguments_are_refused(call):
+    with pytest.raises(exactff.InputError):
+        call()
+
+
+def test_a_view_has_the_bits_of_its_pairs():
+    seen = exactff.view(ROOM, POINT, UP, on="floor")
+    for name in ROOM.names:
+        pair = ROOM.form_factor(POINT, UP, name, on="floor")
+        assert (name in seen) == (pair.value > 0.0)
+        if name in seen:
+            f = seen[name].form_factor
+            assert (f.value, f.lower, f.upper, f.status) == (pair.value, pair.lower, pair.upper, pair.status)
+    lines = dict(line.split("\t") for line in program("view", CORNELL, "--at", *POINT, "--normal", *UP, "--on", "floor",
+                                                      "--plain").splitlines())
+    assert list(seen) == [name for name in lines if not name.startswith("(")]
+    assert (seen.back.value, seen.open.value) == (float(lines["(back)"]), float(lines["(open)"]))
+    total = sum(float(patch.share) for patch in seen.values()) + float(seen.back) + float(seen.open)
+    assert abs(total - 1.0) < 1e-14 and repr(seen).startswith("<exactff.View of ")
+
+
+def test_a_view_by_faces():
+    seen = exactff.view(ROOM, POINT, UP, on="auto", patches="faces")
+    assert all(":" in name or name in ROOM.names for name in seen) and len(seen) > len(exactff.view(ROOM, POINT, UP))

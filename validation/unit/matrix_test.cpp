@@ -1,0 +1,296 @@
+// Matrices of view factors: what meets backs and what is open, sums of rows, files for other programs.
+#include "exactff/matrix.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "exactff/scene_files.h"
+#include "generate/plain_scene.h"
+#include "support/program.h"
+
+namespace exactff::matrix {
+namespace {
+
+using generate::PlainScene;
+
+constexpr double kOpposite = 0.199824895698387383041599251193;  // squares of side 1, 1 apart
+constexpr double kAdjacent = 0.200043776075403154239600187202;  // with a common edge
+
+void add(PlainScene& scene, const char* name, std::vector<Vec3> corners, bool turned = false) {
+  if (turned) std::ranges::reverse(corners);
+  scene.add_ring(scene.patch(name), corners);
+}
+
+std::vector<Vec3> square(double side, double height) {
+  const double h = 0.5 * side;
+  return {{-h, -h, height}, {h, -h, height}, {h, h, height}, {-h, h, height}};
+}
+
+// The unit cube without its lid. Fronts look inward.
+PlainScene open_box() {
+  PlainScene scene;
+  add(scene, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  add(scene, "left", {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}});
+  add(scene, "right", {{1, 0, 0}, {1, 0, 1}, {1, 1, 1}, {1, 1, 0}});
+  add(scene, "near", {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}});
+  add(scene, "far", {{0, 1, 0}, {1, 1, 0}, {1, 1, 1}, {0, 1, 1}});
+  return scene;
+}
+
+std::vector<Selection> all_of(const Scene& scene) {
+  std::vector<Selection> patches;
+  for (std::size_t i = 0; i < scene.patches().size(); ++i) patches.push_back({static_cast<PatchId>(i), {}, scene.id()});
+  return patches;
+}
+
+Matrix whole(const Scene& scene, double accuracy = 1e-6) {
+  return compute(scene, all_of(scene), all_of(scene), {.factors = {.accuracy = accuracy}, .backs = true, .open = true});
+}
+
+void expect_holds(const ViewFactor& f, double truth, double accuracy) {
+  EXPECT_LE(f.lower, truth);
+  EXPECT_GE(f.upper, truth);
+  EXPECT_LE(f.upper - f.lower, accuracy);
+  EXPECT_TRUE(f.accurate);
+}
+
+void expect_rows_hold_one(const Scene& scene, const Matrix& matrix, double width) {
+  EXPECT_EQ(reasons_against_one(scene, matrix), std::vector<std::string>{});
+  for (const Sum& sum : row_sums(matrix)) {
+    EXPECT_LE(sum.lower, 1.0);
+    EXPECT_GE(sum.upper, 1.0);
+    EXPECT_LE(sum.upper - sum.lower, width);
+  }
+}
+
+TEST(Matrix, OfABoxWithoutALidIsOpenAsMuchAsTheLidWouldGet) {
+  const Scene scene = generate::build(open_box());
+  const Matrix matrix = whole(scene, 1e-3);
+  expect_holds(matrix.open[0], kOpposite, 1.1e-3);
+  for (std::size_t wall = 1; wall < 5; ++wall) expect_holds(matrix.open[wall], kAdjacent, 1.1e-3);
+  for (const ViewFactor& back : matrix.back) EXPECT_EQ(back.claim, Claim::kZero);
+  expect_rows_hold_one(scene, matrix, 1e-2);
+}
+
+TEST(Matrix, SeesTheBacksOfABoxTurnedInsideOut) {
+  PlainScene plain = open_box();
+  for (generate::PlainPatch& patch : plain.patches) {
+    if (patch.name != "floor") std::ranges::reverse(patch.faces.front().rings.front());
+  }
+  const Scene scene = generate::build(plain);
+  const Matrix matrix = whole(scene, 1e-3);
+  expect_holds(matrix.back[0], 1.0 - kOpposite, 1.1e-3);
+  expect_holds(matrix.open[0], kOpposite, 1.1e-3);
+  for (std::size_t wall = 1; wall < 5; ++wall) {  // they look away from everything
+    EXPECT_EQ(matrix.back[wall].claim, Claim::kZero);
+    expect_holds(matrix.open[wall], 1.0, 1.1e-3);
+  }
+  expect_rows_hold_one(scene, matrix, 1e-2);
+}
+
+TEST(Matrix, OfAPlateInSpaceIsOpen) {
+  for (const double scale : {1.0, 0x1p-500, 0x1p500, 3.0e-310}) {
+    PlainScene plain;
+    add(plain, "plate", square(scale, 0.75 * scale));
+    const Scene scene = generate::build(plain);
+    const Matrix matrix = whole(scene);
+    expect_holds(matrix.open[0], 1.0, 1.1e-6);
+    expect_rows_hold_one(scene, matrix, 1e-2);
+  }
+  PlainScene large;
+  add(large, "plate", square(0x1p1023, 0.0));
+  EXPECT_THROW((void)whole(generate::build(large)), InputError);
+}
+
+// A sheet of two faces has no back: whatever its side, a front is seen.
+TEST(Matrix, ASheetOfTwoFacesHasNoBacks) {
+  PlainScene plain;
+  add(plain, "below", square(1.0, 0.0));
+  add(plain, "sheet up", square(0.5, 0.5));
+  add(plain, "sheet down", square(0.5, 0.5), true);
+  const Scene scene = generate::build(plain);
+  const Matrix matrix = whole(scene);
+  EXPECT_EQ(matrix.back[0].claim, Claim::kZero);
+  EXPECT_EQ(matrix.back[1].claim, Claim::kZero);
+  EXPECT_EQ(matrix.back[2].claim, Claim::kZero);  // it looks down on the front of the plate below
+  EXPECT_GT(matrix.factors.at(0, 2).lower, 0.1);
+  expect_rows_hold_one(scene, matrix, 1e-2);
+}
+
+// The backs are what the larger face, turned round, gets, less what the smaller one in its plane gets.
+TEST(Matrix, BacksUnderAFrontInTheirPlaneDoNotCount) {
+  PlainScene plain;
+  add(plain, "below", square(1.0, 0.0));
+  add(plain, "up", square(2.0, 0.5));
+  add(plain, "down", square(0.5, 0.5), true);
+  const Scene scene = generate::build(plain);
+  const Matrix matrix = whole(scene, 1e-6);
+  const Scene turned = scene.with_flipped(scene.select("up"));
+  const ViewFactor large = view_factor(turned, turned.select("below"), turned.select("up"), {.accuracy = 1e-6});
+  const ViewFactor small = view_factor(turned, turned.select("below"), turned.select("down"), {.accuracy = 1e-6});
+  EXPECT_NEAR(matrix.back[0].value, large.value - small.value, 2e-6);
+  EXPECT_LE(matrix.back[0].upper - matrix.back[0].lower, 3e-6);
+  expect_rows_hold_one(scene, matrix, 1e-2);
+}
+
+// Under a box that stands on the floor without a bottom, the floor sees the backs of its sides and its lid.
+TEST(Matrix, UnderABoxWithoutABottomBacksAreSeen) {
+  PlainScene plain;
+  add(plain, "floor", square(4.0, 0.0));
+  add(plain, "box", square(1.0, 1.0));
+  const double h = 0.5;
+  add(plain, "box", {{-h, -h, 0}, {h, -h, 0}, {h, -h, 1}, {-h, -h, 1}});
+  add(plain, "box", {{h, -h, 0}, {h, h, 0}, {h, h, 1}, {h, -h, 1}});
+  add(plain, "box", {{h, h, 0}, {-h, h, 0}, {-h, h, 1}, {h, h, 1}});
+  add(plain, "box", {{-h, h, 0}, {-h, -h, 0}, {-h, -h, 1}, {-h, h, 1}});
+  const Scene scene = generate::build(plain);
+  const Matrix matrix =
+      compute(scene, std::vector{scene.select("floor")}, {}, {.factors = {.accuracy = 1e-2}, .backs = true});
+  expect_holds(matrix.back[0], 1.0 / 16.0, 1.1e-2);
+}
+
+TEST(Matrix, SaysWhyRowsNeedNotAddUpToOne) {
+  const Scene scene = generate::build(open_box());
+  const std::vector<Selection> all = all_of(scene);
+  const auto count = [&](const Options& options, const std::vector<Selection>& to, const Scene& in) {
+    return reasons_against_one(in, compute(in, std::vector{all[0]}, to, options)).size();
+  };
+  const Options coarse{.factors = {.accuracy = 0.1}}, full{.factors = {.accuracy = 0.1}, .backs = true, .open = true};
+  EXPECT_EQ(count(full, all, scene), 0U);
+  EXPECT_EQ(count(coarse, all, scene), 2U);
+  EXPECT_EQ(count(full, {all[0], all[1]}, scene), 1U);
+  EXPECT_EQ(count(full, {all[0], all[1], all[2], all[3], all[4], all[4]}, scene), 1U);
+  PlainScene twice = open_box();
+  add(twice, "carpet", {{0.5, 0.5, 0}, {2, 0.5, 0}, {2, 2, 0}, {0.5, 2, 0}});
+  add(twice, "tile", {{1, 0, 0}, {2, 0, 0}, {2, 0.5, 0}, {1, 0.5, 0}});  // touches the carpet and the floor only
+  const Scene in_common = generate::build(twice);
+  const auto reasons = reasons_against_one(in_common, whole(in_common, 0.1));
+  EXPECT_EQ(reasons, std::vector<std::string>{"fronts of different patches overlap in one plane"});
+  PlainScene apart = open_box();
+  add(apart, "tile", {{1, 0, 0}, {2, 0, 0}, {2, 0.5, 0}, {1, 0.5, 0}});
+  const Scene beside = generate::build(apart);
+  EXPECT_EQ(reasons_against_one(beside, whole(beside, 0.1)), std::vector<std::string>{});
+}
+
+TEST(Matrix, TheWeakerClaimIsMadeOfASum) {
+  EXPECT_EQ(weaker(Claim::kZero, Claim::kTopologyProved), Claim::kTopologyProved);
+  EXPECT_EQ(weaker(Claim::kTopologyProved, Claim::kZero), Claim::kTopologyProved);
+  EXPECT_EQ(weaker(Claim::kZero, Claim::kZero), Claim::kZero);
+}
+
+// --- Files ---
+
+TEST(MatrixFiles, OfView3DAreItsOwn) {
+  const Scene scene = generate::build(open_box());
+  const std::string text = view3d_text(scene, compute(scene, all_of(scene), all_of(scene)));
+  EXPECT_EQ(text.substr(0, text.find('\n')).size(), 30U);
+  EXPECT_EQ(text.substr(text.find('\n')),
+            "\n1 1 1 1 1\n"
+            "0.000000 0.200044 0.200044 0.200044 0.200044\n"
+            "0.200044 0.000000 0.199825 0.200044 0.200044\n"
+            "0.200044 0.199825 0.000000 0.200044 0.200044\n"
+            "0.200044 0.200044 0.200044 0.000000 0.199825\n"
+            "0.200044 0.200044 0.200044 0.199825 0.000000\n"
+            "0.000 0.000 0.000 0.000 0.000\n");
+  const Matrix row = compute(scene, std::vector{scene.select("floor")}, all_of(scene), {.factors = {.accuracy = 0.1}});
+  EXPECT_THROW((void)view3d_text(scene, row), InputError);
+  EXPECT_THROW((void)energyplus_text(scene, row, "zone"), InputError);
+}
+
+TEST(MatrixFiles, OfEnergyPlusHoldNamesAndEveryDigit) {
+  PlainScene plain;
+  add(plain, "below", square(1.0, 0.0));
+  add(plain, "above", square(1.0, 1.0), true);
+  const Scene scene = generate::build(plain);
+  const Matrix matrix = compute(scene, all_of(scene), all_of(scene));
+  const std::string text = energyplus_text(scene, matrix, "Zone 7");
+  EXPECT_EQ(text.find("! exactff "), 0U);
+  EXPECT_NE(
+      text.find(
+          "\nZoneProperty:UserViewFactors:bySurfaceName,\n  Zone 7,\n  below, below, 0,\n  below, above, 0.19982"),
+      std::string::npos);
+  EXPECT_EQ(text.substr(text.size() - 21), ",\n  above, above, 0;\n");
+  EXPECT_THROW((void)energyplus_text(scene, matrix, "a;b"), InputError);
+  EXPECT_THROW((void)energyplus_text(scene, matrix, ""), InputError);
+  for (const char* name : {"a,b", "a!b", " a", "Below"}) {
+    PlainScene odd = plain;
+    odd.patches[1].name = name;
+    const Scene built = generate::build(odd);
+    EXPECT_THROW((void)energyplus_text(built, compute(built, all_of(built), all_of(built)), "zone"), InputError)
+        << name;
+  }
+}
+
+// --- The command ---
+
+class MatrixFilesOfTheCommand : public testing::Test {
+ protected:
+  static validation::ProgramRun run(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "matrix");
+    return validation::run_program(EXACTFF_PROGRAM, arguments);
+  }
+  [[nodiscard]] std::string file(const char* name) const { return (folder_.path() / name).string(); }
+
+  const validation::TemporaryDirectory folder_;
+  const std::string scene_ = EXACTFF_DATA_DIR "/scenes/formats/test4.vs3";
+};
+
+// "below" looks up at the back of "cover" and past it.
+TEST_F(MatrixFilesOfTheCommand, HaveBackAndOpenAsColumns) {
+  const std::string scene = folder_.write("plates.obj",
+                                          "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+                                          "g below\nf 1 2 3 4\ng cover\nf 5 6 7 8\n")
+                                .string();
+  const validation::ProgramRun plain =
+      run({scene, "--accuracy", "1e-3", "--backs", "--to", "all,sky", "--plain", "-o", file("m.csv")});
+  EXPECT_EQ(plain.exit_code, 0);
+  EXPECT_NE(plain.output.find("below\t(back)\t0.199"), std::string::npos) << plain.output;
+  EXPECT_NE(plain.output.find("below\t(open)\t0.80017"), std::string::npos) << plain.output;
+  EXPECT_NE(plain.output.find("cover\t(back)\t0\t0\tzero\n"), std::string::npos) << plain.output;
+  EXPECT_EQ(std::ranges::count(plain.output, '\n'), 2 * 4);
+  EXPECT_NE(validation::text_of(file("m.csv")).find("\ncover,(back),0,0,0,zero,yes,1,2,"), std::string::npos);
+  const validation::ProgramRun table = run({scene, "--accuracy", "1e-3", "--backs", "--to", "all", "--to", "sky"});
+  EXPECT_NE(table.output.find("Every row adds up to 1 within its bounds."), std::string::npos);
+  EXPECT_NE(table.output.find("(open)"), std::string::npos);
+  EXPECT_NE(run({scene}).output.find("what meets backs is not computed and what is open is not computed."),
+            std::string::npos);
+  EXPECT_EQ(run({scene, "--from", "sky"}).exit_code, 2);
+}
+
+TEST_F(MatrixFilesOfTheCommand, AreWrittenWholeOrNotAtAll) {
+  const std::vector<std::string> outputs = {"--npz",        file("m.npz"), "--view3d", file("m.txt"),
+                                            "--energyplus", file("m.idf"), "--zone",   "Hall"};
+  std::vector<std::string> command = {scene_, "--accuracy", "1e-3"};
+  command.insert(command.end(), outputs.begin(), outputs.end());
+  EXPECT_EQ(run(command).exit_code, 0);
+  const std::string npz = validation::text_of(file("m.npz"));
+  EXPECT_EQ(npz.substr(0, 4), "PK\3\4");
+  EXPECT_NE(validation::text_of(file("m.idf")).find("\n  Hall,\n  srf-1, srf-1, 0,"), std::string::npos);
+  EXPECT_EQ(run(command).exit_code, 2);  // the files exist
+  command.emplace_back("--force");
+  EXPECT_EQ(run(command).exit_code, 0);
+  EXPECT_EQ(validation::text_of(file("m.npz")), npz);
+  for (const char* flag : {"--npz", "--view3d", "--energyplus", "--vtk"}) {
+    const std::string other = file(flag + 2);
+    EXPECT_EQ(run({scene_, "--from", "srf-1", "--view3d", other + "/not/there", flag, other}).exit_code, 2);
+    EXPECT_EQ(run({scene_, flag, file("."), "--force"}).exit_code, 2);
+    EXPECT_EQ(validation::size_of(other), 0U);
+  }
+  EXPECT_EQ(run({scene_, "--npz", file("x"), "-o", file("x")}).exit_code, 2);
+  EXPECT_EQ(run({scene_, "--zone", "Hall"}).exit_code, 2);
+}
+
+TEST_F(MatrixFilesOfTheCommand, ShowOneRowInParaView) {
+  EXPECT_EQ(run({scene_, "--vtk", file("row.vtp")}).exit_code, 2);
+  EXPECT_EQ(run({scene_, "--from", "srf-1", "--vtk", file("row.obj")}).exit_code, 2);
+  EXPECT_EQ(run({scene_, "--from", "srf-1", "--vtk", file("row.vtp")}).exit_code, 0);
+  const std::string text = validation::text_of(file("row.vtp"));
+  EXPECT_NE(text.find("Name=\"factor\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace exactff::matrix
