@@ -2,6 +2,7 @@
 // well. What it returns is only tried first: the pieces may be those of another scene.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -18,15 +19,13 @@ class CoverMemory {
     return {cover.pieces.data(), cover.first_piece == first_piece ? cover.count : 0};
   }
   void forget(std::uint32_t first_piece) { covers_[first_piece % kPlanes].count = 0; }
-  // Remembers these, or the first kMost of them.
-  template <class Pieces>
-  void set(std::uint32_t first_piece, const Pieces& pieces) {
+  // Remembers the piece of each of these, or of the first kMost of them.
+  template <class Item, class PieceOf>
+  void set(std::uint32_t first_piece, std::span<const Item> items, const PieceOf& piece_of) {
     Cover& cover = covers_[first_piece % kPlanes];
     cover.first_piece = first_piece;
     cover.count = 0;
-    for (const std::uint32_t piece : pieces) {
-      if (cover.count < kMost) cover.pieces[cover.count++] = piece;
-    }
+    for (const Item& item : items.first(std::min(items.size(), kMost))) cover.pieces[cover.count++] = piece_of(item);
   }
 
  private:

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ranges>
 
 #include "kernel/poll.h"
 #include "scene/closed_surfaces.h"
@@ -131,7 +130,7 @@ bool EdgeWalk::hidden_by_few() {
   if (!work_.edges.find_cover(source_count_)) return false;
   if (request_.remembers_covers) {
     const auto piece_of = [&](OutlineId o) { return work_.outline_pieces[o - source_count_]; };
-    work_.covers.set(plane_.pieces.front(), work_.edges.cover() | std::views::transform(piece_of));
+    work_.covers.set(plane_.pieces.front(), work_.edges.cover(), piece_of);
   }
   return true;
 }
