@@ -242,8 +242,8 @@ int main(int argc, char** argv) try {
   print_growth(results);
   print_contour(results);
   print_cornell(results);
-  print_view(results);
   print_covers(results);
+  print_view(results);
   return results.sound() ? 0 : 1;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "exactff_bench_tables: %s\n", error.what());
