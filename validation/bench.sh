@@ -42,6 +42,7 @@ mkdir -p "$folder/results"
 measure ratios '^(visible|certified|tree|limit|contour|rays)/.*/1000$'
 measure cornell '^cornell/'
 measure view "^view/.*/($(IFS='|'; echo "${sizes[*]:1}")|[1-9]00|1600)\$" --benchmark_repetitions=3
+measure covers '^covers/' --benchmark_repetitions=3
 for scene in "${scenes[@]}"; do
   measure "growth_$scene" "^certified/edges/$scene/($(IFS='|'; echo "${sizes[*]}"))\$" --benchmark_repetitions=3
   measure "memory_$scene" "^memory/$scene/$(largest "$scene")/" --benchmark_repetitions=1

@@ -69,6 +69,9 @@ struct ExactOptions {
   int precision_cap = 65536;  // bits, at least 1 (else InputError)
   const std::vector<FaceId>* only_occluders = nullptr;  // ascending; all other faces are ignored
   ShaftCulling culling = ShaftCulling::kTree;
+  // Does not try first what hid the source from an earlier receiver (with the same workspace). Otherwise the counts in
+  // the records, but nothing else, depend on earlier calls.
+  bool from_scratch = false;
 };
 
 // The data that depend on the source alone, computed once for many receivers. Keeps a reference to the scene.
@@ -87,7 +90,9 @@ class ExactSource {
   std::unique_ptr<Planes> planes_;
 };
 
-// Memory that is reused from one call to the next. It affects no result. Concurrent calls need one each.
+// Memory that is reused from one call to the next. It affects no result but counts of work in the records, and these
+// only where faces that hid a source from one receiver hide it from the next one, too (ExactOptions::from_scratch).
+// Concurrent calls need one each.
 class Workspace {
  public:
   Workspace();
@@ -115,7 +120,7 @@ class Workspace {
 // point into `result`. After an exception the content of `result` is unspecified.
 void exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                        const ExactOptions& options, FormFactor& result, Workspace& workspace);
-// As above, with a workspace that belongs to the calling thread. The first form uses it, too.
+// As above, with a workspace that belongs to the calling thread, and from scratch. The first form uses it, too.
 void exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                        const ExactOptions& options, FormFactor& result);
 

@@ -44,15 +44,21 @@ struct PlaneRecord {
   std::vector<FaceId> faces;
   Engine engine = Engine::kEdges;  // the engine that did the work
   Outcome outcome = Outcome::kBehind;
-  bool horizon_clipped = false;               // the horizon cut the faces
-  bool source_joined = false;                 // the faces consist of several convex pieces that had to be joined
-  std::uint64_t tree_candidates = 0;          // pieces that the bounding-volume tree did not rule out, for all shafts
-  std::uint64_t candidates = 0;               // pieces that remain after the exact predicates
-  std::uint64_t clipped = 0;                  // candidates cut by the source's plane, or by the Booleans' shaft
-  std::uint64_t pairs = 0;                    // pairs of an edge and another face that the edge engine examined
-  std::uint64_t undecided_pairs = 0;          // pairs that the floating-point filter left to exact predicates
-  std::uint64_t loops = 0;                    // boundary loops integrated; the edge engine does not count them
-  std::uint64_t edges = 0;                    // boundary pieces integrated; the Booleans merge collinear ones
+  bool horizon_clipped = false;       // the horizon cut the faces
+  bool source_joined = false;         // the faces consist of several convex pieces that had to be joined
+  std::uint64_t tree_candidates = 0;  // pieces that the bounding-volume tree did not rule out, for all shafts
+  std::uint64_t candidates = 0;       // pieces that remain after the exact predicates
+  std::uint64_t clipped = 0;          // candidates cut by the source's plane, or by the Booleans' shaft
+  std::uint64_t pairs = 0;            // pairs of an edge and another face that the edge engine examined
+  std::uint64_t undecided_pairs = 0;  // pairs that the floating-point filter left to exact predicates
+  std::uint64_t loops = 0;            // boundary loops integrated; the edge engine does not count them
+  std::uint64_t edges = 0;            // boundary pieces integrated; the Booleans merge collinear ones
+  // If occluders hide everything: how many were needed for the proof. 1 if one hides all; otherwise often far fewer
+  // than the candidates, but not always the fewest possible.
+  std::uint64_t cover = 0;
+  // Those that hid everything from an earlier receiver (ExactOptions::from_scratch) hide it again, and no others were
+  // looked for: they are the candidates.
+  bool cover_remembered = false;
   std::optional<double> visible_fraction;     // on request, correctly rounded
   std::optional<std::string> exact_fraction;  // on request: "p/q"
   // How many faces hide a part of it, if that was decided exactly: on request (list_cutters), and 0 if the fraction

@@ -164,7 +164,8 @@ class Solver {
                  .fraction = wants_fraction_,
                  .list_cutters = options.list_cutters,
                  .only_occluders = options.only_occluders,
-                 .culling = options.culling},
+                 .culling = options.culling,
+                 .remembers_covers = !options.from_scratch},
         result_(result),
         memory_(memory) {}
 
@@ -259,7 +260,9 @@ FormFactor exact_form_factor(const Scene& scene, const Receiver& receiver, const
 void exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                        const ExactOptions& options, FormFactor& result) {
   thread_local Workspace own;
-  exact_form_factor(scene, receiver, source, options, result, own);
+  ExactOptions alone = options;
+  alone.from_scratch = true;
+  exact_form_factor(scene, receiver, source, alone, result, own);
 }
 
 void exact_form_factor(const Scene& scene, const Receiver& receiver, const ExactSource& source,

@@ -60,6 +60,9 @@ StageNote horizon_note(const PlaneRecord& plane) {
 }
 
 StageNote shaft_note(const PlaneRecord& plane) {
+  if (plane.cover_remembered) {
+    return {"shaft", false, "only " + counted(plane.candidates, "piece") + " that hid it from an earlier receiver"};
+  }
   return {"shaft", true,
           counted(plane.tree_candidates, "piece") + " from the tree, " + std::to_string(plane.candidates) +
               " in the shaft"};
@@ -94,6 +97,12 @@ StageNote engine_note(const PlaneRecord& plane) {
                 (by_edges ? "nothing hides them" : "nothing to subtract")};
   }
   const bool nothing = plane.outcome == Outcome::kHiddenByUnion;
+  if (nothing && plane.cover_remembered) return {stage, true, "these hide all together"};
+  if (nothing && plane.cover < plane.candidates) {
+    return {stage, true,
+            std::to_string(plane.cover) + " of " + counted(plane.candidates, "candidate") +
+                " were enough to hide all together"};
+  }
   const bool all = decided_outcome(plane) == Outcome::kUnoccluded;
   if (by_edges) {
     return {stage, true,

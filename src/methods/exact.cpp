@@ -25,7 +25,7 @@ struct ExactSourcePrepared : PreparedSource {
 class Exact : public Evaluator {
  public:
   Exact(const Nothing& /*data*/, const Scene& scene, const Settings& settings)
-      : scene_(scene), options_{.engine = engine_named(settings.word("engine"))} {}
+      : scene_(scene), options_{.engine = engine_named(settings.word("engine")), .from_scratch = true} {}
 
   void look_from(const Receiver& receiver) override { receiver_ = receiver; }
 

@@ -34,7 +34,10 @@ class BooleanWalk {
 
   PlaneVisibility run() {
     result_.record.outcome = find_outcome();
-    result_.record.edges = pieces_.size();
+    PlaneRecord& record = result_.record;
+    record.edges = pieces_.size();
+    if (record.outcome == Outcome::kHiddenByOne) record.cover = 1;
+    if (record.outcome == Outcome::kHiddenByUnion) record.cover = record.candidates;
     if (request_.fraction) result_.fraction = fraction();
     result_.boundary = VisibleBoundary(std::move(pieces_));
     return std::move(result_);

@@ -48,6 +48,13 @@ class EdgeWalk {
   bool gather_source();
   bool add_above_horizon(const Piece& piece);
   [[nodiscard]] int horizon_side(CornerId corner);
+  // Whether a proof that all is hidden may end the search before every candidate has been looked at.
+  [[nodiscard]] bool may_stop_early() const { return culls() && !request_.list_cutters; }
+  [[nodiscard]] bool hidden_by_few();
+  [[nodiscard]] bool hidden_as_before();
+  void add_if_between(const Piece& piece);
+  [[nodiscard]] bool one_hides_all();
+  void note_pairs();
   bool gather_occluders();
   [[nodiscard]] bool culls() const { return request_.culling == ShaftCulling::kTree; }
   void start_run();
@@ -92,18 +99,96 @@ Outcome EdgeWalk::find_outcome() {
   if (side_of(plane_, view_.x) <= 0) return Outcome::kBehind;
   // 2. Clip by the receiver's horizon.
   if (!gather_source()) return Outcome::kBelowHorizon;
+  if (hidden_as_before()) return Outcome::kHiddenByUnion;
   // 3. and 5. Candidates in the shaft.
-  if (!gather_occluders()) return Outcome::kHiddenByOne;
-  // 4., 6. and 7. Find the visible parts of every edge.
-  gave_up_ = !work_.edges.find(source_count_);
-  result_.boundary = VisibleBoundary(work_.edges);
   PlaneRecord& record = result_.record;
-  record.pairs = work_.edges.pairs();
-  record.undecided_pairs = work_.edges.undecided_pairs();
+  if (!gather_occluders()) {
+    record.cover = 1;
+    return Outcome::kHiddenByOne;
+  }
+  // 4., 6. and 7. Find the visible parts of every edge, unless a few occluders hide them all.
+  const bool hidden = hidden_by_few();
+  gave_up_ = !hidden && !work_.edges.find(source_count_);
+  result_.boundary = VisibleBoundary(work_.edges);
+  note_pairs();
   record.edges = work_.edges.parts().size();
   record.source_joined = source_count_ > 1;
   if (record.candidates == 0) return Outcome::kUnoccluded;
-  return result_.boundary.empty() ? Outcome::kHiddenByUnion : Outcome::kPartlyHidden;
+  if (!result_.boundary.empty()) return Outcome::kPartlyHidden;
+  record.cover = hidden ? work_.edges.cover().size() : record.candidates;
+  return Outcome::kHiddenByUnion;
+}
+
+void EdgeWalk::note_pairs() {
+  result_.record.pairs = work_.edges.pairs();
+  result_.record.undecided_pairs = work_.edges.undecided_pairs();
+}
+
+// By candidates that are gathered.
+bool EdgeWalk::hidden_by_few() {
+  if (!may_stop_early() || work_.outline_pieces.size() < request_.fewest_to_cover) return false;
+  if (!work_.edges.find_cover(source_count_)) return false;
+  if (request_.remembers_covers) {
+    const auto piece_of = [&](OutlineId o) { return work_.outline_pieces[o - source_count_]; };
+    work_.covers.set(plane_.pieces.front(), work_.edges.cover(), piece_of);
+  }
+  return true;
+}
+
+// By the pieces that hid the plane from the receiver before, and by no single one. If not, nothing has changed.
+bool EdgeWalk::hidden_as_before() {
+  const auto remembered = work_.covers.of(plane_.pieces.front());
+  if (remembered.empty() || !request_.remembers_covers || !may_stop_early()) return false;
+  for (const std::uint32_t index : remembered) {
+    if (index < pieces_.size() && may_occlude(view_, plane_, request_, index)) add_if_between(pieces_[index]);
+  }
+  PlaneRecord record = result_.record;
+  record.cover_remembered = true;
+  record.source_joined = source_count_ > 1;
+  record.cover = record.candidates = record.tree_candidates = outlines_.outlines().size() - source_count_;
+  if (record.cover > 0 && work_.edges.all_cover(source_count_) && !one_hides_all()) {
+    result_.record = std::move(record);
+    note_pairs();
+    return true;
+  }
+  work_.covers.forget(plane_.pieces.front());
+  result_ = {};
+  source_count_ = 0;
+  (void)gather_source();
+  return false;
+}
+
+// Adds the part of the piece between x and the source's plane, if there is any.
+void EdgeWalk::add_if_between(const Piece& piece) {
+  const auto vertices = view_.scene.corners(piece);
+  find_corners(vertices);
+  find_depths();
+  const auto some = [](const auto& of, const auto& is_so) { return std::any_of(of.begin(), of.end(), is_so); };
+  if (!some(work_.depths, [](int depth) { return depth > 0; })) return;
+  if (!some(work_.corners, [&](CornerId corner) { return toward_sign(corner) > 0; })) return;
+  const int facing = this->facing(piece);
+  if (facing == 0) return;
+  const bool is_cut = some(work_.depths, [](int depth) { return depth < 0; });
+  if (is_cut) ++result_.record.clipped;
+  add_occluder(vertices, is_cut, facing > 0);
+}
+
+bool EdgeWalk::one_hides_all() {
+  start_run();
+  make_shaft(0);
+  for (std::size_t side = 0; side < outlines_.outline(0).count; ++side) {
+    HalfSpace other = work_.half_spaces[2 * side];
+    other.normal = {-other.normal.x, -other.normal.y, -other.normal.z};
+    work_.half_spaces.insert(work_.half_spaces.begin(), other);
+  }
+  work_.shaft.set(work_.half_spaces);
+  make_side_planes(0);
+  bool hidden = false;
+  for_each_candidate(view_, work_.shaft, request_.culling, [&](std::uint32_t piece, bool /*inside*/) {
+    hidden = visit(piece, 0, false);
+    return !hidden;
+  });
+  return hidden;
 }
 
 bool EdgeWalk::gather_source() {
@@ -167,6 +252,7 @@ void EdgeWalk::make_shaft(OutlineId source) {
 }
 
 void EdgeWalk::start_run() {
+  work_.outline_pieces.clear();
   work_.seen_in.resize(pieces_.size(), 0);
   work_.surfaces.resize(surfaces_.surfaces().size());
   if (++work_.run == 0) {
@@ -215,6 +301,7 @@ bool EdgeWalk::visit(std::uint32_t index, OutlineId source, bool inside) {
   if (sides.some_below_first) ++result_.record.clipped;
   if (inside) find_corners(vertices);
   const OutlineId outline = add_occluder(vertices, sides.some_below_first, facing > 0);
+  work_.outline_pieces.push_back(index);
   if (sides.all_above_each && culls()) {
     outlines_.set_inside_source(outline);
     return false;
@@ -225,7 +312,10 @@ bool EdgeWalk::visit(std::uint32_t index, OutlineId source, bool inside) {
     result_.cutters = {piece.face};
     return true;
   }
-  if (left_out) outlines_.remove_last();
+  if (left_out) {
+    outlines_.remove_last();
+    work_.outline_pieces.pop_back();
+  }
   return false;
 }
 

@@ -8,7 +8,14 @@
 //      a face that the source's plane cuts is clipped, no face is clipped to the shaft, and pieces of closed surfaces
 //      that face away from x are left out (see below);
 //   4. and 5. no candidates, or one that hides all;
-//   6. and 7. the visible parts of every edge (visible_edges.h).
+//   6. and 7. a few that hide all together, or the visible parts of every edge (visible_edges.h).
+// If the caller allows it, step 3 begins with the pieces that hid the plane from the receiver before. If these hide it
+// again, a narrow query of the tree decides whether a single piece hides all, and no candidates are gathered.
+//
+// Which pieces may hide all alone: let one do so, and let a be the start of an edge of the source. The piece covers a:
+// its directions from x, as non-negative multiples, add up to a. The plane through x and the edge holds a, so not all
+// corners of the piece lie strictly on one side of it. Its box, therefore, meets both closed half-spaces of each such
+// plane.
 //
 // Backs of closed surfaces. Let x lie outside the box of a closed surface (closed_surfaces.h) all of whose pieces may
 // occlude, and let the box lie on x's side of the source's plane, off it. Along almost every segment from x to a point
@@ -19,6 +26,7 @@
 // hide all.
 #pragma once
 
+#include "visibility/cover_memory.h"
 #include "visibility/plane_visibility.h"
 #include "visibility/side_planes.h"
 
@@ -40,6 +48,8 @@ struct EdgeWorkspace {
     bool backs_left_out = false;
   };
   std::vector<Surface> surfaces;
+  std::vector<std::uint32_t> outline_pieces;  // of the occluders' outlines
+  CoverMemory covers;
   std::uint32_t run = 0;
 };
 

@@ -41,6 +41,8 @@ struct Request {
   bool list_cutters = false;
   const std::vector<FaceId>* only_occluders = nullptr;  // ascending
   ShaftCulling culling = ShaftCulling::kTree;
+  bool remembers_covers = false;     // see CoverMemory; the counts in the record then depend on earlier calls
+  std::size_t fewest_to_cover = 64;  // candidates: with fewer, a search for a small cover saves nothing
 };
 
 // The boundary of the visible region, whichever engine found it. Refers to the workspace that it was found with: valid

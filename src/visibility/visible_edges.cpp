@@ -26,10 +26,19 @@ std::uint64_t bit_count(unsigned bits) { return (0x4332322132212110U >> (4 * bit
 
 }  // namespace
 
-bool VisibleEdges::find(std::size_t source_count) {
+void VisibleEdges::start() {
+  const std::size_t edges = outlines_.edges().size();
   parts_.clear();
   pairs_ = undecided_pairs_ = next_poll_ = 0;
-  exact_.clear(outlines_.edges().size());
+  exact_.clear(edges);
+  dropped_.assign(edges, 0);
+  line_.resize(edges);
+  std::iota(line_.begin(), line_.end(), EdgeId{0});
+}
+
+bool VisibleEdges::find(std::size_t source_count) {
+  start();
+  by_cover_ = false;
   // 1. Silhouettes.
   drop_inner_edges(source_count);
   // 2. The grid.
@@ -39,6 +48,52 @@ bool VisibleEdges::find(std::size_t source_count) {
   // 3. and 4. Edge by edge.
   for (const OutlineId o : grid_.in_order(outlines_.outlines().size())) trace_outline(o, source_count);
   return true;
+}
+
+bool VisibleEdges::find_cover(std::size_t source_count) {
+  parts_.clear();
+  return choice_.start(outlines_, source_count) && cover_hides_all(source_count);
+}
+
+bool VisibleEdges::all_cover(std::size_t source_count) {
+  choice_.take_all(outlines_, source_count);
+  return cover_hides_all(source_count);
+}
+
+// The boundary of what the cover leaves visible is empty, and so that is, too: it is not the whole sphere.
+bool VisibleEdges::cover_hides_all(std::size_t source_count) {
+  start();
+  by_cover_ = true;
+  for (OutlineId s = 0; s < source_count; ++s) {
+    if (!hide(s, source_count)) return false;
+  }
+  for (std::size_t i = 0; i < choice_.chosen().size(); ++i) {
+    if (!hide(choice_.chosen()[i], source_count)) return false;
+  }
+  return true;
+}
+
+// Adds to the cover until no edge of the outline is visible; false if that fails.
+bool VisibleEdges::hide(OutlineId id, std::size_t source_count) {
+  const auto length = [](const Part& part) { return std::abs(part.end.value - part.begin.value); };
+  for (trace_outline(id, source_count); !parts_.empty(); trace_outline(id, source_count)) {
+    const Part longest = *std::ranges::max_element(parts_, {}, length);
+    parts_.clear();
+    if (!choice_.add_for(outlines_, direction_in_view(longest, id < source_count))) return false;
+  }
+  return true;
+}
+
+// An estimate: beside the middle of the part, on the side that seems visible.
+kernel::Approx3 VisibleEdges::direction_in_view(const Part& part, bool of_source) const {
+  constexpr double kAside = 0x1p-20;
+  const Edge& edge = outlines_.edge(part.edge);
+  const Outlines::Corner &a = outlines_.corner(edge.a), &b = outlines_.corner(edge.b);
+  const double m = 0.5 * (part.begin.value + part.end.value), l = 1.0 - m;
+  const Vec3& n = edge.normal;
+  const double step =
+      (of_source ? kAside : -kAside) * (a.size + b.size) / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+  return {l * a.t.x + m * b.t.x + step * n.x, l * a.t.y + m * b.t.y + step * n.y, l * a.t.z + m * b.t.z + step * n.z};
 }
 
 bool VisibleEdges::hides_all(OutlineId occluder, std::size_t source_count) {
@@ -56,9 +111,6 @@ bool VisibleEdges::hides_all(OutlineId occluder, std::size_t source_count) {
 // line of all of them, so that no arithmetic is needed to see that crossings with it are equal.
 void VisibleEdges::drop_inner_edges(std::size_t source_count) {
   const auto edges = outlines_.edges();
-  dropped_.assign(edges.size(), 0);
-  line_.resize(edges.size());
-  std::iota(line_.begin(), line_.end(), EdgeId{0});
   if (!outlines_.has_shared_corners()) return;
   table_.clear(edges.size());
   for (OutlineId o = static_cast<OutlineId>(source_count); o < outlines_.outlines().size(); ++o) {
@@ -94,7 +146,7 @@ EXACTFF_INLINE void VisibleEdges::trace(Run& run, std::size_t source_count) {
   // 3. The intervals that outlines cover.
   find_allowed(run, source_count);
   if (run.wanted == 0) return;
-  near_ = grid_.find_near(outlines_, run.first, run.wanted);
+  near_ = by_cover_ ? choice_.chosen() : grid_.find_near(outlines_, run.first, run.wanted);
   find_removed(run, source_count);
   // 4. Sweep over them.
   for (unsigned k = 0; k < run.edges; ++k) {

@@ -20,6 +20,11 @@
 //      the interval that the outline covers: by the filter for all edges of the run at once, and exactly where the
 //      filter is not certain;
 //   4. for each edge, one sweep over its intervals gives its visible parts.
+//
+// Few occluders may prove that nothing is visible: if no part of any edge of the source or of these occluders bounds
+// what they leave visible, they leave nothing, and so do all. find_cover chooses them by estimates (cover_choice.h),
+// and traces only their edges and the source's, against them alone. Where it finds a visible part, it adds an occluder
+// that seems to hide it, and traces the edge again. What was hidden before stays hidden.
 #pragma once
 
 #include <algorithm>
@@ -30,6 +35,7 @@
 #include <vector>
 
 #include "kernel/lane_types.h"
+#include "visibility/cover_choice.h"
 #include "visibility/edge_covers.h"
 #include "visibility/outline_grid.h"
 #include "visibility/outlines.h"
@@ -74,6 +80,12 @@ class VisibleEdges : public EdgeCovers {
   // Returns false, with nothing found, if the grid fails to separate so many occluders and edges that the Booleans are
   // the better method.
   [[nodiscard]] bool find(std::size_t source_count);
+  // True if a few of the occluders hide all of the source; `cover` lists these. False proves nothing. Requires the same
+  // as find. Nothing is visible, or nothing is found: parts() is empty.
+  [[nodiscard]] bool find_cover(std::size_t source_count);
+  // The same for all occluders, which should be few: false if they leave a part of the source visible.
+  [[nodiscard]] bool all_cover(std::size_t source_count);
+  [[nodiscard]] std::span<const OutlineId> cover() const { return choice_.chosen(); }
   // Each has V to its left.
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
   // Pairs of an edge and an outline: those examined, and those for which the filter was not certain.
@@ -114,8 +126,12 @@ class VisibleEdges : public EdgeCovers {
     unsigned unsure = 0;   // a bit for every edge where nothing is certain
     Intervals intervals;
   };
+  void start();
   void drop_inner_edges(std::size_t source_count);
   void poll();
+  [[nodiscard]] bool cover_hides_all(std::size_t source_count);
+  [[nodiscard]] bool hide(OutlineId id, std::size_t source_count);
+  [[nodiscard]] kernel::Approx3 direction_in_view(const Part& part, bool of_source) const;
   void trace_outline(OutlineId id, std::size_t source_count);
   void set_corners(Run& run) const;
   void trace(Run& run, std::size_t source_count);
@@ -143,6 +159,8 @@ class VisibleEdges : public EdgeCovers {
   void merge(EdgeId edge, std::vector<Interval>& intervals);
 
   OutlineGrid grid_;
+  CoverChoice choice_;
+  bool by_cover_ = false;              // only the chosen occluders count
   std::vector<std::uint8_t> dropped_;  // by edge
   std::span<const OutlineId> near_;    // occluders that the current run may meet
   std::array<Cuts, kBatch> batch_;     // by some of these

@@ -9,5 +9,6 @@ void add_rays();     // rays/coherent, rays/incoherent, rays/scattered, rays/bui
 void add_memory();   // memory; meaningful only in a process of its own
 void add_cornell();  // cornell/ENGINE/CLASS, cornell/throughput
 void add_view();     // view/loop, view/sweep, view/contour
+void add_covers();   // covers/scratch, covers/neighbour
 
 }  // namespace exactff::bench

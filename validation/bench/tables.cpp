@@ -221,6 +221,18 @@ void print_view(const Results& results) {
   }
 }
 
+void print_covers(const Results& results) {
+  print_head("All hidden by many together, ms: from scratch, and with what hid the source from a receiver nearby.",
+             {"scene", "candidates", "needed", "from scratch", "neighbour"});
+  for (const std::string scene : {"deep/100", "deep/1000", "deep/10000", "wall/100", "wall/1000", "wall/10000"}) {
+    const auto ms = [&](const char* subject) {
+      return text(in_ms(results.microseconds(std::string("covers/") + subject + '/' + scene)));
+    };
+    const auto figure = [&](const char* key) { return text(results.figure("covers/scratch/" + scene, key)); };
+    print_row({scene, figure("candidates"), figure("cover"), ms("scratch"), ms("neighbour")});
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -230,6 +242,7 @@ int main(int argc, char** argv) try {
   print_growth(results);
   print_contour(results);
   print_cornell(results);
+  print_covers(results);
   print_view(results);
   return results.sound() ? 0 : 1;
 } catch (const std::exception& error) {

@@ -20,6 +20,7 @@
 #include "exactff/models.h"
 #include "exactff/obj.h"
 #include "exactff/view.h"
+#include "generate/families.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
 #include "kernel/ball.h"
@@ -201,6 +202,35 @@ TEST(Allocation, IsNotMadeOnDegenerateScenes) {
   }
   EXPECT_LE(5 * by_arb, count);
   EXPECT_GE(5 * undecided, count);
+}
+
+// By a few that are chosen for this receiver, and by those that hid the source from the one before.
+TEST(Allocation, IsNotMadeToHideAllByAFew) {
+  const PlainScene plain = generate::soup({.n = 300, .seed = 1, .cover = 50.0});
+  const Scene scene = generate::build(plain);
+  const ExactSource source(scene, scene.select(plain.source));
+  for (const bool from_scratch : {true, false}) {
+    const ExactOptions options{.from_scratch = from_scratch};
+    Workspace workspace;
+    FormFactor result;
+    std::size_t few = 0, remembered = 0;
+    for (const bool counts : {false, false, true}) {  // the second pass begins with what hid the source from the last
+      Receiver receiver = generate::receiver_of(plain);
+      for (int i = 0; i < 30; ++i) {
+        receiver.point.x = 0.005 * i;
+        const auto ask = [&] { exact_form_factor(scene, receiver, source, options, result, workspace); };
+        const std::uint64_t allocations = allocations_of(ask);
+        const PlaneRecord& plane = result.planes.at(0);
+        few += plane.outcome == Outcome::kHiddenByUnion && plane.cover < 20 ? 1 : 0;
+        remembered += plane.cover_remembered ? 1 : 0;
+        if (counts && (result.precision_bits == 0 || result.precision_bits == exact::QuickTier::kBits)) {
+          EXPECT_EQ(allocations, 0U) << "receiver " << i;
+        }
+      }
+    }
+    EXPECT_GT(few, 20U);
+    EXPECT_EQ(remembered > 20, !from_scratch);
+  }
 }
 
 // Three sources in general position: in one plane, in nine planes, and a round one, with occluders in front of and
