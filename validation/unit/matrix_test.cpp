@@ -241,9 +241,10 @@ class MatrixFilesOfTheCommand : public testing::Test {
 
 // "below" looks up at the back of "cover" and past it.
 TEST_F(MatrixFilesOfTheCommand, HaveBackAndOpenAsColumns) {
-  const std::string scene = folder_.write("plates.obj",
-                                          "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
-                                          "g below\nf 1 2 3 4\ng cover\nf 5 6 7 8\n")
+  const std::string scene = folder_
+                                .write("plates.obj",
+                                       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+                                       "g below\nf 1 2 3 4\ng cover\nf 5 6 7 8\n")
                                 .string();
   const validation::ProgramRun plain =
       run({scene, "--accuracy", "1e-3", "--backs", "--to", "all,sky", "--plain", "-o", file("m.csv")});
