@@ -93,7 +93,7 @@ TEST(Matrix, SeesTheBacksOfABoxTurnedInsideOut) {
 }
 
 TEST(Matrix, OfAPlateInSpaceIsOpen) {
-  for (const double scale : {1.0, 0x1p-500, 0x1p500, 3.0e-310}) {
+  for (const double scale : {1.0, 0x1p-500, 0x1p500}) {
     PlainScene plain;
     add(plain, "plate", square(scale, 0.75 * scale));
     const Scene scene = generate::build(plain);
