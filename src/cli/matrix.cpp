@@ -93,7 +93,7 @@ std::string factor_text(const ViewFactor& f) {
   return text::rounded(f.value, 6) + (f.accurate ? "" : " *");
 }
 
-std::string sum_text(const matrix::Sum& sum) {
+std::string row_sum_text(const matrix::Sum& sum) {
   return text::rounded(0.5 * (sum.lower + sum.upper), 6) + " +- " + text::rounded(0.5 * (sum.upper - sum.lower), 1);
 }
 
@@ -112,7 +112,7 @@ void print_table(const Scene& scene, const matrix::Matrix& matrix) {
     for (std::size_t j = 0; j < columns; ++j) cells.push_back(factor_text(all.at(i, j)));
     if (!matrix.back.empty()) cells.push_back(factor_text(matrix.back[i]));
     if (!matrix.open.empty()) cells.push_back(factor_text(matrix.open[i]));
-    cells.push_back(sum_text(sums[i]));
+    cells.push_back(row_sum_text(sums[i]));
     table.add_row(std::move(cells));
   }
   table.print(std::cout);
@@ -161,7 +161,7 @@ bool test_rows(const MatrixArguments& args, const Scene& scene, const matrix::Ma
 
 // --- Files ---
 
-void check_files(const MatrixArguments& args) {
+void check_outputs(const MatrixArguments& args) {
   if (!args.csv.empty()) require_free_file(args.csv, args.force);
   std::vector<OutputFile> before;
   if (!args.csv.empty()) before.push_back({"-o", args.csv});
@@ -227,7 +227,7 @@ void check_content(const MatrixArguments& args, const Scene& scene, const std::v
 }
 
 int run(MatrixArguments args) {
-  check_files(args);
+  check_outputs(args);
   const Scene scene = args.scene.load();
   print_warnings(scene.warnings());
   args.options.open = take_sky(scene, args.to);
