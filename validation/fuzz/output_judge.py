@@ -16,6 +16,7 @@ import pathlib
 import re
 import sys
 import xml.parsers.expat
+import zipfile
 import zlib
 from decimal import Decimal, InvalidOperation
 
@@ -255,12 +256,25 @@ def judge_npy(data):
         raise Wrong("a NumPy array of another size")
 
 
+# Whatever its arrays are, the archive is whole and each of them is a NumPy file.
+def judge_npz(data):
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            damaged = archive.testzip()
+            others = [name for name in archive.namelist() if not archive.read(name).startswith(b"\x93NUMPY\1\0")]
+    except (zipfile.BadZipFile, zlib.error) as error:
+        raise Wrong(f"no archive: {error}") from None
+    if damaged or others:
+        raise Wrong(f"an array that is damaged, or none: {damaged or others[0]}")
+
+
 SCENES = {extension: judge_scene for extension in (".obj", ".mtl", ".ply", ".stl", ".off", ".vs3")}
 JUDGES = {**SCENES, ".csv": judge_csv, ".json": judge_json, ".svg": judge_xml, ".xml": judge_xml, ".html": judge_html,
           ".png": judge_png, ".exr": judge_exr, ".npy": judge_npy, ".vtp": judge_vtk, ".vtu": judge_vtk,
           ".part": lambda data: None}
 # These are written under any name that the user gives them.
-SIGNATURES = {b"# exactff ": judge_csv, b"\x93NUMPY": judge_npy, b"\x76\x2f\x31\x01": judge_exr, b"\x89PNG": judge_png}
+SIGNATURES = {b"# exactff ": judge_csv, b"\x93NUMPY": judge_npy, b"\x76\x2f\x31\x01": judge_exr, b"\x89PNG": judge_png,
+              b"PK\3\4": judge_npz}
 FORMS = {"json": lambda data: judge_json(data, {"front"}), "plain": judge_plain, "text": judge_words}
 
 

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """The judge of outputs finds a fault of every kind, and none where there is none."""
 
+import io
 import pathlib
 import tempfile
 import unittest
+import zipfile
 import zlib
 
 import output_judge
@@ -34,6 +36,17 @@ class Judge(unittest.TestCase):
         self.write("out/" + name, text)
         self.expect(fragment, code=code)
         (self.folder / "out" / name).unlink()
+
+    def test_archives(self):
+        whole = io.BytesIO()
+        with zipfile.ZipFile(whole, "w") as archive:
+            archive.writestr("data.npy", b"\x93NUMPY\1\0" + b"x" * 50)
+        self.expect_file("", "m.npz", whole.getvalue())
+        self.expect_file("no archive", "m.npz", whole.getvalue()[:-1])
+        self.expect_file("no archive", "m.npz", whole.getvalue().replace(b"xxxx", b"xxyx", 1))
+        with zipfile.ZipFile(whole, "a") as archive:
+            archive.writestr("words.txt", "no array")
+        self.expect_file("damaged, or none", "m.npz", whole.getvalue())
 
     def test_words(self):
         self.write("stdout", "a caf\u00e9 and its \u00b5\n")
