@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "exactff/exact.h"
+#include "exactff/receiver.h"
 #include "exactff/scene_files.h"
 #include "exactff/view_factors.h"
 #include "generate/plain_scene.h"
@@ -77,6 +79,48 @@ TEST(ViewFactor, WithAPlateBetweenIsTheKnownOne) {
                   0.115620602132415020312711990740);
     expect_factor(generate::build(plates_with_plate(2.0, 0.9, 0.75)), "below", "above", accuracy,
                   0.2828875141866424869);
+  }
+}
+
+// Three plates at different heights, whose edges meet in one point as the middle of a small patch sees them. From some
+// of its points there is a triangular gap between them; from the others they overlap.
+Scene plates_round_a_gap(double turn) {
+  PlainScene scene;
+  const double half = 0.05;
+  add(scene, "below", {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}});
+  add(scene, "above", {{-2, 2, 1}, {2, 2, 1}, {2, -2, 1}, {-2, -2, 1}});
+  for (int k = 0; k < 3; ++k) {
+    const double angle = turn + 2.0 * k, c = std::cos(angle), s = std::sin(angle);
+    const auto corner = [&](double u, double v) { return Vec3{c * u - s * v, s * u + c * v, 0.3 + 0.2 * k}; };
+    add(scene, ("plate " + std::to_string(k)).c_str(), {corner(0, -4), corner(4, -4), corner(4, 4), corner(0, 4)});
+  }
+  return generate::build(scene);
+}
+
+// The mean of exact point factors over a grid on "below".
+double mean_from_points(const Scene& scene) {
+  const ExactSource above(scene, named(scene, "above"));
+  const std::vector<Receiver> points = grid_receivers(scene, named(scene, "below"), {40, 40});
+  double sum = 0.0;
+  for (const Receiver& point : points) sum += exact_form_factor(scene, point, above).value;
+  return sum / static_cast<double>(points.size());
+}
+
+TEST(ViewFactor, WhereThreeEdgesMeetIsBounded) {
+  constexpr double kErrorOfMean = 1e-6;
+  for (const double turn : {0.1, 0.6, 1.1}) {
+    const Scene scene = plates_round_a_gap(turn);
+    const double mean = mean_from_points(scene);
+    EXPECT_GT(mean, 10 * kErrorOfMean);
+    std::size_t event_cells = 0;
+    for (const double accuracy : {0.3, 0.03, 3e-3, 3e-4, 3e-5}) {
+      const ViewFactor f = view_factor(scene, named(scene, "below"), named(scene, "above"), {.accuracy = accuracy});
+      event_cells += f.event_cells;
+      EXPECT_LE(f.lower, mean + kErrorOfMean) << turn << ' ' << accuracy;
+      EXPECT_GE(f.upper, mean - kErrorOfMean) << turn << ' ' << accuracy;
+      EXPECT_LE(f.upper - f.lower, 1.001 * accuracy) << turn;
+    }
+    EXPECT_GT(event_cells, 0U);
   }
 }
 
