@@ -26,16 +26,14 @@ namespace {
 
 constexpr const char* kMatrixFooter =
     "F_ij is the share of the light leaving patch i, in all directions, that reaches patch j: the mean over i of the\n"
-    "form factor from a point to j. An entry is 'zero' if that is proved, else 'topology-proved': what is seen is "
-    "proved\n"
-    "on every cell of the patch, the error of the quadrature is estimated from two rules. An entry that needs more\n"
-    "cells than --budget keeps its width, and a warning says so.\n"
-    "With --backs and --to all,sky each row also has what meets the backs of faces, and what is open. Then it must "
-    "add\n"
-    "up to 1; if a row does not, the exit code is 1.\n"
-    "View3D's output has six decimals and no bounds; its rows add up to 1 only within that. EnergyPlus reads the "
-    "names\n"
-    "of patches as names of surfaces.\n"
+    "form factor from a point to j. An entry is 'zero' if that is proved. It is 'topology-proved' if what is seen is\n"
+    "proved on every cell of the patch, and the error of the quadrature is estimated from two rules. Where the cells\n"
+    "of --budget do not suffice, it is 'statistical' if that is narrower: an interval of Student's t, at the level\n"
+    "1 - 1e-6, from exact point factors. A warning counts the entries that are wider than the accuracy.\n"
+    "With --backs and --to all,sky each row also has what meets the backs of faces, and what is open. Then it must\n"
+    "add up to 1; if a row does not, the exit code is 1.\n"
+    "View3D's output has six decimals and no bounds; its rows add up to 1 only within that. EnergyPlus reads the\n"
+    "names of patches as names of surfaces.\n"
     "\n"
     "Examples:\n"
     "  exactff matrix data/scenes/cornell_box.obj --from light --to floor,ceiling --accuracy 1e-4\n"
@@ -135,8 +133,16 @@ void warn_of_width(const MatrixArguments& args, const matrix::Matrix& matrix) {
   const ViewFactorOptions& options = args.options.factors;
   warn(text::counted(static_cast<std::uint64_t>(wide), "entry", "entries") + (wide == 1 ? " is" : " are") +
            " wider than the accuracy " + text::shortest(options.accuracy),
-       "the budget of " + std::to_string(options.budget) + " cells is used up; their bounds hold all the same",
+       "the budget of " + std::to_string(options.budget) +
+           " cells is used up; their bounds are as strong as their claims",
        "give more cells by --budget, or ask for less by --accuracy");
+}
+
+bool has_statistical(const ViewFactorMatrix& factors, std::size_t row) {
+  for (std::size_t j = 0; j < factors.to.size(); ++j) {
+    if (factors.at(row, j).claim == Claim::kStatistical) return true;
+  }
+  return false;
 }
 
 // Whether all rows hold 1. Those that need not are not tested.
@@ -153,7 +159,10 @@ bool test_rows(const MatrixArguments& args, const Scene& scene, const matrix::Ma
     all = false;
     warn("the row of " + scene.name_of(matrix.factors.from[i]) + " adds up to between " +
              text::shortest(sums[i].lower) + " and " + text::shortest(sums[i].upper),
-         "with back and open it must add up to 1, so a bound of it does not hold", "please report the scene");
+         has_statistical(matrix.factors, i)
+             ? "a statistical entry of it is one of the few that miss their interval, or a bound does not hold"
+             : "with back and open it must add up to 1, so a bound of it does not hold",
+         "please report the scene");
   }
   if (all && !args.plain) std::cout << "\nEvery row adds up to 1 within its bounds.\n";
   return all;
