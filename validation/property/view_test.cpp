@@ -13,6 +13,7 @@
 #include "support/oracle_check.h"
 #include "support/random_scenes.h"
 #include "support/view_judge.h"
+#include "support/view_scenes.h"
 
 namespace exactff::validation {
 namespace {
@@ -22,20 +23,9 @@ using generate::Random;
 
 class View : public testing::TestWithParam<RandomFamily> {
  protected:
-  // Calls check(plain, scene, receiver) for scenes of the family until one fails.
   template <class Check>
   static void for_each_scene(std::uint64_t divisor, const Check& check) {
-    for (std::uint64_t i = 0; i < scaled_count(1 + GetParam().count / divisor); ++i) {
-      SCOPED_TRACE("seed " + std::to_string(seed_of(i)));
-      Random random(seed_of(i));
-      const PlainScene plain = GetParam().make(random);
-      const Scene scene = generate::build(plain);
-      check(plain, scene, receiver_in(scene, plain));
-      if (HasFailure()) {
-        ADD_FAILURE() << generate::to_obj(plain, {}, generate::Digits::kSeventeen);
-        return;
-      }
-    }
+    for_each_scene_of(GetParam(), divisor, check);
   }
 };
 
