@@ -51,10 +51,8 @@ struct Content {
 // Cancelled if the hooks cancel.
 void write(const Content& content, const std::filesystem::path& file, const Hooks& hooks = {});
 
-// Writes the scene alone, as above.
-void write(const Scene& scene, const std::filesystem::path& file, const Hooks& hooks = {});
-// Writes the scene alone, with values at its faces: fields have their numbers for each face of the scene, by index.
-// Throws as `write` does.
+// Writes the scene alone, with values at its faces, if any: fields have their numbers for each face of the scene, by
+// index. Throws as `write` does.
 void write_faces(const Scene& scene, const std::vector<Field>& fields, std::vector<std::string> about,
                  const std::filesystem::path& file, const Hooks& hooks = {});
 

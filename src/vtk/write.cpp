@@ -114,13 +114,4 @@ void write(const Content& content, const std::filesystem::path& file, const Hook
   scene.commit();
 }
 
-void write(const Scene& scene, const std::filesystem::path& file, const Hooks& hooks) {
-  const kernel::StandardArithmetic arithmetic;
-  const Format format = format_of(file);
-  work::WholeFile whole(file);
-  append(cells_of(scene), format, whole, hooks);
-  work::require_not_cancelled(hooks);
-  whole.commit();
-}
-
 }  // namespace exactff::vtk

@@ -117,7 +117,7 @@ TEST_F(VtkWriter, WritesASceneAlone) {
   const Scene scene = square(1.0);
   const std::vector<Receiver> receivers = grid_receivers(scene, faces_with_area(scene), {2, 2});
   write(Content{&scene, receivers, {}, {}}, directory_.path() / "map.vtp");
-  write(scene, directory_.path() / "room.vtp");
+  write_faces(scene, {}, {}, directory_.path() / "room.vtp");
   EXPECT_EQ(validation::text_of(directory_.path() / "room.vtp"),
             validation::text_of(directory_.path() / "map_scene.vtp"));
 }
