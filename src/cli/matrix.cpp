@@ -6,6 +6,7 @@
 #include <iostream>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -138,11 +139,12 @@ void warn_of_width(const MatrixArguments& args, const matrix::Matrix& matrix) {
        "give more cells by --budget, or ask for less by --accuracy");
 }
 
-bool has_statistical(const ViewFactorMatrix& factors, std::size_t row) {
-  for (std::size_t j = 0; j < factors.to.size(); ++j) {
-    if (factors.at(row, j).claim == Claim::kStatistical) return true;
-  }
-  return false;
+bool has_statistical(const matrix::Matrix& matrix, std::size_t row) {
+  const auto is_statistical = [](const ViewFactor& f) { return f.claim == Claim::kStatistical; };
+  const std::size_t columns = matrix.factors.to.size();
+  return std::ranges::any_of(std::span(matrix.factors.entries).subspan(row * columns, columns), is_statistical) ||
+         (!matrix.back.empty() && is_statistical(matrix.back[row])) ||
+         (!matrix.open.empty() && is_statistical(matrix.open[row]));
 }
 
 // Whether all rows hold 1. Those that need not are not tested.
@@ -159,7 +161,7 @@ bool test_rows(const MatrixArguments& args, const Scene& scene, const matrix::Ma
     all = false;
     warn("the row of " + scene.name_of(matrix.factors.from[i]) + " adds up to between " +
              text::shortest(sums[i].lower) + " and " + text::shortest(sums[i].upper),
-         has_statistical(matrix.factors, i)
+         has_statistical(matrix, i)
              ? "a statistical entry of it is one of the few that miss their interval, or a bound does not hold"
              : "with back and open it must add up to 1, so a bound of it does not hold",
          "please report the scene");
