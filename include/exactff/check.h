@@ -28,6 +28,7 @@
 #include "exactff/exact.h"
 #include "exactff/geometry.h"
 #include "exactff/pixels.h"
+#include "exactff/view_factors.h"
 
 namespace exactff::check {
 
@@ -45,6 +46,8 @@ struct TruthRow {
   double lower = 0.0;
   double upper = 0.0;
   std::optional<double> largest_rho_b;  // over the colour channels; empty if the file does not give it
+  std::optional<Claim> claim;           // of an entry of a matrix
+  bool accurate = true;                 // of an entry: within the accuracy that was asked for
 };
 
 struct Truth {
@@ -55,7 +58,8 @@ struct Truth {
   std::vector<std::string> faces;    // faces that receivers lie on; the first name is empty and stands for none
   bool has_points = false;
   bool has_normals = false;
-  bool is_image = false;  // receivers are pixels, sources are channels
+  bool is_image = false;   // receivers are pixels, sources are channels
+  bool is_matrix = false;  // receivers are rows, sources are columns
   std::vector<TruthRow> rows;
 
   [[nodiscard]] const std::string& source_of(const TruthRow& row) const { return sources[row.source]; }
@@ -152,6 +156,35 @@ struct Images {
 [[nodiscard]] Images read_images(const std::filesystem::path& truth, const std::filesystem::path& candidate,
                                  const ImageLayers& layers = {}, bool partial = false);
 
+// --- Matrices of view factors ----------------------------------------------------------------------------------------
+
+// What view factors must keep to, whatever the truth is: how far the candidate's entries are from it.
+struct MatrixFacts {
+  struct Largest {
+    double by = 0.0;
+    std::string from, to;
+  };
+  std::size_t negative = 0, above_one = 0;  // entries
+  Largest least, largest;                   // the entries themselves
+  std::optional<Largest> row_sum;      // the distance of a row's sum from the sum of the truth's bounds; of whole rows
+  std::optional<Largest> reciprocity;  // |A_i F_ij - A_j F_ji| / min(A_i, A_j), if rows and columns are the same
+};
+
+// A file of `exactff matrix -o` and a matrix of another program, entry by entry.
+struct Matrices {
+  Truth truth;
+  std::vector<Measured> values;  // in its order
+  std::string candidate_file;
+  MatrixFacts facts;
+};
+// The candidate is recognised by its content: CSV with the columns from, to and value (or factor), or a table with
+// names above and beside it: matched by names; View3D's output, numbers only (CSV or blanks between) or a NumPy array:
+// in the order of the truth, whose size they must have, and whose areas if the file has areas. What meets backs and what
+// is open are judged if the candidate has these columns. Throws one InputError with file:line for every problem;
+// entries may be missing only if `partial`.
+[[nodiscard]] Matrices read_matrices(const std::filesystem::path& truth, const std::filesystem::path& candidate,
+                                     const CandidateColumns& columns = {}, bool partial = false);
+
 // --- Judging -------------------------------------------------------------------------------------------------------
 
 enum class Measure { kAbsolute, kRelative, kRadiosity };
@@ -215,6 +248,8 @@ struct RowError {
   double error = 0.0;
   double relative = 0.0;
   std::optional<double> radiosity;
+  double lower = 0.0, upper = 0.0;  // of the truth
+  std::optional<Claim> claim;       // of an entry of a matrix
 };
 
 struct Verdict {
@@ -243,6 +278,9 @@ struct Report {
   Criteria criteria;
   std::size_t truth_rows = 0;
   std::size_t not_certified = 0;  // rows judged by their enclosures
+  std::optional<MatrixFacts> matrix = {};          // set by whoever has read matrices
+  std::size_t statistical = 0, not_accurate = 0;   // entries of a matrix
+  double widest = 0.0;                             // upper - lower of these
   Statistics overall;
   std::vector<std::string> sources;
   std::vector<Statistics> by_source;  // of each
@@ -325,6 +363,10 @@ struct Plot {
 [[nodiscard]] std::string sentence(const Verdict& verdict);
 // "receiver '7', source 'light'"
 [[nodiscard]] std::string name_of(const RowError& row);
+// "row 'floor', column 'light'"
+[[nodiscard]] std::string name_of_entry(const std::string& from, const std::string& to);
+// One sentence for each fact.
+[[nodiscard]] std::vector<std::string> sentences(const MatrixFacts& facts);
 // "exact 0.25, found 0.26, error 0.01, relative 0.04"
 [[nodiscard]] std::string describe(const RowError& row);
 // What the user should know about the result, whether it passed or not.

@@ -5,6 +5,7 @@
 // of different patches overlap in one plane. Each of the three is computed by itself.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -58,6 +59,20 @@ inline constexpr std::string_view kOpen = "(open)";
 // A row for each entry: from,to,factor,lower,upper,claim,accurate,area_from,area_to,cells,event_cells. Doubles read
 // back to the same bits.
 [[nodiscard]] std::string csv_text(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options);
+
+// A matrix as its CSV file has it: with names instead of patches, otherwise to the same bits.
+struct Table {
+  std::string file;
+  std::vector<std::string> header;     // the comment lines, without their '#'
+  std::vector<std::string> from, to;   // `to` without the additional columns
+  std::vector<ViewFactor> entries;     // row by row
+  std::vector<ViewFactor> back, open;  // for each row; empty if the file does not have them
+  std::vector<std::uint32_t> lines;    // of all entries, in the order of the file: row by row, with back and open
+};
+// Reads what csv_text wrote. Throws one InputError with file:line for every problem.
+[[nodiscard]] Table read_csv(const std::filesystem::path& file);
+// Whether a file begins like one of these, by its content.
+[[nodiscard]] bool is_csv(const std::filesystem::path& file);
 
 // Writes the arrays of a sparse matrix (CSR) for NumPy and SciPy: scipy.sparse.load_npz(path) gives the factors.
 // `radius`, in the order of `data`: data - radius and data + radius are bounds. `claim` likewise. `from` and `to` are

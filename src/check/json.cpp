@@ -36,12 +36,25 @@ ordered_json to_json(const RowError& row) {
                        {"source", row.source},
                        {"line", row.line},
                        {"truth_line", row.truth_line},
-                       {"status", to_string(row.status)},
+                       {"status", row.claim ? to_string(*row.claim) : to_string(row.status)},
                        {"truth", number(row.truth)},
                        {"value", number(row.value)},
                        {"error", number(row.error)},
                        {"relative", number(row.relative)}};
   if (row.radiosity) json["radiosity"] = number(*row.radiosity);
+  if (row.claim) json["bounds"] = {row.lower, row.upper};
+  return json;
+}
+
+ordered_json to_json(const MatrixFacts& facts) {
+  const auto entry = [](const MatrixFacts::Largest& one) -> ordered_json {
+    return {{"by", number(one.by)}, {"from", one.from}, {"to", one.to}};
+  };
+  ordered_json json = {{"negative", facts.negative}, {"above_one", facts.above_one}};
+  if (facts.negative > 0) json["least"] = entry(facts.least);
+  if (facts.above_one > 0) json["largest"] = entry(facts.largest);
+  if (facts.row_sum) json["row_sum"] = {{"by", number(facts.row_sum->by)}, {"from", facts.row_sum->from}};
+  if (facts.reciprocity) json["reciprocity"] = entry(*facts.reciprocity);
   return json;
 }
 
@@ -89,6 +102,7 @@ std::string json_text(const Report& report) {
                    {"identity", report.identity}};
   json["candidate"] = report.candidate_file;
   json["passed"] = report.passed();
+  if (report.matrix) json["matrix"] = to_json(*report.matrix);
   json["warnings"] = warnings(report);
   json["verdicts"] = list(report.verdicts);
   json["improvements"] = list(report.improvements);

@@ -72,7 +72,7 @@ class Judge {
     std::vector<Rows> by_source(truth_.sources.size());
     for (const Errors::Index i : all_) {
       by_source[errors_.truth_row(i).source].push_back(i);
-      if (errors_.truth_row(i).status == Status::kNotCertified) ++report_.not_certified;
+      count(errors_.truth_row(i));
     }
     for (std::size_t s = 0; s < by_source.size(); ++s) {
       if (by_source[s].empty()) continue;  // none of its rows has a value
@@ -80,6 +80,17 @@ class Judge {
       report_.by_source.push_back(errors_.statistics(by_source[s]));
       rows_of_.push_back(std::move(by_source[s]));
     }
+  }
+
+  void count(const TruthRow& row) {
+    if (!row.claim) {
+      if (row.status == Status::kNotCertified) ++report_.not_certified;
+      return;
+    }
+    const bool statistical = *row.claim == Claim::kStatistical;
+    if (statistical) ++report_.statistical;
+    if (!row.accurate) ++report_.not_accurate;
+    if (statistical || !row.accurate) report_.widest = std::max(report_.widest, row.upper - row.lower);
   }
 
   // A sum, so that the order of the rows has no effect.

@@ -42,11 +42,12 @@ std::string junit_xml(const Report& report) {
                      property("candidate", report.candidate_file) +
                      property("rows", std::to_string(report.overall.rows)) + "    </properties>\n";
   for (const Verdict& verdict : report.verdicts) text += test_case(report, verdict);
-  const std::vector<std::string> doubts = warnings(report);
-  for (std::size_t i = 0; i < doubts.size(); ++i) {
-    text += (i == 0 ? "    <system-out>" : "\n") + text::html("warning: " + doubts[i]);
+  std::vector<std::string> lines = report.matrix ? sentences(*report.matrix) : std::vector<std::string>();
+  for (const std::string& doubt : warnings(report)) lines.push_back("warning: " + doubt);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    text += (i == 0 ? "    <system-out>" : "\n") + text::html(lines[i]);
   }
-  if (!doubts.empty()) text += "</system-out>\n";
+  if (!lines.empty()) text += "</system-out>\n";
   return text + "  </testsuite>\n</testsuites>\n";
 }
 

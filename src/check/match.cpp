@@ -137,6 +137,12 @@ class Matcher {
                       "add a column named source, or name the column with --source-column"});
   }
 
+  [[nodiscard]] std::string receiver_word() const { return truth_.is_matrix ? "row" : "receiver"; }
+  [[nodiscard]] std::string source_word() const { return truth_.is_matrix ? "column" : "source"; }
+  [[nodiscard]] std::string of_source(const std::string& source) const {
+    return source.empty() ? "" : " of " + source_word() + " '" + source + "'";
+  }
+
   [[nodiscard]] std::string source_names() const {
     constexpr std::size_t kShown = 10;
     std::vector<std::string> names(
@@ -149,8 +155,8 @@ class Matcher {
   // Returns false, and complains, if the truth does not have the source of the row.
   bool has_known_source(const CandidateRow& row) {
     if (source_[row.source] != kNothing) return true;
-    complain(row.line, "the truth has no source " + text::in_quotes(candidate_.sources[row.source]),
-             "its sources are " + source_names(), "check the name, or remove the row");
+    complain(row.line, "the truth has no " + source_word() + ' ' + text::in_quotes(candidate_.sources[row.source]),
+             "its " + source_word() + "s are " + source_names(), "check the name, or remove the row");
     return false;
   }
 
@@ -162,7 +168,8 @@ class Matcher {
       if (!has_known_source(row)) continue;
       const std::size_t found = keys.find(row.receiver, source_[row.source]);
       if (found == truth_.rows.size()) {
-        complain(row.line, "the truth has no receiver " + text::in_quotes(row.receiver) + of_source(name_of(row)),
+        complain(row.line,
+                 "the truth has no " + receiver_word() + ' ' + text::in_quotes(row.receiver) + of_source(name_of(row)),
                  "its value cannot be checked", unknown_advice());
       } else {
         take(found, i);
@@ -171,8 +178,9 @@ class Matcher {
   }
 
   [[nodiscard]] std::string unknown_advice() const {
-    return "its receivers have ids such as " + text::in_quotes(truth_.rows.front().receiver) +
-           "; correct the id, or use --match position";
+    const std::string first = text::in_quotes(truth_.rows.front().receiver);
+    if (truth_.is_matrix) return "its rows have names such as " + first + "; correct the name";
+    return "its receivers have ids such as " + first + "; correct the id, or use --match position";
   }
 
   void match_positions() {
@@ -215,7 +223,7 @@ class Matcher {
       return;
     }
     complain(candidate_.rows[row].line,
-             "receiver " + text::in_quotes(truth_.rows[truth_row].receiver) +
+             receiver_word() + ' ' + text::in_quotes(truth_.rows[truth_row].receiver) +
                  of_source(truth_.source_of(truth_.rows[truth_row])) + " already has a value (line " +
                  std::to_string(candidate_.rows[found].line) + ")",
              "only one value can be checked", "keep one of them");
@@ -234,8 +242,8 @@ class Matcher {
     }
     if (missing > kShown) names.push_back(std::to_string(missing - kShown) + " more");
     complain(0,
-             "no value for " + text::counted_of(missing, found_.size(), "row") + " of the truth: receiver " +
-                 text::enumerate(names),
+             "no value for " + text::counted_of(missing, found_.size(), truth_.is_matrix ? "value" : "row") +
+                 " of the truth: " + receiver_word() + ' ' + text::enumerate(names),
              "missing values cannot be checked",
              missing < found_.size() ? "add them, or use --partial to check the others" : "check how rows are matched");
   }

@@ -5,10 +5,11 @@
 #include <unordered_map>
 
 #include "check/grid_ids.h"
+#include "check/name_list.h"
 #include "check/row_keys.h"
-#include "check/table.h"
 #include "exactff/check.h"
 #include "kernel/float_environment.h"
+#include "text/csv_table.h"
 
 namespace exactff::check {
 namespace {
@@ -150,7 +151,7 @@ class TruthReader {
     }
   }
 
-  CsvTable table_;
+  text::CsvTable table_;
   Truth truth_;
   NameList sources_, faces_;
   std::size_t receiver_ = 0, value_ = 0, source_ = 0, on_ = 0, status_ = 0, rho_b_ = 0, exact_ = 0;

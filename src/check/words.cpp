@@ -21,16 +21,26 @@ std::string name_of(const Verdict& verdict) {
   return verdict.criterion + (verdict.source.empty() ? "" : ", source " + verdict.source);
 }
 
+std::string name_of_entry(const std::string& from, const std::string& to) {
+  return "row " + text::in_quotes(from) + ", column " + text::in_quotes(to);
+}
+
 std::string name_of(const RowError& row) {
+  if (row.claim) return name_of_entry(row.receiver, row.source);
   return "receiver " + text::in_quotes(row.receiver) +
          (row.source.empty() ? "" : ", source " + text::in_quotes(row.source));
 }
 
 std::string describe(const RowError& row) {
-  std::string text = "exact " + text::shortest(row.truth) + ", found " + text::shortest(row.value);
+  std::string text = (row.claim ? "" : "exact ") + text::shortest(row.truth);
+  if (row.claim) {
+    text += " in [" + text::shortest(row.lower) + ", " + text::shortest(row.upper) + "] (" +
+            std::string(to_string(*row.claim)) + ")";
+  }
+  text += ", found " + text::shortest(row.value);
   if (!std::isfinite(row.value)) return text;
   text += ", error " + text::short_number(row.error, 4) + ", relative " + text::short_number(row.relative, 4);
-  if (row.status == Status::kNotCertified) text += ", truth not certified";
+  if (!row.claim && row.status == Status::kNotCertified) text += ", truth not certified";
   return text;
 }
 
@@ -46,12 +56,51 @@ std::string sentence(const Verdict& verdict) {
   return text + (verdict.worst ? ", worst at " + name_of(*verdict.worst) : "");
 }
 
+std::vector<std::string> sentences(const MatrixFacts& facts) {
+  std::vector<std::string> texts;
+  const auto at = [](const MatrixFacts::Largest& entry) { return ", at " + name_of_entry(entry.from, entry.to); };
+  if (facts.row_sum) {
+    texts.push_back("sums of rows are at most " + text::short_number(facts.row_sum->by) + " off those of the truth" +
+                    (facts.row_sum->by > 0.0 ? ", in the row of " + text::in_quotes(facts.row_sum->from) : ""));
+  }
+  if (facts.reciprocity) {
+    texts.push_back("A_i F_ij and A_j F_ji differ by at most " + text::short_number(facts.reciprocity->by) +
+                    " of the smaller area" + (facts.reciprocity->by > 0.0 ? at(*facts.reciprocity) : ""));
+  }
+  if (facts.negative > 0) {
+    texts.push_back(text::counted(facts.negative, "entry", "entries") + " below 0, the least " +
+                    text::shortest(facts.least.by) + at(facts.least));
+  }
+  if (facts.above_one > 0) {
+    texts.push_back(text::counted(facts.above_one, "entry", "entries") + " above 1, the largest " +
+                    text::shortest(facts.largest.by) + at(facts.largest));
+  }
+  return texts;
+}
+
+namespace {
+
+// An entry is judged by its bounds, however wide they are.
+void add_words_of_matrix(const Report& report, std::vector<std::string>& texts) {
+  const auto add = [&](std::size_t count, const std::string& what) {
+    if (count == 0) return;
+    texts.push_back(text::counted(count, "entry", "entries") + " of the truth " + what + ": judged by " +
+                    (count == 1 ? "its" : "their") + " bounds, which are up to " +
+                    text::short_number(report.widest) + " wide");
+  };
+  add(report.statistical, "statistical");
+  add(report.not_accurate, "wider than the accuracy it was computed with");
+}
+
+}  // namespace
+
 std::vector<std::string> warnings(const Report& report) {
   std::vector<std::string> texts;
   if (report.not_certified > 0) {
     texts.push_back(text::counted_of(report.not_certified, report.overall.rows, "row") +
                     " of the truth not certified: compared with the enclosure instead");
   }
+  add_words_of_matrix(report, texts);
   if (report.overall.rows < report.truth_rows) {
     texts.push_back(text::counted_of(report.truth_rows - report.overall.rows, report.truth_rows, "row") +
                     " of the truth without a value: not checked");

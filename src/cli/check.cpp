@@ -2,7 +2,7 @@
 #include "exactff/check.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -13,10 +13,11 @@
 #include <vector>
 
 #include "cli/check_images.h"
+#include "cli/check_print.h"
 #include "cli/command.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
-#include "cli/text_table.h"
+#include "exactff/matrix.h"
 #include "exactff/pixels.h"
 #include "text/csv_lines.h"
 #include "text/escape.h"
@@ -41,13 +42,18 @@ constexpr const char* kCheckFooter =
     "With --baseline, --write-baseline writes the file only if nothing got worse.\n"
     "Two EXR images are compared pixel by pixel, in each channel: pixels are receivers, channels are sources. A pixel\n"
     "of the truth that is not a finite number does not count. --error-image shows where the errors are.\n"
+    "A file of `exactff matrix -o` is compared entry by entry with another program's matrix: CSV with from,to,value, a\n"
+    "table with names, View3D's output, or numbers only or .npy in the same order. Rows are receivers, columns are\n"
+    "sources. The error of an entry is its distance from [lower, upper]. Negative entries, entries above 1, sums of\n"
+    "rows and reciprocity are printed.\n"
     "Exit codes: 0 passed, 1 failed, 2 bad input.\n"
     "\n"
     "Examples:\n"
     "  exactff check truth.csv mine.csv --max-abs 1e-4 --quantile 0.99=1e-6 --junit check.xml\n"
     "  exactff check truth.csv mine.csv --match position --tolerance 1e-6 --value-column ff\n"
     "  exactff check truth.csv mine.csv --baseline accuracy.json\n"
-    "  exactff check truth.exr mine.exr --rms 1e-3 --error-image errors.png";
+    "  exactff check truth.exr mine.exr --rms 1e-3 --error-image errors.png\n"
+    "  exactff check factors.csv view3d.out --max-abs 1e-5";
 
 struct CheckArguments {
   std::string truth, candidate;
@@ -151,6 +157,24 @@ auto both(const First& first, const Second& second) {
   return std::pair(std::move(*a), std::move(*b));
 }
 
+// Of images and matrices, which have their own way to match.
+void refuse_flags_of_rows(const CheckArguments& args, const std::string& what, const std::string& why) {
+  const CheckArguments without;
+  const bool by_rows = args.match != without.match || args.position_columns != without.position_columns ||
+                       args.normal_columns != without.normal_columns || args.tolerance != without.tolerance ||
+                       args.normal_tolerance != without.normal_tolerance;
+  if (!by_rows) return;
+  text::refuse("a flag that matches rows is given with two " + what, why,
+               "remove --match, the tolerances and the columns of coordinates");
+}
+
+void require_comparable_matrices(const CheckArguments& args) {
+  check_error_image(args.error_image, false);
+  refuse_flags_of_rows(args, "matrices", "entries are matched by the names of their patches, or by their order");
+  if (args.truth_column == CheckArguments().truth_column) return;
+  text::refuse("--truth-column is given with a matrix", "its values are its factors", "remove it");
+}
+
 // Two images, or neither.
 void require_comparable(const CheckArguments& args) {
   const bool truth = pixels::is_exr(args.truth), candidate = pixels::is_exr(args.candidate);
@@ -160,15 +184,11 @@ void require_comparable(const CheckArguments& args) {
                  "images are compared with images", "give two .exr files, or two tables");
   }
   if (!truth) return;
-  const CheckArguments without;
-  const bool by_rows = args.match != without.match || !args.columns.receiver.empty() || !args.columns.source.empty() ||
-                       args.position_columns != without.position_columns ||
-                       args.normal_columns != without.normal_columns || args.tolerance != without.tolerance ||
-                       args.normal_tolerance != without.normal_tolerance;
-  if (by_rows) {
+  if (!args.columns.receiver.empty() || !args.columns.source.empty()) {
     text::refuse("a flag that matches rows is given with two images", "pixels are matched by their coordinates",
-                 "remove --match, --receiver-column, --source-column, the tolerances and the columns of coordinates");
+                 "remove --receiver-column and --source-column");
   }
+  refuse_flags_of_rows(args, "images", "pixels are matched by their coordinates");
 }
 
 // The images, too, if they are wanted for a picture of the errors.
@@ -178,6 +198,14 @@ check::Report report_of_images(const CheckArguments& args, std::optional<check::
                                   args.columns.value};
   images = check::read_images(args.truth, args.candidate, layers, args.partial);
   return check::judge(images->truth, images->values, criteria_of(args), images->candidate_file);
+}
+
+check::Report report_of_matrices(const CheckArguments& args) {
+  const check::Criteria criteria = criteria_of(args);
+  const check::Matrices matrices = check::read_matrices(args.truth, args.candidate, args.columns, args.partial);
+  check::Report report = check::judge(matrices.truth, matrices.values, criteria, matrices.candidate_file);
+  report.matrix = matrices.facts;
+  return report;
 }
 
 check::Report report_of_tables(const CheckArguments& args) {
@@ -190,133 +218,13 @@ check::Report report_of_tables(const CheckArguments& args) {
 }
 
 check::Report report_of(const CheckArguments& args, std::optional<check::Images>& images) {
-  require_comparable(args);
-  check::Report report = args.are_images() ? report_of_images(args, images) : report_of_tables(args);
+  const bool are_matrices = matrix::is_csv(args.truth);
+  are_matrices ? require_comparable_matrices(args) : require_comparable(args);
+  check::Report report = are_matrices        ? report_of_matrices(args)
+                         : args.are_images() ? report_of_images(args, images)
+                                             : report_of_tables(args);
   if (!args.baseline.empty()) check::hold_against_baseline(report, args.baseline, to_limit(args.slack, "--slack"));
   return report;
-}
-
-void add_statistics(TextTable& table, const std::string& what, const std::string& source,
-                    const check::Statistics& statistics, const check::Distribution& d, bool has_bias) {
-  table.add_row({what, source, std::to_string(statistics.rows - statistics.not_finite), text::short_number(d.median),
-                 text::short_number(d.p90), text::short_number(d.p99), text::short_number(d.p999),
-                 text::short_number(d.max), text::short_number(d.rms),
-                 has_bias ? text::short_number(statistics.bias) : ""});
-}
-
-void add_all(TextTable& table, const std::string& source, const check::Statistics& s) {
-  add_statistics(table, "absolute", source, s, s.absolute, true);
-  add_statistics(table, "relative", source, s, s.relative, false);
-  if (s.radiosity) add_statistics(table, "radiosity", source, s, *s.radiosity, false);
-}
-
-void print_distribution(const check::Report& report) {
-  TextTable table;
-  table.add_column("error");
-  table.add_column("source");
-  for (const char* title : {"rows", "median", "90 %", "99 %", "99.9 %", "max", "RMS", "bias"}) {
-    table.add_column(title, Align::kRight);
-  }
-  const bool several = report.sources.size() > 1;
-  add_all(table, several ? "all" : report.sources.front(), report.overall);
-  for (std::size_t s = 0; several && s < report.sources.size(); ++s) {
-    add_all(table, report.sources[s], report.by_source[s]);
-  }
-  table.print(std::cout);
-  if (report.overall.relative_mse) {
-    std::cout << "Relative MSE, the mean of e^2 / (t^2 + " << text::shortest(check::kRelativeMseEpsilon)
-              << "): " << text::short_number(*report.overall.relative_mse) << '\n';
-  }
-  if (report.overall.leaks > 0) {
-    std::cout << "Truth is 0, but value is not: " << text::counted(report.overall.leaks, "row") << '\n';
-  }
-  std::cout << '\n';
-}
-
-void print_histogram(const check::Report& report) {
-  const check::Histogram histogram = check::histogram(report);
-  std::size_t most = histogram.exact;
-  for (const check::HistogramBin& bin : histogram.bins) most = std::max(most, bin.count);
-  TextTable table;
-  table.add_column("absolute error");
-  table.add_column("rows", Align::kRight);
-  table.add_column("");
-  const auto add = [&](const std::string& range, std::size_t count) {
-    constexpr std::size_t kWidth = 50;
-    const std::size_t length = count == 0 ? 0 : std::max<std::size_t>(1, kWidth * count / most);
-    table.add_row({range, std::to_string(count), std::string(length, '#')});
-  };
-  if (histogram.exact > 0) add("0", histogram.exact);
-  for (const check::HistogramBin& bin : histogram.bins) add("up to " + text::short_number(bin.high, 1), bin.count);
-  table.print(std::cout);
-  std::cout << '\n';
-}
-
-// The first column is always our own text, so that no line can begin with text from a file.
-void print_worst(const check::Report& report) {
-  if (report.worst.empty()) return;
-  std::cout << "Worst rows by " << to_string(report.worst_by) << '\n';
-  TextTable table;
-  table.add_column("#", Align::kRight);
-  for (const char* title : {"receiver", "source"}) table.add_column(title);
-  for (const char* title : {"exact", "found", "error", "relative", "line"}) table.add_column(title, Align::kRight);
-  for (std::size_t i = 0; i < report.worst.size(); ++i) {
-    const check::RowError& row = report.worst[i];
-    table.add_row({std::to_string(i + 1), row.receiver, row.source, text::shortest(row.truth),
-                   text::shortest(row.value), text::short_number(row.error), text::short_number(row.relative),
-                   row.line > 0 ? std::to_string(row.line) : std::string()});
-  }
-  table.print(std::cout);
-  std::cout << '\n';
-}
-
-void print_verdicts(const check::Report& report) {
-  TextTable table;
-  for (const char* title : {"verdict", "criterion", "source"}) table.add_column(title);
-  for (const char* title : {"measured", "limit"}) table.add_column(title, Align::kRight);
-  for (const check::Verdict& verdict : report.verdicts) {
-    table.add_row({verdict.passed ? "pass" : "FAIL", verdict.criterion, verdict.source.empty() ? "all" : verdict.source,
-                   text::short_number(verdict.measured, 6), text::short_number(verdict.limit, 6)});
-  }
-  table.print(std::cout);
-}
-
-void print_improvements(const check::Report& report) {
-  for (const check::Improvement& better : report.improvements) {
-    std::cout << "Better than " << better.criterion
-              << (better.source.empty() ? "" : ", source " + text::printable(better.source)) << ": "
-              << text::short_number(better.recorded) << " -> " << text::short_number(better.now);
-    if (better.recorded > 0.0 && std::isfinite(better.recorded)) {
-      std::cout << ", " << text::short_number(100.0 * (1.0 - better.now / better.recorded)) << " % less";
-    }
-    std::cout << '\n';
-  }
-}
-
-void print_end(const CheckArguments& args, const check::Report& report) {
-  const auto failed = static_cast<std::size_t>(std::count_if(
-      report.verdicts.begin(), report.verdicts.end(), [](const check::Verdict& verdict) { return !verdict.passed; }));
-  if (failed > 0) {
-    std::cout << "Failed: " << failed << " of " << text::counted(report.verdicts.size(), "criterion", "criteria")
-              << '\n';
-  } else {
-    std::cout << "Passed\n";
-  }
-  const bool suggests = failed == 0 && !report.improvements.empty() && args.write_baseline.empty();
-  if (suggests) std::cout << "To record this improvement: --write-baseline " << text::printable(args.baseline) << '\n';
-}
-
-void print(const CheckArguments& args, const check::Report& report) {
-  std::cout << "truth      " << text::printable(report.truth_file) << " (" << text::printable(report.column) << ", "
-            << text::counted(report.truth_rows, "row") << ")\n"
-            << "candidate  " << text::printable(report.candidate_file) << " ("
-            << text::counted(report.overall.rows, "row") << " judged)\n\n";
-  print_distribution(report);
-  print_histogram(report);
-  print_worst(report);
-  print_verdicts(report);
-  print_improvements(report);
-  print_end(args, report);
 }
 
 void draw(const check::Report& report, const std::string& file) {
@@ -356,7 +264,7 @@ int run_check(const CheckArguments& args) {
   const check::Report report = report_of(args, images);
   write_files(args, report);
   if (images && !args.error_image.empty()) write_error_image(args.error_image, *images);
-  print(args, report);
+  print_check(report, args.write_baseline.empty() ? args.baseline : "");
   record(args, report);
   if (args.github) std::cout << check::github_annotations(report);
   for (const std::string& warning : check::warnings(report))
@@ -382,11 +290,11 @@ void add_matching(CLI::App& command, CheckArguments& args) {
       ->type_name("NAME");
   command
       .add_option("--receiver-column", args.columns.receiver,
-                  "The candidate's column of receiver ids (default: receiver or id)")
+                  "The candidate's column of receiver ids (default: receiver or id; from)")
       ->type_name("NAME");
   command
       .add_option("--source-column", args.columns.source,
-                  "The candidate's column of sources (default: source); needed only if the truth has several")
+                  "The candidate's column of sources (default: source; to); needed only if the truth has several")
       ->type_name("NAME");
   command
       .add_option(
@@ -463,10 +371,11 @@ Command add_check(CLI::App& app) {
       app.add_subcommand("check", "Compare the values of another program with a truth file: pass or fail");
   command
       ->add_option("TRUTH", args->truth,
-                   "File written by `exactff truth`, or exact.csv of `exactff compare`; or an EXR image")
+                   "File written by `exactff truth` or `exactff matrix -o`, or exact.csv of `exactff compare`; or an EXR "
+                   "image")
       ->required()
       ->type_name("FILE");
-  command->add_option("CANDIDATE", args->candidate, "CSV file of the values to judge, or an EXR image")
+  command->add_option("CANDIDATE", args->candidate, "CSV file of the values to judge; or an EXR image, or a matrix")
       ->required()
       ->type_name("FILE");
   add_matching(*command, *args);

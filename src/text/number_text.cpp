@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "kernel/numbers.h"
@@ -127,6 +128,14 @@ ParsedNumber parse_number(std::string_view text) {
   const double magnitude = rounded_exactly(significant(number));
   if (std::isinf(magnitude)) return {0.0, NumberFault::kTooLarge};
   return {number.negative && magnitude != 0.0 ? -magnitude : magnitude, NumberFault::kNone};
+}
+
+double not_finite_value(std::string_view text, NumberFault fault) {
+  const std::string word = in_lower_case(text);
+  const double infinity =
+      text.starts_with('-') ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
+  if (fault == NumberFault::kTooLarge || word.find("inf") != std::string::npos) return infinity;
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 std::string describe(NumberFault fault, std::string_view text) {

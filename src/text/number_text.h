@@ -23,6 +23,9 @@ struct ParsedNumber {
 // Correctly rounded to nearest, ties to even, gradual underflow included: 1e-400, -1e-400 and -0 give 0.
 ParsedNumber parse_number(std::string_view text);
 
+// What a text with the fault kNotFinite or kTooLarge means: an infinity or NaN. The sign of "nan" is not kept.
+double not_finite_value(std::string_view text, NumberFault fault);
+
 // "'1e400' is too large for a double": completes "FILE:LINE: ".
 std::string describe(NumberFault fault, std::string_view text);
 // What to do about it: completes a Problem.

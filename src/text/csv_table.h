@@ -3,36 +3,18 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
-#include <utility>
 #include <vector>
 
 #include "exactff/geometry.h"
 #include "text/csv_lines.h"
 #include "text/text_lines.h"
 
-namespace exactff::check {
-
-// Numbers names from 0 in the order of their first use.
-class NameList {
- public:
-  std::uint32_t number_of(const std::string& name) {
-    const auto [found, is_new] = numbers_.try_emplace(name, static_cast<std::uint32_t>(names_.size()));
-    if (is_new) names_.push_back(name);
-    return found->second;
-  }
-  [[nodiscard]] std::vector<std::string> take() { return std::move(names_); }
-
- private:
-  std::unordered_map<std::string, std::uint32_t> numbers_;
-  std::vector<std::string> names_;
-};
+namespace exactff::text {
 
 enum class NotFinite { kRefuse, kAccept };
 
@@ -69,11 +51,11 @@ class CsvTable {
   void take_names();
   [[nodiscard]] bool split(std::string_view line);
 
-  text::CsvLines lines_;
+  CsvLines lines_;
   std::vector<std::string> comments_;
   std::vector<std::string> names_;
   std::vector<std::string> fields_;
-  text::ProblemList problems_;
+  ProblemList problems_;
 };
 
-}  // namespace exactff::check
+}  // namespace exactff::text

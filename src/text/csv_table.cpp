@@ -1,30 +1,20 @@
-#include "check/table.h"
+#include "text/csv_table.h"
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <utility>
 
 #include "text/nearest_names.h"
 #include "text/number_text.h"
 
-namespace exactff::check {
+namespace exactff::text {
 namespace {
 
 std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t kShown = 20;
   std::string text;
   for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) text += (i > 0 ? "," : "") + names[i];
-  return text::in_quotes(text + (names.size() > kShown ? ",..." : ""), text::kShownName);
-}
-
-// The value of a text that is not a finite number. The sign of "nan" is not kept.
-double not_finite_value(std::string_view text, text::NumberFault fault) {
-  const std::string word = text::in_lower_case(text);
-  const double infinity =
-      text.starts_with('-') ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
-  if (fault == text::NumberFault::kTooLarge || word.find("inf") != std::string::npos) return infinity;
-  return std::numeric_limits<double>::quiet_NaN();
+  return in_quotes(text + (names.size() > kShown ? ",..." : ""), kShownName);
 }
 
 }  // namespace
@@ -35,12 +25,12 @@ CsvTable::CsvTable(const std::filesystem::path& path, const std::string& purpose
 
 void CsvTable::read_names() {
   for (std::string_view line; lines_.next(line);) {
-    if (!text::is_csv_comment(line)) {
+    if (!is_csv_comment(line)) {
       if (split(line)) take_names();
       return;
     }
-    const std::string_view content = text::trimmed(line);
-    if (!content.empty()) comments_.emplace_back(text::trimmed(content.substr(1)));
+    const std::string_view content = trimmed(line);
+    if (!content.empty()) comments_.emplace_back(trimmed(content.substr(1)));
   }
   complain("the file has no column names", "columns are identified by their names",
            "begin the file with a line such as receiver,source,value");
@@ -50,7 +40,7 @@ void CsvTable::take_names() {
   names_ = fields_;
   for (auto name = names_.begin(); name != names_.end(); ++name) {
     if (std::find(names_.begin(), name, *name) == name) continue;
-    complain("column " + text::in_quotes(*name) + " occurs twice", "only one can count", "rename one");
+    complain("column " + in_quotes(*name) + " occurs twice", "only one can count", "rename one");
   }
   if (names_.size() > 1 || names_.front().find_first_of(";\t") == std::string::npos) return;
   complain("the column names are not separated by commas", "only comma-separated files are read",
@@ -75,13 +65,13 @@ std::size_t CsvTable::needed_column(std::initializer_list<std::string_view> name
   if (const auto found = first_column(names)) return *found;
   if (names_.empty()) return 0;  // a complaint was already made
   std::string wanted;
-  for (const std::string_view name : names) wanted += (wanted.empty() ? "" : " or ") + text::in_quotes(name);
+  for (const std::string_view name : names) wanted += (wanted.empty() ? "" : " or ") + in_quotes(name);
   complain("there is no column " + wanted + " among " + listed(names_), why, suggestion);
   return 0;
 }
 
 bool CsvTable::split(std::string_view line) {
-  if (text::split_csv_line(line, fields_)) return true;
+  if (split_csv_line(line, fields_)) return true;
   complain("a quotation mark is not closed in its line, or text follows it", "the fields cannot be separated",
            "write a quotation mark inside quotes twice");
   return false;
@@ -89,7 +79,7 @@ bool CsvTable::split(std::string_view line) {
 
 bool CsvTable::next() {
   for (std::string_view line; lines_.next(line);) {
-    if (text::is_csv_comment(line) || !split(line)) continue;
+    if (is_csv_comment(line) || !split(line)) continue;
     if (fields_.size() == names_.size()) return true;
     complain(std::to_string(fields_.size()) + " fields where there are " + std::to_string(names_.size()) + " columns",
              "values would be assigned to the wrong columns",
@@ -100,15 +90,15 @@ bool CsvTable::next() {
 
 double CsvTable::number(std::size_t column, NotFinite not_finite) {
   const std::string& text = fields_[column];
-  const text::ParsedNumber number = text::parse_number(text);
-  if (number.fault == text::NumberFault::kNone) return number.value;
-  const bool meant = number.fault == text::NumberFault::kNotFinite || number.fault == text::NumberFault::kTooLarge;
+  const ParsedNumber number = parse_number(text);
+  if (number.fault == NumberFault::kNone) return number.value;
+  const bool meant = number.fault == NumberFault::kNotFinite || number.fault == NumberFault::kTooLarge;
   if (meant && not_finite == NotFinite::kAccept) return not_finite_value(text, number.fault);
   if (text.empty()) {
-    complain("column " + text::in_quotes(names_[column]) + " is empty", "this column must contain numbers",
+    complain("column " + in_quotes(names_[column]) + " is empty", "this column must contain numbers",
              not_finite == NotFinite::kAccept ? "write nan if there is no result, or remove the row" : "");
   } else {
-    complain(describe(number.fault, text) + " in column " + text::in_quotes(names_[column]),
+    complain(describe(number.fault, text) + " in column " + in_quotes(names_[column]),
              "this column must contain numbers", advice(number.fault));
   }
   return 0.0;
@@ -127,4 +117,4 @@ void CsvTable::complain_at(std::size_t line, std::string what, std::string why, 
   problems_.add({lines_.file(), line, std::move(what), std::move(why), std::move(suggestion)});
 }
 
-}  // namespace exactff::check
+}  // namespace exactff::text
