@@ -7,14 +7,20 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "exactff/jobs.h"
 #include "exactff/progress.h"
 #include "exactff/scene.h"
 #include "exactff/view_factors.h"
+
+namespace exactff::jobs {
+class Team;
+}
 
 namespace exactff::matrix {
 
@@ -73,6 +79,29 @@ struct Table {
 [[nodiscard]] Table read_csv(const std::filesystem::path& file);
 // Whether a file begins like one of these, by its content.
 [[nodiscard]] bool is_csv(const std::filesystem::path& file);
+
+// A matrix that is computed by way of a journal (jobs.h). Keeps a reference to the scene.
+struct Request {
+  const Scene* scene = nullptr;
+  std::vector<Selection> from, to;
+  Options options;
+  jobs::Shard shard;  // if not 1/1, the file holds the pairs of this shard, for merge()
+};
+// Computes the matrix and writes the bytes of csv_text. Throws InputError if the request, the file or the journal is
+// unusable, or if nothing can be written; throws Cancelled if the hooks cancel. Whatever is thrown, and even if the
+// process is killed, the finished pairs in the journal stay valid. With a team (team.h), rank 0 calls this, and
+// jobs::dismiss() must follow, whatever is thrown.
+jobs::Summary write(const Request& request, const std::filesystem::path& file,
+                    jobs::Existing existing = jobs::Existing::kRefuse, const jobs::Hooks& hooks = {},
+                    jobs::Team* team = nullptr);
+// Runs a follower of a team, as truth::follow does.
+int follow(jobs::Team& team, const std::function<Request()>& request, const jobs::Hooks& hooks);
+// Merges all shards of one request into the same bytes as one write() without shards, as truth::merge does.
+jobs::Summary merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& file,
+                    jobs::Existing existing = jobs::Existing::kRefuse, const jobs::Hooks& hooks = {});
+// The matrix in the file that write() or merge() made for this request. Throws InputError if the file is damaged or of
+// other patches.
+[[nodiscard]] Matrix read(const Request& request, const std::filesystem::path& file);
 
 // Writes the arrays of a sparse matrix (CSR) for NumPy and SciPy: scipy.sparse.load_npz(path) gives the factors.
 // `radius`, in the order of `data`: data - radius and data + radius are bounds. `claim` likewise. `from` and `to` are

@@ -1,8 +1,8 @@
-// Several processes, on one machine or many, that compute one truth file together. Rank 0 is the leader: only the
+// Several processes, on one machine or many, that compute the rows of one file together. Rank 0 is the leader: only the
 // leader opens the journal, distributes rows and collects finished rows. The other processes are followers.
 //
 // The messages between them:
-//   follower to leader   hello    the head of the truth file as the follower sees it: all heads must be the same
+//   follower to leader   hello    the head of the file as the follower sees it: all heads must be the same
 //                        ask      requests a number of pieces of work
 //                        rows     finished rows: range, slow rows, lines
 //                        trouble  why the follower cannot continue, and the kind of cause
@@ -14,16 +14,10 @@
 // A leader that throws must still dismiss the followers; only then may the processes end.
 #pragma once
 
-#include <deque>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "exactff/truth.h"
-
-namespace exactff::truth {
+namespace exactff::jobs {
 
 struct Message {
   int rank = 0;  // of the sender
@@ -45,15 +39,7 @@ class Team {
 // The default number of threads of a process: the processes of a machine share its cores.
 [[nodiscard]] int fair_threads(const Team& team);
 
-// The same as write() without a team, which a null pointer stands for. Called by rank 0 only. dismiss() must follow,
-// whatever is thrown.
-Summary write(Request request, const std::filesystem::path& file, Existing existing, const Hooks& hooks, Team* team);
-
 // Ends the followers of this team with an exit code. Waits until each has sent bye.
 void dismiss(Team& team, int exit_code);
 
-// Runs a follower, that is, any other rank. `request` must make the same request as the leader's; what it throws is
-// sent to the leader. Only the hooks `cancelled` and slow_seconds are used. Returns the exit code.
-int follow(Team& team, const std::function<Request()>& request, const Hooks& hooks);
-
-}  // namespace exactff::truth
+}  // namespace exactff::jobs

@@ -18,22 +18,27 @@
 #include <vector>
 
 #include "exactff/exact.h"
+#include "exactff/jobs.h"
 #include "exactff/pixels.h"
 #include "exactff/progress.h"
 #include "exactff/quantity.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
 
+namespace exactff::jobs {
+class Team;
+}
+
 namespace exactff::truth {
 
 // Rows are distributed in chunks of this size, counted from the first row. A shard consists of whole chunks.
 inline constexpr std::uint32_t kChunkRows = 64;
 
-// Chunk k, counted from 0, belongs to shard `number` (from 1) of `count` if k mod count = number - 1.
-struct Shard {
-  std::uint64_t number = 1;
-  std::uint64_t count = 1;
-};
+using jobs::Existing;
+using jobs::Hooks;
+using jobs::journal_of;
+using jobs::require_free;
+using jobs::Shard;
 
 // The rows to compute. Keeps a reference to the scene.
 struct Request {
@@ -60,46 +65,23 @@ struct Request {
   int threads = 0;                   // 0: as many as this process may use
 };
 
-// What to do if there is already a file or a journal. Both may hold hours of work.
-enum class Existing {
-  kRefuse,   // InputError
-  kResume,   // continue with the journal; a complete file of the same request is left as it is
-  kReplace,  // start again; the old journal is lost at once, the old file when the new one is complete
-};
-
-// Callbacks. All are called from the thread that called write() or merge(), except `cancelled`, which is called from
-// any thread.
-struct Hooks {
-  std::function<void(const Progress&)> progress = {};  // in rows
-  std::function<bool()> cancelled = {};                // called often, as Hooks of exactff/progress.h
-  std::function<void(const std::string&)> note = {};   // notes for the user, such as a damaged journal
-  std::function<void(const std::string& row, double seconds)> slow_row = {};  // "receiver '7', source 'light'"
-  double slow_seconds = 1.0;  // a row that takes at least this long is slow
-};
-
-struct Summary {
-  std::uint64_t rows = 0;
+struct Summary : jobs::Summary {
   std::array<std::uint64_t, 4> rows_by_status{};  // by Status
-  std::uint64_t resumed = 0;                      // rows that were already finished
-  std::uint64_t slow = 0;                         // rows reported to Hooks::slow_row
-  double seconds = 0.0;                           // wall time of computing the other rows
 
   [[nodiscard]] std::uint64_t with(Status status) const { return rows_by_status[static_cast<std::size_t>(status)]; }
 };
 
-// The path of the journal of `file`: beside it, with ".part" appended.
-[[nodiscard]] std::filesystem::path journal_of(const std::filesystem::path& file);
-
-// Throws InputError if no truth file can be made at `file`: if it is a folder or a device, or if it exists already and
-// `existing` says to refuse.
-void require_free(const std::filesystem::path& file, Existing existing);
-
 // Computes the rows and writes the file. Throws InputError if the request, the file or the journal is unusable (a
 // journal may be from another request or in use by another process), or if nothing can be written; throws
 // Cancelled if the hooks cancel. Whatever is thrown, and even if the process is killed, the rows in the journal
-// stay valid: at most a second of work and the current row of each thread are lost.
+// stay valid: at most a second of work and the current row of each thread are lost. With a team (team.h), rank 0 calls
+// this, and jobs::dismiss() must follow, whatever is thrown.
 Summary write(Request request, const std::filesystem::path& file, Existing existing = Existing::kRefuse,
-              const Hooks& hooks = {});
+              const Hooks& hooks = {}, jobs::Team* team = nullptr);
+
+// Runs a follower of a team, that is, any other rank. `request` must make the same request as the leader's; what it
+// throws is sent to the leader. Only the hooks `cancelled` and slow_seconds are used. Returns the exit code.
+int follow(jobs::Team& team, const std::function<Request()>& request, const Hooks& hooks);
 
 // Computes the rows and writes the same bytes to a stream, each row as soon as those before it are written. Keeps
 // nothing, so there is nothing to continue with. Throws InputError if the request is unusable or for a shard, or if the

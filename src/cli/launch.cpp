@@ -10,6 +10,8 @@
 #include <optional>
 #include <system_error>
 
+#include "exactff/error.h"
+
 namespace exactff::cli {
 namespace {
 
@@ -56,15 +58,15 @@ fs::path module_path() {
 
 int launched_rank() { return number_in_environment(kRanks).value_or(0); }
 
-std::unique_ptr<truth::Team> join_team() {
+std::unique_ptr<jobs::Team> join_team() {
   if (!launched_with_others()) return nullptr;
   // RTLD_GLOBAL: Open MPI loads its own components, which need its symbols. The module is never closed.
   void* module = ::dlopen(module_path().c_str(), RTLD_NOW | RTLD_GLOBAL);
   if (module == nullptr) refuse(::dlerror());
-  using Join = truth::Team*();
+  using Join = jobs::Team*();
   auto* const join = reinterpret_cast<Join*>(::dlsym(module, "exactff_join_mpi"));
   if (join == nullptr) refuse(::dlerror());
-  std::unique_ptr<truth::Team> team(join());
+  std::unique_ptr<jobs::Team> team(join());
   return team->size() > 1 ? std::move(team) : nullptr;
 }
 

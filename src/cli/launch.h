@@ -13,6 +13,6 @@ namespace exactff::cli {
 // Returns null if this process was started alone; the program then neither needs MPI nor waits until it is loaded.
 // Throws InputError if several processes were started and MPI is not available: each would do all the work. Call it
 // once, before the first thread is started.
-[[nodiscard]] std::unique_ptr<truth::Team> join_team();
+[[nodiscard]] std::unique_ptr<jobs::Team> join_team();
 
 }  // namespace exactff::cli

@@ -3,15 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <limits>
 #include <memory>
 #include <span>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "cli/command.h"
 #include "cli/further_files.h"
+#include "cli/kept_work.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/text_table.h"
@@ -33,6 +37,10 @@ constexpr const char* kMatrixFooter =
     "1 - 1e-6, from exact point factors. A warning counts the entries that are wider than the accuracy.\n"
     "With --backs and --to all,sky each row also has what meets the backs of faces, and what is open. Then it must\n"
     "add up to 1; if a row does not, the exit code is 1.\n"
+    "With -o, finished pairs are kept in FILE.part until FILE is complete; after an interruption, the same command with\n"
+    "--resume continues from there. On several machines: `mpirun -n 4 exactff matrix ... -o FILE`, or separate jobs\n"
+    "with --shard 1/4, 2/4, ... whose files `exactff merge` joins. With --resume and a complete FILE, also a merged\n"
+    "one, the other files are made again. The bytes depend on none of this.\n"
     "View3D's output has six decimals and no bounds; its rows add up to 1 only within that. EnergyPlus reads the\n"
     "names of patches as names of surfaces.\n"
     "\n"
@@ -49,7 +57,18 @@ struct MatrixArguments {
   bool plain = false;
   std::string csv, npz, view3d, energyplus, vtk;
   std::string zone = "Zone 1";
+  std::string shard;
+  bool resume = false;
   bool force = false;
+
+  [[nodiscard]] jobs::Existing existing() const {
+    return resume ? jobs::Existing::kResume : force ? jobs::Existing::kReplace : jobs::Existing::kRefuse;
+  }
+  // A pipe or a device has no journal.
+  [[nodiscard]] bool keeps_work() const {
+    std::error_code ignored;
+    return !csv.empty() && (!std::filesystem::is_other(csv, ignored) || resume || !shard.empty());
+  }
 };
 
 // Takes "sky" out of the columns, unless a patch has this name.
@@ -172,13 +191,32 @@ bool test_rows(const MatrixArguments& args, const Scene& scene, const matrix::Ma
 
 // --- Files ---
 
+// What only a file with a journal can have, and what a part of the pairs cannot give.
+void check_shard_and_resume(const MatrixArguments& args) {
+  if (args.csv.empty() && (args.resume || !args.shard.empty())) {
+    text::refuse(std::string(args.resume ? "--resume" : "--shard") + " is given without -o",
+                 "finished pairs are kept beside the file of -o", "name a file, for example -o factors.csv");
+  }
+  if (args.shard.empty()) return;
+  for (const auto& [flag, given] :
+       {std::pair("--plain", args.plain), std::pair("--npz", !args.npz.empty()), std::pair("--vtk", !args.vtk.empty()),
+        std::pair("--view3d", !args.view3d.empty()), std::pair("--energyplus", !args.energyplus.empty())}) {
+    if (!given) continue;
+    text::refuse(std::string(flag) + " is given with --shard", "a shard has only a part of the entries",
+                 "after exactff merge, run this command without --shard, with --resume and -o FILE for the merged file");
+  }
+}
+
 void check_outputs(const MatrixArguments& args) {
-  if (!args.csv.empty()) require_free_file(args.csv, args.force);
+  check_shard_and_resume(args);
   std::vector<OutputFile> before;
-  if (!args.csv.empty()) before.push_back({"-o", args.csv});
+  if (args.keeps_work()) {
+    jobs::require_free(args.csv, args.existing());
+    before = {{"-o", args.csv}, {"the journal of -o", jobs::journal_of(args.csv)}};
+  }
   check_output_files(
       {{"--npz", args.npz}, {"--view3d", args.view3d}, {"--energyplus", args.energyplus}, {"--vtk", args.vtk}}, before,
-      args.force);
+      args.existing() != jobs::Existing::kRefuse);
 }
 
 void check_row_of_vtk(const MatrixArguments& args, const std::vector<Selection>& from) {
@@ -207,7 +245,7 @@ void write_files(const MatrixArguments& args, const Scene& scene, const matrix::
   const auto write_text = [](const std::string& file, const auto& text) {
     if (!file.empty()) write_whole_file(file, text());
   };
-  write_text(args.csv, [&] { return csv_text(scene, matrix, args.options.factors); });
+  if (!args.keeps_work()) write_text(args.csv, [&] { return csv_text(scene, matrix, args.options.factors); });
   if (!args.npz.empty()) write_npz(scene, matrix, args.npz);
   write_text(args.view3d, [&] { return view3d_text(scene, matrix); });
   write_text(args.energyplus, [&] { return energyplus_text(scene, matrix, args.zone); });
@@ -237,25 +275,109 @@ void check_content(const MatrixArguments& args, const Scene& scene, const std::v
   if (!args.energyplus.empty()) (void)energyplus_text(scene, empty, args.zone);
 }
 
-int run(MatrixArguments args) {
-  check_outputs(args);
-  const Scene scene = args.scene.load();
-  print_warnings(scene.warnings());
-  args.options.open = take_sky(scene, args.to);
-  const std::vector<Selection> from = flags::selections_named(scene, args.from),
-                               to = flags::selections_named(scene, args.to);
-  check_content(args, scene, from, to);
+// A request and the scene that it refers to.
+struct MatrixJob {
+  Scene scene;
+  matrix::Request request;
+};
+
+std::unique_ptr<MatrixJob> job_of(const MatrixArguments& args, const jobs::Team* team) {
+  const jobs::Shard shard = shard_of(args.shard);
+  auto job = std::make_unique<MatrixJob>(MatrixJob{args.scene.load(), {}});
+  print_warnings(job->scene.warnings());
+  std::vector<std::string> to = args.to;
+  matrix::Request& request = job->request;
+  request.scene = &job->scene;
+  request.options = args.options;
+  request.options.open = take_sky(job->scene, to);
+  if (args.options.threads == 0 && team != nullptr) request.options.threads = jobs::fair_threads(*team);
+  request.from = flags::selections_named(job->scene, args.from);
+  request.to = flags::selections_named(job->scene, to);
+  request.shard = shard;
+  check_content(args, job->scene, request.from, request.to);
+  return job;
+}
+
+matrix::Matrix compute(const MatrixJob& job) {
+  const InterruptWatch watch("exactff: interrupted; nothing was written\n");
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
-  const matrix::Matrix matrix = compute(scene, from, to, args.options, hooks);
+  const matrix::Request& request = job.request;
+  matrix::Matrix result = matrix::compute(job.scene, request.from, request.to, request.options, hooks);
   bar.clear();
+  return result;
+}
+
+constexpr double kNeverSlow = std::numeric_limits<double>::infinity();  // long pairs are usual
+
+void print_summary(const MatrixArguments& args, const jobs::Summary& summary) {
+  std::cout << text::counted(summary.rows, "pair") << " (" << summary.resumed << " of them were already computed)\n"
+            << "Shard: " << text::printable(args.csv) << '\n';
+  check_output(std::cout);
+}
+
+// The values of the finished file, or of no file at all.
+int finish(const MatrixArguments& args, const MatrixJob& job, const matrix::Matrix& matrix) {
   warn_of_width(args, matrix);
-  write_files(args, scene, matrix);
-  args.plain ? print_plain(scene, matrix) : print_table(scene, matrix);
-  const bool sound = test_rows(args, scene, matrix);
+  write_files(args, job.scene, matrix);
+  args.plain ? print_plain(job.scene, matrix) : print_table(job.scene, matrix);
+  const bool sound = test_rows(args, job.scene, matrix);
   if (!args.plain) print_files(args);
   check_output(std::cout);
   return sound ? 0 : 1;
+}
+
+int write(const MatrixArguments& args, jobs::Team* team) {
+  check_outputs(args);
+  if (!args.keeps_work()) {
+    const std::unique_ptr<MatrixJob> job = job_of(args, nullptr);
+    return finish(args, *job, compute(*job));
+  }
+  Narrator narrator("pair");
+  jobs::Summary summary;
+  std::unique_ptr<MatrixJob> job;
+  try {
+    job = job_of(args, team);
+    const InterruptWatch watch(words_of_interruption("pair", args.csv));
+    summary = matrix::write(job->request, args.csv, args.existing(), narrator.hooks(kNeverSlow), team);
+  } catch (const Cancelled&) {
+    narrator.tell_what_is_kept("interrupted", args.csv);
+    return exit_code_of_interruption();
+  } catch (...) {
+    narrator.tell_what_is_kept("stopped by the error below", args.csv);
+    throw;
+  }
+  narrator.clear();
+  if (args.shard.empty()) return finish(args, *job, matrix::read(job->request, args.csv));
+  print_summary(args, summary);
+  return 0;
+}
+
+int follow(const MatrixArguments& args, jobs::Team& team) {
+  std::unique_ptr<MatrixJob> job;
+  const auto request = [&] {
+    job = job_of(args, &team);
+    return job->request;
+  };
+  return matrix::follow(team, request, {.cancelled = is_interrupted, .slow_seconds = kNeverSlow});
+}
+
+// Under mpirun only rank 0 has the standard input, and only a file with a journal is computed together.
+void check_flags_of_a_team(const MatrixArguments& args) {
+  if (args.scene.from_standard_input()) {
+    text::refuse("- stands for standard input", "several processes under mpirun cannot share it",
+                 "name a file, or run exactff without mpirun");
+  }
+  if (args.keeps_work()) return;
+  text::refuse("several processes were started together, and -o names no file",
+               "they share the work by the journal of that file", "give -o FILE.csv, or run exactff without mpirun");
+}
+
+int run(const MatrixArguments& args) {
+  return run_alone_or_in_team({.row = "pair",
+                               .refuse = [&] { check_flags_of_a_team(args); },
+                               .write = [&](jobs::Team* team) { return write(args, team); },
+                               .follow = [&](jobs::Team& team) { return follow(args, team); }});
 }
 
 void add_outputs(CLI::App& command, MatrixArguments& args) {
@@ -271,7 +393,10 @@ void add_outputs(CLI::App& command, MatrixArguments& args) {
       ->capture_default_str();
   command.add_option("--vtk", args.vtk, "Write the one row that --from names, on the scene, as NAME.vtp or NAME.vtu")
       ->type_name("FILE");
-  command.add_flag("--force", args.force, "Replace existing files");
+  command.add_option("--shard", args.shard, "Compute only part I of N, for exactff merge: 1/4 is the first of four")
+      ->type_name("I/N");
+  CLI::Option* resume = command.add_flag("--resume", args.resume, "Continue an interrupted run, if there is one");
+  command.add_flag("--force", args.force, "Start again and replace existing files")->excludes(resume);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// exactff merge: joins the shards of a truth file.
+// exactff merge: joins the shards of a truth file or of a matrix.
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -9,16 +9,20 @@
 #include "cli/further_files.h"
 #include "cli/long_run.h"
 #include "cli/truth_summary.h"
+#include "exactff/matrix.h"
 #include "exactff/truth.h"
 #include "text/escape.h"
+#include "text/phrases.h"
+#include "text/refuse.h"
 
 namespace exactff::cli {
 namespace {
 
 constexpr const char* kMergeFooter =
-    "Shards are the files that `exactff truth --shard 1/N` to `--shard N/N` wrote with the same flags. They can be\n"
-    "given in any order. merge stops if a shard is missing, given twice, damaged, unfinished or from a run with other\n"
-    "flags. FILE has the same bytes as the result of one run without shards. It appears only when it is complete.\n"
+    "Shards are the files that `exactff truth` or `exactff matrix` wrote with --shard 1/N to --shard N/N and otherwise\n"
+    "the same flags. They can be given in any order. merge stops if a shard is missing, given twice, damaged,\n"
+    "unfinished or from a run with other flags. FILE has the same bytes as the result of one run without shards. It\n"
+    "appears only when it is complete.\n"
     "\n"
     "Example:\n"
     "  exactff merge truth.*.csv -o truth.csv";
@@ -30,6 +34,19 @@ struct MergeArguments {
   FurtherFiles further;
 };
 
+int merge_matrix(const MergeArguments& args, const jobs::Hooks& hooks, const ProgressBar& bar) {
+  if (!args.further.npy.empty()) {
+    text::refuse("--npy is given with shards of a matrix", "it writes the values of a truth file",
+                 "run exactff matrix with --resume, -o for the merged file and --npz");
+  }
+  const jobs::Summary summary = matrix::merge({args.shards.begin(), args.shards.end()}, args.file,
+                                              args.force ? jobs::Existing::kReplace : jobs::Existing::kRefuse, hooks);
+  bar.clear();
+  std::cout << text::counted(summary.rows, "pair") << "\nMatrix: " << text::printable(args.file) << '\n';
+  check_output(std::cout);
+  return 0;
+}
+
 int run(const MergeArguments& args) {
   check_further_files(args.further, args.file, args.force);
   std::string given_up = "exactff: interrupted; nothing was written\n";
@@ -39,6 +56,9 @@ int run(const MergeArguments& args) {
                            .cancelled = is_interrupted};
   truth::Summary summary;
   try {
+    if (jobs::command_of_shard(args.shards.front()) == "matrix") {
+      return merge_matrix(args, hooks, bar);
+    }
     summary = truth::merge({args.shards.begin(), args.shards.end()}, args.file,
                            args.force ? truth::Existing::kReplace : truth::Existing::kRefuse, hooks);
     given_up = "exactff: interrupted; " + text::printable(args.file) + " is complete, the NumPy file was not written\n";
@@ -56,8 +76,8 @@ int run(const MergeArguments& args) {
 
 Command add_merge(CLI::App& app) {
   auto args = std::make_shared<MergeArguments>();
-  CLI::App* command = app.add_subcommand("merge", "Join the shards of a truth file");
-  command->add_option("SHARD", args->shards, "Files written by exactff truth --shard")->required()->type_name("FILE");
+  CLI::App* command = app.add_subcommand("merge", "Join the shards of a truth file or of a matrix");
+  command->add_option("SHARD", args->shards, "Files written by exactff truth --shard or exactff matrix --shard")->required()->type_name("FILE");
   command->add_flag("--force", args->force, "Replace an existing file");
   command->add_option("-o,--output", args->file, "CSV file to write")->required()->type_name("FILE");
   args->further.add_npy_to(*command);

@@ -3,7 +3,6 @@
 
 #include <unistd.h>
 
-#include <charconv>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -12,9 +11,8 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/exit_code.h"
 #include "cli/further_files.h"
-#include "cli/launch.h"
+#include "cli/kept_work.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/truth_summary.h"
@@ -79,20 +77,6 @@ struct TruthArguments {
   }
 };
 
-truth::Shard shard_of(const std::string& text) {
-  truth::Shard shard;
-  if (text.empty()) return shard;
-  const char* const end = text.data() + text.size();
-  const auto number = std::from_chars(text.data(), end, shard.number);
-  if (number.ec == std::errc{} && number.ptr != end && *number.ptr == '/') {
-    const auto count = std::from_chars(number.ptr + 1, end, shard.count);
-    if (count.ec == std::errc{} && count.ptr == end && shard.number >= 1 && shard.number <= shard.count) return shard;
-  }
-  throw InputError({.what = "--shard: " + text::in_quotes(text) + " is not a shard",
-                    .why = "a shard is a part of the rows, numbered from 1",
-                    .suggestion = "write number/count, for example --shard 1/4 to --shard 4/4"});
-}
-
 // A request and the scene that it refers to.
 struct Job {
   Scene scene;
@@ -100,7 +84,7 @@ struct Job {
   std::optional<pixels::Frame> frame = {};  // if the receivers are pixels
 };
 
-std::unique_ptr<Job> job_of(const TruthArguments& args, const truth::Team* team) {
+std::unique_ptr<Job> job_of(const TruthArguments& args, const jobs::Team* team) {
   const truth::Shard shard = shard_of(args.shard);
   flags::check_receiver_options(args.receivers);
   flags::check_standard_input(args.scene, args.receivers);
@@ -125,7 +109,7 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const truth::Team* team)
   request.ke = args.ke == "radiance" ? KeMeans::kRadiance : KeMeans::kRadiosity;
   request.engine = args.engine.engine();
   request.shard = shard;
-  request.threads = args.threads > 0 || team == nullptr ? args.threads : truth::fair_threads(*team);
+  request.threads = args.threads > 0 || team == nullptr ? args.threads : jobs::fair_threads(*team);
   return job;
 }
 
@@ -134,55 +118,6 @@ void tell_of_sources(const Job& job) {
   const std::string note = flags::note_on_sources_without_emission(job.scene, job.request.sources);
   if (!note.empty()) std::cerr << "note: " << text::printable(note) << '\n';
 }
-
-// Prints progress and messages while rows are computed.
-class Narrator {
- public:
-  [[nodiscard]] truth::Hooks hooks(double slow_seconds) {
-    return {.progress = [this](const Progress& progress) { show(progress); },
-            .cancelled = is_interrupted,
-            .note = [this](const std::string& text) { tell("warning: " + text::printable(text)); },
-            .slow_row = [this](const std::string& row, double seconds) { tell_slow(row, seconds); },
-            .slow_seconds = slow_seconds};
-  }
-  void clear() const { bar_.clear(); }
-
-  // Called when the work has been given up.
-  void tell_what_is_kept(const std::string& reason, const std::string& file) const {
-    bar_.clear();
-    if (rows_.total == 0 && !is_interrupted()) return;  // it had not begun
-    std::cerr << "exactff: " << reason << "; ";
-    if (rows_.total == 0) {
-      std::cerr << "no row was begun\n";
-    } else if (rows_.done == 0) {
-      std::cerr << "no row was finished; nothing was written\n";
-    } else {
-      std::cerr << rows_.done << " of " << text::counted(rows_.total, "row") << " are kept in "
-                << text::printable(truth::journal_of(file).string())
-                << "; to continue, run the same command with --resume\n";
-    }
-  }
-
- private:
-  void show(const Progress& progress) {
-    if (progress.stage == "rows") rows_ = progress;
-    bar_.show(progress);
-  }
-  void tell(const std::string& text) {
-    bar_.clear();
-    std::cerr << text << '\n';
-  }
-  void tell_slow(const std::string& row, double seconds) {
-    constexpr int kMostTold = 50;
-    if (++slow_ > kMostTold) return;
-    tell("slow: " + text::printable(row) + " took " + text::duration(seconds));
-    if (slow_ == kMostTold) tell("slow: further slow rows are counted, but not listed");
-  }
-
-  ProgressBar bar_;
-  Progress rows_;
-  int slow_ = 0;
-};
 
 void check_totals(const TruthArguments& args) {
   if (!args.ke.empty() && !args.quantity()) {
@@ -220,7 +155,7 @@ int write_to_standard_output(const TruthArguments& args) {
   check_standard_output(args);
   const std::string words = "exactff: interrupted; the printed rows are incomplete, and nothing is kept\n";
   const InterruptWatch watch(words);
-  Narrator narrator;
+  Narrator narrator("row");
   truth::Hooks hooks = narrator.hooks(args.slow_seconds);
   if (::isatty(STDOUT_FILENO) == 1) hooks.progress = {};  // the rows are to be seen
   truth::Summary summary;
@@ -270,22 +205,20 @@ int write_further_files(const TruthArguments& args, const Job& job, truth::Hooks
   }
 }
 
-int write(const TruthArguments& args, truth::Team* team) {
+int write(const TruthArguments& args, jobs::Team* team) {
   check_outputs(args);
-  Narrator narrator;
+  Narrator narrator("row");
   truth::Summary summary;
   std::unique_ptr<Job> job;
   try {
     job = with_progress([&] { return job_of(args, team); });
     tell_of_sources(*job);
-    const InterruptWatch watch("exactff: interrupted; all finished rows are kept in " +
-                               text::printable(truth::journal_of(args.file).string()) +
-                               "; to continue, run the same command with --resume\n");
+    const InterruptWatch watch(words_of_interruption("row", args.file));
     truth::Request request = args.further.vtk.empty() ? std::move(job->request) : job->request;
     summary = truth::write(std::move(request), args.file, args.existing(), narrator.hooks(args.slow_seconds), team);
   } catch (const Cancelled&) {
     narrator.tell_what_is_kept("interrupted", args.file);
-    return 128 + (interrupting_signal() != 0 ? interrupting_signal() : SIGTERM);  // another rank was interrupted
+    return exit_code_of_interruption();
   } catch (...) {
     narrator.tell_what_is_kept("stopped by the error below", args.file);
     throw;
@@ -295,17 +228,7 @@ int write(const TruthArguments& args, truth::Team* team) {
   return interrupted != 0 ? interrupted : print_summary(summary, args.file, args.further);
 }
 
-// Errors are printed before the followers are dismissed: mpirun may then end this process, too.
-int lead(const TruthArguments& args, truth::Team& team) {
-  const int exit_code = exit_code_of([&] { return write(args, &team); });
-  truth::dismiss(team, exit_code);
-  return exit_code;
-}
-
-// Prints nothing, not even when it is interrupted: the leader reports all errors.
-int follow(const TruthArguments& args, truth::Team& team) {
-  std::cerr.rdbuf(nullptr);
-  const InterruptWatch silent("");
+int follow(const TruthArguments& args, jobs::Team& team) {
   std::unique_ptr<Job> job;
   const auto request = [&] {
     job = job_of(args, &team);
@@ -324,23 +247,12 @@ void refuse_pipes_of_a_team(const TruthArguments& args) {
 }
 
 int run(const TruthArguments& args) {
-  std::unique_ptr<truth::Team> team;
-  try {
-    team = join_team();
-    if (team != nullptr) refuse_pipes_of_a_team(args);
-  } catch (const InputError&) {
-    if (launched_rank() > 0) return 0;  // rank 0 reports it
-    throw;
-  }
-  if (args.to_standard_output()) return write_to_standard_output(args);
-  const InterruptWatch watch("exactff: interrupted; no row was begun\n");
-  if (team == nullptr) return write(args, nullptr);
-  const int exit_code = team->rank() == 0 ? lead(args, *team) : follow(args, *team);
-  // All is said. While a process waits here for the others to finish, mpirun may end it because another exit code is
-  // not 0; that is no interruption to tell of.
-  const InterruptWatch silent("");
-  team.reset();
-  return exit_code;
+  return run_alone_or_in_team(
+      {.row = "row",
+       .refuse = [&] { refuse_pipes_of_a_team(args); },
+       .write =
+           [&](jobs::Team* team) { return args.to_standard_output() ? write_to_standard_output(args) : write(args, team); },
+       .follow = [&](jobs::Team& team) { return follow(args, team); }});
 }
 
 }  // namespace

@@ -1,90 +1,17 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <set>
 #include <stdexcept>
 
 #include "exactff/matrix.h"
 #include "kernel/float_environment.h"
+#include "matrix/entry_jobs.h"
+#include "matrix/outward.h"
 #include "matrix/surroundings.h"
+#include "work/parallel.h"
 
 namespace exactff::matrix {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-double below(double x) { return std::nextafter(x, -kInfinity); }
-double above(double x) { return std::nextafter(x, kInfinity); }
-
-// The same patches of a scene with more faces.
-std::vector<Selection> of_any_scene(std::span<const Selection> patches) {
-  std::vector<Selection> result(patches.begin(), patches.end());
-  for (Selection& patch : result) patch.scene = kAnyScene;
-  return result;
-}
-
-void take_work(ViewFactor& sum, const ViewFactor& f) {
-  sum.claim = weaker(sum.claim, f.claim);
-  sum.accurate = sum.accurate && f.accurate;
-  sum.cells += f.cells;
-  sum.event_cells += f.event_cells;
-}
-
-// Zero is exact, so that proved zeros stay zeros.
-void add(ViewFactor& sum, const ViewFactor& f) {
-  sum.area_from = f.area_from;
-  sum.area_to += f.area_to;
-  take_work(sum, f);
-  if (f.upper == 0.0) return;
-  const bool first = sum.upper == 0.0;
-  sum.value += f.value;
-  sum.lower = first ? f.lower : std::max(0.0, below(sum.lower + f.lower));
-  sum.upper = first ? f.upper : above(sum.upper + f.upper);
-}
-
-// f is a part of the sum.
-void subtract(ViewFactor& sum, const ViewFactor& f) {
-  sum.area_to = std::max(0.0, sum.area_to - f.area_to);
-  take_work(sum, f);
-  if (f.upper == 0.0) return;
-  sum.value -= f.value;
-  sum.lower = below(sum.lower - f.upper);
-  sum.upper = above(sum.upper - f.lower);
-}
-
-void clamp(ViewFactor& sum) {
-  sum.lower = std::clamp(sum.lower, 0.0, 1.0);
-  sum.upper = std::clamp(sum.upper, 0.0, 1.0);
-  sum.value = std::clamp(sum.value, sum.lower, sum.upper);
-}
-
-std::vector<ViewFactor> factors_to_backs(const Scene& scene, std::span<const Selection> from, const Options& options,
-                                         const Hooks& hooks) {
-  const SceneWithBacks all = with_backs(scene);
-  std::vector<Selection> to;
-  for (const auto& patch : {all.backs, all.both, all.fronts}) {
-    if (patch) to.push_back(*patch);
-  }
-  const ViewFactorMatrix parts =
-      view_factor_matrix(all.scene, of_any_scene(from), to, options.factors, options.threads, hooks);
-  std::vector<ViewFactor> result(from.size());
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    for (std::size_t j = 0; j < to.size(); ++j) {
-      const bool is_fronts = all.fronts && to[j] == *all.fronts;
-      is_fronts ? subtract(result[i], parts.at(i, j)) : add(result[i], parts.at(i, j));
-    }
-    clamp(result[i]);
-  }
-  return result;
-}
-
-std::vector<ViewFactor> factors_to_sky(const Scene& scene, std::span<const Selection> from, const Options& options,
-                                       const Hooks& hooks) {
-  const SceneWithSky all = with_sky(scene);
-  return view_factor_matrix(all.scene, of_any_scene(from), {&all.sky, 1}, options.factors, options.threads, hooks)
-      .entries;
-}
 
 // Each patch with area is a column, as a whole, exactly once.
 bool has_every_patch(const Scene& scene, const std::vector<Selection>& to) {
@@ -114,6 +41,15 @@ int strength(Claim claim) {
   return found == kClaims.end() ? -1 : static_cast<int>(found - kClaims.begin());
 }
 
+// By its number, row by row, with back and open.
+ViewFactor& entry_of(Matrix& matrix, std::size_t entry) {
+  const std::size_t patches = matrix.factors.to.size();
+  const std::size_t width = patches + (matrix.back.empty() ? 0 : 1) + (matrix.open.empty() ? 0 : 1);
+  const std::size_t row = entry / width, column = entry % width;
+  if (column < patches) return matrix.factors.entries[row * patches + column];
+  return (matrix.back.empty() || column > patches ? matrix.open : matrix.back)[row];
+}
+
 }  // namespace
 
 Claim weaker(Claim a, Claim b) { return strength(a) <= strength(b) ? a : b; }
@@ -121,10 +57,15 @@ Claim weaker(Claim a, Claim b) { return strength(a) <= strength(b) ? a : b; }
 Matrix compute(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
                const Options& options, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
-  Matrix result{view_factor_matrix(scene, from, to, options.factors, options.threads, hooks), {}, {}};
-  if (from.empty()) return result;
-  if (options.backs) result.back = factors_to_backs(scene, from, options, hooks);
-  if (options.open) result.open = factors_to_sky(scene, from, options, hooks);
+  const EntryJobs jobs(scene, from, to, options);
+  Matrix result{{{from.begin(), from.end()}, {to.begin(), to.end()}, {}}, {}, {}};
+  result.factors.entries.resize(from.size() * to.size());
+  if (options.backs) result.back.resize(from.size());
+  if (options.open) result.open.resize(from.size());
+  const int threads = options.threads > 0 ? options.threads : work::usable_threads();
+  work::parallel_for(jobs.count(), threads, "view factors", hooks, [&](std::size_t job) {
+    jobs.compute(job, [&](std::size_t entry, const ViewFactor& f) { entry_of(result, entry) = f; });
+  });
   return result;
 }
 

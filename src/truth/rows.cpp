@@ -50,11 +50,7 @@ void complete(Request& request) {
     text::refuse("the receivers have no u and v", "only the cells of a grid have coordinates on their lattice",
                  "make the receivers by --grid, or leave out --uv");
   }
-  const Shard& shard = request.shard;
-  if (shard.number < 1 || shard.number > shard.count) {
-    text::refuse("there is no shard " + std::to_string(shard.number) + " of " + std::to_string(shard.count),
-                 "shards are numbered from 1", "write --shard 1/4 for the first of four");
-  }
+  jobs::require_shard(request.shard);
   if (request.threads <= 0) request.threads = work::usable_threads();
 }
 
@@ -62,6 +58,7 @@ void complete(Request& request) {
 
 Rows::Rows(Request request) : request_(std::move(request)) {
   complete(request_);
+  plan_ = {kKind, request_.receivers.size() * request_.sources.size(), kChunkRows, request_.shard, request_.threads};
   for (const Selection& source : request_.sources) {
     sources_.emplace_back(*request_.scene, source);
     source_names_.push_back(request_.scene->name_of(source));
@@ -73,20 +70,6 @@ Rows::Rows(Request request) : request_(std::move(request)) {
   }
   receivers_hash_ = hash_of(request_.receivers);
   near_misses_ = sentences(near_misses(*request_.scene, request_.receivers), request_.receivers.size());
-}
-
-std::uint64_t Rows::shard_rows() const {
-  const Shard& shard = request_.shard;
-  const std::uint64_t chunks = (count() + kChunkRows - 1) / kChunkRows;
-  const std::uint64_t rows = (chunks + shard.count - shard.number) / shard.count * kChunkRows;
-  const bool has_last = (chunks - 1) % shard.count == shard.number - 1;
-  return has_last ? rows - (chunks * kChunkRows - count()) : rows;  // the last chunk may be shorter
-}
-
-bool Rows::may_be_one_block(Range range) const {
-  const std::uint64_t chunk = range.first / kChunkRows;
-  return range.rows > 0 && range.end() <= count() && (range.end() - 1) / kChunkRows == chunk &&
-         chunk % request_.shard.count == request_.shard.number - 1;
 }
 
 namespace {
@@ -115,13 +98,10 @@ std::string Rows::head() const {
   for (std::size_t s = 0; s < source_names_.size(); ++s)
     out << (s > 0 ? " + " : "") << text::csv_comment(source_names_[s]);
   out << '\n'
-      << "# rows: " << count() << '\n'
+      << rows_line(plan_)
       << "# units: form factors are pure numbers, radiosity is in the unit of Ke, lengths are in the unit of the "
-         "scene\n";
-  if (const Shard& shard = request_.shard; shard.count > 1) {
-    out << "# shard: " << shard.number << '/' << shard.count << " in chunks of " << kChunkRows
-        << " rows, for exactff merge\n";
-  }
+         "scene\n"
+      << shard_line(plan_);
   for (const std::string& sentence : near_misses_) out << "# warning: " << text::csv_comment(sentence) << '\n';
   if (request_.unit_normals) {
     out << "# unit normals: ux,uy,uz is nx,ny,nz scaled to length 1, correctly rounded; the values belong to "
@@ -198,6 +178,26 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
   }
   line << to_string(status);
 }
+
+bool Rows::may_be_text_of(jobs::Range range, std::string_view text) const {
+  return Tally().add_rows(text, range.rows);
+}
+
+namespace {
+
+class RowComputer : public Rows::Computer {
+ public:
+  explicit RowComputer(const Rows& rows) : rows_(rows) {}
+  void append(std::uint64_t row, std::string& text) override { rows_.append(row, text, results_); }
+
+ private:
+  const Rows& rows_;
+  Rows::Results results_;
+};
+
+}  // namespace
+
+std::unique_ptr<Rows::Computer> Rows::computer() const { return std::make_unique<RowComputer>(*this); }
 
 // Sets the totals, too, if they are requested.
 const FormFactor& Rows::factor(std::size_t receiver, std::size_t source, Results& results) const {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,35 +11,24 @@
 
 #include "exact/light.h"
 #include "exactff/truth.h"
+#include "jobs/rows.h"
 #include "truth/unit_normal.h"
 
 namespace exactff::truth {
 
-// Consecutive rows of one chunk, numbered from 0.
-struct Range {
-  std::uint64_t first = 0;
-  std::uint32_t rows = 0;
-
-  [[nodiscard]] std::uint64_t end() const { return first + rows; }
-  friend bool operator==(const Range&, const Range&) = default;
-};
+inline constexpr jobs::Kind kKind = {"truth", "a truth file", "row", "rows"};
 
 // A checked request, with everything precomputed that depends on its sources alone. Threads may share it.
-class Rows {
+class Rows : public jobs::Rows {
  public:
   // Throws InputError if there is nothing to compute, or if the shard does not exist.
   explicit Rows(Request request);
 
   [[nodiscard]] const Request& request() const { return request_; }
-  [[nodiscard]] std::uint64_t count() const { return request_.receivers.size() * request_.sources.size(); }
-
-  // The number of rows that belong to the shard.
-  [[nodiscard]] std::uint64_t shard_rows() const;
-  // Whether these rows lie in one chunk that belongs to the shard.
-  [[nodiscard]] bool may_be_one_block(Range range) const;
-
-  // The comment lines and the column names: of the truth file, or of the shard's file if the request is for a shard.
-  [[nodiscard]] std::string head() const;
+  [[nodiscard]] std::string head() const override;
+  [[nodiscard]] std::string name(std::uint64_t row) const override;
+  [[nodiscard]] bool may_be_text_of(jobs::Range range, std::string_view text) const override;
+  [[nodiscard]] std::unique_ptr<Computer> computer() const override;
 
   // Objects that a thread reuses from row to row, only to avoid reallocation.
   struct Results {
@@ -51,9 +41,6 @@ class Rows {
   };
   // Computes a row and appends its line.
   void append(std::uint64_t row, std::string& lines, Results& results) const;
-
-  // "receiver 'a' on floor:1, source 'light'", for messages.
-  [[nodiscard]] std::string name(std::uint64_t row) const;
 
  private:
   [[nodiscard]] std::string id(std::size_t receiver) const;

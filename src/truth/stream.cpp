@@ -6,9 +6,10 @@
 #include <ostream>
 
 #include "exactff/truth.h"
+#include "jobs/workers.h"
 #include "kernel/float_environment.h"
 #include "text/refuse.h"
-#include "truth/workers.h"
+#include "truth/rows.h"
 
 namespace exactff::truth {
 namespace {
@@ -22,9 +23,9 @@ class Stream {
 
   void run(Summary& summary) {
     put(rows_.head());
-    Workers workers(
-        rows_, rows_.request().threads, hooks_, [this] { return schedule_.next(); },
-        [this](Finished finished) { keep(std::move(finished)); });
+    jobs::Workers workers(
+        rows_, rows_.plan().threads, hooks_, [this] { return schedule_.next(); },
+        [this](jobs::Finished finished) { keep(std::move(finished)); });
     for (bool ended = false; !ended;) {
       ended = workers.wait_for(kBetweenWrites);
       write_what_is_next(summary);
@@ -34,14 +35,14 @@ class Stream {
   }
 
  private:
-  void keep(Finished finished) {
+  void keep(jobs::Finished finished) {
     const std::lock_guard lock(mutex_);
     done_ += finished.range.rows;
     waiting_.emplace(finished.range.first, std::move(finished));
   }
 
   void write_what_is_next(Summary& summary) {
-    std::map<std::uint64_t, Finished> ready;
+    std::map<std::uint64_t, jobs::Finished> ready;
     std::uint64_t done = 0;
     {
       const std::lock_guard lock(mutex_);
@@ -61,9 +62,9 @@ class Stream {
     if (hooks_.progress) hooks_.progress({"rows", done, rows_.count()});
   }
 
-  void tell_slow(const Finished& finished, Summary& summary) {
+  void tell_slow(const jobs::Finished& finished, Summary& summary) {
     summary.slow += finished.slow.size();
-    for (const SlowRow& slow : finished.slow) {
+    for (const jobs::SlowRow& slow : finished.slow) {
       if (hooks_.slow_row) hooks_.slow_row(rows_.name(slow.row), slow.seconds);
     }
   }
@@ -82,9 +83,9 @@ class Stream {
   const Rows& rows_;
   std::ostream& out_;
   const Hooks& hooks_;
-  Schedule schedule_;
+  jobs::Schedule schedule_;
   std::mutex mutex_;
-  std::map<std::uint64_t, Finished> waiting_;  // by first row
+  std::map<std::uint64_t, jobs::Finished> waiting_;  // by first row
   std::uint64_t next_ = 0;
   std::uint64_t done_ = 0;
   Tally tally_;

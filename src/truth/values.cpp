@@ -9,10 +9,10 @@
 #include "exactff/pixels.h"
 #include "exactff/truth.h"
 #include "exactff/vtk.h"
+#include "jobs/journal.h"
 #include "kernel/float_environment.h"
 #include "text/csv_lines.h"
 #include "text/refuse.h"
-#include "truth/journal.h"
 #include "work/file.h"
 #include "work/npy_file.h"
 #include "work/parallel.h"
@@ -123,7 +123,7 @@ struct Shape {
 Shape shape_of(const fs::path& file, const Hooks& hooks) {
   ValueReader reader(file);
   const Hooks silent{.cancelled = hooks.cancelled};  // the number of rows is not known yet
-  Pace pace("reading rows", 0, silent);
+  jobs::Pace pace("reading rows", 0, silent);
   Shape shape;
   bool one_receiver = true;
   for (; reader.next(); ++shape.rows) {
@@ -145,7 +145,7 @@ void write_npy(const fs::path& truth_file, const fs::path& file, const Hooks& ho
   const std::size_t sources = shape.sources.size();
   const std::array extents{shape.rows / sources, sources + (reader.has_totals() ? 3 : 0)};
   work::NpyFile<double> array(file, extents);
-  Pace pace("writing the NumPy file", shape.rows, hooks);
+  jobs::Pace pace("writing the NumPy file", shape.rows, hooks);
   for (std::size_t row = 0; row < shape.rows && reader.next(); ++row) {
     const Values values = reader.values();
     array.append(values.certified(values.exact));
@@ -183,7 +183,7 @@ std::vector<vtk::Field> fields_of(const fs::path& truth_file, const Request& req
   for (const std::string& source : shape.sources) list.push_back({source, {}, {}, {}, {}, {}, {}});
   std::vector<double> totals;
   ValueReader reader(truth_file);
-  Pace pace("reading rows", shape.rows, hooks);
+  jobs::Pace pace("reading rows", shape.rows, hooks);
   for (std::size_t row = 0; row < shape.rows && reader.next(); ++row) {
     const Values values = reader.values();
     add(list[row % list.size()], values, reader.has_fractions());
@@ -224,7 +224,7 @@ void write_exr(const pixels::Frame& frame, const fs::path& truth_file, const fs:
                  "compute it again with --total radiance and --force");
   }
   pixels::FrameValues values(frame);
-  Pace pace("writing the image", shape.rows, hooks);
+  jobs::Pace pace("writing the image", shape.rows, hooks);
   for (std::size_t row = 0; row < shape.rows && reader.next(); ++row) {
     if (row % shape.sources.size() == 0) {
       const Values one = reader.values();

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "view_factors/pair.h"
+#include "view_factors/pairs.h"
 #include "view_factors/patch_parts.h"
 #include "view_factors/sampled_factor.h"
 #include "work/parallel.h"
@@ -237,19 +239,20 @@ ViewFactor reversed(const ViewFactor& f, const Prepared& from, const Prepared& t
   return result;
 }
 
-// Of each entry: the entry whose transpose it is, if that is computed instead.
-std::vector<std::optional<std::size_t>> transposes(const std::vector<Prepared>& from, const std::vector<Prepared>& to) {
+// The entries that are computed, each with those that are its transposes.
+std::vector<std::vector<std::size_t>> pairs_of(const std::vector<Prepared>& from, const std::vector<Prepared>& to) {
   std::map<std::pair<std::pair<PatchId, std::optional<FaceId>>, std::pair<PatchId, std::optional<FaceId>>>, std::size_t>
       known;
   const auto key = [](const Prepared& p) { return std::pair(p.patch.patch, p.patch.face); };
-  std::vector<std::optional<std::size_t>> result(from.size() * to.size());
-  for (std::size_t e = 0; e < result.size(); ++e) {
+  std::vector<std::vector<std::size_t>> result;
+  for (std::size_t e = 0; e < from.size() * to.size(); ++e) {
     const Prepared &i = from[e / to.size()], &j = to[e % to.size()];
-    if (!i.planar || !j.planar) continue;
-    if (const auto other = known.find({key(j), key(i)}); other != known.end()) {
-      result[e] = other->second;
+    const bool planar = i.planar && j.planar;
+    if (const auto other = planar ? known.find({key(j), key(i)}) : known.end(); other != known.end()) {
+      result[other->second].push_back(e);
     } else {
-      known.emplace(std::pair(key(i), key(j)), e);
+      if (planar) known.emplace(std::pair(key(i), key(j)), result.size());
+      result.push_back({e});
     }
   }
   return result;
@@ -262,6 +265,36 @@ std::vector<Prepared> prepared(const ExactScene& scene, std::span<const Selectio
 }
 
 }  // namespace
+
+struct Pairs::Patches {
+  Patches(const Scene& given, std::span<const Selection> from, std::span<const Selection> to)
+      : scene(given), rows(prepared(scene, from)), columns(prepared(scene, to)) {}
+
+  ExactScene scene;
+  std::vector<Prepared> rows, columns;
+};
+
+Pairs::Pairs(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
+             const ViewFactorOptions& options)
+    : options_(options) {
+  check_accuracy(options.accuracy);
+  patches_ = std::make_unique<const Patches>(scene, from, to);
+  entries_ = pairs_of(patches_->rows, patches_->columns);
+}
+Pairs::~Pairs() = default;
+
+double Pairs::area_from(std::size_t row) const { return patches_->rows[row].area; }
+
+void Pairs::compute(std::size_t pair, const std::function<void(std::size_t, const ViewFactor&)>& take) const {
+  const kernel::StandardArithmetic of_thread;
+  const std::vector<std::size_t>& entries = entries_[pair];
+  const std::size_t columns = patches_->columns.size(), first = entries.front();
+  const Prepared &from = patches_->rows[first / columns], &to = patches_->columns[first % columns];
+  const ViewFactor computed = factor(patches_->scene, from, to, options_);
+  take(first, computed);
+  for (const std::size_t entry : std::span(entries).subspan(1)) take(entry, reversed(computed, from, to));
+}
+
 }  // namespace view_factors
 
 std::string_view to_string(Claim claim) {
@@ -286,22 +319,12 @@ ViewFactorMatrix view_factor_matrix(const Scene& scene, std::span<const Selectio
   using namespace view_factors;
   const kernel::StandardArithmetic arithmetic;
   if (threads <= 0) threads = work::usable_threads();
-  check_accuracy(options.accuracy);
-  const ExactScene exact(scene);
-  const std::vector<Prepared> rows = prepared(exact, from), columns = prepared(exact, to);
-  const std::vector<std::optional<std::size_t>> transpose_of = transposes(rows, columns);
+  const Pairs pairs(scene, from, to, options);
   ViewFactorMatrix result{{from.begin(), from.end()}, {to.begin(), to.end()}, {}};
-  result.entries.resize(rows.size() * columns.size());
-  work::parallel_for(result.entries.size(), threads, "view factors", hooks, [&](std::size_t e) {
-    if (transpose_of[e]) return;
-    const kernel::StandardArithmetic of_thread;
-    result.entries[e] = factor(exact, rows[e / columns.size()], columns[e % columns.size()], options);
+  result.entries.resize(from.size() * to.size());
+  work::parallel_for(pairs.count(), threads, "view factors", hooks, [&](std::size_t pair) {
+    pairs.compute(pair, [&](std::size_t entry, const ViewFactor& f) { result.entries[entry] = f; });
   });
-  for (std::size_t e = 0; e < result.entries.size(); ++e) {
-    if (!transpose_of[e]) continue;
-    const std::size_t other = *transpose_of[e];
-    result.entries[e] = reversed(result.entries[other], rows[other / columns.size()], columns[other % columns.size()]);
-  }
   return result;
 }
 

@@ -1,4 +1,4 @@
-// exactff truth under mpirun: four processes, independent of the number of cores.
+// exactff truth and matrix under mpirun: four processes, independent of the number of cores.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -89,6 +89,36 @@ TEST_F(MpiTruth, AKilledProcessCostsNoFinishedRow) {
               alone.output.find("all rows were already computed") != std::string::npos)
       << alone.output;
   EXPECT_EQ(text_of(file_), whole());
+}
+
+// Pairs of patches, from microseconds to a second each.
+TEST_F(MpiTruth, AMatrixOfKilledProcessesHasTheBytesOfOne) {
+  const auto matrix = [](const fs::path& file, const std::vector<std::string>& more) {
+    std::vector<std::string> all{"matrix", EXACTFF_DATA_DIR "/scenes/cornell_box.obj", "--accuracy", "1e-3", "--budget", "300", "--backs",
+                                 "-o", file};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  const fs::path alone = directory_.path() / "alone.csv";
+  EXPECT_EQ(validation::run_program(EXACTFF_PROGRAM, matrix(alone, {})).exit_code, 0);
+  for (std::size_t victim = 0; victim < 2 && !fs::exists(file_); ++victim) {
+    const std::uintmax_t before = size_of(journal_);
+    const RunningProgram run = start(matrix(file_, {"--resume"}));
+    while (size_of(journal_) <= before + 100 && !run.has_ended()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    const std::vector<int> ranks = children_of(run.process());
+    if (run.has_ended() || ranks.size() != 4) break;
+    ::kill(ranks[3 * victim], SIGKILL);
+    EXPECT_NE(run.wait(), 0);
+    EXPECT_TRUE(fs::exists(file_) || size_of(journal_) > before);
+  }
+  const RunningProgram last = start(matrix(file_, {"--resume"}));
+  EXPECT_EQ(last.wait(), 0) << last.error();
+  EXPECT_EQ(text_of(file_), text_of(alone));
+  const RunningProgram without_file = start({"matrix", EXACTFF_DATA_DIR "/scenes/cornell_box.obj"});
+  EXPECT_EQ(without_file.wait(), 2);
+  EXPECT_EQ(count(without_file.error(), "exactff: "), 1U) << without_file.error();
 }
 
 TEST_F(MpiTruth, WhatIsWrongIsToldOnce) {

@@ -1,5 +1,6 @@
 // Arbitrary bytes as a truth file and, after the first byte 0x1e (ASCII's record separator), as the values of another
-// program. The result is either an InputError with a message, or a report with consistent figures and valid texts.
+// program. The result is either an InputError with a message, or a report with consistent figures and valid texts. Both
+// texts are also read as matrices of view factors, and the second one is held against a true one.
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -49,10 +50,28 @@ void attempt(const Work& work) {
   }
 }
 
+constexpr const char* kMatrix =
+    "from,to,factor,lower,upper,claim,accurate,area_from,area_to,cells,event_cells\n"
+    "a,a,0,0,0,zero,yes,1,1,0,0\na,b,0.5,0.4,0.6,statistical,no,1,2,9,0\na,(open),0.5,0.5,0.5,topology-proved,yes,1,,9,0\n"
+    "b,a,0.25,0.2,0.3,statistical,no,2,1,9,0\nb,b,0,0,0,zero,yes,2,2,0,0\nb,(open),0.7,0.7,0.7,topology-proved,yes,2,,9,0\n";
+
+void check_matrices(const std::filesystem::path& truth, const std::filesystem::path& candidate) {
+  attempt([&] {
+    const check::Matrices both = check::read_matrices(truth, candidate, {}, true);
+    check::Report report = check::judge(both.truth, both.values, {.max_abs = 1e-3, .per_source = true});
+    report.matrix = both.facts;
+    check_report(report);
+    if (report.overall.rows > both.truth.rows.size()) fail("more values than entries");
+  });
+}
+
 void check_files(const std::string& truth_text, const std::string& candidate_text) {
   static const TemporaryDirectory directory;
   const auto truth_file = directory.write("truth.csv", truth_text);
   const auto candidate_file = directory.write("candidate.csv", candidate_text);
+  static const auto matrix_file = directory.write("matrix.csv", kMatrix);
+  check_matrices(matrix_file, candidate_file);
+  check_matrices(truth_file, candidate_file);
   attempt([&] { (void)check::read_candidate(candidate_file, {}, check::MatchBy::kPosition); });
   attempt([&] {
     const check::Truth truth = check::read_truth(truth_file);

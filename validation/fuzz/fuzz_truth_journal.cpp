@@ -14,8 +14,8 @@
 #include "fuzz/complaints.h"
 #include "fuzz/edits.h"
 #include "generate/plain_scene.h"
+#include "jobs/blocks.h"
 #include "support/program.h"
-#include "truth/blocks.h"
 
 namespace exactff::validation {
 namespace {
@@ -46,12 +46,12 @@ truth::Request request_of(const Scene& scene) {
 
 // "# rows FIRST+COUNT, ..." and the lines up to the next opening, whatever bytes and checksum it tells.
 std::string mended_block(std::string_view text) {
-  truth::Range range;
+  jobs::Range range;
   const std::size_t plus = text.find('+'), line_end = text.find('\n');
   if (line_end == std::string_view::npos || plus > line_end) return std::string(text);
   range.first = std::strtoull(std::string(text.substr(kOpening.size(), 20)).c_str(), nullptr, 10);
   range.rows = static_cast<std::uint32_t>(std::strtoul(std::string(text.substr(plus + 1, 10)).c_str(), nullptr, 10));
-  return truth::block_text(range, text.substr(line_end + 1));
+  return jobs::block_text(range, text.substr(line_end + 1));
 }
 
 std::string mended(std::string_view text) {

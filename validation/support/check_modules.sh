@@ -16,12 +16,13 @@ declare -A allowed=(
   [exact]="contour visibility receivers scene text kernel"
   [whole_view]="exact contour visibility receivers scene text kernel"
   [view_factors]="exact visibility receivers scene work text kernel"
-  [matrix]="view_factors visibility scene work text kernel"
+  [matrix]="jobs view_factors visibility scene work text kernel"
   [diagnosis]="exact receivers scene text kernel"
   [sampled]="receivers scene kernel"
   [methods]="sampled exact receivers scene text kernel"
   [models]="receivers scene text kernel"
   [work]="text kernel"
+  [jobs]="work text kernel"
   [page]="work text kernel"
   [pixels]="receivers scene text kernel"
   [vtk]="receivers scene work text kernel"
@@ -31,7 +32,7 @@ declare -A allowed=(
   [flags]="pixels study models formats receivers exact scene text"
   [report]="render flags experiments vtk study methods sampled exact page work text kernel"
   [stress]="sampled exact receivers scene page work text kernel"
-  [truth]="pixels vtk exact receivers scene work text kernel"
+  [truth]="jobs pixels vtk exact receivers scene work text kernel"
   [check]="pixels matrix view_factors exact page work text kernel"
   [batch]="methods exact receivers scene work text kernel"
   [python]=""  # and all public headers
@@ -41,7 +42,7 @@ declare -A allowed=(
 # The module of a public header that is not named after it.
 declare -A home=(
   [enclosure]=kernel [geometry]=kernel [progress]=kernel [error]=text [summary]=scene [settings]=text [version]=text [quantity]=exact [obj]=formats [scene_files]=formats
-  [receiver]=receivers [record]=visibility [adaptive]=sampled [view]=whole_view [view_regions]=whole_view [visibility_svg]=report [testing]=check [team]=truth
+  [receiver]=receivers [record]=visibility [adaptive]=sampled [view]=whole_view [view_regions]=whole_view [visibility_svg]=report [testing]=check [team]=jobs
 )
 
 failures=0

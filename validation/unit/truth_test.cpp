@@ -16,17 +16,21 @@
 #include "exactff/obj.h"
 #include "exactff/team.h"
 #include "exactff/version.h"
+#include "jobs/blocks.h"
+#include "jobs/journal.h"
+#include "jobs/workers.h"
 #include "support/program.h"
-#include "truth/blocks.h"
-#include "truth/journal.h"
+#include "support/thread_team.h"
 #include "truth/rows.h"
-#include "truth/workers.h"
 
 namespace exactff::truth {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace jobs;
+using validation::Mailbox;
 using validation::text_of;
+using validation::ThreadTeam;
 
 // A floor, two lights above it, and a board that hides the first from part of the floor.
 Scene room() {
@@ -570,42 +574,6 @@ TEST_F(TruthShards, DamageIsFoundWhereverItIs) {
 }
 
 // --- several processes, here threads ---------------------------------------------------------------------------------
-
-class Mailbox {
- public:
-  void put(Message message) {
-    const std::lock_guard lock(mutex_);
-    messages_.push_back(std::move(message));
-  }
-  std::optional<Message> take() {
-    const std::lock_guard lock(mutex_);
-    if (messages_.empty()) return std::nullopt;
-    Message first = std::move(messages_.front());
-    messages_.pop_front();
-    return first;
-  }
-
- private:
-  std::mutex mutex_;
-  std::deque<Message> messages_;
-};
-
-class ThreadTeam : public Team {
- public:
-  ThreadTeam(std::vector<Mailbox>& mail, int rank) : mail_(mail), rank_(rank) {}
-  int rank() const override { return rank_; }
-  int size() const override { return static_cast<int>(mail_.size()); }
-  int ranks_on_this_machine() const override { return size(); }
-  std::string place() const override { return "here"; }
-  void send(int rank, std::string text) override {
-    mail_[static_cast<std::size_t>(rank)].put({rank_, std::move(text)});
-  }
-  std::optional<Message> receive() override { return mail_[static_cast<std::size_t>(rank_)].take(); }
-
- private:
-  std::vector<Mailbox>& mail_;
-  const int rank_;
-};
 
 class TruthTeam : public Truth {
  protected:

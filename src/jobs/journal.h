@@ -1,4 +1,4 @@
-// The journal of an unfinished truth file. Every finished block is appended, in any order, so that no finished row is
+// The journal of an unfinished file of rows. Every finished block is appended, in any order, so that no finished row is
 // lost or waits in memory for a slower one. The journal is a CSV file with comment lines between the blocks.
 #pragma once
 
@@ -7,11 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "exactff/truth.h"
-#include "truth/blocks.h"
+#include "exactff/jobs.h"
+#include "jobs/blocks.h"
+#include "jobs/rows.h"
 #include "work/file.h"
 
-namespace exactff::truth {
+namespace exactff::jobs {
 
 // Throws an InputError that names the first line in which the head of `file` differs from the expected head.
 void require_same_head(
@@ -41,7 +42,7 @@ class RowJournal {
   [[nodiscard]] std::string read(const Block& block) const { return read_lines(file_, block); }
   [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
 
-  // Removes the journal. Called when the truth file is complete.
+  // Removes the journal. Called when the file is complete.
   void remove() { file_.remove(); }
 
  private:
@@ -69,4 +70,4 @@ class Pace {
   std::uint64_t done_ = 0;
 };
 
-}  // namespace exactff::truth
+}  // namespace exactff::jobs

@@ -13,10 +13,10 @@
 #include <string_view>
 #include <vector>
 
-#include "truth/rows.h"
+#include "jobs/rows.h"
 #include "work/file.h"
 
-namespace exactff::truth {
+namespace exactff::jobs {
 
 using work::File;
 using work::WholeFile;
@@ -43,4 +43,4 @@ struct Blocks {
 
 [[nodiscard]] std::string read_lines(const File& file, const Block& block);
 
-}  // namespace exactff::truth
+}  // namespace exactff::jobs

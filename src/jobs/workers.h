@@ -13,10 +13,10 @@
 #include <thread>
 #include <vector>
 
-#include "truth/blocks.h"
-#include "truth/rows.h"
+#include "jobs/blocks.h"
+#include "jobs/rows.h"
 
-namespace exactff::truth {
+namespace exactff::jobs {
 
 struct SlowRow {
   std::uint64_t row = 0;
@@ -45,8 +45,7 @@ class Schedule {
   [[nodiscard]] std::optional<Range> advance();
 
   std::mutex mutex_;
-  const std::uint64_t count_;
-  const Shard shard_;
+  const Plan plan_;
   std::vector<Range> done_;
   std::size_t next_done_ = 0;
   std::uint64_t position_;
@@ -91,4 +90,4 @@ class Workers {
   std::vector<std::jthread> threads_;
 };
 
-}  // namespace exactff::truth
+}  // namespace exactff::jobs

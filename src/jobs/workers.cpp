@@ -1,10 +1,10 @@
-#include "truth/workers.h"
+#include "jobs/workers.h"
 
 #include <algorithm>
 
 #include "exactff/progress.h"
 
-namespace exactff::truth {
+namespace exactff::jobs {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -18,9 +18,9 @@ double seconds_between(Clock::time_point a, Clock::time_point b) {
 }  // namespace
 
 Schedule::Schedule(const Rows& rows, std::span<const Block> done)
-    : count_(rows.count()), shard_(rows.request().shard), position_((shard_.number - 1) * kChunkRows) {
+    : plan_(rows.plan()), position_((plan_.shard.number - 1) * plan_.chunk) {
   for (const Block& block : done) done_.push_back(block.range);
-  rows_ = rows.shard_rows();
+  rows_ = plan_.shard_rows();
   for (const Range& range : done_) rows_ -= range.rows;
 }
 
@@ -30,8 +30,8 @@ std::optional<Range> Schedule::next() {
 }
 
 std::optional<Range> Schedule::advance() {
-  while (position_ < count_) {
-    const std::uint64_t chunk_end = std::min(count_, (position_ / kChunkRows + 1) * kChunkRows);
+  while (position_ < plan_.count) {
+    const std::uint64_t chunk_end = std::min(plan_.count, (position_ / plan_.chunk + 1) * plan_.chunk);
     const bool more_done = next_done_ < done_.size();
     if (more_done && done_[next_done_].first == position_) {
       position_ = done_[next_done_++].end();
@@ -39,10 +39,10 @@ std::optional<Range> Schedule::advance() {
       const std::uint64_t end = more_done ? std::min(chunk_end, done_[next_done_].first) : chunk_end;
       const Range range{position_, static_cast<std::uint32_t>(end - position_)};
       position_ = end;
-      if (position_ == chunk_end) position_ += (shard_.count - 1) * kChunkRows;
+      if (position_ == chunk_end) position_ += (plan_.shard.count - 1) * plan_.chunk;
       return range;
     }
-    if (position_ == chunk_end) position_ += (shard_.count - 1) * kChunkRows;
+    if (position_ == chunk_end) position_ += (plan_.shard.count - 1) * plan_.chunk;
   }
   return std::nullopt;
 }
@@ -118,12 +118,12 @@ class Batch {
 void Workers::compute(Range range) {
   Batch batch(range.first, deliver_);
   std::string line;
-  Rows::Results results;
+  const std::unique_ptr<Rows::Computer> computer = rows_.computer();
   try {
     for (std::uint64_t row = range.first; row < range.end() && !must_stop(); ++row) {
       const auto start = Clock::now();
       line.clear();
-      rows_.append(row, line, results);
+      computer->append(row, line);
       const double seconds = seconds_between(start, Clock::now());
       if (seconds >= hooks_.slow_seconds) batch.add_slow({row, seconds});
       batch.add(line);
@@ -150,4 +150,4 @@ void Workers::rethrow() const {
   if (failure_) std::rethrow_exception(failure_);
 }
 
-}  // namespace exactff::truth
+}  // namespace exactff::jobs

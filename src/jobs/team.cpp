@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <condition_variable>
 #include <cstring>
+#include <deque>
 #include <mutex>
 #include <new>
 #include <stdexcept>
@@ -8,10 +9,10 @@
 #include <type_traits>
 #include <utility>
 
-#include "truth/leader.h"
+#include "jobs/leader.h"
 #include "work/parallel.h"
 
-namespace exactff::truth {
+namespace exactff::jobs {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -242,11 +243,11 @@ class Follower {
  public:
   Follower(Team& team, const Hooks& hooks) : team_(team), hooks_(hooks) {}
 
-  int run(const std::function<Request()>& request) {
+  int run(const std::function<std::unique_ptr<Rows>()>& make_rows) {
     try {
-      const Rows rows(request());
-      say(Writer(Word::kHello) << team_.place() << rows.head());
-      work(rows);
+      const std::unique_ptr<Rows> rows = make_rows();
+      say(Writer(Word::kHello) << team_.place() << rows->head());
+      work(*rows);
     } catch (const InputError& error) {
       team_.send(0, trouble(Blame::kInput, team_.place(), error.what()));
     } catch (const Cancelled&) {
@@ -263,10 +264,10 @@ class Follower {
   void say(Writer& message) { team_.send(0, std::move(message).text()); }
 
   void work(const Rows& rows) {
-    threads_ = static_cast<std::uint64_t>(rows.request().threads);
+    threads_ = static_cast<std::uint64_t>(rows.plan().threads);
     Desk desk;
     Workers workers(
-        rows, rows.request().threads, hooks_, [&desk] { return desk.take(); },
+        rows, rows.plan().threads, hooks_, [&desk] { return desk.take(); },
         [&desk](Finished finished) { desk.deliver(std::move(finished)); });
     const auto send_finished = [&] {
       for (const Finished& finished : desk.collect()) team_.send(0, to_text(finished));
@@ -349,8 +350,8 @@ class Follower {
 
 }  // namespace
 
-int follow(Team& team, const std::function<Request()>& request, const Hooks& hooks) {
-  return Follower(team, hooks).run(request);
+int follow(Team& team, const std::function<std::unique_ptr<Rows>()>& make_rows, const Hooks& hooks) {
+  return Follower(team, hooks).run(make_rows);
 }
 
-}  // namespace exactff::truth
+}  // namespace exactff::jobs

@@ -1,13 +1,15 @@
-// The leader of a team of processes.
+// The processes of a team: their leader and a follower.
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 
 #include "exactff/team.h"
-#include "truth/workers.h"
+#include "jobs/workers.h"
 
-namespace exactff::truth {
+namespace exactff::jobs {
 
 // The leader's communication while rows are computed.
 class Leader {
@@ -32,4 +34,8 @@ class Leader {
   int here_ = 0;
 };
 
-}  // namespace exactff::truth
+// Runs a follower, that is, any other rank. `make_rows` must make the same rows as the leader's; what it throws is sent
+// to the leader. Only the hooks `cancelled` and slow_seconds are used. Returns the exit code.
+int follow(Team& team, const std::function<std::unique_ptr<Rows>()>& make_rows, const Hooks& hooks);
+
+}  // namespace exactff::jobs

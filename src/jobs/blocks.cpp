@@ -1,10 +1,10 @@
-#include "truth/blocks.h"
+#include "jobs/blocks.h"
 
 #include <charconv>
 
 #include "text/crc32.h"
 
-namespace exactff::truth {
+namespace exactff::jobs {
 namespace {
 
 constexpr std::string_view kOpening = "# rows ";
@@ -116,4 +116,4 @@ std::string read_lines(const File& file, const Block& block) {
   return file.read(block.offset, static_cast<std::size_t>(block.bytes));
 }
 
-}  // namespace exactff::truth
+}  // namespace exactff::jobs

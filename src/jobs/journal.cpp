@@ -1,4 +1,4 @@
-#include "truth/journal.h"
+#include "jobs/journal.h"
 
 #include <algorithm>
 #include <system_error>
@@ -8,7 +8,7 @@
 #include "text/escape.h"
 #include "text/phrases.h"
 
-namespace exactff::truth {
+namespace exactff::jobs {
 
 namespace fs = std::filesystem;
 
@@ -19,13 +19,14 @@ fs::path journal_of(const fs::path& file) {
 
 namespace {
 
-constexpr std::string_view kUnfinished =
-    "# unfinished: rows in the order in which they were done; exactff truth with --resume goes on\n";
-
-// The head of the truth file with one additional comment line.
-std::string journal_head(const std::string& head) {
+// The head of the file with one additional comment line.
+std::string journal_head(const Rows& rows) {
+  const std::string head = rows.head();
   const std::size_t columns = head.rfind('\n', head.size() - 2) + 1;
-  return head.substr(0, columns) + std::string(kUnfinished) + head.substr(columns);
+  const Kind& kind = rows.plan().kind;
+  return head.substr(0, columns) + "# unfinished: " + std::string(kind.rows) +
+         " in the order in which they were done; exactff " + std::string(kind.command) + " with --resume goes on\n" +
+         head.substr(columns);
 }
 
 std::string_view line_at(std::string_view text, std::size_t at) {
@@ -108,7 +109,7 @@ RowJournal::~RowJournal() {
 }
 
 void RowJournal::take_over(const Rows& rows, Existing existing, const Hooks& hooks) {
-  const std::string head = journal_head(rows.head());
+  const std::string head = journal_head(rows);
   const std::optional<std::string> found = read_head(file_);
   // A journal that is cut off within its head holds no rows.
   const bool nothing = !found && head.starts_with(file_.read(0, head.size()));
@@ -154,7 +155,7 @@ void RowJournal::keep_usable(std::vector<Block> found, const Rows& rows, const H
   for (const Block& block : found) {
     const Range& range = block.range;
     if (range.first < next || range.rows == 0 || !rows.may_be_one_block(range)) continue;
-    if (!Tally().add_rows(read(block), range.rows)) continue;
+    if (!rows.may_be_text_of(range, read(block))) continue;
     blocks_.push_back(block);
     next = range.end();
   }
@@ -204,4 +205,4 @@ void Pace::add(std::uint64_t rows) {
   if (hooks_.progress) hooks_.progress({stage_, done_, total_});
 }
 
-}  // namespace exactff::truth
+}  // namespace exactff::jobs

@@ -9,7 +9,7 @@
 
 #include "exactff/team.h"
 
-namespace exactff::truth {
+namespace exactff::jobs {
 namespace {
 
 namespace mpi = boost::mpi;
@@ -69,6 +69,6 @@ class MpiTeam : public Team {
 };
 
 }  // namespace
-}  // namespace exactff::truth
+}  // namespace exactff::jobs
 
-extern "C" exactff::truth::Team* exactff_join_mpi() { return std::make_unique<exactff::truth::MpiTeam>().release(); }
+extern "C" exactff::jobs::Team* exactff_join_mpi() { return std::make_unique<exactff::jobs::MpiTeam>().release(); }

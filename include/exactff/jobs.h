@@ -1,0 +1,58 @@
+// Work of many independent rows that is kept while it is done: of truth files (truth.h) and of matrices (matrix.h).
+//
+// Finished rows go at once to the journal FILE.part beside the file, even if the program is killed later. FILE itself
+// appears when all rows are done. Its bytes depend on the request alone: not on threads, processes, shards,
+// interruptions or resumptions.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "exactff/progress.h"
+
+namespace exactff::jobs {
+
+// A part of the rows. Rows are counted in chunks from the first one; chunk k, counted from 0, belongs to shard `number`
+// (from 1) of `count` if k mod count = number - 1.
+struct Shard {
+  std::uint64_t number = 1;
+  std::uint64_t count = 1;
+};
+
+// What to do if there is already a file or a journal. Both may hold hours of work.
+enum class Existing {
+  kRefuse,   // InputError
+  kResume,   // continue with the journal; a complete file of the same request is left as it is
+  kReplace,  // start again; the old journal is lost at once, the old file when the new one is complete
+};
+
+// Callbacks. All are called from the thread that called the function, except `cancelled`, which is called from any
+// thread.
+struct Hooks {
+  std::function<void(const Progress&)> progress = {};  // in rows
+  std::function<bool()> cancelled = {};                // called often, as Hooks of exactff/progress.h
+  std::function<void(const std::string&)> note = {};   // notes for the user, such as a damaged journal
+  std::function<void(const std::string& row, double seconds)> slow_row = {};  // "receiver '7', source 'light'"
+  double slow_seconds = 1.0;  // a row that takes at least this long is slow
+};
+
+struct Summary {
+  std::uint64_t rows = 0;
+  std::uint64_t resumed = 0;  // rows that were already finished
+  std::uint64_t slow = 0;     // rows reported to Hooks::slow_row
+  double seconds = 0.0;       // wall time of computing the other rows
+};
+
+// The path of the journal of `file`: beside it, with ".part" appended.
+[[nodiscard]] std::filesystem::path journal_of(const std::filesystem::path& file);
+
+// Throws InputError if no such file can be made at `file`: if it is a folder or a device, or if it exists already and
+// `existing` says to refuse.
+void require_free(const std::filesystem::path& file, Existing existing);
+
+// The command that wrote a shard: "truth" or "matrix"; empty if the file is no shard or cannot be read.
+[[nodiscard]] std::string command_of_shard(const std::filesystem::path& file);
+
+}  // namespace exactff::jobs

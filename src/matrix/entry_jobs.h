@@ -1,0 +1,48 @@
+// A matrix, job by job. Entries are numbered row by row, as in the CSV file: to patches, then (back), then (open).
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "exactff/matrix.h"
+#include "matrix/surroundings.h"
+#include "view_factors/pairs.h"
+
+namespace exactff::matrix {
+
+class EntryJobs {
+ public:
+  // Throws what compute throws. Keeps a reference to the scene.
+  EntryJobs(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to, const Options& options);
+
+  [[nodiscard]] std::size_t count() const;
+  [[nodiscard]] std::size_t width() const { return width_; }  // entries of a row
+  // The entries that a job gives.
+  [[nodiscard]] std::vector<std::size_t> entries_of(std::size_t job) const;
+  // In the order of entries_of. From any thread.
+  void compute(std::size_t job, const std::function<void(std::size_t entry, const ViewFactor& factor)>& take) const;
+  // "from 'floor' to 'light'", for messages.
+  [[nodiscard]] std::string name(std::size_t job) const;
+  // Appends the entry as a row of the CSV file.
+  void append_csv(std::string& text, std::size_t entry, const ViewFactor& factor) const;
+
+ private:
+  [[nodiscard]] std::string name_of_column(std::size_t column) const;
+  [[nodiscard]] ViewFactor factor_to_backs(std::size_t row) const;
+
+  const Scene& scene_;
+  const std::vector<Selection> from_, to_;
+  view_factors::Pairs pairs_;
+  std::size_t width_;
+  std::optional<SceneWithBacks> with_backs_;
+  std::vector<Selection> parts_;  // of the backs
+  std::optional<view_factors::Pairs> to_backs_;
+  std::optional<SceneWithSky> with_sky_;
+  std::optional<view_factors::Pairs> to_sky_;
+};
+
+}  // namespace exactff::matrix

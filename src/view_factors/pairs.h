@@ -1,0 +1,38 @@
+// The entries of a matrix of view factors, pair by pair: each pair is an independent job.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "exactff/view_factors.h"
+
+namespace exactff::view_factors {
+
+class Pairs {
+ public:
+  // Throws what view_factor_matrix throws. Keeps a reference to the scene.
+  Pairs(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
+        const ViewFactorOptions& options);
+  ~Pairs();
+  Pairs(const Pairs&) = delete;
+  Pairs& operator=(const Pairs&) = delete;
+
+  [[nodiscard]] std::size_t count() const { return entries_.size(); }
+  // The entries that a pair gives, numbered row by row: the one that is computed, then its transposes.
+  [[nodiscard]] const std::vector<std::size_t>& entries_of(std::size_t pair) const { return entries_[pair]; }
+  [[nodiscard]] double area_from(std::size_t row) const;
+  // In the order of entries_of. From any thread.
+  void compute(std::size_t pair, const std::function<void(std::size_t entry, const ViewFactor& factor)>& take) const;
+
+ private:
+  struct Patches;
+
+  const ViewFactorOptions options_;
+  std::unique_ptr<const Patches> patches_;
+  std::vector<std::vector<std::size_t>> entries_;
+};
+
+}  // namespace exactff::view_factors
