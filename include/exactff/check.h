@@ -179,8 +179,8 @@ struct Matrices {
 };
 // The candidate is recognised by its content: CSV with the columns from, to and value (or factor), or a table with
 // names above and beside it: matched by names; View3D's output, numbers only (CSV or blanks between) or a NumPy array:
-// in the order of the truth, whose size they must have, and whose areas if the file has areas. What meets backs and what
-// is open are judged if the candidate has these columns. Throws one InputError with file:line for every problem;
+// in the order of the truth, whose size they must have, and whose areas if the file has areas. What meets backs and
+// what is open are judged if the candidate has these columns. Throws one InputError with file:line for every problem;
 // entries may be missing only if `partial`.
 [[nodiscard]] Matrices read_matrices(const std::filesystem::path& truth, const std::filesystem::path& candidate,
                                      const CandidateColumns& columns = {}, bool partial = false);
@@ -277,10 +277,10 @@ struct Report {
   std::string identity;        // 16 hexadecimal digits that identify the rows judged and their truths, in any order
   Criteria criteria;
   std::size_t truth_rows = 0;
-  std::size_t not_certified = 0;  // rows judged by their enclosures
-  std::optional<MatrixFacts> matrix = {};          // set by whoever has read matrices
-  std::size_t statistical = 0, not_accurate = 0;   // entries of a matrix
-  double widest = 0.0;                             // upper - lower of these
+  std::size_t not_certified = 0;                  // rows judged by their enclosures
+  std::optional<MatrixFacts> matrix = {};         // set by whoever has read matrices
+  std::size_t statistical = 0, not_accurate = 0;  // entries of a matrix
+  double widest = 0.0;                            // upper - lower of these
   Statistics overall;
   std::vector<std::string> sources;
   std::vector<Statistics> by_source;  // of each

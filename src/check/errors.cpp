@@ -73,8 +73,12 @@ double Errors::magnitude(Index i, Measure measure) const {
 
 RowError Errors::row(Index i) const {
   const TruthRow& truth = truth_row(i);
-  return {truth.receiver,   truth_.source_of(truth), truth.line,   values_[i].line, truth.status, truth.value,
-          values_[i].value, error_[i],               relative_[i], radiosity(i),    truth.lower,  truth.upper,
+  return {truth.receiver,   truth_.source_of(truth),
+          truth.line,       values_[i].line,
+          truth.status,     truth.value,
+          values_[i].value, error_[i],
+          relative_[i],     radiosity(i),
+          truth.lower,      truth.upper,
           truth.claim};
 }
 

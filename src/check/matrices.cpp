@@ -97,8 +97,8 @@ void compare_by_names(const matrix::Table& table, const Candidate& candidate, bo
     return std::ranges::find(candidate.sources, name) != candidate.sources.end();
   };
   result.candidate_file = candidate.file;
-  result.truth = truth_of(table, {.back = !table.back.empty() && has(matrix::kBack),
-                                  .open = !table.open.empty() && has(matrix::kOpen)});
+  result.truth = truth_of(
+      table, {.back = !table.back.empty() && has(matrix::kBack), .open = !table.open.empty() && has(matrix::kOpen)});
   MatchOptions options;
   options.partial = partial;
   result.values = match(result.truth, candidate, options);

@@ -42,8 +42,8 @@ class Numbers {
     const text::ParsedNumber number = text::parse_number(text);
     if (number.fault == text::NumberFault::kNone) return number.value;
     if (is_number(text)) return text::not_finite_value(text, number.fault);
-    complain(line, text.empty() ? "a field is empty" : describe(number.fault, text),
-             "an entry of a matrix is a number", text.empty() ? "write nan if there is no result" : advice(number.fault));
+    complain(line, text.empty() ? "a field is empty" : describe(number.fault, text), "an entry of a matrix is a number",
+             text.empty() ? "write nan if there is no result" : advice(number.fault));
     return 0.0;
   }
   void complain(std::size_t line, std::string what, std::string why, std::string suggestion) {
@@ -121,7 +121,8 @@ OtherKind kind_of(const std::filesystem::path& file, const CandidateColumns& col
   if (view3d_head(line)) return OtherKind::kView3d;
   std::vector<std::string> fields;
   (void)split(line, fields);
-  if (std::ranges::all_of(fields, [](const std::string& field) { return is_number(field); })) return OtherKind::kNumbers;
+  if (std::ranges::all_of(fields, [](const std::string& field) { return is_number(field); }))
+    return OtherKind::kNumbers;
   const auto has = [&](const std::string& given, const char* usual) {
     return std::ranges::find(fields, given.empty() ? usual : given) != fields.end();
   };
@@ -134,9 +135,9 @@ NumberGrid read_numbers(const std::filesystem::path& file) {
   for_each_line(file, numbers, [&](const std::vector<std::string>& fields, std::size_t line) {
     if (grid.rows++ == 0) grid.columns = fields.size();
     if (fields.size() != grid.columns) {
-      numbers.complain(line, text::counted(fields.size(), "number") + " where the first row has " +
-                                 std::to_string(grid.columns),
-                       "a row of a matrix has a number for each column", "write one row in each line");
+      numbers.complain(
+          line, text::counted(fields.size(), "number") + " where the first row has " + std::to_string(grid.columns),
+          "a row of a matrix has a number for each column", "write one row in each line");
       return;
     }
     for (const std::string& field : fields) {
@@ -166,8 +167,9 @@ Candidate read_named(const std::filesystem::path& file) {
       candidate.sources.assign(head.begin() + (corner ? 1 : 0), head.end());
     }
     if (fields.size() != candidate.sources.size() + 1) {
-      numbers.complain(line, std::to_string(fields.size()) + " fields where there are a name and " +
-                                 text::counted(candidate.sources.size(), "column"),
+      numbers.complain(line,
+                       std::to_string(fields.size()) + " fields where there are a name and " +
+                           text::counted(candidate.sources.size(), "column"),
                        "values would be assigned to the wrong columns",
                        "begin the file with the names of the columns, and each line with the name of its row");
       return;

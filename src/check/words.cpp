@@ -85,8 +85,8 @@ void add_words_of_matrix(const Report& report, std::vector<std::string>& texts) 
   const auto add = [&](std::size_t count, const std::string& what) {
     if (count == 0) return;
     texts.push_back(text::counted(count, "entry", "entries") + " of the truth " + what + ": judged by " +
-                    (count == 1 ? "its" : "their") + " bounds, which are up to " +
-                    text::short_number(report.widest) + " wide");
+                    (count == 1 ? "its" : "their") + " bounds, which are up to " + text::short_number(report.widest) +
+                    " wide");
   };
   add(report.statistical, "statistical");
   add(report.not_accurate, "wider than the accuracy it was computed with");

@@ -42,7 +42,8 @@ constexpr const char* kCheckFooter =
     "With --baseline, --write-baseline writes the file only if nothing got worse.\n"
     "Two EXR images are compared pixel by pixel, in each channel: pixels are receivers, channels are sources. A pixel\n"
     "of the truth that is not a finite number does not count. --error-image shows where the errors are.\n"
-    "A file of `exactff matrix -o` is compared entry by entry with another program's matrix: CSV with from,to,value, a\n"
+    "A file of `exactff matrix -o` is compared entry by entry with another program's matrix: CSV with from,to,value, "
+    "a\n"
     "table with names, View3D's output, or numbers only or .npy in the same order. Rows are receivers, columns are\n"
     "sources. The error of an entry is its distance from [lower, upper]. Negative entries, entries above 1, sums of\n"
     "rows and reciprocity are printed.\n"
@@ -370,9 +371,10 @@ Command add_check(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("check", "Compare the values of another program with a truth file: pass or fail");
   command
-      ->add_option("TRUTH", args->truth,
-                   "File written by `exactff truth` or `exactff matrix -o`, or exact.csv of `exactff compare`; or an EXR "
-                   "image")
+      ->add_option(
+          "TRUTH", args->truth,
+          "File written by `exactff truth` or `exactff matrix -o`, or exact.csv of `exactff compare`; or an EXR "
+          "image")
       ->required()
       ->type_name("FILE");
   command->add_option("CANDIDATE", args->candidate, "CSV file of the values to judge; or an EXR image, or a matrix")

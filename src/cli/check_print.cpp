@@ -84,7 +84,8 @@ void print_worst(const check::Report& report) {
   for (const char* title : {report.matrix ? "from" : "receiver", report.matrix ? "to" : "source"}) {
     table.add_column(title);
   }
-  for (const char* title : {report.matrix ? "truth" : "exact", "found", "error", "relative", "line"}) table.add_column(title, Align::kRight);
+  for (const char* title : {report.matrix ? "truth" : "exact", "found", "error", "relative", "line"})
+    table.add_column(title, Align::kRight);
   for (std::size_t i = 0; i < report.worst.size(); ++i) {
     const check::RowError& row = report.worst[i];
     table.add_row({std::to_string(i + 1), row.receiver, row.source, text::shortest(row.truth),
@@ -128,7 +129,8 @@ void print_end(const check::Report& report, const std::string& baseline_to_tight
     std::cout << "Passed\n";
   }
   const bool suggests = failed == 0 && !report.improvements.empty() && !baseline_to_tighten.empty();
-  if (suggests) std::cout << "To record this improvement: --write-baseline " << text::printable(baseline_to_tighten) << '\n';
+  if (suggests)
+    std::cout << "To record this improvement: --write-baseline " << text::printable(baseline_to_tighten) << '\n';
 }
 
 }  // namespace

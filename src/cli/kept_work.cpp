@@ -23,7 +23,8 @@ jobs::Shard shard_of(const std::string& text) {
     const auto count = std::from_chars(number.ptr + 1, end, shard.count);
     if (count.ec == std::errc{} && count.ptr == end && shard.number >= 1 && shard.number <= shard.count) return shard;
   }
-  text::refuse("--shard: " + text::in_quotes(text) + " is not a shard", "a shard is a part of the work, numbered from 1",
+  text::refuse("--shard: " + text::in_quotes(text) + " is not a shard",
+               "a shard is a part of the work, numbered from 1",
                "write number/count, for example --shard 1/4 to --shard 4/4");
 }
 

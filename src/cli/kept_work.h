@@ -41,10 +41,10 @@ class Narrator {
 
 // What the processes of a command do, each of which parsed the same flags.
 struct TeamWork {
-  std::string row;                                     // as for Narrator
-  std::function<void()> refuse;                        // throws InputError for flags that a team cannot serve
-  std::function<int(jobs::Team* team)> write;          // alone (null) or as the leader; returns the exit code
-  std::function<int(jobs::Team& team)> follow;         // as another rank
+  std::string row;                              // as for Narrator
+  std::function<void()> refuse;                 // throws InputError for flags that a team cannot serve
+  std::function<int(jobs::Team* team)> write;   // alone (null) or as the leader; returns the exit code
+  std::function<int(jobs::Team& team)> follow;  // as another rank
 };
 // Finds out whether this process was started with others, and runs it as what it is. Returns the exit code.
 [[nodiscard]] int run_alone_or_in_team(const TeamWork& work);

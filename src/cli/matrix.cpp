@@ -37,7 +37,8 @@ constexpr const char* kMatrixFooter =
     "1 - 1e-6, from exact point factors. A warning counts the entries that are wider than the accuracy.\n"
     "With --backs and --to all,sky each row also has what meets the backs of faces, and what is open. Then it must\n"
     "add up to 1; if a row does not, the exit code is 1.\n"
-    "With -o, finished pairs are kept in FILE.part until FILE is complete; after an interruption, the same command with\n"
+    "With -o, finished pairs are kept in FILE.part until FILE is complete; after an interruption, the same command "
+    "with\n"
     "--resume continues from there. On several machines: `mpirun -n 4 exactff matrix ... -o FILE`, or separate jobs\n"
     "with --shard 1/4, 2/4, ... whose files `exactff merge` joins. With --resume and a complete FILE, also a merged\n"
     "one, the other files are made again. The bytes depend on none of this.\n"
@@ -202,8 +203,9 @@ void check_shard_and_resume(const MatrixArguments& args) {
        {std::pair("--plain", args.plain), std::pair("--npz", !args.npz.empty()), std::pair("--vtk", !args.vtk.empty()),
         std::pair("--view3d", !args.view3d.empty()), std::pair("--energyplus", !args.energyplus.empty())}) {
     if (!given) continue;
-    text::refuse(std::string(flag) + " is given with --shard", "a shard has only a part of the entries",
-                 "after exactff merge, run this command without --shard, with --resume and -o FILE for the merged file");
+    text::refuse(
+        std::string(flag) + " is given with --shard", "a shard has only a part of the entries",
+        "after exactff merge, run this command without --shard, with --resume and -o FILE for the merged file");
   }
 }
 

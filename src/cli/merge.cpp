@@ -19,7 +19,8 @@ namespace exactff::cli {
 namespace {
 
 constexpr const char* kMergeFooter =
-    "Shards are the files that `exactff truth` or `exactff matrix` wrote with --shard 1/N to --shard N/N and otherwise\n"
+    "Shards are the files that `exactff truth` or `exactff matrix` wrote with --shard 1/N to --shard N/N and "
+    "otherwise\n"
     "the same flags. They can be given in any order. merge stops if a shard is missing, given twice, damaged,\n"
     "unfinished or from a run with other flags. FILE has the same bytes as the result of one run without shards. It\n"
     "appears only when it is complete.\n"
@@ -77,7 +78,9 @@ int run(const MergeArguments& args) {
 Command add_merge(CLI::App& app) {
   auto args = std::make_shared<MergeArguments>();
   CLI::App* command = app.add_subcommand("merge", "Join the shards of a truth file or of a matrix");
-  command->add_option("SHARD", args->shards, "Files written by exactff truth --shard or exactff matrix --shard")->required()->type_name("FILE");
+  command->add_option("SHARD", args->shards, "Files written by exactff truth --shard or exactff matrix --shard")
+      ->required()
+      ->type_name("FILE");
   command->add_flag("--force", args->force, "Replace an existing file");
   command->add_option("-o,--output", args->file, "CSV file to write")->required()->type_name("FILE");
   args->further.add_npy_to(*command);

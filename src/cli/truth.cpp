@@ -247,12 +247,14 @@ void refuse_pipes_of_a_team(const TruthArguments& args) {
 }
 
 int run(const TruthArguments& args) {
-  return run_alone_or_in_team(
-      {.row = "row",
-       .refuse = [&] { refuse_pipes_of_a_team(args); },
-       .write =
-           [&](jobs::Team* team) { return args.to_standard_output() ? write_to_standard_output(args) : write(args, team); },
-       .follow = [&](jobs::Team& team) { return follow(args, team); }});
+  return run_alone_or_in_team({.row = "row",
+                               .refuse = [&] { refuse_pipes_of_a_team(args); },
+                               .write =
+                                   [&](jobs::Team* team) {
+                                     return args.to_standard_output() ? write_to_standard_output(args)
+                                                                      : write(args, team);
+                                   },
+                               .follow = [&](jobs::Team& team) { return follow(args, team); }});
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ void compute_missing(const Rows& rows, RowJournal& journal, Team* team, const Ho
 // A file in which nothing of the journal is lost, whatever happens to it.
 [[nodiscard]] work::FailureAdvice advice_while_in_journal(const RowJournal& journal);
 
-// Calls take(range, text) for every chunk, in order. Requires every row of the shard to be in the journal. `take` returns
-// false if the text cannot be that of these rows, which then is an internal failure.
+// Calls take(range, text) for every chunk, in order. Requires every row of the shard to be in the journal. `take`
+// returns false if the text cannot be that of these rows, which then is an internal failure.
 using TakeChunk = std::function<bool(Range range, const std::string& text)>;
 void for_each_chunk(const Rows& rows, const RowJournal& journal, const Hooks& hooks, const TakeChunk& take);
 

@@ -94,10 +94,10 @@ class TableReader {
     const std::optional<Claim> claim = claim_named(csv_.field(claim_));
     const std::string& accurate = csv_.field(accurate_);
     if (!claim || (accurate != "yes" && accurate != "no")) {
-      csv_.complain(claim ? "'accurate' is " + text::in_quotes(accurate)
-                          : "unknown claim " + text::in_quotes(csv_.field(claim_)),
-                    "it says what is known of the entry",
-                    claim ? "write yes or no" : "use the file as `exactff matrix` wrote it");
+      csv_.complain(
+          claim ? "'accurate' is " + text::in_quotes(accurate) : "unknown claim " + text::in_quotes(csv_.field(claim_)),
+          "it says what is known of the entry",
+          claim ? "write yes or no" : "use the file as `exactff matrix` wrote it");
     }
     f.claim = claim.value_or(Claim::kStatistical);
     f.accurate = accurate == "yes";
@@ -106,8 +106,7 @@ class TableReader {
   // Those of the first row: up to the first entry of another.
   void find_columns() {
     width_ = 1;
-    while (width_ < rows_.size() && rows_[width_].from == rows_.front().from &&
-           rows_[width_].to != rows_.front().to) {
+    while (width_ < rows_.size() && rows_[width_].from == rows_.front().from && rows_[width_].to != rows_.front().to) {
       ++width_;
     }
     patches_ = width_;
@@ -126,10 +125,10 @@ class TableReader {
     for (std::size_t j = 0; j < width_; ++j) {
       if (first + j == rows_.size() || rows_[first + j].from != rows_[first].from ||
           rows_[first + j].to != rows_[j].to || rows_[first + j].factor.area_from != rows_[first].factor.area_from) {
-        csv_.complain_at(rows_[std::min(first + j, rows_.size() - 1)].line,
-                         "the row of " + text::in_quotes(rows_[first].from) +
-                             " has not the columns of the first row, or two areas",
-                         "a matrix has the same columns in every row", "use the file as `exactff matrix` wrote it");
+        csv_.complain_at(
+            rows_[std::min(first + j, rows_.size() - 1)].line,
+            "the row of " + text::in_quotes(rows_[first].from) + " has not the columns of the first row, or two areas",
+            "a matrix has the same columns in every row", "use the file as `exactff matrix` wrote it");
         return;
       }
       const Row& row = rows_[first + j];

@@ -61,8 +61,7 @@ class EntryComputer : public jobs::Rows::Computer {
 }  // namespace
 
 Rows::Rows(Request request)
-    : request_(checked(std::move(request))),
-      entries_(*request_.scene, request_.from, request_.to, request_.options) {
+    : request_(checked(std::move(request))), entries_(*request_.scene, request_.from, request_.to, request_.options) {
   const std::uint64_t count = entries_.count();
   const auto chunk = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(count / kChunks, 1, kLargestChunk));
   const int threads = request_.options.threads > 0 ? request_.options.threads : work::usable_threads();

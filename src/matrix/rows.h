@@ -1,4 +1,5 @@
-// The jobs of a matrix as rows of a journal: each row is one or two lines of the CSV file, the entry's number before each.
+// The jobs of a matrix as rows of a journal: each row is one or two lines of the CSV file, the entry's number before
+// each.
 #pragma once
 
 #include <memory>

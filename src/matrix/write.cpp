@@ -94,8 +94,8 @@ jobs::Summary merge(const std::vector<fs::path>& paths, const fs::path& file, jo
   shards.for_each_chunk([&](jobs::Range, const std::string& text) { return lines.add(text); });
   const std::string head = head_without_jobs(shards.head), entries = lines.in_order();
   if (head.empty() || entries.empty()) {
-    text::refuse(paths.front(), "and the other shards do not hold each entry of a matrix once",
-                 "every entry is needed", "compute them again");
+    text::refuse(paths.front(), "and the other shards do not hold each entry of a matrix once", "every entry is needed",
+                 "compute them again");
   }
   work::WholeFile whole(file);
   whole.append(head);

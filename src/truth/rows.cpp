@@ -179,9 +179,7 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
   line << to_string(status);
 }
 
-bool Rows::may_be_text_of(jobs::Range range, std::string_view text) const {
-  return Tally().add_rows(text, range.rows);
-}
+bool Rows::may_be_text_of(jobs::Range range, std::string_view text) const { return Tally().add_rows(text, range.rows); }
 
 namespace {
 

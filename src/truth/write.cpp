@@ -57,9 +57,8 @@ Summary write(Request request, const fs::path& file, Existing existing, const Ho
   jobs::RowJournal journal(file, rows, existing, hooks);
   jobs::compute_missing(rows, journal, team, hooks, summary);
   Tally tally;
-  jobs::write_rows(rows, journal, file, hooks, [&](jobs::Range range, const std::string& text) {
-    return tally.add_rows(text, range.rows);
-  });
+  jobs::write_rows(rows, journal, file, hooks,
+                   [&](jobs::Range range, const std::string& text) { return tally.add_rows(text, range.rows); });
   journal.remove();
   summary.rows_by_status = tally.by_status();
   return summary;

@@ -94,8 +94,9 @@ TEST_F(MpiTruth, AKilledProcessCostsNoFinishedRow) {
 // Pairs of patches, from microseconds to a second each.
 TEST_F(MpiTruth, AMatrixOfKilledProcessesHasTheBytesOfOne) {
   const auto matrix = [](const fs::path& file, const std::vector<std::string>& more) {
-    std::vector<std::string> all{"matrix", EXACTFF_DATA_DIR "/scenes/cornell_box.obj", "--accuracy", "1e-3", "--budget", "300", "--backs",
-                                 "-o", file};
+    std::vector<std::string> all{
+        "matrix", EXACTFF_DATA_DIR "/scenes/cornell_box.obj", "--accuracy", "1e-3", "--budget", "300", "--backs", "-o",
+        file};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   };

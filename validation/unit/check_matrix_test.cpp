@@ -80,7 +80,8 @@ TEST_F(CheckMatrix, EveryFormGivesTheSameErrors) {
   const std::vector<std::string> forms = {
       write("list.csv",
             "to,from,value\nc,a,0.2\na,a,0\nb,a,0.5004\na,b,0.25\nb,b,0\nc,b,0.5\na,c,0.1\nb,c,0.25\nc,c,0\n"),
-      write("ours.csv", "from,to,factor\na,a,0\na,b,0.5004\na,c,0.2\nb,a,0.25\nb,b,0\nb,c,0.5\nc,a,0.1\nc,b,0.25\nc,c,0\n"),
+      write("ours.csv",
+            "from,to,factor\na,a,0\na,b,0.5004\na,c,0.2\nb,a,0.25\nb,b,0\nb,c,0.5\nc,a,0.1\nc,b,0.25\nc,c,0\n"),
       write("named.csv", "from,b,a,c\nb,0,0.25,0.5\na,0.5004,0,0.2\nc,0.25,0.1,0\n"),
       write("without_corner.txt", "a b c\nb 0.25 0 0.5\na 0 0.5004 0.2\nc 0.1 0.25 0\n"),
       write("numbers.csv", "# by hand\n0,0.5004,0.2\n0.25,0,0.5\n0.1,0.25,0\n"),
@@ -168,20 +169,20 @@ TEST_F(CheckMatrix, WhatCannotBeComparedIsRefusedWithItsPlace) {
   EXPECT_NE(refusal(truth_).find("bad.csv:2: the entry is not within its bounds"), std::string::npos);
   truth_ = write("claim.csv", std::string(kHead) + "a,a,0,0,0,perfect,yes,1,1,0,0\n");
   EXPECT_NE(refusal(truth_).find("claim.csv:2: unknown claim 'perfect'"), std::string::npos);
-  truth_ = write("torn.csv", std::string(kHead) + "a,a,0,0,0,zero,yes,1,1,0,0\na,b,0,0,0,zero,yes,1,1,0,0\n"
-                                                  "b,a,0,0,0,zero,yes,1,1,0,0\n");
+  truth_ = write("torn.csv", std::string(kHead) +
+                                 "a,a,0,0,0,zero,yes,1,1,0,0\na,b,0,0,0,zero,yes,1,1,0,0\n"
+                                 "b,a,0,0,0,zero,yes,1,1,0,0\n");
   EXPECT_NE(refusal(truth_).find("has not the columns of the first row"), std::string::npos);
 }
 
 TEST(ReadNpy, IsWhatNumpyWrites) {
   const validation::TemporaryDirectory directory;
   const auto file = [&](const std::string& descr, const char* order, const std::string& shape, std::string elements) {
-    std::string header =
-        "{'descr': '" + descr + "', 'fortran_order': " + order + ", 'shape': " + shape + ", }";
+    std::string header = "{'descr': '" + descr + "', 'fortran_order': " + order + ", 'shape': " + shape + ", }";
     header.resize(118 - 1, ' ');
     header += '\n';
-    return directory.write("m.npy", std::string("\x93NUMPY\1") + '\0' + char(header.size()) + '\0' + header +
-                                        std::move(elements));
+    return directory.write(
+        "m.npy", std::string("\x93NUMPY\1") + '\0' + char(header.size()) + '\0' + header + std::move(elements));
   };
   const auto floats = [](std::vector<float> values) {
     return std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
@@ -217,8 +218,8 @@ TEST_F(CheckMatrix, TheCommandJudgesWritesAndHoldsABaseline) {
   EXPECT_EQ(check({"--write-baseline", path("base.json")}).exit_code, 0);
   EXPECT_EQ(check({"--baseline", path("base.json")}).exit_code, 0);
   const std::string worse = write("worse.csv", "0,0.5004,0.1\n0.25,0,0.5\n0.1,0.25,0\n");
-  EXPECT_EQ(validation::run_program(EXACTFF_PROGRAM, {"check", truth_, worse, "--baseline", path("base.json")}).exit_code,
-            1);
+  EXPECT_EQ(
+      validation::run_program(EXACTFF_PROGRAM, {"check", truth_, worse, "--baseline", path("base.json")}).exit_code, 1);
   for (const std::vector<std::string>& flags : std::vector<std::vector<std::string>>{
            {"--match", "position"}, {"--truth-column", "lower"}, {"--eps-b", "1"}, {"--error-image", path("e.png")}}) {
     EXPECT_EQ(check(flags).exit_code, 2) << flags.front();
@@ -231,11 +232,11 @@ TEST_F(CheckMatrix, OurOwnFilesAgree) {
   EXPECT_EQ(validation::run_program(EXACTFF_PROGRAM, {"matrix", scene, "-o", path("m.csv"), "--view3d", path("m.out")})
                 .exit_code,
             0);
-  EXPECT_EQ(validation::run_program(EXACTFF_PROGRAM, {"check", path("m.csv"), path("m.out"), "--max-abs", "5e-7"})
-                .exit_code,
-            0);
-  EXPECT_EQ(validation::run_program(EXACTFF_PROGRAM, {"check", path("m.csv"), path("m.csv"), "--max-abs", "0"}).exit_code,
-            0);
+  EXPECT_EQ(
+      validation::run_program(EXACTFF_PROGRAM, {"check", path("m.csv"), path("m.out"), "--max-abs", "5e-7"}).exit_code,
+      0);
+  EXPECT_EQ(
+      validation::run_program(EXACTFF_PROGRAM, {"check", path("m.csv"), path("m.csv"), "--max-abs", "0"}).exit_code, 0);
 }
 
 }  // namespace

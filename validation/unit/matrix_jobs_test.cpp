@@ -196,9 +196,7 @@ TEST_F(MatrixJobs, ShardsAreMergedToTheBytesOfOneRun) {
 
 TEST_F(MatrixJobs, WhatDoesNotBelongTogetherIsNotMerged) {
   const std::vector<fs::path> files = shards(3);
-  const auto refusal = [&](std::vector<fs::path> given) {
-    return message_of([&] { merge(given, file_); });
-  };
+  const auto refusal = [&](std::vector<fs::path> given) { return message_of([&] { merge(given, file_); }); };
   EXPECT_NE(refusal({files[0], files[2]}).find("these are missing: 2"), std::string::npos);
   EXPECT_NE(refusal({files[0], files[1], files[0], files[2]}).find("is shard 1, and so is"), std::string::npos);
   const fs::path other = directory_.path() / "other.csv";
@@ -224,8 +222,7 @@ TEST_F(MatrixJobs, ManyProcessesWriteTheBytesOfOne) {
     for (int rank = 1; rank < 4; ++rank) {
       followers.emplace_back([&, rank] {
         ThreadTeam team(mail, rank);
-        (void)follow(
-            team, [&] { return request(); }, {});
+        (void)follow(team, [&] { return request(); }, {});
       });
     }
     ThreadTeam team(mail, 0);
@@ -240,8 +237,12 @@ TEST_F(MatrixJobs, ManyProcessesWriteTheBytesOfOne) {
 class MatrixCommand : public testing::Test {
  protected:
   static std::vector<std::string> matrix(const fs::path& file, const std::vector<std::string>& more) {
-    std::vector<std::string> all{"matrix", EXACTFF_DATA_DIR "/scenes/cornell_box.obj", "--accuracy", "1e-3", "--budget", "200", "--backs",
-                                 "--to",   "all,sky", "-o", file};
+    std::vector<std::string> all{"matrix",     EXACTFF_DATA_DIR "/scenes/cornell_box.obj",
+                                 "--accuracy", "1e-3",
+                                 "--budget",   "200",
+                                 "--backs",    "--to",
+                                 "all,sky",    "-o",
+                                 file};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
@@ -269,7 +270,7 @@ TEST_F(MatrixCommand, KilledAndInterruptedItComesToTheSameBytes) {
     }
     running.send(signal);
     const auto sent = std::chrono::steady_clock::now();
-    if (running.wait() != 128 + signal) break;  // it was faster
+    if (running.wait() != 128 + signal) break;                                    // it was faster
     EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(5));  // machines may be busy
     ++ended_early;
     EXPECT_FALSE(fs::exists(file_));
