@@ -137,7 +137,9 @@ struct Request {
   const Scene* scene = nullptr;
   std::string scene_name = {};  // for metadata
   View view = {};
-  std::vector<Selection> sources = {};         // empty: every patch that emits
+  std::vector<Selection> sources = {};  // empty: every patch that emits, unless there is `sky`
+  bool sky =
+      false;  // one more source, with a radiosity of 1: all directions that meet nothing; not for methods, layers
   std::optional<methods::Choice> method = {};  // empty: the exact values
   Quantity quantity = Quantity::kRadiance;
   KeMeans ke = KeMeans::kRadiosity;

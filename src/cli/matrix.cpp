@@ -52,24 +52,6 @@ struct MatrixArguments {
   bool force = false;
 };
 
-// Takes "sky" out of the columns, unless a patch has this name.
-bool take_sky(const Scene& scene, std::vector<std::string>& texts) {
-  const auto is_patch = [&](const std::string& name) {
-    return std::ranges::any_of(scene.patches(), [&](const Patch& patch) { return patch.name == name; });
-  };
-  std::vector<std::string> kept;
-  bool found = false;
-  for (const std::string& text : texts) {
-    for (const std::string& name : is_patch(text) ? std::vector{text} : flags::split_list(text)) {
-      const bool is_sky = name == "sky" && !is_patch(name);
-      found = found || is_sky;
-      if (!is_sky) kept.push_back(name);
-    }
-  }
-  if (found) texts = kept;
-  return found;
-}
-
 template <class Visit>
 void for_each_entry(const Scene& scene, const matrix::Matrix& matrix, const Visit& visit) {
   const ViewFactorMatrix& all = matrix.factors;
@@ -241,7 +223,7 @@ int run(MatrixArguments args) {
   check_outputs(args);
   const Scene scene = args.scene.load();
   print_warnings(scene.warnings());
-  args.options.open = take_sky(scene, args.to);
+  args.options.open = flags::take_sky(scene, args.to);
   const std::vector<Selection> from = flags::selections_named(scene, args.from),
                                to = flags::selections_named(scene, args.to);
   check_content(args, scene, from, to);

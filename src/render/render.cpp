@@ -8,9 +8,9 @@
 #include <memory>
 #include <mutex>
 
-#include "exact/light.h"
 #include "kernel/float_environment.h"
 #include "kernel/numbers.h"
+#include "light/light.h"
 #include "render/job.h"
 #include "study/kept_work.h"
 #include "work/parallel.h"

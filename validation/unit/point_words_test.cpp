@@ -102,6 +102,12 @@ TEST_F(PointWords, ASourceThatEmitsIsNotRemarkedUpon) {
   EXPECT_EQ(said.error, "");
 }
 
+TEST_F(PointWords, TheSkyIsLeftToView) {
+  const Said said = up({"--source", "sky"});
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_TRUE(holds(said.error, "exactff view prints the sky's form factor as (open)")) << said.error;
+}
+
 TEST_F(PointWords, ASourceNamedTwiceIsRefused) {
   const Said said = up({"--source", "light,light"});
   EXPECT_EQ(said.exit_code, 2);

@@ -7,6 +7,7 @@
 
 #include "exactff/models.h"
 #include "exactff/obj.h"
+#include "exactff/view.h"
 #include "generate/plain_scene.h"
 #include "support/complaint.h"
 #include "support/program.h"
@@ -316,6 +317,26 @@ TEST(Colours, ExposureBringsTheBrightestToWhite) {
   Picture grey = picture;
   grey.values.assign(grey.values.size(), 0.5);
   EXPECT_EQ(developed(grey, 1.0).bytes[0], 188);
+}
+
+TEST(Picture, UnderTheSkyShowsWhatIsOpen) {
+  Request asked = request(5, 4);
+  asked.sky = true;
+  asked.quantity = Quantity::kFormFactor;
+  const Picture picture = render(asked);
+  int open = 0;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 5; ++column) {
+      const std::optional<Hit> hit = first_hit(cornell_box(), asked.view.ray(column + 0.5, row + 0.5));
+      if (!hit || hit->back) continue;
+      const ViewShare sky = exactff::view(cornell_box(), receiver_at(cornell_box(), *hit)).open;
+      EXPECT_EQ(value(picture, column, row), sky.value);
+      if (sky.value > 0.0) ++open;
+    }
+  }
+  EXPECT_GT(open, 5);
+  asked.layers = Layers::kAll;
+  EXPECT_THROW((void)render(asked), InputError);
 }
 
 TEST(Colours, ErrorsAreWhiteRedAndBlue) {
