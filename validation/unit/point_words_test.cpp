@@ -135,6 +135,13 @@ TEST_F(PointWords, AllIsATableWithTheSumAndWhatIsMissing) {
   EXPECT_NEAR(all["missing_to_1"]["lower"].get<double>() + all["sum"]["upper"].get<double>(), 1.0, 1e-15);
 }
 
+TEST_F(PointWords, OfManyFacesTheTableIsThatOfOneByOne) {
+  const std::string hall = "@emitters:n=400,boxes=4";
+  const Said swept = from(hall, {"3", "4", "1"}, {"--source", "all"});
+  EXPECT_EQ(swept.exit_code, 0) << swept.error;
+  EXPECT_EQ(swept.output, from(hall, {"3", "4", "1"}, {"--source", "all", "--engine", "boolean"}).output);
+}
+
 // The rounded values of the six sides add up to 1 only by luck; the balls enclose it.
 TEST_F(PointWords, InAClosedRoomNothingIsMissingToOne) {
   const std::string cube = directory_.write("cube.obj", kCube).string();
