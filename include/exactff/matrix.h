@@ -36,6 +36,21 @@ struct Matrix {
 [[nodiscard]] Matrix compute(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
                              const Options& options = {}, const Hooks& hooks = {});
 
+struct DraftOptions {
+  double accuracy = 1e-3;   // entries that are not wider, for F_ij and for F_ji, are `accurate`
+  std::size_t views = 216;  // of each row's patch: six in each stratum, of which there are at least 36
+  bool backs = false, open = false;
+  int threads = 0;  // 0: all; does not affect the result
+};
+
+// A draft for thousands of patches, in which all entries of a row come from the same whole views (view.h) of points of
+// its patch. Every entry is `statistical`, or `zero` if that is proved; `cells` is the number of views. An entry that
+// no view has met has the value 0 and an upper bound. Without coplanar fronts, the values of a row with backs and open
+// add up to 1 by construction, which proves nothing about any of them. Throws as compute(); and InputError for a column
+// that is a face or transparent.
+[[nodiscard]] Matrix draft(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
+                           const DraftOptions& options = {}, const Hooks& hooks = {});
+
 // The sum of each row with its back and open, rounded outward: an enclosure as strong as the row's weakest claim.
 struct Sum {
   double lower = 0.0;

@@ -31,6 +31,9 @@ constexpr const char* kMatrixFooter =
     "proved on every cell of the patch, and the error of the quadrature is estimated from two rules. Where the cells\n"
     "of --budget do not suffice, it is 'statistical' if that is narrower: an interval of Student's t, at the level\n"
     "1 - 1e-6, from exact point factors. A warning counts the entries that are wider than the accuracy.\n"
+    "--draft takes a row from some whole views of its patch, for thousands of patches: all entries are 'statistical' "
+    "or\n"
+    "'zero', and an entry that no view has met is 0 with an upper bound.\n"
     "With --backs and --to all,sky each row also has what meets the backs of faces, and what is open. Then it must\n"
     "add up to 1; if a row does not, the exit code is 1.\n"
     "View3D's output has six decimals and no bounds; its rows add up to 1 only within that. EnergyPlus reads the\n"
@@ -46,6 +49,9 @@ struct MatrixArguments {
   flags::SceneArguments scene;
   std::vector<std::string> from{"all"}, to{"all"};
   matrix::Options options;
+  bool draft = false;
+  bool has_accuracy = false;
+  std::size_t views = matrix::DraftOptions{}.views;
   bool plain = false;
   std::string csv, npz, view3d, energyplus, vtk;
   std::string zone = "Zone 1";
@@ -78,7 +84,16 @@ std::string row_sum_text(const matrix::Sum& sum) {
   return text::rounded(0.5 * (sum.lower + sum.upper), 6) + " +- " + text::rounded(0.5 * (sum.upper - sum.lower), 1);
 }
 
-void print_table(const Scene& scene, const matrix::Matrix& matrix) {
+// Intervals of a draft are not symmetric: what no view has met is 0, with an upper bound.
+std::string drafted_sum_text(const matrix::Matrix& matrix, std::size_t row, const matrix::Sum& sum) {
+  const std::size_t columns = matrix.factors.to.size();
+  double value =
+      (matrix.back.empty() ? 0.0 : matrix.back[row].value) + (matrix.open.empty() ? 0.0 : matrix.open[row].value);
+  for (std::size_t j = 0; j < columns; ++j) value += matrix.factors.at(row, j).value;
+  return text::rounded(value, 6) + " +- " + text::rounded(std::max(value - sum.lower, sum.upper - value), 1);
+}
+
+void print_table(const MatrixArguments& args, const Scene& scene, const matrix::Matrix& matrix) {
   const ViewFactorMatrix& all = matrix.factors;
   const std::vector<matrix::Sum> sums = row_sums(matrix);
   const std::size_t columns = std::min(all.to.size(), kMostShown), rows = std::min(all.from.size(), kMostShown);
@@ -93,7 +108,7 @@ void print_table(const Scene& scene, const matrix::Matrix& matrix) {
     for (std::size_t j = 0; j < columns; ++j) cells.push_back(factor_text(all.at(i, j)));
     if (!matrix.back.empty()) cells.push_back(factor_text(matrix.back[i]));
     if (!matrix.open.empty()) cells.push_back(factor_text(matrix.open[i]));
-    cells.push_back(row_sum_text(sums[i]));
+    cells.push_back(args.draft ? drafted_sum_text(matrix, i, sums[i]) : row_sum_text(sums[i]));
     table.add_row(std::move(cells));
   }
   table.print(std::cout);
@@ -116,9 +131,11 @@ void warn_of_width(const MatrixArguments& args, const matrix::Matrix& matrix) {
   const ViewFactorOptions& options = args.options.factors;
   warn(text::counted(static_cast<std::uint64_t>(wide), "entry", "entries") + (wide == 1 ? " is" : " are") +
            " wider than the accuracy " + text::shortest(options.accuracy),
-       "the budget of " + std::to_string(options.budget) +
-           " cells is used up; their bounds are as strong as their claims",
-       "give more cells by --budget, or ask for less by --accuracy");
+       (args.draft ? "a row has " + std::to_string(args.views) + " views"
+                   : "the budget of " + std::to_string(options.budget) + " cells is used up") +
+           "; their bounds are as strong as their claims",
+       std::string(args.draft ? "give more views by --views" : "give more cells by --budget") +
+           ", or ask for less by --accuracy");
 }
 
 bool has_statistical(const matrix::Matrix& matrix, std::size_t row) {
@@ -148,7 +165,10 @@ bool test_rows(const MatrixArguments& args, const Scene& scene, const matrix::Ma
              : "with back and open it must add up to 1, so a bound of it does not hold",
          "please report the scene");
   }
-  if (all && !args.plain) std::cout << "\nEvery row adds up to 1 within its bounds.\n";
+  if (args.plain || !all) return all;
+  std::cout << (args.draft
+                    ? "\nEvery row of a draft adds up to 1 by construction. This proves nothing about its entries.\n"
+                    : "\nEvery row adds up to 1 within its bounds.\n");
   return all;
 }
 
@@ -219,8 +239,13 @@ void check_content(const MatrixArguments& args, const Scene& scene, const std::v
   if (!args.energyplus.empty()) (void)energyplus_text(scene, empty, args.zone);
 }
 
+matrix::DraftOptions draft_options(const MatrixArguments& args) {
+  return {args.options.factors.accuracy, args.views, args.options.backs, args.options.open, args.options.threads};
+}
+
 int run(MatrixArguments args) {
   check_outputs(args);
+  if (args.draft && !args.has_accuracy) args.options.factors.accuracy = matrix::DraftOptions{}.accuracy;
   const Scene scene = args.scene.load();
   print_warnings(scene.warnings());
   args.options.open = flags::take_sky(scene, args.to);
@@ -229,11 +254,12 @@ int run(MatrixArguments args) {
   check_content(args, scene, from, to);
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
-  const matrix::Matrix matrix = compute(scene, from, to, args.options, hooks);
+  const matrix::Matrix matrix =
+      args.draft ? draft(scene, from, to, draft_options(args), hooks) : compute(scene, from, to, args.options, hooks);
   bar.clear();
   warn_of_width(args, matrix);
   write_files(args, scene, matrix);
-  args.plain ? print_plain(scene, matrix) : print_table(scene, matrix);
+  args.plain ? print_plain(scene, matrix) : print_table(args, scene, matrix);
   const bool sound = test_rows(args, scene, matrix);
   if (!args.plain) print_files(args);
   check_output(std::cout);
@@ -270,10 +296,22 @@ Command add_matrix(CLI::App& app) {
       ->type_name("NAME")
       ->capture_default_str();
   command->add_flag("--backs", args->options.backs, "Also compute what meets the backs of faces");
-  command->add_option("--accuracy", args->options.factors.accuracy, "Largest width of an entry, for F_ij and for F_ji")
-      ->capture_default_str();
-  command->add_option("--budget", args->options.factors.budget, "Largest number of cells for an entry")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
+  CLI::Option* accuracy = command
+                              ->add_option("--accuracy", args->options.factors.accuracy,
+                                           "Largest width of an entry, for F_ij and for F_ji; 1e-3 with --draft")
+                              ->capture_default_str();
+  CLI::Option* budget =
+      command->add_option("--budget", args->options.factors.budget, "Largest number of cells for an entry")
+          ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
+          ->capture_default_str();
+  CLI::Option* draft =
+      command
+          ->add_flag("--draft", args->draft,
+                     "For thousands of patches: take each row from some whole views; entries are statistical")
+          ->excludes(budget);
+  command->add_option("--views", args->views, "Views of each row's patch, at least 216")
+      ->check(CLI::Range(std::size_t{216}, std::size_t{1} << 32))
+      ->needs(draft)
       ->capture_default_str();
   command->add_flag("--plain", args->plain, "Print a line for each entry: FROM, TO, LOWER, UPPER, CLAIM, with tabs");
   add_outputs(*command, *args);
@@ -281,7 +319,10 @@ Command add_matrix(CLI::App& app) {
       ->add_option("--threads", args->options.threads,
                    "Number of threads (default: all); it does not affect the values")
       ->check(CLI::Range(0, 1024));
-  return {command, [args] { return run(*args); }};
+  return {command, [args, accuracy] {
+            args->has_accuracy = accuracy->count() > 0;
+            return run(*args);
+          }};
 }
 
 }  // namespace exactff::cli
