@@ -26,9 +26,9 @@ namespace exactff {
 // What is known about a view factor, the weakest first.
 enum class Claim {
   // Estimated in a crowd, where cells do not suffice, from exact point factors: the mean over at least 36 strata of the
-  // patch, two independent triples of points in each. The interval misses the factor with a probability of at most 1e-6:
-  // that of Student's t, with degrees of freedom estimated from the strata, as far as the mean is normally distributed;
-  // where Hoeffding's bound is narrower, without this condition.
+  // patch, two independent triples of points in each. The interval misses the factor with a probability of at most
+  // 1e-6: that of Student's t, with degrees of freedom estimated from the strata, as far as the mean is normally
+  // distributed; where Hoeffding's bound is narrower, without this condition.
   // What is too small for any of the points to meet is not known.
   kStatistical,
   // The visible boundary is proved for every cell. The error of quadrature is estimated: four times the difference of
