@@ -31,6 +31,8 @@ constexpr const char* kMatrixFooter =
     "proved on every cell of the patch, and the error of the quadrature is estimated from two rules. Where the cells\n"
     "of --budget do not suffice, it is 'statistical' if that is narrower: an interval of Student's t, at the level\n"
     "1 - 1e-6, from exact point factors. A warning counts the entries that are wider than the accuracy.\n"
+    "With --certify every entry is 'zero' or 'certified': the remainder of the quadrature and all roundings are\n"
+    "proved as well. It costs up to a few times as much.\n"
     "With --backs and --to all,sky each row also has what meets the backs of faces, and what is open. Then it must\n"
     "add up to 1; if a row does not, the exit code is 1.\n"
     "View3D's output has six decimals and no bounds; its rows add up to 1 only within that. EnergyPlus reads the\n"
@@ -290,6 +292,7 @@ Command add_matrix(CLI::App& app) {
   command->add_flag("--backs", args->options.backs, "Also compute what meets the backs of faces");
   command->add_option("--accuracy", args->options.factors.accuracy, "Largest width of an entry, for F_ij and for F_ji")
       ->capture_default_str();
+  command->add_flag("--certify", args->options.factors.certify, "Prove the quadrature, too: entries are certified");
   command->add_option("--budget", args->options.factors.budget, "Largest number of cells for an entry")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
       ->capture_default_str();
