@@ -35,14 +35,18 @@ enum class Claim {
   // two Gauss rules, or, closer to an edge than 1.5 radii of the cell, the cell's whole area. Where the order of edges
   // could not be decided on a cell (event cells), a bound is added.
   kTopologyProved,
+  // Every step is proved: the visible boundary on every cell, the remainder of the quadrature, all roundings. Only on
+  // request. An entry keeps this claim, and its width, if it misses its accuracy.
+  kCertified,
   kZero,  // proved: no point of one patch sees a point of the other
 };
-[[nodiscard]] std::string_view to_string(Claim claim);  // "statistical", "topology-proved", "zero"
+[[nodiscard]] std::string_view to_string(Claim claim);  // "statistical", "topology-proved", "certified", "zero"
 
 struct ViewFactorOptions {
   double accuracy = 1e-6;       // of F_ij and of F_ji: upper - lower is at most this
   std::size_t budget = 100000;  // cells, one with many edges counts for several; if they do not suffice, it is a crowd
   bool sample_crowds = true;    // take `statistical` in a crowd if it is narrower; else the width is kept
+  bool certify = false;         // enclose every factor: all claims are `certified` or `zero`, also in a crowd
 };
 
 struct ViewFactor {

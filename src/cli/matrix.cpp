@@ -31,6 +31,8 @@ constexpr const char* kMatrixFooter =
     "proved on every cell of the patch, and the error of the quadrature is estimated from two rules. Where the cells\n"
     "of --budget do not suffice, it is 'statistical' if that is narrower: an interval of Student's t, at the level\n"
     "1 - 1e-6, from exact point factors. A warning counts the entries that are wider than the accuracy.\n"
+    "With --certify every entry is 'zero' or 'certified': the remainder of the quadrature and all roundings are\n"
+    "proved as well. It costs up to a few times as much.\n"
     "--draft takes a row from some whole views of its patch, for thousands of patches: all entries are 'statistical' "
     "or\n"
     "'zero', and an entry that no view has met is 0 with an upper bound.\n"
@@ -304,11 +306,14 @@ Command add_matrix(CLI::App& app) {
       command->add_option("--budget", args->options.factors.budget, "Largest number of cells for an entry")
           ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
           ->capture_default_str();
+  CLI::Option* certify =
+      command->add_flag("--certify", args->options.factors.certify, "Prove the quadrature, too: entries are certified");
   CLI::Option* draft =
       command
           ->add_flag("--draft", args->draft,
                      "For thousands of patches: take each row from some whole views; entries are statistical")
-          ->excludes(budget);
+          ->excludes(budget)
+          ->excludes(certify);
   command->add_option("--views", args->views, "Views of each row's patch, at least 216")
       ->check(CLI::Range(std::size_t{216}, std::size_t{1} << 32))
       ->needs(draft)

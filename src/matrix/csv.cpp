@@ -22,8 +22,8 @@ std::string csv_text(const Scene& scene, const Matrix& matrix, const ViewFactorO
   std::string text = "# exactff " + std::string(kVersion) +
                      " matrix: view factors from patch to patch, areas in the scene's unit squared\n# scene hash " +
                      scene.hash() + "; accuracy " + text::shortest(options.accuracy) + ", budget " +
-                     std::to_string(options.budget) +
-                     " cells\nfrom,to,factor,lower,upper,claim,accurate,area_from,area_to,cells,event_cells\n";
+                     std::to_string(options.budget) + " cells" + (options.certify ? "; certify" : "") +
+                     "\nfrom,to,factor,lower,upper,claim,accurate,area_from,area_to,cells,event_cells\n";
   const ViewFactorMatrix& all = matrix.factors;
   for (std::size_t i = 0; i < all.from.size(); ++i) {
     const std::string from = scene.name_of(all.from[i]);

@@ -10,6 +10,7 @@
 #include "kernel/float_environment.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
+#include "view_factors/disc_space.h"
 #include "view_factors/pair.h"
 #include "view_factors/patch_parts.h"
 #include "view_factors/sampled_factor.h"
@@ -25,7 +26,9 @@ constexpr double kShareOfRounding = 0x1p-10;               // of the accuracy
 constexpr double kShareOfNegligible = 0x1p-24;             // of the error that is allowed
 constexpr std::size_t kMostPoints = std::size_t{1} << 20;  // of all pairs of parts: some 200 MB
 constexpr double kRoundedPoints = 0x1p-30;                 // see near_planes.h
-constexpr double kRounding = 0x1p-44;  // relative: more than the roundings of formula and sums in usual scenes
+constexpr double kShareOfCell = 0x1p-4;  // of the error allowed, a certified cell as large as the patch
+constexpr double kShareOfTarget = 0.99;  // certified: leaves room for the roundings of sums
+constexpr double kRounding = 0x1p-44;    // relative: more than the roundings of formula and sums in usual scenes
 
 struct Waiting {
   Share share;
@@ -44,7 +47,8 @@ class Integral {
   Integral(const ExactScene& scene, const std::vector<Part>& from, double area, const std::vector<Part>& to,
            const Selection& to_patch, const ViewFactorOptions& options, double target)
       : area_(area), budget_(options.budget), least_error_(target / (4.0 * static_cast<double>(budget_))) {
-    const Pair::Limits limits{options.accuracy * kShareOfRounding, target * kShareOfNegligible};
+    const double certified = options.certify ? target * kShareOfCell / static_cast<double>(to.size()) : 0.0;
+    const Pair::Limits limits{options.accuracy * kShareOfRounding, target * kShareOfNegligible, certified, area};
     for (const Part& source : to) add_source(scene.scene, source, to_patch);
     for (const Part& receiver : from) {
       for (std::size_t i = 0; i < to.size(); ++i) {
@@ -79,6 +83,14 @@ class Integral {
 
   [[nodiscard]] double integral() const { return gave_up_ ? 0.5 * area_ : sum_of(&Share::integral); }
   [[nodiscard]] double error() const { return gave_up_ ? 0.5 * area_ : sum_of(&Share::error); }
+  // The integral, certified; requires Limits::certified. Given up, F lies in [0, 1].
+  [[nodiscard]] Disc enclosure(const Disc& area) const {
+    if (gave_up_) return widened(0.5 * area, 0.5 * magnitude(area));
+    Disc sum;
+    for (const Waiting& w : waiting_) sum = sum + Disc{w.share.integral, w.share.error};
+    for (const Share& share : settled_) sum = sum + Disc{share.integral, share.error};
+    return sum;
+  }
   [[nodiscard]] bool is_zero() const { return waiting_.empty() && settled_.empty() && !gave_up_; }
   [[nodiscard]] std::size_t cells() const { return cells_; }
   [[nodiscard]] std::size_t event_cells() const {
@@ -205,6 +217,20 @@ void sample_if_better(const ExactScene& scene, const Prepared& from, const Prepa
   result.accurate = error * from.unit_area <= target;
 }
 
+bool is_within(double accuracy, const ViewFactor& f, const Prepared& from, const Prepared& to) {
+  const double width = f.upper - f.lower;
+  return std::max(width, width * from.unit_area / to.unit_area) <= accuracy;
+}
+
+void take_enclosure(const ExactScene& scene, const Integral& integral, const Prepared& from, ViewFactor& result) {
+  const Disc area = enclosed_area_of(from.parts, scene.units);
+  const Disc f = integral.enclosure(area) / area;
+  result.claim = Claim::kCertified;
+  result.lower = is_finite(f) ? std::clamp(lower_end(f), 0.0, 1.0) : 0.0;
+  result.upper = is_finite(f) ? std::clamp(upper_end(f), 0.0, 1.0) : 1.0;
+  result.value = is_finite(f) ? std::clamp(f.centre, result.lower, result.upper) : 0.5;
+}
+
 ViewFactor factor(const ExactScene& scene, const Prepared& from, const Prepared& to, const ViewFactorOptions& options) {
   ViewFactor result;
   result.area_from = from.area;
@@ -213,7 +239,14 @@ ViewFactor factor(const ExactScene& scene, const Prepared& from, const Prepared&
   Integral integral(scene, from.parts, from.unit_area, to.parts, to.patch, options, target);
   result.cells = integral.cells();
   if (integral.is_zero()) return result;
-  integral.refine(target);
+  integral.refine(options.certify ? kShareOfTarget * target : target);
+  if (options.certify) {
+    take_enclosure(scene, integral, from, result);
+    result.accurate = is_within(options.accuracy, result, from, to);
+    result.cells = integral.cells();
+    result.event_cells = integral.event_cells();
+    return result;
+  }
   result.claim = Claim::kTopologyProved;
   result.value = std::clamp(integral.integral() / from.unit_area, 0.0, 1.0);
   const double error = integral.error() / from.unit_area + kRounding * result.value;
@@ -227,9 +260,16 @@ ViewFactor factor(const ExactScene& scene, const Prepared& from, const Prepared&
 }
 
 // By A_i F_ij = A_j F_ji.
-ViewFactor reversed(const ViewFactor& f, const Prepared& from, const Prepared& to) {
+ViewFactor reversed(const ExactScene& scene, const ViewFactor& f, const Prepared& from, const Prepared& to) {
   ViewFactor result = f;
   std::swap(result.area_from, result.area_to);
+  if (f.claim == Claim::kCertified) {
+    const Disc exact = enclosed_area_of(from.parts, scene.units) / enclosed_area_of(to.parts, scene.units);
+    result.lower = std::clamp(lower_end(f.lower * exact), 0.0, 1.0);
+    result.upper = std::clamp(upper_end(f.upper * exact), 0.0, 1.0);
+    result.value = std::clamp(f.value * exact.centre, result.lower, result.upper);
+    return result;
+  }
   const double ratio = from.unit_area / to.unit_area;
   result.value = std::min(1.0, f.value * ratio);
   result.lower = std::min(1.0, f.lower * ratio * (1.0 - kRounding));
@@ -270,6 +310,8 @@ std::string_view to_string(Claim claim) {
       return "statistical";
     case Claim::kTopologyProved:
       return "topology-proved";
+    case Claim::kCertified:
+      return "certified";
     case Claim::kZero:
       return "zero";
   }
@@ -300,7 +342,8 @@ ViewFactorMatrix view_factor_matrix(const Scene& scene, std::span<const Selectio
   for (std::size_t e = 0; e < result.entries.size(); ++e) {
     if (!transpose_of[e]) continue;
     const std::size_t other = *transpose_of[e];
-    result.entries[e] = reversed(result.entries[other], rows[other / columns.size()], columns[other % columns.size()]);
+    result.entries[e] =
+        reversed(exact, result.entries[other], rows[other / columns.size()], columns[other % columns.size()]);
   }
   return result;
 }

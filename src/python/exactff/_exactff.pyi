@@ -133,10 +133,12 @@ def form_factor(scene: Scene, point: Sequence[float], normal: Sequence[float], o
 _Factor = tuple[float, float, float, str, bool, float, float, int, int]
 _Share = tuple[float, float, float, int]
 
-def view_factor(scene: Scene, from_patch: str, to_patch: str, accuracy: float, budget: int) -> _Factor: ...
+def view_factor(
+    scene: Scene, from_patch: str, to_patch: str, accuracy: float, budget: int, certify: bool
+) -> _Factor: ...
 def view_factor_matrix(
-    scene: Scene, from_patches: Sequence[str], to_patches: Sequence[str], accuracy: float, budget: int, backs: bool,
-    open: bool, threads: int, progress: _Tell
+    scene: Scene, from_patches: Sequence[str], to_patches: Sequence[str], accuracy: float, budget: int, certify: bool,
+    backs: bool, open: bool, threads: int, progress: _Tell
 ) -> tuple[list[_Factor], list[_Factor], list[_Factor], list[tuple[float, float]], list[str]]: ...
 def view(scene: Scene, point: Sequence[float], normal: Sequence[float], on: Sequence[int], faces: bool, digits: int,
          precision_cap: int) -> tuple[list[tuple[str, _Share, _Share, bool]], _Share, _Share]: ...
