@@ -66,7 +66,7 @@ void Job::require_possible() const {
 }
 
 std::size_t Job::numbers_per_pixel() const {
-  return kLower + (request_.bounds == Bounds::kAll ? 6 : 0) + layers().size();
+  return kLower + (request_.bounds == Bounds::kAll ? 6 : 0) + layers().size() + (request_.spp > 1 ? kLamps : 0);
 }
 
 std::vector<std::string> Job::source_names() const {

@@ -24,8 +24,9 @@ class Job {
   // Of everything that the numbers depend on.
   [[nodiscard]] std::string hash() const;
 
-  // The numbers of a pixel: what it shows, its value, then on request lower, upper and layers.
-  static constexpr std::size_t kShows = 0, kValue = 1, kLower = 4, kUpper = 7;
+  // The numbers of a pixel: what it shows, its value, then on request lower, upper and layers, and those of
+  // Picture::lamps.
+  static constexpr std::size_t kShows = 0, kValue = 1, kLower = 4, kUpper = 7, kLamps = 4;
   [[nodiscard]] std::size_t numbers_per_pixel() const;
 
   // What leaves a face on the side that is seen, in the quantity of the request.
