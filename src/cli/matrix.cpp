@@ -15,6 +15,7 @@
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/text_table.h"
+#include "cli/view_factor_words.h"
 #include "exactff/version.h"
 #include "exactff/vtk.h"
 #include "flags/lists.h"
@@ -32,7 +33,9 @@ constexpr const char* kMatrixFooter =
     "of --budget do not suffice, it is 'statistical' if that is narrower: an interval of Student's t, at the level\n"
     "1 - 1e-6, from exact point factors. A warning counts the entries that are wider than the accuracy.\n"
     "With --backs and --to all,sky each row also has what meets the backs of faces, and what is open. Then it must\n"
-    "add up to 1; if a row does not, the exit code is 1.\n"
+    "add up to 1; if a row does not, the exit code is 1. Likewise if the bounds of the two directions of a pair\n"
+    "contradict each other, with --both-directions. --two-sided wall adds the patch 'wall (back)', for rows and\n"
+    "columns.\n"
     "View3D's output has six decimals and no bounds; its rows add up to 1 only within that. EnergyPlus reads the\n"
     "names of patches as names of surfaces.\n"
     "\n"
@@ -44,7 +47,7 @@ constexpr std::size_t kMostShown = 12;  // rows and columns of the printed table
 
 struct MatrixArguments {
   flags::SceneArguments scene;
-  std::vector<std::string> from{"all"}, to{"all"};
+  std::vector<std::string> from{"all"}, to{"all"}, two_sided;
   matrix::Options options;
   bool plain = false;
   std::string csv, npz, view3d, energyplus, vtk;
@@ -92,10 +95,6 @@ std::string factor_text(const ViewFactor& f) {
   return text::rounded(f.value, 6) + (f.accurate ? "" : " *");
 }
 
-std::string row_sum_text(const matrix::Sum& sum) {
-  return text::rounded(0.5 * (sum.lower + sum.upper), 6) + " +- " + text::rounded(0.5 * (sum.upper - sum.lower), 1);
-}
-
 void print_table(const Scene& scene, const matrix::Matrix& matrix) {
   const ViewFactorMatrix& all = matrix.factors;
   const std::vector<matrix::Sum> sums = row_sums(matrix);
@@ -111,7 +110,7 @@ void print_table(const Scene& scene, const matrix::Matrix& matrix) {
     for (std::size_t j = 0; j < columns; ++j) cells.push_back(factor_text(all.at(i, j)));
     if (!matrix.back.empty()) cells.push_back(factor_text(matrix.back[i]));
     if (!matrix.open.empty()) cells.push_back(factor_text(matrix.open[i]));
-    cells.push_back(row_sum_text(sums[i]));
+    cells.push_back(interval_text(sums[i]));
     table.add_row(std::move(cells));
   }
   table.print(std::cout);
@@ -123,20 +122,6 @@ void print_table(const Scene& scene, const matrix::Matrix& matrix) {
 
 void warn(const std::string& what, const std::string& why, const std::string& suggestion) {
   print_warnings(std::vector<Problem>{{.what = what, .why = why, .suggestion = suggestion}});
-}
-
-void warn_of_width(const MatrixArguments& args, const matrix::Matrix& matrix) {
-  const auto wide_of = [](const std::vector<ViewFactor>& list) {
-    return std::ranges::count_if(list, [](const ViewFactor& f) { return !f.accurate; });
-  };
-  const auto wide = wide_of(matrix.factors.entries) + wide_of(matrix.back) + wide_of(matrix.open);
-  if (wide == 0) return;
-  const ViewFactorOptions& options = args.options.factors;
-  warn(text::counted(static_cast<std::uint64_t>(wide), "entry", "entries") + (wide == 1 ? " is" : " are") +
-           " wider than the accuracy " + text::shortest(options.accuracy),
-       "the budget of " + std::to_string(options.budget) +
-           " cells is used up; their bounds are as strong as their claims",
-       "give more cells by --budget, or ask for less by --accuracy");
 }
 
 bool has_statistical(const matrix::Matrix& matrix, std::size_t row) {
@@ -168,6 +153,38 @@ bool test_rows(const MatrixArguments& args, const Scene& scene, const matrix::Ma
   }
   if (all && !args.plain) std::cout << "\nEvery row adds up to 1 within its bounds.\n";
   return all;
+}
+
+// Whether the intervals of the two directions of every pair have a number in common.
+bool test_reciprocity(const MatrixArguments& args, const Scene& scene, const matrix::Matrix& matrix) {
+  if (!args.options.factors.both_directions) return true;
+  const matrix::Reciprocity found = reciprocity(scene, matrix);
+  const auto pair_name = [&](const matrix::Reciprocity::Pair& pair) {
+    return scene.name_of(matrix.factors.from[pair.row]) + " and " + scene.name_of(matrix.factors.to[pair.column]);
+  };
+  if (!args.plain) {
+    std::cout << "\nReciprocity, A_i F_ij = A_j F_ji, of " << text::counted(found.pairs, "pair")
+              << " computed both ways";
+    if (found.worst) {
+      std::cout << ": they differ at worst by " << text::rounded_plainly(found.worst->distance, 2) << " of a radius of "
+                << text::rounded_plainly(found.worst->radius, 2) << " (" << text::printable(pair_name(*found.worst))
+                << "; as factors from the larger patch)";
+    }
+    std::cout << ".\n";
+  }
+  for (const matrix::Reciprocity::Pair& pair : found.apart) {
+    warn("the two directions between " + pair_name(pair) + " contradict each other",
+         "A_i F_ij and A_j F_ji are equal, but their bounds have no number in common, so a bound does not hold",
+         "please report the scene");
+  }
+  return found.apart.empty();
+}
+
+Scene load(const MatrixArguments& args) {
+  Scene scene = args.scene.load();
+  print_warnings(scene.warnings());
+  if (args.two_sided.empty()) return scene;
+  return matrix::with_two_sided(scene, flags::selections_named(scene, args.two_sided));
 }
 
 // --- Files ---
@@ -239,8 +256,7 @@ void check_content(const MatrixArguments& args, const Scene& scene, const std::v
 
 int run(MatrixArguments args) {
   check_outputs(args);
-  const Scene scene = args.scene.load();
-  print_warnings(scene.warnings());
+  const Scene scene = load(args);
   args.options.open = take_sky(scene, args.to);
   const std::vector<Selection> from = flags::selections_named(scene, args.from),
                                to = flags::selections_named(scene, args.to);
@@ -249,13 +265,13 @@ int run(MatrixArguments args) {
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
   const matrix::Matrix matrix = compute(scene, from, to, args.options, hooks);
   bar.clear();
-  warn_of_width(args, matrix);
+  warn_of_width(matrix, args.options.factors);
   write_files(args, scene, matrix);
   args.plain ? print_plain(scene, matrix) : print_table(scene, matrix);
-  const bool sound = test_rows(args, scene, matrix);
+  const bool rows_hold = test_rows(args, scene, matrix), directions_agree = test_reciprocity(args, scene, matrix);
   if (!args.plain) print_files(args);
   check_output(std::cout);
-  return sound ? 0 : 1;
+  return rows_hold && directions_agree ? 0 : 1;
 }
 
 void add_outputs(CLI::App& command, MatrixArguments& args) {
@@ -288,6 +304,9 @@ Command add_matrix(CLI::App& app) {
       ->type_name("NAME")
       ->capture_default_str();
   command->add_flag("--backs", args->options.backs, "Also compute what meets the backs of faces");
+  command->add_option("--two-sided", args->two_sided, kTwoSidedHelp)->type_name("NAME");
+  command->add_flag("--both-directions", args->options.factors.both_directions,
+                    "Compute F_ij and F_ji apart, and compare A_i F_ij with A_j F_ji");
   command->add_option("--accuracy", args->options.factors.accuracy, "Largest width of an entry, for F_ij and for F_ji")
       ->capture_default_str();
   command->add_option("--budget", args->options.factors.budget, "Largest number of cells for an entry")
