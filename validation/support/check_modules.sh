@@ -17,6 +17,7 @@ declare -A allowed=(
   [whole_view]="exact contour visibility receivers scene text kernel"
   [view_factors]="exact visibility receivers scene work text kernel"
   [matrix]="view_factors visibility scene work text kernel"
+  [radiosity]="matrix view_factors scene text kernel"
   [diagnosis]="exact receivers scene text kernel"
   [sampled]="receivers scene kernel"
   [methods]="sampled exact receivers scene text kernel"
