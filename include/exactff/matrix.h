@@ -5,7 +5,9 @@
 // of different patches overlap in one plane. Each of the three is computed by itself.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -60,6 +62,28 @@ struct Sum {
 
 // Why rows need not add up to 1: "what meets backs is not computed". Empty: every row adds up to 1.
 [[nodiscard]] std::vector<std::string> reasons_against_one(const Scene& scene, const Matrix& matrix);
+
+// The two directions of pairs of patches, where both are in the matrix: A_i F_ij = A_j F_ji. A test of their bounds if
+// they were computed apart (ViewFactorOptions::both_directions). Patches with faces that are not planar are left out:
+// at a point of such a face, its other triangles hide nothing.
+struct Reciprocity {
+  struct Pair {
+    std::size_t row = 0, column = 0;
+    double distance = 0.0;  // of the two values of A_i F_ij / max(A_i, A_j), the factor from the larger patch
+    double radius = 0.0;    // the sum of their radii
+  };
+  std::size_t pairs = 0;
+  std::optional<Pair> worst;  // the largest distance / radius
+  std::vector<Pair> apart;    // their intervals have no number in common: a bound does not hold
+};
+[[nodiscard]] Reciprocity reciprocity(const Scene& scene, const Matrix& matrix);
+
+// The scene with the backs of these patches or faces as patches of their own, named "NAME (back)": every face has a
+// twin in its plane that is turned round and has the same material. A face in several selections gets one twin. All
+// patches and faces of `scene` keep their ids. Coplanar faces hide nothing from each other, so every other factor
+// stays the same, and what met the backs meets the twins. Throws InputError for a face that is not planar, and if
+// there is a patch of such a name.
+[[nodiscard]] Scene with_two_sided(const Scene& scene, std::span<const Selection> selections);
 
 // The weaker of two claims, the one to be made of a sum.
 [[nodiscard]] Claim weaker(Claim a, Claim b);

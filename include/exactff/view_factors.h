@@ -43,10 +43,11 @@ enum class Claim {
 [[nodiscard]] std::string_view to_string(Claim claim);  // "statistical", "topology-proved", "certified", "zero"
 
 struct ViewFactorOptions {
-  double accuracy = 1e-6;       // of F_ij and of F_ji: upper - lower is at most this
-  std::size_t budget = 100000;  // cells, one with many edges counts for several; if they do not suffice, it is a crowd
-  bool sample_crowds = true;    // take `statistical` in a crowd if it is narrower; else the width is kept
-  bool certify = false;         // enclose every factor: all claims are `certified` or `zero`, also in a crowd
+  double accuracy = 1e-6;        // of F_ij and of F_ji: upper - lower is at most this
+  std::size_t budget = 100000;   // cells, one with many edges counts for several; if they do not suffice, it is a crowd
+  bool sample_crowds = true;     // take `statistical` in a crowd if it is narrower; else the width is kept
+  bool both_directions = false;  // compute F_ij and F_ji apart, so that each tests the other
+  bool certify = false;          // enclose every factor: all claims are `certified` or `zero`, also in a crowd
 };
 
 struct ViewFactor {
@@ -59,7 +60,7 @@ struct ViewFactor {
 };
 
 // The factor from one patch, or face, to another, or to itself. `lower` and `upper` are as strong as the claim. Throws
-// InputError for a patch without area or an accuracy that is not positive, and Cancelled.
+// InputError for a patch without area or an accuracy that is not positive and finite, and Cancelled.
 [[nodiscard]] ViewFactor view_factor(const Scene& scene, const Selection& from, const Selection& to,
                                      const ViewFactorOptions& options = {});
 
@@ -73,8 +74,8 @@ struct ViewFactorMatrix {
 };
 
 // All factors between two lists of patches. Where both directions of a pair are asked for and all faces are planar, one
-// is computed, and A_i F_ij = A_j F_ji gives the other. threads = 0: all. The result does not depend
-// on their number.
+// is computed, unless options.both_directions, and A_i F_ij = A_j F_ji gives the other. threads = 0: all. The result
+// does not depend on their number.
 [[nodiscard]] ViewFactorMatrix view_factor_matrix(const Scene& scene, std::span<const Selection> from,
                                                   std::span<const Selection> to, const ViewFactorOptions& options = {},
                                                   int threads = 0, const Hooks& hooks = {});

@@ -15,6 +15,7 @@
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/text_table.h"
+#include "cli/view_factor_words.h"
 #include "exactff/version.h"
 #include "exactff/vtk.h"
 #include "flags/lists.h"
@@ -37,7 +38,9 @@ constexpr const char* kMatrixFooter =
     "or\n"
     "'zero', and an entry that no view has met is 0 with an upper bound.\n"
     "With --backs and --to all,sky each row also has what meets the backs of faces, and what is open. Then it must\n"
-    "add up to 1; if a row does not, the exit code is 1.\n"
+    "add up to 1; if a row does not, the exit code is 1. Likewise if the bounds of the two directions of a pair\n"
+    "contradict each other, with --both-directions. --two-sided wall adds the patch 'wall (back)', for rows and\n"
+    "columns.\n"
     "View3D's output has six decimals and no bounds; its rows add up to 1 only within that. EnergyPlus reads the\n"
     "names of patches as names of surfaces.\n"
     "\n"
@@ -49,7 +52,7 @@ constexpr std::size_t kMostShown = 12;  // rows and columns of the printed table
 
 struct MatrixArguments {
   flags::SceneArguments scene;
-  std::vector<std::string> from{"all"}, to{"all"};
+  std::vector<std::string> from{"all"}, to{"all"}, two_sided;
   matrix::Options options;
   bool draft = false;
   bool has_accuracy = false;
@@ -82,10 +85,6 @@ std::string factor_text(const ViewFactor& f) {
   return text::rounded(f.value, 6) + (f.accurate ? "" : " *");
 }
 
-std::string row_sum_text(const matrix::Sum& sum) {
-  return text::rounded(0.5 * (sum.lower + sum.upper), 6) + " +- " + text::rounded(0.5 * (sum.upper - sum.lower), 1);
-}
-
 // Intervals of a draft are not symmetric: what no view has met is 0, with an upper bound.
 std::string drafted_sum_text(const matrix::Matrix& matrix, std::size_t row, const matrix::Sum& sum) {
   const std::size_t columns = matrix.factors.to.size();
@@ -110,7 +109,7 @@ void print_table(const MatrixArguments& args, const Scene& scene, const matrix::
     for (std::size_t j = 0; j < columns; ++j) cells.push_back(factor_text(all.at(i, j)));
     if (!matrix.back.empty()) cells.push_back(factor_text(matrix.back[i]));
     if (!matrix.open.empty()) cells.push_back(factor_text(matrix.open[i]));
-    cells.push_back(args.draft ? drafted_sum_text(matrix, i, sums[i]) : row_sum_text(sums[i]));
+    cells.push_back(args.draft ? drafted_sum_text(matrix, i, sums[i]) : interval_text(sums[i]));
     table.add_row(std::move(cells));
   }
   table.print(std::cout);
@@ -122,22 +121,6 @@ void print_table(const MatrixArguments& args, const Scene& scene, const matrix::
 
 void warn(const std::string& what, const std::string& why, const std::string& suggestion) {
   print_warnings(std::vector<Problem>{{.what = what, .why = why, .suggestion = suggestion}});
-}
-
-void warn_of_width(const MatrixArguments& args, const matrix::Matrix& matrix) {
-  const auto wide_of = [](const std::vector<ViewFactor>& list) {
-    return std::ranges::count_if(list, [](const ViewFactor& f) { return !f.accurate; });
-  };
-  const auto wide = wide_of(matrix.factors.entries) + wide_of(matrix.back) + wide_of(matrix.open);
-  if (wide == 0) return;
-  const ViewFactorOptions& options = args.options.factors;
-  warn(text::counted(static_cast<std::uint64_t>(wide), "entry", "entries") + (wide == 1 ? " is" : " are") +
-           " wider than the accuracy " + text::shortest(options.accuracy),
-       (args.draft ? "a row has " + std::to_string(args.views) + " views"
-                   : "the budget of " + std::to_string(options.budget) + " cells is used up") +
-           "; their bounds are as strong as their claims",
-       std::string(args.draft ? "give more views by --views" : "give more cells by --budget") +
-           ", or ask for less by --accuracy");
 }
 
 bool has_statistical(const matrix::Matrix& matrix, std::size_t row) {
@@ -172,6 +155,38 @@ bool test_rows(const MatrixArguments& args, const Scene& scene, const matrix::Ma
                     ? "\nEvery row of a draft adds up to 1 by construction. This proves nothing about its entries.\n"
                     : "\nEvery row adds up to 1 within its bounds.\n");
   return all;
+}
+
+// Whether the intervals of the two directions of every pair have a number in common.
+bool test_reciprocity(const MatrixArguments& args, const Scene& scene, const matrix::Matrix& matrix) {
+  if (!args.options.factors.both_directions) return true;
+  const matrix::Reciprocity found = reciprocity(scene, matrix);
+  const auto pair_name = [&](const matrix::Reciprocity::Pair& pair) {
+    return scene.name_of(matrix.factors.from[pair.row]) + " and " + scene.name_of(matrix.factors.to[pair.column]);
+  };
+  if (!args.plain) {
+    std::cout << "\nReciprocity, A_i F_ij = A_j F_ji, of " << text::counted(found.pairs, "pair")
+              << " computed both ways";
+    if (found.worst) {
+      std::cout << ": they differ at worst by " << text::rounded_plainly(found.worst->distance, 2) << " of a radius of "
+                << text::rounded_plainly(found.worst->radius, 2) << " (" << text::printable(pair_name(*found.worst))
+                << "; as factors from the larger patch)";
+    }
+    std::cout << ".\n";
+  }
+  for (const matrix::Reciprocity::Pair& pair : found.apart) {
+    warn("the two directions between " + pair_name(pair) + " contradict each other",
+         "A_i F_ij and A_j F_ji are equal, but their bounds have no number in common, so a bound does not hold",
+         "please report the scene");
+  }
+  return found.apart.empty();
+}
+
+Scene load(const MatrixArguments& args) {
+  Scene scene = args.scene.load();
+  print_warnings(scene.warnings());
+  if (args.two_sided.empty()) return scene;
+  return matrix::with_two_sided(scene, flags::selections_named(scene, args.two_sided));
 }
 
 // --- Files ---
@@ -248,8 +263,7 @@ matrix::DraftOptions draft_options(const MatrixArguments& args) {
 int run(MatrixArguments args) {
   check_outputs(args);
   if (args.draft && !args.has_accuracy) args.options.factors.accuracy = matrix::DraftOptions{}.accuracy;
-  const Scene scene = args.scene.load();
-  print_warnings(scene.warnings());
+  const Scene scene = load(args);
   args.options.open = flags::take_sky(scene, args.to);
   const std::vector<Selection> from = flags::selections_named(scene, args.from),
                                to = flags::selections_named(scene, args.to);
@@ -259,13 +273,13 @@ int run(MatrixArguments args) {
   const matrix::Matrix matrix =
       args.draft ? draft(scene, from, to, draft_options(args), hooks) : compute(scene, from, to, args.options, hooks);
   bar.clear();
-  warn_of_width(args, matrix);
+  args.draft ? warn_of_width(matrix, draft_options(args)) : warn_of_width(matrix, args.options.factors);
   write_files(args, scene, matrix);
   args.plain ? print_plain(scene, matrix) : print_table(args, scene, matrix);
-  const bool sound = test_rows(args, scene, matrix);
+  const bool rows_hold = test_rows(args, scene, matrix), directions_agree = test_reciprocity(args, scene, matrix);
   if (!args.plain) print_files(args);
   check_output(std::cout);
-  return sound ? 0 : 1;
+  return rows_hold && directions_agree ? 0 : 1;
 }
 
 void add_outputs(CLI::App& command, MatrixArguments& args) {
@@ -298,6 +312,9 @@ Command add_matrix(CLI::App& app) {
       ->type_name("NAME")
       ->capture_default_str();
   command->add_flag("--backs", args->options.backs, "Also compute what meets the backs of faces");
+  command->add_option("--two-sided", args->two_sided, kTwoSidedHelp)->type_name("NAME");
+  CLI::Option* both = command->add_flag("--both-directions", args->options.factors.both_directions,
+                                        "Compute F_ij and F_ji apart, and compare A_i F_ij with A_j F_ji");
   CLI::Option* accuracy = command
                               ->add_option("--accuracy", args->options.factors.accuracy,
                                            "Largest width of an entry, for F_ij and for F_ji; 1e-3 with --draft")
@@ -313,7 +330,8 @@ Command add_matrix(CLI::App& app) {
           ->add_flag("--draft", args->draft,
                      "For thousands of patches: take each row from some whole views; entries are statistical")
           ->excludes(budget)
-          ->excludes(certify);
+          ->excludes(certify)
+          ->excludes(both);
   command->add_option("--views", args->views, "Views of each row's patch, at least 216")
       ->check(CLI::Range(std::size_t{216}, std::size_t{1} << 32))
       ->needs(draft)

@@ -1,21 +1,18 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <set>
 #include <stdexcept>
 
 #include "exactff/matrix.h"
 #include "kernel/float_environment.h"
+#include "kernel/outward.h"
 #include "matrix/surroundings.h"
 
 namespace exactff::matrix {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-double below(double x) { return std::nextafter(x, -kInfinity); }
-double above(double x) { return std::nextafter(x, kInfinity); }
+using kernel::above;
+using kernel::below;
 
 // The same patches of a scene with more faces.
 std::vector<Selection> of_any_scene(std::span<const Selection> patches) {

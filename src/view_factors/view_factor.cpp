@@ -168,7 +168,7 @@ class Integral {
 };
 
 void check_accuracy(double accuracy) {
-  if (accuracy > 0.0) return;
+  if (accuracy > 0.0 && std::isfinite(accuracy)) return;
   text::refuse("the accuracy of a view factor is " + text::shortest(accuracy), "it bounds an error",
                "give a positive number; the default is 1e-6");
 }
@@ -331,7 +331,9 @@ ViewFactorMatrix view_factor_matrix(const Scene& scene, std::span<const Selectio
   check_accuracy(options.accuracy);
   const ExactScene exact(scene);
   const std::vector<Prepared> rows = prepared(exact, from), columns = prepared(exact, to);
-  const std::vector<std::optional<std::size_t>> transpose_of = transposes(rows, columns);
+  using Transposes = std::vector<std::optional<std::size_t>>;
+  const Transposes transpose_of =
+      options.both_directions ? Transposes(rows.size() * columns.size()) : transposes(rows, columns);
   ViewFactorMatrix result{{from.begin(), from.end()}, {to.begin(), to.end()}, {}};
   result.entries.resize(rows.size() * columns.size());
   work::parallel_for(result.entries.size(), threads, "view factors", hooks, [&](std::size_t e) {

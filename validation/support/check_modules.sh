@@ -18,6 +18,7 @@ declare -A allowed=(
   [light]="whole_view exact receivers scene text kernel"
   [view_factors]="exact visibility receivers scene work text kernel"
   [matrix]="view_factors whole_view visibility scene work text kernel"
+  [radiosity]="matrix view_factors scene text kernel"
   [diagnosis]="exact receivers scene text kernel"
   [sampled]="receivers scene kernel"
   [methods]="sampled exact receivers scene text kernel"
