@@ -16,13 +16,14 @@ render() {  # NAME SCENE [FLAG...]
 box=(data/scenes/cornell_box.obj --eye 278 273 -800 --look 278 273 0 --fov 39.30764811610662)
 render cornell_box_strip "${box[@]}" --size 300x300 --against area-sampling:samples=64 --strip
 render cornell_box "${box[@]}" --size 400x400 --spp 3 --exposure 16
-render blinds_room @room:n=12 --eye 3.7 1.75 4.5 --look 0.9 0.95 0.2 --fov 48 --size 400x300 --spp 2 --exposure 6
+render blinds_room @room:n=12 --eye 3.9 2 3.8 --look 0.5 0.6 0.9 --fov 62 --size 400x300 --spp 3 --exposure 10
 render slats data/scenes/slats.obj --eye -0.6 2.9 -1.8 --look 0.3 0 1.4 --fov 46 --size 400x300 --spp 3 --exposure 40
-render closed_room @closed-room:lamp=hanging,boxes=5,seed=3 --fov 62 --size 400x300 --spp 2 --exposure 10
-render emitters @emitters:n=9 --eye 9.8 2.7 9.8 --look 6 0 6 --fov 56 --size 400x300 --spp 2 --exposure 3.5
-render teapot @teapot:segments=16 --eye 3 -5.5 6.5 --look 0.1 0 1.1 --up 0 0 1 --fov 38 --size 400x300 --spp 2 --exposure 22
-render forest @forest:n=800,trees=1,cover=0.12,light=sun --two-sided --eye 16 -13 8.4 --look 5.7 4.7 4.1 --up 0 0 1 --fov 47 \
-  --size 400x300
+render closed_room @closed-room:boxes=4,seed=5 --eye 0.2 1.9 3.85 --look 3.4 1 1.5 --fov 62 --size 400x300 --spp 3 \
+  --exposure 10
+render emitters @emitters:n=9,size=0.1 --eye 9.8 2.2 9.8 --look 5 1 5 --fov 75 --size 400x300 --spp 3
+render teapot @teapot:segments=16 --eye 3 -5.5 6.5 --look 0.4 0.1 1.1 --up 0 0 1 --fov 38 --size 400x300 --spp 3 --exposure 22
+render forest @forest:n=400,trees=1,cover=0.12,light=sun --two-sided --eye 16 -13 8.4 --look 5.7 4.7 4.1 --up 0 0 1 --fov 47 \
+  --size 400x300 --spp 2
 "$program" view data/scenes/cornell_box.obj --at 240 0 300 --normal 0 1 0 --on floor --up 0 0 1 --plain \
   --svg "$out/cornell_box_view.svg" > /dev/null
 ls -l "$out"

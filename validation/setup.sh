@@ -9,6 +9,7 @@ packages=(
   libembree-dev                                                                  # shadow rays
   libopenexr-dev libpng-dev                                                      # images
   libjemalloc-dev                                                                # the program's allocator
+  libeigen3-dev                                                                  # linear systems
   libcli11-dev nlohmann-json3-dev gnuplot-nox                                    # program and report
   pybind11-dev python3-dev python3-numpy                                         # the package for Python
   libgtest-dev patch pkgconf                                                     # tests

@@ -5,9 +5,11 @@
 // of different patches overlap in one plane. Each of the three is computed by itself.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,6 +45,21 @@ struct Matrix {
 [[nodiscard]] Matrix compute(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
                              const Options& options = {}, const Hooks& hooks = {});
 
+struct DraftOptions {
+  double accuracy = 1e-3;   // entries that are not wider, for F_ij and for F_ji, are `accurate`
+  std::size_t views = 216;  // of each row's patch: six in each stratum, of which there are at least 36
+  bool backs = false, open = false;
+  int threads = 0;  // 0: all; does not affect the result
+};
+
+// A draft for thousands of patches, in which all entries of a row come from the same whole views (view.h) of points of
+// its patch. Every entry is `statistical`, or `zero` if that is proved; `cells` is the number of views. An entry that
+// no view has met has the value 0 and an upper bound. Without coplanar fronts, the values of a row with backs and open
+// add up to 1 by construction, which proves nothing about any of them. Throws as compute(); and InputError for a column
+// that is a face or transparent.
+[[nodiscard]] Matrix draft(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
+                           const DraftOptions& options = {}, const Hooks& hooks = {});
+
 // The sum of each row with its back and open, rounded outward: an enclosure as strong as the row's weakest claim.
 struct Sum {
   double lower = 0.0;
@@ -52,6 +69,28 @@ struct Sum {
 
 // Why rows need not add up to 1: "what meets backs is not computed". Empty: every row adds up to 1.
 [[nodiscard]] std::vector<std::string> reasons_against_one(const Scene& scene, const Matrix& matrix);
+
+// The two directions of pairs of patches, where both are in the matrix: A_i F_ij = A_j F_ji. A test of their bounds if
+// they were computed apart (ViewFactorOptions::both_directions). Patches with faces that are not planar are left out:
+// at a point of such a face, its other triangles hide nothing.
+struct Reciprocity {
+  struct Pair {
+    std::size_t row = 0, column = 0;
+    double distance = 0.0;  // of the two values of A_i F_ij / max(A_i, A_j), the factor from the larger patch
+    double radius = 0.0;    // the sum of their radii
+  };
+  std::size_t pairs = 0;
+  std::optional<Pair> worst;  // the largest distance / radius
+  std::vector<Pair> apart;    // their intervals have no number in common: a bound does not hold
+};
+[[nodiscard]] Reciprocity reciprocity(const Scene& scene, const Matrix& matrix);
+
+// The scene with the backs of these patches or faces as patches of their own, named "NAME (back)": every face has a
+// twin in its plane that is turned round and has the same material. A face in several selections gets one twin. All
+// patches and faces of `scene` keep their ids. Coplanar faces hide nothing from each other, so every other factor
+// stays the same, and what met the backs meets the twins. Throws InputError for a face that is not planar, and if
+// there is a patch of such a name.
+[[nodiscard]] Scene with_two_sided(const Scene& scene, std::span<const Selection> selections);
 
 // The weaker of two claims, the one to be made of a sum.
 [[nodiscard]] Claim weaker(Claim a, Claim b);

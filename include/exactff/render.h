@@ -137,7 +137,9 @@ struct Request {
   const Scene* scene = nullptr;
   std::string scene_name = {};  // for metadata
   View view = {};
-  std::vector<Selection> sources = {};         // empty: every patch that emits
+  std::vector<Selection> sources = {};  // empty: every patch that emits, unless there is `sky`
+  bool sky =
+      false;  // one more source, with a radiosity of 1: all directions that meet nothing; not for methods, layers
   std::optional<methods::Choice> method = {};  // empty: the exact values
   Quantity quantity = Quantity::kRadiance;
   KeMeans ke = KeMeans::kRadiosity;
@@ -167,9 +169,12 @@ struct Picture {
   std::vector<double> values;
   std::vector<double> lower, upper;  // on request: proved bounds
   std::vector<Shows> shows;          // of several points: the greatest
-  std::vector<Layer> layers;         // on request
-  std::uint64_t not_certified = 0;   // points at which a channel reached the precision cap; their bounds are valid
-  double seconds = 0.0;              // processor time of all threads
+  // If a pixel has several points, 4 for each: the share of them that shows emitters, and the part of `values` that
+  // comes from these. Estimates, for developed().
+  std::vector<double> lamps;
+  std::vector<Layer> layers;        // on request
+  std::uint64_t not_certified = 0;  // points at which a channel reached the precision cap; their bounds are valid
+  double seconds = 0.0;             // processor time of all threads
   std::vector<std::pair<std::string, std::string>> metadata;  // name and text, for image files
 
   [[nodiscard]] std::size_t pixels() const { return shows.size(); }
@@ -207,7 +212,8 @@ struct Colours {
 
 // The factor that brings the 99th percentile of the largest channel, over all pixels that reflect light, to 0.8.
 [[nodiscard]] double automatic_exposure(const Picture& picture);
-// In sRGB.
+// In sRGB. Of a pixel with several points, what shows emitters and the rest are limited to white apart, each by its
+// share of the points: otherwise a lamp, far brighter than white, would fill every pixel that it touches.
 [[nodiscard]] Colours developed(const Picture& picture, double exposure);
 // Errors in colours: white is none, red too bright, blue too dark; full colour from `scale` on. Regions in which
 // most pixels are wrong are outlined.

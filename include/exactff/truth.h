@@ -46,7 +46,9 @@ struct Request {
   std::string scene_name;           // name of the scene in the header
   std::vector<Receiver> receivers;  // an empty id is replaced by the receiver's number, from 1
   std::string receivers_name;       // "floor, grid 32x32", or the name of a file
-  std::vector<Selection> sources;   // empty: every patch that emits
+  std::vector<Selection> sources;   // empty: every patch that emits, unless there is `sky`
+  // One more source, the last, named "sky": all directions that meet nothing (WholeView::open). Its radiosity is 1.
+  bool sky = false;
   // Adds a column: F without any occluder, correctly rounded ("0" is a proved zero, "0.0" an underflow).
   bool unoccluded = false;
   // Adds a column: visible area over whole unclipped area, correctly rounded.

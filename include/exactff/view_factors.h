@@ -26,23 +26,28 @@ namespace exactff {
 // What is known about a view factor, the weakest first.
 enum class Claim {
   // Estimated in a crowd, where cells do not suffice, from exact point factors: the mean over at least 36 strata of the
-  // patch, two independent triples of points in each. The interval of Student's t, whose degrees of freedom are
-  // estimated from the strata, misses the factor with a probability of at most 1e-6, as far as the mean is normally
-  // distributed.
+  // patch, two independent triples of points in each. The interval misses the factor with a probability of at most
+  // 1e-6: that of Student's t, with degrees of freedom estimated from the strata, as far as the mean is normally
+  // distributed; where Hoeffding's bound is narrower, without this condition.
   // What is too small for any of the points to meet is not known.
   kStatistical,
   // The visible boundary is proved for every cell. The error of quadrature is estimated: four times the difference of
   // two Gauss rules, or, closer to an edge than 1.5 radii of the cell, the cell's whole area. Where the order of edges
   // could not be decided on a cell (event cells), a bound is added.
   kTopologyProved,
+  // Every step is proved: the visible boundary on every cell, the remainder of the quadrature, all roundings. Only on
+  // request. An entry keeps this claim, and its width, if it misses its accuracy.
+  kCertified,
   kZero,  // proved: no point of one patch sees a point of the other
 };
-[[nodiscard]] std::string_view to_string(Claim claim);  // "statistical", "topology-proved", "zero"
+[[nodiscard]] std::string_view to_string(Claim claim);  // "statistical", "topology-proved", "certified", "zero"
 
 struct ViewFactorOptions {
-  double accuracy = 1e-6;       // of F_ij and of F_ji: upper - lower is at most this
-  std::size_t budget = 100000;  // cells, one with many edges counts for several; if they do not suffice, it is a crowd
-  bool sample_crowds = true;    // take `statistical` in a crowd if it is narrower; else the width is kept
+  double accuracy = 1e-6;        // of F_ij and of F_ji: upper - lower is at most this
+  std::size_t budget = 100000;   // cells, one with many edges counts for several; if they do not suffice, it is a crowd
+  bool sample_crowds = true;     // take `statistical` in a crowd if it is narrower; else the width is kept
+  bool both_directions = false;  // compute F_ij and F_ji apart, so that each tests the other
+  bool certify = false;          // enclose every factor: all claims are `certified` or `zero`, also in a crowd
 };
 
 struct ViewFactor {
@@ -55,7 +60,7 @@ struct ViewFactor {
 };
 
 // The factor from one patch, or face, to another, or to itself. `lower` and `upper` are as strong as the claim. Throws
-// InputError for a patch without area or an accuracy that is not positive, and Cancelled.
+// InputError for a patch without area or an accuracy that is not positive and finite, and Cancelled.
 [[nodiscard]] ViewFactor view_factor(const Scene& scene, const Selection& from, const Selection& to,
                                      const ViewFactorOptions& options = {});
 
@@ -69,8 +74,8 @@ struct ViewFactorMatrix {
 };
 
 // All factors between two lists of patches. Where both directions of a pair are asked for and all faces are planar, one
-// is computed, and A_i F_ij = A_j F_ji gives the other. threads = 0: all. The result does not depend
-// on their number.
+// is computed, unless options.both_directions, and A_i F_ij = A_j F_ji gives the other. threads = 0: all. The result
+// does not depend on their number.
 [[nodiscard]] ViewFactorMatrix view_factor_matrix(const Scene& scene, std::span<const Selection> from,
                                                   std::span<const Selection> to, const ViewFactorOptions& options = {},
                                                   int threads = 0, const Hooks& hooks = {});

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,7 @@
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
+#include "text/text_file.h"
 #include "text/text_lines.h"
 
 namespace exactff::cli {
@@ -176,8 +178,16 @@ void require_comparable_matrices(const CheckArguments& args) {
   text::refuse("--truth-column is given with a matrix", "its values are its factors", "remove it");
 }
 
+// True, or the problem: a file that is missing is not a file of another kind.
+bool require_there(const std::string& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) static_cast<void>(text::open_text_file(file, "a file"));
+  return true;
+}
+
 // Two images, or neither.
 void require_comparable(const CheckArguments& args) {
+  both([&] { return require_there(args.truth); }, [&] { return require_there(args.candidate); });
   const bool truth = pixels::is_exr(args.truth), candidate = pixels::is_exr(args.candidate);
   check_error_image(args.error_image, truth && candidate);
   if (truth != candidate) {

@@ -18,6 +18,7 @@ Command add_info(CLI::App& app);
 Command add_point(CLI::App& app);
 Command add_view(CLI::App& app);
 Command add_matrix(CLI::App& app);
+Command add_radiosity(CLI::App& app);
 Command add_compare(CLI::App& app);
 Command add_truth(CLI::App& app);
 Command add_merge(CLI::App& app);

@@ -19,6 +19,7 @@
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/text_table.h"
+#include "cli/view_factor_words.h"
 #include "exactff/version.h"
 #include "exactff/vtk.h"
 #include "flags/lists.h"
@@ -35,8 +36,15 @@ constexpr const char* kMatrixFooter =
     "proved on every cell of the patch, and the error of the quadrature is estimated from two rules. Where the cells\n"
     "of --budget do not suffice, it is 'statistical' if that is narrower: an interval of Student's t, at the level\n"
     "1 - 1e-6, from exact point factors. A warning counts the entries that are wider than the accuracy.\n"
+    "With --certify every entry is 'zero' or 'certified': the remainder of the quadrature and all roundings are\n"
+    "proved as well. It costs up to a few times as much.\n"
+    "--draft takes a row from some whole views of its patch, for thousands of patches: all entries are 'statistical' "
+    "or\n"
+    "'zero', and an entry that no view has met is 0 with an upper bound.\n"
     "With --backs and --to all,sky each row also has what meets the backs of faces, and what is open. Then it must\n"
-    "add up to 1; if a row does not, the exit code is 1.\n"
+    "add up to 1; if a row does not, the exit code is 1. Likewise if the bounds of the two directions of a pair\n"
+    "contradict each other, with --both-directions. --two-sided wall adds the patch 'wall (back)', for rows and\n"
+    "columns.\n"
     "With -o, finished pairs are kept in FILE.part until FILE is complete; after an interruption, the same command "
     "with\n"
     "--resume continues from there. On several machines: `mpirun -n 4 exactff matrix ... -o FILE`, or separate jobs\n"
@@ -53,8 +61,11 @@ constexpr std::size_t kMostShown = 12;  // rows and columns of the printed table
 
 struct MatrixArguments {
   flags::SceneArguments scene;
-  std::vector<std::string> from{"all"}, to{"all"};
+  std::vector<std::string> from{"all"}, to{"all"}, two_sided;
   matrix::Options options;
+  bool draft = false;
+  bool has_accuracy = false;
+  std::size_t views = matrix::DraftOptions{}.views;
   bool plain = false;
   std::string csv, npz, view3d, energyplus, vtk;
   std::string zone = "Zone 1";
@@ -65,30 +76,12 @@ struct MatrixArguments {
   [[nodiscard]] jobs::Existing existing() const {
     return resume ? jobs::Existing::kResume : force ? jobs::Existing::kReplace : jobs::Existing::kRefuse;
   }
-  // A pipe or a device has no journal.
+  // A pipe or a device has no journal, and a draft needs none.
   [[nodiscard]] bool keeps_work() const {
     std::error_code ignored;
-    return !csv.empty() && (!std::filesystem::is_other(csv, ignored) || resume || !shard.empty());
+    return !csv.empty() && !draft && (!std::filesystem::is_other(csv, ignored) || resume || !shard.empty());
   }
 };
-
-// Takes "sky" out of the columns, unless a patch has this name.
-bool take_sky(const Scene& scene, std::vector<std::string>& texts) {
-  const auto is_patch = [&](const std::string& name) {
-    return std::ranges::any_of(scene.patches(), [&](const Patch& patch) { return patch.name == name; });
-  };
-  std::vector<std::string> kept;
-  bool found = false;
-  for (const std::string& text : texts) {
-    for (const std::string& name : is_patch(text) ? std::vector{text} : flags::split_list(text)) {
-      const bool is_sky = name == "sky" && !is_patch(name);
-      found = found || is_sky;
-      if (!is_sky) kept.push_back(name);
-    }
-  }
-  if (found) texts = kept;
-  return found;
-}
 
 template <class Visit>
 void for_each_entry(const Scene& scene, const matrix::Matrix& matrix, const Visit& visit) {
@@ -112,11 +105,16 @@ std::string factor_text(const ViewFactor& f) {
   return text::rounded(f.value, 6) + (f.accurate ? "" : " *");
 }
 
-std::string row_sum_text(const matrix::Sum& sum) {
-  return text::rounded(0.5 * (sum.lower + sum.upper), 6) + " +- " + text::rounded(0.5 * (sum.upper - sum.lower), 1);
+// Intervals of a draft are not symmetric: what no view has met is 0, with an upper bound.
+std::string drafted_sum_text(const matrix::Matrix& matrix, std::size_t row, const matrix::Sum& sum) {
+  const std::size_t columns = matrix.factors.to.size();
+  double value =
+      (matrix.back.empty() ? 0.0 : matrix.back[row].value) + (matrix.open.empty() ? 0.0 : matrix.open[row].value);
+  for (std::size_t j = 0; j < columns; ++j) value += matrix.factors.at(row, j).value;
+  return text::rounded(value, 6) + " +- " + text::rounded(std::max(value - sum.lower, sum.upper - value), 1);
 }
 
-void print_table(const Scene& scene, const matrix::Matrix& matrix) {
+void print_table(const MatrixArguments& args, const Scene& scene, const matrix::Matrix& matrix) {
   const ViewFactorMatrix& all = matrix.factors;
   const std::vector<matrix::Sum> sums = row_sums(matrix);
   const std::size_t columns = std::min(all.to.size(), kMostShown), rows = std::min(all.from.size(), kMostShown);
@@ -131,7 +129,7 @@ void print_table(const Scene& scene, const matrix::Matrix& matrix) {
     for (std::size_t j = 0; j < columns; ++j) cells.push_back(factor_text(all.at(i, j)));
     if (!matrix.back.empty()) cells.push_back(factor_text(matrix.back[i]));
     if (!matrix.open.empty()) cells.push_back(factor_text(matrix.open[i]));
-    cells.push_back(row_sum_text(sums[i]));
+    cells.push_back(args.draft ? drafted_sum_text(matrix, i, sums[i]) : interval_text(sums[i]));
     table.add_row(std::move(cells));
   }
   table.print(std::cout);
@@ -143,20 +141,6 @@ void print_table(const Scene& scene, const matrix::Matrix& matrix) {
 
 void warn(const std::string& what, const std::string& why, const std::string& suggestion) {
   print_warnings(std::vector<Problem>{{.what = what, .why = why, .suggestion = suggestion}});
-}
-
-void warn_of_width(const MatrixArguments& args, const matrix::Matrix& matrix) {
-  const auto wide_of = [](const std::vector<ViewFactor>& list) {
-    return std::ranges::count_if(list, [](const ViewFactor& f) { return !f.accurate; });
-  };
-  const auto wide = wide_of(matrix.factors.entries) + wide_of(matrix.back) + wide_of(matrix.open);
-  if (wide == 0) return;
-  const ViewFactorOptions& options = args.options.factors;
-  warn(text::counted(static_cast<std::uint64_t>(wide), "entry", "entries") + (wide == 1 ? " is" : " are") +
-           " wider than the accuracy " + text::shortest(options.accuracy),
-       "the budget of " + std::to_string(options.budget) +
-           " cells is used up; their bounds are as strong as their claims",
-       "give more cells by --budget, or ask for less by --accuracy");
 }
 
 bool has_statistical(const matrix::Matrix& matrix, std::size_t row) {
@@ -186,8 +170,43 @@ bool test_rows(const MatrixArguments& args, const Scene& scene, const matrix::Ma
              : "with back and open it must add up to 1, so a bound of it does not hold",
          "please report the scene");
   }
-  if (all && !args.plain) std::cout << "\nEvery row adds up to 1 within its bounds.\n";
+  if (args.plain || !all) return all;
+  std::cout << (args.draft
+                    ? "\nEvery row of a draft adds up to 1 by construction. This proves nothing about its entries.\n"
+                    : "\nEvery row adds up to 1 within its bounds.\n");
   return all;
+}
+
+// Whether the intervals of the two directions of every pair have a number in common.
+bool test_reciprocity(const MatrixArguments& args, const Scene& scene, const matrix::Matrix& matrix) {
+  if (!args.options.factors.both_directions) return true;
+  const matrix::Reciprocity found = reciprocity(scene, matrix);
+  const auto pair_name = [&](const matrix::Reciprocity::Pair& pair) {
+    return scene.name_of(matrix.factors.from[pair.row]) + " and " + scene.name_of(matrix.factors.to[pair.column]);
+  };
+  if (!args.plain) {
+    std::cout << "\nReciprocity, A_i F_ij = A_j F_ji, of " << text::counted(found.pairs, "pair")
+              << " computed both ways";
+    if (found.worst) {
+      std::cout << ": they differ at worst by " << text::rounded_plainly(found.worst->distance, 2) << " of a radius of "
+                << text::rounded_plainly(found.worst->radius, 2) << " (" << text::printable(pair_name(*found.worst))
+                << "; as factors from the larger patch)";
+    }
+    std::cout << ".\n";
+  }
+  for (const matrix::Reciprocity::Pair& pair : found.apart) {
+    warn("the two directions between " + pair_name(pair) + " contradict each other",
+         "A_i F_ij and A_j F_ji are equal, but their bounds have no number in common, so a bound does not hold",
+         "please report the scene");
+  }
+  return found.apart.empty();
+}
+
+Scene load(const MatrixArguments& args) {
+  Scene scene = args.scene.load();
+  print_warnings(scene.warnings());
+  if (args.two_sided.empty()) return scene;
+  return matrix::with_two_sided(scene, flags::selections_named(scene, args.two_sided));
 }
 
 // --- Files ---
@@ -197,6 +216,10 @@ void check_shard_and_resume(const MatrixArguments& args) {
   if (args.csv.empty() && (args.resume || !args.shard.empty())) {
     text::refuse(std::string(args.resume ? "--resume" : "--shard") + " is given without -o",
                  "finished pairs are kept beside the file of -o", "name a file, for example -o factors.csv");
+  }
+  if (args.draft && (args.resume || !args.shard.empty())) {
+    text::refuse(std::string(args.resume ? "--resume" : "--shard") + " is given with --draft",
+                 "a draft takes whole rows from views, and keeps no pairs", "remove it");
   }
   if (args.shard.empty()) return;
   for (const auto& [flag, given] :
@@ -215,6 +238,9 @@ void check_outputs(const MatrixArguments& args) {
   if (args.keeps_work()) {
     jobs::require_free(args.csv, args.existing());
     before = {{"-o", args.csv}, {"the journal of -o", jobs::journal_of(args.csv)}};
+  } else if (!args.csv.empty()) {
+    require_free_file(args.csv, args.force);
+    before = {{"-o", args.csv}};
   }
   check_output_files(
       {{"--npz", args.npz}, {"--view3d", args.view3d}, {"--energyplus", args.energyplus}, {"--vtk", args.vtk}}, before,
@@ -243,11 +269,12 @@ void write_vtk(const MatrixArguments& args, const Scene& scene, const matrix::Ma
                    args.vtk);
 }
 
-void write_files(const MatrixArguments& args, const Scene& scene, const matrix::Matrix& matrix) {
+void write_files(const MatrixArguments& args, const Scene& scene, const ViewFactorOptions& options,
+                 const matrix::Matrix& matrix) {
   const auto write_text = [](const std::string& file, const auto& text) {
     if (!file.empty()) write_whole_file(file, text());
   };
-  if (!args.keeps_work()) write_text(args.csv, [&] { return csv_text(scene, matrix, args.options.factors); });
+  if (!args.keeps_work()) write_text(args.csv, [&] { return csv_text(scene, matrix, options); });
   if (!args.npz.empty()) write_npz(scene, matrix, args.npz);
   write_text(args.view3d, [&] { return view3d_text(scene, matrix); });
   write_text(args.energyplus, [&] { return energyplus_text(scene, matrix, args.zone); });
@@ -277,6 +304,10 @@ void check_content(const MatrixArguments& args, const Scene& scene, const std::v
   if (!args.energyplus.empty()) (void)energyplus_text(scene, empty, args.zone);
 }
 
+matrix::DraftOptions draft_options(const MatrixArguments& args, const matrix::Options& options) {
+  return {options.factors.accuracy, args.views, options.backs, options.open, options.threads};
+}
+
 // A request and the scene that it refers to.
 struct MatrixJob {
   Scene scene;
@@ -285,13 +316,13 @@ struct MatrixJob {
 
 std::unique_ptr<MatrixJob> job_of(const MatrixArguments& args, const jobs::Team* team) {
   const jobs::Shard shard = shard_of(args.shard);
-  auto job = std::make_unique<MatrixJob>(MatrixJob{args.scene.load(), {}});
-  print_warnings(job->scene.warnings());
+  auto job = std::make_unique<MatrixJob>(MatrixJob{load(args), {}});
   std::vector<std::string> to = args.to;
   matrix::Request& request = job->request;
   request.scene = &job->scene;
   request.options = args.options;
-  request.options.open = take_sky(job->scene, to);
+  if (args.draft && !args.has_accuracy) request.options.factors.accuracy = matrix::DraftOptions{}.accuracy;
+  request.options.open = flags::take_sky(job->scene, to);
   if (args.options.threads == 0 && team != nullptr) request.options.threads = jobs::fair_threads(*team);
   request.from = flags::selections_named(job->scene, args.from);
   request.to = flags::selections_named(job->scene, to);
@@ -300,12 +331,14 @@ std::unique_ptr<MatrixJob> job_of(const MatrixArguments& args, const jobs::Team*
   return job;
 }
 
-matrix::Matrix compute(const MatrixJob& job) {
+matrix::Matrix compute(const MatrixArguments& args, const MatrixJob& job) {
   const InterruptWatch watch("exactff: interrupted; nothing was written\n");
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
   const matrix::Request& request = job.request;
-  matrix::Matrix result = matrix::compute(job.scene, request.from, request.to, request.options, hooks);
+  matrix::Matrix result =
+      args.draft ? draft(job.scene, request.from, request.to, draft_options(args, request.options), hooks)
+                 : matrix::compute(job.scene, request.from, request.to, request.options, hooks);
   bar.clear();
   return result;
 }
@@ -320,20 +353,22 @@ void print_summary(const MatrixArguments& args, const jobs::Summary& summary) {
 
 // The values of the finished file, or of no file at all.
 int finish(const MatrixArguments& args, const MatrixJob& job, const matrix::Matrix& matrix) {
-  warn_of_width(args, matrix);
-  write_files(args, job.scene, matrix);
-  args.plain ? print_plain(job.scene, matrix) : print_table(job.scene, matrix);
-  const bool sound = test_rows(args, job.scene, matrix);
+  const matrix::Options& options = job.request.options;
+  args.draft ? warn_of_width(matrix, draft_options(args, options)) : warn_of_width(matrix, options.factors);
+  write_files(args, job.scene, options.factors, matrix);
+  args.plain ? print_plain(job.scene, matrix) : print_table(args, job.scene, matrix);
+  const bool rows_hold = test_rows(args, job.scene, matrix),
+             directions_agree = test_reciprocity(args, job.scene, matrix);
   if (!args.plain) print_files(args);
   check_output(std::cout);
-  return sound ? 0 : 1;
+  return rows_hold && directions_agree ? 0 : 1;
 }
 
 int write(const MatrixArguments& args, jobs::Team* team) {
   check_outputs(args);
   if (!args.keeps_work()) {
     const std::unique_ptr<MatrixJob> job = job_of(args, nullptr);
-    return finish(args, *job, compute(*job));
+    return finish(args, *job, compute(args, *job));
   }
   Narrator narrator("pair");
   jobs::Summary summary;
@@ -415,10 +450,29 @@ Command add_matrix(CLI::App& app) {
       ->type_name("NAME")
       ->capture_default_str();
   command->add_flag("--backs", args->options.backs, "Also compute what meets the backs of faces");
-  command->add_option("--accuracy", args->options.factors.accuracy, "Largest width of an entry, for F_ij and for F_ji")
-      ->capture_default_str();
-  command->add_option("--budget", args->options.factors.budget, "Largest number of cells for an entry")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
+  command->add_option("--two-sided", args->two_sided, kTwoSidedHelp)->type_name("NAME");
+  CLI::Option* both = command->add_flag("--both-directions", args->options.factors.both_directions,
+                                        "Compute F_ij and F_ji apart, and compare A_i F_ij with A_j F_ji");
+  CLI::Option* accuracy = command
+                              ->add_option("--accuracy", args->options.factors.accuracy,
+                                           "Largest width of an entry, for F_ij and for F_ji; 1e-3 with --draft")
+                              ->capture_default_str();
+  CLI::Option* budget =
+      command->add_option("--budget", args->options.factors.budget, "Largest number of cells for an entry")
+          ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
+          ->capture_default_str();
+  CLI::Option* certify =
+      command->add_flag("--certify", args->options.factors.certify, "Prove the quadrature, too: entries are certified");
+  CLI::Option* draft =
+      command
+          ->add_flag("--draft", args->draft,
+                     "For thousands of patches: take each row from some whole views; entries are statistical")
+          ->excludes(budget)
+          ->excludes(certify)
+          ->excludes(both);
+  command->add_option("--views", args->views, "Views of each row's patch, at least 216")
+      ->check(CLI::Range(std::size_t{216}, std::size_t{1} << 32))
+      ->needs(draft)
       ->capture_default_str();
   command->add_flag("--plain", args->plain, "Print a line for each entry: FROM, TO, LOWER, UPPER, CLAIM, with tabs");
   add_outputs(*command, *args);
@@ -426,7 +480,10 @@ Command add_matrix(CLI::App& app) {
       ->add_option("--threads", args->options.threads,
                    "Number of threads (default: all); it does not affect the values")
       ->check(CLI::Range(0, 1024));
-  return {command, [args] { return run(*args); }};
+  return {command, [args, accuracy] {
+            args->has_accuracy = accuracy->count() > 0;
+            return run(*args);
+          }};
 }
 
 }  // namespace exactff::cli

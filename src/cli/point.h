@@ -10,6 +10,7 @@
 #include "exactff/adaptive.h"
 #include "exactff/exact.h"
 #include "exactff/receiver.h"
+#include "exactff/view.h"
 #include "flags/engine.h"
 #include "flags/scene.h"
 
@@ -59,7 +60,8 @@ struct PointResult {
   Receiver receiver = {};
   Rgb reflectance = {};
   std::vector<PointTerm> sources = {};
-  bool every_patch = false;  // --source all
+  bool every_patch = false;            // --source all
+  std::optional<WholeView> seen = {};  // if the values of all sources are taken from it
   std::size_t emitters = 0;
   Enclosure sum = {};              // of the form factors of all sources
   Enclosure sum_of_emitters = {};  // of those that emit

@@ -64,16 +64,47 @@ AdaptiveOptions adaptive_options(const PointArguments& args) {
   return options;
 }
 
-PointTerm compute_source(const PointArguments& args, const Scene& scene, const PointResult& point,
-                         const ExactSource& source, const std::optional<AdaptiveSolver>& sampler) {
-  PointTerm result{.source = source.selection(), .emits = flags::emits(scene, source.selection())};
+// Whether one sweep finds all that is printed, in less time than one patch after another. It says nothing of how a
+// value was found, and nothing about transparent patches.
+bool one_sweep_will_do(const PointArguments& args, const Scene& scene, const std::vector<Selection>& sources) {
+  constexpr std::size_t kFewestFaces = 400;
+  const bool shows_more = args.fraction || args.exact_fraction || args.explain || args.json || !args.svg.empty();
+  const bool every_patch = flags::names_all(scene, args.sources) &&
+                           std::ranges::none_of(sources, [](const Selection& s) { return s.face.has_value(); });
+  return every_patch && !shows_more && scene.faces().size() >= kFewestFaces && scene.transparent().empty() &&
+         args.engine.engine() == Engine::kEdges;
+}
+
+// The form factor of a patch in the whole view, which lists those above 0.
+FormFactor taken_from(const WholeView& seen, const Selection& source) {
+  FormFactor result;
+  const auto found = std::ranges::lower_bound(seen.patches, source.patch, {}, &SeenPatch::patch);
+  if (found == seen.patches.end() || found->patch != source.patch) return result;
+  const ViewShare& f = found->form_factor;
+  result.value = f.value;
+  result.lower = f.lower;
+  result.upper = f.upper;
+  result.status = f.status;
+  result.enclosure = f.enclosure;
+  return result;
+}
+
+FormFactor exact_value(const PointArguments& args, const Scene& scene, const PointResult& point,
+                       const ExactSource& source) {
+  if (point.seen) return taken_from(*point.seen, source.selection());
   const ExactOptions options{.engine = args.engine.engine(),
                              .visible_fraction = args.fraction || args.exact_fraction,
                              .exact_fraction = args.exact_fraction,
                              .list_cutters = args.explain || !args.svg.empty(),
                              .digits = args.digits,
                              .precision_cap = args.precision_cap};
-  result.exact = exact_form_factor(scene, point.receiver, source, options);
+  return exact_form_factor(scene, point.receiver, source, options);
+}
+
+PointTerm compute_source(const PointArguments& args, const Scene& scene, const PointResult& point,
+                         const ExactSource& source, const std::optional<AdaptiveSolver>& sampler) {
+  PointTerm result{.source = source.selection(), .emits = flags::emits(scene, source.selection())};
+  result.exact = exact_value(args, scene, point, source);
   const Rgb b = scene.source_radiosity(result.source);
   const Rgb& rho = point.reflectance;
   result.largest_rho_b = std::max({rho.r * b.r, rho.g * b.g, rho.b * b.b});
@@ -127,6 +158,9 @@ PointResult compute_point(const PointArguments& args, const Scene& scene) {
   const std::vector<Selection> sources = make_sources(args, scene);
   if (!args.svg.empty()) require_one(sources, args.svg);
   result.every_patch = flags::names_all(scene, args.sources);
+  if (one_sweep_will_do(args, scene, sources)) {
+    result.seen = view(scene, result.receiver, {.digits = args.digits, .precision_cap = args.precision_cap});
+  }
   for (const Selection& selection : sources) {
     const ExactSource source(scene, selection);
     result.sources.push_back(compute_source(args, scene, result, source, sampler));

@@ -152,7 +152,9 @@ render::Request request_of(const RenderArguments& args, const Scene& scene, std:
   render::Camera camera = given_camera(args);
   if (args.eye.empty()) camera = render::default_camera(scene, camera, size);
   request.view = render::View(camera, size);
-  request.sources = flags::sources_of(args.sources, scene);
+  flags::SourcesUnderSky sources = flags::sources_under_sky(args.sources, scene);
+  request.sources = std::move(sources.sources);
+  request.sky = sources.sky;
   request.method = std::move(method);
   request.quantity = quantity_named(args.quantity).value_or(Quantity::kRadiance);
   request.ke = args.ke == "radiance" ? render::KeMeans::kRadiance : render::KeMeans::kRadiosity;
@@ -170,6 +172,7 @@ std::string identity_of(const render::Request& request, const std::optional<meth
   std::string all = request.scene->hash() + '\n' + render::flags_of(request.view) + '\n' +
                     std::string(render::name_of(request.quantity)) + '\n';
   for (const Selection& source : request.sources) all += request.scene->name_of(source) + '\n';
+  if (request.sky) all += "and the sky\n";
   all += (request.method ? request.method->text() : "exact") + '\n' + (against ? against->text() : "") + '\n';
   for (const int number : {static_cast<int>(request.ke), static_cast<int>(request.sides), request.spp,
                            static_cast<int>(request.bounds), static_cast<int>(request.layers)}) {
@@ -332,7 +335,7 @@ Command add_render(CLI::App& app) {
   CLI::App* command = app.add_subcommand("render", "Render an exact image of the direct light, with soft shadows");
   args->scene.add_to(*command);
   add_camera_flags(*command, *args);
-  flags::add_source_options(*command, args->sources);
+  flags::add_source_options_under_sky(*command, args->sources);
   add_value_flags(*command, *args);
   add_output_flags(*command, *args);
   args->engine.add_to(*command);

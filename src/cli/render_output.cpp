@@ -66,7 +66,8 @@ render::Colours strip_of(const RenderFiles& files, const Rendered& rendered, dou
       Panel{render::developed(*rendered.judged, exposure), caption(rendered.judged_name, *rendered.judged)},
       Panel{render::coloured(*rendered.errors, rendered.picture.size, scale),
             {"error: red too bright, blue too dark", "full colour at " + text::short_number(scale, 2),
-             "RMS " + text::short_number(rendered.errors->rms, 2), wrong_words(*rendered.errors)}}};
+             "RMS " + text::short_number(rendered.errors->rms, 2),
+             wrong_words(*rendered.errors) + "; black outline where most are"}}};
   return render::strip(panels);
 }
 

@@ -100,7 +100,9 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const jobs::Team* team) 
   request.receivers = std::move(receivers.receivers);
   request.receivers_name = std::move(receivers.description);
   job->frame = std::move(receivers.frame);
-  request.sources = flags::sources_of(args.sources, job->scene);
+  flags::SourcesUnderSky sources = flags::sources_under_sky(args.sources, job->scene);
+  request.sources = std::move(sources.sources);
+  request.sky = sources.sky;
   request.unoccluded = args.unoccluded;
   request.visible_fraction = args.fraction;
   request.unit_normals = args.unit_normals;
@@ -264,7 +266,7 @@ Command add_truth(CLI::App& app) {
   CLI::App* command = app.add_subcommand("truth", "Write a file of certified values, to check other programs");
   args->scene.add_to(*command);
   flags::add_receiver_options(*command, args->receivers);
-  flags::add_source_options(*command, args->sources);
+  flags::add_source_options_under_sky(*command, args->sources);
   command->add_flag("--unoccluded", args->unoccluded, "Add a column: the form factor without occluders");
   command->add_flag("--fraction", args->fraction, "Add a column: the visible fraction of the source");
   command->add_flag("--unit-normals", args->unit_normals,

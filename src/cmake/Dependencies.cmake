@@ -12,6 +12,7 @@ set(CMAKE_MESSAGE_LOG_LEVEL ${exactff_log_level})
 find_package(PNG REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 include(ImportLibrary)
 
 # The Booleans allocate and free millions of small numbers, and jemalloc is faster at that (src/README.md has the

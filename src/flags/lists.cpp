@@ -55,6 +55,23 @@ std::vector<Selection> selections_named(const Scene& scene, const std::vector<st
   return selections;
 }
 
+bool take_sky(const Scene& scene, std::vector<std::string>& texts) {
+  const auto is_patch = [&](const std::string& name) {
+    return std::ranges::any_of(scene.patches(), [&](const Patch& patch) { return patch.name == name; });
+  };
+  std::vector<std::string> kept;
+  bool found = false;
+  for (const std::string& text : texts) {
+    for (const std::string& name : is_patch(text) ? std::vector{text} : split_list(text)) {
+      const bool is_sky = name == "sky" && !is_patch(name);
+      found = found || is_sky;
+      if (!is_sky) kept.push_back(name);
+    }
+  }
+  if (found) texts = kept;
+  return found;
+}
+
 bool names_all(const Scene& scene, const std::vector<std::string>& texts) {
   return std::ranges::any_of(texts, [&](const std::string& text) {
     const std::vector<std::string> parts = split_list(text);

@@ -28,6 +28,9 @@ std::optional<Whole> whole_number(std::string_view text) {
 // InputError for an unknown name.
 std::vector<Selection> selections_named(const Scene& scene, const std::vector<std::string>& texts);
 
+// Takes "sky" out of the texts, if it is among them and is not the name of a patch.
+bool take_sky(const Scene& scene, std::vector<std::string>& texts);
+
 // Whether "all" is among them and means every patch.
 bool names_all(const Scene& scene, const std::vector<std::string>& texts);
 

@@ -8,20 +8,38 @@
 #include "flags/lists.h"
 #include "text/escape.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "text/text_lines.h"
 
 namespace exactff::flags {
 
-void add_source_options(CLI::App& app, SourceArguments& args) {
+namespace {
+
+void refuse_sky(const Scene& scene, std::vector<std::string> names) {
+  if (!take_sky(scene, names)) return;
+  text::refuse("--source: the sky is not a source of this command", "its sources are patches",
+               "exactff view prints the sky's form factor as (open); truth and render take sky as a source");
+}
+
+void add_option(CLI::App& app, SourceArguments& args, const std::string& sky) {
   app.add_option("--source", args.names,
-                 "Source patch or face; can be repeated, or separate names by commas; all: every patch (default: every "
-                 "emitting patch)")
+                 "Source patch or face; can be repeated, or separate names by commas; all: every patch" + sky +
+                     " (default: every emitting patch)")
       ->type_name("NAME[:K]")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
+}  // namespace
+
+void add_source_options(CLI::App& app, SourceArguments& args) { add_option(app, args, ""); }
+
+void add_source_options_under_sky(CLI::App& app, SourceArguments& args) {
+  add_option(app, args, "; sky: what is open, all directions that meet nothing, with a radiosity of 1");
+}
+
 std::vector<Selection> sources_of(const SourceArguments& args, const Scene& scene) {
+  refuse_sky(scene, args.names);
   std::vector<Selection> sources = selections_named(scene, args.names);
   std::set<std::pair<PatchId, std::optional<FaceId>>> named;
   for (const Selection& source : sources) {
@@ -31,6 +49,12 @@ std::vector<Selection> sources_of(const SourceArguments& args, const Scene& scen
                       .suggestion = "give it once"});
   }
   return sources;
+}
+
+SourcesUnderSky sources_under_sky(const SourceArguments& args, const Scene& scene) {
+  SourceArguments patches = args;
+  const bool sky = take_sky(scene, patches.names);
+  return {sources_of(patches, scene), sky};
 }
 
 bool emits(const Scene& scene, const Selection& source) {

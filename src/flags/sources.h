@@ -14,10 +14,19 @@ struct SourceArguments {
 };
 
 void add_source_options(CLI::App& app, SourceArguments& args);
+void add_source_options_under_sky(CLI::App& app, SourceArguments& args);  // for sources_under_sky()
 
 // In the given order. Empty if the flag was not given, which stands for every patch that emits. Throws InputError if a
-// name is unknown or occurs twice.
+// name is unknown or occurs twice, or is "sky".
 std::vector<Selection> sources_of(const SourceArguments& args, const Scene& scene);
+
+// The same for commands that know "sky", all directions that meet nothing, as a source. A patch of this name has
+// priority.
+struct SourcesUnderSky {
+  std::vector<Selection> sources;  // empty, without sky: every patch that emits
+  bool sky = false;
+};
+SourcesUnderSky sources_under_sky(const SourceArguments& args, const Scene& scene);
 
 // Whether the source has a Ke other than 0. If not, it counts with a radiosity of 1 where it is named.
 bool emits(const Scene& scene, const Selection& source);

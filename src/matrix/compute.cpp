@@ -5,13 +5,16 @@
 
 #include "exactff/matrix.h"
 #include "kernel/float_environment.h"
+#include "kernel/outward.h"
 #include "matrix/entry_jobs.h"
-#include "matrix/outward.h"
 #include "matrix/surroundings.h"
 #include "work/parallel.h"
 
 namespace exactff::matrix {
 namespace {
+
+using kernel::above;
+using kernel::below;
 
 // Each patch with area is a column, as a whole, exactly once.
 bool has_every_patch(const Scene& scene, const std::vector<Selection>& to) {

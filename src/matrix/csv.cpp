@@ -31,6 +31,8 @@ std::string csv_comments(const Scene& scene, std::span<const Selection> from, st
                      scene.hash() + "; accuracy " + text::shortest(options.accuracy) + ", budget " +
                      std::to_string(options.budget) + " cells\n# " + text::counted(from.size(), "row") + ", " +
                      text::counted(to.size(), "column") + ", hash of the patches " + patches.digits();
+  if (options.certify) text += ", certify";
+  if (options.both_directions) text += ", both directions";
   if (!options.sample_crowds) text += ", no entry statistical";
   for (const std::string_view name : {surroundings.back ? kBack : "", surroundings.open ? kOpen : ""}) {
     if (!name.empty()) text += ", " + std::string(name);

@@ -3,12 +3,15 @@
 #include <algorithm>
 
 #include "kernel/float_environment.h"
+#include "kernel/outward.h"
 #include "matrix/csv.h"
-#include "matrix/outward.h"
 #include "text/text_lines.h"
 
 namespace exactff::matrix {
 namespace {
+
+using kernel::above;
+using kernel::below;
 
 // The same patches of a scene with more faces.
 std::vector<Selection> of_any_scene(std::span<const Selection> patches) {

@@ -1,9 +1,8 @@
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "exactff/matrix.h"
+#include "kernel/outward.h"
 #include "work/npz_file.h"
 
 namespace exactff::matrix {
@@ -12,7 +11,7 @@ namespace {
 // [value - radius, value + radius] holds the bounds.
 double radius_of(const ViewFactor& f) {
   const double radius = std::max(f.upper - f.value, f.value - f.lower);
-  return radius == 0.0 ? 0.0 : std::nextafter(radius, std::numeric_limits<double>::infinity());
+  return radius == 0.0 ? 0.0 : kernel::above(radius);
 }
 
 void add_column(work::NpzFile& file, const std::string& name, const std::vector<ViewFactor>& column) {

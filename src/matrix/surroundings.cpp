@@ -7,52 +7,12 @@
 
 #include "kernel/poll.h"
 #include "matrix/coplanar.h"
+#include "matrix/scene_copy.h"
 #include "text/refuse.h"
 #include "visibility/source_plane.h"
 
 namespace exactff::matrix {
 namespace {
-
-// The scene again, to be added to.
-class Copy {
- public:
-  explicit Copy(const Scene& scene) : scene_(scene), builder_({}, {.bad_faces = BadFaces::kSkip}) {
-    for (const Vec3& vertex : scene.vertices()) builder_.add_vertex(vertex);
-    for (const Material& material : scene.materials()) builder_.add_material(material);
-    for (const Patch& patch : scene.patches()) (void)builder_.patch(patch.name);
-    for (const Face& face : scene.faces()) builder_.add_face(face.patch, face.material, rings_of(face));
-    for (std::size_t f = 0; f < scene.faces().size(); ++f) {
-      if (scene.faces()[f].transparent) add_transparent(scene.faces()[f].patch, static_cast<FaceId>(f));
-    }
-  }
-
-  // A patch with a name of its own.
-  Selection add_patch(std::string name) {
-    while (std::ranges::any_of(scene_.patches(), [&](const Patch& p) { return p.name == name; })) name += '\'';
-    return {builder_.patch(name), {}};
-  }
-  std::uint32_t add_vertex(const Vec3& vertex) { return builder_.add_vertex(vertex); }
-
-  // A transparent face with the material of the first face.
-  void add_face(const Selection& patch, std::vector<std::uint32_t> corners) {
-    add_transparent(patch.patch, static_cast<FaceId>(scene_.faces().size() + added_++));
-    builder_.add_face(patch.patch, scene_.faces().front().material, {std::move(corners)});
-  }
-
-  Scene take() { return builder_.build().with_transparent(transparent_); }
-
- private:
-  using Rings = std::vector<std::vector<std::uint32_t>>;
-  // A face that was left out stays so, whatever vertices are added.
-  static Rings rings_of(const Face& face) { return face.piece_count > 0 ? face.rings : Rings{{0, 0, 0}}; }
-
-  void add_transparent(PatchId patch, FaceId face) { transparent_.push_back({patch, face}); }
-
-  const Scene& scene_;
-  SceneBuilder builder_;
-  std::vector<Selection> transparent_;
-  std::size_t added_ = 0;
-};
 
 std::vector<std::uint32_t> corners_of(const Scene& scene, const Piece& piece) {
   const auto corners = scene.corners(piece);
@@ -80,7 +40,7 @@ struct SharedPlane {
 
 // Pieces that are not transparent.
 std::vector<SharedPlane> planes_of(const Scene& scene) {
-  Copy copy(scene);
+  SceneCopy copy(scene);
   const Selection backs = copy.add_patch("backs");
   for (const Piece& piece : scene.pieces()) copy.add_face(backs, reversed_corners_of(scene, piece));
   const Scene both = copy.take();
@@ -113,7 +73,7 @@ bool sort_out(const Scene& scene, SharedPlane& plane) {
 }  // namespace
 
 SceneWithBacks with_backs(const Scene& scene) {
-  Copy copy(scene);
+  SceneCopy copy(scene);
   std::optional<Selection> backs, both, fronts;
   const auto patch = [&](std::optional<Selection>& selection, const char* name) -> const Selection& {
     if (!selection) selection = copy.add_patch(name);
@@ -145,7 +105,7 @@ SceneWithSky with_sky(const Scene& scene) {
     half = std::max(half, 0.5 * at(high) - 0.5 * at(low));
   }
   const double s = std::ldexp(1.0, std::ilogb(half) + 6);  // 32 half sides or more: roundings do not matter
-  Copy copy(scene);
+  SceneCopy copy(scene);
   const Selection sky = copy.add_patch("sky");
   std::array<std::uint32_t, 4> corners{};
   for (std::size_t i = 0; i < 4; ++i) {

@@ -141,7 +141,7 @@ void require_most_on_faces(const GBuffer& gbuffer, std::size_t without, double t
   const std::size_t all = gbuffer.receivers.size();
   if (2 * without <= all) return;
   text::refuse(std::filesystem::path(gbuffer.file),
-               text::counted_of(without, all, "pixel") + " have a point that lies on no face of the scene, within " +
+               "the points of " + text::counted_of(without, all, "pixel") + " lie on no face of the scene, within " +
                    text::short_number(tolerance),
                "the points are in another coordinate system or of another scene" + words_on_depth(gbuffer),
                kSaveInTheWorld);

@@ -75,5 +75,6 @@ void bind_methods(py::module_& module);
 void bind_truth(py::module_& module);
 void bind_check(py::module_& module);
 void bind_view_factors(py::module_& module);
+void bind_radiosity(py::module_& module);
 
 }  // namespace exactff::python

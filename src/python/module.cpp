@@ -13,4 +13,5 @@ PYBIND11_MODULE(_exactff, module) {
   bind_truth(module);
   bind_check(module);
   bind_view_factors(module);
+  bind_radiosity(module);
 }

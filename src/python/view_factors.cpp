@@ -16,11 +16,12 @@ py::tuple to_tuple(const ViewFactor& f) {
 }
 
 py::tuple view_factor_of(const SharedScene& scene, const std::string& from, const std::string& to, double accuracy,
-                         std::size_t budget) {
+                         std::size_t budget, bool certify) {
   const Scene& in = scene.scene();
   const Selection i = in.select(from), j = in.select(to);
   Interrupt interrupt;
-  return to_tuple(interrupt.run([&] { return view_factor(in, i, j, {.accuracy = accuracy, .budget = budget}); }));
+  const ViewFactorOptions options{.accuracy = accuracy, .budget = budget, .certify = certify};
+  return to_tuple(interrupt.run([&] { return view_factor(in, i, j, options); }));
 }
 
 py::list to_list(const std::vector<ViewFactor>& factors) {
@@ -31,14 +32,16 @@ py::list to_list(const std::vector<ViewFactor>& factors) {
 
 // Entries row by row, backs, what is open, sums of rows (lower, upper), reasons against 1.
 py::tuple view_factor_matrix_of(const SharedScene& scene, const std::vector<std::string>& from,
-                                const std::vector<std::string>& to, double accuracy, std::size_t budget, bool backs,
-                                bool open, int threads, const py::object& progress) {
+                                const std::vector<std::string>& to, double accuracy, std::size_t budget, bool certify,
+                                bool backs, bool open, int threads, const py::object& progress) {
   const Scene& in = scene.scene();
   std::vector<Selection> rows, columns;
   for (const std::string& name : from) rows.push_back(in.select(name));
   for (const std::string& name : to) columns.push_back(in.select(name));
-  const matrix::Options options{
-      .factors = {.accuracy = accuracy, .budget = budget}, .backs = backs, .open = open, .threads = threads};
+  const matrix::Options options{.factors = {.accuracy = accuracy, .budget = budget, .certify = certify},
+                                .backs = backs,
+                                .open = open,
+                                .threads = threads};
   Interrupt interrupt(progress);
   std::vector<std::string> reasons;
   const matrix::Matrix made = interrupt.run([&] {
@@ -77,10 +80,10 @@ py::tuple view_of(const SharedScene& scene, const std::array<double, 3>& point, 
 
 void bind_view_factors(py::module_& module) {
   module.def("view_factor", &view_factor_of, py::arg("scene"), py::arg("from_patch"), py::arg("to_patch"),
-             py::arg("accuracy"), py::arg("budget"));
+             py::arg("accuracy"), py::arg("budget"), py::arg("certify"));
   module.def("view_factor_matrix", &view_factor_matrix_of, py::arg("scene"), py::arg("from_patches"),
-             py::arg("to_patches"), py::arg("accuracy"), py::arg("budget"), py::arg("backs"), py::arg("open"),
-             py::arg("threads"), py::arg("progress"));
+             py::arg("to_patches"), py::arg("accuracy"), py::arg("budget"), py::arg("certify"), py::arg("backs"),
+             py::arg("open"), py::arg("threads"), py::arg("progress"));
   module.def("view", &view_of, py::arg("scene"), py::arg("point"), py::arg("normal"), py::arg("on"), py::arg("faces"),
              py::arg("digits"), py::arg("precision_cap"));
 }

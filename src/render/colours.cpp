@@ -78,6 +78,14 @@ class Outline {
   std::vector<std::uint32_t> wrong_before_;
 };
 
+// 1 is white.
+double brightness(const Picture& picture, std::size_t pixel, std::size_t channel, double exposure) {
+  const double whole = exposure * picture.values[3 * pixel + channel];
+  if (picture.lamps.empty()) return whole;
+  const double share = picture.lamps[4 * pixel], lamps = exposure * picture.lamps[4 * pixel + 1 + channel];
+  return std::min(lamps, share) + std::min(whole - lamps, 1.0 - share);
+}
+
 }  // namespace
 
 double automatic_exposure(const Picture& picture) {
@@ -107,7 +115,9 @@ Colours developed(const Picture& picture, double exposure) {
   const kernel::StandardArithmetic arithmetic;
   Colours colours{picture.size, {}};
   colours.bytes.reserve(picture.values.size());
-  for (const double value : picture.values) colours.bytes.push_back(srgb(exposure * value));
+  for (std::size_t pixel = 0; pixel < picture.pixels(); ++pixel) {
+    for (std::size_t c = 0; c < 3; ++c) colours.bytes.push_back(srgb(brightness(picture, pixel, c, exposure)));
+  }
   return colours;
 }
 

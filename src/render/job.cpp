@@ -16,14 +16,16 @@ namespace exactff::render {
 
 Job::Job(const Request& request) : request_(request) {
   require_scene(request_.scene);
-  sources_ = request_.sources.empty() ? request_.scene->emitters() : request_.sources;
-  if (sources_.empty()) {
+  sources_ = request_.sources.empty() && !request_.sky ? request_.scene->emitters() : request_.sources;
+  if (sources_.empty() && !request_.sky) {
     text::refuse(request_.scene_name, "no patch emits", "the picture would be black", "name a source with --source");
   }
-  weights_ = exact::light_weights(*request_.scene, sources_, request_.quantity, request_.scene_name);
+  factors_ = std::make_unique<light::SourceFactors>(*request_.scene, sources_,
+                                                    request_.sky ? light::Sky::kLastSource : light::Sky::kLeftOut);
+  weights_ = light::light_weights(*request_.scene, *factors_, request_.quantity, request_.scene_name);
   require_possible();
   if (!request_.method) {
-    light_ = std::make_unique<exact::Light>(*request_.scene, sources_, weights_);
+    light_ = std::make_unique<light::Light>(*factors_, weights_);
     return;
   }
   prepared_ = request_.method->method->prepare(*request_.scene);
@@ -45,6 +47,13 @@ void Job::require_possible() const {
                  request_.spp > 1 ? "a mean of positions or face numbers means nothing" : "they hold exact results",
                  request_.spp > 1 ? "leave out --layers or --spp" : "leave out --layers or --method");
   }
+  if (request_.sky && (request_.layers == Layers::kAll || request_.method)) {
+    text::refuse(
+        request_.method ? "sky is a source, and the method is approximate"
+                        : "sky is a source, and layers are requested",
+        request_.method ? "such methods know patches only" : "the sky has no area of which a fraction is visible",
+        request_.method ? "leave out sky or --method" : "leave out sky or --layers");
+  }
   if (request_.bounds == Bounds::kAll && request_.method) {
     text::refuse("bounds are requested of a picture by an approximate method", "such a method proves nothing",
                  "leave out --bounds or --method");
@@ -57,15 +66,15 @@ void Job::require_possible() const {
 }
 
 std::size_t Job::numbers_per_pixel() const {
-  return kLower + (request_.bounds == Bounds::kAll ? 6 : 0) + layers().size();
+  return kLower + (request_.bounds == Bounds::kAll ? 6 : 0) + layers().size() + (request_.spp > 1 ? kLamps : 0);
 }
 
 std::vector<std::string> Job::source_names() const {
   constexpr std::size_t kLongest = 200;  // of an OpenEXR file: 255 bytes for a channel
   std::vector<std::string> names;
   std::map<std::string, int> used;
-  for (std::size_t s = 0; s < sources_.size(); ++s) {
-    std::string name = text::printable(request_.scene->name_of(sources_[s]));
+  for (std::size_t s = 0; s < factors_->count(); ++s) {
+    std::string name = text::printable(factors_->name_of(s));
     if (name.empty() || name.size() > kLongest) name = "source" + std::to_string(s + 1);
     if (const int times = used[name]++; times > 0) name += '#' + std::to_string(times + 1);
     names.push_back(std::move(name));
@@ -113,6 +122,13 @@ std::string names_of(const Scene& scene, const std::vector<Selection>& selection
 
 }  // namespace
 
+std::string Job::names_of_sources() const {
+  std::string names;
+  for (std::size_t s = 0; s < factors_->count(); ++s)
+    names += (s > 0 ? " + " : "") + text::printable(factors_->name_of(s));
+  return names;
+}
+
 Metadata Job::metadata() const {
   const Scene& scene = *request_.scene;
   Metadata metadata = {
@@ -123,7 +139,7 @@ Metadata Job::metadata() const {
       {"quantity", std::string(name_of(request_.quantity)) + ", in " + unit_of(request_.quantity, request_.ke)},
       {"Ke", request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity"},
       {"sides", request_.sides == Sides::kBoth ? "both" : "front"},
-      {"sources", names_of(scene, sources_)},
+      {"sources", names_of_sources()},
       {"method", request_.method ? request_.method->text() : "exact, correctly rounded"},
       {"points per pixel", std::to_string(request_.spp * request_.spp)}};
   if (const auto flipped = scene.flipped(); !flipped.empty())
@@ -141,8 +157,8 @@ std::string Job::hash() const {
   return study::short_hash(all);
 }
 
-exact::LightFormula Job::formula(FaceId face, bool back) const {
-  return exact::light_formula(*request_.scene, std::span(&face, 1), back ? exact::Side::kBack : exact::Side::kFront,
+light::LightFormula Job::formula(FaceId face, bool back) const {
+  return light::light_formula(*request_.scene, std::span(&face, 1), back ? light::Side::kBack : light::Side::kFront,
                               request_.quantity, request_.ke);
 }
 

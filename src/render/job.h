@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "exact/light.h"
 #include "exactff/render.h"
+#include "light/light.h"
+#include "light/source_factors.h"
 
 namespace exactff::render {
 
@@ -23,26 +24,29 @@ class Job {
   // Of everything that the numbers depend on.
   [[nodiscard]] std::string hash() const;
 
-  // The numbers of a pixel: what it shows, its value, then on request lower, upper and layers.
-  static constexpr std::size_t kShows = 0, kValue = 1, kLower = 4, kUpper = 7;
+  // The numbers of a pixel: what it shows, its value, then on request lower, upper and layers, and those of
+  // Picture::lamps.
+  static constexpr std::size_t kShows = 0, kValue = 1, kLower = 4, kUpper = 7, kLamps = 4;
   [[nodiscard]] std::size_t numbers_per_pixel() const;
 
   // What leaves a face on the side that is seen, in the quantity of the request.
-  [[nodiscard]] exact::LightFormula formula(FaceId face, bool back) const;
-  [[nodiscard]] const std::vector<Selection>& sources() const { return sources_; }
+  [[nodiscard]] light::LightFormula formula(FaceId face, bool back) const;
+  [[nodiscard]] std::size_t source_count() const { return factors_->count(); }
   [[nodiscard]] const std::vector<Rgb>& weights() const { return weights_; }  // B_s, or 1
-  [[nodiscard]] const exact::Light& light() const { return *light_; }
+  [[nodiscard]] const light::Light& light() const { return *light_; }
   [[nodiscard]] const methods::PreparedScene* prepared() const { return prepared_.get(); }
   [[nodiscard]] const std::vector<const methods::PreparedSource*>& prepared_sources() const { return source_pointers_; }
 
  private:
   void require_possible() const;
-  [[nodiscard]] std::vector<std::string> source_names() const;
+  [[nodiscard]] std::vector<std::string> source_names() const;  // of channels
+  [[nodiscard]] std::string names_of_sources() const;
 
   Request request_;
   std::vector<Selection> sources_;
   std::vector<Rgb> weights_;
-  std::unique_ptr<exact::Light> light_;
+  std::unique_ptr<const light::SourceFactors> factors_;
+  std::unique_ptr<light::Light> light_;
   std::unique_ptr<methods::PreparedScene> prepared_;
   std::vector<std::unique_ptr<methods::PreparedSource>> prepared_sources_;
   std::vector<const methods::PreparedSource*> source_pointers_;
@@ -62,13 +66,13 @@ class Painter {
   void look_along(const Ray& ray, Sample& sample);
 
  private:
-  [[nodiscard]] exact::Channels light_at(const Receiver& receiver, const exact::LightFormula& formula);
-  [[nodiscard]] exact::Channels light_by_method(const Receiver& receiver, const exact::LightFormula& formula);
+  [[nodiscard]] light::Channels light_at(const Receiver& receiver, const light::LightFormula& formula);
+  [[nodiscard]] light::Channels light_by_method(const Receiver& receiver, const light::LightFormula& formula);
   void add_layers(const Ray& ray, const Hit* hit, bool dark, Sample& sample) const;
 
   const Job& job_;
   ExactOptions options_;
-  exact::Light::Results results_;
+  light::Light::Results results_;
   std::unique_ptr<methods::Evaluator> evaluator_;
   std::vector<methods::Estimate> estimates_;
 };

@@ -13,8 +13,8 @@ namespace {
 constexpr double kNothingMet = std::numeric_limits<double>::quiet_NaN();
 
 // Without any light: what is proved to be black, or nothing at all.
-exact::Channels dark(double value) {
-  const exact::CertifiedNumber number{value, value, value, true};
+light::Channels dark(double value) {
+  const light::CertifiedNumber number{value, value, value, true};
   return {number, number, number};
 }
 
@@ -36,7 +36,7 @@ Painter::Painter(const Job& job) : job_(job) {
   options_.visible_fraction = job.request().layers == Layers::kAll;
   if (job.prepared() == nullptr) return;
   evaluator_ = job.prepared()->configure(job.request().method->settings);
-  estimates_.resize(job.sources().size());
+  estimates_.resize(job.source_count());
 }
 
 void Painter::look_along(const Ray& ray, Sample& sample) {
@@ -44,9 +44,9 @@ void Painter::look_along(const Ray& ray, Sample& sample) {
   const std::optional<Hit> hit = first_hit(*request.scene, ray);
   const bool black = !hit || (hit->back && request.sides == Sides::kFront);
   Shows shows = !hit ? Shows::kNothing : black ? Shows::kBack : Shows::kFace;
-  exact::Channels channels = dark(hit ? 0.0 : kNothingMet);
+  light::Channels channels = dark(hit ? 0.0 : kNothingMet);
   if (!black) {
-    const exact::LightFormula formula = job_.formula(hit->face, hit->back);
+    const light::LightFormula formula = job_.formula(hit->face, hit->back);
     if (!is_zero(formula.emitted)) shows = Shows::kEmitter;
     channels = light_at(receiver_at(*request.scene, *hit), formula);
   }
@@ -57,16 +57,16 @@ void Painter::look_along(const Ray& ray, Sample& sample) {
     for (const auto& channel : channels) sample.numbers.push_back(channel.lower);
     for (const auto& channel : channels) sample.numbers.push_back(channel.upper);
   }
-  sample.certified = std::ranges::all_of(channels, &exact::CertifiedNumber::certified);
+  sample.certified = std::ranges::all_of(channels, &light::CertifiedNumber::certified);
   if (request.layers == Layers::kAll) add_layers(ray, hit ? &*hit : nullptr, black, sample);
 }
 
-exact::Channels Painter::light_at(const Receiver& receiver, const exact::LightFormula& formula) {
+light::Channels Painter::light_at(const Receiver& receiver, const light::LightFormula& formula) {
   if (evaluator_ != nullptr) return light_by_method(receiver, formula);
   return job_.light().at(receiver, formula, options_, results_);
 }
 
-exact::Channels Painter::light_by_method(const Receiver& receiver, const exact::LightFormula& formula) {
+light::Channels Painter::light_by_method(const Receiver& receiver, const light::LightFormula& formula) {
   evaluator_->look_from(receiver);
   evaluator_->form_factors(job_.prepared_sources(), estimates_);
   Rgb received;
@@ -78,7 +78,7 @@ exact::Channels Painter::light_by_method(const Receiver& receiver, const exact::
   const double factor = formula.pi_power == 0 ? 1.0 : formula.pi_power > 0 ? std::numbers::pi : 1.0 / std::numbers::pi;
   const auto channel = [&](double emitted, double reflectance, double arriving) {
     const double value = factor * (emitted + reflectance * arriving);
-    return exact::CertifiedNumber{value, value, value, true};
+    return light::CertifiedNumber{value, value, value, true};
   };
   return {channel(formula.emitted.r, formula.reflectance.r, received.r),
           channel(formula.emitted.g, formula.reflectance.g, received.g),
@@ -87,11 +87,11 @@ exact::Channels Painter::light_by_method(const Receiver& receiver, const exact::
 
 void Painter::add_layers(const Ray& ray, const Hit* hit, bool dark, Sample& sample) const {
   std::vector<double>& numbers = sample.numbers;
-  for (std::size_t s = 0; s < job_.sources().size(); ++s) {
+  for (std::size_t s = 0; s < job_.source_count(); ++s) {
     if (dark) {
       numbers.insert(numbers.end(), {0.0, 0.0, 0.0});
     } else {
-      const FormFactor& factor = results_.factors[s];
+      const FormFactor& factor = results_.at.factors[s];
       numbers.insert(numbers.end(), {factor.value, of_visible(factor), factor.visible_fraction.value_or(0.0)});
     }
   }

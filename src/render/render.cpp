@@ -2,15 +2,16 @@
 #include "exactff/render.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
 #include <limits>
 #include <memory>
 #include <mutex>
 
-#include "exact/light.h"
 #include "kernel/float_environment.h"
 #include "kernel/numbers.h"
+#include "light/light.h"
 #include "render/job.h"
 #include "study/kept_work.h"
 #include "work/parallel.h"
@@ -100,6 +101,7 @@ class Brush {
       }
     }
     append_mean(result.numbers);
+    append_lamps(result.numbers);
   }
 
   void look(double column, double row, TileResult& result) {
@@ -122,6 +124,16 @@ class Brush {
       if (i >= Job::kUpper && !all_zero) value = std::nextafter(value, kUpwards);
       numbers.push_back(value);
     }
+  }
+
+  void append_lamps(std::vector<double>& numbers) const {
+    std::array<double, Job::kLamps> lamps{};
+    for (const auto& part : parts_) {
+      if (part[Job::kShows] != static_cast<double>(Shows::kEmitter)) continue;
+      lamps[0] += 1.0;
+      for (std::size_t c = 0; c < 3; ++c) lamps[1 + c] += part[Job::kValue + c];
+    }
+    for (const double sum : lamps) numbers.push_back(sum / static_cast<double>(parts_.size()));
   }
 
   const Job& job_;
@@ -172,6 +184,7 @@ Picture empty_picture(const Job& job) {
     picture.lower.resize(3 * pixels);
     picture.upper.resize(3 * pixels);
   }
+  if (job.request().spp > 1) picture.lamps.resize(Job::kLamps * pixels);
   picture.layers = job.layers();
   for (Layer& layer : picture.layers) layer.values.resize(pixels);
   picture.metadata = job.metadata();
@@ -190,6 +203,8 @@ void place(const Tile& tile, const TileResult& result, Picture& picture) {
         for (std::size_t c = 0; c < 3; ++c) (*plane)[3 * pixel + c] = *number++;
       }
       for (Layer& layer : picture.layers) layer.values[pixel] = *number++;
+      if (picture.lamps.empty()) continue;
+      for (std::size_t k = 0; k < Job::kLamps; ++k) picture.lamps[Job::kLamps * pixel + k] = *number++;
     }
   }
 }

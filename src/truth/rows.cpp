@@ -41,14 +41,17 @@ void complete(Request& request) {
     text::refuse("there are no receivers in " + request.receivers_name, "a truth file has a row for each receiver",
                  "use a finer grid or another patch");
   }
-  if (request.sources.empty()) request.sources = request.scene->emitters();
-  if (request.sources.empty()) {
+  if (request.sources.empty() && !request.sky) request.sources = request.scene->emitters();
+  if (request.sources.empty() && !request.sky) {
     text::refuse(request.scene_name, "no patch emits", "a truth file has a row for each source",
                  "name a source with --source");
   }
   if (request.uv && !std::ranges::all_of(request.receivers, [](const Receiver& r) { return r.cell.has_value(); })) {
     text::refuse("the receivers have no u and v", "only the cells of a grid have coordinates on their lattice",
                  "make the receivers by --grid, or leave out --uv");
+  }
+  if (request.sky && request.visible_fraction) {
+    text::refuse("the visible fraction of the sky is requested", "the sky has no area", "leave out --fraction, or sky");
   }
   jobs::require_shard(request.shard);
   if (request.threads <= 0) request.threads = work::usable_threads();
@@ -58,15 +61,15 @@ void complete(Request& request) {
 
 Rows::Rows(Request request) : request_(std::move(request)) {
   complete(request_);
-  plan_ = {kKind, request_.receivers.size() * request_.sources.size(), kChunkRows, request_.shard, request_.threads};
-  for (const Selection& source : request_.sources) {
-    sources_.emplace_back(*request_.scene, source);
-    source_names_.push_back(request_.scene->name_of(source));
-    radiosities_.push_back(request_.scene->source_radiosity(source));
+  sources_ = std::make_unique<light::SourceFactors>(*request_.scene, request_.sources,
+                                                    request_.sky ? light::Sky::kLastSource : light::Sky::kLeftOut);
+  plan_ = {kKind, request_.receivers.size() * sources_->count(), kChunkRows, request_.shard, request_.threads};
+  for (std::size_t s = 0; s < sources_->count(); ++s) {
+    source_names_.push_back(sources_->name_of(s));
+    radiosities_.push_back(sources_->radiosity(s));
   }
   if (request_.total) {
-    light_.emplace(*request_.scene, request_.sources,
-                   exact::light_weights(*request_.scene, request_.sources, *request_.total, request_.scene_name));
+    light_.emplace(*sources_, light::light_weights(*request_.scene, *sources_, *request_.total, request_.scene_name));
   }
   receivers_hash_ = hash_of(request_.receivers);
   near_misses_ = sentences(near_misses(*request_.scene, request_.receivers), request_.receivers.size());
@@ -125,26 +128,28 @@ const GridSize& size_of(const Receiver& receiver) { return receiver.cell->lattic
 // Of the centre of a cell; from 0 to 1, correctly rounded.
 double place_along(int cell, int cells) { return (2.0 * cell - 1.0) / (2.0 * cells); }
 
-// True if no occluder hides anything of what is above the horizon: F is then the same as without occluders.
+// True if it is on record that no occluder hides anything of what is above the horizon: F is then the same as without
+// occluders.
 bool nothing_in_the_shaft(const FormFactor& result) {
-  return std::all_of(result.planes.begin(), result.planes.end(), [](const PlaneRecord& plane) {
-    return plane.outcome == Outcome::kUnoccluded || plane.outcome == Outcome::kReceiverFace ||
-           plane.outcome == Outcome::kBehind || plane.outcome == Outcome::kBelowHorizon;
-  });
+  return !result.planes.empty() &&
+         std::all_of(result.planes.begin(), result.planes.end(), [](const PlaneRecord& plane) {
+           return plane.outcome == Outcome::kUnoccluded || plane.outcome == Outcome::kReceiverFace ||
+                  plane.outcome == Outcome::kBehind || plane.outcome == Outcome::kBelowHorizon;
+         });
 }
 
 // Exact: whether the normal points away from the front of the receiver's first face.
-exact::Side side_of(const Scene& scene, const Receiver& receiver) {
+light::Side side_of(const Scene& scene, const Receiver& receiver) {
   static constexpr Vec3 kOrigin;
-  if (receiver.on.empty()) return exact::Side::kFront;
+  if (receiver.on.empty()) return light::Side::kFront;
   const Vec3& front = scene.face(receiver.on.front()).newell;
-  return kernel::exact_sign_of_dot(front, {kOrigin, receiver.normal}) < 0 ? exact::Side::kBack : exact::Side::kFront;
+  return kernel::exact_sign_of_dot(front, {kOrigin, receiver.normal}) < 0 ? light::Side::kBack : light::Side::kFront;
 }
 
 }  // namespace
 
 void Rows::append(std::uint64_t row, std::string& lines, Results& results) const {
-  const std::size_t number = row / sources_.size(), source = row % sources_.size();
+  const std::size_t number = row / sources_->count(), source = row % sources_->count();
   const Receiver& receiver = request_.receivers[number];
   const FormFactor& f = factor(number, source, results);
   Status status = f.status;  // a row is only as good as its worst value
@@ -158,7 +163,7 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
   }
   line << source_names_[source] << f.value << f.lower << f.upper;
   if (request_.unoccluded) {
-    const FormFactor& free = without_occluders(receiver, sources_[source], f, results);
+    const FormFactor& free = without_occluders(receiver, source, f, results);
     if (free.status == Status::kUnderflow) {
       line << "0.0";
     } else {
@@ -171,7 +176,7 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
   line << rho.r * b.r * f.value << rho.g * b.g * f.value << rho.b * b.b * f.value
        << std::max({rho.r * b.r, rho.g * b.g, rho.b * b.b});
   if (light_) {
-    for (const exact::CertifiedNumber& total : results.totals) {
+    for (const light::CertifiedNumber& total : results.totals) {
       line << total.value;
       keep_worst(total.certified);
     }
@@ -197,30 +202,41 @@ class RowComputer : public Rows::Computer {
 
 std::unique_ptr<Rows::Computer> Rows::computer() const { return std::make_unique<RowComputer>(*this); }
 
-// Sets the totals, too, if they are requested.
 const FormFactor& Rows::factor(std::size_t receiver, std::size_t source, Results& results) const {
-  const Receiver& at = request_.receivers[receiver];
   const ExactOptions options{.engine = request_.engine, .visible_fraction = request_.visible_fraction};
-  if (!light_) {
-    exact_form_factor(*request_.scene, at, sources_[source], options, results.exact, results.workspace);
+  if (!light_ && !sources_->sweeps(options)) {
+    sources_->find_one(request_.receivers[receiver], source, options, results.exact, results.all.at);
     return results.exact;
   }
-  if (results.lit != receiver) {
-    const exact::LightFormula formula =
-        exact::light_formula(*request_.scene, at.on, side_of(*request_.scene, at), *request_.total, request_.ke);
-    results.lit.reset();
-    results.totals = light_->at(at, formula, options, results.light);
-    results.lit = receiver;
-  }
-  return results.light.factors[source];
+  if (results.known != receiver) find_all(receiver, options, results);
+  return results.all.at.factors[source];
 }
 
-const FormFactor& Rows::without_occluders(const Receiver& receiver, const ExactSource& source, const FormFactor& with,
+// Sets the totals, too, if they are requested.
+void Rows::find_all(std::size_t receiver, const ExactOptions& options, Results& results) const {
+  const Receiver& at = request_.receivers[receiver];
+  results.known.reset();
+  if (light_) {
+    const light::LightFormula formula =
+        light::light_formula(*request_.scene, at.on, side_of(*request_.scene, at), *request_.total, request_.ke);
+    results.totals = light_->at(at, formula, options, results.all);
+  } else {
+    sources_->find_all(at, options, results.all.at);
+  }
+  results.known = receiver;
+}
+
+const FormFactor& Rows::without_occluders(const Receiver& receiver, std::size_t source, const FormFactor& with,
                                           Results& results) const {
   static const std::vector<FaceId> kNone;
   if (nothing_in_the_shaft(with)) return with;
+  if (sources_->is_sky(source)) {
+    results.unoccluded.value = 1.0;
+    results.unoccluded.status = Status::kCertified;
+    return results.unoccluded;
+  }
   const ExactOptions options{.engine = request_.engine, .only_occluders = &kNone};
-  exact_form_factor(*request_.scene, receiver, source, options, results.unoccluded, results.workspace);
+  sources_->find_one(receiver, source, options, results.unoccluded, results.all.at);
   return results.unoccluded;
 }
 
@@ -230,10 +246,10 @@ std::string Rows::id(std::size_t receiver) const {
 }
 
 std::string Rows::name(std::uint64_t row) const {
-  const std::size_t receiver = row / sources_.size();
+  const std::size_t receiver = row / sources_->count();
   const std::vector<FaceId>& on = request_.receivers[receiver].on;
   return "receiver '" + id(receiver) + "'" + (on.empty() ? "" : " on '" + request_.scene->name_of(on) + "'") +
-         ", source '" + source_names_[row % sources_.size()] + "'";
+         ", source '" + source_names_[row % sources_->count()] + "'";
 }
 
 void Tally::add(std::string_view text) {

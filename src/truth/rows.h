@@ -9,9 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "exact/light.h"
 #include "exactff/truth.h"
 #include "jobs/rows.h"
+#include "light/light.h"
+#include "light/source_factors.h"
 #include "truth/unit_normal.h"
 
 namespace exactff::truth {
@@ -33,11 +34,10 @@ class Rows : public jobs::Rows {
   // Objects that a thread reuses from row to row, only to avoid reallocation.
   struct Results {
     FormFactor exact, unoccluded;
-    Workspace workspace;
     UnitNormal unit_normal;
-    exact::Light::Results light;  // at this receiver
-    exact::Channels totals;
-    std::optional<std::size_t> lit;
+    light::Light::Results all;  // of all sources at one receiver
+    light::Channels totals;
+    std::optional<std::size_t> known;  // this receiver
   };
   // Computes a row and appends its line.
   void append(std::uint64_t row, std::string& lines, Results& results) const;
@@ -45,14 +45,15 @@ class Rows : public jobs::Rows {
  private:
   [[nodiscard]] std::string id(std::size_t receiver) const;
   [[nodiscard]] const FormFactor& factor(std::size_t receiver, std::size_t source, Results& results) const;
-  [[nodiscard]] const FormFactor& without_occluders(const Receiver& receiver, const ExactSource& source,
+  void find_all(std::size_t receiver, const ExactOptions& options, Results& results) const;
+  [[nodiscard]] const FormFactor& without_occluders(const Receiver& receiver, std::size_t source,
                                                     const FormFactor& with, Results& results) const;
 
   Request request_;
-  std::vector<ExactSource> sources_;
+  std::unique_ptr<const light::SourceFactors> sources_;
   std::vector<std::string> source_names_;
   std::vector<Rgb> radiosities_;       // indexed by source
-  std::optional<exact::Light> light_;  // for the totals
+  std::optional<light::Light> light_;  // for the totals
   std::string receivers_hash_;
   std::vector<std::string> near_misses_;  // in sentences
 };

@@ -15,7 +15,17 @@
 //
 // Several such triples of which no two share a line change the contour in separate places, and their bounds add up. If
 // two share a line, the difference is a closed chain on all these lines, and no shape is known: each side contributes
-// at most 2 / (2 pi) of its length, since |cos| <= 1 in Eq. (4).
+// at most 2 / (2 pi) of its length, since |cos| <= 1 in Eq. (4). There a coefficient of F0 may exceed 1. On one edge,
+// let the ends of its parts be f_1, t_1, f_2, t_2, ... in the order at the centre, and S those of them before a place y
+// of the edge at x. The coefficient of F0 at y is c, the number of f in S less the number of t in S; that of F is 0 or
+// 1. A pair of an end in S and one that is earlier at the centre, but not in S, has changed its order, and its side
+// holds y. Of the f in S, the k-th one is preceded by k - 1 or more t; if c >= 2, this makes c (c - 1) / 2 such pairs
+// or more. Likewise |c| (|c| + 1) / 2 if c < 0. So twice the number of pairs is at least the difference of the
+// coefficients. If c is 0 or 1 and the coefficients differ, some pair has changed its order, too.
+//
+// That the crossings of a pair are close to each other, not nearly opposite, is no matter: if f has no zero on the
+// cell, its order is that at the centre. If it has one, the crossings coincide there, both being on one edge, and the
+// angle between them cannot grow from 0 beyond 30 degrees while its sine stays below 1/2.
 //
 // A side on e, from the crossing with g to that with h, has the sine |N_e| |f| / (|N_e x N_g| |N_e x N_h|), where
 // f = det(N_e, N_g, N_h). On the cell, |f| is at most the largest |b| of its polar form; |N| is convex, so its largest

@@ -33,6 +33,12 @@ class Formula {
   // the receiver's plane, since F is analytic up to such an edge. In the unit of Point::at.
   [[nodiscard]] double distance_to_edges(const Vec3& x) const;
 
+  // What it is made of.
+  [[nodiscard]] const Points& points() const { return points_; }
+  [[nodiscard]] const Plane& receiver() const { return receiver_; }
+  [[nodiscard]] const std::vector<BoundaryPart>& boundary() const { return exact_parts_; }
+  [[nodiscard]] bool is_in_receiver_plane(std::size_t part) const { return parts_[part].in_receiver_plane; }
+
  private:
   struct Segment {
     Vec3 a, b;

@@ -9,6 +9,8 @@
 #include "kernel/poll.h"
 #include "kernel/vec.h"
 #include "text/phrases.h"
+#include "view_factors/certified_integral.h"
+#include "view_factors/disc_formula.h"
 #include "view_factors/quadrature.h"
 
 namespace exactff::view_factors {
@@ -24,6 +26,12 @@ constexpr double kStepAside = 0x1p-30;             // in units of Point::at
 constexpr double kLeastMargin = 0x1p-24;           // the same
 constexpr std::uint64_t kSignsForACell = 1 << 15;  // more than where few occluders lie between
 constexpr std::size_t kCrowd = 256;                // occluders; an event cell of more is not worth a look at its centre
+constexpr double kShareOfParent = 0.125;           // of a cell's error that its halves may have, certified
+constexpr double kEventMargin = 1.01;              // of event_bound.h
+// Certified slopes. Coordinates are at most 1 and rounded once. A distance errs by less than 2^-45: that of a point of
+// the segment which is not quite the nearest one. A sum of 2^20 edges has a relative error below 2^-32.
+constexpr double kDistanceMargin = 0x1p-44;
+constexpr double kSumMargin = 1.0 + 0x1p-30;
 
 Point middle(const Point& p, const Point& q, const Units& units) {
   Homogeneous sum;
@@ -132,7 +140,7 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, std::vector
   if (add_if_negligible(cell, candidates, shares)) return;
   switch (outcome) {
     case CellView::Outcome::kKnown:
-      return add_smooth(std::move(cell), std::make_shared<const Formula>(sight_, view_.parts()), shares);
+      return add_smooth(std::move(cell), std::make_shared<const Formula>(sight_, view_.parts()), HUGE_VAL, shares);
     case CellView::Outcome::kCrossings:
       return add_event(std::move(cell), depth, std::move(candidates), std::vector(view_.triples()), shares);
     case CellView::Outcome::kCut:
@@ -144,8 +152,13 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, std::vector
   look(std::move(halves.positive), depth + 1, std::move(candidates), shares);
 }
 
+// For a certified integral, rounded up.
+double Pair::size_of(const Cell& cell) const {
+  return certifies() ? magnitude(enclosed_area(cell, sight_.receiver)) : area(cell);
+}
+
 bool Pair::add_if_negligible(Cell& cell, Candidates& candidates, std::vector<Share>& shares) const {
-  const double size = area(cell);
+  const double size = size_of(cell);
   if (!(size <= limits_.negligible_area)) return false;
   const double half = 0.5 * size;
   shares.push_back({std::move(cell), std::move(candidates), nullptr, half, half});
@@ -161,10 +174,18 @@ Pair::Integrated Pair::integrated(const Formula& formula, const Cell& cell) cons
   return {six, is_resolved(cell, formula) ? error : std::max(error, area(cell))};
 }
 
-void Pair::add_smooth(Cell cell, std::shared_ptr<const Formula> formula, std::vector<Share>& shares) {
-  const auto [integral, error] = integrated(*formula, cell);
+// Within the tolerance of a cell of its size, if it can be.
+Pair::Integrated Pair::enclosed(const Formula& formula, const Cell& cell, double most) const {
+  const double share = std::sqrt(area(cell) / limits_.area);
+  const double tolerance = std::min(most, limits_.certified * share * std::sqrt(share));
+  const CertifiedIntegral found = certified_integral(formula, cell, tolerance);
+  return {found.value, found.error, found.is_final};
+}
+
+void Pair::add_smooth(Cell cell, std::shared_ptr<const Formula> formula, double most, std::vector<Share>& shares) {
+  const auto [integral, error, is_final] = certifies() ? enclosed(*formula, cell, most) : integrated(*formula, cell);
   if (whole_ != nullptr) check(cell, *formula);
-  shares.push_back({std::move(cell), {}, std::move(formula), integral, error});
+  shares.push_back({std::move(cell), {}, std::move(formula), integral, error, is_final});
 }
 
 // From every point, F differs from its value at the centre by at most the slope times the distance: visibility in a
@@ -189,7 +210,7 @@ double Pair::slope_bound(const Candidates& candidates, const Vec3& centre, doubl
 // By the formula of a point inside, and a bound on how far F can be from it elsewhere.
 void Pair::add_event(Cell cell, std::size_t depth, Candidates candidates, const std::vector<CrossingTriple>& triples,
                      std::vector<Share>& shares) {
-  const double size = area(cell);
+  const double size = size_of(cell);
   if (triples.empty() && candidates.size() > kCrowd) {
     shares.push_back({std::move(cell), std::move(candidates), nullptr, 0.5 * size, 0.5 * size});
     return;
@@ -199,16 +220,39 @@ void Pair::add_event(Cell cell, std::size_t depth, Candidates candidates, const 
   Candidates of_centre = candidates;
   (void)view(at_centre, depth + 1, of_centre);  // at a single point every sign is known
   const Formula formula(sight_, view_.parts());
+  if (certifies()) {
+    const Integrated found = enclosed_event(formula, cell, centre, candidates, triples);
+    shares.push_back({std::move(cell), std::move(candidates), nullptr, found.integral, found.error});
+    return;
+  }
   if (const double bound = triples.empty() ? HUGE_VAL : event_bound(sight_.points, cell, centre.at, triples);
       bound < 1.0) {
-    const auto [integral, error] = integrated(formula, cell);
-    shares.push_back({std::move(cell), std::move(candidates), nullptr, integral, error + bound * size});
+    const auto [integral, error, is_final] = integrated(formula, cell);
+    shares.push_back({std::move(cell), std::move(candidates), nullptr, integral, error + bound * size, is_final});
     return;
   }
   const double value = std::clamp(value_at(formula, centre), 0.0, 1.0);
   const double radius = radius_about(cell, centre.at);
   const double bound = std::min(slope_bound(candidates, centre.at, radius) * radius, std::max(value, 1.0 - value));
   shares.push_back({std::move(cell), std::move(candidates), nullptr, value * size, bound * size});
+}
+
+// The narrowest of what is known: 0 <= F <= 1; the centre's formula with event_bound; its value with the slope.
+Pair::Integrated Pair::enclosed_event(const Formula& formula, const Cell& cell, const Point& centre,
+                                      const Candidates& candidates, const std::vector<CrossingTriple>& triples) const {
+  const double size = size_of(cell);
+  const Integrated unknown{0.5 * size, 0.5 * size};
+  const double bound = triples.empty() ? HUGE_VAL : kEventMargin * event_bound(sight_.points, cell, centre.at, triples);
+  if (bound < 1.0) {
+    const Integrated found = enclosed(formula, cell, HUGE_VAL);
+    const double error = (found.error + bound * size) * kSumMargin;
+    if (error < unknown.error) return {found.integral, error};
+  }
+  const double radius = radius_about(cell, centre.at) + kDistanceMargin;
+  const Disc value = DiscFormula(formula, Cell{{centre}, {}}).value({}, {});
+  const double change = slope_bound(candidates, centre.at, radius) * radius * kSumMargin;
+  const Disc integral = widened(value, change) * enclosed_area(cell, sight_.receiver);
+  return integral.radius < unknown.error ? Integrated{integral.centre, integral.radius} : unknown;
 }
 
 std::vector<Share> Pair::halves(Share share) {
@@ -222,8 +266,9 @@ std::vector<Share> Pair::halves(Share share) {
   Halves parts = cut(share.cell, sight_.receiver, by, sight_.points.units());
   if (share.formula != nullptr) {
     cells_made_ += 2;
-    add_smooth(std::move(parts.negative), share.formula, result);
-    add_smooth(std::move(parts.positive), share.formula, result);
+    const double most = kShareOfParent * share.error;
+    add_smooth(std::move(parts.negative), share.formula, most, result);
+    add_smooth(std::move(parts.positive), share.formula, most, result);
   } else {
     view_.start();
     look(std::move(parts.negative), 1, share.candidates, result);

@@ -19,8 +19,8 @@ struct Share {
   Candidates candidates;                   // of an event cell
   std::shared_ptr<const Formula> formula;  // null for an event cell: the boundary is not constant on it
   double integral = 0.0;
-  double error = 0.0;   // of the integral: an estimate, and for an event cell a bound besides
-  bool narrow = false;  // too narrow in double to be cut
+  double error = 0.0;   // of the integral: an estimate, and for an event cell a bound besides; or, certified, a bound
+  bool narrow = false;  // not worth a cut: too narrow in double, or only rounding is left
   bool is_event = formula == nullptr;
 
   // For a share that will not be cut.
@@ -36,6 +36,10 @@ class Pair {
   struct Limits {
     double rounding = 0.0;         // larger estimates of the rounding error of F ask for balls
     double negligible_area = 0.0;  // on smaller cells F is only known to lie in [0, 1]
+    // Integrals are enclosed, within (cell's area / area)^(3/4) of this, so that cells about a singular point may
+    // together have it. 0: they are estimated.
+    double certified = 0.0;
+    double area = 0.0;  // of the receiver's patch
   };
   // Where the source part is a whole face, `whole` is that face: a point factor to it checks each cell. `id` tells the
   // pairs apart that share the memory.
@@ -54,14 +58,22 @@ class Pair {
  private:
   CellView::Outcome view(const Cell& cell, std::size_t depth, Candidates& candidates);
   void look(Cell cell, std::size_t depth, Candidates candidates, std::vector<Share>& shares);
-  void add_smooth(Cell cell, std::shared_ptr<const Formula> formula, std::vector<Share>& shares);
+  // `most`: the largest error that is useful.
+  void add_smooth(Cell cell, std::shared_ptr<const Formula> formula, double most, std::vector<Share>& shares);
   // `triples`: all that is undecided; if empty, more may be.
   void add_event(Cell cell, std::size_t depth, Candidates candidates, const std::vector<CrossingTriple>& triples,
                  std::vector<Share>& shares);
   struct Integrated {
     double integral, error;
+    bool is_final = false;  // rounding is most of the error
   };
   [[nodiscard]] Integrated integrated(const Formula& formula, const Cell& cell) const;
+  [[nodiscard]] Integrated enclosed(const Formula& formula, const Cell& cell, double most) const;
+  [[nodiscard]] Integrated enclosed_event(const Formula& formula, const Cell& cell, const Point& centre,
+                                          const Candidates& candidates,
+                                          const std::vector<CrossingTriple>& triples) const;
+  [[nodiscard]] bool certifies() const { return limits_.certified > 0.0; }
+  [[nodiscard]] double size_of(const Cell& cell) const;
   bool add_if_negligible(Cell& cell, Candidates& candidates, std::vector<Share>& shares) const;
   [[nodiscard]] double value_at(const Formula& formula, const Cell& cell, const Vec3& x, const Place& place) const;
   [[nodiscard]] double value_at(const Formula& formula, const Point& x) const;

@@ -1,5 +1,8 @@
 #include "view_factors/patch_parts.h"
 
+#include <array>
+
+#include "kernel/gauss.h"
 #include "visibility/source_plane.h"
 
 namespace exactff::view_factors {
@@ -52,6 +55,32 @@ std::vector<Part> outside(const std::vector<Part>& parts, const std::vector<Plan
   return result;
 }
 
+std::array<kernel::Rational, 3> exact_difference(const Point& a, const Point& b) {
+  std::array<kernel::Rational, 3> result;
+  for (std::size_t i = 0; i < 3; ++i) {
+    result[i] = kernel::Rational(a.exact[i] * b.exact[3] - b.exact[i] * a.exact[3], a.exact[3] * b.exact[3]);
+    result[i].canonicalize();
+  }
+  return result;
+}
+
+// By an exact square, whose root is enclosed.
+kernel::Disc enclosed_area(const Part& part, const Units& units) {
+  constexpr long kBits = 128;
+  std::array<kernel::Rational, 3> sum;
+  for (std::size_t i = 2; i < part.corners.size(); ++i) {
+    const auto b = exact_difference(part.corners[i - 1], part.corners[0]);
+    const auto c = exact_difference(part.corners[i], part.corners[0]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+      sum[k] += b[l] * c[m] - b[m] * c[l];
+    }
+  }
+  const kernel::Rational square = sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2];
+  const kernel::Rational of_half = kernel::times_power_of_two(square, -4 * units.shift - 2);
+  return kernel::to_disc(sqrt(kernel::to_ball(of_half, kBits)));
+}
+
 Part whole(const ExactScene& scene, const ExactPiece& piece) {
   Part part{piece.face, {}, true};
   for (const std::uint32_t corner : piece.corners) part.corners.push_back(scene.vertices[corner]);
@@ -81,6 +110,12 @@ std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch) {
 double area_of(const std::vector<Part>& parts) {
   double sum = 0.0;
   for (const Part& part : parts) sum += area(rounded(part.corners));
+  return sum;
+}
+
+kernel::Disc enclosed_area_of(const std::vector<Part>& parts, const Units& units) {
+  kernel::Disc sum;
+  for (const Part& part : parts) sum = sum + enclosed_area(part, units);
   return sum;
 }
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "kernel/disc.h"
 #include "view_factors/sight.h"
 
 namespace exactff::view_factors {
@@ -12,5 +13,7 @@ namespace exactff::view_factors {
 
 // In squares of the unit of Point::at: an estimate within a few roundings.
 [[nodiscard]] double area_of(const std::vector<Part>& parts);
+// The same, enclosed.
+[[nodiscard]] kernel::Disc enclosed_area_of(const std::vector<Part>& parts, const Units& units);
 
 }  // namespace exactff::view_factors

@@ -2,9 +2,7 @@
 //
 // The receiver's parts are cut into strata of about the same area. In each, two independent triples of points are
 // drawn. The points of a triple have the same three weights in turn at the corners of a small triangle, so their
-// mean is exact where F is linear. A point's F is the exact solver's (exact.h). The mean of a stratum's two triples has
-// a variance that (difference / 2)^2 estimates without bias. The strata's variances add up; their sum has an estimated
-// number of degrees of freedom (Welch, Biometrika 34, 1947), for which Student's t gives the interval.
+// mean is exact where F is linear. A point's F is the exact solver's (exact.h). strata.h has the interval.
 //
 // Several looks, each at four times the strata of the one before, with points of its own, until one is accurate enough.
 // Each has its share of the risk, so that with the whole level all of them are right: the narrowest is the result.

@@ -11,6 +11,7 @@
 #include "kernel/float_environment.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
+#include "view_factors/disc_space.h"
 #include "view_factors/pair.h"
 #include "view_factors/pairs.h"
 #include "view_factors/patch_parts.h"
@@ -27,7 +28,9 @@ constexpr double kShareOfRounding = 0x1p-10;               // of the accuracy
 constexpr double kShareOfNegligible = 0x1p-24;             // of the error that is allowed
 constexpr std::size_t kMostPoints = std::size_t{1} << 20;  // of all pairs of parts: some 200 MB
 constexpr double kRoundedPoints = 0x1p-30;                 // see near_planes.h
-constexpr double kRounding = 0x1p-44;  // relative: more than the roundings of formula and sums in usual scenes
+constexpr double kShareOfCell = 0x1p-4;  // of the error allowed, a certified cell as large as the patch
+constexpr double kShareOfTarget = 0.99;  // certified: leaves room for the roundings of sums
+constexpr double kRounding = 0x1p-44;    // relative: more than the roundings of formula and sums in usual scenes
 
 struct Waiting {
   Share share;
@@ -46,7 +49,8 @@ class Integral {
   Integral(const ExactScene& scene, const std::vector<Part>& from, double area, const std::vector<Part>& to,
            const Selection& to_patch, const ViewFactorOptions& options, double target)
       : area_(area), budget_(options.budget), least_error_(target / (4.0 * static_cast<double>(budget_))) {
-    const Pair::Limits limits{options.accuracy * kShareOfRounding, target * kShareOfNegligible};
+    const double certified = options.certify ? target * kShareOfCell / static_cast<double>(to.size()) : 0.0;
+    const Pair::Limits limits{options.accuracy * kShareOfRounding, target * kShareOfNegligible, certified, area};
     for (const Part& source : to) add_source(scene.scene, source, to_patch);
     for (const Part& receiver : from) {
       for (std::size_t i = 0; i < to.size(); ++i) {
@@ -81,6 +85,14 @@ class Integral {
 
   [[nodiscard]] double integral() const { return gave_up_ ? 0.5 * area_ : sum_of(&Share::integral); }
   [[nodiscard]] double error() const { return gave_up_ ? 0.5 * area_ : sum_of(&Share::error); }
+  // The integral, certified; requires Limits::certified. Given up, F lies in [0, 1].
+  [[nodiscard]] Disc enclosure(const Disc& area) const {
+    if (gave_up_) return widened(0.5 * area, 0.5 * magnitude(area));
+    Disc sum;
+    for (const Waiting& w : waiting_) sum = sum + Disc{w.share.integral, w.share.error};
+    for (const Share& share : settled_) sum = sum + Disc{share.integral, share.error};
+    return sum;
+  }
   [[nodiscard]] bool is_zero() const { return waiting_.empty() && settled_.empty() && !gave_up_; }
   [[nodiscard]] std::size_t cells() const { return cells_; }
   [[nodiscard]] std::size_t event_cells() const {
@@ -158,7 +170,7 @@ class Integral {
 };
 
 void check_accuracy(double accuracy) {
-  if (accuracy > 0.0) return;
+  if (accuracy > 0.0 && std::isfinite(accuracy)) return;
   text::refuse("the accuracy of a view factor is " + text::shortest(accuracy), "it bounds an error",
                "give a positive number; the default is 1e-6");
 }
@@ -207,6 +219,20 @@ void sample_if_better(const ExactScene& scene, const Prepared& from, const Prepa
   result.accurate = error * from.unit_area <= target;
 }
 
+bool is_within(double accuracy, const ViewFactor& f, const Prepared& from, const Prepared& to) {
+  const double width = f.upper - f.lower;
+  return std::max(width, width * from.unit_area / to.unit_area) <= accuracy;
+}
+
+void take_enclosure(const ExactScene& scene, const Integral& integral, const Prepared& from, ViewFactor& result) {
+  const Disc area = enclosed_area_of(from.parts, scene.units);
+  const Disc f = integral.enclosure(area) / area;
+  result.claim = Claim::kCertified;
+  result.lower = is_finite(f) ? std::clamp(lower_end(f), 0.0, 1.0) : 0.0;
+  result.upper = is_finite(f) ? std::clamp(upper_end(f), 0.0, 1.0) : 1.0;
+  result.value = is_finite(f) ? std::clamp(f.centre, result.lower, result.upper) : 0.5;
+}
+
 ViewFactor factor(const ExactScene& scene, const Prepared& from, const Prepared& to, const ViewFactorOptions& options) {
   ViewFactor result;
   result.area_from = from.area;
@@ -215,7 +241,14 @@ ViewFactor factor(const ExactScene& scene, const Prepared& from, const Prepared&
   Integral integral(scene, from.parts, from.unit_area, to.parts, to.patch, options, target);
   result.cells = integral.cells();
   if (integral.is_zero()) return result;
-  integral.refine(target);
+  integral.refine(options.certify ? kShareOfTarget * target : target);
+  if (options.certify) {
+    take_enclosure(scene, integral, from, result);
+    result.accurate = is_within(options.accuracy, result, from, to);
+    result.cells = integral.cells();
+    result.event_cells = integral.event_cells();
+    return result;
+  }
   result.claim = Claim::kTopologyProved;
   result.value = std::clamp(integral.integral() / from.unit_area, 0.0, 1.0);
   const double error = integral.error() / from.unit_area + kRounding * result.value;
@@ -229,9 +262,16 @@ ViewFactor factor(const ExactScene& scene, const Prepared& from, const Prepared&
 }
 
 // By A_i F_ij = A_j F_ji.
-ViewFactor reversed(const ViewFactor& f, const Prepared& from, const Prepared& to) {
+ViewFactor reversed(const ExactScene& scene, const ViewFactor& f, const Prepared& from, const Prepared& to) {
   ViewFactor result = f;
   std::swap(result.area_from, result.area_to);
+  if (f.claim == Claim::kCertified) {
+    const Disc exact = enclosed_area_of(from.parts, scene.units) / enclosed_area_of(to.parts, scene.units);
+    result.lower = std::clamp(lower_end(f.lower * exact), 0.0, 1.0);
+    result.upper = std::clamp(upper_end(f.upper * exact), 0.0, 1.0);
+    result.value = std::clamp(f.value * exact.centre, result.lower, result.upper);
+    return result;
+  }
   const double ratio = from.unit_area / to.unit_area;
   result.value = std::min(1.0, f.value * ratio);
   result.lower = std::min(1.0, f.lower * ratio * (1.0 - kRounding));
@@ -240,18 +280,19 @@ ViewFactor reversed(const ViewFactor& f, const Prepared& from, const Prepared& t
 }
 
 // The entries that are computed, each with those that are its transposes.
-std::vector<std::vector<std::size_t>> pairs_of(const std::vector<Prepared>& from, const std::vector<Prepared>& to) {
+std::vector<std::vector<std::size_t>> pairs_of(const std::vector<Prepared>& from, const std::vector<Prepared>& to,
+                                               bool both_directions) {
   std::map<std::pair<std::pair<PatchId, std::optional<FaceId>>, std::pair<PatchId, std::optional<FaceId>>>, std::size_t>
       known;
   const auto key = [](const Prepared& p) { return std::pair(p.patch.patch, p.patch.face); };
   std::vector<std::vector<std::size_t>> result;
   for (std::size_t e = 0; e < from.size() * to.size(); ++e) {
     const Prepared &i = from[e / to.size()], &j = to[e % to.size()];
-    const bool planar = i.planar && j.planar;
-    if (const auto other = planar ? known.find({key(j), key(i)}) : known.end(); other != known.end()) {
+    const bool once = i.planar && j.planar && !both_directions;
+    if (const auto other = once ? known.find({key(j), key(i)}) : known.end(); other != known.end()) {
       result[other->second].push_back(e);
     } else {
-      if (planar) known.emplace(std::pair(key(i), key(j)), result.size());
+      if (once) known.emplace(std::pair(key(i), key(j)), result.size());
       result.push_back({e});
     }
   }
@@ -279,7 +320,7 @@ Pairs::Pairs(const Scene& scene, std::span<const Selection> from, std::span<cons
     : options_(options) {
   check_accuracy(options.accuracy);
   patches_ = std::make_unique<const Patches>(scene, from, to);
-  entries_ = pairs_of(patches_->rows, patches_->columns);
+  entries_ = pairs_of(patches_->rows, patches_->columns, options.both_directions);
 }
 Pairs::~Pairs() = default;
 
@@ -292,7 +333,7 @@ void Pairs::compute(std::size_t pair, const std::function<void(std::size_t, cons
   const Prepared &from = patches_->rows[first / columns], &to = patches_->columns[first % columns];
   const ViewFactor computed = factor(patches_->scene, from, to, options_);
   take(first, computed);
-  for (const std::size_t entry : std::span(entries).subspan(1)) take(entry, reversed(computed, from, to));
+  for (const std::size_t entry : std::span(entries).subspan(1)) take(entry, reversed(patches_->scene, computed, from, to));
 }
 
 }  // namespace view_factors
@@ -303,6 +344,8 @@ std::string_view to_string(Claim claim) {
       return "statistical";
     case Claim::kTopologyProved:
       return "topology-proved";
+    case Claim::kCertified:
+      return "certified";
     case Claim::kZero:
       return "zero";
   }

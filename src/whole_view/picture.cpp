@@ -13,6 +13,7 @@
 #include <compare>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -25,6 +26,7 @@
 #include "kernel/vec.h"
 #include "text/escape.h"
 #include "text/phrases.h"
+#include "whole_view/labels.h"
 #include "whole_view/regions.h"
 
 namespace exactff {
@@ -34,7 +36,10 @@ namespace {
 using kernel::cross;
 using kernel::dot;
 using kernel::scaled;
+using whole_view::Labels;
 using whole_view::OutlineId;
+using whole_view::Pixel;
+using whole_view::PixelLoop;
 using whole_view::Regions;
 using whole_view::Side;
 using whole_view::SideLoop;
@@ -42,6 +47,9 @@ using whole_view::ViewEdges;
 
 constexpr double kRadius = 320.0, kCentreX = 344.0, kCentreY = 392.0, kWidth = 688.0, kHeight = 760.0;
 constexpr double kFlat = 1e-5;
+constexpr double kBelowMiddle = 4.0;  // the base line of a text
+constexpr double kMark = 4.0;         // half of the cross at the normal
+constexpr std::uint32_t kNoName = Regions::kOpen - 1;
 constexpr int kDecimals = 5;
 constexpr const char* kSky = "#dce8f2";
 
@@ -62,10 +70,6 @@ std::string number(double value, int decimals = kDecimals) {
 }
 
 // --- From directions to pixels ---
-
-struct Pixel {
-  double x = 0.0, y = 0.0;
-};
 
 std::string text_of(const Pixel& p) { return number(p.x) + ' ' + number(p.y); }
 
@@ -93,6 +97,18 @@ class Disk {
       return piece(p, middle, m) + piece(middle, q, m);
     }
     return piece(p, q, m);
+  }
+
+  // The same arc as points, without the last one: off the curve by less than 0.1 pixels.
+  void trace(const Vec3& p, const Vec3& q, const Vec3& m, PixelLoop& points) const {
+    constexpr double kStep = 0.04;
+    const Vec3 ahead = cross(p, m);
+    const double angle = std::abs(std::atan2(dot(ahead, q), dot(p, q)));  // a half turn may be rounded to -pi
+    const int steps = 1 + static_cast<int>(angle / kStep);
+    for (int k = 0; k < steps; ++k) {
+      const double t = angle * k / steps;
+      points.push_back(at(sum(scaled(p, std::cos(t)), scaled(ahead, std::sin(t)))));
+    }
   }
 
  private:
@@ -159,12 +175,15 @@ class Picture {
   }
 
   std::string draw() {
-    std::string body = head() + fills() + outlines();
+    std::string body = head() + fills();
+    const Regions patches =
+        regions_by([&](OutlineId o) { return 2 * patch_of(o) + (edges_.shows_front(o) ? 0U : 1U); });
+    body += outlines(patches) + names(patches);
     const std::string circle = "<circle id=\"horizon\" cx=\"" + number(kCentreX) + "\" cy=\"" + number(kCentreY) +
                                "\" r=\"" + number(kRadius) + "\" fill=\"none\" stroke=\"#222222\"/>\n";
     const std::string x = number(kCentreX), y = number(kCentreY);
-    return body + circle + "<path id=\"normal\" d=\"M" + number(kCentreX - 4) + ' ' + y + "h8M" + x + ' ' +
-           number(kCentreY - 4) +
+    return body + circle + "<path id=\"normal\" d=\"M" + number(kCentreX - kMark) + ' ' + y + "h8M" + x + ' ' +
+           number(kCentreY - kMark) +
            "v8\" fill=\"none\" stroke=\"#222222\"><title>the receiver's normal</title></path>\n" + "</svg>\n";
   }
 
@@ -257,12 +276,10 @@ class Picture {
   }
 
   // Each arc between two patches once.
-  std::string outlines() {
-    const Regions regions =
-        regions_by([&](OutlineId o) { return 2 * patch_of(o) + (edges_.shows_front(o) ? 0U : 1U); });
+  [[nodiscard]] std::string outlines(const Regions& patches) const {
     std::set<std::pair<std::uint32_t, std::uint32_t>> drawn;
     std::string path;
-    for (const whole_view::Region& region : regions.regions()) {
+    for (const whole_view::Region& region : patches.regions()) {
       for (const SideLoop& loop : region.loops) {
         bool moved = false;
         for (const Side& side : loop) {
@@ -280,6 +297,47 @@ class Picture {
     return "<path id=\"outlines\" fill=\"none\" stroke=\"#222222\" stroke-width=\"0.7\" stroke-linejoin=\"round\" "
            "d=\"" +
            path + "\"/>\n";
+  }
+
+  // Where they fit into what is seen of the patch. All others are titles, which browsers show under the pointer.
+  [[nodiscard]] std::string names(const Regions& patches) const {
+    Labels labels(kWidth, kHeight);
+    for (const whole_view::Region& region : patches.regions()) {
+      std::vector<PixelLoop> loops;
+      for (const SideLoop& loop : region.loops) {
+        PixelLoop& points = loops.emplace_back();
+        for (const Side& side : loop) {
+          disk_.trace(direction(side.from), direction(side.to), unit(side.inward), points);
+        }
+      }
+      labels.add(region.thing, loops);
+    }
+    labels.add(kNoName, std::array{around_mark()});
+    std::string result;
+    for (const whole_view::Region& region : patches.regions()) {
+      const std::string name = name_of(region.thing);
+      const std::optional<Pixel> middle = labels.place(region.thing, name);
+      if (!middle) continue;
+      result += "<text x=\"" + number(middle->x) + "\" y=\"" + number(middle->y + kBelowMiddle) + "\">" +
+                text::html(name) + "</text>\n";
+    }
+    return "<g id=\"names\" font-size=\"" + number(Labels::kFontSize) +
+           "\" text-anchor=\"middle\" pointer-events=\"none\" paint-order=\"stroke\" stroke=\"#ffffff\" "
+           "stroke-width=\"3\" stroke-opacity=\"0.6\" stroke-linejoin=\"round\">\n" +
+           result + "</g>\n";
+  }
+
+  [[nodiscard]] static PixelLoop around_mark() {
+    constexpr double kAway = 2 * kMark;
+    return {{kCentreX - kAway, kCentreY - kAway},
+            {kCentreX + kAway, kCentreY - kAway},
+            {kCentreX + kAway, kCentreY + kAway},
+            {kCentreX - kAway, kCentreY + kAway}};
+  }
+
+  [[nodiscard]] std::string name_of(std::uint32_t thing) const {
+    if (thing == Regions::kOpen) return "(open)";
+    return text::printable(scene_.patches()[thing / 2].name) + (thing % 2 == 0 ? "" : " (back)");
   }
 
   const Scene& scene_;

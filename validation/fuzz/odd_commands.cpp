@@ -148,7 +148,8 @@ class CommandWriter {
   void keep_company() {
     // By default, a matrix may take many minutes.
     if (table_.name == "matrix" && has_any({"--zone"})) words_.insert(words_.end(), {"--energyplus", "out/zone.txt"});
-    if (table_.name == "matrix" && !has_any({"--budget"})) words_.insert(words_.end(), {"--budget", "20"});
+    if ((table_.name == "matrix" || table_.name == "radiosity") && !has_any({"--budget"}))
+      words_.insert(words_.end(), {"--budget", "20"});
     if (random_.one_in(20)) return;
     const bool sampled = has_any({"--eps-b", "--eps-a", "--rays", "--seed", "--pattern", "--variant"});
     if (table_.name == "point" && sampled && !has_any({"--adaptive"})) words_.emplace_back("--adaptive");
@@ -381,8 +382,8 @@ cli::ProgramTable own_table() {
 
 std::vector<Words> odd_commands(const cli::ProgramTable& program, const OddInputs& inputs, Random& random) {
   // stress uses its own scenes, and merge reads only a few files.
-  const std::vector<std::string> often = {"point", "point", "point", "view",  "view", "compare", "compare",
-                                          "truth", "truth", "check", "check", "info", "convert", "matrix"};
+  const std::vector<std::string> often = {"point", "point", "point", "view", "view",    "compare", "compare",  "truth",
+                                          "truth", "check", "check", "info", "convert", "matrix",  "radiosity"};
   const std::string name =
       random.one_in(6) ? program.commands[random.below(program.commands.size())].name : one_of(random, often);
   if (random.one_in(150))

@@ -141,7 +141,8 @@ bool given(const Words& words, const std::string& word) { return std::ranges::fi
 std::string form_of(const Words& words, const ProgramCase* disturbed) {
   if (disturbed != nullptr && disturbed->disturbance == Disturbance::kFullOutput) return "cut";
   if (words.empty() || given(words, "--help") || given(words, "--version")) return "text";
-  if ((words.front() == "info" || words.front() == "view") && given(words, "--json")) return "json";
+  const bool has_form = words.front() == "info" || words.front() == "view" || words.front() == "radiosity";
+  if (has_form && given(words, "--json")) return "json";
   if (words.front() != "point") return "text";
   return given(words, "--plain") ? "plain" : given(words, "--json") ? "json" : "text";
 }
@@ -158,8 +159,8 @@ std::string wrong_ending(const Ended& ended, const Words& words, const ProgramCa
   if (ended.code == 0 || ended.code == 2) return {};
   const std::string command = words.empty() ? "" : words.front();
   if (ended.code == 1 && command == "check") return {};
-  if (ended.code == 3 && (command == "point" || command == "view" || command == "truth" || command == "merge"))
-    return {};
+  static const Words kMayNotCertify = {"point", "view", "radiosity", "truth", "merge"};
+  if (ended.code == 3 && given(kMayNotCertify, command)) return {};
   if (suffers(Disturbance::kLittleMemory) && (ended.code == 4 || ended.code == kNeverStarted)) return {};
   return "exit code " + std::to_string(ended.code);
 }

@@ -85,9 +85,7 @@ std::optional<ViewFactor> factor_of(const Scene& scene, const Selection& from, c
 class RandomFamilies : public testing::TestWithParam<std::size_t> {};
 
 // Families on the edge of rounding are judged by the other direction alone: their rounded points see other things.
-TEST_P(RandomFamilies, ViewFactorsAgreeWithPointsAndWithTheOtherDirection) {
-  const RandomFamily& family = random_families()[GetParam()];
-  const ViewFactorOptions options{.accuracy = 1e-2, .budget = 200, .sample_crowds = false};
+void expect_both_directions_to_agree(const RandomFamily& family, const ViewFactorOptions& options) {
   for (std::uint64_t s = 0; s < scaled_count(3); ++s) {
     Random random(seed_of(s));
     const Scene scene = generate::build(family.make(random));
@@ -103,6 +101,7 @@ TEST_P(RandomFamilies, ViewFactorsAgreeWithPointsAndWithTheOtherDirection) {
       EXPECT_LE(forth.value, forth.upper);
       EXPECT_LE(forth.upper, 1.0);
       EXPECT_EQ(forth.claim == Claim::kZero, forth.upper == 0.0);
+      EXPECT_EQ(forth.claim == Claim::kCertified, options.certify && forth.claim != Claim::kZero);
       if (!is_planar(scene, from) || !is_planar(scene, to)) continue;
       const ViewFactor back = view_factor(scene, to, from, options);
       const double ratio = back.area_from / forth.area_from;  // F_ij = F_ji A_j / A_i
@@ -115,11 +114,18 @@ TEST_P(RandomFamilies, ViewFactorsAgreeWithPointsAndWithTheOtherDirection) {
   }
 }
 
+TEST_P(RandomFamilies, ViewFactorsAgreeWithTheOtherDirection) {
+  expect_both_directions_to_agree(random_families()[GetParam()],
+                                  {.accuracy = 1e-2, .budget = 200, .sample_crowds = false});
+}
+TEST_P(RandomFamilies, CertifiedViewFactorsAgreeWithTheOtherDirection) {
+  expect_both_directions_to_agree(random_families()[GetParam()], {.accuracy = 1e-2, .budget = 200, .certify = true});
+}
+
 INSTANTIATE_TEST_SUITE_P(All, RandomFamilies, testing::Range(std::size_t{0}, random_families().size()),
                          [](const auto& param) { return std::string(random_families()[param.param].name); });
 
-TEST(ViewFactors, AgreeWithMeansOfPointFactors) {
-  const ViewFactorOptions options{.accuracy = 1e-3, .budget = 2000, .sample_crowds = false};
+void expect_means_of_point_factors(const ViewFactorOptions& options) {
   std::size_t judged = 0;
   for (std::uint64_t s = 0; s < scaled_count(60); ++s) {
     Random random(seed_of(s));
@@ -132,6 +138,34 @@ TEST(ViewFactors, AgreeWithMeansOfPointFactors) {
     EXPECT_LE(f.lower - 5.0 * mean.standard_error - 1e-9, mean.value) << s << ' ' << scene.name_of(from);
     EXPECT_GE(f.upper + 5.0 * mean.standard_error + 1e-9, mean.value) << s << ' ' << scene.name_of(from);
     judged += f.value > 0.0 ? 1 : 0;
+  }
+  EXPECT_GE(judged, 5U);
+}
+
+TEST(ViewFactors, AgreeWithMeansOfPointFactors) {
+  expect_means_of_point_factors({.accuracy = 1e-3, .budget = 2000, .sample_crowds = false});
+}
+TEST(ViewFactors, CertifiedAgreeWithMeansOfPointFactors) {
+  expect_means_of_point_factors({.accuracy = 1e-3, .budget = 2000, .certify = true});
+}
+
+// The estimated interval at a far smaller accuracy lies inside the certified one, or meets it where it is wide.
+TEST(ViewFactors, CertifiedHoldBetterEstimates) {
+  std::size_t judged = 0;
+  for (std::uint64_t s = 0; s < scaled_count(30); ++s) {
+    Random random(seed_of(s));
+    const Scene scene = generate::build(s % 2 == 0 ? degenerate_scene(random) : generic_scene(random));
+    const Selection to = scene.select("source");
+    const Selection from = patch_of(scene, random.below(scene.patches().size()));
+    if (!has_area(scene, from) || !has_area(scene, to)) continue;
+    const ViewFactor close = view_factor(scene, from, to, {.accuracy = 1e-7, .budget = 3000, .sample_crowds = false});
+    for (const double accuracy : {1e-2, 1e-4, 1e-6}) {
+      const ViewFactor f = view_factor(scene, from, to, {.accuracy = accuracy, .budget = 1000, .certify = true});
+      EXPECT_LE(f.lower, close.upper) << s << ' ' << scene.name_of(from) << ' ' << accuracy;
+      EXPECT_GE(f.upper, close.lower) << s << ' ' << scene.name_of(from) << ' ' << accuracy;
+      EXPECT_EQ(f.claim == Claim::kZero, close.claim == Claim::kZero);
+      judged += f.accurate && f.value > 0.0 ? 1 : 0;
+    }
   }
   EXPECT_GE(judged, 5U);
 }

@@ -1,8 +1,14 @@
 // The regions of a whole view on scenes of every random family and on models (support/region_judge.h): the areas of
-// pictures are form factors, and the areas of visible regions are those that CGAL's Booleans find face by face.
+// pictures are form factors, the areas of visible regions are those that CGAL's Booleans find face by face, and names
+// lie on what they name.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <set>
+#include <string>
+
 #include "exactff/models.h"
+#include "exactff/obj.h"
 #include "support/oracle_check.h"
 #include "support/random_scenes.h"
 #include "support/region_judge.h"
@@ -27,6 +33,28 @@ TEST_P(ViewRegions, HaveTheSharesOfPatchesAsTheirAreasInPictures) { for_each_sce
 
 TEST_P(ViewRegions, HaveTheAreasThatTheBooleansFind) { for_each_scene(4, expect_regions_as_booleans_find); }
 
+// Up is any direction that is far from the normal.
+Vec3 upwards(const Receiver& receiver) {
+  const Vec3& n = receiver.normal;
+  const double x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
+  return x <= y && x <= z ? Vec3{1, 0, 0} : y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
+}
+
+TEST_P(ViewRegions, HaveTheirNamesWhereTheyAreSeen) {
+  for_each_scene(4, [](const Scene& scene, const Receiver& receiver) {
+    expect_names_on_what_they_name(scene, receiver, upwards(receiver));
+  });
+}
+
+TEST(NamesInViews, AreThoseOfAllThatIsLargeEnough) {
+  const Scene box = read_obj(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
+  const Receiver on_floor{
+      .point = {240, 0, 300}, .normal = {0, 1, 0}, .on = box.faces_of(box.select("floor")), .id = {}};
+  const std::set<std::string> all = {"(open)", "back",  "ceiling",     "left",
+                                     "light",  "right", "short_block", "tall_block"};
+  EXPECT_EQ(expect_names_on_what_they_name(box, on_floor, {0, 0, 1}), all);
+}
+
 class ViewRegionsOfModel : public testing::TestWithParam<const char*> {
  protected:
   // From points near a corner of the scene, some of them that corner.
@@ -50,6 +78,12 @@ class ViewRegionsOfModel : public testing::TestWithParam<const char*> {
 
 TEST_P(ViewRegionsOfModel, HaveTheSharesOfPatchesAsTheirAreasInPictures) {
   for_each_receiver(4, expect_picture_of_shares);
+}
+
+TEST_P(ViewRegionsOfModel, HaveTheirNamesWhereTheyAreSeen) {
+  for_each_receiver(4, [](const Scene& scene, const Receiver& receiver) {
+    expect_names_on_what_they_name(scene, receiver, upwards(receiver));
+  });
 }
 
 TEST_P(ViewRegionsOfModel, HaveTheAreasThatTheBooleansFind) { for_each_receiver(3, expect_regions_as_booleans_find); }

@@ -19,6 +19,8 @@ def test_a_view_factor_is_the_programs():
     assert (f.lower, f.upper, f.claim) == (float(line[2]), float(line[3]), line[4].strip())
     assert f.lower <= 0.1823559036685958 <= f.upper and f.lower <= float(f) <= f.upper
     assert f.accurate and f.area_from == 9.0 and f.upper - f.lower <= 1.01e-8
+    proved = exactff.view_factor(scene, "srf-1", "srf-6", 1e-8, certify=True)
+    assert proved.claim == "certified" and proved.lower <= 0.1823559036685958 <= proved.upper and proved.accurate
     zero = exactff.view_factor(scene, "srf-1", "srf-1")
     assert zero.claim == "zero" and zero.upper == 0.0
 
@@ -51,6 +53,13 @@ def test_rows_with_back_and_open_add_up_to_one():
     assert matrix.reasons_against_one == () and matrix.back is not None and matrix.open is not None
     assert (matrix.row_sums[:, 0] <= 1).all() and (matrix.row_sums[:, 1] >= 1).all()
     assert matrix.open[0].value == pytest.approx(1 - matrix.value[0, 1], abs=2e-3)
+
+
+def test_a_matrix_is_certified_on_request():
+    lamp = lamp_above((0.5, 1.0))
+    matrix = exactff.view_factor_matrix(lamp, accuracy=1e-3, certify=True, backs=True, sky=True)
+    assert set(matrix.claim.ravel()) <= {"certified", "zero"} and matrix.open[0].claim == "certified"
+    assert (matrix.row_sums[:, 0] <= 1).all() and (matrix.row_sums[:, 1] >= 1).all()
 
 
 def test_some_rows_and_columns():

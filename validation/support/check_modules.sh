@@ -15,8 +15,10 @@ declare -A allowed=(
   [contour]="visibility kernel"
   [exact]="contour visibility receivers scene text kernel"
   [whole_view]="exact contour visibility receivers scene text kernel"
+  [light]="whole_view exact receivers scene text kernel"
   [view_factors]="exact visibility receivers scene work text kernel"
-  [matrix]="jobs view_factors visibility scene work text kernel"
+  [matrix]="jobs view_factors whole_view visibility scene work text kernel"
+  [radiosity]="matrix view_factors scene text kernel"
   [diagnosis]="exact receivers scene text kernel"
   [sampled]="receivers scene kernel"
   [methods]="sampled exact receivers scene text kernel"
@@ -28,11 +30,11 @@ declare -A allowed=(
   [vtk]="receivers scene work text kernel"
   [study]="methods sampled exact receivers scene work text kernel"
   [experiments]="study models methods whole_view exact page work text kernel"
-  [render]="pixels study methods exact receivers scene work text kernel"
+  [render]="pixels light study methods exact receivers scene work text kernel"
   [flags]="pixels study models formats receivers exact scene text"
   [report]="render flags experiments vtk study methods sampled exact page work text kernel"
   [stress]="sampled exact receivers scene page work text kernel"
-  [truth]="jobs pixels vtk exact receivers scene work text kernel"
+  [truth]="jobs pixels vtk light exact receivers scene work text kernel"
   [check]="pixels matrix view_factors exact page work text kernel"
   [batch]="methods exact receivers scene work text kernel"
   [python]=""  # and all public headers
@@ -41,7 +43,7 @@ declare -A allowed=(
 
 # The module of a public header that is not named after it.
 declare -A home=(
-  [enclosure]=kernel [geometry]=kernel [progress]=kernel [error]=text [summary]=scene [settings]=text [version]=text [quantity]=exact [obj]=formats [scene_files]=formats
+  [enclosure]=kernel [geometry]=kernel [progress]=kernel [error]=text [summary]=scene [settings]=text [version]=text [quantity]=light [obj]=formats [scene_files]=formats
   [receiver]=receivers [record]=visibility [adaptive]=sampled [view]=whole_view [view_regions]=whole_view [visibility_svg]=report [testing]=check [team]=jobs
 )
 

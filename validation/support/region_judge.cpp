@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "exactff/render.h"
 #include "exactff/view.h"
 #include "exactff/view_regions.h"
 #include "support/picture_areas.h"
@@ -60,6 +63,90 @@ void expect_picture_of_shares(const Scene& scene, const Receiver& receiver) {
     SCOPED_TRACE(projection == ViewProjection::kNusselt ? "Nusselt" : "fisheye");
     expect_areas_of_shares(scene, receiver, projection);
   }
+}
+
+namespace {
+
+struct Name {
+  std::string text;
+  double x = 0.0, y = 0.0;  // of its middle; y of the base line
+};
+
+std::vector<Name> names_in(const std::string& svg) {
+  std::vector<Name> names;
+  const std::size_t end = svg.find("</g>", svg.find("<g id=\"names\""));
+  for (std::size_t at = svg.find("<text", svg.find("<g id=\"names\"")); at < end; at = svg.find("<text", at + 1)) {
+    Name name;
+    std::array<char, 200> text{};
+    EXPECT_EQ(std::sscanf(svg.c_str() + at, "<text x=\"%lf\" y=\"%lf\">%199[^<]", &name.x, &name.y, text.data()), 3);
+    name.text = text.data();
+    names.push_back(name);
+  }
+  return names;
+}
+
+// From pixels to directions, with the disk as view_regions.h has it.
+class Directions {
+ public:
+  Directions(const Vec3& normal, const Vec3& up, bool fisheye) : n_(unit(normal)), fisheye_(fisheye) {
+    a_ = unit(cross(n_, up));
+    b_ = cross(a_, n_);
+  }
+  [[nodiscard]] Vec3 at(double x, double y) const {
+    const double u = (x - 344.0) / 320.0, v = (392.0 - y) / 320.0, r = u * u + v * v;
+    const double w = fisheye_ ? (1.0 - r) / 2.0 : std::sqrt(1.0 - r);  // the fisheye: times (1 + r) / 2
+    return {u * a_.x + v * b_.x + w * n_.x, u * a_.y + v * b_.y + w * n_.y, u * a_.z + v * b_.z + w * n_.z};
+  }
+
+ private:
+  static Vec3 cross(const Vec3& a, const Vec3& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
+  static Vec3 unit(const Vec3& a) {
+    const double most = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});  // a denormal length has few digits
+    const Vec3 b{a.x / most, a.y / most, a.z / most};
+    const double length = std::hypot(b.x, b.y, b.z);
+    return {b.x / length, b.y / length, b.z / length};
+  }
+
+  Vec3 n_, a_, b_;
+  bool fisheye_;
+};
+
+std::string name_of_first(const Scene& scene, const render::Ray& ray) {
+  const std::optional<render::Hit> hit = render::first_hit(scene, ray);
+  return !hit ? "(open)" : scene.patch(scene.face(hit->face).patch).name + (hit->back ? " (back)" : "");
+}
+
+}  // namespace
+
+std::set<std::string> expect_names_on_what_they_name(const Scene& scene, const Receiver& receiver, const Vec3& up) {
+  std::vector<Selection> own;
+  for (const FaceId face : receiver.on) {
+    own.push_back({.patch = scene.face(face).patch, .face = face, .scene = scene.id()});
+  }
+  const Scene others = scene.with_transparent(own);
+  std::set<std::string> found;
+  for (const ViewProjection projection : {ViewProjection::kNusselt, ViewProjection::kFisheye}) {
+    const Directions directions(receiver.normal, up, projection == ViewProjection::kFisheye);
+    const auto shows = [&](const Name& name, double x, double y) {
+      return name_of_first(others, {receiver.point, directions.at(x, y)}) == name.text;
+    };
+    for (const Name& name : names_in(view_svg(scene, receiver, {.projection = projection, .up = up}))) {
+      found.insert(name.text);
+      const double middle = name.y - 4.0, reach = 3.5 * static_cast<double>(name.text.size());
+      for (double y = 4.0 * std::ceil((middle - 8.0) / 4.0) + 2.0; y < middle + 8.0; y += 4.0) {
+        for (double x = 4.0 * std::ceil((name.x - reach) / 4.0) + 2.0; x < name.x + reach; x += 4.0) {
+          constexpr double kBlur = 0.1;  // curves are off by less
+          EXPECT_TRUE(shows(name, x, y) || shows(name, x - kBlur, y) || shows(name, x + kBlur, y) ||
+                      shows(name, x, y - kBlur) || shows(name, x, y + kBlur))
+              << name.text << " at " << x << ", " << y << " is "
+              << name_of_first(others, {receiver.point, directions.at(x, y)});
+        }
+      }
+    }
+  }
+  return found;
 }
 
 namespace {

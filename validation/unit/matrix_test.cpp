@@ -182,6 +182,103 @@ TEST(Matrix, TheWeakerClaimIsMadeOfASum) {
   EXPECT_EQ(weaker(Claim::kZero, Claim::kZero), Claim::kZero);
 }
 
+// --- Both directions, both sides ---
+
+TEST(Matrix, BothDirectionsComputedApartAgree) {
+  const Scene scene = generate::build(open_box());
+  const std::vector<Selection> all = all_of(scene);
+  const Matrix one_way = compute(scene, all, all, {.factors = {.accuracy = 1e-4}});
+  Matrix both = compute(scene, all, all, {.factors = {.accuracy = 1e-4, .both_directions = true}});
+  const Reciprocity found = reciprocity(scene, both);
+  EXPECT_EQ(found.pairs, 10U);
+  EXPECT_TRUE(found.apart.empty());
+  ASSERT_TRUE(found.worst);
+  EXPECT_LE(found.worst->distance, found.worst->radius);
+  for (std::size_t i = 0; i < 5; ++i) {
+    for (std::size_t j = i; j < 5; ++j) EXPECT_EQ(both.factors.at(i, j).value, one_way.factors.at(i, j).value);
+  }
+  ViewFactor& wrong = both.factors.entries[5 * 3 + 1];  // from "near" to "left"
+  for (double ViewFactor::*number : {&ViewFactor::value, &ViewFactor::lower, &ViewFactor::upper}) wrong.*number += 2e-4;
+  const Reciprocity broken = reciprocity(scene, both);
+  ASSERT_EQ(broken.apart.size(), 1U);
+  EXPECT_EQ(broken.apart[0].row, 1U);
+  EXPECT_EQ(broken.apart[0].column, 3U);
+  EXPECT_NEAR(broken.apart[0].distance, 2e-4, 1e-4);
+}
+
+// From a large patch the factor is small: what is compared is the same on both sides.
+TEST(Matrix, ReciprocityIsThatOfTheExchange) {
+  PlainScene plain;
+  add(plain, "large", square(8.0, 0.0));
+  add(plain, "small", square(0.5, 1.0), true);
+  const Scene scene = generate::build(plain);
+  const std::vector<Selection> rows{scene.select("small")}, columns{scene.select("large")};
+  EXPECT_EQ(reciprocity(scene, compute(scene, rows, columns)).pairs, 0U);
+  const std::vector<Selection> all = all_of(scene);
+  const Reciprocity found =
+      reciprocity(scene, compute(scene, all, all, {.factors = {.accuracy = 1e-6, .both_directions = true}}));
+  EXPECT_EQ(found.pairs, 1U);
+  EXPECT_TRUE(found.apart.empty());
+  EXPECT_LE(found.worst->radius, 2e-6);
+}
+
+TEST(Matrix, TheBackOfATwoSidedPatchGetsWhatMetBacks) {
+  PlainScene plain;
+  add(plain, "below", square(1.0, 0.0));
+  add(plain, "screen", square(0.75, 0.5));
+  add(plain, "above", square(1.0, 1.0), true);
+  const Scene scene = generate::build(plain);
+  const Matrix before = whole(scene, 1e-4);
+  const Scene doubled = with_two_sided(scene, std::vector{scene.select("screen")});
+  ASSERT_EQ(doubled.patches().size(), 4U);
+  EXPECT_EQ(doubled.patches()[3].name, "screen (back)");
+  const Matrix after = whole(doubled, 1e-4);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      EXPECT_EQ(after.factors.at(i, j).lower, before.factors.at(i, j).lower);
+      EXPECT_EQ(after.factors.at(i, j).upper, before.factors.at(i, j).upper);
+    }
+    EXPECT_EQ(after.back[i].claim, Claim::kZero);
+    EXPECT_NEAR(after.factors.at(i, 3).value, before.back[i].value, 1e-4);
+  }
+  EXPECT_GT(before.back[0].lower, 0.2);
+  EXPECT_NEAR(after.factors.at(3, 0).value, after.factors.at(1, 2).value, 1e-4);  // by symmetry
+  expect_rows_hold_one(doubled, after, 1e-2);
+}
+
+TEST(Matrix, TwoSidedFacesKeepHolesMaterialsAndGlass) {
+  PlainScene plain;
+  add(plain, "below", square(1.0, 0.0));
+  generate::PlainPatch& frame = plain.patch("frame");
+  plain.add_rings(frame, {square(1.0, 0.5), square(0.5, 0.5)});
+  plain.materials.push_back({.name = "gold", .reflectance = {0.75, 0.5, 0.25}});
+  frame.material = "gold";
+  const Scene scene = generate::build(plain);
+  const Selection selection = scene.select("frame");
+  const Scene doubled = with_two_sided(scene, std::vector{selection, selection});
+  EXPECT_EQ(doubled.faces().size(), 3U);
+  EXPECT_EQ(doubled.face(FaceId{2}).area, scene.face(FaceId{1}).area);
+  EXPECT_EQ(doubled.material(doubled.face(FaceId{2}).material).name, "gold");
+  EXPECT_LT(doubled.face(FaceId{2}).newell.z, 0.0);
+  EXPECT_FALSE(doubled.face(FaceId{2}).transparent);
+  const Scene clear = scene.with_transparent({&selection, 1});
+  const Scene glass = with_two_sided(clear, std::vector{clear.select("frame")});
+  EXPECT_TRUE(glass.face(FaceId{1}).transparent);
+  EXPECT_TRUE(glass.face(FaceId{2}).transparent);
+}
+
+TEST(Matrix, TwoSidedRefusesBentFacesAndTakenNames) {
+  PlainScene bent;
+  add(bent, "sail", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.25}, {0, 1, 0}});
+  const Scene scene = generate::build(bent);
+  EXPECT_THROW((void)with_two_sided(scene, std::vector{scene.select("sail")}), InputError);
+  PlainScene taken;
+  add(taken, "wall", square(1.0, 0.0));
+  add(taken, "wall (back)", square(1.0, 1.0));
+  const Scene with_name = generate::build(taken);
+  EXPECT_THROW((void)with_two_sided(with_name, std::vector{with_name.select("wall")}), InputError);
+}
+
 // --- Files ---
 
 TEST(MatrixFiles, OfView3DAreItsOwn) {
@@ -260,6 +357,19 @@ TEST_F(MatrixFilesOfTheCommand, HaveBackAndOpenAsColumns) {
   EXPECT_NE(run({scene}).output.find("what meets backs is not computed and what is open is not computed."),
             std::string::npos);
   EXPECT_EQ(run({scene, "--from", "sky"}).exit_code, 2);
+}
+
+TEST_F(MatrixFilesOfTheCommand, HaveBothDirectionsAndBothSides) {
+  const validation::ProgramRun both = run({scene_, "--accuracy", "1e-4", "--both-directions"});
+  EXPECT_EQ(both.exit_code, 0);
+  EXPECT_NE(both.output.find("Reciprocity, A_i F_ij = A_j F_ji, of 28 pairs computed both ways: they differ at worst"),
+            std::string::npos)
+      << both.output;
+  const validation::ProgramRun sided =
+      run({scene_, "--accuracy", "1e-3", "--two-sided", "srf-1", "--from", "srf-1 (back)", "--to", "srf-2", "--plain"});
+  EXPECT_EQ(sided.exit_code, 0);
+  EXPECT_EQ(sided.output, "srf-1 (back)\tsrf-2\t0\t0\tzero\n");
+  EXPECT_EQ(run({scene_, "--two-sided", "srf-9"}).exit_code, 2);
 }
 
 TEST_F(MatrixFilesOfTheCommand, AreWrittenWholeOrNotAtAll) {

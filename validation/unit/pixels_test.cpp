@@ -222,7 +222,7 @@ TEST(GBuffer, RecognisesAnotherCoordinateSystem) {
     pixels::place_on_faces(scene, gbuffer);
     FAIL();
   } catch (const InputError& error) {
-    expect_fragment(error.what(), "2 of 3 pixels have a point that lies on no face");
+    expect_fragment(error.what(), "the points of 2 of 3 pixels lie on no face");
     expect_fragment(error.what(), "every z is positive, as in camera space");
     expect_fragment(error.what(), "coordinatesystem");
   }

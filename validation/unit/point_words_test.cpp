@@ -102,6 +102,12 @@ TEST_F(PointWords, ASourceThatEmitsIsNotRemarkedUpon) {
   EXPECT_EQ(said.error, "");
 }
 
+TEST_F(PointWords, TheSkyIsLeftToView) {
+  const Said said = up({"--source", "sky"});
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_TRUE(holds(said.error, "exactff view prints the sky's form factor as (open)")) << said.error;
+}
+
 TEST_F(PointWords, ASourceNamedTwiceIsRefused) {
   const Said said = up({"--source", "light,light"});
   EXPECT_EQ(said.exit_code, 2);
@@ -127,6 +133,13 @@ TEST_F(PointWords, AllIsATableWithTheSumAndWhatIsMissing) {
   EXPECT_TRUE(holds(said.output, "  (the sum over the 1 patch that emits)\n")) << said.output;
   EXPECT_FALSE(holds(said.output, "source light\n")) << "no block per source";
   EXPECT_NEAR(all["missing_to_1"]["lower"].get<double>() + all["sum"]["upper"].get<double>(), 1.0, 1e-15);
+}
+
+TEST_F(PointWords, OfManyFacesTheTableIsThatOfOneByOne) {
+  const std::string hall = "@emitters:n=400,boxes=4";
+  const Said swept = from(hall, {"3", "4", "1"}, {"--source", "all"});
+  EXPECT_EQ(swept.exit_code, 0) << swept.error;
+  EXPECT_EQ(swept.output, from(hall, {"3", "4", "1"}, {"--source", "all", "--engine", "boolean"}).output);
 }
 
 // The rounded values of the six sides add up to 1 only by luck; the balls enclose it.

@@ -7,6 +7,7 @@
 
 #include "exactff/models.h"
 #include "exactff/obj.h"
+#include "exactff/view.h"
 #include "generate/plain_scene.h"
 #include "support/complaint.h"
 #include "support/program.h"
@@ -316,6 +317,53 @@ TEST(Colours, ExposureBringsTheBrightestToWhite) {
   Picture grey = picture;
   grey.values.assign(grey.values.size(), 0.5);
   EXPECT_EQ(developed(grey, 1.0).bytes[0], 188);
+}
+
+TEST(Picture, UnderTheSkyShowsWhatIsOpen) {
+  Request asked = request(5, 4);
+  asked.sky = true;
+  asked.quantity = Quantity::kFormFactor;
+  const Picture picture = render(asked);
+  int open = 0;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 5; ++column) {
+      const std::optional<Hit> hit = first_hit(cornell_box(), asked.view.ray(column + 0.5, row + 0.5));
+      if (!hit || hit->back) continue;
+      const ViewShare sky = exactff::view(cornell_box(), receiver_at(cornell_box(), *hit)).open;
+      EXPECT_EQ(value(picture, column, row), sky.value);
+      if (sky.value > 0.0) ++open;
+    }
+  }
+  EXPECT_GT(open, 5);
+  asked.layers = Layers::kAll;
+  EXPECT_THROW((void)render(asked), InputError);
+}
+
+// Otherwise the edges of lamps are jagged, whatever the number of points.
+TEST(Colours, APixelHalfOnALampIsHalfWhite) {
+  Picture picture;
+  picture.size = {2, 1};
+  picture.values = {500.0, 500.0, 500.0, 0.25, 0.5, 0.75};
+  picture.shows = {Shows::kEmitter, Shows::kEmitter};
+  EXPECT_EQ(developed(picture, 1.0).bytes, (std::vector<std::uint8_t>{255, 255, 255, 137, 188, 225}));
+  picture.lamps = {0.5, 500.0, 499.75, 499.5, 0.5, 0.25, 0.25, 0.5};
+  EXPECT_EQ(developed(picture, 1.0).bytes, (std::vector<std::uint8_t>{188, 225, 255, 137, 188, 225}));
+}
+
+TEST(Picture, SeveralPointsSayWhichPartOfThemIsLamps) {
+  EXPECT_TRUE(render(request(4, 4)).lamps.empty());
+  Request asked = request(40, 40);
+  asked.spp = 2;
+  asked.quantity = Quantity::kRadiosity;
+  const Picture picture = render(asked);
+  std::size_t edges = 0;
+  for (std::size_t i = 0; i < picture.pixels(); ++i) {
+    const double share = picture.lamps[4 * i];
+    EXPECT_EQ(share > 0.0, picture.shows[i] == Shows::kEmitter);
+    EXPECT_EQ(picture.lamps[4 * i + 1], share * 17.0);  // Ke of the light
+    if (share > 0.0 && share < 1.0) ++edges;
+  }
+  EXPECT_GT(edges, 4U);
 }
 
 TEST(Colours, ErrorsAreWhiteRedAndBlue) {

@@ -16,6 +16,7 @@
 #include "exactff/obj.h"
 #include "exactff/team.h"
 #include "exactff/version.h"
+#include "exactff/view.h"
 #include "jobs/blocks.h"
 #include "jobs/journal.h"
 #include "jobs/workers.h"
@@ -465,6 +466,37 @@ TEST_F(Truth, TheFileGoesWhereALinkLeads) {
   write(request(1), file_, Existing::kRefuse);
   EXPECT_TRUE(fs::is_symlink(file_));
   EXPECT_GT(fs::file_size(directory_.path() / "target.csv"), 100U);
+}
+
+// What is open, the two lights and the backs of the board make up all that a point of the floor sees.
+TEST_F(Truth, TheSkyIsASourceAfterTheOthers) {
+  Request asked = request(2);
+  asked.sky = true;
+  asked.total = Quantity::kFormFactor;
+  std::ostringstream out;
+  (void)write(asked, out);
+  std::istringstream in(out.str());
+  std::vector<std::vector<std::string>> rows;
+  for (std::string line; std::getline(in, line);) {
+    if (line.front() != '#' && !line.starts_with("receiver")) rows.push_back(fields_of(line));
+  }
+  ASSERT_EQ(rows.size(), 3 * asked.receivers.size());
+  for (std::size_t r = 0; r < asked.receivers.size(); ++r) {
+    const WholeView seen = view(scene_, asked.receivers[r]);
+    EXPECT_EQ(rows[3 * r + 2][8], "sky");
+    EXPECT_EQ(std::stod(rows[3 * r + 2][9]), seen.open.value);
+    EXPECT_NEAR(std::stod(rows[3 * r][16]), 1.0 - seen.back.value, 1e-15);
+  }
+}
+
+TEST_F(Truth, TheSkyAloneIsASourceWithoutAFraction) {
+  Request asked = request(2);
+  asked.sources.clear();
+  asked.sky = true;
+  std::ostringstream out;
+  EXPECT_EQ(write(asked, out).rows, asked.receivers.size());
+  asked.visible_fraction = true;
+  EXPECT_THROW((void)write(asked, out), InputError);
 }
 
 TEST_F(Truth, SlowRowsAreTold) {

@@ -27,6 +27,7 @@ from . import methods
 from ._check import CheckReport, Distribution, RowError, Verdict, check
 from ._errors import InputError, ModellingWarning, Problem
 from ._pair import Drawing, Enclosure, FormFactor, FormFactors, Status
+from ._radiosity import Balance, Radiosity, radiosity
 from ._receivers import Receivers
 from ._report import Finding, Material, Patch, Report
 from ._scene import Scene
@@ -36,8 +37,8 @@ from ._views import SeenPatch, Share, View, ViewFactor, ViewFactorMatrix, view, 
 __version__ = _exactff.version
 
 __all__ = [
-    "CheckReport", "Distribution", "Drawing", "Enclosure", "Finding", "FormFactor", "FormFactors", "InputError",
-    "Material", "ModellingWarning", "Patch", "Problem", "Receivers", "Report", "RowError", "Scene", "SeenPatch", "Share",
-    "Status", "TruthSummary", "Verdict", "View", "ViewFactor", "ViewFactorMatrix", "__version__", "check", "methods",
-    "truth", "view", "view_factor", "view_factor_matrix",
+    "Balance", "CheckReport", "Distribution", "Drawing", "Enclosure", "Finding", "FormFactor", "FormFactors",
+    "InputError", "Material", "ModellingWarning", "Patch", "Problem", "Radiosity", "Receivers", "Report", "RowError",
+    "Scene", "SeenPatch", "Share", "Status", "TruthSummary", "Verdict", "View", "ViewFactor", "ViewFactorMatrix",
+    "__version__", "check", "methods", "radiosity", "truth", "view", "view_factor", "view_factor_matrix",
 ]

@@ -24,7 +24,7 @@ class ViewFactor(NamedTuple):
     value: float  #: a pure number in [0, 1]
     lower: float
     upper: float
-    claim: str  #: "zero" (proved), "topology-proved" (what is seen is proved, the error of quadrature is estimated), ...
+    claim: str  #: "zero", "certified" (proved), "topology-proved" (quadrature is estimated) or "statistical"
     accurate: bool  #: upper - lower is at most the accuracy, in both directions
     area_from: float  #: in the square of the scene's unit of length
     area_to: float
@@ -130,7 +130,8 @@ def _warn_of_width(wide: int, accuracy: float, budget: int) -> None:
              f"{budget} cells is used up; bounds hold all the same)")
 
 
-def view_factor(scene: Scene, a: str, b: str, accuracy: float = 1e-6, *, budget: int = 100_000) -> ViewFactor:
+def view_factor(scene: Scene, a: str, b: str, accuracy: float = 1e-6, *, budget: int = 100_000,
+                certify: bool = False) -> ViewFactor:
     """The view factor from patch `a` to patch `b`: the mean over `a` of the form factor from a point to `b`.
 
     Parameters
@@ -138,13 +139,15 @@ def view_factor(scene: Scene, a: str, b: str, accuracy: float = 1e-6, *, budget:
     a, b : names of patches or faces, ``NAME`` or ``NAME:k``
     accuracy : the largest width ``upper - lower``, for the factor and for the one from `b` to `a`
     budget : the largest number of cells; where it is used up, a ModellingWarning says so and the result keeps its width
+    certify : prove the quadrature, too: the claim is "certified" or "zero"
 
     Raises InputError for unknown names and for patches without area. The GIL is released, and Ctrl-C answered.
     """
     for name in (a, b):
         if not isinstance(name, str):
             refuse(f"a patch is {name!r}", "it is the name of a patch or face", "for example 'light'")
-    f = ViewFactor(*_exactff.view_factor(scene._scene, a, b, _accuracy(accuracy), _budget(budget)))
+    f = ViewFactor(*_exactff.view_factor(scene._scene, a, b, _accuracy(accuracy), _budget(budget),
+                                           bool(certify)))
     _warn_of_width(int(not f.accurate), accuracy, budget)
     return f
 
@@ -160,14 +163,14 @@ def _patches(scene: Scene, names: Names, what: str) -> list[str]:
 
 
 def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Names = None, *, accuracy: float = 1e-6,
-                       budget: int = 100_000, backs: bool = False, sky: bool = False, threads: int = 0,
-                       progress: Progress = None) -> ViewFactorMatrix:
+                       budget: int = 100_000, certify: bool = False, backs: bool = False, sky: bool = False,
+                       threads: int = 0, progress: Progress = None) -> ViewFactorMatrix:
     """All view factors between two lists of patches, the values of ``exactff matrix`` bit for bit.
 
     Parameters
     ----------
     from_patches, to_patches : names of the rows and columns; default: every patch with area
-    accuracy, budget : of each entry, as in :func:`view_factor`
+    accuracy, budget, certify : of each entry, as in :func:`view_factor`
     backs, sky : also compute what meets the backs of faces, and what is open
     threads : 0 for as many as this process may use; no value depends on it
     progress : None for a bar of tqdm on a terminal; True, False, or a function of (done, total)
@@ -177,7 +180,7 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
     rows, columns = _patches(scene, from_patches, "from_patches"), _patches(scene, to_patches, "to_patches")
     with shown(progress, "view factor") as tell:
         entries, back, free, sums, reasons = _exactff.view_factor_matrix(
-            scene._scene, rows, columns, _accuracy(accuracy), _budget(budget), bool(backs), bool(sky),
+            scene._scene, rows, columns, _accuracy(accuracy), _budget(budget), bool(certify), bool(backs), bool(sky),
             _arrays.thread_count(threads), tell)
     table = [ViewFactor(*entry) for entry in entries]
     shape = (len(rows), len(columns))

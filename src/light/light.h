@@ -9,8 +9,9 @@
 #include "exactff/exact.h"
 #include "exactff/quantity.h"
 #include "kernel/ball.h"
+#include "light/source_factors.h"
 
-namespace exactff::exact {
+namespace exactff::light {
 
 // One channel is  pi^pi_power (emitted + reflectance * sum over sources of radiosity * F).
 struct LightFormula {
@@ -24,9 +25,9 @@ enum class Side { kFront, kBack };
 // emit. A point on no face reflects everything.
 [[nodiscard]] LightFormula light_formula(const Scene& scene, std::span<const FaceId> on, Side side, Quantity quantity,
                                          KeMeans ke);
-// B_s of each source, or 1 for form factors. Throws InputError if the light of the scene, called `scene_name`, is
-// negative or so strong that sums could overflow.
-[[nodiscard]] std::vector<Rgb> light_weights(const Scene& scene, std::span<const Selection> sources, Quantity quantity,
+// B_s of each source, or 1 for form factors and for the sky. Throws InputError if the light of the scene, called
+// `scene_name`, is negative or so strong that sums could overflow.
+[[nodiscard]] std::vector<Rgb> light_weights(const Scene& scene, const SourceFactors& sources, Quantity quantity,
                                              const std::string& scene_name);
 
 struct CertifiedNumber {
@@ -37,17 +38,16 @@ struct CertifiedNumber {
 };
 using Channels = std::array<CertifiedNumber, 3>;
 
-// The sources with their weights. Immutable; threads may share it. Keeps a reference to the scene.
+// The sources with their weights. Immutable; threads may share it. Keeps a reference to the sources.
 class Light {
  public:
   // `radiosities`: one for each source, finite and not negative.
-  Light(const Scene& scene, std::span<const Selection> sources, std::vector<Rgb> radiosities);
+  Light(const SourceFactors& sources, std::vector<Rgb> radiosities);
 
   // Objects that a thread reuses from point to point.
   struct Results {
-    std::vector<FormFactor> factors;  // of the last point, by source
-    std::vector<FormFactor> finer;    // the same with more digits, where a channel needed them
-    Workspace workspace;
+    SourceFactors::Results at;      // of the last point
+    std::vector<FormFactor> finer;  // the same with more digits, where a channel needed them
   };
 
   // Computes all form factors, then the channels. Numbers in the formula must be finite and not negative.
@@ -57,8 +57,6 @@ class Light {
   [[nodiscard]] Channels at(const Receiver& receiver, const LightFormula& formula, const ExactOptions& options,
                             Results& results) const;
 
-  [[nodiscard]] std::size_t sources() const { return sources_.size(); }
-
  private:
   [[nodiscard]] Ball ball(const std::vector<FormFactor>& factors, const LightFormula& formula, int channel,
                           long bits) const;
@@ -67,9 +65,8 @@ class Light {
   [[nodiscard]] bool is_zero(const std::vector<FormFactor>& factors, const LightFormula& formula, int channel) const;
   [[nodiscard]] bool same_weights(const LightFormula& formula, int a, int b) const;
 
-  const Scene& scene_;
-  std::vector<ExactSource> sources_;
+  const SourceFactors& sources_;
   std::vector<Rgb> radiosities_;
 };
 
-}  // namespace exactff::exact
+}  // namespace exactff::light

@@ -1,4 +1,4 @@
-#include "exact/light.h"
+#include "light/light.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "text/refuse.h"
 #include "text/text_lines.h"
 
-namespace exactff::exact {
+namespace exactff::light {
 namespace {
 
 double component(const Rgb& colour, int channel) {
@@ -41,13 +41,13 @@ LightFormula light_formula(const Scene& scene, std::span<const FaceId> on, Side 
           power};
 }
 
-std::vector<Rgb> light_weights(const Scene& scene, std::span<const Selection> sources, Quantity quantity,
+std::vector<Rgb> light_weights(const Scene& scene, const SourceFactors& sources, Quantity quantity,
                                const std::string& scene_name) {
   constexpr double kMost = 1e290;
   std::vector<Rgb> weights;
   Rgb sum;
-  for (const Selection& source : sources) {
-    const Rgb radiosity = scene.source_radiosity(source);
+  for (std::size_t s = 0; s < sources.count(); ++s) {
+    const Rgb radiosity = sources.radiosity(s);
     sum = {sum.r + radiosity.r, sum.g + radiosity.g, sum.b + radiosity.b};
     weights.push_back(quantity == Quantity::kFormFactor ? Rgb{1.0, 1.0, 1.0} : radiosity);
   }
@@ -62,19 +62,14 @@ std::vector<Rgb> light_weights(const Scene& scene, std::span<const Selection> so
   return weights;
 }
 
-Light::Light(const Scene& scene, std::span<const Selection> sources, std::vector<Rgb> radiosities)
-    : scene_(scene), radiosities_(std::move(radiosities)) {
-  for (const Selection& source : sources) sources_.emplace_back(scene, source);
-}
+Light::Light(const SourceFactors& sources, std::vector<Rgb> radiosities)
+    : sources_(sources), radiosities_(std::move(radiosities)) {}
 
 Channels Light::at(const Receiver& receiver, const LightFormula& formula, const ExactOptions& options,
                    Results& results) const {
   const kernel::StandardArithmetic arithmetic;
-  results.factors.resize(sources_.size());
   results.finer.clear();
-  for (std::size_t s = 0; s < sources_.size(); ++s) {
-    exact_form_factor(scene_, receiver, sources_[s], options, results.factors[s], results.workspace);
-  }
+  sources_.find_all(receiver, options, results.at);
   Channels channels;
   for (int c = 0; c < 3; ++c) {
     int same = 0;
@@ -114,20 +109,17 @@ Ball Light::ball(const std::vector<FormFactor>& factors, const LightFormula& for
 
 CertifiedNumber Light::channel(const Receiver& receiver, const LightFormula& formula, int channel,
                                const ExactOptions& options, Results& results) const {
-  if (is_zero(results.factors, formula, channel)) return {};
-  Ball best = ball(results.factors, formula, channel, kFirstBits);
+  if (is_zero(results.at.factors, formula, channel)) return {};
+  Ball best = ball(results.at.factors, formula, channel, kFirstBits);
   if (const auto nearest = Enclosure(best).nearest()) return certified(*nearest);
   ExactOptions finer = options;
   finer.visible_fraction = finer.exact_fraction = finer.list_cutters = false;
-  results.finer.resize(sources_.size());
   for (finer.digits = kFirstDigits; finer.digits <= kMostDigits; finer.digits *= 2) {
-    for (std::size_t s = 0; s < sources_.size(); ++s) {
-      exact_form_factor(scene_, receiver, sources_[s], finer, results.finer[s], results.workspace);
-    }
+    sources_.find_all(receiver, finer, results.finer, results.at);
     best = ball(results.finer, formula, channel, 4L * finer.digits + kFirstBits);
     if (const auto nearest = Enclosure(best).nearest()) return certified(*nearest);
   }
   return not_certified(best);
 }
 
-}  // namespace exactff::exact
+}  // namespace exactff::light

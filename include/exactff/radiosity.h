@@ -1,0 +1,95 @@
+// Radiosity: the light that leaves each patch after all its bounces, with bounds.
+//
+//   B_i = E_i + rho_i sum_j F_ij B_j
+//
+// E is Ke, rho is Kd, F is the matrix of view factors, one equation for each colour channel. Each patch has one
+// radiosity: B is the exact solution of this system, not of the integral equation, which lets radiosity vary over a
+// patch. Divide a patch into several where that matters. Where the system has several solutions that are not negative,
+// B is the smallest: the sum E + rho F E + (rho F)^2 E + ... over the bounces.
+//
+// Of F, only bounds are known: L <= F <= U. B lies between two vectors that are checked to be a sub- and a
+// supersolution of every such system, with every rounding outward (src/radiosity/system.h has the proof). So its bounds
+// are as strong as the weakest claim of the view factors.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exactff/matrix.h"
+#include "exactff/progress.h"
+#include "exactff/scene.h"
+#include "exactff/view_factors.h"
+
+namespace exactff::radiosity {
+
+// In the unit of Ke. `value` is an estimate, NaN if the solver finds none; [lower, upper] holds the true number.
+struct BoundedValue {
+  double value = 0.0;
+  double lower = 0.0;
+  double upper = 0.0;
+};
+
+// Where the light goes, in the unit of Ke times area: bounds of sums over all patches.
+//   emitted = absorbed + what meets backs of faces + what meets nothing
+// Without an upper bound of the radiosities, B may be infinite: then only the bounds of `emitted` say something.
+struct Balance {
+  matrix::Sum emitted, absorbed, back, open;
+};
+
+struct Channel {
+  std::vector<BoundedValue> radiosity;   // B, for each patch
+  std::vector<BoundedValue> irradiance;  // sum_j F_ij B_j, for each patch
+  Balance balance;
+  // Why there is no upper bound: "Kd is 1 on floor and lamp, ...". Empty: there is one. Without it, upper bounds are
+  // infinite, and lower bounds are E_i and 0, which hold all the same.
+  std::string no_bound;
+
+  [[nodiscard]] bool is_bounded() const { return no_bound.empty(); }
+};
+
+inline constexpr std::array<std::string_view, 3> kChannelNames = {"red", "green", "blue"};
+
+struct Solution {
+  std::vector<Selection> patches;
+  std::vector<double> areas;        // in the square of the scene's unit of length
+  std::array<Channel, 3> channels;  // of Kd and Ke
+  Claim claim = Claim::kZero;       // the weakest of all view factors between patches
+  Claim claim_of_balance = Claim::kZero;
+  // Why the two sides of the balance need not agree: "some faces are transparent". Empty: they agree.
+  std::vector<std::string> reasons_against_balance;
+
+  [[nodiscard]] bool is_bounded() const {
+    return channels[0].is_bounded() && channels[1].is_bounded() && channels[2].is_bounded();
+  }
+};
+
+// Every patch with area, in the order of the file. Throws InputError that names the patches whose faces differ in Kd or
+// Ke.
+[[nodiscard]] std::vector<Selection> patches_of(const Scene& scene);
+
+// Requires the factors between all of patches_of(scene), as rows and as columns, with `back` and `open`. Throws
+// std::invalid_argument otherwise, and what patches_of throws.
+[[nodiscard]] Solution solve(const Scene& scene, const matrix::Matrix& matrix);
+
+struct Options {
+  ViewFactorOptions factors;
+  int threads = 0;  // 0: all; does not affect the result
+};
+// Computes the view factors first. Throws what matrix::compute and patches_of throw.
+[[nodiscard]] Solution solve(const Scene& scene, const Options& options = {}, const Hooks& hooks = {});
+
+// Whether the bounds of both sides of the balance of every channel that is bounded have a number in common. If they do
+// not, although `reasons_against_balance` is empty, some bound does not hold.
+[[nodiscard]] bool is_balanced(const Solution& solution);
+
+// A row for each patch and channel: patch,channel,radiosity,lower,upper,irradiance,irradiance_lower,irradiance_upper,
+// claim,area. What is infinite or not known is empty, and the claim is then "no bound".
+[[nodiscard]] std::string csv_text(const Scene& scene, const Solution& solution, const ViewFactorOptions& options);
+
+// The claim of a channel: that of the solution, or "no bound".
+[[nodiscard]] std::string_view claim_text(const Solution& solution, const Channel& channel);
+
+}  // namespace exactff::radiosity

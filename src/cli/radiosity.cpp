@@ -1,0 +1,346 @@
+// exactff radiosity: the light that leaves each patch after all bounces.
+#include "exactff/radiosity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/exit_code.h"
+#include "cli/further_files.h"
+#include "cli/long_run.h"
+#include "cli/output.h"
+#include "cli/text_table.h"
+#include "cli/view_factor_words.h"
+#include "exactff/version.h"
+#include "exactff/vtk.h"
+#include "flags/lists.h"
+#include "flags/scene.h"
+#include "text/json_document.h"
+#include "text/phrases.h"
+
+namespace exactff::cli {
+namespace {
+
+using radiosity::BoundedValue;
+using radiosity::Channel;
+using radiosity::kChannelNames;
+using radiosity::Solution;
+
+constexpr const char* kRadiosityFooter =
+    "Solves B = E + rho F B: E is Ke, rho is Kd, F the view factors between all patches, each with one radiosity B.\n"
+    "B lies between lower and upper as surely as the claim says, the weakest of the view factors'. Where the bounds "
+    "of\n"
+    "the view factors do not prove that less light is reflected than arrives, as in a closed room of Kd 1, there is "
+    "no\n"
+    "upper bound; the output says so and why, and the exit code is 3. 'radiosity' is then an estimate.\n"
+    "What is emitted must be what is absorbed, meets backs of faces and leaves; if it is not, the exit code is 1.\n"
+    "\n"
+    "Examples:\n"
+    "  exactff radiosity data/scenes/cornell_box.obj --accuracy 1e-4\n"
+    "  exactff radiosity data/scenes/cornell_box.obj --accuracy 1e-4 -o build/box.csv --vtk build/box.vtp";
+
+constexpr std::size_t kMostPatchesShown = 40;
+
+struct RadiosityArguments {
+  flags::SceneArguments scene;
+  std::vector<std::string> two_sided;
+  ViewFactorOptions factors;
+  int threads = 0;
+  bool plain = false, json = false, csv = false;
+  std::string output, vtk;
+  bool force = false;
+
+  [[nodiscard]] bool for_people() const { return !plain && !json && !csv; }
+};
+
+// --- For people ---
+
+bool is_grey(const Scene& scene) {
+  return std::ranges::all_of(scene.faces(), [&](const Face& face) {
+    const Material& m = scene.material(face.material);
+    const Rgb &kd = m.reflectance, &ke = m.radiosity;
+    return kd.r == kd.g && kd.g == kd.b && ke.r == ke.g && ke.g == ke.b;
+  });
+}
+
+std::string estimate_text(double value) { return std::isnan(value) ? "unknown" : text::rounded(value, 6); }
+
+void print_radiosities(const Scene& scene, const Solution& solution, std::size_t channels) {
+  TextTable table;
+  table.add_column("patch");
+  if (channels > 1) table.add_column("channel");
+  for (const char* title : {"radiosity", "lower", "upper", "irradiance"}) table.add_column(title);
+  const std::size_t count = std::min(solution.patches.size(), kMostPatchesShown);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t c = 0; c < channels; ++c) {
+      const BoundedValue &b = solution.channels[c].radiosity[i], &h = solution.channels[c].irradiance[i];
+      std::vector<std::string> cells{c == 0 ? shown_name(scene, solution.patches[i]) : ""};
+      if (channels > 1) cells.emplace_back(kChannelNames[c]);
+      for (const std::string& cell :
+           {estimate_text(b.value), text::shortest(b.lower), text::shortest(b.upper), estimate_text(h.value)}) {
+        cells.push_back(cell);
+      }
+      table.add_row(std::move(cells));
+    }
+  }
+  table.print(std::cout);
+  if (count < solution.patches.size()) {
+    std::cout << "\n(the first " << count << " of " << solution.patches.size()
+              << " patches; --plain, --csv and -o have all)\n";
+  }
+}
+
+std::string part_text(const matrix::Sum& part) {
+  return std::isfinite(part.upper) ? interval_text(part) : "at least " + text::shortest(part.lower);
+}
+
+void print_balance(const Solution& solution, std::size_t channels) {
+  std::cout << "\nWhere the light goes, in the unit of Ke times area:\n";
+  TextTable table;
+  if (channels > 1) table.add_column("channel");
+  for (const char* title : {"emitted", "absorbed", "(back)", "(open)"}) table.add_column(title);
+  for (std::size_t c = 0; c < channels; ++c) {
+    const radiosity::Balance& balance = solution.channels[c].balance;
+    std::vector<std::string> cells;
+    if (channels > 1) cells.emplace_back(kChannelNames[c]);
+    for (const matrix::Sum& part : {balance.emitted, balance.absorbed, balance.back, balance.open}) {
+      cells.push_back(part_text(part));
+    }
+    table.add_row(std::move(cells));
+  }
+  table.print(std::cout);
+}
+
+void print_claims(const Solution& solution, bool balanced) {
+  if (solution.is_bounded()) {
+    std::cout << "\nThe bounds hold if those of the view factors do: these are " << to_string(solution.claim) << ".\n";
+  }
+  const std::vector<std::string>& reasons = solution.reasons_against_balance;
+  if (!reasons.empty()) {
+    std::cout << "What is emitted need not be what arrives: " << text::enumerate(reasons) << ".\n";
+  } else if (balanced) {
+    std::cout << "Within the bounds, what is emitted is what is absorbed, meets backs or leaves.\n";
+  }
+}
+
+void print_for_people(const Scene& scene, const Solution& solution, bool balanced) {
+  const std::size_t channels = is_grey(scene) ? 1 : kChannelNames.size();
+  print_radiosities(scene, solution, channels);
+  print_balance(solution, channels);
+  print_claims(solution, balanced);
+}
+
+// --- For programs ---
+
+void print_plain(const Scene& scene, const Solution& solution) {
+  for (std::size_t i = 0; i < solution.patches.size(); ++i) {
+    for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
+      const Channel& channel = solution.channels[c];
+      const BoundedValue& b = channel.radiosity[i];
+      std::cout << shown_name(scene, solution.patches[i]) << '\t' << kChannelNames[c] << '\t' << text::shortest(b.value)
+                << '\t' << text::shortest(b.lower) << '\t' << text::shortest(b.upper) << '\t'
+                << claim_text(solution, channel) << '\n';
+    }
+  }
+}
+
+// What is not known is left out.
+nlohmann::ordered_json to_json(const BoundedValue& q) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  if (std::isfinite(q.value)) json["value"] = q.value;
+  json["lower"] = q.lower;
+  if (std::isfinite(q.upper)) json["upper"] = q.upper;
+  return json;
+}
+
+nlohmann::ordered_json to_json(const matrix::Sum& sum) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  if (std::isfinite(sum.lower)) json["lower"] = sum.lower;
+  if (std::isfinite(sum.upper)) json["upper"] = sum.upper;
+  return json;
+}
+
+nlohmann::ordered_json channel_json(const Solution& solution, const Channel& channel) {
+  const radiosity::Balance& balance = channel.balance;
+  nlohmann::ordered_json json = {{"claim", claim_text(solution, channel)}};
+  if (!channel.is_bounded()) json["no_bound"] = channel.no_bound;
+  json["balance"] = {{"emitted", to_json(balance.emitted)},
+                     {"absorbed", to_json(balance.absorbed)},
+                     {"back", to_json(balance.back)},
+                     {"open", to_json(balance.open)}};
+  return json;
+}
+
+void print_json(const RadiosityArguments& args, const Scene& scene, const Solution& solution) {
+  nlohmann::ordered_json json = {{"program", "exactff"},
+                                 {"version", kVersion},
+                                 {"scene", args.scene.path},
+                                 {"scene_hash", scene.hash()},
+                                 {"accuracy", args.factors.accuracy},
+                                 {"budget", args.factors.budget},
+                                 {"claim_of_balance", to_string(solution.claim_of_balance)}};
+  json["reasons_against_balance"] = solution.reasons_against_balance;
+  json["channels"] = nlohmann::ordered_json::object();
+  for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
+    json["channels"][std::string(kChannelNames[c])] = channel_json(solution, solution.channels[c]);
+  }
+  json["patches"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < solution.patches.size(); ++i) {
+    nlohmann::ordered_json patch = {{"patch", scene.name_of(solution.patches[i])}, {"area", solution.areas[i]}};
+    for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
+      const Channel& channel = solution.channels[c];
+      patch[std::string(kChannelNames[c])] = {{"radiosity", to_json(channel.radiosity[i])},
+                                              {"irradiance", to_json(channel.irradiance[i])}};
+    }
+    json["patches"].push_back(std::move(patch));
+  }
+  std::cout << text::json_document(json) << '\n';
+}
+
+// The numbers of every face, three for each.
+vtk::Field field_of(const Scene& scene, const Solution& solution, const char* name,
+                    std::vector<BoundedValue> Channel::*quantity, double BoundedValue::*number) {
+  std::vector<double> values(3 * scene.faces().size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < solution.patches.size(); ++i) {
+    for (const FaceId face : scene.faces_of(solution.patches[i])) {
+      for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
+        values[3 * index_of(face) + c] = (solution.channels[c].*quantity)[i].*number;
+      }
+    }
+  }
+  return {name, 3, std::move(values)};
+}
+
+void write_vtk(const RadiosityArguments& args, const Scene& scene, const Solution& solution) {
+  vtk::write_faces(scene,
+                   {field_of(scene, solution, "radiosity", &Channel::radiosity, &BoundedValue::value),
+                    field_of(scene, solution, "lower", &Channel::radiosity, &BoundedValue::lower),
+                    field_of(scene, solution, "upper", &Channel::radiosity, &BoundedValue::upper),
+                    field_of(scene, solution, "irradiance", &Channel::irradiance, &BoundedValue::value)},
+                   {"exactff " + std::string(kVersion) + ", radiosity"}, args.vtk);
+}
+
+// --- The command ---
+
+void check_outputs(const RadiosityArguments& args) {
+  if (!args.output.empty()) require_free_file(args.output, args.force);
+  std::vector<OutputFile> before;
+  if (!args.output.empty()) before.push_back({"-o", args.output});
+  check_output_files({{"--vtk", args.vtk}}, before, args.force);
+}
+
+void warn_of_darkness(const Scene& scene, const std::vector<Selection>& patches) {
+  const bool any_emits = std::ranges::any_of(patches, [&](const Selection& patch) {
+    return scene.material(scene.face(scene.faces_of(patch).front()).material).emits();
+  });
+  if (any_emits) return;
+  print_warnings(std::vector<Problem>{
+      {.what = "no patch emits light", .why = "every radiosity is 0", .suggestion = "give some material a Ke"}});
+}
+
+void warn_of_no_bound(const Solution& solution) {
+  for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
+    const Channel& channel = solution.channels[c];
+    if (channel.is_bounded()) continue;
+    print_warnings(std::vector<Problem>{
+        {.what = "there is no bound for " + std::string(kChannelNames[c]) + ", and what is printed is an estimate",
+         .why = channel.no_bound,
+         .suggestion = "lower Kd where it is 1, or compute narrower view factors by --accuracy and --budget"}});
+  }
+}
+
+// Whether the balance holds, or cannot be tested.
+bool test_balance(const Solution& solution) {
+  if (!solution.reasons_against_balance.empty() || is_balanced(solution)) return true;
+  print_warnings(std::vector<Problem>{
+      {.what = "what is emitted is not what is absorbed, meets backs and leaves",
+       .why = solution.claim_of_balance == Claim::kStatistical
+                  ? "a statistical view factor is one of the few that miss their interval, or a bound does not hold"
+                  : "it must be, so a bound of a view factor does not hold",
+       .suggestion = "please report the scene"}});
+  return false;
+}
+
+void print(const RadiosityArguments& args, const Scene& scene, const Solution& solution, bool balanced) {
+  if (args.plain) {
+    print_plain(scene, solution);
+  } else if (args.json) {
+    print_json(args, scene, solution);
+  } else if (args.csv) {
+    std::cout << csv_text(scene, solution, args.factors);
+  } else {
+    print_for_people(scene, solution, balanced);
+    if (!args.output.empty()) std::cout << "Radiosities: " << text::printable(args.output) << '\n';
+    if (!args.vtk.empty()) std::cout << "VTK file: " << text::printable(args.vtk) << '\n';
+  }
+}
+
+Scene load(const RadiosityArguments& args) {
+  Scene scene = args.scene.load();
+  print_warnings(scene.warnings());
+  if (args.two_sided.empty()) return scene;
+  return matrix::with_two_sided(scene, flags::selections_named(scene, args.two_sided));
+}
+
+int run(const RadiosityArguments& args) {
+  check_outputs(args);
+  const Scene scene = load(args);
+  const std::vector<Selection> patches = radiosity::patches_of(scene);
+  warn_of_darkness(scene, patches);
+  ProgressBar bar;
+  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  const matrix::Matrix matrix = matrix::compute(
+      scene, patches, patches, {.factors = args.factors, .backs = true, .open = true, .threads = args.threads}, hooks);
+  bar.clear();
+  const Solution solution = radiosity::solve(scene, matrix);
+  warn_of_width(matrix, args.factors);
+  if (!args.output.empty()) write_whole_file(args.output, csv_text(scene, solution, args.factors));
+  if (!args.vtk.empty()) write_vtk(args, scene, solution);
+  const bool balanced = test_balance(solution);
+  warn_of_no_bound(solution);
+  print(args, scene, solution, balanced);
+  check_output(std::cout);
+  return !balanced ? 1 : solution.is_bounded() ? 0 : kNotCertified;
+}
+
+void add_outputs(CLI::App& command, RadiosityArguments& args) {
+  auto* plain = command.add_flag("--plain", args.plain,
+                                 "Print a line for each patch and channel: PATCH, CHANNEL, RADIOSITY, LOWER, UPPER, "
+                                 "CLAIM, with tabs");
+  auto* json = command.add_flag("--json", args.json, "Print JSON");
+  auto* csv = command.add_flag("--csv", args.csv, "Print CSV");
+  plain->excludes(json)->excludes(csv);
+  json->excludes(csv);
+  command.add_option("-o,--output", args.output, "Write a CSV file")->type_name("FILE");
+  command.add_option("--vtk", args.vtk, "Write the scene with its radiosities for ParaView, as NAME.vtp or NAME.vtu")
+      ->type_name("FILE");
+  command.add_flag("--force", args.force, "Replace existing files");
+}
+
+}  // namespace
+
+Command add_radiosity(CLI::App& app) {
+  auto args = std::make_shared<RadiosityArguments>();
+  CLI::App* command =
+      app.add_subcommand("radiosity", "Compute the light that leaves each patch after all bounces, with bounds");
+  command->footer(kRadiosityFooter);
+  args->scene.add_to(*command);
+  command->add_option("--two-sided", args->two_sided, kTwoSidedHelp)->type_name("NAME");
+  command->add_option("--accuracy", args->factors.accuracy, "Largest width of a view factor, for F_ij and for F_ji")
+      ->capture_default_str();
+  command->add_option("--budget", args->factors.budget, "Largest number of cells for a view factor")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
+      ->capture_default_str();
+  add_outputs(*command, *args);
+  command->add_option("--threads", args->threads, "Number of threads (default: all); it does not affect the values")
+      ->check(CLI::Range(0, 1024));
+  return {command, [args] { return run(*args); }};
+}
+
+}  // namespace exactff::cli

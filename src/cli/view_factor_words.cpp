@@ -1,0 +1,43 @@
+#include "cli/view_factor_words.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "cli/output.h"
+#include "text/phrases.h"
+
+namespace exactff::cli {
+
+namespace {
+
+void warn_of_width(const matrix::Matrix& matrix, double accuracy, const std::string& spent, const std::string& more) {
+  const auto wide_of = [](const std::vector<ViewFactor>& list) {
+    return std::ranges::count_if(list, [](const ViewFactor& f) { return !f.accurate; });
+  };
+  const auto wide = wide_of(matrix.factors.entries) + wide_of(matrix.back) + wide_of(matrix.open);
+  if (wide == 0) return;
+  print_warnings(std::vector<Problem>{{.what = text::counted(static_cast<std::uint64_t>(wide), "entry", "entries") +
+                                               (wide == 1 ? " is" : " are") + " wider than the accuracy " +
+                                               text::shortest(accuracy),
+                                       .why = spent + "; their bounds are as strong as their claims",
+                                       .suggestion = more + ", or ask for less by --accuracy"}});
+}
+
+}  // namespace
+
+void warn_of_width(const matrix::Matrix& matrix, const ViewFactorOptions& options) {
+  warn_of_width(matrix, options.accuracy, "the budget of " + std::to_string(options.budget) + " cells is used up",
+                "give more cells by --budget");
+}
+
+void warn_of_width(const matrix::Matrix& draft, const matrix::DraftOptions& options) {
+  warn_of_width(draft, options.accuracy, "a row has " + std::to_string(options.views) + " views",
+                "give more views by --views");
+}
+
+std::string interval_text(const matrix::Sum& interval) {
+  return text::rounded(0.5 * interval.lower + 0.5 * interval.upper, 6) + " +- " +
+         text::rounded(0.5 * interval.upper - 0.5 * interval.lower, 1);
+}
+
+}  // namespace exactff::cli

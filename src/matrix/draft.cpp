@@ -1,0 +1,234 @@
+// A draft of a matrix: each row from whole views of points in strata of its patch.
+//
+// In each stratum there are two triples of points, as for single entries (view_factors/sampled_factor.h). A view gives
+// the point's form factors to all patches at once, so a row costs the same whatever the number of columns. strata.h has
+// the interval of an entry. Two rigorous facts narrow it. With d the distance between the boxes of two patches, F(x ->
+// j) = integral of cos cos / (pi r^2) over j is at most A_j / (pi d^2). And an entry is 0 if of every two pieces, one
+// lies behind the plane of the other.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "exactff/matrix.h"
+#include "exactff/view.h"
+#include "kernel/float_environment.h"
+#include "text/phrases.h"
+#include "text/refuse.h"
+#include "view_factors/near_planes.h"
+#include "view_factors/patch_parts.h"
+#include "view_factors/strata.h"
+#include "work/parallel.h"
+
+namespace exactff::matrix {
+namespace {
+
+using view_factors::Box;
+using view_factors::ExactPiece;
+using view_factors::ExactScene;
+using view_factors::Part;
+using view_factors::Point;
+using view_factors::StratifiedMean;
+
+constexpr std::size_t kViews = 6;  // of a stratum: two triples, see strata.h
+constexpr double kRisk = 1e-6;
+constexpr double kRoundedPoints = 0x1p-30;  // see view_factors/near_planes.h
+constexpr double kRoundings = 0x1p-40;      // relative: more than those of areas, distances and sums
+
+struct DraftPatch {
+  Selection patch;
+  std::vector<const ExactPiece*> pieces;
+  Box box;
+  double unit_area = 0.0;  // in squares of the unit of Point::at
+  double area = 0.0;       // in the scene's unit of length, squared
+};
+
+DraftPatch prepared(const ExactScene& scene, const Selection& patch) {
+  DraftPatch result{patch, {}, {}, area_of(parts_of(scene, patch)), 0.0};
+  result.area = std::ldexp(result.unit_area, static_cast<int>(2 * (scene.units.exponent + scene.units.shift)));
+  if (!(result.area > 0.0 && std::isfinite(result.area))) {
+    text::refuse("patch " + scene.scene.name_of(patch) + " has no area that a double can hold",
+                 "a view factor is a mean over the patch", "leave the patch out, or scale the scene");
+  }
+  for (const FaceId face : scene.scene.faces_of(patch)) {
+    const Face& of = scene.scene.face(face);
+    for (std::uint32_t p = of.first_piece; p < of.first_piece + of.piece_count; ++p) {
+      const ExactPiece& piece = scene.pieces[p];
+      result.pieces.push_back(&piece);
+      result.box.include(piece.box.low);
+      result.box.include(piece.box.high);
+    }
+  }
+  return result;
+}
+
+bool lies_behind(const ExactScene& scene, const ExactPiece& piece, const ExactPiece& plane) {
+  return std::ranges::all_of(piece.corners,
+                             [&](std::uint32_t corner) { return side_of(plane.plane, scene.vertices[corner]) <= 0; });
+}
+
+bool is_zero(const ExactScene& scene, const DraftPatch& from, const DraftPatch& to) {
+  return std::ranges::all_of(from.pieces, [&](const ExactPiece* p) {
+    return std::ranges::all_of(
+        to.pieces, [&](const ExactPiece* q) { return lies_behind(scene, *p, *q) || lies_behind(scene, *q, *p); });
+  });
+}
+
+// At least the largest F from a point of one patch to the other.
+double largest_factor(const DraftPatch& from, const DraftPatch& to) {
+  constexpr double kRounding = 0x1p-50;  // no coordinate exceeds 1
+  const auto gap = [](double low_a, double high_a, double low_b, double high_b) {
+    return std::max({0.0, low_a - high_b - kRounding, low_b - high_a - kRounding});
+  };
+  const double x = gap(from.box.low.x, from.box.high.x, to.box.low.x, to.box.high.x);
+  const double y = gap(from.box.low.y, from.box.high.y, to.box.low.y, to.box.high.y);
+  const double z = gap(from.box.low.z, from.box.high.z, to.box.low.z, to.box.high.z);
+  const double square = x * x + y * y + z * z;
+  return to.unit_area < std::numbers::pi * square ? to.unit_area / (std::numbers::pi * square) * (1.0 + kRoundings)
+                                                  : 1.0;
+}
+
+// What the points of one row have seen, by patch, then the backs and what is open.
+class RowOfMeans {
+ public:
+  explicit RowOfMeans(const Scene& scene) : scene_(scene), means_(scene.patches().size() + 2) {
+    for (std::vector<double>& numbers : numbers_) numbers.assign(means_.size(), 0.0);
+  }
+
+  void look_around(const ExactScene& scene, const Selection& patch, std::size_t views) {
+    const std::vector<Part> parts = parts_of(scene, patch);
+    strata_ = strata_of(parts, std::max(view_factors::kFewestStrata, views / kViews));
+    const view_factors::Strata& strata = strata_;
+    std::vector<std::optional<view_factors::NearPlanes>> near(parts.size());
+    for (std::size_t s = 0; s < strata.strata.size(); ++s) {
+      const view_factors::Stratum& stratum = strata.strata[s];
+      const double share = stratum.area / strata.area;
+      for (std::size_t i = 0; i < 2; ++i) {
+        view_factors::Draws draws(0, s, i);
+        const view_factors::SmallTriangle& triangle = drawn(strata, stratum, draws);
+        if (!near[triangle.part]) near[triangle.part].emplace(scene, parts[triangle.part]);
+        for (const Point& point : triple_in(parts[triangle.part], triangle, draws, scene.units)) {
+          if (!look_from(point, *near[triangle.part], numbers_[i])) unknown_ += share / kViews;
+        }
+      }
+      add(share);
+    }
+    points_ = static_cast<double>(kViews * strata.strata.size());
+  }
+
+  static constexpr std::size_t kBackColumn = 0, kOpenColumn = 1;
+  [[nodiscard]] const StratifiedMean& mean(PatchId patch) const { return means_[index_of(patch)]; }
+  [[nodiscard]] const StratifiedMean& beside(std::size_t which) const {
+    return means_[scene_.patches().size() + which];
+  }
+  [[nodiscard]] double error(const StratifiedMean& mean) const {
+    return mean.error(kRisk, points_, strata_) + unknown_ + kRoundedPoints + kRoundings * mean.value;
+  }
+  [[nodiscard]] std::size_t points() const { return static_cast<std::size_t>(points_); }
+
+ private:
+  // False where rounding the point may change what it sees.
+  bool look_from(const Point& point, const view_factors::NearPlanes& near, std::vector<double>& numbers) {
+    const std::optional<Vec3> rounded = near.rounded(point);
+    if (!rounded) return false;
+    view(scene_, {.point = *rounded, .normal = near.normal(), .on = near.own(), .id = {}}, {}, seen_, workspace_);
+    for (const SeenPatch& one : seen_.patches) note(index_of(one.patch), one.form_factor.value, numbers);
+    note(scene_.patches().size() + kBackColumn, seen_.back.value, numbers);
+    note(scene_.patches().size() + kOpenColumn, seen_.open.value, numbers);
+    return true;
+  }
+
+  void note(std::size_t column, double value, std::vector<double>& numbers) {
+    numbers[column] += value / 3.0;
+    touched_.push_back(column);
+  }
+
+  // The two triples of a stratum.
+  void add(double share) {
+    for (const std::size_t column : touched_) {
+      if (numbers_[0][column] == 0.0 && numbers_[1][column] == 0.0) continue;
+      means_[column].add(numbers_[0][column], numbers_[1][column], share);
+      numbers_[0][column] = numbers_[1][column] = 0.0;
+    }
+    touched_.clear();
+  }
+
+  const Scene& scene_;
+  view_factors::Strata strata_;
+  std::vector<StratifiedMean> means_;
+  std::array<std::vector<double>, 2> numbers_;
+  std::vector<std::size_t> touched_;
+  WholeView seen_;
+  Workspace workspace_;
+  double points_ = 0.0, unknown_ = 0.0;
+};
+
+ViewFactor entry(const StratifiedMean& mean, const RowOfMeans& row, double largest) {
+  ViewFactor f;
+  f.claim = Claim::kStatistical;
+  f.value = std::clamp(mean.value, 0.0, 1.0);
+  const double error = row.error(mean);
+  f.lower = std::max(0.0, f.value - error);
+  f.upper = std::max(f.value, std::min({1.0, largest, f.value + error}));
+  f.cells = row.points();
+  return f;
+}
+
+void judge(ViewFactor& f, double area_from, double area_to, double accuracy) {
+  f.area_from = area_from;
+  f.area_to = area_to;
+  const double width = f.upper - f.lower;
+  f.accurate = std::max(width, area_to > 0.0 ? width * area_from / area_to : 0.0) <= accuracy;
+}
+
+void require_whole_patches(const Scene& scene, std::span<const Selection> to) {
+  for (const Selection& patch : to) {
+    const std::vector<FaceId> faces = scene.faces_of(patch);
+    const bool see_through = std::ranges::any_of(faces, [&](FaceId f) { return scene.face(f).transparent; });
+    if (!patch.face && !see_through) continue;
+    text::refuse(
+        "a column of the draft is " + std::string(patch.face ? "a face: " : "transparent: ") + scene.name_of(patch),
+        "a draft asks whole views, which show the patches that hide something",
+        patch.face ? "name patches, or add --patches faces" : "leave the patch out, or compute no draft");
+  }
+}
+
+}  // namespace
+
+Matrix draft(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
+             const DraftOptions& options, const Hooks& hooks) {
+  const kernel::StandardArithmetic arithmetic;
+  require_whole_patches(scene, to);
+  const ExactScene exact(scene);
+  std::vector<DraftPatch> rows, columns;
+  for (const Selection& patch : from) rows.push_back(prepared(exact, patch));
+  for (const Selection& patch : to) columns.push_back(prepared(exact, patch));
+  Matrix result{{{from.begin(), from.end()}, {to.begin(), to.end()}, {}}, {}, {}};
+  result.factors.entries.resize(rows.size() * columns.size());
+  if (options.backs) result.back.resize(rows.size());
+  if (options.open) result.open.resize(rows.size());
+  const int threads = options.threads > 0 ? options.threads : work::usable_threads();
+  work::parallel_for(rows.size(), threads, "rows of the draft", hooks, [&](std::size_t i) {
+    const kernel::StandardArithmetic of_thread;
+    RowOfMeans row(scene);
+    row.look_around(exact, rows[i].patch, options.views);
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+      ViewFactor& f = result.factors.entries[i * columns.size() + j];
+      const StratifiedMean& mean = row.mean(columns[j].patch.patch);
+      if (mean.value > 0.0 || !is_zero(exact, rows[i], columns[j]))
+        f = entry(mean, row, largest_factor(rows[i], columns[j]));
+      judge(f, rows[i].area, columns[j].area, options.accuracy);
+    }
+    const auto set = [&](std::vector<ViewFactor>& of, std::size_t which) {
+      if (of.empty()) return;
+      of[i] = entry(row.beside(which), row, 1.0);
+      judge(of[i], rows[i].area, 0.0, options.accuracy);
+    };
+    set(result.back, RowOfMeans::kBackColumn);
+    set(result.open, RowOfMeans::kOpenColumn);
+  });
+  return result;
+}
+
+}  // namespace exactff::matrix

@@ -1,0 +1,194 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "exactff/radiosity.h"
+#include "kernel/float_environment.h"
+#include "radiosity/balance.h"
+#include "radiosity/system.h"
+#include "scene/scene_data.h"
+#include "text/phrases.h"
+
+namespace exactff::radiosity {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr std::array<double Rgb::*, 3> kChannels = {&Rgb::r, &Rgb::g, &Rgb::b};
+constexpr std::size_t kMostNames = 3;
+
+const Material& material_of(const Scene& scene, FaceId face) { return scene.material(scene.face(face).material); }
+const Material& material_of(const Scene& scene, const Selection& patch) {
+  return material_of(scene, scene.faces_of(patch).front());
+}
+
+void require_one_material(const Scene& scene, const Selection& patch, std::vector<Problem>& problems) {
+  const std::vector<FaceId> faces = scene.faces_of(patch);
+  const Material& first = material_of(scene, faces.front());
+  for (const FaceId face : faces) {
+    const Material& other = material_of(scene, face);
+    if (other.reflectance == first.reflectance && other.radiosity == first.radiosity) continue;
+    const char* what = other.reflectance == first.reflectance ? "Ke" : "Kd";
+    problems.push_back({.file = scene.data().file,
+                        .line = scene.face(face).line,
+                        .what = "the faces of patch '" + scene.name_of(patch) + "' differ in " + what,
+                        .why = "'" + scene.name_of(faces.front()) + "' has material '" + first.name + "', '" +
+                               scene.name_of(face) + "' has '" + other.name + "'; a patch has one radiosity",
+                        .suggestion = "put the faces into separate groups, or make each a patch by --patches faces"});
+    return;
+  }
+}
+
+void require_complete(const Scene& scene, const matrix::Matrix& matrix) {
+  const ViewFactorMatrix& all = matrix.factors;
+  const std::vector<Selection> patches = patches_of(scene);
+  if (all.from == patches && all.to == patches && all.entries.size() == patches.size() * patches.size() &&
+      matrix.back.size() == patches.size() && matrix.open.size() == patches.size()) {
+    return;
+  }
+  throw std::invalid_argument("radiosity::solve needs the factors between all patches, with back and open");
+}
+
+Factors factors_of(const ViewFactorMatrix& all) {
+  Factors factors;
+  for (std::size_t i = 0; i < all.from.size(); ++i) {
+    for (std::size_t j = 0; j < all.to.size(); ++j) {
+      const ViewFactor& f = all.at(i, j);
+      if (f.upper > 0.0) factors.add({static_cast<std::uint32_t>(j), f.lower, f.value, f.upper});
+    }
+    factors.end_row();
+  }
+  return factors;
+}
+
+// --- One channel ---
+
+std::string why_unbounded(const Scene& scene, const std::vector<Selection>& patches, const Numbers& reflectances) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (reflectances[i] >= 1.0) names.push_back(scene.name_of(patches[i]));
+  }
+  if (names.empty()) {
+    return "the bounds of the view factors are so wide that they do not prove that less light is reflected than "
+           "arrives";
+  }
+  const std::size_t count = names.size();
+  if (count > kMostNames) {
+    names.resize(kMostNames - 1);
+    names.push_back(std::to_string(count - names.size()) + " others");
+  }
+  return "Kd is 1 or more on " + text::enumerate(names) +
+         ", and the bounds of the view factors do not prove that enough light is absorbed elsewhere or leaves";
+}
+
+double estimated_irradiance(std::span<const Entry> row, const Numbers& value) {
+  if (value.empty()) return kUnknown;
+  double sum = 0.0;
+  for (const Entry& entry : row) sum += entry.value * value[entry.column];
+  return sum;
+}
+
+BoundedValue between(double value, double lower, double upper) {
+  return {std::isfinite(value) ? std::clamp(value, lower, upper) : 0.5 * lower + 0.5 * upper, lower, upper};
+}
+
+void set_bounded(Channel& channel, const System& system, const Bounds& bounds) {
+  for (std::size_t i = 0; i < system.factors.size(); ++i) {
+    const auto row = system.factors.row(i);
+    const double value = bounds.value.empty() ? kUnknown : bounds.value[i];
+    channel.radiosity.push_back(between(value, bounds.lower[i], bounds.upper[i]));
+    channel.irradiance.push_back(
+        between(estimated_irradiance(row, bounds.value), sum_below(row, bounds.lower), sum_above(row, bounds.upper)));
+  }
+}
+
+void set_unbounded(Channel& channel, const System& system, const Numbers& value) {
+  for (std::size_t i = 0; i < system.factors.size(); ++i) {
+    channel.radiosity.push_back({value.empty() ? kUnknown : value[i], system.emissions[i], kInfinity});
+    channel.irradiance.push_back({estimated_irradiance(system.factors.row(i), value), 0.0, kInfinity});
+  }
+}
+
+Channel solve_channel(const Scene& scene, const matrix::Matrix& matrix, const System& system) {
+  const Bounds bounds = bounds_of(system);
+  Channel channel;
+  if (bounds.upper.empty()) {
+    channel.no_bound = why_unbounded(scene, matrix.factors.from, system.reflectances);
+    set_unbounded(channel, system, bounds.value);
+  } else {
+    set_bounded(channel, system, bounds);
+  }
+  channel.balance = balance_of(channel, system, matrix);
+  return channel;
+}
+
+void set_colours(const Scene& scene, const std::vector<Selection>& patches, double Rgb::*colour, System& system) {
+  system.reflectances.clear();
+  system.emissions.clear();
+  for (const Selection& patch : patches) {
+    const Material& material = material_of(scene, patch);
+    system.reflectances.push_back(material.reflectance.*colour);
+    system.emissions.push_back(material.radiosity.*colour);
+  }
+}
+
+void set_claims(const matrix::Matrix& matrix, Solution& solution) {
+  for (const ViewFactor& f : matrix.factors.entries) solution.claim = matrix::weaker(solution.claim, f.claim);
+  solution.claim_of_balance = solution.claim;
+  for (const auto* column : {&matrix.back, &matrix.open}) {
+    for (const ViewFactor& f : *column) {
+      solution.claim_of_balance = matrix::weaker(solution.claim_of_balance, f.claim);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Selection> patches_of(const Scene& scene) {
+  std::vector<Selection> patches;
+  std::vector<Problem> problems;
+  for (std::size_t p = 0; p < scene.patches().size(); ++p) {
+    const Selection patch{static_cast<PatchId>(p), {}, scene.id()};
+    if (scene.faces_of(patch).empty()) continue;
+    patches.push_back(patch);
+    require_one_material(scene, patch, problems);
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+  return patches;
+}
+
+Solution solve(const Scene& scene, const matrix::Matrix& matrix) {
+  const kernel::StandardArithmetic arithmetic;
+  require_complete(scene, matrix);
+  Solution solution;
+  solution.patches = matrix.factors.from;
+  for (std::size_t i = 0; i < solution.patches.size(); ++i) {
+    solution.areas.push_back(matrix.factors.at(i, 0).area_from);
+  }
+  System system{factors_of(matrix.factors), {}, {}};
+  for (std::size_t c = 0; c < kChannels.size(); ++c) {
+    const System before{{}, system.reflectances, system.emissions};
+    set_colours(scene, solution.patches, kChannels[c], system);
+    const bool is_same = c > 0 && before.reflectances == system.reflectances && before.emissions == system.emissions;
+    solution.channels[c] = is_same ? solution.channels[c - 1] : solve_channel(scene, matrix, system);
+  }
+  set_claims(matrix, solution);
+  solution.reasons_against_balance = reasons_against_one(scene, matrix);
+  return solution;
+}
+
+Solution solve(const Scene& scene, const Options& options, const Hooks& hooks) {
+  const std::vector<Selection> patches = patches_of(scene);
+  return solve(
+      scene,
+      matrix::compute(scene, patches, patches,
+                      {.factors = options.factors, .backs = true, .open = true, .threads = options.threads}, hooks));
+}
+
+std::string_view claim_text(const Solution& solution, const Channel& channel) {
+  return channel.is_bounded() ? to_string(solution.claim) : "no bound";
+}
+
+}  // namespace exactff::radiosity

@@ -1,0 +1,266 @@
+// The bounds of radiosities on random systems and in random buildings, judged by Gaussian elimination in rationals.
+#include "exactff/radiosity.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "generate/random.h"
+#include "kernel/numbers.h"
+#include "property/closed_rooms.h"
+#include "radiosity/system.h"
+#include "support/random_scenes.h"
+
+namespace exactff::radiosity {
+namespace {
+
+using generate::Random;
+using kernel::Rational;
+using kernel::to_rational;
+using validation::scaled_count;
+using validation::seed_of;
+
+using Vector = std::vector<Rational>;
+using Square = std::vector<Vector>;
+
+// a x = b, or nothing if a is singular.
+std::optional<Vector> solved(Square a, Vector b) {
+  const std::size_t n = b.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t pivot = k;
+    while (pivot < n && a[pivot][k] == 0) ++pivot;
+    if (pivot == n) return std::nullopt;
+    std::swap(a[k], a[pivot]);
+    std::swap(b[k], b[pivot]);
+    for (std::size_t i = k + 1; i < n; ++i) {
+      if (a[i][k] == 0) continue;
+      const Rational factor = a[i][k] / a[k][k];
+      for (std::size_t j = k; j < n; ++j) a[i][j] -= factor * a[k][j];
+      b[i] -= factor * b[k];
+    }
+  }
+  for (std::size_t k = n; k-- > 0;) {
+    for (std::size_t j = k + 1; j < n; ++j) b[k] -= a[k][j] * b[j];
+    b[k] /= a[k][k];
+  }
+  return b;
+}
+
+// I - rho F, where each factor of F is chosen between its bounds.
+template <class Choose>
+Square identity_without_reflected(const System& system, const Choose& choose) {
+  const std::size_t n = system.factors.size();
+  Square a(n, Vector(n, 0));
+  for (std::size_t i = 0; i < n; ++i) {
+    a[i][i] = 1;
+    for (const Entry& entry : system.factors.row(i)) {
+      a[i][entry.column] -= to_rational(system.reflectances[i]) * choose(entry);
+    }
+  }
+  return a;
+}
+Rational lower_of(const Entry& entry) { return to_rational(entry.lower); }
+Rational upper_of(const Entry& entry) { return to_rational(entry.upper); }
+
+Vector exactly(const Numbers& numbers) {
+  Vector result;
+  for (const double number : numbers) result.push_back(to_rational(number));
+  return result;
+}
+
+Vector product(const Square& a, const Vector& x) {
+  Vector result(x.size(), 0);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    for (std::size_t j = 0; j < x.size(); ++j) result[i] += a[i][j] * x[j];
+  }
+  return result;
+}
+
+// Some factors, emissions and reflectances are 0; rows add up to between 0 and `strength`.
+System random_system(Random& random, double strength) {
+  const std::size_t n = 1 + random.below(7);
+  const double widest = random.one_in(2) ? 0x1p-40 : random.between(0.0, 0.2);
+  System system;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      if (random.one_in(4)) continue;
+      const double lower = random.one_in(5) ? 0.0 : random.between(0.0, strength / static_cast<double>(n));
+      const double upper = lower + random.between(0.0, widest / static_cast<double>(n));
+      if (upper > 0.0) {
+        system.factors.add(
+            {static_cast<std::uint32_t>(j), lower, std::clamp(0.5 * lower + 0.5 * upper, lower, upper), upper});
+      }
+    }
+    system.factors.end_row();
+    system.reflectances.push_back(random.one_in(6) ? 0.0 : random.one_in(4) ? 1.0 : random.unit());
+    system.emissions.push_back(random.one_in(3) ? 0.0 : random.between(0.0, 20.0));
+  }
+  return system;
+}
+
+void expect_holds(const System& system, const Bounds& bounds, const Square& matrix, std::uint64_t s) {
+  const std::optional<Vector> b = solved(matrix, exactly(system.emissions));
+  ASSERT_TRUE(b) << s;
+  for (std::size_t i = 0; i < b->size(); ++i) {
+    EXPECT_LE(to_rational(bounds.lower[i]), (*b)[i]) << s << ' ' << i;
+    EXPECT_GE(to_rational(bounds.upper[i]), (*b)[i]) << s << ' ' << i;
+  }
+}
+
+bool all_positive(const Vector& x) {
+  return std::ranges::all_of(x, [](const Rational& number) { return number > 0; });
+}
+
+bool is_contraction(const System& system) {
+  const std::optional<Vector> z =
+      solved(identity_without_reflected(system, upper_of), Vector(system.factors.size(), 1));
+  return z && all_positive(*z);
+}
+
+TEST(RadiosityBounds, HoldForEveryMatrixBetweenItsBounds) {
+  std::size_t bounded = 0, unbounded = 0;
+  for (std::uint64_t s = 0; s < scaled_count(600); ++s) {
+    Random random(seed_of(s));
+    const System system = random_system(random, s % 3 == 0 ? 8.0 : 2.5);
+    const Bounds bounds = bounds_of(system);
+    const bool contracts = is_contraction(system);
+    EXPECT_TRUE(!contracts || !bounds.upper.empty()) << s;
+    (bounds.upper.empty() ? unbounded : bounded) += 1;
+    if (bounds.upper.empty() || !contracts) continue;  // else it may be singular beyond the patches that are reached
+    expect_holds(system, bounds, identity_without_reflected(system, lower_of), s);
+    expect_holds(system, bounds, identity_without_reflected(system, upper_of), s);
+    for (int k = 0; k < 4; ++k) {
+      const auto between = [&](const Entry& e) -> Rational {
+        const Rational t = k == 0 ? Rational(static_cast<int>(random.below(2))) : to_rational(random.unit());
+        return lower_of(e) + t * (upper_of(e) - lower_of(e));
+      };
+      expect_holds(system, bounds, identity_without_reflected(system, between), s);
+    }
+  }
+  EXPECT_GT(bounded, scaled_count(100));
+  EXPECT_GT(unbounded, scaled_count(50));
+}
+
+TEST(RadiosityBounds, AreThoseOfTheCornersUpToRoundings) {
+  std::size_t judged = 0;
+  for (std::uint64_t s = 0; s < scaled_count(200); ++s) {
+    Random random(seed_of(s));
+    const System system = random_system(random, 0.9);
+    const Bounds bounds = bounds_of(system);
+    if (bounds.upper.empty() || !is_contraction(system)) continue;
+    const Vector low = *solved(identity_without_reflected(system, lower_of), exactly(system.emissions));
+    const Vector high = *solved(identity_without_reflected(system, upper_of), exactly(system.emissions));
+    const Rational largest = std::ranges::max(high) * to_rational(0x1p-40);
+    for (std::size_t i = 0; i < low.size(); ++i, ++judged) {
+      EXPECT_LE(low[i] - to_rational(bounds.lower[i]), largest) << s << ' ' << i;
+      EXPECT_LE(to_rational(bounds.upper[i]) - high[i], largest) << s << ' ' << i;
+      EXPECT_TRUE(high[i] != 0 || bounds.upper[i] == 0.0) << s << ' ' << i;  // no light reaches it
+      EXPECT_TRUE(system.reflectances[i] != 0.0 || bounds.upper[i] == system.emissions[i]) << s << ' ' << i;
+    }
+  }
+  EXPECT_GT(judged, scaled_count(200));
+}
+
+// Vectors at the limit of each inequality, and their neighbours.
+TEST(RadiosityBounds, InequalitiesAreAcceptedOnlyIfTheyHoldExactly) {
+  std::size_t accepted = 0, refused = 0;
+  const auto judge = [&](bool says, bool holds) {
+    EXPECT_TRUE(!says || holds);
+    (says ? accepted : refused) += 1;
+  };
+  for (std::uint64_t s = 0; s < scaled_count(300); ++s) {
+    Random random(seed_of(s));
+    const System system = random_system(random, 1.2);
+    const Square a_upper = identity_without_reflected(system, upper_of);
+    const Square a_lower = identity_without_reflected(system, lower_of);
+    const Vector e = exactly(system.emissions);
+    const auto nearly = [&](const std::optional<Vector>& x) {
+      Numbers result;
+      for (const Rational& number : *x) {
+        double d = kernel::nearest_double(number);
+        for (int k = random.integer(-3, 3); k != 0; k -= k > 0 ? 1 : -1) d = std::nextafter(d, k > 0 ? 1e300 : -1e300);
+        result.push_back(d);
+      }
+      return result;
+    };
+    const auto w = solved(a_upper, e), v = solved(a_lower, e), z = solved(a_upper, Vector(e.size(), 1));
+    if (!w || !v || !z) continue;
+    for (int k = 0; k < 4; ++k) {
+      const Numbers over = nearly(w), under = nearly(v), tiny = nearly(z);
+      const Vector of_over = product(a_upper, exactly(over)), of_under = product(a_lower, exactly(under));
+      const auto all = [&](const auto& holds) {
+        for (std::size_t i = 0; i < e.size(); ++i) {
+          if (!holds(i)) return false;
+        }
+        return true;
+      };
+      judge(is_supersolution(system, over), all([&](std::size_t i) { return of_over[i] >= e[i] && over[i] >= 0.0; }));
+      judge(is_subsolution(system, under), all([&](std::size_t i) { return of_under[i] <= e[i] && under[i] >= 0.0; }));
+      judge(is_contracting(system, tiny), all_positive(product(a_upper, exactly(tiny))) && all_positive(exactly(tiny)));
+    }
+  }
+  EXPECT_GT(accepted, scaled_count(100));
+  EXPECT_GT(refused, scaled_count(100));
+}
+
+// --- Scenes ---
+
+void give_random_colours(generate::PlainScene& plain, Random& random) {
+  for (generate::PlainPatch& patch : plain.patches) {
+    const auto channels = [&](double largest) {
+      return Rgb{largest * random.unit(), largest * random.unit(), largest * random.unit()};
+    };
+    const bool emits = &patch == &plain.patches.front() || random.one_in(4);
+    patch.material = "material of " + patch.name;
+    plain.materials.push_back(
+        {.name = patch.material, .reflectance = channels(0.8), .radiosity = emits ? channels(10.0) : Rgb{}});
+  }
+}
+
+Vector exact_radiosities(const Scene& scene, const matrix::Matrix& matrix, double Rgb::*colour, double t) {
+  const ViewFactorMatrix& all = matrix.factors;
+  const std::size_t n = all.from.size();
+  Square a(n, Vector(n, 0));
+  Vector e(n, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Material& m = scene.material(scene.face(scene.faces_of(all.from[i]).front()).material);
+    e[i] = to_rational(m.radiosity.*colour);
+    for (std::size_t j = 0; j < n; ++j) {
+      const Rational low = to_rational(all.at(i, j).lower), high = to_rational(all.at(i, j).upper);
+      a[i][j] = (i == j ? 1 : 0) - to_rational(m.reflectance.*colour) * (low + to_rational(t) * (high - low));
+    }
+  }
+  return *solved(std::move(a), std::move(e));
+}
+
+TEST(Radiosity, OfRandomBuildingsIsBoundedInEveryChannel) {
+  for (std::uint64_t s = 0; s < scaled_count(4); ++s) {
+    Random random(seed_of(s));
+    generate::PlainScene plain = validation::random_building(random).scene;
+    give_random_colours(plain, random);
+    const Scene scene = generate::build(plain);
+    const std::vector<Selection> patches = patches_of(scene);
+    const matrix::Matrix matrix = matrix::compute(
+        scene, patches, patches, {.factors = {.accuracy = 1e-2, .budget = 60}, .backs = true, .open = true});
+    const Solution solution = solve(scene, matrix);
+    EXPECT_TRUE(!solution.reasons_against_balance.empty() || is_balanced(solution)) << s;
+    const std::array<double Rgb::*, 3> colours = {&Rgb::r, &Rgb::g, &Rgb::b};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Channel& channel = solution.channels[c];
+      if (!channel.is_bounded()) continue;
+      for (const double t : {0.0, 0.5, 1.0}) {
+        const Vector b = exact_radiosities(scene, matrix, colours[c], t);
+        for (std::size_t i = 0; i < b.size(); ++i) {
+          EXPECT_LE(to_rational(channel.radiosity[i].lower), b[i]) << s << ' ' << c << ' ' << i;
+          EXPECT_GE(to_rational(channel.radiosity[i].upper), b[i]) << s << ' ' << c << ' ' << i;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace exactff::radiosity

@@ -1,0 +1,83 @@
+"""Radiosities after all bounces, judged by NumPy's dense solver."""
+
+import csv
+
+import numpy as np
+import pytest
+
+import exactff
+from support import CORNELL, program, same_bits
+
+BOX = exactff.Scene.read(CORNELL)
+CORNERS = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+SIDES = [[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [3, 2, 6, 7], [0, 3, 7, 4], [1, 5, 6, 2]]  # fronts look inward
+
+
+def room(colours):
+    """A closed room, every side a patch with a reflectance and an emission."""
+    names = [f"side {i}" for i in range(6)]
+    materials = {name: {"reflectance": kd, "radiosity": ke} for name, (kd, ke) in zip(names, colours)}
+    return exactff.Scene(CORNERS, SIDES, list(range(6)), names, materials)
+
+
+def cube(reflectance, emission):
+    return room([(reflectance, emission)] * 6)
+
+
+def test_radiosities_are_those_of_a_dense_solver():
+    random = np.random.default_rng(1)
+    kd, ke = 0.9 * random.random((6, 3)), 10.0 * random.random((6, 3))
+    ke[2:] = 0.0
+    scene = room(list(zip(kd.tolist(), ke.tolist())))
+    found = exactff.radiosity(scene, accuracy=1e-3)
+    matrix = exactff.view_factor_matrix(scene, accuracy=1e-3)
+    assert found.names == matrix.from_names and found.no_bound == ("", "", "")
+    np.testing.assert_array_equal(found.areas, matrix.areas_from)
+    for c in range(3):
+        for factors in matrix.lower, matrix.value, matrix.upper:
+            b = np.linalg.solve(np.eye(len(kd)) - kd[:, c:c + 1] * factors, ke[:, c])
+            assert (found.lower[:, c] <= b + 1e-12 * b.max()).all() and (b <= found.upper[:, c] + 1e-12 * b.max()).all()
+        b = np.linalg.solve(np.eye(len(kd)) - kd[:, c:c + 1] * matrix.value, ke[:, c])
+        np.testing.assert_allclose(found.value[:, c], b, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(found.irradiance[:, c], matrix.value @ b, rtol=1e-12, atol=1e-12)
+    assert (found.irradiance_lower <= found.irradiance).all() and (found.irradiance <= found.irradiance_upper).all()
+
+
+def test_radiosities_are_the_programs(tmp_path):
+    scene = cube([0.5, 0.25, 0.0], [1.0, 2.0, 3.0])
+    told = []
+    found = exactff.radiosity(scene, accuracy=1e-4, progress=lambda done, total: told.append((done, total)))
+    (tmp_path / "cube.mtl").write_text("newmtl m\nKd 0.5 0.25 0\nKe 1 2 3\n")
+    (tmp_path / "cube.obj").write_text(
+        "mtllib cube.mtl\nusemtl m\n" + "".join("v {} {} {}\n".format(*v) for v in CORNERS)
+        + "".join("g side{}\nf {} {} {} {}\n".format(i, *(k + 1 for k in f)) for i, f in enumerate(SIDES)))
+    program("radiosity", tmp_path / "cube.obj", "--accuracy", "1e-4", "-o", tmp_path / "b.csv")
+    with open(tmp_path / "b.csv", newline="") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    for array, column in ((found.value, "radiosity"), (found.lower, "lower"), (found.upper, "upper"),
+                          (found.irradiance, "irradiance"), (found.irradiance_upper, "irradiance_upper")):
+        assert array.shape == (6, 3) and same_bits(array.ravel(), [float(row[column]) for row in rows])
+    assert {row["claim"] for row in rows} == {found.claim} == {"topology-proved"}
+    assert told[-1][0] == told[-1][1]
+    truth = np.array([2.0, 8.0 / 3.0, 3.0])  # E / (1 - rho)
+    assert (found.lower <= truth).all() and (truth <= found.upper).all() and (found.upper - found.lower < 1e-2).all()
+    assert found.reasons_against_balance == () and (found.balance.back == 0.0).all()
+    gone = found.balance.absorbed + found.balance.back + found.balance.open
+    assert (gone[:, 0] <= found.balance.emitted[:, 1]).all() and (found.balance.emitted[:, 0] <= gone[:, 1]).all()
+
+
+def test_without_a_bound_there_is_a_warning():
+    with pytest.warns(exactff.ModellingWarning, match="no bound for red .Kd is 1 or more on side 0"):
+        found = exactff.radiosity(cube([1.0, 0.5, 0.5], [1.0, 1.0, 1.0]), accuracy=1e-2)
+    assert np.isinf(found.upper[:, 0]).all() and np.isfinite(found.upper[:, 1:]).all()
+    assert found.no_bound[0] and not found.no_bound[1]
+
+
+@pytest.mark.parametrize("call", [
+    lambda: exactff.radiosity(BOX, accuracy=0.0),
+    lambda: exactff.radiosity(BOX, budget=0),
+    lambda: exactff.radiosity(BOX, threads=-1),
+])
+def test_bad_arguments_are_refused(call):
+    with pytest.raises(exactff.InputError):
+        call()

@@ -1,0 +1,288 @@
+// Radiosities after all bounces: rooms and plates whose radiosities are known, the balance of light, the command.
+#include "exactff/radiosity.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "exactff/scene_files.h"
+#include "generate/plain_scene.h"
+#include "support/program.h"
+
+namespace exactff::radiosity {
+namespace {
+
+using generate::PlainScene;
+
+constexpr double kOpposite = 0.199824895698387383041599251193;  // squares of side 1, 1 apart
+
+void add(PlainScene& scene, const std::string& name, const std::vector<Vec3>& corners, const Rgb& kd, const Rgb& ke) {
+  generate::PlainPatch& patch = scene.patch(name);
+  scene.add_ring(patch, corners);
+  patch.material = "of " + name;
+  scene.materials.push_back({.name = patch.material, .reflectance = kd, .radiosity = ke});
+}
+
+// Fronts look inward.
+PlainScene cube(const Rgb& kd, const Rgb& ke) {
+  PlainScene scene;
+  add(scene, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, kd, ke);
+  add(scene, "left", {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}}, kd, ke);
+  add(scene, "right", {{1, 0, 0}, {1, 0, 1}, {1, 1, 1}, {1, 1, 0}}, kd, ke);
+  add(scene, "near", {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}}, kd, ke);
+  add(scene, "far", {{0, 1, 0}, {1, 1, 0}, {1, 1, 1}, {0, 1, 1}}, kd, ke);
+  add(scene, "ceiling", {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}, kd, ke);
+  return scene;
+}
+
+const Rgb kLowerKd{0.1, 0.25, 0.5}, kLowerKe{1, 2, 3}, kUpperKd{0.75, 0.125, 0.9}, kUpperKe{8, 0, 2};
+
+// Squares of side 1 that look at each other.
+PlainScene plates() {
+  PlainScene scene;
+  add(scene, "below", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, kLowerKd, kLowerKe);
+  add(scene, "above", {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}, kUpperKd, kUpperKe);
+  return scene;
+}
+
+Solution solution_of(const PlainScene& scene, double accuracy) {
+  return solve(generate::build(scene), {.factors = {.accuracy = accuracy}});
+}
+
+void expect_holds(const BoundedValue& q, double truth, double width) {
+  EXPECT_LE(q.lower, truth);
+  EXPECT_GE(q.upper, truth);
+  EXPECT_LE(q.lower, q.value);
+  EXPECT_GE(q.upper, q.value);
+  EXPECT_LE(q.upper - q.lower, width);
+}
+
+// In a closed room in which all patches are alike, B = E / (1 - rho), whatever the view factors.
+TEST(Radiosity, OfAFurnaceIsEmissionOverAbsorption) {
+  const Solution solution = solution_of(cube({0.5, 0.75, 0.0}, {1, 3, 0.1}), 1e-5);
+  for (std::size_t i = 0; i < 6; ++i) {
+    expect_holds(solution.channels[0].radiosity[i], 2.0, 2e-3);
+    expect_holds(solution.channels[1].radiosity[i], 12.0, 2e-2);
+    expect_holds(solution.channels[1].irradiance[i], 12.0, 2e-2);
+    expect_holds(solution.channels[2].radiosity[i], 0.1, 0.0);
+    expect_holds(solution.channels[2].irradiance[i], 0.1, 1e-4);
+  }
+  EXPECT_TRUE(solution.is_bounded());
+  EXPECT_EQ(solution.claim, Claim::kTopologyProved);
+  EXPECT_EQ(solution.reasons_against_balance, std::vector<std::string>{});
+  EXPECT_TRUE(is_balanced(solution));
+  EXPECT_EQ(solution.channels[0].balance.back.upper, 0.0);
+}
+
+TEST(Radiosity, OfTwoPlatesIsTheClosedFormInEachChannel) {
+  const Solution solution = solution_of(plates(), 1e-9);
+  for (const auto& [c, colour] : {std::pair{0, &Rgb::r}, {1, &Rgb::g}, {2, &Rgb::b}}) {
+    const double rho = kLowerKd.*colour, other_rho = kUpperKd.*colour, e = kLowerKe.*colour, other_e = kUpperKe.*colour;
+    const double loss = 1.0 - rho * other_rho * kOpposite * kOpposite;
+    const double below = (e + rho * kOpposite * other_e) / loss, above = (other_e + other_rho * kOpposite * e) / loss;
+    const Channel& channel = solution.channels[static_cast<std::size_t>(c)];
+    expect_holds(channel.radiosity[0], below, 1e-7);
+    expect_holds(channel.radiosity[1], above, 1e-7);
+    expect_holds(channel.irradiance[0], kOpposite * above, 1e-7);
+    const Balance& balance = channel.balance;
+    EXPECT_LE(balance.open.lower, (1.0 - kOpposite) * (below + above));
+    EXPECT_GE(balance.open.upper, (1.0 - kOpposite) * (below + above));
+    EXPECT_NEAR(balance.emitted.lower, e + other_e, 1e-12);
+    EXPECT_NEAR(balance.absorbed.upper, kOpposite * ((1.0 - rho) * above + (1.0 - other_rho) * below), 1e-6);
+  }
+  EXPECT_TRUE(is_balanced(solution));
+}
+
+TEST(Radiosity, OfABlackPatchIsItsEmissionAndOfADarkOneIsZero) {
+  PlainScene scene = plates();
+  add(scene, "aside", {{5, 0, 0}, {5, 1, 0}, {6, 1, 0}, {6, 0, 0}}, {1, 1, 1}, {0, 0, 0});  // it looks down
+  scene.materials[0].reflectance = {0, 0, 0};
+  const Solution solution = solution_of(scene, 1e-3);
+  expect_holds(solution.channels[2].radiosity[0], 3.0, 0.0);
+  expect_holds(solution.channels[2].radiosity[2], 0.0, 0.0);
+  expect_holds(solution.channels[2].irradiance[2], 0.0, 0.0);
+}
+
+TEST(Radiosity, OfAClosedRoomOfReflectanceOneHasNoUpperBound) {
+  PlainScene room = cube({1, 0.5, 1}, {1, 1, 0});
+  const Solution solution = solution_of(room, 1e-4);
+  EXPECT_FALSE(solution.channels[0].is_bounded());
+  EXPECT_NE(solution.channels[0].no_bound.find("Kd is 1 or more on floor, left and 4 others"), std::string::npos)
+      << solution.channels[0].no_bound;
+  for (const BoundedValue& q : solution.channels[0].radiosity) {
+    EXPECT_EQ(q.lower, 1.0);
+    EXPECT_EQ(q.upper, std::numeric_limits<double>::infinity());
+  }
+  EXPECT_EQ(claim_text(solution, solution.channels[0]), "no bound");
+  EXPECT_TRUE(solution.channels[1].is_bounded());
+  expect_holds(solution.channels[1].radiosity[0], 2.0, 1e-2);
+  EXPECT_TRUE(solution.channels[2].is_bounded());  // nothing emits
+  expect_holds(solution.channels[2].radiosity[0], 0.0, 0.0);
+  EXPECT_FALSE(solution.is_bounded());
+  EXPECT_TRUE(is_balanced(solution));  // as far as is known
+}
+
+TEST(Radiosity, SaysThatWidthsAreToBlame) {
+  const Solution solution = solution_of(cube({0.95, 0.95, 0.95}, {1, 1, 1}), 0.2);
+  EXPECT_FALSE(solution.is_bounded());
+  EXPECT_NE(solution.channels[0].no_bound.find("so wide"), std::string::npos);
+  EXPECT_FALSE(std::isnan(solution.channels[0].radiosity[0].value));
+}
+
+TEST(Radiosity, RefusesPatchesOfSeveralMaterialsByName) {
+  SceneBuilder builder("room.obj");
+  for (const Vec3& v : {Vec3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}) builder.add_vertex(v);
+  const MaterialId grey = builder.add_material({.name = "grey", .reflectance = {0.5, 0.5, 0.5}});
+  const MaterialId light =
+      builder.add_material({.name = "light", .reflectance = {0.5, 0.5, 0.5}, .radiosity = {1, 1, 1}});
+  const MaterialId white = builder.add_material({.name = "white", .reflectance = {0.9, 0.5, 0.5}});
+  builder.add_face(builder.patch("wall"), grey, {{0, 1, 2}}, 7);
+  builder.add_face(builder.patch("wall"), light, {{3, 4, 5}}, 8);
+  builder.add_face(builder.patch("sky"), grey, {{0, 1, 3}}, 9);
+  builder.add_face(builder.patch("sky"), white, {{0, 1, 4}}, 10);
+  const Scene scene = builder.build();
+  try {
+    (void)solve(scene);
+    FAIL();
+  } catch (const InputError& error) {
+    ASSERT_EQ(error.problems().size(), 2U);
+    EXPECT_EQ(error.problems()[0].message().find("room.obj:8: the faces of patch 'wall' differ in Ke"), 0U)
+        << error.problems()[0].message();
+    EXPECT_EQ(error.problems()[1].message().find("room.obj:10: the faces of patch 'sky' differ in Kd"), 0U)
+        << error.problems()[1].message();
+  }
+}
+
+TEST(Radiosity, NeedsTheFactorsBetweenAllPatches) {
+  const Scene scene = generate::build(plates());
+  const std::vector<Selection> patches = patches_of(scene);
+  const matrix::Options options{.factors = {.accuracy = 0.1}, .backs = true, .open = true};
+  EXPECT_THROW((void)solve(scene, matrix::compute(scene, patches, {&patches[0], 1}, options)), std::invalid_argument);
+  EXPECT_THROW((void)solve(scene, matrix::compute(scene, patches, patches, {.factors = {.accuracy = 0.1}})),
+               std::invalid_argument);
+}
+
+// A factor that is wrong breaks the balance.
+TEST(Radiosity, TheBalanceTestsTheViewFactors) {
+  const Scene scene = generate::build(plates());
+  const std::vector<Selection> patches = patches_of(scene);
+  matrix::Matrix matrix =
+      matrix::compute(scene, patches, patches, {.factors = {.accuracy = 1e-4}, .backs = true, .open = true});
+  EXPECT_TRUE(is_balanced(solve(scene, matrix)));
+  for (double ViewFactor::*number : {&ViewFactor::value, &ViewFactor::lower, &ViewFactor::upper}) {
+    matrix.open[0].*number -= 1e-3;
+  }
+  EXPECT_FALSE(is_balanced(solve(scene, matrix)));
+}
+
+TEST(Radiosity, MakesTheWeakestClaimOfItsEntries) {
+  const Scene scene = generate::build(plates());
+  const std::vector<Selection> patches = patches_of(scene);
+  matrix::Matrix matrix =
+      matrix::compute(scene, patches, patches, {.factors = {.accuracy = 1e-2}, .backs = true, .open = true});
+  EXPECT_EQ(solve(scene, matrix).claim, Claim::kTopologyProved);
+  matrix.open[1].claim = Claim::kStatistical;
+  EXPECT_EQ(solve(scene, matrix).claim, Claim::kTopologyProved);
+  EXPECT_EQ(solve(scene, matrix).claim_of_balance, Claim::kStatistical);
+  matrix.factors.entries[1].claim = Claim::kStatistical;
+  EXPECT_EQ(solve(scene, matrix).claim, Claim::kStatistical);
+}
+
+// Radiosities far from 1, up to the limits of doubles.
+TEST(Radiosity, OfAnySizeIsBounded) {
+  for (const double scale : {1e-300, 1e-310, 1e150, 1e300}) {
+    const Solution solution = solution_of(cube({0.5, 0.5, 0.5}, {scale, scale, scale}), 1e-4);
+    ASSERT_TRUE(solution.is_bounded()) << scale;
+    expect_holds(solution.channels[0].radiosity[0], 2.0 * scale, 1e-2 * scale);
+  }
+  const Solution solution = solution_of(cube({0.99, 0.99, 0.99}, {1e308, 1e308, 1e308}), 1e-4);
+  EXPECT_FALSE(solution.is_bounded());
+}
+
+// --- The command ---
+
+class RadiosityCommand : public testing::Test {
+ protected:
+  [[nodiscard]] validation::ProgramRun run(const std::string& scene, std::vector<std::string> flags) const {
+    flags.insert(flags.begin(), {"radiosity", scene, "--accuracy", "1e-3"});
+    return validation::run_program(EXACTFF_PROGRAM, flags);
+  }
+  [[nodiscard]] std::string write(const PlainScene& scene) const {
+    (void)folder_.write("scene.mtl", generate::to_mtl(scene));
+    return folder_.write("scene.obj", generate::to_obj(scene, "scene.mtl")).string();
+  }
+  [[nodiscard]] std::string file(const char* name) const { return (folder_.path() / name).string(); }
+
+  const validation::TemporaryDirectory folder_;
+};
+
+TEST_F(RadiosityCommand, PrintsTheSameNumbersInEveryForm) {
+  const std::string scene = write(plates());
+  const Solution solution = solve(read_scene(scene), {.factors = {.accuracy = 1e-3}});
+  const auto plain = run(scene, {"--plain", "-o", file("b.csv")});
+  EXPECT_EQ(plain.exit_code, 0);
+  std::istringstream lines(plain.output);
+  std::string name, channel, value, lower, upper, claim;
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      lines >> name >> channel >> value >> lower >> upper >> claim;
+      const BoundedValue& b = solution.channels[c].radiosity[i];
+      EXPECT_EQ(name, i == 0 ? "below" : "above");
+      EXPECT_EQ(channel, kChannelNames[c]);
+      EXPECT_EQ(std::stod(value), b.value);
+      EXPECT_EQ(std::stod(lower), b.lower);
+      EXPECT_EQ(std::stod(upper), b.upper);
+      EXPECT_EQ(claim, "topology-proved");
+    }
+  }
+  const std::string csv = validation::text_of(file("b.csv"));
+  EXPECT_EQ(run(scene, {"--csv"}).output, csv);
+  EXPECT_NE(csv.find("\nabove,green,"), std::string::npos);
+  EXPECT_EQ(run(scene, {"-o", file("b.csv")}).exit_code, 2);
+  const auto json = nlohmann::json::parse(run(scene, {"--json"}).output);
+  EXPECT_EQ(json["patches"][1]["blue"]["radiosity"]["upper"], solution.channels[2].radiosity[1].upper);
+  EXPECT_EQ(json["channels"]["red"]["balance"]["open"]["lower"], solution.channels[0].balance.open.lower);
+  const std::string table = run(scene, {}).output;
+  EXPECT_NE(table.find("Within the bounds, what is emitted is what is absorbed, meets backs or leaves."),
+            std::string::npos)
+      << table;
+}
+
+TEST_F(RadiosityCommand, WithoutABoundHasTheExitCodeThree) {
+  const std::string scene = write(cube({1, 1, 1}, {1, 1, 1}));
+  const auto plain = run(scene, {"--plain"});
+  EXPECT_EQ(plain.exit_code, 3);
+  EXPECT_NE(plain.output.find("\t1\tinf\tno bound\n"), std::string::npos) << plain.output;
+  const auto csv = run(scene, {"--csv"});
+  EXPECT_EQ(csv.exit_code, 3);
+  EXPECT_NE(csv.output.find(",no bound,"), std::string::npos);
+  EXPECT_EQ(csv.output.find("inf"), std::string::npos);
+  const auto json = nlohmann::json::parse(run(scene, {"--json"}).output);
+  EXPECT_FALSE(json["patches"][0]["red"]["radiosity"].contains("upper"));
+  EXPECT_TRUE(json["channels"]["red"].contains("no_bound"));
+}
+
+TEST_F(RadiosityCommand, WritesColoursForParaView) {
+  const std::string scene = write(plates());
+  EXPECT_EQ(run(scene, {"--vtk", file("b.obj")}).exit_code, 2);
+  EXPECT_EQ(run(scene, {"--vtk", file("b.vtp")}).exit_code, 0);
+  const std::string text = validation::text_of(file("b.vtp"));
+  for (const char* name : {"radiosity", "lower", "upper", "irradiance"}) {
+    EXPECT_NE(text.find("Name=\"" + std::string(name) + "\" NumberOfComponents=\"3\""), std::string::npos) << name;
+  }
+}
+
+// The plate above, alone and turned round, shines from its back.
+TEST_F(RadiosityCommand, BacksOfTwoSidedPatchesEmit) {
+  const std::string scene = write(plates());
+  const auto both = run(scene, {"--two-sided", "above", "--plain"});
+  EXPECT_EQ(both.exit_code, 0);
+  EXPECT_NE(both.output.find("above (back)\tred\t8\t8\t8\t"), std::string::npos) << both.output;
+}
+
+}  // namespace
+}  // namespace exactff::radiosity
