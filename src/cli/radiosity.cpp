@@ -337,6 +337,7 @@ Command add_radiosity(CLI::App& app) {
   command->add_option("--budget", args->factors.budget, "Largest number of cells for a view factor")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
       ->capture_default_str();
+  command->add_flag("--certify", args->factors.certify, "Prove the quadrature, too: view factors are certified");
   add_outputs(*command, *args);
   command->add_option("--threads", args->threads, "Number of threads (default: all); it does not affect the values")
       ->check(CLI::Range(0, 1024));

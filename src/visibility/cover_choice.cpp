@@ -77,26 +77,35 @@ bool CoverChoice::corners_seem_hidden(const Outlines& outlines, std::size_t sour
   });
 }
 
-// Of the plane with the normal across_view_, where the normal's product with every point is 1.
+// Corners are shared by neighbours: one division for each.
+void CoverChoice::find_depths(const Outlines& outlines) {
+  const Vec3 view = kernel::to_vec3(across_view_);
+  inverse_depths_.resize(outlines.corner_count());
+  for (CornerId corner = 0; corner < inverse_depths_.size(); ++corner) {
+    const Outlines::Corner& c = outlines.corner(corner);
+    const double along = dot(view, c.t);
+    inverse_depths_[corner] = along >= kLeastAhead * c.size ? 1.0 / along : kInfinity;
+  }
+}
+
+// In the plane with the normal across_view_, where the normal's product with every point is 1. Infinite or NaN where a
+// corner is not ahead.
 double CoverChoice::size(const Outlines& outlines, OutlineId id) const {
   const Outline& outline = outlines.outline(id);
-  const Approx3& a = outlines.corner(outlines.edge(outline.first).a).t;
-  const auto depth = [&](CornerId corner) {
-    const Outlines::Corner& c = outlines.corner(corner);
-    const double along = dot(kernel::to_vec3(across_view_), c.t);
-    return along >= kLeastAhead * c.size ? along : 0.0;
-  };
+  const auto edges = outlines.edges().subspan(outline.first, outline.count);
+  const Approx3& a = outlines.corner(edges.front().a).t;
   double doubled = 0.0;
-  double last = depth(outlines.edge(outline.first + 1).a);
-  for (EdgeId edge = outline.first + 1; edge + 1 < outline.first + outline.count; ++edge) {
-    const double next = depth(outlines.edge(edge).b);
-    doubled += dot(outlines.edge(edge).normal, a) / (last * next);
+  double last = inverse_depths_[edges[1].a];
+  for (const Outlines::Edge& edge : edges.subspan(1, edges.size() - 2)) {
+    const double next = inverse_depths_[edge.b];
+    doubled += dot(edge.normal, a) * last * next;
     last = next;
   }
-  return std::abs(doubled) / depth(outlines.edge(outline.first).a);  // infinite or NaN where a corner is not ahead
+  return std::abs(doubled) * inverse_depths_[edges.front().a];
 }
 
 bool CoverChoice::find_largest(const Outlines& outlines, std::size_t source_count) {
+  find_depths(outlines);
   double whole = 0.0;
   for (OutlineId s = 0; s < source_count; ++s) whole += size(outlines, s);
   if (!(whole > 0.0 && whole < kInfinity)) return false;

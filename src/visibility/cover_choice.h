@@ -40,12 +40,14 @@ class CoverChoice {
   void find_points(const Outlines& outlines, std::size_t source_count);
   [[nodiscard]] bool corners_seem_hidden(const Outlines& outlines, std::size_t source_count);
   [[nodiscard]] bool find_largest(const Outlines& outlines, std::size_t source_count);
+  void find_depths(const Outlines& outlines);
   [[nodiscard]] double size(const Outlines& outlines, OutlineId id) const;
   [[nodiscard]] static bool seems_hidden(const Outlines& outlines, OutlineId by, const kernel::Approx3& direction);
 
   kernel::Approx3 across_view_;
   std::vector<kernel::Approx3> corners_, points_;  // of the source: near its corners, and elsewhere
   std::vector<OutlineId> across_;                  // occluders that reach beyond the source's edges
+  std::vector<double> inverse_depths_;             // by corner, along the view; infinite where it is not ahead
   std::vector<Shadow> largest_;                    // in descending order
   std::vector<OutlineId> chosen_;
   std::size_t most_ = 0;
