@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,7 +31,9 @@ struct Options {
   ViewFactorOptions factors;
   bool backs = false;  // also compute what meets the backs of faces
   bool open = false;   // also compute what meets nothing
-  int threads = 0;     // 0: all; does not affect the result
+  // Largest number of cells for an entry of these two, if that is less than factors.budget.
+  std::size_t budget_beside = std::numeric_limits<std::size_t>::max();
+  int threads = 0;  // 0: all; does not affect the result
 };
 
 struct Matrix {
@@ -104,6 +107,7 @@ inline constexpr std::string_view kOpen = "(open)";
 // A row for each entry: from,to,factor,lower,upper,claim,accurate,area_from,area_to,cells,event_cells. Doubles read
 // back to the same bits.
 [[nodiscard]] std::string csv_text(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options);
+[[nodiscard]] std::string csv_text(const Scene& scene, const Matrix& draft, const DraftOptions& options);
 
 // A matrix as its CSV file has it: with names instead of patches, otherwise to the same bits.
 struct Table {

@@ -269,12 +269,20 @@ void write_vtk(const MatrixArguments& args, const Scene& scene, const matrix::Ma
                    args.vtk);
 }
 
-void write_files(const MatrixArguments& args, const Scene& scene, const ViewFactorOptions& options,
+matrix::DraftOptions draft_options(const MatrixArguments& args, const matrix::Options& options) {
+  return {options.factors.accuracy, args.views, options.backs, options.open, options.threads};
+}
+
+void write_files(const MatrixArguments& args, const Scene& scene, const matrix::Options& options,
                  const matrix::Matrix& matrix) {
   const auto write_text = [](const std::string& file, const auto& text) {
     if (!file.empty()) write_whole_file(file, text());
   };
-  if (!args.keeps_work()) write_text(args.csv, [&] { return csv_text(scene, matrix, options); });
+  if (!args.keeps_work())
+    write_text(args.csv, [&] {
+      return args.draft ? csv_text(scene, matrix, draft_options(args, options))
+                        : csv_text(scene, matrix, options.factors);
+    });
   if (!args.npz.empty()) write_npz(scene, matrix, args.npz);
   write_text(args.view3d, [&] { return view3d_text(scene, matrix); });
   write_text(args.energyplus, [&] { return energyplus_text(scene, matrix, args.zone); });
@@ -302,10 +310,6 @@ void check_content(const MatrixArguments& args, const Scene& scene, const std::v
   const matrix::Matrix empty{{from, to, std::vector<ViewFactor>(from.size() * to.size())}, {}, {}};
   if (!args.view3d.empty()) (void)view3d_text(scene, empty);
   if (!args.energyplus.empty()) (void)energyplus_text(scene, empty, args.zone);
-}
-
-matrix::DraftOptions draft_options(const MatrixArguments& args, const matrix::Options& options) {
-  return {options.factors.accuracy, args.views, options.backs, options.open, options.threads};
 }
 
 // A request and the scene that it refers to.
@@ -336,9 +340,9 @@ matrix::Matrix compute(const MatrixArguments& args, const MatrixJob& job) {
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
   const matrix::Request& request = job.request;
-  matrix::Matrix result =
-      args.draft ? draft(job.scene, request.from, request.to, draft_options(args, request.options), hooks)
-                 : matrix::compute(job.scene, request.from, request.to, request.options, hooks);
+  matrix::Matrix result = args.draft
+                              ? draft(job.scene, request.from, request.to, draft_options(args, request.options), hooks)
+                              : matrix::compute(job.scene, request.from, request.to, request.options, hooks);
   bar.clear();
   return result;
 }
@@ -355,7 +359,7 @@ void print_summary(const MatrixArguments& args, const jobs::Summary& summary) {
 int finish(const MatrixArguments& args, const MatrixJob& job, const matrix::Matrix& matrix) {
   const matrix::Options& options = job.request.options;
   args.draft ? warn_of_width(matrix, draft_options(args, options)) : warn_of_width(matrix, options.factors);
-  write_files(args, job.scene, options.factors, matrix);
+  write_files(args, job.scene, options, matrix);
   args.plain ? print_plain(job.scene, matrix) : print_table(args, job.scene, matrix);
   const bool rows_hold = test_rows(args, job.scene, matrix),
              directions_agree = test_reciprocity(args, job.scene, matrix);

@@ -296,10 +296,10 @@ int run(const RadiosityArguments& args) {
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
   const matrix::Matrix matrix = matrix::compute(
-      scene, patches, patches, {.factors = args.factors, .backs = true, .open = true, .threads = args.threads}, hooks);
+      scene, patches, patches, radiosity::matrix_options(args.factors, args.threads), hooks);
   bar.clear();
   const Solution solution = radiosity::solve(scene, matrix);
-  warn_of_width(matrix, args.factors);
+  warn_of_width(matrix::Matrix{matrix.factors, {}, {}}, args.factors);
   if (!args.output.empty()) write_whole_file(args.output, csv_text(scene, solution, args.factors));
   if (!args.vtk.empty()) write_vtk(args, scene, solution);
   const bool balanced = test_balance(solution);

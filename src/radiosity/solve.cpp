@@ -179,12 +179,16 @@ Solution solve(const Scene& scene, const matrix::Matrix& matrix) {
   return solution;
 }
 
+matrix::Options matrix_options(const ViewFactorOptions& factors, int threads) {
+  constexpr std::size_t kBudgetOfBalance = 2000;
+  return {.factors = factors, .backs = true, .open = true, .budget_beside = kBudgetOfBalance, .threads = threads};
+}
+
 Solution solve(const Scene& scene, const Options& options, const Hooks& hooks) {
   const std::vector<Selection> patches = patches_of(scene);
   return solve(
       scene,
-      matrix::compute(scene, patches, patches,
-                      {.factors = options.factors, .backs = true, .open = true, .threads = options.threads}, hooks));
+      matrix::compute(scene, patches, patches, matrix_options(options.factors, options.threads), hooks));
 }
 
 std::string_view claim_text(const Solution& solution, const Channel& channel) {
