@@ -336,9 +336,9 @@ matrix::Matrix compute(const MatrixArguments& args, const MatrixJob& job) {
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
   const matrix::Request& request = job.request;
-  matrix::Matrix result =
-      args.draft ? draft(job.scene, request.from, request.to, draft_options(args, request.options), hooks)
-                 : matrix::compute(job.scene, request.from, request.to, request.options, hooks);
+  matrix::Matrix result = args.draft
+                              ? draft(job.scene, request.from, request.to, draft_options(args, request.options), hooks)
+                              : matrix::compute(job.scene, request.from, request.to, request.options, hooks);
   bar.clear();
   return result;
 }
