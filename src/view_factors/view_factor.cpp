@@ -333,7 +333,8 @@ void Pairs::compute(std::size_t pair, const std::function<void(std::size_t, cons
   const Prepared &from = patches_->rows[first / columns], &to = patches_->columns[first % columns];
   const ViewFactor computed = factor(patches_->scene, from, to, options_);
   take(first, computed);
-  for (const std::size_t entry : std::span(entries).subspan(1)) take(entry, reversed(patches_->scene, computed, from, to));
+  for (const std::size_t entry : std::span(entries).subspan(1))
+    take(entry, reversed(patches_->scene, computed, from, to));
 }
 
 }  // namespace view_factors
