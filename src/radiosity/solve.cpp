@@ -186,9 +186,8 @@ matrix::Options matrix_options(const ViewFactorOptions& factors, int threads) {
 
 Solution solve(const Scene& scene, const Options& options, const Hooks& hooks) {
   const std::vector<Selection> patches = patches_of(scene);
-  return solve(
-      scene,
-      matrix::compute(scene, patches, patches, matrix_options(options.factors, options.threads), hooks));
+  return solve(scene,
+               matrix::compute(scene, patches, patches, matrix_options(options.factors, options.threads), hooks));
 }
 
 std::string_view claim_text(const Solution& solution, const Channel& channel) {
