@@ -331,7 +331,7 @@ TEST(DiscFormula, IsBoundedOnTheEllipse) {
 
 // --- The command ---
 
-TEST(MatrixCommand, CertifiesOnRequest) {
+TEST(CertifiedMatrix, IsWrittenOnRequest) {
   const std::string scene = EXACTFF_DATA_DIR "/scenes/formats/test4.vs3";
   const auto run = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {"matrix", scene, "--plain"});

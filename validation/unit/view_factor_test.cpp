@@ -294,7 +294,7 @@ TEST(ViewFactor, RefusesAreasThatNoDoubleHolds) {
 
 // --- The command ---
 
-TEST(MatrixCommand, PrintsAndWritesTheSameNumbers) {
+TEST(MatrixProgram, PrintsAndWritesTheSameNumbers) {
   const validation::TemporaryDirectory folder;
   const std::string file = (folder.path() / "m.csv").string();
   const std::string scene = EXACTFF_DATA_DIR "/scenes/formats/test4.vs3";
