@@ -53,19 +53,20 @@ complain() {
   failures=$((failures + 1))
 }
 
-module_of() {  # src/study/run.cpp, include/exactff/study.h: study
-  local name=${1#*/}
+set_module() {  # VARIABLE FILE: src/study/run.cpp, include/exactff/study.h: study
+  local name=${2#*/}
   if [ "${name%%/*}" != exactff ]; then
-    echo "${name%%/*}"
+    printf -v "$1" %s "${name%%/*}"
   else
-    name=$(basename "$1" .h)
-    echo "${home[$name]:-$name}"
+    name=${name##*/}
+    name=${name%.h}
+    printf -v "$1" %s "${home[$name]:-$name}"
   fi
 }
 
 while IFS=: read -r file included; do
-  from=$(module_of "$file")
-  to=$(module_of "src/$included")
+  set_module from "$file"
+  set_module to "src/$included"
   [ -n "${allowed[$from]+known}" ] || complain "$file belongs to no module of the table"
   [ -n "${allowed[$to]+known}" ] || continue  # of the tests
   { [ "$from" = cli ] || [ "$from" = python ]; } && [ "${included%%/*}" = exactff ] && continue
