@@ -162,7 +162,7 @@ TEST_F(MatrixJobs, AJournalOfAnotherRequestIsRefused) {
   others.emplace_back(request(), "(back)");
   others.back().first.options.backs = false;
   for (const auto& [asked, words] : others) {
-    const std::string message = message_of([&] { write(asked, file_, Existing::kResume); });
+    const std::string message = message_of([&, &other = asked] { write(other, file_, Existing::kResume); });
     EXPECT_NE(message.find("belongs to a different request"), std::string::npos) << words << message;
     EXPECT_NE(message.find(words), std::string::npos) << message;
     EXPECT_EQ(text_of(journal_), journal);
