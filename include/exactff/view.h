@@ -30,6 +30,10 @@ struct ViewShare {
   int precision_bits = 0;
 };
 
+// The share as a form factor, without records. The second form keeps the memory of `result`.
+[[nodiscard]] FormFactor as_form_factor(const ViewShare& share);
+void as_form_factor(const ViewShare& share, FormFactor& result);
+
 struct SeenPatch {
   PatchId patch{};
   std::optional<FaceId> face;  // with ViewOptions::faces: values are those of this face

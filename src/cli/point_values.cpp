@@ -77,16 +77,9 @@ bool one_sweep_will_do(const PointArguments& args, const Scene& scene, const std
 
 // The form factor of a patch in the whole view, which lists those above 0.
 FormFactor taken_from(const WholeView& seen, const Selection& source) {
-  FormFactor result;
   const auto found = std::ranges::lower_bound(seen.patches, source.patch, {}, &SeenPatch::patch);
-  if (found == seen.patches.end() || found->patch != source.patch) return result;
-  const ViewShare& f = found->form_factor;
-  result.value = f.value;
-  result.lower = f.lower;
-  result.upper = f.upper;
-  result.status = f.status;
-  result.enclosure = f.enclosure;
-  return result;
+  if (found == seen.patches.end() || found->patch != source.patch) return {};
+  return as_form_factor(found->form_factor);
 }
 
 FormFactor exact_value(const PointArguments& args, const Scene& scene, const PointResult& point,

@@ -47,17 +47,6 @@ struct ViewArguments {
   bool force = false;
 };
 
-FormFactor as_form_factor(const ViewShare& share) {
-  FormFactor f;
-  f.value = share.value;
-  f.lower = share.lower;
-  f.upper = share.upper;
-  f.status = share.status;
-  f.enclosure = share.enclosure;
-  f.precision_bits = share.precision_bits;
-  return f;
-}
-
 bool differ(const SeenPatch& patch) {
   return patch.share.value != patch.form_factor.value || patch.share.status != patch.form_factor.status;
 }

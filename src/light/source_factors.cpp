@@ -27,19 +27,6 @@ bool are_most_of(const Scene& scene, std::span<const Selection> sources) {
   return faces >= kFewest && 4 * faces >= 3 * faces_with_area(scene);
 }
 
-void set(FormFactor& factor, const ViewShare& share) {
-  factor.value = share.value;
-  factor.lower = share.lower;
-  factor.upper = share.upper;
-  factor.status = share.status;
-  factor.enclosure = share.enclosure;
-  factor.precision_bits = share.precision_bits;
-  factor.visible_fraction.reset();
-  factor.visible_part.reset();
-  factor.cutters.clear();
-  factor.planes.clear();
-}
-
 }  // namespace
 
 SourceFactors::SourceFactors(const Scene& scene, std::span<const Selection> sources, Sky sky)
@@ -96,12 +83,13 @@ void SourceFactors::look_around(const Receiver& receiver, const ExactOptions& op
 
 // The view lists what has a share, by index.
 void SourceFactors::take_from_view(std::size_t source, const WholeView& view, FormFactor& factor) const {
-  if (is_sky(source)) return set(factor, view.open);
+  if (is_sky(source)) return as_form_factor(view.open, factor);
   const auto index = [&](const SeenPatch& seen) { return faces_ ? index_of(*seen.face) : index_of(seen.patch); };
   const Selection& wanted = sources_[source].selection();
   const std::size_t at = faces_ ? index_of(*wanted.face) : index_of(wanted.patch);
   const auto found = std::ranges::lower_bound(view.patches, at, {}, index);
-  set(factor, found != view.patches.end() && index(*found) == at ? found->form_factor : ViewShare{});
+  const bool is_seen = found != view.patches.end() && index(*found) == at;
+  as_form_factor(is_seen ? found->form_factor : ViewShare{}, factor);
 }
 
 }  // namespace exactff::light

@@ -253,6 +253,25 @@ class ViewSolver {
 
 }  // namespace
 
+FormFactor as_form_factor(const ViewShare& share) {
+  FormFactor result;
+  as_form_factor(share, result);
+  return result;
+}
+
+void as_form_factor(const ViewShare& share, FormFactor& result) {
+  result.value = share.value;
+  result.lower = share.lower;
+  result.upper = share.upper;
+  result.status = share.status;
+  result.enclosure = share.enclosure;
+  result.precision_bits = share.precision_bits;
+  result.visible_fraction.reset();
+  result.visible_part.reset();
+  result.cutters.clear();
+  result.planes.clear();
+}
+
 WholeView view(const Scene& scene, const Receiver& receiver, const ViewOptions& options) {
   thread_local Workspace own;
   WholeView result;
