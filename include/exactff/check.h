@@ -278,7 +278,7 @@ struct Report {
   Criteria criteria;
   std::size_t truth_rows = 0;
   std::size_t not_certified = 0;                  // rows judged by their enclosures
-  std::optional<MatrixFacts> matrix = {};         // set by whoever has read matrices
+  std::optional<MatrixFacts> matrix = {};         // if matrices are compared
   std::size_t statistical = 0, not_accurate = 0;  // entries of a matrix
   double widest = 0.0;                            // upper - lower of these
   Statistics overall;

@@ -167,7 +167,7 @@ std::string command_of_shard(const fs::path& file) {
     for (const std::string command : {"truth", "matrix"}) {
       if (first.starts_with("# exactff ") && first.find(' ' + command + ": ") != std::string::npos) return command;
     }
-  } catch (const InputError&) {  // whoever merges it says why
+  } catch (const InputError&) {  // merge() says why
   }
   return {};
 }
