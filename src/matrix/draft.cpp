@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <tuple>
 
 #include "exactff/matrix.h"
 #include "exactff/view.h"
@@ -18,6 +19,7 @@
 #include "text/refuse.h"
 #include "view_factors/near_planes.h"
 #include "view_factors/patch_parts.h"
+#include "view_factors/sampled_factor.h"
 #include "view_factors/strata.h"
 #include "work/parallel.h"
 
@@ -31,10 +33,8 @@ using view_factors::Part;
 using view_factors::Point;
 using view_factors::StratifiedMean;
 
-constexpr std::size_t kViews = 6;  // of a stratum: two triples, see strata.h
-constexpr double kRisk = 1e-6;
-constexpr double kRoundedPoints = 0x1p-30;  // see view_factors/near_planes.h
-constexpr double kRoundings = 0x1p-40;      // relative: more than those of areas, distances and sums
+constexpr std::size_t kViews = 6;       // of a stratum: two triples, see strata.h
+constexpr double kRoundings = 0x1p-40;  // relative: more than those of areas, distances and sums
 
 struct DraftPatch {
   Selection patch;
@@ -45,12 +45,8 @@ struct DraftPatch {
 };
 
 DraftPatch prepared(const ExactScene& scene, const Selection& patch) {
-  DraftPatch result{patch, {}, {}, area_of(parts_of(scene, patch)), 0.0};
-  result.area = std::ldexp(result.unit_area, static_cast<int>(2 * (scene.units.exponent + scene.units.shift)));
-  if (!(result.area > 0.0 && std::isfinite(result.area))) {
-    text::refuse("patch " + scene.scene.name_of(patch) + " has no area that a double can hold",
-                 "a view factor is a mean over the patch", "leave the patch out, or scale the scene");
-  }
+  DraftPatch result{patch, {}, {}, 0.0, 0.0};
+  std::tie(result.unit_area, result.area) = areas_of(scene, patch, parts_of(scene, patch));
   for (const FaceId face : scene.scene.faces_of(patch)) {
     const Face& of = scene.scene.face(face);
     for (std::uint32_t p = of.first_piece; p < of.first_piece + of.piece_count; ++p) {
@@ -123,7 +119,8 @@ class RowOfMeans {
     return means_[scene_.patches().size() + which];
   }
   [[nodiscard]] double error(const StratifiedMean& mean) const {
-    return mean.error(kRisk, points_, strata_) + unknown_ + kRoundedPoints + kRoundings * mean.value;
+    return mean.error(view_factors::kRisk, points_, strata_) + unknown_ + view_factors::kRoundedPoints +
+           kRoundings * mean.value;
   }
   [[nodiscard]] std::size_t points() const { return static_cast<std::size_t>(points_); }
 

@@ -8,6 +8,8 @@
 
 namespace exactff::view_factors {
 
+inline constexpr double kRoundedPoints = 0x1p-30;  // of F: see NearPlanes::rounded
+
 class NearPlanes {
  public:
   NearPlanes(const ExactScene& scene, const Part& part);

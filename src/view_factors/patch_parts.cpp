@@ -1,8 +1,10 @@
 #include "view_factors/patch_parts.h"
 
 #include <array>
+#include <cmath>
 
 #include "kernel/gauss.h"
+#include "text/refuse.h"
 #include "visibility/source_plane.h"
 
 namespace exactff::view_factors {
@@ -117,6 +119,22 @@ kernel::Disc enclosed_area_of(const std::vector<Part>& parts, const Units& units
   kernel::Disc sum;
   for (const Part& part : parts) sum = sum + enclosed_area(part, units);
   return sum;
+}
+
+std::pair<double, double> areas_of(const ExactScene& scene, const Selection& patch, const std::vector<Part>& parts) {
+  const double unit_area = area_of(parts);
+  const double area = std::ldexp(unit_area, static_cast<int>(2 * (scene.units.exponent + scene.units.shift)));
+  if (!(unit_area > 0.0)) {
+    text::refuse("patch " + scene.scene.name_of(patch) +
+                     " has no area, or none in double precision beside the rest of the scene",
+                 "a view factor is a mean over the patch", "leave the patch out");
+  }
+  if (!(area > 0.0 && std::isfinite(area))) {
+    text::refuse("patch " + scene.scene.name_of(patch) + " has no area that a double can hold: it is " +
+                     (area > 0.0 ? "above 1.8e308" : "below 4.9e-324"),
+                 "areas are part of the result", "scale the scene; view factors do not depend on its unit of length");
+  }
+  return {unit_area, area};
 }
 
 }  // namespace exactff::view_factors

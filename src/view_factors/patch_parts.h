@@ -1,6 +1,7 @@
 // A patch as convex parts that do not overlap.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "kernel/disc.h"
@@ -15,5 +16,10 @@ namespace exactff::view_factors {
 [[nodiscard]] double area_of(const std::vector<Part>& parts);
 // The same, enclosed.
 [[nodiscard]] kernel::Disc enclosed_area_of(const std::vector<Part>& parts, const Units& units);
+
+// The area of a patch with these parts, in squares of the unit of Point::at and of the scene's unit of length: both
+// positive and finite. Throws InputError otherwise.
+[[nodiscard]] std::pair<double, double> areas_of(const ExactScene& scene, const Selection& patch,
+                                                 const std::vector<Part>& parts);
 
 }  // namespace exactff::view_factors

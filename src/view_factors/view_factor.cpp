@@ -12,6 +12,7 @@
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "view_factors/disc_space.h"
+#include "view_factors/near_planes.h"
 #include "view_factors/pair.h"
 #include "view_factors/pairs.h"
 #include "view_factors/patch_parts.h"
@@ -27,7 +28,6 @@ constexpr std::size_t kCellsOfAPoint = 4;                  // that cost about as
 constexpr double kShareOfRounding = 0x1p-10;               // of the accuracy
 constexpr double kShareOfNegligible = 0x1p-24;             // of the error that is allowed
 constexpr std::size_t kMostPoints = std::size_t{1} << 20;  // of all pairs of parts: some 200 MB
-constexpr double kRoundedPoints = 0x1p-30;                 // see near_planes.h
 constexpr double kShareOfCell = 0x1p-4;  // of the error allowed, a certified cell as large as the patch
 constexpr double kShareOfTarget = 0.99;  // certified: leaves room for the roundings of sums
 constexpr double kRounding = 0x1p-44;    // relative: more than the roundings of formula and sums in usual scenes
@@ -186,18 +186,7 @@ struct Prepared {
 
 Prepared prepare(const ExactScene& scene, const Selection& patch) {
   Prepared result{patch, parts_of(scene, patch), 0.0, 0.0, true};
-  result.unit_area = area_of(result.parts);
-  result.area = std::ldexp(result.unit_area, static_cast<int>(2 * (scene.units.exponent + scene.units.shift)));
-  if (!(result.unit_area > 0.0)) {
-    text::refuse("patch " + scene.scene.name_of(patch) +
-                     " has no area, or none in double precision beside the rest of the scene",
-                 "a view factor is a mean over the patch", "leave the patch out");
-  }
-  if (!(result.area > 0.0 && std::isfinite(result.area))) {
-    text::refuse("patch " + scene.scene.name_of(patch) + " has no area that a double can hold: it is " +
-                     (result.area > 0.0 ? "above 1.8e308" : "below 4.9e-324"),
-                 "areas are part of the result", "scale the scene; view factors do not depend on its unit of length");
-  }
+  std::tie(result.unit_area, result.area) = areas_of(scene, patch, result.parts);
   for (const FaceId face : scene.scene.faces_of(patch)) {
     result.planar = result.planar && scene.scene.face(face).shape == FaceShape::kPlanar;
   }
