@@ -104,6 +104,21 @@ void CellView::consider_doubts() {
   doubts_.clear();
 }
 
+// True if the cell is certainly outside all bases of the solid. A cell of one point belongs to another one.
+bool CellView::is_outside(const Solid& solid) {
+  return cell_->corners.size() > 1 && std::ranges::all_of(solid.bases, [&](const Ring& base) {
+           return std::ranges::any_of(base, [&](const Edge& edge) { return side(edge, sight_.apex) == 1; });
+         });
+}
+
+// True if the pieces of its closed surface that show the cell their fronts cover all that the occluder does.
+bool CellView::is_spare_back(const Candidate& candidate) {
+  const std::uint32_t id = sight_.occluders[candidate.occluder].solid;
+  if (id == kNoSolid || candidate.facing == kMixed) return false;
+  const Solid& solid = sight_.solids[id];
+  return (candidate.facing > 0) == solid.turned_inside_out && is_outside(solid);
+}
+
 // Finds how the occluder faces the cell and whether it can cover anything. True if it hides the whole source. One that
 // covers nothing then faces neither side.
 bool CellView::sort_out(Candidate& candidate) {
@@ -114,6 +129,7 @@ bool CellView::sort_out(Candidate& candidate) {
   if (!beside && facing != kMixed) {
     beside = is_beside(ring_of(candidate), sight_.source);
     if (!beside && holds(ring_of(candidate), sight_.source)) return true;
+    beside = beside || is_spare_back(candidate);
   }
   doubts_.clear();
   if (beside) {
@@ -187,12 +203,13 @@ bool CellView::covers(Along along, std::size_t owner, std::size_t other) const {
 
 void CellView::look_at_edge(const Edge& edge, std::size_t owner) {
   doubts_.clear();
-  covers_.clear();
+  intervals_.clear();
   Covered base{Overlap::kAll, {{edge.from, {}}, {edge.to, {}}}};
   Along along = Along::kNo;
   if (owner != kSource) base = overlap(edge, sight_.source, along);
   if (base.kind == Overlap::kNone || (base.kind != Overlap::kUnknown && along != Along::kNo)) return;
   bool known = base.kind != Overlap::kUnknown;
+  intervals_.push_back(base.interval);
   for (const Candidate& candidate : *candidates_) {
     const std::size_t other = candidate.occluder;
     if (other == owner) continue;
@@ -205,14 +222,14 @@ void CellView::look_at_edge(const Edge& edge, std::size_t owner) {
     doubts_.resize(doubts);
     if (covered.kind == Overlap::kNone || !covers(along, owner, other)) continue;
     if (covered.kind == Overlap::kAll) return;
-    covers_.push_back(covered.interval);
+    intervals_.push_back(covered.interval);
   }
   if (known) {
     doubts_.clear();
     const std::size_t emitted = parts_.size();
-    if (!emit_uncovered(edge, base.interval, owner == kSource ? 1 : -1)) {
+    if (!emit_uncovered(edge, owner == kSource ? 1 : -1)) {
       parts_.resize(emitted);
-      find_all_undecided(edge, base.interval);
+      find_all_undecided(edge);
     }
   }
   consider_doubts();
@@ -250,6 +267,18 @@ int CellView::order_of_lines(LineId e, LineId g, LineId h) {
   return sign;
 }
 
+// True if they are the ends of intervals in a row, none of which is empty.
+bool CellView::is_known_before(const End& p, const End& q) const {
+  for (const auto& [from, to] : intervals_) {
+    if (p != from) continue;
+    if (to == q) return true;
+    for (const Interval& next : intervals_) {
+      if (next.from == to && next.to == q) return true;
+    }
+  }
+  return false;
+}
+
 // -1, 0, +1: p is before, at, after q on the edge.
 int CellView::order(const Edge& edge, const End& p, const End& q) {
   if (p == q) return 0;
@@ -257,6 +286,8 @@ int CellView::order(const Edge& edge, const End& p, const End& q) {
   const auto is_end = [&](const End& end) { return !end.line && end.vertex == edge.to; };
   if (is_start(p) || is_end(q)) return -1;
   if (is_start(q) || is_end(p)) return 1;
+  if (is_known_before(p, q)) return -1;
+  if (is_known_before(q, p)) return 1;
   const int sign = order_of_lines(edge.line, *p.line, *q.line);
   if (sign == 0 || sign == kMixed) return sign;
   // q is after p iff the edge leaves both lines to the same side and the determinant is positive: with the edge from a
@@ -267,16 +298,12 @@ int CellView::order(const Edge& edge, const End& p, const End& q) {
 }
 
 // Every order of two crossings on the edge that is undecided, whether or not it has been asked for.
-void CellView::find_all_undecided(const Edge& edge, const Interval& base) {
+void CellView::find_all_undecided(const Edge& edge) {
   std::vector<LineId> lines;
-  const auto add = [&](const End& end) {
-    if (end.line) lines.push_back(*end.line);
-  };
-  add(base.from);
-  add(base.to);
-  for (const Interval& cover : covers_) {
-    add(cover.from);
-    add(cover.to);
+  for (const Interval& interval : intervals_) {
+    for (const End& end : {interval.from, interval.to}) {
+      if (end.line) lines.push_back(*end.line);
+    }
   }
   for (std::size_t i = 0; i < lines.size(); ++i) {
     for (std::size_t j = i + 1; j < lines.size(); ++j) (void)order_of_lines(edge.line, lines[i], lines[j]);
@@ -284,13 +311,14 @@ void CellView::find_all_undecided(const Edge& edge, const Interval& base) {
 }
 
 // Goes along the edge from one covered stretch to the next. False if an order is undecided.
-bool CellView::emit_uncovered(const Edge& edge, const Interval& base, int sign) {
+bool CellView::emit_uncovered(const Edge& edge, int sign) {
+  const Interval base = intervals_.front();
   End at = base.from;
   const auto emit_to = [&](const End& end) { parts_.push_back({edge, at, end, sign}); };
   for (;;) {
     bool moved = false;
     std::optional<End> nearest;
-    for (const Interval& cover : covers_) {
+    for (const Interval& cover : covers()) {
       const int starts = order(edge, cover.from, at);
       const int ends = order(edge, cover.to, at);
       if (ends == -1 || ends == 0) continue;

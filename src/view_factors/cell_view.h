@@ -29,6 +29,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "view_factors/event_bound.h"
@@ -37,12 +38,12 @@
 
 namespace exactff::view_factors {
 
-// An end of a boundary piece: a vertex, or where the edge of `line` crosses the piece's own edge.
+// An end of a boundary piece: where the edge of `line` crosses the piece's own edge, or else a vertex.
 struct End {
   PointId vertex = 0;
   std::optional<LineId> line;
 
-  friend bool operator==(const End&, const End&) = default;
+  friend bool operator==(const End& a, const End& b) { return a.line == b.line && (a.line || a.vertex == b.vertex); }
 };
 
 // A part of an edge, constant on the cell. The visible region is on its left if `sign` is +1, else on its right.
@@ -108,6 +109,8 @@ class CellView {
   int side(const Edge& edge, PointId point);
   bool is_beside(const Ring& ring, const Ring& other);
   bool holds(const Ring& ring, const Ring& other);
+  bool is_outside(const Solid& solid);
+  bool is_spare_back(const Candidate& candidate);
   bool sort_out(Candidate& candidate);
   Covered overlap(const Edge& edge, const Ring& ring, Along& along);
   Covered between(const Edge& edge, const Edge& in, const Edge& out);
@@ -117,8 +120,10 @@ class CellView {
   bool covers(Along along, std::size_t owner, std::size_t other) const;
   int order(const Edge& edge, const End& p, const End& q);
   int order_of_lines(LineId e, LineId g, LineId h);
-  [[nodiscard]] bool emit_uncovered(const Edge& edge, const Interval& base, int sign);
-  void find_all_undecided(const Edge& edge, const Interval& base);
+  std::span<const Interval> covers() const { return std::span(intervals_).subspan(1); }
+  bool is_known_before(const End& p, const End& q) const;
+  [[nodiscard]] bool emit_uncovered(const Edge& edge, int sign);
+  void find_all_undecided(const Edge& edge);
   void consider_cut(const std::shared_ptr<const Plane>& plane);
   void consider_doubts();
 
@@ -133,7 +138,7 @@ class CellView {
   std::vector<Doubt> doubts_;  // undecided signs since the last question
   std::shared_ptr<const Plane> best_cut_;
   double best_balance_ = -1.0;
-  std::vector<Interval> covers_;
+  std::vector<Interval> intervals_;  // of the edge that is looked at: the one inside the source, then covered ones
   std::vector<BoundaryPart> parts_;
   std::vector<CrossingTriple> triples_;
 };

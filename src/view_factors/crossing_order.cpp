@@ -1,9 +1,9 @@
 #include "view_factors/crossing_order.h"
 
 #include <array>
+#include <optional>
 
 #include "kernel/vec.h"
-#include "view_factors/polar_form.h"
 
 namespace exactff::view_factors {
 namespace {
@@ -12,7 +12,6 @@ using kernel::Rational;
 using Exact3 = std::array<Rational, 3>;
 
 constexpr double kFilter = 0x1p-34;
-constexpr int kDeclined = kMixed + 1;
 
 Exact3 exact_place(const Point& point) {
   Exact3 place;
@@ -66,55 +65,67 @@ class CommonSign {
   bool mixed_ = false;
 };
 
-// kDeclined: the filter decides nothing.
-int filtered_order(const Rounded& f, const Cell& cell) {
-  CommonSign sign;
-  bool is_certain = true;
-  const auto at = [&](const Vec3& x) { return f.at(x); };
-  for_each_coefficient(at, rounded(cell.corners), [&](double b) {
-    is_certain = b > kFilter || b < -kFilter;
-    return is_certain && sign.take(b > 0.0 ? 1 : -1);
-  });
-  return is_certain ? sign.sign() : kDeclined;
-}
+// The signs of the coefficients b(c_i, c_j) of f's polar form: by the filter, exactly where this declines.
+class PolarSigns {
+ public:
+  PolarSigns(const std::array<const Point*, 6>& ends, const Cell& cell) : ends_(ends), cell_(cell) {
+    for (std::size_t i = 0; i < 6; ++i) rounded_.ends[i] = ends[i]->at;
+    for (const Point& corner : cell.corners) at_corners_.push_back(rounded_.at(corner.at));
+  }
 
-int exact_order(const Exact& f, const Cell& cell) {
-  CommonSign sign;
-  std::vector<Exact3> places;
-  std::vector<Rational> values;
-  for (const Point& corner : cell.corners) {
-    places.push_back(exact_place(corner));
-    values.push_back(f.at(places.back()));
-    if (!sign.take(sgn(values.back()))) return kMixed;
+  int sign(std::size_t i, std::size_t j) {
+    const double b = estimate(i, j);
+    if (b > kFilter || b < -kFilter) return b > 0.0 ? 1 : -1;
+    return sgn(exact(i, j));
   }
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    for (std::size_t j = i + 1; j < places.size(); ++j) {
-      Exact3 between;
-      for (std::size_t k = 0; k < 3; ++k) between[k] = (places[i][k] + places[j][k]) / 2;
-      const Rational b = 2 * f.at(between) - (values[i] + values[j]) / 2;
-      if (!sign.take(sgn(b))) return kMixed;
+
+ private:
+  [[nodiscard]] double estimate(std::size_t i, std::size_t j) const {
+    if (i == j) return at_corners_[i];
+    const Vec3 &y = cell_.corners[i].at, &z = cell_.corners[j].at;
+    const Vec3 between{0.5 * (y.x + z.x), 0.5 * (y.y + z.y), 0.5 * (y.z + z.z)};
+    return 2.0 * rounded_.at(between) - 0.5 * (at_corners_[i] + at_corners_[j]);
+  }
+
+  Rational exact(std::size_t i, std::size_t j) {
+    if (!exact_) {
+      exact_.emplace();
+      for (std::size_t k = 0; k < 6; ++k) exact_->ends[k] = exact_place(*ends_[k]);
     }
+    const Exact3 y = exact_place(cell_.corners[i]);
+    if (i == j) return exact_->at(y);
+    const Exact3 z = exact_place(cell_.corners[j]);
+    Exact3 between;
+    for (std::size_t k = 0; k < 3; ++k) between[k] = (y[k] + z[k]) / 2;
+    return 2 * exact_->at(between) - (exact_->at(y) + exact_->at(z)) / 2;
   }
-  return sign.sign();
-}
+
+  const std::array<const Point*, 6>& ends_;
+  const Cell& cell_;
+  Rounded rounded_;
+  std::optional<Exact> exact_;
+  std::vector<double> at_corners_;
+};
 
 }  // namespace
 
 int crossing_order(const Points& points, const Cell& cell, LineId e, LineId g, LineId h) {
-  Rounded rounded;
   std::array<const Point*, 6> ends{};
   std::size_t count = 0;
   for (const LineId line : {e, g, h}) {
-    for (const PointId id : {points.line(line).a, points.line(line).b}) {
-      rounded.ends[count] = points[id].at;
-      ends[count++] = &points[id];
+    for (const PointId id : {points.line(line).a, points.line(line).b}) ends[count++] = &points[id];
+  }
+  PolarSigns signs(ends, cell);
+  CommonSign common;
+  for (std::size_t i = 0; i < cell.corners.size(); ++i) {
+    if (!common.take(signs.sign(i, i))) return kMixed;
+  }
+  for (std::size_t i = 0; i < cell.corners.size(); ++i) {
+    for (std::size_t j = i + 1; j < cell.corners.size(); ++j) {
+      if (!common.take(signs.sign(i, j))) return kMixed;
     }
   }
-  const int filtered = filtered_order(rounded, cell);
-  if (filtered != kDeclined) return filtered;
-  Exact exact;
-  for (std::size_t i = 0; i < 6; ++i) exact.ends[i] = exact_place(*ends[i]);
-  return exact_order(exact, cell);
+  return common.sign();
 }
 
 }  // namespace exactff::view_factors

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "kernel/poll.h"
+#include "scene/closed_surfaces.h"
 #include "scene/places.h"
 
 namespace exactff::view_factors {
@@ -44,7 +45,7 @@ ExactScene::ExactScene(const Scene& scene_in)
   pieces.reserve(scene.pieces().size());
   for (const Piece& piece : scene.pieces()) {
     kernel::poll();
-    ExactPiece made{piece.face, piece.transparent, {}, {}, {}};
+    ExactPiece made{piece.face, piece.transparent, kNoSurface, {}, {}, {}};
     for (const std::uint32_t corner : scene.corners(piece)) {
       const std::uint32_t place = place_of[corner];
       if (sgn(vertices[place].exact[3]) == 0) vertices[place] = point_of(scene.vertices()[place], units);
@@ -55,6 +56,21 @@ ExactScene::ExactScene(const Scene& scene_in)
     made.plane =
         make_plane(join(vertices[made.corners[0]], vertices[made.corners[1]], vertices[made.corners[2]]), units);
     pieces.push_back(std::move(made));
+  }
+  add_surfaces();
+}
+
+void ExactScene::add_surfaces() {
+  const ClosedSurfaces& closed = closed_surfaces(scene);
+  for (const ClosedSurface& surface : closed.surfaces()) surfaces.push_back({{}, surface.turned_inside_out, {}});
+  if (closed.empty()) return;
+  for (std::uint32_t i = 0; i < pieces.size(); ++i) {
+    const std::uint32_t surface = closed.of_piece(i);
+    if (surface == ClosedSurfaces::kNone) continue;
+    pieces[i].surface = surface;
+    surfaces[surface].pieces.push_back(i);
+    surfaces[surface].box.include(pieces[i].box.low);
+    surfaces[surface].box.include(pieces[i].box.high);
   }
 }
 

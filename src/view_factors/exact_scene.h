@@ -1,6 +1,7 @@
 // A scene's pieces in exact coordinates, prepared once for all pairs.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -19,13 +20,23 @@ struct Box {
   [[nodiscard]] bool is_apart_from(const Box& other) const;
 };
 
+inline constexpr std::uint32_t kNoSurface = std::numeric_limits<std::uint32_t>::max();
+
 // A convex piece, without corners in the middle of a straight side.
 struct ExactPiece {
   FaceId face{};
   bool transparent = false;
+  std::uint32_t surface = kNoSurface;  // an index of ExactScene::surfaces
   std::vector<std::uint32_t> corners;  // vertex indices, counter-clockwise from the front; one index for each position
   Plane plane;                         // positive in front
   Box box;
+};
+
+// A closed surface of the scene (scene/closed_surfaces.h).
+struct ExactSurface {
+  Box box;
+  bool turned_inside_out = false;
+  std::vector<std::uint32_t> pieces;  // ascending
 };
 
 struct ExactScene {
@@ -35,6 +46,10 @@ struct ExactScene {
   Units units;
   std::vector<Point> vertices;     // by vertex index; those of other vertices at a known position are left empty
   std::vector<ExactPiece> pieces;  // as Scene::pieces()
+  std::vector<ExactSurface> surfaces;
+
+ private:
+  void add_surfaces();
 };
 
 }  // namespace exactff::view_factors

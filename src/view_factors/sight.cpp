@@ -1,7 +1,7 @@
 #include "view_factors/sight.h"
 
 #include <algorithm>
-#include <initializer_list>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -9,6 +9,15 @@ namespace exactff::view_factors {
 namespace {
 
 constexpr std::uint32_t kByReceiver = 0, kBySource = 1;  // names of planes that clip
+
+// Of two planes that hold the same points: whether their front sides are the same.
+bool faces_along(const Plane& plane, const Plane& other) {
+  std::size_t largest = 0;
+  for (std::size_t i = 1; i < 3; ++i) {
+    if (std::abs(plane.rounded[i]) > std::abs(plane.rounded[largest])) largest = i;
+  }
+  return (plane.rounded[largest] > 0.0) == (other.rounded[largest] > 0.0);
+}
 
 class Maker {
  public:
@@ -24,9 +33,14 @@ class Maker {
     sight_.source = points.clipped(source, sight_.receiver, kByReceiver);
     if (seeing.empty() || sight_.source.empty()) return std::nullopt;
     sight_.root = cell_of(points, seeing, sight_.receiver);
-    for (const Ring* ring : std::initializer_list<const Ring*>{&seeing, &sight_.source}) {
-      for (const Edge& edge : *ring) between_.include(points[edge.from].at);
-    }
+    sight_.apex = std::ranges::find_if(sight_.source, [&](const Edge& edge) {
+                    return side_of(sight_.receiver, points[edge.from]) > 0;
+                  })->from;
+    include(seeing, receiver_box_);
+    include(sight_.source, source_box_);
+    between_ = receiver_box_;
+    between_.include(source_box_.low);
+    between_.include(source_box_.high);
     for (const ExactPiece& piece : scene_.pieces) add_occluder(piece);
     points.complete();
     return std::move(sight_);
@@ -64,34 +78,101 @@ class Maker {
     return place->second;
   }
 
-  // Some of it lies in front of both planes, and in the box of the pair.
+  void include(const Ring& ring, Box& box) const {
+    for (const Edge& edge : ring) box.include(sight_.points[edge.from].at);
+  }
+
+  // Some of it lies in front of both planes, and in the box of the pair, and the pair on both sides of its plane.
   [[nodiscard]] bool may_lie_between(const ExactPiece& piece) const {
     if (piece.transparent || piece.face == own_ || piece.box.is_apart_from(between_)) return false;
     const auto has_corner_before = [&](const Plane& plane) {
       return std::ranges::any_of(piece.corners,
                                  [&](std::uint32_t corner) { return side_of(plane, scene_.vertices[corner]) > 0; });
     };
-    return has_corner_before(sight_.receiver) && has_corner_before(source_plane_);
+    return separates_pair(piece.plane) && has_corner_before(sight_.receiver) && has_corner_before(source_plane_);
+  }
+
+  // Otherwise, almost no segment between the two crosses the plane.
+  [[nodiscard]] bool separates_pair(const Plane& plane) const {
+    bool before = false, behind = false;
+    const auto look_at = [&](const Point& point) {
+      const int side = side_of(plane, point);
+      before = before || side > 0;
+      behind = behind || side < 0;
+      return before && behind;
+    };
+    return std::ranges::any_of(sight_.root.corners, look_at) ||
+           std::ranges::any_of(sight_.source, [&](const Edge& e) { return look_at(sight_.points[e.from]); });
+  }
+
+  // The index in Sight::solids; see the header.
+  std::uint32_t solid(std::uint32_t surface) {
+    if (surface == kNoSurface) return kNoSolid;
+    const auto [place, is_new] = solid_of_.try_emplace(surface, kNoSolid);
+    if (!is_new || !may_be_solid(scene_.surfaces[surface])) return place->second;
+    place->second = static_cast<std::uint32_t>(sight_.solids.size());
+    sight_.solids.push_back({scene_.surfaces[surface].turned_inside_out, bases_of(scene_.surfaces[surface])});
+    return place->second;
+  }
+
+  [[nodiscard]] bool may_be_solid(const ExactSurface& surface) const {
+    return (surface.box.is_apart_from(source_box_) || stands_on_source(surface)) &&
+           (surface.box.is_apart_from(receiver_box_) || lies_before(surface, sight_.receiver));
+  }
+
+  [[nodiscard]] bool lies_before(const ExactSurface& surface, const Plane& plane) const {
+    return std::ranges::all_of(surface.pieces, [&](std::uint32_t piece) {
+      return std::ranges::all_of(scene_.pieces[piece].corners,
+                                 [&](std::uint32_t corner) { return side_of(plane, scene_.vertices[corner]) >= 0; });
+    });
+  }
+  [[nodiscard]] bool is_in(std::uint32_t piece, const Plane& plane) const {
+    return std::ranges::all_of(scene_.pieces[piece].corners,
+                               [&](std::uint32_t corner) { return side_of(plane, scene_.vertices[corner]) == 0; });
+  }
+
+  // In front of the source's plane, or in it and facing away.
+  [[nodiscard]] bool stands_on_source(const ExactSurface& surface) const {
+    return lies_before(surface, source_plane_) && std::ranges::all_of(surface.pieces, [&](std::uint32_t piece) {
+             return !is_in(piece, source_plane_) ||
+                    faces_along(scene_.pieces[piece].plane, source_plane_) == surface.turned_inside_out;
+           });
+  }
+
+  std::vector<Ring> bases_of(const ExactSurface& surface) {
+    std::vector<Ring> bases;
+    if (surface.box.is_apart_from(receiver_box_)) return bases;
+    for (const std::uint32_t piece : surface.pieces) {
+      if (!is_in(piece, sight_.receiver)) continue;
+      const Ring ring = ring_of(scene_.pieces[piece]);
+      bases.push_back(faces_along(scene_.pieces[piece].plane, sight_.receiver) ? ring : reversed(ring));
+    }
+    return bases;
+  }
+
+  Ring ring_of(const ExactPiece& piece) {
+    std::vector<PointId> corners;
+    for (const std::uint32_t corner : piece.corners) corners.push_back(vertex(corner));
+    return sight_.points.ring(corners);
   }
 
   void add_occluder(const ExactPiece& piece) {
     if (!may_lie_between(piece)) return;
-    std::vector<PointId> corners;
-    for (const std::uint32_t corner : piece.corners) corners.push_back(vertex(corner));
     Points& points = sight_.points;
-    const Ring above = points.clipped(points.ring(corners), sight_.receiver, kByReceiver);
+    const Ring above = points.clipped(ring_of(piece), sight_.receiver, kByReceiver);
     if (above.empty()) return;
     Ring ring = points.clipped(above, source_plane_, kBySource);
-    if (!ring.empty()) sight_.occluders.push_back({std::move(ring), &piece.plane});
+    if (!ring.empty()) sight_.occluders.push_back({std::move(ring), &piece.plane, solid(piece.surface)});
   }
 
   const ExactScene& scene_;
   FaceId own_;
   Sight sight_;
   Plane source_plane_;
-  Box between_;
+  Box receiver_box_, source_box_, between_;
   PointId corners_of_parts_ = std::numeric_limits<PointId>::max();
   std::map<std::uint32_t, PointId> vertex_;
+  std::map<std::uint32_t, std::uint32_t> solid_of_;  // by surface
 };
 
 }  // namespace

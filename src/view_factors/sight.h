@@ -1,6 +1,24 @@
 // What lies between two convex pieces: the pair's polygons, clipped once by each other's planes.
+//
+// Backs of closed surfaces. Let S be a closed surface with winding number w (scene/closed_surfaces.h). Let w(x) and
+// w(y) be the values just above a point x of the receiver and just before a point y of the source. On almost every
+// segment from x to y, w grows by one at each piece that is crossed from the front and falls by one at each that is
+// crossed from the back. If w(y) >= w(x), then, a segment that S blocks is crossed from the front at least once: pieces
+// that show x their backs cover nothing that the others do not cover, up to a set of area zero, and may be left out.
+//
+// - w is 0 outside the box of S.
+// - Let S lie on the front side of the receiver's plane, or in it. Behind the plane w is 0, so it is 0 above x as well
+// if
+//   x is in none of the pieces of S in this plane, its bases.
+// - Let S lie on the front side of the source's plane, or in it. Then w(y) is the number of bases there that hold y,
+//   those with the front towards x counting as -1: it is at least 0 if all of them face away.
+//
+// The receiver's own face does not occlude. If it belongs to S, its piece is a base that holds every x, and nothing is
+// left out. For a surface that is turned inside out, all this holds with fronts and backs exchanged.
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -10,9 +28,18 @@
 
 namespace exactff::view_factors {
 
+inline constexpr std::uint32_t kNoSolid = std::numeric_limits<std::uint32_t>::max();
+
 struct Occluder {
   Ring ring;           // counter-clockwise as seen from the positive side of the plane
   const Plane* plane;  // of the scene
+  std::uint32_t solid = kNoSolid;
+};
+
+// A closed surface whose backs may be left out for cells outside all of its bases.
+struct Solid {
+  bool turned_inside_out = false;
+  std::vector<Ring> bases;  // in the receiver's plane, counter-clockwise as seen from its front
 };
 
 // A receiver's points see a source's points if the segment between them meets no occluder. Refers to the scene.
@@ -24,6 +51,8 @@ struct Sight {
   Cell root;       // the part of the receiver in front of the source's plane
   Ring source;     // the part of the source in front of the receiver's plane, counter-clockwise as seen from there
   std::vector<Occluder> occluders;  // the parts in front of both planes
+  std::vector<Solid> solids;
+  PointId apex = 0;  // a point of the source off the receiver's plane
 };
 
 // A convex part of a patch: corners counter-clockwise as seen from the front, none in the middle of a straight side.
