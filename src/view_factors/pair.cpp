@@ -116,11 +116,13 @@ double Pair::value_at(const Formula& formula, const Cell& cell, const Vec3& x, c
   const Evaluated quick = formula.at(x);
   if (quick.rounding <= limits_.rounding) return quick.value;
   return precise([&](long bits) {
-    const auto corner = [&](std::size_t i) { return ball_point(cell.corners[i], bits); };
-    const auto toward = [](const Ball& a, const Ball& b, const Ball& t) { return a + (b - a) * t; };
+    const auto corner = [&](std::size_t i) { return ball_point(cell.corners[i % cell.corners.size()], bits); };
+    const auto between = [](const Ball& a, const Ball& b, const Ball& t) { return a + (b - a) * t; };
     const Ball s = kernel::to_ball(place.s, bits), t = kernel::to_ball(place.t, bits);
-    const BallPoint a = corner(0), b = corner(place.i), c = corner(place.i + 1);
-    const auto coordinate = [&](Ball BallPoint::*axis) { return toward(a.*axis, toward(b.*axis, c.*axis, t), s); };
+    const BallPoint a = corner(0), b = corner(place.i), c = corner(place.i + 1), d = corner(place.i + 2);
+    const auto coordinate = [&](Ball BallPoint::*axis) {
+      return between(between(a.*axis, b.*axis, s), between(d.*axis, c.*axis, s), t);
+    };
     return formula.at(BallPoint{coordinate(&BallPoint::x), coordinate(&BallPoint::y), coordinate(&BallPoint::z)});
   });
 }

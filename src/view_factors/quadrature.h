@@ -32,32 +32,35 @@ const std::array<Node, kCount>& gauss_rule() {
   return rule;
 }
 
-// A point of a polygon: corner 0 + s * ((corner i - corner 0) + t * (corner i + 1 - corner i)).
+// A point of the quadrilateral of the corners 0, i, i + 1 and i + 2, or 0 again where there is no corner i + 2:
+//   between(between(corner 0, corner i, s), between(the last corner, corner i + 1, s), t).
 struct Place {
   std::size_t i;
   double s, t;
 };
 
-// Integral over the polygon, cut into triangles at its first corner. Each is a square whose first side has collapsed.
-// Calls f(x, place).
+// Integral over the convex polygon, cut into quadrilaterals, and perhaps a triangle, at its first corner. Each is the
+// image of a square, whose first side collapses for a triangle. Calls f(x, place).
 template <unsigned kCount, class Function>
 double integral_over(const std::vector<Vec3>& ring, const Function& f) {
   double total = 0.0;
-  for (std::size_t i = 2; i < ring.size(); ++i) {
-    const Vec3 b = kernel::difference(ring[i - 1], ring[0]), c = kernel::difference(ring[i], ring[i - 1]);
-    const Vec3 n = kernel::cross(b, c);
-    const double twice_area = std::sqrt(kernel::dot(n, n));
-    double sum = 0.0;
+  for (std::size_t i = 1; i + 1 < ring.size(); i += 2) {
+    const Vec3& a = ring[0];
+    const Vec3& last = i + 2 < ring.size() ? ring[i + 2] : a;
+    const Vec3 b = kernel::difference(ring[i], a), d = kernel::difference(last, a);
+    const Vec3 twist = kernel::difference(kernel::difference(ring[i + 1], last), b);
     for (const Node& s : gauss_rule<kCount>()) {
+      const Vec3 along_t{d.x + s.x * twist.x, d.y + s.x * twist.y, d.z + s.x * twist.z};
       double row = 0.0;
       for (const Node& t : gauss_rule<kCount>()) {
-        const Vec3 x{ring[0].x + s.x * (b.x + t.x * c.x), ring[0].y + s.x * (b.y + t.x * c.y),
-                     ring[0].z + s.x * (b.z + t.x * c.z)};
-        row += t.weight * f(x, Place{i - 1, s.x, t.x});
+        const Vec3 along_s{b.x + t.x * twist.x, b.y + t.x * twist.y, b.z + t.x * twist.z};
+        const Vec3 normal = kernel::cross(along_s, along_t);
+        const Vec3 x{a.x + s.x * b.x + t.x * along_t.x, a.y + s.x * b.y + t.x * along_t.y,
+                     a.z + s.x * b.z + t.x * along_t.z};
+        row += t.weight * std::sqrt(kernel::dot(normal, normal)) * f(x, Place{i, s.x, t.x});
       }
-      sum += s.weight * s.x * row;
+      total += s.weight * row;
     }
-    total += twice_area * sum;
   }
   return total;
 }
