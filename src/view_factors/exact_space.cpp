@@ -61,8 +61,7 @@ Point make_point(Homogeneous exact, const Units& units) {
   make_primitive(exact);
   const auto coordinate = [&](int i) {
     if (exact[3] == 1) return kernel::nearest_double(exact[i], -units.shift);
-    kernel::Rational value(exact[i], exact[3]);
-    value.canonicalize();
+    kernel::Rational value(exact[i], exact[3]);  // perhaps not in lowest terms, which takes time
     return kernel::nearest_double(kernel::times_power_of_two(std::move(value), -units.shift));
   };
   const Vec3 at{coordinate(0), coordinate(1), coordinate(2)};

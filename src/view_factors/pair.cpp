@@ -45,6 +45,13 @@ Point point_inside(const Cell& cell, const Units& units) {
   return middle(cell.corners[0], middle(cell.corners[1], cell.corners[2], units), units);
 }
 
+// The same, rounded.
+Vec3 near_point_inside(const Cell& cell) {
+  const Vec3 &a = cell.corners[0].at, &b = cell.corners[1].at, &c = cell.corners[2].at;
+  const auto middle_of = [](double p, double q, double r) { return 0.5 * (p + 0.5 * (q + r)); };
+  return {middle_of(a.x, b.x, c.x), middle_of(a.y, b.y, c.y), middle_of(a.z, b.z, c.z)};
+}
+
 double radius_about(const Cell& cell, const Vec3& centre) {
   double radius = 0.0;
   for (const Point& corner : cell.corners) radius = std::max(radius, distance(corner.at, centre));
@@ -85,6 +92,20 @@ double precise(const Function& f) {
   }
 }
 
+// At the exact point of the receiver's plane that the place stands for.
+double precise_value(const Formula& formula, const Cell& cell, const Place& place) {
+  return precise([&](long bits) {
+    const auto corner = [&](std::size_t i) { return ball_point(cell.corners[i % cell.corners.size()], bits); };
+    const auto between = [](const Ball& a, const Ball& b, const Ball& t) { return a + (b - a) * t; };
+    const Ball s = kernel::to_ball(place.s, bits), t = kernel::to_ball(place.t, bits);
+    const BallPoint a = corner(0), b = corner(place.i), c = corner(place.i + 1), d = corner(place.i + 2);
+    const auto coordinate = [&](Ball BallPoint::*axis) {
+      return between(between(a.*axis, b.*axis, s), between(d.*axis, c.*axis, s), t);
+    };
+    return formula.at(BallPoint{coordinate(&BallPoint::x), coordinate(&BallPoint::y), coordinate(&BallPoint::z)});
+  });
+}
+
 }  // namespace
 
 Pair::Pair(const Scene& scene, Sight sight, FaceId receiver_face, const ExactSource* whole, const Limits& limits,
@@ -111,20 +132,19 @@ std::vector<Share> Pair::cells(std::size_t budget) {
   return shares;
 }
 
-// The exact point of the receiver's plane that the place stands for, where rounding it would matter.
-double Pair::value_at(const Formula& formula, const Cell& cell, const Vec3& x, const Place& place) const {
-  const Evaluated quick = formula.at(x);
-  if (quick.rounding <= limits_.rounding) return quick.value;
-  return precise([&](long bits) {
-    const auto corner = [&](std::size_t i) { return ball_point(cell.corners[i % cell.corners.size()], bits); };
-    const auto between = [](const Ball& a, const Ball& b, const Ball& t) { return a + (b - a) * t; };
-    const Ball s = kernel::to_ball(place.s, bits), t = kernel::to_ball(place.t, bits);
-    const BallPoint a = corner(0), b = corner(place.i), c = corner(place.i + 1), d = corner(place.i + 2);
-    const auto coordinate = [&](Ball BallPoint::*axis) {
-      return between(between(a.*axis, b.*axis, s), between(d.*axis, c.*axis, s), t);
-    };
-    return formula.at(BallPoint{coordinate(&BallPoint::x), coordinate(&BallPoint::y), coordinate(&BallPoint::z)});
-  });
+template <unsigned kCount>
+double Pair::gauss_integral(const Formula& formula, const Cell& cell, const std::vector<Vec3>& ring) const {
+  const std::vector<WeightedPlace> places = gauss_places<kCount>(ring);
+  std::vector<Vec3> points;
+  for (const WeightedPlace& p : places) points.push_back(p.at);
+  std::vector<Evaluated> values(points.size());
+  formula.at(points, values);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const bool is_enough = values[i].rounding <= limits_.rounding;
+    sum += places[i].weight * (is_enough ? values[i].value : precise_value(formula, cell, places[i].place));
+  }
+  return sum;
 }
 
 double Pair::value_at(const Formula& formula, const Point& x) const {
@@ -170,8 +190,7 @@ bool Pair::add_if_negligible(Cell& cell, Candidates& candidates, std::vector<Sha
 // By the rule of six points; the error is estimated from the rule of five, or is the whole cell.
 Pair::Integrated Pair::integrated(const Formula& formula, const Cell& cell) const {
   const std::vector<Vec3> ring = rounded(cell.corners);
-  const auto f = [&](const Vec3& x, const Place& place) { return value_at(formula, cell, x, place); };
-  const double six = integral_over<6>(ring, f), five = integral_over<5>(ring, f);
+  const double six = gauss_integral<6>(formula, cell, ring), five = gauss_integral<5>(formula, cell, ring);
   const double error = 4.0 * std::abs(six - five);
   return {six, is_resolved(cell, formula) ? error : std::max(error, area(cell))};
 }
@@ -284,7 +303,7 @@ std::vector<Share> Pair::halves(Share share) {
 void Pair::check(const Cell& cell, const Formula& formula) const {
   const Units& units = sight_.points.units();
   const int exponent = static_cast<int>(units.exponent + units.shift);
-  const Vec3 inside = point_inside(cell, units).at;
+  const Vec3 inside = near_point_inside(cell);
   for (const double x : {inside.x, inside.y, inside.z}) {
     if (std::ldexp(std::ldexp(x, exponent), -exponent) != x) return;  // the point is no double in the scene's unit
   }

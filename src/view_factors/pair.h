@@ -75,7 +75,8 @@ class Pair {
   [[nodiscard]] bool certifies() const { return limits_.certified > 0.0; }
   [[nodiscard]] double size_of(const Cell& cell) const;
   bool add_if_negligible(Cell& cell, Candidates& candidates, std::vector<Share>& shares) const;
-  [[nodiscard]] double value_at(const Formula& formula, const Cell& cell, const Vec3& x, const Place& place) const;
+  template <unsigned kCount>
+  [[nodiscard]] double gauss_integral(const Formula& formula, const Cell& cell, const std::vector<Vec3>& ring) const;
   [[nodiscard]] double value_at(const Formula& formula, const Point& x) const;
   void check(const Cell& cell, const Formula& formula) const;
   [[nodiscard]] double slope_bound(const Candidates& candidates, const Vec3& centre, double radius) const;

@@ -39,11 +39,18 @@ struct Place {
   double s, t;
 };
 
-// Integral over the convex polygon, cut into quadrilaterals, and perhaps a triangle, at its first corner. Each is the
-// image of a square, whose first side collapses for a triangle. Calls f(x, place).
-template <unsigned kCount, class Function>
-double integral_over(const std::vector<Vec3>& ring, const Function& f) {
-  double total = 0.0;
+struct WeightedPlace {
+  Vec3 at;
+  double weight;  // the rule's times the area of the map
+  Place place;
+};
+
+// The rule for integrals over the convex polygon, which is cut into quadrilaterals, and perhaps a triangle, at its
+// first corner. Each is the image of a square, whose first side collapses for a triangle.
+template <unsigned kCount>
+std::vector<WeightedPlace> gauss_places(const std::vector<Vec3>& ring) {
+  std::vector<WeightedPlace> places;
+  places.reserve(kCount * kCount * (ring.size() / 2));
   for (std::size_t i = 1; i + 1 < ring.size(); i += 2) {
     const Vec3& a = ring[0];
     const Vec3& last = i + 2 < ring.size() ? ring[i + 2] : a;
@@ -51,18 +58,16 @@ double integral_over(const std::vector<Vec3>& ring, const Function& f) {
     const Vec3 twist = kernel::difference(kernel::difference(ring[i + 1], last), b);
     for (const Node& s : gauss_rule<kCount>()) {
       const Vec3 along_t{d.x + s.x * twist.x, d.y + s.x * twist.y, d.z + s.x * twist.z};
-      double row = 0.0;
       for (const Node& t : gauss_rule<kCount>()) {
         const Vec3 along_s{b.x + t.x * twist.x, b.y + t.x * twist.y, b.z + t.x * twist.z};
         const Vec3 normal = kernel::cross(along_s, along_t);
         const Vec3 x{a.x + s.x * b.x + t.x * along_t.x, a.y + s.x * b.y + t.x * along_t.y,
                      a.z + s.x * b.z + t.x * along_t.z};
-        row += t.weight * std::sqrt(kernel::dot(normal, normal)) * f(x, Place{i, s.x, t.x});
+        places.push_back({x, s.weight * t.weight * std::sqrt(kernel::dot(normal, normal)), {i, s.x, t.x}});
       }
-      total += s.weight * row;
     }
   }
-  return total;
+  return places;
 }
 
 }  // namespace exactff::view_factors

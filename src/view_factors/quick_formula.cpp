@@ -1,0 +1,135 @@
+#include "view_factors/quick_formula.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "kernel/reals.h"
+
+namespace exactff::view_factors {
+namespace {
+
+using kernel::double_double::either;
+using kernel::double_double::magnitude;
+using kernel::double_double::root;
+using kernel::double_double::where;
+using kernel::lanes::Four;
+using kernel::lanes::four;
+using kernel::lanes::FourMask;
+
+constexpr double kInfinity = __builtin_inf();
+// Of a difference of two points whose coordinates are at most 1 and carry a few roundings.
+constexpr double kDifferenceError = 0x1p-50;
+
+struct FourVec {
+  Four x, y, z;
+};
+
+EXACTFF_INLINE FourVec four(const Vec3& a) { return {four(a.x), four(a.y), four(a.z)}; }
+EXACTFF_INLINE FourVec operator-(const FourVec& a, const FourVec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+EXACTFF_INLINE FourVec operator+(const FourVec& a, const FourVec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+EXACTFF_INLINE FourVec operator*(const Four& s, const FourVec& a) { return {s * a.x, s * a.y, s * a.z}; }
+EXACTFF_INLINE Four dot(const FourVec& a, const FourVec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+EXACTFF_INLINE FourVec cross(const FourVec& a, const FourVec& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+EXACTFF_INLINE Four length(const FourVec& a) { return root(dot(a, a)); }
+EXACTFF_INLINE Four at_least_length(const FourVec& a) { return magnitude(a.x) + magnitude(a.y) + magnitude(a.z); }
+
+// atan(z) for |z| <= tan(pi / 8), within 2^-51 of its magnitude. The polynomial in z^2 interpolates at Chebyshev's
+// points, and differs from atan(z) / z by less than 2^-57.
+EXACTFF_INLINE Four atan_of_small(const Four& z) {
+  constexpr double kCoefficients[] = {0x1.0000000000000p+0,  -0x1.555555555552fp-2, 0x1.999999999466ap-3,
+                                      -0x1.2492492259b3ep-3, 0x1.c71c70cb775cep-4,  -0x1.745cf64dcc6bdp-4,
+                                      0x1.3b10f0f5b1223p-4,  -0x1.10ea1d157f6f4p-4, 0x1.def9ecd6a205bp-5,
+                                      -0x1.9c79c07a98714p-5, 0x1.3702ea64c0b03p-5,  -0x1.23b93fac20e4dp-6};
+  const Four w = z * z;
+  Four sum = four(0.0);
+  for (int i = 11; i > 0; --i) sum = w * (sum + kCoefficients[i]);
+  return z + z * sum;
+}
+
+// The angle of (x, y) in [-pi, pi]; 0 for (0, 0). With the smaller of |x| and |y| over the larger one, q, atan(q) is
+// pi / 4 + atan((q - 1) / (q + 1)) where q is large.
+EXACTFF_INLINE Four angle_of(const Four& y, const Four& x) {
+  constexpr double kPi = std::numbers::pi, kTanOfAnEighth = 0.41421356237309503;
+  const Four wide = magnitude(x), high = magnitude(y);
+  const FourMask is_steep = high > wide;
+  const Four less = where(is_steep, wide, high), more = where(is_steep, high, wide);
+  const FourMask is_large = less > kTanOfAnEighth * more;
+  const Four numerator = where(is_large, less - more, less);
+  const Four denominator = where(is_large, less + more, more);
+  const Four part = atan_of_small(numerator / where(denominator > 0.0, denominator, four(1.0)));
+  const Four eighth = where(is_large, part + 0.25 * kPi, part);
+  const Four quarter = where(is_steep, 0.5 * kPi - eighth, eighth);
+  const Four half = where(x < 0.0, kPi - quarter, quarter);
+  return where(y < 0.0, -half, half);
+}
+
+// A direction, and an estimate of the angle by which rounding may have turned it.
+struct FourSightings {
+  FourVec direction;
+  Four error;
+};
+
+// Of an end of the edge from `a` to `b`, as seen from x; all but `end` relative to x.
+EXACTFF_INLINE FourSightings sighting(const QuickPart::End& end, const QuickPart::Segment& edge, const FourVec& a,
+                                      const FourVec& b, const FourVec& x) {
+  if (!end.crosses) {
+    const FourVec d = four(end.at) - x;
+    return {d, kDifferenceError / length(d)};
+  }
+  const FourVec p = four(end.line.a) - x;
+  const FourVec plane = cross(p, four(end.line.along));
+  const Four at_a = magnitude(dot(plane, a)), weight = at_a + magnitude(dot(plane, b));
+  const FourMask is_seen = weight > 0.0;
+  const Four t = where(is_seen, at_a / weight, Four{});
+  const FourVec at = a + t * four(edge.along);
+  const Four of_plane =
+      kDifferenceError * (at_least_length(p) + end.line.length) * (at_least_length(a) + at_least_length(b)) / weight;
+  const Four error = (kDifferenceError + of_plane * edge.length) / length(at);
+  return {at, where(is_seen, error, four(kInfinity))};
+}
+
+// An edge that is seen counter-clockwise round the visible region has a normal a x b that points away from the
+// region as seen from x. So the sum of angle * (a x b) . n / |a x b| is -2 pi F.
+EXACTFF_CLONES void evaluate_four(std::span<const QuickPart> parts, const Vec3& normal, const Vec3* points,
+                                  Evaluated* values) {
+  const FourVec x{Four{points[0].x, points[1].x, points[2].x, points[3].x},
+                  Four{points[0].y, points[1].y, points[2].y, points[3].y},
+                  Four{points[0].z, points[1].z, points[2].z, points[3].z}};
+  const FourVec n = four(normal);
+  Four sum{}, error{};
+  for (const QuickPart& part : parts) {
+    const FourVec along = four(part.edge.along);
+    const FourVec a = four(part.edge.a) - x, b = a + along;
+    const FourVec plane = cross(a, along);
+    const Four size = length(plane);
+    const FourSightings from = sighting(part.from, part.edge, a, b, x), to = sighting(part.to, part.edge, a, b, x);
+    const FourVec &p = from.direction, &q = to.direction;
+    const Four angle = angle_of(dot(cross(p, q - p), plane) / size, dot(p, q));
+    const Four cosine = dot(plane, n) / size;
+    const Four of_part = magnitude(angle) * kDifferenceError * (at_least_length(a) + part.edge.length) / size +
+                         magnitude(cosine) * (from.error + to.error);
+    const FourMask is_seen = size > 0.0;
+    sum += where(is_seen, part.sign * angle * cosine, Four{});
+    error += where(is_seen, of_part, four(kInfinity));
+  }
+  const Four value = sum / (-2.0 * std::numbers::pi), rounding = error / (2.0 * std::numbers::pi);
+  for (int i = 0; i < 4; ++i) values[i] = {value[i], rounding[i]};
+}
+
+}  // namespace
+
+void evaluate(std::span<const QuickPart> parts, const Vec3& normal, std::span<const Vec3> points,
+              std::span<Evaluated> values) {
+  std::size_t i = 0;
+  for (; i + 4 <= points.size(); i += 4) evaluate_four(parts, normal, &points[i], &values[i]);
+  if (i == points.size()) return;
+  Vec3 last[4];
+  Evaluated found[4];
+  for (std::size_t k = 0; k < 4; ++k) last[k] = points[std::min(i + k, points.size() - 1)];
+  evaluate_four(parts, normal, last, found);
+  std::copy_n(found, points.size() - i, &values[i]);
+}
+
+}  // namespace exactff::view_factors
