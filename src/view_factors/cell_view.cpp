@@ -239,7 +239,7 @@ void CellView::look_at_edge(const Edge& edge, std::size_t owner) {
 // N_g x N_h is a multiple of v - x, and the determinant is a product of two signs of the first kind.
 int CellView::order_of_lines(LineId e, LineId g, LineId h) {
   if (e == g || g == h || h == e) return 0;
-  const LineId lines[] = {e, g, h};
+  const CrossingTriple lines{e, g, h};
   for (int i = 0; i < 3; ++i) {
     const LineId one = lines[i], first = lines[(i + 1) % 3], second = lines[(i + 2) % 3];  // a cyclic permutation
     const Line& p = sight_.points.line(first);
@@ -257,14 +257,24 @@ int CellView::order_of_lines(LineId e, LineId g, LineId h) {
       return from_v ? at_v * at_w : -at_v * at_w;
     }
   }
-  work_ += kSignsForAnOrder;
-  const int sign = crossing_order(sight_.points, *cell_, e, g, h);
-  if (sign == kMixed) {
-    CrossingTriple triple{e, g, h};
-    std::ranges::sort(triple);
-    triples_.push_back(triple);
+  return order_of_apart(lines);
+}
+
+// Of three lines without common points. The determinant changes its sign where two of them change places.
+int CellView::order_of_apart(CrossingTriple lines) {
+  int parity = 1;
+  for (const auto& [i, j] : {std::pair(0, 1), std::pair(1, 2), std::pair(0, 1)}) {
+    if (lines[i] < lines[j]) continue;
+    std::swap(lines[i], lines[j]);
+    parity = -parity;
   }
-  return sign;
+  const auto [place, is_new] = orders_.try_emplace(lines, 0);
+  if (is_new) {
+    work_ += kSignsForAnOrder;
+    place->second = crossing_order(sight_.points, *cell_, lines[0], lines[1], lines[2]);
+    if (place->second == kMixed) triples_.push_back(lines);
+  }
+  return place->second == kMixed ? kMixed : parity * place->second;
 }
 
 // True if they are the ends of intervals in a row, none of which is empty.
@@ -377,6 +387,7 @@ CellView::Outcome CellView::look(const Cell& cell, std::size_t depth, Candidates
   best_balance_ = -1.0;
   doubts_.clear();
   triples_.clear();
+  orders_.clear();
   for (Candidate& candidate : candidates) {
     if (sort_out(candidate)) {
       best_cut_.reset();

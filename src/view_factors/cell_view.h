@@ -27,6 +27,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -120,6 +121,7 @@ class CellView {
   bool covers(Along along, std::size_t owner, std::size_t other) const;
   int order(const Edge& edge, const End& p, const End& q);
   int order_of_lines(LineId e, LineId g, LineId h);
+  int order_of_apart(CrossingTriple lines);
   std::span<const Interval> covers() const { return std::span(intervals_).subspan(1); }
   bool is_known_before(const End& p, const End& q) const;
   [[nodiscard]] bool emit_uncovered(const Edge& edge, int sign);
@@ -141,6 +143,7 @@ class CellView {
   std::vector<Interval> intervals_;  // of the edge that is looked at: the one inside the source, then covered ones
   std::vector<BoundaryPart> parts_;
   std::vector<CrossingTriple> triples_;
+  std::map<CrossingTriple, int> orders_;  // of ascending lines, that have been asked for
 };
 
 }  // namespace exactff::view_factors

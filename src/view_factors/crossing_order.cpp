@@ -1,6 +1,7 @@
 #include "view_factors/crossing_order.h"
 
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "kernel/vec.h"
@@ -11,7 +12,9 @@ namespace {
 using kernel::Rational;
 using Exact3 = std::array<Rational, 3>;
 
-constexpr double kFilter = 0x1p-34;
+constexpr double kError = 0x1p-50;  // e of the header
+constexpr double kUnderflow = 0x1p-1000;
+constexpr double kOfTheBound = 1.0 + 0x1p-40;  // more than its roundings
 
 Exact3 exact_place(const Point& point) {
   Exact3 place;
@@ -28,15 +31,30 @@ Exact3 cross(const Exact3& a, const Exact3& b) {
 }
 Rational dot(const Exact3& a, const Exact3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// f in doubles and in rationals.
-struct Rounded {
-  std::array<Vec3, 6> ends;
+struct Bounded {
+  double value = 0.0, error = 0.0;
+};
 
-  [[nodiscard]] double at(const Vec3& x) const {
-    const auto normal = [&](std::size_t i) {
-      return kernel::cross(kernel::difference(ends[i], x), kernel::difference(ends[i + 1], x));
-    };
-    return kernel::dot(normal(0), kernel::cross(normal(2), normal(4)));
+// f in doubles, with the bound of the header, and in rationals.
+struct Rounded {
+  struct Edge {
+    Vec3 a, along;
+    double length;  // L
+  };
+  std::array<Edge, 3> edges;
+
+  [[nodiscard]] Bounded at(const Vec3& x) const {
+    std::array<Vec3, 3> n;
+    std::array<double, 3> r{}, s{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 d = kernel::difference(edges[i].a, x);
+      const double size = kernel::max_norm(d) + kError;  // A
+      n[i] = kernel::cross(d, edges[i].along);
+      r[i] = 4.0 * kError * (size + edges[i].length);
+      s[i] = 2.0 * size * edges[i].length + r[i];
+    }
+    const double inherited = r[0] * s[1] * s[2] + s[0] * r[1] * s[2] + s[0] * s[1] * r[2];
+    return {kernel::dot(n[0], kernel::cross(n[1], n[2])), 6.0 * (inherited + 2.0 * kError * s[0] * s[1] * s[2])};
   }
 };
 struct Exact {
@@ -69,22 +87,26 @@ class CommonSign {
 class PolarSigns {
  public:
   PolarSigns(const std::array<const Point*, 6>& ends, const Cell& cell) : ends_(ends), cell_(cell) {
-    for (std::size_t i = 0; i < 6; ++i) rounded_.ends[i] = ends[i]->at;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 along = kernel::difference(ends[2 * i + 1]->at, ends[2 * i]->at);
+      rounded_.edges[i] = {ends[2 * i]->at, along, kernel::max_norm(along) + kError};
+    }
     for (const Point& corner : cell.corners) at_corners_.push_back(rounded_.at(corner.at));
   }
 
   int sign(std::size_t i, std::size_t j) {
-    const double b = estimate(i, j);
-    if (b > kFilter || b < -kFilter) return b > 0.0 ? 1 : -1;
+    const Bounded b = estimate(i, j);
+    if (std::abs(b.value) > b.error * kOfTheBound + kUnderflow) return b.value > 0.0 ? 1 : -1;
     return sgn(exact(i, j));
   }
 
  private:
-  [[nodiscard]] double estimate(std::size_t i, std::size_t j) const {
-    if (i == j) return at_corners_[i];
+  [[nodiscard]] Bounded estimate(std::size_t i, std::size_t j) const {
+    const Bounded &at_y = at_corners_[i], &at_z = at_corners_[j];
+    if (i == j) return at_y;
     const Vec3 &y = cell_.corners[i].at, &z = cell_.corners[j].at;
-    const Vec3 between{0.5 * (y.x + z.x), 0.5 * (y.y + z.y), 0.5 * (y.z + z.z)};
-    return 2.0 * rounded_.at(between) - 0.5 * (at_corners_[i] + at_corners_[j]);
+    const Bounded middle = rounded_.at({0.5 * (y.x + z.x), 0.5 * (y.y + z.y), 0.5 * (y.z + z.z)});
+    return {2.0 * middle.value - 0.5 * (at_y.value + at_z.value), 2.0 * middle.error + 0.5 * (at_y.error + at_z.error)};
   }
 
   Rational exact(std::size_t i, std::size_t j) {
@@ -104,7 +126,7 @@ class PolarSigns {
   const Cell& cell_;
   Rounded rounded_;
   std::optional<Exact> exact_;
-  std::vector<double> at_corners_;
+  std::vector<Bounded> at_corners_;
 };
 
 }  // namespace
