@@ -1,12 +1,15 @@
 // exactff_generate: writes a generated scene as OBJ (and MTL if it has materials): any model, or a family chosen by
 // flags.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <vector>
 
 #include "exactff/models.h"
 #include "generate/families.h"
+#include "generate/patched_rooms.h"
 #include "models/model_files.h"
 
 namespace {
@@ -20,16 +23,15 @@ struct Request {
   std::string output;
 };
 
-const Family* find_family(const std::string& name) {
-  for (const Family& family : families()) {
-    if (family.name == name) return &family;
-  }
-  return nullptr;
+std::vector<Family> all_families() {
+  std::vector<Family> all(families().begin(), families().end());
+  all.insert(all.end(), patched_rooms().begin(), patched_rooms().end());
+  return all;
 }
 
 std::string scene_list() {
   std::string out = "Families, which the flags describe:\n";
-  for (const Family& family : families())
+  for (const Family& family : all_families())
     out += "  " + std::string(family.name) + ": " + std::string(family.summary) + '\n';
   out += "\nModels, as MODEL:SETTING=VALUE,... (@MODEL of the program exactff; exactff info @ tells the settings):\n ";
   for (const Model* model : all_models()) out += ' ' + model->name;
@@ -64,10 +66,11 @@ std::string provenance(const Request& request) {
 }
 
 PlainScene made(const Request& request) {
-  const Family* family = find_family(request.scene);
-  PlainScene scene = family != nullptr ? family->make(request.options) : make_plain(request.scene);
+  const std::vector<Family> all = all_families();
+  const auto family = std::ranges::find(all, request.scene, &Family::name);
+  PlainScene scene = family != all.end() ? family->make(request.options) : make_plain(request.scene);
   scale(scene, request.scale);
-  if (family != nullptr) scene.comments.insert(scene.comments.begin(), provenance(request));
+  if (family != all.end()) scene.comments.insert(scene.comments.begin(), provenance(request));
   return scene;
 }
 

@@ -1,0 +1,67 @@
+#!/usr/bin/env bash
+# Times view factors from patch to patch on one thread: processor seconds of whole runs of `exactff matrix`, medians.
+# The draft of 4,872 patches takes every 50th row, on all threads; its seconds are those of all rows, by that share.
+# Usage: time_view_factors.sh [RUNS] (3), after validation/test.sh has built everything. EXACTFF_BUILD names another
+# build folder.
+set -euo pipefail
+
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build=${EXACTFF_BUILD:-$top/build}
+runs=${1:-3}
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+
+cat > plate.obj <<'OBJ'
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 0 0 1
+v 0 1 1
+v 1 1 1
+v 1 0 1
+v 0.25 0.25 0.5
+v 0.75 0.25 0.5
+v 0.75 0.75 0.5
+v 0.25 0.75 0.5
+g below
+f 1 2 3 4
+g above
+f 5 6 7 8
+g plate
+f 9 10 11 12
+OBJ
+"$build/exactff_generate" cube-room --n 1 -o room.obj
+"$build/exactff_generate" cube-room --n 4 -o cube.obj
+"$build/exactff_generate" three-cube-room --n 8 -o cubes.obj
+"$build/exactff_generate" building --n 2 -o building.obj
+
+TIMEFORMAT='%U'
+sum_of() { # COLUMN: of the pairs in factors.csv
+  awk -F, -v c="$1" '!/^#/ && !(($2 "," $1) in seen) { seen[$1 "," $2]; sum += $c } END { print sum + 0 }' factors.csv
+}
+
+row() { # TEXT SCENE OPTION...: a row of the table
+  local text=$1 run
+  for ((run = 0; run < runs; ++run)); do
+    { time "$build/exactff" matrix "${@:2}" --threads 1 --force -o factors.csv > log 2>&1; } 2>> times
+  done
+  printf '| %s | %s | %s | %s |\n' "$text" "$(sum_of 10)" "$(sum_of 11)" "$(sort -n times | sed -n "$(((runs + 1) / 2))p")"
+  rm times
+}
+
+echo '| scene, accuracy, claim | cells | of these event cells | seconds |'
+echo '|---|---|---|---|'
+row 'plate between squares, 1e-10, certified' plate.obj --from below --to above --accuracy 1e-10 --certify
+row 'room with a tilted cube, 12 patches, 1e-6, certified' room.obj --certify
+row 'the same, topology-proved' room.obj
+row '102 patches, the cube tilted, 1e-6, certified' cube.obj --certify
+row 'the same, topology-proved' cube.obj
+row '402 patches, three cubes, 1e-6, topology-proved' cubes.obj
+
+rows=$(awk '$1 == "g" && ++n % 50 == 25 { print $2 }' building.obj | paste -sd,)
+TIMEFORMAT='%R'
+{ time "$build/exactff" matrix building.obj --from "$rows" --draft --force -o draft.csv > log 2>&1; } 2> times
+printf '| 4,872 patches of a furnished building, 1e-3, draft, all threads | | | %.0f |\n' \
+  "$(awk -v rows="$(tr ',' '\n' <<< "$rows" | wc -l)" '{ print $1 * 4872 / rows }' times)"
