@@ -299,7 +299,8 @@ std::vector<Share> Pair::halves(Share share) {
 }
 
 // The point of the exact solver is rounded, and may lie on the other side of a face that is a rounding away from the
-// receiver's plane. So points a little above and below are also tried.
+// receiver's plane. So points a little above and below are also tried, from which an edge at distance d is seen turned
+// by at most the step over d.
 void Pair::check(const Cell& cell, const Formula& formula) const {
   const Units& units = sight_.points.units();
   const int exponent = static_cast<int>(units.exponent + units.shift);
@@ -312,13 +313,17 @@ void Pair::check(const Cell& cell, const Formula& formula) const {
   const auto [found, rounding] = formula.at(inside);
   // Where rounding may have moved the point to another cell, or matters, it means nothing.
   if (rounding > kLargestMismatch || distance_from_sides(cell, inside) < kLeastMargin) return;
-  double exact = 0.0;
+  double exact = 0.0, turned = 0.0;
+  for (const BoundaryPart& part : formula.boundary()) {
+    turned +=
+        kStepAside / distance_to_segment(inside, sight_.points[part.edge.from].at, sight_.points[part.edge.to].at);
+  }
   for (const double above : {0.0, kStepAside, -kStepAside}) {
     const auto coordinate = [&](double x, double n) { return std::ldexp(x + above * n, exponent); };
     const Vec3 point{coordinate(inside.x, normal.x), coordinate(inside.y, normal.y), coordinate(inside.z, normal.z)};
     exact =
         exact_form_factor(scene_, {.point = point, .normal = normal, .on = {receiver_face_}, .id = {}}, *whole_).value;
-    if (std::abs(found - exact) <= kLargestMismatch) return;
+    if (std::abs(found - exact) <= kLargestMismatch + (above == 0.0 ? 0.0 : turned)) return;
   }
   throw std::logic_error("a view factor's cell on " + scene_.name_of(receiver_face_) + " sees " +
                          text::shortest(found) + " of " + scene_.name_of(whole_->selection()) + ", its point sees " +

@@ -259,6 +259,22 @@ TEST(ViewFactor, OfACrowdIsNeverCertainOfWhatItHasNotMet) {
   EXPECT_GE(f.upper, truth.upper);
 }
 
+// A doubled triangle that reaches through the floor: cells close to the floor's edges are checked at rounded points,
+// which lie behind the twin, and at points beside these, which see the floor turned a little.
+TEST(ViewFactor, OfADoubledFaceThroughAnEdgeRaisesNoFalseAlarm) {
+  PlainScene scene;
+  for (int twin = 0; twin < 2; ++twin) {
+    add(scene, "doubled", {{0.125, 0, 0.6875}, {0.5625, 0.296875, -1.71875}, {-1.40625, -2.03125, 2.90625}});
+  }
+  add(scene, "floor", {{-0.5, -0.5, 0}, {0.5, -0.5, 0}, {0.5, 0.5, 0}, {-0.5, 0.5, 0}});
+  const Scene built = generate::build(scene);
+  const ViewFactor close = view_factor(built, named(built, "doubled"), named(built, "floor"), {.accuracy = 1e-10});
+  EXPECT_TRUE(close.accurate);
+  const ViewFactor coarse = view_factor(built, named(built, "doubled"), named(built, "floor"), {.accuracy = 1e-4});
+  EXPECT_LE(coarse.lower, close.lower);
+  EXPECT_GE(coarse.upper, close.upper);
+}
+
 TEST(ViewFactor, RefusesWhatHasNoMeaning) {
   PlainScene scene = plates(1.0, 1.0);
   add(scene, "line", {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
