@@ -21,6 +21,7 @@
 #include "view_factors/patch_parts.h"
 #include "view_factors/sampled_factor.h"
 #include "view_factors/strata.h"
+#include "whole_view/seen_pieces.h"
 #include "work/parallel.h"
 
 namespace exactff::matrix {
@@ -85,6 +86,26 @@ double largest_factor(const DraftPatch& from, const DraftPatch& to) {
                                                   : 1.0;
 }
 
+// Rounding moves no point of a part out of its box, whose sides are coordinates of corners.
+std::vector<std::uint32_t> pieces_seen_from(const ExactScene& scene, const Part& part) {
+  Box box;
+  for (const Point& corner : part.corners) box.include(corner.at);
+  const int exponent = static_cast<int>(scene.units.exponent + scene.units.shift);
+  std::vector<Vec3> corners;
+  for (const double x : {box.low.x, box.high.x}) {
+    for (const double y : {box.low.y, box.high.y}) {
+      for (const double z : {box.low.z, box.high.z}) {
+        corners.push_back({std::ldexp(x, exponent), std::ldexp(y, exponent), std::ldexp(z, exponent)});
+      }
+    }
+  }
+  const auto before = [](const Vec3& a, const Vec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
+  const auto same = [](const Vec3& a, const Vec3& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
+  std::ranges::sort(corners, before);
+  corners.erase(std::unique(corners.begin(), corners.end(), same), corners.end());
+  return whole_view::pieces_seen_from(scene.scene, corners);
+}
+
 // What the points of one row have seen, by patch, then the backs and what is open.
 class RowOfMeans {
  public:
@@ -97,15 +118,20 @@ class RowOfMeans {
     strata_ = strata_of(parts, std::max(view_factors::kFewestStrata, views / kViews));
     const view_factors::Strata& strata = strata_;
     std::vector<std::optional<view_factors::NearPlanes>> near(parts.size());
+    std::vector<std::vector<std::uint32_t>> seen_pieces(parts.size());
     for (std::size_t s = 0; s < strata.strata.size(); ++s) {
       const view_factors::Stratum& stratum = strata.strata[s];
       const double share = stratum.area / strata.area;
       for (std::size_t i = 0; i < 2; ++i) {
         view_factors::Draws draws(0, s, i);
         const view_factors::SmallTriangle& triangle = drawn(strata, stratum, draws);
-        if (!near[triangle.part]) near[triangle.part].emplace(scene, parts[triangle.part]);
+        if (!near[triangle.part]) {
+          near[triangle.part].emplace(scene, parts[triangle.part]);
+          seen_pieces[triangle.part] = pieces_seen_from(scene, parts[triangle.part]);
+        }
         for (const Point& point : triple_in(parts[triangle.part], triangle, draws, scene.units)) {
-          if (!look_from(point, *near[triangle.part], numbers_[i])) unknown_ += share / kViews;
+          if (!look_from(point, *near[triangle.part], seen_pieces[triangle.part], numbers_[i]))
+            unknown_ += share / kViews;
         }
       }
       add(share);
@@ -126,10 +152,12 @@ class RowOfMeans {
 
  private:
   // False where rounding the point may change what it sees.
-  bool look_from(const Point& point, const view_factors::NearPlanes& near, std::vector<double>& numbers) {
+  bool look_from(const Point& point, const view_factors::NearPlanes& near, std::span<const std::uint32_t> pieces,
+                 std::vector<double>& numbers) {
     const std::optional<Vec3> rounded = near.rounded(point);
     if (!rounded) return false;
-    view(scene_, {.point = *rounded, .normal = near.normal(), .on = near.own(), .id = {}}, {}, seen_, workspace_);
+    const Receiver receiver{.point = *rounded, .normal = near.normal(), .on = near.own(), .id = {}};
+    whole_view::view_among(scene_, pieces, receiver, {}, seen_, workspace_);
     for (const SeenPatch& one : seen_.patches) note(index_of(one.patch), one.form_factor.value, numbers);
     note(scene_.patches().size() + kBackColumn, seen_.back.value, numbers);
     note(scene_.patches().size() + kOpenColumn, seen_.open.value, numbers);

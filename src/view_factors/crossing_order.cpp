@@ -2,40 +2,34 @@
 
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include "kernel/vec.h"
 
 namespace exactff::view_factors {
 namespace {
 
-using kernel::Rational;
-using Exact3 = std::array<Rational, 3>;
+using Exact3 = std::array<Integer, 3>;
 
 constexpr double kError = 0x1p-50;  // e of the header
 constexpr double kUnderflow = 0x1p-1000;
 constexpr double kOfTheBound = 1.0 + 0x1p-40;  // more than its roundings
 
-Exact3 exact_place(const Point& point) {
-  Exact3 place;
-  for (std::size_t i = 0; i < 3; ++i) {
-    place[i] = Rational(point.exact[i], point.exact[3]);
-    place[i].canonicalize();
-  }
-  return place;
+// Times the product of both last coordinates.
+Exact3 difference(const Homogeneous& a, const Homogeneous& b) {
+  Exact3 result;
+  for (std::size_t i = 0; i < 3; ++i) result[i] = a[i] * b[3] - b[i] * a[3];
+  return result;
 }
-
-Exact3 minus(const Exact3& a, const Exact3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 Exact3 cross(const Exact3& a, const Exact3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-Rational dot(const Exact3& a, const Exact3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Integer dot(const Exact3& a, const Exact3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 struct Bounded {
   double value = 0.0, error = 0.0;
 };
 
-// f in doubles, with the bound of the header, and in rationals.
+// f in doubles, with the bound of the header, and in integers.
 struct Rounded {
   struct Edge {
     Vec3 a, along;
@@ -58,10 +52,11 @@ struct Rounded {
   }
 };
 struct Exact {
-  std::array<Exact3, 6> ends;
+  std::array<const Homogeneous*, 6> ends{};
 
-  [[nodiscard]] Rational at(const Exact3& x) const {
-    const auto normal = [&](std::size_t i) { return cross(minus(ends[i], x), minus(ends[i + 1], x)); };
+  // Times the sixth power of the last coordinate of x, and a factor that does not depend on x.
+  [[nodiscard]] Integer at(const Homogeneous& x) const {
+    const auto normal = [&](std::size_t i) { return cross(difference(*ends[i], x), difference(*ends[i + 1], x)); };
     return dot(normal(0), cross(normal(2), normal(4)));
   }
 };
@@ -94,7 +89,7 @@ class PolarSigns {
     for (const Point& corner : cell.corners) at_corners_.push_back(rounded_.at(corner.at));
   }
 
-  int sign(std::size_t i, std::size_t j) {
+  [[nodiscard]] int sign(std::size_t i, std::size_t j) const {
     const Bounded b = estimate(i, j);
     if (std::abs(b.value) > b.error * kOfTheBound + kUnderflow) return b.value > 0.0 ? 1 : -1;
     return sgn(exact(i, j));
@@ -109,23 +104,25 @@ class PolarSigns {
     return {2.0 * middle.value - 0.5 * (at_y.value + at_z.value), 2.0 * middle.error + 0.5 * (at_y.error + at_z.error)};
   }
 
-  Rational exact(std::size_t i, std::size_t j) {
-    if (!exact_) {
-      exact_.emplace();
-      for (std::size_t k = 0; k < 6; ++k) exact_->ends[k] = exact_place(*ends_[k]);
+  // Of the same sign. With w the last coordinate of both corners, that of their middle is 2 w, and the polar form is a
+  // positive multiple of 2 f(middle) / 2^6 - (f(y) + f(z)) / 2.
+  [[nodiscard]] Integer exact(std::size_t i, std::size_t j) const {
+    Exact f;
+    for (std::size_t k = 0; k < 6; ++k) f.ends[k] = &ends_[k]->exact;
+    const Homogeneous &y = cell_.corners[i].exact, &z = cell_.corners[j].exact;
+    if (i == j) return f.at(y);
+    Homogeneous wide_y, wide_z, middle;
+    for (std::size_t k = 0; k < 4; ++k) {
+      wide_y[k] = y[k] * z[3];
+      wide_z[k] = z[k] * y[3];
+      middle[k] = wide_y[k] + wide_z[k];
     }
-    const Exact3 y = exact_place(cell_.corners[i]);
-    if (i == j) return exact_->at(y);
-    const Exact3 z = exact_place(cell_.corners[j]);
-    Exact3 between;
-    for (std::size_t k = 0; k < 3; ++k) between[k] = (y[k] + z[k]) / 2;
-    return 2 * exact_->at(between) - (exact_->at(y) + exact_->at(z)) / 2;
+    return f.at(middle) - 16 * (f.at(wide_y) + f.at(wide_z));
   }
 
   const std::array<const Point*, 6>& ends_;
   const Cell& cell_;
   Rounded rounded_;
-  std::optional<Exact> exact_;
   std::vector<Bounded> at_corners_;
 };
 
@@ -137,7 +134,7 @@ int crossing_order(const Points& points, const Cell& cell, LineId e, LineId g, L
   for (const LineId line : {e, g, h}) {
     for (const PointId id : {points.line(line).a, points.line(line).b}) ends[count++] = &points[id];
   }
-  PolarSigns signs(ends, cell);
+  const PolarSigns signs(ends, cell);
   CommonSign common;
   for (std::size_t i = 0; i < cell.corners.size(); ++i) {
     if (!common.take(signs.sign(i, i))) return kMixed;

@@ -15,6 +15,7 @@
 #include "exact/workspace.h"
 #include "kernel/float_environment.h"
 #include "scene/misuse.h"
+#include "whole_view/seen_pieces.h"
 #include "whole_view/view_edges.h"
 
 namespace exactff {
@@ -68,9 +69,13 @@ Vec3 direction(const kernel::ExactVec3& exact) {
 
 class ViewSolver {
  public:
+  using Pieces = std::optional<std::span<const std::uint32_t>>;
+
+  // With `among`, all other pieces count as hidden.
   ViewSolver(const Scene& scene, const Receiver& receiver, const ViewOptions& options, WholeView& result,
-             Workspace& workspace)
+             Workspace& workspace, const Pieces& among = {})
       : scene_(scene),
+        among_(among),
         receiver_(receiver),
         options_(options),
         view_(scene, receiver),
@@ -82,9 +87,11 @@ class ViewSolver {
         all_(backs_ + 1) {}
 
   void run() {
-    edges_.find(view_, options_.arcs    ? ViewEdges::Wholes::kFaces
-                       : options_.faces ? ViewEdges::Wholes::kFronts
-                                        : ViewEdges::Wholes::kPatches);
+    edges_.find(view_,
+                options_.arcs    ? ViewEdges::Wholes::kFaces
+                : options_.faces ? ViewEdges::Wholes::kFronts
+                                 : ViewEdges::Wholes::kPatches,
+                among_);
     memory_.quick.start(view_.n);
     memory_.quick.find_terms(edges_, edges_.parts(), memory_.terms);
     memory_.references.clear();
@@ -241,6 +248,7 @@ class ViewSolver {
   }
 
   const Scene& scene_;
+  const Pieces among_;
   const Receiver& receiver_;
   const ViewOptions& options_;
   const visibility::View view_;
@@ -284,6 +292,13 @@ void view(const Scene& scene, const Receiver& receiver, const ViewOptions& optio
   const kernel::StandardArithmetic arithmetic;
   exact::check_view_arguments(scene, receiver, options.precision_cap);
   ViewSolver(scene, receiver, options, result, workspace).run();
+}
+
+void whole_view::view_among(const Scene& scene, std::span<const std::uint32_t> pieces, const Receiver& receiver,
+                            const ViewOptions& options, WholeView& result, Workspace& workspace) {
+  const kernel::StandardArithmetic arithmetic;
+  exact::check_view_arguments(scene, receiver, options.precision_cap);
+  ViewSolver(scene, receiver, options, result, workspace, pieces).run();
 }
 
 }  // namespace exactff

@@ -11,9 +11,9 @@ namespace exactff::whole_view {
 using Edge = Outlines::Edge;
 using Outline = Outlines::Outline;
 
-void ViewEdges::find(const visibility::View& view, Wholes wholes) {
+void ViewEdges::find(const visibility::View& view, Wholes wholes, std::optional<std::span<const std::uint32_t>> among) {
   start(view);
-  gather(view, wholes);
+  gather(view, wholes, among);
   windows_.find(outlines_, depths_.all());
   trace_all();
   examine_rivals();

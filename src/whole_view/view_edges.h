@@ -63,7 +63,7 @@ class ViewEdges : public visibility::EdgeCovers {
     kPlanes,   // each face, and each triangle of a face that is not planar
   };
 
-  void find(const visibility::View& view, Wholes wholes);
+  void find(const visibility::View& view, Wholes wholes, std::optional<std::span<const std::uint32_t>> among = {});
 
   [[nodiscard]] std::span<const Part> parts() const { return parts_; }
   [[nodiscard]] std::span<const Sides> sides() const { return sides_; }
@@ -131,7 +131,7 @@ class ViewEdges : public visibility::EdgeCovers {
 
   // 1.
   void start(const visibility::View& view);
-  void gather(const visibility::View& view, Wholes wholes);
+  void gather(const visibility::View& view, Wholes wholes, std::optional<std::span<const std::uint32_t>> among);
   void add(const visibility::View& view, const Piece& piece, std::uint32_t whole, int facing);
   void classify_new_corners(const visibility::View& view);
   void clip();
