@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # All tests. Installs packages, builds with warnings as errors, and ends with the summary of ctest.
 #
-#   test.sh               the whole suite on the optimised build, by GCC
+#   test.sh               the suite on the optimised build, by GCC, without the fuzz targets' corpora
 #   test.sh --sanitizers  instead, a part of the suite under AddressSanitizer and UndefinedBehaviorSanitizer, built by
 #                         Clang, and a short fuzzing run in that build
 set -euo pipefail
@@ -18,11 +18,11 @@ test_optimised() {
   # These are for tests of a build option, of reports, of the layout, of images, of the package for Python, and of files
   # for ParaView.
   validation/build.sh build -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON -DEXACTFF_QUICK_BUILD=ON
-  ctest --test-dir build --output-on-failure --parallel 2
+  ctest --test-dir build --output-on-failure --parallel 2 --exclude-regex '^FuzzCorpus'  # --sanitizers runs them
 }
 
 test_sanitized() {
-  validation/fuzz.sh 10  # builds build/clang, and begins with the corpora that FuzzCorpus tests would run again
+  validation/fuzz.sh 10  # builds build/clang, and begins with the corpora of the FuzzCorpus tests
   ctest --test-dir build/clang --output-on-failure --parallel 2 --exclude-regex '^FuzzCorpus'
 }
 

@@ -167,10 +167,24 @@ def check_folded(reader, tallest, screenshots):
     reader.check("everything_is_unfolded")
 
 
-def check_report(driver, page, screenshots=None, tallest=None):
-    """All complaints about the page, each once. `tallest`: its height on a screen as it opens, in pixels."""
+def check_report(driver, page, screenshots=None, tallest=None, enough=lambda complaints: False):
+    """All complaints about the page, each once. `tallest`: its height on a screen as it opens, in pixels.
+
+    `enough`: asked between the steps; the check ends early where it returns true.
+    """
     reader = Reader(driver, page)
+    for _ in steps(reader, screenshots, tallest):
+        if enough(reader.complaints):
+            break
+    return list(dict.fromkeys(reader.complaints))
+
+
+def steps(reader, screenshots, tallest):
+    """The check, which pauses after each step."""
+    reader.check_requests()
+    yield
     check_folded(reader, tallest, screenshots)
+    yield
     reader.unfold()
     reader.check("page_is_described", anywhere=True)
     reader.check("ids_are_unique", anywhere=True)
@@ -178,8 +192,10 @@ def check_report(driver, page, screenshots=None, tallest=None):
     reader.check("nothing_lies_outside", anywhere=True)
     reader.check("figures_have_names", anywhere=True)
     reader.check_neighbours()
+    yield
     for width, scheme in ((PHONE, "light"), (PHONE, "dark"), (SCREEN, "dark"), (SCREEN, "light")):
         check_layout(reader, width, scheme)
+        yield
         pictures = reader.pictures() if width == PHONE or screenshots else []
         if width == PHONE:
             reader.check("running_text_is_large", LEAST_RUNNING_TEXT)
@@ -187,12 +203,14 @@ def check_report(driver, page, screenshots=None, tallest=None):
             reader.check("no_column_is_cut")
             reader.check("no_mark_covers_a_label")
             reader.check_marks_show(pictures)
+            yield
         if screenshots:
             save(pictures, screenshots, f"{'phone' if width == PHONE else 'screen'}-{scheme}")
     for scheme in ("light", "dark"):  # of the reader's system; paper is white
         check_layout(reader, PAPER, scheme, "print")
+        yield
     reader.check_requests()
-    return list(dict.fromkeys(reader.complaints))
+    yield
 
 
 def parse_arguments():
