@@ -4,10 +4,10 @@
 #   fuzz.sh [SECONDS]  for each target, default 60
 #
 # Builds build/clang: Clang, AddressSanitizer, UndefinedBehaviorSanitizer and libFuzzer. EXACTFF_BUILD names another
-# build folder. Each target starts from data/fuzz/TARGET and a fresh working corpus; fuzz_solver and fuzz_view, which
-# share a corpus, also from the reference and regression cases. Two targets run at a time. Ends with a summary; the exit
-# code is 1 if there is a finding. A finding of fuzz_solver is shrunk to a case that becomes a test when it is moved into
-# data/regression.
+# build folder. Each target starts from data/fuzz/TARGET and a fresh working corpus; fuzz_solver, fuzz_view and
+# fuzz_cells, which share a corpus, also from the reference and regression cases. Two targets run at a time. Ends with a
+# summary; the exit code is 1 if there is a finding. A finding of fuzz_solver is shrunk to a case that becomes a test
+# when it is moved into data/regression.
 #
 # For the whole program there is no libFuzzer target: fuzz_program generates its own cases and keeps one of each kind of
 # finding. EXACTFF_SEED, default 1, numbers them.
@@ -30,7 +30,7 @@ mkdir -p "$work/temporary" "$findings"
 
 run() {
   local target=$1 corpus=$1
-  [ "$target" != view ] || corpus=solver
+  case "$target" in view | cells) corpus=solver ;; esac
   local corpora=("$work/$1" "data/fuzz/$corpus") options=(-max_total_time="$seconds" -max_len=4096 -timeout=60
     -rss_limit_mb=2048 -report_slow_units=60 -print_final_stats=1 -artifact_prefix="$findings/$1-")
   mkdir "$work/$target"
@@ -43,7 +43,7 @@ run() {
 export -f run
 export seconds build work findings
 
-targets=(solver view obj ply stl off view3d receivers exr check study truth_journal study_journal)
+targets=(solver view cells obj ply stl off view3d receivers exr check study truth_journal study_journal)
 run_program() {
   mkdir "$work/program"
   rm -rf "$findings"/program-*
