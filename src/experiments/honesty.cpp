@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <stdexcept>
 #include <utility>
 
 #include "exactff/models.h"
@@ -90,13 +91,22 @@ void add_entry(const PreparedPair& pair, Claim asked, double accuracy, bool is_t
   scene.entries.push_back({asked, accuracy, is_turned, factor, is_turned ? pair.back : pair.forth});
 }
 
-HonestyScene filled(HonestyScene scene, const HonestySize& size) {
+void fill(HonestyScene& scene, const HonestySize& size) {
   const PreparedPair pair = prepared_pair(scene, size);
   for (const Claim claim : {Claim::kCertified, Claim::kTopologyProved}) {
     for (const double accuracy : size.accuracies) add_entry(pair, claim, accuracy, scene.is_turned, size, scene);
   }
   for (const bool is_turned : {false, true}) {
     add_entry(pair, Claim::kStatistical, size.accuracies.back(), is_turned, size, scene);
+  }
+}
+
+// An internal error is a result here, among thousands of others.
+HonestyScene filled(HonestyScene scene, const HonestySize& size) {
+  try {
+    fill(scene, size);
+  } catch (const std::logic_error& error) {
+    scene.failure = error.what();
   }
   return scene;
 }
@@ -143,6 +153,7 @@ HonestyScene honesty_scene(std::uint64_t number) {
                      "floor",
                      "source",
                      random.one_in(2),
+                     {},
                      {}};
   const Scene made = models::make_scene(scene.model);
   // All of Karkanis' triangles turn their backs to the source; those of the lattice may have collapsed.
@@ -186,7 +197,8 @@ HonestyStudy honesty_study(const HonestySize& size, int threads, const Hooks& ho
                      [&](std::size_t i) { study.scenes[i] = filled(honesty_scene(size.first + i), size); });
   study.rows = honesty_rows(study.scenes);
   for (const HonestyScene& scene : study.scenes) {
-    study.contradictions += scene.entries.front().truth.are_contradictory ? 1U : 0U;
+    study.contradictions += !scene.entries.empty() && scene.entries.front().truth.are_contradictory ? 1U : 0U;
+    study.failures += scene.failure.empty() ? 0U : 1U;
   }
   return study;
 }

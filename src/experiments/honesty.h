@@ -62,6 +62,7 @@ struct HonestyScene {
   std::string from, to;
   bool is_turned = false;  // entries are of F_ji, but statistical ones of both
   std::vector<HonestyEntry> entries;
+  std::string failure;  // a cell failed its own check: there are no further entries
 };
 
 // All entries of one claim and accuracy. Proved zeros are one row, and statistical entries another: their accuracy is
@@ -77,8 +78,9 @@ struct HonestyRow {
 
 struct HonestyStudy {
   std::vector<HonestyScene> scenes;
-  std::vector<HonestyRow> rows;  // by claim, the strongest first, then by accuracy, the largest first
-  std::size_t contradictions = 0;
+  std::vector<HonestyRow> rows;    // by claim, the strongest first, then by accuracy, the largest first
+  std::size_t contradictions = 0;  // scenes whose two enclosures are disjoint
+  std::size_t failures = 0;
 };
 
 // A random scene's model, and the names of the two patches. Depends on the number alone.

@@ -89,6 +89,17 @@ std::string level_sentence(const HonestyStudy& study) {
          " is what the level means for a normal distribution.";
 }
 
+std::string failure_sentence(const HonestyStudy& study) {
+  const auto failed =
+      std::ranges::find_if(study.scenes, [](const HonestyScene& scene) { return !scene.failure.empty(); });
+  if (failed == study.scenes.end()) return {};
+  return "In " + counted(study.failures, "scene") +
+         " a cell fails its own check, which is an internal error of exactff, and the entries after it are missing. "
+         "The "
+         "first one is @" +
+         failed->model + ": " + failed->failure + '.';
+}
+
 // ------------------------------------------------------------------------------------------------------------- figure
 
 page::Figure error_figure(const HonestyStudy& study) {
@@ -174,8 +185,8 @@ NumberTable honesty_table(std::span<const HonestyRow> rows) {
 
 Result honesty_chapter(const HonestyStudy& study, const HonestySize& size) {
   Result result{.name = "honesty", .title = "View factors: true errors against reported ones"};
-  result.paragraphs = {broken_sentence(study), method_sentence(study, size), open_sentence(study),
-                       level_sentence(study)};
+  result.paragraphs = {broken_sentence(study), failure_sentence(study), method_sentence(study, size),
+                       open_sentence(study), level_sentence(study)};
   std::erase(result.paragraphs, "");
   result.tables = {honesty_table(study.rows)};
   result.figures = {error_figure(study)};

@@ -1,5 +1,6 @@
 // The experiment `honesty` (src/experiments/honesty.h) on any number of random scenes: prints its table in Markdown and
-// writes every entry. Fails if an error is proved to exceed the reported one, or if two enclosures are disjoint.
+// writes every entry. Fails if an error is proved to exceed the reported one, if two enclosures are
+// disjoint, or if a cell fails its own check.
 // Usage: honesty_at_scale [SCENES [FILE.csv]]
 #include <cstdlib>
 #include <exception>
@@ -44,7 +45,10 @@ int run(const HonestySize& size, const std::string& file) {
     out << chapter.values.front().csv;
     if (!out.flush()) throw std::runtime_error(file + " cannot be written");
   }
-  std::size_t broken = study.contradictions;
+  std::size_t broken = study.contradictions + study.failures;
+  for (const HonestyScene& scene : study.scenes) {
+    if (!scene.failure.empty()) std::cout << '@' << scene.model << ": " << scene.failure << '\n';
+  }
   for (const HonestyRow& row : study.rows) broken += row.broken;
   return broken == 0 ? 0 : 1;
 }

@@ -328,6 +328,7 @@ TEST(Honesty, CountsAnErrorOnlyIfItIsProved) {
 TEST(Honesty, NoErrorExceedsTheReportedOneInAFewScenes) {
   HonestyStudy study = honesty_study({.first = 31, .scenes = 6, .budget = 100, .truth_budget = 500}, 1, kNoHooks);
   EXPECT_EQ(study.contradictions, 0U);
+  EXPECT_EQ(study.failures, 0U);
   std::size_t entries = 0, holds = 0;
   for (const HonestyRow& row : study.rows) {
     EXPECT_EQ(row.broken, 0U) << to_string(row.claim) << ' ' << row.accuracy;
