@@ -111,7 +111,7 @@ HonestyScene filled(HonestyScene scene, const HonestySize& size) {
   return scene;
 }
 
-void count_entry(const HonestyEntry& entry, HonestyRow& row, std::vector<double>& ratios) {
+void count_entry(const HonestyEntry& entry, HonestyRow& row, std::vector<ErrorRatio>& ratios) {
   ++row.entries;
   row.wide += entry.factor.accurate ? 0U : 1U;
   const Verdict found = verdict(entry.factor, entry.truth);
@@ -120,7 +120,13 @@ void count_entry(const HonestyEntry& entry, HonestyRow& row, std::vector<double>
   const ErrorRatio ratio = error_ratio(entry.factor, entry.truth);
   row.worst.at_least = std::max(row.worst.at_least, ratio.at_least);
   if (found == Verdict::kHolds) row.worst.at_most = std::max(row.worst.at_most, ratio.at_most);
-  ratios.push_back(ratio.at_most);
+  ratios.push_back(ratio);
+}
+
+double p95_of(std::span<const ErrorRatio> ratios, double ErrorRatio::*end) {
+  std::vector<double> values;
+  for (const ErrorRatio& ratio : ratios) values.push_back(ratio.*end);
+  return study::percentile(std::move(values), 95.0);
 }
 
 }  // namespace
@@ -169,7 +175,7 @@ std::vector<HonestyRow> honesty_rows(std::span<const HonestyScene> scenes) {
     const bool one_row = claim == Claim::kZero || claim == Claim::kStatistical;
     return std::pair(-static_cast<int>(claim), one_row ? 0.0 : -entry.accuracy);
   };
-  std::map<std::pair<int, double>, std::pair<HonestyRow, std::vector<double>>> sorted;
+  std::map<std::pair<int, double>, std::pair<HonestyRow, std::vector<ErrorRatio>>> sorted;
   for (const HonestyScene& scene : scenes) {
     for (const HonestyEntry& entry : scene.entries) {
       auto& [row, ratios] = sorted[key(entry)];
@@ -181,10 +187,7 @@ std::vector<HonestyRow> honesty_rows(std::span<const HonestyScene> scenes) {
   std::vector<HonestyRow> rows;
   for (auto& [at, found] : sorted) {
     auto& [row, ratios] = found;
-    if (!ratios.empty()) {
-      row.median = study::median(ratios);
-      row.p95 = study::percentile(ratios, 95.0);
-    }
+    if (!ratios.empty()) row.p95 = {p95_of(ratios, &ErrorRatio::at_least), p95_of(ratios, &ErrorRatio::at_most)};
     rows.push_back(row);
   }
   return rows;

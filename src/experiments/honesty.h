@@ -71,9 +71,9 @@ struct HonestyRow {
   Claim claim = Claim::kZero;
   double accuracy = 0.0;
   std::size_t entries = 0, holds = 0, open = 0, broken = 0;
-  std::size_t wide = 0;               // wider than the accuracy asked for
-  ErrorRatio worst;                   // the largest of each, at_most only of entries that hold
-  std::optional<double> median, p95;  // of the ratios at_most of all entries
+  std::size_t wide = 0;           // wider than the accuracy asked for
+  ErrorRatio worst;               // the largest of each, at_most only of entries that hold
+  std::optional<ErrorRatio> p95;  // the 95th percentile, of all entries that report an error
 };
 
 struct HonestyStudy {

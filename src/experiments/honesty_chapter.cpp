@@ -50,7 +50,7 @@ std::string broken_sentence(const HonestyStudy& study) {
   if (sums.broken > 0) {
     return "The true error is proved to exceed the reported one for " + std::to_string(sums.broken) + " of " + of + '.';
   }
-  return "For none of " + of + " the true error is proved to exceed the reported one.";
+  return "No true error of " + of + " is proved to exceed the reported one.";
 }
 
 std::string method_sentence(const HonestyStudy& study, const HonestySize& size) {
@@ -75,8 +75,7 @@ std::string open_sentence(const HonestyStudy& study) {
   if (sums.open == 0) return {};
   return "The truth is not known well enough to judge " + std::to_string(sums.open) + " of " +
          counted(sums.entries, "entry", "entries") +
-         ": where three edges cross in the view, certified enclosures are wider than what topology-proved entries "
-         "report, and elsewhere some of these report less than 10⁻¹².";
+         ". Topology-proved entries often report errors that are smaller than the width of these enclosures.";
 }
 
 std::string level_sentence(const HonestyStudy& study) {
@@ -84,9 +83,11 @@ std::string level_sentence(const HonestyStudy& study) {
   if (row == study.rows.end() || !row->p95) return {};
   return "Statistical entries promise their error with a probability of 1 − 10⁻⁶, which " +
          counted(row->entries, "entry", "entries") +
-         " cannot measure. But the errors have a distribution: 95 % of them are at most " + rounded(*row->p95, 2) +
-         " of the reported one, and at most " + rounded(kNormalShare, 2) +
-         " is what the level means for a normal distribution.";
+         " cannot measure. But their errors have a distribution: the true error over the reported one has a 95th "
+         "percentile between " +
+         rounded(row->p95->at_least, 2) + " and " + rounded(row->p95->at_most, 2) +
+         " (the truth is an interval, too), and the level means " + rounded(kNormalShare, 2) +
+         " for a normal distribution.";
 }
 
 std::string failure_sentence(const HonestyStudy& study) {
