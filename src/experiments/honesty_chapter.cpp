@@ -44,11 +44,29 @@ Sums sums_of(const HonestyStudy& study) {
 
 // ---------------------------------------------------------------------------------------------------------- sentences
 
+// "2 of 854 statistical ones"
+std::vector<std::string> broken_claims(const HonestyStudy& study) {
+  std::vector<std::string> claims;
+  for (const Claim claim : {Claim::kZero, Claim::kCertified, Claim::kTopologyProved, Claim::kStatistical}) {
+    std::size_t entries = 0, broken = 0;
+    for (const HonestyRow& row : study.rows) {
+      if (row.claim != claim) continue;
+      entries += row.entries;
+      broken += row.broken;
+    }
+    if (broken == 0) continue;
+    claims.push_back(std::to_string(broken) + " of " + std::to_string(entries) + ' ' + std::string(to_string(claim)) +
+                     " ones");
+  }
+  return claims;
+}
+
 std::string broken_sentence(const HonestyStudy& study) {
   const Sums sums = sums_of(study);
   const std::string of = counted(sums.entries, "view factor") + " in " + counted(study.scenes.size(), "random scene");
   if (sums.broken > 0) {
-    return "The true error is proved to exceed the reported one for " + std::to_string(sums.broken) + " of " + of + '.';
+    return "The true error is proved to exceed the reported one for " + std::to_string(sums.broken) + " of " + of +
+           ": " + text::enumerate(broken_claims(study)) + '.';
   }
   return "No true error of " + of + " is proved to exceed the reported one.";
 }

@@ -345,7 +345,12 @@ TEST(Honesty, NoErrorExceedsTheReportedOneInAFewScenes) {
       for (double* end : {&entry.factor.value, &entry.factor.lower, &entry.factor.upper}) *end += 2.0;
     }
   }
-  for (const HonestyRow& row : honesty_rows(study.scenes)) EXPECT_EQ(row.broken, row.entries);
+  study.rows = honesty_rows(study.scenes);
+  for (const HonestyRow& row : study.rows) EXPECT_EQ(row.broken, row.entries);
+  const std::string said = honesty_chapter(study, {}).paragraphs.front();
+  EXPECT_NE(said.find(std::to_string(entries) + " of " + std::to_string(entries) + " view factors"), std::string::npos)
+      << said;
+  EXPECT_NE(said.find("statistical ones"), std::string::npos) << said;
 }
 
 // --- the plot they need --------------------------------------------------------------------------------
