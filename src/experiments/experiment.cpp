@@ -5,6 +5,7 @@
 #include "experiments/closure.h"
 #include "experiments/hemicube_resolution.h"
 #include "experiments/hemicube_scatter.h"
+#include "experiments/honesty.h"
 #include "experiments/karkanis_times.h"
 #include "experiments/nettle_rule.h"
 #include "experiments/small_emitters.h"
@@ -27,7 +28,9 @@ constexpr Experiment kExperiments[] = {
      &whole_view_times},
     {"nettle-rule", "Nettle's rule: error against the patch's size over its distance", &nettle_rule},
     {"small-emitters", "Karkanis' conclusion: many small bright emitters, in radiosity", &small_emitters},
-    {"closure", "a closed room: the form factors from a point to all patches sum to 1", &closure}};
+    {"closure", "a closed room: the form factors from a point to all patches sum to 1", &closure},
+    {"honesty", "view factors in random scenes: how often the true error exceeds the reported one, for each claim",
+     &honesty}};
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include "flags/comparison.h"
 #include "kernel/float_environment.h"
 #include "text/phrases.h"
+#include "text/refuse.h"
 #include "text/text_file.h"
 #include "text/text_lines.h"
 
@@ -143,6 +144,22 @@ void add_scene(const StudyLine& line, const std::string& file, Plan& plan) {
                  std::move(comparison.warnings));
 }
 
+void add_experiments(const StudyLine& line, Plan& plan) {
+  constexpr std::string_view kUnlessAbridged = "--unless-abridged";
+  std::vector<std::string> names = line.words;
+  const bool marked = std::erase(names, kUnlessAbridged) > 0;
+  if (marked && names.empty()) {
+    text::refuse("nothing but --unless-abridged follows 'experiment'", "it marks the experiments of its line",
+                 "name them, or remove the line");
+  }
+  if (!marked || !plan.effort.abridged) return plan.add_experiments(names);
+  Plan named;
+  named.add_experiments(names);
+  for (const std::string& name : named.experiments) {
+    plan.left_out.push_back({"the experiment " + name, "this report is abridged"});
+  }
+}
+
 void add_field(const StudyLine& line, const std::string& file, Plan& plan) {
   if (line.words.size() != 1) {
     throw InputError(Problem{file, line.number, "a field line names " + text::counted(line.words.size(), "file"),
@@ -163,7 +180,7 @@ Plan read_study_file(const std::filesystem::path& file, const Effort& effort) {
     at_line(file.string(), line.number, [&] { add_scene(line, file.string(), plan); });
   }
   for (const StudyLine& line : study.experiments) {
-    at_line(file.string(), line.number, [&] { plan.add_experiments(line.words); });
+    at_line(file.string(), line.number, [&] { add_experiments(line, plan); });
   }
   for (const StudyLine& line : study.fields) {
     at_line(file.string(), line.number, [&] { add_field(line, file.string(), plan); });

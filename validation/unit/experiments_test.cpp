@@ -11,6 +11,7 @@
 #include "experiments/experiment.h"
 #include "experiments/hemicube_resolution.h"
 #include "experiments/hemicube_scatter.h"
+#include "experiments/honesty.h"
 #include "experiments/karkanis_times.h"
 #include "experiments/nettle_rule.h"
 #include "experiments/small_emitters.h"
@@ -25,7 +26,7 @@ const Hooks kNoHooks;
 // --- what they share -----------------------------------------------------------------------------------
 
 TEST(Experiments, AreFoundByNameAndNearlyByAnother) {
-  ASSERT_EQ(all_experiments().size(), 7U);
+  ASSERT_EQ(all_experiments().size(), 8U);
   for (const Experiment& e : all_experiments()) EXPECT_EQ(&experiment_named(e.name), &e);
   try {
     (void)experiment_named("nettle");
@@ -64,6 +65,13 @@ struct SmallRun {
   std::function<Result(int threads, const Hooks&)> run;
 };
 
+HonestySize small_honesty() {
+  HonestySize size{.scenes = 6, .accuracies = {1e-1, 1e-4, 1e-8}};
+  size.budget = 100;
+  size.truth_budget = 400;
+  return size;
+}
+
 std::vector<SmallRun> small_runs() {
   const auto scatter = [](int threads, const Hooks& hooks) {
     return hemicube_scatter(ScatterSize{.scenes = 3, .triangles = 30, .resolutions = {20}}, threads, hooks);
@@ -91,8 +99,9 @@ std::vector<SmallRun> small_runs() {
   const auto whole_view = [](int, const Hooks& hooks) {
     return whole_view_times({.triangles = {5, 20}, .models = {{"closed-room:boxes=1", "floor"}}, .points = 2}, hooks);
   };
+  const auto honest = [](int threads, const Hooks& hooks) { return honesty(small_honesty(), threads, hooks); };
   return {{"scatter", scatter}, {"resolution", resolution}, {"nettle", nettle}, {"emitters", emitters},
-          {"room", room},       {"whole view", whole_view}};
+          {"room", room},       {"whole view", whole_view}, {"honesty", honest}};
 }
 
 TEST(Experiments, GiveTheSameBytesOfValuesForAnyNumberOfThreads) {
@@ -297,6 +306,51 @@ TEST(WholeViewTimes, SeeAsManyTrianglesAsTheSolverAndAddUpToOne) {
   EXPECT_EQ(rows[1].seen, work_row(200, false).visible + 1);
   EXPECT_GT(rows[2].open, 0.05);
   EXPECT_EQ(rows[4].open, 0.0);
+}
+
+// --- view factors --------------------------------------------------------------------------------------
+
+TEST(Honesty, CountsAnErrorOnlyIfItIsProved) {
+  const ViewFactor entry{.value = 0.5, .lower = 0.4, .upper = 0.6};
+  EXPECT_EQ(verdict(entry, {0.45, 0.55}), Verdict::kHolds);
+  EXPECT_EQ(verdict(entry, {0.4, 0.6}), Verdict::kHolds);
+  EXPECT_EQ(verdict(entry, {0.55, 0.65}), Verdict::kOpen);
+  EXPECT_EQ(verdict(entry, {0.3, 0.7}), Verdict::kOpen);
+  EXPECT_EQ(verdict(entry, {0.6, 0.7}), Verdict::kOpen);
+  EXPECT_EQ(verdict(entry, {0.61, 0.7}), Verdict::kBroken);
+  EXPECT_EQ(verdict(entry, {0.1, 0.39}), Verdict::kBroken);
+  EXPECT_NEAR(error_ratio(entry, {0.65, 0.7}).at_least, 1.5, 1e-12);
+  EXPECT_NEAR(error_ratio(entry, {0.65, 0.7}).at_most, 2.0, 1e-12);
+  EXPECT_EQ(error_ratio(entry, {0.45, 0.52}).at_least, 0.0);
+  EXPECT_NEAR(error_ratio(entry, {0.45, 0.52}).at_most, 0.5, 1e-12);
+}
+
+TEST(Honesty, NoErrorExceedsTheReportedOneInAFewScenes) {
+  HonestyStudy study = honesty_study({.first = 31, .scenes = 6, .budget = 100, .truth_budget = 500}, 1, kNoHooks);
+  EXPECT_EQ(study.contradictions, 0U);
+  EXPECT_EQ(study.failures, 0U);
+  std::size_t entries = 0, holds = 0;
+  for (const HonestyRow& row : study.rows) {
+    EXPECT_EQ(row.broken, 0U) << to_string(row.claim) << ' ' << row.accuracy;
+    EXPECT_LE(row.worst.at_most, 1.0 + 1e-12) << to_string(row.claim) << ' ' << row.accuracy;
+    EXPECT_EQ(row.entries, row.holds + row.open);
+    entries += row.entries;
+    holds += row.holds;
+  }
+  EXPECT_GE(holds, entries * 8 / 10);
+  EXPECT_GE(study.rows.size(), 16U);  // eight accuracies of two claims
+  // The same entries beside a value that is not theirs.
+  for (HonestyScene& scene : study.scenes) {
+    for (HonestyEntry& entry : scene.entries) {
+      for (double* end : {&entry.factor.value, &entry.factor.lower, &entry.factor.upper}) *end += 2.0;
+    }
+  }
+  study.rows = honesty_rows(study.scenes);
+  for (const HonestyRow& row : study.rows) EXPECT_EQ(row.broken, row.entries);
+  const std::string said = honesty_chapter(study, {}).paragraphs.front();
+  EXPECT_NE(said.find(std::to_string(entries) + " of " + std::to_string(entries) + " view factors"), std::string::npos)
+      << said;
+  EXPECT_NE(said.find("statistical ones"), std::string::npos) << said;
 }
 
 // --- the plot they need --------------------------------------------------------------------------------

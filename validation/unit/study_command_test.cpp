@@ -308,6 +308,8 @@ TEST_F(StudyCommand, NamesTheLineThatIsWrong) {
       {"scene room.obj --source light", "--on"},
       {"scene --on floor --grid 2x2", "SCENE"},
       {"experiment karkanis-tims", "karkanis-times"},
+      {"experiment --unless-abridged", "nothing but --unless-abridged"},
+      {"experiment closur --unless-abridged", "closure"},
       {"scene @teapott --on floor --grid 2x2", "teapot"},
   };
   for (const auto& [wrong, named] : table) {
@@ -318,6 +320,16 @@ TEST_F(StudyCommand, NamesTheLineThatIsWrong) {
   }
   EXPECT_FALSE(fs::exists(out_));
   EXPECT_FALSE(fs::exists(journal_));
+}
+
+TEST_F(StudyCommand, LeavesExperimentsOutOfAbridgedReports) {
+  put(line("Room B", "2x2") + "experiment honesty closure --unless-abridged\n");
+  EXPECT_EQ(run(out_, {"--abridged"}), 0) << error_;
+  const std::string page = text_of(out_ / "report.html");
+  EXPECT_NE(page.find("the experiment honesty"), std::string::npos);
+  EXPECT_EQ(page.find("chapter-honesty"), std::string::npos);
+  EXPECT_FALSE(fs::exists(out_ / "honesty.csv"));
+  EXPECT_FALSE(fs::exists(out_ / "closure.csv"));
 }
 
 TEST_F(StudyCommand, NamesTheNearestExperiment) {

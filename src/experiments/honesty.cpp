@@ -1,0 +1,209 @@
+#include "experiments/honesty.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "exactff/models.h"
+#include "kernel/disc.h"
+#include "models/random.h"
+#include "study/statistics.h"
+#include "view_factors/exact_scene.h"
+#include "view_factors/patch_parts.h"
+#include "work/parallel.h"
+
+namespace exactff::experiments {
+
+namespace {
+
+constexpr std::string_view kHonestyStage = "honesty";
+
+double magnitude_of_error(const ViewFactor& entry) {
+  return std::max(entry.value - entry.lower, entry.upper - entry.value);
+}
+
+// A_j / A_i, enclosed.
+kernel::Disc ratio_of_areas(const Scene& scene, const Selection& i, const Selection& j) {
+  const view_factors::ExactScene exact(scene);
+  const auto area = [&](const Selection& patch) {
+    return view_factors::enclosed_area_of(view_factors::parts_of(exact, patch), exact.units);
+  };
+  return area(j) / area(i);
+}
+
+Bounds common_part(const Bounds& a, const Bounds& b) {
+  const double lower = std::max(a.lower, b.lower), upper = std::min(a.upper, b.upper);
+  if (lower > upper) return {std::min(a.lower, b.lower), std::max(a.upper, b.upper), true};
+  return {lower, upper, a.are_contradictory || b.are_contradictory};
+}
+
+// The bounds of F_ij as bounds of F_ji, with A_i / A_j.
+Bounds turned_round(const Bounds& truth, const kernel::Disc& ratio) {
+  return {std::max(0.0, lower_end(truth.lower * ratio)), std::min(1.0, upper_end(truth.upper * ratio)),
+          truth.are_contradictory};
+}
+
+struct PreparedPair {
+  Scene scene;
+  Selection from, to;
+  Bounds forth, back;  // of F_ij and of F_ji
+};
+
+// Ever narrower, until the cells do not suffice: asked for too much, they would be spent where they bring little.
+Bounds enclosure(const PreparedPair& pair, const Selection& from, const Selection& to, const HonestySize& size) {
+  Bounds bounds;
+  for (const double accuracy : size.truth_accuracies) {
+    const ViewFactor f =
+        view_factor(pair.scene, from, to, {.accuracy = accuracy, .budget = size.truth_budget, .certify = true});
+    bounds = common_part(bounds, {f.lower, f.upper});
+    if (!f.accurate) break;
+  }
+  return bounds;
+}
+
+PreparedPair prepared_pair(const HonestyScene& named, const HonestySize& size) {
+  PreparedPair pair{models::make_scene(named.model), {}, {}, {}, {}};
+  pair.from = pair.scene.select(named.from);
+  pair.to = pair.scene.select(named.to);
+  const Bounds forth = enclosure(pair, pair.from, pair.to, size), back = enclosure(pair, pair.to, pair.from, size);
+  pair.forth = common_part(forth, turned_round(back, ratio_of_areas(pair.scene, pair.from, pair.to)));
+  pair.back = common_part(turned_round(forth, ratio_of_areas(pair.scene, pair.to, pair.from)), back);
+  pair.forth.are_contradictory = pair.back.are_contradictory =
+      pair.forth.are_contradictory || pair.back.are_contradictory;
+  return pair;
+}
+
+void add_entry(const PreparedPair& pair, Claim asked, double accuracy, bool is_turned, const HonestySize& size,
+               HonestyScene& scene) {
+  ViewFactorOptions options{.accuracy = accuracy, .budget = size.budget, .sample_crowds = false};
+  options.certify = asked == Claim::kCertified;
+  if (asked == Claim::kStatistical) {
+    options.budget = 1;
+    options.sample_crowds = true;
+  }
+  const Selection &i = is_turned ? pair.to : pair.from, &j = is_turned ? pair.from : pair.to;
+  const ViewFactor factor = view_factor(pair.scene, i, j, options);
+  // With one cell, what needs none is proved, and not of interest here.
+  if (asked == Claim::kStatistical && factor.claim != asked) return;
+  scene.entries.push_back({asked, accuracy, is_turned, factor, is_turned ? pair.back : pair.forth});
+}
+
+void fill(HonestyScene& scene, const HonestySize& size) {
+  const PreparedPair pair = prepared_pair(scene, size);
+  for (const Claim claim : {Claim::kCertified, Claim::kTopologyProved}) {
+    for (const double accuracy : size.accuracies) add_entry(pair, claim, accuracy, scene.is_turned, size, scene);
+  }
+  for (const bool is_turned : {false, true}) {
+    add_entry(pair, Claim::kStatistical, size.accuracies.back(), is_turned, size, scene);
+  }
+}
+
+// An internal error is a result here, among thousands of others.
+HonestyScene filled(HonestyScene scene, const HonestySize& size) {
+  try {
+    fill(scene, size);
+  } catch (const std::logic_error& error) {
+    scene.failure = error.what();
+  }
+  return scene;
+}
+
+void count_entry(const HonestyEntry& entry, HonestyRow& row, std::vector<ErrorRatio>& ratios) {
+  ++row.entries;
+  row.wide += entry.factor.accurate ? 0U : 1U;
+  const Verdict found = verdict(entry.factor, entry.truth);
+  ++(found == Verdict::kHolds ? row.holds : found == Verdict::kOpen ? row.open : row.broken);
+  if (!(magnitude_of_error(entry.factor) > 0.0)) return;
+  const ErrorRatio ratio = error_ratio(entry.factor, entry.truth);
+  row.worst.at_least = std::max(row.worst.at_least, ratio.at_least);
+  if (found == Verdict::kHolds) row.worst.at_most = std::max(row.worst.at_most, ratio.at_most);
+  ratios.push_back(ratio);
+}
+
+double p95_of(std::span<const ErrorRatio> ratios, double ErrorRatio::*end) {
+  std::vector<double> values;
+  for (const ErrorRatio& ratio : ratios) values.push_back(ratio.*end);
+  return study::percentile(std::move(values), 95.0);
+}
+
+}  // namespace
+
+Verdict verdict(const ViewFactor& entry, const Bounds& truth) {
+  if (entry.upper < truth.lower || entry.lower > truth.upper) return Verdict::kBroken;
+  if (entry.lower <= truth.lower && truth.upper <= entry.upper) return Verdict::kHolds;
+  return Verdict::kOpen;
+}
+
+ErrorRatio error_ratio(const ViewFactor& entry, const Bounds& truth) {
+  const double reported = magnitude_of_error(entry);
+  const double below = truth.lower - entry.value, above = entry.value - truth.upper;
+  return {std::max({0.0, below, above}) / reported,
+          std::max(std::abs(entry.value - truth.lower), std::abs(entry.value - truth.upper)) / reported};
+}
+
+HonestyScene honesty_scene(std::uint64_t number) {
+  constexpr std::array<const char*, 3> kModels{"karkanis", "soup", "lattice"};
+  constexpr std::array<double, 4> kCovers{0.25, 0.5, 1.0, 2.0};
+  constexpr std::array<std::pair<const char*, const char*>, 4> kPairs{
+      {{"floor", "source"}, {"floor", "source"}, {"floor", "occ"}, {"occ", "source"}}};
+  models::Random random(number);
+  const char* const model = kModels[random.below(kModels.size())];
+  const int faces = random.integer(1, 4);
+  const double cover = kCovers[random.below(kCovers.size())];
+  std::pair<const char*, const char*> pair = kPairs[random.below(kPairs.size())];
+  HonestyScene scene{std::string(model) + ":n=" + std::to_string(faces) + ",cover=" + text::shortest(cover) +
+                         ",seed=" + std::to_string(number),
+                     "floor",
+                     "source",
+                     random.one_in(2),
+                     {},
+                     {}};
+  const Scene made = models::make_scene(scene.model);
+  // All of Karkanis' triangles turn their backs to the source; those of the lattice may have collapsed.
+  const bool sees_nothing = model == kModels[0] && pair == kPairs.back();
+  if (sees_nothing || made.faces_of(made.select("occ")).empty()) return scene;
+  std::tie(scene.from, scene.to) = pair;
+  return scene;
+}
+
+std::vector<HonestyRow> honesty_rows(std::span<const HonestyScene> scenes) {
+  const auto key = [](const HonestyEntry& entry) {
+    const Claim claim = entry.factor.claim;
+    const bool one_row = claim == Claim::kZero || claim == Claim::kStatistical;
+    return std::pair(-static_cast<int>(claim), one_row ? 0.0 : -entry.accuracy);
+  };
+  std::map<std::pair<int, double>, std::pair<HonestyRow, std::vector<ErrorRatio>>> sorted;
+  for (const HonestyScene& scene : scenes) {
+    for (const HonestyEntry& entry : scene.entries) {
+      auto& [row, ratios] = sorted[key(entry)];
+      row.claim = entry.factor.claim;
+      row.accuracy = std::abs(key(entry).second);
+      count_entry(entry, row, ratios);
+    }
+  }
+  std::vector<HonestyRow> rows;
+  for (auto& [at, found] : sorted) {
+    auto& [row, ratios] = found;
+    if (!ratios.empty()) row.p95 = {p95_of(ratios, &ErrorRatio::at_least), p95_of(ratios, &ErrorRatio::at_most)};
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+HonestyStudy honesty_study(const HonestySize& size, int threads, const Hooks& hooks) {
+  HonestyStudy study;
+  study.scenes.resize(size.scenes);
+  work::parallel_for(size.scenes, threads, kHonestyStage, hooks,
+                     [&](std::size_t i) { study.scenes[i] = filled(honesty_scene(size.first + i), size); });
+  study.rows = honesty_rows(study.scenes);
+  for (const HonestyScene& scene : study.scenes) {
+    study.contradictions += !scene.entries.empty() && scene.entries.front().truth.are_contradictory ? 1U : 0U;
+    study.failures += scene.failure.empty() ? 0U : 1U;
+  }
+  return study;
+}
+
+}  // namespace exactff::experiments

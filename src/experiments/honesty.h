@@ -1,0 +1,97 @@
+// Whether view factors keep their word: in random scenes, how often the true error of an entry exceeds the one that is
+// reported with it, for each claim and accuracy.
+//
+// A scene has a floor, a source above it and one to four faces between, of the models karkanis, soup and lattice. Two
+// of its patches are compared. The truth is what two certified enclosures have in common, one of F_ij and one of F_ji,
+// computed apart at a small accuracy. So an error counts only if it is proved: the entry's interval and the truth have
+// no number in common. Where they overlap without the truth being inside, the entry is left open.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "exactff/view_factors.h"
+#include "experiments/support.h"
+
+namespace exactff::experiments {
+
+struct HonestySize {
+  std::uint64_t first = 1;  // the numbers of the scenes: first, first + 1, ...
+  std::uint64_t scenes = 24;
+  std::vector<double> accuracies = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
+  std::size_t budget = 500;  // cells of an entry
+  std::vector<double> truth_accuracies = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
+  std::size_t truth_budget = 3000;  // cells of each enclosure
+};
+
+// What is proved about a view factor.
+struct Bounds {
+  double lower = 0.0, upper = 1.0;
+  bool are_contradictory = false;  // the two enclosures are disjoint: one of them is wrong
+};
+
+enum class Verdict {
+  kHolds,   // the truth lies inside the entry's interval
+  kOpen,    // they overlap: the truth is not known well enough
+  kBroken,  // they are disjoint: the true error exceeds the reported one
+};
+[[nodiscard]] Verdict verdict(const ViewFactor& entry, const Bounds& truth);
+
+// The true error over the reported one. The truth is an interval, so the quotient is one.
+struct ErrorRatio {
+  double at_least = 0.0, at_most = 0.0;
+};
+// Requires an interval with a width.
+[[nodiscard]] ErrorRatio error_ratio(const ViewFactor& entry, const Bounds& truth);
+
+// How an entry was asked for. `kStatistical`: with a budget of one cell, at the smallest accuracy. The claim that comes
+// back may be a better one.
+struct HonestyEntry {
+  Claim asked = Claim::kCertified;
+  double accuracy = 0.0;
+  bool turned = false;  // F_ji instead of F_ij
+  ViewFactor factor;
+  Bounds truth;  // of the same direction
+};
+
+struct HonestyScene {
+  std::string model;
+  std::string from, to;
+  bool is_turned = false;  // entries are of F_ji, but statistical ones of both
+  std::vector<HonestyEntry> entries;
+  std::string failure;  // a cell failed its own check: there are no further entries
+};
+
+// All entries of one claim and accuracy. Proved zeros are one row, and statistical entries another: their accuracy is
+// 0.
+struct HonestyRow {
+  Claim claim = Claim::kZero;
+  double accuracy = 0.0;
+  std::size_t entries = 0, holds = 0, open = 0, broken = 0;
+  std::size_t wide = 0;           // wider than the accuracy asked for
+  ErrorRatio worst;               // the largest of each, at_most only of entries that hold
+  std::optional<ErrorRatio> p95;  // the 95th percentile, of all entries that report an error
+};
+
+struct HonestyStudy {
+  std::vector<HonestyScene> scenes;
+  std::vector<HonestyRow> rows;    // by claim, the strongest first, then by accuracy, the largest first
+  std::size_t contradictions = 0;  // scenes whose two enclosures are disjoint
+  std::size_t failures = 0;
+};
+
+// A random scene's model, and the names of the two patches. Depends on the number alone.
+[[nodiscard]] HonestyScene honesty_scene(std::uint64_t number);
+[[nodiscard]] HonestyStudy honesty_study(const HonestySize& size, int threads, const Hooks& hooks);
+[[nodiscard]] std::vector<HonestyRow> honesty_rows(std::span<const HonestyScene> scenes);
+
+// The rows for readers.
+[[nodiscard]] NumberTable honesty_table(std::span<const HonestyRow> rows);
+[[nodiscard]] Result honesty_chapter(const HonestyStudy& study, const HonestySize& size);
+[[nodiscard]] Result honesty(const HonestySize& size, int threads, const Hooks& hooks);
+[[nodiscard]] Result honesty(const Effort& effort, const Hooks& hooks);
+
+}  // namespace exactff::experiments

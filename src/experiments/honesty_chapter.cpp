@@ -1,0 +1,230 @@
+// What the report says about the honesty of view factors.
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/honesty.h"
+#include "text/phrases.h"
+
+namespace exactff::experiments {
+
+namespace {
+
+using text::counted;
+using text::rounded;
+
+// The 97.5 % quantile of the normal distribution over that of a statistical entry's level, 1 - 1e-6 / 4 on each side
+// (view_factors/strata.h): 95 % of the errors are at most this share of the reported one.
+constexpr double kNormalShare = 1.9600 / 5.0263;
+
+std::string_view word_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kHolds:
+      return "holds";
+    case Verdict::kOpen:
+      return "open";
+    case Verdict::kBroken:
+      return "broken";
+  }
+  return {};
+}
+
+struct Sums {
+  std::size_t entries = 0, open = 0, broken = 0;
+};
+
+Sums sums_of(const HonestyStudy& study) {
+  Sums sums;
+  for (const HonestyRow& row : study.rows) {
+    sums.entries += row.entries;
+    sums.open += row.open;
+    sums.broken += row.broken;
+  }
+  return sums;
+}
+
+// ---------------------------------------------------------------------------------------------------------- sentences
+
+// "2 of 854 statistical ones"
+std::vector<std::string> broken_claims(const HonestyStudy& study) {
+  std::vector<std::string> claims;
+  for (const Claim claim : {Claim::kZero, Claim::kCertified, Claim::kTopologyProved, Claim::kStatistical}) {
+    std::size_t entries = 0, broken = 0;
+    for (const HonestyRow& row : study.rows) {
+      if (row.claim != claim) continue;
+      entries += row.entries;
+      broken += row.broken;
+    }
+    if (broken == 0) continue;
+    claims.push_back(std::to_string(broken) + " of " + std::to_string(entries) + ' ' + std::string(to_string(claim)) +
+                     " ones");
+  }
+  return claims;
+}
+
+std::string broken_sentence(const HonestyStudy& study) {
+  const Sums sums = sums_of(study);
+  const std::string of = counted(sums.entries, "view factor") + " in " + counted(study.scenes.size(), "random scene");
+  if (sums.broken > 0) {
+    return "The true error is proved to exceed the reported one for " + std::to_string(sums.broken) + " of " + of +
+           ": " + text::enumerate(broken_claims(study)) + '.';
+  }
+  return "No true error of " + of + " is proved to exceed the reported one.";
+}
+
+std::string method_sentence(const HonestyStudy& study, const HonestySize& size) {
+  const std::string contradictions = study.contradictions == 0
+                                         ? "The two enclosures are disjoint in no scene."
+                                         : "In " + counted(study.contradictions, "scene") +
+                                               " the two enclosures are disjoint, so one of them is wrong.";
+  return "A scene has a floor, a source above it and one to four faces between them. A view factor from one of these "
+         "patches to another is asked for at " +
+         counted(size.accuracies.size(), "accuracy", "accuracies") + ", as certified and as topology-proved, with " +
+         std::to_string(size.budget) +
+         " cells at most; and with a single cell, which leaves statistics. The truth is what two certified enclosures "
+         "have in common, one from each patch to the other, of up to " +
+         std::to_string(size.truth_budget) +
+         " cells each. An error exceeds the reported one if the entry’s interval and the truth have no number in "
+         "common. An entry is open if they overlap and the truth is not inside. " +
+         contradictions;
+}
+
+std::string open_sentence(const HonestyStudy& study) {
+  const Sums sums = sums_of(study);
+  if (sums.open == 0) return {};
+  return "The truth is not known well enough to judge " + std::to_string(sums.open) + " of " +
+         counted(sums.entries, "entry", "entries") +
+         ". Topology-proved entries often report errors that are smaller than the width of these enclosures.";
+}
+
+std::string level_sentence(const HonestyStudy& study) {
+  const auto row = std::ranges::find(study.rows, Claim::kStatistical, &HonestyRow::claim);
+  if (row == study.rows.end() || !row->p95) return {};
+  return "Statistical entries promise their error with a probability of 1 − 10⁻⁶, which " +
+         counted(row->entries, "entry", "entries") +
+         " cannot measure. But their errors have a distribution: the true error over the reported one has a 95th "
+         "percentile between " +
+         rounded(row->p95->at_least, 2) + " and " + rounded(row->p95->at_most, 2) +
+         " (the truth is an interval, too), and the level means " + rounded(kNormalShare, 2) +
+         " for a normal distribution.";
+}
+
+std::string failure_sentence(const HonestyStudy& study) {
+  const auto failed =
+      std::ranges::find_if(study.scenes, [](const HonestyScene& scene) { return !scene.failure.empty(); });
+  if (failed == study.scenes.end()) return {};
+  return "In " + counted(study.failures, "scene") +
+         " a cell fails its own check, which is an internal error of exactff, and the entries after it are missing. "
+         "The "
+         "first one is @" +
+         failed->model + ": " + failed->failure + '.';
+}
+
+// ------------------------------------------------------------------------------------------------------------- figure
+
+page::Figure error_figure(const HonestyStudy& study) {
+  using page::Series;
+  Series proved{"topology-proved", {}, 1}, statistical{"statistical", {}, 2}, certified{"certified", {}, 3};
+  double low = 1.0, high = 0.0;
+  for (const HonestyScene& scene : study.scenes) {
+    for (const HonestyEntry& entry : scene.entries) {
+      const ViewFactor& f = entry.factor;
+      const double reported = std::max(f.value - f.lower, f.upper - f.value);
+      if (!(reported > 0.0)) continue;
+      const double error = error_ratio(f, entry.truth).at_most * reported;
+      low = std::min(low, reported);
+      high = std::max(high, reported);
+      (f.claim == Claim::kCertified        ? certified
+       : f.claim == Claim::kTopologyProved ? proved
+                                           : statistical)
+          .points.emplace_back(reported, error);
+    }
+  }
+  const Series diagonal{"true = reported", {{low, low}, {high, high}}, 0};
+  return {"honesty.errors", "True error of view factors against the reported error",
+          "One point for each entry. The true error is drawn at the largest value that the truth leaves possible, so a "
+          "point above the line is a doubt, and not yet a wrong error.",
+          page::scatter_plot({.x = "reported error", .y = "true error, at most"},
+                             {diagonal, certified, proved, statistical})};
+}
+
+// ------------------------------------------------------------------------------------------------------------- tables
+
+CsvFile entry_table(const HonestyStudy& study, const HonestySize& size) {
+  TableWriter table(
+      "view factors in random scenes, each model as for exactff matrix @MODEL --from FROM --to TO, with "
+      "--budget " +
+          std::to_string(size.budget) +
+          ", or 1 for statistical ones\n"
+          "truth_lower and truth_upper: what certified enclosures of both directions have in common",
+      {"model", "from", "to", "accuracy", "claim", "factor", "lower", "upper", "truth_lower", "truth_upper",
+       "verdict"});
+  for (const HonestyScene& scene : study.scenes) {
+    for (const HonestyEntry& entry : scene.entries) {
+      const ViewFactor& f = entry.factor;
+      table.row() << scene.model << (entry.turned ? scene.to : scene.from) << (entry.turned ? scene.from : scene.to)
+                  << entry.accuracy << to_string(f.claim) << f.value << f.lower << f.upper << entry.truth.lower
+                  << entry.truth.upper << word_of(verdict(f, entry.truth));
+    }
+  }
+  return table.finish("honesty.csv", "view factors in random scenes, with their true values");
+}
+
+CsvFile row_table(const HonestyStudy& study) {
+  TableWriter table(
+      "true errors of view factors over the reported ones, by claim and accuracy (0: all)\n"
+      "at_least: the largest ratio that is proved; at_most: the largest possible one of entries that hold",
+      {"claim", "accuracy", "entries", "holds", "open", "broken", "wide", "at_least", "at_most"});
+  for (const HonestyRow& row : study.rows) {
+    table.row() << to_string(row.claim) << row.accuracy << std::uint64_t{row.entries} << std::uint64_t{row.holds}
+                << std::uint64_t{row.open} << std::uint64_t{row.broken} << std::uint64_t{row.wide} << row.worst.at_least
+                << row.worst.at_most;
+  }
+  return table.finish("honesty-rows.csv", "true errors of view factors over the reported ones");
+}
+
+std::string name_of(const HonestyRow& row) {
+  const std::string claim(to_string(row.claim));
+  return row.accuracy > 0.0 ? claim + ", " + accuracy_text(row.accuracy) : claim;
+}
+
+}  // namespace
+
+NumberTable honesty_table(std::span<const HonestyRow> rows) {
+  NumberTable table{"True error against the reported one, by claim and accuracy",
+                    {"claim", "entries", "within", "open", "exceeded", "worst true / reported", "wider than asked"},
+                    {}};
+  for (const HonestyRow& row : rows) {
+    const bool has_ratio = row.claim != Claim::kZero;
+    table.rows.push_back({name_of(row), std::to_string(row.entries), std::to_string(row.holds),
+                          std::to_string(row.open), std::to_string(row.broken),
+                          has_ratio ? rounded(row.worst.at_least, 2) : "", std::to_string(row.wide)});
+  }
+  return table;
+}
+
+Result honesty_chapter(const HonestyStudy& study, const HonestySize& size) {
+  Result result{.name = "honesty", .title = "View factors: true errors against reported ones"};
+  result.paragraphs = {broken_sentence(study), failure_sentence(study), method_sentence(study, size),
+                       open_sentence(study), level_sentence(study)};
+  std::erase(result.paragraphs, "");
+  result.tables = {honesty_table(study.rows)};
+  result.figures = {error_figure(study)};
+  result.values = {entry_table(study, size), row_table(study)};
+  return result;
+}
+
+Result honesty(const HonestySize& size, int threads, const Hooks& hooks) {
+  return honesty_chapter(honesty_study(size, threads, hooks), size);
+}
+
+Result honesty(const Effort& effort, const Hooks& hooks) {
+  HonestySize size;
+  if (effort.abridged) {
+    size.scenes = 8;
+    size.budget = 300;
+    size.truth_budget = 1000;
+  }
+  return honesty(size, effort.threads, hooks);
+}
+
+}  // namespace exactff::experiments
