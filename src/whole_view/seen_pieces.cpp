@@ -68,7 +68,7 @@ class SeeingRegion {
     Hider hider{corners_of(p), 0, 0.0};
     for (int i = 0; i < 3; ++i) {  // three corners that are not on one line, in their order
       if (kernel::orientation(hider.corners[0], hider.corners[1], hider.corners[2], corners_[0]) != 0) break;
-      std::ranges::rotate(hider.corners, hider.corners.begin() + 1);
+      std::rotate(hider.corners.begin(), hider.corners.begin() + 1, hider.corners.end());
     }
     hider.side = hider.side_of(corners_[0]);
     if (hider.side == 0) return;
