@@ -9,6 +9,7 @@
 #include "experiments/karkanis_times.h"
 #include "experiments/nettle_rule.h"
 #include "experiments/small_emitters.h"
+#include "experiments/view_factors.h"
 #include "experiments/whole_view_times.h"
 #include "text/nearest_names.h"
 #include "text/phrases.h"
@@ -29,6 +30,7 @@ constexpr Experiment kExperiments[] = {
     {"nettle-rule", "Nettle's rule: error against the patch's size over its distance", &nettle_rule},
     {"small-emitters", "Karkanis' conclusion: many small bright emitters, in radiosity", &small_emitters},
     {"closure", "a closed room: the form factors from a point to all patches sum to 1", &closure},
+    {"view-factors", "view factors from patch to patch: width against time, claims, and sums of rows", &view_factors},
     {"honesty", "view factors in random scenes: how often the true error exceeds the reported one, for each claim",
      &honesty}};
 

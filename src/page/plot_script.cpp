@@ -363,7 +363,8 @@ std::string map_plot(const Map& map) {
   const double ratio = map.height / map.width;
   text += "set size ratio " + text::shortest(std::isfinite(ratio) ? std::clamp(ratio, 0.4, 1.6) : 1.0) + '\n';
   text += "set xrange [0:" + text::shortest(map.width) + "]\nset yrange [0:" + text::shortest(map.height) + "]\n";
-  text += "set xlabel 'u'\nset ylabel 'v' offset 1.5,0\nset tics nomirror out\n";
+  text += "set xlabel " + text::gnuplot_string(map.x) + "\nset ylabel " + text::gnuplot_string(map.y) +
+          " offset 1.5,0\nset tics nomirror out\n";
   text += colour_commands(map);
   text +=
       "set colorbox horizontal user origin graph 0, graph 1.06 size graph 1, graph 0.04\n"

@@ -72,6 +72,7 @@ struct Map {
   double largest = 0.0;  // the ends of a diverging scale are +-largest; larger magnitudes get the colours of the ends
   std::vector<MapCell> cells;             // others stay blank
   std::vector<std::string> classes = {};  // names of the values 0, 1, ... if the colours stand for classes
+  std::string x = "u", y = "v";           // names of the axes
 };
 
 [[nodiscard]] std::string map_plot(const Map& map);

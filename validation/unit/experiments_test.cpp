@@ -15,6 +15,7 @@
 #include "experiments/karkanis_times.h"
 #include "experiments/nettle_rule.h"
 #include "experiments/small_emitters.h"
+#include "experiments/view_factors.h"
 #include "experiments/whole_view_times.h"
 #include "page/plot_script.h"
 
@@ -26,7 +27,7 @@ const Hooks kNoHooks;
 // --- what they share -----------------------------------------------------------------------------------
 
 TEST(Experiments, AreFoundByNameAndNearlyByAnother) {
-  ASSERT_EQ(all_experiments().size(), 8U);
+  ASSERT_EQ(all_experiments().size(), 9U);
   for (const Experiment& e : all_experiments()) EXPECT_EQ(&experiment_named(e.name), &e);
   try {
     (void)experiment_named("nettle");
@@ -100,8 +101,11 @@ std::vector<SmallRun> small_runs() {
     return whole_view_times({.triangles = {5, 20}, .models = {{"closed-room:boxes=1", "floor"}}, .points = 2}, hooks);
   };
   const auto honest = [](int threads, const Hooks& hooks) { return honesty(small_honesty(), threads, hooks); };
-  return {{"scatter", scatter}, {"resolution", resolution}, {"nettle", nettle}, {"emitters", emitters},
-          {"room", room},       {"whole view", whole_view}, {"honesty", honest}};
+  const auto factors = [](int threads, const Hooks& hooks) {
+    return view_factors({.accuracies = {1e-3}}, threads, hooks);
+  };
+  return {{"scatter", scatter}, {"resolution", resolution}, {"nettle", nettle},  {"emitters", emitters},
+          {"room", room},       {"whole view", whole_view}, {"honesty", honest}, {"view factors", factors}};
 }
 
 TEST(Experiments, GiveTheSameBytesOfValuesForAnyNumberOfThreads) {
@@ -309,6 +313,29 @@ TEST(WholeViewTimes, SeeAsManyTrianglesAsTheSolverAndAddUpToOne) {
 }
 
 // --- view factors --------------------------------------------------------------------------------------
+
+TEST(ViewFactorChapter, TellsWidthsClaimsAndSums) {
+  const ViewFactorStudy study = view_factor_study({.accuracies = {1e-2, 1e-6}, .budget = 100}, 1, kNoHooks);
+  ASSERT_EQ(study.curves.size(), 4U);
+  EXPECT_EQ(study.curves.front().claim, Claim::kCertified);
+  for (const WidthCurve& curve : study.curves) {
+    for (const WidthAtAccuracy& place : curve.places) EXPECT_LE(place.width, place.accuracy) << curve.name;
+  }
+  EXPECT_GE(study.curves[0].places[0].width, study.curves[0].places[1].width);
+  ASSERT_EQ(study.sums.size(), 12U);
+  for (const RowSum& sum : study.sums) {
+    EXPECT_LE(sum.lower, 1.0) << sum.patch;
+    EXPECT_GE(sum.upper, 1.0) << sum.patch;
+  }
+  // The cube's sides see no side of the cube; with so few cells, some pairs of walls are crowds.
+  for (std::size_t i = 6; i < 12; ++i) {
+    for (std::size_t j = 6; j < 12; ++j) EXPECT_EQ(study.matrix.at(i, j).claim, Claim::kZero);
+  }
+  EXPECT_NE(std::ranges::count(study.matrix.entries, Claim::kStatistical, &ViewFactor::claim), 0);
+  const Result chapter = view_factors({.accuracies = {1e-2}, .budget = 100}, 1, kNoHooks);
+  EXPECT_EQ(chapter.figures.size(), 3U);
+  EXPECT_NE(chapter.paragraphs.front().find("every one of 12 rows"), std::string::npos);
+}
 
 TEST(Honesty, CountsAnErrorOnlyIfItIsProved) {
   const ViewFactor entry{.value = 0.5, .lower = 0.4, .upper = 0.6};
