@@ -27,7 +27,7 @@ using view_factors::Point;
 using view_factors::Share;
 
 constexpr double kTolerance = 0x1p-16, kMargin = 0x1p-24;  // as the self-check of pair.cpp
-constexpr std::size_t kMostPairs = 6, kPoints = 8, kCells = 64;
+constexpr std::size_t kMostPairs = 3, kPoints = 4, kCells = 16;
 
 // A mean of the corners with small whole weights.
 Point point_in(const Part& part, const view_factors::Units& units, Random& random) {
@@ -123,8 +123,8 @@ bool meet(double lower, double upper, double other_lower, double other_upper) {
 }
 
 void judge_factors(const Scene& scene, const Selection& from, const Selection& to) {
-  const ViewFactorOptions quick{.accuracy = 1e-2, .budget = 40, .sample_crowds = false};
-  const ViewFactorOptions certain{.accuracy = 1e-2, .budget = 20, .certify = true};
+  const ViewFactorOptions quick{.accuracy = 1e-2, .budget = 8, .sample_crowds = false};
+  const ViewFactorOptions certain{.accuracy = 1e-2, .budget = 4, .certify = true};
   try {
     const ViewFactor f = view_factor(scene, from, to, quick), proved = view_factor(scene, from, to, certain);
     EXPECT_TRUE(0.0 <= f.lower && f.lower <= f.value && f.value <= f.upper && f.upper <= 1.0);
