@@ -286,10 +286,9 @@ TEST_F(HostileProgram, ASignalWhileItReadsLeavesNothing) {
   std::vector<std::string> arguments = comparison(place_ / "a" / "result");
   arguments[1] = pipe;
   const Running run = start(arguments);
-  {
-    std::ofstream(pipe) << kRoom;  // it has started to read
-    run.send(SIGINT);
-  }
+  std::ofstream writer(pipe);
+  writer << kRoom << std::flush;  // it has started to read, and cannot end while the pipe is open
+  run.send(SIGINT);
   EXPECT_EQ(run.wait(), 128 + SIGINT);
   expect_nothing_in_place();
 }
