@@ -32,6 +32,14 @@ function(exactff_precompile target)
   endif()
 endfunction()
 
+# exactff_share_precompiled(TARGET OTHER): uses the headers that are precompiled for the other target, which must have
+# the same compile options and definitions. Does nothing as long as there is none of that name.
+function(exactff_share_precompiled target other)
+  if(EXACTFF_QUICK_BUILD AND TARGET ${other} AND NOT target STREQUAL other)
+    target_precompile_headers(${target} REUSE_FROM ${other})
+  endif()
+endfunction()
+
 # exactff_save_compile_time(TARGET [LEVEL]): compiles the target with -O0, or with LEVEL where no sanitizer slows it down.
 # Optimising the tests and the commands of the program would take minutes and save seconds of their runs. The runs spend
 # their time in the library, which is compiled with the options of the build.
