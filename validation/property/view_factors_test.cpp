@@ -208,6 +208,35 @@ TEST(ViewFactors, OfClosedRoomsAddUpToOne) {
   }
 }
 
+// The same scene with other axes, and scaled by a power of two, which rounds nothing.
+TEST(ViewFactors, DependOnNeitherTheAxesNorTheUnitOfLength) {
+  std::size_t judged = 0;
+  for (std::uint64_t s = 0; s < scaled_count(20); ++s) {
+    Random random(seed_of(s));
+    generate::PlainScene plain = s % 2 == 0 ? degenerate_scene(random) : generic_scene(random);
+    const Scene scene = generate::build(plain);
+    const Selection to = scene.select("source");
+    const Selection from = patch_of(scene, random.below(scene.patches().size()));
+    if (!has_area(scene, from) || !has_area(scene, to)) continue;
+    const ViewFactorOptions options{.accuracy = 1e-4, .budget = 500, .sample_crowds = false};
+    const ViewFactor f = view_factor(scene, from, to, options);
+    const auto again = [&] {
+      const Scene changed = generate::build(plain);
+      return view_factor(changed, changed.select(scene.name_of(from)), changed.select("source"), options);
+    };
+    generate::scale(plain, 0x1p10);
+    const ViewFactor scaled = again();
+    EXPECT_EQ(scaled.lower, f.lower) << s;
+    EXPECT_EQ(scaled.upper, f.upper) << s;
+    for (Vec3& v : plain.vertices) v = {v.y, v.z, v.x};
+    const ViewFactor turned = again();
+    EXPECT_LE(turned.lower, f.upper) << s;
+    EXPECT_GE(turned.upper, f.lower) << s;
+    judged += f.accurate && f.value > 0.0 ? 1 : 0;
+  }
+  EXPECT_GE(judged, 3U);
+}
+
 // A box that stands on the floor: its base hides what lies under it, and its sides begin in the floor's plane.
 TEST(ViewFactors, ABoxOnTheFloorHidesTheFloorUnderIt) {
   generate::PlainScene scene;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -61,6 +62,42 @@ TEST(ViewFactor, OfParallelSquaresIsTheKnownOne) {
   expect_factor(generate::build(plates(1.0, 10.0)), "below", "above", 1e-10, 0.00316205683875760162512871788517);
   expect_factor(generate::build(plates(1.0, 100.0)), "below", "above", 1e-10, 3.18288667328291964442604e-5);
   expect_factor(generate::build(plates(1.0, 1000.0)), "below", "above", 1e-10, 3.18309673977380257770e-7);
+}
+
+// A square with a hole, and the square that fills the hole, both ways.
+TEST(ViewFactor, OfAFrameAndOfWhatFillsItAddUp) {
+  PlainScene scene;
+  const std::vector<Vec3> hole{{0.25, 0.5, 1}, {0.5, 0.75, 1}, {0.75, 0.5, 1}, {0.5, 0.25, 1}};
+  add(scene, "below", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  scene.add_rings(scene.patch("frame"), {{{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}}, hole});
+  add(scene, "plug", hole);
+  const Scene built = generate::build(scene);
+  const auto factor = [&](const char* from, const char* to) {
+    return view_factor(built, named(built, from), named(built, to), {.accuracy = 1e-8});
+  };
+  const ViewFactor frame = factor("below", "frame"), plug = factor("below", "plug");
+  const double whole = 0.199824895698387;  // of unit squares, 1 apart
+  EXPECT_LE(frame.lower + plug.lower, whole);
+  EXPECT_GE(frame.upper + plug.upper, whole);
+  const ViewFactor back = factor("frame", "below");
+  EXPECT_NEAR(back.area_from, 0.875, 1e-15);
+  EXPECT_LE(back.lower * back.area_from, frame.upper);
+  EXPECT_GE(back.upper * back.area_from, frame.lower);
+}
+
+// Seen from afar, the factor is A / (pi d^2), less a share of the order of A / d^2.
+TEST(ViewFactor, OfFarSquaresIsThatOfPoints) {
+  for (const double gap : {1e4, 1e6}) {
+    const Scene scene = generate::build(plates(1.0, gap));
+    const double of_points = 1.0 / (std::numbers::pi * gap * gap);
+    for (const bool certify : {false, true}) {
+      const ViewFactor f = view_factor(scene, named(scene, "below"), named(scene, "above"),
+                                       {.accuracy = 1e-6 * of_points, .certify = certify});
+      EXPECT_TRUE(f.accurate) << gap;
+      EXPECT_NEAR(f.value / of_points, 1.0, 1e-7) << gap;
+      EXPECT_LT(f.lower, f.upper) << gap;
+    }
+  }
 }
 
 TEST(ViewFactor, OfSquaresWithACommonEdgeIsTheKnownOne) {
