@@ -1,7 +1,6 @@
 #include "view_factors/sight.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 
@@ -9,15 +8,6 @@ namespace exactff::view_factors {
 namespace {
 
 constexpr std::uint32_t kByReceiver = 0, kBySource = 1;  // names of planes that clip
-
-// Of two planes that hold the same points: whether their front sides are the same.
-bool faces_along(const Plane& plane, const Plane& other) {
-  std::size_t largest = 0;
-  for (std::size_t i = 1; i < 3; ++i) {
-    if (std::abs(plane.rounded[i]) > std::abs(plane.rounded[largest])) largest = i;
-  }
-  return (plane.rounded[largest] > 0.0) == (other.rounded[largest] > 0.0);
-}
 
 class Maker {
  public:
@@ -126,26 +116,24 @@ class Maker {
                                  [&](std::uint32_t corner) { return side_of(plane, scene_.vertices[corner]) >= 0; });
     });
   }
-  [[nodiscard]] bool is_in(std::uint32_t piece, const Plane& plane) const {
-    return std::ranges::all_of(scene_.pieces[piece].corners,
-                               [&](std::uint32_t corner) { return side_of(plane, scene_.vertices[corner]) == 0; });
-  }
 
-  // In front of the source's plane, or in it and facing away.
+  // In front of the source's plane, or in it and facing away. Planes are primitive, so equal ones face the same side.
   [[nodiscard]] bool stands_on_source(const ExactSurface& surface) const {
-    return lies_before(surface, source_plane_) && std::ranges::all_of(surface.pieces, [&](std::uint32_t piece) {
-             return !is_in(piece, source_plane_) ||
-                    faces_along(scene_.pieces[piece].plane, source_plane_) == surface.turned_inside_out;
+    const Homogeneous towards = surface.turned_inside_out ? opposite(source_plane_.exact) : source_plane_.exact;
+    return lies_before(surface, source_plane_) && std::ranges::none_of(surface.pieces, [&](std::uint32_t piece) {
+             return scene_.pieces[piece].plane.exact == towards;
            });
   }
 
   std::vector<Ring> bases_of(const ExactSurface& surface) {
     std::vector<Ring> bases;
     if (surface.box.is_apart_from(receiver_box_)) return bases;
-    for (const std::uint32_t piece : surface.pieces) {
-      if (!is_in(piece, sight_.receiver)) continue;
-      const Ring ring = ring_of(scene_.pieces[piece]);
-      bases.push_back(faces_along(scene_.pieces[piece].plane, sight_.receiver) ? ring : reversed(ring));
+    const Homogeneous& front = sight_.receiver.exact;
+    const Homogeneous back = opposite(front);
+    for (const std::uint32_t id : surface.pieces) {
+      const ExactPiece& piece = scene_.pieces[id];
+      if (piece.plane.exact == front) bases.push_back(ring_of(piece));
+      if (piece.plane.exact == back) bases.push_back(reversed(ring_of(piece)));
     }
     return bases;
   }
