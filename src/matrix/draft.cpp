@@ -91,19 +91,10 @@ std::vector<std::uint32_t> pieces_seen_from(const ExactScene& scene, const Part&
   Box box;
   for (const Point& corner : part.corners) box.include(corner.at);
   const int exponent = static_cast<int>(scene.units.exponent + scene.units.shift);
-  std::vector<Vec3> corners;
-  for (const double x : {box.low.x, box.high.x}) {
-    for (const double y : {box.low.y, box.high.y}) {
-      for (const double z : {box.low.z, box.high.z}) {
-        corners.push_back({std::ldexp(x, exponent), std::ldexp(y, exponent), std::ldexp(z, exponent)});
-      }
-    }
-  }
-  const auto before = [](const Vec3& a, const Vec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
-  const auto same = [](const Vec3& a, const Vec3& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
-  std::ranges::sort(corners, before);
-  corners.erase(std::unique(corners.begin(), corners.end(), same), corners.end());
-  return whole_view::pieces_seen_from(scene.scene, corners);
+  const auto in_scene = [&](const Vec3& v) {
+    return Vec3{std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
+  };
+  return whole_view::pieces_seen_from(scene.scene, {in_scene(box.low), in_scene(box.high)});
 }
 
 // What the points of one row have seen, by patch, then the backs and what is open.

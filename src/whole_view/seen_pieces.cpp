@@ -32,10 +32,31 @@ struct Hider {
   }
 };
 
+// Without repetition: a box may be flat.
+std::vector<Vec3> box_corners(const Box& box) {
+  const auto ends = [](double low, double high) { return low < high ? std::vector{low, high} : std::vector{low}; };
+  std::vector<Vec3> corners;
+  for (const double x : ends(box.low.x, box.high.x)) {
+    for (const double y : ends(box.low.y, box.high.y)) {
+      for (const double z : ends(box.low.z, box.high.z)) corners.push_back({x, y, z});
+    }
+  }
+  return corners;
+}
+
+Box box_around(std::span<const Vec3> points) {
+  Box box{points[0], points[0]};
+  for (const Vec3& p : points) {
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+  }
+  return box;
+}
+
 class SeeingRegion {
  public:
-  SeeingRegion(const Scene& scene, std::span<const Vec3> corners) : scene_(scene), corners_(corners) {
-    for (const Vec3& v : scene.vertices()) include(v);
+  SeeingRegion(const Scene& scene, const Box& region)
+      : scene_(scene), corners_(box_corners(region)), corners_of_scene_(box_corners(box_around(scene.vertices()))) {
     for (std::uint32_t p = 0; p < scene.pieces().size(); ++p) consider(p);
     const auto is_larger = [](const Hider& a, const Hider& b) { return a.size > b.size; };
     std::ranges::stable_sort(hiders_, is_larger);
@@ -48,11 +69,6 @@ class SeeingRegion {
   }
 
  private:
-  void include(const Vec3& v) {
-    low_ = {std::min(low_.x, v.x), std::min(low_.y, v.y), std::min(low_.z, v.z)};
-    high_ = {std::max(high_.x, v.x), std::max(high_.y, v.y), std::max(high_.z, v.z)};
-  }
-
   [[nodiscard]] std::vector<Vec3> corners_of(std::uint32_t piece) const {
     std::vector<Vec3> corners;
     for (const std::uint32_t corner : scene_.corners(scene_.pieces()[piece])) {
@@ -73,15 +89,8 @@ class SeeingRegion {
     hider.side = hider.side_of(corners_[0]);
     if (hider.side == 0) return;
     if (!std::ranges::all_of(corners_, [&](const Vec3& r) { return hider.side_of(r) == hider.side; })) return;
-    bool has_something_behind = false;
-    for (const double x : {low_.x, high_.x}) {
-      for (const double y : {low_.y, high_.y}) {
-        for (const double z : {low_.z, high_.z}) {
-          has_something_behind = has_something_behind || hider.side_of({x, y, z}) == -hider.side;
-        }
-      }
-    }
-    if (!has_something_behind) return;
+    const auto is_behind = [&](const Vec3& corner) { return hider.side_of(corner) == -hider.side; };
+    if (std::ranges::none_of(corners_of_scene_, is_behind)) return;
     hider.size = solid_angle(hider);
     hiders_.push_back(std::move(hider));
   }
@@ -115,20 +124,19 @@ class SeeingRegion {
   }
 
   const Scene& scene_;
-  std::span<const Vec3> corners_;
-  Vec3 low_{INFINITY, INFINITY, INFINITY}, high_{-INFINITY, -INFINITY, -INFINITY};
-  std::vector<Hider> hiders_;  // the largest first
+  const std::vector<Vec3> corners_, corners_of_scene_;  // of boxes
+  std::vector<Hider> hiders_;                           // the largest first
 };
 
 }  // namespace
 
-std::vector<std::uint32_t> pieces_seen_from(const Scene& scene, std::span<const Vec3> corners) {
-  const SeeingRegion region(scene, corners);
+std::vector<std::uint32_t> pieces_seen_from(const Scene& scene, const Box& region) {
+  const SeeingRegion from(scene, region);
   std::vector<std::uint32_t> seen;
   kernel::Steps steps("faces", scene.pieces().size());
-  shaft_tree(scene).query(corners[0], {}, [&](std::uint32_t piece) {
+  shaft_tree(scene).query(region.low, {}, [&](std::uint32_t piece) {
     steps.take();
-    if (region.may_see(piece)) seen.push_back(piece);
+    if (from.may_see(piece)) seen.push_back(piece);
     return true;
   });
   return seen;

@@ -15,14 +15,15 @@
 
 #include "exactff/scene.h"
 #include "exactff/view.h"
+#include "scene/shaft_tree.h"
 
 namespace exactff::whole_view {
 
-// All pieces but some that are certainly hidden, by single opaque pieces, from all points of the hull of the corners.
-// Decided by exact signs. In the order in which a view looks at them.
-[[nodiscard]] std::vector<std::uint32_t> pieces_seen_from(const Scene& scene, std::span<const Vec3> corners);
+// All pieces but some that are certainly hidden, by single opaque pieces, from all points of the region. Decided by
+// exact signs. In the order in which a view looks at them.
+[[nodiscard]] std::vector<std::uint32_t> pieces_seen_from(const Scene& scene, const Box& region);
 
-// view() from a point of that hull, with the same result, in less time.
+// view() from a point of that region, with the same result, in less time.
 void view_among(const Scene& scene, std::span<const std::uint32_t> pieces, const Receiver& receiver,
                 const ViewOptions& options, WholeView& result, Workspace& workspace);
 

@@ -20,16 +20,6 @@ using generate::Random;
 using whole_view::pieces_seen_from;
 using whole_view::view_among;
 
-std::vector<Vec3> corners_of(const Vec3& low, const Vec3& high) {
-  std::vector<Vec3> corners;
-  for (const double x : {low.x, high.x}) {
-    for (const double y : {low.y, high.y}) {
-      for (const double z : {low.z, high.z}) corners.push_back({x, y, z});
-    }
-  }
-  return corners;
-}
-
 void expect_same(const ViewShare& a, const ViewShare& b) {
   EXPECT_EQ(a.value, b.value);
   EXPECT_EQ(a.status, b.status);
@@ -56,8 +46,7 @@ std::size_t expect_the_same_views(const PlainScene& plain, Random& random) {
   const double size = std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), 1.0});
   const auto wide = [&] { return random.one_in(3) ? 0.0 : std::ldexp(size, -random.integer(0, 6)); };
   const Vec3 high{low.x + wide(), low.y + wide(), low.z + wide()};
-  const std::vector<Vec3> corners = corners_of(low, high);
-  const std::vector<std::uint32_t> pieces = pieces_seen_from(scene, corners);
+  const std::vector<std::uint32_t> pieces = pieces_seen_from(scene, {low, high});
   for (int i = 0; i < 4; ++i) {
     const auto between = [&](double a, double b) { return i < 2 ? (random.one_in(2) ? a : b) : random.between(a, b); };
     Receiver moved = receiver;
