@@ -45,26 +45,13 @@ WidthCurve width_curve(const std::string& name, const Scene& scene, const char* 
   return curve;
 }
 
-std::vector<RowSum> sums_of(const Scene& scene, const ViewFactorMatrix& matrix) {
-  std::vector<RowSum> sums;
-  for (std::size_t i = 0; i < matrix.from.size(); ++i) {
-    RowSum sum{scene.name_of(matrix.from[i]), 0.0, 0.0};
-    for (std::size_t j = 0; j < matrix.to.size(); ++j) {
-      sum.lower += matrix.at(i, j).lower;
-      sum.upper += matrix.at(i, j).upper;
-    }
-    sums.push_back(sum);
-  }
-  return sums;
-}
-
 // ---------------------------------------------------------------------------------------------------------- sentences
 
 std::string sums_sentence(const ViewFactorStudy& study) {
   const auto hold = static_cast<std::size_t>(
-      std::ranges::count_if(study.sums, [](const RowSum& s) { return s.lower <= 1.0 && s.upper >= 1.0; }));
+      std::ranges::count_if(study.sums, [](const matrix::Sum& s) { return s.lower <= 1.0 && s.upper >= 1.0; }));
   double widest = 0.0;
-  for (const RowSum& sum : study.sums) widest = std::max(widest, sum.upper - sum.lower);
+  for (const matrix::Sum& sum : study.sums) widest = std::max(widest, sum.upper - sum.lower);
   return "In a closed room with a tilted cube, the sum 1 that a row must have lies inside the bounds of " +
          text::counted_of(hold, study.sums.size(), "row") + ". They are at most " + rounded(widest, 2) + " wide.";
 }
@@ -208,8 +195,9 @@ ViewFactorStudy view_factor_study(const ViewFactorSize& size, int threads, const
     study.patches.push_back(room.name_of(all.back()));
   }
   const ViewFactorOptions options{.accuracy = size.accuracy, .budget = size.budget};
-  study.matrix = view_factor_matrix(room, all, all, options, threads, hooks);
-  study.sums = sums_of(room, study.matrix);
+  const matrix::Matrix made = matrix::compute(room, all, all, {.factors = options, .threads = threads}, hooks);
+  study.matrix = made.factors;
+  study.sums = row_sums(made);
   return study;
 }
 

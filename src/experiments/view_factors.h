@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "exactff/matrix.h"
 #include "exactff/view_factors.h"
 #include "experiments/support.h"
 
@@ -30,17 +31,11 @@ struct WidthCurve {
   std::vector<WidthAtAccuracy> places;
 };
 
-// A sum of a row: 1 in a closed room.
-struct RowSum {
-  std::string patch;
-  double lower = 0.0, upper = 0.0;
-};
-
 struct ViewFactorStudy {
   std::vector<WidthCurve> curves;
   std::vector<std::string> patches;  // of the room
   ViewFactorMatrix matrix;
-  std::vector<RowSum> sums;
+  std::vector<matrix::Sum> sums;  // of its rows: 1, since the room is closed
 };
 
 // Two unit squares, 1 apart, with a square of half the size in the middle between them: `below`, `above`, `plate`.

@@ -323,9 +323,9 @@ TEST(ViewFactorChapter, TellsWidthsClaimsAndSums) {
   }
   EXPECT_GE(study.curves[0].places[0].width, study.curves[0].places[1].width);
   ASSERT_EQ(study.sums.size(), 12U);
-  for (const RowSum& sum : study.sums) {
-    EXPECT_LE(sum.lower, 1.0) << sum.patch;
-    EXPECT_GE(sum.upper, 1.0) << sum.patch;
+  for (std::size_t i = 0; i < study.sums.size(); ++i) {
+    EXPECT_LE(study.sums[i].lower, 1.0) << study.patches[i];
+    EXPECT_GE(study.sums[i].upper, 1.0) << study.patches[i];
   }
   // The cube's sides see no side of the cube; with so few cells, some pairs of walls are crowds.
   for (std::size_t i = 6; i < 12; ++i) {
