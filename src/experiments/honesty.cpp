@@ -26,8 +26,7 @@ double magnitude_of_error(const ViewFactor& entry) {
 }
 
 // A_j / A_i, enclosed.
-kernel::Disc ratio_of_areas(const Scene& scene, const Selection& i, const Selection& j) {
-  const view_factors::ExactScene exact(scene);
+kernel::Disc ratio_of_areas(const view_factors::ExactScene& exact, const Selection& i, const Selection& j) {
   const auto area = [&](const Selection& patch) {
     return view_factors::enclosed_area_of(view_factors::parts_of(exact, patch), exact.units);
   };
@@ -69,8 +68,9 @@ PreparedPair prepared_pair(const HonestyScene& named, const HonestySize& size) {
   pair.from = pair.scene.select(named.from);
   pair.to = pair.scene.select(named.to);
   const Bounds forth = enclosure(pair, pair.from, pair.to, size), back = enclosure(pair, pair.to, pair.from, size);
-  pair.forth = common_part(forth, turned_round(back, ratio_of_areas(pair.scene, pair.from, pair.to)));
-  pair.back = common_part(turned_round(forth, ratio_of_areas(pair.scene, pair.to, pair.from)), back);
+  const view_factors::ExactScene exact(pair.scene);
+  pair.forth = common_part(forth, turned_round(back, ratio_of_areas(exact, pair.from, pair.to)));
+  pair.back = common_part(turned_round(forth, ratio_of_areas(exact, pair.to, pair.from)), back);
   pair.forth.are_contradictory = pair.back.are_contradictory =
       pair.forth.are_contradictory || pair.back.are_contradictory;
   return pair;
