@@ -4,12 +4,14 @@
 #include "exactff/matrix.h"
 #include "kernel/float_environment.h"
 #include "kernel/outward.h"
+#include "view_factors/patch_parts.h"
 
 namespace exactff::matrix {
 namespace {
 
 using kernel::above;
 using kernel::below;
+using view_factors::is_planar;
 
 constexpr double kRoundedAreas = 0x1p-44;  // relative; as in view_factors/view_factor.cpp
 
@@ -30,11 +32,6 @@ double radius_of(const Exchange& e) { return std::max(e.upper - e.value, e.value
 std::optional<std::size_t> place_of(const Selection& patch, const std::vector<Selection>& in) {
   const auto found = std::ranges::find(in, patch);
   return found == in.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - in.begin()));
-}
-
-bool is_planar(const Scene& scene, const Selection& patch) {
-  return std::ranges::all_of(scene.faces_of(patch),
-                             [&](FaceId face) { return scene.face(face).shape == FaceShape::kPlanar; });
 }
 
 // distance / radius, without a division by 0.

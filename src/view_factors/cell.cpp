@@ -90,6 +90,15 @@ Halves cut(const Cell& cell, const Plane& receiver, const std::shared_ptr<const 
   return halves;
 }
 
+double distance_from_sides(const Cell& cell, const Vec3& x) {
+  double least = HUGE_VAL;
+  for (std::size_t i = 0; i < cell.corners.size(); ++i) {
+    const Vec3& next = cell.corners[(i + 1) % cell.corners.size()].at;
+    least = std::min(least, distance_to_segment(x, cell.corners[i].at, next));
+  }
+  return least;
+}
+
 std::vector<Vec3> rounded(const std::vector<Point>& points) {
   std::vector<Vec3> result;
   for (const Point& point : points) result.push_back(point.at);

@@ -58,15 +58,6 @@ double radius_about(const Cell& cell, const Vec3& centre) {
   return radius * kSlack;
 }
 
-double distance_from_sides(const Cell& cell, const Vec3& x) {
-  double least = HUGE_VAL;
-  for (std::size_t i = 0; i < cell.corners.size(); ++i) {
-    const Vec3& next = cell.corners[(i + 1) % cell.corners.size()].at;
-    least = std::min(least, distance_to_segment(x, cell.corners[i].at, next));
-  }
-  return least;
-}
-
 // Whether the difference of two rules tells their error. Where an edge is nearer than this, F may have a peak that both
 // rules miss. At 1.5 radii, two points more divide the error by 2.6^4 = 46.
 bool is_resolved(const Cell& cell, const Formula& formula) {

@@ -1,5 +1,6 @@
 #include "view_factors/patch_parts.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -119,6 +120,11 @@ kernel::Disc enclosed_area_of(const std::vector<Part>& parts, const Units& units
   kernel::Disc sum;
   for (const Part& part : parts) sum = sum + enclosed_area(part, units);
   return sum;
+}
+
+bool is_planar(const Scene& scene, const Selection& patch) {
+  return std::ranges::all_of(scene.faces_of(patch),
+                             [&](FaceId face) { return scene.face(face).shape == FaceShape::kPlanar; });
 }
 
 std::pair<double, double> areas_of(const ExactScene& scene, const Selection& patch, const std::vector<Part>& parts) {

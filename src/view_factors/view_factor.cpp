@@ -185,11 +185,8 @@ struct Prepared {
 };
 
 Prepared prepare(const ExactScene& scene, const Selection& patch) {
-  Prepared result{patch, parts_of(scene, patch), 0.0, 0.0, true};
+  Prepared result{patch, parts_of(scene, patch), 0.0, 0.0, is_planar(scene.scene, patch)};
   std::tie(result.unit_area, result.area) = areas_of(scene, patch, result.parts);
-  for (const FaceId face : scene.scene.faces_of(patch)) {
-    result.planar = result.planar && scene.scene.face(face).shape == FaceShape::kPlanar;
-  }
   return result;
 }
 

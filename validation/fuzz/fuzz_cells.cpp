@@ -43,15 +43,6 @@ Point point_in(const Part& part, const view_factors::Units& units, Random& rando
   return make_point(std::move(sum), units);
 }
 
-double distance_from_sides(const Share& share, const Vec3& x) {
-  double least = HUGE_VAL;
-  const auto& corners = share.cell.corners;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    least = std::min(least, view_factors::distance_to_segment(x, corners[i].at, corners[(i + 1) % corners.size()].at));
-  }
-  return least;
-}
-
 bool holds(const Share& share, const Point& point) {
   return std::ranges::all_of(share.cell.sides,
                              [&](const auto& side) { return side_of(*side, point) == sign_inside(*side, share.cell); });
@@ -96,7 +87,7 @@ class CellJudge {
   void judge_point(const Point& point, const NearPlanes& near, const ExactSource& source,
                    const std::vector<Share>& shares) const {
     const std::optional<Vec3> rounded = near.rounded(point);
-    const auto is_close = [&](const Share& share) { return distance_from_sides(share, point.at) < kMargin; };
+    const auto is_close = [&](const Share& share) { return distance_from_sides(share.cell, point.at) < kMargin; };
     if (!rounded || std::ranges::any_of(shares, is_close)) return;
     const auto share = std::ranges::find_if(shares, [&](const Share& s) { return holds(s, point); });
     if (share != shares.end() && share->is_event) return;
@@ -112,11 +103,6 @@ class CellJudge {
   Random random_;
   std::size_t pairs_ = 0;
 };
-
-bool is_planar(const Scene& scene, const Selection& patch) {
-  return std::ranges::all_of(scene.faces_of(patch),
-                             [&](FaceId face) { return scene.face(face).shape == FaceShape::kPlanar; });
-}
 
 bool meet(double lower, double upper, double other_lower, double other_upper) {
   return lower <= other_upper && other_lower <= upper;

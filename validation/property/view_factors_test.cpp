@@ -15,11 +15,13 @@
 #include "kernel/exact_vec.h"
 #include "property/closed_rooms.h"
 #include "support/random_scenes.h"
+#include "view_factors/patch_parts.h"
 
 namespace exactff::validation {
 namespace {
 
 using generate::Random;
+using view_factors::is_planar;
 
 Selection patch_of(const Scene& scene, std::size_t index) { return {static_cast<PatchId>(index), {}, scene.id()}; }
 
@@ -62,11 +64,6 @@ Mean mean_of_points(const Scene& scene, const Selection& from, const Selection& 
 }
 
 bool has_area(const Scene& scene, const Selection& patch) { return !scene.faces_of(patch).empty(); }
-
-bool is_planar(const Scene& scene, const Selection& patch) {
-  return std::ranges::all_of(scene.faces_of(patch),
-                             [&](FaceId face) { return scene.face(face).shape == FaceShape::kPlanar; });
-}
 
 // Coplanar faces that overlap would weigh twice in the sample.
 bool has_one_face(const Scene& scene, const Selection& patch) { return scene.faces_of(patch).size() == 1; }
