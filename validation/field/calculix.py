@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""Measures the view factors of CalculiX against certified ones.
+
+Usage: calculix.py PROGRAM FOLDER [--quick]
+
+Every cell is the face 1 of a thin brick of its own (C3D8), which radiates into one cavity. CalculiX cuts it into two
+triangles. The bricks lie behind their faces and take no other part.
+"""
+
+import os
+import pathlib
+import shutil
+import sys
+
+import numpy
+
+import factors
+
+THICKNESS = 0.01  # of a cell; no face of a brick but face 1 radiates or hides anything
+DECK = """*NODE, NSET=NODES
+{nodes}
+*ELEMENT, TYPE=C3D8, ELSET=BRICKS
+{bricks}
+*MATERIAL, NAME=SOLID
+*CONDUCTIVITY
+1.
+*SOLID SECTION, MATERIAL=SOLID, ELSET=BRICKS
+*PHYSICAL CONSTANTS, ABSOLUTE ZERO=0, STEFAN BOLTZMANN=5.669E-8
+*INITIAL CONDITIONS, TYPE=TEMPERATURE
+NODES, 300.
+*STEP
+*HEAT TRANSFER, STEADY STATE
+*BOUNDARY
+NODES, 11, 11, 300.
+*RADIATE
+BRICKS, R1CR, {sink}, 1.
+*VIEWFACTOR, WRITE ONLY
+*END STEP
+"""
+
+
+def write_deck(path, cells, sink):
+    behind = cells.points - THICKNESS * cells.size * cells.normals
+    nodes = numpy.stack([cells.points, behind], axis=1).reshape(-1, 3)
+    # Face 1 of a brick points away from its other four nodes if its nodes run clockwise, seen from its front.
+    bricks = numpy.concatenate([2 * cells.quads[:, ::-1] + 1, 2 * cells.quads[:, ::-1] + 2], axis=1)
+    path.write_text(DECK.format(
+        nodes="\n".join("%d, %r, %r, %r" % (k + 1, *map(float, node)) for k, node in enumerate(nodes)),
+        bricks="\n".join(f"{k + 1}, " + ", ".join(map(str, brick)) for k, brick in enumerate(bricks)), sink=sink),
+        encoding="ascii")
+
+
+def records(data):
+    """The records of a sequential file of Fortran."""
+    found, at = [], 0
+    while at < len(data):
+        length = int.from_bytes(data[at:at + 4], "little")
+        if data[at + 4 + length:at + 8 + length] != data[at:at + 4]:
+            sys.exit(f"The record at byte {at} does not end as it begins")
+        found.append(data[at + 4:at + 4 + length])
+        at += 8 + length
+    return found
+
+
+def read_factors(path, faces):
+    """The matrix of the faces: its diagonal, then column by column what is below it, then row by row what is above."""
+    diagonal, others, _ = map(numpy.frombuffer, records(pathlib.Path(path).read_bytes())[1:])  # the first: the version
+    if len(diagonal) != faces or len(others) != faces * (faces - 1):
+        sys.exit(f"{path}: {len(diagonal)} faces and {len(others)} other factors instead of {faces} faces")
+    matrix, above = numpy.diag(diagonal), numpy.triu_indices(faces, 1)
+    matrix.T[above], matrix[above] = others.reshape(2, -1)
+    return matrix
+
+
+def solve(patches, across, folder, sink):
+    cells = factors.Cells(patches, across)
+    case = folder / "case"
+    shutil.rmtree(case, ignore_errors=True)
+    case.mkdir()
+    write_deck(case / "scene.inp", cells, sink)
+    said, seconds, used = factors.run(["ccx", "scene"], passing=(0, 201), cwd=case,
+                                      env={**os.environ, **factors.ONE_THREAD})
+    if not (case / "scene.vwf").exists():
+        sys.exit(f"{case}: CalculiX wrote no view factors\n{said[-2000:]}")
+    matrix = factors.of_patches(read_factors(case / "scene.vwf", len(cells.quads)), cells.areas, cells.patch)
+    shutil.rmtree(case)
+    return len(cells.quads), matrix, seconds, used
+
+
+SETTINGS = [
+    # A positive sink temperature: the program divides only those rows of faces by their sum whose sum exceeds 1.
+    ("rows as computed", [3, 5, 9, 16, 17, 33], {"sink": "300."}, False),
+    # A negative one makes CalculiX divide every row of a face by its sum: for closed rooms.
+    ("rows scaled to 1", [3, 5, 9, 17, 33], {"sink": "-300."}, True),
+]
+
+if __name__ == "__main__":
+    version = factors.run(["dpkg-query", "--show", "--showformat=${Version}", "calculix-ccx"])[0]
+    factors.measure("CalculiX", "calculix", [
+        f"CalculiX {version}, *VIEWFACTOR, WRITE ONLY, one thread; its time includes reading the input",
+        "exact: exactff matrix --certify --threads 1, accuracy 1e-6"], SETTINGS, solve)

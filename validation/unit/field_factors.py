@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""Tests what validation/field/openfoam.py and calculix.py read and write, without these programs.
+
+Usage: field_factors.py FIELD-FOLDER DATA-FOLDER
+
+The recorded output is that of OpenFOAM 1912 and CalculiX 2.20 for data/field/plates.obj, one cell for each face.
+"""
+
+import base64
+import pathlib
+import re
+import sys
+import tempfile
+import unittest
+
+import numpy
+
+field, data = map(pathlib.Path, sys.argv[1:3])
+sys.path.insert(0, str(field))
+import calculix  # noqa: E402
+import factors  # noqa: E402
+import openfoam  # noqa: E402
+
+F = """FoamFile
+{
+    class       scalarListList;
+}
+// * * * * * * * * * * * * * * * * * * * * * * * * * * * * * * * * * * * * * //
+
+
+4
+(
+1(0.3183098861837907)
+1(0.3183098861837907)
+1(1.273239544735163)
+1(1.273239544735163)
+)
+
+
+// ************************************************************************* //
+"""
+SEEN = F.replace("1(0.3183098861837907)", "1(3)", 1).replace("1(0.3183098861837907)", "1(2)", 1).replace(
+    "1(1.273239544735163)", "1(1)", 1).replace("1(1.273239544735163)", "1(0)", 1)
+VWF = base64.b64decode(
+    "UAAAAFZlcnNpb24gMi4yMCAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgIC"
+    "AgUAAAACAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAACAAAABgAAAAAAAAAAAAAAAAAAAAAAAAANlqb8UAWOE/2WpvxQBY4T8A"
+    "AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAIIoMe7e38c/gigx7t7fxz8AAAAAAAAAAAAAAAAAAAAAYAAAACAAAADgtXNECAjqP+C1c0"
+    "QICOo/Tiohdf5P3T9OKiF1/k/dPyAAAAA=")
+
+
+def plates():
+    return factors.read_obj(data / "field/plates.obj")
+
+
+class FieldFactors(unittest.TestCase):
+    def test_cells_cover_their_patches_and_keep_their_front(self):
+        cells = factors.Cells(plates(), 4, 2)
+        numpy.testing.assert_allclose(numpy.bincount(cells.patch, cells.areas), [1, 1, 0.25, 0.25])
+        self.assertEqual(list(numpy.bincount(cells.patch)), [16, 16, 4, 4])
+        corners = cells.points[cells.quads]
+        normals = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        self.assertEqual(list(numpy.sign(normals[[0, 16, 32, 36], 2])), [1, -1, 1, -1])
+        numpy.testing.assert_allclose(cells.normals[cells.quads[:, 0]], normals / cells.areas[:, None], atol=1e-15)
+
+    def test_blocks_are_numbered_within_their_patch_and_end_with_their_face(self):
+        both = {"both": plates()["below"] + plates()["above"]}
+        self.assertEqual(list(factors.Cells(both, 3, 2).blocks), [0, 0, 1, 0, 0, 1, 2, 2, 3, 4, 4, 5, 4, 4, 5, 6, 6, 7])
+
+    def test_factors_of_patches_are_weighted_by_area(self):
+        faces = numpy.array([[0, 0.25, 0.5], [0, 0, 0.25], [0.125, 0.5, 0]])
+        patches = factors.of_patches(faces, numpy.array([1.0, 3.0, 2.0]), numpy.array([0, 0, 1]))
+        numpy.testing.assert_allclose(patches, [[0.0625, 0.3125], [0.625, 0]])
+
+    def test_openfoam_writes_lists_in_three_ways(self):
+        with tempfile.TemporaryDirectory() as name:
+            path = pathlib.Path(name) / "F"
+            path.write_text("// * * //\n\n4\n(\n2(0.5 0.25)\n3{0.125}\n0()\n\n2\n(\n1e-3\n2\n)\n\n)\n// ** //\n")
+            read = openfoam.read_lists(path, float)
+        self.assertEqual([list(one) for one in read], [[0.5, 0.25], [0.125] * 3, [], [0.001, 2]])
+
+    def test_openfoam_factors_are_read(self):
+        with tempfile.TemporaryDirectory() as name:
+            case = pathlib.Path(name)
+            openfoam.write_case(case, plates(), factors.Cells(plates(), 1))
+            faces = re.findall(r"4\((\d+) (\d+) (\d+) (\d+)\)", (case / "constant/polyMesh/faces").read_text())
+            (case / "constant/F").write_text(F)
+            (case / "constant/globalFaceFaces").write_text(SEEN)
+            matrix = openfoam.read_factors(case, 4)
+        corners = factors.Cells(plates(), 1).points[numpy.array(faces, int)]
+        outward = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2]
+        self.assertEqual(list(numpy.sign(outward)), [-1, 1, -1, 1])
+        # Centre to centre: the area of the other face over pi times the squared distance.
+        expected = numpy.array([[0, 0, 0, 1], [0, 0, 1, 0], [0, 4, 0, 0], [4, 0, 0, 0]]) / numpy.pi
+        numpy.testing.assert_allclose(matrix, expected)
+
+    def test_calculix_factors_are_read(self):
+        with tempfile.TemporaryDirectory() as name:
+            path = pathlib.Path(name) / "scene.vwf"
+            path.write_bytes(VWF)
+            matrix = calculix.read_factors(path, 4)
+        self.assertEqual([list(numpy.nonzero(row)[0]) for row in matrix], [[3], [2], [1], [0]])
+        numpy.testing.assert_allclose(matrix[[0, 1, 2, 3], [3, 2, 1, 0]], [0.1865195] * 2 + [0.54199256] * 2, rtol=1e-7)
+
+    def test_bricks_of_calculix_radiate_from_their_front(self):
+        with tempfile.TemporaryDirectory() as name:
+            deck = pathlib.Path(name) / "scene.inp"
+            calculix.write_deck(deck, factors.Cells(plates(), 1), "300.")
+            lines = deck.read_text().splitlines()
+        brick = lines.index("*ELEMENT, TYPE=C3D8, ELSET=BRICKS") + 1
+        for line, up in zip(lines[brick:brick + 4], [1, -1, 1, -1]):
+            nodes = [lines[int(node)].split(",")[1:] for node in line.split(",")[1:]]
+            corner = numpy.array([[float(word) for word in node] for node in nodes])
+            outward = -numpy.cross(corner[1] - corner[0], corner[3] - corner[0])
+            self.assertEqual(numpy.sign(outward[2]), up)
+            self.assertLess((corner[4] - corner[0]) @ outward, 0)
+
+
+unittest.main(argv=sys.argv[:1])
