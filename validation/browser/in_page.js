@@ -344,10 +344,11 @@
 
   window.report_check = check;
   window.report_marks = {
-    // Rectangles on the page of all figures; and all marks away, or back.
-    places: () => list('figure').filter(shown).flatMap((figure) => media_of(figure).map((medium) => {
+    // Rectangles of all figures in a picture of the page of this scale; and all marks away, or back.
+    places: (scale) => list('figure').filter(shown).flatMap((figure) => media_of(figure).map((medium) => {
       const box = medium.getBoundingClientRect();
-      return {name: name_of(figure), x: box.left + scrollX, y: box.top + scrollY, width: box.width, height: box.height};
+      const x = scale * (box.left + scrollX), y = scale * (box.top + scrollY);
+      return {name: name_of(figure), x, y, width: scale * box.width, height: scale * box.height};
     })),
     hide: (hidden) => list('figure').flatMap(media_of).forEach((medium) => {
       const marks = medium.localName === 'img' ? [medium] : hidden ? marks_of(medium) : list(kDrawn, medium);

@@ -31,6 +31,7 @@ LEAST_LETTERING = 8  # pixels, in figures on a phone
 BODY_CONTRAST, OTHER_CONTRAST, FIGURE_CONTRAST = 7, 4.5, 3  # WCAG 2.2: text at AAA, at AA, and graphics
 MARK_CONTRAST = 2  # Okabe and Ito's light colours have 2.2 on white
 TALLEST_PICTURE = 8000  # pixels; more than Chromium can draw at once is saved in parts
+SCALE_FOR_MARKS = 0.5  # of the pictures that are compared: a quarter of the pixels, and a mark still changes some of them
 
 IN_PAGE = pathlib.Path(__file__).with_name("in_page.js").read_text(encoding="utf-8")
 
@@ -75,10 +76,13 @@ class Reader:
         self.log()  # remove the files of earlier pages
         driver.get(self.page.as_uri())
 
-    def view(self, width, scheme="light", medium="screen"):
-        height = 800
+    def resize(self, height=800, scale=1):
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
-            "width": width, "height": height, "deviceScaleFactor": 1, "mobile": width == PHONE})
+            "width": self.width, "height": height, "deviceScaleFactor": scale, "mobile": self.width == PHONE})
+
+    def view(self, width, scheme="light", medium="screen"):
+        self.width = width
+        self.resize()
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {
             "media": medium, "features": [{"name": "prefers-color-scheme", "value": scheme}]})
         self.condition = medium if medium == "print" else f"{width} px, {scheme}"
@@ -115,21 +119,25 @@ class Reader:
         names = sorted(pathlib.Path(link).name for link in missing)
         self.complaints += [f"a link leads to {name}, which is not there" for name in names]
 
-    def pictures(self):
+    def pictures(self, scale=1):
         """The whole page, in parts where it is too long for one picture: PNG in base64."""
-        size = self.driver.execute_cdp_cmd("Page.getLayoutMetrics", {})["cssContentSize"]
-        clips = [{"x": 0, "y": top, "width": size["width"], "height": min(TALLEST_PICTURE, size["height"] - top)}
-                 for top in range(0, math.ceil(size["height"]), TALLEST_PICTURE)]
-        return [self.driver.execute_cdp_cmd("Page.captureScreenshot", {
-            "format": "png", "captureBeyondViewport": True, "clip": {"scale": 1, **clip}})["data"] for clip in clips]
+        height = math.ceil(self.driver.execute_cdp_cmd("Page.getLayoutMetrics", {})["cssContentSize"]["height"])
+        tallest, parts = round(TALLEST_PICTURE / scale), []
+        for top in range(0, height, tallest):  # a window as tall as the part is drawn faster than what lies beyond one
+            self.resize(min(tallest, height - top), scale)
+            self.driver.execute_script(f"scrollTo(0, {top})")
+            parts.append(self.driver.execute_cdp_cmd("Page.captureScreenshot", {"format": "png"})["data"])
+        self.resize()
+        return parts
 
-    def check_marks_show(self, before):
+    def check_marks_show(self):
         """A figure without its marks looks different: they have not the colour of its background, nor lie behind it."""
         run = lambda what, *arguments: self.driver.execute_script(
             f"{IN_PAGE}\nreturn report_marks.{what}(...arguments)", *arguments)
-        places = run("places")
+        places = run("places", SCALE_FOR_MARKS)
+        before = self.pictures(SCALE_FOR_MARKS)
         run("hide", True)
-        after = self.pictures()
+        after = self.pictures(SCALE_FOR_MARKS)
         run("hide", False)
         for place, same in zip(places, run("looks_the_same", before, after, TALLEST_PICTURE, places)):
             if same:
@@ -196,16 +204,15 @@ def steps(reader, screenshots, tallest):
     for width, scheme in ((PHONE, "light"), (PHONE, "dark"), (SCREEN, "dark"), (SCREEN, "light")):
         check_layout(reader, width, scheme)
         yield
-        pictures = reader.pictures() if width == PHONE or screenshots else []
         if width == PHONE:
             reader.check("running_text_is_large", LEAST_RUNNING_TEXT)
             reader.check("lettering_can_be_read", LEAST_LETTERING)
             reader.check("no_column_is_cut")
             reader.check("no_mark_covers_a_label")
-            reader.check_marks_show(pictures)
+            reader.check_marks_show()
             yield
         if screenshots:
-            save(pictures, screenshots, f"{'phone' if width == PHONE else 'screen'}-{scheme}")
+            save(reader.pictures(), screenshots, f"{'phone' if width == PHONE else 'screen'}-{scheme}")
     for scheme in ("light", "dark"):  # of the reader's system; paper is white
         check_layout(reader, PAPER, scheme, "print")
         yield
