@@ -24,6 +24,19 @@ function(exactff_compile_together target)
   endif()
 endfunction()
 
+# exactff_compile_group(TARGET NAME SOURCE...): compiles these sources of the target as one. What they define in the same
+# unnamed namespace must differ by name.
+function(exactff_compile_group target name)
+  if(NOT EXACTFF_QUICK_BUILD)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  set_source_files_properties(${ARGN} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${name})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # GCC treats all sources but the first as headers
+  endif()
+endfunction()
+
 # exactff_precompile(TARGET HEADER...). When optimising, GCC 12 gives warnings about code that it inlines from
 # precompiled standard headers. So use it for targets of exactff_save_compile_time only.
 function(exactff_precompile target)

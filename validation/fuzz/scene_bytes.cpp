@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "fuzz/bytes.h"
+#include "generate/vectors.h"
 
 namespace exactff::validation {
 
@@ -17,6 +18,9 @@ using generate::PlainFace;
 using generate::PlainPatch;
 using generate::PlainScene;
 using generate::Ring;
+using generate::operator+;
+using generate::operator-;
+using generate::operator*;
 
 namespace {
 
@@ -25,10 +29,6 @@ using Rings = std::vector<Corners>;
 
 constexpr std::size_t kMaxRings = 4;         // of one face
 constexpr std::size_t kMaxRingCorners = 24;  // of one ring
-
-Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vec3 operator*(double s, const Vec3& a) { return {s * a.x, s * a.y, s * a.z}; }
 
 double& component(Vec3& v, std::size_t axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 

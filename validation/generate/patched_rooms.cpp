@@ -3,11 +3,10 @@
 #include <array>
 #include <string>
 
+#include "generate/vectors.h"
+
 namespace exactff::models {
 namespace {
-
-Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec3 operator*(double s, const Vec3& a) { return {s * a.x, s * a.y, s * a.z}; }
 
 void add_parallelogram(PlainScene& scene, const std::string& name, const Vec3& corner, const Vec3& u, const Vec3& v) {
   scene.add_ring(scene.patch(name), {corner, corner + u, corner + u + v, corner + v});

@@ -15,8 +15,6 @@ namespace {
 using generate::PlainScene;
 using generate::Random;
 
-PlainScene random_scene(Random& random) { return random.one_in(3) ? generic_scene(random) : degenerate_scene(random); }
-
 // Each precision cap ends the loop with a different ball; all balls contain the same F, and so do the bounds.
 TEST(Certificate, BallsAndBoundsOfEveryPrecisionHoldTheFormFactor) {
   for (std::uint64_t i = 0; i < scaled_count(40); ++i) {

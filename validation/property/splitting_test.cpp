@@ -18,7 +18,7 @@ using Corners = std::vector<Vec3>;
 
 // A random scene whose source is the square [-1,1]^2 at z = 2, facing down.
 PlainScene square_source_scene(Random& random) {
-  PlainScene scene = random.one_in(3) ? generic_scene(random) : degenerate_scene(random);
+  PlainScene scene = random_scene(random);
   std::erase_if(scene.patches, [](const PlainPatch& patch) { return patch.name == "source"; });
   scene.add_ring(scene.patch("source"), {{-1, 1, 2}, {1, 1, 2}, {1, -1, 2}, {-1, -1, 2}});
   return scene;

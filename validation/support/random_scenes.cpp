@@ -8,6 +8,7 @@
 #include <string>
 
 #include "generate/families.h"
+#include "generate/vectors.h"
 #include "support/transform.h"
 
 namespace exactff::validation {
@@ -15,14 +16,13 @@ namespace exactff::validation {
 using generate::PlainPatch;
 using generate::PlainScene;
 using generate::Random;
+using generate::operator+;
+using generate::operator-;
+using generate::operator*;
 
 namespace {
 
 using Corners = std::vector<Vec3>;
-
-Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vec3 operator*(double s, const Vec3& a) { return {s * a.x, s * a.y, s * a.z}; }
 
 // Draws the parts of one scene. All coordinates are small multiples of 1/16, so that sums and halves are exact.
 class Degenerate {
@@ -253,6 +253,8 @@ PlainScene generic_scene(Random& random) {
   }
   return scene;
 }
+
+PlainScene random_scene(Random& random) { return random.one_in(3) ? generic_scene(random) : degenerate_scene(random); }
 
 namespace {
 

@@ -17,6 +17,9 @@ namespace exactff::validation {
 // The same with coordinates of 53 bits in general position, and some edges 1 ulp beside others.
 [[nodiscard]] generate::PlainScene generic_scene(generate::Random& random);
 
+// One of the former in two of three cases, else one of the latter.
+[[nodiscard]] generate::PlainScene random_scene(generate::Random& random);
+
 // Degenerate scenes with some coordinates moved to a neighbouring double: almost coplanar, almost touching, cracks and
 // overlaps of 1 ulp. Faces that the move makes invalid (self-crossing) are generated again.
 [[nodiscard]] generate::PlainScene nudged_scene(generate::Random& random);

@@ -12,6 +12,7 @@
 #include <numeric>
 #include <string>
 
+#include "generate/vectors.h"
 #include "support/random_scenes.h"
 #include "support/transform.h"
 
@@ -21,6 +22,8 @@ using generate::PlainFace;
 using generate::PlainPatch;
 using generate::PlainScene;
 using generate::Random;
+using generate::operator+;
+using generate::operator-;
 
 namespace {
 
@@ -32,8 +35,6 @@ using Shape = std::vector<Outline>;  // the outer ring counter-clockwise, then h
 constexpr int kSource = 12;
 
 Vec3 at(const Ray& ray, int k) { return {1.0 * k * ray[0], 1.0 * k * ray[1], 5.0 * k}; }
-Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }

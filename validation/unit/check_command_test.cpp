@@ -26,11 +26,11 @@ std::string squeezed(const std::string& text) {
   return result;
 }
 
-bool holds(const std::string& text, const std::string& part) {
+bool holds_row(const std::string& text, const std::string& part) {
   return squeezed(text).find(squeezed(part)) != std::string::npos;
 }
 
-#define EXPECT_HOLDS(text, part) EXPECT_TRUE(holds(text, part)) << "\"" << (part) << "\" is not in:\n" << (text)
+#define EXPECT_HOLDS(text, part) EXPECT_TRUE(holds_row(text, part)) << "\"" << (part) << "\" is not in:\n" << (text)
 
 std::string contents(const std::filesystem::path& file) {
   std::ostringstream text;

@@ -8,13 +8,14 @@
 
 #include "exactff/check.h"
 #include "page/gnuplot.h"
+#include "support/holds.h"
 #include "support/program.h"
 #include "text/phrases.h"
 
 namespace exactff::check {
 namespace {
 
-bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+using validation::holds;
 
 #define EXPECT_HOLDS(text, part) EXPECT_TRUE(holds(text, part)) << "\"" << (part) << "\" is not in:\n" << (text)
 

@@ -9,17 +9,17 @@
 #include <vector>
 
 #include "support/complaint.h"
+#include "support/holds.h"
 #include "support/program.h"
 
 namespace exactff::check {
 namespace {
 
 using validation::complaint;
+using validation::holds;
 using validation::TemporaryDirectory;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 #define EXPECT_HOLDS(text, part) EXPECT_TRUE(holds(text, part)) << "\"" << (part) << "\" is not in:\n" << (text)
 

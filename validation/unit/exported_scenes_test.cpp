@@ -8,12 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "support/holds.h"
 #include "support/program.h"
 
 namespace exactff {
 namespace {
 
 namespace fs = std::filesystem;
+using validation::holds;
 using validation::run_program;
 using validation::RunningProgram;
 using validation::TemporaryDirectory;
@@ -82,8 +84,6 @@ class ExportedScenes : public testing::Test {
   const Words kGrid = {"--on", "floor", "--grid", "6x5"};
   double clean_ = 0.0;
 };
-
-bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 #define EXPECT_TOLD(text, part) EXPECT_TRUE(holds(text, part)) << text
 

@@ -16,9 +16,9 @@ namespace {
 
 using validation::TemporaryDirectory;
 
-const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+const std::string kCorners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-Scene read(const std::string& text, const SceneOptions& options = {}) {
+Scene read_text(const std::string& text, const SceneOptions& options = {}) {
   std::istringstream in(text);
   return read_obj(in, "s.obj", options);
 }
@@ -41,8 +41,8 @@ std::string repeated(const std::string& text, std::size_t count) {
 }
 
 TEST(HostileFiles, WhatIsNoTextIsRefused) {
-  const auto message = [](const std::string& text) { return message_of([&] { return read(text); }); };
-  EXPECT_EQ(message(kSquare + std::string("g a\0b\n", 6)),
+  const auto message = [](const std::string& text) { return message_of([&] { return read_text(text); }); };
+  EXPECT_EQ(message(kCorners + std::string("g a\0b\n", 6)),
             "s.obj: is not a text file (it contains zero bytes); give a Wavefront OBJ file");
   EXPECT_EQ(message(std::string("\xFF\xFEv\0 \0", 6)), "s.obj: is UTF-16 text (only UTF-8 is read); save it as UTF-8");
   EXPECT_EQ(message(std::string("\xFE\xFF\0v\0 ", 6)), "s.obj: is UTF-16 text (only UTF-8 is read); save it as UTF-8");
@@ -59,13 +59,13 @@ TEST(HostileFiles, WhatCannotBeReadIsRefused) {
 }
 
 TEST(HostileFiles, ACutOffLastLineIsWarnedAbout) {
-  const Scene scene = read(kSquare + "f 1 2 3 4\nf 1 2 3");  // it may have been a quadrilateral
+  const Scene scene = read_text(kCorners + "f 1 2 3 4\nf 1 2 3");  // it may have been a quadrilateral
   ASSERT_EQ(scene.warnings().size(), 1U);
   EXPECT_EQ(scene.warnings()[0].message(),
             "s.obj:6: the last line does not end with a newline (the file may have been cut off there); add a newline "
             "if the file is complete");
-  EXPECT_TRUE(read(kSquare + "f 1 2 3\n").warnings().empty());
-  EXPECT_TRUE(read(kSquare + "f 1 2 3\r").warnings().empty());
+  EXPECT_TRUE(read_text(kCorners + "f 1 2 3\n").warnings().empty());
+  EXPECT_TRUE(read_text(kCorners + "f 1 2 3\r").warnings().empty());
 }
 
 TEST(HostileFiles, ControlCharactersDoNotReachTheTerminal) {
@@ -74,9 +74,9 @@ TEST(HostileFiles, ControlCharactersDoNotReachTheTerminal) {
 }
 
 TEST(HostileFiles, ThousandsOfProblemsGiveTwentyLinesAndACount) {
-  const std::string text = kSquare + repeated("f 1 3 2 4\n", 5000);
+  const std::string text = kCorners + repeated("f 1 3 2 4\n", 5000);
   try {
-    (void)read(text);
+    (void)read_text(text);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(error.problems().size(), 1001U);
@@ -88,21 +88,21 @@ TEST(HostileFiles, ThousandsOfProblemsGiveTwentyLinesAndACount) {
 }
 
 TEST(HostileFiles, ThousandsOfWarningsAreKeptToALimit) {
-  const Scene scene = read("v 0 0 0\nv 1 0 0\nv 1 1 .1\nv 0 1 0\n" + repeated("f 1 2 3 4\n", 3000));
+  const Scene scene = read_text("v 0 0 0\nv 1 0 0\nv 1 1 .1\nv 0 1 0\n" + repeated("f 1 2 3 4\n", 3000));
   ASSERT_EQ(scene.warnings().size(), 1001U);
   EXPECT_EQ(scene.warnings().back().what, "2000 more warnings");
 }
 
 TEST(HostileFiles, ALongNameIsLegalButNotForManyFaces) {
   const std::string name(1'000'000, 'x');
-  const Scene scene = read(kSquare + "g " + name + "\nf 1 2 3 4\n");
+  const Scene scene = read_text(kCorners + "g " + name + "\nf 1 2 3 4\n");
   EXPECT_EQ(scene.name_of(scene.select(name)), name);
   const std::string unknown = message_of([&] { return scene.select(name + "y"); });
   EXPECT_LT(unknown.size(), 1000U);
-  const std::string bad = message_of([&] { return read(kSquare + "g " + name + "\nf 1 3 2 4\n"); });
+  const std::string bad = message_of([&] { return read_text(kCorners + "g " + name + "\nf 1 3 2 4\n"); });
   EXPECT_LT(bad.size(), 1000U);
   EXPECT_NE(bad.find("crosses itself"), std::string::npos);
-  EXPECT_EQ(message_of([&] { return read(kSquare + "g " + name + "\n" + repeated("f 1 2 3\n", 1000)); }),
+  EXPECT_EQ(message_of([&] { return read_text(kCorners + "g " + name + "\n" + repeated("f 1 2 3\n", 1000)); }),
             "s.obj:6: the name 'xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx...' of 1000000 characters belongs to 1000 "
             "faces (the name of every face contains it); choose a name of at most 255 characters");
 }
@@ -124,7 +124,7 @@ TEST(HostileFiles, MaterialFilesThatAreNoneAreNeverWaitedFor) {
   (void)directory.write("zero.mtl", std::string("newmtl a\0\nKe 5\n", 15));
   for (const char* library : {"pipe.mtl", "/dev/zero", ".", "zero.mtl"}) {
     const auto path =
-        directory.write("s.obj", std::string("mtllib ") + library + "\n" + kSquare + "usemtl a\nf 1 2 3\n");
+        directory.write("s.obj", std::string("mtllib ") + library + "\n" + kCorners + "usemtl a\nf 1 2 3\n");
     const Scene scene = read_obj(path);
     ASSERT_EQ(scene.warnings().size(), 1U) << library;
     EXPECT_NE(scene.warnings()[0].what.find("cannot be read"), std::string::npos);
@@ -133,7 +133,7 @@ TEST(HostileFiles, MaterialFilesThatAreNoneAreNeverWaitedFor) {
 }
 
 TEST(HostileFiles, AHugeGridIsRefusedBeforeItIsBegun) {
-  const Scene scene = read(kSquare + repeated("f 1 2 3 4\n", 10));
+  const Scene scene = read_text(kCorners + repeated("f 1 2 3 4\n", 10));
   const Selection all = scene.select("default");
   EXPECT_EQ(
       message_of([&] {
@@ -155,7 +155,7 @@ class HostileReceivers : public testing::Test {
   }
 
   const TemporaryDirectory directory_;
-  const Scene scene_ = read(kSquare + "g floor\nf 1 2 3 4\n");
+  const Scene scene_ = read_text(kCorners + "g floor\nf 1 2 3 4\n");
   const std::string head_ = "x,y,z,nx,ny,nz,on\n";
 };
 

@@ -3,17 +3,19 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "support/holds.h"
 #include "support/program.h"
 
 namespace exactff {
 namespace {
 
+using validation::holds;
 using validation::ProgramRun;
 using validation::run_program;
 using validation::TemporaryDirectory;
 
 // A floor, a lamp above it, a bent quadrilateral, a face without area and a bow tie.
-const std::string kRoom =
+const std::string kBentRoom =
     "mtllib room.mtl\n"
     "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\n"
     "v 1 1 3\nv 1 2 3\nv 2 2 3\nv 2 1 3.5\nv 2 1 3\n"
@@ -21,23 +23,21 @@ const std::string kRoom =
     "usemtl bright\ng lamp\nf 5 6 7 9\n"
     "usemtl grey\ng bent\nf 5 6 7 8\nf 1 2 2\n";
 const std::string kBowTie = "g bow\nf 1 2 4 3\n";
-const std::string kMaterials = "newmtl grey\nKd .5\nnewmtl bright\nKe 17 12 4\n";
+const std::string kTwoMaterials = "newmtl grey\nKd .5\nnewmtl bright\nKe 17 12 4\n";
 
 struct Room {
   TemporaryDirectory directory;
   std::string path;
 
   explicit Room(const std::string& more = "") {
-    (void)directory.write("room.mtl", kMaterials);
-    path = directory.write("room.obj", kRoom + more).string();
+    (void)directory.write("room.mtl", kTwoMaterials);
+    path = directory.write("room.obj", kBentRoom + more).string();
   }
   ProgramRun info(std::vector<std::string> flags = {}) const {
     flags.insert(flags.begin(), {"info", path});
     return run_program(EXACTFF_PROGRAM, flags);
   }
 };
-
-bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST(InfoCommand, ListsPatchesEmittersAndDoubtfulFaces) {
   const Room room;

@@ -14,6 +14,7 @@
 #include "generate/families.h"
 #include "models/model_files.h"
 #include "support/complaint.h"
+#include "support/holds.h"
 #include "support/program.h"
 
 namespace exactff::validation {
@@ -36,8 +37,6 @@ const std::vector<std::string> kSmall = {"teapot:segments=2",
                                          "tiles:n=3",
                                          "mesh:n=30",
                                          "lattice:n=20"};
-
-bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 std::string complaint_about(const std::string& text) {
   return complaint([&] { (void)make_scene(text); });

@@ -12,20 +12,20 @@
 
 #include "generate/plain_scene.h"
 #include "generate/random.h"
+#include "generate/vectors.h"
 #include "support/random_scenes.h"
 
 namespace exactff::visibility {
 namespace {
 
 using generate::Random;
+using generate::operator+;
+using generate::operator-;
+using generate::operator*;
 using kernel::ExactVec3;
 using kernel::Integer;
 using kernel::Rational;
 using Corners = std::vector<Vec3>;
-
-Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vec3 operator*(const Vec3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 
 // Outlines of directions from the origin.
 class Seen {

@@ -9,6 +9,7 @@
 
 #include "generate/plain_scene.h"
 #include "generate/random.h"
+#include "generate/vectors.h"
 #include "support/random_scenes.h"
 
 namespace exactff::visibility {
@@ -16,11 +17,10 @@ namespace {
 
 using generate::PlainScene;
 using generate::Random;
+using generate::operator+;
+using generate::operator*;
 using kernel::Rational;
 using kernel::times_power_of_two;
-
-Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec3 operator*(const Vec3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 
 // Triangles whose corners, seen from x, lie on few lines except for rounding; x is a point of the scene.
 PlainScene triangles_on_few_lines(Random& random) {
@@ -48,12 +48,12 @@ void add_pieces(const Scene& scene, Outlines& outlines) {
   }
 }
 
-struct Tally {
+struct Answers {
   int certain = 0, declined = 0;
 };
 
 // Every corner against every edge.
-void expect_true_heights(const PlainScene& plain, double unit, Tally& tally) {
+void expect_true_heights(const PlainScene& plain, double unit, Answers& tally) {
   const Scene scene = generate::build(plain);
   Outlines outlines;
   outlines.start(scene, plain.point, unit);
@@ -81,7 +81,7 @@ void expect_true_heights(const PlainScene& plain, double unit, Tally& tally) {
 }
 
 TEST(Outlines, HeightsAreWithinTheirError) {
-  Tally tally;
+  Answers tally;
   for (std::uint64_t i = 0; i < validation::scaled_count(40); ++i) {
     SCOPED_TRACE("seed " + std::to_string(validation::seed_of(i)));
     Random random(validation::seed_of(i));
@@ -100,7 +100,7 @@ TEST(Outlines, DecidesExactlyWhereTheFiltersDecline) {
     Random random(validation::seed_of(0));
     PlainScene scene = triangles_on_few_lines(random);
     generate::scale(scene, scale);
-    Tally tally;
+    Answers tally;
     expect_true_heights(scene, 1.0, tally);
     EXPECT_EQ(tally.certain, 0) << scale;
   }

@@ -26,14 +26,14 @@ const std::string kScene =
     "v -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\n"
     "usemtl lamp\ng light\nf 1 2 3 4\nusemtl dim\ng side\nf 2 5 6 3\n"
     "usemtl grey\ng plate\nf 7 8 9 10\ng floor\nf 11 12 13 14\n";
-const std::string kMaterials = "newmtl lamp\nKe 4 2 1\nnewmtl dim\nKe 2 1 .5\nnewmtl grey\nKd .5 .25 .125\n";
+const std::string kLamps = "newmtl lamp\nKe 4 2 1\nnewmtl dim\nKe 2 1 .5\nnewmtl grey\nKd .5 .25 .125\n";
 
 struct PointCommand : testing::Test {
   TemporaryDirectory directory;
   std::string scene;
 
   PointCommand() {
-    (void)directory.write("a.mtl", kMaterials);
+    (void)directory.write("a.mtl", kLamps);
     scene = directory.write("a.obj", kScene).string();
   }
   ProgramRun point(std::vector<std::string> flags) const {

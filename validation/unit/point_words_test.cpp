@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "support/holds.h"
 #include "support/program.h"
 
 namespace exactff {
 namespace {
 
+using validation::holds;
 using validation::RunningProgram;
 using validation::TemporaryDirectory;
 using validation::text_of;
@@ -62,8 +64,6 @@ class PointWords : public testing::Test {
     flags.emplace_back("--json");
     return nlohmann::json::parse(up(flags).output);
   }
-  static bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
   const TemporaryDirectory directory_;
   std::string scene_;
 };

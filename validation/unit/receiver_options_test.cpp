@@ -28,11 +28,11 @@ const std::string kRoom =
     "v 0 0 3\nv 1 0 3\nv 1 1 3\nv 0 1 3\n"
     "g floor\nf 1 2 3 4\ng lid\nf 5 6 7\nf 5 7 8\ng a,b\nf 1 2 3\ng line\nf 1 2 1\n"
     "usemtl bright\ng lamp\nf 12 11 10 9\n";
-const std::string kMaterials = "newmtl grey\nKd .5\nnewmtl bright\nKe 17 12 4\n";
+const std::string kTwoMaterials = "newmtl grey\nKd .5\nnewmtl bright\nKe 17 12 4\n";
 
 class ReceiverFlags : public testing::Test {
  protected:
-  ReceiverFlags() { (void)directory_.write("room.mtl", kMaterials); }
+  ReceiverFlags() { (void)directory_.write("room.mtl", kTwoMaterials); }
 
   struct Truth {
     int exit_code = -1;

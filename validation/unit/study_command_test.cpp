@@ -21,7 +21,7 @@ using validation::RunningProgram;
 using validation::size_of;
 using validation::text_of;
 
-constexpr const char* kRoom =
+constexpr const char* kThreeSquares =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 2\nv 1 0 2\nv 1 1 2\nv 0 1 2\n"
     "v .4 .4 1\nv .7 .4 1\nv .7 .7 1\nv .4 .7 1\n"
     "g floor\nf 1 2 3 4\ng light\nf 8 7 6 5\ng plate\nf 9 10 11 12\n";
@@ -29,7 +29,7 @@ constexpr const char* kRoom =
 class StudyCommand : public testing::Test {
  protected:
   StudyCommand() {
-    std::ofstream(directory_.path() / "room.obj") << kRoom;
+    std::ofstream(directory_.path() / "room.obj") << kThreeSquares;
     put("title Two rooms\n" + line("Room A", "4x4") + line("Room B", "3x3 --unless-abridged"));
   }
 

@@ -19,7 +19,7 @@ using validation::run_program;
 using validation::TemporaryDirectory;
 
 // A light [-1,1]^2 at z = 1 that looks down, a plate before it that looks up, and a wall below the horizon.
-const std::string kScene =
+const std::string kTwins =
     "v -1 1 1\nv 1 1 1\nv 1 -1 1\nv -1 -1 1\n"
     "v -.25 -.25 .5\nv .25 -.25 .5\nv .25 .25 .5\nv -.25 .25 .5\n"
     "v -9 -9 -1\nv 9 -9 -1\nv 9 9 -1\nv -9 9 -1\n"
@@ -27,7 +27,7 @@ const std::string kScene =
 
 struct ViewCommand : testing::Test {
   TemporaryDirectory directory;
-  std::string scene = directory.write("a.obj", kScene).string();
+  std::string scene = directory.write("a.obj", kTwins).string();
 
   [[nodiscard]] ProgramRun up(std::vector<std::string> flags) const {
     std::vector<std::string> arguments = {"view", scene, "--at", "0", "0", "0", "--normal", "0", "0", "1"};

@@ -9,6 +9,7 @@
 
 #include "exactff/exact.h"
 #include "generate/plain_scene.h"
+#include "generate/vectors.h"
 #include "support/solve.h"
 #include "visibility/visible_boundary.h"
 
@@ -16,9 +17,8 @@ namespace exactff::visibility {
 namespace {
 
 using generate::PlainScene;
+using generate::operator*;
 using Corners = std::vector<Vec3>;
-
-Vec3 operator*(const Vec3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 
 constexpr std::size_t kAnyNumber = 0;
 
