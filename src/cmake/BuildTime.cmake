@@ -5,27 +5,8 @@
 # source includes what it uses, and misses warnings that appear only when a source is compiled by itself. A build
 # without the option checks both: test.sh --sanitizers makes one.
 
-# exactff_compile_together(TARGET): compiles the sources of each folder as one source. Sources with their own compile
-# options stay separate. Names that the sources of a folder define locally must therefore differ.
-function(exactff_compile_together target)
-  if(NOT EXACTFF_QUICK_BUILD)
-    return()
-  endif()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  get_target_property(sources ${target} SOURCES)
-  foreach(source ${sources})
-    cmake_path(ABSOLUTE_PATH source OUTPUT_VARIABLE path)
-    cmake_path(GET path PARENT_PATH folder)
-    cmake_path(GET folder FILENAME module)
-    set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP "${module}")
-  endforeach()
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # GCC treats all sources but the first as headers
-  endif()
-endfunction()
-
-# exactff_compile_group(TARGET NAME SOURCE...): compiles these sources of the target as one. What they define in the same
-# unnamed namespace must differ by name.
+# exactff_compile_group(TARGET NAME SOURCE...): compiles these sources of the target as one. Sources with their own compile
+# options stay separate. What the sources define in the same unnamed namespace must differ by name.
 function(exactff_compile_group target name)
   if(NOT EXACTFF_QUICK_BUILD)
     return()
@@ -35,6 +16,26 @@ function(exactff_compile_group target name)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # GCC treats all sources but the first as headers
   endif()
+endfunction()
+
+# exactff_compile_together(TARGET [NAME FOLDER...]): compiles the sources of the target that lie in these folders as one,
+# or all of them.
+function(exactff_compile_together target)
+  set(name ${target})
+  if(ARGC GREATER 1)
+    list(POP_FRONT ARGN name)
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  set(group "")
+  foreach(source ${sources})
+    cmake_path(ABSOLUTE_PATH source OUTPUT_VARIABLE path)
+    cmake_path(GET path PARENT_PATH folder)
+    cmake_path(GET folder FILENAME module)
+    if(ARGC EQUAL 1 OR module IN_LIST ARGN)
+      list(APPEND group ${source})
+    endif()
+  endforeach()
+  exactff_compile_group(${target} ${name} ${group})
 endfunction()
 
 # exactff_precompile(TARGET HEADER...). When optimising, GCC 12 gives warnings about code that it inlines from
@@ -65,23 +66,30 @@ function(exactff_save_compile_time target)
 endfunction()
 
 # exactff_save_compile_time_of_modules(TARGET MODULE...): under sanitizers, compiles the sources in these folders with
-# -O0, in half the time; in a quick build of tests, with -O1. For modules that measure, read and write: tests spend little
-# time in them, and quick builds without tests, such as that of report.sh, optimise them like the others.
+# -O0, in half the time. For modules that measure, read and write, in which tests spend little time.
 function(exactff_save_compile_time_of_modules target)
-  if(EXACTFF_SANITIZE)
-    get_target_property(sources ${target} SOURCES)
-    foreach(source ${sources})
-      cmake_path(GET source PARENT_PATH folder)
-      cmake_path(GET folder FILENAME module)
-      if(module IN_LIST ARGN)
-        set_property(SOURCE ${source} TARGET_DIRECTORY ${target} APPEND PROPERTY COMPILE_OPTIONS -O0)
-      endif()
-    endforeach()
-  elseif(EXACTFF_QUICK_BUILD AND EXACTFF_TESTS)
-    # An option of a source would make it be compiled by itself. So it goes to the source that CMake makes of the folder.
-    foreach(module ${ARGN})
-      set_property(SOURCE ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${target}.dir/Unity/unity_${module}_cxx.cxx
-                   APPEND PROPERTY COMPILE_OPTIONS -O1)
-    endforeach()
+  if(NOT EXACTFF_SANITIZE)
+    return()
   endif()
+  get_target_property(sources ${target} SOURCES)
+  foreach(source ${sources})
+    cmake_path(GET source PARENT_PATH folder)
+    cmake_path(GET folder FILENAME module)
+    if(module IN_LIST ARGN)
+      set_property(SOURCE ${source} TARGET_DIRECTORY ${target} APPEND PROPERTY COMPILE_OPTIONS -O0)
+    endif()
+  endforeach()
+endfunction()
+
+# exactff_save_compile_time_of_groups(TARGET NAME...): in a quick build of tests, compiles these groups with -O1. For groups
+# that measure and write reports. Quick builds without tests, such as that of report.sh, optimise them like the others.
+function(exactff_save_compile_time_of_groups target)
+  if(NOT EXACTFF_QUICK_BUILD OR NOT EXACTFF_TESTS)
+    return()
+  endif()
+  # With an option of its own, a source would leave its group. So the source that CMake makes of the group gets it.
+  foreach(group ${ARGN})
+    set_property(SOURCE ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${target}.dir/Unity/unity_${group}_cxx.cxx
+                 APPEND PROPERTY COMPILE_OPTIONS -O1)
+  endforeach()
 endfunction()

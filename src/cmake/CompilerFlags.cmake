@@ -6,6 +6,8 @@ target_compile_options(exactff_flags INTERFACE -frounding-math -ffp-contract=off
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(exactff_flags INTERFACE -Wno-restrict)  # GCC 12 warns about every "text" + std::string
 endif()
+# How vectors of doubles are passed between functions: all that take or return one are inlined (src/kernel/lanes.h).
+target_compile_options(exactff_flags INTERFACE -Wno-psabi)
 if(EXACTFF_TESTS)
   target_compile_definitions(exactff_flags INTERFACE EXACTFF_CHECKS_REQUIREMENTS)  # kernel/expect.h
 endif()

@@ -25,6 +25,7 @@ struct Approx3 {
 };
 
 inline Vec3 to_vec3(const Approx3& a) { return {a.x, a.y, a.z}; }
+inline double dot(const Vec3& a, const Approx3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 inline constexpr int kUncertain = 2;
 inline constexpr double kLeastMagnitude = 0x1p-900;

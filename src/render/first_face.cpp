@@ -233,16 +233,16 @@ std::optional<double> nearest(const Bounded& x) {
   return low == 0.0 ? 0.0 : low;
 }
 
-double component(const Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
-
 Vec3 Search::point_on(const Piece& piece) const {
   const Vec3 &p = corner(piece.frame[0]), &q = corner(piece.frame[1]), &r = corner(piece.frame[2]);
   const Bounded t = fine_depth(piece);
   std::optional<Rational> exact_t;
   std::array<double, 3> point{};
   for (int axis = 0; axis < 3; ++axis) {
-    const double at = component(p, axis), from = component(o_, axis), slope = component(d_, axis);
-    if (at == component(q, axis) && at == component(r, axis)) {  // the plane is perpendicular to this axis
+    const double at = kernel::coordinate(p, axis), from = kernel::coordinate(o_, axis),
+                 slope = kernel::coordinate(d_, axis);
+    if (at == kernel::coordinate(q, axis) &&
+        at == kernel::coordinate(r, axis)) {  // the plane is perpendicular to this axis
       point[axis] = at;
       continue;
     }

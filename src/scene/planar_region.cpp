@@ -22,9 +22,12 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "kernel/vec.h"
 #include "scene/edge_crossing.h"
 
 namespace exactff {
+
+using kernel::coordinate;
 
 namespace {
 
@@ -100,8 +103,6 @@ class Builder {
   std::unordered_map<std::uint64_t, Step> steps_;
   int inside_count_ = 0;
 };
-
-double coordinate(const Vec3& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
 void Builder::insert_points(std::span<const Vec3> vertices, const kernel::ExactVec3& normal) {
   const int drop = longest_axis(normal);

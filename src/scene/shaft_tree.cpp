@@ -7,9 +7,12 @@
 #include <utility>
 
 #include "kernel/lanes.h"
+#include "kernel/vec.h"
 #include "scene/scene_data.h"
 
 namespace exactff {
+
+using kernel::coordinate;
 
 namespace {
 
@@ -22,8 +25,6 @@ Box joined(const Box& a, const Box& b) {
 Vec3 centre(const Box& box) {
   return {0.5 * box.low.x + 0.5 * box.high.x, 0.5 * box.low.y + 0.5 * box.high.y, 0.5 * box.low.z + 0.5 * box.high.z};
 }
-
-double coordinate(const Vec3& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
 int longest_axis(const Box& box) {
   const Vec3 size{0.5 * box.high.x - 0.5 * box.low.x, 0.5 * box.high.y - 0.5 * box.low.y,

@@ -8,6 +8,7 @@
 namespace exactff::view_factors {
 namespace {
 
+using kernel::coordinate;
 using kernel::cross;
 using kernel::difference;
 using kernel::distance;
@@ -16,8 +17,6 @@ using kernel::dot;
 double value_at(const Plane& plane, const Vec3& p) {
   return plane.rounded[0] * p.x + plane.rounded[1] * p.y + plane.rounded[2] * p.z + plane.rounded[3];
 }
-
-double coordinate(const Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
 // The number with the fewest bits within an eighth of the range from its middle.
 double short_number_near(double low, double high) {

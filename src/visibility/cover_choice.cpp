@@ -7,6 +7,7 @@
 namespace exactff::visibility {
 
 using kernel::Approx3;
+using kernel::dot;
 using Outline = Outlines::Outline;
 
 namespace {
@@ -15,10 +16,9 @@ constexpr std::size_t kFewest = 8, kMost = 128;
 constexpr std::size_t kLargestPerChosen = 4;  // this many times as many occluders are looked at as may be chosen
 constexpr double kInwards = 0x1p-6;           // from a corner or an edge to the middle
 
-constexpr double kLeastAhead = 0x1p-8;  // the cosine, more or less, of the angle to the plane across the view
+constexpr double kLeastCosine = 0x1p-8;  // the cosine, more or less, of the angle to the plane across the view
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double dot(const Vec3& a, const Approx3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Approx3 sum_of(const Approx3& a, const Approx3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 
 Approx3 between(const Approx3& a, const Approx3& b, double share_of_b) {
@@ -84,7 +84,7 @@ void CoverChoice::find_depths(const Outlines& outlines) {
   for (CornerId corner = 0; corner < inverse_depths_.size(); ++corner) {
     const Outlines::Corner& c = outlines.corner(corner);
     const double along = dot(view, c.t);
-    inverse_depths_[corner] = along >= kLeastAhead * c.size ? 1.0 / along : kInfinity;
+    inverse_depths_[corner] = along >= kLeastCosine * c.size ? 1.0 / along : kInfinity;
   }
 }
 

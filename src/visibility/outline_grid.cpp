@@ -11,6 +11,7 @@ namespace exactff::visibility {
 
 using kernel::Approx3;
 using kernel::cross;
+using kernel::dot;
 using Edge = Outlines::Edge;
 using Outline = Outlines::Outline;
 
@@ -28,7 +29,6 @@ constexpr std::uint32_t kMostOwnCells = 24;
 constexpr std::size_t kMostInCaches = 4096;  // outlines
 constexpr std::uint32_t kStrip = 32;         // columns
 
-double dot(const Vec3& a, const Approx3& t) { return a.x * t.x + a.y * t.y + a.z * t.z; }
 // Of length 1 or very slightly less.
 Vec3 unit(const Vec3& a) {
   const double s = (1.0 - 0x1p-40) / std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
