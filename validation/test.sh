@@ -18,7 +18,7 @@ test_optimised() {
   # These are for tests of a build option, of reports, of the layout, of images, of the package for Python, and of files
   # for ParaView.
   validation/build.sh build -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON -DEXACTFF_QUICK_BUILD=ON
-  ctest --test-dir build --output-on-failure --parallel 2
+  ctest --test-dir build --output-on-failure --parallel 3  # some tests wait for a browser, for MPI or for a signal
 }
 
 test_sanitized() {
