@@ -116,7 +116,7 @@ void judge_factors(const Scene& scene, const Selection& from, const Selection& t
     EXPECT_TRUE(0.0 <= f.lower && f.lower <= f.value && f.value <= f.upper && f.upper <= 1.0);
     EXPECT_TRUE(meet(f.lower, f.upper, proved.lower, proved.upper));
     EXPECT_EQ(f.claim == Claim::kZero, proved.claim == Claim::kZero);
-    if (!is_planar(scene, from) || !is_planar(scene, to)) return;
+    if (!view_factors::is_planar(scene, from) || !view_factors::is_planar(scene, to)) return;
     const ViewFactor back = view_factor(scene, to, from, certain);
     const double ratio = back.area_from / back.area_to, slack = 1.0 + 0x1p-30;
     if (!(ratio > 0x1p-300 && ratio < 0x1p300)) return;
