@@ -1,13 +1,16 @@
 // View factors of random scenes with one to four faces between the patches, judged by the second opinion: its form
 // factors at random points of the patch, whose mean must lie within five standard errors of the interval.
 //
-// EXACTFF_TEST_SCALE multiplies the number of scenes; EXACTFF_TEST_POINTS is the number of points of each, 64 if unset.
+// EXACTFF_TEST_SCALE multiplies the number of scenes; EXACTFF_TEST_POINTS is the number of points of each, 256 if
+// unset.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include "exactff/models.h"
 #include "exactff/receiver.h"
@@ -52,36 +55,42 @@ bool has_coplanar_faces(const Scene& scene, const Selection& patch) {
 
 struct Mean {
   double value = 0.0, tolerance = 0.0;
+  bool is_normal = false;
 };
 
-// The tolerance is five standard errors. Where fewer than 30 points see anything, or have anything hidden, the
-// deviation of the sample says little: what is that rare is missed altogether with a probability of e^-14 at 14 points
-// on average.
+// The tolerance is five standard errors, as long as the mean of the points is about normal: no point makes up more than
+// a twentieth of the variance, and 30 points or more see something, and have something hidden. Elsewhere what matters
+// may be so rare that no point meets it: at 14 points on average, that happens with a probability of e^-14.
 Mean mean_of_second_opinion(const Scene& scene, const Selection& from, const Selection& to, std::uint64_t count,
                             std::uint64_t seed) {
-  double sum = 0.0, squares = 0.0;
+  std::vector<double> values;
   std::uint64_t seeing = 0, shadowed = 0;
   for (Receiver& receiver : sample_receivers(scene, scene.faces_of(from), count, seed)) {
     add_coplanar_faces(scene, receiver);
     const OracleResult f = oracle(scene, receiver, to);
-    sum += f.value;
-    squares += f.value * f.value;
+    values.push_back(f.value);
     seeing += f.zero ? 0U : 1U;
     shadowed += f.visible_fraction < 1.0 ? 1U : 0U;
   }
   const auto n = static_cast<double>(count);
-  const double mean = sum / n, error = std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1.0));
-  const bool is_rare = seeing < 30 || shadowed < 30;
-  return {mean, 5.0 * error + (is_rare ? 14.0 / n : 0.0) + 1e-9};
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double squares = 0.0, largest = 0.0;
+  for (const double value : values) {
+    const double square = (value - mean) * (value - mean);
+    squares += square;
+    largest = std::max(largest, square);
+  }
+  const bool is_normal = seeing >= 30 && shadowed >= 30 && largest <= squares / 20.0;
+  return {mean, 5.0 * std::sqrt(squares / n / (n - 1.0)) + (is_normal ? 0.0 : 14.0 / n) + 1e-9, is_normal};
 }
 
 std::uint64_t points_of_a_scene() {
   const char* points = std::getenv("EXACTFF_TEST_POINTS");
-  return points == nullptr ? 64 : std::strtoull(points, nullptr, 10);
+  return points == nullptr ? 256 : std::strtoull(points, nullptr, 10);
 }
 
 TEST(ViewFactors, HoldMeansOfTheSecondOpinion) {
-  constexpr std::uint64_t kScenes = 30;
+  constexpr std::uint64_t kScenes = 12;
   std::size_t judged = 0;
   double largest = 0.0;
   for (std::uint64_t s = 1; s <= scaled_count(kScenes); ++s) {
@@ -97,10 +106,10 @@ TEST(ViewFactors, HoldMeansOfTheSecondOpinion) {
       const double beyond = std::max({0.0, f.lower - mean.value, mean.value - f.upper}) / mean.tolerance;
       EXPECT_LE(beyond, 1.0) << '@' << named.model << ' ' << scene.name_of(from) << (certify ? " certified" : "");
       largest = std::max(largest, beyond);
-      judged += f.accurate && f.value > 0.0 ? 1U : 0U;
+      judged += mean.is_normal && f.accurate ? 1U : 0U;
     }
   }
-  EXPECT_GE(judged, kScenes / 3);
+  EXPECT_GE(judged, kScenes / 6);
   RecordProperty("factors", static_cast<int>(judged));
   RecordProperty("largest_deviation_over_tolerance", std::to_string(largest));
 }
