@@ -30,28 +30,48 @@ py::list to_list(const std::vector<ViewFactor>& factors) {
   return list;
 }
 
-// Entries row by row, backs, what is open, sums of rows (lower, upper), reasons against 1.
+py::tuple to_tuple(const matrix::Reciprocity::Pair& pair) {
+  return py::make_tuple(pair.row, pair.column, pair.distance, pair.radius);
+}
+
+// The number of pairs, the worst of them or None, those whose intervals are apart.
+py::tuple to_tuple(const matrix::Reciprocity& reciprocity) {
+  py::list apart;
+  for (const matrix::Reciprocity::Pair& pair : reciprocity.apart) apart.append(to_tuple(pair));
+  const py::object worst = reciprocity.worst ? py::object(to_tuple(*reciprocity.worst)) : py::none();
+  return py::make_tuple(reciprocity.pairs, worst, apart);
+}
+
+// Entries row by row, backs, what is open, sums of rows (lower, upper), reasons against 1, reciprocity.
 py::tuple view_factor_matrix_of(const SharedScene& scene, const std::vector<std::string>& from,
                                 const std::vector<std::string>& to, double accuracy, std::size_t budget, bool certify,
-                                bool backs, bool open, int threads, const py::object& progress) {
+                                bool backs, bool open, bool both_directions, int threads, const py::object& progress) {
   const Scene& in = scene.scene();
   std::vector<Selection> rows, columns;
   for (const std::string& name : from) rows.push_back(in.select(name));
   for (const std::string& name : to) columns.push_back(in.select(name));
-  const matrix::Options options{.factors = {.accuracy = accuracy, .budget = budget, .certify = certify},
-                                .backs = backs,
-                                .open = open,
-                                .threads = threads};
+  const matrix::Options options{
+      .factors = {.accuracy = accuracy, .budget = budget, .both_directions = both_directions, .certify = certify},
+      .backs = backs,
+      .open = open,
+      .threads = threads};
   Interrupt interrupt(progress);
   std::vector<std::string> reasons;
+  matrix::Reciprocity reciprocity;
   const matrix::Matrix made = interrupt.run([&] {
     matrix::Matrix computed = matrix::compute(in, rows, columns, options, interrupt.hooks());
     reasons = reasons_against_one(in, computed);
+    if (both_directions) reciprocity = matrix::reciprocity(in, computed);
     return computed;
   });
   py::list sums;
   for (const matrix::Sum& sum : row_sums(made)) sums.append(py::make_tuple(sum.lower, sum.upper));
-  return py::make_tuple(to_list(made.factors.entries), to_list(made.back), to_list(made.open), sums, reasons);
+  return py::make_tuple(to_list(made.factors.entries), to_list(made.back), to_list(made.open), sums, reasons,
+                        to_tuple(reciprocity));
+}
+
+std::shared_ptr<SharedScene> with_two_sided_of(const SharedScene& scene, const std::vector<std::string>& names) {
+  return std::make_shared<SharedScene>(matrix::with_two_sided(scene.scene(), scene.selections(names)));
 }
 
 // Value, lower, upper, status.
@@ -83,7 +103,8 @@ void bind_view_factors(py::module_& module) {
              py::arg("accuracy"), py::arg("budget"), py::arg("certify"));
   module.def("view_factor_matrix", &view_factor_matrix_of, py::arg("scene"), py::arg("from_patches"),
              py::arg("to_patches"), py::arg("accuracy"), py::arg("budget"), py::arg("certify"), py::arg("backs"),
-             py::arg("open"), py::arg("threads"), py::arg("progress"));
+             py::arg("open"), py::arg("both_directions"), py::arg("threads"), py::arg("progress"));
+  module.def("with_two_sided", &with_two_sided_of, py::arg("scene"), py::arg("names"));
   module.def("view", &view_of, py::arg("scene"), py::arg("point"), py::arg("normal"), py::arg("on"), py::arg("faces"),
              py::arg("digits"), py::arg("precision_cap"));
 }

@@ -55,6 +55,32 @@ def test_rows_with_back_and_open_add_up_to_one():
     assert matrix.open[0].value == pytest.approx(1 - matrix.value[0, 1], abs=2e-3)
 
 
+def test_directions_computed_apart_test_each_other():
+    scene = exactff.Scene.read(L_ROOM)
+    names = ["srf-1", "srf-6", "srf-2"]
+    matrix = exactff.view_factor_matrix(scene, names, names, accuracy=1e-4, both_directions=True)
+    assert matrix.reciprocity is not None and matrix.reciprocity.apart == ()
+    assert 1 <= matrix.reciprocity.pairs <= 3
+    worst = matrix.reciprocity.worst
+    assert {worst.from_name, worst.to_name} <= set(names) and 0 < worst.distance <= worst.radius
+    assert exactff.view_factor_matrix(scene, names, names, accuracy=1e-4).reciprocity is None
+
+
+def test_backs_become_patches(tmp_path):
+    scene = exactff.Scene.read(L_ROOM)
+    both = scene.with_two_sided("srf-1")
+    assert both.names == scene.names + ("srf-1 (back)",) and scene.with_two_sided() is scene
+    f = exactff.view_factor_matrix(both, "srf-6", accuracy=1e-4)
+    written = tmp_path / "f.csv"
+    program("matrix", L_ROOM, "--from", "srf-6", "--two-sided", "srf-1", "--accuracy", "1e-4", "-o", str(written))
+    with open(written, encoding="utf-8") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    assert [row["to"] for row in rows] == list(f.to_names)
+    assert [float(row["upper"]) for row in rows] == list(f.upper[0])
+    with pytest.raises(exactff.InputError, match="srf-99"):
+        scene.with_two_sided("srf-99")
+
+
 def test_a_matrix_is_certified_on_request():
     lamp = lamp_above((0.5, 1.0))
     matrix = exactff.view_factor_matrix(lamp, accuracy=1e-3, certify=True, backs=True, sky=True)

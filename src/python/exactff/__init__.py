@@ -32,13 +32,15 @@ from ._receivers import Receivers
 from ._report import Finding, Material, Patch, Report
 from ._scene import Scene
 from ._truth import TruthSummary, truth
-from ._views import SeenPatch, Share, View, ViewFactor, ViewFactorMatrix, view, view_factor, view_factor_matrix
+from ._views import (PairOfPatches, Reciprocity, SeenPatch, Share, View, ViewFactor, ViewFactorMatrix, view, view_factor,
+                     view_factor_matrix)
 
 __version__ = _exactff.version
 
 __all__ = [
     "Balance", "CheckReport", "Distribution", "Drawing", "Enclosure", "Finding", "FormFactor", "FormFactors",
-    "InputError", "Material", "ModellingWarning", "Patch", "Problem", "Radiosity", "Receivers", "Report", "RowError",
+    "InputError", "Material", "ModellingWarning", "PairOfPatches", "Patch", "Problem", "Radiosity", "Receivers",
+    "Reciprocity", "Report", "RowError",
     "Scene", "SeenPatch", "Share", "Status", "TruthSummary", "Verdict", "View", "ViewFactor", "ViewFactorMatrix",
     "__version__", "check", "methods", "radiosity", "truth", "view", "view_factor", "view_factor_matrix",
 ]

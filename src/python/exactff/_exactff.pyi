@@ -131,6 +131,7 @@ def form_factor(scene: Scene, point: Sequence[float], normal: Sequence[float], o
                 fraction: bool, list_cutters: bool, digits: int, precision_cap: int,
                 only_occluders: Optional[Sequence[int]]) -> Pair: ...
 _Factor = tuple[float, float, float, str, bool, float, float, int, int]
+_Apart = tuple[int, int, float, float]
 _Share = tuple[float, float, float, int]
 
 def view_factor(
@@ -138,8 +139,10 @@ def view_factor(
 ) -> _Factor: ...
 def view_factor_matrix(
     scene: Scene, from_patches: Sequence[str], to_patches: Sequence[str], accuracy: float, budget: int, certify: bool,
-    backs: bool, open: bool, threads: int, progress: _Tell
-) -> tuple[list[_Factor], list[_Factor], list[_Factor], list[tuple[float, float]], list[str]]: ...
+    backs: bool, open: bool, both_directions: bool, threads: int, progress: _Tell
+) -> tuple[list[_Factor], list[_Factor], list[_Factor], list[tuple[float, float]], list[str],
+           tuple[int, Optional[_Apart], list[_Apart]]]: ...
+def with_two_sided(scene: Scene, names: Sequence[str]) -> Scene: ...
 def view(scene: Scene, point: Sequence[float], normal: Sequence[float], on: Sequence[int], faces: bool, digits: int,
          precision_cap: int) -> tuple[list[tuple[str, _Share, _Share, bool]], _Share, _Share]: ...
 def radiosity(

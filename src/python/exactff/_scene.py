@@ -156,6 +156,12 @@ class Scene:
         have receivers on them."""
         return self._changed(self._scene.with_transparent, names)
 
+    def with_two_sided(self, *names: str) -> Scene:
+        """The same scene with the backs of these patches or faces as further patches, ``NAME (back)``: every face gets a
+        twin that is turned round. Factors between other patches stay the same; what met the backs meets the twins.
+        Raises InputError for a face that is not planar."""
+        return self._changed(lambda listed: _exactff.with_two_sided(self._scene, listed), names)
+
     def _changed(self, change: Any, names: Sequence[str]) -> Scene:
         if not names:
             return self

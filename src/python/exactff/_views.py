@@ -35,6 +35,24 @@ class ViewFactor(NamedTuple):
         return self.value
 
 
+class PairOfPatches(NamedTuple):
+    """A_i F_ij and A_j F_ji, computed apart and divided by the larger area."""
+
+    from_name: str
+    to_name: str
+    distance: float  #: of the two values
+    radius: float  #: the sum of their radii; a distance above it breaks the bounds of one of them
+
+
+@dataclass(frozen=True)
+class Reciprocity:
+    """How well the two directions of each pair agree: a test of their bounds. Patches that are not planar are left out."""
+
+    pairs: int
+    worst: Optional[PairOfPatches]  #: the largest distance / radius
+    apart: tuple[PairOfPatches, ...]  #: pairs whose bounds contradict each other; empty if all is right
+
+
 @dataclass(frozen=True)
 class ViewFactorMatrix:
     """View factors between patches, as arrays. Made by :func:`view_factor_matrix`.
@@ -56,6 +74,7 @@ class ViewFactorMatrix:
     open: Optional[tuple[ViewFactor, ...]]  #: for each row what meets nothing
     row_sums: Floats
     reasons_against_one: tuple[str, ...]
+    reciprocity: Optional[Reciprocity]  #: None unless both directions were computed apart
 
     def __getitem__(self, names: tuple[str, str]) -> ViewFactor:
         """``matrix["floor", "light"]``."""
@@ -164,7 +183,7 @@ def _patches(scene: Scene, names: Names, what: str) -> list[str]:
 
 def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Names = None, *, accuracy: float = 1e-6,
                        budget: int = 100_000, certify: bool = False, backs: bool = False, sky: bool = False,
-                       threads: int = 0, progress: Progress = None) -> ViewFactorMatrix:
+                       both_directions: bool = False, threads: int = 0, progress: Progress = None) -> ViewFactorMatrix:
     """All view factors between two lists of patches, the values of ``exactff matrix`` bit for bit.
 
     Parameters
@@ -172,6 +191,7 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
     from_patches, to_patches : names of the rows and columns; default: every patch with area
     accuracy, budget, certify : of each entry, as in :func:`view_factor`
     backs, sky : also compute what meets the backs of faces, and what is open
+    both_directions : compute F_ij and F_ji apart, so that ``reciprocity`` tests one against the other
     threads : 0 for as many as this process may use; no value depends on it
     progress : None for a bar of tqdm on a terminal; True, False, or a function of (done, total)
 
@@ -179,9 +199,9 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
     """
     rows, columns = _patches(scene, from_patches, "from_patches"), _patches(scene, to_patches, "to_patches")
     with shown(progress, "view factor") as tell:
-        entries, back, free, sums, reasons = _exactff.view_factor_matrix(
+        entries, back, free, sums, reasons, mutual = _exactff.view_factor_matrix(
             scene._scene, rows, columns, _accuracy(accuracy), _budget(budget), bool(certify), bool(backs), bool(sky),
-            _arrays.thread_count(threads), tell)
+            bool(both_directions), _arrays.thread_count(threads), tell)
     table = [ViewFactor(*entry) for entry in entries]
     shape = (len(rows), len(columns))
 
@@ -192,12 +212,23 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
     wide = sum(not f.accurate for one in (table, *(one for one in lists if one)) for f in one)
     _warn_of_width(wide, accuracy, budget)
     by_rows = tuple(tuple(table[i * shape[1]:(i + 1) * shape[1]]) for i in range(shape[0]))
+    reciprocity = _reciprocity(mutual, rows, columns) if both_directions else None
     return ViewFactorMatrix(
         tuple(rows), tuple(columns), array(lambda f: f.value, np.float64), array(lambda f: f.lower, np.float64),
         array(lambda f: f.upper, np.float64), array(lambda f: f.claim, np.str_), array(lambda f: f.accurate, np.bool_),
         np.array([row[0].area_from for row in by_rows if row]),
         np.array([f.area_to for f in by_rows[0]] if by_rows else []), lists[0], lists[1],
-        np.array(sums, np.float64).reshape(-1, 2), tuple(reasons), by_rows)
+        np.array(sums, np.float64).reshape(-1, 2), tuple(reasons), reciprocity, by_rows)
+
+
+def _reciprocity(found: Any, rows: list[str], columns: list[str]) -> Reciprocity:
+    pairs, worst, apart = found
+
+    def named(pair: Any) -> PairOfPatches:
+        row, column, distance, radius = pair
+        return PairOfPatches(rows[row], columns[column], distance, radius)
+
+    return Reciprocity(pairs, None if worst is None else named(worst), tuple(named(pair) for pair in apart))
 
 
 def view(scene: Scene, at: ArrayLike, normal: ArrayLike, on: On = None, *, patches: str = "groups", digits: int = 0,
