@@ -63,6 +63,18 @@ inline void scatter(study::Request& request) {
   request.receivers_name = "scattered";
 }
 
+// Studies of the room with the plate, run once in each process: of the adaptive algorithm only, and of all methods.
+inline const study::Study& small_study() {
+  static const Scene scene = small_room(true);
+  static const study::Study study = study::run(small_request(scene, 1));
+  return study;
+}
+inline const study::Study& whole_study() {
+  static const Scene scene = small_room(true);
+  static const study::Study study = study::run(request_with_methods(scene, 1));
+  return study;
+}
+
 inline std::string text_of(const report::StudyTable& table, const study::Study& study) {
   std::ostringstream out;
   table.write(study, out);
