@@ -3,10 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
+
+#include "unit/study_support.h"
 
 namespace exactff::study {
 namespace {
+
+using validation::small_request;
+using validation::small_room;
 
 Loop rectangle(double x0, double y0, double x1, double y1, bool hole = false) {
   return {{{x0, y0, 1}, {x1, y0, 1}, {x1, y1, 1}, {x0, y1, 1}}, hole};
@@ -63,6 +70,38 @@ TEST(SilentErrors, ALeafIsHeldAgainstItsOwnPlane) {
   other.normal = {0, 0, -1};
   const std::vector<PlaneDrawing> truth = {other, unit_source(0.5)};
   EXPECT_EQ(judge_leaves({leaf(0, 1, LeafReason::kSampledVisible)}, truth).silent, 1U);
+}
+
+TEST(SilentErrors, AddUpToWhatTheFormFactorIsOffBy) {
+  const PlaneDrawing plane = unit_source(0.75);
+  const auto error = [&](double x0, double x1, LeafReason reason) {
+    Leaf one = leaf(x0, x1, reason);
+    one.form_factor = 0.2;
+    return judge_leaves({one}, {plane}).error;
+  };
+  EXPECT_NEAR(error(0.5, 1, LeafReason::kSampledVisible), 0.2 * 0.5, 1e-15);
+  EXPECT_NEAR(error(0.5, 1, LeafReason::kSampledHidden), -0.2 * 0.5, 1e-15);
+  EXPECT_NEAR(error(0, 1, LeafReason::kSampledVisible), 0.2 * 0.25, 1e-15);
+  EXPECT_NEAR(error(0.8, 1, LeafReason::kSampledVisible), 0.2, 1e-15);
+  EXPECT_NEAR(error(0, 0.5, LeafReason::kSampledHidden), -0.2, 1e-15);
+  EXPECT_EQ(error(0, 0.5, LeafReason::kSampledVisible), 0.0);
+  EXPECT_EQ(error(0, 1, LeafReason::kEpsF), 0.0) << "not decided by sampling";
+}
+
+TEST(SilentErrors, OfAStudyAreSummedUp) {
+  const Scene room = small_room(true);
+  const Study study = run(small_request(room, 1));
+  bool any = false;
+  for (std::size_t k = 0; k < study.settings.size(); ++k) {
+    double worst = 0.0;
+    for (const SampleRow& row : study.samples[k]) {
+      worst = std::max(worst, std::abs(row.silent_error));
+      EXPECT_TRUE(row.silent_error == 0.0 || row.silent_leaves + row.wrong_leaves > 0);
+    }
+    EXPECT_EQ(study.summaries[k].silent.worst, worst);
+    any = any || worst > 0.0;
+  }
+  EXPECT_TRUE(any);
 }
 
 }  // namespace

@@ -75,6 +75,13 @@ inline const study::Study& whole_study() {
   return study;
 }
 
+// What is left out, each with its reason.
+inline std::string left_out_text(const std::vector<LeftOut>& left_out) {
+  std::string text;
+  for (const LeftOut& item : left_out) text += item.what + ": " + item.why + '\n';
+  return text;
+}
+
 inline std::string text_of(const report::StudyTable& table, const study::Study& study) {
   std::ostringstream out;
   table.write(study, out);

@@ -1,0 +1,179 @@
+// What a comparison of methods runs: ladders of settings, at which receivers, in which order.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "exactff/study.h"
+#include "study/ladders.h"
+#include "study/method_runs.h"
+#include "study/timing.h"
+#include "support/complaint.h"
+#include "unit/study_support.h"
+
+namespace exactff::study {
+namespace {
+
+using validation::complaint;
+using validation::left_out_text;
+
+// --- ladders -------------------------------------------------------------------------------------------------
+
+TEST(ParseLadder, TakesSeveralValuesOfOneSetting) {
+  const Ladder ladder = parse_ladder(" area-sampling : pattern=stratified , samples = 4|16 | 64");
+  EXPECT_EQ(ladder.name, "area, stratified");
+  EXPECT_EQ(ladder.along, "samples");
+  ASSERT_EQ(ladder.rungs.size(), 3U);
+  for (const methods::Choice& rung : ladder.rungs) EXPECT_EQ(rung.settings.word("pattern"), "stratified");
+  EXPECT_EQ(ladder.rungs[0].settings.whole("samples"), 4);
+  EXPECT_EQ(ladder.rungs[2].settings.whole("samples"), 64);
+  EXPECT_EQ(rung_text(ladder, 1), "16");
+  EXPECT_EQ(rung_name(ladder, 1), "area, stratified, samples 16");
+}
+
+TEST(ParseLadder, OfOneRungHasNothingAlongWhichItGoes) {
+  const Ladder ladder = parse_ladder("hemicube:resolution=64");
+  EXPECT_EQ(ladder.rungs.size(), 1U);
+  EXPECT_EQ(ladder.along, "");
+  EXPECT_EQ(rung_text(ladder, 0), "");
+  EXPECT_EQ(rung_name(ladder, 0), ladder.name);
+  EXPECT_EQ(parse_ladder("exact").name, "exact");
+}
+
+TEST(ParseLadder, DropsRepetitions) {
+  EXPECT_EQ(parse_ladder("hemicube:resolution=64|32|64").rungs.size(), 2U);
+  // The centre pattern has one ray, whatever the number of rays is set to.
+  EXPECT_EQ(parse_ladder("adaptive:pattern=centre,rays=1|4|16").rungs.size(), 1U);
+}
+
+TEST(ParseLadder, RefusesTwoSettingsWithSeveralValues) {
+  const std::string said = complaint([] { (void)parse_ladder("nettle:rays=1|4,splits=1|2"); });
+  EXPECT_NE(said.find("'rays' and 'splits' of nettle both have several values"), std::string::npos) << said;
+}
+
+TEST(ParseLadder, RefusesSeveralSeeds) {
+  const std::string said = complaint([] { (void)parse_ladder("area-sampling:seed=1|2"); });
+  EXPECT_NE(said.find("--method-seeds"), std::string::npos) << said;
+}
+
+TEST(ParseLadder, NamesWhatItDoesNotKnow) {
+  EXPECT_NE(complaint([] { (void)parse_ladder("hemicub:resolution=64|32"); }).find("hemicube"), std::string::npos);
+  EXPECT_NE(complaint([] { (void)parse_ladder("hemicube:resolutions=64|32"); }).find("resolution"), std::string::npos);
+  for (const char* wrong : {"", ":", "hemicube:", "hemicube:resolution", "hemicube:resolution=64|", "hemicube:=3",
+                            "hemicube:resolution=64|x", "hemicube:resolution=64|33", "exact|hemicube"}) {
+    EXPECT_NE(complaint([&] { (void)parse_ladder(wrong); }), "") << wrong;
+  }
+}
+
+TEST(DefaultLadders, AreEveryMethodByRisingEffort) {
+  const std::vector<Ladder> ladders = default_ladders(20.0);
+  std::set<std::string> names, methods;
+  for (const Ladder& ladder : ladders) {
+    EXPECT_TRUE(names.insert(ladder.name).second) << ladder.name;
+    methods.insert(ladder.rungs.front().method->name);
+    EXPECT_EQ(ladder.rungs.size() == 1, ladder.along.empty()) << ladder.name;
+  }
+  EXPECT_EQ(methods, (std::set<std::string>{"exact", "adaptive", "adaptive-exact-visibility", "hemicube", "nettle",
+                                            "wallace", "area-sampling"}));
+  const auto adaptive = std::ranges::find(ladders, std::string("adaptive, 16 rays"), &Ladder::name);
+  ASSERT_NE(adaptive, ladders.end());
+  for (std::size_t k = 0; k < adaptive->rungs.size(); ++k) {
+    EXPECT_NEAR(adaptive->rungs[k].settings.number("eps_B"), 2.0 * std::pow(10.0, -static_cast<double>(k)), 1e-12);
+  }
+}
+
+TEST(DefaultLadders, NeedNoLight) {
+  for (const Ladder& ladder : default_ladders(0.0)) EXPECT_FALSE(ladder.name.starts_with("adaptive")) << ladder.name;
+}
+
+TEST(LeaveOut, TakesLaddersThatCannotShowAnything) {
+  const auto left = [](const Sightings& sightings) {
+    std::vector<Ladder> ladders = default_ladders(1.0);
+    const std::size_t all = ladders.size();
+    const auto left_out = leave_out(ladders, sightings);
+    EXPECT_EQ(ladders.size() + left_out.size(), all);
+    for (const LeftOut& item : left_out) {
+      for (const Ladder& ladder : ladders) EXPECT_NE(item.what, "method " + ladder.name);
+    }
+    return left_out;
+  };
+  EXPECT_TRUE(left({true, true, 1.0}).empty());
+  EXPECT_EQ(left({false, false, 1.0}).size(), default_ladders(1.0).size());
+  EXPECT_EQ(left_out_text(left({true, false, 1.0})),
+            "method adaptive, exact V: no receiver has a source hidden in part, so that there is no sampling to be "
+            "replaced\n");
+  EXPECT_EQ(left({true, true, 0.0}).size(), 5U) << "the adaptive ones";
+}
+
+// --- choices -------------------------------------------------------------------------------------------------
+
+std::vector<ExactRow> rows_seeing(const std::vector<Sight>& sights) {
+  std::vector<ExactRow> rows(sights.size());
+  for (std::size_t i = 0; i < sights.size(); ++i) rows[i].sight = sights[i];
+  return rows;
+}
+
+TEST(ChooseReceivers, TakesAThirdFromThoseThatSeeAll) {
+  std::vector<Sight> sights(100, Sight::kPartly);
+  sights.insert(sights.end(), 100, Sight::kVisible);
+  sights.insert(sights.begin(), 50, Sight::kHidden);
+  const auto chosen = choose_receivers(rows_seeing(sights), 12);
+  ASSERT_EQ(chosen.size(), 12U);
+  EXPECT_TRUE(std::ranges::is_sorted(chosen));
+  EXPECT_EQ(std::set(chosen.begin(), chosen.end()).size(), 12U);
+  EXPECT_EQ(std::ranges::count_if(chosen, [](std::size_t i) { return i >= 150; }), 4);
+  EXPECT_EQ(std::ranges::count_if(chosen, [](std::size_t i) { return i < 50; }), 0);
+  EXPECT_EQ(chosen[0], 50U + 6U) << "evenly: the middles of eighths";
+  EXPECT_EQ(chosen[7], 50U + 93U);
+}
+
+TEST(ChooseReceivers, TakesOthersWhereThereAreTooFew) {
+  using enum Sight;
+  EXPECT_EQ(choose_receivers(rows_seeing({kPartly, kVisible, kVisible, kVisible, kNothing}), 4),
+            (std::vector<std::size_t>{0, 1, 2, 3}));
+  EXPECT_EQ(choose_receivers(rows_seeing({kPartly, kPartly, kPartly, kVisible}), 100),
+            (std::vector<std::size_t>{0, 1, 2, 3}));
+  EXPECT_EQ(choose_receivers(rows_seeing({kPartly, kPartly, kPartly}), 3), (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_TRUE(choose_receivers(rows_seeing({kHidden, kNothing}), 4).empty());
+  EXPECT_TRUE(choose_receivers({}, 4).empty());
+}
+
+TEST(PlannedSeconds, CountWorkAtFixedPrices) {
+  methods::Counters none, rays, exact;
+  rays.add("rays", 1000);
+  rays.add("leaves", 10);
+  const double before = planned_seconds(rays, 3);
+  rays.add("leaves: sampled", 10);
+  EXPECT_EQ(planned_seconds(rays, 3), before) << "counted among the leaves";
+  EXPECT_GT(before, planned_seconds(none, 3));
+  EXPECT_GT(planned_seconds(none, 3), 0.0);
+  EXPECT_EQ(before, planned_seconds(rays, 3000));
+  exact.add("exact V", 1);
+  EXPECT_GT(planned_seconds(exact, 3000), planned_seconds(exact, 3)) << "every face may be in the way";
+}
+
+TEST(SpreadOrder, IsAPermutationWhoseBeginningsAreSpread) {
+  for (std::size_t count = 0; count < 300; ++count) {
+    const auto order = spread_order(count);
+    EXPECT_EQ(order.size(), count);
+    EXPECT_EQ(std::set(order.begin(), order.end()).size(), count);
+    EXPECT_TRUE(order.empty() || *std::ranges::max_element(order) == count - 1);
+  }
+  for (const std::size_t count : {100, 256, 1024, 2310}) {
+    const auto order = spread_order(count);
+    for (std::size_t first = 8; first <= count; first *= 2) {
+      std::vector<std::size_t> places(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(first));
+      std::ranges::sort(places);
+      std::size_t gap = places.front() + count - places.back();  // around the end
+      for (std::size_t k = 1; k < first; ++k) gap = std::max(gap, places[k] - places[k - 1]);
+      EXPECT_LE(gap, 6 * count / first) << first << " of " << count;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace exactff::study
