@@ -11,13 +11,12 @@
 #include "support/holds.h"
 #include "support/program.h"
 #include "text/phrases.h"
+#include "unit/check_support.h"
 
 namespace exactff::check {
 namespace {
 
 using validation::holds;
-
-#define EXPECT_HOLDS(text, part) EXPECT_TRUE(holds(text, part)) << "\"" << (part) << "\" is not in:\n" << (text)
 
 // Receivers with awkward names; the second value has an error of 0.25, 1 relative.
 Report awkward_report(const Criteria& criteria, double first = 0.5) {

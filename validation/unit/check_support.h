@@ -1,0 +1,77 @@
+// Truths, candidates and reports of a few rows, for the tests of the check.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "exactff/check.h"
+#include "support/holds.h"
+#include "support/program.h"
+
+#define EXPECT_HOLDS(text, part) \
+  EXPECT_TRUE(exactff::validation::holds(text, part)) << "\"" << (part) << "\" is not in:\n" << (text)
+
+namespace exactff::check {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+inline Truth truth_of(const std::string& text, const std::string& column = "exact") {
+  const validation::TemporaryDirectory directory;
+  return read_truth(directory.write("truth.csv", text), column);
+}
+
+inline Candidate candidate_of(const std::string& text, const CandidateColumns& columns = {},
+                              MatchBy by = MatchBy::kReceiver) {
+  const validation::TemporaryDirectory directory;
+  return read_candidate(directory.write("mine.csv", text), columns, by);
+}
+
+inline TruthRow row_of(const std::string& receiver, double value, std::uint32_t source = 0) {
+  TruthRow row;
+  row.receiver = receiver;
+  row.source = source;
+  row.value = row.lower = row.upper = value;
+  return row;
+}
+
+// Receivers 1, 2, ... with these values of one source.
+inline Truth truth_with(const std::vector<double>& values) {
+  Truth truth;
+  truth.file = "truth.csv";
+  truth.column = "exact";
+  truth.sources = {"light"};
+  truth.faces = {""};
+  for (const double value : values) truth.rows.push_back(row_of(std::to_string(truth.rows.size() + 1), value));
+  return truth;
+}
+
+// Sources s and t of receivers 1, 2, ...
+inline Truth truth_of_two(const std::vector<double>& s, const std::vector<double>& t) {
+  Truth truth = truth_with({});
+  truth.sources = {"s", "t"};
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    truth.rows.push_back(row_of(std::to_string(i + 1), s[i], 0));
+    truth.rows.push_back(row_of(std::to_string(i + 1), t[i], 1));
+  }
+  return truth;
+}
+
+inline Report judged(const std::vector<double>& truth, const std::vector<double>& values,
+                     const Criteria& criteria = {}) {
+  return judge(truth_with(truth), values, criteria);
+}
+
+inline const Verdict& verdict_on(const Report& report, const std::string& criterion, const std::string& source = {}) {
+  for (const Verdict& verdict : report.verdicts) {
+    if (verdict.criterion == criterion && verdict.source == source) return verdict;
+  }
+  throw std::runtime_error("there is no verdict on " + criterion);
+}
+
+}  // namespace exactff::check
