@@ -1,110 +1,29 @@
-// The program in trouble: full disks, signals, little memory, a small stack, a broken gnuplot, output folders that are
-// not folders. In every case the exit code is right and nothing half-written remains.
+// The program in trouble: full disks, closed streams, a broken gnuplot, output folders that are not folders, senseless
+// flags. In every case the exit code is right and nothing half-written remains.
+#include "unit/hostile_program.h"
+
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <cmath>
 #include <csignal>
+#include <cstdio>
+#include <filesystem>
 #include <fstream>
-#include <functional>
-#include <numbers>
+#include <iterator>
 #include <set>
-#include <sstream>
-#include <thread>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "support/program.h"
-#include "unit/sanitized.h"
 
 namespace exactff {
 namespace {
 
 namespace fs = std::filesystem;
-using Running = validation::RunningProgram;
-using validation::TemporaryDirectory;
-
-const std::string kRoom =
-    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 2\nv 1 0 2\nv 1 1 2\nv 0 1 2\n"
-    "g floor\nf 1 2 3 4\ng light\nf 8 7 6 5\n";
-
-void limit(int resource, rlim_t value) {
-  const rlimit both{value, value};
-  ::setrlimit(static_cast<__rlimit_resource>(resource), &both);
-}
-
-class HostileProgram : public testing::Test {
- protected:
-  HostileProgram() { fs::create_directory(place_); }
-
-  Running start(
-      const std::vector<std::string>& arguments, const std::function<void()>& prepare = [] {}) const {
-    return {EXACTFF_PROGRAM, arguments, directory_.path() / "stderr", prepare};
-  }
-
-  std::vector<std::string> comparison(const fs::path& folder) const {
-    return {"compare",   room_, "--on",         "floor",   "--source", "light", "--grid", "2x2",
-            "--threads", "1",   "--no-methods", "--eps-b", ".1",       "-o",    folder};
-  }
-  std::vector<std::string> resumed(const fs::path& folder) const {
-    std::vector<std::string> all = comparison(folder);
-    all.emplace_back("--resume");
-    return all;
-  }
-  std::vector<std::string> point(std::vector<std::string> more) const {
-    std::vector<std::string> all{"point",    room_, "--at", ".5", ".5",       "0",
-                                 "--normal", "0",   "0",    "1",  "--source", "light"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
-
-  std::vector<std::string> truth_file(const fs::path& file) const {
-    return {"truth", room_, "--on", "floor", "--source", "light", "--grid", "2x2", "--threads", "1", "-o", file};
-  }
-  std::vector<std::vector<std::string>> printing() const;
-
-  // A fake gnuplot that is found before any other.
-  std::function<void()> with_gnuplot(const std::string& script) const {
-    const fs::path folder = directory_.path() / "bin";
-    fs::create_directory(folder);
-    std::ofstream(folder / "gnuplot") << "#!/bin/sh\n" << script << '\n';
-    fs::permissions(folder / "gnuplot", fs::perms::owner_all);
-    return [path = folder.string() + ":/usr/bin:/bin"] { ::setenv("PATH", path.c_str(), 1); };
-  }
-
-  void expect_nothing_in_place() const { EXPECT_TRUE(fs::is_empty(place_)); }
-  // Only the journal remains, and it is usable: with it, the comparison gives the bytes of an undisturbed one.
-  void expect_only_a_journal(const fs::path& folder) const {
-    EXPECT_EQ(names(folder.parent_path()), std::set<std::string>{folder.filename().string() + ".part"});
-    const auto without_gnuplot = [] { ::setenv("PATH", "/nonexistent", 1); };
-    const Running refused = start(comparison(folder), without_gnuplot);
-    EXPECT_EQ(refused.wait(), 2);
-    EXPECT_NE(refused.error().find(".part: contains the finished work of an interrupted run"), std::string::npos)
-        << refused.error();
-    const Running going_on = start(resumed(folder), without_gnuplot);
-    EXPECT_EQ(going_on.wait(), 0) << going_on.error();
-    EXPECT_NE(going_on.error().find("were reused from the interrupted run"), std::string::npos) << going_on.error();
-    EXPECT_EQ(names(folder.parent_path()), std::set<std::string>{folder.filename().string()});
-    fs::remove_all(directory_.path() / "undisturbed");
-    EXPECT_EQ(start(comparison(directory_.path() / "undisturbed"), without_gnuplot).wait(), 0);
-    for (const char* file : {"values.csv", "exact.csv", "summary.csv"}) {
-      EXPECT_EQ(validation::text_of(folder / file), validation::text_of(directory_.path() / "undisturbed" / file));
-    }
-    fs::remove_all(folder);
-  }
-  static std::set<std::string> names(const fs::path& folder) {
-    std::set<std::string> found;
-    for (const auto& entry : fs::directory_iterator(folder)) found.insert(entry.path().filename().string());
-    return found;
-  }
-
-  const TemporaryDirectory directory_;
-  const std::string room_ = directory_.write("room.obj", kRoom).string();
-  const fs::path place_ = directory_.path() / "place";  // the place of the results
-};
 
 TEST_F(HostileProgram, AFullDiskLeavesTheJournalAlone) {
   for (const rlim_t bytes : {600, 2048}) {  // full while values are computed, and while tables are written
@@ -146,29 +65,6 @@ void to_a_pipe_without_reader() {
   ::close(ends[1]);
 }
 
-// Every command that prints.
-std::vector<std::vector<std::string>> HostileProgram::printing() const {
-  const std::string truth = (directory_.path() / "truth.csv").string();
-  EXPECT_EQ(start(truth_file(truth)).wait(), 0);
-  return {{"--help"},
-          {"--version"},
-          {"info", "--help"},
-          {"compare", "--help"},
-          {"info", "@"},
-          {"info", "@", "--json"},
-          {"info", room_},
-          {"info", room_, "--json"},
-          {"completion", "bash"},
-          {"manual"},
-          {"stress", "--list"},
-          {"check", truth, truth},
-          {"check", truth, truth, "--github"},
-          truth_file(truth + ".2"),
-          point({}),
-          point({"--plain"}),
-          point({"--json"})};
-}
-
 TEST_F(HostileProgram, AFullDiskOrNoPlaceAsStandardOutputIsAnError) {
   for (const auto& arguments : printing()) {
     for (const auto& stdout_of : {to_a_full_disk, to_nowhere}) {
@@ -208,102 +104,6 @@ TEST_F(HostileProgram, WithoutStandardStreamsFilesHoldWhatTheyShould) {
   EXPECT_EQ(names(place_), (std::set<std::string>{"a.csv", "b.csv", "c.svg"}));
 }
 
-// While gnuplot draws, the hidden folder exists: this is the worst moment for an interruption.
-TEST_F(HostileProgram, SignalsWhileItWritesLeaveTheJournalAlone) {
-  const fs::path started = directory_.path() / "started", folder = place_ / "result";
-  const auto gnuplot = with_gnuplot("touch '" + started.string() + "'; exec sleep 100");
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    for (const int times : {1, 2}) {
-      fs::remove(started);
-      const Running run = start(comparison(folder), gnuplot);
-      while (!fs::exists(started) && !run.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      EXPECT_GT(names(place_).size(), 1U);
-      for (int i = 0; i < times; ++i) run.send(signal);
-      EXPECT_EQ(run.wait(), 128 + signal);
-      EXPECT_TRUE(run.error().ends_with("\nexactff: interrupted; finished work is kept in " + folder.string() +
-                                        ".part; to continue, run the same command with --resume\n"))
-          << run.error();
-      expect_only_a_journal(folder);
-    }
-  }
-}
-
-// One piece of work may take hours, such as a method with a billion rays.
-TEST_F(HostileProgram, ASignalInAPieceOfWorkEndsItInHalfASecond) {
-  const fs::path folder = place_ / "result";
-  std::vector<std::string> arguments = comparison(folder);
-  std::erase(arguments, "--no-methods");
-  arguments.insert(arguments.end(), {"--sweep", "--method", "nettle:splits=4096,rays=65536", "--method-budget", "1e9"});
-  const Running run = start(arguments);
-  constexpr std::uintmax_t kFirstPiece = 200;  // bytes of the journal: its first line is shorter
-  while (validation::size_of(folder.string() + ".part") < kFirstPiece && !run.has_ended()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  std::this_thread::sleep_for(std::chrono::seconds(1));
-  ASSERT_FALSE(run.has_ended()) << run.error();
-  const auto sent = std::chrono::steady_clock::now();
-  run.send(SIGINT);
-  EXPECT_EQ(run.wait(), 128 + SIGINT);
-  EXPECT_LT(std::chrono::steady_clock::now() - sent,
-            std::chrono::seconds(kSanitized ? 10 : 2));  // the machine may be busy
-  EXPECT_TRUE(run.error().ends_with("\nexactff: interrupted; finished work is kept in " + folder.string() +
-                                    ".part; to continue, run the same command with --resume\n"))
-      << run.error();
-  EXPECT_FALSE(fs::exists(folder));
-}
-
-// A killed process cannot clean up. The next process does, but leaves the files of a living one alone.
-TEST_F(HostileProgram, WhatAKilledRunLeavesTheNextClears) {
-  const fs::path started = directory_.path() / "started", folder = place_ / "result";
-  const auto gnuplot = with_gnuplot("touch '" + started.string() + "'; exec sleep 3");
-  const auto begin = [&](const std::vector<std::string>& arguments) {
-    fs::remove(started);
-    const Running run = start(arguments, gnuplot);
-    while (!fs::exists(started) && !run.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    return run;
-  };
-  const Running killed = begin(comparison(folder));
-  killed.send(SIGKILL);
-  EXPECT_EQ(killed.wait(), 128 + SIGKILL);
-  EXPECT_EQ(names(place_).size(), 2U);  // the journal, the hidden folder
-  const Running stress = begin({"stress", "--family", "crack", "-o", folder});
-  EXPECT_EQ(names(place_).size(), 2U);  // the journal, its own hidden folder
-  const Running other = start(resumed(folder), [] { ::setenv("PATH", "/nonexistent", 1); });
-  EXPECT_EQ(other.wait(), 0) << other.error();
-  EXPECT_EQ(names(place_).size(), 2U);  // the result, and the hidden folder of the living process
-  stress.send(SIGINT);
-  EXPECT_EQ(stress.wait(), 128 + SIGINT);
-  EXPECT_TRUE(stress.error().starts_with("exactff: interrupted; finished families: 1 of 1, kept in " +
-                                         (place_ / "result.part" / "report.html").string() +
-                                         "; --family runs single ones\n"))
-      << stress.error() << "(what the other run wrote to this file may follow)";
-  EXPECT_EQ(names(place_), (std::set<std::string>{"result", "result.part"}));
-}
-
-TEST_F(HostileProgram, ASignalWhileItReadsLeavesNothing) {
-  const fs::path pipe = directory_.path() / "pipe.obj";
-  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  std::vector<std::string> arguments = comparison(place_ / "a" / "result");
-  arguments[1] = pipe;
-  const Running run = start(arguments);
-  std::ofstream writer(pipe);
-  writer << kRoom << std::flush;  // it has started to read, and cannot end while the pipe is open
-  run.send(SIGINT);
-  EXPECT_EQ(run.wait(), 128 + SIGINT);
-  expect_nothing_in_place();
-}
-
-TEST_F(HostileProgram, AnInterruptedRunIsBegunAnewByForce) {
-  const fs::path folder = place_ / "result";
-  EXPECT_EQ(start(comparison(folder), [] { limit(RLIMIT_FSIZE, 2048); }).wait(), 2);
-  std::vector<std::string> arguments = comparison(folder);
-  arguments.emplace_back("--force");
-  const Running anew = start(arguments, [] { ::setenv("PATH", "/nonexistent", 1); });
-  EXPECT_EQ(anew.wait(), 0);
-  EXPECT_EQ(anew.error().find("were reused from"), std::string::npos) << anew.error();
-  EXPECT_EQ(names(place_), std::set<std::string>{"result"});
-}
-
 TEST_F(HostileProgram, AFileWhereTheJournalWouldBeIsNotLost) {
   std::ofstream(place_ / "result.part") << "dear diary";
   for (const std::string flag : {"", "--resume", "--force"}) {
@@ -327,114 +127,6 @@ TEST_F(HostileProgram, WithoutAWorkingGnuplotTheTablesAreComplete) {
     EXPECT_TRUE(fs::exists(place_ / folder / "values.csv"));
     EXPECT_TRUE(fs::exists(place_ / folder / "report.html"));
   }
-}
-
-TEST_F(HostileProgram, TheEndOfMemoryIsTold) {
-  if (kSanitized) GTEST_SKIP() << "address space cannot be limited here";
-  std::string text;
-  for (int i = 0; i < 4'000'000; ++i) text += "v 0 0 0\n";
-  const std::string many = directory_.write("many.obj", text + kRoom).string();
-  const Running run = start({"info", many}, [] { limit(RLIMIT_AS, 200 << 20); });
-  EXPECT_EQ(run.wait(), 4);
-  EXPECT_TRUE(run.error().starts_with("exactff: out of memory (")) << run.error();
-}
-
-// What a pair of patches remembers is limited, however many edges lie between them.
-TEST_F(HostileProgram, AMatrixNeedsLittleMemoryWhateverLiesBetween) {
-  if (kSanitized) GTEST_SKIP() << "address space cannot be limited here";
-  for (const char* scene : {"@soup:n=3000,cover=3", "@tiles:n=40"}) {
-    const Running run =
-        start({"matrix", scene, "--from", "floor", "--to", "source", "--budget", "30", "--threads", "1", "--plain"},
-              [] { limit(RLIMIT_AS, 400 << 20); });
-    EXPECT_EQ(run.wait(), 0) << scene << '\n' << run.error();
-  }
-}
-
-// With coordinates so far apart, only the exact numbers need much memory; GMP itself would abort.
-TEST_F(HostileProgram, TheEndOfMemoryIsToldByExactNumbersToo) {
-  if (kSanitized) GTEST_SKIP() << "address space cannot be limited here";
-  constexpr int kCorners = 2000;
-  std::ostringstream text;
-  for (int i = 0; i < kCorners; ++i) {
-    const double angle = 2 * std::numbers::pi * i / kCorners;
-    text << "v " << 1e300 * std::cos(angle) << ' ' << 1e300 * std::sin(angle) << ' ' << 1e-300 * (1 + i % 7) << '\n';
-  }
-  text << 'f';
-  for (int i = 1; i <= kCorners; ++i) text << ' ' << i;
-  const std::string wide = directory_.write("wide.obj", text.str() + '\n').string();
-  int told = 0;
-  for (rlim_t megabytes = 60; megabytes <= 110; megabytes += 2) {
-    const auto little_memory = [megabytes] { limit(RLIMIT_AS, megabytes << 20); };
-    if (start({"--version"}, little_memory).wait() != 0) continue;  // not even the libraries can be loaded
-    const int code = start({"info", wide}, little_memory).wait();
-    EXPECT_TRUE(code == 0 || code == 4) << megabytes << " MB: " << code;
-    if (code == 4) ++told;
-  }
-  EXPECT_GT(told, 0);
-}
-
-// Memory runs out at some point before main(), in it or in a thread. The program ends with one of its exit codes, or
-// the loader's if it cannot map the libraries, but never by a signal.
-class LittleMemory : public HostileProgram, public testing::WithParamInterface<const char*> {
- protected:
-  std::vector<std::string> arguments() const {
-    const std::string command = GetParam();
-    if (command == "info") return {"info", room_};
-    if (command == "point") return point({});
-    if (command == "compare") return comparison(place_ / "result");
-    std::vector<std::string> truth = truth_file(place_ / "truth.csv");
-    *(std::ranges::find(truth, "--threads") + 1) = "2";
-    return truth;
-  }
-
-  bool works_with(rlim_t kilobytes) const {
-    const Running run = start(arguments(), [kilobytes] {
-      limit(RLIMIT_AS, kilobytes << 10);
-      ::setenv("PATH", "/nonexistent", 1);  // without gnuplot, which has its own limits
-    });
-    const int code = run.wait();
-    const bool loaded = code != 127;
-    EXPECT_TRUE(code == 0 || code == 4 || !loaded) << kilobytes << " kB: " << code << '\n' << run.error();
-    EXPECT_EQ(code == 0 || !run.error().empty(), true) << kilobytes << " kB";
-    EXPECT_TRUE(code != 4 || run.error().find("exactff: ") != std::string::npos) << run.error();
-    fs::remove_all(place_);
-    fs::create_directory(place_);
-    return code == 0;
-  }
-};
-
-TEST_P(LittleMemory, EndsItByNoSignal) {
-  if (kSanitized) GTEST_SKIP() << "address space cannot be limited here";
-  constexpr rlim_t kFine = 512;
-  rlim_t fails = 20'000, works = 600'000;
-  EXPECT_FALSE(works_with(fails));
-  EXPECT_TRUE(works_with(works));
-  while (works - fails > kFine) {
-    const rlim_t middle = (fails + works) / 2;
-    (works_with(middle) ? works : fails) = middle;
-  }
-  for (rlim_t less = kFine; less <= 24 * kFine; less += kFine) (void)works_with(works - less);
-  for (rlim_t more = 1; more <= 4; ++more) (void)works_with(works + more * 10 * kFine);
-}
-INSTANTIATE_TEST_SUITE_P(All, LittleMemory, testing::Values("info", "point", "truth", "compare"),
-                         [](const auto& test) { return std::string(test.param); });
-
-TEST_F(HostileProgram, ASmallStackIsEnough) {
-  if (kSanitized) GTEST_SKIP() << "sanitized code needs a large stack";
-  constexpr int kTeeth = 10'000;
-  std::string text = "v 0 -1 0\nv " + std::to_string(kTeeth) + " -1 0\n", face = "g comb\nf 1 2";
-  for (int i = kTeeth; i-- > 0;) {
-    const std::string x = std::to_string(i);
-    text += "v " + x + ".5 1000 " + (i % 2 == 0 ? "0" : ".1") + "\nv " + x + " 0 0\n";
-    const int next = 2 * (kTeeth - i) + 1;
-    face += ' ' + std::to_string(next) + ' ' + std::to_string(next + 1);
-  }
-  const std::string comb =
-      directory_.write("comb.obj", text + face + "\ng light\nv 0 0 9\nv 1 0 9\nv 0 1 9\nf -1 -2 -3\n").string();
-  const Running run =
-      start({"point", comb, "--at", "0", "0", "5", "--normal", "0", "0", "1", "--source", "light", "--plain"},
-            [] { limit(RLIMIT_STACK, 256 << 10); });
-  EXPECT_EQ(run.wait(), 0) << run.error();
 }
 
 TEST_F(HostileProgram, FoldersThatMustNotBeReplacedAreNot) {

@@ -1,0 +1,123 @@
+// Signals while the program reads, computes and writes, and what killed and interrupted runs leave to the next one.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "support/program.h"
+#include "unit/hostile_program.h"
+#include "unit/sanitized.h"
+
+namespace exactff {
+namespace {
+
+namespace fs = std::filesystem;
+
+// While gnuplot draws, the hidden folder exists: this is the worst moment for an interruption.
+TEST_F(HostileProgram, SignalsWhileItWritesLeaveTheJournalAlone) {
+  const fs::path started = directory_.path() / "started", folder = place_ / "result";
+  const auto gnuplot = with_gnuplot("touch '" + started.string() + "'; exec sleep 100");
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    for (const int times : {1, 2}) {
+      fs::remove(started);
+      const Running run = start(comparison(folder), gnuplot);
+      while (!fs::exists(started) && !run.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      EXPECT_GT(names(place_).size(), 1U);
+      for (int i = 0; i < times; ++i) run.send(signal);
+      EXPECT_EQ(run.wait(), 128 + signal);
+      EXPECT_TRUE(run.error().ends_with("\nexactff: interrupted; finished work is kept in " + folder.string() +
+                                        ".part; to continue, run the same command with --resume\n"))
+          << run.error();
+      expect_only_a_journal(folder);
+    }
+  }
+}
+
+// One piece of work may take hours, such as a method with a billion rays.
+TEST_F(HostileProgram, ASignalInAPieceOfWorkEndsItInHalfASecond) {
+  const fs::path folder = place_ / "result";
+  std::vector<std::string> arguments = comparison(folder);
+  std::erase(arguments, "--no-methods");
+  arguments.insert(arguments.end(), {"--sweep", "--method", "nettle:splits=4096,rays=65536", "--method-budget", "1e9"});
+  const Running run = start(arguments);
+  constexpr std::uintmax_t kFirstPiece = 200;  // bytes of the journal: its first line is shorter
+  while (validation::size_of(folder.string() + ".part") < kFirstPiece && !run.has_ended()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  ASSERT_FALSE(run.has_ended()) << run.error();
+  const auto sent = std::chrono::steady_clock::now();
+  run.send(SIGINT);
+  EXPECT_EQ(run.wait(), 128 + SIGINT);
+  EXPECT_LT(std::chrono::steady_clock::now() - sent,
+            std::chrono::seconds(kSanitized ? 10 : 2));  // the machine may be busy
+  EXPECT_TRUE(run.error().ends_with("\nexactff: interrupted; finished work is kept in " + folder.string() +
+                                    ".part; to continue, run the same command with --resume\n"))
+      << run.error();
+  EXPECT_FALSE(fs::exists(folder));
+}
+
+// A killed process cannot clean up. The next process does, but leaves the files of a living one alone.
+TEST_F(HostileProgram, WhatAKilledRunLeavesTheNextClears) {
+  const fs::path started = directory_.path() / "started", folder = place_ / "result";
+  const auto gnuplot = with_gnuplot("touch '" + started.string() + "'; exec sleep 3");
+  const auto begin = [&](const std::vector<std::string>& arguments) {
+    fs::remove(started);
+    const Running run = start(arguments, gnuplot);
+    while (!fs::exists(started) && !run.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return run;
+  };
+  const Running killed = begin(comparison(folder));
+  killed.send(SIGKILL);
+  EXPECT_EQ(killed.wait(), 128 + SIGKILL);
+  EXPECT_EQ(names(place_).size(), 2U);  // the journal, the hidden folder
+  const Running stress = begin({"stress", "--family", "crack", "-o", folder});
+  EXPECT_EQ(names(place_).size(), 2U);  // the journal, its own hidden folder
+  const Running other = start(resumed(folder), [] { ::setenv("PATH", "/nonexistent", 1); });
+  EXPECT_EQ(other.wait(), 0) << other.error();
+  EXPECT_EQ(names(place_).size(), 2U);  // the result, and the hidden folder of the living process
+  stress.send(SIGINT);
+  EXPECT_EQ(stress.wait(), 128 + SIGINT);
+  EXPECT_TRUE(stress.error().starts_with("exactff: interrupted; finished families: 1 of 1, kept in " +
+                                         (place_ / "result.part" / "report.html").string() +
+                                         "; --family runs single ones\n"))
+      << stress.error() << "(what the other run wrote to this file may follow)";
+  EXPECT_EQ(names(place_), (std::set<std::string>{"result", "result.part"}));
+}
+
+TEST_F(HostileProgram, ASignalWhileItReadsLeavesNothing) {
+  const fs::path pipe = directory_.path() / "pipe.obj";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::vector<std::string> arguments = comparison(place_ / "a" / "result");
+  arguments[1] = pipe;
+  const Running run = start(arguments);
+  std::ofstream writer(pipe);
+  writer << kRoom << std::flush;  // it has started to read, and cannot end while the pipe is open
+  run.send(SIGINT);
+  EXPECT_EQ(run.wait(), 128 + SIGINT);
+  expect_nothing_in_place();
+}
+
+TEST_F(HostileProgram, AnInterruptedRunIsBegunAnewByForce) {
+  const fs::path folder = place_ / "result";
+  EXPECT_EQ(start(comparison(folder), [] { limit(RLIMIT_FSIZE, 2048); }).wait(), 2);
+  std::vector<std::string> arguments = comparison(folder);
+  arguments.emplace_back("--force");
+  const Running anew = start(arguments, [] { ::setenv("PATH", "/nonexistent", 1); });
+  EXPECT_EQ(anew.wait(), 0);
+  EXPECT_EQ(anew.error().find("were reused from"), std::string::npos) << anew.error();
+  EXPECT_EQ(names(place_), std::set<std::string>{"result"});
+}
+
+}  // namespace
+}  // namespace exactff
