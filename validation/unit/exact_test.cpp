@@ -1,35 +1,29 @@
-// The result of the exact method: status, bounds, decimals, cutters, fractions, bad receivers, and reuse of a result.
+// The result of the exact method: status, bounds, decimals, cutters, fractions, bad receivers, drawings.
 #include "exactff/exact.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
-#include <sstream>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "generate/families.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
-#include "kernel/ball.h"
 #include "support/random_scenes.h"
 #include "support/solve.h"
+#include "unit/square_scenes.h"
 
 namespace exactff {
 namespace {
 
 using generate::PlainScene;
+using validation::add_square;
 using validation::solve;
-
-PlainScene square_source(double half = 1.0, double z = 1.0) {
-  PlainScene scene;
-  scene.add_ring(scene.patch("source"), {{-half, half, z}, {half, half, z}, {half, -half, z}, {-half, -half, z}});
-  return scene;
-}
-
-void add_square(PlainScene& scene, const std::string& name, double half, double z, double x = 0.0, double y = 0.0) {
-  scene.add_ring(scene.patch(name),
-                 {{x - half, y - half, z}, {x + half, y - half, z}, {x + half, y + half, z}, {x - half, y + half, z}});
-}
+using validation::square_source;
 
 TEST(ExactFormFactor, BoundsAreTheNeighboursOfACertifiedValue) {
   const FormFactor f = solve(square_source());
@@ -331,149 +325,6 @@ TEST(ExactFormFactor, AWideSourceBehindManyOccludersHasTheSameValueForBothEngine
   const PlaneRecord record = solve(plain).planes.at(0);
   EXPECT_EQ(record.engine, Engine::kEdges);
   EXPECT_EQ(record.outcome, Outcome::kPartlyHidden);
-}
-
-// All fields of a record and of a result. If a field is added, this does not compile.
-std::string text_of(const PlaneRecord& record) {
-  const auto& [faces, engine, outcome, horizon_clipped, source_joined, tree_candidates, candidates, clipped, pairs,
-               undecided_pairs, loops, edges, cover, cover_remembered, visible_fraction, exact_fraction, cutters] =
-      record;
-  std::ostringstream text;
-  for (const FaceId face : faces) text << index_of(face) << ' ';
-  text << to_string(engine) << ", " << to_string(outcome) << ", " << horizon_clipped << source_joined << ' '
-       << tree_candidates << ' ' << candidates << ' ' << clipped << ' ' << pairs << ' ' << undecided_pairs << ' '
-       << loops << ' ' << edges << ' ' << cover << cover_remembered << ' '
-       << generate::to_text(visible_fraction.value_or(-1.0)) << ' ' << exact_fraction.value_or("none") << '\n';
-  return text.str();
-}
-
-std::string text_of(const FormFactor& result) {
-  const auto& [value, lower, upper, status, enclosure, visible_fraction, visible_part, cutters, planes,
-               precision_bits] = result;
-  std::ostringstream text;
-  for (const double number : {value, lower, upper, visible_fraction.value_or(-1.0)}) {
-    text << generate::to_text(number) << ' ';
-  }
-  text << to_string(status) << ", " << enclosure.midpoint() << " +- " << enclosure.radius() << ", "
-       << (visible_part ? to_string(*visible_part) : "no part") << ", " << precision_bits << " bits, cut by";
-  for (const FaceId face : cutters) text << ' ' << index_of(face);
-  text << '\n';
-  for (const PlaneRecord& record : planes) text << text_of(record);
-  return text.str();
-}
-
-// One result and one workspace are reused for all pairs; nothing of a pair may remain in them for the next.
-class KeptResult : public ::testing::Test {
- protected:
-  void expect_as_anew(const Scene& scene, const Receiver& receiver, const ExactSource& source,
-                      const ExactOptions& options) {
-    exact_form_factor(scene, receiver, source, options, kept_, workspace_);
-    FormFactor anew;
-    Workspace fresh;
-    exact_form_factor(scene, receiver, source, options, anew, fresh);
-    EXPECT_EQ(text_of(kept_), text_of(anew));
-    EXPECT_TRUE(kept_.enclosure.contains(anew.enclosure) && anew.enclosure.contains(kept_.enclosure));
-  }
-  void expect_as_anew(const PlainScene& plain, const ExactOptions& options) {
-    const Scene scene = generate::build(plain);
-    const ExactSource source(scene, scene.select(plain.source));
-    expect_as_anew(scene, generate::receiver_of(plain), source, options);
-  }
-
-  FormFactor kept_;
-  Workspace workspace_;
-};
-
-const std::vector<FaceId> kNobody;
-const std::vector<ExactOptions> kOptions = {
-    {},
-    {.visible_fraction = true, .exact_fraction = true, .list_cutters = true},
-    {.digits = 60},
-    {.engine = Engine::kBoolean},
-    {.precision_cap = 20},
-    {.engine = Engine::kBoth, .visible_fraction = true},
-    {.list_cutters = true, .culling = ShaftCulling::kNone},
-    {.engine = Engine::kBoolean, .exact_fraction = true, .list_cutters = true},
-    {.only_occluders = &kNobody},
-};
-
-TEST_F(KeptResult, IsAsOneMadeAnew) {
-  std::vector<PlainScene> scenes(8, square_source());
-  add_square(scenes[1], "hides_all", 0.9, 0.5);
-  add_square(scenes[2], "hides_some", 0.2, 0.5, 0.1);
-  scenes[3].normal = {0.0, 0.0, -1.0};  // below the horizon
-  scenes[4].normal = {1.0, 0.0, 0.1};   // crosses the horizon
-  scenes[5].point = {0.0, 0.0, 2.0};    // behind
-  add_square(scenes[6], "source", 0.3, 0.8, 0.2, 0.1);
-  scenes[6].add_ring(scenes[6].patch("source"), {{1, -1, 1}, {2, -1, 0.7}, {2, 1, 0.7}, {1, 1, 1}});
-  add_square(scenes[7], "half", 0.5, 0.5, 0.5);
-  add_square(scenes[7], "other_half", 0.5, 0.5, -0.5);
-  for (std::size_t step : {1U, 5U, 7U}) {  // in several orders
-    const std::size_t count = scenes.size() * kOptions.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t at = i * step % count;
-      SCOPED_TRACE(at);
-      expect_as_anew(scenes[at / kOptions.size()], kOptions[at % kOptions.size()]);
-    }
-  }
-}
-
-TEST_F(KeptResult, IsAsOneMadeAnewOnRandomScenes) {
-  for (std::uint64_t i = 0; i < validation::scaled_count(30); ++i) {
-    SCOPED_TRACE(i);
-    generate::Random random(validation::seed_of(i));
-    const PlainScene plain =
-        random.below(2) == 0 ? validation::degenerate_scene(random) : validation::generic_scene(random);
-    expect_as_anew(plain, kOptions[random.below(kOptions.size())]);
-  }
-}
-
-TEST_F(KeptResult, OfSourcesOfManyPlanesAndOfFewIsAsOneMadeAnew) {
-  PlainScene plain = square_source();
-  generate::Random random(validation::seed_of(0));
-  const auto corner = [&] { return Vec3{random.between(-1, 1), random.between(-1, 1), random.between(0.5, 2)}; };
-  for (int k = 0; k < 9; ++k) plain.add_ring(plain.patch("many"), {corner(), corner(), corner()});
-  const Scene scene = generate::build(plain);
-  const ExactSource one(scene, scene.select("source")), many(scene, scene.select("many"));
-  for (const ExactSource* source : {&many, &one, &one, &many, &one, &many}) {
-    expect_as_anew(scene, generate::receiver_of(plain), *source, {.visible_fraction = true, .list_cutters = true});
-  }
-}
-
-TEST_F(KeptResult, OutlivesAnException) {
-  const PlainScene plain = square_source();
-  expect_as_anew(plain, {.visible_fraction = true});
-  const Scene scene = generate::build(plain);
-  const ExactSource source(scene, scene.select(plain.source));
-  EXPECT_THROW(exact_form_factor(scene, Receiver{}, source, {}, kept_), InputError);
-  expect_as_anew(plain, {});
-}
-
-TEST(Enclosure, SetIsAsOneMadeAnew) {
-  Enclosure kept;
-  for (const double value : {0.25, 0.0, 0x1p-500, 3.0}) {
-    Ball ball;
-    arb_set_d(ball.get(), value);
-    arb_add_error_2exp_si(ball.get(), -80);
-    if (value == 0.0) arb_zero(ball.get());
-    kept.set(ball);
-    EXPECT_EQ(kept.midpoint(), Enclosure(ball).midpoint());
-    EXPECT_EQ(kept.radius(), Enclosure(ball).radius());
-  }
-}
-
-TEST(Enclosure, IsItsOwnAfterACopy) {
-  Ball half;
-  arb_set_d(half.get(), 0.5);
-  Enclosure a(half), b;
-  b = a;
-  a += a;
-  EXPECT_EQ(b.lower(), 0.5);
-  EXPECT_EQ(a.lower(), 1.0);
-  a = Enclosure();
-  EXPECT_EQ(a.upper(), 0.0);
-  a = b;
-  EXPECT_EQ(a.lower(), 0.5);
 }
 
 // Twice the signed area along the drawing's front normal.
