@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <stdexcept>
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
-#include "fuzz/bytes.h"
+#include "fuzz/scene_bytes_format.h"
 #include "generate/vectors.h"
+#include "kernel/vec.h"
 
 namespace exactff::validation {
 
@@ -22,80 +26,11 @@ using generate::operator+;
 using generate::operator-;
 using generate::operator*;
 
+namespace scene_bytes {
 namespace {
 
-using Corners = std::vector<Vec3>;
 using Rings = std::vector<Corners>;
-
-constexpr std::size_t kMaxRings = 4;         // of one face
-constexpr std::size_t kMaxRingCorners = 24;  // of one ring
-
-double& component(Vec3& v, std::size_t axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
-
-bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-// The numbers of the instructions are part of the corpus' format.
-enum class Op : std::uint8_t {
-  kTriangle,
-  kParallelogram,
-  kRectangle,
-  kStar,
-  kRing,
-  kFrame,
-  kCopy,
-  kCover,
-  kThroughReceiver,
-  kNeighbour,
-  kTiles,
-  kRaw,
-  kSpike,
-  kIdleCorner,
-  kNudge,
-  kSlide,
-};
-constexpr std::size_t kOpCount = 16;
-
-// Flags in the same byte as the instruction.
-enum Flag : std::uint8_t { kSamePatch = 1, kReversed = 2, kKeyhole = 4, kOther = 8 };
-
-enum class Place : std::uint8_t { kOrigin, kLattice, kCorner, kMiddle, kInPlane, kRaw };
-constexpr std::size_t kPlaceCount = 6;
-
-enum class NormalKind : std::uint8_t { kUp, kLattice, kRaw };
-constexpr std::size_t kNormalCount = 3;
-
-// A plane w = height + slope_u u + slope_v v over two of the axes.
-struct Plane {
-  std::size_t axis = 2;
-  double height = 0.0;
-  double slope_u = 0.0;
-  double slope_v = 0.0;
-
-  [[nodiscard]] Vec3 at(double u, double v) const {
-    Vec3 out;
-    component(out, (axis + 1) % 3) = u;
-    component(out, (axis + 2) % 3) = v;
-    component(out, axis) = height + slope_u * u + slope_v * v;
-    return out;
-  }
-};
-
-struct Rectangle {
-  double u = 0.0;
-  double v = 0.0;
-  double width = 1.0;
-  double height = 1.0;
-
-  [[nodiscard]] Corners corners(const Plane& plane) const {
-    return {plane.at(u, v + height), plane.at(u + width, v + height), plane.at(u + width, v), plane.at(u, v)};
-  }
-  // The part between two pairs of sixteenths.
-  [[nodiscard]] Rectangle part(std::size_t left, std::size_t low, std::size_t right, std::size_t high) const {
-    const auto sixteenth = [](std::size_t k) { return static_cast<double>(k) / 16.0; };
-    return {u + sixteenth(left) * width, v + sixteenth(low) * height, sixteenth(right - left) * width,
-            sixteenth(high - low) * height};
-  }
-};
+using kernel::is_finite;
 
 struct DecodedFace {
   std::size_t patch = 0;  // 0 is the source
@@ -121,11 +56,11 @@ class Decoder {
  private:
   void read_header() {
     place_ = static_cast<Place>(in_.below(kPlaceCount));
-    if (place_ == Place::kLattice) point_ = lattice_point();
-    if (place_ == Place::kRaw) point_ = raw_point();
+    if (place_ == Place::kLattice) point_ = in_.lattice_point();
+    if (place_ == Place::kRaw) point_ = in_.raw_point();
     const auto kind = static_cast<NormalKind>(in_.below(kNormalCount));
-    if (kind == NormalKind::kLattice) normal_ = lattice_point();
-    if (kind == NormalKind::kRaw) normal_ = raw_point();
+    if (kind == NormalKind::kLattice) normal_ = in_.lattice_point();
+    if (kind == NormalKind::kRaw) normal_ = in_.raw_point();
     if (normal_ == Vec3{}) normal_.z = 1.0;
     // Most sources have one face.
     const std::size_t size = in_.next();
@@ -134,43 +69,12 @@ class Decoder {
     merge_corners_ = in_.below(2) == 1;
   }
 
-  // --- numbers ---
-
-  double coordinate() {
-    const std::uint8_t byte = in_.next();
-    const double plain = ((byte & 15) - 8) / 4.0;
-    switch (byte >> 4) {
-      case 11:
-        return std::nextafter(plain, 1e300);
-      case 12:
-        return std::nextafter(plain, -1e300);
-      case 13:
-        return 0x1p-40 * plain;
-      case 14:
-        return 0x1p40 * plain;
-      case 15:
-        return plain / 3.0;
-      default:
-        return plain;
-    }
-  }
-
-  Vec3 lattice_point() {
-    const double x = coordinate();
-    const double y = coordinate();
-    return {x, y, coordinate()};
-  }
-
-  Vec3 raw_point() {
-    const double x = in_.raw_double();
-    const double y = in_.raw_double();
-    return {x, y, in_.raw_double()};
-  }
+  // --- corners ---
 
   // A new corner or an existing one.
   Vec3 corner() {
     const std::uint8_t choice = in_.next();
-    if (choice < 160 || faces_.empty()) return lattice_point();
+    if (choice < 160 || faces_.empty()) return in_.lattice_point();
     return some_corner(choice);
   }
 
@@ -178,32 +82,6 @@ class Decoder {
     const DecodedFace& face = faces_[choice % faces_.size()];
     const Corners& ring = face.rings.front();
     return ring[choice / faces_.size() % ring.size()];
-  }
-
-  double slope() {
-    constexpr std::array kSlopes{0.0, 0.5, -0.5, 1.0, -1.0, 0.25, 2.0, 1.0 / 3.0};
-    return kSlopes[in_.below(kSlopes.size())];
-  }
-
-  Plane plane() {
-    const std::uint8_t kind = in_.next();
-    Plane out;
-    out.axis = (kind + 2u) % 3;  // horizontal first
-    out.height = coordinate();
-    if (kind < 160) return out;
-    out.slope_u = slope();
-    out.slope_v = slope();
-    return out;
-  }
-
-  Rectangle rectangle() {
-    Rectangle out;
-    out.u = coordinate();
-    out.v = coordinate();
-    const std::uint8_t size = in_.next();
-    out.width = (1 + (size & 15)) / 4.0;
-    out.height = (1 + (size >> 4)) / 4.0;
-    return out;
   }
 
   // --- instructions ---
@@ -269,19 +147,19 @@ class Decoder {
   }
 
   Corners flat_rectangle() {
-    const Plane where = plane();
-    return rectangle().corners(where);
+    const Plane where = in_.plane();
+    return in_.rectangle().corners(where);
   }
 
   // Corners in one plane, in any order or sorted around their middle.
   Corners polygon(bool sorted) {
-    const Plane where = plane();
+    const Plane where = in_.plane();
     std::vector<std::pair<double, double>> flat(3 + in_.below(6));
     double u_sum = 0.0;
     double v_sum = 0.0;
     for (auto& [u, v] : flat) {
-      u = coordinate();
-      v = coordinate();
+      u = in_.coordinate();
+      v = in_.coordinate();
       u_sum += u;
       v_sum += v;
     }
@@ -295,8 +173,8 @@ class Decoder {
 
   // A rectangle with one or two holes, which may touch it or each other.
   Rings frame() {
-    const Plane where = plane();
-    const Rectangle outer = rectangle();
+    const Plane where = in_.plane();
+    const Rectangle outer = in_.rectangle();
     Rings out{outer.corners(where)};
     const std::size_t holes = 1 + in_.below(2);
     for (std::size_t i = 0; i < holes; ++i) {
@@ -316,7 +194,7 @@ class Decoder {
     if (faces_.empty()) return {triangle()};
     Rings out = faces_[in_.below(faces_.size())].rings;
     if ((flags_ & kOther) == 0) return out;
-    const Vec3 step = lattice_point();
+    const Vec3 step = in_.lattice_point();
     for (Corners& ring : out) {
       for (Vec3& v : ring) v = v + step;
     }
@@ -365,8 +243,8 @@ class Decoder {
 
   // A rectangle in four tiles of one patch, some of them missing.
   void add_tiles() {
-    const Plane where = plane();
-    const Rectangle whole = rectangle();
+    const Plane where = in_.plane();
+    const Rectangle whole = in_.rectangle();
     const std::size_t missing = in_.below(16);
     const std::size_t u = 1 + in_.below(15);
     const std::size_t v = 1 + in_.below(15);
@@ -382,13 +260,13 @@ class Decoder {
     Rings out(1 + in_.below(kMaxRings));
     for (Corners& ring : out) {
       ring.resize(3 + in_.below(kMaxRingCorners - 2));
-      for (Vec3& v : ring) v = raw_point();
+      for (Vec3& v : ring) v = in_.raw_point();
     }
     return out;
   }
 
   void add(Rings rings) {
-    if (!std::ranges::all_of(rings, [](const Corners& ring) { return std::ranges::all_of(ring, &finite); })) return;
+    if (!std::ranges::all_of(rings, [](const Corners& ring) { return std::ranges::all_of(ring, &is_finite); })) return;
     if ((flags_ & kReversed) != 0) {
       for (Corners& ring : rings) std::ranges::reverse(ring);
     }
@@ -445,7 +323,7 @@ class Decoder {
     Vec3& v = (*ring)[in_.below(ring->size())];
     const int exponent = static_cast<std::int8_t>(in_.next()) * ((flags_ & kOther) != 0 ? 7 : 1);
     const Vec3 slid = point_ + std::ldexp(1.0, exponent) * (v - point_);
-    if (finite(slid)) v = slid;
+    if (is_finite(slid)) v = slid;
   }
 
   // --- the whole ---
@@ -467,7 +345,7 @@ class Decoder {
     if (place_ == Place::kCorner) point_ = a;
     if (place_ == Place::kMiddle) point_ = a + 0.5 * (b - a);
     if (place_ == Place::kInPlane) point_ = (a + (a - b)) + (a - ring[2]);
-    if (!finite(point_)) point_ = {};
+    if (!is_finite(point_)) point_ = {};
   }
 
   PlainScene scene() const {
@@ -515,10 +393,10 @@ class Decoder {
     if (std::abs(exponent_) < 100) return scene;
     PlainScene out = scene;
     generate::scale(out, std::ldexp(1.0, exponent_ > 0 ? (exponent_ - 99) * 36 : (exponent_ + 99) * 36));
-    return finite(out.point) && std::ranges::all_of(out.vertices, &finite) ? out : scene;
+    return is_finite(out.point) && std::ranges::all_of(out.vertices, &is_finite) ? out : scene;
   }
 
-  Bytes in_;
+  Numbers in_;
   Place place_ = Place::kOrigin;
   Vec3 point_;
   Vec3 normal_{0.0, 0.0, 1.0};
@@ -558,76 +436,14 @@ PlainScene usable_part(const PlainScene& plain) {
 }
 
 }  // namespace
+}  // namespace scene_bytes
 
 std::optional<FuzzCase> decode(std::span<const std::uint8_t> bytes) {
-  FuzzCase out = Decoder(bytes).run();
-  out.scene = usable_part(out.scene);
+  FuzzCase out = scene_bytes::Decoder(bytes).run();
+  out.scene = scene_bytes::usable_part(out.scene);
   const bool has_source =
       std::ranges::any_of(out.scene.patches, [&](const PlainPatch& patch) { return patch.name == out.scene.source; });
   return has_source ? std::optional(std::move(out)) : std::nullopt;
 }
-
-namespace {
-
-class Encoder {
- public:
-  std::vector<std::uint8_t> run(const PlainScene& scene, Identity identity) {
-    const PlainPatch& source = *std::ranges::find(scene.patches, scene.source, &PlainPatch::name);
-    for (const PlainPatch& patch : scene.patches) {
-      for (const PlainFace& face : patch.faces) count(face);
-    }
-    put(static_cast<std::size_t>(identity));
-    put(1);
-    put(static_cast<std::size_t>(Place::kRaw));
-    put(scene.point);
-    put(static_cast<std::size_t>(NormalKind::kRaw));
-    put(scene.normal);
-    put(source.faces.size() == 1 ? 0 : source.faces.size() + 190);
-    put(0);
-    put(0);
-    put(scene, source);
-    for (const PlainPatch& patch : scene.patches) {
-      if (patch.name != scene.source) put(scene, patch);
-    }
-    return std::move(out_);
-  }
-
- private:
-  void count(const PlainFace& face) {
-    if (++faces_ > kMaxFaces) throw std::invalid_argument("too many faces to be encoded");
-    if (face.rings.size() > kMaxRings) throw std::invalid_argument("too many rings to be encoded");
-    for (const Ring& ring : face.rings) {
-      if (ring.size() > kMaxRingCorners) throw std::invalid_argument("too many corners to be encoded");
-      corners_ += ring.size();
-    }
-    if (corners_ > kMaxCorners) throw std::invalid_argument("too many corners to be encoded");
-  }
-
-  void put(std::size_t value) { out_.push_back(static_cast<std::uint8_t>(value)); }
-  void put(const Vec3& v) {
-    for (const double c : {v.x, v.y, v.z}) {
-      for (int shift = 0; shift < 64; shift += 8) put(std::bit_cast<std::uint64_t>(c) >> shift & 255);
-    }
-  }
-  void put(const PlainScene& scene, const PlainPatch& patch) {
-    for (std::size_t f = 0; f < patch.faces.size(); ++f) {
-      const std::vector<Ring>& rings = patch.faces[f].rings;
-      put(static_cast<std::size_t>(Op::kRaw) + (f > 0 ? kOpCount * kSamePatch : 0));
-      put(rings.size() - 1);
-      for (const Ring& ring : rings) {
-        put(ring.size() - 3);
-        for (const std::uint32_t index : ring) put(scene.vertices[index]);
-      }
-    }
-  }
-
-  std::size_t faces_ = 0;
-  std::size_t corners_ = 0;
-  std::vector<std::uint8_t> out_;
-};
-
-}  // namespace
-
-std::vector<std::uint8_t> encode(const PlainScene& scene, Identity identity) { return Encoder().run(scene, identity); }
 
 }  // namespace exactff::validation
