@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "support/folder.h"
 #include "support/program.h"
 
 namespace exactff {
@@ -90,7 +91,7 @@ class HostileProgram : public testing::Test {
   void expect_nothing_in_place() const { EXPECT_TRUE(std::filesystem::is_empty(place_)); }
   // Only the journal remains, and it is usable: with it, the comparison gives the bytes of an undisturbed one.
   void expect_only_a_journal(const std::filesystem::path& folder) const {
-    EXPECT_EQ(names(folder.parent_path()), std::set<std::string>{folder.filename().string() + ".part"});
+    EXPECT_EQ(validation::names_in(folder.parent_path()), std::set<std::string>{folder.filename().string() + ".part"});
     const auto without_gnuplot = [] { ::setenv("PATH", "/nonexistent", 1); };
     const Running refused = start(comparison(folder), without_gnuplot);
     EXPECT_EQ(refused.wait(), 2);
@@ -99,19 +100,13 @@ class HostileProgram : public testing::Test {
     const Running going_on = start(resumed(folder), without_gnuplot);
     EXPECT_EQ(going_on.wait(), 0) << going_on.error();
     EXPECT_NE(going_on.error().find("were reused from the interrupted run"), std::string::npos) << going_on.error();
-    EXPECT_EQ(names(folder.parent_path()), std::set<std::string>{folder.filename().string()});
+    EXPECT_EQ(validation::names_in(folder.parent_path()), std::set<std::string>{folder.filename().string()});
     std::filesystem::remove_all(directory_.path() / "undisturbed");
     EXPECT_EQ(start(comparison(directory_.path() / "undisturbed"), without_gnuplot).wait(), 0);
     for (const char* file : {"values.csv", "exact.csv", "summary.csv"}) {
       EXPECT_EQ(validation::text_of(folder / file), validation::text_of(directory_.path() / "undisturbed" / file));
     }
     std::filesystem::remove_all(folder);
-  }
-  static std::set<std::string> names(const std::filesystem::path& folder) {
-    std::set<std::string> found;
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-      found.insert(entry.path().filename().string());
-    return found;
   }
 
   const validation::TemporaryDirectory directory_;

@@ -18,12 +18,14 @@
 #include <utility>
 #include <vector>
 
+#include "support/folder.h"
 #include "support/program.h"
 
 namespace exactff {
 namespace {
 
 namespace fs = std::filesystem;
+using validation::names_in;
 
 TEST_F(HostileProgram, AFullDiskLeavesTheJournalAlone) {
   for (const rlim_t bytes : {600, 2048}) {  // full while values are computed, and while tables are written
@@ -44,7 +46,7 @@ TEST_F(HostileProgram, ADiskFullFromTheStartIsLeftAsItWas) {
 TEST_F(HostileProgram, FoldersOnTheWayAreMade) {
   const Running run = start(comparison(place_ / "new" / "and" / "result"));
   EXPECT_EQ(run.wait(), 0) << run.error();
-  EXPECT_EQ(names(place_ / "new" / "and"), std::set<std::string>{"result"});
+  EXPECT_EQ(names_in(place_ / "new" / "and"), std::set<std::string>{"result"});
 }
 
 TEST_F(HostileProgram, AFullDiskLeavesNoPicture) {
@@ -101,7 +103,7 @@ TEST_F(HostileProgram, WithoutStandardStreamsFilesHoldWhatTheyShould) {
   EXPECT_EQ(start(point({"--svg", place_ / "c.svg"}), all_closed).wait(), 2);
   EXPECT_EQ(validation::text_of(place_ / "b.csv"), validation::text_of(place_ / "a.csv"));
   EXPECT_TRUE(validation::text_of(place_ / "c.svg").ends_with("</svg>\n"));
-  EXPECT_EQ(names(place_), (std::set<std::string>{"a.csv", "b.csv", "c.svg"}));
+  EXPECT_EQ(names_in(place_), (std::set<std::string>{"a.csv", "b.csv", "c.svg"}));
 }
 
 TEST_F(HostileProgram, AFileWhereTheJournalWouldBeIsNotLost) {

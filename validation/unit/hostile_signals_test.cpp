@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "support/folder.h"
 #include "support/program.h"
 #include "unit/hostile_program.h"
 #include "unit/sanitized.h"
@@ -22,6 +23,7 @@ namespace exactff {
 namespace {
 
 namespace fs = std::filesystem;
+using validation::names_in;
 
 // While gnuplot draws, the hidden folder exists: this is the worst moment for an interruption.
 TEST_F(HostileProgram, SignalsWhileItWritesLeaveTheJournalAlone) {
@@ -32,7 +34,7 @@ TEST_F(HostileProgram, SignalsWhileItWritesLeaveTheJournalAlone) {
       fs::remove(started);
       const Running run = start(comparison(folder), gnuplot);
       while (!fs::exists(started) && !run.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      EXPECT_GT(names(place_).size(), 1U);
+      EXPECT_GT(names_in(place_).size(), 1U);
       for (int i = 0; i < times; ++i) run.send(signal);
       EXPECT_EQ(run.wait(), 128 + signal);
       EXPECT_TRUE(run.error().ends_with("\nexactff: interrupted; finished work is kept in " + folder.string() +
@@ -80,19 +82,19 @@ TEST_F(HostileProgram, WhatAKilledRunLeavesTheNextClears) {
   const Running killed = begin(comparison(folder));
   killed.send(SIGKILL);
   EXPECT_EQ(killed.wait(), 128 + SIGKILL);
-  EXPECT_EQ(names(place_).size(), 2U);  // the journal, the hidden folder
+  EXPECT_EQ(names_in(place_).size(), 2U);  // the journal, the hidden folder
   const Running stress = begin({"stress", "--family", "crack", "-o", folder});
-  EXPECT_EQ(names(place_).size(), 2U);  // the journal, its own hidden folder
+  EXPECT_EQ(names_in(place_).size(), 2U);  // the journal, its own hidden folder
   const Running other = start(resumed(folder), [] { ::setenv("PATH", "/nonexistent", 1); });
   EXPECT_EQ(other.wait(), 0) << other.error();
-  EXPECT_EQ(names(place_).size(), 2U);  // the result, and the hidden folder of the living process
+  EXPECT_EQ(names_in(place_).size(), 2U);  // the result, and the hidden folder of the living process
   stress.send(SIGINT);
   EXPECT_EQ(stress.wait(), 128 + SIGINT);
   EXPECT_TRUE(stress.error().starts_with("exactff: interrupted; finished families: 1 of 1, kept in " +
                                          (place_ / "result.part" / "report.html").string() +
                                          "; --family runs single ones\n"))
       << stress.error() << "(what the other run wrote to this file may follow)";
-  EXPECT_EQ(names(place_), (std::set<std::string>{"result", "result.part"}));
+  EXPECT_EQ(names_in(place_), (std::set<std::string>{"result", "result.part"}));
 }
 
 TEST_F(HostileProgram, ASignalWhileItReadsLeavesNothing) {
@@ -116,7 +118,7 @@ TEST_F(HostileProgram, AnInterruptedRunIsBegunAnewByForce) {
   const Running anew = start(arguments, [] { ::setenv("PATH", "/nonexistent", 1); });
   EXPECT_EQ(anew.wait(), 0);
   EXPECT_EQ(anew.error().find("were reused from"), std::string::npos) << anew.error();
-  EXPECT_EQ(names(place_), std::set<std::string>{"result"});
+  EXPECT_EQ(names_in(place_), std::set<std::string>{"result"});
 }
 
 }  // namespace

@@ -5,8 +5,6 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <fstream>
-#include <functional>
 #include <set>
 #include <string>
 #include <thread>
@@ -15,6 +13,8 @@
 #include "exactff/matrix.h"
 #include "exactff/team.h"
 #include "generate/plain_scene.h"
+#include "support/complaint.h"
+#include "support/folder.h"
 #include "support/program.h"
 #include "support/thread_team.h"
 
@@ -23,11 +23,13 @@ namespace {
 
 namespace fs = std::filesystem;
 using jobs::Existing;
+using validation::complaint;
 using validation::Mailbox;
 using validation::RunningProgram;
 using validation::size_of;
 using validation::text_of;
 using validation::ThreadTeam;
+using validation::write_text;
 
 // Four walls and a floor that look inward, and a table without a bottom. One name needs quotes.
 Scene room() {
@@ -78,17 +80,6 @@ class MatrixJobs : public testing::Test {
     for (int questions = 100; !fs::exists(journal_); questions += 100) interrupt(request(), questions);
     return text_of(journal_);
   }
-  static std::string message_of(const std::function<void()>& act) {
-    try {
-      act();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return {};
-  }
-  void write_text(const fs::path& path, const std::string& text) const {
-    std::ofstream(path, std::ios::binary) << text;
-  }
   std::vector<fs::path> shards(std::uint64_t count) const {
     std::vector<fs::path> files;
     for (std::uint64_t number = 1; number <= count; ++number) {
@@ -124,16 +115,16 @@ TEST_F(MatrixJobs, AreReadToTheSameBits) {
   EXPECT_EQ(csv_text(scene_, read(asked, file_), asked.options.factors), expected());
   Request fewer = asked;
   fewer.to.pop_back();
-  EXPECT_NE(message_of([&] { (void)read(fewer, file_); }).find("holds other rows or columns"), std::string::npos);
+  EXPECT_NE(complaint([&] { (void)read(fewer, file_); }).find("holds other rows or columns"), std::string::npos);
   fewer = asked;
   fewer.options.open = false;
-  EXPECT_NE(message_of([&] { (void)read(fewer, file_); }).find("holds other rows or columns"), std::string::npos);
+  EXPECT_NE(complaint([&] { (void)read(fewer, file_); }).find("holds other rows or columns"), std::string::npos);
 }
 
 TEST_F(MatrixJobs, AnInterruptedRunGoesOn) {
   (void)journal_of_an_interrupted_run();
   EXPECT_FALSE(fs::exists(file_));
-  EXPECT_NE(message_of([&] { write(request(), file_); }).find("contains the finished rows of an interrupted run"),
+  EXPECT_NE(complaint([&] { write(request(), file_); }).find("contains the finished rows of an interrupted run"),
             std::string::npos);
   const jobs::Summary summary = write(request(), file_, Existing::kResume);
   EXPECT_GT(summary.resumed, 0U);
@@ -162,7 +153,7 @@ TEST_F(MatrixJobs, AJournalOfAnotherRequestIsRefused) {
   others.emplace_back(request(), "(back)");
   others.back().first.options.backs = false;
   for (const auto& [asked, words] : others) {
-    const std::string message = message_of([&, &other = asked] { write(other, file_, Existing::kResume); });
+    const std::string message = complaint([&, &other = asked] { write(other, file_, Existing::kResume); });
     EXPECT_NE(message.find("belongs to a different request"), std::string::npos) << words << message;
     EXPECT_NE(message.find(words), std::string::npos) << message;
     EXPECT_EQ(text_of(journal_), journal);
@@ -174,12 +165,12 @@ TEST_F(MatrixJobs, ACompleteFileIsLeftAsItIs) {
   const auto before = fs::last_write_time(file_);
   EXPECT_EQ(write(request(), file_, Existing::kResume).resumed, kPairs);
   EXPECT_EQ(fs::last_write_time(file_), before);
-  EXPECT_NE(message_of([&] { write(request(), file_); }).find("already exists"), std::string::npos);
-  EXPECT_NE(message_of([&] { write(request(0.02), file_, Existing::kResume); }).find("different request"),
+  EXPECT_NE(complaint([&] { write(request(), file_); }).find("already exists"), std::string::npos);
+  EXPECT_NE(complaint([&] { write(request(0.02), file_, Existing::kResume); }).find("different request"),
             std::string::npos);
   const std::string whole = text_of(file_);
   write_text(file_, whole.substr(0, whole.rfind('\n', whole.size() - 2) + 1));  // without the last entry
-  EXPECT_NE(message_of([&] { write(request(), file_, Existing::kResume); }), "");
+  EXPECT_NE(complaint([&] { write(request(), file_, Existing::kResume); }), "");
 }
 
 // --- shards ----------------------------------------------------------------------------------------------------------
@@ -196,7 +187,7 @@ TEST_F(MatrixJobs, ShardsAreMergedToTheBytesOfOneRun) {
 
 TEST_F(MatrixJobs, WhatDoesNotBelongTogetherIsNotMerged) {
   const std::vector<fs::path> files = shards(3);
-  const auto refusal = [&](std::vector<fs::path> given) { return message_of([&] { merge(given, file_); }); };
+  const auto refusal = [&](std::vector<fs::path> given) { return complaint([&] { merge(given, file_); }); };
   EXPECT_NE(refusal({files[0], files[2]}).find("these are missing: 2"), std::string::npos);
   EXPECT_NE(refusal({files[0], files[1], files[0], files[2]}).find("is shard 1, and so is"), std::string::npos);
   const fs::path other = directory_.path() / "other.csv";

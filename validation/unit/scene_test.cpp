@@ -7,19 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "support/complaint.h"
+
 namespace exactff {
 namespace {
 
 using Rings = std::vector<std::vector<std::uint32_t>>;
-
-std::string message_of(const auto& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "nothing thrown";
-}
+using validation::complaint;
 
 // A unit cube with one patch per side, fronts outwards; corners are not shared between faces.
 struct Cube {
@@ -112,12 +106,12 @@ TEST(SceneNames, NamesReadBack) {
 
 TEST(SceneNames, UnknownNamesListTheClosest) {
   const Scene scene = rooms().build();
-  EXPECT_EQ(message_of([&] { (void)scene.select("Lamb"); }),
+  EXPECT_EQ(complaint([&] { (void)scene.select("Lamb"); }),
             "rooms.obj: there is no patch named 'Lamb' (names must match exactly); the patches are: 'lamp', 'wall', "
             "'wall:1', 'mixed'");
-  EXPECT_EQ(message_of([&] { (void)scene.select("wall:4"); }),
+  EXPECT_EQ(complaint([&] { (void)scene.select("wall:4"); }),
             "rooms.obj: there is no face 'wall:4' (patch 'wall' has 3 faces); faces are numbered from 1");
-  EXPECT_EQ(message_of([&] { (void)scene.select("lamp:0"); }),
+  EXPECT_EQ(complaint([&] { (void)scene.select("lamp:0"); }),
             "rooms.obj: there is no face 'lamp:0' (patch 'lamp' has 1 face); faces are numbered from 1");
   for (const char* name : {"", ":", "lamp:", "lamp:x", "lamp:-1", "lamp:+1", "lamp:1 ", "lamp:99999999999999999999"}) {
     EXPECT_THROW((void)scene.select(name), InputError) << name;
@@ -128,7 +122,7 @@ TEST(SceneNames, ManyPatchesAreNotAllListed) {
   SceneBuilder builder;
   for (int i = 0; i < 50; ++i) (void)builder.patch("patch" + std::to_string(i));
   const Scene scene = builder.build();
-  EXPECT_EQ(message_of([&] { (void)scene.select("patch77"); }),
+  EXPECT_EQ(complaint([&] { (void)scene.select("patch77"); }),
             "there is no patch named 'patch77' (names must match exactly); the closest of its 50 patches are: "
             "'patch7', 'patch17', 'patch27', 'patch37', 'patch47', 'patch0'");
 }
@@ -154,7 +148,7 @@ TEST(SceneMaterials, SourceRadiosityIsKeOrOne) {
   EXPECT_EQ(scene.source_radiosity(scene.select("lamp")), (Rgb{4, 2, 1}));
   EXPECT_EQ(scene.source_radiosity(scene.select("wall")), (Rgb{1, 1, 1}));  // the ignored face does not count
   EXPECT_EQ(scene.source_radiosity(scene.select("mixed:2")), (Rgb{1, 1, 1}));
-  EXPECT_EQ(message_of([&] { (void)scene.source_radiosity(scene.select("mixed")); }),
+  EXPECT_EQ(complaint([&] { (void)scene.source_radiosity(scene.select("mixed")); }),
             "rooms.obj:16: the faces of source 'mixed' differ in Ke ('mixed:1' has material 'bright', 'mixed:2' has "
             "'dim'; a source has one radiosity); name a single face, or put the faces into separate groups");
 }
@@ -194,7 +188,7 @@ TEST(SceneBuilder, SkipsBadFacesOnRequest) {
     builder.add_face(builder.patch("bow"), material, {{0, 1, 2}}, 6);
     return builder.build();
   };
-  EXPECT_EQ(message_of([&] { (void)with_bow_tie(BadFaces::kReject); }),
+  EXPECT_EQ(complaint([&] { (void)with_bow_tie(BadFaces::kReject); }),
             "bow.obj:5: face 'bow:1' crosses itself: edge 1-2 and edge 3-4 (vertex numbers) intersect (its interior is "
             "ambiguous); split it into simple polygons, or skip bad faces with --skip-bad-faces");
   const Scene scene = with_bow_tie(BadFaces::kSkip);
@@ -202,7 +196,7 @@ TEST(SceneBuilder, SkipsBadFacesOnRequest) {
   EXPECT_EQ(scene.faces_of({PatchId{0}, {}}), std::vector<FaceId>{FaceId{1}});
   ASSERT_EQ(scene.warnings().size(), 1U);
   EXPECT_EQ(scene.warnings()[0].suggestion, "the face is skipped");
-  EXPECT_EQ(message_of([&] { (void)scene.select("bow:1"); }),
+  EXPECT_EQ(complaint([&] { (void)scene.select("bow:1"); }),
             "bow.obj:5: face 'bow:1' cannot be used (it was skipped as a bad face); see the warning about it");
 }
 
@@ -226,7 +220,7 @@ TEST(SceneBuilder, CollectsEveryMistake) {
   builder.add_vertex({std::numeric_limits<double>::quiet_NaN(), 0, 0});
   builder.add_vertex({0, std::numeric_limits<double>::infinity(), 0});
   builder.add_face(builder.patch("a"), material, {{0, 1, 2}});
-  EXPECT_EQ(message_of([&] { (void)builder.build(); }),
+  EXPECT_EQ(complaint([&] { (void)builder.build(); }),
             "api: vertex 1 is not finite (a coordinate is one exact number); give finite coordinates\n"
             "api: vertex 2 is not finite (a coordinate is one exact number); give finite coordinates\n"
             "api: material 'black hole' has a negative or infinite Kd or Ke (reflectances and radiosities are finite "
@@ -238,7 +232,7 @@ TEST(SceneBuilder, RefusesIndicesBeyondTheVertices) {
   const MaterialId material = builder.add_material({});
   builder.add_vertex({});
   builder.add_face(builder.patch("a"), material, {{0, 0, 7}});
-  EXPECT_EQ(message_of([&] { (void)builder.build(); }), "face 'a:1' refers to vertex 8 (there are 1 vertices)");
+  EXPECT_EQ(complaint([&] { (void)builder.build(); }), "face 'a:1' refers to vertex 8 (there are 1 vertices)");
 }
 
 TEST(SceneBuilder, IsEmptyAfterwards) {

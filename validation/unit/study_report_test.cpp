@@ -14,6 +14,7 @@
 #include "report/figures.h"
 #include "report/report.h"
 #include "report/tables.h"
+#include "support/folder.h"
 #include "support/program.h"
 #include "unit/study_support.h"
 
@@ -21,6 +22,7 @@ namespace exactff::study {
 namespace {
 
 namespace fs = std::filesystem;
+using validation::names_in;
 using validation::small_study;
 using validation::whole_study;
 
@@ -147,12 +149,6 @@ class OutputFolder : public ::testing::Test {
     fs::remove_all(root_, ignored);
   }
 
-  std::set<std::string> names() const {
-    std::set<std::string> found;
-    for (const auto& entry : fs::directory_iterator(root_)) found.insert(entry.path().filename().string());
-    return found;
-  }
-
   fs::path root_;
 };
 
@@ -178,7 +174,7 @@ TEST_F(OutputFolder, OfAnEarlierStudyMayBeReplaced) {
 TEST_F(OutputFolder, OfACancelledStudyIsNotThere) {
   const Hooks hooks{{}, [] { return true; }};
   EXPECT_THROW((void)report::write(small_study(), root_ / "out", hooks), Cancelled);
-  EXPECT_TRUE(names().empty());
+  EXPECT_TRUE(names_in(root_).empty());
 }
 
 TEST_F(OutputFolder, OfSeveralScenesHasTheirNamesBeforeTheFiles) {
@@ -205,7 +201,7 @@ TEST_F(OutputFolder, WithoutGnuplotHoldsTablesAndAReportThatSaysSo) {
   const auto messages = report::write(small_study(), root_ / "out");
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_NE(messages.front().find("gnuplot"), std::string::npos);
-  EXPECT_EQ(names(), std::set<std::string>{"out"});
+  EXPECT_EQ(names_in(root_), std::set<std::string>{"out"});
   for (const report::StudyTable& table : report::tables()) {
     EXPECT_EQ(fs::exists(root_ / "out" / table.file), table.has_rows(small_study())) << table.file;
   }

@@ -11,6 +11,7 @@
 #include "exactff/version.h"
 #include "jobs/journal.h"
 #include "support/complaint.h"
+#include "support/folder.h"
 #include "support/program.h"
 #include "truth/rows.h"
 #include "unit/truth_support.h"
@@ -22,6 +23,7 @@ namespace fs = std::filesystem;
 using namespace jobs;
 using validation::complaint;
 using validation::text_of;
+using validation::write_text;
 
 TEST_F(Truth, BytesDoNotDependOnThreads) {
   const Summary one = write(request(10), file_);

@@ -14,6 +14,7 @@
 #include "jobs/blocks.h"
 #include "jobs/workers.h"
 #include "support/complaint.h"
+#include "support/folder.h"
 #include "support/program.h"
 #include "truth/rows.h"
 #include "unit/truth_support.h"
@@ -25,6 +26,7 @@ namespace fs = std::filesystem;
 using namespace jobs;
 using validation::complaint;
 using validation::text_of;
+using validation::write_text;
 
 // --- schedule --------------------------------------------------------------------------------------------------------
 

@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <sstream>
 #include <string>
@@ -18,6 +17,7 @@
 #include "jobs/journal.h"
 #include "jobs/workers.h"
 #include "support/complaint.h"
+#include "support/folder.h"
 #include "support/program.h"
 #include "truth/rows.h"
 
@@ -30,10 +30,6 @@ inline Scene room() {
       "v 0 0 1\nv 1 0 1\nv 1 2 1\nv 0 2 1\n"
       "g floor\nf 1 2 3 4\ng light\nf 8 7 6 5\ng lamp\nf 12 11 10 9\ng board\nf 13 14 15 16\n");
   return read_obj(obj, "room.obj");
-}
-
-inline void write_text(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
 }
 
 class Truth : public testing::Test {
@@ -75,12 +71,8 @@ class Truth : public testing::Test {
     const jobs::RowJournal journal(file_, rows, Existing::kResume, {});
     return rows.shard_rows() - jobs::Schedule(rows, journal.blocks()).rows();
   }
-  void expect_only(std::set<std::string> names) const {
-    std::set<std::string> found;
-    for (const auto& entry : std::filesystem::directory_iterator(directory_.path())) {
-      found.insert(entry.path().filename());
-    }
-    EXPECT_EQ(found, names);
+  void expect_only(const std::set<std::string>& names) const {
+    EXPECT_EQ(validation::names_in(directory_.path()), names);
   }
 
   const Scene scene_ = room();

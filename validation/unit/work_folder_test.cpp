@@ -13,6 +13,7 @@
 
 #include "exactff/error.h"
 #include "page/output_folder.h"
+#include "support/folder.h"
 #include "support/program.h"
 
 namespace exactff::study {
@@ -22,11 +23,7 @@ namespace fs = std::filesystem;
 
 class WorkFolders : public testing::Test {
  protected:
-  std::set<std::string> names() const {
-    std::set<std::string> found;
-    for (const auto& entry : fs::directory_iterator(directory_.path())) found.insert(entry.path().filename().string());
-    return found;
-  }
+  std::set<std::string> names() const { return validation::names_in(directory_.path()); }
   void put(const fs::path& file, const std::string& text = "x") const {
     fs::create_directories(file.parent_path());
     std::ofstream(file) << text;
