@@ -21,7 +21,7 @@ work=$build/fuzzing
 findings=$build/findings
 
 validation/setup.sh clang libclang-rt-14-dev llvm
-validation/build.sh "$build" -DCMAKE_CXX_COMPILER=clang++ -DEXACTFF_FUZZ=ON -DEXACTFF_WERROR=ON \
+validation/build.sh "$build" -DCMAKE_CXX_COMPILER=clang++ -DEXACTFF_FUZZ=ON -DEXACTFF_WERROR=ON -DEXACTFF_QUICK_BUILD=ON \
   -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
 
 rm -rf "$work"

@@ -9,7 +9,7 @@ set -euo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$top"
 
-# EXACTFF_QUICK_BUILD compiles sources together. The build with sanitizers still compiles every source by itself.
+# EXACTFF_QUICK_BUILD compiles sources together. validation/README.md tells how every source is compiled by itself.
 test_optimised() {
   validation/setup.sh libboost-mpi-dev libopenmpi-dev openmpi-bin \
     chromium chromium-driver python3-selenium clang-format python3-openimageio \

@@ -63,5 +63,5 @@ row '402 patches, three cubes, 1e-6, topology-proved' cubes.obj
 rows=$(awk '$1 == "g" && ++n % 200 == 100 { print $2 }' building.obj | paste -sd,)
 TIMEFORMAT='%R'
 { time "$build/exactff" matrix building.obj --from "$rows" --draft --force -o draft.csv > log 2>&1; } 2> times
-printf '| 4,872 patches of a furnished building, 1e-3, draft, all threads | | | %.0f |\n' \
+printf '| 4,872 patches of a furnished building, draft of 216 views a row, all threads | | | %.0f |\n' \
   "$(awk -v rows="$(tr ',' '\n' <<< "$rows" | wc -l)" '{ print $1 * 4872 / rows }' times)"

@@ -3,7 +3,7 @@
 # EXACTFF_QUICK_BUILD is for builds in which nobody edits sources. Sources that instantiate the same templates are
 # compiled together, and the standard headers of the unit tests are parsed once. Such a build does not check that every
 # source includes what it uses, and misses warnings that appear only when a source is compiled by itself. A build
-# without the option checks both: test.sh --sanitizers makes one.
+# without the option checks both: build.sh build/alone -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON.
 
 # exactff_compile_group(TARGET NAME SOURCE...): compiles these sources of the target as one. Sources with their own compile
 # options stay separate. What the sources define in the same unnamed namespace must differ by name.
@@ -65,31 +65,20 @@ function(exactff_save_compile_time target)
   endif()
 endfunction()
 
-# exactff_save_compile_time_of_modules(TARGET MODULE...): under sanitizers, compiles the sources in these folders with
-# -O0, in half the time. For modules that measure, read and write, in which tests spend little time.
-function(exactff_save_compile_time_of_modules target)
-  if(NOT EXACTFF_SANITIZE)
-    return()
-  endif()
-  get_target_property(sources ${target} SOURCES)
-  foreach(source ${sources})
-    cmake_path(GET source PARENT_PATH folder)
-    cmake_path(GET folder FILENAME module)
-    if(module IN_LIST ARGN)
-      set_property(SOURCE ${source} TARGET_DIRECTORY ${target} APPEND PROPERTY COMPILE_OPTIONS -O0)
-    endif()
-  endforeach()
-endfunction()
-
-# exactff_save_compile_time_of_groups(TARGET NAME...): in a quick build of tests, compiles these groups with -O1. For groups
-# that measure and write reports. Quick builds without tests, such as that of report.sh, optimise them like the others.
+# exactff_save_compile_time_of_groups(TARGET NAME...): compiles these groups of a quick build with less optimisation: -O0
+# under sanitizers, else -O1 if the build has tests. For groups that measure, read and write, in which tests spend little
+# time. Quick builds without tests, such as that of report.sh, optimise them like the others.
 function(exactff_save_compile_time_of_groups target)
   if(NOT EXACTFF_QUICK_BUILD OR NOT EXACTFF_TESTS)
     return()
   endif()
+  set(level -O1)
+  if(EXACTFF_SANITIZE)
+    set(level -O0)
+  endif()
   # With an option of its own, a source would leave its group. So the source that CMake makes of the group gets it.
   foreach(group ${ARGN})
     set_property(SOURCE ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${target}.dir/Unity/unity_${group}_cxx.cxx
-                 APPEND PROPERTY COMPILE_OPTIONS -O1)
+                 APPEND PROPERTY COMPILE_OPTIONS ${level})
   endforeach()
 endfunction()

@@ -33,8 +33,8 @@ void Box::include(const Vec3& v) {
 }
 
 bool Box::is_apart_from(const Box& other) const {
-  constexpr double kRoundings = 0x1p-50;  // no coordinate exceeds 1
-  const auto apart = [](double high_end, double low_end) { return high_end + kRoundings < low_end; };
+  constexpr double kGap = 0x1p-50;  // no coordinate exceeds 1
+  const auto apart = [](double high_end, double low_end) { return high_end + kGap < low_end; };
   return apart(high.x, other.low.x) || apart(high.y, other.low.y) || apart(high.z, other.low.z) ||
          apart(other.high.x, low.x) || apart(other.high.y, low.y) || apart(other.high.z, low.z);
 }

@@ -18,7 +18,7 @@ namespace {
 
 using generate::PlainScene;
 using generate::Random;
-using Ring = std::vector<std::uint32_t>;
+using RingOfFace = std::vector<std::uint32_t>;
 
 // Source [-1,1]^2 at z = 1 facing down, receiver at the origin facing up.
 PlainScene scene_with_source() {
@@ -28,22 +28,22 @@ PlainScene scene_with_source() {
 }
 
 // Adds vertices, and faces whose indices count from the first of these vertices.
-void add_solid(PlainScene& scene, const std::vector<Vec3>& vertices, std::vector<Ring> faces) {
+void add_solid(PlainScene& scene, const std::vector<Vec3>& vertices, std::vector<RingOfFace> faces) {
   const auto first = static_cast<std::uint32_t>(scene.vertices.size());
   scene.vertices.insert(scene.vertices.end(), vertices.begin(), vertices.end());
-  for (Ring& ring : faces) {
+  for (RingOfFace& ring : faces) {
     for (std::uint32_t& corner : ring) corner += first;
     scene.patch("o" + std::to_string(scene.patches.size())).faces.push_back({{ring}});
   }
 }
 
-const std::vector<Ring> kTetrahedron{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-const std::vector<Ring> kOctahedron{{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
-                                    {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+const std::vector<RingOfFace> kTetrahedron{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+const std::vector<RingOfFace> kOctahedron{{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                                          {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
 const std::vector<Vec3> kCorners{{0, 0, 0.5}, {0.25, 0, 0.5}, {0, 0.25, 0.5}, {0, 0, 0.75}};
 
-std::vector<Ring> reversed(std::vector<Ring> faces) {
-  for (Ring& ring : faces) std::reverse(ring.begin(), ring.end());
+std::vector<RingOfFace> reversed(std::vector<RingOfFace> faces) {
+  for (RingOfFace& ring : faces) std::reverse(ring.begin(), ring.end());
   return faces;
 }
 
@@ -67,7 +67,7 @@ TEST(ClosedSurfaces, AreTellableByTheirEdges) {
 
 TEST(ClosedSurfaces, AreToldByPositionsAndKeptApart) {
   PlainScene scene = scene_with_source();
-  for (const Ring& face : kTetrahedron) {  // no two faces have a vertex in common
+  for (const RingOfFace& face : kTetrahedron) {  // no two faces have a vertex in common
     add_solid(scene, {kCorners[face[0]], kCorners[face[1]], kCorners[face[2]]}, {{0, 1, 2}});
   }
   std::vector<Vec3> elsewhere = kCorners;
@@ -173,7 +173,7 @@ TEST(ClosedSurfaces, HideWhatTheBooleansFind) {
         vertices.push_back({std::round(lattice * p.x) / lattice, std::round(lattice * p.y) / lattice,
                             std::round(lattice * p.z) / lattice});
       }
-      const std::vector<Ring>& faces = is_tetrahedron ? kTetrahedron : kOctahedron;
+      const std::vector<RingOfFace>& faces = is_tetrahedron ? kTetrahedron : kOctahedron;
       add_solid(scene, vertices, random.one_in(2) ? reversed(faces) : faces);
     }
     Receiver receiver = generate::receiver_of(scene);
