@@ -14,17 +14,19 @@ using validation::patch_names;
 using validation::ring;
 using validation::warnings_of;
 
-const std::string kVertices = "element vertex 4\nproperty double x\nproperty double y\nproperty double z\n";
-const std::string kSquare = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+const std::string kPlyVertices = "element vertex 4\nproperty double x\nproperty double y\nproperty double z\n";
+const std::string kPlySquare = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
 std::string header(const std::string& faces, const std::string& format = "ascii") {
-  return "ply\nformat " + format + " 1.0\ncomment a square\n" + kVertices + faces + "end_header\n";
+  return "ply\nformat " + format + " 1.0\ncomment a square\n" + kPlyVertices + faces + "end_header\n";
 }
 const std::string kFaces = "element face 1\nproperty list uchar int vertex_indices\n";
 
-Scene read(const std::string& bytes, const SceneOptions& options = {}) { return read_scene(bytes, "s.ply", options); }
-std::string error(const std::string& bytes) {
-  return error_of([&] { return read(bytes); });
+Scene from_ply(const std::string& bytes, const SceneOptions& options = {}) {
+  return read_scene(bytes, "s.ply", options);
+}
+std::string ply_error(const std::string& bytes) {
+  return error_of([&] { return from_ply(bytes); });
 }
 
 template <class T>
@@ -35,7 +37,7 @@ std::string raw(T value, bool big = false) {
 }
 
 TEST(PlyReader, ReadsTextWithPolygons) {
-  const Scene scene = read(header(kFaces) + kSquare + "4 0 1 2 3\n");
+  const Scene scene = from_ply(header(kFaces) + kPlySquare + "4 0 1 2 3\n");
   EXPECT_EQ(scene.vertices().size(), 4U);
   EXPECT_EQ(ring(scene), (std::vector<std::uint32_t>{0, 1, 2, 3}));
   EXPECT_EQ(patch_names(scene), std::vector<std::string>{"default"});
@@ -44,13 +46,13 @@ TEST(PlyReader, ReadsTextWithPolygons) {
 }
 
 TEST(PlyReader, BinaryInBothByteOrdersIsTheSameScene) {
-  const std::string hash = read(header(kFaces) + "0.1 0 0\n1 0 0\n1 1 0\n0 1e300 0\n3 0 1 2\n").hash();
+  const std::string hash = from_ply(header(kFaces) + "0.1 0 0\n1 0 0\n1 1 0\n0 1e300 0\n3 0 1 2\n").hash();
   for (const bool big : {false, true}) {
     std::string bytes = header(kFaces, big ? "binary_big_endian" : "binary_little_endian");
     for (const double c : {0.1, 0., 0., 1., 0., 0., 1., 1., 0., 0., 1e300, 0.}) bytes += raw(c, big);
     bytes += raw<std::uint8_t>(3);
     for (const int i : {0, 1, 2}) bytes += raw(i, big);
-    EXPECT_EQ(read(bytes).hash(), hash) << big;
+    EXPECT_EQ(from_ply(bytes).hash(), hash) << big;
   }
 }
 
@@ -63,20 +65,20 @@ TEST(PlyReader, FloatsAndWholeNumbersAreExact) {
   bytes += raw(1.0F) + raw<std::int16_t>(0) + raw<std::uint8_t>(0);
   bytes += raw(1.0F) + raw<std::int16_t>(1) + raw<std::uint8_t>(0);
   bytes += raw<std::uint8_t>(3) + raw(0) + raw(1) + raw(2);
-  EXPECT_EQ(read(bytes).vertices()[0], (Vec3{0.1F, -3.0, 200.0}));
+  EXPECT_EQ(from_ply(bytes).vertices()[0], (Vec3{0.1F, -3.0, 200.0}));
 }
 
 TEST(PlyReader, TextIsReadAsDoublesWhateverTheHeaderSays) {
   std::string text = header(kFaces) + "0.1 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n";
   text.replace(text.find("double x"), 8, "float x");
-  EXPECT_EQ(read(text).vertices()[0].x, 0.1);
+  EXPECT_EQ(from_ply(text).vertices()[0].x, 0.1);
 }
 
 TEST(PlyReader, OtherElementsAndPropertiesArePassedOver) {
   const std::string more =
       "element edge 1\nproperty int vertex1\nproperty int vertex2\n"
       "element face 2\nproperty uchar red\nproperty list uchar int vertex_index\nproperty list uchar float texcoord\n";
-  const Scene scene = read(header(more) + kSquare + "0 1\n255 3 0 1 2 2 .5 .5\n0 3 0 2 3 0\n");
+  const Scene scene = from_ply(header(more) + kPlySquare + "0 1\n255 3 0 1 2 2 .5 .5\n0 3 0 2 3 0\n");
   EXPECT_EQ(ring(scene, 1), (std::vector<std::uint32_t>{0, 2, 3}));
   std::string bytes = header(more, "binary_little_endian");
   for (const double c : {0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.}) bytes += raw(c);
@@ -84,14 +86,14 @@ TEST(PlyReader, OtherElementsAndPropertiesArePassedOver) {
   bytes += raw<std::uint8_t>(255) + raw<std::uint8_t>(3) + raw(0) + raw(1) + raw(2) + raw<std::uint8_t>(2) + raw(.5F) +
            raw(.5F);
   bytes += raw<std::uint8_t>(0) + raw<std::uint8_t>(3) + raw(0) + raw(2) + raw(3) + raw<std::uint8_t>(0);
-  EXPECT_EQ(read(bytes).hash(), scene.hash());
+  EXPECT_EQ(from_ply(bytes).hash(), scene.hash());
 }
 
 TEST(PlyReader, AnIntegerPropertyMakesPatches) {
   const auto with = [](const std::string& properties, const std::string& comments, const std::string& faces) {
-    return patch_names(read("ply\nformat ascii 1.0\n" + comments + kVertices +
-                            "element face 3\nproperty list uchar int vertex_indices\n" + properties + "end_header\n" +
-                            kSquare + faces));
+    return patch_names(from_ply("ply\nformat ascii 1.0\n" + comments + kPlyVertices +
+                                "element face 3\nproperty list uchar int vertex_indices\n" + properties +
+                                "end_header\n" + kPlySquare + faces));
   };
   using Names = std::vector<std::string>;
   const std::string three = "3 0 1 2 7\n3 0 1 3 -1\n3 0 2 3 7\n";
@@ -105,29 +107,30 @@ TEST(PlyReader, AnIntegerPropertyMakesPatches) {
 }
 
 TEST(PlyReader, FacesMayComeBeforeVertices) {
-  const Scene scene = read("ply\nformat ascii 1.0\n" + kFaces + kVertices + "end_header\n4 0 1 2 3\n" + kSquare);
+  const Scene scene =
+      from_ply("ply\nformat ascii 1.0\n" + kFaces + kPlyVertices + "end_header\n4 0 1 2 3\n" + kPlySquare);
   EXPECT_EQ(ring(scene).size(), 4U);
 }
 
 TEST(PlyReader, LineEndsOfAllKinds) {
-  const std::string text = header(kFaces) + kSquare + "4 0 1 2 3\n";
-  const std::string hash = read(text).hash();
+  const std::string text = header(kFaces) + kPlySquare + "4 0 1 2 3\n";
+  const std::string hash = from_ply(text).hash();
   for (const char* end : {"\r\n", "\r"}) {
     std::string other;
     for (const char c : text) other += c == '\n' ? std::string(end) : std::string(1, c);
-    EXPECT_EQ(read(other).hash(), hash);
+    EXPECT_EQ(from_ply(other).hash(), hash);
   }
-  EXPECT_EQ(read("\xEF\xBB\xBF" + text).hash(), hash);
+  EXPECT_EQ(from_ply("\xEF\xBB\xBF" + text).hash(), hash);
   std::string mixed = text;
   mixed.replace(mixed.find('\n', 4), 1, "\r\n");
-  EXPECT_EQ(read(mixed).hash(), hash);
+  EXPECT_EQ(from_ply(mixed).hash(), hash);
   // The data of a binary file may begin with a line feed.
   std::string bytes = header(kFaces, "binary_little_endian");
   std::replace(bytes.begin(), bytes.end(), '\n', '\r');
   bytes += "\n\n\n\n\n\n\n\1";
   for (const double c : {0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.}) bytes += raw(c);
   bytes += raw<std::uint8_t>(3) + raw(0) + raw(1) + raw(2);
-  EXPECT_EQ(read(bytes).vertices()[0].x, std::bit_cast<double>(0x010A0A0A0A0A0A0A));
+  EXPECT_EQ(from_ply(bytes).vertices()[0].x, std::bit_cast<double>(0x010A0A0A0A0A0A0A));
 }
 
 struct BadPly {
@@ -153,19 +156,20 @@ TEST(PlyReader, MalformedHeadersAreNamedByLine) {
        "the count of a list is not an integer"},
       {"ply\nformat ascii 1.0\nvertex 3\nend_header\n", "s.ply:3: unknown keyword 'vertex' in the header"},
       {"ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nend_header\n1\n", "the vertices have no coordinate y"},
-      {header("element face 1\nproperty list uchar float vertex_indices\n") + kSquare + "3 0 1 2\n",
+      {header("element face 1\nproperty list uchar float vertex_indices\n") + kPlySquare + "3 0 1 2\n",
        "the faces have no list of integers vertex_indices"},
-      {header("") + kSquare, "s.ply: has no faces"},
+      {header("") + kPlySquare, "s.ply: has no faces"},
       {"ply\rformat ascii 1.0\relement vertex 1\nproperty int x\rend_header\r",
        "the lines of the header end differently"},
   };
-  for (const BadPly& bad : cases) EXPECT_NE(error(bad.bytes).find(bad.message), std::string::npos) << error(bad.bytes);
+  for (const BadPly& bad : cases)
+    EXPECT_NE(ply_error(bad.bytes).find(bad.message), std::string::npos) << ply_error(bad.bytes);
 }
 
 TEST(PlyReader, MalformedLinesAreNamedAndAllFound) {
   const std::string text = header("element face 6\nproperty list char int vertex_indices\n") +
                            "0 0 nan\n1 0\n1 1 0 5\n0 x 0\n3 0 1 4\n3 0 1 -1\n-3 0 1 2\n99 0 1 2\n2 0 1\n3 0 1 2.5\n";
-  const std::string found = error(text);
+  const std::string found = ply_error(text);
   const char* const messages[] = {
       "s.ply:11: 'nan' is not a finite number (a coordinate is one exact number)",
       "s.ply:12: a line has fewer values than the header declares",
@@ -183,38 +187,38 @@ TEST(PlyReader, MalformedLinesAreNamedAndAllFound) {
 
 TEST(PlyReader, NoMemoryIsTakenOnTheHeadersWord) {
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
-    std::string text = header(kFaces, format) + kSquare;
+    std::string text = header(kFaces, format) + kPlySquare;
     text.replace(text.find("vertex 4"), 8, "vertex 4000000000");
-    EXPECT_NE(error(text).find("4000000000 times 'vertex' of at least "), std::string::npos);
+    EXPECT_NE(ply_error(text).find("4000000000 times 'vertex' of at least "), std::string::npos);
     text = header(kFaces, format);
     text.replace(text.find("face 1"), 6, "face 9223372036854775807");
     text.replace(text.find("vertex 4"), 8, "vertex 0");
-    EXPECT_NE(error(text + kSquare).find("9223372036854775807 times 'face'"), std::string::npos);
+    EXPECT_NE(ply_error(text + kPlySquare).find("9223372036854775807 times 'face'"), std::string::npos);
   }
   std::string bytes = header("element face 1\nproperty list uint int vertex_indices\n", "binary_little_endian");
   bytes += std::string(96, '\0') + raw(0xFFFFFFFFU);
-  EXPECT_NE(error(bytes).find(": byte " + std::to_string(bytes.size() - 4) +
-                              ": a list of 4294967295 items (only 0 bytes follow)"),
+  EXPECT_NE(ply_error(bytes).find(": byte " + std::to_string(bytes.size() - 4) +
+                                  ": a list of 4294967295 items (only 0 bytes follow)"),
             std::string::npos)
-      << error(bytes);
+      << ply_error(bytes);
 }
 
 TEST(PlyReader, EveryCutOffFileIsRefusedOrWarnedAbout) {
   for (const char* format : {"ascii", "binary_little_endian"}) {
     std::string whole = header(kFaces, format);
     if (format == std::string("ascii")) {
-      whole += kSquare + "4 0 1 2 3\n";
+      whole += kPlySquare + "4 0 1 2 3\n";
     } else {
       for (const double c : {0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.}) whole += raw(c);
       whole += raw<std::uint8_t>(3) + raw(0) + raw(1) + raw(2);
     }
-    EXPECT_EQ(warnings_of(read(whole)), "");
+    EXPECT_EQ(warnings_of(from_ply(whole)), "");
     for (std::size_t length = 4; length < whole.size(); ++length) {
-      const std::string message = error(whole.substr(0, length));
+      const std::string message = ply_error(whole.substr(0, length));
       if (message != "no error") continue;
-      EXPECT_NE(warnings_of(read(whole.substr(0, length))), "") << length;
+      EXPECT_NE(warnings_of(from_ply(whole.substr(0, length))), "") << length;
     }
-    EXPECT_NE(warnings_of(read(whole + "7 7 7\n")).find("declares fewer"), std::string::npos);
+    EXPECT_NE(warnings_of(from_ply(whole + "7 7 7\n")).find("declares fewer"), std::string::npos);
   }
 }
 
@@ -224,19 +228,20 @@ TEST(PlyReader, BinaryFaultsAreNamedByByte) {
   for (const double c : {0., 0., 0., 1., 0., std::numeric_limits<double>::infinity(), 1., 1., 0., 0., 1., 0.})
     bytes += raw(c);
   bytes += raw<std::uint8_t>(3) + raw(0) + raw(-1) + raw(4);
-  const std::string found = error(bytes);
+  const std::string found = ply_error(bytes);
   EXPECT_NE(found.find("s.ply: byte " + std::to_string(start + 24) + ": a coordinate is not a finite number"),
             std::string::npos);
   EXPECT_NE(found.find("s.ply: byte " + std::to_string(start + 96) + ": vertex -1 does not exist"), std::string::npos);
   EXPECT_NE(found.find("vertex 4 does not exist"), std::string::npos);
-  EXPECT_NE(error(header(kFaces) + std::string("0 0 0\0", 6)).find("a zero byte in a text file"), std::string::npos);
+  EXPECT_NE(ply_error(header(kFaces) + std::string("0 0 0\0", 6)).find("a zero byte in a text file"),
+            std::string::npos);
 }
 
 TEST(PlyReader, BadFacesAreSkippedOnRequest) {
   const std::string text =
-      header("element face 2\nproperty list uchar int vertex_indices\n") + kSquare + "4 0 2 1 3\n4 0 1 2 3\n";
-  EXPECT_NE(error(text).find("s.ply:15: face 'default:1' crosses itself"), std::string::npos);
-  EXPECT_EQ(read(text, {.bad_faces = BadFaces::kSkip}).faces()[0].shape, FaceShape::kSkipped);
+      header("element face 2\nproperty list uchar int vertex_indices\n") + kPlySquare + "4 0 2 1 3\n4 0 1 2 3\n";
+  EXPECT_NE(ply_error(text).find("s.ply:15: face 'default:1' crosses itself"), std::string::npos);
+  EXPECT_EQ(from_ply(text, {.bad_faces = BadFaces::kSkip}).faces()[0].shape, FaceShape::kSkipped);
 }
 
 }  // namespace

@@ -21,9 +21,11 @@ std::string facet(const std::string& a, const std::string& b, const std::string&
 const std::string kLower = facet("0 0 0", "1 0 0", "1 1 0");
 const std::string kUpper = facet("0 0 0", "1 1 0", "0 1 0");
 
-Scene read(const std::string& bytes, const SceneOptions& options = {}) { return read_scene(bytes, "s.stl", options); }
-std::string error(const std::string& bytes) {
-  return error_of([&] { return read(bytes); });
+Scene from_stl(const std::string& bytes, const SceneOptions& options = {}) {
+  return read_scene(bytes, "s.stl", options);
+}
+std::string stl_error(const std::string& bytes) {
+  return error_of([&] { return from_stl(bytes); });
 }
 
 std::string little(std::uint32_t value) {
@@ -47,7 +49,7 @@ const std::array<float, 9> kOther = {0, 0, 0, 1, 1, 0, 0, 1, 0};
 
 TEST(StlReader, VerticesAreOneIfTheirDoublesAreEqual) {
   const Scene scene =
-      read("solid\n" + kLower + kUpper + facet("-0 0 -0.0", "1e0 0 0", "1 1.0000000000000002 0") + "endsolid\n");
+      from_stl("solid\n" + kLower + kUpper + facet("-0 0 -0.0", "1e0 0 0", "1 1.0000000000000002 0") + "endsolid\n");
   EXPECT_EQ(scene.vertices().size(), 5U);
   EXPECT_EQ(ring(scene, 1), (Ring{0, 2, 3}));
   EXPECT_EQ(ring(scene, 2), (Ring{0, 1, 4}));
@@ -56,7 +58,7 @@ TEST(StlReader, VerticesAreOneIfTheirDoublesAreEqual) {
 
 TEST(StlReader, SolidsArePatchesByName) {
   using Names = std::vector<std::string>;
-  const auto names = [](const std::string& text) { return patch_names(read(text)); };
+  const auto names = [](const std::string& text) { return patch_names(from_stl(text)); };
   EXPECT_EQ(names("solid\n" + kLower + "endsolid\n"), Names{"default"});
   EXPECT_EQ(names("solid the floor # 1\n" + kLower + "endsolid the floor # 1\nsolid wall\n" + kUpper + "endsolid\n"),
             (Names{"the floor # 1", "wall"}));
@@ -65,7 +67,7 @@ TEST(StlReader, SolidsArePatchesByName) {
 }
 
 TEST(StlReader, OddSpellingsOfTheSameFileAgree) {
-  const std::string hash = read("solid\n" + kLower + "endsolid\n").hash();
+  const std::string hash = from_stl("solid\n" + kLower + "endsolid\n").hash();
   const std::string spellings[] = {
       "\xEF\xBB\xBFSOLID\r\n  FACET NORMAL nan nan nan\r\n OUTER LOOP\r\nVERTEX 0 0 0\r\nVERTEX 1 0 0\r\nVertex 1 1 "
       "0\r\n"
@@ -73,11 +75,11 @@ TEST(StlReader, OddSpellingsOfTheSameFileAgree) {
       "solid\rfacet normal 0 0 0 outer loop vertex 0 0 0 vertex 1 0 0 vertex 1 1 0 endloop endfacet\rendsolid\r",
       "\n\n solid\n" + kLower + "\n\nendsolid whatever\n",
   };
-  for (const std::string& text : spellings) EXPECT_EQ(read(text).hash(), hash) << text;
+  for (const std::string& text : spellings) EXPECT_EQ(from_stl(text).hash(), hash) << text;
 }
 
 TEST(StlReader, TextHasDoublesAndLines) {
-  const Scene scene = read("solid\n" + facet("0.1 1e-300 0", "1 0 0", "1 1 0") + kLower + "endsolid\n");
+  const Scene scene = from_stl("solid\n" + facet("0.1 1e-300 0", "1 0 0", "1 1 0") + kLower + "endsolid\n");
   EXPECT_EQ(scene.vertices()[0], (Vec3{0.1, 1e-300, 0.0}));
   EXPECT_EQ(scene.faces()[1].line, 9U);
 }
@@ -90,28 +92,29 @@ TEST(StlReader, BinaryIsRecognisedByItsLengthEvenIfItBeginsWithSolid) {
     EXPECT_EQ(patch_names(scene), std::vector<std::string>{"default"});
     EXPECT_EQ(warnings_of(scene), "");
   }
-  const Scene scene = read(binary({{0.1F, 0, 0, 1, 0, 0, 1, 1, 0}}));
+  const Scene scene = from_stl(binary({{0.1F, 0, 0, 1, 0, 0, 1, 1, 0}}));
   EXPECT_EQ(scene.vertices()[0].x, double{0.1F});
 }
 
 TEST(StlReader, BinaryFaultsAreNamedByByte) {
   const std::string whole = binary({kTriangle, kOther});
   EXPECT_EQ(
-      error(whole.substr(0, whole.size() - 1)),
+      stl_error(whole.substr(0, whole.size() - 1)),
       "s.stl: byte 80: the file declares 2 triangles (its length is enough for 1); is it a complete binary STL file?");
-  EXPECT_NE(error(whole.substr(0, 50)).find("s.stl: byte 50: the file ends within its header"), std::string::npos);
+  EXPECT_NE(stl_error(whole.substr(0, 50)).find("s.stl: byte 50: the file ends within its header"), std::string::npos);
   std::string many = whole;
   many.replace(80, 4, little(0xFFFFFFFFU));
-  EXPECT_NE(error(many).find("the file declares 4294967295 triangles (its length is enough for 2)"), std::string::npos);
-  EXPECT_NE(error("solid" + many.substr(5)).find("the file declares 4294967295"), std::string::npos);
-  EXPECT_NE(warnings_of(read(whole + "x")).find("s.stl: byte 184: the file goes on after its last triangle"),
+  EXPECT_NE(stl_error(many).find("the file declares 4294967295 triangles (its length is enough for 2)"),
             std::string::npos);
-  EXPECT_NE(error(binary({})).find("has no faces"), std::string::npos);
+  EXPECT_NE(stl_error("solid" + many.substr(5)).find("the file declares 4294967295"), std::string::npos);
+  EXPECT_NE(warnings_of(from_stl(whole + "x")).find("s.stl: byte 184: the file goes on after its last triangle"),
+            std::string::npos);
+  EXPECT_NE(stl_error(binary({})).find("has no faces"), std::string::npos);
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-  EXPECT_NE(error(binary({kTriangle, {0, 0, 0, 1, 0, nan, 1, 1, 0}}))
+  EXPECT_NE(stl_error(binary({kTriangle, {0, 0, 0, 1, 0, nan, 1, 1, 0}}))
                 .find("s.stl: byte 134: triangle 2 has a coordinate that is not finite"),
             std::string::npos);
-  EXPECT_NE(error(binary({{0, 0, 0, 1, 0, -inf, 1, 1, 0}})).find("triangle 1 has a coordinate"), std::string::npos);
+  EXPECT_NE(stl_error(binary({{0, 0, 0, 1, 0, -inf, 1, 1, 0}})).find("triangle 1 has a coordinate"), std::string::npos);
 }
 
 TEST(StlReader, MalformedTextIsNamedByLine) {
@@ -134,19 +137,19 @@ TEST(StlReader, MalformedTextIsNamedByLine) {
       {"endsolid\n", "s.stl: has no faces"},
   };
   for (const Case& bad : cases) {
-    const std::string message = error("solid a\n" + bad.text);
+    const std::string message = stl_error("solid a\n" + bad.text);
     EXPECT_NE(message.find(bad.message), std::string::npos) << bad.text << message;
   }
 }
 
 TEST(StlReader, EveryCutOffTextIsRefusedOrWarnedAbout) {
   const std::string whole = "solid a\n" + kLower + kUpper + "endsolid a\n";
-  EXPECT_EQ(warnings_of(read(whole)), "");
+  EXPECT_EQ(warnings_of(from_stl(whole)), "");
   for (std::size_t length = 6; length < whole.size() - 12; ++length) {
     const std::string part = whole.substr(0, length);
     const bool complete = part.ends_with("endfacet\n");
-    if (complete || error(part) != "no error") continue;
-    EXPECT_NE(warnings_of(read(part)), "") << part;
+    if (complete || stl_error(part) != "no error") continue;
+    EXPECT_NE(warnings_of(from_stl(part)), "") << part;
   }
 }
 

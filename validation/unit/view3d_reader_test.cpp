@@ -18,13 +18,15 @@ using Names = std::vector<std::string>;
 
 const std::string kSamples = EXACTFF_DATA_DIR "/scenes/formats/";
 // The unit square in four vertices, and the square [1/4, 3/4]^2 in it.
-const std::string kVertices =
+const std::string kView3dVertices =
     "F 3\nV 1 0 0 0\nV 2 1 0 0\nV 3 1 1 0\nV 4 0 1 0\n"
     "V 5 .25 .25 0\nV 6 .75 .25 0\nV 7 .75 .75 0\nV 8 .25 .75 0\nV 9 .25 .75 .5\n";
 
-Scene read(const std::string& text, const SceneOptions& options = {}) { return read_scene(text, "s.vs3", options); }
-std::string error(const std::string& text) {
-  return error_of([&] { return read(text); });
+Scene from_view3d(const std::string& text, const SceneOptions& options = {}) {
+  return read_scene(text, "s.vs3", options);
+}
+std::string view3d_error(const std::string& text) {
+  return error_of([&] { return from_view3d(text); });
 }
 double area(const Scene& scene, const std::string& name) {
   double sum = 0.0;
@@ -34,9 +36,9 @@ double area(const Scene& scene, const std::string& name) {
 
 TEST(View3dReader, ReadsVerticesSurfacesAndObstructions) {
   const Scene scene =
-      read("T a title\n! comment\n/ comment\nC eps=1e-4\n" + kVertices +
-           "S 1 1 2 3 4 0 0 0.9 floor ! seen from above\ns 2 1 2 3 0 0 0 .25 half\nO 3 5 6 7 8\nO 4 5 6 7 0\n"
-           "End of data\nS 99 is not read\n");
+      from_view3d("T a title\n! comment\n/ comment\nC eps=1e-4\n" + kView3dVertices +
+                  "S 1 1 2 3 4 0 0 0.9 floor ! seen from above\ns 2 1 2 3 0 0 0 .25 half\nO 3 5 6 7 8\nO 4 5 6 7 0\n"
+                  "End of data\nS 99 is not read\n");
   EXPECT_EQ(patch_names(scene), (Names{"floor", "half", "obstructions"}));
   EXPECT_EQ(ring(scene, 1), (std::vector<std::uint32_t>{0, 1, 2}));
   EXPECT_EQ(scene.material(scene.faces()[0].material).reflectance, (Rgb{0.1, 0.1, 0.1}));
@@ -47,24 +49,26 @@ TEST(View3dReader, ReadsVerticesSurfacesAndObstructions) {
 }
 
 TEST(View3dReader, CombinedSurfacesAreFacesOfOnePatch) {
-  const Scene scene = read(kVertices + "S 1 1 2 3 0 0 0 .9 a\nS 2 1 3 4 0 0 0 .9 b\nS 3 5 6 7 0 0 1 .8 c\nE\n");
+  const Scene scene =
+      from_view3d(kView3dVertices + "S 1 1 2 3 0 0 0 .9 a\nS 2 1 3 4 0 0 0 .9 b\nS 3 5 6 7 0 0 1 .8 c\nE\n");
   EXPECT_EQ(patch_names(scene), (Names{"a", "b"}));
   EXPECT_EQ(scene.patches()[0].faces, (std::vector<FaceId>{FaceId{0}, FaceId{2}}));
 }
 
 TEST(View3dReader, RepeatedNamesStayApart) {
-  const Scene scene = read(kVertices + "S 1 1 2 3 0 0 0 .9 a\nS 2 1 3 4 0 0 0 .9 a\nS 3 5 6 7 0 0 0 .9\nE\n");
+  const Scene scene =
+      from_view3d(kView3dVertices + "S 1 1 2 3 0 0 0 .9 a\nS 2 1 3 4 0 0 0 .9 a\nS 3 5 6 7 0 0 0 .9\nE\n");
   EXPECT_EQ(patch_names(scene), (Names{"a", "a#2", "surface_3"}));
   EXPECT_NE(warnings_of(scene).find("s.vs3:12: surface 2 ('a') has the name of another"), std::string::npos);
 }
 
 TEST(View3dReader, SubsurfacesAreCutFromTheirBase) {
-  const Scene scene = read(kVertices + "S 1 1 2 3 4 0 0 .9 wall\nS 2 5 6 7 8 1 0 .9 window\nE\n");
+  const Scene scene = from_view3d(kView3dVertices + "S 1 1 2 3 4 0 0 .9 wall\nS 2 5 6 7 8 1 0 .9 window\nE\n");
   EXPECT_EQ(scene.faces()[0].rings.size(), 2U);
   EXPECT_EQ(area(scene, "wall"), 0.75);
   EXPECT_EQ(area(scene, "window"), 0.25);
   // The two together are seen as the whole wall is.
-  const Scene whole = read(kVertices + "S 1 1 2 3 4 0 0 .9 wall\nE\n");
+  const Scene whole = from_view3d(kView3dVertices + "S 1 1 2 3 4 0 0 .9 wall\nE\n");
   const Receiver receiver{.point = {0.5, 0.5, 2.0}, .normal = {0.0, 0.0, -1.0}, .on = {}, .id = {}};
   const auto value = [&](const Scene& s, const char* name) {
     return exact_form_factor(s, receiver, ExactSource(s, s.select(name))).value;
@@ -75,21 +79,21 @@ TEST(View3dReader, SubsurfacesAreCutFromTheirBase) {
 
 TEST(View3dReader, SubsurfacesMayTouchEachOtherAndTheBase) {
   const std::string halves = "V 10 .5 0 0\nV 11 .5 1 0\nV 12 .5 .25 0\nV 13 .5 .75 0\n";
-  const std::string base = kVertices + halves + "S 1 1 2 3 4 0 0 .9 base\n";
-  const Scene split = read(base + "S 2 1 10 11 4 1 0 .9 left\nE\n");
+  const std::string base = kView3dVertices + halves + "S 1 1 2 3 4 0 0 .9 base\n";
+  const Scene split = from_view3d(base + "S 2 1 10 11 4 1 0 .9 left\nE\n");
   EXPECT_EQ(area(split, "base"), 0.5);
-  const Scene two = read(base + "S 2 5 12 13 8 1 0 .9 left\nS 3 12 6 7 13 1 0 .9 right\nE\n");
+  const Scene two = from_view3d(base + "S 2 5 12 13 8 1 0 .9 left\nS 3 12 6 7 13 1 0 .9 right\nE\n");
   EXPECT_EQ(area(two, "base"), 0.75);
-  const Scene all = read(base + "S 2 1 10 11 4 1 0 .9 left\nS 3 10 2 3 11 1 0 .9 right\nE\n");
+  const Scene all = from_view3d(base + "S 2 1 10 11 4 1 0 .9 left\nS 3 10 2 3 11 1 0 .9 right\nE\n");
   EXPECT_EQ(all.faces()[0].shape, FaceShape::kZeroArea);
-  const Scene nested = read(base + "S 2 5 6 7 8 1 0 .9 window\nS 3 5 12 13 8 2 0 .9 pane\nE\n");
+  const Scene nested = from_view3d(base + "S 2 5 6 7 8 1 0 .9 window\nS 3 5 12 13 8 2 0 .9 pane\nE\n");
   EXPECT_EQ(area(nested, "base"), 0.75);
   EXPECT_EQ(area(nested, "window"), 0.125);
 }
 
 TEST(View3dReader, SubsurfacesThatCannotBeCutAreRefused) {
-  const std::string base = kVertices + "V 10 .5 .5 0\nV 11 2 .5 0\nS 1 1 2 3 4 0 0 .9 base\n";
-  const auto refused = [&](const std::string& more) { return error(base + more + "E\n"); };
+  const std::string base = kView3dVertices + "V 10 .5 .5 0\nV 11 2 .5 0\nS 1 1 2 3 4 0 0 .9 base\n";
+  const auto refused = [&](const std::string& more) { return view3d_error(base + more + "E\n"); };
   EXPECT_NE(refused("S 2 5 6 7 9 1 0 .9 x\n")
                 .find("s.vs3:14: surface 2 ('x') is not exactly in the plane of its base 1 ('base')"),
             std::string::npos);
@@ -136,13 +140,13 @@ TEST(View3dReader, MalformedRecordsAreNamedByLine) {
       {"", "s.vs3: has no faces"},
   };
   for (const Case& bad : cases) {
-    const std::string message = error(kVertices + bad.record + "\nE\n");
+    const std::string message = view3d_error(kView3dVertices + bad.record + "\nE\n");
     EXPECT_NE(message.find(bad.message), std::string::npos) << bad.record << '\n' << message;
   }
 }
 
 TEST(View3dReader, TheContentShowsTheFormat) {
-  EXPECT_EQ(read_scene("T x\nC y\n" + kVertices + "S 1 1 2 3 4 0 0 .9 a\nE\n", "unnamed").patches()[0].name, "a");
+  EXPECT_EQ(read_scene("T x\nC y\n" + kView3dVertices + "S 1 1 2 3 4 0 0 .9 a\nE\n", "unnamed").patches()[0].name, "a");
 }
 
 TEST(View3dReader, ReadsWaltonsFiles) {
