@@ -22,7 +22,7 @@ test_optimised() {
 }
 
 test_sanitized() {
-  validation/fuzz.sh 10  # builds build/clang; each target begins with its corpus
+  validation/fuzz.sh 6  # builds build/clang; each target begins with its corpus
   ctest --test-dir build/clang --output-on-failure --parallel 2
 }
 
