@@ -21,7 +21,8 @@
 #include "view_factors/patch_parts.h"
 #include "view_factors/sampled_factor.h"
 #include "view_factors/strata.h"
-#include "whole_view/seen_pieces.h"
+#include "visibility/seen_pieces.h"
+#include "whole_view/view_among.h"
 #include "work/parallel.h"
 
 namespace exactff::matrix {
@@ -33,6 +34,7 @@ using view_factors::ExactScene;
 using view_factors::Part;
 using view_factors::Point;
 using view_factors::StratifiedMean;
+using visibility::Wall;
 
 constexpr std::size_t kViews = 6;       // of a stratum: two triples, see strata.h
 constexpr double kRoundings = 0x1p-40;  // relative: more than those of areas, distances and sums
@@ -87,14 +89,14 @@ double largest_factor(const DraftPatch& from, const DraftPatch& to) {
 }
 
 // Rounding moves no point of a part out of its box, whose sides are coordinates of corners.
-std::vector<std::uint32_t> pieces_seen_from(const ExactScene& scene, const Part& part) {
+std::vector<std::uint32_t> pieces_seen_from(const ExactScene& scene, std::span<const Wall> walls, const Part& part) {
   Box box;
   for (const Point& corner : part.corners) box.include(corner.at);
   const int exponent = static_cast<int>(scene.units.exponent + scene.units.shift);
   const auto in_scene = [&](const Vec3& v) {
     return Vec3{std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
   };
-  return whole_view::pieces_seen_from(scene.scene, {in_scene(box.low), in_scene(box.high)});
+  return visibility::pieces_seen_from(scene.scene, walls, {in_scene(box.low), in_scene(box.high)});
 }
 
 // What the points of one row have seen, by patch, then the backs and what is open.
@@ -104,7 +106,7 @@ class RowOfMeans {
     for (std::vector<double>& numbers : numbers_) numbers.assign(means_.size(), 0.0);
   }
 
-  void look_around(const ExactScene& scene, const Selection& patch, std::size_t views) {
+  void look_around(const ExactScene& scene, std::span<const Wall> walls, const Selection& patch, std::size_t views) {
     const std::vector<Part> parts = parts_of(scene, patch);
     strata_ = strata_of(parts, std::max(view_factors::kFewestStrata, views / kViews));
     const view_factors::Strata& strata = strata_;
@@ -118,7 +120,7 @@ class RowOfMeans {
         const view_factors::SmallTriangle& triangle = drawn(strata, stratum, draws);
         if (!near[triangle.part]) {
           near[triangle.part].emplace(scene, parts[triangle.part]);
-          seen_pieces[triangle.part] = pieces_seen_from(scene, parts[triangle.part]);
+          seen_pieces[triangle.part] = pieces_seen_from(scene, walls, parts[triangle.part]);
         }
         for (const Point& point : triple_in(parts[triangle.part], triangle, draws, scene.units)) {
           if (!look_from(point, *near[triangle.part], seen_pieces[triangle.part], numbers_[i]))
@@ -217,6 +219,7 @@ Matrix draft(const Scene& scene, std::span<const Selection> from, std::span<cons
   const kernel::StandardArithmetic arithmetic;
   require_whole_patches(scene, to);
   const ExactScene exact(scene);
+  const std::vector<Wall> walls = visibility::walls_of(scene);
   std::vector<DraftPatch> rows, columns;
   for (const Selection& patch : from) rows.push_back(prepared(exact, patch));
   for (const Selection& patch : to) columns.push_back(prepared(exact, patch));
@@ -228,7 +231,7 @@ Matrix draft(const Scene& scene, std::span<const Selection> from, std::span<cons
   work::parallel_for(rows.size(), threads, "rows of the draft", hooks, [&](std::size_t i) {
     const kernel::StandardArithmetic of_thread;
     RowOfMeans row(scene);
-    row.look_around(exact, rows[i].patch, options.views);
+    row.look_around(exact, walls, rows[i].patch, options.views);
     for (std::size_t j = 0; j < columns.size(); ++j) {
       ViewFactor& f = result.factors.entries[i * columns.size() + j];
       const StratifiedMean& mean = row.mean(columns[j].patch.patch);

@@ -4,6 +4,7 @@
 // one half-space of the shaft; the result is a superset of the pieces that meet the shaft.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <boost/container/small_vector.hpp>
 #include <cstdint>
@@ -28,6 +29,11 @@ struct HalfSpace {
 struct Box {
   Vec3 low;
   Vec3 high;
+
+  void include(const Vec3& v) {
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+  }
 };
 
 // Half-spaces in groups of four, for vector registers. A missing one is replaced by a half-space that contains
@@ -106,6 +112,28 @@ class ShaftTree {
           const std::uint64_t own = node.count > 1 ? crossed_groups(boxes_[i], apex, shaft, crossed) : crossed;
           if (own != kOutside && !visit(order_[i], own == 0 && may_be_inside)) return;
         }
+      }
+    }
+  }
+
+  // Calls visit(index, depth) for every box, in the order of query, without those in parts of the tree for whose common
+  // box enter(box, depth) is false. Parts of a part have the depth after its own; visit gets the depth of the last
+  // part.
+  template <class Enter, class Visit>
+  void visit_where(const Enter& enter, const Visit& visit) const {
+    if (nodes_.empty()) return;
+    std::pair<std::uint32_t, std::size_t> stack[kDepthLimit];
+    int size = 0;
+    stack[size++] = {0, 0};
+    while (size > 0) {
+      const auto [at, depth] = stack[--size];
+      const Node& node = nodes_[at];
+      if (!enter(node.box, depth)) continue;
+      if (node.count > kLeafSize) {
+        stack[size++] = {node.right, depth + 1};
+        stack[size++] = {at + 1, depth + 1};
+      } else {
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) visit(order_[i], depth);
       }
     }
   }

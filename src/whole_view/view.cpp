@@ -15,7 +15,7 @@
 #include "exact/workspace.h"
 #include "kernel/float_environment.h"
 #include "scene/misuse.h"
-#include "whole_view/seen_pieces.h"
+#include "whole_view/view_among.h"
 #include "whole_view/view_edges.h"
 
 namespace exactff {
