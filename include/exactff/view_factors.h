@@ -44,11 +44,13 @@ enum class Claim {
 [[nodiscard]] std::string_view to_string(Claim claim);  // "statistical", "topology-proved", "certified", "zero"
 
 struct ViewFactorOptions {
-  double accuracy = 1e-6;        // of F_ij and of F_ji: upper - lower is at most this
-  std::size_t budget = 100000;   // cells, one with many edges counts for several; if they do not suffice, it is a crowd
-  bool sample_crowds = true;     // take `statistical` in a crowd if it is narrower; else the width is kept
-  bool both_directions = false;  // compute F_ij and F_ji apart, so that each tests the other
-  bool certify = false;          // enclose every factor: all claims are `certified` or `zero`, also in a crowd
+  double accuracy = 1e-6;       // of F_ij and of F_ji: upper - lower is at most this
+  std::size_t budget = 100000;  // cells, one with many edges counts for several; if they do not suffice, it is a crowd
+  bool sample_crowds = true;    // take `statistical` in a crowd if it is narrower; else the width is kept
+  // Compute F_ij and F_ji apart, each by cells of its own patch, so that each tests the other. Otherwise one of them
+  // is computed, by cells of whichever patch seems to need fewer.
+  bool both_directions = false;
+  bool certify = false;  // enclose every factor: all claims are `certified` or `zero`, also in a crowd
 };
 
 struct ViewFactor {

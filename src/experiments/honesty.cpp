@@ -56,7 +56,8 @@ Bounds enclosure(const PreparedPair& pair, const Selection& from, const Selectio
   Bounds bounds;
   for (const double accuracy : size.truth_accuracies) {
     const ViewFactor f =
-        view_factor(pair.scene, from, to, {.accuracy = accuracy, .budget = size.truth_budget, .certify = true});
+        view_factor(pair.scene, from, to,
+                    {.accuracy = accuracy, .budget = size.truth_budget, .both_directions = true, .certify = true});
     bounds = common_part(bounds, {f.lower, f.upper});
     if (!f.accurate) break;
   }

@@ -9,6 +9,7 @@ namespace exactff::view_factors {
 namespace {
 
 constexpr std::uint64_t kManySigns = 1 << 18;                  // a cell that asks for more is cut by what it has
+constexpr std::size_t kManyCandidates = 16;                    // whose events are not worth a count
 constexpr std::uint64_t kSignsForAnOrder = 16;                 // the work that it takes
 constexpr std::size_t kSource = static_cast<std::size_t>(-1);  // the owner of an edge, beside the occluders
 
@@ -138,6 +139,19 @@ bool CellView::sort_out(Candidate& candidate) {
     consider_cut({std::shared_ptr<const Plane>(), occluder.plane});
   }
   return false;
+}
+
+// Takes out those that another one covers from all of the cell: the union of the shadows is the same without them.
+void CellView::drop_covered(Candidates& candidates) {
+  for (Candidate& inner : candidates) {
+    const auto covers_it = [&](const Candidate& outer) {
+      return outer.facing != 0 && outer.facing != kMixed && outer.occluder != inner.occluder &&
+             holds(ring_of(outer), sight_.occluders[inner.occluder].ring);
+    };
+    if (std::ranges::any_of(candidates, covers_it)) inner.facing = 0;
+  }
+  doubts_.clear();
+  std::erase_if(candidates, [](const Candidate& c) { return c.facing == 0; });
 }
 
 // The common part of an edge and of the interval in which its line lies between the lines `in` and `out`.
@@ -378,6 +392,29 @@ bool CellView::look_at_edges() {
   return std::ranges::all_of(*candidates_, [&](const Candidate& c) { return look_at_ring(ring_of(c), c.occluder); });
 }
 
+std::size_t CellView::count_events(const Cell& cell, const Candidates& candidates) {
+  if (candidates.size() > kManyCandidates) return 0;
+  memory_.enter(0);
+  cell_ = &cell;
+  std::size_t count = 0;
+  const auto look_at = [&](const Ring& edges, const Ring& corners) {
+    for (const Edge& edge : edges) {
+      for (const Edge& corner : corners) {
+        if (side(edge, corner.from) != kMixed || memory_.sign(edge.line, corner.from) == kMixedAndSeen) continue;
+        memory_.keep_sign(edge.line, corner.from, kMixedAndSeen);
+        ++count;
+      }
+    }
+  };
+  for (const Candidate& candidate : candidates) {
+    const Ring& ring = sight_.occluders[candidate.occluder].ring;
+    look_at(sight_.source, ring);
+    look_at(ring, sight_.source);
+  }
+  doubts_.clear();
+  return count;
+}
+
 CellView::Outcome CellView::look(const Cell& cell, std::size_t depth, Candidates& candidates) {
   memory_.enter(depth);
   cell_ = &cell;
@@ -396,6 +433,7 @@ CellView::Outcome CellView::look(const Cell& cell, std::size_t depth, Candidates
   }
   std::erase_if(candidates, [](const Candidate& c) { return c.facing == 0; });
   if (best_cut_ != nullptr) return Outcome::kCut;
+  if (depth <= 1) drop_covered(candidates);
   if (!look_at_edges()) return Outcome::kCut;
   return best_cut_ != nullptr ? Outcome::kCut : !triples_.empty() ? Outcome::kCrossings : Outcome::kKnown;
 }

@@ -87,6 +87,9 @@ class CellView {
   [[nodiscard]] const std::vector<CrossingTriple>& triples() const { return triples_; }
   // How often a sign has been asked for so far.
   [[nodiscard]] std::uint64_t work() const { return work_; }
+  // How many planes of an edge and a vertex cut the cell, one of which is the source's and the other one an occluder's;
+  // 0 if there are many candidates.
+  [[nodiscard]] std::size_t count_events(const Cell& cell, const Candidates& candidates);
 
  private:
   enum class Overlap { kNone, kPart, kAll, kUnknown };
@@ -113,6 +116,7 @@ class CellView {
   bool is_outside(const Solid& solid);
   bool is_spare_back(const Candidate& candidate);
   bool sort_out(Candidate& candidate);
+  void drop_covered(Candidates& candidates);
   Covered overlap(const Edge& edge, const Ring& ring, Along& along);
   Covered between(const Edge& edge, const Edge& in, const Edge& out);
   const Ring& ring_of(const Candidate& candidate) const;

@@ -26,8 +26,12 @@ constexpr double kStepAside = 0x1p-30;             // in units of Point::at
 constexpr double kLeastMargin = 0x1p-24;           // the same
 constexpr std::uint64_t kSignsForACell = 1 << 15;  // more than where few occluders lie between
 constexpr std::size_t kCrowd = 256;                // occluders; an event cell of more is not worth a look at its centre
-constexpr double kShareOfParent = 0.125;           // of a cell's error that its halves may have, certified
-constexpr double kEventMargin = 1.01;              // of event_bound.h
+constexpr double kShareOfParent = 0.125;           // of a cell's error that its halves may have
+// Whether the difference of two rules tells their error. Where an edge is nearer than this, F may have a peak that both
+// rules miss. At 1.5 radii, two points more divide the error by 2.6^4 = 46.
+constexpr double kLeastRadii = 1.5;
+constexpr double kRadiiForFour = 3.0;  // nearer to an edge, four points hardly ever suffice
+constexpr double kEventMargin = 1.01;  // of event_bound.h
 // Certified slopes. Coordinates are at most 1 and rounded once. A distance errs by less than 2^-45: that of a point of
 // the segment which is not quite the nearest one. A sum of 2^20 edges has a relative error below 2^-32.
 constexpr double kDistanceMargin = 0x1p-44;
@@ -58,16 +62,14 @@ double radius_about(const Cell& cell, const Vec3& centre) {
   return radius * kSlack;
 }
 
-// Whether the difference of two rules tells their error. Where an edge is nearer than this, F may have a peak that both
-// rules miss. At 1.5 radii, two points more divide the error by 2.6^4 = 46.
-bool is_resolved(const Cell& cell, const Formula& formula) {
-  constexpr double kLeastDistance = 1.5;  // in radii of the cell
+// The distance of the nearest edge from the cell's middle, in radii of the cell.
+double resolution(const Cell& cell, const Formula& formula) {
   Vec3 centre;
   for (const Point& corner : cell.corners) {
     const double share = 1.0 / static_cast<double>(cell.corners.size());
     centre = {centre.x + share * corner.at.x, centre.y + share * corner.at.y, centre.z + share * corner.at.z};
   }
-  return formula.distance_to_edges(centre) >= kLeastDistance * radius_about(cell, centre);
+  return formula.distance_to_edges(centre) / radius_about(cell, centre);
 }
 
 // The value of a ball, with as many bits as it takes to make it small.
@@ -99,13 +101,14 @@ double precise_value(const Formula& formula, const Cell& cell, const Place& plac
 
 }  // namespace
 
-Pair::Pair(const Scene& scene, Sight sight, FaceId receiver_face, const ExactSource* whole, const Limits& limits,
-           PairMemory& memory, std::size_t id)
+Pair::Pair(const Scene& scene, Sight sight, FaceId receiver_face, std::shared_ptr<const ExactSource> whole,
+           const Limits& limits, PairMemory& memory, std::size_t id)
     : scene_(scene),
       sight_(std::move(sight)),
       receiver_face_(receiver_face),
-      whole_(whole),
+      whole_(std::move(whole)),
       limits_(limits),
+      bound_(sight_),
       view_(sight_, memory, id) {}
 
 CellView::Outcome Pair::view(const Cell& cell, std::size_t depth, Candidates& candidates) {
@@ -115,11 +118,18 @@ CellView::Outcome Pair::view(const Cell& cell, std::size_t depth, Candidates& ca
   return outcome;
 }
 
+std::size_t Pair::events() {
+  view_.start();
+  Candidates candidates = view_.all_candidates();
+  (void)view(sight_.root, 0, candidates);
+  return view_.count_events(sight_.root, candidates);
+}
+
 std::vector<Share> Pair::cells(std::size_t budget) {
   budget_ = budget;
   std::vector<Share> shares;
   view_.start();
-  look(sight_.root, 0, view_.all_candidates(), shares);
+  look(sight_.root, 0, view_.all_candidates(), limits_.enough, shares);
   return shares;
 }
 
@@ -145,7 +155,7 @@ double Pair::value_at(const Formula& formula, const Point& x) const {
 }
 
 // Depth first: the cells that wait are the siblings of those on the way.
-void Pair::look(Cell cell, std::size_t depth, Candidates candidates, std::vector<Share>& shares) {
+void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enough, std::vector<Share>& shares) {
   kernel::poll();
   ++cells_made_;
   const CellView::Outcome outcome = view(cell, depth, candidates);
@@ -159,10 +169,11 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, std::vector
     case CellView::Outcome::kCut:
       break;
   }
+  if (add_if_dim(cell, candidates, enough, shares)) return;
   if (cost() >= budget_) return add_event(std::move(cell), depth, std::move(candidates), {}, shares);
   Halves halves = cut(cell, sight_.receiver, view_.best_cut(), sight_.points.units());
-  look(std::move(halves.negative), depth + 1, candidates, shares);
-  look(std::move(halves.positive), depth + 1, std::move(candidates), shares);
+  look(std::move(halves.negative), depth + 1, candidates, enough, shares);
+  look(std::move(halves.positive), depth + 1, std::move(candidates), enough, shares);
 }
 
 // For a certified integral, rounded up.
@@ -178,12 +189,32 @@ bool Pair::add_if_negligible(Cell& cell, Candidates& candidates, std::vector<Sha
   return true;
 }
 
-// By the rule of six points; the error is estimated from the rule of five, or is the whole cell.
+// Where F is so small on the cell that its bound suffices. The value is that of one point.
+bool Pair::add_if_dim(Cell& cell, Candidates& candidates, double enough, std::vector<Share>& shares) const {
+  const double bound = bound_.on(cell);
+  const double size = size_of(cell);
+  if (!(bound * size <= enough)) return false;
+  const double value = std::min(bound, whole_ != nullptr ? factor_near(near_point_inside(cell)) : 0.5 * bound);
+  const double error = std::max(value, bound - value) * size * kSlack;
+  shares.push_back({std::move(cell), std::move(candidates), nullptr, value * size, error});
+  return true;
+}
+
+// By a rule of Gauss' and the one with a point less in each direction, from which the error is estimated; or it is the
+// whole cell. Four points where they suffice for a cell of this size, else six.
 Pair::Integrated Pair::integrated(const Formula& formula, const Cell& cell) const {
   const std::vector<Vec3> ring = rounded(cell.corners);
+  const double size = area(cell), radii = resolution(cell, formula);
+  const auto error = [&](double rule, double lower) {
+    const double difference = 4.0 * std::abs(rule - lower);
+    return radii >= kLeastRadii ? difference : std::max(difference, size);
+  };
+  if (radii >= kRadiiForFour) {
+    const double four = gauss_integral<4>(formula, cell, ring), three = gauss_integral<3>(formula, cell, ring);
+    if (error(four, three) <= limits_.quadrature * size) return {four, error(four, three)};
+  }
   const double six = gauss_integral<6>(formula, cell, ring), five = gauss_integral<5>(formula, cell, ring);
-  const double error = 4.0 * std::abs(six - five);
-  return {six, is_resolved(cell, formula) ? error : std::max(error, area(cell))};
+  return {six, error(six, five)};
 }
 
 // Within the tolerance of a cell of its size, if it can be.
@@ -283,10 +314,23 @@ std::vector<Share> Pair::halves(Share share) {
     add_smooth(std::move(parts.positive), share.formula, most, result);
   } else {
     view_.start();
-    look(std::move(parts.negative), 1, share.candidates, result);
-    look(std::move(parts.positive), 1, std::move(share.candidates), result);
+    const double enough = kShareOfParent * share.error;
+    look(std::move(parts.negative), 1, share.candidates, enough, result);
+    look(std::move(parts.positive), 1, std::move(share.candidates), enough, result);
   }
   return result;
+}
+
+// The form factor of the exact solver, at a rounded point.
+double Pair::factor_near(const Vec3& at) const {
+  const int exponent = static_cast<int>(sight_.points.units().exponent + sight_.points.units().shift);
+  const auto coordinate = [&](double x) { return std::ldexp(x, exponent); };
+  const auto& normal = sight_.receiver.rounded;  // its largest component is about 1
+  const Receiver receiver{.point = {coordinate(at.x), coordinate(at.y), coordinate(at.z)},
+                          .normal = {normal[0], normal[1], normal[2]},
+                          .on = {receiver_face_},
+                          .id = {}};
+  return exact_form_factor(scene_, receiver, *whole_).value;
 }
 
 // The point of the exact solver is rounded, and may lie on the other side of a face that is a rounding away from the
@@ -300,7 +344,6 @@ void Pair::check(const Cell& cell, const Formula& formula) const {
     if (std::ldexp(std::ldexp(x, exponent), -exponent) != x) return;  // the point is no double in the scene's unit
   }
   const auto& plane = sight_.receiver.rounded;
-  const Vec3 normal{plane[0], plane[1], plane[2]};  // its largest component is about 1
   const auto [found, rounding] = formula.at(inside);
   // Where rounding may have moved the point to another cell, or matters, it means nothing.
   if (rounding > kLargestMismatch || distance_from_sides(cell, inside) < kLeastMargin) return;
@@ -310,10 +353,7 @@ void Pair::check(const Cell& cell, const Formula& formula) const {
         kStepAside / distance_to_segment(inside, sight_.points[part.edge.from].at, sight_.points[part.edge.to].at);
   }
   for (const double above : {0.0, kStepAside, -kStepAside}) {
-    const auto coordinate = [&](double x, double n) { return std::ldexp(x + above * n, exponent); };
-    const Vec3 point{coordinate(inside.x, normal.x), coordinate(inside.y, normal.y), coordinate(inside.z, normal.z)};
-    exact =
-        exact_form_factor(scene_, {.point = point, .normal = normal, .on = {receiver_face_}, .id = {}}, *whole_).value;
+    exact = factor_near({inside.x + above * plane[0], inside.y + above * plane[1], inside.z + above * plane[2]});
     if (std::abs(found - exact) <= kLargestMismatch + (above == 0.0 ? 0.0 : turned)) return;
   }
   throw std::logic_error("a view factor's cell on " + scene_.name_of(receiver_face_) + " sees " +

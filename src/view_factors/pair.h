@@ -7,6 +7,7 @@
 
 #include "exactff/exact.h"
 #include "view_factors/cell_view.h"
+#include "view_factors/factor_bound.h"
 #include "view_factors/formula.h"
 #include "view_factors/quadrature.h"
 #include "view_factors/sight.h"
@@ -36,6 +37,8 @@ class Pair {
   struct Limits {
     double rounding = 0.0;         // larger estimates of the rounding error of F ask for balls
     double negligible_area = 0.0;  // on smaller cells F is only known to lie in [0, 1]
+    double quadrature = 0.0;       // larger errors of the mean of F on a cell ask for more points
+    double enough = 0.0;           // a cell to be cut stays undecided if its error is at most this
     // Integrals are enclosed, within (cell's area / area)^(3/4) of this, so that cells about a singular point may
     // together have it. 0: they are estimated.
     double certified = 0.0;
@@ -43,8 +46,12 @@ class Pair {
   };
   // Where the source part is a whole face, `whole` is that face: a point factor to it checks each cell. `id` tells the
   // pairs apart that share the memory.
-  Pair(const Scene& scene, Sight sight, FaceId receiver_face, const ExactSource* whole, const Limits& limits,
-       PairMemory& memory, std::size_t id);
+  Pair(const Scene& scene, Sight sight, FaceId receiver_face, std::shared_ptr<const ExactSource> whole,
+       const Limits& limits, PairMemory& memory, std::size_t id);
+
+  [[nodiscard]] std::size_t point_count() const { return sight_.points.point_count(); }
+  // An estimate of how many lines cut the receiver (CellView::count_events).
+  [[nodiscard]] std::size_t events();
 
   // Cuts the receiver until every cell is smooth, an event cell, or sees nothing; the last are left out. Gives up when
   // cost() reaches the budget: what is left then counts as event cells.
@@ -57,7 +64,8 @@ class Pair {
 
  private:
   CellView::Outcome view(const Cell& cell, std::size_t depth, Candidates& candidates);
-  void look(Cell cell, std::size_t depth, Candidates candidates, std::vector<Share>& shares);
+  // `enough`: see Limits.
+  void look(Cell cell, std::size_t depth, Candidates candidates, double enough, std::vector<Share>& shares);
   // `most`: the largest error that is useful.
   void add_smooth(Cell cell, std::shared_ptr<const Formula> formula, double most, std::vector<Share>& shares);
   // `triples`: all that is undecided; if empty, more may be.
@@ -75,17 +83,20 @@ class Pair {
   [[nodiscard]] bool certifies() const { return limits_.certified > 0.0; }
   [[nodiscard]] double size_of(const Cell& cell) const;
   bool add_if_negligible(Cell& cell, Candidates& candidates, std::vector<Share>& shares) const;
+  bool add_if_dim(Cell& cell, Candidates& candidates, double enough, std::vector<Share>& shares) const;
   template <unsigned kCount>
   [[nodiscard]] double gauss_integral(const Formula& formula, const Cell& cell, const std::vector<Vec3>& ring) const;
   [[nodiscard]] double value_at(const Formula& formula, const Point& x) const;
+  [[nodiscard]] double factor_near(const Vec3& at) const;
   void check(const Cell& cell, const Formula& formula) const;
   [[nodiscard]] double slope_bound(const Candidates& candidates, const Vec3& centre, double radius) const;
 
   const Scene& scene_;
   Sight sight_;
   FaceId receiver_face_;
-  const ExactSource* whole_;
+  std::shared_ptr<const ExactSource> whole_;
   Limits limits_;
+  FactorBound bound_;
   CellView view_;
   std::size_t cells_made_ = 0, extra_cost_ = 0, budget_ = 0;
 };

@@ -1,6 +1,8 @@
 // What has been found out about cells and would cost time to find again: signs, and exact planes. Its size is limited;
 // what no longer fits is found again, so the results do not depend on it.
 //
+// It serves pair after pair, so that its memory is allocated once.
+//
 // Cells form a tree, and a sign that is known for a cell is known for its parts. So a sign is kept with the cell that
 // it was found for, and holds as long as this cell is on the way from the root to the present one.
 #pragma once
@@ -9,7 +11,9 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "view_factors/polygons.h"
@@ -22,6 +26,8 @@ inline constexpr int kUnasked = 4;
 
 class PairMemory {
  public:
+  // The pairs so far are done with: their numbers may be given to others.
+  void forget_pairs() { planes_.clear(); }
   // To be called first: what is asked from here on is about the cells of another pair, or of this one from a new root.
   void start(std::size_t pair, std::size_t line_count, std::size_t point_count);
   // The present cell becomes one at this depth, a part of the last one at the depth before.
@@ -52,6 +58,27 @@ class PairMemory {
   std::vector<Entry> entries_;      // a power of two of them; each place is taken by the last sign that falls on it
   std::vector<std::uint64_t> way_;  // the cells from the root to the present one, by depth
   std::map<std::tuple<std::size_t, LineId, PointId>, std::shared_ptr<const Plane>> planes_;
+};
+
+// Memories for as many jobs as run at the same time.
+class PairMemories {
+ public:
+  [[nodiscard]] std::unique_ptr<PairMemory> take() {
+    const std::lock_guard lock(mutex_);
+    if (idle_.empty()) return std::make_unique<PairMemory>();
+    std::unique_ptr<PairMemory> memory = std::move(idle_.back());
+    idle_.pop_back();
+    return memory;
+  }
+  void give_back(std::unique_ptr<PairMemory> memory) {
+    memory->forget_pairs();
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(memory));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<PairMemory>> idle_;
 };
 
 }  // namespace exactff::view_factors

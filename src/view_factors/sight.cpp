@@ -4,6 +4,8 @@
 #include <limits>
 #include <map>
 
+#include "view_factors/pair_shaft.h"
+
 namespace exactff::view_factors {
 namespace {
 
@@ -11,7 +13,8 @@ constexpr std::uint32_t kByReceiver = 0, kBySource = 1;  // names of planes that
 
 class Maker {
  public:
-  Maker(const ExactScene& scene, FaceId own) : scene_(scene), own_(own), sight_(scene.units) {}
+  Maker(const ExactScene& scene, std::span<const std::uint32_t> pieces, FaceId own)
+      : scene_(scene), pieces_(pieces), own_(own), sight_(scene.units) {}
 
   std::optional<Sight> make(const Part& receiver_part, const Part& source_part) {
     Points& points = sight_.points;
@@ -31,7 +34,8 @@ class Maker {
     between_ = receiver_box_;
     between_.include(source_box_.low);
     between_.include(source_box_.high);
-    for (const ExactPiece& piece : scene_.pieces) add_occluder(piece);
+    shaft_.emplace(receiver_box_, source_box_);
+    for (const std::uint32_t piece : pieces_) add_occluder(scene_.pieces[piece]);
     points.complete();
     return std::move(sight_);
   }
@@ -72,9 +76,11 @@ class Maker {
     for (const Edge& edge : ring) box.include(sight_.points[edge.from].at);
   }
 
-  // Some of it lies in front of both planes, and in the box of the pair, and the pair on both sides of its plane.
+  // Some of it lies in front of both planes, and perhaps in the shaft of the pair, and the pair on both sides of its
+  // plane.
   [[nodiscard]] bool may_lie_between(const ExactPiece& piece) const {
-    if (piece.transparent || piece.face == own_ || piece.box.is_apart_from(between_)) return false;
+    if (piece.transparent || piece.face == own_) return false;
+    if (piece.box.is_apart_from(between_) || shaft_->is_outside(piece.box)) return false;
     const auto has_corner_before = [&](const Plane& plane) {
       return std::ranges::any_of(piece.corners,
                                  [&](std::uint32_t corner) { return side_of(plane, scene_.vertices[corner]) > 0; });
@@ -154,10 +160,12 @@ class Maker {
   }
 
   const ExactScene& scene_;
+  std::span<const std::uint32_t> pieces_;
   FaceId own_;
   Sight sight_;
   Plane source_plane_;
   Box receiver_box_, source_box_, between_;
+  std::optional<PairShaft> shaft_;
   PointId corners_of_parts_ = std::numeric_limits<PointId>::max();
   std::map<std::uint32_t, PointId> vertex_;
   std::map<std::uint32_t, std::uint32_t> solid_of_;  // by surface
@@ -165,8 +173,9 @@ class Maker {
 
 }  // namespace
 
-std::optional<Sight> sight_of(const ExactScene& scene, const Part& receiver, const Part& source, FaceId own) {
-  return Maker(scene, own).make(receiver, source);
+std::optional<Sight> sight_of(const ExactScene& scene, std::span<const std::uint32_t> pieces, const Part& receiver,
+                              const Part& source, FaceId own) {
+  return Maker(scene, pieces, own).make(receiver, source);
 }
 
 }  // namespace exactff::view_factors

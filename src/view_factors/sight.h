@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "view_factors/cell.h"
@@ -63,8 +64,8 @@ struct Part {
 };
 
 // Empty if no point of the receiver lies in front of the source, or the other way round: the factor is 0. `own` does
-// not occlude.
-[[nodiscard]] std::optional<Sight> sight_of(const ExactScene& scene, const Part& receiver, const Part& source,
-                                            FaceId own);
+// not occlude. `pieces`: all that may occlude, by ascending index (seen_parts.h).
+[[nodiscard]] std::optional<Sight> sight_of(const ExactScene& scene, std::span<const std::uint32_t> pieces,
+                                            const Part& receiver, const Part& source, FaceId own);
 
 }  // namespace exactff::view_factors

@@ -17,6 +17,7 @@
 #include "view_factors/pairs.h"
 #include "view_factors/patch_parts.h"
 #include "view_factors/sampled_factor.h"
+#include "view_factors/seen_parts.h"
 #include "work/parallel.h"
 
 namespace exactff {
@@ -27,6 +28,8 @@ constexpr std::size_t kStepsBetweenSums = 4096;
 constexpr std::size_t kCellsOfAPoint = 4;                  // that cost about as much as a point factor in a crowd
 constexpr double kShareOfRounding = 0x1p-10;               // of the accuracy
 constexpr double kShareOfNegligible = 0x1p-24;             // of the error that is allowed
+constexpr double kShareOfQuadrature = 0.0625;              // the same, of a cell as large as the patch
+constexpr double kShareOfDim = 0.25;                       // the same, of a cell that is left undecided
 constexpr std::size_t kMostPoints = std::size_t{1} << 20;  // of all pairs of parts: some 200 MB
 constexpr double kShareOfCell = 0x1p-4;  // of the error allowed, a certified cell as large as the patch
 constexpr double kShareOfTarget = 0.99;  // certified: leaves room for the roundings of sums
@@ -42,27 +45,52 @@ bool is_less_urgent(const Waiting& a, const Waiting& b) {
   return a.share.error != b.share.error ? a.share.error < b.share.error : a.number > b.number;
 }
 
+// A patch, prepared once.
+struct Prepared {
+  Selection patch;
+  std::vector<Part> parts;
+  double area = 0.0;       // in the scene's unit of length, squared
+  double unit_area = 0.0;  // in squares of the unit of Point::at
+  bool planar = true;
+  SeenParts::OfPatch seen;
+};
+
+Prepared prepare(const ExactScene& scene, const Selection& patch) {
+  Prepared result{patch, parts_of(scene, patch), 0.0, 0.0, is_planar(scene.scene, patch), {}};
+  std::tie(result.unit_area, result.area) = areas_of(scene, patch, result.parts);
+  return result;
+}
+
 // All pairs of parts of two patches, refined together until the sum of their errors is small enough.
 class Integral {
  public:
-  // `area`: of `from`.
-  Integral(const ExactScene& scene, const std::vector<Part>& from, double area, const std::vector<Part>& to,
-           const Selection& to_patch, const ViewFactorOptions& options, double target)
-      : area_(area), budget_(options.budget), least_error_(target / (4.0 * static_cast<double>(budget_))) {
-    const double certified = options.certify ? target * kShareOfCell / static_cast<double>(to.size()) : 0.0;
-    const Pair::Limits limits{options.accuracy * kShareOfRounding, target * kShareOfNegligible, certified, area};
-    for (const Part& source : to) add_source(scene.scene, source, to_patch);
-    for (const Part& receiver : from) {
-      for (std::size_t i = 0; i < to.size(); ++i) {
-        std::optional<Sight> sight = sight_of(scene, receiver, to[i], receiver.face);
-        if (!sight) continue;
-        points_ += sight->points.point_count();
+  Integral(const ExactScene& scene, const SeenParts& seen, const Prepared& from, const Prepared& to,
+           const ViewFactorOptions& options, double target, PairMemory& memory)
+      : area_(from.unit_area),
+        budget_(options.budget),
+        least_error_(target / (4.0 * static_cast<double>(budget_))),
+        memory_(memory) {
+    const double certified = options.certify ? target * kShareOfCell / static_cast<double>(to.parts.size()) : 0.0;
+    limits_ = {.rounding = options.accuracy * kShareOfRounding,
+               .negligible_area = target * kShareOfNegligible,
+               .quadrature = target / area_ * kShareOfQuadrature,
+               .enough = target * kShareOfDim,
+               .certified = certified,
+               .area = area_};
+    const SeenParts::Lists& seen_from = from.seen.lists(seen, from.parts);
+    const bool either = from.planar && to.planar && !options.both_directions;
+    const std::vector<End> receivers = ends_of(scene.scene, from), sources = ends_of(scene.scene, to);
+    for (std::size_t r = 0; r < receivers.size(); ++r) {
+      for (const End& source : sources) {
+        if (!sees(scene.scene, seen_from[r], source.part)) continue;
+        std::unique_ptr<Pair> pair = better_pair(scene, seen_from[r].occluders, receivers[r], source, either);
+        if (pair == nullptr) continue;
+        points_ += pair->point_count();
         if (cost_ >= budget_ || points_ > kMostPoints) {
           give_up();
           return;
         }
-        add_pair(std::make_unique<Pair>(scene.scene, std::move(*sight), receiver.face, sources_[i].get(), limits,
-                                        memory_, pairs_.size()));
+        add_pair(std::move(pair));
       }
     }
   }
@@ -102,12 +130,38 @@ class Integral {
   }
 
  private:
-  // A part that is a whole face checks the cells that see it.
-  void add_source(const Scene& scene, const Part& part, const Selection& patch) {
-    const bool whole = part.is_piece && scene.pieces_of(part.face).size() == 1;
-    Selection face = patch;
-    face.face = part.face;
-    sources_.push_back(whole ? std::make_unique<ExactSource>(scene, face) : nullptr);
+  // A part, and the source that checks the cells which see it if it is a whole face.
+  struct End {
+    const Part& part;
+    std::shared_ptr<const ExactSource> whole;
+  };
+
+  static std::vector<End> ends_of(const Scene& scene, const Prepared& patch) {
+    std::vector<End> ends;
+    for (const Part& part : patch.parts) {
+      const bool whole = part.is_piece && scene.pieces_of(part.face).size() == 1;
+      Selection face = patch.patch;
+      face.face = part.face;
+      ends.push_back({part, whole ? std::make_shared<const ExactSource>(scene, face) : nullptr});
+    }
+    return ends;
+  }
+
+  // Null if the two do not see each other. A_i F_ij = A_j F_ji: `either` side may be the one that is cut.
+  std::unique_ptr<Pair> better_pair(const ExactScene& scene, std::span<const std::uint32_t> pieces, const End& from,
+                                    const End& to, bool either) {
+    std::unique_ptr<Pair> pair = make_pair(scene, pieces, from, to);
+    if (pair == nullptr || !either || pair->events() == 0) return pair;
+    std::unique_ptr<Pair> other = make_pair(scene, pieces, to, from);
+    return other->events() < pair->events() ? std::move(other) : std::move(pair);
+  }
+
+  std::unique_ptr<Pair> make_pair(const ExactScene& scene, std::span<const std::uint32_t> pieces, const End& receiver,
+                                  const End& source) {
+    std::optional<Sight> sight = sight_of(scene, pieces, receiver.part, source.part, receiver.part.face);
+    if (!sight) return nullptr;
+    return std::make_unique<Pair>(scene.scene, std::move(*sight), receiver.part.face, source.whole, limits_, memory_,
+                                  pairs_made_++);
   }
 
   void add_pair(std::unique_ptr<Pair> pair) {
@@ -157,8 +211,9 @@ class Integral {
   double area_;
   std::size_t budget_;
   double least_error_;
-  PairMemory memory_;
-  std::vector<std::unique_ptr<ExactSource>> sources_;
+  PairMemory& memory_;
+  Pair::Limits limits_;
+  std::size_t pairs_made_ = 0;
   std::vector<std::unique_ptr<Pair>> pairs_;  // null: sees nothing
   std::vector<Waiting> waiting_;              // a heap
   std::vector<Share> settled_;                // narrow ones
@@ -173,21 +228,6 @@ void check_accuracy(double accuracy) {
   if (accuracy > 0.0 && std::isfinite(accuracy)) return;
   text::refuse("the accuracy of a view factor is " + text::shortest(accuracy), "it bounds an error",
                "give a positive number; the default is 1e-6");
-}
-
-// A patch, prepared once.
-struct Prepared {
-  Selection patch;
-  std::vector<Part> parts;
-  double area = 0.0;       // in the scene's unit of length, squared
-  double unit_area = 0.0;  // in squares of the unit of Point::at
-  bool planar = true;
-};
-
-Prepared prepare(const ExactScene& scene, const Selection& patch) {
-  Prepared result{patch, parts_of(scene, patch), 0.0, 0.0, is_planar(scene.scene, patch)};
-  std::tie(result.unit_area, result.area) = areas_of(scene, patch, result.parts);
-  return result;
 }
 
 // If the cells of a crowd tell less than statistics.
@@ -219,12 +259,13 @@ void take_enclosure(const ExactScene& scene, const Integral& integral, const Pre
   result.value = is_finite(f) ? std::clamp(f.centre, result.lower, result.upper) : 0.5;
 }
 
-ViewFactor factor(const ExactScene& scene, const Prepared& from, const Prepared& to, const ViewFactorOptions& options) {
+ViewFactor factor(const ExactScene& scene, const SeenParts& seen, const Prepared& from, const Prepared& to,
+                  const ViewFactorOptions& options, PairMemory& memory) {
   ViewFactor result;
   result.area_from = from.area;
   result.area_to = to.area;
   const double target = 0.5 * options.accuracy * std::min(from.unit_area, to.unit_area);
-  Integral integral(scene, from.parts, from.unit_area, to.parts, to.patch, options, target);
+  Integral integral(scene, seen, from, to, options, target, memory);
   result.cells = integral.cells();
   if (integral.is_zero()) return result;
   integral.refine(options.certify ? kShareOfTarget * target : target);
@@ -295,10 +336,12 @@ std::vector<Prepared> prepared(const ExactScene& scene, std::span<const Selectio
 
 struct Pairs::Patches {
   Patches(const Scene& given, std::span<const Selection> from, std::span<const Selection> to)
-      : scene(given), rows(prepared(scene, from)), columns(prepared(scene, to)) {}
+      : scene(given), seen(scene), rows(prepared(scene, from)), columns(prepared(scene, to)) {}
 
   ExactScene scene;
+  SeenParts seen;
   std::vector<Prepared> rows, columns;
+  mutable PairMemories memories;
 };
 
 Pairs::Pairs(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
@@ -317,7 +360,9 @@ void Pairs::compute(std::size_t pair, const std::function<void(std::size_t, cons
   const std::vector<std::size_t>& entries = entries_[pair];
   const std::size_t columns = patches_->columns.size(), first = entries.front();
   const Prepared &from = patches_->rows[first / columns], &to = patches_->columns[first % columns];
-  const ViewFactor computed = factor(patches_->scene, from, to, options_);
+  std::unique_ptr<PairMemory> memory = patches_->memories.take();
+  const ViewFactor computed = factor(patches_->scene, patches_->seen, from, to, options_, *memory);
+  patches_->memories.give_back(std::move(memory));
   take(first, computed);
   for (const std::size_t entry : std::span(entries).subspan(1))
     take(entry, reversed(patches_->scene, computed, from, to));

@@ -17,6 +17,7 @@
 #include "view_factors/certified_integral.h"
 #include "view_factors/disc_formula.h"
 #include "view_factors/patch_parts.h"
+#include "view_factors/seen_parts.h"
 
 namespace exactff {
 namespace {
@@ -255,7 +256,8 @@ void visit_cells(const Scene& scene, const char* from, const char* to, const Vis
   using namespace view_factors;
   const ExactScene exact(scene);
   const Part receiver = parts_of(exact, scene.select(from)).front(), source = parts_of(exact, scene.select(to)).front();
-  const std::optional<Sight> sight = sight_of(exact, receiver, source, receiver.face);
+  const std::optional<Sight> sight =
+      sight_of(exact, SeenParts(exact).seen_from(receiver).occluders, receiver, source, receiver.face);
   ASSERT_TRUE(sight);
   PairMemory memory;
   CellView view(*sight, memory, 0);

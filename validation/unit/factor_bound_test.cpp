@@ -1,0 +1,97 @@
+// What is known of a pair before any cell: a bound of its form factors, and the shaft between its boxes.
+#include "view_factors/factor_bound.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exactff/exact.h"
+#include "generate/plain_scene.h"
+#include "generate/random.h"
+#include "support/random_scenes.h"
+#include "view_factors/pair_shaft.h"
+#include "view_factors/patch_parts.h"
+#include "view_factors/seen_parts.h"
+
+namespace exactff::view_factors {
+namespace {
+
+using generate::PlainScene;
+using generate::Random;
+using validation::scaled_count;
+using validation::seed_of;
+
+Scene two_triangles(Random& random) {
+  PlainScene scene;
+  const double size = std::ldexp(1.0, -random.integer(0, 6)), gap = std::ldexp(1.0, -random.integer(0, 4));
+  const auto corner = [&](double x) {
+    return Vec3{x + size * random.unit(), size * random.unit(), size * random.unit()};
+  };
+  scene.add_ring(scene.patch("receiver"), {corner(0), corner(0), corner(0)});
+  scene.add_ring(scene.patch("source"), {corner(size + gap), corner(size + gap), corner(size + gap)});
+  return generate::build(scene);
+}
+
+TEST(FactorBound, IsAtLeastEveryFormFactorOfTheCell) {
+  int tight = 0, seeing = 0;
+  for (std::uint64_t s = 0; s < scaled_count(400); ++s) {
+    Random random(seed_of(s));
+    const Scene scene = two_triangles(random);
+    const ExactScene exact(scene);
+    const Part receiver = parts_of(exact, scene.select("receiver")).front();
+    const Part source = parts_of(exact, scene.select("source")).front();
+    const auto sight = sight_of(exact, SeenParts(exact).seen_from(receiver).occluders, receiver, source, receiver.face);
+    if (!sight) continue;
+    ++seeing;
+    const double bound = FactorBound(*sight).on(sight->root);
+    EXPECT_LE(bound, 1.0);
+    const ExactSource from(scene, scene.select("source"));
+    double largest = 0.0;
+    for (const Point& corner : sight->root.corners) {
+      const int exponent = static_cast<int>(exact.units.exponent + exact.units.shift);
+      const Vec3 at{std::ldexp(corner.at.x, exponent), std::ldexp(corner.at.y, exponent),
+                    std::ldexp(corner.at.z, exponent)};
+      const auto& n = sight->receiver.rounded;
+      const Receiver x{.point = at, .normal = {n[0], n[1], n[2]}, .on = {receiver.face}, .id = {}};
+      largest = std::max(largest, exact_form_factor(scene, x, from).value);
+    }
+    EXPECT_LE(largest, bound * (1.0 + 0x1p-30));
+    tight += largest > 0.25 * bound ? 1 : 0;
+  }
+  EXPECT_GE(seeing, 40);
+  EXPECT_GE(tight, seeing / 4) << "of small patches, it should be of the order of the factor";
+}
+
+TEST(PairShaft, HoldsEverySegmentBetweenTheBoxes) {
+  int outside = 0;
+  for (std::uint64_t s = 0; s < scaled_count(2000); ++s) {
+    Random random(seed_of(s));
+    const auto point = [&] {
+      const auto coordinate = [&] { return static_cast<double>(random.integer(-8, 8)) / 8.0; };
+      return Vec3{coordinate(), coordinate(), coordinate()};
+    };
+    const auto box = [&] {
+      Box result;
+      result.include(point());
+      if (random.one_in(2)) result.include(point());
+      return result;
+    };
+    const Box a = box(), b = box();
+    const PairShaft shaft(a, b);
+    const auto inside = [&](const Box& of) {
+      const auto between = [&](double low, double high) { return low + random.unit() * (high - low); };
+      return Vec3{between(of.low.x, of.high.x), between(of.low.y, of.high.y), between(of.low.z, of.high.z)};
+    };
+    const Vec3 p = inside(a), q = inside(b);
+    const double t = random.unit();
+    Box at;
+    at.include({p.x + t * (q.x - p.x), p.y + t * (q.y - p.y), p.z + t * (q.z - p.z)});
+    EXPECT_FALSE(shaft.is_outside(at));
+    outside += shaft.is_outside(box()) ? 1 : 0;
+  }
+  EXPECT_GE(outside, 500);
+}
+
+}  // namespace
+}  // namespace exactff::view_factors
