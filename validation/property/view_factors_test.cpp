@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -285,6 +286,47 @@ TEST(ViewFactors, OfTwoHalvesAddUp) {
     judged += f.accurate && back.accurate && f.value > 0.0 ? 1 : 0;
   }
   EXPECT_GE(judged, 5U);
+}
+
+// Two rectangles with boxes between them, whose far sides their near sides hide.
+generate::PlainScene boxes_between(Random& random) {
+  constexpr int kRange = 8;
+  const auto two = [&](int most) {
+    const int a = random.integer(0, most - 1);
+    return std::array{static_cast<double>(a), static_cast<double>(random.integer(a + 1, most))};
+  };
+  generate::PlainScene scene;
+  const auto x = two(kRange), y = two(kRange), u = two(kRange), v = two(kRange);
+  scene.add_ring(scene.patch("below"), {{x[0], y[0], 0}, {x[1], y[0], 0}, {x[1], y[1], 0}, {x[0], y[1], 0}});
+  scene.add_ring(scene.patch("above"), {{u[0], v[0], 8}, {u[0], v[1], 8}, {u[1], v[1], 8}, {u[1], v[0], 8}});
+  for (int i = random.integer(1, 3); i > 0; --i) {
+    const auto a = two(kRange), b = two(kRange), c = two(kRange - 2);
+    add_thing(scene, box({a[0], b[0], 1 + c[0]}, {a[1], b[1], 1 + c[1]}));
+  }
+  return scene;
+}
+
+// By default either rectangle may be cut.
+TEST(ViewFactors, BehindBoxesAreThoseOfBothDirections) {
+  std::size_t judged = 0;
+  for (std::uint64_t s = 0; s < scaled_count(150); ++s) {
+    Random random(seed_of(s));
+    const Scene scene = generate::build(boxes_between(random));
+    const Selection below = scene.select("below"), above = scene.select("above");
+    ViewFactorOptions options{.accuracy = 1e-4, .budget = 300, .sample_crowds = false};
+    const ViewFactor either = view_factor(scene, below, above, options);
+    options.both_directions = true;
+    const ViewFactor forth = view_factor(scene, below, above, options),
+                     back = view_factor(scene, above, below, options);
+    const double ratio = back.area_from / forth.area_from;
+    for (const auto& [lower, upper] : {std::pair(forth.lower, forth.upper),
+                                       std::pair(back.lower * ratio / kRoundings, back.upper * ratio * kRoundings)}) {
+      EXPECT_LE(either.lower, upper) << s;
+      EXPECT_GE(either.upper, lower) << s;
+    }
+    judged += either.accurate && either.value > 0.0 ? 1 : 0;
+  }
+  EXPECT_GE(judged, 20U);
 }
 
 // A box that stands on the floor: its base hides what lies under it, and its sides begin in the floor's plane.
