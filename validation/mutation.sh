@@ -29,6 +29,11 @@ names_of_all() {
   for file in "$patches"/*.patch; do basename "$file" .patch; done
 }
 
+# The test that detected the fault when it was planted before, by the table in mutation/README.md; without its parameter.
+known_test() {
+  sed -nE "s/^\| \`$1\` \|.*\| \`([^\`]+)\`.*\|$/\1/p" "$patches/README.md"
+}
+
 check() {
   local name failures=0
   command -v patch > /dev/null || { echo "the program 'patch' is missing; validation/setup.sh installs it" >&2; exit 1; }
@@ -37,12 +42,16 @@ check() {
       echo "$name.patch does not say what it breaks and what a user sees"
       failures=$((failures + 1))
     fi
+    if [ -z "$(known_test "$name")" ]; then
+      echo "$name is not in the table of mutation/README.md, so the whole suite would run to detect it"
+      failures=$((failures + 1))
+    fi
     apply "$name" "$top" --dry-run && continue
     echo "$name.patch no longer applies: write it again for the present sources, as 'diff -u' from a/ to b/"
     failures=$((failures + 1))
   done
   [ "$failures" -eq 0 ] || exit 1
-  echo "every patch applies"
+  echo "every patch applies and is in the table"
 }
 
 # Compares contents: a file gets a new time only if it differs from what the last build saw.
@@ -84,11 +93,6 @@ suite() {
 first_failure() {
   sed -nE '/\*\*\*/ { s/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: ([^ ]+).*\*\*\*(Timeout)?.*/\1 \2/p; q }' "$1" |
     sed -E 's/ Timeout$/ (hangs)/; s/ $//'
-}
-
-# The test that detected the fault when it was planted before, by the table in mutation/README.md; without its parameter.
-known_test() {
-  sed -nE "s/^\| \`$1\` \|.*\| \`([^\`]+)\`.*\|$/\1/p" "$patches/README.md"
 }
 
 # The result for the planted fault, as text for the table. Returns 1 unless the fault was detected.
