@@ -2,9 +2,9 @@
 //
 // In each stratum there are two triples of points, as for single entries (view_factors/sampled_factor.h). A view gives
 // the point's form factors to all patches at once, so a row costs the same whatever the number of columns. strata.h has
-// the interval of an entry. Two rigorous facts narrow it. With d the distance between the boxes of two patches, F(x ->
-// j) = integral of cos cos / (pi r^2) over j is at most A_j / (pi d^2). And an entry is 0 if of every two pieces, one
-// lies behind the plane of the other.
+// the interval of an entry. Rigorous facts narrow it. With d the distance between the boxes of two patches, F(x -> j) =
+// integral of cos cos / (pi r^2) over j is at most A_j / (pi d^2). And an entry is 0 if of every two pieces, one lies
+// behind the plane of the other, or if walls hide all of j from all of i.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -102,7 +102,8 @@ std::vector<std::uint32_t> pieces_seen_from(const ExactScene& scene, std::span<c
 // What the points of one row have seen, by patch, then the backs and what is open.
 class RowOfMeans {
  public:
-  explicit RowOfMeans(const Scene& scene) : scene_(scene), means_(scene.patches().size() + 2) {
+  explicit RowOfMeans(const Scene& scene)
+      : scene_(scene), means_(scene.patches().size() + 2), may_see_(scene.patches().size()) {
     for (std::vector<double>& numbers : numbers_) numbers.assign(means_.size(), 0.0);
   }
 
@@ -111,17 +112,20 @@ class RowOfMeans {
     strata_ = strata_of(parts, std::max(view_factors::kFewestStrata, views / kViews));
     const view_factors::Strata& strata = strata_;
     std::vector<std::optional<view_factors::NearPlanes>> near(parts.size());
-    std::vector<std::vector<std::uint32_t>> seen_pieces(parts.size());
+    std::vector<std::vector<std::uint32_t>> seen_pieces;
+    for (const Part& part : parts) {
+      seen_pieces.push_back(pieces_seen_from(scene, walls, part));
+      for (const std::uint32_t piece : seen_pieces.back()) {
+        may_see_[index_of(scene_.face(scene_.pieces()[piece].face).patch)] = true;
+      }
+    }
     for (std::size_t s = 0; s < strata.strata.size(); ++s) {
       const view_factors::Stratum& stratum = strata.strata[s];
       const double share = stratum.area / strata.area;
       for (std::size_t i = 0; i < 2; ++i) {
         view_factors::Draws draws(0, s, i);
         const view_factors::SmallTriangle& triangle = drawn(strata, stratum, draws);
-        if (!near[triangle.part]) {
-          near[triangle.part].emplace(scene, parts[triangle.part]);
-          seen_pieces[triangle.part] = pieces_seen_from(scene, walls, parts[triangle.part]);
-        }
+        if (!near[triangle.part]) near[triangle.part].emplace(scene, parts[triangle.part]);
         for (const Point& point : triple_in(parts[triangle.part], triangle, draws, scene.units)) {
           if (!look_from(point, *near[triangle.part], seen_pieces[triangle.part], numbers_[i]))
             unknown_ += share / kViews;
@@ -134,6 +138,8 @@ class RowOfMeans {
 
   static constexpr std::size_t kBackColumn = 0, kOpenColumn = 1;
   [[nodiscard]] const StratifiedMean& mean(PatchId patch) const { return means_[index_of(patch)]; }
+  // False: walls hide it from all of the row's patch.
+  [[nodiscard]] bool may_see(PatchId patch) const { return may_see_[index_of(patch)]; }
   [[nodiscard]] const StratifiedMean& beside(std::size_t which) const {
     return means_[scene_.patches().size() + which];
   }
@@ -175,6 +181,7 @@ class RowOfMeans {
   const Scene& scene_;
   view_factors::Strata strata_;
   std::vector<StratifiedMean> means_;
+  std::vector<bool> may_see_;  // by patch
   std::array<std::vector<double>, 2> numbers_;
   std::vector<std::size_t> touched_;
   WholeView seen_;
@@ -235,7 +242,7 @@ Matrix draft(const Scene& scene, std::span<const Selection> from, std::span<cons
     for (std::size_t j = 0; j < columns.size(); ++j) {
       ViewFactor& f = result.factors.entries[i * columns.size() + j];
       const StratifiedMean& mean = row.mean(columns[j].patch.patch);
-      if (mean.value > 0.0 || !is_zero(exact, rows[i], columns[j]))
+      if (mean.value > 0.0 || (row.may_see(columns[j].patch.patch) && !is_zero(exact, rows[i], columns[j])))
         f = entry(mean, row, largest_factor(rows[i], columns[j]));
       judge(f, rows[i].area, columns[j].area, options.accuracy);
     }
