@@ -32,10 +32,10 @@ Candidates CellView::all_candidates() const {
 int CellView::sign_on_cell(LineId line, PointId point) {
   const Points& points = sight_.points;
   const Line& ends = points.line(line);
-  const RoundedPlane filter(points[ends.a].at, points[ends.b].at, points[point].at);
+  const RoundedPlane filter(points[ends.a], points[ends.b], points[point]);
   const Plane* exact = nullptr;
   return common_sign(*cell_, [&](const Point& corner) {
-    const int side = filter.side_of(corner.at);
+    const int side = filter.side_of(corner);
     if (side != kernel::kUncertain) return side;
     if (exact == nullptr) exact = memory_.plane(points, line, point).get();
     return side_of(*exact, corner);
@@ -98,7 +98,7 @@ void CellView::consider_doubts() {
     if (memory_.sign(line, point) == kMixedAndSeen) continue;
     memory_.keep_sign(line, point, kMixedAndSeen);
     const Line& ends = points.line(line);
-    const RoundedPlane estimate(points[ends.a].at, points[ends.b].at, points[point].at);
+    const RoundedPlane estimate(points[ends.a], points[ends.b], points[point]);
     if (balance_at_most(*cell_, estimate) < best_balance_) continue;
     consider_cut(memory_.plane(points, line, point));
   }

@@ -11,6 +11,16 @@ namespace exactff::view_factors {
 namespace {
 
 constexpr double kSubtractionError = 0x1p-51;  // of a component of a difference of two points, each rounded once
+constexpr int kExactBits = 50;                 // of products whose sums of four are exact
+constexpr int kBitsForRoundedPlane = 15;       // see RoundedPlane
+constexpr long kLargestShift = 256;            // so that no product of three numbers underflows
+
+int bits_of(std::span<const Integer> numbers, const Units& units) {
+  if (units.shift > kLargestShift) return kManyBits;
+  long bits = 0;
+  for (const Integer& x : numbers) bits = std::max(bits, kernel::bit_length(x));
+  return static_cast<int>(std::min<long>(bits, kManyBits));
+}
 
 Integer integer_of(double value, const Units& units) {
   const kernel::BinaryDouble parts = kernel::decompose(value);
@@ -65,14 +75,16 @@ Point make_point(Homogeneous exact, const Units& units) {
     return kernel::nearest_double(kernel::times_power_of_two(std::move(value), -units.shift));
   };
   const Vec3 at{coordinate(0), coordinate(1), coordinate(2)};
-  return {std::move(exact), at};
+  const int bits = exact[3] == 1 ? bits_of(std::span(exact).first(3), units) : kManyBits;
+  return {std::move(exact), at, bits};
 }
 
 Plane make_plane(Homogeneous exact, const Units& units) {
   make_primitive(exact);
   long bits = kernel::bit_length(exact[3]) - units.shift;
   for (int i = 0; i < 3; ++i) bits = std::max(bits, kernel::bit_length(exact[i]));
-  Plane plane{std::move(exact), {}};
+  Plane plane{std::move(exact), {}, kManyBits};
+  plane.bits = bits_of(plane.exact, units);
   for (int i = 0; i < 4; ++i) {
     plane.rounded[i] = kernel::nearest_double(plane.exact[i], -bits - (i == 3 ? units.shift : 0));
   }
@@ -95,6 +107,7 @@ int side_of(const Plane& plane, const Point& point) {
   const double terms[] = {plane.rounded[0] * point.at.x, plane.rounded[1] * point.at.y, plane.rounded[2] * point.at.z,
                           plane.rounded[3]};
   const double sum = terms[0] + terms[1] + terms[2] + terms[3];
+  if (plane.bits + point.bits <= kExactBits) return sum > 0.0 ? 1 : sum < 0.0 ? -1 : 0;
   const double magnitude = std::abs(terms[0]) + std::abs(terms[1]) + std::abs(terms[2]) + std::abs(terms[3]);
   const int filtered = kernel::certified_sign(sum, magnitude);
   if (filtered != kernel::kUncertain) return filtered;
@@ -103,8 +116,9 @@ int side_of(const Plane& plane, const Point& point) {
   return sgn(value);
 }
 
-RoundedPlane::RoundedPlane(const Vec3& a, const Vec3& b, const Vec3& c) : origin_(a) {
-  const Vec3 ab = kernel::difference(b, a), ac = kernel::difference(c, a);
+RoundedPlane::RoundedPlane(const Point& a, const Point& b, const Point& c)
+    : origin_(a.at), is_exact_(std::max({a.bits, b.bits, c.bits}) <= kBitsForRoundedPlane) {
+  const Vec3 ab = kernel::difference(b.at, a.at), ac = kernel::difference(c.at, a.at);
   normal_ = kernel::cross(ab, ac);
   const double size_b = kernel::max_norm(ab) + kSubtractionError, size_c = kernel::max_norm(ac) + kSubtractionError;
   product_ = size_b * size_c;
@@ -117,9 +131,11 @@ double RoundedPlane::error_at(const Vec3& from_origin) const {
   return 0x1p-46 * (product_ + sum_ * (kernel::max_norm(from_origin) + kSubtractionError));
 }
 
-int RoundedPlane::side_of(const Vec3& x) const {
-  const Vec3 ax = kernel::difference(x, origin_);
-  const double value = kernel::dot(normal_, ax), error = error_at(ax);
+int RoundedPlane::side_of(const Point& x) const {
+  const Vec3 ax = kernel::difference(x.at, origin_);
+  const double value = kernel::dot(normal_, ax);
+  if (is_exact_ && x.bits <= kBitsForRoundedPlane) return value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
+  const double error = error_at(ax);
   return value > error ? 1 : value < -error ? -1 : kernel::kUncertain;
 }
 

@@ -29,14 +29,19 @@ struct Units {
   [[nodiscard]] static Units of(std::span<const Vec3> vertices);
 };
 
+// Numbers of so many bits, or kManyBits. Doubles of few bits are exact, and so is what is computed from them.
+inline constexpr int kManyBits = 1000;
+
 struct Point {
   Homogeneous exact;
-  Vec3 at;  // in units of 2^shift
+  Vec3 at;               // in units of 2^shift
+  int bits = kManyBits;  // of x, y and z, if w is 1
 };
 
 struct Plane {
   Homogeneous exact;
   std::array<double, 4> rounded{};
+  int bits = kManyBits;  // of all four
 };
 
 [[nodiscard]] Point point_of(const Vec3& vertex, const Units& units);
@@ -61,14 +66,17 @@ struct Plane {
 // magnitudes, plus e. Each of the six products of det(b - a, c - a, x - a) errs by at most e S, S = AB + BC + CA.
 // Rounding the products and their sum adds at most 6u to each, 36u ABC <= 25u S, since A, B, C are below 2 + 2e. The
 // total is at most 49u S, and the filter decides beyond 2^-46 S = 128u S. An underflow is negligible beside S >= 3 e^2.
+//
+// With coordinates of at most 15 bits nothing is rounded: the differences have 16 bits, the normal 33, each of the
+// three last products 49, and their sum 51.
 class RoundedPlane {
  public:
-  RoundedPlane(const Vec3& a, const Vec3& b, const Vec3& c);
+  RoundedPlane(const Point& a, const Point& b, const Point& c);
 
   // Up to rounding, a positive multiple of the distance.
   [[nodiscard]] double height(const Vec3& x) const;
   // kernel::kUncertain: the filter declines.
-  [[nodiscard]] int side_of(const Vec3& x) const;
+  [[nodiscard]] int side_of(const Point& x) const;
   // The point's height is certainly larger, on either side, than so many times its error.
   [[nodiscard]] bool is_beyond(const Vec3& x, double errors) const;
 
@@ -77,6 +85,7 @@ class RoundedPlane {
 
   Vec3 origin_, normal_;
   double product_ = 0.0, sum_ = 0.0;  // AB and A + B
+  bool is_exact_ = false;             // the normal
 };
 
 }  // namespace exactff::view_factors

@@ -50,6 +50,8 @@ class Pair {
        const Limits& limits, PairMemory& memory, std::size_t id);
 
   [[nodiscard]] std::size_t point_count() const { return sight_.points.point_count(); }
+  // True if Limits::enough will do for all of the receiver.
+  [[nodiscard]] bool is_dim() const { return bound_.on(sight_.root) * size_of(sight_.root) <= limits_.enough; }
   // An estimate of how many lines cut the receiver (CellView::count_events).
   [[nodiscard]] std::size_t events();
 

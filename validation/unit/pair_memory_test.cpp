@@ -89,6 +89,34 @@ TEST(PairMemory, ForgetsButNeverErrs) {
   EXPECT_GT(known, 1000U);
 }
 
+// By integers alone.
+int exact_side(const Plane& plane, const Point& point) {
+  Integer sum = 0;
+  for (std::size_t i = 0; i < 4; ++i) sum += plane.exact[i] * point.exact[i];
+  return sgn(sum);
+}
+
+// Of short coordinates, from the first one that is rounded to those of which nothing is.
+TEST(RoundedPlane, IsExactForShortCoordinates) {
+  generate::Random random(22);
+  std::size_t in_plane = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const int bits = random.integer(2, 26);
+    const Units units{0, bits};
+    const int most = random.one_in(2) ? (1 << bits) - 1 : 3;
+    const auto coordinate = [&] { return static_cast<double>(random.integer(-most, most)); };
+    std::vector<Point> p;
+    for (int i = 0; i < 4; ++i) p.push_back(point_of({coordinate(), coordinate(), coordinate()}, units));
+    const Plane plane = make_plane(join(p[0], p[1], p[2]), units);
+    const int exact = exact_side(plane, p[3]);
+    EXPECT_EQ(side_of(plane, p[3]), exact);
+    const int found = RoundedPlane(p[0], p[1], p[2]).side_of(p[3]);
+    EXPECT_TRUE(found == exact || (found == kernel::kUncertain && most >= 1 << 15));
+    in_plane += exact == 0 ? 1U : 0U;
+  }
+  EXPECT_GT(in_plane, 500U);
+}
+
 // Points in or near a plane, on a grid in which many are exactly in it.
 TEST(RoundedPlane, NeverContradictsTheExactSide) {
   generate::Random random(21);
@@ -100,7 +128,7 @@ TEST(RoundedPlane, NeverContradictsTheExactSide) {
     std::vector<Point> p;
     for (int i = 0; i < 4; ++i) p.push_back(point_of({coordinate(), coordinate(), coordinate()}, units));
     const Plane plane = make_plane(join(p[0], p[1], p[2]), units);
-    const int found = RoundedPlane(p[0].at, p[1].at, p[2].at).side_of(p[3].at);
+    const int found = RoundedPlane(p[0], p[1], p[2]).side_of(p[3]);
     if (found == kernel::kUncertain) {
       ++declined;
     } else {
