@@ -14,7 +14,8 @@ constexpr double kShaftMargin = 0x1p-44;
 // Sides of the hull in two axes that are no sides of a box join corresponding corners of the two.
 PairShaft::PairShaft(const Box& a, const Box& b) {
   using kernel::coordinate;
-  for (const auto& [u, v] : {std::pair(0, 1), std::pair(1, 2), std::pair(2, 0)}) {
+  for (int u = 0; u < 3; ++u) {
+    const int v = (u + 1) % 3;
     for (const bool low_u : {true, false}) {
       for (const bool low_v : {true, false}) {
         const auto corner = [&](const Box& box) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <ranges>
 
 #include "kernel/poll.h"
 #include "kernel/vec.h"
@@ -177,10 +176,9 @@ class SeeingRegion {
   }
 
   // A piece in the part of the tree last asked for at this depth.
-  template <class Corners>
-  [[nodiscard]] bool may_see(const Corners& corners, std::size_t depth) {
+  [[nodiscard]] bool may_see(const Scene& scene, const Piece& piece, std::size_t depth) {
     target_.corners.clear();
-    for (const Vec3& corner : corners) target_.corners.push_back(corner);
+    for (const std::uint32_t corner : scene.corners(piece)) target_.corners.push_back(scene.vertices()[corner]);
     target_.is_box = false;
     return std::ranges::none_of(waiting_[depth + 1], [&](Hider* hider) { return hider->hides(target_); });
   }
@@ -198,15 +196,11 @@ std::vector<std::uint32_t> pieces_seen_from(const Scene& scene, std::span<const 
   SeeingRegion from(walls, region);
   std::vector<std::uint32_t> seen;
   kernel::Steps steps("faces", scene.pieces().size());
-  shaft_tree(scene).visit_where(
-      [&](const Box& box, std::size_t depth) { return from.may_see_into(box, depth); },
-      [&](std::uint32_t piece, std::size_t depth) {
-        steps.take();
-        const auto corner = [&](std::uint32_t index) { return scene.vertices()[index]; };
-        if (from.may_see(scene.corners(scene.pieces()[piece]) | std::views::transform(corner), depth)) {
-          seen.push_back(piece);
-        }
-      });
+  shaft_tree(scene).visit_where([&](const Box& box, std::size_t depth) { return from.may_see_into(box, depth); },
+                                [&](std::uint32_t piece, std::size_t depth) {
+                                  steps.take();
+                                  if (from.may_see(scene, scene.pieces()[piece], depth)) seen.push_back(piece);
+                                });
   return seen;
 }
 

@@ -70,8 +70,8 @@ class BoundaryMaker {
       }
     }
     const auto is_outer = [&](const Wall::Line& line) { return line.left == wall_.boundary; };
-    const auto inner = std::ranges::stable_partition(wall_.lines, is_outer);
-    wall_.outer_lines = wall_.lines.size() - inner.size();
+    const auto inner = std::stable_partition(wall_.lines.begin(), wall_.lines.end(), is_outer);
+    wall_.outer_lines = static_cast<std::size_t>(inner - wall_.lines.begin());
     return true;
   }
 
