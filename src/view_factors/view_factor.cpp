@@ -151,9 +151,11 @@ class Integral {
   std::unique_ptr<Pair> better_pair(const ExactScene& scene, std::span<const std::uint32_t> pieces, const End& from,
                                     const End& to, bool either) {
     std::unique_ptr<Pair> pair = make_pair(scene, pieces, from, to);
-    if (pair == nullptr || !either || pair->is_dim() || pair->events() == 0) return pair;
+    if (pair == nullptr || !either || pair->is_dim()) return pair;
+    const std::size_t events = pair->events();
+    if (events == 0) return pair;
     std::unique_ptr<Pair> other = make_pair(scene, pieces, to, from);
-    return other->events() < pair->events() ? std::move(other) : std::move(pair);
+    return other->events() < events ? std::move(other) : std::move(pair);
   }
 
   std::unique_ptr<Pair> make_pair(const ExactScene& scene, std::span<const std::uint32_t> pieces, const End& receiver,

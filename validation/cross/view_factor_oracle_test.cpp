@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exactff/models.h"
@@ -115,6 +116,20 @@ std::uint64_t points_of_a_scene() {
   return points == nullptr ? 256 : std::strtoull(points, nullptr, 10);
 }
 
+struct RandomPair {
+  std::string model;
+  Scene scene;
+  Selection from, to;
+};
+
+RandomPair random_pair(std::uint64_t number) {
+  const experiments::HonestyScene named = experiments::honesty_scene(number);
+  Scene scene = models::make_scene(named.model);
+  const Selection from = scene.select(named.is_turned ? named.to : named.from);
+  const Selection to = scene.select(named.is_turned ? named.from : named.to);
+  return {named.model, std::move(scene), from, to};
+}
+
 struct Deviations {
   std::size_t judged = 0;  // sharply
   double largest = 0.0;    // over what is allowed
@@ -141,12 +156,9 @@ TEST(ViewFactors, HoldMeansOfTheSecondOpinion) {
   constexpr std::uint64_t kScenes = 12;
   Deviations deviations;
   for (std::uint64_t s = 1; s <= scaled_count(kScenes); ++s) {
-    const experiments::HonestyScene named = experiments::honesty_scene(s);
-    const Scene scene = models::make_scene(named.model);
-    const Selection from = scene.select(named.is_turned ? named.to : named.from);
-    const Selection to = scene.select(named.is_turned ? named.from : named.to);
+    const auto& [model, scene, from, to] = random_pair(s);
     if (has_coplanar_faces(scene, from)) continue;
-    judge(scene, named.model, from, to, mean_of_second_opinion(scene, from, to, points_of_a_scene(), s), deviations);
+    judge(scene, model, from, to, mean_of_second_opinion(scene, from, to, points_of_a_scene(), s), deviations);
   }
   EXPECT_GE(deviations.judged, kScenes / 6);
   record(deviations);
@@ -156,13 +168,10 @@ TEST(ViewFactors, HoldMeansOfManyPlainPoints) {
   constexpr std::uint64_t kScenes = 24, kPoints = 1 << 14;
   Deviations deviations;
   for (std::uint64_t s = 1; s <= scaled_count(kScenes); ++s) {
-    const experiments::HonestyScene named = experiments::honesty_scene(s);
-    const Scene scene = models::make_scene(named.model);
-    const Selection from = scene.select(named.is_turned ? named.to : named.from);
-    const Selection to = scene.select(named.is_turned ? named.from : named.to);
+    const auto& [model, scene, from, to] = random_pair(s);
     const std::vector<FaceId> faces = scene.faces_of(from);
     if (faces.size() != 1 || has_coplanar_faces(scene, to)) continue;
-    judge(scene, named.model, from, to, mean_of_plain_points(scene, faces.front(), to, kPoints, s), deviations);
+    judge(scene, model, from, to, mean_of_plain_points(scene, faces.front(), to, kPoints, s), deviations);
   }
   EXPECT_GE(deviations.judged, kScenes / 6);
   record(deviations);
