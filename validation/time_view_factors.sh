@@ -76,4 +76,4 @@ building() { # TEXT SHARE OPTION...: a row of the table; SHARE of the time of al
   rm times
 }
 building '1e-3, budget 1,000' 0.5 --accuracy 1e-3 --budget 1000
-building 'draft of 216 views a row' 1 --draft
+building 'draft of 144 views a row' 1 --draft

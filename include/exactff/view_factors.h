@@ -26,11 +26,10 @@ namespace exactff {
 // What is known about a view factor, the weakest first.
 enum class Claim {
   // Estimated in a crowd, where cells do not suffice, from exact point factors: the mean over at least 36 strata of the
-  // patch, two independent triples of points in each. The interval misses the factor with a probability of at most
-  // 1e-6: that of Student's t, with degrees of freedom estimated from the strata, as far as the mean is normally
-  // distributed; where Hoeffding's bound is narrower, without this condition. What is too small for any of the
-  // points to meet is not known. With 36 strata, 4 of 1,771 factors of random scenes were missed, most of them by a
-  // small corner that an occluder cuts off (validation/view_factors.md): with so few points, do not rely on the level.
+  // patch, two independent pairs or triples of points in each. The interval misses the factor with a probability of at
+  // most 1e-6: that of Student's t, with degrees of freedom estimated from the strata, as far as the mean is normally
+  // distributed; where Hoeffding's bound is narrower, without this condition. What is too small for any of the points
+  // to meet is not known (validation/view_factors.md measures this): with so few points, do not rely on the level.
   kStatistical,
   // The visible boundary is proved for every cell. The error of quadrature is estimated: four times the difference of
   // two Gauss rules, or, closer to an edge than 1.5 radii of the cell, the cell's whole area. Where the order of edges

@@ -1,10 +1,10 @@
 // A draft of a matrix: each row from whole views of points in strata of its patch.
 //
-// In each stratum there are two triples of points, as for single entries (view_factors/sampled_factor.h). A view gives
+// In each stratum there are two draws of points, as for single entries (view_factors/sampled_factor.h). A view gives
 // the point's form factors to all patches at once, so a row costs the same whatever the number of columns. strata.h has
-// the interval of an entry. Rigorous facts narrow it. With d the distance between the boxes of two patches, F(x -> j) =
-// integral of cos cos / (pi r^2) over j is at most A_j / (pi d^2). And an entry is 0 if of every two pieces, one lies
-// behind the plane of the other, or if walls hide all of j from all of i.
+// the points and the interval of an entry. Rigorous facts narrow it. With d the distance between the boxes of two
+// patches, F(x -> j) = integral of cos cos / (pi r^2) over j is at most A_j / (pi d^2). And an entry is 0 if of every
+// two pieces, one lies behind the plane of the other, or if walls hide all of j from all of i.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -36,7 +36,7 @@ using view_factors::Point;
 using view_factors::StratifiedMean;
 using visibility::Wall;
 
-constexpr std::size_t kViews = 6;       // of a stratum: two triples, see strata.h
+constexpr std::size_t kDraws = 2;       // of a stratum
 constexpr double kRoundings = 0x1p-40;  // relative: more than those of areas, distances and sums
 
 struct DraftPatch {
@@ -89,9 +89,12 @@ double largest_factor(const DraftPatch& from, const DraftPatch& to) {
 }
 
 // Rounding moves no point of a part out of its box, whose sides are coordinates of corners.
-std::vector<std::uint32_t> pieces_seen_from(const ExactScene& scene, std::span<const Wall> walls, const Part& part) {
+std::vector<std::uint32_t> pieces_seen_from(const ExactScene& scene, std::span<const Wall> walls,
+                                            std::span<const Part> parts) {
   Box box;
-  for (const Point& corner : part.corners) box.include(corner.at);
+  for (const Part& part : parts) {
+    for (const Point& corner : part.corners) box.include(corner.at);
+  }
   const int exponent = static_cast<int>(scene.units.exponent + scene.units.shift);
   const auto in_scene = [&](const Vec3& v) {
     return Vec3{std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
@@ -108,32 +111,28 @@ class RowOfMeans {
   }
 
   void look_around(const ExactScene& scene, std::span<const Wall> walls, const Selection& patch, std::size_t views) {
-    const std::vector<Part> parts = parts_of(scene, patch);
-    strata_ = strata_of(parts, std::max(view_factors::kFewestStrata, views / kViews));
+    const std::vector<Part> parts = cut_at_contacts(scene, parts_of(scene, patch));
+    strata_ = strata_of(parts, std::max(view_factors::kFewestStrata, views / (kDraws * view_factors::kFewestPoints)));
     const view_factors::Strata& strata = strata_;
     std::vector<std::optional<view_factors::NearPlanes>> near(parts.size());
-    std::vector<std::vector<std::uint32_t>> seen_pieces;
-    for (const Part& part : parts) {
-      seen_pieces.push_back(pieces_seen_from(scene, walls, part));
-      for (const std::uint32_t piece : seen_pieces.back()) {
-        may_see_[index_of(scene_.face(scene_.pieces()[piece].face).patch)] = true;
-      }
-    }
+    find_seen_pieces(scene, walls, parts);
     for (std::size_t s = 0; s < strata.strata.size(); ++s) {
       const view_factors::Stratum& stratum = strata.strata[s];
       const double share = stratum.area / strata.area;
-      for (std::size_t i = 0; i < 2; ++i) {
-        view_factors::Draws draws(0, s, i);
-        const view_factors::SmallTriangle& triangle = drawn(strata, stratum, draws);
-        if (!near[triangle.part]) near[triangle.part].emplace(scene, parts[triangle.part]);
-        for (const Point& point : triple_in(parts[triangle.part], triangle, draws, scene.units)) {
-          if (!look_from(point, *near[triangle.part], seen_pieces[triangle.part], numbers_[i]))
-            unknown_ += share / kViews;
+      for (std::size_t d = 0; d < kDraws; ++d) {
+        view_factors::Draws draws(0, s, d);
+        const view_factors::Tile& tile = drawn(strata, stratum, d, draws);
+        if (!near[tile.part]) near[tile.part].emplace(scene, parts[tile.part]);
+        const std::vector<Point> points = points_in(parts[tile.part], tile, draws, scene.units);
+        weight_ = 1.0 / static_cast<double>(points.size());
+        for (const Point& point : points) {
+          ++points_;
+          const bool is_known = look_from(point, *near[tile.part], seen_pieces_[group_[tile.part]], numbers_[d]);
+          if (!is_known) unknown_ += share * weight_ / kDraws;
         }
       }
       add(share);
     }
-    points_ = static_cast<double>(kViews * strata.strata.size());
   }
 
   static constexpr std::size_t kBackColumn = 0, kOpenColumn = 1;
@@ -144,12 +143,23 @@ class RowOfMeans {
     return means_[scene_.patches().size() + which];
   }
   [[nodiscard]] double error(const StratifiedMean& mean) const {
-    return mean.error(view_factors::kRisk, points_, strata_) + unknown_ + view_factors::kRoundedPoints +
-           kRoundings * mean.value;
+    return mean.error(view_factors::kRisk, strata_) + unknown_ + view_factors::kRoundedPoints + kRoundings * mean.value;
   }
-  [[nodiscard]] std::size_t points() const { return static_cast<std::size_t>(points_); }
+  [[nodiscard]] std::size_t points() const { return points_; }
 
  private:
+  // Parts of one face, which follow one another, are a group.
+  void find_seen_pieces(const ExactScene& scene, std::span<const Wall> walls, std::span<const Part> parts) {
+    group_.resize(parts.size());
+    for (std::size_t begin = 0, end = 0; begin < parts.size(); begin = end) {
+      for (; end < parts.size() && parts[end].face == parts[begin].face; ++end) group_[end] = seen_pieces_.size();
+      seen_pieces_.push_back(pieces_seen_from(scene, walls, parts.subspan(begin, end - begin)));
+      for (const std::uint32_t piece : seen_pieces_.back()) {
+        may_see_[index_of(scene_.face(scene_.pieces()[piece].face).patch)] = true;
+      }
+    }
+  }
+
   // False where rounding the point may change what it sees.
   bool look_from(const Point& point, const view_factors::NearPlanes& near, std::span<const std::uint32_t> pieces,
                  std::vector<double>& numbers) {
@@ -164,11 +174,11 @@ class RowOfMeans {
   }
 
   void note(std::size_t column, double value, std::vector<double>& numbers) {
-    numbers[column] += value / 3.0;
+    numbers[column] += value * weight_;
     touched_.push_back(column);
   }
 
-  // The two triples of a stratum.
+  // The two draws of a stratum.
   void add(double share) {
     for (const std::size_t column : touched_) {
       if (numbers_[0][column] == 0.0 && numbers_[1][column] == 0.0) continue;
@@ -181,12 +191,16 @@ class RowOfMeans {
   const Scene& scene_;
   view_factors::Strata strata_;
   std::vector<StratifiedMean> means_;
-  std::vector<bool> may_see_;  // by patch
-  std::array<std::vector<double>, 2> numbers_;
+  std::vector<bool> may_see_;                            // by patch
+  std::vector<std::size_t> group_;                       // by part
+  std::vector<std::vector<std::uint32_t>> seen_pieces_;  // by group
+  std::array<std::vector<double>, kDraws> numbers_;
   std::vector<std::size_t> touched_;
   WholeView seen_;
   Workspace workspace_;
-  double points_ = 0.0, unknown_ = 0.0;
+  double weight_ = 0.0;  // of a point in its draw
+  double unknown_ = 0.0;
+  std::size_t points_ = 0;
 };
 
 ViewFactor entry(const StratifiedMean& mean, const RowOfMeans& row, double largest) {

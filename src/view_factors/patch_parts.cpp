@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <optional>
 
 #include "kernel/gauss.h"
+#include "kernel/vec.h"
 #include "text/refuse.h"
 #include "visibility/source_plane.h"
 
@@ -58,6 +61,70 @@ std::vector<Part> outside(const std::vector<Part>& parts, const std::vector<Plan
   return result;
 }
 
+Part whole(const ExactScene& scene, const ExactPiece& piece) {
+  Part part{piece.face, {}, true};
+  for (const std::uint32_t corner : piece.corners) part.corners.push_back(scene.vertices[corner]);
+  return part;
+}
+
+Box box_of(const Part& part) {
+  Box box;
+  for (const Point& corner : part.corners) box.include(corner.at);
+  return box;
+}
+
+// A segment in which a piece that reaches in front of a part's plane meets it.
+struct Contact {
+  const Plane* plane;  // of the piece
+  Box box;
+  double length;
+};
+
+std::optional<Contact> contact(const ExactScene& scene, const ExactPiece& piece, const Plane& plane) {
+  constexpr double kInner = 1.0 - 0x1p-20;  // what only the segment's ends touch is not cut
+  const auto side = [&](std::uint32_t corner) { return side_of(plane, scene.vertices[corner]); };
+  if (std::ranges::none_of(piece.corners, [&](std::uint32_t c) { return side(c) > 0; })) return std::nullopt;
+  if (std::ranges::all_of(piece.corners, [&](std::uint32_t c) { return side(c) > 0; })) return std::nullopt;
+  Clippable front(whole(scene, piece), scene.units);
+  front.ring = front.points.clipped(front.ring, plane, 0);
+  std::vector<Vec3> met;
+  for (const Edge& edge : front.ring) {
+    if (side_of(plane, front.points[edge.from]) == 0) met.push_back(front.points[edge.from].at);
+  }
+  if (met.size() != 2) return std::nullopt;
+  const Vec3 way = kernel::scaled(kernel::difference(met[1], met[0]), 0.5);
+  const Vec3 middle = kernel::difference(met[1], way), inner = kernel::scaled(way, kInner);
+  Contact result{&piece.plane, {}, view_factors::length(way)};
+  result.box.include(kernel::difference(middle, inner));
+  result.box.include(kernel::difference(middle, kernel::scaled(inner, -1.0)));
+  return result;
+}
+
+// The longest first.
+std::vector<Contact> contacts(const ExactScene& scene, const Part& part) {
+  const Plane plane = make_plane(join(part.corners[0], part.corners[1], part.corners[2]), scene.units);
+  const Box box = box_of(part);
+  std::vector<Contact> result;
+  for (const ExactPiece& piece : scene.pieces) {
+    if (piece.face == part.face || piece.transparent || piece.box.is_apart_from(box)) continue;
+    const std::optional<Contact> one = contact(scene, piece, plane);
+    if (one && !one->box.is_apart_from(box)) result.push_back(*one);
+  }
+  std::ranges::stable_sort(result, std::ranges::greater(), &Contact::length);
+  return result;
+}
+
+// The parts of a polygon on both sides of the plane.
+std::vector<Part> cut(const Part& part, const Plane& plane, const Units& units) {
+  std::vector<Part> result;
+  for (const Homogeneous& towards : {plane.exact, opposite(plane.exact)}) {
+    Clippable clippable(part, units);
+    const Ring ring = clippable.points.clipped(clippable.ring, make_plane(towards, units), 0);
+    if (!ring.empty()) result.push_back(clippable.part(part.face, ring));
+  }
+  return result;
+}
+
 std::array<kernel::Rational, 3> exact_difference(const Point& a, const Point& b) {
   std::array<kernel::Rational, 3> result;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -84,12 +151,6 @@ kernel::Disc enclosed_area(const Part& part, const Units& units) {
   return kernel::to_disc(sqrt(kernel::to_ball(of_half, kBits)));
 }
 
-Part whole(const ExactScene& scene, const ExactPiece& piece) {
-  Part part{piece.face, {}, true};
-  for (const std::uint32_t corner : piece.corners) part.corners.push_back(scene.vertices[corner]);
-  return part;
-}
-
 }  // namespace
 
 std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch) {
@@ -106,6 +167,34 @@ std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch) {
       earlier.push_back(&piece);
       result.insert(result.end(), left.begin(), left.end());
     }
+  }
+  return result;
+}
+
+std::vector<Part> cut_at_contacts(const ExactScene& scene, const std::vector<Part>& parts) {
+  constexpr std::size_t kMostContacts = 8;  // of a part: at most 37 fragments
+  std::vector<Part> result;
+  for (const Part& part : parts) {
+    std::vector<Contact> lines = contacts(scene, part);
+    if (lines.size() > kMostContacts) lines.erase(lines.begin() + kMostContacts, lines.end());
+    std::vector<Part> fragments{part};
+    for (const Contact& line : lines) {
+      std::vector<Part> finer;
+      for (Part& fragment : fragments) {
+        std::vector<Part> halves;
+        if (!line.box.is_apart_from(box_of(fragment))) halves = cut(fragment, *line.plane, scene.units);
+        if (halves.size() < 2) {
+          finer.push_back(std::move(fragment));
+          continue;
+        }
+        for (Part& half : halves) {
+          half.is_cut = true;
+          finer.push_back(std::move(half));
+        }
+      }
+      fragments = std::move(finer);
+    }
+    for (Part& fragment : fragments) result.push_back(std::move(fragment));
   }
   return result;
 }

@@ -12,6 +12,10 @@ namespace exactff::view_factors {
 // The patch's pieces; of pieces that overlap in one oriented plane, each point belongs to the first.
 [[nodiscard]] std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch);
 
+// For sampling: the parts, cut along the lines in which other faces meet their planes from the front. Form factors jump
+// there. Only the eight longest lines of a part cut it, each the fragments that it reaches.
+[[nodiscard]] std::vector<Part> cut_at_contacts(const ExactScene& scene, const std::vector<Part>& parts);
+
 // In squares of the unit of Point::at: an estimate within a few roundings.
 [[nodiscard]] double area_of(const std::vector<Part>& parts);
 // The same, enclosed.

@@ -13,8 +13,10 @@
 namespace exactff::view_factors {
 namespace {
 
-constexpr std::size_t kTriples = 2;  // of a stratum
-constexpr std::size_t kPointsOfStratum = 3 * kTriples;
+constexpr std::size_t kDraws = 2;  // of a stratum
+constexpr std::size_t kPointsOfStratum = kDraws * kFewestPoints;
+constexpr std::size_t kFirstStrata = 54;
+static_assert(kFirstStrata >= kFewestStrata);
 
 // F at exact points of a patch, with an error where rounding matters.
 class PointFactors {
@@ -47,7 +49,6 @@ class PointFactors {
 struct Look {
   StratifiedMean f;
   double unknown = 0.0;  // of the error of F
-  double points = 0.0;
 };
 
 Look look_at(const ExactScene& scene, const std::vector<Part>& from, const Strata& strata, std::size_t number,
@@ -56,38 +57,39 @@ Look look_at(const ExactScene& scene, const std::vector<Part>& from, const Strat
   for (std::size_t s = 0; s < strata.strata.size(); ++s) {
     kernel::poll();
     const Stratum& stratum = strata.strata[s];
-    std::array<double, kTriples> means{};
+    std::array<double, kDraws> means{};
     double unknown = 0.0;
-    for (std::size_t t = 0; t < kTriples; ++t) {
-      Draws draws(number, s, t);
-      const SmallTriangle& triangle = drawn(strata, stratum, draws);
-      for (const Point& point : triple_in(from[triangle.part], triangle, draws, scene.units)) {
-        const auto [value, error] = factors.at(point, triangle.part);
-        means[t] += value / 3.0;
-        unknown += error / static_cast<double>(kPointsOfStratum);
+    for (std::size_t d = 0; d < kDraws; ++d) {
+      Draws draws(number, s, d);
+      const Tile& tile = drawn(strata, stratum, d, draws);
+      const std::vector<Point> points = points_in(from[tile.part], tile, draws, scene.units);
+      for (const Point& point : points) {
+        const auto [value, error] = factors.at(point, tile.part);
+        means[d] += value / static_cast<double>(points.size());
+        unknown += error / static_cast<double>(kDraws * points.size());
       }
     }
     const double share = stratum.area / strata.area;
     look.f.add(means[0], means[1], share);
     look.unknown += unknown * share;
   }
-  look.points = static_cast<double>(strata.strata.size() * kPointsOfStratum);
   return look;
 }
 
 }  // namespace
 
-SampledIntegral sampled_integral(const ExactScene& scene, const std::vector<Part>& from, const Selection& to,
+SampledIntegral sampled_integral(const ExactScene& scene, const std::vector<Part>& parts, const Selection& to,
                                  std::size_t budget, double target) {
+  const std::vector<Part> from = cut_at_contacts(scene, parts);
   std::size_t looks = 1;
-  for (std::size_t strata = 4 * kFewestStrata; strata * kPointsOfStratum <= budget; strata *= 4) ++looks;
+  for (std::size_t strata = 4 * kFirstStrata; strata * kPointsOfStratum <= budget; strata *= 4) ++looks;
   PointFactors factors(scene, from, to);
   const double area = area_of(from);
   SampledIntegral result{0.5 * area, 0.5 * area};
-  for (std::size_t number = 0, strata = kFewestStrata; number < looks; ++number, strata *= 4) {
+  for (std::size_t number = 0, strata = kFirstStrata; number < looks; ++number, strata *= 4) {
     const Strata cut = strata_of(from, strata);
     const Look look = look_at(scene, from, cut, number, factors);
-    const double error = (look.unknown + look.f.error(kRisk / static_cast<double>(looks), look.points, cut)) * area;
+    const double error = (look.unknown + look.f.error(kRisk / static_cast<double>(looks), cut)) * area;
     if (error < result.error) result = {look.f.value * area, error};
     if (result.error <= target) break;
   }

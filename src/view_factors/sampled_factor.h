@@ -1,8 +1,8 @@
 // View factors by statistics, for patches with so much in between that cells do not suffice.
 //
-// The receiver's parts are cut into strata of about the same area. In each, two independent triples of points are
-// drawn. The points of a triple have the same three weights in turn at the corners of a small triangle, so their
-// mean is exact where F is linear. A point's F is the exact solver's (exact.h). strata.h has the interval.
+// The receiver's parts are cut where other faces stand on them or pierce them, since F jumps there, and then into
+// strata of about the same area. In each, two independent pairs or triples of points are drawn, whose mean is exact
+// where F is linear. A point's F is the exact solver's (exact.h). strata.h has the points and the interval.
 //
 // Several looks, each at four times the strata of the one before, with points of its own, until one is accurate enough.
 // Each has its share of the risk, so that with the whole level all of them are right: the narrowest is the result.

@@ -61,6 +61,7 @@ struct Part {
   FaceId face{};
   std::vector<Point> corners;
   bool is_piece = false;  // a whole piece of the scene
+  bool is_cut = false;    // a fragment of cut_at_contacts()
 };
 
 // Empty if no point of the receiver lies in front of the source, or the other way round: the factor is 0. `own` does

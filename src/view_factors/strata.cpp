@@ -19,22 +19,55 @@ std::uint64_t mixed(std::uint64_t key) {
   return z ^ (z >> 31);
 }
 
-void cut_triangle(std::size_t part, std::size_t second, double area, double largest, std::vector<SmallTriangle>& into) {
-  const auto m = static_cast<std::uint32_t>(std::ceil(std::sqrt(area / largest)));
-  const double small = area / (static_cast<double>(m) * m);
+constexpr double kAreaRoundings = 0x1p-20;  // relative: far more than there are
+
+// Exactly.
+bool is_parallelogram(const Part& part) {
+  if (part.corners.size() != 4) return false;
+  const auto at = [&](std::size_t i) -> const Homogeneous& { return part.corners[i].exact; };
+  const Integer even = at(0)[3] * at(2)[3], odd = at(1)[3] * at(3)[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Integer one = (at(0)[k] * at(2)[3] + at(2)[k] * at(0)[3]) * odd;
+    const Integer other = (at(1)[k] * at(3)[3] + at(3)[k] * at(1)[3]) * even;
+    if (one != other) return false;
+  }
+  return true;
+}
+
+// Into tiles of about equal sides, none of them larger than `largest`.
+void cut_parallelogram(std::size_t part, const std::vector<Vec3>& ring, double largest, std::vector<Tile>& into) {
+  const auto length = [&](std::size_t corner) {
+    const Vec3 side = kernel::difference(ring[corner], ring[0]);
+    return std::sqrt(kernel::dot(side, side));
+  };
+  const double size = area(ring), tiles = std::ceil(size / largest * (1.0 - kAreaRoundings));
+  const double columns = std::clamp(std::round(std::sqrt(tiles * length(1) / length(3))), 1.0, tiles);
+  const double rows = std::ceil(tiles / columns);
+  const auto m = static_cast<std::uint32_t>(columns), n = static_cast<std::uint32_t>(rows);
   for (std::uint32_t u = 0; u < m; ++u) {
-    for (std::uint32_t v = 0; u + v < m; ++v) {
-      into.push_back({part, second, m, u, v, false, small});
-      if (u + v + 1 < m) into.push_back({part, second, m, u, v, true, small});
+    for (std::uint32_t v = 0; v < n; ++v) {
+      into.push_back({part, 1, 3, m, n, u, v, Tile::Shape::kParallelogram, size / (columns * rows)});
     }
   }
 }
 
-// The point of a part with these weights, in units of 1 / (m 2^kWeightBits), at the corners of a fan's triangle.
-Point weighted(const Part& part, const SmallTriangle& triangle, const std::array<Integer, 3>& weights,
+void cut_triangle(std::size_t part, std::size_t second, double size, double largest, std::vector<Tile>& into) {
+  const double sides = std::ceil(std::sqrt(2.0 * size / largest * (1.0 - kAreaRoundings)));
+  const double parallelogram = 2.0 * size / (sides * sides);
+  const auto m = static_cast<std::uint32_t>(sides);
+  for (std::uint32_t u = 0; u < m; ++u) {
+    for (std::uint32_t v = 0; u + v + 1 < m; ++v) {
+      into.push_back({part, second, second + 1, m, m, u, v, Tile::Shape::kParallelogram, parallelogram});
+    }
+    into.push_back({part, second, second + 1, m, m, u, m - 1 - u, Tile::Shape::kTriangle, 0.5 * parallelogram});
+  }
+}
+
+// The point at s and t of the ways from the tile's corner 0 to `second` and to `third`, as fractions of `whole`.
+Point point_at(const Part& part, const Tile& tile, const Integer& s, const Integer& t, const Integer& whole,
                const Units& units) {
-  const std::array<const Point*, 3> corners{&part.corners[0], &part.corners[triangle.second],
-                                            &part.corners[triangle.second + 1]};
+  const std::array<const Point*, 3> corners{&part.corners[0], &part.corners[tile.second], &part.corners[tile.third]};
+  const std::array<Integer, 3> weights{whole - s - t, s, t};
   Homogeneous sum;
   for (std::size_t i = 0; i < 3; ++i) {
     const Integer factor = weights[i] * corners[(i + 1) % 3]->exact[3] * corners[(i + 2) % 3]->exact[3];
@@ -56,15 +89,20 @@ Strata strata_of(const std::vector<Part>& parts, std::size_t count) {
   const double largest = area_of(parts) / static_cast<double>(count);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const std::vector<Vec3> ring = rounded(parts[p].corners);
+    if (is_parallelogram(parts[p]) && area(ring) > 0.0) {
+      cut_parallelogram(p, ring, largest, result.tiles);
+      continue;
+    }
     for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
-      if (const double size = area({ring[0], ring[i], ring[i + 1]}); size > 0.0) {
-        cut_triangle(p, i, size, largest, result.triangles);
-      }
+      const double size = area({ring[0], ring[i], ring[i + 1]});
+      if (size > 0.0) cut_triangle(p, i, size, largest, result.tiles);
     }
   }
-  for (std::size_t i = 0; i < result.triangles.size(); ++i) {
-    const double size = result.triangles[i].area;
-    const bool joins = !result.strata.empty() && result.strata.back().area + size <= largest;
+  const bool are_many = result.tiles.size() > 2 * count;
+  for (std::size_t i = 0; i < result.tiles.size(); ++i) {
+    const double size = result.tiles[i].area;
+    const bool joins = are_many && i > 0 && result.strata.back().area + size <= largest &&
+                       !parts[result.tiles[i - 1].part].is_cut && !parts[result.tiles[i].part].is_cut;
     if (!joins) result.strata.push_back({i, i, 0.0});
     result.strata.back().end = i + 1;
     result.strata.back().area += size;
@@ -73,41 +111,36 @@ Strata strata_of(const std::vector<Part>& parts, std::size_t count) {
   for (const Stratum& stratum : result.strata) {
     const double share = stratum.area / result.area;
     result.squares_of_shares += share * share;
+    result.largest_share = std::max(result.largest_share, share);
   }
   return result;
 }
 
-const SmallTriangle& drawn(const Strata& strata, const Stratum& stratum, Draws& draws) {
+const Tile& drawn(const Strata& strata, const Stratum& stratum, std::size_t draw, Draws& draws) {
   std::size_t i = stratum.begin;
-  for (double left = draws.unit() * stratum.area; i + 1 < stratum.end && left >= strata.triangles[i].area; ++i) {
-    left -= strata.triangles[i].area;
+  for (double left = 0.5 * (static_cast<double>(draw) + draws.unit()) * stratum.area;
+       i + 1 < stratum.end && left >= strata.tiles[i].area; ++i) {
+    left -= strata.tiles[i].area;
   }
-  return strata.triangles[i];
+  return strata.tiles[i];
 }
 
-std::array<Point, 3> triple_in(const Part& part, const SmallTriangle& triangle, Draws& draws, const Units& units) {
+std::vector<Point> points_in(const Part& part, const Tile& tile, Draws& draws, const Units& units) {
   constexpr std::uint64_t kWhole = std::uint64_t{1} << kWeightBits;
   std::uint64_t a = draws.bits() >> (64 - kWeightBits), b = draws.bits() >> (64 - kWeightBits);
+  const Integer whole = (Integer(tile.columns) * Integer(tile.rows)) << kWeightBits;
+  const auto point = [&](std::uint64_t across, std::uint64_t up) {
+    const Integer s = Integer(tile.column * kWhole + across) * Integer(tile.rows);
+    const Integer t = Integer(tile.row * kWhole + up) * Integer(tile.columns);
+    return point_at(part, tile, s, t, whole, units);
+  };
+  if (tile.shape == Tile::Shape::kParallelogram) return {point(a, b), point(kWhole - a, kWhole - b)};
   if (a + b > kWhole) {
     a = kWhole - a;
     b = kWhole - b;
   }
-  const std::array<std::uint64_t, 3> drawn{a, b, kWhole - a - b};
-  // The small triangle's corners in units of an m-th.
-  const std::uint64_t u = triangle.u, v = triangle.v, turned = triangle.turned ? 1 : 0;
-  const std::array<std::uint64_t, 3> us{u + turned, u + 1 - turned, u + turned},
-      vs{v + turned, v + turned, v + 1 - turned};
-  std::array<Point, 3> points;
-  for (std::size_t turn = 0; turn < 3; ++turn) {
-    Integer along = 0, across = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      along += Integer(us[i]) * Integer(drawn[(i + turn) % 3]);
-      across += Integer(vs[i]) * Integer(drawn[(i + turn) % 3]);
-    }
-    const Integer whole = Integer(triangle.m) << kWeightBits;
-    points[turn] = weighted(part, triangle, {whole - along - across, along, across}, units);
-  }
-  return points;
+  const std::uint64_t c = kWhole - a - b;
+  return {point(a, b), point(b, c), point(c, a)};
 }
 
 void StratifiedMean::add(double a, double b, double share) {
@@ -117,8 +150,8 @@ void StratifiedMean::add(double a, double b, double share) {
   of_variance += square * square;
 }
 
-double StratifiedMean::error(double risk, double points, const Strata& strata) const {
-  if (!(of_variance > 0.0)) return std::min(1.0, -std::log(risk) / points);
+double StratifiedMean::error(double risk, const Strata& strata) const {
+  if (!(of_variance > 0.0)) return std::min(1.0, -0.5 * std::log(risk) * strata.largest_share);
   const double freedom = std::max(1.0, variance * variance / of_variance);
   const boost::math::students_t_distribution<double> student(freedom);
   const double t = boost::math::quantile(boost::math::complement(student, 0.25 * risk));

@@ -23,37 +23,46 @@ class Draws {
   std::uint64_t count_ = 0;
 };
 
-// One of the m^2 triangles into which a triangle of a part's fan is cut: with corners (u, v) + (0, 0), (1, 0), (0, 1),
-// or (1, 1), (0, 1), (1, 0), in units of an m-th of its sides from its first corner.
-struct SmallTriangle {
-  std::size_t part, second;  // the fan's triangle has the corners 0, second, second + 1
-  std::uint32_t m, u, v;
-  bool turned;
+// What the points of one draw lie in: a small parallelogram, or the small triangle that is left of one at the side of a
+// part's triangle opposite its corner 0. Small triangles are half of the parallelogram of the same grid.
+struct Tile {
+  enum class Shape { kParallelogram, kTriangle };
+  std::size_t part, second, third;  // corners of the part; its corner 0 is the grid's origin
+  std::uint32_t columns, rows;      // of the grid, on the sides from corner 0 to `second` and to `third`
+  std::uint32_t column, row;
+  Shape shape;
   double area;
 };
 
 struct Stratum {
-  std::size_t begin, end;  // small triangles
+  std::size_t begin, end;  // tiles
   double area;
 };
 
 struct Strata {
-  std::vector<SmallTriangle> triangles;
+  std::vector<Tile> tiles;
   std::vector<Stratum> strata;
   double area = 0.0;               // of all
   double squares_of_shares = 0.0;  // sum of the squares of the strata's shares of it
+  double largest_share = 0.0;
 };
 
-// About `count` strata: small triangles in a row share one until it has an area of total / count.
+// About `count` strata, and not fewer. A part that is a parallelogram is cut into small ones; any other part into those
+// of its fan's triangles. Each tile is a stratum, unless there are more than 2 `count`: then tiles in a row share one
+// until it has an area of total / count, but for those of fragments (cut_at_contacts). Few shared strata among others
+// would be too few for a normal distribution.
 [[nodiscard]] Strata strata_of(const std::vector<Part>& parts, std::size_t count);
 
-// A triangle of the stratum, with a probability in proportion to its area.
-[[nodiscard]] const SmallTriangle& drawn(const Strata& strata, const Stratum& stratum, Draws& draws);
+// The tile at a random place in the first or second half of the stratum's area, for its two draws. Where several tiles
+// share a stratum, this leaves their mean without bias, and the estimate of its variance is too large on average: by
+// the square of half the difference of the halves' means.
+[[nodiscard]] const Tile& drawn(const Strata& strata, const Stratum& stratum, std::size_t draw, Draws& draws);
 
-// Three points with the same weights in turn at the triangle's corners. Each is uniform in the triangle; their mean is
-// the centre, so the mean of a linear function at them is exact.
-[[nodiscard]] std::array<Point, 3> triple_in(const Part& part, const SmallTriangle& triangle, Draws& draws,
-                                             const Units& units);
+// Points each of which is uniform in the tile, and whose mean is the tile's centre, so that the mean of a linear
+// function at them is exact: of a parallelogram two, opposite each other; of a triangle three, with the same weights in
+// turn at its corners.
+[[nodiscard]] std::vector<Point> points_in(const Part& part, const Tile& tile, Draws& draws, const Units& units);
+inline constexpr std::size_t kFewestPoints = 2;  // of a draw
 
 // The mean over the strata of a function between 0 and 1, from two independent numbers in each: their mean has a
 // variance that (difference / 2)^2 estimates without bias. The strata's variances add up; their sum has an estimated
@@ -68,9 +77,11 @@ struct StratifiedMean {
 
   // The numbers of a stratum with this share of the area.
   void add(double a, double b, double share);
-  // Exceeded with the probability `risk`. Where all numbers agree, a set that n points miss with this probability has
-  // at most a share of -log(risk) / n.
-  [[nodiscard]] double error(double risk, double points, const Strata& strata) const;
+  // Exceeded with the probability `risk`. Where all numbers agree, the function may differ where no point was. Let the
+  // set where it does have a share p_s of stratum s. Both draws miss it with a probability of at most the product of
+  // (1 - p_s)^2 <= exp(-2 sum p_s), which is the risk if the sum is -log(risk) / 2, and the set's share of all is at
+  // most this sum times the largest share of a stratum. (The points of one draw are not independent.)
+  [[nodiscard]] double error(double risk, const Strata& strata) const;
 };
 
 }  // namespace exactff::view_factors

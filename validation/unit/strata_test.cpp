@@ -1,0 +1,284 @@
+// Random points of patches: where they lie, and what their means are.
+#include "view_factors/strata.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "exactff/scene.h"
+#include "generate/plain_scene.h"
+#include "view_factors/exact_scene.h"
+#include "view_factors/patch_parts.h"
+
+namespace exactff::view_factors {
+namespace {
+
+using generate::PlainScene;
+
+struct Patch {
+  const char* name;
+  std::vector<std::vector<Vec3>> rings;
+};
+
+void PrintTo(const Patch& patch, std::ostream* out) { *out << patch.name; }
+
+std::vector<Patch> patches() {
+  return {
+      {"square", {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}}},
+      {"strip", {{{0, 0, 0}, {9, 0, 0}, {9, 1, 0}, {0, 1, 0}}}},
+      {"sheared", {{{0, 0, 0}, {2, 1, 0}, {3, 3, 0}, {1, 2, 0}}}},
+      {"triangle", {{{0, 0, 0}, {3, 0, 1}, {0, 2, 0}}}},
+      {"kite", {{{0, 0, 0}, {2, 1, 0}, {3, 3, 0}, {1, 2.5, 0}}}},
+      {"hexagon", {{{1, 0, 0}, {2, 0, 0}, {3, 1, 0}, {2, 2, 0}, {1, 2, 0}, {0, 1, 0}}}},
+      {"square and triangle", {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{4, 0, 0}, {5, 0, 0}, {4, 3, 0}}}},
+  };
+}
+
+class StrataOf : public testing::TestWithParam<Patch> {
+ protected:
+  static PlainScene plain() {
+    PlainScene plain;
+    for (const std::vector<Vec3>& ring : GetParam().rings) plain.add_ring(plain.patch("patch"), ring);
+    return plain;
+  }
+
+  const Scene scene_ = generate::build(plain());
+  const ExactScene exact_{scene_};
+  const std::vector<Part> parts_ = parts_of(exact_, scene_.select("patch"));
+
+  // The mean over the patch, as of one row of a draft.
+  template <typename Function>
+  StratifiedMean mean_of(const Strata& strata, std::size_t look, const Function& f) {
+    StratifiedMean mean;
+    for (std::size_t s = 0; s < strata.strata.size(); ++s) {
+      std::array<double, 2> means{};
+      for (std::size_t d = 0; d < 2; ++d) {
+        Draws draws(look, s, d);
+        const Tile& tile = drawn(strata, strata.strata[s], d, draws);
+        const std::vector<Point> points = points_in(parts_[tile.part], tile, draws, exact_.units);
+        for (const Point& point : points) means[d] += f(point.at) / static_cast<double>(points.size());
+      }
+      mean.add(means[0], means[1], strata.strata[s].area / strata.area);
+    }
+    return mean;
+  }
+
+  // By Gauss's rule for a triangle that is exact for squares: the middles of its sides.
+  template <typename Function>
+  double exact_mean(const Function& f) {
+    double sum = 0.0, whole = 0.0;
+    for (const Part& part : parts_) {
+      const std::vector<Vec3> ring = rounded(part.corners);
+      for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
+        const std::array<Vec3, 3> t{ring[0], ring[i], ring[i + 1]};
+        const double size = area({t[0], t[1], t[2]});
+        for (std::size_t k = 0; k < 3; ++k) {
+          const Vec3 &a = t[k], &b = t[(k + 1) % 3];
+          sum += size / 3.0 * f({0.5 * (a.x + b.x), 0.5 * (a.y + b.y), 0.5 * (a.z + b.z)});
+        }
+        whole += size;
+      }
+    }
+    return sum / whole;
+  }
+};
+
+TEST_P(StrataOf, AreAtLeastAsManyAsAskedForAndShareTheArea) {
+  for (const std::size_t count : {1, 36, 37, 500}) {
+    const Strata strata = strata_of(parts_, count);
+    EXPECT_GE(strata.strata.size(), count);
+    EXPECT_LE(strata.strata.size(), 2 * count + 10);
+    EXPECT_NEAR(strata.area, area_of(parts_), 1e-12 * strata.area);
+    EXPECT_LE(strata.largest_share, 1.00001 / static_cast<double>(count));
+  }
+}
+
+TEST_P(StrataOf, PointsLieInTheirPart) {
+  const Strata strata = strata_of(parts_, 36);
+  for (std::size_t s = 0; s < strata.strata.size(); ++s) {
+    Draws draws(1, s, 0);
+    const Tile& tile = drawn(strata, strata.strata[s], 0, draws);
+    const Part& part = parts_[tile.part];
+    for (const Point& point : points_in(part, tile, draws, exact_.units)) {
+      const std::vector<Vec3> ring = rounded(part.corners);
+      double sum = 0.0;
+      for (std::size_t i = 0; i < ring.size(); ++i) sum += area({ring[i], ring[(i + 1) % ring.size()], point.at});
+      EXPECT_NEAR(sum, area(ring), 1e-9 * area(ring));
+    }
+  }
+}
+
+TEST_P(StrataOf, MeansOfLinearFunctionsAreExact) {
+  const auto f = [](const Vec3& p) { return 0.25 + 0.5 * p.x - 0.125 * p.y + 0.75 * p.z; };
+  const StratifiedMean mean = mean_of(strata_of(parts_, 36), 0, f);
+  EXPECT_NEAR(mean.value, exact_mean(f), 1e-9);
+  EXPECT_LT(mean.variance, 1e-18);
+}
+
+// The mean over many looks, within five standard errors; and what the looks say of their variance.
+TEST_P(StrataOf, MeansOfSquaresAreUnbiased) {
+  const auto f = [](const Vec3& p) { return p.x * p.x + p.x * p.y + 2.0 * p.z * p.z; };
+  const Strata strata = strata_of(parts_, 36);
+  constexpr std::size_t kLooks = 400;
+  double sum = 0.0, squares = 0.0, variance = 0.0;
+  for (std::size_t look = 0; look < kLooks; ++look) {
+    const StratifiedMean mean = mean_of(strata, look, f);
+    sum += mean.value;
+    squares += mean.value * mean.value;
+    variance += mean.variance / kLooks;
+  }
+  const double average = sum / kLooks, spread = squares / kLooks - average * average;
+  EXPECT_NEAR(average, exact_mean(f), 5.0 * std::sqrt(spread / kLooks));
+  EXPECT_GT(variance, 0.7 * spread);
+  EXPECT_LT(variance, 1.4 * spread);
+}
+
+INSTANTIATE_TEST_SUITE_P(Patches, StrataOf, testing::ValuesIn(patches()), [](const auto& test) {
+  std::string name = test.param.name;
+  std::ranges::replace(name, ' ', '_');
+  return name;
+});
+
+TEST(Strata, OfAParallelogramAreASingleGrid) {
+  PlainScene plain;
+  plain.add_ring(plain.patch("strip"), {{0, 0, 0}, {4, 0, 0}, {4, 1, 0}, {0, 1, 0}});
+  const Scene scene = generate::build(plain);
+  const ExactScene exact(scene);
+  const Strata strata = strata_of(parts_of(exact, scene.select("strip")), 36);
+  ASSERT_EQ(strata.tiles.size(), 36U);
+  EXPECT_EQ(strata.tiles[0].columns, 12U);
+  EXPECT_EQ(strata.tiles[0].rows, 3U);
+}
+
+// Strips of different widths, more than are worth a stratum each. Half of the function's variance is between
+// neighbours.
+TEST(Strata, OfManyFacesShareTheirFacesWithoutBias) {
+  PlainScene plain;
+  double x = 0.0, odd = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    const double width = 1.0 + i % 7;
+    plain.add_ring(plain.patch("strips"), {{x, 0, 0}, {x + width, 0, 0}, {x + width, 1, 0}, {x, 1, 0}});
+    x += width;
+    if (i % 2 == 1) odd += width;
+  }
+  const Scene scene = generate::build(plain);
+  const ExactScene exact(scene);
+  const std::vector<Part> parts = parts_of(exact, scene.select("strips"));
+  const Strata strata = strata_of(parts, 36);
+  EXPECT_GE(strata.strata.size(), 36U);
+  EXPECT_LE(strata.strata.size(), 72U);
+  constexpr std::size_t kLooks = 2000;
+  double sum = 0.0, squares = 0.0, variance = 0.0;
+  for (std::size_t look = 0; look < kLooks; ++look) {
+    StratifiedMean mean;
+    for (std::size_t s = 0; s < strata.strata.size(); ++s) {
+      std::array<double, 2> values{};
+      for (std::size_t d = 0; d < 2; ++d) {
+        Draws draws(look, s, d);
+        values[d] = drawn(strata, strata.strata[s], d, draws).part % 2 == 1 ? 1.0 : 0.0;
+      }
+      mean.add(values[0], values[1], strata.strata[s].area / strata.area);
+    }
+    sum += mean.value;
+    squares += mean.value * mean.value;
+    variance += mean.variance / kLooks;
+  }
+  const double average = sum / kLooks, spread = squares / kLooks - average * average;
+  EXPECT_NEAR(average, odd / x, 5.0 * std::sqrt(spread / kLooks));
+  EXPECT_GT(variance, 0.9 * spread);
+}
+
+// Both draws of each of 36 strata agree, so only what no draw has met may differ.
+TEST(Strata, WhereAllNumbersAgreeWhatNoDrawHasMetCounts) {
+  PlainScene plain;
+  plain.add_ring(plain.patch("square"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  const Scene scene = generate::build(plain);
+  const ExactScene exact(scene);
+  const Strata strata = strata_of(parts_of(exact, scene.select("square")), 36);
+  const StratifiedMean none;
+  const double error = none.error(1e-6, strata);
+  EXPECT_NEAR(error, 0.19188, 1e-4);
+  EXPECT_LE(std::pow(1.0 - error, 72.0), 1e-6)
+      << "the probability that 72 draws miss a set of this share, evenly spread";
+}
+
+// Of a unit square with other faces on it.
+class Contacts : public testing::Test {
+ protected:
+  Contacts() { plain_.add_ring(plain_.patch("floor"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}); }
+  void add(std::vector<Vec3> ring) { plain_.add_ring(plain_.patch("other"), std::move(ring)); }
+
+  // The parts of the floor.
+  std::vector<Part> cut() {
+    const Scene scene = generate::build(plain_);
+    const ExactScene exact(scene);
+    std::vector<Part> parts = cut_at_contacts(exact, parts_of(exact, scene.select("floor")));
+    EXPECT_NEAR(area_of(parts), area_of(parts_of(exact, scene.select("floor"))), 1e-15);
+    return parts;
+  }
+  // Of the floor's area.
+  static double share(const Part& part, const std::vector<Part>& all) { return area_of({part}) / area_of(all); }
+
+  PlainScene plain_;
+};
+
+TEST_F(Contacts, AWallCutsTheFloorThatItStandsOn) {
+  add({{0.25, 0, 0}, {0.25, 1, 0}, {0.25, 1, 1}, {0.25, 0, 1}});
+  const std::vector<Part> parts = cut();
+  ASSERT_EQ(parts.size(), 2U);
+  for (const Part& part : parts) {
+    EXPECT_EQ(part.corners.size(), 4U);
+    EXPECT_TRUE(part.is_cut);
+  }
+  EXPECT_NEAR(std::min(share(parts[0], parts), share(parts[1], parts)), 0.25, 1e-15);
+  EXPECT_GE(strata_of(parts, 36).strata.size(), 36U);
+}
+
+// However small: without its own stratum, few or no points would meet it.
+TEST_F(Contacts, ACornerThatAFacePiercesIsAStratum) {
+  add({{0.01, 0, -1}, {0, 0.01, -1}, {0, 0.01, 1}, {0.01, 0, 1}});
+  const std::vector<Part> parts = cut();
+  ASSERT_EQ(parts.size(), 2U);
+  const Strata strata = strata_of(parts, 36);
+  const auto is_corner = [&](const Stratum& s) { return s.area < 1e-4; };
+  EXPECT_EQ(std::ranges::count_if(strata.strata, is_corner), 1);
+}
+
+TEST_F(Contacts, WhatHasNoLineOnItsFrontDoesNotCutIt) {
+  add({{0.25, 0, 0}, {0.25, 1, 0}, {0.25, 1, -1}, {0.25, 0, -1}});            // below
+  add({{0.5, 0, 0.125}, {0.5, 1, 0.125}, {0.5, 1, 1}, {0.5, 0, 1}});          // above
+  add({{0.75, 0.5, 0}, {0.75, 1, 1}, {0.75, 0, 1}});                          // on its tip
+  add({{2, 0, 0}, {2, 1, 0}, {2, 1, 1}, {2, 0, 1}});                          // beside
+  add({{1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {1, 0, 1}});                          // on its rim
+  add({{0.25, 0.25, 0}, {0.375, 0.25, 0}, {0.375, 0.5, 0}, {0.25, 0.5, 0}});  // in its plane
+  const std::vector<Part> parts = cut();
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_TRUE(parts[0].is_piece);
+  EXPECT_FALSE(parts[0].is_cut);
+}
+
+// A line ends where no fragment that it cuts continues it.
+TEST_F(Contacts, AShortWallCutsTheFragmentsThatItReaches) {
+  add({{0.5, 0, 0}, {0.5, 1, 0}, {0.5, 1, 1}, {0.5, 0, 1}});
+  add({{0, 0.5, 0}, {0.5, 0.5, 0}, {0.5, 0.5, 1}, {0, 0.5, 1}});
+  EXPECT_EQ(cut().size(), 3U);
+}
+
+TEST_F(Contacts, OnlyTheLongestEightCut) {
+  for (int i = 1; i <= 15; ++i) {
+    const double x = i / 16.0, y = i / 32.0;
+    add({{x, 0, 0}, {x, y, 0}, {x, y, 1}, {x, 0, 1}});
+  }
+  const std::vector<Part> parts = cut();
+  EXPECT_EQ(parts.size(), 9U);
+  const auto is_uncut = [&](const Part& part) { return share(part, parts) > 0.49; };
+  EXPECT_EQ(std::ranges::count_if(parts, is_uncut), 1) << "up to the shortest of the eight";
+}
+
+}  // namespace
+}  // namespace exactff::view_factors
