@@ -117,7 +117,7 @@ Comparison compare(const PlainScene& plain, int ray_count) {
 // The sampling error of n rays is about sqrt(V (1 - V) / n): 0.125 for 16, and still 0.008 for 4096. Rays with a
 // different result shift V by at most their share. Of a million rays per scene, 0 to 4 differed.
 TEST(RayReferee, DisagreementIsFarBelowTheSamplingError) {
-  constexpr int kRays = 20000;
+  constexpr int kRays = 10000;
   const std::vector<PlainScene> scenes = {generate::soup({.n = 1000, .seed = 1}),
                                           generate::karkanis({.n = 1000, .seed = 2}), generate::blinds({.n = 100}),
                                           generate::mesh({.n = 2000, .seed = 3})};

@@ -153,7 +153,7 @@ void record(const Deviations& deviations) {
 }
 
 TEST(ViewFactors, HoldMeansOfTheSecondOpinion) {
-  constexpr std::uint64_t kScenes = 12;
+  constexpr std::uint64_t kScenes = 6;
   Deviations deviations;
   for (std::uint64_t s = 1; s <= scaled_count(kScenes); ++s) {
     const auto& [model, scene, from, to] = random_pair(s);
@@ -165,7 +165,7 @@ TEST(ViewFactors, HoldMeansOfTheSecondOpinion) {
 }
 
 TEST(ViewFactors, HoldMeansOfManyPlainPoints) {
-  constexpr std::uint64_t kScenes = 24, kPoints = 1 << 14;
+  constexpr std::uint64_t kScenes = 12, kPoints = 1 << 14;
   Deviations deviations;
   for (std::uint64_t s = 1; s <= scaled_count(kScenes); ++s) {
     const auto& [model, scene, from, to] = random_pair(s);

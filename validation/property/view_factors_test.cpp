@@ -210,7 +210,7 @@ TEST(ViewFactors, OfClosedRoomsAddUpToOne) {
 // The same scene with other axes, and scaled by a power of two, which rounds nothing.
 TEST(ViewFactors, DependOnNeitherTheAxesNorTheUnitOfLength) {
   std::size_t judged = 0;
-  for (std::uint64_t s = 0; s < scaled_count(200); ++s) {
+  for (std::uint64_t s = 0; s < scaled_count(100); ++s) {
     Random random(seed_of(s));
     generate::PlainScene plain = s % 2 == 0 ? degenerate_scene(random) : generic_scene(random);
     const Scene scene = generate::build(plain);
@@ -233,7 +233,7 @@ TEST(ViewFactors, DependOnNeitherTheAxesNorTheUnitOfLength) {
     EXPECT_GE(turned.upper, f.lower) << s;
     judged += f.accurate && f.value > 0.0 ? 1 : 0;
   }
-  EXPECT_GE(judged, 20U);
+  EXPECT_GE(judged, 10U);
 }
 
 // The patches with one planar quadrilateral.
