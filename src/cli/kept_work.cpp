@@ -4,6 +4,7 @@
 #include <csignal>
 #include <iostream>
 #include <memory>
+#include <utility>
 
 #include "cli/exit_code.h"
 #include "cli/launch.h"
@@ -86,6 +87,13 @@ int lead(const TeamWork& work, jobs::Team& team) {
   return exit_code;
 }
 
+// All is said. While a process waits here for the others to finish, mpirun may end it because another exit code is not
+// 0; that is no interruption to tell of.
+void leave(std::unique_ptr<jobs::Team> team) {
+  const InterruptWatch silent("");
+  team.reset();
+}
+
 // Prints nothing, not even when it is interrupted: the leader reports all errors.
 int follow(const TeamWork& work, jobs::Team& team) {
   std::cerr.rdbuf(nullptr);
@@ -101,16 +109,14 @@ int run_alone_or_in_team(const TeamWork& work) {
     team = join_team();
     if (team != nullptr) work.refuse();
   } catch (const InputError&) {
-    if (launched_rank() > 0) return 0;  // rank 0 reports it
-    throw;
+    if (launched_rank() == 0) throw;
+    leave(std::move(team));
+    return 0;  // rank 0 reports it
   }
   const InterruptWatch watch("exactff: interrupted; no " + work.row + " was begun\n");
   if (team == nullptr) return work.write(nullptr);
   const int exit_code = team->rank() == 0 ? lead(work, *team) : follow(work, *team);
-  // All is said. While a process waits here for the others to finish, mpirun may end it because another exit code is
-  // not 0; that is no interruption to tell of.
-  const InterruptWatch silent("");
-  team.reset();
+  leave(std::move(team));
   return exit_code;
 }
 

@@ -134,12 +134,17 @@ TEST_F(MpiTruth, WhatIsWrongIsToldOnce) {
   }
 }
 
-// mpirun ends what still runs when another process has ended with an exit code other than 0: here rank 0, once the
-// error is told. That is no interruption to report.
+// mpirun ends what still runs when another process has ended with an exit code other than 0, once the error is told.
+// That is no interruption to report.
 TEST_F(MpiTruth, ASlowEndIsNoInterruption) {
-  const RunningProgram run = start(truth("flor", file_, {}), {"-x", "LD_PRELOAD=" EXACTFF_SLOW_FINALIZE});
-  EXPECT_EQ(run.wait(), 2);
-  EXPECT_EQ(count(run.error(), "exactff: "), 1U) << run.error();
+  const auto expect_one_error = [&](const std::vector<std::string>& arguments, const std::string& slow_rank) {
+    const RunningProgram run =
+        start(arguments, {"-x", "LD_PRELOAD=" EXACTFF_SLOW_FINALIZE, "-x", "SLOW_RANK=" + slow_rank});
+    EXPECT_EQ(run.wait(), 2);
+    EXPECT_EQ(count(run.error(), "exactff: "), 1U) << run.error();
+  };
+  expect_one_error(truth("flor", file_, {}), "0");
+  expect_one_error({"matrix", EXACTFF_DATA_DIR "/scenes/cornell_box.obj"}, "1");  // refused before there is any work
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Preloaded under mpirun: rank 0 is slow to end after the others have finished, as on a loaded machine.
+// Preloaded under mpirun: rank SLOW_RANK is slow to end after the others have finished, as on a loaded machine.
 
 #include <dlfcn.h>
 
@@ -11,6 +11,8 @@ extern "C" int MPI_Finalize() {
   auto* const finalize = reinterpret_cast<int (*)()>(::dlsym(RTLD_DEFAULT, "PMPI_Finalize"));
   const int result = finalize();
   const char* rank = std::getenv("OMPI_COMM_WORLD_RANK");
-  if (rank != nullptr && std::string_view(rank) == "0") std::this_thread::sleep_for(std::chrono::seconds(1));
+  const char* slow = std::getenv("SLOW_RANK");
+  if (rank != nullptr && slow != nullptr && std::string_view(rank) == slow)
+    std::this_thread::sleep_for(std::chrono::seconds(1));
   return result;
 }
