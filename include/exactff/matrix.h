@@ -50,7 +50,7 @@ struct Matrix {
 
 struct DraftOptions {
   double accuracy = 1e-3;   // entries that are not wider, for F_ij and for F_ji, are `accurate`
-  std::size_t views = 144;  // of each row's patch, or more: 4 to 6 in each stratum, of which there are at least 36
+  std::size_t views = 144;  // of each row's patch, at least: 4 or 6 in each of 36 strata or more
   bool backs = false, open = false;
   int threads = 0;  // 0: all; does not affect the result
 };

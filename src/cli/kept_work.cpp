@@ -87,8 +87,8 @@ int lead(const TeamWork& work, jobs::Team& team) {
   return exit_code;
 }
 
-// All is said. While a process waits here for the others to finish, mpirun may end it because another exit code is not
-// 0; that is no interruption to tell of.
+// Everything has been reported. While a process waits here for the others to finish, mpirun may end it because another
+// exit code is not 0; that is not an interruption to report.
 void leave(std::unique_ptr<jobs::Team> team) {
   const InterruptWatch silent("");
   team.reset();

@@ -474,8 +474,8 @@ Command add_matrix(CLI::App& app) {
           ->excludes(budget)
           ->excludes(certify)
           ->excludes(both);
-  command->add_option("--views", args->views, "Views of each row's patch, or somewhat more; at least 144")
-      ->check(CLI::Range(std::size_t{144}, std::size_t{1} << 32))
+  command->add_option("--views", args->views, "Least number of views of each row's patch")
+      ->check(CLI::Range(std::size_t{144}, std::size_t{1} << 24))
       ->needs(draft)
       ->capture_default_str();
   command->add_flag("--plain", args->plain, "Print a line for each entry: FROM, TO, LOWER, UPPER, CLAIM, with tabs");

@@ -31,7 +31,7 @@ void warn_of_width(const matrix::Matrix& matrix, const ViewFactorOptions& option
 }
 
 void warn_of_width(const matrix::Matrix& draft, const matrix::DraftOptions& options) {
-  warn_of_width(draft, options.accuracy, "a row has " + std::to_string(options.views) + " views",
+  warn_of_width(draft, options.accuracy, "a row has some " + std::to_string(options.views) + " views",
                 "give more views by --views");
 }
 

@@ -77,7 +77,7 @@ std::string csv_text(const Scene& scene, const Matrix& matrix, const ViewFactorO
 }
 
 std::string csv_text(const Scene& scene, const Matrix& draft, const DraftOptions& options) {
-  const std::string effort = "accuracy " + text::shortest(options.accuracy) + ", a draft of " +
+  const std::string effort = "accuracy " + text::shortest(options.accuracy) + ", a draft of at least " +
                              text::counted(options.views, "view") + " in each row";
   return with_rows(
       first_comments(scene, draft.factors.from, draft.factors.to, effort) + names_beside(surroundings_of(draft)) + '\n',

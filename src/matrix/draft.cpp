@@ -89,12 +89,9 @@ double largest_factor(const DraftPatch& from, const DraftPatch& to) {
 }
 
 // Rounding moves no point of a part out of its box, whose sides are coordinates of corners.
-std::vector<std::uint32_t> pieces_seen_from(const ExactScene& scene, std::span<const Wall> walls,
-                                            std::span<const Part> parts) {
+std::vector<std::uint32_t> pieces_seen_from(const ExactScene& scene, std::span<const Wall> walls, const Part& part) {
   Box box;
-  for (const Part& part : parts) {
-    for (const Point& corner : part.corners) box.include(corner.at);
-  }
+  for (const Point& corner : part.corners) box.include(corner.at);
   const int exponent = static_cast<int>(scene.units.exponent + scene.units.shift);
   const auto in_scene = [&](const Vec3& v) {
     return Vec3{std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
@@ -111,11 +108,17 @@ class RowOfMeans {
   }
 
   void look_around(const ExactScene& scene, std::span<const Wall> walls, const Selection& patch, std::size_t views) {
-    const std::vector<Part> parts = cut_at_contacts(scene, parts_of(scene, patch));
+    std::vector<Part> parts;
+    for (const Part& part : parts_of(scene, patch)) {
+      see_from(scene, walls, part);
+      for (Part& fragment : cut_at_contacts(scene, part)) {
+        parts.push_back(std::move(fragment));
+        seen_from_.push_back(seen_pieces_.size() - 1);
+      }
+    }
     strata_ = strata_of(parts, std::max(view_factors::kFewestStrata, views / (kDraws * view_factors::kFewestPoints)));
     const view_factors::Strata& strata = strata_;
     std::vector<std::optional<view_factors::NearPlanes>> near(parts.size());
-    find_seen_pieces(scene, walls, parts);
     for (std::size_t s = 0; s < strata.strata.size(); ++s) {
       const view_factors::Stratum& stratum = strata.strata[s];
       const double share = stratum.area / strata.area;
@@ -127,7 +130,7 @@ class RowOfMeans {
         weight_ = 1.0 / static_cast<double>(points.size());
         for (const Point& point : points) {
           ++points_;
-          const bool is_known = look_from(point, *near[tile.part], seen_pieces_[group_[tile.part]], numbers_[d]);
+          const bool is_known = look_from(point, *near[tile.part], seen_pieces_[seen_from_[tile.part]], numbers_[d]);
           if (!is_known) unknown_ += share * weight_ / kDraws;
         }
       }
@@ -148,15 +151,10 @@ class RowOfMeans {
   [[nodiscard]] std::size_t points() const { return points_; }
 
  private:
-  // Parts of one face, which follow one another, are a group.
-  void find_seen_pieces(const ExactScene& scene, std::span<const Wall> walls, std::span<const Part> parts) {
-    group_.resize(parts.size());
-    for (std::size_t begin = 0, end = 0; begin < parts.size(); begin = end) {
-      for (; end < parts.size() && parts[end].face == parts[begin].face; ++end) group_[end] = seen_pieces_.size();
-      seen_pieces_.push_back(pieces_seen_from(scene, walls, parts.subspan(begin, end - begin)));
-      for (const std::uint32_t piece : seen_pieces_.back()) {
-        may_see_[index_of(scene_.face(scene_.pieces()[piece].face).patch)] = true;
-      }
+  void see_from(const ExactScene& scene, std::span<const Wall> walls, const Part& part) {
+    seen_pieces_.push_back(pieces_seen_from(scene, walls, part));
+    for (const std::uint32_t piece : seen_pieces_.back()) {
+      may_see_[index_of(scene_.face(scene_.pieces()[piece].face).patch)] = true;
     }
   }
 
@@ -192,8 +190,8 @@ class RowOfMeans {
   view_factors::Strata strata_;
   std::vector<StratifiedMean> means_;
   std::vector<bool> may_see_;                            // by patch
-  std::vector<std::size_t> group_;                       // by part
-  std::vector<std::vector<std::uint32_t>> seen_pieces_;  // by group
+  std::vector<std::vector<std::uint32_t>> seen_pieces_;  // from each part before it was cut
+  std::vector<std::size_t> seen_from_;                   // by fragment: an index of seen_pieces_
   std::array<std::vector<double>, kDraws> numbers_;
   std::vector<std::size_t> touched_;
   WholeView seen_;

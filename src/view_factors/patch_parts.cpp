@@ -77,7 +77,7 @@ Box box_of(const Part& part) {
 struct Contact {
   const Plane* plane;  // of the piece
   Box box;
-  double length;
+  double half_length;
 };
 
 std::optional<Contact> contact(const ExactScene& scene, const ExactPiece& piece, const Plane& plane) {
@@ -100,17 +100,25 @@ std::optional<Contact> contact(const ExactScene& scene, const ExactPiece& piece,
   return result;
 }
 
-// The longest first.
+bool is_on_both_sides(const Part& part, const Plane& plane) {
+  const auto has_corner_on = [&](int side) {
+    return std::ranges::any_of(part.corners, [&](const Point& corner) { return side_of(plane, corner) == side; });
+  };
+  return has_corner_on(-1) && has_corner_on(1);
+}
+
+// Those that may cut the part, the longest first.
 std::vector<Contact> contacts(const ExactScene& scene, const Part& part) {
   const Plane plane = make_plane(join(part.corners[0], part.corners[1], part.corners[2]), scene.units);
   const Box box = box_of(part);
   std::vector<Contact> result;
   for (const ExactPiece& piece : scene.pieces) {
     if (piece.face == part.face || piece.transparent || piece.box.is_apart_from(box)) continue;
+    if (!is_on_both_sides(part, piece.plane)) continue;
     const std::optional<Contact> one = contact(scene, piece, plane);
     if (one && !one->box.is_apart_from(box)) result.push_back(*one);
   }
-  std::ranges::stable_sort(result, std::ranges::greater(), &Contact::length);
+  std::ranges::stable_sort(result, std::ranges::greater(), &Contact::half_length);
   return result;
 }
 
@@ -171,32 +179,29 @@ std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch) {
   return result;
 }
 
-std::vector<Part> cut_at_contacts(const ExactScene& scene, const std::vector<Part>& parts) {
-  constexpr std::size_t kMostContacts = 8;  // of a part: at most 37 fragments
-  std::vector<Part> result;
-  for (const Part& part : parts) {
-    std::vector<Contact> lines = contacts(scene, part);
-    if (lines.size() > kMostContacts) lines.erase(lines.begin() + kMostContacts, lines.end());
-    std::vector<Part> fragments{part};
-    for (const Contact& line : lines) {
-      std::vector<Part> finer;
-      for (Part& fragment : fragments) {
-        std::vector<Part> halves;
-        if (!line.box.is_apart_from(box_of(fragment))) halves = cut(fragment, *line.plane, scene.units);
-        if (halves.size() < 2) {
-          finer.push_back(std::move(fragment));
-          continue;
-        }
-        for (Part& half : halves) {
-          half.is_cut = true;
-          finer.push_back(std::move(half));
-        }
+std::vector<Part> cut_at_contacts(const ExactScene& scene, const Part& part) {
+  constexpr std::size_t kMostCuts = 8;  // into at most 37 fragments
+  std::size_t cuts = 0;
+  std::vector<Part> fragments{part};
+  for (const Contact& line : contacts(scene, part)) {
+    std::vector<Part> finer;
+    for (Part& fragment : fragments) {
+      std::vector<Part> halves;
+      if (!line.box.is_apart_from(box_of(fragment))) halves = cut(fragment, *line.plane, scene.units);
+      if (halves.size() < 2) {
+        finer.push_back(std::move(fragment));
+        continue;
       }
-      fragments = std::move(finer);
+      for (Part& half : halves) {
+        half.is_cut = true;
+        finer.push_back(std::move(half));
+      }
     }
-    for (Part& fragment : fragments) result.push_back(std::move(fragment));
+    if (finer.size() > fragments.size()) ++cuts;
+    fragments = std::move(finer);
+    if (cuts == kMostCuts) break;
   }
-  return result;
+  return fragments;
 }
 
 double area_of(const std::vector<Part>& parts) {

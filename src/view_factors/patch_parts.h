@@ -12,9 +12,10 @@ namespace exactff::view_factors {
 // The patch's pieces; of pieces that overlap in one oriented plane, each point belongs to the first.
 [[nodiscard]] std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch);
 
-// For sampling: the parts, cut along the lines in which other faces meet their planes from the front. Form factors jump
-// there. Only the eight longest lines of a part cut it, each the fragments that it reaches.
-[[nodiscard]] std::vector<Part> cut_at_contacts(const ExactScene& scene, const std::vector<Part>& parts);
+// For sampling: the part, cut along the lines in which other faces meet its plane from the front. Form factors jump
+// there. At most eight lines cut it, the longest that do. A line cuts, from side to side, the fragments whose boxes it
+// meets. Transparent faces do not cut.
+[[nodiscard]] std::vector<Part> cut_at_contacts(const ExactScene& scene, const Part& part);
 
 // In squares of the unit of Point::at: an estimate within a few roundings.
 [[nodiscard]] double area_of(const std::vector<Part>& parts);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -80,7 +81,11 @@ Look look_at(const ExactScene& scene, const std::vector<Part>& from, const Strat
 
 SampledIntegral sampled_integral(const ExactScene& scene, const std::vector<Part>& parts, const Selection& to,
                                  std::size_t budget, double target) {
-  const std::vector<Part> from = cut_at_contacts(scene, parts);
+  std::vector<Part> from;
+  for (const Part& part : parts) {
+    kernel::poll();
+    std::ranges::move(cut_at_contacts(scene, part), std::back_inserter(from));
+  }
   std::size_t looks = 1;
   for (std::size_t strata = 4 * kFirstStrata; strata * kPointsOfStratum <= budget; strata *= 4) ++looks;
   PointFactors factors(scene, from, to);

@@ -24,8 +24,9 @@ struct SampledIntegral {
   double error = 0.0;
 };
 
-// Takes at most some `budget` points, but at least 216. Stops at an error of `target`. Deterministic.
-[[nodiscard]] SampledIntegral sampled_integral(const ExactScene& scene, const std::vector<Part>& from,
+// Takes some `budget` points, but at least 216; up to six times as many if the parts have many fragments. Stops at an
+// error of `target`. Deterministic.
+[[nodiscard]] SampledIntegral sampled_integral(const ExactScene& scene, const std::vector<Part>& parts,
                                                const Selection& to, std::size_t budget, double target);
 
 }  // namespace exactff::view_factors

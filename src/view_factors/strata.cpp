@@ -19,7 +19,7 @@ std::uint64_t mixed(std::uint64_t key) {
   return z ^ (z >> 31);
 }
 
-constexpr double kAreaRoundings = 0x1p-20;  // relative: far more than there are
+constexpr double kAreaRoundings = 0x1p-40;  // relative: far more than there are
 
 // Exactly.
 bool is_parallelogram(const Part& part) {
@@ -41,7 +41,10 @@ void cut_parallelogram(std::size_t part, const std::vector<Vec3>& ring, double l
     return std::sqrt(kernel::dot(side, side));
   };
   const double size = area(ring), tiles = std::ceil(size / largest * (1.0 - kAreaRoundings));
-  const double columns = std::clamp(std::round(std::sqrt(tiles * length(1) / length(3))), 1.0, tiles);
+  // Rounded along the shorter side, so that the other number, rounded up, adds few.
+  const double ratio = length(1) / length(3);
+  const auto rounded_root = [&](double square) { return std::clamp(std::round(std::sqrt(square)), 1.0, tiles); };
+  const double columns = ratio < 1.0 ? rounded_root(tiles * ratio) : std::ceil(tiles / rounded_root(tiles / ratio));
   const double rows = std::ceil(tiles / columns);
   const auto m = static_cast<std::uint32_t>(columns), n = static_cast<std::uint32_t>(rows);
   for (std::uint32_t u = 0; u < m; ++u) {
@@ -98,11 +101,12 @@ Strata strata_of(const std::vector<Part>& parts, std::size_t count) {
       if (size > 0.0) cut_triangle(p, i, size, largest, result.tiles);
     }
   }
-  const bool are_many = result.tiles.size() > 2 * count;
+  const bool whole_ones_share = result.tiles.size() > 2 * count, all_share = result.tiles.size() > 4 * count;
+  const auto shares = [&](const Tile& tile) { return parts[tile.part].is_cut ? all_share : whole_ones_share; };
   for (std::size_t i = 0; i < result.tiles.size(); ++i) {
     const double size = result.tiles[i].area;
-    const bool joins = are_many && i > 0 && result.strata.back().area + size <= largest &&
-                       !parts[result.tiles[i - 1].part].is_cut && !parts[result.tiles[i].part].is_cut;
+    const bool joins =
+        i > 0 && result.strata.back().area + size <= largest && shares(result.tiles[i - 1]) && shares(result.tiles[i]);
     if (!joins) result.strata.push_back({i, i, 0.0});
     result.strata.back().end = i + 1;
     result.strata.back().area += size;

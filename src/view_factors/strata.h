@@ -23,8 +23,8 @@ class Draws {
   std::uint64_t count_ = 0;
 };
 
-// What the points of one draw lie in: a small parallelogram, or the small triangle that is left of one at the side of a
-// part's triangle opposite its corner 0. Small triangles are half of the parallelogram of the same grid.
+// What the points of one draw lie in: a small parallelogram of a grid or, along the side opposite corner 0 of a part's
+// triangle, half of one.
 struct Tile {
   enum class Shape { kParallelogram, kTriangle };
   std::size_t part, second, third;  // corners of the part; its corner 0 is the grid's origin
@@ -49,8 +49,8 @@ struct Strata {
 
 // About `count` strata, and not fewer. A part that is a parallelogram is cut into small ones; any other part into those
 // of its fan's triangles. Each tile is a stratum, unless there are more than 2 `count`: then tiles in a row share one
-// until it has an area of total / count, but for those of fragments (cut_at_contacts). Few shared strata among others
-// would be too few for a normal distribution.
+// until it has an area of total / count, those of fragments (cut_at_contacts) only if there are more than 4 `count`. If
+// only a few strata were shared, most of the variance would come from them, and the mean would not be nearly normal.
 [[nodiscard]] Strata strata_of(const std::vector<Part>& parts, std::size_t count);
 
 // The tile at a random place in the first or second half of the stratum's area, for its two draws. Where several tiles
@@ -77,10 +77,10 @@ struct StratifiedMean {
 
   // The numbers of a stratum with this share of the area.
   void add(double a, double b, double share);
-  // Exceeded with the probability `risk`. Where all numbers agree, the function may differ where no point was. Let the
-  // set where it does have a share p_s of stratum s. Both draws miss it with a probability of at most the product of
-  // (1 - p_s)^2 <= exp(-2 sum p_s), which is the risk if the sum is -log(risk) / 2, and the set's share of all is at
-  // most this sum times the largest share of a stratum. (The points of one draw are not independent.)
+  // Exceeded with a probability of at most `risk`. Where all numbers agree, the function may differ where no point was.
+  // Let the set where it does have a share p_s of stratum s. Both draws miss it with a probability of at most the
+  // product of (1 - p_s)^2 <= exp(-2 sum p_s), which is the risk if the sum is -log(risk) / 2, and the set's share of
+  // all is at most this sum times the largest share of a stratum. (The points of one draw are not independent.)
   [[nodiscard]] double error(double risk, const Strata& strata) const;
 };
 

@@ -1,7 +1,7 @@
 // The experiment `honesty` (src/experiments/honesty.h) on any number of random scenes: prints its table in Markdown and
 // writes every entry. Fails if an error is proved to exceed the reported one, if two enclosures are
 // disjoint, or if a cell fails its own check.
-// Usage: honesty_at_scale [SCENES [FILE.csv]]
+// Usage: honesty_at_scale [SCENES [FILE.csv [FIRST]]]; the scenes are numbered from FIRST, or 1
 #include <cstdlib>
 #include <exception>
 #include <fstream>
@@ -58,6 +58,7 @@ int run(const HonestySize& size, const std::string& file) {
 int main(int count, char** words) try {
   HonestySize size;
   size.scenes = count > 1 ? std::strtoull(words[1], nullptr, 10) : 1000;
+  if (count > 3) size.first = std::strtoull(words[3], nullptr, 10);
   return run(size, count > 2 ? words[2] : "");
 } catch (const std::exception& error) {
   std::cerr << error.what() << '\n';

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ using generate::PlainScene;
 struct Patch {
   const char* name;
   std::vector<std::vector<Vec3>> rings;
+  std::vector<Vec3> wall{};  // stands on it, if there is one
 };
 
 void PrintTo(const Patch& patch, std::ostream* out) { *out << patch.name; }
@@ -36,6 +38,8 @@ std::vector<Patch> patches() {
       {"kite", {{{0, 0, 0}, {2, 1, 0}, {3, 3, 0}, {1, 2.5, 0}}}},
       {"hexagon", {{{1, 0, 0}, {2, 0, 0}, {3, 1, 0}, {2, 2, 0}, {1, 2, 0}, {0, 1, 0}}}},
       {"square and triangle", {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{4, 0, 0}, {5, 0, 0}, {4, 3, 0}}}},
+      {"cut square", {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}}, {{0.375, 0, 0}, {0, 1.125, 0}, {0, 1.125, 1}}},
+      {"cut kite", {{{0, 0, 0}, {2, 1, 0}, {3, 3, 0}, {1, 2.5, 0}}}, {{0, 2, 0}, {3, 1, 0}, {3, 1, 1}}},
   };
 }
 
@@ -44,12 +48,20 @@ class StrataOf : public testing::TestWithParam<Patch> {
   static PlainScene plain() {
     PlainScene plain;
     for (const std::vector<Vec3>& ring : GetParam().rings) plain.add_ring(plain.patch("patch"), ring);
+    if (!GetParam().wall.empty()) plain.add_ring(plain.patch("wall"), GetParam().wall);
     return plain;
+  }
+  static std::vector<Part> fragments(const ExactScene& scene) {
+    std::vector<Part> result;
+    for (const Part& part : parts_of(scene, scene.scene.select("patch"))) {
+      std::ranges::move(cut_at_contacts(scene, part), std::back_inserter(result));
+    }
+    return result;
   }
 
   const Scene scene_ = generate::build(plain());
   const ExactScene exact_{scene_};
-  const std::vector<Part> parts_ = parts_of(exact_, scene_.select("patch"));
+  const std::vector<Part> parts_ = fragments(exact_);
 
   // The mean over the patch, as of one row of a draft.
   template <typename Function>
@@ -101,14 +113,16 @@ TEST_P(StrataOf, AreAtLeastAsManyAsAskedForAndShareTheArea) {
 TEST_P(StrataOf, PointsLieInTheirPart) {
   const Strata strata = strata_of(parts_, 36);
   for (std::size_t s = 0; s < strata.strata.size(); ++s) {
-    Draws draws(1, s, 0);
-    const Tile& tile = drawn(strata, strata.strata[s], 0, draws);
-    const Part& part = parts_[tile.part];
-    for (const Point& point : points_in(part, tile, draws, exact_.units)) {
+    for (std::size_t d = 0; d < 2; ++d) {
+      Draws draws(1, s, d);
+      const Tile& tile = drawn(strata, strata.strata[s], d, draws);
+      const Part& part = parts_[tile.part];
       const std::vector<Vec3> ring = rounded(part.corners);
-      double sum = 0.0;
-      for (std::size_t i = 0; i < ring.size(); ++i) sum += area({ring[i], ring[(i + 1) % ring.size()], point.at});
-      EXPECT_NEAR(sum, area(ring), 1e-9 * area(ring));
+      for (const Point& point : points_in(part, tile, draws, exact_.units)) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < ring.size(); ++i) sum += area({ring[i], ring[(i + 1) % ring.size()], point.at});
+        EXPECT_NEAR(sum, area(ring), 1e-9 * area(ring));
+      }
     }
   }
 }
@@ -144,15 +158,26 @@ INSTANTIATE_TEST_SUITE_P(Patches, StrataOf, testing::ValuesIn(patches()), [](con
   return name;
 });
 
+// Wherever the ring begins: about as many tiles as asked for, of about equal sides.
 TEST(Strata, OfAParallelogramAreASingleGrid) {
-  PlainScene plain;
-  plain.add_ring(plain.patch("strip"), {{0, 0, 0}, {4, 0, 0}, {4, 1, 0}, {0, 1, 0}});
-  const Scene scene = generate::build(plain);
-  const ExactScene exact(scene);
-  const Strata strata = strata_of(parts_of(exact, scene.select("strip")), 36);
-  ASSERT_EQ(strata.tiles.size(), 36U);
-  EXPECT_EQ(strata.tiles[0].columns, 12U);
-  EXPECT_EQ(strata.tiles[0].rows, 3U);
+  struct Grid {
+    double length;
+    std::uint32_t along, across;
+  };
+  for (const auto& [length, along, across] : {Grid{4, 12, 3}, Grid{9, 18, 2}, Grid{30, 36, 1}}) {
+    const std::array<Vec3, 4> ring{Vec3{0, 0, 0}, {length, 0, 0}, {length, 1, 0}, {0, 1, 0}};
+    for (std::size_t first = 0; first < 4; ++first) {
+      PlainScene plain;
+      plain.add_ring(plain.patch("strip"),
+                     {ring[first], ring[(first + 1) % 4], ring[(first + 2) % 4], ring[(first + 3) % 4]});
+      const Scene scene = generate::build(plain);
+      const ExactScene exact(scene);
+      const Strata strata = strata_of(parts_of(exact, scene.select("strip")), 36);
+      ASSERT_EQ(strata.tiles.size(), 36U);
+      EXPECT_EQ(strata.tiles[0].columns, first % 2 == 0 ? along : across);
+      EXPECT_EQ(strata.tiles[0].rows, first % 2 == 0 ? across : along);
+    }
+  }
 }
 
 // Strips of different widths, more than are worth a stratum each. Half of the function's variance is between
@@ -217,7 +242,7 @@ class Contacts : public testing::Test {
   std::vector<Part> cut() {
     const Scene scene = generate::build(plain_);
     const ExactScene exact(scene);
-    std::vector<Part> parts = cut_at_contacts(exact, parts_of(exact, scene.select("floor")));
+    std::vector<Part> parts = cut_at_contacts(exact, parts_of(exact, scene.select("floor")).front());
     EXPECT_NEAR(area_of(parts), area_of(parts_of(exact, scene.select("floor"))), 1e-15);
     return parts;
   }
@@ -253,7 +278,8 @@ TEST_F(Contacts, WhatHasNoLineOnItsFrontDoesNotCutIt) {
   add({{0.25, 0, 0}, {0.25, 1, 0}, {0.25, 1, -1}, {0.25, 0, -1}});            // below
   add({{0.5, 0, 0.125}, {0.5, 1, 0.125}, {0.5, 1, 1}, {0.5, 0, 1}});          // above
   add({{0.75, 0.5, 0}, {0.75, 1, 1}, {0.75, 0, 1}});                          // on its tip
-  add({{2, 0, 0}, {2, 1, 0}, {2, 1, 1}, {2, 0, 1}});                          // beside
+  add({{2, 0.5, 0}, {3, 0.5, 0}, {3, 0.5, 1}, {2, 0.5, 1}});                  // beside
+  add({{1, 0.625, 0}, {2, 0.625, 0}, {2, 0.625, 1}, {1, 0.625, 1}});          // only its end touches it
   add({{1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {1, 0, 1}});                          // on its rim
   add({{0.25, 0.25, 0}, {0.375, 0.25, 0}, {0.375, 0.5, 0}, {0.25, 0.5, 0}});  // in its plane
   const std::vector<Part> parts = cut();
@@ -270,14 +296,48 @@ TEST_F(Contacts, AShortWallCutsTheFragmentsThatItReaches) {
 }
 
 TEST_F(Contacts, OnlyTheLongestEightCut) {
-  for (int i = 1; i <= 15; ++i) {
+  for (int i = 1; i <= 12; ++i) {
     const double x = i / 16.0, y = i / 32.0;
     add({{x, 0, 0}, {x, y, 0}, {x, y, 1}, {x, 0, 1}});
   }
   const std::vector<Part> parts = cut();
-  EXPECT_EQ(parts.size(), 9U);
-  const auto is_uncut = [&](const Part& part) { return share(part, parts) > 0.49; };
-  EXPECT_EQ(std::ranges::count_if(parts, is_uncut), 1) << "up to the shortest of the eight";
+  ASSERT_EQ(parts.size(), 9U);
+  std::vector<double> shares;
+  for (const Part& part : parts) shares.push_back(share(part, parts));
+  std::ranges::sort(shares);
+  EXPECT_EQ(shares[0], 1.0 / 16.0);
+  EXPECT_EQ(shares[7], 4.0 / 16.0) << "right of the longest";
+  EXPECT_EQ(shares[8], 5.0 / 16.0) << "left of the shortest that cuts";
+}
+
+// The walls of a room, and both sides of a wall, are no reason to leave out what cuts the floor.
+TEST_F(Contacts, LinesThatCutNothingDoNotCount) {
+  for (const double x : {0.0, 1.0}) {
+    add({{x, 0, 0}, {x, 1, 0}, {x, 1, 1}, {x, 0, 1}});
+    add({{0, x, 0}, {1, x, 0}, {1, x, 1}, {0, x, 1}});
+  }
+  for (int i = 1; i <= 5; ++i) {
+    const double x = i / 8.0;
+    add({{x, 0, 0}, {x, 0.5, 0}, {x, 0.5, 1}, {x, 0, 1}});
+    add({{x, 0, 0}, {x, 0, 1}, {x, 0.5, 1}, {x, 0.5, 0}});
+  }
+  EXPECT_EQ(cut().size(), 6U);
+}
+
+// Fragments share strata only if there are very many.
+TEST_F(Contacts, FragmentsAreStrataOfTheirOwnUnlessThereAreTooMany) {
+  add({{0.001, 0, 0}, {0.001, 1, 0}, {0.001, 1, 1}, {0.001, 0, 1}});
+  add({{0.002, 0, 0}, {0.002, 1, 0}, {0.002, 1, 1}, {0.002, 0, 1}});
+  const std::vector<Part> parts = cut();
+  ASSERT_EQ(parts.size(), 3U);
+  const auto tiles_of = [](const Stratum& stratum) { return stratum.end - stratum.begin; };
+  const Strata few = strata_of(parts, 36);
+  EXPECT_TRUE(std::ranges::all_of(few.strata, [&](const Stratum& s) { return tiles_of(s) == 1; }));
+  std::vector<Part> many;
+  for (int i = 0; i < 100; ++i) many.insert(many.end(), parts.begin(), parts.end());
+  const Strata shared = strata_of(many, 36);
+  EXPECT_LE(shared.strata.size(), 4 * 36U);
+  EXPECT_GE(shared.strata.size(), 36U);
 }
 
 }  // namespace
