@@ -36,7 +36,6 @@ using view_factors::Point;
 using view_factors::StratifiedMean;
 using visibility::Wall;
 
-constexpr std::size_t kDraws = 2;       // of a stratum
 constexpr double kRoundings = 0x1p-40;  // relative: more than those of areas, distances and sums
 
 struct DraftPatch {
@@ -90,8 +89,7 @@ double largest_factor(const DraftPatch& from, const DraftPatch& to) {
 
 // Rounding moves no point of a part out of its box, whose sides are coordinates of corners.
 std::vector<std::uint32_t> pieces_seen_from(const ExactScene& scene, std::span<const Wall> walls, const Part& part) {
-  Box box;
-  for (const Point& corner : part.corners) box.include(corner.at);
+  const Box box = box_of(part.corners);
   const int exponent = static_cast<int>(scene.units.exponent + scene.units.shift);
   const auto in_scene = [&](const Vec3& v) {
     return Vec3{std::ldexp(v.x, exponent), std::ldexp(v.y, exponent), std::ldexp(v.z, exponent)};
@@ -116,22 +114,20 @@ class RowOfMeans {
         seen_from_.push_back(seen_pieces_.size() - 1);
       }
     }
-    strata_ = strata_of(parts, std::max(view_factors::kFewestStrata, views / (kDraws * view_factors::kFewestPoints)));
+    strata_ = strata_of(
+        parts, std::max(view_factors::kFewestStrata, views / (view_factors::kDraws * view_factors::kFewestPoints)));
     const view_factors::Strata& strata = strata_;
     std::vector<std::optional<view_factors::NearPlanes>> near(parts.size());
     for (std::size_t s = 0; s < strata.strata.size(); ++s) {
-      const view_factors::Stratum& stratum = strata.strata[s];
-      const double share = stratum.area / strata.area;
-      for (std::size_t d = 0; d < kDraws; ++d) {
-        view_factors::Draws draws(0, s, d);
-        const view_factors::Tile& tile = drawn(strata, stratum, d, draws);
-        if (!near[tile.part]) near[tile.part].emplace(scene, parts[tile.part]);
-        const std::vector<Point> points = points_in(parts[tile.part], tile, draws, scene.units);
-        weight_ = 1.0 / static_cast<double>(points.size());
+      const double share = strata.strata[s].area / strata.area;
+      for (std::size_t d = 0; d < view_factors::kDraws; ++d) {
+        const auto [part, points] = view_factors::sample(parts, strata, 0, s, d, scene.units);
+        if (!near[part]) near[part].emplace(scene, parts[part]);
+        const double weight = 1.0 / static_cast<double>(points.size());
         for (const Point& point : points) {
           ++points_;
-          const bool is_known = look_from(point, *near[tile.part], seen_pieces_[seen_from_[tile.part]], numbers_[d]);
-          if (!is_known) unknown_ += share * weight_ / kDraws;
+          const bool is_known = look_from(point, *near[part], seen_pieces_[seen_from_[part]], weight, numbers_[d]);
+          if (!is_known) unknown_ += share * weight / view_factors::kDraws;
         }
       }
       add(share);
@@ -160,19 +156,19 @@ class RowOfMeans {
 
   // False where rounding the point may change what it sees.
   bool look_from(const Point& point, const view_factors::NearPlanes& near, std::span<const std::uint32_t> pieces,
-                 std::vector<double>& numbers) {
+                 double weight, std::vector<double>& numbers) {
     const std::optional<Vec3> rounded = near.rounded(point);
     if (!rounded) return false;
     const Receiver receiver{.point = *rounded, .normal = near.normal(), .on = near.own(), .id = {}};
     whole_view::view_among(scene_, pieces, receiver, {}, seen_, workspace_);
-    for (const SeenPatch& one : seen_.patches) note(index_of(one.patch), one.form_factor.value, numbers);
-    note(scene_.patches().size() + kBackColumn, seen_.back.value, numbers);
-    note(scene_.patches().size() + kOpenColumn, seen_.open.value, numbers);
+    for (const SeenPatch& one : seen_.patches) note(index_of(one.patch), weight * one.form_factor.value, numbers);
+    note(scene_.patches().size() + kBackColumn, weight * seen_.back.value, numbers);
+    note(scene_.patches().size() + kOpenColumn, weight * seen_.open.value, numbers);
     return true;
   }
 
   void note(std::size_t column, double value, std::vector<double>& numbers) {
-    numbers[column] += value * weight_;
+    numbers[column] += value;
     touched_.push_back(column);
   }
 
@@ -192,11 +188,10 @@ class RowOfMeans {
   std::vector<bool> may_see_;                            // by patch
   std::vector<std::vector<std::uint32_t>> seen_pieces_;  // from each part before it was cut
   std::vector<std::size_t> seen_from_;                   // by fragment: an index of seen_pieces_
-  std::array<std::vector<double>, kDraws> numbers_;
+  std::array<std::vector<double>, view_factors::kDraws> numbers_;
   std::vector<std::size_t> touched_;
   WholeView seen_;
   Workspace workspace_;
-  double weight_ = 0.0;  // of a point in its draw
   double unknown_ = 0.0;
   std::size_t points_ = 0;
 };

@@ -39,6 +39,12 @@ bool Box::is_apart_from(const Box& other) const {
          apart(other.high.x, low.x) || apart(other.high.y, low.y) || apart(other.high.z, low.z);
 }
 
+Box box_of(std::span<const Point> points) {
+  Box box;
+  for (const Point& point : points) box.include(point.at);
+  return box;
+}
+
 ExactScene::ExactScene(const Scene& scene_in)
     : scene(scene_in), units(Units::of(scene_in.vertices())), vertices(scene_in.vertices().size()) {
   const auto place_of = places(scene);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "exactff/scene.h"
@@ -19,6 +20,8 @@ struct Box {
   // Certainly: apart by more than the roundings.
   [[nodiscard]] bool is_apart_from(const Box& other) const;
 };
+
+[[nodiscard]] Box box_of(std::span<const Point> points);
 
 inline constexpr std::uint32_t kNoSurface = std::numeric_limits<std::uint32_t>::max();
 

@@ -23,12 +23,6 @@ Box widened(Box box) {
   return box;
 }
 
-Box box_of(const std::vector<Point>& points) {
-  Box box;
-  for (const Point& point : points) box.include(point.at);
-  return box;
-}
-
 // Exactly the doubles of Point::at.
 Point point_at(const Vec3& at, const Units& units) {
   const kernel::BinaryDouble parts[] = {kernel::decompose(at.x), kernel::decompose(at.y), kernel::decompose(at.z)};
@@ -74,7 +68,7 @@ std::optional<Vec3> NearPlanes::rounded(const Point& point) const {
   }
   if (!nearly_.empty()) {
     const Point moved = point_at(point.at, units);
-    const Box box = widened(box_of({point}));
+    const Box box = widened(box_of({&point, 1}));
     const auto changes = [&](const ExactPiece* piece) {
       return !piece->box.is_apart_from(box) && side_of(piece->plane, point) != side_of(piece->plane, moved);
     };

@@ -67,12 +67,6 @@ Part whole(const ExactScene& scene, const ExactPiece& piece) {
   return part;
 }
 
-Box box_of(const Part& part) {
-  Box box;
-  for (const Point& corner : part.corners) box.include(corner.at);
-  return box;
-}
-
 // A segment in which a piece that reaches in front of a part's plane meets it.
 struct Contact {
   const Plane* plane;  // of the piece
@@ -110,7 +104,7 @@ bool is_on_both_sides(const Part& part, const Plane& plane) {
 // Those that may cut the part, the longest first.
 std::vector<Contact> contacts(const ExactScene& scene, const Part& part) {
   const Plane plane = make_plane(join(part.corners[0], part.corners[1], part.corners[2]), scene.units);
-  const Box box = box_of(part);
+  const Box box = box_of(part.corners);
   std::vector<Contact> result;
   for (const ExactPiece& piece : scene.pieces) {
     if (piece.face == part.face || piece.transparent || piece.box.is_apart_from(box)) continue;
@@ -187,7 +181,7 @@ std::vector<Part> cut_at_contacts(const ExactScene& scene, const Part& part) {
     std::vector<Part> finer;
     for (Part& fragment : fragments) {
       std::vector<Part> halves;
-      if (!line.box.is_apart_from(box_of(fragment))) halves = cut(fragment, *line.plane, scene.units);
+      if (!line.box.is_apart_from(box_of(fragment.corners))) halves = cut(fragment, *line.plane, scene.units);
       if (halves.size() < 2) {
         finer.push_back(std::move(fragment));
         continue;

@@ -14,7 +14,6 @@
 namespace exactff::view_factors {
 namespace {
 
-constexpr std::size_t kDraws = 2;  // of a stratum
 constexpr std::size_t kPointsOfStratum = kDraws * kFewestPoints;
 constexpr std::size_t kFirstStrata = 54;
 static_assert(kFirstStrata >= kFewestStrata);
@@ -57,20 +56,17 @@ Look look_at(const ExactScene& scene, const std::vector<Part>& from, const Strat
   Look look;
   for (std::size_t s = 0; s < strata.strata.size(); ++s) {
     kernel::poll();
-    const Stratum& stratum = strata.strata[s];
     std::array<double, kDraws> means{};
     double unknown = 0.0;
     for (std::size_t d = 0; d < kDraws; ++d) {
-      Draws draws(number, s, d);
-      const Tile& tile = drawn(strata, stratum, d, draws);
-      const std::vector<Point> points = points_in(from[tile.part], tile, draws, scene.units);
+      const auto [part, points] = sample(from, strata, number, s, d, scene.units);
       for (const Point& point : points) {
-        const auto [value, error] = factors.at(point, tile.part);
+        const auto [value, error] = factors.at(point, part);
         means[d] += value / static_cast<double>(points.size());
         unknown += error / static_cast<double>(kDraws * points.size());
       }
     }
-    const double share = stratum.area / strata.area;
+    const double share = strata.strata[s].area / strata.area;
     look.f.add(means[0], means[1], share);
     look.unknown += unknown * share;
   }

@@ -147,6 +147,13 @@ std::vector<Point> points_in(const Part& part, const Tile& tile, Draws& draws, c
   return {point(a, b), point(b, c), point(c, a)};
 }
 
+Sample sample(const std::vector<Part>& parts, const Strata& strata, std::size_t look, std::size_t stratum,
+              std::size_t draw, const Units& units) {
+  Draws draws(look, stratum, draw);
+  const Tile& tile = drawn(strata, strata.strata[stratum], draw, draws);
+  return {tile.part, points_in(parts[tile.part], tile, draws, units)};
+}
+
 void StratifiedMean::add(double a, double b, double share) {
   const double half = 0.5 * (a - b) * share, square = half * half;
   value += 0.5 * (a + b) * share;

@@ -64,6 +64,15 @@ struct Strata {
 [[nodiscard]] std::vector<Point> points_in(const Part& part, const Tile& tile, Draws& draws, const Units& units);
 inline constexpr std::size_t kFewestPoints = 2;  // of a draw
 
+// The points of one of the two draws of a stratum, in one part.
+struct Sample {
+  std::size_t part;
+  std::vector<Point> points;
+};
+inline constexpr std::size_t kDraws = 2;
+[[nodiscard]] Sample sample(const std::vector<Part>& parts, const Strata& strata, std::size_t look, std::size_t stratum,
+                            std::size_t draw, const Units& units);
+
 // The mean over the strata of a function between 0 and 1, from two independent numbers in each: their mean has a
 // variance that (difference / 2)^2 estimates without bias. The strata's variances add up; their sum has an estimated
 // number of degrees of freedom (Welch, Biometrika 34, 1947), for which Student's t gives the interval.

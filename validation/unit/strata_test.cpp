@@ -70,9 +70,7 @@ class StrataOf : public testing::TestWithParam<Patch> {
     for (std::size_t s = 0; s < strata.strata.size(); ++s) {
       std::array<double, 2> means{};
       for (std::size_t d = 0; d < 2; ++d) {
-        Draws draws(look, s, d);
-        const Tile& tile = drawn(strata, strata.strata[s], d, draws);
-        const std::vector<Point> points = points_in(parts_[tile.part], tile, draws, exact_.units);
+        const std::vector<Point> points = sample(parts_, strata, look, s, d, exact_.units).points;
         for (const Point& point : points) means[d] += f(point.at) / static_cast<double>(points.size());
       }
       mean.add(means[0], means[1], strata.strata[s].area / strata.area);
@@ -114,11 +112,9 @@ TEST_P(StrataOf, PointsLieInTheirPart) {
   const Strata strata = strata_of(parts_, 36);
   for (std::size_t s = 0; s < strata.strata.size(); ++s) {
     for (std::size_t d = 0; d < 2; ++d) {
-      Draws draws(1, s, d);
-      const Tile& tile = drawn(strata, strata.strata[s], d, draws);
-      const Part& part = parts_[tile.part];
-      const std::vector<Vec3> ring = rounded(part.corners);
-      for (const Point& point : points_in(part, tile, draws, exact_.units)) {
+      const auto [part, points] = sample(parts_, strata, 1, s, d, exact_.units);
+      const std::vector<Vec3> ring = rounded(parts_[part].corners);
+      for (const Point& point : points) {
         double sum = 0.0;
         for (std::size_t i = 0; i < ring.size(); ++i) sum += area({ring[i], ring[(i + 1) % ring.size()], point.at});
         EXPECT_NEAR(sum, area(ring), 1e-9 * area(ring));
@@ -180,8 +176,7 @@ TEST(Strata, OfAParallelogramAreASingleGrid) {
   }
 }
 
-// Strips of different widths, more than are worth a stratum each. Half of the function's variance is between
-// neighbours.
+// Strips of different widths, more than are worth a stratum each. The function is 1 on every second one.
 TEST(Strata, OfManyFacesShareTheirFacesWithoutBias) {
   PlainScene plain;
   double x = 0.0, odd = 0.0;
@@ -288,7 +283,7 @@ TEST_F(Contacts, WhatHasNoLineOnItsFrontDoesNotCutIt) {
   EXPECT_FALSE(parts[0].is_cut);
 }
 
-// A line ends where no fragment that it cuts continues it.
+// It does not cut the fragments on the other side of another line.
 TEST_F(Contacts, AShortWallCutsTheFragmentsThatItReaches) {
   add({{0.5, 0, 0}, {0.5, 1, 0}, {0.5, 1, 1}, {0.5, 0, 1}});
   add({{0, 0.5, 0}, {0.5, 0.5, 0}, {0.5, 0.5, 1}, {0, 0.5, 1}});
