@@ -8,7 +8,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "exactff/progress.h"
 
@@ -54,5 +57,30 @@ void require_free(const std::filesystem::path& file, Existing existing);
 
 // The command that wrote a shard: "truth" or "matrix"; empty if the file is no shard or cannot be read.
 [[nodiscard]] std::string command_of_shard(const std::filesystem::path& file);
+
+// Finished work, stored in a file beside the result so that an interrupted run can be resumed. Each piece of work has a
+// name. Damaged pieces in the file count as not done. All functions may be called from any thread.
+class Journal {
+ public:
+  // Throws InputError if the file cannot be written, if another process uses it, or if it holds finished work and
+  // `existing` is kRefuse.
+  Journal(const std::filesystem::path& file, Existing existing);
+  ~Journal();  // removes a journal without content
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+
+  [[nodiscard]] std::optional<std::string> find(const std::string& name) const;
+  void add(const std::string& name, std::string_view bytes);
+  [[nodiscard]] std::size_t size() const;  // number of pieces of work
+  [[nodiscard]] const std::filesystem::path& path() const;
+  void remove();  // call when all work is done
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// The path of the journal for a folder of results: beside the folder.
+[[nodiscard]] std::filesystem::path journal_of_folder(const std::filesystem::path& folder);
 
 }  // namespace exactff::jobs

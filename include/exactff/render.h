@@ -35,7 +35,10 @@
 #include "exactff/quantity.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
-#include "exactff/study.h"
+
+namespace exactff::jobs {
+class Journal;  // jobs.h
+}
 
 namespace exactff::render {
 
@@ -183,7 +186,7 @@ struct Picture {
 // Computes the picture in tiles. Finished tiles are kept in `journal`, if given, and taken from it. Throws InputError
 // if there is no source, if the sources' radiosities are too large to be added (beyond 1e290), if the picture would
 // need too much memory, or if the method does not accept the scene; throws Cancelled if the hooks cancel.
-[[nodiscard]] Picture render(const Request& request, const Hooks& hooks = {}, study::Journal* journal = nullptr);
+[[nodiscard]] Picture render(const Request& request, const Hooks& hooks = {}, jobs::Journal* journal = nullptr);
 
 // -------------------------------------------------------------------------------------------------------- comparison
 

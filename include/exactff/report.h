@@ -71,11 +71,6 @@ struct Plan {
 
 [[nodiscard]] std::vector<std::string> experiment_names();
 
-[[nodiscard]] bool is_study_file(const std::string& path);  // by its extension, .study
-
-// Reads a .study file (data/README.md) and loads its scenes. Throws one InputError with the line of every problem.
-[[nodiscard]] Plan read_study_file(const std::filesystem::path& file, const Effort& effort = {});
-
 // What a finished report in a folder tells about itself.
 enum class Finished {
   kNone,       // there is no report
@@ -98,7 +93,7 @@ struct Outcome {
 // Runs every study and experiment of the plan and writes one report on all of them, as write() does. The files of a
 // scene begin with its name and an underscore. What is finished is kept in `journal`, which is to be removed when
 // everything is done.
-Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, study::Journal& journal,
+Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::Journal& journal,
                   const Hooks& hooks = {});
 
 }  // namespace exactff::report

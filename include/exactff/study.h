@@ -19,6 +19,7 @@
 
 #include "exactff/adaptive.h"
 #include "exactff/exact.h"
+#include "exactff/jobs.h"
 #include "exactff/methods.h"
 #include "exactff/progress.h"
 #include "exactff/receiver.h"
@@ -252,38 +253,11 @@ struct Study {
   double ray_setup_seconds = 0.0;    // once per scene
 };
 
-// Finished work, stored in a file beside the result so that an interrupted run can be resumed. Each piece of work has a
-// name. Damaged pieces in the file count as not done. All functions may be called from any thread.
-class Journal {
- public:
-  enum class Existing { kRefuse, kResume, kReplace };  // what to do if the file already exists
-
-  // Throws InputError if the file cannot be written, if another process uses it, or if it holds finished work and
-  // `existing` is kRefuse.
-  Journal(const std::filesystem::path& file, Existing existing);
-  ~Journal();  // removes a journal without content
-  Journal(const Journal&) = delete;
-  Journal& operator=(const Journal&) = delete;
-
-  [[nodiscard]] std::optional<std::string> find(const std::string& name) const;
-  void add(const std::string& name, std::string_view bytes);
-  [[nodiscard]] std::size_t size() const;  // number of pieces of work
-  [[nodiscard]] const std::filesystem::path& path() const;
-  void remove();  // call when all work is done
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
-
-// The path of the journal for a folder of results: beside the folder.
-[[nodiscard]] std::filesystem::path journal_of_folder(const std::filesystem::path& folder);
-
 // Runs the study. Everything except the times depends on the request alone, not on the number of threads. Times are
 // measured afterwards with one thread and no other work: the median of three calls by a steady clock, after a first
 // call with the same arguments. Values in `journal` are taken from it, and new values are stored there. Throws
 // InputError if there is no receiver or no source, if the sources' radiosities are too large to be added (beyond
 // 1e290), or if the sampled methods do not accept the scene.
-[[nodiscard]] Study run(Request request, const Hooks& hooks = {}, Journal* journal = nullptr);
+[[nodiscard]] Study run(Request request, const Hooks& hooks = {}, jobs::Journal* journal = nullptr);
 
 }  // namespace exactff::study

@@ -14,6 +14,7 @@
 #include "exactff/study.h"
 #include "flags/comparison.h"
 #include "flags/sources.h"
+#include "flags/study_file.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -57,10 +58,8 @@ struct CompareArguments {
   bool force = false;
   FurtherFiles further;
 
-  [[nodiscard]] study::Journal::Existing existing() const {
-    return resume  ? study::Journal::Existing::kResume
-           : force ? study::Journal::Existing::kReplace
-                   : study::Journal::Existing::kRefuse;
+  [[nodiscard]] jobs::Existing existing() const {
+    return resume ? jobs::Existing::kResume : force ? jobs::Existing::kReplace : jobs::Existing::kRefuse;
   }
 };
 
@@ -90,7 +89,7 @@ void require_free(const CompareArguments& args) {
 void check_outputs(const CompareArguments& args) {
   require_free(args);
   check_output_folder(args.folder);
-  if (!args.further.vtk.empty() && report::is_study_file(args.scene.scene.path)) {
+  if (!args.further.vtk.empty() && flags::is_study_file(args.scene.scene.path)) {
     text::refuse("--vtk is given with a study file", "a VTK file shows the receivers of one scene",
                  "compare each scene by itself, or leave out --vtk");
   }
@@ -110,7 +109,7 @@ void require_vtk_of_finished(const CompareArguments& args) {
 // With --resume: true if the folder is the finished result of this very request.
 bool is_done(const CompareArguments& args, const report::Plan& plan) {
   std::error_code ignored;
-  if (!args.resume || std::filesystem::exists(study::journal_of_folder(args.folder), ignored)) return false;
+  if (!args.resume || std::filesystem::exists(jobs::journal_of_folder(args.folder), ignored)) return false;
   const report::Finished finished = report::finished_report(plan, args.folder);
   if (finished == report::Finished::kOfAnother) {
     throw InputError({.file = args.folder,
@@ -125,14 +124,14 @@ report::Plan plan_of(const CompareArguments& args) {
   const report::Effort effort{args.abridged, args.threads};
   const std::string& path = args.scene.scene.path;
   report::Plan plan;
-  if (report::is_study_file(path)) {
+  if (flags::is_study_file(path)) {
     const std::string flags = flags::command_words(args.scene);
     if (!flags.empty()) {
       text::refuse("flags of a scene are given with a study file:" + flags,
                    "a study file has several scenes, each with its own flags",
                    "write them on the scene's line in the file");
     }
-    plan = report::read_study_file(path, effort);
+    plan = flags::read_study_file(path, effort);
   } else {
     if (args.scene.unless_abridged) {
       text::refuse("--unless-abridged has no effect on the command line", "it marks a scene in a study file",
@@ -191,7 +190,7 @@ int run(const CompareArguments& args) {
         << "note: the report is finished and of the same request, so it was left as it is; --force makes it anew\n";
     return say_where(args);
   }
-  study::Journal journal(study::journal_of_folder(args.folder), args.existing());
+  jobs::Journal journal(jobs::journal_of_folder(args.folder), args.existing());
   const std::string kept = "finished work is kept in " + text::printable(journal.path().string()) +
                            "; to continue, run the same command with --resume\n";
   const InterruptWatch watch("exactff: interrupted; " + kept);

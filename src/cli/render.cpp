@@ -75,10 +75,8 @@ struct RenderArguments {
   bool force = false;
   std::string image;
 
-  [[nodiscard]] study::Journal::Existing existing() const {
-    return resume  ? study::Journal::Existing::kResume
-           : force ? study::Journal::Existing::kReplace
-                   : study::Journal::Existing::kRefuse;
+  [[nodiscard]] jobs::Existing existing() const {
+    return resume ? jobs::Existing::kResume : force ? jobs::Existing::kReplace : jobs::Existing::kRefuse;
   }
 };
 
@@ -188,7 +186,7 @@ class Kept {
     constexpr const char* kRequest = "request";
     std::error_code ignored;
     if (std::filesystem::is_other(args.image, ignored)) return;
-    journal_.emplace(study::journal_of_folder(args.image), args.existing());
+    journal_.emplace(jobs::journal_of_folder(args.image), args.existing());
     const std::optional<std::string> found = journal_->find(kRequest);
     if (found && *found != identity) {
       throw InputError({.file = journal_->path().string(),
@@ -205,7 +203,7 @@ class Kept {
   Kept(const Kept&) = delete;
   Kept& operator=(const Kept&) = delete;
 
-  [[nodiscard]] study::Journal* journal() { return journal_ ? &*journal_ : nullptr; }
+  [[nodiscard]] jobs::Journal* journal() { return journal_ ? &*journal_ : nullptr; }
   [[nodiscard]] std::string words() const {
     if (!journal_) return "nothing is kept\n";
     return "finished tiles are kept in " + text::printable(journal_->path().string()) +
@@ -222,12 +220,12 @@ class Kept {
   }
 
  private:
-  std::optional<study::Journal> journal_;
+  std::optional<jobs::Journal> journal_;
   std::size_t before_ = 0;
 };
 
 Rendered rendered(const render::Request& request, const std::optional<methods::Choice>& against, const Hooks& hooks,
-                  study::Journal* journal) {
+                  jobs::Journal* journal) {
   Rendered result{.picture = render::render(request, hooks, journal)};
   if (!against) return result;
   render::Request judged = request;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/statistics.h"
 #include "models/random.h"
-#include "study/statistics.h"
 #include "text/phrases.h"
 #include "work/parallel.h"
 
@@ -123,7 +123,7 @@ std::string rotation_sentence(const ResolutionCurves& c) {
          "factor of " +
          rounded(*std::ranges::max_element(light) / *std::ranges::min_element(light), 2) + ": " +
          text::enumerate(peaks) + " (its edges run along the rows or the diagonals of the pixels), against " +
-         percent(study::median(light)) +
+         percent(kernel::median(light)) +
          " in the median over all angles. For triangles with edges in all directions, the angle makes no significant "
          "difference (" +
          rounded(*low, 2) + " to " + rounded(*high, 2) + " in F).";

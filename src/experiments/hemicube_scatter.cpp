@@ -5,7 +5,7 @@
 #include <map>
 #include <numbers>
 
-#include "study/statistics.h"
+#include "kernel/statistics.h"
 #include "text/phrases.h"
 #include "work/parallel.h"
 
@@ -215,7 +215,7 @@ std::vector<ScatterDecade> scatter_decades(std::span<const ScatterPoint> points,
   }
   std::vector<ScatterDecade> decades;
   for (const auto& [exponent, list] : errors) {
-    decades.push_back({exponent, list.size(), missed[exponent], study::median(list), study::percentile(list, 99.0)});
+    decades.push_back({exponent, list.size(), missed[exponent], kernel::median(list), kernel::percentile(list, 99.0)});
   }
   return decades;
 }
@@ -234,7 +234,7 @@ std::vector<double> scatter_slopes(std::span<const ScatterPoint> points, const S
   }
   std::vector<double> slopes;
   for (const Points& scene : by_scene) {
-    const std::optional<double> slope = scene.size() < kFew ? std::nullopt : study::fitted_slope(scene);
+    const std::optional<double> slope = scene.size() < kFew ? std::nullopt : kernel::fitted_slope(scene);
     if (slope) slopes.push_back(*slope);
   }
   return slopes;

@@ -9,8 +9,8 @@
 
 #include "exactff/models.h"
 #include "kernel/disc.h"
+#include "kernel/statistics.h"
 #include "models/random.h"
-#include "study/statistics.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/patch_parts.h"
 #include "work/parallel.h"
@@ -127,7 +127,7 @@ void count_entry(const HonestyEntry& entry, HonestyRow& row, std::vector<ErrorRa
 double p95_of(std::span<const ErrorRatio> ratios, double ErrorRatio::*end) {
   std::vector<double> values;
   for (const ErrorRatio& ratio : ratios) values.push_back(ratio.*end);
-  return study::percentile(std::move(values), 95.0);
+  return kernel::percentile(std::move(values), 95.0);
 }
 
 }  // namespace

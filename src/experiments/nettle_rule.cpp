@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "kernel/statistics.h"
 #include "kernel/vec.h"
 #include "models/random.h"
-#include "study/statistics.h"
 #include "text/phrases.h"
 #include "work/parallel.h"
 
@@ -322,7 +322,7 @@ double median_literal_ratio(const NettleSize& size, double side, const std::stri
                "rays=1,variant=literal,area_ratio=" + area_ratio + ",receiver_area=" + text::shortest(own_area));
     ratios.push_back(literal / exact(scene, receiver, false).value);
   }
-  return study::median(std::move(ratios));
+  return kernel::median(std::move(ratios));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "exactff/models.h"
+#include "kernel/statistics.h"
 #include "page/figure.h"
 #include "study/statistics.h"
 #include "text/phrases.h"
@@ -70,7 +71,7 @@ double seconds_per_receiver(const Hall& hall, const std::string& choice, int tim
   for (std::size_t i = step / 2; i < hall.receivers.size(); i += step) {
     times.push_back(median_seconds([&] { (void)bench.look_from(hall.receivers[i]); }, 3));
   }
-  return study::mean(times);
+  return kernel::mean(times);
 }
 
 struct Timed {
@@ -225,7 +226,7 @@ EmitterStudy study_of(const Hall& hall, const EmittersSize& size, int threads, c
   choices.insert(choices.begin(), "exact");
   std::vector<std::vector<double>> values = radiosities(hall, choices, threads, hooks);
   EmitterStudy study{hall.receivers, std::move(values.front()), 0.0, {}};
-  study.mean = study::mean(study.exact);
+  study.mean = kernel::mean(study.exact);
   for (std::size_t i = 1; i < choices.size(); ++i) {
     study.methods.push_back(errors_of(study, choices[i], std::move(values[i])));
   }

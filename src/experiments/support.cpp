@@ -7,6 +7,7 @@
 #include "exactff/models.h"
 #include "exactff/view.h"
 #include "kernel/expect.h"
+#include "kernel/statistics.h"
 #include "study/statistics.h"
 #include "text/phrases.h"
 #include "work/stopwatch.h"
@@ -73,7 +74,7 @@ double median_seconds(const std::function<void()>& call, std::size_t repeats) {
 
 SlopeFit mean_slope(std::span<const double> slopes) {
   EXACTFF_EXPECT(slopes.size() >= 2);
-  return {study::mean(slopes), study::mean_half_width(slopes), slopes.size()};
+  return {kernel::mean(slopes), kernel::mean_half_width(slopes), slopes.size()};
 }
 
 std::string to_text(const SlopeFit& fit) { return slope_text(fit.slope) + " ± " + slope_text(fit.half_width); }
@@ -94,8 +95,8 @@ void ErrorCurve::add_place(double place, const std::vector<std::vector<double>>&
   at.push_back(place);
   rms.push_back(root_mean_square(all));
   for (double& error : all) error = std::abs(error);
-  median.push_back(study::median(all));
-  p95.push_back(study::percentile(std::move(all), 95.0));
+  median.push_back(kernel::median(all));
+  p95.push_back(kernel::percentile(std::move(all), 95.0));
 }
 
 Points ErrorCurve::points() const {
@@ -109,7 +110,7 @@ SlopeFit ErrorCurve::slope(double last) const {
   for (const std::vector<double>& group : rms_by_group) {
     Points points;
     for (std::size_t i = 0; i < at.size() && at[i] <= last; ++i) points.emplace_back(at[i], group[i]);
-    if (const auto slope = study::fitted_slope(points)) slopes.push_back(*slope);
+    if (const auto slope = kernel::fitted_slope(points)) slopes.push_back(*slope);
   }
   return mean_slope(slopes);
 }

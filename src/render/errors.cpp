@@ -6,7 +6,7 @@
 
 #include "exactff/render.h"
 #include "kernel/float_environment.h"
-#include "study/statistics.h"
+#include "kernel/statistics.h"
 
 namespace exactff::render {
 namespace {
@@ -32,7 +32,7 @@ PixelError error_of(const double* judged, const double* truth) {
 }
 
 double percentile(const std::vector<double>& values, double percent) {
-  return values.empty() ? 0.0 : study::percentile(values, percent);
+  return values.empty() ? 0.0 : kernel::percentile(values, percent);
 }
 
 void set_statistics(Errors& errors, std::vector<double> magnitudes, const std::vector<double>& relative) {

@@ -4,9 +4,9 @@
 #include <map>
 
 #include "exactff/version.h"
+#include "jobs/kept_work.h"
 #include "kernel/float_environment.h"
 #include "scene/misuse.h"
-#include "study/kept_work.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -154,7 +154,7 @@ std::string Job::hash() const {
   std::string all = request_.bounds == Bounds::kAll ? "bounds" : "";
   if (request_.layers == Layers::kAll) all += " layers";
   for (const auto& [name, value] : metadata()) all += '\n' + name + '=' + value;
-  return study::short_hash(all);
+  return jobs::short_hash(all);
 }
 
 light::LightFormula Job::formula(FaceId face, bool back) const {

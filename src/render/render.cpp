@@ -9,11 +9,11 @@
 #include <memory>
 #include <mutex>
 
+#include "jobs/kept_work.h"
 #include "kernel/float_environment.h"
 #include "kernel/numbers.h"
 #include "light/light.h"
 #include "render/job.h"
-#include "study/kept_work.h"
 #include "work/parallel.h"
 
 namespace exactff::render {
@@ -211,12 +211,12 @@ void place(const Tile& tile, const TileResult& result, Picture& picture) {
 
 }  // namespace
 
-Picture render(const Request& request, const Hooks& hooks, study::Journal* journal) {
+Picture render(const Request& request, const Hooks& hooks, jobs::Journal* journal) {
   const kernel::StandardArithmetic arithmetic;
   const Job job(request);
   Picture picture = empty_picture(job);
   const Tiles tiles(picture.size);
-  const study::KeptWork kept(journal, job.hash());
+  const jobs::KeptWork kept(journal, job.hash());
   Brushes brushes(job);
   std::mutex mutex;
   const int threads = request.threads > 0 ? request.threads : work::usable_threads();

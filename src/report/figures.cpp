@@ -6,12 +6,12 @@
 #include <map>
 #include <optional>
 
+#include "kernel/statistics.h"
 #include "kernel/vec.h"
 #include "page/plot_script.h"
 #include "report/strip.h"
 #include "study/ladders.h"
 #include "study/settings.h"
-#include "study/statistics.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 
@@ -208,7 +208,7 @@ class FigureMaker {
   }
 
   [[nodiscard]] std::string slope_sentence(const std::vector<std::size_t>& line) const {
-    const auto slope = study::fitted_slope(points(line, Parameter::kRays, &ErrorStatistics::rms));
+    const auto slope = kernel::fitted_slope(points(line, Parameter::kRays, &ErrorStatistics::rms));
     if (!slope) return {};
     return std::string("The RMS error falls as the number of rays to the power ") + (*slope < 0.0 ? "−" : "") +
            text::rounded(std::abs(*slope), 2) +
@@ -328,7 +328,7 @@ class FigureMaker {
                            [&](std::size_t i) { return shown.errors[i]; });
     std::vector<double> magnitudes;
     for (const page::MapCell& cell : map.cells) magnitudes.push_back(std::abs(cell.value));
-    map.largest = study::percentile(magnitudes, 99.0);
+    map.largest = kernel::percentile(magnitudes, 99.0);
     if (map.largest == 0.0) map.largest = *std::max_element(magnitudes.begin(), magnitudes.end());
     if (!(map.largest > 0.0)) {
       leave_out("map of the signed error", shown.title + " has no error anywhere");

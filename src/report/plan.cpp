@@ -38,7 +38,7 @@ std::string file_word(const std::string& title, const std::vector<PlannedScene>&
   }
 }
 
-page::Chapter run_experiment(const experiments::Experiment& experiment, const Effort& effort, study::Journal& journal,
+page::Chapter run_experiment(const experiments::Experiment& experiment, const Effort& effort, jobs::Journal& journal,
                              const Hooks& hooks) {
   const std::string key = "experiment/" + std::string(experiment.name) + (effort.abridged ? "-abridged" : "");
   if (const auto bytes = journal.find(key)) {
@@ -126,7 +126,7 @@ std::vector<FieldResults> read_fields(const Plan& plan) {
 
 }  // namespace
 
-Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, study::Journal& journal, const Hooks& hooks) {
+Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::Journal& journal, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
   if (plan.scenes.empty() && plan.experiments.empty() && plan.fields.empty()) {
     text::refuse(

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <map>
 
+#include "kernel/statistics.h"
 #include "study/ladders.h"
 #include "study/radiosity.h"
 #include "study/statistics.h"
@@ -55,7 +56,7 @@ void take_evenly(std::vector<std::size_t>& chosen, const std::vector<std::size_t
 
 class MethodRunner {
  public:
-  MethodRunner(const Study& study, const KeptWork& kept, const Hooks& hooks)
+  MethodRunner(const Study& study, const jobs::KeptWork& kept, const Hooks& hooks)
       : study_(study), kept_(kept), hooks_(hooks), brightest_(largest_radiosity(study)) {
     for (const Selection& source : request().sources) radiosities_.push_back(scene().source_radiosity(source));
   }
@@ -166,7 +167,7 @@ class MethodRunner {
 
   void fill(MethodCell& cell, const PreparedMethod& prepared) {
     kept_.get(
-        "method/" + short_hash(choice_of(cell).text()), [&] { compute(cell, prepared); },
+        "method/" + jobs::short_hash(choice_of(cell).text()), [&] { compute(cell, prepared); },
         [&](auto& words) {
           words(cell.work);
           for (std::size_t s = 0; s < cell.seeds.size(); ++s) words(cell.values[s], cell.radiosity_errors[s]);
@@ -234,7 +235,7 @@ class MethodRunner {
     const methods::Choice& choice = ladder.rungs[field.rung];
     const std::uint64_t seed = choice.method->stochastic(choice.settings) ? 1 : 0;
     kept_.get(
-        "field/" + short_hash(choice.text()),
+        "field/" + jobs::short_hash(choice.text()),
         [&] {
           const std::size_t count = study_.exact.size();
           field.radiosity_errors.assign(count, 0.0);
@@ -274,16 +275,16 @@ class MethodRunner {
         const double rms = error_statistics(errors).rms;
         if (rms > kRoundingError * brightest_) points.emplace_back(cell->work, rms);
       }
-      const auto exponent = points.size() == cells.size() ? fitted_slope(points) : std::nullopt;
+      const auto exponent = points.size() == cells.size() ? kernel::fitted_slope(points) : std::nullopt;
       if (exponent) exponents.push_back(*exponent);
     }
     if (exponents.empty()) return std::nullopt;
-    const double middle = mean(exponents), half = mean_half_width(exponents);
+    const double middle = kernel::mean(exponents), half = kernel::mean_half_width(exponents);
     return Slope{middle, middle - half, middle + half, exponents.size(), cells.size()};
   }
 
   const Study& study_;
-  const KeptWork& kept_;
+  const jobs::KeptWork& kept_;
   const Hooks& hooks_;
   const double brightest_;
   std::vector<Rgb> radiosities_;
@@ -329,7 +330,7 @@ double planned_seconds(const methods::Counters& counters, std::size_t faces) {
   return 1e-9 * nanoseconds;
 }
 
-MethodResults run_methods(const Study& study, const KeptWork& kept, const Hooks& hooks) {
+MethodResults run_methods(const Study& study, const jobs::KeptWork& kept, const Hooks& hooks) {
   return MethodRunner(study, kept, hooks).run();
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "exactff/study.h"
-#include "study/kept_work.h"
+#include "jobs/kept_work.h"
 
 namespace exactff::study {
 
@@ -28,7 +28,7 @@ struct MethodResults {
 };
 // Values of every ladder at chosen receivers, and of its middle rung at all receivers. `study` must have its exact
 // values.
-[[nodiscard]] MethodResults run_methods(const Study& study, const KeptWork& kept, const Hooks& hooks);
+[[nodiscard]] MethodResults run_methods(const Study& study, const jobs::KeptWork& kept, const Hooks& hooks);
 
 // The receivers that a study examines in detail: evenly spaced among those that see the source partly, and for one
 // third among those that see all of it; other receivers if there are too few. Ascending.

@@ -14,9 +14,9 @@
 #include <limits>
 
 #include "exactff/study.h"
+#include "jobs/kept_work.h"
 #include "kernel/float_environment.h"
 #include "scene/misuse.h"
-#include "study/kept_work.h"
 #include "study/ladders.h"
 #include "study/method_runs.h"
 #include "study/profile.h"
@@ -118,7 +118,7 @@ std::string settings_text(const Study& study) {
 
 class Runner {
  public:
-  Runner(Request request, const Hooks& hooks, Journal* journal) : hooks_(hooks), journal_(journal) {
+  Runner(Request request, const Hooks& hooks, jobs::Journal* journal) : hooks_(hooks), journal_(journal) {
     complete(request);
     study_.request = std::move(request);
   }
@@ -161,7 +161,7 @@ class Runner {
       }
       require_moderate(of_all_sources, request());
     }
-    request_hash_ = short_hash(request_text(request()));
+    request_hash_ = jobs::short_hash(request_text(request()));
   }
 
   [[nodiscard]] double largest_rho_b(const Receiver& receiver, std::size_t source) const {
@@ -171,7 +171,7 @@ class Runner {
   void find_exact_values() {
     const std::size_t count = request().receivers.size();
     study_.exact.resize(count);
-    const KeptWork kept(journal_, request_hash_);
+    const jobs::KeptWork kept(journal_, request_hash_);
     work::parallel_for(count, threads(), "exact values", hooks_, [&](std::size_t i) {
       ExactRow& row = study_.exact[i];
       row.terms.resize(sources_.size());
@@ -276,7 +276,7 @@ class Runner {
     choose_judged();
     const std::size_t count = request().receivers.size();
     study_.samples.assign(study_.settings.size(), std::vector<SampleRow>(count));
-    const KeptWork kept(journal_, request_hash_ + '-' + short_hash(settings_text(study_)));
+    const jobs::KeptWork kept(journal_, request_hash_ + '-' + jobs::short_hash(settings_text(study_)));
     work::parallel_for(count, threads(), "sampling", hooks_, [&](std::size_t i) {
       kept.get(
           "samples/" + std::to_string(i), [&] { sample_receiver(i); },
@@ -337,8 +337,8 @@ class Runner {
 
   void look_closer() {
     const MethodSweep& methods = request().methods;
-    const KeptWork kept(journal_,
-                        request_hash_ + '-' + std::to_string(methods.seeds) + '-' + std::to_string(methods.receivers));
+    const jobs::KeptWork kept(
+        journal_, request_hash_ + '-' + std::to_string(methods.seeds) + '-' + std::to_string(methods.receivers));
     MethodResults found = run_methods(study_, kept, hooks_);
     study_.methods = std::move(found.methods);
     leave_out(std::move(found.left_out));
@@ -383,7 +383,7 @@ class Runner {
   }
 
   const Hooks& hooks_;
-  Journal* journal_;
+  jobs::Journal* journal_;
   std::string request_hash_;
   Study study_;
   std::vector<ExactSource> sources_;
@@ -395,7 +395,7 @@ class Runner {
 
 }  // namespace
 
-Study run(Request request, const Hooks& hooks, Journal* journal) {
+Study run(Request request, const Hooks& hooks, jobs::Journal* journal) {
   const kernel::StandardArithmetic arithmetic;
   return Runner(std::move(request), hooks, journal).run();
 }

@@ -1,8 +1,8 @@
-// Statistics of errors and times. All sums run in the given order, so that the bits are the same everywhere.
+// Statistics of the errors and times of a study. All sums run in the given order, so that the bits are the same
+// everywhere.
 #pragma once
 
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "exactff/study.h"
@@ -11,20 +11,6 @@ namespace exactff::study {
 
 // All zero for an empty list. NaN and infinite values are counted and otherwise left out.
 [[nodiscard]] ErrorStatistics error_statistics(std::span<const double> errors);
-
-// Nearest rank: the smallest value that at least `percent` % of the values do not exceed. Requires at least one value,
-// no NaN, and 0 < percent <= 100.
-[[nodiscard]] double percentile(std::vector<double> values, double percent);
-
-// The middle value, or the mean of the two middle values; 0 for an empty list.
-[[nodiscard]] double median(std::vector<double> values);
-[[nodiscard]] double mean(std::span<const double> values);
-// Half the width of the 95 % confidence interval of the mean, by Student's t; 0 for fewer than two values.
-[[nodiscard]] double mean_half_width(std::span<const double> values);
-
-// The exponent p of the least-squares line log y = p log x + c over the points with positive x and y. Nothing if there
-// are fewer than two such points with different x.
-[[nodiscard]] std::optional<double> fitted_slope(std::span<const std::pair<double, double>> points);
 
 [[nodiscard]] Summary summarise(const std::vector<SampleRow>& rows, const Study& study, double eps_b);
 // The radiosity of the brightest receiver, largest channel.

@@ -6,9 +6,9 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "kernel/statistics.h"
 #include "study/method_runs.h"
 #include "study/radiosity.h"
-#include "study/statistics.h"
 #include "work/parallel.h"
 #include "work/stopwatch.h"
 
@@ -159,7 +159,7 @@ class Stopwatch {
       }));
       if (study_.exact[i].sight == Sight::kPartly) partly.push_back(all.back());
     });
-    const auto mean_of = [](const std::vector<double>& list) { return list.empty() ? kNotTimed : mean(list); };
+    const auto mean_of = [](const std::vector<double>& list) { return list.empty() ? kNotTimed : kernel::mean(list); };
     times_.cells.push_back({mean_of(all), mean_of(partly)});
     report();
   }

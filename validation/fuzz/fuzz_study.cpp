@@ -5,8 +5,8 @@
 #include <string>
 
 #include "cli/long_run.h"
+#include "flags/study_file.h"
 #include "fuzz/complaints.h"
-#include "report/study_file.h"
 #include "support/program.h"
 
 namespace exactff::validation {
@@ -23,10 +23,10 @@ void check_words(const std::vector<std::string>& words) {
     if (!can_be_quoted(word)) return;
     line += (line.empty() ? "\"" : " \"") + word + '"';
   }
-  if (report::split_words(line, "line", 1) != words) fail("words that are read in another way when they are quoted");
+  if (flags::split_words(line, "line", 1) != words) fail("words that are read in another way when they are quoted");
 }
 
-void check(const report::StudyFile& study) {
+void check(const flags::StudyFile& study) {
   if (study.scenes.empty() && study.experiments.empty() && study.fields.empty()) fail("a study of nothing is accepted");
   for (const auto* lines : {&study.scenes, &study.experiments, &study.fields}) {
     std::size_t before = 0;
@@ -45,7 +45,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace exactff::validation;
   static const TemporaryDirectory directory;
   try {
-    check(exactff::report::parse_study_file(
+    check(exactff::flags::parse_study_file(
         directory.write("run.study", std::string(reinterpret_cast<const char*>(data), size))));
   } catch (const exactff::InputError& error) {
     require_words(error);

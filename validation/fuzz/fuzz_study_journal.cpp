@@ -60,7 +60,7 @@ struct Truth {
 };
 
 Truth make_truth(const Scene& scene) {
-  study::Journal journal(file(), study::Journal::Existing::kReplace);
+  jobs::Journal journal(file(), jobs::Existing::kReplace);
   Tables tables = value_tables(study::run(request_of(scene), {}, &journal));
   const std::string text = text_of(file());
   journal.remove();
@@ -87,7 +87,7 @@ std::string with_edited_records(const std::string& journal, Bytes& bytes) {
 void check(const std::string& text, const Scene& scene, const Tables* expected) {
   std::ofstream(file(), std::ios::binary) << text;
   try {
-    study::Journal journal(file(), study::Journal::Existing::kResume);
+    jobs::Journal journal(file(), jobs::Existing::kResume);
     const Tables found = value_tables(study::run(request_of(scene), {}, &journal));
     if (expected != nullptr && found != *expected) fail("resumed to other values");
     journal.remove();

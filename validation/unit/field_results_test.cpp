@@ -7,6 +7,7 @@
 
 #include "exactff/models.h"
 #include "exactff/report.h"
+#include "flags/study_file.h"
 #include "report/field.h"
 #include "report/report.h"
 #include "report/scene_part.h"
@@ -181,18 +182,18 @@ TEST_F(FieldFile, BecomesAChapterThatHoldsEveryRowAndPicture) {
 TEST_F(FieldFile, IsALineOfAStudy) {
   (void)put(std::string(kHead) + kRow);
   const fs::path study = directory_.write("a.study", "title T\nfield cycles.csv\n");
-  const Plan plan = read_study_file(study);
+  const Plan plan = flags::read_study_file(study);
   ASSERT_EQ(plan.fields.size(), 1U);
   const std::string digest = plan.fields.front().digest;
-  study::Journal journal(directory_.path() / "out.part", study::Journal::Existing::kRefuse);
+  jobs::Journal journal(directory_.path() / "out.part", jobs::Existing::kRefuse);
   (void)carry_out(plan, directory_.path() / "out", journal);
   const std::string page = validation::text_of(directory_.path() / "out" / "report.html");
   EXPECT_NE(page.find("<section class=\"scene\" id=\"field-cycles\">"), std::string::npos);
   EXPECT_NE(page.find("<a href=\"#field-cycles\">"), std::string::npos);
   EXPECT_EQ(finished_report(plan, directory_.path() / "out"), Finished::kOfThis);
   (void)put(std::string(kHead) + kNaive);
-  EXPECT_EQ(finished_report(read_study_file(study), directory_.path() / "out"), Finished::kOfAnother);
-  EXPECT_NE(read_study_file(study).fields.front().digest, digest);
+  EXPECT_EQ(finished_report(flags::read_study_file(study), directory_.path() / "out"), Finished::kOfAnother);
+  EXPECT_NE(flags::read_study_file(study).fields.front().digest, digest);
 }
 
 TEST_F(FieldFile, ThatIsWrongIsNamedWithTheLineOfTheStudy) {
@@ -204,7 +205,7 @@ TEST_F(FieldFile, ThatIsWrongIsNamedWithTheLineOfTheStudy) {
   };
   for (const auto& [text, expected] : table) {
     try {
-      (void)read_study_file(directory_.write("a.study", text));
+      (void)flags::read_study_file(directory_.write("a.study", text));
       ADD_FAILURE() << text;
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();

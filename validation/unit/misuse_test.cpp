@@ -12,7 +12,7 @@
 #include "exactff/methods.h"
 #include "exactff/study.h"
 #include "exactff/truth.h"
-#include "study/statistics.h"
+#include "kernel/statistics.h"
 #include "study_support.h"
 
 namespace exactff {
@@ -214,7 +214,7 @@ TEST(Misuse, SourcesPreparedByAnotherMethodAreRefused) {
 
 // The requirements of internal functions, which every build with tests checks.
 TEST(Misuse, BrokenRequirementsNameTheirPlace) {
-  const std::string words = words_of<std::logic_error>([] { (void)study::percentile({}, 50.0); });
+  const std::string words = words_of<std::logic_error>([] { (void)kernel::percentile({}, 50.0); });
   EXPECT_NE(words.find("statistics.cpp:"), std::string::npos) << words;
 }
 

@@ -155,7 +155,7 @@ TEST(Picture, DoesNotDependOnThreadsAndResumes) {
   EXPECT_TRUE(same(one.values, three.values));
   EXPECT_EQ(exr_of(one), exr_of(three));
   // Stops after some tiles, and continues.
-  study::Journal journal(directory.path() / "tiles", study::Journal::Existing::kRefuse);
+  jobs::Journal journal(directory.path() / "tiles", jobs::Existing::kRefuse);
   int asked_for = 0;
   asked.threads = 1;
   const Hooks stop{{}, [&] { return ++asked_for > 2500; }};

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "exactff/report.h"
+#include "flags/study_file.h"
 #include "page/plot_script.h"
 #include "support/program.h"
 
@@ -342,9 +343,9 @@ TEST_F(StudyCommand, HasTheValuesOfTheLibraryCall) {
   EXPECT_EQ(run(out_), 0) << error_;
   const fs::path by_library = directory_.path() / "by-library";
   const validation::EnvironmentVariable without_gnuplot("PATH", "/nonexistent");
-  study::Journal journal(study::journal_of_folder(by_library), study::Journal::Existing::kRefuse);
+  jobs::Journal journal(jobs::journal_of_folder(by_library), jobs::Existing::kRefuse);
   const report::Outcome outcome =
-      report::carry_out(report::read_study_file(directory_.path() / "tiny.study"), by_library, journal);
+      report::carry_out(flags::read_study_file(directory_.path() / "tiny.study"), by_library, journal);
   EXPECT_EQ(values(by_library), values(out_));
   ASSERT_EQ(outcome.scenes.size(), 2U);
   EXPECT_EQ(outcome.scenes.front().title, "Room A");

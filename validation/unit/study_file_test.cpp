@@ -1,5 +1,5 @@
 // The file that describes a study.
-#include "report/study_file.h"
+#include "flags/study_file.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@ using Words = std::vector<std::string>;
 
 class StudyFileReader : public ::testing::Test {
  protected:
-  report::StudyFile read(const std::string& text) const {
-    return report::parse_study_file(directory_.write("a.study", text));
+  flags::StudyFile read(const std::string& text) const {
+    return flags::parse_study_file(directory_.write("a.study", text));
   }
   // The problems of a file, without the name of its folder.
   std::string complaint(const std::string& text) const {
@@ -33,7 +33,7 @@ class StudyFileReader : public ::testing::Test {
 };
 
 TEST_F(StudyFileReader, TakesTitleScenesAndExperiments) {
-  const report::StudyFile study = read(
+  const flags::StudyFile study = read(
       "# what this is\n"
       "title  Form factors of \"rooms\"  \n"
       "\n"
@@ -75,11 +75,11 @@ TEST_F(StudyFileReader, WithNothingToDoIsRefused) {
 }
 
 TEST_F(StudyFileReader, ThatIsNotThereIsNamed) {
-  EXPECT_THROW((void)report::parse_study_file(directory_.path() / "none.study"), InputError);
+  EXPECT_THROW((void)flags::parse_study_file(directory_.path() / "none.study"), InputError);
 }
 
 TEST(SplitWords, TakesWhatQuotesHold) {
-  const auto split = [](const char* line) { return report::split_words(line, "f", 1); };
+  const auto split = [](const char* line) { return flags::split_words(line, "f", 1); };
   EXPECT_EQ(split(""), Words{});
   EXPECT_EQ(split("  a\tb  "), (Words{"a", "b"}));
   EXPECT_EQ(split("--title=\"two words\" 'it is \"so\"'"), (Words{"--title=two words", "it is \"so\""}));
@@ -91,11 +91,11 @@ TEST(SplitWords, TakesWhatQuotesHold) {
 }
 
 TEST(StudyFiles, AreToldByTheirNames) {
-  EXPECT_TRUE(report::is_study_file("a.study"));
-  EXPECT_TRUE(report::is_study_file("/b/a.b.study"));
-  EXPECT_FALSE(report::is_study_file("a.obj"));
-  EXPECT_FALSE(report::is_study_file("study"));
-  EXPECT_FALSE(report::is_study_file("@teapot"));
+  EXPECT_TRUE(flags::is_study_file("a.study"));
+  EXPECT_TRUE(flags::is_study_file("/b/a.b.study"));
+  EXPECT_FALSE(flags::is_study_file("a.obj"));
+  EXPECT_FALSE(flags::is_study_file("study"));
+  EXPECT_FALSE(flags::is_study_file("@teapot"));
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "exactff/study.h"
+#include "jobs/kept_work.h"
 #include "report/report.h"
-#include "study/kept_work.h"
 #include "support/program.h"
 #include "unit/study_support.h"
 #include "work/fields.h"
@@ -19,7 +19,8 @@ namespace exactff::study {
 namespace {
 
 namespace fs = std::filesystem;
-using Existing = Journal::Existing;
+using jobs::Existing;
+using jobs::Journal;
 using validation::expect_same_values;
 using validation::request_with_methods;
 using validation::small_request;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "kernel/statistics.h"
 #include "study/statistics.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -50,34 +51,34 @@ TEST(Statistics, ErrorsNearTheLargestDoubleDoNotOverflow) {
   EXPECT_EQ(s.mean, 0x1p1022);
   EXPECT_EQ(s.worst, 0x1.8p1023);
   EXPECT_LE(s.rms, s.worst);
-  EXPECT_EQ(median(errors), 0x1p1023);
-  EXPECT_TRUE(std::isfinite(mean_half_width(errors)));
-  EXPECT_NEAR(mean_half_width(std::vector{0x1p600, -0x1p600}) / mean_half_width(std::vector{1.0, -1.0}), 0x1p600,
-              0x1p550);
+  EXPECT_EQ(kernel::median(errors), 0x1p1023);
+  EXPECT_TRUE(std::isfinite(kernel::mean_half_width(errors)));
+  EXPECT_NEAR(kernel::mean_half_width(std::vector{0x1p600, -0x1p600}) / kernel::mean_half_width(std::vector{1.0, -1.0}),
+              0x1p600, 0x1p550);
 }
 
 TEST(Statistics, PercentilesAreOfTheNearestRank) {
   std::vector<double> values;
   for (int i = 100; i >= 1; --i) values.push_back(i);
-  EXPECT_EQ(percentile(values, 99), 99);
-  EXPECT_EQ(percentile(values, 100), 100);
-  EXPECT_EQ(percentile(values, 0.5), 1);
+  EXPECT_EQ(kernel::percentile(values, 99), 99);
+  EXPECT_EQ(kernel::percentile(values, 100), 100);
+  EXPECT_EQ(kernel::percentile(values, 0.5), 1);
   values.push_back(101);
-  EXPECT_EQ(percentile(values, 99), 100);  // ceil(99.99)
-  EXPECT_EQ(percentile({7}, 99), 7);
+  EXPECT_EQ(kernel::percentile(values, 99), 100);  // ceil(99.99)
+  EXPECT_EQ(kernel::percentile({7}, 99), 7);
 }
 
 TEST(Statistics, TheMedianOfAnEvenCountIsTheMeanOfTheMiddleTwo) {
-  EXPECT_EQ(median({5, 1, 3}), 3);
-  EXPECT_EQ(median({4, 1, 3, 2}), 2.5);
-  EXPECT_EQ(median({}), 0);
+  EXPECT_EQ(kernel::median({5, 1, 3}), 3);
+  EXPECT_EQ(kernel::median({4, 1, 3, 2}), 2.5);
+  EXPECT_EQ(kernel::median({}), 0);
 }
 
 TEST(Statistics, TheSlopeOfAPowerLawIsItsExponent) {
   const std::vector<std::pair<double, double>> points = {{1, 8}, {4, 4}, {16, 2}, {0, 9}};
-  EXPECT_NEAR(fitted_slope(points).value(), -0.5, 1e-12);
+  EXPECT_NEAR(kernel::fitted_slope(points).value(), -0.5, 1e-12);
   const std::vector<std::pair<double, double>> one = {{1, 8}, {1, 4}};
-  EXPECT_FALSE(fitted_slope(one).has_value());
+  EXPECT_FALSE(kernel::fitted_slope(one).has_value());
 }
 
 // --- words and numbers -------------------------------------------------------------------------------

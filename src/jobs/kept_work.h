@@ -4,11 +4,11 @@
 #include <string>
 #include <utility>
 
-#include "exactff/study.h"
+#include "exactff/jobs.h"
 #include "text/fnv1a.h"
 #include "work/fields.h"
 
-namespace exactff::study {
+namespace exactff::jobs {
 
 // A hash that distinguishes texts, without blanks: for the names of pieces of work.
 [[nodiscard]] inline std::string short_hash(std::string_view text) {
@@ -45,4 +45,4 @@ class KeptWork {
   std::string prefix_;
 };
 
-}  // namespace exactff::study
+}  // namespace exactff::jobs

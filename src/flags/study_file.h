@@ -9,16 +9,23 @@
 //   field ../field/cycles.csv
 //
 // A scene line has the words and flags that `exactff compare` takes for one scene (flags/comparison.h). Files are
-// looked up in the folder of the study. A field line names a file of measured results (field.h).
+// looked up in the folder of the study. A field line names a file of measured results (report/field.h).
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "exactff/error.h"
+#include "exactff/report.h"
 
-namespace exactff::report {
+namespace exactff::flags {
+
+[[nodiscard]] bool is_study_file(const std::string& path);  // by its extension, .study
+
+// Reads a .study file (data/README.md) and loads its scenes. Throws one InputError with the line of every problem.
+[[nodiscard]] report::Plan read_study_file(const std::filesystem::path& file, const report::Effort& effort = {});
+
+// --- its syntax ---
 
 struct StudyLine {
   std::size_t number = 0;
@@ -40,4 +47,4 @@ struct StudyFile {
 // not closed.
 [[nodiscard]] std::vector<std::string> split_words(std::string_view line, const std::string& file, std::size_t number);
 
-}  // namespace exactff::report
+}  // namespace exactff::flags

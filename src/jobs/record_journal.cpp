@@ -10,13 +10,13 @@
 #include <map>
 #include <mutex>
 
-#include "exactff/study.h"
+#include "exactff/jobs.h"
 #include "exactff/version.h"
 #include "text/crc32.h"
 #include "work/file.h"
 #include "work/work_folder.h"
 
-namespace exactff::study {
+namespace exactff::jobs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -172,4 +172,4 @@ fs::path journal_of_folder(const fs::path& folder) {
   return journal += ".part";
 }
 
-}  // namespace exactff::study
+}  // namespace exactff::jobs

@@ -1,8 +1,7 @@
-#include "report/study_file.h"
+#include "flags/study_file.h"
 
 #include <CLI/CLI.hpp>
 
-#include "exactff/report.h"
 #include "flags/comparison.h"
 #include "kernel/float_environment.h"
 #include "text/phrases.h"
@@ -10,7 +9,7 @@
 #include "text/text_file.h"
 #include "text/text_lines.h"
 
-namespace exactff::report {
+namespace exactff::flags {
 
 bool is_study_file(const std::string& path) { return std::filesystem::path(path).extension() == ".study"; }
 
@@ -92,8 +91,8 @@ StudyFile parse_study_file(const std::filesystem::path& path) {
 
 namespace {
 
-flags::ComparisonArguments arguments_of(const StudyLine& line, const std::string& file) {
-  flags::ComparisonArguments args;
+ComparisonArguments arguments_of(const StudyLine& line, const std::string& file) {
+  ComparisonArguments args;
   CLI::App app;
   app.set_help_flag();
   args.add_to(app);
@@ -132,19 +131,19 @@ void at_line(const std::string& file, std::size_t number, const Do& act) {
   }
 }
 
-void add_scene(const StudyLine& line, const std::string& file, Plan& plan) {
-  flags::ComparisonArguments args = arguments_of(line, file);
+void add_scene(const StudyLine& line, const std::string& file, report::Plan& plan) {
+  ComparisonArguments args = arguments_of(line, file);
   if (plan.effort.abridged && args.unless_abridged) {
-    const std::string name = args.title.empty() ? flags::short_name(args.scene.path) : args.title;
+    const std::string name = args.title.empty() ? short_name(args.scene.path) : args.title;
     plan.left_out.push_back({name, "this report is abridged"});
     return;
   }
-  flags::Comparison comparison = flags::comparison_of(std::move(args), plan.effort.abridged, plan.effort.threads);
+  Comparison comparison = comparison_of(std::move(args), plan.effort.abridged, plan.effort.threads);
   plan.add_scene(std::move(comparison.title), std::move(comparison.scene), std::move(comparison.request),
                  std::move(comparison.warnings));
 }
 
-void add_experiments(const StudyLine& line, Plan& plan) {
+void add_experiments(const StudyLine& line, report::Plan& plan) {
   constexpr std::string_view kUnlessAbridged = "--unless-abridged";
   std::vector<std::string> names = line.words;
   const bool marked = std::erase(names, kUnlessAbridged) > 0;
@@ -153,14 +152,14 @@ void add_experiments(const StudyLine& line, Plan& plan) {
                  "name them, or remove the line");
   }
   if (!marked || !plan.effort.abridged) return plan.add_experiments(names);
-  Plan named;
+  report::Plan named;
   named.add_experiments(names);
   for (const std::string& name : named.experiments) {
     plan.left_out.push_back({"the experiment " + name, "this report is abridged"});
   }
 }
 
-void add_field(const StudyLine& line, const std::string& file, Plan& plan) {
+void add_field(const StudyLine& line, const std::string& file, report::Plan& plan) {
   if (line.words.size() != 1) {
     throw InputError(Problem{file, line.number, "a field line names " + text::counted(line.words.size(), "file"),
                              "each file becomes a chapter", "give each file a line, and quote a name with blanks"});
@@ -170,11 +169,11 @@ void add_field(const StudyLine& line, const std::string& file, Plan& plan) {
 
 }  // namespace
 
-Plan read_study_file(const std::filesystem::path& file, const Effort& effort) {
+report::Plan read_study_file(const std::filesystem::path& file, const report::Effort& effort) {
   const kernel::StandardArithmetic arithmetic;
   const StudyFile study = parse_study_file(file);
-  Plan plan;
-  plan.title = study.title.empty() ? flags::short_name(file.string()) : study.title;
+  report::Plan plan;
+  plan.title = study.title.empty() ? short_name(file.string()) : study.title;
   plan.effort = effort;
   for (const StudyLine& line : study.scenes) {
     at_line(file.string(), line.number, [&] { add_scene(line, file.string(), plan); });
@@ -188,4 +187,4 @@ Plan read_study_file(const std::filesystem::path& file, const Effort& effort) {
   return plan;
 }
 
-}  // namespace exactff::report
+}  // namespace exactff::flags
