@@ -6,6 +6,10 @@ target_compile_options(exactff_flags INTERFACE -frounding-math -ffp-contract=off
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(exactff_flags INTERFACE -Wno-restrict)  # GCC 12 warns about every "text" + std::string
 endif()
+# The same objects serve the program and shared objects, such as the package for Python. Without the option, functions
+# could not be inlined that another library might replace, and the program would be slower.
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+target_compile_options(exactff_flags INTERFACE -fno-semantic-interposition)
 # How vectors of doubles are passed between functions: all that take or return one are inlined (src/kernel/lanes.h).
 target_compile_options(exactff_flags INTERFACE -Wno-psabi)
 if(EXACTFF_TESTS)
