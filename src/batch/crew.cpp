@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "files/parallel.h"
 #include "kernel/poll.h"
-#include "work/parallel.h"
 
 namespace exactff::batch {
 namespace {
@@ -130,7 +130,7 @@ class Crew {
 void share(std::size_t count, std::size_t few, const char* stage, const Run& run,
            const std::function<Body()>& make_body) {
   if (count == 0) return;
-  const int wanted = run.threads > 0 ? run.threads : work::usable_threads();
+  const int wanted = run.threads > 0 ? run.threads : files::usable_threads();
   const std::size_t threads = std::min(count, static_cast<std::size_t>(wanted));
   Crew crew(count, stage, run.hooks, make_body);
   if (threads == 1 || count <= few) {

@@ -4,12 +4,12 @@
 #include <limits>
 
 #include "exactff/check.h"
+#include "files/work_folder.h"
 #include "kernel/float_environment.h"
 #include "page/gnuplot.h"
 #include "page/plot_script.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
-#include "work/work_folder.h"
 
 namespace exactff::check {
 namespace {
@@ -39,9 +39,9 @@ std::vector<page::Mark> limits(const Report& report) {
 }
 
 // A temporary folder, not one beside the output: the picture may go to a pipe.
-work::WorkFolder scratch_folder() {
+files::WorkFolder scratch_folder() {
   try {
-    return work::WorkFolder(std::filesystem::temp_directory_path() / "exactff-plot");
+    return files::WorkFolder(std::filesystem::temp_directory_path() / "exactff-plot");
   } catch (const std::filesystem::filesystem_error& error) {
     text::refuse("cannot create a temporary folder: " + error.code().message(), "gnuplot needs one to draw",
                  "set TMPDIR to a writable folder, or remove --plot");
@@ -84,7 +84,7 @@ std::string histogram_script(const Report& report) {
 Plot plot_histogram(const Report& report, const std::function<bool()>& cancelled) {
   const std::string script = histogram_script(report);
   if (script.empty()) return {{}, "every error is 0, which a logarithmic axis cannot show"};
-  const work::WorkFolder scratch = scratch_folder();
+  const files::WorkFolder scratch = scratch_folder();
   const page::PlotResult result = page::run_gnuplot(script, scratch.path(), cancelled);
   if (result.outcome == page::PlotResult::Outcome::kDrawn) return {result.svg, {}};
   const bool missing = result.outcome == page::PlotResult::Outcome::kNoProgram;

@@ -6,13 +6,13 @@
 #include <fstream>
 #include <string_view>
 
+#include "files/read_npy.h"
 #include "text/csv_lines.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_file.h"
 #include "text/text_lines.h"
-#include "work/read_npy.h"
 
 namespace exactff::check {
 namespace {
@@ -108,7 +108,7 @@ OtherKind kind_of(const std::filesystem::path& file, const CandidateColumns& col
                  "write it to a file first");
   }
   const std::string bytes = first_bytes(file);
-  if (work::is_npy(bytes)) return OtherKind::kNpy;
+  if (files::is_npy(bytes)) return OtherKind::kNpy;
   if (bytes.starts_with("PK")) {
     text::refuse(file, "is a zip archive, as .npz files are", "an archive may hold several arrays",
                  "give the CSV file of the same matrix, or one .npy array");
@@ -252,7 +252,7 @@ NumberGrid read_view3d_output(const std::filesystem::path& file) {
 }
 
 NumberGrid read_npy_grid(const std::filesystem::path& file) {
-  work::NpyArray array = work::read_npy(file);
+  files::NpyArray array = files::read_npy(file);
   if (array.shape.size() != 2) {
     text::refuse(file, "has " + text::counted(array.shape.size(), "axis", "axes"), "a matrix has rows and columns",
                  "save an array of shape (rows, columns)");

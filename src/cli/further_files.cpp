@@ -5,10 +5,10 @@
 
 #include "exactff/error.h"
 #include "exactff/vtk.h"
+#include "files/file.h"
 #include "text/escape.h"
 #include "text/nearest_names.h"
 #include "text/refuse.h"
-#include "work/file.h"
 
 namespace exactff::cli {
 
@@ -66,7 +66,7 @@ void require_writable(const Output& output, bool may_replace) {
     text::refuse(output.file, "already exists (" + output.flag + ')', "a result is not replaced by accident",
                  "name another file, or replace it with --force");
   }
-  const work::WholeFile probe(output.file);
+  const files::WholeFile probe(output.file);
 }
 
 }  // namespace

@@ -10,9 +10,9 @@
 #include <iostream>
 #include <utility>
 
+#include "files/unfinished.h"
 #include "text/escape.h"
 #include "text/phrases.h"
-#include "work/unfinished.h"
 
 namespace exactff::cli {
 
@@ -74,14 +74,14 @@ constexpr long kPatience = 400;
 void take_note(int signal) {
   const bool again = interrupted_by.exchange(signal) != 0;
   if (!again && patience.ends) wait_for(kPatience);
-  if (!again || work::Unfinished::any()) return;
+  if (!again || files::Unfinished::any()) return;
   std::signal(signal, SIG_DFL);
   ::raise(signal);  // takes effect when this handler returns
 }
 
 void lose_patience(int /*signal*/) {
   constexpr long kMoment = 20;
-  if (!patience.ends || work::Unfinished::any()) return wait_for(kMoment);
+  if (!patience.ends || files::Unfinished::any()) return wait_for(kMoment);
   const char* words = patience.last_words.data();
   static_cast<void>(!::write(STDERR_FILENO, words, std::strlen(words)));
   ::_exit(128 + interrupted_by);

@@ -8,11 +8,11 @@
 
 #include "cli/long_run.h"
 #include "exactff/report.h"
+#include "files/file.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/text_file.h"
 #include "text/text_lines.h"
-#include "work/file.h"
 
 namespace exactff::cli {
 
@@ -71,7 +71,7 @@ void write_whole_file(const fs::path& path, const std::string& text) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) cannot_write(path, "it is a folder");
   if (fs::is_other(path, ignored)) return write_through(path, text);
-  work::WholeFile file(path, {}, work::WholeFile::WhenBusy::kWait);
+  files::WholeFile file(path, {}, files::WholeFile::WhenBusy::kWait);
   file.append(text);
   file.commit();
   leave_if_interrupted();

@@ -8,11 +8,11 @@
 
 #include "cli/exit_code.h"
 #include "cli/output.h"
+#include "files/file.h"
+#include "files/npy_file.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
-#include "work/file.h"
-#include "work/npy_file.h"
 
 namespace exactff::cli {
 namespace {
@@ -26,12 +26,12 @@ void check_file(const std::string& file) {
   if (fs::is_directory(file, ignored)) {
     text::refuse(fs::path(file), "is a folder", "the result is a file", "name a file");
   }
-  const work::WholeFile probe(file);
+  const files::WholeFile probe(file);
 }
 
 void write_array(const std::string& file, const std::vector<std::size_t>& shape,
                  const std::vector<const std::vector<double>*>& parts) {
-  work::NpyFile<double> array(file, shape);
+  files::NpyFile<double> array(file, shape);
   for (const std::vector<double>* part : parts) array.append(*part);
   array.commit();
 }

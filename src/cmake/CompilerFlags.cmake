@@ -10,7 +10,7 @@ endif()
 # could not be inlined that another library might replace, and the program would be slower.
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 target_compile_options(exactff_flags INTERFACE -fno-semantic-interposition)
-# How vectors of doubles are passed between functions: all that take or return one are inlined (src/kernel/lanes.h).
+# How vectors of doubles are passed between functions: all that take or return one are inlined (src/foundation/kernel/lanes.h).
 target_compile_options(exactff_flags INTERFACE -Wno-psabi)
 if(EXACTFF_TESTS)
   target_compile_definitions(exactff_flags INTERFACE EXACTFF_CHECKS_REQUIREMENTS)  # kernel/expect.h

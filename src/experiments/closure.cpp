@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "exactff/models.h"
+#include "files/parallel.h"
 #include "study/statistics.h"
 #include "text/phrases.h"
-#include "work/parallel.h"
 
 namespace exactff::experiments {
 
@@ -53,8 +53,8 @@ std::vector<Truth> truths_at(const Scene& scene, std::span<const Receiver> recei
                              std::span<const Selection> patches, int threads, const Hooks& hooks) {
   const std::vector<ExactSource> sources = exact_sources(scene, patches);
   std::vector<Truth> truths(receivers.size());
-  work::parallel_for(receivers.size(), threads, kClosureStage, hooks,
-                     [&](std::size_t i) { truths[i] = truth_at(scene, receivers[i], sources); });
+  files::parallel_for(receivers.size(), threads, kClosureStage, hooks,
+                      [&](std::size_t i) { truths[i] = truth_at(scene, receivers[i], sources); });
   return truths;
 }
 
@@ -123,7 +123,7 @@ ClosureStudy closure_study(const ClosureSize& size, int threads, const Hooks& ho
     study.widest = std::max(study.widest, truth.sum.upper() - truth.sum.lower());
   }
   study.methods.resize(size.choices.size());
-  work::parallel_for(size.choices.size(), threads, kClosureStage, hooks, [&](std::size_t i) {
+  files::parallel_for(size.choices.size(), threads, kClosureStage, hooks, [&](std::size_t i) {
     study.methods[i] = errors_of(size.choices[i], scene, receivers, patches, truths);
   });
   return study;

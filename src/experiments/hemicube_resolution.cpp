@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "files/parallel.h"
 #include "kernel/statistics.h"
 #include "models/random.h"
 #include "text/phrases.h"
-#include "work/parallel.h"
 
 namespace exactff::experiments {
 
@@ -222,7 +222,7 @@ std::vector<ErrorCurve> error_curves(std::size_t groups, std::span<const CurvePl
     for (const double at : plan.at) places.push_back({&plan, at});
   }
   std::vector<std::vector<std::vector<double>>> found(places.size(), std::vector<std::vector<double>>(groups));
-  work::parallel_for(places.size() * groups, threads, kResolutionStage, hooks, [&](std::size_t i) {
+  files::parallel_for(places.size() * groups, threads, kResolutionStage, hooks, [&](std::size_t i) {
     const auto& [plan, at] = places[i / groups];
     found[i / groups][i % groups] = plan->errors(i % groups, at);
   });

@@ -5,9 +5,9 @@
 #include <map>
 #include <numbers>
 
+#include "files/parallel.h"
 #include "kernel/statistics.h"
 #include "text/phrases.h"
-#include "work/parallel.h"
 
 namespace exactff::experiments {
 
@@ -197,8 +197,8 @@ CsvFile decade_table(std::span<const ScatterPoint> points, const ScatterSize& si
 
 std::vector<ScatterPoint> scatter_points(const ScatterSize& size, int threads, const Hooks& hooks) {
   std::vector<std::vector<ScatterPoint>> by_scene(static_cast<std::size_t>(size.scenes));
-  work::parallel_for(by_scene.size(), threads, "hemicube-scatter", hooks,
-                     [&](std::size_t i) { by_scene[i] = points_of_scene(static_cast<int>(i) + 1, size); });
+  files::parallel_for(by_scene.size(), threads, "hemicube-scatter", hooks,
+                      [&](std::size_t i) { by_scene[i] = points_of_scene(static_cast<int>(i) + 1, size); });
   std::vector<ScatterPoint> all;
   for (std::vector<ScatterPoint>& points : by_scene) std::ranges::move(points, std::back_inserter(all));
   return all;

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "exactff/models.h"
+#include "files/parallel.h"
 #include "kernel/disc.h"
 #include "kernel/statistics.h"
 #include "models/random.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/patch_parts.h"
-#include "work/parallel.h"
 
 namespace exactff::experiments {
 
@@ -197,8 +197,8 @@ std::vector<HonestyRow> honesty_rows(std::span<const HonestyScene> scenes) {
 HonestyStudy honesty_study(const HonestySize& size, int threads, const Hooks& hooks) {
   HonestyStudy study;
   study.scenes.resize(size.scenes);
-  work::parallel_for(size.scenes, threads, kHonestyStage, hooks,
-                     [&](std::size_t i) { study.scenes[i] = filled(honesty_scene(size.first + i), size); });
+  files::parallel_for(size.scenes, threads, kHonestyStage, hooks,
+                      [&](std::size_t i) { study.scenes[i] = filled(honesty_scene(size.first + i), size); });
   study.rows = honesty_rows(study.scenes);
   for (const HonestyScene& scene : study.scenes) {
     study.contradictions += !scene.entries.empty() && scene.entries.front().truth.are_contradictory ? 1U : 0U;

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "files/parallel.h"
 #include "page/figure.h"
 #include "text/phrases.h"
-#include "work/parallel.h"
 
 namespace exactff::experiments {
 
@@ -33,7 +33,7 @@ std::vector<FormFactor> all_patches(const KarkanisScene& scene, const std::vecto
   std::vector<FormFactor> results;
   results.reserve(sources.size());
   for (const ExactSource& source : sources) {
-    if (results.size() % 64 == 0) work::require_not_cancelled(hooks);
+    if (results.size() % 64 == 0) files::require_not_cancelled(hooks);
     results.push_back(exact_form_factor(scene.scene, scene.receiver, source, {.culling = culling}));
   }
   return results;
@@ -105,7 +105,7 @@ std::vector<Affordable> affordable_rays(const TimesSize& size, const Hooks& hook
   }
   std::vector<Affordable> rows;
   for (const int rays : size.affordable) {
-    work::require_not_cancelled(hooks);
+    files::require_not_cancelled(hooks);
     Bench bench(methods::parse(rays_choice(rays)), scene.scene, scene.triangles);
     std::vector<double> errors;
     for (const methods::Estimate& e : bench.look_from(scene.receiver)) {
@@ -330,7 +330,7 @@ Result karkanis_times(const TimesSize& size, const Hooks& hooks) {
   std::vector<TimeRow> times;
   std::vector<WorkRow> work;
   for (const int triangles : size.triangles) {
-    work::require_not_cancelled(hooks);
+    files::require_not_cancelled(hooks);
     work.push_back(work_row(triangles, triangles <= size.same_bits_up_to));
     times.push_back(time_row(size, triangles, times, hooks));
     if (hooks.progress) hooks.progress({kKarkanisStage, times.size(), size.triangles.size()});

@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "files/parallel.h"
 #include "kernel/statistics.h"
 #include "kernel/vec.h"
 #include "models/random.h"
 #include "text/phrases.h"
-#include "work/parallel.h"
 
 namespace exactff::experiments {
 
@@ -336,7 +336,7 @@ std::vector<NettleCurve> nettle_curves(const NettleSize& size, int threads, cons
   const std::vector<Way> all = ways(size);
   // Indexed by side, way, then group.
   std::vector found(size.sides.size(), std::vector(all.size(), std::vector<std::vector<double>>(size.groups)));
-  work::parallel_for(size.sides.size() * size.groups, threads, kNettleRuleStage, hooks, [&](std::size_t i) {
+  files::parallel_for(size.sides.size() * size.groups, threads, kNettleRuleStage, hooks, [&](std::size_t i) {
     const std::size_t side = i / size.groups, group = i % size.groups;
     auto errors = group_errors(size, group, size.sides[side]);
     for (std::size_t way = 0; way < all.size(); ++way) found[side][way][group] = std::move(errors[way]);
@@ -353,7 +353,7 @@ std::vector<NettleCurve> nettle_curves(const NettleSize& size, int threads, cons
 
 std::vector<NettleLiteral> nettle_literal(const NettleSize& size, int threads, const Hooks& hooks) {
   std::vector<NettleLiteral> rows(size.sides.size());
-  work::parallel_for(rows.size(), threads, kNettleRuleStage, hooks, [&](std::size_t i) {
+  files::parallel_for(rows.size(), threads, kNettleRuleStage, hooks, [&](std::size_t i) {
     const double side = size.sides[i];
     rows[i] = {side, median_literal_ratio(size, side, "sender-over-receiver"),
                median_literal_ratio(size, side, "receiver-over-sender"),

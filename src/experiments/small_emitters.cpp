@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "exactff/models.h"
+#include "files/parallel.h"
 #include "kernel/statistics.h"
 #include "page/figure.h"
 #include "study/statistics.h"
 #include "text/phrases.h"
-#include "work/parallel.h"
 
 namespace exactff::experiments {
 
@@ -52,11 +52,11 @@ std::vector<std::vector<double>> radiosities(const Hall& hall, std::span<const s
   constexpr std::size_t kBlocks = 8;
   const std::size_t count = hall.receivers.size();
   std::vector<std::vector<double>> all(choices.size(), std::vector<double>(count));
-  work::parallel_for(kBlocks * choices.size(), threads, kSmallEmittersStage, hooks, [&](std::size_t task) {
+  files::parallel_for(kBlocks * choices.size(), threads, kSmallEmittersStage, hooks, [&](std::size_t task) {
     const std::size_t choice = task / kBlocks, block = task % kBlocks;
     Bench bench(methods::parse(choices[choice]), hall.scene, hall.lamps);
     for (std::size_t i = block * count / kBlocks; i < (block + 1) * count / kBlocks; ++i) {
-      work::require_not_cancelled(hooks);
+      files::require_not_cancelled(hooks);
       all[choice][i] = radiosity(hall, hall.receivers[i], bench.look_from(hall.receivers[i]));
     }
   });
@@ -245,7 +245,7 @@ Result small_emitters(const EmittersSize& size, int threads, const Hooks& hooks)
   const double exact_seconds = seconds_per_receiver(hall, "exact", size.timed);
   std::vector<Timed> timed;
   for (const EmitterErrors& m : study.methods) {
-    work::require_not_cancelled(hooks);
+    files::require_not_cancelled(hooks);
     timed.push_back({&m, seconds_per_receiver(hall, m.choice, size.timed)});
     if (hooks.progress) hooks.progress({"small-emitters, times", timed.size(), study.methods.size()});
   }

@@ -6,11 +6,11 @@
 
 #include "exactff/models.h"
 #include "exactff/view.h"
+#include "files/stopwatch.h"
 #include "kernel/expect.h"
 #include "kernel/statistics.h"
 #include "study/statistics.h"
 #include "text/phrases.h"
-#include "work/stopwatch.h"
 
 namespace exactff::experiments {
 
@@ -68,8 +68,8 @@ double root_mean_square(std::span<const double> errors) { return study::error_st
 
 double median_seconds(const std::function<void()>& call, std::size_t repeats) {
   constexpr double kLong = 1.0;
-  const double first = work::seconds_of(call);
-  return first > kLong ? first : work::median_seconds(call, repeats, kLong);
+  const double first = files::seconds_of(call);
+  return first > kLong ? first : files::median_seconds(call, repeats, kLong);
 }
 
 SlopeFit mean_slope(std::span<const double> slopes) {

@@ -7,9 +7,9 @@
 #include "exactff/models.h"
 #include "exactff/view.h"
 #include "experiments/karkanis_times.h"
+#include "files/parallel.h"
 #include "models/random.h"
 #include "text/phrases.h"
-#include "work/parallel.h"
 
 namespace exactff::experiments {
 
@@ -138,7 +138,7 @@ std::vector<WholeViewRow> whole_view_rows(const WholeViewSize& size, const Hooks
   std::vector<WholeViewRow> rows;
   const std::size_t total = 2 * size.triangles.size() + size.models.size();
   const auto add = [&](std::string name, const Scene& scene, std::span<const Receiver> receivers) {
-    work::require_not_cancelled(hooks);
+    files::require_not_cancelled(hooks);
     rows.push_back(row_of(std::move(name), scene, receivers, hooks));
     if (hooks.progress) hooks.progress({kWholeViewStage, rows.size(), total});
   };

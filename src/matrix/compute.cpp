@@ -4,11 +4,11 @@
 #include <stdexcept>
 
 #include "exactff/matrix.h"
+#include "files/parallel.h"
 #include "kernel/float_environment.h"
 #include "kernel/outward.h"
 #include "matrix/entry_jobs.h"
 #include "matrix/surroundings.h"
-#include "work/parallel.h"
 
 namespace exactff::matrix {
 namespace {
@@ -65,8 +65,8 @@ Matrix compute(const Scene& scene, std::span<const Selection> from, std::span<co
   result.factors.entries.resize(from.size() * to.size());
   if (options.backs) result.back.resize(from.size());
   if (options.open) result.open.resize(from.size());
-  const int threads = options.threads > 0 ? options.threads : work::usable_threads();
-  work::parallel_for(jobs.count(), threads, "view factors", hooks, [&](std::size_t job) {
+  const int threads = options.threads > 0 ? options.threads : files::usable_threads();
+  files::parallel_for(jobs.count(), threads, "view factors", hooks, [&](std::size_t job) {
     jobs.compute(job, [&](std::size_t entry, const ViewFactor& f) { entry_of(result, entry) = f; });
   });
   return result;

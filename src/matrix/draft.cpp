@@ -14,6 +14,7 @@
 
 #include "exactff/matrix.h"
 #include "exactff/view.h"
+#include "files/parallel.h"
 #include "kernel/float_environment.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -23,7 +24,6 @@
 #include "view_factors/strata.h"
 #include "visibility/seen_pieces.h"
 #include "whole_view/view_among.h"
-#include "work/parallel.h"
 
 namespace exactff::matrix {
 namespace {
@@ -241,8 +241,8 @@ Matrix draft(const Scene& scene, std::span<const Selection> from, std::span<cons
   result.factors.entries.resize(rows.size() * columns.size());
   if (options.backs) result.back.resize(rows.size());
   if (options.open) result.open.resize(rows.size());
-  const int threads = options.threads > 0 ? options.threads : work::usable_threads();
-  work::parallel_for(rows.size(), threads, "rows of the draft", hooks, [&](std::size_t i) {
+  const int threads = options.threads > 0 ? options.threads : files::usable_threads();
+  files::parallel_for(rows.size(), threads, "rows of the draft", hooks, [&](std::size_t i) {
     const kernel::StandardArithmetic of_thread;
     RowOfMeans row(scene);
     row.look_around(exact, walls, rows[i].patch, options.views);

@@ -2,8 +2,8 @@
 #include <cstdint>
 
 #include "exactff/matrix.h"
+#include "files/npz_file.h"
 #include "kernel/outward.h"
-#include "work/npz_file.h"
 
 namespace exactff::matrix {
 namespace {
@@ -14,7 +14,7 @@ double radius_of(const ViewFactor& f) {
   return radius == 0.0 ? 0.0 : kernel::above(radius);
 }
 
-void add_column(work::NpzFile& file, const std::string& name, const std::vector<ViewFactor>& column) {
+void add_column(files::NpzFile& file, const std::string& name, const std::vector<ViewFactor>& column) {
   if (column.empty()) return;
   std::vector<double> values, radii;
   for (const ViewFactor& f : column) {
@@ -25,7 +25,7 @@ void add_column(work::NpzFile& file, const std::string& name, const std::vector<
   file.add(name + "_radius", radii);
 }
 
-void add_names(work::NpzFile& file, const char* name, const Scene& scene, const std::vector<Selection>& patches) {
+void add_names(files::NpzFile& file, const char* name, const Scene& scene, const std::vector<Selection>& patches) {
   std::vector<std::string> names;
   for (const Selection& patch : patches) names.push_back(scene.name_of(patch));
   file.add_texts(name, names);
@@ -51,7 +51,7 @@ void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::
     }
     starts.push_back(static_cast<std::int64_t>(values.size()));
   }
-  work::NpzFile file(path);
+  files::NpzFile file(path);
   file.add_word("format", "csr");
   file.add("shape", std::vector{static_cast<std::int64_t>(all.from.size()), static_cast<std::int64_t>(all.to.size())});
   file.add("indptr", starts);

@@ -4,9 +4,9 @@
 #include <charconv>
 #include <optional>
 
+#include "files/parallel.h"
 #include "matrix/csv.h"
 #include "text/refuse.h"
-#include "work/parallel.h"
 
 namespace exactff::matrix {
 namespace {
@@ -64,7 +64,7 @@ Rows::Rows(Request request)
     : request_(checked(std::move(request))), entries_(*request_.scene, request_.from, request_.to, request_.options) {
   const std::uint64_t count = entries_.count();
   const auto chunk = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(count / kChunks, 1, kLargestChunk));
-  const int threads = request_.options.threads > 0 ? request_.options.threads : work::usable_threads();
+  const int threads = request_.options.threads > 0 ? request_.options.threads : files::usable_threads();
   plan_ = {kKind, count, chunk, request_.shard, threads};
 }
 

@@ -5,6 +5,7 @@
 
 #include "exactff/matrix.h"
 #include "exactff/team.h"
+#include "files/file.h"
 #include "jobs/compute.h"
 #include "jobs/leader.h"
 #include "jobs/shards.h"
@@ -12,20 +13,19 @@
 #include "matrix/rows.h"
 #include "text/escape.h"
 #include "text/refuse.h"
-#include "work/file.h"
 
 namespace exactff::matrix {
 namespace {
 
 namespace fs = std::filesystem;
 
-void require_csv_head(const work::File& file, const Rows& rows) {
+void require_csv_head(const files::File& file, const Rows& rows) {
   const std::string head = rows.csv_head();
   jobs::require_same_head(file.path(), jobs::read_head(file).value_or(file.read(0, head.size())), head);
 }
 
 jobs::Summary account_of(const fs::path& path, const Rows& rows) {
-  const work::File file(path, work::File::Mode::kRead);
+  const files::File file(path, files::File::Mode::kRead);
   if (rows.plan().shard.count > 1) {
     jobs::require_shard_file(file, rows, [](const std::string&) {});
   } else {
@@ -42,7 +42,7 @@ void write_in_order(const Rows& rows, const jobs::RowJournal& journal, const fs:
   jobs::for_each_chunk(rows, journal, hooks, [&](jobs::Range range, const std::string& text) {
     return rows.may_be_text_of(range, text) && lines.add(text);
   });
-  work::WholeFile whole(file, jobs::advice_while_in_journal(journal));
+  files::WholeFile whole(file, jobs::advice_while_in_journal(journal));
   whole.append(rows.csv_head());
   whole.append(lines.in_order());
   whole.commit();
@@ -97,7 +97,7 @@ jobs::Summary merge(const std::vector<fs::path>& paths, const fs::path& file, jo
     text::refuse(paths.front(), "and the other shards do not hold each entry of a matrix once", "every entry is needed",
                  "compute them again");
   }
-  work::WholeFile whole(file);
+  files::WholeFile whole(file);
   whole.append(head);
   whole.append(entries);
   whole.commit();

@@ -9,12 +9,12 @@
 #include <memory>
 #include <mutex>
 
+#include "files/parallel.h"
 #include "jobs/kept_work.h"
 #include "kernel/float_environment.h"
 #include "kernel/numbers.h"
 #include "light/light.h"
 #include "render/job.h"
-#include "work/parallel.h"
 
 namespace exactff::render {
 namespace {
@@ -219,9 +219,9 @@ Picture render(const Request& request, const Hooks& hooks, jobs::Journal* journa
   const jobs::KeptWork kept(journal, job.hash());
   Brushes brushes(job);
   std::mutex mutex;
-  const int threads = request.threads > 0 ? request.threads : work::usable_threads();
+  const int threads = request.threads > 0 ? request.threads : files::usable_threads();
   const std::string stage = request.method ? "tiles, " + request.method->method->name : "tiles";
-  work::parallel_for(tiles.count(), threads, stage, hooks, [&](std::size_t index) {
+  files::parallel_for(tiles.count(), threads, stage, hooks, [&](std::size_t index) {
     TileResult result;
     const Tile tile = tiles[index];
     kept.get(

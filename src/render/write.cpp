@@ -1,9 +1,9 @@
 // Pictures to files.
 #include "exactff/render.h"
+#include "files/file.h"
 #include "text/escape.h"
 #include "text/nearest_names.h"
 #include "text/refuse.h"
-#include "work/file.h"
 
 namespace exactff::render {
 
@@ -16,7 +16,7 @@ ImageKind image_kind(const std::filesystem::path& file) {
 }
 
 void write_image(const std::filesystem::path& file, const Picture& picture, std::optional<double> exposure) {
-  work::WholeFile whole(file, {}, work::WholeFile::WhenBusy::kWait);
+  files::WholeFile whole(file, {}, files::WholeFile::WhenBusy::kWait);
   if (image_kind(file) == ImageKind::kExr) {
     whole.append(exr_of(picture));
   } else {

@@ -4,6 +4,7 @@
 
 #include "exactff/report.h"
 #include "experiments/experiment.h"
+#include "files/parallel.h"
 #include "kernel/float_environment.h"
 #include "page/chapter.h"
 #include "report/identity.h"
@@ -13,7 +14,6 @@
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_file.h"
-#include "work/parallel.h"
 
 namespace exactff::report {
 namespace {
@@ -44,7 +44,7 @@ page::Chapter run_experiment(const experiments::Experiment& experiment, const Ef
   if (const auto bytes = journal.find(key)) {
     if (auto chapter = page::chapter_of(*bytes)) return std::move(*chapter);
   }
-  const int threads = effort.threads > 0 ? effort.threads : work::usable_threads();
+  const int threads = effort.threads > 0 ? effort.threads : files::usable_threads();
   page::Chapter chapter = experiment.run({effort.abridged, threads}, hooks);
   journal.add(key, page::to_bytes(chapter));
   return chapter;

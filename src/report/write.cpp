@@ -1,6 +1,8 @@
 #include <iterator>
 
 #include "exactff/report.h"
+#include "files/file.h"
+#include "files/parallel.h"
 #include "kernel/float_environment.h"
 #include "page/figure.h"
 #include "page/output_folder.h"
@@ -11,8 +13,6 @@
 #include "report/tables.h"
 #include "text/escape.h"
 #include "text/phrases.h"
-#include "work/file.h"
-#include "work/parallel.h"
 
 namespace exactff::report {
 namespace {
@@ -22,15 +22,15 @@ namespace fs = std::filesystem;
 void write_tables(const SceneChapter& scene, const fs::path& folder, const Hooks& hooks) {
   for (const StudyTable& table : tables()) {
     if (!table.has_rows(scene.study)) continue;
-    work::require_not_cancelled(hooks);
-    work::write_file(folder / file_name(scene, table), [&](std::ostream& out) { table.write(scene.study, out); });
+    files::require_not_cancelled(hooks);
+    files::write_file(folder / file_name(scene, table), [&](std::ostream& out) { table.write(scene.study, out); });
   }
 }
 
 void write_tables(const page::Chapter& chapter, const fs::path& folder) {
   for (const auto* list : {&chapter.values, &chapter.times}) {
     for (const page::CsvFile& table : *list) {
-      work::write_file(folder / table.file, [&](std::ostream& out) {
+      files::write_file(folder / table.file, [&](std::ostream& out) {
         out << "# " << text::program_version() << " compare: " << text::csv_comment(table.holds) << '\n' << table.csv;
       });
     }
@@ -93,8 +93,8 @@ std::vector<std::string> write(const StudyReport& report, const fs::path& folder
     std::vector<page::Figure> wanted = field_figures(field, left_out);
     pages.fields.push_back(drawer.draw(std::move(wanted), std::move(left_out), anchor_of(field)));
   }
-  work::write_file(staged.path() / page::kReportFile, [&](std::ostream& out) { out << report_page(report, pages); });
-  work::require_not_cancelled(hooks);
+  files::write_file(staged.path() / page::kReportFile, [&](std::ostream& out) { out << report_page(report, pages); });
+  files::require_not_cancelled(hooks);
   staged.commit();
   return messages;
 }

@@ -14,14 +14,14 @@
 #include <span>
 
 #include "exactff/adaptive.h"
+#include "files/parallel.h"
+#include "files/stopwatch.h"
 #include "kernel/ball.h"
 #include "kernel/float_environment.h"
 #include "stress/double_formulas.h"
 #include "stress/family.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
-#include "work/parallel.h"
-#include "work/stopwatch.h"
 
 namespace exactff::stress {
 
@@ -44,7 +44,7 @@ template <class Compute>
 double median_seconds(const Compute& compute) {
   constexpr std::size_t kMostCalls = 7;
   constexpr double kLimit = 0.05;
-  return work::median_seconds(compute, kMostCalls, kLimit);
+  return files::median_seconds(compute, kMostCalls, kLimit);
 }
 
 AngleFormula formula_of(Method method) {
@@ -197,7 +197,7 @@ void keep_finished(std::span<const std::atomic<std::size_t>> rows, Report& repor
 
 Report run(Request request, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
-  if (request.threads <= 0) request.threads = work::usable_threads();
+  if (request.threads <= 0) request.threads = files::usable_threads();
   Report report{std::move(request), {}, {}};
   struct Place {
     const Family* family;
@@ -211,7 +211,7 @@ Report run(Request request, const Hooks& hooks) {
   }
   std::vector<std::atomic<std::size_t>> finished(report.families.size());  // rows
   try {
-    work::parallel_for(places.size(), report.request.threads, "stiff scenes", hooks, [&](std::size_t i) {
+    files::parallel_for(places.size(), report.request.threads, "stiff scenes", hooks, [&](std::size_t i) {
       const Place& place = places[i];
       const Case scene_case = place.family->make(place.family->stiffnesses[place.row]);
       Trial(scene_case, report.families[place.result].rows[place.row]).run();

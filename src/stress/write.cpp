@@ -1,10 +1,10 @@
 #include <iterator>
 
+#include "files/file.h"
+#include "files/parallel.h"
 #include "kernel/float_environment.h"
 #include "page/output_folder.h"
 #include "stress/report.h"
-#include "work/file.h"
-#include "work/parallel.h"
 
 namespace exactff::stress {
 
@@ -12,12 +12,12 @@ namespace {
 
 void write_tables(const Report& report, const std::filesystem::path& folder) {
   for (const StressTable& table : tables()) {
-    work::write_file(folder / table.file, [&](std::ostream& out) { table.write(report, out); });
+    files::write_file(folder / table.file, [&](std::ostream& out) { table.write(report, out); });
   }
 }
 
 void write_page(const Report& report, const page::DrawnFigures& drawn, const std::filesystem::path& folder) {
-  work::write_file(folder / page::kReportFile, [&](std::ostream& out) { out << report_page(report, drawn); });
+  files::write_file(folder / page::kReportFile, [&](std::ostream& out) { out << report_page(report, drawn); });
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ std::vector<std::string> write(const Report& report, const std::filesystem::path
   const kernel::StandardArithmetic arithmetic;
   page::StagedFolder staged(folder);
   std::vector<std::string> messages;
-  work::require_not_cancelled(hooks);
+  files::require_not_cancelled(hooks);
   write_tables(report, staged.path());
   std::vector<page::Figure> wanted;
   for (const FamilyResult& family : report.families) {
@@ -50,7 +50,7 @@ std::vector<std::string> write(const Report& report, const std::filesystem::path
   }
   const page::DrawnFigures drawn = page::draw_figures(std::move(wanted), staged.path(), messages, hooks);
   write_page(report, drawn, staged.path());
-  work::require_not_cancelled(hooks);
+  files::require_not_cancelled(hooks);
   staged.commit();
   page::remove_result(part_of(folder));
   return messages;

@@ -12,13 +12,13 @@
 #include <cmath>
 #include <map>
 
+#include "files/parallel.h"
 #include "kernel/statistics.h"
 #include "study/ladders.h"
 #include "study/radiosity.h"
 #include "study/statistics.h"
 #include "text/escape.h"
 #include "text/phrases.h"
-#include "work/parallel.h"
 
 namespace exactff::study {
 namespace {
@@ -192,7 +192,7 @@ class MethodRunner {
       }
     };
     const std::string stage = result_.ladders[cell.ladder].name;
-    work::parallel_for(work.size(), request().threads, stage, hooks_, task);
+    files::parallel_for(work.size(), request().threads, stage, hooks_, task);
     for (const double w : work) cell.work += w;
     cell.work /= static_cast<double>(std::max<std::size_t>(receivers * cell.seeds.size(), 1));
   }
@@ -240,16 +240,16 @@ class MethodRunner {
           const std::size_t count = study_.exact.size();
           field.radiosity_errors.assign(count, 0.0);
           field.form_factors = field.radiosity_errors;
-          work::parallel_for((count + kReceiversPerTask - 1) / kReceiversPerTask, request().threads, ladder.name,
-                             hooks_, [&](std::size_t t) {
-                               const auto evaluator = prepared.scene->configure(seeded(choice, seed));
-                               for (std::size_t i = t * kReceiversPerTask;
-                                    i < std::min((t + 1) * kReceiversPerTask, count); ++i) {
-                                 const Outcome outcome = evaluate(*evaluator, prepared, i);
-                                 field.radiosity_errors[i] = outcome.radiosity_error;
-                                 field.form_factors[i] = outcome.form_factor;
-                               }
-                             });
+          files::parallel_for((count + kReceiversPerTask - 1) / kReceiversPerTask, request().threads, ladder.name,
+                              hooks_, [&](std::size_t t) {
+                                const auto evaluator = prepared.scene->configure(seeded(choice, seed));
+                                for (std::size_t i = t * kReceiversPerTask;
+                                     i < std::min((t + 1) * kReceiversPerTask, count); ++i) {
+                                  const Outcome outcome = evaluate(*evaluator, prepared, i);
+                                  field.radiosity_errors[i] = outcome.radiosity_error;
+                                  field.form_factors[i] = outcome.form_factor;
+                                }
+                              });
         },
         [&](auto& words) { words(field.radiosity_errors, field.form_factors); });
     result_.fields.push_back(std::move(field));

@@ -4,13 +4,13 @@
 #include <array>
 #include <map>
 
+#include "files/parallel.h"
 #include "kernel/vec.h"
 #include "study/ladders.h"
 #include "study/method_runs.h"
 #include "study/radiosity.h"
 #include "study/shadow_edges.h"
 #include "study/sight.h"
-#include "work/parallel.h"
 
 namespace exactff::study {
 namespace {
@@ -79,7 +79,7 @@ class Profiler {
     const std::size_t count = profile_.receivers.size();
     profile_.exact.resize(count);
     sights_.resize(count);
-    work::parallel_for(count, request().threads, "profile", hooks_, [&](std::size_t i) {
+    files::parallel_for(count, request().threads, "profile", hooks_, [&](std::size_t i) {
       const Receiver& receiver = profile_.receivers[i];
       std::vector<double> values;
       for (const ExactSource& source : sources_) {

@@ -14,6 +14,7 @@
 #include <limits>
 
 #include "exactff/study.h"
+#include "files/parallel.h"
 #include "jobs/kept_work.h"
 #include "kernel/float_environment.h"
 #include "scene/misuse.h"
@@ -29,7 +30,6 @@
 #include "study/timing.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
-#include "work/parallel.h"
 
 namespace exactff::study {
 namespace {
@@ -45,7 +45,7 @@ void complete(Request& request) {
     text::refuse(request.scene_name, "no patch emits", "without a source there is nothing to compare",
                  "name a source with --source");
   }
-  if (request.threads <= 0) request.threads = work::usable_threads();
+  if (request.threads <= 0) request.threads = files::usable_threads();
 }
 
 // Sums and means of radiosities below this bound do not overflow, whatever the number of receivers.
@@ -172,7 +172,7 @@ class Runner {
     const std::size_t count = request().receivers.size();
     study_.exact.resize(count);
     const jobs::KeptWork kept(journal_, request_hash_);
-    work::parallel_for(count, threads(), "exact values", hooks_, [&](std::size_t i) {
+    files::parallel_for(count, threads(), "exact values", hooks_, [&](std::size_t i) {
       ExactRow& row = study_.exact[i];
       row.terms.resize(sources_.size());
       kept.get(
@@ -277,7 +277,7 @@ class Runner {
     const std::size_t count = request().receivers.size();
     study_.samples.assign(study_.settings.size(), std::vector<SampleRow>(count));
     const jobs::KeptWork kept(journal_, request_hash_ + '-' + jobs::short_hash(settings_text(study_)));
-    work::parallel_for(count, threads(), "sampling", hooks_, [&](std::size_t i) {
+    files::parallel_for(count, threads(), "sampling", hooks_, [&](std::size_t i) {
       kept.get(
           "samples/" + std::to_string(i), [&] { sample_receiver(i); },
           [&](auto& words) {

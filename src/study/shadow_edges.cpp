@@ -9,9 +9,9 @@
 #include <boost/geometry/index/rtree.hpp>
 #include <cmath>
 
+#include "files/parallel.h"
 #include "kernel/vec.h"
 #include "study/sight.h"
-#include "work/parallel.h"
 
 namespace exactff::study {
 namespace {
@@ -42,8 +42,8 @@ class Raster {
 
   void classify(std::span<const ExactSource> sources, const Hooks& hooks) {
     sights_.resize(receivers_.size());
-    work::parallel_for(receivers_.size(), request_.threads, "shadow edges", hooks,
-                       [&](std::size_t i) { sights_[i] = sights(*request_.scene, receivers_[i], sources); });
+    files::parallel_for(receivers_.size(), request_.threads, "shadow edges", hooks,
+                        [&](std::size_t i) { sights_[i] = sights(*request_.scene, receivers_[i], sources); });
   }
 
   [[nodiscard]] std::vector<Point> edges() const {

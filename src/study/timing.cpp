@@ -6,11 +6,11 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "files/parallel.h"
+#include "files/stopwatch.h"
 #include "kernel/statistics.h"
 #include "study/method_runs.h"
 #include "study/radiosity.h"
-#include "work/parallel.h"
-#include "work/stopwatch.h"
 
 namespace exactff::study {
 namespace {
@@ -22,8 +22,8 @@ constexpr std::size_t kFewestInCell = 4;
 
 template <class Call>
 double typical_time(const Call& call) {
-  const double first = work::seconds_of(call);
-  return first >= kLongCallSeconds ? first : work::median_seconds(call, 3, std::numeric_limits<double>::infinity());
+  const double first = files::seconds_of(call);
+  return first >= kLongCallSeconds ? first : files::median_seconds(call, 3, std::numeric_limits<double>::infinity());
 }
 
 class Stopwatch {
@@ -46,7 +46,7 @@ class Stopwatch {
   [[nodiscard]] const Scene& scene() const { return *request().scene; }
 
   void prepare() {
-    times_.exact_setup = work::seconds_of([&] {
+    times_.exact_setup = files::seconds_of([&] {
       for (const Selection& source : request().sources) sources_.emplace_back(scene(), source);
     });
     if (study_.settings.empty()) return;
@@ -70,7 +70,7 @@ class Stopwatch {
   }
 
   void report() {
-    work::require_not_cancelled(hooks_);
+    files::require_not_cancelled(hooks_);
     if (hooks_.progress) hooks_.progress({"times", ++done_, total_});
   }
 
@@ -140,7 +140,7 @@ class Stopwatch {
       const methods::Choice& choice = methods.ladders[l].rungs.front();
       std::optional<PreparedMethod> prepared;
       times_.method_setup.push_back(
-          work::seconds_of([&] { prepared.emplace(*choice.method, scene(), request().sources); }));
+          files::seconds_of([&] { prepared.emplace(*choice.method, scene(), request().sources); }));
       for (; first < methods.cells.size() && methods.cells[first].ladder == l; ++first) {
         time_cell(methods.cells[first], *prepared, order);
       }

@@ -1,8 +1,8 @@
 #include "exactff/truth.h"
+#include "files/file.h"
 #include "jobs/shards.h"
 #include "kernel/float_environment.h"
 #include "truth/rows.h"
-#include "work/file.h"
 
 namespace exactff::truth {
 
@@ -11,7 +11,7 @@ Summary merge(const std::vector<std::filesystem::path>& paths, const std::filesy
   const kernel::StandardArithmetic arithmetic;
   require_free(file, existing == Existing::kReplace ? existing : Existing::kRefuse);
   const jobs::MergedShards shards = jobs::read_shards(paths, kKind, hooks);
-  work::WholeFile whole(file);
+  files::WholeFile whole(file);
   whole.append(shards.head);
   Tally tally;
   shards.for_each_chunk([&](jobs::Range range, const std::string& text) {

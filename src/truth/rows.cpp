@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "exactff/version.h"
+#include "files/parallel.h"
 #include "kernel/exact_vec.h"
 #include "scene/misuse.h"
 #include "text/csv_row.h"
@@ -14,7 +15,6 @@
 #include "text/fnv1a.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
-#include "work/parallel.h"
 
 namespace exactff::truth {
 namespace {
@@ -54,7 +54,7 @@ void complete(Request& request) {
     text::refuse("the visible fraction of the sky is requested", "the sky has no area", "leave out --fraction, or sky");
   }
   jobs::require_shard(request.shard);
-  if (request.threads <= 0) request.threads = work::usable_threads();
+  if (request.threads <= 0) request.threads = files::usable_threads();
 }
 
 }  // namespace

@@ -9,13 +9,13 @@
 #include "exactff/pixels.h"
 #include "exactff/truth.h"
 #include "exactff/vtk.h"
+#include "files/file.h"
+#include "files/npy_file.h"
+#include "files/parallel.h"
 #include "jobs/journal.h"
 #include "kernel/float_environment.h"
 #include "text/csv_lines.h"
 #include "text/refuse.h"
-#include "work/file.h"
-#include "work/npy_file.h"
-#include "work/parallel.h"
 
 namespace exactff::truth {
 
@@ -144,7 +144,7 @@ void write_npy(const fs::path& truth_file, const fs::path& file, const Hooks& ho
   ValueReader reader(truth_file);
   const std::size_t sources = shape.sources.size();
   const std::array extents{shape.rows / sources, sources + (reader.has_totals() ? 3 : 0)};
-  work::NpyFile<double> array(file, extents);
+  files::NpyFile<double> array(file, extents);
   jobs::Pace pace("writing the NumPy file", shape.rows, hooks);
   for (std::size_t row = 0; row < shape.rows && reader.next(); ++row) {
     const Values values = reader.values();
@@ -232,7 +232,7 @@ void write_exr(const pixels::Frame& frame, const fs::path& truth_file, const fs:
     }
     if ((row + 1) % kRowsBetweenChecks == 0) pace.add(kRowsBetweenChecks);
   }
-  work::WholeFile whole(file);
+  files::WholeFile whole(file);
   whole.append(values.exr(about(truth_file)));
   whole.commit();
 }

@@ -20,7 +20,7 @@ namespace exactff::truth {
 namespace {
 
 namespace fs = std::filesystem;
-using work::File;
+using files::File;
 
 void add_rows(const File& file, std::uint64_t offset, Tally& tally) {
   constexpr std::size_t kPieceBytes = 1 << 20;

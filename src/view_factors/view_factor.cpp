@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "exactff/view_factors.h"
+#include "files/parallel.h"
 #include "kernel/float_environment.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -18,7 +19,6 @@
 #include "view_factors/patch_parts.h"
 #include "view_factors/sampled_factor.h"
 #include "view_factors/seen_parts.h"
-#include "work/parallel.h"
 
 namespace exactff {
 namespace view_factors {
@@ -395,11 +395,11 @@ ViewFactorMatrix view_factor_matrix(const Scene& scene, std::span<const Selectio
                                     const ViewFactorOptions& options, int threads, const Hooks& hooks) {
   using namespace view_factors;
   const kernel::StandardArithmetic arithmetic;
-  if (threads <= 0) threads = work::usable_threads();
+  if (threads <= 0) threads = files::usable_threads();
   const Pairs pairs(scene, from, to, options);
   ViewFactorMatrix result{{from.begin(), from.end()}, {to.begin(), to.end()}, {}};
   result.entries.resize(from.size() * to.size());
-  work::parallel_for(pairs.count(), threads, "view factors", hooks, [&](std::size_t pair) {
+  files::parallel_for(pairs.count(), threads, "view factors", hooks, [&](std::size_t pair) {
     pairs.compute(pair, [&](std::size_t entry, const ViewFactor& f) { result.entries[entry] = f; });
   });
   return result;

@@ -10,13 +10,13 @@
 #include <string_view>
 
 #include "exactff/vtk.h"
+#include "files/little_endian.h"
+#include "files/parallel.h"
 #include "text/base64.h"
 #include "text/escape.h"
 #include "text/nearest_names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
-#include "work/little_endian.h"
-#include "work/parallel.h"
 
 namespace exactff::vtk {
 namespace {
@@ -41,7 +41,7 @@ std::string count(const char* what, std::size_t number) {
 
 class Document {
  public:
-  Document(work::WholeFile& file, const Hooks& hooks) : file_(file), hooks_(hooks) {}
+  Document(files::WholeFile& file, const Hooks& hooks) : file_(file), hooks_(hooks) {}
 
   void line(const std::string& text) { file_.append(text + '\n'); }
 
@@ -50,10 +50,10 @@ class Document {
     open(kTypeName<T>, name, components, values.size() / components);
     text::Base64 base64;
     const std::uint64_t bytes = values.size_bytes();
-    file_.append(base64.append(work::little_endian(std::span(&bytes, 1))));
+    file_.append(base64.append(files::little_endian(std::span(&bytes, 1))));
     constexpr std::size_t kPiece = 1 << 16;
     for (std::size_t i = 0; i < values.size(); i += kPiece) {
-      file_.append(base64.append(work::little_endian(values.subspan(i, std::min(kPiece, values.size() - i)))));
+      file_.append(base64.append(files::little_endian(values.subspan(i, std::min(kPiece, values.size() - i)))));
     }
     file_.append(base64.finish());
     line("\n</DataArray>");
@@ -66,7 +66,7 @@ class Document {
     open("String", name, 1, values.size());
     text::Base64 base64;
     const std::uint64_t bytes = all.size();
-    file_.append(base64.append(work::little_endian(std::span(&bytes, 1))));
+    file_.append(base64.append(files::little_endian(std::span(&bytes, 1))));
     file_.append(base64.append(all));
     file_.append(base64.finish());
     line("\n</DataArray>");
@@ -74,14 +74,14 @@ class Document {
 
  private:
   void open(std::string_view type, const std::string& name, std::size_t components, std::size_t tuples) {
-    work::require_not_cancelled(hooks_);
+    files::require_not_cancelled(hooks_);
     // meshio makes a matrix of an array that says that it has one component.
     const std::string vectors = components == 1 ? "" : " NumberOfComponents=\"" + std::to_string(components) + '"';
     line("<DataArray type=\"" + std::string(type) + "\" Name=\"" + name + '"' + vectors + count("Tuples", tuples) +
          " format=\"binary\">");
   }
 
-  work::WholeFile& file_;
+  files::WholeFile& file_;
   const Hooks& hooks_;
 };
 
@@ -179,7 +179,7 @@ Format format_of(const std::filesystem::path& file) {
                "write .vtp for polygons (ParaView, PyVista), or .vtu for an unstructured grid (meshio as well)");
 }
 
-void append(const DataSet& data, Format format, work::WholeFile& file, const Hooks& hooks) {
+void append(const DataSet& data, Format format, files::WholeFile& file, const Hooks& hooks) {
   const std::string type = format == Format::kPolygons ? "PolyData" : "UnstructuredGrid";
   Document document(file, hooks);
   document.line("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<VTKFile type=\"" + type +

@@ -9,7 +9,7 @@
 
 #include "exactff/geometry.h"
 #include "exactff/progress.h"
-#include "work/file.h"
+#include "files/file.h"
 
 namespace exactff::vtk {
 
@@ -35,6 +35,6 @@ enum class Format { kPolygons, kUnstructured };
 // By the extension; throws InputError for another one than .vtp and .vtu.
 [[nodiscard]] Format format_of(const std::filesystem::path& file);
 
-void append(const DataSet& data, Format format, work::WholeFile& file, const Hooks& hooks);
+void append(const DataSet& data, Format format, files::WholeFile& file, const Hooks& hooks);
 
 }  // namespace exactff::vtk

@@ -1,10 +1,10 @@
 #include <stdexcept>
 
 #include "exactff/vtk.h"
+#include "files/parallel.h"
 #include "kernel/float_environment.h"
 #include "vtk/cells.h"
 #include "vtk/data_set.h"
-#include "work/parallel.h"
 
 namespace exactff::vtk {
 namespace {
@@ -88,7 +88,7 @@ void write_faces(const Scene& scene, const std::vector<Field>& fields, std::vect
                  const std::filesystem::path& file, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
   const Format format = format_of(file);
-  work::WholeFile cells(file);
+  files::WholeFile cells(file);
   std::vector<std::size_t> face_of_cell;
   for (const Piece& piece : scene.pieces()) face_of_cell.push_back(index_of(piece.face));
   DataSet data = cells_of(scene);
@@ -99,17 +99,17 @@ void write_faces(const Scene& scene, const std::vector<Field>& fields, std::vect
   if (!fields.empty()) data.shown = fields.front().name;
   if (!about.empty()) data.of_file.push_back({"about", 1, std::move(about)});
   append(data, format, cells, hooks);
-  work::require_not_cancelled(hooks);
+  files::require_not_cancelled(hooks);
   cells.commit();
 }
 
 void write(const Content& content, const std::filesystem::path& file, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
   const Format format = format_of(file);
-  work::WholeFile receivers(file), scene(scene_file(file));
+  files::WholeFile receivers(file), scene(scene_file(file));
   append(data_of(content), format, receivers, hooks);
   append(cells_of(*content.scene), format, scene, hooks);
-  work::require_not_cancelled(hooks);
+  files::require_not_cancelled(hooks);
   receivers.commit();
   scene.commit();
 }

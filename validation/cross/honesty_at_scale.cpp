@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "experiments/honesty.h"
-#include "work/parallel.h"
+#include "files/parallel.h"
 
 namespace {
 
@@ -36,7 +36,7 @@ void say_progress(const Progress& progress) {
 int run(const HonestySize& size, const std::string& file) {
   Hooks hooks;
   hooks.progress = say_progress;
-  const HonestyStudy study = honesty_study(size, work::usable_threads(), hooks);
+  const HonestyStudy study = honesty_study(size, files::usable_threads(), hooks);
   const Result chapter = honesty_chapter(study, size);
   for (const std::string& paragraph : chapter.paragraphs) std::cout << paragraph << "\n\n";
   for (const page::NumberTable& table : chapter.tables) print(table);

@@ -17,9 +17,9 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "files/parallel.h"
 #include "support/program.h"
 #include "unit/sanitized.h"
-#include "work/parallel.h"
 
 namespace exactff::validation {
 
@@ -152,7 +152,7 @@ std::string wrong_ending(const Ended& ended, const Words& words, const ProgramCa
   if (ended.hung) return "does not end";
   if (ended.signalled) {
     const bool told = ended.code == 128 + disturbed->signal;
-    if (told && ended.seconds_after_signal > kPatience * work::usable_threads()) return "works on after a signal";
+    if (told && ended.seconds_after_signal > kPatience * files::usable_threads()) return "works on after a signal";
     if (told) return {};
   }
   if (ended.by_signal) return std::string("ended by ") + ::strsignal(ended.code - 128);

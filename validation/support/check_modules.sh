@@ -79,7 +79,7 @@ while read -r line; do
 done < <(grep -rnE --exclude-dir=_skbuild --include='*.h' '\b(CGAL|gmp|gmpxx|mpfr|flint|arb_|embree|Imf|png_|CLI)\b' include || true)
 
 while read -r line; do
-  complain "only src/kernel may call Arb: $line"
+  complain "only src/foundation/kernel may call Arb: $line"
 done < <(grep -rnE --exclude-dir=_skbuild '#include <(arb|arf|mag|acb|flint|fmpz)|\b(arb|arf|mag|acb|fmpz)_[a-z]' src include |
          grep -vE '^src/(kernel|cmake)/|^src/cli/memory.cpp:[0-9]+:#include' || true)  # the program's allocator, for FLINT
 

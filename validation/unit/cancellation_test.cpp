@@ -14,9 +14,9 @@
 #include "exactff/models.h"
 #include "exactff/progress.h"
 #include "exactff/receiver.h"
+#include "files/parallel.h"
 #include "support/program.h"
 #include "unit/sanitized.h"
-#include "work/parallel.h"
 
 namespace exactff {
 namespace {
@@ -116,9 +116,9 @@ TEST(HooksOfThreads, HoldForTheThreadsOfALoop) {
   const ExactSource source(scene, scene.select("source"));
   const auto body = [&](std::size_t) { (void)exact_form_factor(scene, kUp, source); };
   const Patience patience(5);
-  EXPECT_THROW(work::parallel_for(100, 2, "pairs", patience.hooks, body), Cancelled);
+  EXPECT_THROW(files::parallel_for(100, 2, "pairs", patience.hooks, body), Cancelled);
   const HooksOfThread callers(patience.hooks);
-  EXPECT_THROW(work::parallel_for(100, 2, "pairs", {}, body), Cancelled) << "without hooks of its own";
+  EXPECT_THROW(files::parallel_for(100, 2, "pairs", {}, body), Cancelled) << "without hooks of its own";
 }
 
 TEST(Receivers, CanBeCancelledAndTellTheirProgress) {

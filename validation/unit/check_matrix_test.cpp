@@ -10,9 +10,9 @@
 
 #include "exactff/check.h"
 #include "exactff/matrix.h"
+#include "files/npy_file.h"
+#include "files/read_npy.h"
 #include "support/program.h"
-#include "work/npy_file.h"
-#include "work/read_npy.h"
 
 namespace exactff::check {
 namespace {
@@ -76,7 +76,7 @@ class CheckMatrix : public testing::Test {
 
 TEST_F(CheckMatrix, EveryFormGivesTheSameErrors) {
   const std::vector<std::size_t> shape{3, 3};
-  work::write_npy<double>(path("m.npy"), shape, numbers());
+  files::write_npy<double>(path("m.npy"), shape, numbers());
   const std::vector<std::string> forms = {
       write("list.csv",
             "to,from,value\nc,a,0.2\na,a,0\nb,a,0.5004\na,b,0.25\nb,b,0\nc,b,0.5\na,c,0.1\nb,c,0.25\nc,c,0\n"),
@@ -187,16 +187,16 @@ TEST(ReadNpy, IsWhatNumpyWrites) {
   const auto floats = [](std::vector<float> values) {
     return std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
   };
-  work::NpyArray array = work::read_npy(file("<f4", "False", "(2, 3)", floats({1, 2, 3, 4, 5, 6})));
+  files::NpyArray array = files::read_npy(file("<f4", "False", "(2, 3)", floats({1, 2, 3, 4, 5, 6})));
   EXPECT_EQ(array.shape, (std::vector<std::size_t>{2, 3}));
   EXPECT_EQ(array.values, (std::vector<double>{1, 2, 3, 4, 5, 6}));
-  array = work::read_npy(file("<f4", "True", "(2, 3)", floats({1, 4, 2, 5, 3, 6})));
+  array = files::read_npy(file("<f4", "True", "(2, 3)", floats({1, 4, 2, 5, 3, 6})));
   EXPECT_EQ(array.values, (std::vector<double>{1, 2, 3, 4, 5, 6}));
-  array = work::read_npy(file(">f8", "False", "(1,)", std::string("\x3f\xf8\0\0\0\0\0\0", 8)));
+  array = files::read_npy(file(">f8", "False", "(1,)", std::string("\x3f\xf8\0\0\0\0\0\0", 8)));
   EXPECT_EQ(array.values, (std::vector<double>{1.5}));
-  EXPECT_THROW((void)work::read_npy(file("<f4", "False", "(2, 3)", floats({1}))), InputError);
-  EXPECT_THROW((void)work::read_npy(file("<i8", "False", "(1,)", floats({1, 2}))), InputError);
-  EXPECT_THROW((void)work::read_npy(file("<f8", "False", "(4294967296, 4294967296)", "")), InputError);
+  EXPECT_THROW((void)files::read_npy(file("<f4", "False", "(2, 3)", floats({1}))), InputError);
+  EXPECT_THROW((void)files::read_npy(file("<i8", "False", "(1,)", floats({1, 2}))), InputError);
+  EXPECT_THROW((void)files::read_npy(file("<f8", "False", "(4294967296, 4294967296)", "")), InputError);
 }
 
 // --- the command -----------------------------------------------------------------------------------------------------

@@ -9,11 +9,11 @@
 #include <string>
 
 #include "exactff/study.h"
+#include "files/fields.h"
 #include "jobs/kept_work.h"
 #include "report/report.h"
 #include "support/program.h"
 #include "unit/study_support.h"
-#include "work/fields.h"
 
 namespace exactff::study {
 namespace {
@@ -248,7 +248,7 @@ void fields(Words& words, Fields& f) {
 
 std::string a_record() {
   Fields all{0.1, std::uint64_t{1} << 63, true, Shape::kFlat, {"", "seven77", "eight888", "nine99999"}, {1, 2, 3}, {}};
-  work::WordWriter writer;
+  files::WordWriter writer;
   fields(writer, all);
   return writer.bytes();
 }
@@ -257,7 +257,7 @@ TEST(Words, ReadBackAsTheyWereWritten) {
   const std::string bytes = a_record();
   Fields read;
   read.none = {7.0};
-  work::WordReader reader(bytes);
+  files::WordReader reader(bytes);
   fields(reader, read);
   EXPECT_TRUE(reader.complete());
   EXPECT_EQ(
@@ -268,10 +268,10 @@ TEST(Words, ReadBackAsTheyWereWritten) {
 
 TEST(Words, KeepEveryBitOfADouble) {
   double zero = -0.0, nan = std::numeric_limits<double>::quiet_NaN();
-  work::WordWriter writer;
+  files::WordWriter writer;
   writer(zero, nan);
   zero = nan = 1.0;
-  work::WordReader reader(writer.bytes());
+  files::WordReader reader(writer.bytes());
   reader(zero);
   EXPECT_FALSE(reader.complete()) << "a word is still there";
   reader(nan);
@@ -283,7 +283,7 @@ TEST(Words, KeepEveryBitOfADouble) {
 TEST(Words, CutAnywhereAreTornAndDoNoHarm) {
   const std::string whole = a_record();
   for (std::size_t cut = 0; cut <= whole.size(); ++cut) {
-    work::WordReader reader(std::string_view(whole).substr(0, cut));
+    files::WordReader reader(std::string_view(whole).substr(0, cut));
     Fields read;
     fields(reader, read);
     EXPECT_EQ(reader.complete(), cut == whole.size()) << cut;
@@ -292,17 +292,17 @@ TEST(Words, CutAnywhereAreTornAndDoNoHarm) {
 
 TEST(Words, ThatPromiseMoreThanThereIsAreTorn) {
   for (std::uint64_t count : {std::uint64_t{2}, ~std::uint64_t{0}, std::uint64_t{1} << 61}) {
-    work::WordWriter writer;
+    files::WordWriter writer;
     double one = 1.0;
     writer(count, one);
     std::vector<double> list;
-    work::WordReader numbers(writer.bytes());
+    files::WordReader numbers(writer.bytes());
     numbers(list);
     EXPECT_TRUE(list.empty());
     EXPECT_TRUE(numbers.torn());
     if (count == 2) continue;
     std::string words = "before";
-    work::WordReader text(writer.bytes());
+    files::WordReader text(writer.bytes());
     text(words);
     EXPECT_EQ(words, "");
     EXPECT_TRUE(text.torn());
@@ -311,10 +311,10 @@ TEST(Words, ThatPromiseMoreThanThereIsAreTorn) {
 
 TEST(Words, ThatAreNoEnumeratorAreTorn) {
   std::uint64_t three = 3;
-  work::WordWriter writer;
+  files::WordWriter writer;
   writer(three);
   Shape shape = Shape::kFlat;
-  work::WordReader reader(writer.bytes());
+  files::WordReader reader(writer.bytes());
   reader.choice(shape, 3);
   EXPECT_TRUE(reader.torn());
   EXPECT_EQ(shape, Shape::kRound);

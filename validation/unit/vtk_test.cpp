@@ -9,11 +9,11 @@
 #include <fstream>
 #include <set>
 
+#include "files/little_endian.h"
 #include "generate/plain_scene.h"
 #include "support/program.h"
 #include "support/random_scenes.h"
 #include "vtk/cells.h"
-#include "work/little_endian.h"
 
 namespace exactff::vtk {
 namespace {
@@ -65,7 +65,7 @@ TEST_P(VtkFiles, OfRandomScenesAreSoundXml) {
     const std::string name = std::to_string(validation::seed_of(i));
     const Content content{&scene, receivers, {{"exact", 1, values}}, {plain.source}};
     for (const char* extension : {".vtp", ".vtu"}) write(content, directory.path() / (name + extension));
-    std::ofstream(directory.path() / (name + ".f8"), std::ios::binary) << work::little_endian(std::span(values));
+    std::ofstream(directory.path() / (name + ".f8"), std::ios::binary) << files::little_endian(std::span(values));
   }
   EXPECT_EQ(parsed(directory.path()), "");
 }

@@ -1,0 +1,101 @@
+#include "files/npz_file.h"
+
+#include <algorithm>
+#include <boost/crc.hpp>
+#include <limits>
+
+#include "text/characters.h"
+#include "text/encoding.h"
+#include "text/refuse.h"
+
+namespace exactff::files {
+namespace {
+
+constexpr std::uint32_t kLocalHeader = 0x04034b50, kCentralHeader = 0x02014b50, kEnd = 0x06054b50;
+constexpr std::uint16_t kVersionNeeded = 20, kStored = 0;
+// 1 January 1980, the first day that the format knows: the bytes depend on the arrays alone.
+constexpr std::uint16_t kTime = 0, kDate = (1U << 5U) | 1U;
+
+template <class T>
+std::string bytes_of(const T& value) {
+  return little_endian(std::span<const T>(&value, 1));
+}
+
+template <class... Numbers>
+std::string bytes_of_all(const Numbers&... numbers) {
+  return (bytes_of(numbers) + ...);
+}
+
+std::vector<std::uint32_t> characters_of(const std::string& given) {
+  const std::string text = text::in_utf8(given);
+  std::vector<std::uint32_t> codes;
+  for (std::size_t at = 0; at < text.size();) {
+    const text::Character character = text::character_at(text, at);
+    codes.push_back(character.code);
+    at += character.bytes;
+  }
+  return codes;
+}
+
+}  // namespace
+
+void NpzFile::require_room(std::size_t bytes) const {
+  if (written_ + bytes <= std::numeric_limits<std::uint32_t>::max()) return;
+  text::refuse("the .npz file would be larger than 4 GiB", "its directory counts bytes in 32 bits",
+               "write fewer rows at a time");
+}
+
+void NpzFile::append(const std::string& bytes) {
+  require_room(bytes.size());
+  written_ += bytes.size();
+  file_.append(bytes);
+}
+
+void NpzFile::add_bytes(std::string_view name, const std::string& header, const std::string& elements) {
+  boost::crc_32_type checksum;
+  checksum.process_bytes(header.data(), header.size());
+  checksum.process_bytes(elements.data(), elements.size());
+  require_room(header.size() + elements.size());
+  const Entry entry{std::string(name) + ".npy", checksum.checksum(),
+                    static_cast<std::uint32_t>(header.size() + elements.size()), static_cast<std::uint32_t>(written_)};
+  append(bytes_of_all(kLocalHeader, kVersionNeeded, std::uint16_t{0}, kStored, kTime, kDate, entry.checksum, entry.size,
+                      entry.size, static_cast<std::uint16_t>(entry.name.size()), std::uint16_t{0}) +
+         entry.name);
+  append(header);
+  append(elements);
+  entries_.push_back(entry);
+}
+
+void NpzFile::add_texts(std::string_view name, const std::vector<std::string>& texts) {
+  std::vector<std::vector<std::uint32_t>> all;
+  std::size_t longest = 1;
+  for (const std::string& text : texts) longest = std::max(longest, all.emplace_back(characters_of(text)).size());
+  std::string elements;
+  for (std::vector<std::uint32_t>& codes : all) {
+    codes.resize(longest, 0);
+    elements += little_endian(std::span<const std::uint32_t>(codes));
+  }
+  const std::size_t count = texts.size();
+  add_bytes(name, npy_header("<U" + std::to_string(longest), std::span(&count, 1)), elements);
+}
+
+void NpzFile::add_word(std::string_view name, std::string_view word) {
+  add_bytes(name, npy_header("|S" + std::to_string(word.size()), {}), std::string(word));
+}
+
+void NpzFile::commit() {
+  const std::uint64_t begin = written_;
+  for (const Entry& entry : entries_) {
+    append(bytes_of_all(kCentralHeader, kVersionNeeded, kVersionNeeded, std::uint16_t{0}, kStored, kTime, kDate,
+                        entry.checksum, entry.size, entry.size, static_cast<std::uint16_t>(entry.name.size()),
+                        std::uint64_t{0}, std::uint32_t{0}, entry.offset) +
+           entry.name);
+  }
+  const auto count = static_cast<std::uint16_t>(entries_.size());
+  const auto size = static_cast<std::uint32_t>(written_ - begin);
+  append(bytes_of_all(kEnd, std::uint16_t{0}, std::uint16_t{0}, count, count, size, static_cast<std::uint32_t>(begin),
+                      std::uint16_t{0}));
+  file_.commit();
+}
+
+}  // namespace exactff::files

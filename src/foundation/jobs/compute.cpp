@@ -1,0 +1,194 @@
+#include "jobs/compute.h"
+
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "jobs/leader.h"
+#include "jobs/workers.h"
+#include "text/phrases.h"
+
+namespace exactff::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kAlone = std::chrono::milliseconds(100);   // between checks of progress and signals
+constexpr auto kWithTeam = std::chrono::milliseconds(1);  // and at messages
+constexpr auto kSyncEvery = std::chrono::seconds(1);
+
+class Computation {
+ public:
+  Computation(const Rows& rows, RowJournal& journal, Team* team, const Hooks& hooks)
+      : rows_(rows), journal_(journal), hooks_(hooks), schedule_(rows, journal.blocks()) {
+    if (team != nullptr && team->size() > 1) leader_.emplace(*team, rows);
+  }
+
+  void run(Summary& summary) {
+    const auto start = Clock::now();
+    summary.resumed = rows_.shard_rows() - schedule_.rows();
+    done_ = summary.resumed;
+    tell(summary);
+    if (schedule_.rows() > 0) compute(summary);
+    summary.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  }
+
+ private:
+  void compute(Summary& summary) {
+    Workers workers(
+        rows_, rows_.plan().threads, hooks_, [this] { return schedule_.next(); },
+        [this](Finished finished) { keep(std::move(finished)); });
+    try {
+      attend(workers, summary);
+    } catch (...) {
+      workers.stop();
+      while (!workers.wait_for(kAlone)) {
+      }
+      collect_the_rest();
+      tell(summary);
+      throw;
+    }
+    tell(summary);
+  }
+
+  // While threads work: handles progress, slow rows, other processes and the disk.
+  void attend(Workers& workers, Summary& summary) {
+    auto synced = Clock::now();
+    for (bool ended = false; !ended || !all_done() || (leader_ && !leader_->all_here());) {
+      if (ended) std::this_thread::sleep_for(kWithTeam);  // other processes have not ended
+      ended = workers.wait_for(leader_ ? kWithTeam : kAlone);
+      if (ended) workers.rethrow();
+      if (leader_) leader_->attend([this] { return schedule_.next(); }, [this](Finished f) { keep(std::move(f)); });
+      tell(summary);
+      if (hooks_.cancelled && hooks_.cancelled()) throw Cancelled();
+      if (Clock::now() - synced < kSyncEvery) continue;
+      journal_.sync();
+      synced = Clock::now();
+    }
+    journal_.sync();
+  }
+
+  // After the work was given up: still keeps what other processes have finished.
+  void collect_the_rest() {
+    if (leader_) leader_->cease([this](Finished f) { keep(std::move(f)); });
+    journal_.sync();
+  }
+
+  // From any thread.
+  void keep(Finished finished) {
+    journal_.append(finished.range, finished.lines);
+    const std::lock_guard lock(mutex_);
+    done_ += finished.range.rows;
+    slow_.insert(slow_.end(), finished.slow.begin(), finished.slow.end());
+  }
+
+  [[nodiscard]] bool all_done() {
+    const std::lock_guard lock(mutex_);
+    return done_ == rows_.shard_rows();
+  }
+
+  void tell(Summary& summary) {
+    std::vector<SlowRow> slow;
+    std::uint64_t done = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      slow.swap(slow_);
+      done = done_;
+    }
+    summary.slow += slow.size();
+    for (const SlowRow& row : slow) {
+      if (hooks_.slow_row) hooks_.slow_row(rows_.name(row.row), row.seconds);
+    }
+    if (hooks_.progress) hooks_.progress({rows_.plan().kind.rows, done, rows_.shard_rows()});
+  }
+
+  const Rows& rows_;
+  RowJournal& journal_;
+  const Hooks& hooks_;
+  Schedule schedule_;
+  std::optional<Leader> leader_;
+  std::mutex mutex_;
+  std::uint64_t done_ = 0;
+  std::vector<SlowRow> slow_;
+};
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+}  // namespace
+
+void compute_missing(const Rows& rows, RowJournal& journal, Team* team, const Hooks& hooks, Summary& summary) {
+  Computation(rows, journal, team, hooks).run(summary);
+}
+
+files::FailureAdvice advice_while_in_journal(const RowJournal& journal) {
+  return {"all rows are finished and kept in " + journal.path().string() + "; the file needs the same space again",
+          "free some space, then continue with --resume"};
+}
+
+// A chunk may have been computed in several blocks. The result must not depend on where it was divided.
+void for_each_chunk(const Rows& rows, const RowJournal& journal, const Hooks& hooks, const TakeChunk& take) {
+  const std::uint32_t chunk = rows.plan().chunk;
+  Pace pace("writing the file", rows.shard_rows(), hooks);
+  const std::vector<Block> blocks = journal.blocks();
+  for (std::size_t i = 0; i < blocks.size();) {
+    Range range{blocks[i].range.first, 0};
+    std::string text;
+    for (; i < blocks.size() && blocks[i].range.first / chunk == range.first / chunk; ++i) {
+      text += journal.read(blocks[i]);
+      range.rows += blocks[i].range.rows;
+    }
+    if (!take(range, text)) throw std::logic_error("a block of the journal is not what it was");
+    pace.add(range.rows);
+  }
+}
+
+void write_rows(const Rows& rows, const RowJournal& journal, const fs::path& file, const Hooks& hooks,
+                const TakeChunk& see) {
+  WholeFile whole(file, advice_while_in_journal(journal));
+  const bool in_blocks = rows.plan().shard.count > 1;
+  whole.append(rows.head());
+  for_each_chunk(rows, journal, hooks, [&](Range range, const std::string& text) {
+    whole.append(in_blocks ? block_text(range, text) : text);
+    return see(range, text);
+  });
+  whole.commit();
+}
+
+bool is_complete(const fs::path& file, Existing existing) {
+  return existing == Existing::kResume && is_there(file) && !is_there(journal_of(file));
+}
+
+std::uint64_t require_head(const File& file, const Rows& rows) {
+  const std::string head = rows.head();
+  require_same_head(file.path(), read_head(file).value_or(file.read(0, head.size())), head);
+  return head.size();
+}
+
+void require_shard_file(const File& file, const Rows& rows, const std::function<void(const std::string& text)>& take) {
+  std::uint64_t found = 0;
+  for (const Block& block : find_blocks(file, require_head(file, rows)).list) {
+    const std::string text = read_lines(file, block);
+    if (!rows.may_be_one_block(block.range) || !rows.may_be_text_of(block.range, text)) continue;
+    found += block.range.rows;
+    take(text);
+  }
+  if (found != rows.shard_rows()) refuse_damaged(file.path(), rows, found);
+}
+
+void refuse_damaged(const fs::path& file, const Rows& rows, std::uint64_t rows_found) {
+  throw InputError({.file = file.string(),
+                    .what = "is damaged: " + std::to_string(rows_found) + " of " +
+                            text::counted(rows.shard_rows(), rows.plan().kind.row) + " can be read",
+                    .why = "a complete file has all of them",
+                    .suggestion = "compute it again with --force"});
+}
+
+}  // namespace exactff::jobs

@@ -1,0 +1,169 @@
+// Hidden folders of killed processes, of living ones, of older versions and of other programs.
+#include "files/work_folder.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "exactff/error.h"
+#include "page/output_folder.h"
+#include "support/folder.h"
+#include "support/program.h"
+
+namespace exactff::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+class WorkFolders : public testing::Test {
+ protected:
+  std::set<std::string> names() const { return validation::names_in(directory_.path()); }
+  void put(const fs::path& file, const std::string& text = "x") const {
+    fs::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+  }
+  // A process that creates the folder and is killed immediately afterwards.
+  void be_killed_in_the_middle() const {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      const files::WorkFolder folder(target_);
+      std::ofstream(folder.path() / "half.csv") << "half";
+      ::raise(SIGKILL);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status));
+  }
+
+  const validation::TemporaryDirectory directory_;
+  const fs::path target_ = directory_.path() / "result";
+};
+
+TEST_F(WorkFolders, GoWithTheirOwner) {
+  { const files::WorkFolder folder(target_); }
+  EXPECT_TRUE(names().empty());
+}
+
+TEST_F(WorkFolders, OfAKilledProcessAreCleared) {
+  be_killed_in_the_middle();
+  EXPECT_EQ(names().size(), 1U);
+  { const files::WorkFolder folder(target_); }
+  EXPECT_TRUE(names().empty());
+}
+
+TEST_F(WorkFolders, OfALivingProcessAreNotTouched) {
+  const files::WorkFolder living(target_);
+  std::ofstream(living.path() / "half.csv") << "half";
+  be_killed_in_the_middle();  // this one removes nothing either
+  EXPECT_EQ(names().size(), 2U);
+  { const files::WorkFolder other(target_); }
+  EXPECT_EQ(names(), std::set<std::string>{living.path().filename().string()});
+  EXPECT_TRUE(fs::exists(living.path() / "half.csv"));
+}
+
+TEST_F(WorkFolders, OfAnotherTargetStay) {
+  be_killed_in_the_middle();
+  const std::set<std::string> before = names();
+  { const files::WorkFolder other(directory_.path() / "resul"); }
+  { const files::WorkFolder other(directory_.path() / "result2"); }
+  EXPECT_EQ(names(), before);
+}
+
+TEST_F(WorkFolders, WithoutALockAreLeftOvers) {
+  put(directory_.path() / ".result.partial-4711" / "values.csv");  // names used by the first version
+  { const files::WorkFolder folder(target_); }
+  EXPECT_TRUE(names().empty());
+}
+
+TEST_F(WorkFolders, WhatWasNeverPutThereByUsStays) {
+  put(directory_.path() / ".result.partial-1" / "deeper" / "letter.txt");
+  put(directory_.path() / ".result.partial-mine" / "letter.txt");
+  put(directory_.path() / ".result.partial-2");  // no folder
+  { const files::WorkFolder folder(target_); }
+  EXPECT_EQ(names(), (std::set<std::string>{".result.partial-1", ".result.partial-2", ".result.partial-mine"}));
+  EXPECT_TRUE(fs::exists(directory_.path() / ".result.partial-1" / "deeper" / "letter.txt"));
+  EXPECT_TRUE(fs::exists(directory_.path() / ".result.partial-mine" / "letter.txt"));
+}
+
+TEST_F(WorkFolders, TakeThePlaceOfTheTarget) {
+  put(target_ / "old.csv");
+  {
+    files::WorkFolder folder(target_);
+    std::ofstream(folder.path() / "new.csv") << "new";
+    folder.put_in_place();
+  }
+  EXPECT_EQ(names(), std::set<std::string>{"result"});
+  EXPECT_TRUE(fs::exists(target_ / "new.csv"));
+  EXPECT_FALSE(fs::exists(target_ / "old.csv"));
+  EXPECT_FALSE(fs::exists(target_ / files::kLockFile));
+}
+
+// Killed between two renames, where the file system cannot exchange folders.
+TEST_F(WorkFolders, AFormerResultComesBack) {
+  put(directory_.path() / ".result.old-4711-0" / "values.csv", "# exactff 0.1.0\n");
+  { const files::WorkFolder folder(target_); }
+  EXPECT_EQ(names(), std::set<std::string>{"result"});
+  EXPECT_TRUE(fs::exists(target_ / "values.csv"));
+  put(directory_.path() / ".result.old-4711-0" / "values.csv", "# exactff 0.1.0\n");
+  { const files::WorkFolder folder(target_); }
+  EXPECT_EQ(names(), std::set<std::string>{"result"});
+}
+
+// Killed just after the rename: the lock file is still there.
+TEST_F(WorkFolders, AResultWithALockCanBeReplaced) {
+  put(target_ / "values.csv", "# exactff 0.1.0\n");
+  put(target_ / files::kLockFile, "");
+  page::StagedFolder staged(target_);
+  staged.commit();
+  EXPECT_TRUE(fs::is_empty(target_));
+}
+
+TEST_F(WorkFolders, WholeFilesTakeTheirTurns) {
+  const fs::path file = directory_.path() / "a.svg";
+  put(file.string() + ".whole", "what a killed process left");
+  {
+    files::WholeFile first(file);
+    first.append("first");
+    EXPECT_THROW(files::WholeFile second(file), InputError);
+    first.commit();
+  }
+  EXPECT_EQ(validation::text_of(file), "first");
+  EXPECT_EQ(names(), std::set<std::string>{"a.svg"});
+}
+
+// Two processes write the same folder repeatedly. A reader always finds one complete result, and no process is refused.
+TEST_F(WorkFolders, WholeFilesOfTwoProcessesAreAlwaysWhole) {
+  const fs::path file = directory_.path() / "a.svg";
+  const auto write = [&file](char letter) {
+    for (int i = 0; i < 8; ++i) {
+      files::WholeFile whole(file, {}, files::WholeFile::WhenBusy::kWait);
+      whole.append(std::string(10'000, letter));
+      whole.commit();
+    }
+  };
+  const pid_t child = ::fork();
+  if (child == 0) {
+    try {
+      write('b');
+    } catch (...) {
+      ::_exit(1);
+    }
+    ::_exit(0);
+  }
+  write('a');
+  const std::string text = validation::text_of(file);
+  EXPECT_TRUE(text == std::string(10'000, 'a') || text == std::string(10'000, 'b')) << text.size();
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(names(), std::set<std::string>{"a.svg"});
+}
+
+}  // namespace
+}  // namespace exactff::study
