@@ -5,7 +5,7 @@ usage: exported_scenes.py FOLDER
 
 All show the same room: a floor of 4 x 3 m (patch `floor`), a lamp of 2 x 1 m that shines down from 2.5 m (`lamp`), and a
 closed box on the floor (`table`). What the slip is stands at each function. The tests of these scenes are in
-validation/unit/exported_scenes_test.cpp.
+validation/unit/scenes/exported_scenes_test.cpp.
 """
 import math
 import os

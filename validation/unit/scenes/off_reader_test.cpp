@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "exactff/scene_files.h"
-#include "format_support.h"
+#include "unit/scenes/format_support.h"
 
 namespace exactff {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "exactff/receiver.h"
 #include "kernel/exact_vec.h"
-#include "unit/polygon_faces.h"
+#include "unit/scenes/polygon_faces.h"
 
 namespace exactff {
 namespace {

@@ -9,11 +9,11 @@
 #include "exactff/exact.h"
 #include "exactff/models.h"
 #include "exactff/obj.h"
-#include "format_support.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
 #include "support/program.h"
 #include "support/random_scenes.h"
+#include "unit/scenes/format_support.h"
 
 namespace exactff {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "exactff/scene_files.h"
-#include "format_support.h"
+#include "unit/scenes/format_support.h"
 
 namespace exactff {
 namespace {

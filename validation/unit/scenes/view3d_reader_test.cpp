@@ -4,8 +4,8 @@
 
 #include "exactff/exact.h"
 #include "exactff/scene_files.h"
-#include "format_support.h"
 #include "formats/decimal_complement.h"
+#include "unit/scenes/format_support.h"
 
 namespace exactff {
 namespace {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "exactff/receiver.h"
-#include "unit/polygon_faces.h"
+#include "unit/scenes/polygon_faces.h"
 
 namespace exactff {
 namespace {
