@@ -20,12 +20,12 @@ Job::Job(const Request& request) : request_(request) {
   if (sources_.empty() && !request_.sky) {
     text::refuse(request_.scene_name, "no patch emits", "the picture would be black", "name a source with --source");
   }
-  factors_ = std::make_unique<light::SourceFactors>(*request_.scene, sources_,
-                                                    request_.sky ? light::Sky::kLastSource : light::Sky::kLeftOut);
-  weights_ = light::light_weights(*request_.scene, *factors_, request_.quantity, request_.scene_name);
+  factors_ = std::make_unique<whole_view::SourceFactors>(
+      *request_.scene, sources_, request_.sky ? whole_view::Sky::kLastSource : whole_view::Sky::kLeftOut);
+  weights_ = whole_view::light_weights(*request_.scene, *factors_, request_.quantity, request_.scene_name);
   require_possible();
   if (!request_.method) {
-    light_ = std::make_unique<light::Light>(*factors_, weights_);
+    light_ = std::make_unique<whole_view::Light>(*factors_, weights_);
     return;
   }
   prepared_ = request_.method->method->prepare(*request_.scene);
@@ -157,9 +157,10 @@ std::string Job::hash() const {
   return jobs::short_hash(all);
 }
 
-light::LightFormula Job::formula(FaceId face, bool back) const {
-  return light::light_formula(*request_.scene, std::span(&face, 1), back ? light::Side::kBack : light::Side::kFront,
-                              request_.quantity, request_.ke);
+whole_view::LightFormula Job::formula(FaceId face, bool back) const {
+  return whole_view::light_formula(*request_.scene, std::span(&face, 1),
+                                   back ? whole_view::FaceSide::kBack : whole_view::FaceSide::kFront, request_.quantity,
+                                   request_.ke);
 }
 
 }  // namespace exactff::render

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "exactff/render.h"
-#include "light/light.h"
-#include "light/source_factors.h"
+#include "whole_view/light.h"
+#include "whole_view/source_factors.h"
 
 namespace exactff::render {
 
@@ -30,10 +30,10 @@ class Job {
   [[nodiscard]] std::size_t numbers_per_pixel() const;
 
   // What leaves a face on the side that is seen, in the quantity of the request.
-  [[nodiscard]] light::LightFormula formula(FaceId face, bool back) const;
+  [[nodiscard]] whole_view::LightFormula formula(FaceId face, bool back) const;
   [[nodiscard]] std::size_t source_count() const { return factors_->count(); }
   [[nodiscard]] const std::vector<Rgb>& weights() const { return weights_; }  // B_s, or 1
-  [[nodiscard]] const light::Light& light() const { return *light_; }
+  [[nodiscard]] const whole_view::Light& light() const { return *light_; }
   [[nodiscard]] const methods::PreparedScene* prepared() const { return prepared_.get(); }
   [[nodiscard]] const std::vector<const methods::PreparedSource*>& prepared_sources() const { return source_pointers_; }
 
@@ -45,8 +45,8 @@ class Job {
   Request request_;
   std::vector<Selection> sources_;
   std::vector<Rgb> weights_;
-  std::unique_ptr<const light::SourceFactors> factors_;
-  std::unique_ptr<light::Light> light_;
+  std::unique_ptr<const whole_view::SourceFactors> factors_;
+  std::unique_ptr<whole_view::Light> light_;
   std::unique_ptr<methods::PreparedScene> prepared_;
   std::vector<std::unique_ptr<methods::PreparedSource>> prepared_sources_;
   std::vector<const methods::PreparedSource*> source_pointers_;
@@ -66,13 +66,13 @@ class Painter {
   void look_along(const Ray& ray, Sample& sample);
 
  private:
-  [[nodiscard]] light::Channels light_at(const Receiver& receiver, const light::LightFormula& formula);
-  [[nodiscard]] light::Channels light_by_method(const Receiver& receiver, const light::LightFormula& formula);
+  [[nodiscard]] whole_view::Channels light_at(const Receiver& receiver, const whole_view::LightFormula& formula);
+  [[nodiscard]] whole_view::Channels light_by_method(const Receiver& receiver, const whole_view::LightFormula& formula);
   void add_layers(const Ray& ray, const Hit* hit, bool dark, Sample& sample) const;
 
   const Job& job_;
   ExactOptions options_;
-  light::Light::Results results_;
+  whole_view::Light::Results results_;
   std::unique_ptr<methods::Evaluator> evaluator_;
   std::vector<methods::Estimate> estimates_;
 };

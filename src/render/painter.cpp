@@ -13,8 +13,8 @@ namespace {
 constexpr double kNothingMet = std::numeric_limits<double>::quiet_NaN();
 
 // Without any light: what is proved to be black, or nothing at all.
-light::Channels dark(double value) {
-  const light::CertifiedNumber number{value, value, value, true};
+whole_view::Channels dark(double value) {
+  const whole_view::CertifiedNumber number{value, value, value, true};
   return {number, number, number};
 }
 
@@ -44,9 +44,9 @@ void Painter::look_along(const Ray& ray, Sample& sample) {
   const std::optional<Hit> hit = first_hit(*request.scene, ray);
   const bool black = !hit || (hit->back && request.sides == Sides::kFront);
   Shows shows = !hit ? Shows::kNothing : black ? Shows::kBack : Shows::kFace;
-  light::Channels channels = dark(hit ? 0.0 : kNothingMet);
+  whole_view::Channels channels = dark(hit ? 0.0 : kNothingMet);
   if (!black) {
-    const light::LightFormula formula = job_.formula(hit->face, hit->back);
+    const whole_view::LightFormula formula = job_.formula(hit->face, hit->back);
     if (!is_zero(formula.emitted)) shows = Shows::kEmitter;
     channels = light_at(receiver_at(*request.scene, *hit), formula);
   }
@@ -57,16 +57,16 @@ void Painter::look_along(const Ray& ray, Sample& sample) {
     for (const auto& channel : channels) sample.numbers.push_back(channel.lower);
     for (const auto& channel : channels) sample.numbers.push_back(channel.upper);
   }
-  sample.certified = std::ranges::all_of(channels, &light::CertifiedNumber::certified);
+  sample.certified = std::ranges::all_of(channels, &whole_view::CertifiedNumber::certified);
   if (request.layers == Layers::kAll) add_layers(ray, hit ? &*hit : nullptr, black, sample);
 }
 
-light::Channels Painter::light_at(const Receiver& receiver, const light::LightFormula& formula) {
+whole_view::Channels Painter::light_at(const Receiver& receiver, const whole_view::LightFormula& formula) {
   if (evaluator_ != nullptr) return light_by_method(receiver, formula);
   return job_.light().at(receiver, formula, options_, results_);
 }
 
-light::Channels Painter::light_by_method(const Receiver& receiver, const light::LightFormula& formula) {
+whole_view::Channels Painter::light_by_method(const Receiver& receiver, const whole_view::LightFormula& formula) {
   evaluator_->look_from(receiver);
   evaluator_->form_factors(job_.prepared_sources(), estimates_);
   Rgb received;
@@ -78,7 +78,7 @@ light::Channels Painter::light_by_method(const Receiver& receiver, const light::
   const double factor = formula.pi_power == 0 ? 1.0 : formula.pi_power > 0 ? std::numbers::pi : 1.0 / std::numbers::pi;
   const auto channel = [&](double emitted, double reflectance, double arriving) {
     const double value = factor * (emitted + reflectance * arriving);
-    return light::CertifiedNumber{value, value, value, true};
+    return whole_view::CertifiedNumber{value, value, value, true};
   };
   return {channel(formula.emitted.r, formula.reflectance.r, received.r),
           channel(formula.emitted.g, formula.reflectance.g, received.g),

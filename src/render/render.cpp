@@ -13,8 +13,8 @@
 #include "jobs/kept_work.h"
 #include "kernel/float_environment.h"
 #include "kernel/numbers.h"
-#include "light/light.h"
 #include "render/job.h"
+#include "whole_view/light.h"
 
 namespace exactff::render {
 namespace {

@@ -61,15 +61,16 @@ void complete(Request& request) {
 
 Rows::Rows(Request request) : request_(std::move(request)) {
   complete(request_);
-  sources_ = std::make_unique<light::SourceFactors>(*request_.scene, request_.sources,
-                                                    request_.sky ? light::Sky::kLastSource : light::Sky::kLeftOut);
+  sources_ = std::make_unique<whole_view::SourceFactors>(
+      *request_.scene, request_.sources, request_.sky ? whole_view::Sky::kLastSource : whole_view::Sky::kLeftOut);
   plan_ = {kKind, request_.receivers.size() * sources_->count(), kChunkRows, request_.shard, request_.threads};
   for (std::size_t s = 0; s < sources_->count(); ++s) {
     source_names_.push_back(sources_->name_of(s));
     radiosities_.push_back(sources_->radiosity(s));
   }
   if (request_.total) {
-    light_.emplace(*sources_, light::light_weights(*request_.scene, *sources_, *request_.total, request_.scene_name));
+    light_.emplace(*sources_,
+                   whole_view::light_weights(*request_.scene, *sources_, *request_.total, request_.scene_name));
   }
   receivers_hash_ = hash_of(request_.receivers);
   near_misses_ = sentences(near_misses(*request_.scene, request_.receivers), request_.receivers.size());
@@ -139,11 +140,12 @@ bool nothing_in_the_shaft(const FormFactor& result) {
 }
 
 // Exact: whether the normal points away from the front of the receiver's first face.
-light::Side side_of(const Scene& scene, const Receiver& receiver) {
+whole_view::FaceSide side_of(const Scene& scene, const Receiver& receiver) {
   static constexpr Vec3 kOrigin;
-  if (receiver.on.empty()) return light::Side::kFront;
+  if (receiver.on.empty()) return whole_view::FaceSide::kFront;
   const Vec3& front = scene.face(receiver.on.front()).newell;
-  return kernel::exact_sign_of_dot(front, {kOrigin, receiver.normal}) < 0 ? light::Side::kBack : light::Side::kFront;
+  return kernel::exact_sign_of_dot(front, {kOrigin, receiver.normal}) < 0 ? whole_view::FaceSide::kBack
+                                                                          : whole_view::FaceSide::kFront;
 }
 
 }  // namespace
@@ -176,7 +178,7 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
   line << rho.r * b.r * f.value << rho.g * b.g * f.value << rho.b * b.b * f.value
        << std::max({rho.r * b.r, rho.g * b.g, rho.b * b.b});
   if (light_) {
-    for (const light::CertifiedNumber& total : results.totals) {
+    for (const whole_view::CertifiedNumber& total : results.totals) {
       line << total.value;
       keep_worst(total.certified);
     }
@@ -217,8 +219,8 @@ void Rows::find_all(std::size_t receiver, const ExactOptions& options, Results& 
   const Receiver& at = request_.receivers[receiver];
   results.known.reset();
   if (light_) {
-    const light::LightFormula formula =
-        light::light_formula(*request_.scene, at.on, side_of(*request_.scene, at), *request_.total, request_.ke);
+    const whole_view::LightFormula formula =
+        whole_view::light_formula(*request_.scene, at.on, side_of(*request_.scene, at), *request_.total, request_.ke);
     results.totals = light_->at(at, formula, options, results.all);
   } else {
     sources_->find_all(at, options, results.all.at);

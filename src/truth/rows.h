@@ -11,9 +11,9 @@
 
 #include "exactff/truth.h"
 #include "jobs/rows.h"
-#include "light/light.h"
-#include "light/source_factors.h"
 #include "truth/unit_normal.h"
+#include "whole_view/light.h"
+#include "whole_view/source_factors.h"
 
 namespace exactff::truth {
 
@@ -35,8 +35,8 @@ class Rows : public jobs::Rows {
   struct Results {
     FormFactor exact, unoccluded;
     UnitNormal unit_normal;
-    light::Light::Results all;  // of all sources at one receiver
-    light::Channels totals;
+    whole_view::Light::Results all;  // of all sources at one receiver
+    whole_view::Channels totals;
     std::optional<std::size_t> known;  // this receiver
   };
   // Computes a row and appends its line.
@@ -50,10 +50,10 @@ class Rows : public jobs::Rows {
                                                     const FormFactor& with, Results& results) const;
 
   Request request_;
-  std::unique_ptr<const light::SourceFactors> sources_;
+  std::unique_ptr<const whole_view::SourceFactors> sources_;
   std::vector<std::string> source_names_;
-  std::vector<Rgb> radiosities_;       // indexed by source
-  std::optional<light::Light> light_;  // for the totals
+  std::vector<Rgb> radiosities_;            // indexed by source
+  std::optional<whole_view::Light> light_;  // for the totals
   std::string receivers_hash_;
   std::vector<std::string> near_misses_;  // in sentences
 };

@@ -5,14 +5,14 @@
 #include "exactff/models.h"
 #include "exactff/obj.h"
 #include "exactff/render.h"
-#include "light/light.h"
 #include "support/oracle.h"
+#include "whole_view/light.h"
 
 namespace exactff::validation {
 namespace {
 
-using light::CertifiedNumber;
-using light::LightFormula;
+using whole_view::CertifiedNumber;
+using whole_view::LightFormula;
 
 // pi between two rationals 10^-40 apart.
 const mpq_class& pi_low() {
@@ -56,9 +56,9 @@ TEST(Light, IsTheRoundedSumOfTheOraclesFormFactors) {
   const std::vector<Selection> sources = scene.emitters();
   std::vector<Rgb> radiosities;
   for (std::size_t s = 0; s < sources.size(); ++s) radiosities.push_back({1.5 + double(s), 0.1, 1e-3 * double(s)});
-  const light::SourceFactors factors_of_all(scene, sources, light::Sky::kLeftOut);
-  const light::Light all(factors_of_all, radiosities);
-  light::Light::Results results;
+  const whole_view::SourceFactors factors_of_all(scene, sources, whole_view::Sky::kLeftOut);
+  const whole_view::Light all(factors_of_all, radiosities);
+  whole_view::Light::Results results;
   int lit = 0;
   for (int i = 0; i < 8; ++i) {
     const Receiver receiver{
@@ -67,7 +67,7 @@ TEST(Light, IsTheRoundedSumOfTheOraclesFormFactors) {
     for (const Selection& source : sources) factors.push_back(oracle(scene, receiver, source));
     for (const int power : {-1, 0, 1}) {
       const LightFormula formula{{0.0, 0.25, 1e-9}, {0.3, 0.7, 1.0 / 3.0}, power};
-      const light::Channels channels = all.at(receiver, formula, {}, results);
+      const whole_view::Channels channels = all.at(receiver, formula, {}, results);
       if (channels[0].value > 0.0) ++lit;
       std::vector<double> r, g, b;
       for (const Rgb& one : radiosities) r.push_back(one.r), g.push_back(one.g), b.push_back(one.b);
@@ -90,11 +90,11 @@ TEST(Light, RaisesThePrecisionNearAMidpoint) {
   const Receiver receiver{.point = {200, 0, 400}, .normal = {0, 1, 0}, .on = {FaceId{0}}, .id = {}};
   const std::vector<Selection> sources = {scene.select("light")};
   const double tiny = 0x1p-120;
-  const light::SourceFactors factor(scene, sources, light::Sky::kLeftOut);
-  const light::Light lamp(factor, {{tiny, tiny, 1.0}});
-  light::Light::Results results;
+  const whole_view::SourceFactors factor(scene, sources, whole_view::Sky::kLeftOut);
+  const whole_view::Light lamp(factor, {{tiny, tiny, 1.0}});
+  whole_view::Light::Results results;
   // 1 + 2^-120 F is just above 1; (1 - 2^-53) + tiny F is just above a double and far from any midpoint.
-  const light::Channels channels = lamp.at(receiver, {{1.0, 1.0 - 0x1p-53, 0.0}, {1.0, 1.0, 1.0}, 0}, {}, results);
+  const whole_view::Channels channels = lamp.at(receiver, {{1.0, 1.0 - 0x1p-53, 0.0}, {1.0, 1.0, 1.0}, 0}, {}, results);
   EXPECT_EQ(channels[0].value, 1.0);
   EXPECT_EQ(channels[1].value, 1.0 - 0x1p-53);
   const OracleResult f = oracle(scene, receiver, sources[0]);
@@ -103,7 +103,7 @@ TEST(Light, RaisesThePrecisionNearAMidpoint) {
   int refined = 0;
   for (int k = 1; k < 4000; ++k) {
     const LightFormula formula{{0, 0, 0}, {0, 0, 1.0 / k}, 0};
-    const light::Channels one = lamp.at(receiver, formula, {}, results);
+    const whole_view::Channels one = lamp.at(receiver, formula, {}, results);
     expect_rounded(one[2], channel({f}, {1.0}, 0.0, 1.0 / k, 0));
     if (!results.finer.empty()) ++refined;
   }

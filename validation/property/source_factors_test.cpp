@@ -1,5 +1,5 @@
 // Several sources at one point on scenes of every random family: by one sweep as one by one, in every bit.
-#include "light/source_factors.h"
+#include "whole_view/source_factors.h"
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,8 @@ namespace exactff::validation {
 namespace {
 
 using generate::PlainScene;
-using light::Sky;
-using light::SourceFactors;
+using whole_view::Sky;
+using whole_view::SourceFactors;
 
 std::vector<Selection> every_patch(const Scene& scene) {
   std::vector<Selection> all;

@@ -1,4 +1,4 @@
-#include "light/light.h"
+#include "whole_view/light.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "text/refuse.h"
 #include "text/text_lines.h"
 
-namespace exactff::light {
+namespace exactff::whole_view {
 namespace {
 
 double component(const Rgb& colour, int channel) {
@@ -31,12 +31,13 @@ CertifiedNumber not_certified(const Ball& ball) {
 
 }  // namespace
 
-LightFormula light_formula(const Scene& scene, std::span<const FaceId> on, Side side, Quantity quantity, KeMeans ke) {
+LightFormula light_formula(const Scene& scene, std::span<const FaceId> on, FaceSide side, Quantity quantity,
+                           KeMeans ke) {
   const bool ke_is_radiance = ke == KeMeans::kRadiance;
   if (quantity == Quantity::kFormFactor) return {};
   if (quantity == Quantity::kIrradiance) return {.pi_power = ke_is_radiance ? 1 : 0};
   const int power = (quantity == Quantity::kRadiosity ? 0 : -1) + (ke_is_radiance ? 1 : 0);
-  const bool emits = !on.empty() && side == Side::kFront;
+  const bool emits = !on.empty() && side == FaceSide::kFront;
   return {emits ? scene.material(scene.face(on.front()).material).radiosity : Rgb{}, scene.receiver_reflectance(on),
           power};
 }
@@ -122,4 +123,4 @@ CertifiedNumber Light::channel(const Receiver& receiver, const LightFormula& for
   return not_certified(best);
 }
 
-}  // namespace exactff::light
+}  // namespace exactff::whole_view

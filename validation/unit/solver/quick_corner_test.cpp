@@ -8,7 +8,7 @@
 #include "contour/quick_contour.h"
 #include "generate/random.h"
 #include "support/random_scenes.h"
-#include "unit/quick_contour_support.h"
+#include "unit/solver/quick_contour_support.h"
 
 namespace exactff::contour {
 namespace {

@@ -1,9 +1,9 @@
-#include "light/source_factors.h"
+#include "whole_view/source_factors.h"
 
 #include <algorithm>
 #include <optional>
 
-namespace exactff::light {
+namespace exactff::whole_view {
 namespace {
 
 // The whole view leaves transparent faces out.
@@ -92,4 +92,4 @@ void SourceFactors::take_from_view(std::size_t source, const WholeView& view, Fo
   as_form_factor(is_seen ? found->form_factor : ViewShare{}, factor);
 }
 
-}  // namespace exactff::light
+}  // namespace exactff::whole_view

@@ -13,7 +13,7 @@
 #include "generate/random.h"
 #include "kernel/ball.h"
 #include "support/random_scenes.h"
-#include "unit/square_scenes.h"
+#include "unit/solver/square_scenes.h"
 
 namespace exactff {
 namespace {

@@ -15,7 +15,7 @@
 #include "generate/random.h"
 #include "support/random_scenes.h"
 #include "support/solve.h"
-#include "unit/square_scenes.h"
+#include "unit/solver/square_scenes.h"
 
 namespace exactff {
 namespace {

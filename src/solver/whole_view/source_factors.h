@@ -11,7 +11,7 @@
 #include "exactff/exact.h"
 #include "exactff/view.h"
 
-namespace exactff::light {
+namespace exactff::whole_view {
 
 // The name of the sky: all directions above the horizon that meet nothing.
 inline constexpr std::string_view kSky = "sky";
@@ -61,4 +61,4 @@ class SourceFactors {
   bool are_most_ = false;  // a sweep costs less than one by one
 };
 
-}  // namespace exactff::light
+}  // namespace exactff::whole_view

@@ -10,7 +10,7 @@
 #include "exactff/enclosure.h"
 #include "generate/random.h"
 #include "support/random_scenes.h"
-#include "unit/quick_contour_support.h"
+#include "unit/solver/quick_contour_support.h"
 
 namespace exactff::contour {
 namespace {

@@ -9,9 +9,9 @@
 #include "exactff/exact.h"
 #include "exactff/quantity.h"
 #include "kernel/ball.h"
-#include "light/source_factors.h"
+#include "whole_view/source_factors.h"
 
-namespace exactff::light {
+namespace exactff::whole_view {
 
 // One channel is  pi^pi_power (emitted + reflectance * sum over sources of radiosity * F).
 struct LightFormula {
@@ -20,11 +20,11 @@ struct LightFormula {
   int pi_power = 0;  // -1, 0 or 1
 };
 
-enum class Side { kFront, kBack };
+enum class FaceSide { kFront, kBack };
 // What a point shows that lies on these faces, of which the first counts: its back reflects as its front, but does not
 // emit. A point on no face reflects everything.
-[[nodiscard]] LightFormula light_formula(const Scene& scene, std::span<const FaceId> on, Side side, Quantity quantity,
-                                         KeMeans ke);
+[[nodiscard]] LightFormula light_formula(const Scene& scene, std::span<const FaceId> on, FaceSide side,
+                                         Quantity quantity, KeMeans ke);
 // B_s of each source, or 1 for form factors and for the sky. Throws InputError if the light of the scene, called
 // `scene_name`, is negative or so strong that sums could overflow.
 [[nodiscard]] std::vector<Rgb> light_weights(const Scene& scene, const SourceFactors& sources, Quantity quantity,
@@ -69,4 +69,4 @@ class Light {
   std::vector<Rgb> radiosities_;
 };
 
-}  // namespace exactff::light
+}  // namespace exactff::whole_view
