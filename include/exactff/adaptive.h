@@ -17,7 +17,7 @@
 
 namespace exactff {
 
-namespace sampled {
+namespace adaptive {
 class PatchVisibility;
 }
 
@@ -120,7 +120,7 @@ class AdaptiveSolver {
                                            const AdaptiveOptions& options) const;
   // For the library's own modules: where shaft culling leaves V undecided, `visibility` computes V instead of rays.
   [[nodiscard]] AdaptiveResult form_factor(const Receiver& receiver, const AdaptiveSource& source, double largest_rho_b,
-                                           const AdaptiveOptions& options, sampled::PatchVisibility& visibility) const;
+                                           const AdaptiveOptions& options, adaptive::PatchVisibility& visibility) const;
   // As above, but calls prepare(source) each time, which visits every face of the scene.
   [[nodiscard]] AdaptiveResult form_factor(const Receiver& receiver, const Selection& source, double largest_rho_b,
                                            const AdaptiveOptions& options) const;

@@ -6,17 +6,17 @@
 #include <cstdint>
 #include <numbers>
 
+#include "adaptive/vec.h"
 #include "kernel/filter.h"
 #include "kernel/reals.h"
-#include "sampled/vec.h"
 
 namespace exactff::bench {
 
-using sampled::cross;
-using sampled::dot;
-using sampled::length;
-using sampled::operator*;
-using sampled::operator+;
+using adaptive::cross;
+using adaptive::dot;
+using adaptive::length;
+using adaptive::operator*;
+using adaptive::operator+;
 
 namespace {
 

@@ -14,16 +14,16 @@
 #include <stdexcept>
 #include <vector>
 
+#include "adaptive/vec.h"
 #include "bench/scenes.h"
 #include "bench/subjects.h"
 #include "generate/random.h"
-#include "sampled/vec.h"
 
 namespace exactff::bench {
 
-using sampled::operator+;
-using sampled::operator-;
-using sampled::operator*;
+using adaptive::operator+;
+using adaptive::operator-;
+using adaptive::operator*;
 
 namespace {
 

@@ -2,14 +2,14 @@
 
 #include <map>
 
+#include "adaptive/vec.h"
 #include "exact/source_planes.h"
-#include "sampled/vec.h"
 #include "visibility/visible_boundary.h"
 
 namespace exactff::bench {
 
-using sampled::operator+;
-using sampled::operator*;
+using adaptive::operator+;
+using adaptive::operator*;
 
 namespace {
 

@@ -9,12 +9,12 @@
 #include <cmath>
 #include <vector>
 
+#include "adaptive/ray_scene.h"
+#include "adaptive/receiver_view.h"
+#include "adaptive/shaft.h"
 #include "generate/families.h"
-#include "sampled/ray_scene.h"
-#include "sampled/receiver_view.h"
-#include "sampled/shaft.h"
 
-namespace exactff::sampled {
+namespace exactff::adaptive {
 namespace {
 
 using generate::PlainScene;
@@ -133,4 +133,4 @@ TEST(RayReferee, DisagreementIsFarBelowTheSamplingError) {
 }
 
 }  // namespace
-}  // namespace exactff::sampled
+}  // namespace exactff::adaptive

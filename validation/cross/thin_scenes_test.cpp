@@ -15,12 +15,12 @@
 #include <string>
 #include <vector>
 
+#include "adaptive/ray_scene.h"
+#include "adaptive/receiver_view.h"
 #include "generate/random.h"
-#include "sampled/ray_scene.h"
-#include "sampled/receiver_view.h"
 #include "support/random_scenes.h"
 
-namespace exactff::sampled {
+namespace exactff::adaptive {
 namespace {
 
 using generate::Random;
@@ -203,4 +203,4 @@ TEST(ThinScenes, EmbreeLivesUpToTheBound) {
 }
 
 }  // namespace
-}  // namespace exactff::sampled
+}  // namespace exactff::adaptive

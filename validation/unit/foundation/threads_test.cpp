@@ -13,7 +13,7 @@
 #include "generate/families.h"
 #include "scene/closed_surfaces.h"
 #include "scene/places.h"
-#include "unit/methods_support.h"
+#include "unit/rivals/methods_support.h"
 
 namespace exactff {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "exactff/obj.h"
 #include "generate/plain_scene.h"
-#include "methods_support.h"
 #include "scene/closed_surfaces.h"
 #include "support/program.h"
+#include "unit/rivals/methods_support.h"
 
 namespace exactff::validation {
 namespace {

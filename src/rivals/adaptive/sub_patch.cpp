@@ -1,0 +1,135 @@
+#include "adaptive/sub_patch.h"
+
+#include "kernel/expect.h"
+
+namespace exactff::adaptive {
+
+namespace {
+
+void set_corner(SubPatch& s, int i, const Vec3& p) {
+  s.x[i] = p.x;
+  s.y[i] = p.y;
+  s.z[i] = p.z;
+}
+
+SubPatch quadrilateral(PatchShape shape, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  SubPatch s;
+  set_corner(s, 0, a);
+  set_corner(s, 1, b);
+  set_corner(s, 2, c);
+  set_corner(s, 3, d);
+  s.shape = shape;
+  return s;
+}
+
+SubPatch triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return quadrilateral(PatchShape::kTriangle, a, b, c, c);
+}
+
+// This affects only the choice of the sampling map: an area density within 1e-12 of constant counts as constant.
+PatchShape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const double gap = max_norm((a - b) + (c - d));
+  const double size = std::max(max_norm(c - a), max_norm(d - b));
+  return gap <= 1e-12 * size ? PatchShape::kParallelogram : PatchShape::kQuadrilateral;
+}
+
+Vec3 middle(const Vec3& a, const Vec3& b) { return (a + b) * 0.5; }
+
+std::array<SubPatch, 4> split_triangle(const SubPatch& s) {
+  const Vec3 a = s.corner(0), b = s.corner(1), c = s.corner(2);
+  const Vec3 ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+  return {triangle(a, ab, ca), triangle(ab, b, bc), triangle(ca, bc, c), triangle(ab, bc, ca)};
+}
+
+std::array<SubPatch, 4> split_quadrilateral(const SubPatch& s) {
+  const Vec3 a = s.corner(0), b = s.corner(1), c = s.corner(2), d = s.corner(3);
+  const Vec3 ab = middle(a, b), bc = middle(b, c), cd = middle(c, d), da = middle(d, a);
+  const Vec3 centre = middle(ab, cd);
+  return {quadrilateral(s.shape, a, ab, centre, da), quadrilateral(s.shape, ab, b, bc, centre),
+          quadrilateral(s.shape, centre, bc, c, cd), quadrilateral(s.shape, da, centre, cd, d)};
+}
+
+}  // namespace
+
+SubPatch make_sub_patch(std::span<const Vec3> corners) {
+  EXACTFF_EXPECT(corners.size() == 3 || corners.size() == 4);
+  if (corners.size() == 3) return triangle(corners[0], corners[1], corners[2]);
+  const PatchShape shape = shape_of(corners[0], corners[1], corners[2], corners[3]);
+  return quadrilateral(shape, corners[0], corners[1], corners[2], corners[3]);
+}
+
+// Half the cross product of the diagonals; a triangle's repeated corner makes one diagonal an edge.
+double area(const SubPatch& s) { return 0.5 * length(cross(s.corner(2) - s.corner(0), s.corner(3) - s.corner(1))); }
+
+Vec3 centroid(const SubPatch& s) {
+  const Vec3 sum = s.corner(0) + s.corner(1) + s.corner(2);
+  return s.shape == PatchShape::kTriangle ? sum * (1.0 / 3.0) : (sum + s.corner(3)) * 0.25;
+}
+
+std::array<SubPatch, 4> split_patch(const SubPatch& s) {
+  return s.shape == PatchShape::kTriangle ? split_triangle(s) : split_quadrilateral(s);
+}
+
+namespace {
+
+// The point at i/m of the way from a to b; exact at the ends.
+Vec3 between(const Vec3& a, const Vec3& b, int i, int m) {
+  if (i == 0) return a;
+  if (i == m) return b;
+  return a + (b - a) * (static_cast<double>(i) / m);
+}
+
+void split_triangle(const SubPatch& s, int m, std::vector<SubPatch>& parts) {
+  const Vec3 a = s.corner(0), b = s.corner(1), c = s.corner(2);
+  const auto at = [&](int i, int j) {  // row j of m from ab to c, with m - j steps in it
+    return j == m ? c : between(between(a, c, j, m), between(b, c, j, m), i, m - j);
+  };
+  for (int j = 0; j < m; ++j) {
+    for (int i = 0; i < m - j; ++i) {
+      parts.push_back(make_sub_patch(std::array{at(i, j), at(i + 1, j), at(i, j + 1)}));
+      if (i + 1 < m - j) parts.push_back(make_sub_patch(std::array{at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}));
+    }
+  }
+}
+
+void split_quadrilateral(const SubPatch& s, int m, std::vector<SubPatch>& parts) {
+  const Vec3 a = s.corner(0), b = s.corner(1), c = s.corner(2), d = s.corner(3);
+  const auto at = [&](int i, int j) { return between(between(a, b, i, m), between(d, c, i, m), j, m); };
+  for (int j = 0; j < m; ++j) {
+    for (int i = 0; i < m; ++i) {
+      parts.push_back(make_sub_patch(std::array{at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}));
+    }
+  }
+}
+
+}  // namespace
+
+void split_evenly(const SubPatch& s, int m, std::vector<SubPatch>& parts) {
+  parts.clear();
+  if (m == 1) {
+    parts.push_back(s);
+  } else if (s.shape == PatchShape::kTriangle) {
+    split_triangle(s, m, parts);
+  } else {
+    split_quadrilateral(s, m, parts);
+  }
+}
+
+void clip_by_horizon(std::span<const Vec3> polygon, const Vec3& normal, std::vector<Vec3>& clipped) {
+  clipped.clear();
+  const std::size_t n = polygon.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3& a = polygon[i];
+    const Vec3& b = polygon[(i + 1) % n];
+    const double height_a = dot(normal, a);
+    const double height_b = dot(normal, b);
+    if (height_a >= 0.0) clipped.push_back(a);
+    const bool crosses = (height_a > 0.0 && height_b < 0.0) || (height_a < 0.0 && height_b > 0.0);
+    if (crosses) clipped.push_back(a + (b - a) * (height_a / (height_a - height_b)));
+  }
+  const bool all_on_horizon =
+      std::none_of(clipped.begin(), clipped.end(), [&](const Vec3& p) { return dot(normal, p) > 0.0; });
+  if (clipped.size() < 3 || all_on_horizon) clipped.clear();
+}
+
+}  // namespace exactff::adaptive

@@ -1,0 +1,187 @@
+// The exact visible share of a window, and the algorithm that uses it instead of rays.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "adaptive/sample_points.h"
+#include "exact/source_planes.h"
+#include "exact/visible_share.h"
+#include "unit/rivals/methods_support.h"
+
+namespace exactff::validation {
+namespace {
+
+using exact::VisibleShare;
+using generate::PlainScene;
+
+struct Window {
+  PlainScene plain;
+  Scene scene = generate::build(plain);
+  ExactSource source{scene, scene.select(plain.source)};
+  Workspace workspace;
+  VisibleShare share{scene, generate::receiver_of(plain), source.planes().planes.front(), workspace};
+
+  explicit Window(PlainScene given) : plain(std::move(given)) { share.start(source.planes().planes.front().pieces[0]); }
+};
+
+std::vector<Vec3> square_at(double x, double y, double side) {
+  return {{x, y, 1}, {x, y + side, 1}, {x + side, y + side, 1}, {x + side, y, 1}};
+}
+
+// The exact method's fraction of the square as a separate source. The original source stays in the scene: it is
+// coplanar.
+double fraction_of(const PlainScene& plain, const std::vector<Vec3>& square) {
+  PlainScene own = plain;
+  add(own, "window", square);
+  const Scene scene = generate::build(own);
+  const ExactSource source(scene, scene.select("window"));
+  return *exact_form_factor(scene, generate::receiver_of(own), source, {.visible_fraction = true}).visible_fraction;
+}
+
+std::vector<PlainScene> busy_scenes() {
+  return {generate::soup({.n = 20, .seed = 4}),
+          generate::lattice({.n = 25, .seed = 2}),
+          generate::blinds({.n = 8}),
+          generate::karkanis({.n = 20, .seed = 6}),
+          occluded_scene(0.3),
+          generate::tiles({.n = 4, .drop = 3})};
+}
+
+TEST(VisibleShare, IsTheExactMethodsFraction) {
+  int partly = 0;
+  for (const PlainScene& plain : busy_scenes()) {
+    Window window(plain);
+    for (const double side : {1.0, 0.25}) {
+      for (double x = -1.0; x < 1.0; x += 2.0 * side) {
+        for (double y = -1.0; y < 1.0; y += 2.0 * side) {
+          const std::vector<Vec3> square = square_at(x, y, side);
+          const double wanted = fraction_of(plain, square);
+          const double found = window.share.of(square);
+          ASSERT_NEAR(found, wanted, 1e-13) << x << ' ' << y << ' ' << side;
+          ASSERT_EQ(found == 0.0, wanted == 0.0);
+          ASSERT_EQ(found == 1.0, wanted == 1.0);
+          partly += wanted > 0.0 && wanted < 1.0 ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GE(partly, 50);
+}
+
+TEST(VisibleShare, DoublesAndRationalsAgree) {
+  std::uint64_t key = 1;
+  const auto next = [&key] { return adaptive::random_point(7, key++); };
+  for (const PlainScene& plain : busy_scenes()) {
+    Window window(plain);
+    for (int i = 0; i < 3; ++i) {
+      const adaptive::UnitPoint at = next(), size = next();
+      const double side = 0.5 * size.u * size.v * size.v;
+      const std::vector<Vec3> square = square_at(at.u - 0.5, at.v - 0.5, side);
+      const double exactly = window.share.of_exactly(square), found = window.share.of(square);
+      ASSERT_NEAR(found, exactly, VisibleShare::kAccuracy);
+      ASSERT_EQ(found == 0.0, exactly == 0.0);
+      ASSERT_EQ(found == 1.0, exactly == 1.0);
+    }
+  }
+}
+
+// Cases where a filter is uncertain, and where rounding would give 0 or 1.
+TEST(VisibleShare, DecidesNothingAllAndInBetweenExactly) {
+  Window window(occluded_scene(0.25));  // hides [-1/2, 1/2]^2
+  EXPECT_EQ(window.share.of(square_at(-0.5, -0.5, 1.0)), 0.0);
+  EXPECT_EQ(window.share.of(square_at(0.5, -0.5, 0.25)), 1.0);
+  EXPECT_GT(window.share.undecided(), 0U);
+  const double ulp = 0x1p-53;
+  const double nearly_all = window.share.of(square_at(0.5 - ulp, -0.25, 0.25));
+  EXPECT_LT(nearly_all, 1.0);
+  EXPECT_GT(nearly_all, 0.999);
+  const double nearly_nothing =
+      window.share.of(std::vector<Vec3>{{0, 0, 1}, {0, 0.25, 1}, {0.5 + 2 * ulp, 0.25, 1}, {0.5 + 2 * ulp, 0, 1}});
+  EXPECT_GT(nearly_nothing, 0.0);
+  EXPECT_LT(nearly_nothing, 1e-14);
+}
+
+// A window that rounding pushes over the rim of the source keeps its visible share.
+TEST(VisibleShare, TheSourcesOwnOutlineHidesNothing) {
+  Window window(occluded_scene(0.25));
+  const double out = 1.0 + 0x1p-52;
+  EXPECT_EQ(window.share.of(std::vector<Vec3>{{0.75, 0, 1}, {0.75, 0.5, 1}, {out, 0.5, 1}, {out, 0, 1}}), 1.0);
+}
+
+TEST(Control, IsTheAdaptiveAlgorithmBitForBitWhereShaftsDecideAll) {
+  const Scene room = furnished_room();
+  PlainScene wall;  // half below the horizon
+  add(wall, "source", {{0, 0, -1}, {0, 1, -1}, {0, 1, 1}, {0, 0, 1}});
+  wall.point = {0.5, 0.5, 0};
+  for (const PlainScene& plain : {open_scene(), occluded_scene(0.75), wall}) {
+    EXPECT_EQ(value(plain, "adaptive-exact-visibility"), value(plain, "adaptive"));
+  }
+  int decided = 0;
+  for (const Receiver& receiver : room_receivers(room)) {
+    const methods::Estimate control = estimate(room, receiver, "lamp", "adaptive-exact-visibility:eps_B=1e-2");
+    if (control.counters["exact V"] > 0) continue;
+    ++decided;
+    EXPECT_EQ(control.form_factor, estimate(room, receiver, "lamp", "adaptive:eps_B=1e-2").form_factor);
+  }
+  EXPECT_GE(decided, 1);
+}
+
+// A leaf that stops at eps_F has F <= eps_F; both its visible form factor and the credited one lie between 0 and F.
+TEST(Control, ErrsByNoMoreThanEpsFForEachLeafThatStopsThere) {
+  for (const PlainScene& plain : busy_scenes()) {
+    const Scene scene = generate::build(plain);
+    const double f = truth(plain);
+    for (const char* eps_b : {"1e-1", "1e-2", "1e-3"}) {
+      const methods::Estimate found = estimate(scene, generate::receiver_of(plain), plain.source,
+                                               std::string("adaptive-exact-visibility:eps_B=") + eps_b);
+      const double bound = std::stod(eps_b) * static_cast<double>(found.counters["leaves: eps_F"]);
+      EXPECT_NEAR(found.form_factor, f, bound + 1e-14) << eps_b;
+    }
+  }
+}
+
+TEST(Control, ConvergesToTheExactValue) {
+  const PlainScene plain = generate::soup({.n = 20, .seed = 4});
+  const double f = truth(plain);
+  const double rough = std::abs(value(plain, "adaptive-exact-visibility:eps_B=1e-1") - f);
+  const double fine = std::abs(value(plain, "adaptive-exact-visibility:eps_B=1e-5") - f);
+  EXPECT_LT(fine, 1e-6);
+  EXPECT_LT(fine, 0.01 * rough);
+}
+
+// Tiles along the subdivision lines: every leaf is fully hidden or fully visible, and V = 0 is not a guess.
+TEST(Control, IsExactWhereShadowsFollowTheSplits) {
+  const PlainScene plain = generate::tiles({.n = 4, .drop = 3});
+  const Scene scene = generate::build(plain);
+  const methods::Estimate found =
+      estimate(scene, generate::receiver_of(plain), plain.source, "adaptive-exact-visibility:eps_B=1e-9");
+  EXPECT_EQ(found.counters["leaves: eps_F"], 0U);
+  EXPECT_LE(found.counters["leaves"], 16U);
+  EXPECT_NEAR(found.form_factor, truth(plain), 1e-15);
+  EXPECT_EQ(value(generate::tiles({.n = 4}), "adaptive-exact-visibility"), 0.0);
+}
+
+// Where sampling is silently wrong: 16 rays at eps_B = 0.1 do not find a slit.
+TEST(Control, HasNoSilentErrors) {
+  PlainScene plain = open_scene();
+  add(plain, "left", {{-2, -2, 0.5}, {-2, 2, 0.5}, {0.1, 2, 0.5}, {0.1, -2, 0.5}});
+  add(plain, "right", {{0.1001, -2, 0.5}, {0.1001, 2, 0.5}, {2, 2, 0.5}, {2, -2, 0.5}});
+  EXPECT_EQ(value(plain, "adaptive:eps_B=1e-1"), 0.0);
+  EXPECT_NEAR(value(plain, "adaptive-exact-visibility:eps_B=1e-6"), truth(plain), 0.01 * truth(plain));
+  EXPECT_GT(value(plain, "adaptive-exact-visibility:eps_B=1e-1"), 0.0);
+}
+
+TEST(Control, WorksOverSeveralFacesAndPlanes) {
+  const Scene room = furnished_room();
+  const ExactSource lamp(room, room.select("lamp"));
+  const ExactSource wall(room, room.select("wall"));
+  for (const Receiver& receiver : room_receivers(room)) {
+    EXPECT_NEAR(estimate(room, receiver, "lamp", "adaptive-exact-visibility:eps_B=1e-5").form_factor,
+                exact_form_factor(room, receiver, lamp).value, 1e-5);
+    EXPECT_NEAR(estimate(room, receiver, "wall", "adaptive-exact-visibility:eps_B=1e-4").form_factor,
+                exact_form_factor(room, receiver, wall).value, 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace exactff::validation
