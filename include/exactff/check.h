@@ -136,7 +136,7 @@ struct Measured {
 
 // --- Images --------------------------------------------------------------------------------------------------------
 
-// Names of layers or channels (pixels::ExrFile::find). Empty: R, G, B.
+// Names of layers or channels (exr::ExrFile::find). Empty: R, G, B.
 struct ImageLayers {
   std::string truth = {};
   std::string candidate = {};
@@ -147,7 +147,7 @@ struct Images {
   Truth truth;                   // a row for each pixel and channel whose true value is finite
   std::vector<Measured> values;  // in its order
   std::string candidate_file;
-  pixels::Window window;             // of the truth
+  exr::Window window;                // of the truth
   std::size_t channels = 3;          // 1 or 3
   std::vector<float> exact, theirs;  // `channels` for each pixel of the window; NaN where there is none
 };

@@ -12,7 +12,7 @@
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
 
-namespace exactff::diagnosis {
+namespace exactff::slips {
 
 enum class Kind {
   kNormals,           // normals in the file (vn) contradict the winding
@@ -61,4 +61,4 @@ struct FirstTry {
 [[nodiscard]] std::vector<Problem> warnings_of_dark_sources(const Scene& scene, std::span<const Receiver> receivers,
                                                             std::span<const Selection> sources);
 
-}  // namespace exactff::diagnosis
+}  // namespace exactff::slips

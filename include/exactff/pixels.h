@@ -1,8 +1,8 @@
 // Images of other programs as OpenEXR files: their channels, and the visible points that a renderer has stored in them,
 // as receivers. So the exact values of the same pixels can be computed (truth.h) and compared (check.h).
 //
-//   pixels::GBuffer points = pixels::read_gbuffer("gbuffer.exr");
-//   pixels::place_on_faces(scene, points);
+//   exr::GBuffer points = exr::read_gbuffer("gbuffer.exr");
+//   exr::place_on_faces(scene, points);
 //   // points.receivers; points.frame says which pixel each belongs to
 #pragma once
 
@@ -20,7 +20,7 @@
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
 
-namespace exactff::pixels {
+namespace exactff::exr {
 
 // A rectangle of pixels. Rows run downwards; (x, y) is the pixel in the upper left corner.
 struct Window {
@@ -172,4 +172,4 @@ class FrameValues {
   std::vector<Rgb> values_;  // of each pixel
 };
 
-}  // namespace exactff::pixels
+}  // namespace exactff::exr

@@ -8,8 +8,8 @@
 // B is the smallest: the sum E + rho F E + (rho F)^2 E + ... over the bounces.
 //
 // Of F, only bounds are known: L <= F <= U. B lies between two vectors that are checked to be a sub- and a
-// supersolution of every such system, with every rounding outward (src/radiosity/system.h has the proof). So its bounds
-// are as strong as the weakest claim of the view factors.
+// supersolution of every such system, with every rounding outward (src/products/radiosity/system.h has the proof). So
+// its bounds are as strong as the weakest claim of the view factors.
 #pragma once
 
 #include <array>

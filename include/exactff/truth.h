@@ -108,9 +108,9 @@ void write_vtk(const Request& request, const std::filesystem::path& truth_file, 
                const Hooks& hooks = {});
 
 // Writes the totals of a complete truth file as an OpenEXR image in the pixels of `frame`, whose receivers the file
-// has: channels R, G and B in 32 bits, NaN where there is no certified value, and `mark` (pixels::Mark). Throws
+// has: channels R, G and B in 32 bits, NaN where there is no certified value, and `mark` (exr::Mark). Throws
 // InputError if the file has no totals or other receivers, or cannot be read or written, and Cancelled.
-void write_exr(const pixels::Frame& frame, const std::filesystem::path& truth_file, const std::filesystem::path& file,
+void write_exr(const exr::Frame& frame, const std::filesystem::path& truth_file, const std::filesystem::path& file,
                const Hooks& hooks = {});
 
 }  // namespace exactff::truth

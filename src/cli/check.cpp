@@ -74,7 +74,7 @@ struct CheckArguments {
   std::string relative_mse;
   bool github = false;
 
-  [[nodiscard]] bool are_images() const { return pixels::is_exr(truth) && pixels::is_exr(candidate); }
+  [[nodiscard]] bool are_images() const { return exr::is_exr(truth) && exr::is_exr(candidate); }
 };
 
 double to_limit(const std::string& text, const std::string& flag) {
@@ -188,7 +188,7 @@ bool require_there(const std::string& file) {
 // Two images, or neither.
 void require_comparable(const CheckArguments& args) {
   both([&] { return require_there(args.truth); }, [&] { return require_there(args.candidate); });
-  const bool truth = pixels::is_exr(args.truth), candidate = pixels::is_exr(args.candidate);
+  const bool truth = exr::is_exr(args.truth), candidate = exr::is_exr(args.candidate);
   check_error_image(args.error_image, truth && candidate);
   if (truth != candidate) {
     text::refuse(truth ? args.candidate : args.truth, "is no OpenEXR file, and the file to compare it with is one",

@@ -15,17 +15,17 @@ namespace {
 
 // A number that is not one stands for no value.
 std::string exr_of_errors(const check::Images& images) {
-  pixels::Image image{images.window, images.window, {}, {}};
+  exr::Image image{images.window, images.window, {}, {}};
   image.about = {{"software", text::program_version()},
                  {"difference", images.candidate_file + " minus " + images.truth.file}};
   for (std::size_t c = 0; c < images.channels; ++c) {
-    pixels::Numbers& channel = image.channels.emplace_back();
+    exr::Numbers& channel = image.channels.emplace_back();
     channel.name = images.truth.sources[c];
     for (std::size_t i = c; i < images.exact.size(); i += images.channels) {
       channel.bits.push_back(std::bit_cast<std::uint32_t>(images.theirs[i] - images.exact[i]));
     }
   }
-  return pixels::exr_of(image);
+  return exr::exr_of(image);
 }
 
 // A single channel is shown in all three.

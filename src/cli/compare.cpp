@@ -171,7 +171,7 @@ void print_warnings_of(const report::PlannedScene& planned, bool several) {
   print_warnings(planned.scene->warnings());
   print_warnings(planned.warnings);
   print_near_misses(*planned.scene, request.receivers);
-  std::vector<Problem> dark = diagnosis::warnings_of_dark_sources(*planned.scene, request.receivers, request.sources);
+  std::vector<Problem> dark = slips::warnings_of_dark_sources(*planned.scene, request.receivers, request.sources);
   for (Problem& warning : dark) {
     if (several) warning.what = planned.title + ": " + warning.what;
   }

@@ -134,13 +134,13 @@ void print_faces(const Scene& scene) {
             << (open == 0 ? " (the surface is closed)" : " (an odd number of faces uses them)") << '\n';
 }
 
-void print_findings(const std::vector<diagnosis::Finding>& findings) {
-  for (const diagnosis::Finding& finding : findings)
+void print_findings(const std::vector<slips::Finding>& findings) {
+  for (const slips::Finding& finding : findings)
     std::cout << "check: " << text::printable(finding.words.message()) << '\n';
 }
 
 void print_suggestion(const Scene& scene, const flags::SceneArguments& arguments) {
-  const std::optional<diagnosis::FirstTry> first = diagnosis::first_try(scene);
+  const std::optional<slips::FirstTry> first = slips::first_try(scene);
   if (!first) return;
   std::cout << "next: exactff compare " << text::shell_word(arguments.path) << flags::command_words(arguments)
             << " --on " << text::shell_word(scene.name_of(first->on)) << " --source "
@@ -155,7 +155,7 @@ void print_text(const Scene& scene, const flags::SceneArguments& arguments) {
   print_totals(scene, rows);
   print_list("emitters", emitter_names(scene));
   print_faces(scene);
-  print_findings(diagnosis::diagnose(scene));
+  print_findings(slips::diagnose(scene));
   print_suggestion(scene, arguments);
 }
 
@@ -192,8 +192,8 @@ ordered_json faces_to_json(const Scene& scene) {
   return json;
 }
 
-ordered_json to_json(const diagnosis::Finding& finding, const Scene& scene) {
-  ordered_json json = {{"kind", diagnosis::name_of(finding.kind)},
+ordered_json to_json(const slips::Finding& finding, const Scene& scene) {
+  ordered_json json = {{"kind", slips::name_of(finding.kind)},
                        {"message", finding.words.message()},
                        {"objects", ordered_json::array()},
                        {"flag", finding.flag}};
@@ -219,8 +219,7 @@ void print_json(const Scene& scene, const flags::SceneArguments& arguments) {
   json["ignored"] = numbered_names(scene, FaceShape::kZeroArea);
   json["left_out"] = numbered_names(scene, FaceShape::kSkipped);
   json["findings"] = ordered_json::array();
-  for (const diagnosis::Finding& finding : diagnosis::diagnose(scene))
-    json["findings"].push_back(to_json(finding, scene));
+  for (const slips::Finding& finding : slips::diagnose(scene)) json["findings"].push_back(to_json(finding, scene));
   json["warnings"] = ordered_json::array();
   for (const Problem& warning : scene.warnings()) json["warnings"].push_back(warning.message());
   std::cout << text::json_document(json) << '\n';

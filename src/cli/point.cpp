@@ -24,7 +24,7 @@ void warn_if_flipped(const Scene& scene, const PointResult& point) {
     if (!behind_every_face(one.exact)) continue;
     std::cerr << "exactff: warning: the receiver is behind every face of '" << shown_name(scene, one.source)
               << "' (a source emits only from its front, so the form factor is 0); if the other side is meant, "
-              << text::printable(diagnosis::advice_to_flip(scene, std::span(&one.source, 1))) << '\n';
+              << text::printable(slips::advice_to_flip(scene, std::span(&one.source, 1))) << '\n';
   }
 }
 

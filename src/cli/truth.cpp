@@ -81,7 +81,7 @@ struct TruthArguments {
 struct Job {
   Scene scene;
   truth::Request request;
-  std::optional<pixels::Frame> frame = {};  // if the receivers are pixels
+  std::optional<exr::Frame> frame = {};  // if the receivers are pixels
 };
 
 std::unique_ptr<Job> job_of(const TruthArguments& args, const jobs::Team* team) {
@@ -116,7 +116,7 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const jobs::Team* team) 
 }
 
 void tell_of_sources(const Job& job) {
-  print_warnings(diagnosis::warnings_of_dark_sources(job.scene, job.request.receivers, job.request.sources));
+  print_warnings(slips::warnings_of_dark_sources(job.scene, job.request.receivers, job.request.sources));
   const std::string note = flags::note_on_sources_without_emission(job.scene, job.request.sources);
   if (!note.empty()) std::cerr << "note: " << text::printable(note) << '\n';
 }

@@ -130,22 +130,22 @@ std::optional<AutoFace> face_of_file(const ReceiverArguments& args, const Scene&
 }
 
 ChosenReceivers in_image(const ReceiverArguments& args, const Scene& scene) {
-  pixels::GBuffer gbuffer = pixels::read_gbuffer(pixels::ExrFile(args.file), args.layers);
+  exr::GBuffer gbuffer = exr::read_gbuffer(exr::ExrFile(args.file), args.layers);
   ChosenReceivers chosen;
   chosen.description = std::filesystem::path(args.file).filename().string() + ", " + gbuffer.layers;
   if (const auto face = face_of_file(args, scene)) {
-    pixels::place_on_faces(scene, gbuffer, face->tolerance);
+    exr::place_on_faces(scene, gbuffer, face->tolerance);
     chosen.description += ", on " + args.on.front();
-    chosen.warnings = pixels::warnings_of(gbuffer);
+    chosen.warnings = exr::warnings_of(gbuffer);
   }
-  const pixels::Frame& frame = gbuffer.frame;
-  const auto add = [&](pixels::Mark mark, const std::string& what) {
+  const exr::Frame& frame = gbuffer.frame;
+  const auto add = [&](exr::Mark mark, const std::string& what) {
     if (const std::size_t count = frame.count(mark); count > 0)
       chosen.description += ", " + std::to_string(count) + ' ' + what;
   };
-  add(pixels::Mark::kNothing, "without a hit");
-  add(pixels::Mark::kNoFace, "without a face");
-  add(pixels::Mark::kShadingNormal, "with a shading normal");
+  add(exr::Mark::kNothing, "without a hit");
+  add(exr::Mark::kNoFace, "without a face");
+  add(exr::Mark::kShadingNormal, "with a shading normal");
   chosen.receivers = std::move(gbuffer.receivers);
   chosen.frame = std::move(gbuffer.frame);
   return chosen;
@@ -178,7 +178,7 @@ void check_not_empty(const ReceiverArguments& args, const ChosenReceivers& chose
 
 bool are_pixels(const ReceiverArguments& args) {
   return !args.file.empty() && args.file != "-" &&
-         (pixels::is_exr(args.file) ||
+         (exr::is_exr(args.file) ||
           text::in_lower_case(std::filesystem::path(args.file).extension().string()) == ".exr");
 }
 

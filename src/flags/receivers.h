@@ -25,15 +25,15 @@ struct ReceiverArguments {
   std::string samples;
   std::string sample_seed;
   std::string file;
-  pixels::GBufferLayers layers;  // of a file that is an image
+  exr::GBufferLayers layers;  // of a file that is an image
 };
 
 struct ChosenReceivers {
   std::vector<Receiver> receivers;
-  std::string description;                  // "floor, grid 32x32", "floor, 1000 samples, seed 1", "points.csv"
-  std::size_t without_face = 0;             // that --on auto found no face for
-  std::optional<pixels::Frame> frame = {};  // if the receivers are pixels of an image
-  std::vector<Problem> warnings = {};       // about the image
+  std::string description;               // "floor, grid 32x32", "floor, 1000 samples, seed 1", "points.csv"
+  std::size_t without_face = 0;          // that --on auto found no face for
+  std::optional<exr::Frame> frame = {};  // if the receivers are pixels of an image
+  std::vector<Problem> warnings = {};    // about the image
 };
 
 // Whether --receivers names an image, as its bytes or its name say.

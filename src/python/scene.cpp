@@ -150,10 +150,10 @@ py::list patches_of(const SharedScene& self) {
 
 py::list findings_of(const SharedScene& self) {
   Interrupt interrupt;
-  const auto findings = interrupt.run([&] { return diagnosis::diagnose(self.scene()); });
+  const auto findings = interrupt.run([&] { return slips::diagnose(self.scene()); });
   py::list rows;
-  for (const diagnosis::Finding& finding : findings) {
-    rows.append(py::make_tuple(std::string(diagnosis::name_of(finding.kind)), shown(finding.words.message()),
+  for (const slips::Finding& finding : findings) {
+    rows.append(py::make_tuple(std::string(slips::name_of(finding.kind)), shown(finding.words.message()),
                                names_of(self.scene(), finding.objects), finding.flag));
   }
   return rows;

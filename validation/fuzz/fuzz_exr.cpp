@@ -29,7 +29,7 @@ void unless_refused(const Use& use) {
   }
 }
 
-void check(const pixels::GBuffer& gbuffer) {
+void check(const exr::GBuffer& gbuffer) {
   const auto& [data, display, marks, at] = gbuffer.frame;
   if (marks.size() != data.pixels()) fail("a pixel without a mark");
   if (at.size() != gbuffer.receivers.size()) fail("a receiver without a pixel");
@@ -40,20 +40,20 @@ void check(const pixels::GBuffer& gbuffer) {
   }
 }
 
-void check(const pixels::ExrFile& file) {
+void check(const exr::ExrFile& file) {
   static const Scene scene = floor_and_light();
-  for (const pixels::Channel& channel : file.channels()) {
+  for (const exr::Channel& channel : file.channels()) {
     unless_refused([&] {
       if (file.read({&channel, 1}).front().size() != file.data_window(channel).pixels()) fail("not a number a pixel");
     });
     unless_refused([&] { (void)file.find(channel.name, "--flag"); });
   }
   unless_refused([&] {
-    pixels::GBuffer gbuffer = pixels::read_gbuffer(file);
+    exr::GBuffer gbuffer = exr::read_gbuffer(file);
     check(gbuffer);
-    pixels::place_on_faces(scene, gbuffer);
+    exr::place_on_faces(scene, gbuffer);
     check(gbuffer);
-    (void)pixels::FrameValues(gbuffer.frame).exr({"key: value"});
+    (void)exr::FrameValues(gbuffer.frame).exr({"key: value"});
   });
 }
 
@@ -63,6 +63,6 @@ void check(const pixels::ExrFile& file) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace exactff;
   using namespace exactff::validation;
-  unless_refused([&] { check(pixels::ExrFile(std::string(reinterpret_cast<const char*>(data), size), "a.exr")); });
+  unless_refused([&] { check(exr::ExrFile(std::string(reinterpret_cast<const char*>(data), size), "a.exr")); });
   return 0;
 }

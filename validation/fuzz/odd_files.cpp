@@ -147,10 +147,10 @@ float odd_float(Random& random, double near) {
                                 std::numeric_limits<float>::quiet_NaN()});
 }
 
-void add_channels(pixels::Image& image, const std::vector<std::pair<std::string, double>>& channels, Random& random) {
+void add_channels(exr::Image& image, const std::vector<std::pair<std::string, double>>& channels, Random& random) {
   for (const auto& [name, near] : channels) {
-    pixels::Numbers& channel = image.channels.emplace_back(pixels::Numbers{name, pixels::Kind::kFloat, {}});
-    if (random.one_in(40)) channel.kind = pixels::Kind::kWhole;
+    exr::Numbers& channel = image.channels.emplace_back(exr::Numbers{name, exr::Kind::kFloat, {}});
+    if (random.one_in(40)) channel.kind = exr::Kind::kWhole;
     for (std::size_t i = 0; i < image.data.pixels(); ++i) {
       channel.bits.push_back(std::bit_cast<std::uint32_t>(odd_float(random, near)));
     }
@@ -159,12 +159,12 @@ void add_channels(pixels::Image& image, const std::vector<std::pair<std::string,
 
 // Visible points near the scene's receiver, a truth and the values of another program.
 void add_images(OddInputs& inputs, Random& random) {
-  const pixels::Window data{random.integer(-2, 2), random.integer(-2, 2), random.integer(1, 5), random.integer(1, 20)};
-  const pixels::Window display{0, 0, 5, 20};
+  const exr::Window data{random.integer(-2, 2), random.integer(-2, 2), random.integer(1, 5), random.integer(1, 20)};
+  const exr::Window display{0, 0, 5, 20};
   const Vec3 &p = inputs.scene.point, &n = inputs.scene.normal;
   const std::string view = random.one_in(4) ? odd_name(random) + '.' : "";
   const std::string position = view + (random.one_in(3) ? "P" : "position") + '.', normal = view + "normal.";
-  pixels::Image points{data, display, {}, {{"key", odd_name(random)}}};
+  exr::Image points{data, display, {}, {{"key", odd_name(random)}}};
   add_channels(points,
                {{position + "X", p.x},
                 {position + "Y", p.y},
@@ -174,12 +174,12 @@ void add_images(OddInputs& inputs, Random& random) {
                 {normal + "Z", n.z}},
                random);
   if (random.one_in(4)) add_channels(points, {{"A", 1.0}}, random);
-  inputs.files["in/gbuffer.exr"] = pixels::exr_of(points);
+  inputs.files["in/gbuffer.exr"] = exr::exr_of(points);
   for (const char* path : {"in/truth.exr", "in/candidate.exr"}) {
-    pixels::Image image{random.one_in(8) ? display : data, display, {}, {}};
+    exr::Image image{random.one_in(8) ? display : data, display, {}, {}};
     const std::string layer = random.one_in(3) ? "view." : "";
     add_channels(image, {{layer + "R", 0.5}, {layer + "G", 0.25}, {layer + "B", 0.0}}, random);
-    inputs.files[path] = pixels::exr_of(image);
+    inputs.files[path] = exr::exr_of(image);
   }
 }
 

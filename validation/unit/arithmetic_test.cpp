@@ -363,12 +363,12 @@ TEST(ThreadsArithmetic, ChangesNoTruthFile) {
 TEST(ThreadsArithmetic, ChangesNoImage) {
   const validation::TemporaryDirectory directory;
   const Scene scene = validation::small_room(true);
-  pixels::Image image{{0, 0, 2, 1}, {0, 0, 2, 1}, {}, {}};
+  exr::Image image{{0, 0, 2, 1}, {0, 0, 2, 1}, {}, {}};
   for (const auto& [name, value] :
        {std::pair{"P.X", 0.3F}, {"P.Y", 0.1F}, {"P.Z", 1e-40F}, {"N.X", 1e-42F}, {"N.Y", 0.0F}, {"N.Z", 0.7F}}) {
-    image.channels.push_back({name, pixels::Kind::kFloat, std::vector(2, std::bit_cast<std::uint32_t>(value))});
+    image.channels.push_back({name, exr::Kind::kFloat, std::vector(2, std::bit_cast<std::uint32_t>(value))});
   }
-  const std::filesystem::path points = directory.write("points.exr", pixels::exr_of(image)),
+  const std::filesystem::path points = directory.write("points.exr", exr::exr_of(image)),
                               table = directory.path() / "truth.csv", values = directory.path() / "truth.exr";
   truth::Request request;
   request.scene = &scene;
@@ -376,14 +376,14 @@ TEST(ThreadsArithmetic, ChangesNoImage) {
   request.total = Quantity::kRadiance;
   request.threads = 1;
   const auto write = [&] {
-    pixels::GBuffer gbuffer = pixels::read_gbuffer(pixels::ExrFile(points));
-    pixels::place_on_faces(scene, gbuffer);
+    exr::GBuffer gbuffer = exr::read_gbuffer(exr::ExrFile(points));
+    exr::place_on_faces(scene, gbuffer);
     request.receivers = std::move(gbuffer.receivers);
     truth::write(request, table, truth::Existing::kReplace);
     truth::write_exr(gbuffer.frame, table, values);
     const check::Images images = check::read_images(values, values);
     const check::Report report = check::judge(images.truth, images.values, {.relative_mse = 1.0});
-    return pixels::exr_of(image) + check::json_text(report);
+    return exr::exr_of(image) + check::json_text(report);
   };
   expect_the_same(joint_settings(), write, [&] { return validation::text_of(table) + validation::text_of(values); });
 }

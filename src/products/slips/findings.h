@@ -1,0 +1,20 @@
+// The diagnoses of this module, one function each. They return nothing if there is nothing to say.
+#pragma once
+
+#include <optional>
+
+#include "exactff/diagnosis.h"
+
+namespace exactff::slips {
+
+// "--flip a,b" for those that --flip has not turned round already.
+[[nodiscard]] std::string flag_to_flip(const Scene& scene, std::span<const Selection> selections);
+
+[[nodiscard]] std::optional<Finding> contradicting_normals(const Scene& scene);
+[[nodiscard]] std::optional<Finding> inward_surfaces(const Scene& scene);
+// kUnseenFront, kEmitterLooksAway. `inward`: the surfaces that inward_surfaces() has found.
+[[nodiscard]] std::vector<Finding> unseen_fronts(const Scene& scene, std::span<const Selection> inward);
+[[nodiscard]] std::vector<Finding> twin_faces(const Scene& scene);  // kDoubledFaces, kOppositeFaces
+[[nodiscard]] std::optional<Finding> odd_scale(const Scene& scene);
+
+}  // namespace exactff::slips

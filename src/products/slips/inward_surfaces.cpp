@@ -1,0 +1,140 @@
+// Closed surfaces whose fronts look inward. A room does so rightly, and so does the wall of a hollow in a solid; a box
+// that stands among other things does not.
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/vec.h"
+#include "scene/closed_surfaces.h"
+#include "scene/selections.h"
+#include "slips/findings.h"
+#include "slips/sight_lines.h"
+#include "text/phrases.h"
+
+namespace exactff::slips {
+
+namespace {
+
+using kernel::cross;
+using kernel::difference;
+using kernel::dot;
+
+constexpr std::size_t kMostPoints = 32;               // to be looked for inside a surface
+constexpr std::uint64_t kMostTriangles = 20'000'000;  // in all solid angles together: about a second
+
+double length(const Vec3& v) { return std::hypot(v.x, v.y, v.z); }
+
+// The signed solid angle of a triangle (Van Oosterom and Strackee, 1983).
+double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double la = length(a), lb = length(b), lc = length(c);
+  return 2.0 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+}
+
+bool contains(const Box& outer, const Box& inner) {
+  const auto within = [](double low, double high, double inner_low, double inner_high) {
+    return low <= inner_low && inner_high <= high;
+  };
+  return within(outer.low.x, outer.high.x, inner.low.x, inner.high.x) &&
+         within(outer.low.y, outer.high.y, inner.low.y, inner.high.y) &&
+         within(outer.low.z, outer.high.z, inner.low.z, inner.high.z);
+}
+
+class InwardSurfaces {
+ public:
+  explicit InwardSurfaces(const Scene& scene)
+      : scene_(scene), found_(closed_surfaces(scene)), pieces_(found_.surfaces().size()) {
+    if (found_.empty()) return;
+    for (std::uint32_t piece = 0; piece < scene.pieces().size(); ++piece) {
+      const std::uint32_t surface = found_.of_piece(piece);
+      if (surface != ClosedSurfaces::kNone) pieces_[surface].push_back(piece);
+    }
+  }
+
+  std::vector<std::uint32_t> find() {
+    std::vector<std::uint32_t> wrong;
+    for (std::uint32_t s = 0; s < pieces_.size(); ++s) {
+      if (!found_.surfaces()[s].turned_inside_out) continue;
+      const bool alone = pieces_[s].size() == scene_.pieces().size();
+      if (!alone && !encloses_anything(s) && !is_hollow(s) && triangles_ < kMostTriangles) wrong.push_back(s);
+    }
+    return wrong;
+  }
+
+  [[nodiscard]] std::vector<FaceId> faces_of(const std::vector<std::uint32_t>& surfaces) const {
+    std::vector<FaceId> faces;
+    for (const std::uint32_t s : surfaces) {
+      for (const std::uint32_t piece : pieces_[s]) faces.push_back(scene_.pieces()[piece].face);
+    }
+    return faces;
+  }
+
+ private:
+  bool encloses_anything(std::uint32_t surface) {
+    const Box& box = found_.surfaces()[surface].box;
+    std::vector<Vec3> points;
+    visit_pieces_near(scene_, box, 0.0, [&](std::uint32_t piece) {
+      if (found_.of_piece(piece) == surface) return true;
+      const Vec3 centre = centre_of(piece);
+      if (contains(box, {centre, centre})) points.push_back(centre);
+      return points.size() < kMostPoints;
+    });
+    return std::ranges::any_of(points, [&](const Vec3& point) { return is_inside(surface, point); });
+  }
+
+  // Inside another closed surface that looks outward.
+  bool is_hollow(std::uint32_t surface) {
+    const Box& box = found_.surfaces()[surface].box;
+    const Vec3 point = centre_of(pieces_[surface].front());
+    for (std::uint32_t s = 0; s < pieces_.size(); ++s) {
+      const ClosedSurface& other = found_.surfaces()[s];
+      if (s != surface && !other.turned_inside_out && contains(other.box, box) && is_inside(s, point)) return true;
+    }
+    return false;
+  }
+
+  bool is_inside(std::uint32_t surface, const Vec3& point) {
+    if (triangles_ >= kMostTriangles) return false;
+    double sum = 0.0;
+    for (const std::uint32_t piece : pieces_[surface]) {
+      const auto corners = scene_.corners(scene_.pieces()[piece]);
+      const auto seen = [&](std::size_t i) { return difference(scene_.vertices()[corners[i]], point); };
+      for (std::size_t i = 2; i < corners.size(); ++i) sum += solid_angle(seen(0), seen(i - 1), seen(i));
+      triangles_ += corners.size() - 2;
+    }
+    constexpr double kHalfSphere = 6.283185307179586;
+    return std::abs(sum) > kHalfSphere;
+  }
+
+  [[nodiscard]] Vec3 centre_of(std::uint32_t piece) const {
+    const auto corners = scene_.corners(scene_.pieces()[piece]);
+    const double share = 1.0 / static_cast<double>(corners.size());
+    Vec3 centre;
+    for (const std::uint32_t corner : corners) {
+      const Vec3& v = scene_.vertices()[corner];
+      centre = {centre.x + share * v.x, centre.y + share * v.y, centre.z + share * v.z};
+    }
+    return centre;
+  }
+
+  const Scene& scene_;
+  const ClosedSurfaces& found_;
+  std::vector<std::vector<std::uint32_t>> pieces_;  // by surface
+  std::uint64_t triangles_ = 0;
+};
+
+}  // namespace
+
+std::optional<Finding> inward_surfaces(const Scene& scene) {
+  InwardSurfaces surfaces(scene);
+  const std::vector<std::uint32_t> wrong = surfaces.find();
+  if (wrong.empty()) return std::nullopt;
+  Finding finding{.kind = Kind::kInwardSurface, .objects = selections_of(scene, surfaces.faces_of(wrong))};
+  finding.flag = flag_to_flip(scene, finding.objects);
+  finding.words = {.what = text::counted(wrong.size(), "closed surface") + (wrong.size() == 1 ? " looks" : " look") +
+                           " inward and enclose" + (wrong.size() == 1 ? "s" : "") +
+                           " no other face: " + listed(scene, finding.objects),
+                   .why = "its outer side is its back, which emits nothing and receives nothing",
+                   .suggestion = advice_to_flip(scene, finding.objects)};
+  return finding;
+}
+
+}  // namespace exactff::slips

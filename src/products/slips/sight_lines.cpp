@@ -1,0 +1,95 @@
+#include "slips/sight_lines.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/vec.h"
+
+namespace exactff::slips {
+
+using kernel::cross;
+using kernel::difference;
+using kernel::dot;
+
+namespace {
+
+Vec3 along(const Vec3& from, const Vec3& direction, double t) {
+  return {from.x + t * direction.x, from.y + t * direction.y, from.z + t * direction.z};
+}
+
+Vec3 unit(const Vec3& v) {
+  const double largest = kernel::max_norm(v);
+  if (!(largest > 0.0)) return {};
+  const Vec3 safe{v.x / largest, v.y / largest, v.z / largest};
+  const double length = std::hypot(safe.x, safe.y, safe.z);
+  return {safe.x / length, safe.y / length, safe.z / length};
+}
+
+}  // namespace
+
+SightLines::SightLines(const Scene& scene) : scene_(scene) {
+  if (scene.pieces().empty()) return;
+  Vec3 low = scene.vertices()[scene.corners(scene.pieces().front()).front()], high = low;
+  for (const Piece& piece : scene.pieces()) {
+    normals_.push_back(unit(scene.face(piece.face).newell));
+    for (const std::uint32_t corner : scene.corners(piece)) {
+      const Vec3& v = scene.vertices()[corner];
+      low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+      high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+    }
+  }
+  diameter_ = std::hypot(high.x - low.x, high.y - low.y, high.z - low.z);
+  usable_ = diameter_ > 1e-90 && diameter_ < 1e90 && kernel::max_norm(low) < 1e90 && kernel::max_norm(high) < 1e90;
+}
+
+std::vector<Vec3> SightLines::points_of(std::uint32_t piece) const {
+  constexpr double kNearCorner = 0.9;
+  const auto corners = scene_.corners(scene_.pieces()[piece]);
+  Vec3 centre;
+  for (const std::uint32_t corner : corners) centre = along(centre, scene_.vertices()[corner], 1.0);
+  const auto count = static_cast<double>(corners.size());
+  centre = {centre.x / count, centre.y / count, centre.z / count};
+  std::vector<Vec3> points{centre};
+  for (const std::uint32_t corner : corners)
+    points.push_back(along(centre, difference(scene_.vertices()[corner], centre), kNearCorner));
+  return points;
+}
+
+// Nothing if the ray misses the piece, runs along it, or starts on it.
+std::optional<double> SightLines::crossing(std::uint32_t piece, const Vec3& from, const Vec3& direction) const {
+  constexpr double kAtTheOrigin = 1e-9;  // of the scene's diameter
+  const auto corners = scene_.corners(scene_.pieces()[piece]);
+  const Vec3& normal = normals_[piece];
+  const double height = dot(normal, difference(scene_.vertices()[corners.front()], from));
+  const double speed = dot(normal, direction);
+  const double t = height / speed;
+  if (!(std::abs(height) > kAtTheOrigin * diameter_) || !(t > 0.0) || !std::isfinite(t)) return std::nullopt;
+  const Vec3 point = along(from, direction, t);
+  const Vec3* previous = &scene_.vertices()[corners.back()];
+  for (const std::uint32_t corner : corners) {
+    const Vec3& next = scene_.vertices()[corner];
+    if (dot(normal, cross(difference(next, *previous), difference(point, *previous))) < 0.0) return std::nullopt;
+    previous = &next;
+  }
+  return t;
+}
+
+std::optional<Hit> SightLines::first_hit(const Vec3& from, const Vec3& direction, double limit) const {
+  // Two pairs of half-spaces whose boundary planes hold the ray, and the one before its origin.
+  const Vec3 axis = std::abs(direction.x) < 0.6 * kernel::max_norm(direction) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 u = unit(cross(direction, axis)), v = unit(cross(direction, u));
+  const double blur = 1e-12 * diameter_;
+  const HalfSpace shaft[] = {
+      {u, -blur}, {{-u.x, -u.y, -u.z}, -blur}, {v, -blur}, {{-v.x, -v.y, -v.z}, -blur}, {unit(direction), 0.0}};
+  std::optional<Hit> first;
+  shaft_tree(scene_).query(from, shaft, [&](std::uint32_t piece) {
+    const std::optional<double> t = crossing(piece, from, direction);
+    if (!t || !(*t < limit) || (first && *t >= first->distance)) return true;
+    const bool front = dot(normals_[piece], direction) < 0.0;
+    if (front || !scene_.pieces()[piece].transparent) first = Hit{piece, *t, front};
+    return true;
+  });
+  return first;
+}
+
+}  // namespace exactff::slips

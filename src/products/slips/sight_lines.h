@@ -1,0 +1,57 @@
+// Rays and lines of sight in doubles, for diagnoses only.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "exactff/scene.h"
+#include "scene/shaft_tree.h"
+
+namespace exactff::slips {
+
+// What a ray meets first.
+struct Hit {
+  std::uint32_t piece = 0;
+  double distance = 0.0;  // in lengths of the direction
+  bool front = false;     // the ray arrives at the front
+};
+
+class SightLines {
+ public:
+  explicit SightLines(const Scene& scene);
+
+  // False if coordinates are so large or small that doubles do not suffice.
+  [[nodiscard]] bool usable() const { return usable_; }
+  [[nodiscard]] double diameter() const { return diameter_; }
+  // Of the piece's front, of length 1.
+  [[nodiscard]] const Vec3& normal(std::uint32_t piece) const { return normals_[piece]; }
+  // Points inside the piece: its centre, and points near its corners.
+  [[nodiscard]] std::vector<Vec3> points_of(std::uint32_t piece) const;
+
+  // The first face that a ray from a point meets, closer than `limit` in lengths of the direction. Transparent faces
+  // are met only on their fronts. Faces at the origin of the ray are not met.
+  [[nodiscard]] std::optional<Hit> first_hit(const Vec3& from, const Vec3& direction, double limit) const;
+
+ private:
+  [[nodiscard]] std::optional<double> crossing(std::uint32_t piece, const Vec3& from, const Vec3& direction) const;
+
+  const Scene& scene_;
+  std::vector<Vec3> normals_;
+  double diameter_ = 0.0;
+  bool usable_ = false;
+};
+
+// The pieces whose bounding boxes come within `reach` of a box, until `visit` returns false.
+template <class Visit>
+void visit_pieces_near(const Scene& scene, const Box& box, double reach, const Visit& visit) {
+  const Vec3& low = box.low;
+  const HalfSpace beyond_low[] = {{{1, 0, 0}, -reach}, {{0, 1, 0}, -reach}, {{0, 0, 1}, -reach}};
+  const Vec3 size{box.high.x - low.x + reach, box.high.y - low.y + reach, box.high.z - low.z + reach};
+  const HalfSpace half_spaces[] = {beyond_low[0],         beyond_low[1],         beyond_low[2],
+                                   {{-1, 0, 0}, -size.x}, {{0, -1, 0}, -size.y}, {{0, 0, -1}, -size.z}};
+  shaft_tree(scene).query(low, half_spaces, visit);
+}
+
+}  // namespace exactff::slips

@@ -1,0 +1,249 @@
+// The journals of truth files: interrupted runs, journals torn, tampered with or of other requests, and what must not
+// be overwritten.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "exactff/version.h"
+#include "jobs/journal.h"
+#include "support/complaint.h"
+#include "support/folder.h"
+#include "support/program.h"
+#include "truth/rows.h"
+#include "unit/products/truth_support.h"
+
+namespace exactff::truth {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace jobs;
+using validation::complaint;
+using validation::text_of;
+using validation::write_text;
+
+TEST_F(Truth, BytesDoNotDependOnThreads) {
+  const Summary one = write(request(10), file_);
+  const std::string whole = text_of(file_);
+  Request asked = request(10);
+  asked.threads = 3;
+  const Summary three = write(asked, file_, Existing::kReplace);
+  EXPECT_EQ(text_of(file_), whole);
+  EXPECT_EQ(one.rows, 200U);
+  EXPECT_EQ(one.rows_by_status, three.rows_by_status);
+  EXPECT_EQ(one.with(Status::kCertified) + one.with(Status::kZero), 200U);
+  EXPECT_GT(one.with(Status::kZero), 0U);
+  expect_only({"truth.csv"});
+}
+
+TEST_F(Truth, AnInterruptedRunGoesOn) {
+  write(request(10), file_);
+  const std::string whole = text_of(file_);
+  fs::remove(file_);
+  for (const int rows : {1, 2, 40, 100, 1, 30}) interrupt(request(10), rows);
+  expect_only({"truth.csv.part"});
+  EXPECT_GE(rows_in_journal(request(10)), 120U);
+  const Summary summary = write(request(10), file_, Existing::kResume);
+  EXPECT_EQ(text_of(file_), whole);
+  EXPECT_GT(summary.resumed, 110U);
+  EXPECT_LT(summary.resumed, 200U);
+  expect_only({"truth.csv"});
+}
+
+TEST_F(Truth, ARunThatFinishedNoRowLeavesNothing) {
+  interrupt(request(2), 0);
+  expect_only({});
+}
+
+// Blocks of few rows, not in order, so that a few bytes can be damaged in many ways.
+std::string small_journal(const Rows& rows, const fs::path& file) {
+  RowJournal journal(file, rows, Existing::kReplace, {});
+  Rows::Results results;
+  for (const Range range : {Range{5, 2}, Range{0, 1}, Range{3, 2}, Range{1, 1}}) {
+    std::string lines;
+    for (std::uint64_t row = range.first; row < range.end(); ++row) rows.append(row, lines, results);
+    journal.append(range, lines);
+  }
+  return text_of(journal.path());
+}
+
+TEST_F(Truth, AJournalTornAnywhereGoesOn) {
+  write(request(2), file_);
+  const std::string whole = text_of(file_);
+  const std::string journal = small_journal(Rows(request(2)), file_);
+  std::uint64_t most = 0;
+  for (std::size_t length = 0; length <= journal.size(); ++length) {
+    fs::remove(file_);
+    write_text(journal_, journal.substr(0, length));
+    const Summary summary = write(request(2), file_, Existing::kResume);
+    ASSERT_EQ(text_of(file_), whole) << "torn after " << length << " bytes";
+    ASSERT_GE(summary.resumed, most) << "a longer journal gave less";
+    most = summary.resumed;
+  }
+  EXPECT_EQ(most, 6U);
+  expect_only({"truth.csv"});
+}
+
+TEST_F(Truth, ADamagedBlockIsComputedAgainAndTheOthersAreNot) {
+  write(request(2), file_);
+  const std::string whole = text_of(file_);
+  const std::string journal = small_journal(Rows(request(2)), file_);
+  const std::size_t first = journal.find("# rows 5+2, ");
+  for (std::size_t at = first; at < journal.size(); at += 3) {
+    std::string damaged = journal;
+    damaged[at] = damaged[at] == '7' ? '8' : '7';
+    fs::remove(file_);
+    write_text(journal_, damaged);
+    std::string note;
+    Hooks hooks;
+    hooks.note = [&](const std::string& text) { note = text; };
+    const Summary summary = write(request(2), file_, Existing::kResume, hooks);
+    ASSERT_EQ(text_of(file_), whole) << "damaged at " << at;
+    ASSERT_TRUE(summary.resumed == 4 || summary.resumed == 5) << "damaged at " << at << ": " << summary.resumed;
+    ASSERT_NE(note.find("incomplete or damaged; their rows are computed again"), std::string::npos) << note;
+  }
+}
+
+TEST_F(Truth, BlocksThatDoNotBelongAreLeftOut) {
+  const Rows rows(shard(10, 2, 3));
+  std::string line;
+  Rows::Results results;
+  rows.append(64, line, results);
+  write_text(file_, "");
+  {
+    RowJournal journal(file_, rows, Existing::kResume, {});
+    journal.append({64, 1}, line);
+    journal.append({64, 1}, line);          // doubled
+    journal.append({0, 1}, line);           // of another shard
+    journal.append({127, 2}, line + line);  // of two chunks
+    journal.append({66, 2}, line);          // fewer rows than it claims
+    journal.append({65, 0}, "");
+    journal.append({1000000, 1}, line);
+  }
+  std::string note;
+  Hooks hooks;
+  hooks.note = [&](const std::string& text) { note = text; };
+  EXPECT_EQ(write(shard(10, 2, 3), file_, Existing::kResume, hooks).resumed, 1U);
+  EXPECT_NE(note.find("6 blocks cannot be used here"), std::string::npos) << note;
+  const std::string resumed = text_of(file_);
+  write(shard(10, 2, 3), file_, Existing::kReplace);
+  EXPECT_EQ(text_of(file_), resumed);
+}
+
+TEST_F(Truth, NobodysWorkIsDestroyed) {
+  write(request(2), file_);
+  EXPECT_NE(refusal(request(2), Existing::kRefuse).find("truth.csv: already exists (it may hold hours of work); "),
+            std::string::npos);
+  EXPECT_EQ(refusal(request(2), Existing::kReplace), "");
+  fs::remove(file_);
+  interrupt(request(10), 100);
+  EXPECT_NE(
+      refusal(request(10), Existing::kRefuse).find("truth.csv.part: contains the finished rows of an interrupted run"),
+      std::string::npos);
+  EXPECT_EQ(refusal(request(10), Existing::kReplace), "");
+  expect_only({"truth.csv"});
+}
+
+TEST_F(Truth, ACompleteFileIsLeftAsItIs) {
+  const Summary first = write(request(3), file_);
+  const auto written = fs::last_write_time(file_);
+  const Summary again = write(request(3), file_, Existing::kResume);
+  EXPECT_EQ(fs::last_write_time(file_), written);
+  EXPECT_EQ(again.resumed, first.rows);
+  EXPECT_EQ(again.rows_by_status, first.rows_by_status);
+  EXPECT_NE(refusal(request(4), Existing::kResume).find("truth.csv:3: belongs to a different request"),
+            std::string::npos);
+  write_text(file_, text_of(file_).substr(0, fs::file_size(file_) - 5));
+  EXPECT_NE(refusal(request(3), Existing::kResume).find("truth.csv: is damaged: 17 of 18 rows can be read"),
+            std::string::npos)
+      << refusal(request(3), Existing::kResume);
+}
+
+TEST_F(Truth, AFileWithTheOldNamesOfCellsIsRefusedByName) {
+  Request old = request(3);
+  for (Receiver& receiver : old.receivers) {
+    receiver.id = std::to_string(receiver.cell->column) + ',' + std::to_string(receiver.cell->row);
+  }
+  (void)write(old, file_);
+  EXPECT_NE(refusal(request(3), Existing::kResume)
+                .find("the file may be of an older version, which named the cell r7c12 of a grid '12,7'; such a file "
+                      "cannot be continued or merged"),
+            std::string::npos)
+      << refusal(request(3), Existing::kResume);
+}
+
+TEST_F(Truth, AForeignFileIsNoJournal) {
+  for (const char* text : {"dear diary\n", "# exactff 0.0.1 truth\nreceiver\n", "\n", "#"}) {
+    write_text(journal_, text);
+    if (std::string(text) == "#") continue;  // may be the beginning of our journal
+    EXPECT_NE(
+        refusal(request(2), Existing::kResume).find("truth.csv.part:1: belongs to a different request: it says '"),
+        std::string::npos);
+    EXPECT_EQ(text_of(journal_), text);
+  }
+}
+
+// The request of a journal, changed in every way that affects its rows.
+TEST_F(Truth, AJournalOfAnotherRequestIsNamedWithItsDifference) {
+  Scene other = scene_.with_flipped(scene_.select("board"));
+  const std::pair<std::string, std::function<void(Request&)>> table[] = {
+      {"'# scene: room.obj, hash ",
+       [&](Request& r) {
+         r.scene = &other;
+         r.sources = {other.select("light"), other.select("lamp")};
+       }},
+      {"this request says '# scene: hall.obj, ", [](Request& r) { r.scene_name = "hall.obj"; }},
+      {"this request says '# receivers: floor, grid, hash ", [](Request& r) { r.receivers[0].point.x += 0.5; }},
+      {"this request says '# receivers: other, hash ", [](Request& r) { r.receivers_name = "other"; }},
+      {"this request says '# sources: lamp + light'", [](Request& r) { std::swap(r.sources[0], r.sources[1]); }},
+      {"this request says 'receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,unoccluded,",
+       [](Request& r) { r.unoccluded = true; }},
+      {"this request says 'receiver,on,x,y,z,nx,ny,nz,source,exact,lower,upper,visible_fraction,",
+       [](Request& r) { r.visible_fraction = true; }},
+      {"this request says '# shard: 1/2 in chunks of 64 rows, for exactff merge'",
+       [](Request& r) { r.shard.count = 2; }},
+  };
+  interrupt(request(10), 100);
+  const std::string journal = text_of(journal_);
+  for (const auto& [message, change] : table) {
+    Request changed = request(10);
+    change(changed);
+    const std::string told = refusal(changed, Existing::kResume);
+    EXPECT_NE(told.find(message), std::string::npos) << told;
+    EXPECT_NE(told.find("rows of different requests must not be mixed"), std::string::npos) << told;
+    EXPECT_EQ(text_of(journal_), journal);
+  }
+  std::string old_version = journal;
+  old_version.replace(old_version.find(kVersion), std::string(kVersion).size(), "0.0.9");
+  write_text(journal_, old_version);
+  EXPECT_NE(refusal(request(10), Existing::kResume).find("it says '# exactff 0.0.9 truth"), std::string::npos);
+}
+
+TEST_F(Truth, TwoProcessesCannotShareAJournal) {
+  const RowJournal journal(file_, Rows(request(2)), Existing::kRefuse, {});
+  for (const Existing existing : {Existing::kRefuse, Existing::kResume, Existing::kReplace}) {
+    EXPECT_NE(refusal(request(2), existing).find("truth.csv.part: another process is working on it"),
+              std::string::npos);
+  }
+}
+
+TEST_F(Truth, WhatCannotBeAFileIsRefused) {
+  for (const fs::path& path : {directory_.path(), directory_.path() / "missing" / "a.csv", fs::path("/dev/null"),
+                               directory_.path() / "folder/", fs::path()}) {
+    EXPECT_NE(complaint([&] { write(request(1), path); }), "") << path;
+  }
+  expect_only({});
+}
+
+TEST_F(Truth, TheFileGoesWhereALinkLeads) {
+  fs::create_symlink("target.csv", file_);
+  write(request(1), file_, Existing::kRefuse);
+  EXPECT_TRUE(fs::is_symlink(file_));
+  EXPECT_GT(fs::file_size(directory_.path() / "target.csv"), 100U);
+}
+
+}  // namespace
+}  // namespace exactff::truth
