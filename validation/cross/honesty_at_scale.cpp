@@ -1,5 +1,5 @@
-// The experiment `honesty` (src/experiments/honesty.h) on any number of random scenes: prints its table in Markdown and
-// writes every entry. Fails if an error is proved to exceed the reported one, if two enclosures are
+// The experiment `honesty` (src/reports/experiments/honesty.h) on any number of random scenes: prints its table in
+// Markdown and writes every entry. Fails if an error is proved to exceed the reported one, if two enclosures are
 // disjoint, or if a cell fails its own check.
 // Usage: honesty_at_scale [SCENES [FILE.csv [FIRST]]]; the scenes are numbered from FIRST, or 1
 #include <cstdlib>

@@ -20,7 +20,7 @@
 #include "report/report.h"
 #include "support/program.h"
 #include "text/fnv1a.h"
-#include "unit/study_support.h"
+#include "unit/reports/study_support.h"
 
 namespace exactff::validation {
 namespace {

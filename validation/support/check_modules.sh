@@ -53,7 +53,7 @@ complain() {
   failures=$((failures + 1))
 }
 
-set_module() {  # VARIABLE FILE: src/study/run.cpp, include/exactff/study.h: study
+set_module() {  # VARIABLE FILE: src/reports/study/run.cpp, include/exactff/study.h: study
   local name=${2#*/}
   if [ "${name%%/*}" != exactff ]; then
     printf -v "$1" %s "${name%%/*}"

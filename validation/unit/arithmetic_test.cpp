@@ -32,9 +32,9 @@
 #include "exactff/view_factors.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
-#include "study_support.h"
 #include "support/program.h"
 #include "support/random_scenes.h"
+#include "unit/reports/study_support.h"
 
 namespace exactff {
 namespace {

@@ -13,7 +13,7 @@
 #include "exactff/study.h"
 #include "exactff/truth.h"
 #include "kernel/statistics.h"
-#include "study_support.h"
+#include "unit/reports/study_support.h"
 
 namespace exactff {
 namespace {

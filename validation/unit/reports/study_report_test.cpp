@@ -16,7 +16,7 @@
 #include "report/tables.h"
 #include "support/folder.h"
 #include "support/program.h"
-#include "unit/study_support.h"
+#include "unit/reports/study_support.h"
 
 namespace exactff::study {
 namespace {

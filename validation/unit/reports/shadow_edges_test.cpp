@@ -13,7 +13,7 @@
 #include "exactff/study.h"
 #include "study/ladders.h"
 #include "study/profile.h"
-#include "unit/study_support.h"
+#include "unit/reports/study_support.h"
 
 namespace exactff::study {
 namespace {

@@ -13,7 +13,7 @@
 #include "jobs/kept_work.h"
 #include "report/report.h"
 #include "support/program.h"
-#include "unit/study_support.h"
+#include "unit/reports/study_support.h"
 
 namespace exactff::study {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "report/tables.h"
 #include "study/radiosity.h"
-#include "unit/study_support.h"
+#include "unit/reports/study_support.h"
 
 namespace exactff::study {
 namespace {

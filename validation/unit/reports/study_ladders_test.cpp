@@ -13,7 +13,7 @@
 #include "study/method_runs.h"
 #include "study/timing.h"
 #include "support/complaint.h"
-#include "unit/study_support.h"
+#include "unit/reports/study_support.h"
 
 namespace exactff::study {
 namespace {

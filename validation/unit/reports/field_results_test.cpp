@@ -12,8 +12,8 @@
 #include "report/report.h"
 #include "report/scene_part.h"
 #include "report/strip.h"
-#include "study_support.h"
 #include "support/program.h"
+#include "unit/reports/study_support.h"
 
 namespace exactff::report {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "unit/study_support.h"
+#include "unit/reports/study_support.h"
 
 namespace exactff::study {
 namespace {

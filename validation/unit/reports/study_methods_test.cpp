@@ -16,7 +16,7 @@
 #include "study/method_runs.h"
 #include "study/statistics.h"
 #include "text/escape.h"
-#include "unit/study_support.h"
+#include "unit/reports/study_support.h"
 
 namespace exactff::study {
 namespace {

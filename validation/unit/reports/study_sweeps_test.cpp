@@ -10,7 +10,7 @@
 
 #include "exactff/study.h"
 #include "study/settings.h"
-#include "unit/study_support.h"
+#include "unit/reports/study_support.h"
 
 namespace exactff::study {
 namespace {
