@@ -10,9 +10,9 @@ cd "$top"
 validation/setup.sh python3-skbuild python3-venv
 
 work=$(mktemp -d)
-trap 'rm -rf "$work" "$top"/src/python/{_skbuild,build,exactff.egg-info}' EXIT
+trap 'rm -rf "$work" "$top"/src/outside/python/{_skbuild,build,exactff.egg-info}' EXIT
 "$python" -m venv --system-site-packages "$work/venv"
-"$work/venv/bin/pip" wheel --no-build-isolation --no-deps --no-index --wheel-dir "$folder" ./src/python
+"$work/venv/bin/pip" wheel --no-build-isolation --no-deps --no-index --wheel-dir "$folder" ./src/outside/python
 "$work/venv/bin/pip" install --no-deps --no-index --find-links "$folder" exactff
 cd /
 "$work/venv/bin/python" - "$top/data/scenes/cornell_box.obj" <<'END'

@@ -27,7 +27,7 @@
 #include "fuzz/program_trial.h"
 #include "support/program.h"
 #include "support/random_scenes.h"
-#include "unit/sanitized.h"
+#include "unit/outside/sanitized.h"
 
 namespace exactff::validation {
 namespace {

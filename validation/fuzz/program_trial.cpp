@@ -19,7 +19,7 @@
 
 #include "files/parallel.h"
 #include "support/program.h"
-#include "unit/sanitized.h"
+#include "unit/outside/sanitized.h"
 
 namespace exactff::validation {
 

@@ -12,7 +12,7 @@
 #include "scene/ear_clipping.h"
 #include "scene/edge_crossing.h"
 #include "scene/triangulation.h"
-#include "unit/sanitized.h"
+#include "unit/outside/sanitized.h"
 
 namespace exactff {
 namespace {

@@ -16,7 +16,7 @@
 #include "exactff/receiver.h"
 #include "files/parallel.h"
 #include "support/program.h"
-#include "unit/sanitized.h"
+#include "unit/outside/sanitized.h"
 
 namespace exactff {
 namespace {

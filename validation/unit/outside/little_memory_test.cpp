@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "unit/hostile_program.h"
-#include "unit/sanitized.h"
+#include "unit/outside/hostile_program.h"
+#include "unit/outside/sanitized.h"
 
 namespace exactff {
 namespace {

@@ -16,8 +16,8 @@
 
 #include "support/folder.h"
 #include "support/program.h"
-#include "unit/hostile_program.h"
-#include "unit/sanitized.h"
+#include "unit/outside/hostile_program.h"
+#include "unit/outside/sanitized.h"
 
 namespace exactff {
 namespace {

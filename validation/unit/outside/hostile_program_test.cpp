@@ -1,6 +1,6 @@
 // The program in trouble: full disks, closed streams, a broken gnuplot, output folders that are not folders, senseless
 // flags. In every case the exit code is right and nothing half-written remains.
-#include "unit/hostile_program.h"
+#include "unit/outside/hostile_program.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

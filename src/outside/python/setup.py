@@ -1,4 +1,4 @@
-"""The wheel: ``pip install --no-build-isolation ./src/python`` in a virtual environment. Compiles the library, with two
+"""The wheel: ``pip install --no-build-isolation ./src/outside/python`` in a virtual environment. Compiles the library, with two
 jobs. With EXACTFF_BUILT=FOLDER in the environment, takes the module from that build folder instead."""
 
 import os
