@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # All C++ sources have the layout of .clang-format. Usage: check_format.sh CLANG-FORMAT TOP-FOLDER
-# Leaves out what pip leaves in src/python. Exit code 77 if the program is not of version 14.
+# Leaves out what pip leaves in src/outside/python. Exit code 77 if the program is not of version 14.
 set -euo pipefail
 format=$1
 cd "$2"

@@ -1,51 +1,25 @@
 #!/usr/bin/env bash
-# Includes point one way: each module may include only the modules listed beside it. A public header belongs to a module
-# as well. Public headers name no library that solves geometry or arithmetic for us. Only the kernel calls Arb.
+# What the compiler cannot check about the storeys of src/ (src/README.md). The compiler refuses an include of a private
+# header upward. This script checks the rest:
+#   - a public header belongs to a room, and so to a storey, as well;
+#   - the rooms of a storey include each other in one direction;
+#   - some rooms must not know others, since their agreement is evidence only if they share nothing;
+#   - only the kernel calls Arb; public headers name no library.
 # Usage: check_modules.sh TOP-FOLDER
 set -euo pipefail
 cd "$1"
 
-declare -A allowed=(
-  [kernel]=""
-  [text]="kernel"
-  [scene]="text kernel"
-  [formats]="scene text kernel"
-  [receivers]="scene text kernel"
-  [visibility]="receivers scene kernel"
-  [contour]="visibility kernel"
-  [exact]="contour visibility receivers scene text kernel"
-  [whole_view]="exact contour visibility receivers scene text kernel"
-  [light]="whole_view exact receivers scene text kernel"
-  [view_factors]="exact visibility receivers scene work text kernel"
-  [matrix]="jobs view_factors whole_view visibility scene work text kernel"
-  [radiosity]="matrix view_factors scene text kernel"
-  [diagnosis]="exact receivers scene text kernel"
-  [sampled]="receivers scene kernel"
-  [methods]="sampled exact receivers scene text kernel"
-  [models]="receivers scene text kernel"
-  [work]="text kernel"
-  [jobs]="work text kernel"
-  [page]="work text kernel"
-  [pixels]="receivers scene text kernel"
-  [vtk]="receivers scene work text kernel"
-  [study]="jobs methods sampled exact receivers scene work text kernel"
-  [experiments]="study models methods matrix view_factors whole_view exact page work text kernel"
-  [render]="jobs pixels light methods exact receivers scene work text kernel"
-  [flags]="report pixels study models formats receivers exact scene text kernel"
-  [report]="render experiments vtk study methods sampled exact page work text kernel"
-  [stress]="sampled exact receivers scene page work text kernel"
-  [truth]="jobs pixels vtk light exact receivers scene work text kernel"
-  [check]="pixels matrix view_factors exact page work text kernel"
-  [batch]="methods exact receivers scene work text kernel"
-  [python]=""  # and all public headers
-  [cli]="flags work text"  # and all public headers
+storeys=(foundation scenes solver rivals products reports outside)
+
+# The room of a public header that is not named after it.
+declare -A home=(
+  [enclosure]=kernel [geometry]=kernel [progress]=kernel [error]=text [summary]=scene [settings]=text [version]=text
+  [quantity]=whole_view [obj]=formats [scene_files]=formats [receiver]=receivers [record]=visibility [view]=whole_view
+  [view_regions]=whole_view [diagnosis]=slips [pixels]=exr [visibility_svg]=report [testing]=check [team]=jobs
 )
 
-# The module of a public header that is not named after it.
-declare -A home=(
-  [enclosure]=kernel [geometry]=kernel [progress]=kernel [error]=text [summary]=scene [settings]=text [version]=text [quantity]=light [obj]=formats [scene_files]=formats
-  [receiver]=receivers [record]=visibility [adaptive]=sampled [view]=whole_view [view_regions]=whole_view [visibility_svg]=report [testing]=check [team]=jobs
-)
+# Pairs of rooms of which the first must not include the second, not even through others.
+apart=("adaptive visibility" "adaptive contour" "view_factors whole_view" "whole_view view_factors")
 
 failures=0
 complain() {
@@ -53,8 +27,18 @@ complain() {
   failures=$((failures + 1))
 }
 
-set_module() {  # VARIABLE FILE: src/reports/study/run.cpp, include/exactff/study.h: study
-  local name=${2#*/}
+declare -A level=()  # of each room: the number of its storey
+for i in "${!storeys[@]}"; do
+  for folder in src/"${storeys[$i]}"/*/; do
+    folder=${folder%/}
+    level[${folder##*/}]=$i
+  done
+done
+
+# set_room VARIABLE FILE: of src/reports/study/run.cpp, study/run.h and exactff/study.h: study
+set_room() {
+  local name=${2#src/*/}
+  name=${name#include/}
   if [ "${name%%/*}" != exactff ]; then
     printf -v "$1" %s "${name%%/*}"
   else
@@ -64,24 +48,47 @@ set_module() {  # VARIABLE FILE: src/reports/study/run.cpp, include/exactff/stud
   fi
 }
 
+edges=$(mktemp)
+trap 'rm -f "$edges"' EXIT
 while IFS=: read -r file included; do
-  set_module from "$file"
-  set_module to "src/$included"
-  [ -n "${allowed[$from]+known}" ] || complain "$file belongs to no module of the table"
-  [ -n "${allowed[$to]+known}" ] || continue  # of the tests
-  { [ "$from" = cli ] || [ "$from" = python ]; } && [ "${included%%/*}" = exactff ] && continue
-  [ "$from" = "$to" ] || [[ " ${allowed[$from]:-} " == *" $to "* ]] ||
-    complain "$file includes $included, and $from must not know $to"
-done < <(grep -rHoE --exclude-dir=_skbuild '^#include "[a-z_]+/[a-z_]+' src include | sed 's/#include "//')
+  set_room from "$file"
+  set_room to "$included"
+  [ -n "${level[$from]:-}" ] || complain "$file belongs to no room"
+  [ -n "${level[$to]:-}" ] || complain "$file includes $included, which belongs to no room"
+  [ -n "${level[$from]:-}" ] && [ -n "${level[$to]:-}" ] && [ "$from" != "$to" ] || continue
+  [ "${level[$to]}" -le "${level[$from]}" ] ||
+    complain "$file includes $included, and the storey ${storeys[${level[$from]}]} is below ${storeys[${level[$to]}]}"
+  echo "$from $to" >> "$edges"
+done < <(grep -rHoE --exclude-dir=_skbuild '^#include "[a-z_]+/[a-z0-9_]+' src include | sed 's/#include "//')
+
+tsort "$edges" > /dev/null 2> "$edges.loop" || complain "rooms include each other in a circle: $(sed -n 's/^tsort: \([a-z_]*\)$/\1/p' "$edges.loop" | xargs)"
+rm -f "$edges.loop"
+
+# reach ROOM: all rooms whose headers its sources include, also through headers of others.
+reach() {
+  local seen=" $1 " before=""
+  while [ "$seen" != "$before" ]; do
+    before=$seen
+    while read -r from to; do
+      [[ "$seen" == *" $from "* && "$seen" != *" $to "* ]] && seen+="$to "
+    done < "$edges"
+  done
+  echo "$seen"
+}
+sort -u -o "$edges" "$edges"
+for pair in "${apart[@]}"; do
+  read -r one other <<< "$pair"
+  [[ "$(reach "$one")" != *" $other "* ]] || complain "$one must not know $other"
+done
 
 while read -r line; do
   complain "a public header names a library: $line"
 done < <(grep -rnE --exclude-dir=_skbuild --include='*.h' '\b(CGAL|gmp|gmpxx|mpfr|flint|arb_|embree|Imf|png_|CLI)\b' include || true)
 
 while read -r line; do
-  complain "only src/foundation/kernel may call Arb: $line"
+  complain "only the kernel may call Arb: $line"
 done < <(grep -rnE --exclude-dir=_skbuild '#include <(arb|arf|mag|acb|flint|fmpz)|\b(arb|arf|mag|acb|fmpz)_[a-z]' src include |
-         grep -vE '^src/(kernel|cmake)/|^src/outside/cli/memory.cpp:[0-9]+:#include' || true)  # the program's allocator, for FLINT
+         grep -vE '^src/(foundation/kernel|cmake)/|^src/outside/cli/memory.cpp:[0-9]+:#include' || true)  # the program's allocator, for FLINT
 
 [ "$failures" -eq 0 ] || exit 1
 echo "includes point one way"

@@ -5,7 +5,7 @@ import os
 import pathlib
 import re
 
-top = pathlib.Path(__file__).resolve().parents[2]
+top = pathlib.Path(__file__).resolve().parents[3]
 version = re.search(r"project\(exactff VERSION ([0-9.]+)", (top / "CMakeLists.txt").read_text()).group(1)
 about = dict(
     name="exactff",
@@ -34,7 +34,7 @@ else:
 
     os.environ.setdefault("CMAKE_BUILD_PARALLEL_LEVEL", "2")
     setup(
-        cmake_source_dir="../..",
+        cmake_source_dir="../../..",
         cmake_install_target="install-python",
         cmake_args=["-DEXACTFF_PYTHON=ON", "-DEXACTFF_PYTHON_DIR=.", "-DEXACTFF_PROGRAM=OFF", "-DEXACTFF_TESTS=OFF",
                     "-DEXACTFF_QUICK_BUILD=ON", "-DBUILD_SHARED_LIBS=OFF"],
