@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # bench.sh [--quick]: builds and runs the benchmarks, then prints the tables of validation/README.md. Times are CPU
-# times: medians of repetitions in random order within one run. The results are kept as JSON in build/bench
-# (EXACTFF_BUILD names another folder). Google Benchmark warns about a debug build: this is about Debian's package, not
-# about exactff. Takes about ten minutes on an idle machine; with --quick (smaller scenes, fewer repetitions) less than
-# two.
+# times: medians of repetitions in random order within one run. The results are kept as JSON in build/results. Google
+# Benchmark warns about a debug build: this is about Debian's package, not about exactff. After test.sh, only the
+# benchmarks are compiled. Takes about ten minutes on an idle machine; with --quick (smaller scenes, fewer repetitions)
+# less than two.
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$top"
-folder=${EXACTFF_BUILD:-build/bench}
+folder=build
 scenes=(sparse blinds mesh dense deep tiles lattice near)
 sizes=(100 1000 10000 100000)
 repetitions=7
@@ -21,7 +21,7 @@ case "${1:-}" in
 esac
 
 validation/setup.sh libbenchmark-dev
-validation/build.sh "$folder" -DEXACTFF_TESTS=OFF -DEXACTFF_BENCH=ON
+validation/build_shared.sh -DEXACTFF_BENCH=ON -- exactff_bench exactff_bench_tables
 
 # measure NAME FILTER [OPTION...]: one run, into NAME.json; its printed output, which repeats that, goes into NAME.log.
 measure() {

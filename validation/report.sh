@@ -7,7 +7,7 @@ set -euo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$top"
 validation/setup.sh
-validation/build.sh build -DEXACTFF_TESTS=OFF -DEXACTFF_QUICK_BUILD=ON
+validation/build_shared.sh -- exactff_program
 
 # The program may have changed since a finished report was made, so --resume would be wrong for that.
 existing=--force

@@ -9,7 +9,6 @@ set -euo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$top"
 
-# EXACTFF_QUICK_BUILD compiles sources together. validation/README.md tells how every source is compiled by itself.
 test_optimised() {
   validation/setup.sh libboost-mpi-dev libopenmpi-dev openmpi-bin \
     chromium chromium-driver python3-selenium clang-format python3-openimageio \
@@ -17,7 +16,7 @@ test_optimised() {
     python3-setuptools python3-wheel python3-vtk9
   # These are for tests of a build option, of reports, of the layout, of images, of the package for Python, and of files
   # for ParaView.
-  validation/build.sh build -DEXACTFF_TESTS=ON -DEXACTFF_WERROR=ON -DEXACTFF_QUICK_BUILD=ON
+  validation/build_shared.sh
   ctest --test-dir build --output-on-failure --parallel 3  # some tests wait for a browser, for MPI or for a signal
 }
 

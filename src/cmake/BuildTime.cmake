@@ -65,20 +65,21 @@ function(exactff_save_compile_time target)
   endif()
 endfunction()
 
-# exactff_save_compile_time_of_groups(TARGET NAME...): compiles these groups of a quick build with less optimisation: -O0
-# under sanitizers, else -O1 if the build has tests. For groups that measure, read and write, in which tests spend little
-# time. Quick builds without tests, such as that of report.sh, optimise them like the others.
-function(exactff_save_compile_time_of_groups target)
-  if(NOT EXACTFF_QUICK_BUILD OR NOT EXACTFF_TESTS)
-    return()
-  endif()
+# exactff_save_compile_time_of_rooms(NAME...): compiles these rooms of the present storey with -O1 (-O0 under sanitizers).
+# For rooms that present results.
+function(exactff_save_compile_time_of_rooms)
   set(level -O1)
   if(EXACTFF_SANITIZE)
     set(level -O0)
   endif()
-  # With an option of its own, a source would leave its group. So the source that CMake makes of the group gets it.
-  foreach(group ${ARGN})
-    set_property(SOURCE ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${target}.dir/Unity/unity_${group}_cxx.cxx
-                 APPEND PROPERTY COMPILE_OPTIONS ${level})
+  get_target_property(sources ${exactff_storey_target} SOURCES)
+  foreach(room ${ARGN})
+    set(files ${sources})
+    list(FILTER files INCLUDE REGEX "^${room}/")
+    if(EXACTFF_QUICK_BUILD)
+      # With an option of its own, a source would leave its group. So the source that CMake makes of the group gets it.
+      set(files ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${exactff_storey_target}.dir/Unity/unity_${room}_cxx.cxx)
+    endif()
+    set_property(SOURCE ${files} APPEND PROPERTY COMPILE_OPTIONS ${level})
   endforeach()
 endfunction()
