@@ -26,7 +26,10 @@ apply() {
 
 names_of_all() {
   local file
-  for file in "$patches"/*.patch; do basename "$file" .patch; done
+  for file in "$patches"/*.patch; do
+    file=${file##*/}
+    echo "${file%.patch}"
+  done
 }
 
 # The test that detected the fault when it was planted before, by the table in mutation/README.md; without its parameter.
@@ -36,19 +39,20 @@ known_test() {
 
 check() {
   local name failures=0
-  command -v patch > /dev/null || { echo "the program 'patch' is missing; validation/setup.sh installs it" >&2; exit 1; }
-  for name in $(names_of_all); do
-    if ! grep -q '^Breaks: ' "$patches/$name.patch" || ! grep -q '^A user sees: ' "$patches/$name.patch"; then
-      echo "$name.patch does not say what it breaks and what a user sees"
-      failures=$((failures + 1))
-    fi
-    if [ -z "$(known_test "$name")" ]; then
-      echo "$name is not in the table of mutation/README.md, so the whole suite would run to detect it"
-      failures=$((failures + 1))
-    fi
-    apply "$name" "$top" --dry-run && continue
-    echo "$name.patch no longer applies: write it again for the present sources, as 'diff -u' from a/ to b/"
+  complain() {
+    echo "$1"
     failures=$((failures + 1))
+  }
+  command -v patch > /dev/null || { echo "the program 'patch' is missing; validation/setup.sh installs it" >&2; exit 1; }
+  while read -r name; do
+    complain "$name does not say what it breaks and what a user sees"
+  done < <({ grep -L '^Breaks: ' "$patches"/*.patch; grep -L '^A user sees: ' "$patches"/*.patch; } | sort -u)
+  while read -r name; do
+    complain "$name is not in the table of mutation/README.md, so the whole suite would run to detect it"
+  done < <(comm -23 <(names_of_all | sort) <(sed -nE 's/^\| `([^`]+)` \|.*\| `[^`]+`.*\|$/\1/p' "$patches/README.md" | sort))
+  for name in $(names_of_all); do
+    apply "$name" "$top" --dry-run && continue
+    complain "$name.patch no longer applies: write it again for the present sources, as 'diff -u' from a/ to b/"
   done
   [ "$failures" -eq 0 ] || exit 1
   echo "every patch applies and is in the table"
