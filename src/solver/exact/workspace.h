@@ -6,7 +6,7 @@
 
 #include "exact/quick_tier.h"
 #include "exactff/exact.h"
-#include "visibility/edge_walk.h"
+#include "visibility/edge_workspace.h"
 
 namespace exactff {
 

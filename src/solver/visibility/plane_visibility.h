@@ -43,6 +43,16 @@ struct Request {
   ShaftCulling culling = ShaftCulling::kTree;
   bool remembers_covers = false;     // see CoverMemory; the counts in the record then depend on earlier calls
   std::size_t fewest_to_cover = 64;  // candidates: with fewer, a search for a small cover saves nothing
+
+  [[nodiscard]] bool culls() const { return culling == ShaftCulling::kTree; }
+  // Whether a proof that all is hidden may end the search before every candidate has been looked at.
+  [[nodiscard]] bool may_stop_early() const { return culls() && !list_cutters; }
+};
+
+struct PlaneQuery {
+  const View& view;
+  const SourcePlane& plane;
+  const Request& request;
 };
 
 // The boundary of the visible region, whichever engine found it. Refers to the workspace that it was found with: valid

@@ -1,6 +1,7 @@
 #include "visibility/visible_boundary.h"
 
 #include "visibility/boolean_walk.h"
+#include "visibility/edge_walk.h"
 
 namespace exactff::visibility {
 

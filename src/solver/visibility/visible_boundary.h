@@ -1,7 +1,8 @@
 // Finds the boundary of the region of one source plane that is visible from a receiving point: chooses the engine.
 #pragma once
 
-#include "visibility/edge_walk.h"
+#include "visibility/edge_workspace.h"
+#include "visibility/plane_visibility.h"
 
 namespace exactff::visibility {
 

@@ -1,0 +1,49 @@
+// Steps 3 and 4 of the exact method, for the edge engine: finds the pieces that enter the shaft and adds their
+// outlines, unless one of them hides all.
+//
+// Candidates come from the bounding-volume tree; then signs decide (source_shaft.h). A face that the source's plane
+// cuts is clipped, no face is clipped to the shaft, and pieces of closed surfaces that face away from x are left out
+// (surface_backs.h).
+#pragma once
+
+#include <optional>
+
+#include "visibility/piece_clip.h"
+#include "visibility/source_shaft.h"
+#include "visibility/surface_backs.h"
+
+namespace exactff::visibility {
+
+class Candidates {
+ public:
+  // Requires that the first `source_count` outlines of the search are the source's. Counts its work in the record.
+  Candidates(const PlaneQuery& query, std::size_t source_count, EdgeSearch& search, PlaneRecord& record)
+      : query_(query),
+        source_count_(source_count),
+        search_(search),
+        outlines_(search.edges.outlines()),
+        record_(record),
+        clip_(query, search),
+        shaft_(query, clip_, search),
+        backs_(query, shaft_, search.backs) {}
+
+  // Adds the outlines of all candidates. If one hides all, returns its face; the others are then not needed.
+  [[nodiscard]] std::optional<FaceId> gather();
+  // Whether a candidate hides all. Looks only at those that may. Adds outlines. Requires culling.
+  [[nodiscard]] bool one_hides_all();
+
+ private:
+  void start();
+  [[nodiscard]] bool visit(std::uint32_t index, bool inside);
+
+  const PlaneQuery& query_;
+  const std::size_t source_count_;
+  EdgeSearch& search_;
+  Outlines& outlines_;
+  PlaneRecord& record_;
+  PieceClip clip_;
+  SourceShaft shaft_;
+  SurfaceBacks backs_;
+};
+
+}  // namespace exactff::visibility

@@ -1,0 +1,48 @@
+// The memory of the edge engine, reused from one plane to the next.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scene/shaft_tree.h"
+#include "visibility/cover_memory.h"
+#include "visibility/run_marks.h"
+#include "visibility/side_planes.h"
+#include "visibility/visible_edges.h"
+
+namespace exactff::visibility {
+
+struct ClipMemory {
+  std::vector<CornerId> corners, ring;
+  std::vector<int> depths;  // of the corners: on which side of the plane that may cut them
+};
+
+struct ShaftMemory {
+  std::vector<HalfSpace> half_spaces;
+  HalfSpaceGroups groups;  // the same
+  std::vector<SidePlane> side_planes;
+};
+
+// By closed surface.
+struct BacksMemory {
+  RunMarks decided;
+  std::vector<std::uint8_t> left_out;  // where it is decided
+};
+
+// What a search for the visible parts of one plane works on. It depends on nothing that an earlier search left here.
+struct EdgeSearch {
+  VisibleEdges edges;
+  ClipMemory clip;
+  ShaftMemory shaft;
+  BacksMemory backs;
+  RunMarks seen;                              // pieces
+  std::vector<std::uint32_t> outline_pieces;  // of the occluders' outlines
+};
+
+struct EdgeWorkspace {
+  EdgeSearch search;   // what it found remains valid until the next one
+  EdgeSearch attempt;  // to hide the plane as before
+  CoverMemory covers;
+};
+
+}  // namespace exactff::visibility
