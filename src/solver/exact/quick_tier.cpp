@@ -56,15 +56,15 @@ void QuickTier::for_each_batch(EdgeCovers& found, std::span<const EdgeCovers::Pa
   const auto end = [&](EdgeId line) { return line < Parameter::kAtBegin ? number_of_line(outlines, line) : line; };
   while (!parts.empty()) {
     if (edges_.size() >= kMostLines) forget_lines();
-    // 1. Number the lines and corners of a batch.
+    // a. Number the lines and corners of a batch.
     const std::size_t count = std::min(kBatch, parts.size());
     pieces_.clear();
     for (const EdgeCovers::Part& part : parts.first(count)) {
       pieces_.push_back({number_of_line(outlines, part.edge), end(part.begin.line), end(part.end.line)});
     }
-    // 2. Make the lines that are new.
+    // b. Make the lines that are new.
     make_lines();
-    // 3. Add the parts.
+    // c. Add the parts.
     take();
     parts = parts.subspan(count);
   }

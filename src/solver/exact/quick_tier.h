@@ -1,9 +1,10 @@
-// The first attempt at a certified value: translates the boundary that the edge engine found into corners, lines and
-// pieces, and integrates these in double-double arithmetic (contour/quick_contour.h).
+// Step 7 of the exact method (src/README.md), the first attempt at a certified value: translates the boundary that the
+// edge engine found into corners, lines and pieces, and integrates these in double-double arithmetic
+// (contour/quick_contour.h).
 //
-//   1. Give numbers to the lines of a batch of parts, and to their corners.
-//   2. Make the lines that are new, four at a time.
-//   3. Add the parts to the contour integral.
+//   a. Give numbers to the lines of a batch of parts, and to their corners.
+//   b. Make the lines that are new, four at a time.
+//   c. Add the parts to the contour integral.
 #pragma once
 
 #include <cstdint>

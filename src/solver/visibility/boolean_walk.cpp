@@ -22,7 +22,7 @@ class BooleanWalk {
     result_.record.engine = Engine::kBoolean;
   }
 
-  // Steps 1 to 3 alone.
+  // Steps 1 to 4 alone.
   Cutters find_cutters() {
     if (!gather_source() || side_of(plane_, view_.x) <= 0 || !clip_by_horizon()) return {};
     make_hull();
@@ -78,21 +78,21 @@ Outcome BooleanWalk::find_outcome() {
   if (side_of(plane_, view_.x) <= 0) return Outcome::kBehind;
   // 2. Clip by the receiver's horizon.
   if (!clip_by_horizon()) return Outcome::kBelowHorizon;
-  // 3. and 5. Candidates in the shaft.
+  // 3. Find candidates. 4. Stop if one hides all.
   make_hull();
   if (!gather_occluders()) return Outcome::kHiddenByOne;
   if (request_.list_cutters) list_cutters();
   result_.record.source_joined = clipped_.size() > 1;
-  // 4. No candidates.
+  // 6. The boundary: of the source, if there are no candidates;
   if (occluders_.empty()) {
     trace_source();
     return Outcome::kUnoccluded;
   }
-  // 6. Project and subtract.
+  // else project and subtract,
   std::vector<Polygon2> shadows;
   for (const Occluder& occluder : occluders_) shadows.push_back(frame().to_polygon(occluder.ring));
   loops_ = difference(clipped_polygons(), shadows);
-  // 7. Boundary loops of the visible region.
+  // and trace the loops of what is left.
   trace_loops();
   return loops_.empty() ? Outcome::kHiddenByUnion : Outcome::kPartlyHidden;
 }

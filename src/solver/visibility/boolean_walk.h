@@ -1,13 +1,12 @@
 // The visible boundary by polygon Booleans: the reference engine.
 //
-// Steps, stopping as soon as nothing is left:
+// Steps 1 to 6 of the exact method (src/README.md) without step 5, stopping as soon as nothing is left:
 //   1. cull: x behind or in the plane, or nothing above the horizon;
-//   2. exact clip by the receiver's horizon;
-//   3. shaft: candidates from the bounding-volume tree, exact predicates, exact clip (shaft.h);
-//   4. no candidates: the boundary of the clipped source itself;
-//   5. one candidate hides all: nothing is visible;
-//   6. projection to the source's plane and polygon Booleans (plane_frame.h, polygon_sets.h);
-//   7. boundary loops of the visible region, collinear pieces merged.
+//   2. clip by the receiver's horizon, exactly;
+//   3. find candidates in the shaft: bounding-volume tree, exact predicates, exact clip (shaft.h);
+//   4. stop if one of them hides all;
+//   6. the boundary: of the clipped source itself if there are no candidates, otherwise by projection to the source's
+//      plane and polygon Booleans (plane_frame.h, polygon_sets.h); its loops, collinear pieces merged.
 #pragma once
 
 #include "visibility/plane_frame.h"
@@ -19,7 +18,7 @@ namespace exactff::visibility {
 
 PlaneVisibility find_by_booleans(const View& view, const SourcePlane& plane, const Request& request);
 
-// The cutters alone (steps 1 to 3).
+// The cutters alone (steps 1 to 4).
 Cutters find_cutters(const View& view, const SourcePlane& plane, const Request& request);
 
 // The exact geometry behind a result, for drawings.

@@ -141,15 +141,15 @@ Fate Shaft::test(std::uint32_t piece_index, ShaftCulling culling, Occluder& occl
     approx_corners_.push_back(kernel::approx_difference(vertices[corner], x_));
   }
   exact_corners_.assign(corners_.size(), std::nullopt);
-  // 1. Nowhere near the shaft?
+  // a. Nowhere near the shaft?
   if (!may_meet(corners_, culling)) return Fate::kOutside;
 
-  // 2. Seen edge-on? And the orientation as x sees it.
+  // b. Seen edge-on? And the orientation as x sees it.
   const auto relative = [&](int f) { return kernel::exact_difference(vertices[piece.frame[f]], x_).v; };
   const int facing = sign(dot(cross(relative(0), relative(1)), relative(2)));
   if (facing == 0) return Fate::kOutside;
 
-  // 3. Clip by the source's plane.
+  // c. Clip by the source's plane.
   Ring& ring = occluder.ring;
   ring.clear();
   occluder.face = piece.face;
@@ -158,13 +158,13 @@ Fate Shaft::test(std::uint32_t piece_index, ShaftCulling culling, Occluder& occl
     for (std::size_t c = 0; c < corners_.size(); ++c) ring.push_back(kernel::make_direction(exact_corner(c).v));
   }
   if (facing > 0) std::reverse(ring.begin(), ring.end());
-  // 4. Does it hide all?
+  // d. Does it hide all?
   if (hides_all(ring)) {
     ring = hull_;
     return Fate::kHidesAll;
   }
 
-  // 5. Clip by the side planes.
+  // e. Clip by the side planes.
   for (const Direction& side_plane : sides_) {
     const ClipResult result = clip(ring, side_plane);
     if (result == ClipResult::kEmpty) return Fate::kOutside;

@@ -6,14 +6,15 @@
 //   { t : M . t < h }  and  { t : (s_i+1 x s_i) . t > 0 for every side i }
 // has an interior in the piece's own plane and that plane does not contain x.
 //
-// Steps for one piece, each a sign with a filter first and an exact product last:
-//   1. nothing strictly on x's side of the source's plane, nothing ahead of x, or everything on or outside one side
+// Steps 3 and 4 of the exact method (src/README.md) for one piece, each a sign with a filter first and an exact product
+// last:
+//   a. nothing strictly on x's side of the source's plane, nothing ahead of x, or everything on or outside one side
 //      plane: outside (conservative; most pieces end here);
-//   2. its plane contains x: outside, since x sees it edge-on;
-//   3. exact clip by the source's plane;
-//   4. every s_i inside or on every plane (x, t_j, t_j+1): the piece hides the whole source, and the hull is its part
+//   b. its plane contains x: outside, since x sees it edge-on;
+//   c. exact clip by the source's plane;
+//   d. every s_i inside or on every plane (x, t_j, t_j+1): the piece hides the whole source, and the hull is its part
 //      in the shaft;
-//   5. exact clip by the side planes: outside if nothing is left. A clip keeps an interior as long as one corner lies
+//   e. exact clip by the side planes: outside if nothing is left. A clip keeps an interior as long as one corner lies
 //      strictly inside, so no area needs to be computed.
 #pragma once
 
@@ -47,7 +48,7 @@ class Shaft {
 
   // Classifies a piece. Unless it is outside, `occluder` receives its part in the shaft. `was_cut`: that part is less
   // than the whole piece; if the piece hides everything, only the cut by the source's plane counts.
-  // Without culling, step 1 tests only the source's plane, since step 3 relies on it; step 5 decides the rest.
+  // Without culling, step a tests only the source's plane, since step c relies on it; step e decides the rest.
   Fate test(std::uint32_t piece, ShaftCulling culling, Occluder& occluder, bool& was_cut);
 
  private:

@@ -39,13 +39,13 @@ void VisibleEdges::start() {
 bool VisibleEdges::find(std::size_t source_count) {
   start();
   by_cover_ = false;
-  // 1. Silhouettes.
+  // a. Silhouettes.
   drop_inner_edges(source_count);
-  // 2. The grid.
+  // b. The grid.
   kernel::poll();
   grid_.build(outlines_, source_count, dropped_);
   if (grid_.unsorted_pairs(outlines_) > kMostUnsortedPairs * outlines_.edges().size()) return false;
-  // 3. and 4. Edge by edge.
+  // c. and d. Edge by edge.
   for (const OutlineId o : grid_.in_order(outlines_.outlines().size())) trace_outline(o, source_count);
   return true;
 }
@@ -143,12 +143,12 @@ EXACTFF_INLINE void VisibleEdges::keep_rest(EdgeId id, bool reversed, const Inte
 }
 
 EXACTFF_INLINE void VisibleEdges::trace(Run& run, std::size_t source_count) {
-  // 3. The intervals that outlines cover.
+  // c. The intervals that outlines cover.
   find_allowed(run, source_count);
   if (run.wanted == 0) return;
   near_ = by_cover_ ? choice_.chosen() : grid_.find_near(outlines_, run.first, run.wanted);
   find_removed(run, source_count);
-  // 4. Sweep over them.
+  // d. Sweep over them.
   for (unsigned k = 0; k < run.edges; ++k) {
     if ((run.wanted >> k & 1U) == 0) continue;
     const EdgeId id = run.first + k;

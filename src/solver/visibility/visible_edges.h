@@ -12,14 +12,14 @@
 //     with the same side, the one with the lowest index keeps it.
 // Where an O-edge lies on the outer boundary of S, it has S on one side only, and the S-edge represents both.
 //
-// Steps:
-//   1. silhouettes: an edge that two occluders share, one on each side, cannot bound V; nor can its duplicates;
-//   2. a grid over the source (outline_grid.h) finds the outlines that an edge may meet;
-//   3. edges are processed in runs of up to four corners, outline by outline; where there are many outlines, neighbours
+// Step 6 of the exact method (src/README.md) in four parts:
+//   a. silhouettes: an edge that two occluders share, one on each side, cannot bound V; nor can its duplicates;
+//   b. a grid over the source (outline_grid.h) finds the outlines that an edge may meet;
+//   c. edges are processed in runs of up to four corners, outline by outline; where there are many outlines, neighbours
 //      follow one another. The heights of a run's corners above the lines of an outline give, for each edge of the run,
 //      the interval that the outline covers: by the filter for all edges of the run at once, and exactly where the
 //      filter is not certain;
-//   4. for each edge, one sweep over its intervals gives its visible parts.
+//   d. for each edge, one sweep over its intervals gives its visible parts.
 //
 // Few occluders may prove that nothing is visible: if no part of any edge of the source or of these occluders bounds
 // what they leave visible, they leave nothing, and so do all. find_cover chooses them by estimates (cover_choice.h),
