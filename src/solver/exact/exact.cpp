@@ -1,5 +1,5 @@
-// The exact method: finds the visible boundary for each plane of the source, adds up one contour integral over all
-// planes, and raises the precision until the whole ball rounds to one double.
+// The exact method (steps 1 to 7 of src/README.md): finds the visible boundary for each plane of the source, adds up
+// one contour integral over all planes, and raises the precision until the whole ball rounds to one double.
 //
 // Why this ends: an irrational F > 0 is never the midpoint of two doubles. By Baker's theorem a rational F comes from
 // rational relations among the angles and pi, and the factors n . (a x b) / (|n| |a x b|), if rational, have 2-adic
@@ -172,23 +172,26 @@ class Solver {
   void run() {
     reset(result_, planes_.size(), memory_.spare_records);
     memory_.quick.start(view_.n);
-    for (std::size_t p = 0; p < planes_.size(); ++p) look_at(planes_[p], result_.planes[p]);
+    for (std::size_t p = 0; p < planes_.size(); ++p) {
+      PlaneVisibility seen = find(planes_[p]);
+      memory_.quick.add(seen.boundary);
+      note(planes_[p], std::move(seen), result_.planes[p]);
+    }
     sort_unique(result_.cutters);
-    if (something_visible_) integrate();
+    if (something_visible_ && !sum_is_certain()) integrate_in_balls();
     exact::set_bounds(result_);
     if (wants_fraction_) set_fraction(shares_, result_);
   }
 
  private:
+  // Steps 1 to 6 for one plane.
   [[nodiscard]] PlaneVisibility find(const SourcePlane& plane) {
     return find_visible_boundary(view_, plane, request_, memory_.edges);
   }
 
-  void look_at(const SourcePlane& plane, PlaneRecord& record) {
-    PlaneVisibility seen = find(plane);
+  void note(const SourcePlane& plane, PlaneVisibility&& seen, PlaneRecord& record) {
     if (options_.list_cutters) seen.record.cutters = seen.cutters.size();
     something_visible_ = something_visible_ || !seen.boundary.empty();
-    memory_.quick.add(seen.boundary);
     if (wants_fraction_) {
       note_fraction(seen, options_);
       shares_.push_back(share_of(scene_, plane, seen));
@@ -198,11 +201,21 @@ class Solver {
     last_boundary_ = std::move(seen.boundary);
   }
 
-  void integrate() {
-    if (options_.precision_cap >= exact::QuickTier::kBits &&
-        exact::is_determined(memory_.quick.ball(), exact::QuickTier::kBits, options_.digits, result_)) {
-      return;
-    }
+  // Step 7 in double-double: takes the value from the sum over all planes. False if that does not determine it.
+  [[nodiscard]] bool sum_is_certain() {
+    return options_.precision_cap >= exact::QuickTier::kBits &&
+           exact::is_determined(memory_.quick.ball(), exact::QuickTier::kBits, options_.digits, result_);
+  }
+
+  // Step 7 in balls of rising precision.
+  void integrate_in_balls() {
+    const contour::ContourIntegral contour = exact_contour();
+    exact::certify([&](long bits) { return contour.evaluate(bits); }, options_.digits, options_.precision_cap, result_);
+  }
+
+  // The boundaries of all planes, in exact numbers. They are so seldom needed that none is kept beyond its place in the
+  // workspace, which has only the last one: those of several planes are found again.
+  [[nodiscard]] contour::ContourIntegral exact_contour() {
     contour::ContourIntegral contour(view_.normal().exact);
     const auto add = [&](const visibility::BoundaryPiece& piece) { contour.add(piece); };
     if (planes_.size() == 1) {
@@ -210,7 +223,7 @@ class Solver {
     } else {
       for (const SourcePlane& plane : planes_) find(plane).boundary.for_each_piece(add);
     }
-    exact::certify([&](long bits) { return contour.evaluate(bits); }, options_.digits, options_.precision_cap, result_);
+    return contour;
   }
 
   const Scene& scene_;
