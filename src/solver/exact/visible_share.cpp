@@ -163,6 +163,15 @@ Turn turn_of(const Point<double>& a, const Point<double>& b, const Point<double>
 }  // namespace
 
 // Clips the piece by the window's sides in the same way as meets_exactly.
+//
+// The error of a crossing. Let p and d = p - q be the height and the fall as computed, e and f their errors, c = p / d
+// as computed, and u = 2^-53. The true height is within e of p; the true fall is within f + u (f + |d|) of d, since f
+// and d are rounded sums. Where |d| > 4 f, the true fall has the sign of d and is larger than |d| / 1.4, so the true
+// quotient is within
+//   1.4 (e + |p / d| (f + u (f + |d|))) / |d|  <  1.41 (e + |c| f) / |d| + 1.5u |c|
+// of p / d. The division adds u |c|; the sum and the difference of c and its error add u |c| and u of that error. In
+// all, this is less than 1.42 (e + |c| f) / |d| + 4u |c|. Twice the quotient and 8u (1 + |c|) are used: the rest covers
+// the five roundings in the bound itself, and quotients that underflow.
 VisibleShare::Meeting VisibleShare::meets(const Piece& piece) const {
   double from_low = 0.0, from_high = 0.0, to_low = 1.0, to_high = 1.0;
   bool unsure = false;
@@ -214,7 +223,25 @@ double proper_share(double share) { return std::clamp(share, std::numeric_limits
 
 }  // namespace
 
-// A bound on the change of the share when the sides move by the error of their corners.
+// A bound on the change of the share when the corners of the window move by the error e of their coordinates.
+//
+// Let P be the sum of |du| + |dv| over the sides, W the doubled area, and s the visible share, all of the computed
+// window. While the corners move straight to their true places, every point of a side moves by at most e along u and
+// along v, and the side's |du| and |dv| grow by at most 2e: it sweeps an area of at most e (|du| + |dv| + 4e). Four
+// sides sweep at most D = e P + 16 e^2. An area that the window gains or loses changes (visible area - s * whole area)
+// by at most itself, so this difference, 0 for the computed window, is at most D for the true one, and the share
+// changes by at most 2 D / (W - 2 D). With a bound of at most kAccuracy = 2^-30, and W <= P^2 / 8 as for every polygon
+// in a box of half-perimeter P / 2, e is at most 2^-35 P. Then D < 1.01 e P, 2 D < 2^-30 W, and the change is less than
+// 2.1 e P / W. The bound is 4 (e + u) P / W, u = 2^-53, of which almost a half is to spare.
+//
+// The rounding of the sum over n pieces, in of(), is not part of this bound. All coordinates are at most about 1. The
+// ends of a piece are wrong by u / 2. A computed height above a line, its turn over the line's length, is wrong by 4u
+// times the distance of two points, at most 6u; this moves each of three cuts, and where the triangle is so flat that
+// its orientation is wrong, all of it. A constructed corner is wrong by u / 2 in each coordinate, and by 4u of the side
+// along its side; the turns that are added up by 4u of their factors. With the window's diameter at most P / 2, the sum
+// of all this is below 96u P for a doubled area. Adding up n areas of at most W errs by n^2 u W. So the share is wrong
+// by less than n 96u P / W + n^2 u more. Since e >= 2^-48 = 32u, the first part is less than n times the bound, and
+// below 2^25 pieces the whole error is less than 1/2, so that of() can tell 0 from 1.
 double VisibleShare::window_blur(double doubled_area_of_window) const {
   double around = 0.0;
   const SmallPolygon<double>& corners = window_.corners;

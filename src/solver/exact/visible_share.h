@@ -36,10 +36,11 @@ class VisibleShare {
   void start(std::uint32_t piece);
 
   static constexpr double kAccuracy = 0x1p-30;
-  // Visible area over whole area of the window: exactly 0, exactly 1, or strictly in between and then within kAccuracy
-  // of the true value, usually much closer.
-  // Requires three or four corners, convex, counter-clockwise as seen from x. Returns 0 if rounding of the corners has
-  // left no window: all on one line, clockwise, or some directions that do not meet the plane.
+  // Visible area over whole area of the window: exactly 0, exactly 1, or strictly in between. The errors of the
+  // window's corners then change it by less than kAccuracy, and so does rounding for each piece of the region's
+  // boundary (see window_blur); usually it is much closer. Requires three or four corners, convex, counter-clockwise as
+  // seen from x. Returns 0 if rounding of the corners has left no window: all on one line, clockwise, or some
+  // directions that do not meet the plane.
   [[nodiscard]] double of(std::span<const Vec3> directions);
   // The same, computed in rational numbers and rounded once.
   [[nodiscard]] double of_exactly(std::span<const Vec3> directions);
