@@ -74,7 +74,7 @@ class Recursion {
   double compute_contribution(const SourceRoots& source, std::uint64_t key) {
     double sum = 0.0;
     for (const SourceRoot& root : source.roots) {
-      key = derived_key(key, 0);
+      key = kernel::split_mix(key, 0);
       const SourcePlane& plane = source.planes[root.plane];
       if (!view_.is_own(root.face) && !can_cull(plane)) sum += compute_root(root, plane, key);
     }
@@ -112,7 +112,7 @@ class Recursion {
     if (p.size() <= 4) return compute_form_factor(make_sub_patch(p), all, key, 0);
     double sum = 0.0;
     for (std::size_t i = 1; i + 1 < p.size(); ++i) {
-      sum += compute_form_factor(make_sub_patch(std::array{p[0], p[i], p[i + 1]}), all, derived_key(key, i), 0);
+      sum += compute_form_factor(make_sub_patch(std::array{p[0], p[i], p[i + 1]}), all, kernel::split_mix(key, i), 0);
     }
     return sum;
   }
@@ -136,7 +136,7 @@ class Recursion {
     double sum = 0.0;
     std::uint64_t child = 0;
     for (const SubPatch& part : split_patch(s)) {
-      sum += compute_form_factor(part, v.candidates, derived_key(key, ++child), depth + 1);
+      sum += compute_form_factor(part, v.candidates, kernel::split_mix(key, ++child), depth + 1);
     }
     occluders_.drop(v.candidates);
     return sum;

@@ -168,12 +168,12 @@ ReceiverView view_from(const Receiver& receiver, const ScaledScene& scene) {
 
 std::uint64_t stream_key(const ReceiverView& view, const Selection& source, std::uint64_t seed) {
   const auto bits_of = [](double value) { return std::bit_cast<std::uint64_t>(value + 0.0); };  // -0 is 0
-  std::uint64_t key = derived_key(seed, 0);
+  std::uint64_t key = kernel::split_mix(seed, 0);
   for (const Vec3& v : {view.exact_point, view.normal}) {
-    for (const double value : {v.x, v.y, v.z}) key = derived_key(key, bits_of(value));
+    for (const double value : {v.x, v.y, v.z}) key = kernel::split_mix(key, bits_of(value));
   }
-  key = derived_key(key, index_of(source.patch));
-  return derived_key(key, source.face ? index_of(*source.face) + 1 : 0);
+  key = kernel::split_mix(key, index_of(source.patch));
+  return kernel::split_mix(key, source.face ? index_of(*source.face) + 1 : 0);
 }
 
 bool in_front(const ReceiverView& view, const SourcePlane& plane) {

@@ -7,21 +7,9 @@
 
 #include "adaptive/sub_patch.h"
 #include "exactff/adaptive.h"
+#include "kernel/split_mix.h"
 
 namespace exactff::adaptive {
-
-// A bijective mix of 64 bits (the finaliser of splitmix64, Steele, Lea and Flood 2014).
-inline std::uint64_t mixed(std::uint64_t z) {
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31);
-}
-inline constexpr std::uint64_t kGoldenGamma = 0x9e3779b97f4a7c15ULL;
-
-// The key of a stream derived from another one; keys with different `index` are practically independent.
-inline std::uint64_t derived_key(std::uint64_t key, std::uint64_t index) {
-  return mixed(key + (index + 1) * kGoldenGamma);
-}
 
 // Ray ends relative to the receiving point, by coordinate. Padded to a multiple of kLanes by repeating the last one.
 struct RayEnds {
@@ -51,7 +39,7 @@ struct UnitPoint {
 
 // Number `index` of the stream `key`, each coordinate in [0, 1).
 inline UnitPoint random_point(std::uint64_t key, std::uint64_t index) {
-  const std::uint64_t bits = mixed(key + (index + 1) * kGoldenGamma);
+  const std::uint64_t bits = kernel::split_mix(key, index);
   return {static_cast<double>(static_cast<std::int64_t>(bits >> 32)) * kUnit32,
           static_cast<double>(static_cast<std::int64_t>(bits & 0xffffffffU)) * kUnit32};
 }

@@ -71,10 +71,10 @@ class RaySum {
     const auto parts = static_cast<std::size_t>(splits) * static_cast<std::size_t>(splits);
     std::uint64_t count = 0;
     for (std::size_t root = 0; root < source.roots.size(); ++root) {
-      key = adaptive::derived_key(key, 0);
+      key = kernel::split_mix(key, 0);
       if (!aim(source, root, reach, parts * static_cast<std::size_t>(points))) continue;
       split_evenly(patch_, splits, parts_);
-      for (std::size_t i = 0; i < parts_.size(); ++i) add(parts_[i], adaptive::derived_key(key, i));
+      for (std::size_t i = 0; i < parts_.size(); ++i) add(parts_[i], kernel::split_mix(key, i));
       count += parts_.size();
     }
     return count;
