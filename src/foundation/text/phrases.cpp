@@ -38,13 +38,6 @@ std::string shortest(double value) {
   return {buffer.data(), end.ptr};
 }
 
-std::string rounded_plainly(double value, int digits) {
-  std::array<char, 64> buffer;
-  const auto end =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
-  return {buffer.data(), end.ptr};
-}
-
 std::string rounded(double value, int digits) {
   if (value == 0.0) return "0";
   const double magnitude = std::abs(value);

@@ -13,10 +13,7 @@ namespace exactff::text {
 
 // For readers: `digits` significant digits, "0.0123", "1.2·10⁻⁷"; numbers from 100 to 10^7 are rounded to units.
 [[nodiscard]] std::string rounded(double value, int digits = 3);
-// The same in plain characters: "1.2e-07".
-[[nodiscard]] std::string rounded_plainly(double value, int digits);
-
-// `digits` significant digits in plain characters, suitable as the value of a flag: "0.0123", "1.2e-07".
+// `digits` significant digits in plain characters, for messages, or as the value of a flag: "0.0123", "1.2e-07".
 [[nodiscard]] std::string short_number(double value, int digits = 3);
 
 // "312 ns", "4.51 µs", "1.2 ms", "3.4 s", "2 min 5 s".

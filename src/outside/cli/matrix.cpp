@@ -188,8 +188,8 @@ bool test_reciprocity(const MatrixArguments& args, const Scene& scene, const mat
     std::cout << "\nReciprocity, A_i F_ij = A_j F_ji, of " << text::counted(found.pairs, "pair")
               << " computed both ways";
     if (found.worst) {
-      std::cout << ": they differ at worst by " << text::rounded_plainly(found.worst->distance, 2) << " of a radius of "
-                << text::rounded_plainly(found.worst->radius, 2) << " (" << text::printable(pair_name(*found.worst))
+      std::cout << ": they differ at worst by " << text::short_number(found.worst->distance, 2) << " of a radius of "
+                << text::short_number(found.worst->radius, 2) << " (" << text::printable(pair_name(*found.worst))
                 << "; as factors from the larger patch)";
     }
     std::cout << ".\n";

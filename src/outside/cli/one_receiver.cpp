@@ -19,7 +19,7 @@ std::vector<FaceId> own_faces(const std::string& on, const Scene& scene, const R
   const double tolerance = automatic->tolerance.value_or(face_tolerance(scene, receiver.point));
   std::vector<FaceId> faces = find_faces(scene, receiver, tolerance).faces;
   if (!faces.empty()) return faces;
-  throw InputError({.what = "--on " + on + ": no face lies within " + text::rounded_plainly(tolerance, 2) +
+  throw InputError({.what = "--on " + on + ": no face lies within " + text::short_number(tolerance, 2) +
                             " of x with a normal within a degree of --normal",
                     .why = "the receiver would lie on no face",
                     .suggestion = "check --at and --normal, or look further away with --on auto:DISTANCE"});
@@ -71,7 +71,7 @@ void warn_of_near_face(const Scene& scene, const Receiver& receiver,
   const std::string name = scene.name_of(near.faces);
   const bool looks_through = (near.side < 0) != near.turned;
   std::cerr << "exactff: " << (looks_through ? "warning" : "note") << ": x lies "
-            << text::rounded_plainly(near.distance, 2) << (near.side < 0 ? " behind '" : " in front of '")
+            << text::short_number(near.distance, 2) << (near.side < 0 ? " behind '" : " in front of '")
             << text::printable(name) << '\'' << (near.turned ? ", turned against its front" : "")
             << (looks_through ? ", which then hides everything beyond it" : "") << ". With --on "
             << text::shell_word(name) << ' ' << effect(near.faces) << '\n';

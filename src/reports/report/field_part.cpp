@@ -22,7 +22,7 @@ struct ErrorColumn {
   std::string (*text)(double value);
 };
 std::string in_percents(double share) { return text::rounded(100.0 * share, 2); }
-std::string ratio_of(double ratio) { return text::rounded_plainly(ratio, 5); }
+std::string ratio_of(double ratio) { return text::short_number(ratio, 5); }
 constexpr std::array<ErrorColumn, 9> kErrorColumns = {
     {{"RMS, %", &FieldRow::rms_of_brightest, in_percents},
      {"noise, %", &FieldRow::noise_of_brightest, in_percents},

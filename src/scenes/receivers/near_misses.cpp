@@ -65,7 +65,7 @@ NearMisses near_misses(const Scene& scene, std::span<const Receiver> receivers) 
     ++(behind ? misses.behind : misses.in_front);
     misses.furthest = std::max(misses.furthest, near.distance);
     tell(i,
-         text::rounded_plainly(near.distance, 2) + (near.side < 0 ? " behind '" : " in front of '") +
+         text::short_number(near.distance, 2) + (near.side < 0 ? " behind '" : " in front of '") +
              scene.name_of(near.faces.front()) + "'",
          behind ? worst : others);
   }
@@ -80,7 +80,7 @@ std::vector<std::string> sentences(const NearMisses& misses, std::size_t receive
   const std::string of_all = " of " + text::counted(receivers, "receiver");
   if (misses.behind + misses.in_front > 0) {
     std::string sentence = std::to_string(misses.behind + misses.in_front) + of_all +
-                           " are given without a face, within " + text::rounded_plainly(misses.furthest, 2) + " of one";
+                           " are given without a face, within " + text::short_number(misses.furthest, 2) + " of one";
     if (misses.behind > 0) {
       sentence += "; " + std::to_string(misses.behind) + " of them look through it from behind, so it hides everything";
     }
