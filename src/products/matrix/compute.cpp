@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <set>
 #include <stdexcept>
 
@@ -37,13 +36,6 @@ bool has_bent_rows(const Scene& scene, const std::vector<Selection>& from) {
   });
 }
 
-// From the weakest. Names, so that a claim that is not listed here counts as the weakest.
-int strength(Claim claim) {
-  constexpr std::array<std::string_view, 4> kClaims = {"statistical", "topology-proved", "certified", "zero"};
-  const auto found = std::ranges::find(kClaims, to_string(claim));
-  return found == kClaims.end() ? -1 : static_cast<int>(found - kClaims.begin());
-}
-
 // By its number, row by row, with back and open.
 ViewFactor& entry_of(Matrix& matrix, std::size_t entry) {
   const std::size_t patches = matrix.factors.to.size();
@@ -55,7 +47,7 @@ ViewFactor& entry_of(Matrix& matrix, std::size_t entry) {
 
 }  // namespace
 
-Claim weaker(Claim a, Claim b) { return strength(a) <= strength(b) ? a : b; }
+Claim weaker(Claim a, Claim b) { return std::min(a, b); }
 
 Matrix compute(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
                const Options& options, const Hooks& hooks) {
