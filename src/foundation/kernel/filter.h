@@ -26,6 +26,7 @@ struct Approx3 {
 
 inline Vec3 to_vec3(const Approx3& a) { return {a.x, a.y, a.z}; }
 inline double dot(const Vec3& a, const Approx3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline double max_norm(const Approx3& a) { return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}); }
 
 inline constexpr int kUncertain = 2;
 inline constexpr double kLeastMagnitude = 0x1p-900;
@@ -72,7 +73,7 @@ inline int sign_of_det(const Approx3& a, const Approx3& b, const Approx3& c) {
     sum += term;
     magnitude += std::abs(term);
   }
-  const bool moderate = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)}) <= 0x1p300 && magnitude >= 0x1p-700;
+  const bool moderate = max_norm(a) <= 0x1p300 && magnitude >= 0x1p-700;
   return moderate ? certified_sign(sum, magnitude) : kUncertain;
 }
 

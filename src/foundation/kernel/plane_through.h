@@ -56,7 +56,7 @@ class PlaneThrough {
   }
 
   static int decided(double sum, double magnitude, const Approx3& d) {
-    const bool moderate = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) <= 0x1p300 && magnitude >= 0x1p-700;
+    const bool moderate = max_norm(d) <= 0x1p300 && magnitude >= 0x1p-700;
     return moderate ? certified_sign(sum, magnitude) : kUncertain;
   }
 

@@ -31,15 +31,6 @@ using Point = bg::model::point<double, 3, bg::cs::cartesian>;
 using Box = bg::model::box<Point>;
 using Entry = std::pair<Point, std::uint32_t>;
 
-// Normalises v without overflow or underflow, so that its length is near 1. Zero stays zero.
-Vec3 unit(const Vec3& v) {
-  const double largest = kernel::max_norm(v);
-  if (largest == 0.0) return v;
-  const Vec3 scaled{v.x / largest, v.y / largest, v.z / largest};
-  const double length = std::hypot(scaled.x, scaled.y, scaled.z);
-  return {scaled.x / length, scaled.y / length, scaled.z / length};
-}
-
 // Finds rows of the truth by their position: an R-tree, built in one step. A query takes the box around the point and
 // keeps what is within the ball. Unlike a grid of cells, it works with a tolerance of 0 and with coordinates of any
 // size.
@@ -67,7 +58,8 @@ class PositionIndex {
       const TruthRow& row = truth_.rows[entry->second];
       const double away = kernel::distance(row.point, point);
       if (row.source != source || away > t) continue;
-      if (normals_ && kernel::distance(unit(row.normal), unit(normal)) > options_.normal_tolerance) continue;
+      if (normals_ && kernel::distance(kernel::unit(row.normal), kernel::unit(normal)) > options_.normal_tolerance)
+        continue;
       found.emplace_back(away, entry->second);
     }
     std::sort(found.begin(), found.end());

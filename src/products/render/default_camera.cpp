@@ -17,6 +17,7 @@ using kernel::cross;
 using kernel::difference;
 using kernel::dot;
 using kernel::scaled;
+using kernel::unit_unscaled;
 
 constexpr int kTestSide = 24;
 
@@ -42,17 +43,15 @@ Extents extents_of(const Scene& scene) {
   return box;
 }
 
-Vec3 to_unit(const Vec3& v) { return scaled(v, 1.0 / std::hypot(v.x, v.y, v.z)); }
-
 // Far enough away in this direction to show every corner of the box; with parallel rays, outside the box.
 Camera camera_from(const Extents& box, const Vec3& direction, const Camera& like, const Size& size) {
   Camera camera = like;
   camera.look = box.at(0.5, 0.5, 0.5);
-  Vec3 up = to_unit(like.up);
-  const Vec3 away = to_unit(direction);
+  Vec3 up = unit_unscaled(like.up);
+  const Vec3 away = unit_unscaled(direction);
   if (kernel::max_norm(cross(away, up)) < 1e-3) up = std::abs(up.y) > 0.5 ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
   camera.up = up;
-  const Vec3 right = to_unit(cross(scaled(away, -1.0), up)), upward = cross(right, scaled(away, -1.0));
+  const Vec3 right = unit_unscaled(cross(scaled(away, -1.0), up)), upward = cross(right, scaled(away, -1.0));
   constexpr double kMargin = 1.05;
   const double tangent = std::tan(like.fov * std::numbers::pi / 360.0) / kMargin;
   const double aspect = static_cast<double>(size.width) / size.height;
@@ -63,8 +62,7 @@ Camera camera_from(const Extents& box, const Vec3& direction, const Camera& like
     distance = std::max(distance, dot(p, away) + across / tangent);
     half_height = std::max(half_height, kMargin * across);
   }
-  camera.eye = {camera.look.x + distance * away.x, camera.look.y + distance * away.y,
-                camera.look.z + distance * away.z};
+  camera.eye = kernel::along(camera.look, away, distance);
   if (camera.ortho) camera.ortho = 2.0 * half_height;
   return camera;
 }
@@ -74,7 +72,7 @@ Camera camera_within(const Extents& box, int corner, const Camera& like) {
   constexpr double kNear = 0.04, kAbove = 0.72, kBelow = 0.36;
   Camera camera = like;
   const double a = (corner & 1) != 0 ? 1.0 - kNear : kNear, b = (corner & 2) != 0 ? 1.0 - kNear : kNear;
-  const Vec3 up = to_unit(like.up);
+  const Vec3 up = unit_unscaled(like.up);
   const auto place = [&](double first, double second, double height) {
     if (std::abs(up.z) > 0.7) return box.at(first, second, up.z > 0.0 ? height : 1.0 - height);
     if (std::abs(up.x) > 0.7) return box.at(up.x > 0.0 ? height : 1.0 - height, first, second);
@@ -127,13 +125,13 @@ struct Best {
 // The six axes count more than the directions between them, of which those from above come first.
 void look_from_outside(const Scene& scene, const Extents& box, const Camera& like, const Size& size, Best& best) {
   constexpr double kBetween = 0.95, kFromBelow = 0.8, kAlongUp = 0.3;
-  const Vec3 up = to_unit(like.up);
+  const Vec3 up = unit_unscaled(like.up);
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {
       for (int z = -1; z <= 1; ++z) {
         const Vec3 direction{1.0 * x, 1.0 * y, 1.0 * z};
         if (direction == Vec3{}) continue;
-        const double height = dot(to_unit(direction), up);
+        const double height = dot(unit_unscaled(direction), up);
         const double weight = height < -0.1                                 ? kFromBelow
                               : height > 0.9                                ? kAlongUp
                               : std::abs(x) + std::abs(y) + std::abs(z) > 1 ? kBetween

@@ -70,9 +70,7 @@ struct ApproxNormal {
   }
 
  private:
-  static bool is_moderate(const Approx3& v) {
-    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) <= 0x1p300;
-  }
+  static bool is_moderate(const Approx3& v) { return kernel::max_norm(v) <= 0x1p300; }
 };
 
 // An interval that contains t >= 0.

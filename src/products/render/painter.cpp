@@ -20,10 +20,7 @@ whole_view::Channels dark(double value) {
 
 bool is_zero(const Rgb& colour) { return colour == Rgb{}; }
 
-Vec3 unit_length(const Vec3& v) {
-  const Vec3 safe = kernel::scaled(v, 1.0 / kernel::max_norm(v));
-  return kernel::scaled(safe, 1.0 / std::hypot(safe.x, safe.y, safe.z));
-}
+Vec3 unit_length(const Vec3& v) { return kernel::unit_unscaled(kernel::scaled(v, 1.0 / kernel::max_norm(v))); }
 
 double of_visible(const FormFactor& factor) {
   return static_cast<double>(factor.visible_part.value_or(VisiblePart::kNothing));

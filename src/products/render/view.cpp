@@ -17,14 +17,7 @@ namespace {
 using kernel::cross;
 using kernel::difference;
 using kernel::is_finite;
-
-// Requires a vector other than zero.
-Vec3 unit(const Vec3& v) {
-  const double largest = kernel::max_norm(v);
-  const Vec3 safe{v.x / largest, v.y / largest, v.z / largest};
-  const double length = std::sqrt((safe.x * safe.x + safe.y * safe.y) + safe.z * safe.z);
-  return {safe.x / length, safe.y / length, safe.z / length};
-}
+using kernel::unit;
 
 // (from + s a) + r b
 Vec3 moved(const Vec3& from, double s, const Vec3& a, double r, const Vec3& b) {

@@ -109,8 +109,7 @@ class InwardSurfaces {
     const double share = 1.0 / static_cast<double>(corners.size());
     Vec3 centre;
     for (const std::uint32_t corner : corners) {
-      const Vec3& v = scene_.vertices()[corner];
-      centre = {centre.x + share * v.x, centre.y + share * v.y, centre.z + share * v.z};
+      centre = kernel::along(centre, scene_.vertices()[corner], share);
     }
     return centre;
   }

@@ -7,25 +7,11 @@
 
 namespace exactff::slips {
 
+using kernel::along;
 using kernel::cross;
 using kernel::difference;
 using kernel::dot;
-
-namespace {
-
-Vec3 along(const Vec3& from, const Vec3& direction, double t) {
-  return {from.x + t * direction.x, from.y + t * direction.y, from.z + t * direction.z};
-}
-
-Vec3 unit(const Vec3& v) {
-  const double largest = kernel::max_norm(v);
-  if (!(largest > 0.0)) return {};
-  const Vec3 safe{v.x / largest, v.y / largest, v.z / largest};
-  const double length = std::hypot(safe.x, safe.y, safe.z);
-  return {safe.x / length, safe.y / length, safe.z / length};
-}
-
-}  // namespace
+using kernel::unit;
 
 SightLines::SightLines(const Scene& scene) : scene_(scene) {
   if (scene.pieces().empty()) return;

@@ -6,6 +6,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "kernel/vec.h"
+
 namespace exactff::vtk {
 namespace {
 
@@ -71,9 +73,8 @@ Outline outline_of(const Lattice& lattice) {
   Outline outline;
   const Vec3 e = half_difference(lattice.corners[1], lattice.corners[0]);
   const Vec3 f = half_difference(lattice.corners[3], lattice.corners[0]);
-  const auto largest = [](const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
   const auto share = [&](const Vec3& v, const Vec3& axis) {
-    const double scale = largest(axis);
+    const double scale = kernel::max_norm(axis);
     const auto part = [&](double a, double b) { return (a / scale) * (b / scale); };
     return (part(v.x, axis.x) + part(v.y, axis.y) + part(v.z, axis.z)) /
            (part(axis.x, axis.x) + part(axis.y, axis.y) + part(axis.z, axis.z));

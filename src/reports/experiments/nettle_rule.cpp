@@ -15,6 +15,7 @@ namespace exactff::experiments {
 namespace {
 
 using kernel::dot;
+using kernel::scaled;
 using models::Random;
 using page::Axes;
 using page::Series;
@@ -23,8 +24,6 @@ using text::rounded;
 constexpr std::string_view kNettleRuleStage = "nettle-rule";
 
 // ----------------------------------------------------------------------------------------------------- configurations
-
-Vec3 scaled(const Vec3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 
 // Uniform on the sphere.
 Vec3 random_direction(Random& random) {

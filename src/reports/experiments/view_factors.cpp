@@ -3,20 +3,19 @@
 #include <algorithm>
 #include <array>
 
+#include "kernel/vec.h"
 #include "text/phrases.h"
 
 namespace exactff::experiments {
 
 namespace {
 
+using kernel::sum;
 using text::counted;
 using text::rounded;
 
 void add_parallelogram(SmallScene& scene, const std::string& name, const Vec3& o, const Vec3& u, const Vec3& v) {
-  scene.add(name, {o,
-                   {o.x + u.x, o.y + u.y, o.z + u.z},
-                   {o.x + u.x + v.x, o.y + u.y + v.y, o.z + u.z + v.z},
-                   {o.x + v.x, o.y + v.y, o.z + v.z}});
+  scene.add(name, {o, sum(o, u), sum(sum(o, u), v), sum(o, v)});
 }
 
 // The sides of a parallelepiped with right-handed edges, in opposite pairs, fronts outward, or inward.
@@ -24,9 +23,8 @@ void add_sides(SmallScene& scene, const std::array<std::string, 6>& names, const
                const std::array<Vec3, 3>& edges, bool inward) {
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3 &a = edges[i], &b = edges[(i + 1) % 3], &c = edges[(i + 2) % 3];
-    const Vec3 far{o.x + a.x, o.y + a.y, o.z + a.z};
     add_parallelogram(scene, names[2 * i], o, inward ? b : c, inward ? c : b);
-    add_parallelogram(scene, names[2 * i + 1], far, inward ? c : b, inward ? b : c);
+    add_parallelogram(scene, names[2 * i + 1], sum(o, a), inward ? c : b, inward ? b : c);
   }
 }
 

@@ -129,11 +129,6 @@ class Membership {
   std::set<PatchId> seen_;
 };
 
-Vec3 moved(const Vec3& p, const Vec3& direction, double by) {
-  return {p.x + by * direction.x, p.y + by * direction.y, p.z + by * direction.z};
-}
-Vec3 of_length_one(const Vec3& v) { return kernel::scaled(v, 1.0 / std::hypot(v.x, v.y, v.z)); }
-
 struct Ball {
   Vec3 centre = {};
   double radius = 0.0;
@@ -147,7 +142,7 @@ Ball ball_of_receivers_patches(const Study& study) {
     for (const std::uint32_t v : scene.corners(piece)) points.push_back(scene.vertices()[v]);
   }
   Ball ball;
-  for (const Vec3& p : points) ball.centre = moved(ball.centre, p, 1.0 / static_cast<double>(points.size()));
+  for (const Vec3& p : points) ball.centre = kernel::along(ball.centre, p, 1.0 / static_cast<double>(points.size()));
   for (const Vec3& p : points) ball.radius = std::max(ball.radius, kernel::distance(p, ball.centre));
   return ball;
 }
@@ -159,19 +154,20 @@ std::optional<render::View> view_of_receivers(const Study& study, const render::
   constexpr std::array<double, 3> kDistances = {2.1, 1.2, 0.7};  // over the radius; nearer ones only if it must be
   const Ball ball = ball_of_receivers_patches(study);
   if (!(ball.radius > 0.0)) return std::nullopt;
-  const Vec3 up = of_length_one(study.request.receivers.front().normal);
-  const Vec3 along = of_length_one(kernel::cross(up, std::abs(up.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+  const Vec3 up = kernel::unit_unscaled(study.request.receivers.front().normal);
+  const Vec3 along = kernel::unit_unscaled(kernel::cross(up, std::abs(up.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
   const Vec3 across = kernel::cross(up, along);
   std::optional<render::View> best;
   std::ptrdiff_t most = 0;
   for (const double distance : kDistances) {
     for (int side = 0; side < kSides; ++side) {
       const double angle = 2.0 * std::numbers::pi * side / kSides;
-      const Vec3 level = moved(kernel::scaled(along, std::cos(angle)), across, std::sin(angle));
+      const Vec3 level = kernel::along(kernel::scaled(along, std::cos(angle)), across, std::sin(angle));
       render::Camera camera;
       camera.look = ball.centre;
       camera.up = up;
-      camera.eye = moved(ball.centre, moved(level, up, 1.0), distance * ball.radius / std::numbers::sqrt2);
+      camera.eye =
+          kernel::along(ball.centre, kernel::along(level, up, 1.0), distance * ball.radius / std::numbers::sqrt2);
       const auto pixels = Membership(study, render::View(camera, {kWidth / 6, kHeight / 6})).pixels();
       if (pixels <= most) continue;
       most = pixels;

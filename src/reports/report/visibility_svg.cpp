@@ -58,13 +58,6 @@ Vec3 scaled_difference(const Vec3& a, const Vec3& b, int exponent) {
   return {scaled_difference(a.x, b.x, exponent), scaled_difference(a.y, b.y, exponent),
           scaled_difference(a.z, b.z, exponent)};
 }
-// Scales first, because squares of very small components would underflow.
-Vec3 unit(const Vec3& a) {
-  const double largest = max_norm(a);
-  const Vec3 b{a.x / largest, a.y / largest, a.z / largest};
-  const double length = std::sqrt(kernel::dot(b, b));
-  return {b.x / length, b.y / length, b.z / length};
-}
 
 // Maps points of one plane to pixels: u along the first side of the source, v counter-clockwise from it as seen from x.
 class PanelMap {
@@ -76,9 +69,10 @@ class PanelMap {
     }
     exponent_ = std::isfinite(size) ? std::ilogb(size) : std::numeric_limits<double>::max_exponent;
     const Vec3 side = scaled_difference(drawing.source.front().corners[1], origin_, 0);  // may be far shorter
-    u_ = unit(std::isfinite(max_norm(side)) ? side
-                                            : scaled_difference(drawing.source.front().corners[1], origin_, exponent_));
-    v_ = unit(kernel::cross(unit(drawing.normal), u_));
+    u_ = kernel::unit(std::isfinite(max_norm(side))
+                          ? side
+                          : scaled_difference(drawing.source.front().corners[1], origin_, exponent_));
+    v_ = kernel::unit(kernel::cross(kernel::unit(drawing.normal), u_));
     fit(drawing);
   }
 

@@ -12,8 +12,8 @@ namespace {
 
 using kernel::cross;
 using kernel::dot;
+using kernel::length;
 
-double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 Vec3 unit(const Vec3& a) {
   const double r = length(a);
   return {a.x / r, a.y / r, a.z / r};

@@ -94,7 +94,7 @@ class Profiler {
   [[nodiscard]] Receiver between(std::size_t i, double t) const {
     Receiver receiver = profile_.receivers[i];
     const Vec3 &p = receiver.point, &q = profile_.receivers[i + 1].point;
-    receiver.point = {p.x + t * (q.x - p.x), p.y + t * (q.y - p.y), p.z + t * (q.z - p.z)};
+    receiver.point = kernel::along(p, kernel::difference(q, p), t);
     return receiver;
   }
 

@@ -90,7 +90,7 @@ double misfit(const std::vector<Vec3>& leaf, const PlaneDrawing& plane) {
     worst = std::max(
         worst, std::abs(kernel::dot(plane.normal, kernel::difference(corner, plane.source.front().corners.front()))));
   }
-  return worst / std::sqrt(kernel::dot(plane.normal, plane.normal));
+  return worst / kernel::length(plane.normal);
 }
 
 void judge(const Leaf& leaf, const std::vector<PlaneDrawing>& truth, SampledVerdict& verdict) {

@@ -20,6 +20,7 @@
 #include "formats/mtl_reader.h"
 #include "formats/readers.h"
 #include "kernel/float_environment.h"
+#include "kernel/vec.h"
 #include "text/encoding.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
@@ -307,8 +308,7 @@ void ObjReader::add_normal_of(std::string_view corner, Vec3& sum) const {
   const auto count = static_cast<long>(normals_.size());
   const long position = index > 0 ? index - 1 : count + index;
   if (position < 0 || position >= count) return;
-  const Vec3& normal = normals_[static_cast<std::size_t>(position)];
-  sum = {sum.x + normal.x, sum.y + normal.y, sum.z + normal.z};
+  sum = kernel::sum(sum, normals_[static_cast<std::size_t>(position)]);
 }
 
 // Counted from 0; not yet checked against the end of the vertex list.

@@ -9,23 +9,22 @@
 #include "formats/output_faces.h"
 #include "formats/output_names.h"
 #include "formats/stl_layout.h"
+#include "kernel/vec.h"
 #include "text/phrases.h"
 
 namespace exactff::formats {
 
 namespace {
 
-Vec3 difference(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-
 // The unit normal, for programs that look at it; zero if the arithmetic of doubles finds none.
 Vec3 rough_normal(const std::array<Vec3, 3>& corners) {
-  Vec3 a = difference(corners[1], corners[0]), b = difference(corners[2], corners[0]);
+  Vec3 a = kernel::difference(corners[1], corners[0]), b = kernel::difference(corners[2], corners[0]);
   for (Vec3* const v : {&a, &b}) {
-    const double size = std::max({std::abs(v->x), std::abs(v->y), std::abs(v->z)});
+    const double size = kernel::max_norm(*v);
     if (!(size > 0.0) || !std::isfinite(size)) return {};
     *v = {v->x / size, v->y / size, v->z / size};
   }
-  const Vec3 n{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  const Vec3 n = kernel::cross(a, b);
   const double length = std::hypot(n.x, n.y, n.z);
   if (!(length > 0.0)) return {};
   return {n.x / length + 0.0, n.y / length + 0.0, n.z / length + 0.0};
@@ -70,7 +69,7 @@ void tell_rounding(const Scene& scene, Losses& losses) {
   constexpr double kLargest = std::numeric_limits<float>::max();
   std::size_t rounded = 0;
   for (const Vec3& v : scene.vertices()) {
-    if (std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) > kLargest) {
+    if (kernel::max_norm(v) > kLargest) {
       throw InputError({losses.file(), 0, "a coordinate exceeds the largest float", "binary STL has only floats",
                         "write STL as text, or PLY"});
     }

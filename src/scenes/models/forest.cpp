@@ -22,6 +22,11 @@ namespace exactff::models {
 
 namespace {
 
+using kernel::difference;
+using kernel::length;
+using kernel::scaled;
+using kernel::sum;
+
 constexpr double kSide = 40.0;  // side of ground and sky
 constexpr double kSkyHeight = 16.0;
 constexpr double kLongestLeaf = 1.0;  // from the centre of a leaf to a corner
@@ -65,27 +70,23 @@ Vec3 in_ball(Random& random) {
   }
 }
 
-double length(const Vec3& v) { return std::sqrt(kernel::dot(v, v)); }
-Vec3 times(const Vec3& v, double factor) { return {v.x * factor, v.y * factor, v.z * factor}; }
-Vec3 plus(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-
 // Two random perpendicular unit vectors.
 std::array<Vec3, 2> frame(Random& random) {
   for (;;) {
     const Vec3 a = in_ball(random);
     const Vec3 c = kernel::cross(a, in_ball(random));
     if (length(a) < 0.1 || length(c) < 0.1) continue;  // too short to have a direction
-    return {times(a, 1.0 / length(a)), times(c, 1.0 / length(c))};
+    return {scaled(a, 1.0 / length(a)), scaled(c, 1.0 / length(c))};
   }
 }
 
 std::vector<Vec3> leaf(Random& random, const Tree& tree, double radius) {
   const Vec3 place = in_ball(random);
-  const Vec3 middle = plus(tree.middle, {tree.across * place.x, tree.across * place.y, tree.upward * place.z});
+  const Vec3 middle = sum(tree.middle, {tree.across * place.x, tree.across * place.y, tree.upward * place.z});
   const auto [u, v] = frame(random);
-  const Vec3 side = times(v, radius * std::sqrt(0.75));
-  const Vec3 low = plus(middle, times(u, -0.5 * radius));
-  return {plus(middle, times(u, radius)), plus(low, side), plus(low, times(side, -1.0))};
+  const Vec3 side = scaled(v, radius * std::sqrt(0.75));
+  const Vec3 low = kernel::along(middle, u, -0.5 * radius);
+  return {kernel::along(middle, u, radius), sum(low, side), difference(low, side)};
 }
 
 // A level square. Its front faces up.

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "exactff/receiver.h"
+#include "kernel/vec.h"
 
 namespace exactff {
 
@@ -20,12 +21,7 @@ double outside(double value, double low, double high) {
 }
 
 double distance_from_plane(const Face& face, const Vec3& from_corner) {
-  const Vec3& n = face.newell;
-  const double largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
-  if (largest == 0.0) return 0.0;
-  const Vec3 m{n.x / largest, n.y / largest, n.z / largest};
-  const double length = std::hypot(m.x, m.y, m.z);
-  return std::abs(m.x / length * from_corner.x + m.y / length * from_corner.y + m.z / length * from_corner.z);
+  return std::abs(kernel::dot(kernel::unit(face.newell), from_corner));
 }
 
 }  // namespace

@@ -24,16 +24,9 @@ namespace {
 using kernel::cross;
 using kernel::difference;
 using kernel::dot;
+using kernel::unit_by_inverse;
 
 constexpr double kCosOfOneDegree = 0.99984769515639124;
-
-// Zero stays zero.
-Vec3 unit(const Vec3& v) {
-  const double largest = kernel::max_norm(v);
-  if (!(largest > 0.0)) return {};
-  const Vec3 safe{v.x / largest, v.y / largest, v.z / largest};
-  return kernel::scaled(safe, 1.0 / std::hypot(safe.x, safe.y, safe.z));
-}
 
 // A piece as it lies about the point, in scaled coordinates.
 struct Nearby {
@@ -89,9 +82,10 @@ class Search {
   // Of a planar face the Newell vector, which is correctly rounded however thin the piece is.
   [[nodiscard]] Vec3 normal_of(const Piece& piece) const {
     const Face& face = scene_.face(piece.face);
-    if (face.shape == FaceShape::kPlanar) return unit(face.newell);
+    if (face.shape == FaceShape::kPlanar) return unit_by_inverse(face.newell);
     const auto frame = [&](std::size_t i) { return kernel::scaled(scene_.vertices()[piece.frame[i]], scale_); };
-    return unit(cross(unit(difference(frame(1), frame(0))), unit(difference(frame(2), frame(1)))));
+    return unit_by_inverse(cross(unit_by_inverse(difference(frame(1), frame(0))),  //
+                                 unit_by_inverse(difference(frame(2), frame(1)))));
   }
 
   static double distance_from_side(const Vec3& side, const Vec3& to_point) {
@@ -172,7 +166,7 @@ std::vector<FaceId> own_faces(const Scene& scene, FaceId face, const Vec3& point
 NearFaces find_faces(const Scene& scene, const Receiver& receiver, double tolerance, Normals normals) {
   const kernel::StandardArithmetic arithmetic;
   const Search search(scene, receiver.point, tolerance);
-  const Vec3 normal = unit(receiver.normal);
+  const Vec3 normal = unit_by_inverse(receiver.normal);
   const Nearby* best = nullptr;
   using Rank = std::tuple<bool, double, double, std::size_t>;
   Rank least;

@@ -151,10 +151,9 @@ class Outline {
     Vec3 sum;
     for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
       const Vec3 a = kernel::difference(at(ring[i]), at(ring[0])), b = kernel::difference(at(ring[i + 1]), at(ring[0]));
-      const Vec3 doubled = kernel::cross(a, b);
-      sum = {sum.x + doubled.x, sum.y + doubled.y, sum.z + doubled.z};
+      sum = kernel::sum(sum, kernel::cross(a, b));
     }
-    return 0.5 * std::sqrt(kernel::dot(sum, sum));
+    return 0.5 * kernel::length(sum);
   }
 
   // A ring that begins on a straight side begins where that side begins afterwards.

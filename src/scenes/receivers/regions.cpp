@@ -31,16 +31,6 @@ using kernel::dot;
 constexpr double kFlat = 1e-6;  // of the diameter
 constexpr int kMostSplits = 12;
 
-double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
-
-// Zero stays zero.
-Vec3 direction(const Vec3& v) {
-  const double largest = kernel::max_norm(v);
-  if (!(largest > 0.0)) return {};
-  const Vec3 safe{v.x / largest, v.y / largest, v.z / largest};
-  return kernel::scaled(safe, 1.0 / length(safe));
-}
-
 // A face in coordinates multiplied by a power of two that brings the scene's largest near 1.
 struct FlatFace {
   FaceId id{};
@@ -90,11 +80,10 @@ class Finder {
     const Vec3 origin = flat.corners.front();
     for (std::size_t i = 0; i < flat.corners.size(); ++i) {
       const Vec3 &p = flat.corners[i], &q = flat.corners[(i + 1) % flat.corners.size()];
-      const Vec3 n = cross(difference(p, origin), difference(q, origin));
-      flat.area = {flat.area.x + n.x, flat.area.y + n.y, flat.area.z + n.z};
+      flat.area = kernel::sum(flat.area, cross(difference(p, origin), difference(q, origin)));
       include(p, flat.low, flat.high);
     }
-    flat.normal = direction(flat.area);
+    flat.normal = kernel::unit_by_inverse(flat.area);
     faces_.push_back(std::move(flat));
   }
 
@@ -136,7 +125,7 @@ class Finder {
       include(faces_[f].low, low, high);
       include(faces_[f].high, low, high);
     }
-    return length(difference(high, low));
+    return kernel::length(difference(high, low));
   }
 
   // The distance of the plane of `a` from the corner of `b` that is furthest from it.
@@ -195,11 +184,11 @@ class Finder {
     double corners = 0.0;
     for (const std::uint32_t f : set) {
       const FlatFace& face = faces_[f];
-      sum = {sum.x + face.area.x, sum.y + face.area.y, sum.z + face.area.z};
-      for (const Vec3& p : face.corners) mean = {mean.x + p.x, mean.y + p.y, mean.z + p.z};
+      sum = kernel::sum(sum, face.area);
+      for (const Vec3& p : face.corners) mean = kernel::sum(mean, p);
       corners += static_cast<double>(face.corners.size());
     }
-    const Vec3 normal = direction(sum);
+    const Vec3 normal = kernel::unit_by_inverse(sum);
     mean = kernel::scaled(mean, 1.0 / corners);
     const double tolerance = kFlat * diameter(set);
     return std::ranges::all_of(set, [&](std::uint32_t f) {

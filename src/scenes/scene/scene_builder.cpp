@@ -243,11 +243,8 @@ namespace {
 
 // Zero and anything not finite give a vector without direction.
 Vec3 unit_or_zero(const Vec3& v) {
-  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  if (!(largest > 0.0) || !std::isfinite(largest)) return {};
-  const Vec3 safe{v.x / largest, v.y / largest, v.z / largest};
-  const double length = std::hypot(safe.x, safe.y, safe.z);
-  return {safe.x / length, safe.y / length, safe.z / length};
+  const double largest = kernel::max_norm(v);
+  return largest > 0.0 && std::isfinite(largest) ? kernel::unit(v) : Vec3{};
 }
 
 }  // namespace
@@ -257,7 +254,7 @@ void SceneBuilder::State::judge_normals() {
   for (const auto& [id, normal] : stated_normals) {
     Face& face = data->faces[index_of(id)];
     const Vec3 a = unit_or_zero(face.newell), b = unit_or_zero(normal);
-    const double cosine = a.x * b.x + a.y * b.y + a.z * b.z;
+    const double cosine = kernel::dot(a, b);
     if (std::abs(cosine) <= kBesideThePlane) continue;
     face.file_normals = cosine > 0.0 ? FileNormals::kAgree : FileNormals::kContradict;
   }

@@ -1,26 +1,12 @@
 #include "exactff/summary.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <set>
 
+#include "kernel/vec.h"
+
 namespace exactff {
-namespace {
-
-Vec3 scaled(const Vec3& v, double factor) { return {v.x * factor, v.y * factor, v.z * factor}; }
-Vec3 sum(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-
-}  // namespace
-
-// Scales the largest component to about 1 first.
-Vec3 unit_vector(const Vec3& v) {
-  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  if (largest == 0.0) return v;
-  const Vec3 safe{v.x / largest, v.y / largest, v.z / largest};
-  return scaled(safe, 1.0 / std::hypot(safe.x, safe.y, safe.z));
-}
-
 namespace {
 
 std::vector<MaterialId> materials_of(const Scene& scene, const Patch& patch) {
@@ -36,11 +22,11 @@ std::vector<MaterialId> materials_of(const Scene& scene, const Patch& patch) {
 std::optional<Vec3> common_front(const Scene& scene, const std::vector<FaceId>& faces) {
   constexpr double kSameWay = 0.999;  // the cosine of about 2.6 degrees
   Vec3 mean;
-  for (const FaceId face : faces) mean = sum(mean, unit_vector(scene.face(face).newell));
+  for (const FaceId face : faces) mean = kernel::sum(mean, unit_vector(scene.face(face).newell));
   mean = unit_vector(mean);
   for (const FaceId face : faces) {
     const Vec3 n = unit_vector(scene.face(face).newell);
-    if (n.x * mean.x + n.y * mean.y + n.z * mean.z < kSameWay) return std::nullopt;
+    if (kernel::dot(n, mean) < kSameWay) return std::nullopt;
   }
   return faces.empty() ? std::nullopt : std::optional(mean);
 }
@@ -49,6 +35,8 @@ std::optional<Vec3> common_front(const Scene& scene, const std::vector<FaceId>& 
 double sum_of_areas(double a, double b) { return std::min(a + b, std::numeric_limits<double>::max()); }
 
 }  // namespace
+
+Vec3 unit_vector(const Vec3& v) { return kernel::unit_by_inverse(v); }
 
 PatchSummary summarise(const Scene& scene, PatchId id) {
   const Patch& patch = scene.patch(id);

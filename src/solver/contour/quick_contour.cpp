@@ -17,6 +17,7 @@
 #include "contour/quick_angle.h"
 #include "contour/quick_vector.h"
 #include "kernel/ball.h"
+#include "kernel/vec.h"
 
 namespace exactff::contour {
 
@@ -284,7 +285,7 @@ void terms_of(std::span<const QuickPiece> pieces, std::span<const QuickLine> lin
 
 std::array<double, 3> scaled_normal(const Vec3& n) {
   int exponent = 0;
-  std::frexp(std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)}), &exponent);
+  std::frexp(kernel::max_norm(n), &exponent);
   return {std::ldexp(n.x, -exponent), std::ldexp(n.y, -exponent), std::ldexp(n.z, -exponent)};
 }
 

@@ -37,7 +37,7 @@ double smaller_share(const Cell& cell, const Value& value) {
     if (here >= 0.0) positive.push_back(p);
     if ((here < 0.0) == (next < 0.0)) continue;
     const double t = here / (here - next);
-    positive.push_back({p.x + t * (q.x - p.x), p.y + t * (q.y - p.y), p.z + t * (q.z - p.z)});
+    positive.push_back(kernel::along(p, difference(q, p), t));
   }
   const double whole = area(cell);
   const double part = whole > 0.0 ? area(positive) / whole : 0.0;
@@ -108,14 +108,13 @@ double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
   const Vec3 along = difference(b, a);
   const double squared = dot(along, along);
   const double t = squared > 0.0 ? std::clamp(dot(difference(x, a), along) / squared, 0.0, 1.0) : 0.0;
-  return distance(x, {a.x + t * along.x, a.y + t * along.y, a.z + t * along.z});
+  return distance(x, kernel::along(a, along, t));
 }
 
 double area(const std::vector<Vec3>& ring) {
   Vec3 sum;
   for (std::size_t i = 2; i < ring.size(); ++i) {
-    const Vec3 c = cross(difference(ring[i - 1], ring[0]), difference(ring[i], ring[0]));
-    sum = {sum.x + c.x, sum.y + c.y, sum.z + c.z};
+    sum = kernel::sum(sum, cross(difference(ring[i - 1], ring[0]), difference(ring[i], ring[0])));
   }
   return 0.5 * length(sum);
 }

@@ -49,7 +49,7 @@ struct Halves {
 
 // --- Estimates ---
 
-[[nodiscard]] inline double length(const Vec3& a) { return std::sqrt(kernel::dot(a, a)); }
+using kernel::length;
 [[nodiscard]] double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b);
 [[nodiscard]] double distance_from_sides(const Cell& cell, const Vec3& x);
 [[nodiscard]] std::vector<Vec3> rounded(const std::vector<Point>& points);

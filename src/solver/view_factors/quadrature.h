@@ -63,7 +63,7 @@ std::vector<WeightedPlace> gauss_places(const std::vector<Vec3>& ring) {
         const Vec3 normal = kernel::cross(along_s, along_t);
         const Vec3 x{a.x + s.x * b.x + t.x * along_t.x, a.y + s.x * b.y + t.x * along_t.y,
                      a.z + s.x * b.z + t.x * along_t.z};
-        places.push_back({x, s.weight * t.weight * std::sqrt(kernel::dot(normal, normal)), {i, s.x, t.x}});
+        places.push_back({x, s.weight * t.weight * kernel::length(normal), {i, s.x, t.x}});
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
+#include "kernel/split_mix.h"
 #include "kernel/vec.h"
 
 namespace exactff::view_factors {
@@ -11,13 +12,7 @@ namespace {
 
 constexpr int kWeightBits = 32;
 
-// SplitMix64's mixing (models/random.h) of a key: numbers that depend on the key alone.
-std::uint64_t mixed(std::uint64_t key) {
-  std::uint64_t z = (key + 1) * 0x9e3779b97f4a7c15U;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
-  return z ^ (z >> 31);
-}
+std::uint64_t mixed(std::uint64_t key) { return kernel::split_mix(0, key); }
 
 constexpr double kAreaRoundings = 0x1p-40;  // relative: far more than there are
 
@@ -36,10 +31,7 @@ bool is_parallelogram(const Part& part) {
 
 // Into tiles of about equal sides, none of them larger than `largest`.
 void cut_parallelogram(std::size_t part, const std::vector<Vec3>& ring, double largest, std::vector<Tile>& into) {
-  const auto length = [&](std::size_t corner) {
-    const Vec3 side = kernel::difference(ring[corner], ring[0]);
-    return std::sqrt(kernel::dot(side, side));
-  };
+  const auto length = [&](std::size_t corner) { return kernel::length(kernel::difference(ring[corner], ring[0])); };
   const double size = area(ring), tiles = std::ceil(size / largest * (1.0 - kAreaRoundings));
   // Rounded along the shorter side, so that the other number, rounded up, adds few.
   const double ratio = length(1) / length(3);
@@ -85,7 +77,7 @@ Point point_at(const Part& part, const Tile& tile, const Integer& s, const Integ
 Draws::Draws(std::size_t look, std::size_t stratum, std::size_t number)
     : key_(mixed(mixed(look) ^ mixed(stratum) << 1 ^ number)) {}
 std::uint64_t Draws::bits() { return mixed(key_ ^ ++count_ << 32); }
-double Draws::unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
+double Draws::unit() { return kernel::unit_fraction(bits()); }
 
 Strata strata_of(const std::vector<Part>& parts, std::size_t count) {
   Strata result;

@@ -20,7 +20,7 @@ namespace {
 constexpr double kSideError = 0x1p-46;
 
 double size_of(const Approx3& t) {
-  const double largest = std::max({std::abs(t.x), std::abs(t.y), std::abs(t.z)});
+  const double largest = kernel::max_norm(t);
   const bool usable = largest >= 0x1p-300 && largest <= 0x1p300;  // false for NaN
   const double sum = t.x + t.y + t.z;                             // NaN if a component is; std::max may miss it
   return usable && sum == sum ? largest : std::numeric_limits<double>::quiet_NaN();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/vec.h"
+
 namespace exactff::visibility {
 
 using kernel::ExactVec3;
@@ -98,7 +100,7 @@ FineNormal fine_normal(const ExactVec3& normal) {
 
 FineNormal fine_normal(const Vec3& normal) {
   int exponent = 0;
-  static_cast<void>(std::frexp(std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)}), &exponent));
+  static_cast<void>(std::frexp(kernel::max_norm(normal), &exponent));
   const auto scaled = [&](double c) {
     return c == 0.0 ? Bounded{} : Bounded{std::ldexp(c, -exponent), 0.0, kUnderflow};
   };

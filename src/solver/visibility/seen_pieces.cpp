@@ -66,8 +66,8 @@ class Hider {
     for (std::size_t i = 0; i < piece.size(); ++i) {
       const Vec3 p = kernel::difference(piece[i], a);
       const Vec3 n = kernel::cross(p, kernel::difference(piece[(i + 1) % piece.size()], a));
-      normal = {normal.x + n.x, normal.y + n.y, normal.z + n.z};
-      centre = {centre.x + share * p.x, centre.y + share * p.y, centre.z + share * p.z};
+      normal = kernel::sum(normal, n);
+      centre = kernel::along(centre, p, share);
     }
     const Vec3 from_a = kernel::difference(region_[0], a), d = kernel::difference(centre, from_a);
     const double square = kernel::dot(d, d);

@@ -36,6 +36,7 @@ namespace {
 using kernel::cross;
 using kernel::dot;
 using kernel::scaled;
+using kernel::sum;
 using whole_view::Labels;
 using whole_view::OutlineId;
 using whole_view::Pixel;
@@ -52,8 +53,6 @@ constexpr double kMark = 4.0;         // half of the cross at the normal
 constexpr std::uint32_t kNoName = Regions::kOpen - 1;
 constexpr int kDecimals = 5;
 constexpr const char* kSky = "#dce8f2";
-
-Vec3 sum(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 
 Vec3 unit(const Vec3& a) {
   const Vec3 b = scaled(a, std::ldexp(1.0, -std::ilogb(kernel::max_norm(a))));  // squares neither overflow nor vanish
