@@ -105,6 +105,15 @@ void for_each_candidate(const View& view, const HalfSpaceGroups& shaft, ShaftCul
 // For both engines: true if a piece of the scene may occlude the plane. The source's own pieces in this plane cannot;
 // its pieces in other planes can.
 [[nodiscard]] bool may_occlude(const View& view, const SourcePlane& plane, const Request& request, std::uint32_t piece);
+// The sign of det of three corners of the piece, seen from x: 0 where its plane holds x, positive where x sees the
+// back.
+[[nodiscard]] inline int facing(const View& view, const Piece& piece) {
+  const auto vertices = view.scene.vertices();
+  const auto vertex = [&](int f) -> const Vec3& { return vertices[piece.frame[f]]; };
+  const auto rounded = [&](int f) { return kernel::approx_difference(vertex(f), view.x); };
+  const int filtered = kernel::sign_of_det(rounded(0), rounded(1), rounded(2));
+  return filtered != kernel::kUncertain ? filtered : kernel::orientation(view.x, vertex(0), vertex(1), vertex(2));
+}
 // Twice an area in the frame's unit square, as a share of the whole unclipped source in the plane.
 [[nodiscard]] kernel::Rational share_of_source(const View& view, const SourcePlane& plane, const PlaneFrame& frame,
                                                const kernel::Rational& doubled);

@@ -25,21 +25,12 @@ double usual_distance(const visibility::View& view) {
   const std::size_t step = vertices.size() / kMost + 1;
   for (std::size_t v = 0; v < vertices.size() && count < kMost; v += step) {
     const kernel::Approx3 d = kernel::approx_difference(vertices[v], view.x);
-    const double distance = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+    const double distance = kernel::max_norm(d);
     if (distance > 0.0 && std::isfinite(distance)) found[count++] = distance;
   }
   if (count == 0) return 1.0;
   std::nth_element(found.begin(), found.begin() + count / 2, found.begin() + count);
   return found[count / 2];
-}
-
-// The sign of det of three corners, 0 where the piece's plane holds x; positive where x sees the back.
-int turning(const visibility::View& view, const Piece& piece) {
-  const auto vertices = view.scene.vertices();
-  const auto vertex = [&](int f) -> const Vec3& { return vertices[piece.frame[f]]; };
-  const auto rounded = [&](int f) { return kernel::approx_difference(vertex(f), view.x); };
-  const int filtered = kernel::sign_of_det(rounded(0), rounded(1), rounded(2));
-  return filtered != kUncertain ? filtered : kernel::orientation(view.x, vertex(0), vertex(1), vertex(2));
 }
 
 std::uint32_t whole_of(const Scene& scene, std::uint32_t piece, ViewEdges::Wholes wholes) {
@@ -81,7 +72,7 @@ void ViewEdges::gather(const visibility::View& view, Wholes wholes,
     const Piece& piece = pieces[index];
     steps.take();
     if (piece.transparent || (!view.on.empty() && view.is_own(piece.face))) return true;
-    const int facing = turning(view, piece);
+    const int facing = visibility::facing(view, piece);
     if (facing == 0) return true;
     const bool back_apart = wholes == Wholes::kFaces || wholes == Wholes::kPlanes;
     add(view, piece, facing > 0 && !back_apart ? kAllBacks : whole_of(view.scene, index, wholes), facing);
