@@ -46,6 +46,13 @@ double mean(std::span<const double> values) {
   return sum;
 }
 
+double root_mean_square(std::span<const double> values, double largest) {
+  if (largest == 0.0) return 0.0;
+  double sum = 0.0;
+  for (const double v : values) sum += (v / largest) * (v / largest);
+  return largest * std::sqrt(sum / static_cast<double>(values.size()));
+}
+
 double mean_half_width(std::span<const double> values) {
   if (values.size() < 2) return 0.0;
   const double middle = mean(values), n = static_cast<double>(values.size());

@@ -15,6 +15,8 @@ namespace exactff::kernel {
 // The middle value, or the mean of the two middle values; 0 for an empty list.
 [[nodiscard]] double median(std::vector<double> values);
 [[nodiscard]] double mean(std::span<const double> values);
+// Squares values / largest, so that nothing underflows or overflows. `largest`: of their magnitudes; 0 gives 0.
+[[nodiscard]] double root_mean_square(std::span<const double> values, double largest);
 // Half the width of the 95 % confidence interval of the mean, by Student's t; 0 for fewer than two values.
 [[nodiscard]] double mean_half_width(std::span<const double> values);
 

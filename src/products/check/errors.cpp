@@ -5,27 +5,20 @@
 #include <limits>
 #include <numeric>
 
+#include "kernel/statistics.h"
+
 namespace exactff::check {
 namespace {
 
-// Scaled by the largest value, because squares of small errors would underflow.
-double root_mean_square(const std::vector<double>& ascending) {
-  if (ascending.empty() || ascending.back() == 0.0) return 0.0;
-  const double largest = ascending.back();
-  if (std::isinf(largest)) return largest;
-  double sum = 0.0;
-  for (const double magnitude : ascending) sum += (magnitude / largest) * (magnitude / largest);
-  return largest * std::sqrt(sum / static_cast<double>(ascending.size()));
-}
-
 Distribution distribution(const std::vector<double>& ascending) {
   if (ascending.empty()) return {};
+  const double largest = ascending.back();
   return {nearest_rank(ascending, 0.5),
           nearest_rank(ascending, 0.9),
           nearest_rank(ascending, 0.99),
           nearest_rank(ascending, 0.999),
-          ascending.back(),
-          root_mean_square(ascending)};
+          largest,
+          std::isinf(largest) ? largest : kernel::root_mean_square(ascending, largest)};
 }
 
 }  // namespace

@@ -42,10 +42,7 @@ void set_statistics(Errors& errors, std::vector<double> magnitudes, const std::v
   errors.worst = percentile(magnitudes, 100.0);
   errors.relative_median = percentile(relative, 50.0);
   errors.relative_p99 = percentile(relative, 99.0);
-  if (!(errors.worst > 0.0)) return;
-  double squares = 0.0;  // in units of the worst, so that nothing overflows
-  for (const double magnitude : magnitudes) squares += magnitude / errors.worst * (magnitude / errors.worst);
-  errors.rms = errors.worst * std::sqrt(squares / static_cast<double>(magnitudes.size()));
+  errors.rms = kernel::root_mean_square(magnitudes, errors.worst);
 }
 
 void require_same_size(const Picture& judged, const Picture& truth) {

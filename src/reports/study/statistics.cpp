@@ -14,14 +14,6 @@ std::vector<double> finite_only(std::span<const double> values) {
   return kept;
 }
 
-// Scaled by the largest magnitude, so that squares neither underflow nor overflow.
-double root_mean_square(std::span<const double> values, double largest) {
-  if (largest == 0.0) return 0.0;
-  double sum = 0.0;
-  for (double v : values) sum += (v / largest) * (v / largest);
-  return largest * std::sqrt(sum / static_cast<double>(values.size()));
-}
-
 }  // namespace
 
 ErrorStatistics error_statistics(std::span<const double> errors) {
@@ -32,7 +24,7 @@ ErrorStatistics error_statistics(std::span<const double> errors) {
   std::vector<double> magnitudes = numbers;
   for (double& m : magnitudes) m = std::abs(m);
   result.worst = *std::max_element(magnitudes.begin(), magnitudes.end());
-  result.rms = root_mean_square(numbers, result.worst);
+  result.rms = kernel::root_mean_square(numbers, result.worst);
   result.mean = kernel::mean(numbers);
   result.p99 = kernel::percentile(std::move(magnitudes), 99.0);
   return result;
