@@ -13,8 +13,6 @@ double radical_inverse_base2(std::uint32_t i) {
   return i * kUnit32;
 }
 
-double wrapped(double u) { return u >= 1.0 ? u - 1.0 : u; }
-
 // Each map is stored as an origin and directions, so that a point costs a few multiplications.
 struct ParallelogramMap {
   Vec3 origin, along_u, along_v;

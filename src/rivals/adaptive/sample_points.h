@@ -37,6 +37,9 @@ struct UnitPoint {
   double v = 0.0;
 };
 
+// Back into [0, 1) from [0, 2).
+inline double wrapped(double u) { return u >= 1.0 ? u - 1.0 : u; }
+
 // Number `index` of the stream `key`, each coordinate in [0, 1).
 inline UnitPoint random_point(std::uint64_t key, std::uint64_t index) {
   const std::uint64_t bits = kernel::split_mix(key, index);

@@ -48,8 +48,6 @@ UnitPoint point_of(PointSet set, std::uint32_t index) {
   return r2_point(index);
 }
 
-double wrapped(double u) { return u >= 1.0 ? u - 1.0 : u; }
-
 }  // namespace
 
 UnitPoints::UnitPoints(PointSet set, int count) : set_(set), count_(count) {
