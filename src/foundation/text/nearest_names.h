@@ -19,9 +19,12 @@ inline std::string in_lower_case(std::string_view text) {
 
 // "a, b, c"
 template <class Name>
-std::string joined(const std::vector<Name>& names) {
+std::string joined(const std::vector<Name>& names, std::string_view separator = ", ") {
   std::string list;
-  for (const std::string_view name : names) list += (list.empty() ? "" : ", ") + std::string(name);
+  for (const std::string_view name : names) {
+    if (!list.empty()) list += separator;
+    list += name;
+  }
   return list;
 }
 

@@ -2,6 +2,8 @@
 // their own languages for this, so for these there are only tables.
 #include "cli/completion.h"
 
+#include "text/nearest_names.h"
+
 namespace exactff::cli {
 namespace {
 
@@ -20,11 +22,7 @@ std::string with_backslashes(const std::string& text, std::string_view before) {
   return result;
 }
 
-std::string spaced(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
-  return text;
-}
+std::string spaced(const std::vector<std::string>& words) { return text::joined(words, " "); }
 
 std::vector<std::string> command_names(const ProgramTable& program) {
   std::vector<std::string> names;

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "cli/known_words.h"
+#include "text/nearest_names.h"
 
 namespace exactff::cli {
 namespace {
@@ -43,12 +44,6 @@ std::vector<std::string> split(const std::string& text, char separator) {
     at = end + 1;
   }
   return parts;
-}
-
-std::string joined(const std::vector<std::string>& parts, char separator) {
-  std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : std::string(1, separator)) + part;
-  return text;
 }
 
 // The kind of value that the option takes, as far as its type says. An unspecific type ("TEXT") may be a file.
@@ -119,7 +114,7 @@ OptionRow option_row(const CLI::Option& option) {
   row.completion = completion_of(type);
   row.least_values = std::max(1, option.get_items_expected_min());
   row.most_values = std::min(option.get_items_expected_max(), kManyValues);
-  row.value = (row.choices.empty() ? type.type : joined(row.choices, '|')) + ellipsis(row);
+  row.value = (row.choices.empty() ? type.type : text::joined(row.choices, "|")) + ellipsis(row);
   offer(known_words(type.type), row);
   row.repeats = row.most_values == kManyValues || option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll;
   return row;

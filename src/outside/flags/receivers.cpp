@@ -68,12 +68,6 @@ std::uint64_t sample_seed(const ReceiverArguments& args) {
   return to_count(args.sample_seed, "--sample-seed", "a seed is a whole number from 0 to 2^64 - 1", " 7");
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
-  return text;
-}
-
 // The named faces, and the regions that they make: of a patch those of its faces, of a face that face alone.
 struct Surface {
   std::vector<FaceId> faces;
@@ -94,14 +88,14 @@ Surface surface_named(const Scene& scene, const std::vector<std::string>& names)
     }
   }
   if (surface.faces.empty()) {
-    text::refuse("--on: no face has area in " + text::in_quotes(joined(names), text::kShownName),
+    text::refuse("--on: no face has area in " + text::in_quotes(text::joined(names, ","), text::kShownName),
                  "receivers lie on faces", "choose another patch");
   }
   return surface;
 }
 
 ChosenReceivers on_faces(const ReceiverArguments& args, const Scene& scene, GridIds grid_ids) {
-  const std::string on = joined(args.on);
+  const std::string on = text::joined(args.on, ",");
   const auto [faces, regions] = surface_named(scene, args.on);
   const std::string per_face = args.per_face ? ", per face" : "";
   if (!args.grid.empty()) {

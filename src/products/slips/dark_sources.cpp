@@ -11,6 +11,7 @@
 #include "scene/selections.h"
 #include "slips/findings.h"
 #include "slips/sight_lines.h"
+#include "text/nearest_names.h"
 #include "text/phrases.h"
 #include "text/text_lines.h"
 
@@ -135,18 +136,12 @@ class Wording {
         advice_to_turn_receivers());
     add(counts.hidden, "lies", "lie", "just behind a face that hides the source, such as " + hiding_face(counts), "",
         "let --on auto find the face of each receiver");
-    return {.what = "source " + name + " gives 0 at " + at_whom() + ": " + joined(reasons, ", "),
-            .why = joined(laws, "; "),
-            .suggestion = joined(advice, "; ")};
+    return {.what = "source " + name + " gives 0 at " + at_whom() + ": " + text::joined(reasons),
+            .why = text::joined(laws, "; "),
+            .suggestion = text::joined(advice, "; ")};
   }
 
  private:
-  static std::string joined(const std::vector<std::string>& parts, const std::string& separator) {
-    std::string text;
-    for (const std::string& part : parts) text += (text.empty() ? "" : separator) + part;
-    return text;
-  }
-
   [[nodiscard]] std::string at_whom() const {
     if (looked_at_ < receivers_.size())
       return "each of " + std::to_string(looked_at_) + " receivers looked at, of " + std::to_string(receivers_.size());
