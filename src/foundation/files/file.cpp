@@ -205,4 +205,9 @@ void WholeFile::commit() {
   sync_folder_of(target_);
 }
 
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
 }  // namespace exactff::files

@@ -96,6 +96,9 @@ class WholeFile {
   std::uint64_t written_ = 0;
 };
 
+// False also where the system does not say.
+[[nodiscard]] bool is_there(const std::filesystem::path& path);
+
 // The path at which to write a file that replaces `path`: the target of a symbolic link, otherwise the path itself.
 [[nodiscard]] std::filesystem::path destination(const std::filesystem::path& path);
 

@@ -117,11 +117,6 @@ class Computation {
   std::vector<SlowRow> slow_;
 };
 
-bool is_there(const fs::path& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
-
 }  // namespace
 
 void compute_missing(const Rows& rows, RowJournal& journal, Team* team, const Hooks& hooks, Summary& summary) {
@@ -163,7 +158,7 @@ void write_rows(const Rows& rows, const RowJournal& journal, const fs::path& fil
 }
 
 bool is_complete(const fs::path& file, Existing existing) {
-  return existing == Existing::kResume && is_there(file) && !is_there(journal_of(file));
+  return existing == Existing::kResume && files::is_there(file) && !files::is_there(journal_of(file));
 }
 
 std::uint64_t require_head(const File& file, const Rows& rows) {

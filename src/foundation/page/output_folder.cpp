@@ -7,6 +7,7 @@
 #include <string>
 #include <system_error>
 
+#include "files/file.h"
 #include "text/refuse.h"
 
 namespace exactff::page {
@@ -56,15 +57,10 @@ void require_replaceable(const fs::path& folder) {
   }
 }
 
-bool is_there(const fs::path& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
-
 // The folder will be created in the nearest ancestor that exists.
 void require_writable_place(const fs::path& folder, const fs::path& target) {
   fs::path place = target.parent_path();
-  while (place.has_relative_path() && !is_there(place)) place = place.parent_path();
+  while (place.has_relative_path() && !files::is_there(place)) place = place.parent_path();
   std::error_code ignored;
   if (fs::is_directory(place, ignored) && ::access(place.c_str(), W_OK | X_OK) == 0) return;
   refuse(folder, "cannot be made: '" + place.string() + "' is not a folder that can be written to",

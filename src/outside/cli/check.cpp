@@ -20,6 +20,7 @@
 #include "cli/output.h"
 #include "exactff/matrix.h"
 #include "exactff/pixels.h"
+#include "files/file.h"
 #include "text/csv_lines.h"
 #include "text/escape.h"
 #include "text/number_text.h"
@@ -180,8 +181,7 @@ void require_comparable_matrices(const CheckArguments& args) {
 
 // True, or the problem: a file that is missing is not a file of another kind.
 bool require_there(const std::string& file) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) static_cast<void>(text::open_text_file(file, "a file"));
+  if (!files::is_there(file)) static_cast<void>(text::open_text_file(file, "a file"));
   return true;
 }
 

@@ -12,6 +12,7 @@
 #include "exactff/diagnosis.h"
 #include "exactff/report.h"
 #include "exactff/study.h"
+#include "files/file.h"
 #include "flags/comparison.h"
 #include "flags/sources.h"
 #include "flags/study_file.h"
@@ -98,9 +99,8 @@ void check_outputs(const CompareArguments& args) {
 
 // A finished report has tables only, and the files of --vtk were made before it.
 void require_vtk_of_finished(const CompareArguments& args) {
-  std::error_code ignored;
   const std::string& file = args.further.vtk;
-  if (file.empty() || std::filesystem::exists(file, ignored)) return;
+  if (file.empty() || files::is_there(file)) return;
   text::refuse(args.folder, "holds the finished report, and " + text::in_quotes(file) + " is not there",
                "the report does not keep the values of every method at every receiver",
                "compute both again with --force");
@@ -108,8 +108,7 @@ void require_vtk_of_finished(const CompareArguments& args) {
 
 // With --resume: true if the folder is the finished result of this very request.
 bool is_done(const CompareArguments& args, const report::Plan& plan) {
-  std::error_code ignored;
-  if (!args.resume || std::filesystem::exists(jobs::journal_of_folder(args.folder), ignored)) return false;
+  if (!args.resume || files::is_there(jobs::journal_of_folder(args.folder))) return false;
   const report::Finished finished = report::finished_report(plan, args.folder);
   if (finished == report::Finished::kOfAnother) {
     throw InputError({.file = args.folder,

@@ -61,8 +61,7 @@ void require_outside(const Output& output, const fs::path& folder) {
 }
 
 void require_writable(const Output& output, bool may_replace) {
-  std::error_code ignored;
-  if (!may_replace && fs::exists(output.file, ignored)) {
+  if (!may_replace && files::is_there(output.file)) {
     text::refuse(output.file, "already exists (" + output.flag + ')', "a result is not replaced by accident",
                  "name another file, or replace it with --force");
   }

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "exactff/version.h"
+#include "files/file.h"
 #include "page/output_folder.h"
 #include "text/fnv1a.h"
 
@@ -106,10 +107,7 @@ std::string identity_of(const Plan& plan) {
 
 std::string identity_line(const std::string& identity) { return "<!-- request " + identity + " -->"; }
 
-bool has_report(const std::filesystem::path& folder) {
-  std::error_code ignored;
-  return std::filesystem::exists(page_in(folder), ignored);
-}
+bool has_report(const std::filesystem::path& folder) { return files::is_there(page_in(folder)); }
 
 Finished finished_report(const Plan& plan, const std::filesystem::path& folder) {
   if (!has_report(folder)) return Finished::kNone;
