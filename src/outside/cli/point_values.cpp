@@ -6,6 +6,7 @@
 #include "exactff/study.h"
 #include "flags/lists.h"
 #include "flags/sources.h"
+#include "scene/selections.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 
@@ -96,7 +97,7 @@ FormFactor exact_value(const PointArguments& args, const Scene& scene, const Poi
 
 PointTerm compute_source(const PointArguments& args, const Scene& scene, const PointResult& point,
                          const ExactSource& source, const std::optional<AdaptiveSolver>& sampler) {
-  PointTerm result{.source = source.selection(), .emits = flags::emits(scene, source.selection())};
+  PointTerm result{.source = source.selection(), .emits = emits(scene, source.selection())};
   result.exact = exact_value(args, scene, point, source);
   const Rgb b = scene.source_radiosity(result.source);
   const Rgb& rho = point.reflectance;

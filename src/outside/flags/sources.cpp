@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "flags/lists.h"
+#include "scene/selections.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -55,11 +56,6 @@ SourcesUnderSky sources_under_sky(const SourceArguments& args, const Scene& scen
   SourceArguments patches = args;
   const bool sky = take_sky(scene, patches.names);
   return {sources_of(patches, scene), sky};
-}
-
-bool emits(const Scene& scene, const Selection& source) {
-  const std::vector<FaceId> faces = scene.faces_of(source);
-  return std::ranges::any_of(faces, [&](FaceId id) { return scene.material(scene.face(id).material).emits(); });
 }
 
 std::string note_on_sources_without_emission(const Scene& scene, const std::vector<Selection>& sources) {

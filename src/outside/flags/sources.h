@@ -28,9 +28,6 @@ struct SourcesUnderSky {
 };
 SourcesUnderSky sources_under_sky(const SourceArguments& args, const Scene& scene);
 
-// Whether the source has a Ke other than 0. If not, it counts with a radiosity of 1 where it is named.
-bool emits(const Scene& scene, const Selection& source);
-
 // A sentence that names those of the sources that emit nothing, and says how they count; empty if all emit.
 std::string note_on_sources_without_emission(const Scene& scene, const std::vector<Selection>& sources);
 

@@ -4,6 +4,7 @@
 #include "exactff/diagnosis.h"
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
+#include "scene/selections.h"
 #include "slips/sight_lines.h"
 
 namespace exactff::slips {
@@ -66,11 +67,6 @@ std::vector<Selection> candidates_of(const Scene& scene) {
   std::vector<Selection> faces;
   for (const FaceId face : scene.faces_of(patches.front())) faces.push_back({patches.front().patch, face, scene.id()});
   return faces;
-}
-
-bool emits(const Scene& scene, const Selection& selection) {
-  const std::vector<FaceId> faces = scene.faces_of(selection);
-  return std::ranges::any_of(faces, [&](FaceId id) { return scene.material(scene.face(id).material).emits(); });
 }
 
 }  // namespace

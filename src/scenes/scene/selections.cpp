@@ -7,6 +7,11 @@
 
 namespace exactff {
 
+bool emits(const Scene& scene, const Selection& selection) {
+  const std::vector<FaceId> faces = scene.faces_of(selection);
+  return std::ranges::any_of(faces, [&](FaceId id) { return scene.material(scene.face(id).material).emits(); });
+}
+
 std::vector<Selection> selections_of(const Scene& scene, std::vector<FaceId> faces) {
   std::erase_if(faces, [&](FaceId id) { return scene.face(id).piece_count == 0; });
   const auto key = [&](FaceId id) { return std::pair(scene.face(id).patch, id); };

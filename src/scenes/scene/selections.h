@@ -1,4 +1,4 @@
-// Faces and patches as the words of a flag.
+// Selections: what they emit, and the words of a flag for them.
 #pragma once
 
 #include <span>
@@ -9,6 +9,9 @@
 #include "exactff/scene.h"
 
 namespace exactff {
+
+// Whether a face with area has a Ke other than 0. A source without counts with a radiosity of 1 where it is named.
+[[nodiscard]] bool emits(const Scene& scene, const Selection& selection);
 
 // The faces as selections: a patch if all its faces with area are among them, else its faces. In the order of the
 // scene, each once. `faces` without area are left out.
