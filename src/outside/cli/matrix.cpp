@@ -202,13 +202,6 @@ bool test_reciprocity(const MatrixArguments& args, const Scene& scene, const mat
   return found.apart.empty();
 }
 
-Scene load(const MatrixArguments& args) {
-  Scene scene = args.scene.load();
-  print_warnings(scene.warnings());
-  if (args.two_sided.empty()) return scene;
-  return matrix::with_two_sided(scene, flags::selections_named(scene, args.two_sided));
-}
-
 // --- Files ---
 
 // What only a file with a journal can have, and what a part of the pairs cannot give.
@@ -320,7 +313,7 @@ struct MatrixJob {
 
 std::unique_ptr<MatrixJob> job_of(const MatrixArguments& args, const jobs::Team* team) {
   const jobs::Shard shard = shard_of(args.shard);
-  auto job = std::make_unique<MatrixJob>(MatrixJob{load(args), {}});
+  auto job = std::make_unique<MatrixJob>(MatrixJob{load(args.scene, args.two_sided), {}});
   std::vector<std::string> to = args.to;
   matrix::Request& request = job->request;
   request.scene = &job->scene;

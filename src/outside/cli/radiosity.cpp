@@ -281,16 +281,9 @@ void print(const RadiosityArguments& args, const Scene& scene, const Solution& s
   }
 }
 
-Scene load(const RadiosityArguments& args) {
-  Scene scene = args.scene.load();
-  print_warnings(scene.warnings());
-  if (args.two_sided.empty()) return scene;
-  return matrix::with_two_sided(scene, flags::selections_named(scene, args.two_sided));
-}
-
 int run(const RadiosityArguments& args) {
   check_outputs(args);
-  const Scene scene = load(args);
+  const Scene scene = load(args.scene, args.two_sided);
   const std::vector<Selection> patches = radiosity::patches_of(scene);
   warn_of_darkness(scene, patches);
   ProgressBar bar;

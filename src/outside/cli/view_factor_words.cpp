@@ -1,9 +1,9 @@
 #include "cli/view_factor_words.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "cli/output.h"
+#include "flags/lists.h"
 #include "text/phrases.h"
 
 namespace exactff::cli {
@@ -24,6 +24,13 @@ void warn_of_width(const matrix::Matrix& matrix, double accuracy, const std::str
 }
 
 }  // namespace
+
+Scene load(const flags::SceneArguments& args, const std::vector<std::string>& two_sided) {
+  Scene scene = args.load();
+  print_warnings(scene.warnings());
+  if (two_sided.empty()) return scene;
+  return matrix::with_two_sided(scene, flags::selections_named(scene, two_sided));
+}
 
 void warn_of_width(const matrix::Matrix& matrix, const ViewFactorOptions& options) {
   warn_of_width(matrix, options.accuracy, "the budget of " + std::to_string(options.budget) + " cells is used up",

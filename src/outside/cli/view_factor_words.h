@@ -1,11 +1,16 @@
-// What the commands that compute view factors say alike.
+// What the commands that compute view factors do and say alike.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "exactff/matrix.h"
+#include "flags/scene.h"
 
 namespace exactff::cli {
+
+// With the backs of the patches and faces in `two_sided`. Prints the scene's warnings.
+[[nodiscard]] Scene load(const flags::SceneArguments& args, const std::vector<std::string>& two_sided);
 
 // Warns of the entries that are wider than the accuracy.
 void warn_of_width(const matrix::Matrix& matrix, const ViewFactorOptions& options);
