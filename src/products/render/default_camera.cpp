@@ -9,6 +9,7 @@
 #include "exactff/render.h"
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
+#include "scene/shaft_tree.h"
 
 namespace exactff::render {
 namespace {
@@ -21,9 +22,7 @@ using kernel::unit_unscaled;
 
 constexpr int kTestSide = 24;
 
-struct Extents {
-  Vec3 low, high;
-
+struct Extents : Box {
   // Without overflow.
   [[nodiscard]] Vec3 at(double x, double y, double z) const {
     return {low.x * (1.0 - x) + high.x * x, low.y * (1.0 - y) + high.y * y, low.z * (1.0 - z) + high.z * z};
@@ -32,13 +31,9 @@ struct Extents {
 
 Extents extents_of(const Scene& scene) {
   constexpr double kMost = std::numeric_limits<double>::max();
-  Extents box{{kMost, kMost, kMost}, {-kMost, -kMost, -kMost}};
+  Extents box{Box{{kMost, kMost, kMost}, {-kMost, -kMost, -kMost}}};
   for (const Piece& piece : scene.pieces()) {
-    for (const std::uint32_t v : scene.corners(piece)) {
-      const Vec3& p = scene.vertices()[v];
-      box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-      box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
-    }
+    for (const std::uint32_t v : scene.corners(piece)) box.include(scene.vertices()[v]);
   }
   return box;
 }

@@ -15,16 +15,14 @@ using kernel::unit;
 
 SightLines::SightLines(const Scene& scene) : scene_(scene) {
   if (scene.pieces().empty()) return;
-  Vec3 low = scene.vertices()[scene.corners(scene.pieces().front()).front()], high = low;
+  const Vec3 first = scene.vertices()[scene.corners(scene.pieces().front()).front()];
+  Box box{first, first};
   for (const Piece& piece : scene.pieces()) {
     normals_.push_back(unit(scene.face(piece.face).newell));
-    for (const std::uint32_t corner : scene.corners(piece)) {
-      const Vec3& v = scene.vertices()[corner];
-      low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-      high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-    }
+    for (const std::uint32_t corner : scene.corners(piece)) box.include(scene.vertices()[corner]);
   }
-  diameter_ = std::hypot(high.x - low.x, high.y - low.y, high.z - low.z);
+  const auto& [low, high] = box;
+  diameter_ = kernel::distance(high, low);
   usable_ = diameter_ > 1e-90 && diameter_ < 1e90 && kernel::max_norm(low) < 1e90 && kernel::max_norm(high) < 1e90;
 }
 

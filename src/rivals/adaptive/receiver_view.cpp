@@ -136,11 +136,7 @@ ScaledScene::ScaledScene(const Scene& scene_given) : scene(&scene_given) {
 
 Box bounds_of(const std::vector<Vec3>& points, std::span<const std::uint32_t> indices) {
   Box box{points[indices[0]], points[indices[0]]};
-  for (const std::uint32_t i : indices) {
-    const Vec3& p = points[i];
-    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
-  }
+  for (const std::uint32_t i : indices) box.include(points[i]);
   return box;
 }
 

@@ -4,6 +4,7 @@
 
 #include "exactff/receiver.h"
 #include "kernel/vec.h"
+#include "scene/shaft_tree.h"
 
 namespace exactff {
 
@@ -30,12 +31,9 @@ double relative_distance_from_face(const Scene& scene, FaceId id, const Vec3& po
   const Face& face = scene.face(id);
   if (face.rings.empty() || face.rings.front().empty()) return 0.0;
   const Vec3& first = scene.vertices()[face.rings.front().front()];
-  Vec3 low = first, high = first;
-  for (const std::uint32_t v : face.rings.front()) {
-    const Vec3& p = scene.vertices()[v];
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
+  Box box{first, first};
+  for (const std::uint32_t v : face.rings.front()) box.include(scene.vertices()[v]);
+  const auto& [low, high] = box;
   const Vec3 extent = scaled_difference(high, low);
   const double diagonal = std::hypot(extent.x, extent.y, extent.z);
   const double from_box =

@@ -38,7 +38,7 @@ struct FlatFace {
   std::vector<Vec3> corners;
   Vec3 area;    // Newell vector
   Vec3 normal;  // unit
-  Vec3 low, high;
+  Box box;
 };
 
 using Set = std::vector<std::uint32_t>;  // of indices into the list of faces, ascending
@@ -72,24 +72,19 @@ class Finder {
 
   void add(FaceId id) {
     const Face& face = scene_.face(id);
-    FlatFace flat{id, face.patch, {}, {}, {}, {}, {}};
+    FlatFace flat{id, face.patch, {}, {}, {}, {}};
     for (const std::uint32_t v : face.rings.front()) {
       flat.corners.push_back(kernel::scaled(scene_.vertices()[v], extent(scene_).scale));
     }
-    flat.low = flat.high = flat.corners.front();
     const Vec3 origin = flat.corners.front();
+    flat.box = {origin, origin};
     for (std::size_t i = 0; i < flat.corners.size(); ++i) {
       const Vec3 &p = flat.corners[i], &q = flat.corners[(i + 1) % flat.corners.size()];
       flat.area = kernel::sum(flat.area, cross(difference(p, origin), difference(q, origin)));
-      include(p, flat.low, flat.high);
+      flat.box.include(p);
     }
     flat.normal = kernel::unit_by_inverse(flat.area);
     faces_.push_back(std::move(flat));
-  }
-
-  static void include(const Vec3& p, Vec3& low, Vec3& high) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
 
   void find_neighbours() {
@@ -120,12 +115,12 @@ class Finder {
   }
 
   [[nodiscard]] double diameter(const Set& set) const {
-    Vec3 low = faces_[set.front()].low, high = faces_[set.front()].high;
+    Box box = faces_[set.front()].box;
     for (const std::uint32_t f : set) {
-      include(faces_[f].low, low, high);
-      include(faces_[f].high, low, high);
+      box.include(faces_[f].box.low);
+      box.include(faces_[f].box.high);
     }
-    return kernel::length(difference(high, low));
+    return kernel::length(difference(box.high, box.low));
   }
 
   // The distance of the plane of `a` from the corner of `b` that is furthest from it.

@@ -118,11 +118,6 @@ void Finder::join(std::span<const DirectedEdge> edge) {
   if (balance != 0) open_[edge.front().piece] = 1;
 }
 
-void include(Box& box, const Vec3& p) {
-  box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-  box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
-}
-
 // Six times the volume between the piece and a point.
 double volume(const Scene& scene, const Piece& piece, const Vec3& apex) {
   const auto corners = scene.corners(piece);
@@ -159,7 +154,7 @@ ClosedSurfaces::ClosedSurfaces(const Scene& scene) {
       apexes.push_back(first);
     }
     const std::uint32_t surface = of_piece_[index] = of_piece_[root];
-    for (const std::uint32_t corner : scene.corners(piece)) include(surfaces_[surface].box, scene.vertices()[corner]);
+    for (const std::uint32_t corner : scene.corners(piece)) surfaces_[surface].box.include(scene.vertices()[corner]);
     volumes[surface] += volume(scene, piece, apexes[surface]);
   }
   for (std::size_t s = 0; s < surfaces_.size(); ++s) surfaces_[s].turned_inside_out = volumes[s] < 0.0;

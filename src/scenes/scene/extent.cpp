@@ -23,13 +23,9 @@ Extent extent_of(const Scene& scene) {
   for_each_corner([&](const Vec3& p) { extent.largest = std::max(extent.largest, kernel::max_norm(p)); });
   if (extent.largest == 0.0) return extent;
   extent.scale = std::ldexp(1.0, -std::clamp(std::ilogb(extent.largest) + 1, -1022, 1022));
-  Vec3 low{1, 1, 1}, high{-1, -1, -1};
-  for_each_corner([&](const Vec3& p) {
-    const Vec3 q = kernel::scaled(p, extent.scale);
-    low = {std::min(low.x, q.x), std::min(low.y, q.y), std::min(low.z, q.z)};
-    high = {std::max(high.x, q.x), std::max(high.y, q.y), std::max(high.z, q.z)};
-  });
-  const Vec3 sides = kernel::difference(high, low);
+  Box box{{1, 1, 1}, {-1, -1, -1}};
+  for_each_corner([&](const Vec3& p) { box.include(kernel::scaled(p, extent.scale)); });
+  const Vec3 sides = kernel::difference(box.high, box.low);
   extent.diameter = std::min(std::hypot(sides.x, sides.y, sides.z) / extent.scale, std::numeric_limits<double>::max());
   return extent;
 }
