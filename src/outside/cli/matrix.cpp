@@ -2,12 +2,10 @@
 #include "exactff/matrix.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <limits>
 #include <memory>
-#include <span>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -20,10 +18,10 @@
 #include "cli/output.h"
 #include "cli/text_table.h"
 #include "cli/view_factor_words.h"
-#include "exactff/version.h"
-#include "exactff/vtk.h"
 #include "flags/lists.h"
 #include "flags/scene.h"
+#include "matrix/row_facts.h"
+#include "matrix/row_on_faces.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 
@@ -107,10 +105,7 @@ std::string factor_text(const ViewFactor& f) {
 
 // Intervals of a draft are not symmetric: what no view has met is 0, with an upper bound.
 std::string drafted_sum_text(const matrix::Matrix& matrix, std::size_t row, const matrix::Sum& sum) {
-  const std::size_t columns = matrix.factors.to.size();
-  double value =
-      (matrix.back.empty() ? 0.0 : matrix.back[row].value) + (matrix.open.empty() ? 0.0 : matrix.open[row].value);
-  for (std::size_t j = 0; j < columns; ++j) value += matrix.factors.at(row, j).value;
+  const double value = sum_of_values(matrix, row);
   return text::rounded(value, 6) + " +- " + text::rounded(std::max(value - sum.lower, sum.upper - value), 1);
 }
 
@@ -141,14 +136,6 @@ void print_table(const MatrixArguments& args, const Scene& scene, const matrix::
 
 void warn(const std::string& what, const std::string& why, const std::string& suggestion) {
   print_warnings(std::vector<Problem>{{.what = what, .why = why, .suggestion = suggestion}});
-}
-
-bool has_statistical(const matrix::Matrix& matrix, std::size_t row) {
-  const auto is_statistical = [](const ViewFactor& f) { return f.claim == Claim::kStatistical; };
-  const std::size_t columns = matrix.factors.to.size();
-  return std::ranges::any_of(std::span(matrix.factors.entries).subspan(row * columns, columns), is_statistical) ||
-         (!matrix.back.empty() && is_statistical(matrix.back[row])) ||
-         (!matrix.open.empty() && is_statistical(matrix.open[row]));
 }
 
 // Whether all rows hold 1. Those that need not are not tested.
@@ -246,22 +233,6 @@ void check_row_of_vtk(const MatrixArguments& args, const std::vector<Selection>&
                "name one patch by --from");
 }
 
-void write_vtk(const MatrixArguments& args, const Scene& scene, const matrix::Matrix& matrix) {
-  const ViewFactorMatrix& all = matrix.factors;
-  const std::vector<double> none(scene.faces().size(), std::numeric_limits<double>::quiet_NaN());
-  std::vector<double> value = none, lower = none, upper = none;
-  for (std::size_t j = 0; j < all.to.size(); ++j) {
-    for (const FaceId face : scene.faces_of(all.to[j])) {
-      value[index_of(face)] = all.at(0, j).value;
-      lower[index_of(face)] = all.at(0, j).lower;
-      upper[index_of(face)] = all.at(0, j).upper;
-    }
-  }
-  vtk::write_faces(scene, {{"factor", 1, value}, {"lower", 1, lower}, {"upper", 1, upper}},
-                   {"exactff " + std::string(kVersion) + ", view factors from " + scene.name_of(all.from.front())},
-                   args.vtk);
-}
-
 matrix::DraftOptions draft_options(const MatrixArguments& args, const matrix::Options& options) {
   return {options.factors.accuracy, args.views, options.backs, options.open, options.threads};
 }
@@ -279,7 +250,7 @@ void write_files(const MatrixArguments& args, const Scene& scene, const matrix::
   if (!args.npz.empty()) write_npz(scene, matrix, args.npz);
   write_text(args.view3d, [&] { return view3d_text(scene, matrix); });
   write_text(args.energyplus, [&] { return energyplus_text(scene, matrix, args.zone); });
-  if (!args.vtk.empty()) write_vtk(args, scene, matrix);
+  if (!args.vtk.empty()) write_vtk(scene, matrix, args.vtk);
   if (args.view3d.empty()) return;
   warn("View3D's output holds six decimals, no bounds and no names", "factors below 5e-7 become 0",
        "use -o or --npz where more is needed");

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -18,9 +17,9 @@
 #include "cli/text_table.h"
 #include "cli/view_factor_words.h"
 #include "exactff/version.h"
-#include "exactff/vtk.h"
 #include "flags/lists.h"
 #include "flags/scene.h"
+#include "radiosity/on_faces.h"
 #include "text/json_document.h"
 #include "text/phrases.h"
 
@@ -203,29 +202,6 @@ void print_json(const RadiosityArguments& args, const Scene& scene, const Soluti
   std::cout << text::json_document(json) << '\n';
 }
 
-// The numbers of every face, three for each.
-vtk::Field field_of(const Scene& scene, const Solution& solution, const char* name,
-                    std::vector<BoundedValue> Channel::*quantity, double BoundedValue::*number) {
-  std::vector<double> values(3 * scene.faces().size(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < solution.patches.size(); ++i) {
-    for (const FaceId face : scene.faces_of(solution.patches[i])) {
-      for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
-        values[3 * index_of(face) + c] = (solution.channels[c].*quantity)[i].*number;
-      }
-    }
-  }
-  return {name, 3, std::move(values)};
-}
-
-void write_vtk(const RadiosityArguments& args, const Scene& scene, const Solution& solution) {
-  vtk::write_faces(scene,
-                   {field_of(scene, solution, "radiosity", &Channel::radiosity, &BoundedValue::value),
-                    field_of(scene, solution, "lower", &Channel::radiosity, &BoundedValue::lower),
-                    field_of(scene, solution, "upper", &Channel::radiosity, &BoundedValue::upper),
-                    field_of(scene, solution, "irradiance", &Channel::irradiance, &BoundedValue::value)},
-                   {"exactff " + std::string(kVersion) + ", radiosity"}, args.vtk);
-}
-
 // --- The command ---
 
 void check_outputs(const RadiosityArguments& args) {
@@ -294,7 +270,7 @@ int run(const RadiosityArguments& args) {
   const Solution solution = radiosity::solve(scene, matrix);
   warn_of_width(matrix::Matrix{matrix.factors, {}, {}}, args.factors);
   if (!args.output.empty()) write_whole_file(args.output, csv_text(scene, solution, args.factors));
-  if (!args.vtk.empty()) write_vtk(args, scene, solution);
+  if (!args.vtk.empty()) write_vtk(scene, solution, args.vtk);
   const bool balanced = test_balance(solution);
   warn_of_no_bound(solution);
   print(args, scene, solution, balanced);

@@ -1,0 +1,24 @@
+#include "matrix/row_facts.h"
+
+#include <algorithm>
+#include <span>
+
+namespace exactff::matrix {
+
+double sum_of_values(const Matrix& matrix, std::size_t row) {
+  const std::size_t columns = matrix.factors.to.size();
+  double value =
+      (matrix.back.empty() ? 0.0 : matrix.back[row].value) + (matrix.open.empty() ? 0.0 : matrix.open[row].value);
+  for (std::size_t j = 0; j < columns; ++j) value += matrix.factors.at(row, j).value;
+  return value;
+}
+
+bool has_statistical(const Matrix& matrix, std::size_t row) {
+  const auto is_statistical = [](const ViewFactor& f) { return f.claim == Claim::kStatistical; };
+  const std::size_t columns = matrix.factors.to.size();
+  return std::ranges::any_of(std::span(matrix.factors.entries).subspan(row * columns, columns), is_statistical) ||
+         (!matrix.back.empty() && is_statistical(matrix.back[row])) ||
+         (!matrix.open.empty() && is_statistical(matrix.open[row]));
+}
+
+}  // namespace exactff::matrix
