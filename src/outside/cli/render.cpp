@@ -1,10 +1,6 @@
 // exactff render: exact images of the direct light in a scene.
 #include "exactff/render.h"
 
-#include <sys/stat.h>
-
-#include <algorithm>
-#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -21,6 +17,7 @@
 #include "flags/lists.h"
 #include "flags/scene.h"
 #include "flags/sources.h"
+#include "render/identity.h"
 #include "text/escape.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
@@ -165,20 +162,6 @@ render::Request request_of(const RenderArguments& args, const Scene& scene, std:
   return request;
 }
 
-// Everything that the tiles depend on.
-std::string identity_of(const render::Request& request, const std::optional<methods::Choice>& against) {
-  std::string all = request.scene->hash() + '\n' + render::flags_of(request.view) + '\n' +
-                    std::string(render::name_of(request.quantity)) + '\n';
-  for (const Selection& source : request.sources) all += request.scene->name_of(source) + '\n';
-  if (request.sky) all += "and the sky\n";
-  all += (request.method ? request.method->text() : "exact") + '\n' + (against ? against->text() : "") + '\n';
-  for (const int number : {static_cast<int>(request.ke), static_cast<int>(request.sides), request.spp,
-                           static_cast<int>(request.bounds), static_cast<int>(request.layers)}) {
-    all += std::to_string(number) + ' ';
-  }
-  return all;
-}
-
 // The journal beside the image. A device has none. Its first record says to which image its tiles belong.
 class Kept {
  public:
@@ -245,7 +228,7 @@ int run(const RenderArguments& args) {
   const render::Request request = with_progress([&] { return request_of(args, scene, method); });
   const std::string note = flags::note_on_sources_without_emission(scene, request.sources);
   if (!note.empty()) std::cerr << "note: " << text::printable(note) << '\n';
-  Kept kept(args, identity_of(request, against));
+  Kept kept(args, render::identity_of(request, against));
   const InterruptWatch watch("exactff: interrupted; " + kept.words());
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};

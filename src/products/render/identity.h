@@ -1,0 +1,14 @@
+// Which picture unfinished tiles belong to.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "exactff/render.h"
+
+namespace exactff::render {
+
+// Everything that the tiles of a picture, and those of the method that it is compared with, depend on.
+[[nodiscard]] std::string identity_of(const Request& request, const std::optional<methods::Choice>& against);
+
+}  // namespace exactff::render
