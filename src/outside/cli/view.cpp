@@ -6,7 +6,6 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <stdexcept>
 
 #include "cli/command.h"
 #include "cli/exit_code.h"
@@ -24,6 +23,7 @@
 #include "text/nearest_names.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
+#include "whole_view/referee.h"
 
 namespace exactff::cli {
 
@@ -49,28 +49,6 @@ struct ViewArguments {
 
 bool differ(const SeenPatch& patch) {
   return patch.share.value != patch.form_factor.value || patch.share.status != patch.form_factor.status;
-}
-
-// --- The per-source solver as referee ---
-
-void compare_with_solver(const ViewArguments& args, const Scene& scene, const Receiver& receiver,
-                         const WholeView& seen) {
-  auto next = seen.patches.begin();
-  for (std::size_t p = 0; p < scene.patches().size(); ++p) {
-    const Selection patch{.patch = static_cast<PatchId>(p), .face = {}, .scene = scene.id()};
-    const std::vector<FaceId> faces = scene.faces_of(patch);
-    const bool clear = std::ranges::any_of(faces, [&](FaceId face) { return scene.face(face).transparent; });
-    const FormFactor f =
-        exact_form_factor(scene, receiver, {scene, patch},
-                          {.engine = Engine::kBoth, .digits = args.digits, .precision_cap = args.precision_cap});
-    const bool is_seen = next != seen.patches.end() && next->patch == patch.patch;
-    const ViewShare found = is_seen ? next->form_factor : ViewShare{};
-    if (is_seen) ++next;
-    if (clear || f.status == Status::kNotCertified || found.status == Status::kNotCertified) continue;
-    if (found.value == f.value && found.status == f.status && found.enclosure.overlaps(f.enclosure)) continue;
-    throw std::logic_error("the sweep and the per-source solver disagree on '" + scene.name_of(patch) +
-                           "': " + found.enclosure.midpoint() + " and " + f.enclosure.midpoint());
-  }
 }
 
 // --- Output ---
@@ -238,7 +216,7 @@ int run(const ViewArguments& args) {
   const Receiver receiver = args.receiver.make(scene);
   const ViewOptions options{.digits = args.digits, .precision_cap = args.precision_cap};
   const WholeView seen = view(scene, receiver, options);
-  if (args.engine == "both") compare_with_solver(args, scene, receiver, seen);
+  if (args.engine == "both") whole_view::require_agreement(scene, receiver, options, seen);
   std::optional<VisibilityMesh> mesh;
   if (!args.mesh.empty()) mesh = visibility_mesh(scene, receiver);
   write_files(args, scene, receiver, mesh);
