@@ -17,7 +17,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,7 +26,6 @@
 #include "exactff/error.h"
 #include "exactff/exact.h"
 #include "exactff/geometry.h"
-#include "exactff/pixels.h"
 #include "exactff/view_factors.h"
 
 namespace exactff::check {
@@ -134,57 +132,6 @@ struct Measured {
 [[nodiscard]] std::vector<Measured> match(const Truth& truth, const Candidate& candidate,
                                           const MatchOptions& options = {});
 
-// --- Images --------------------------------------------------------------------------------------------------------
-
-// Names of layers or channels (exr::ExrFile::find). Empty: R, G, B.
-struct ImageLayers {
-  std::string truth = {};
-  std::string candidate = {};
-};
-
-// Two OpenEXR images, pixel by pixel. Pixels are matched by their coordinates.
-struct Images {
-  Truth truth;                   // a row for each pixel and channel whose true value is finite
-  std::vector<Measured> values;  // in its order
-  std::string candidate_file;
-  exr::Window window;                // of the truth
-  std::size_t channels = 3;          // 1 or 3
-  std::vector<float> exact, theirs;  // `channels` for each pixel of the window; NaN where there is none
-};
-// Throws InputError if a file cannot be read, if channels are missing, or if the candidate lacks a pixel that the truth
-// has, unless `partial`; throws Cancelled.
-[[nodiscard]] Images read_images(const std::filesystem::path& truth, const std::filesystem::path& candidate,
-                                 const ImageLayers& layers = {}, bool partial = false);
-
-// --- Matrices of view factors ----------------------------------------------------------------------------------------
-
-// What view factors must keep to, whatever the truth is: how far the candidate's entries are from it.
-struct MatrixFacts {
-  struct Largest {
-    double by = 0.0;
-    std::string from, to;
-  };
-  std::size_t negative = 0, above_one = 0;  // entries
-  Largest least, largest;                   // the entries themselves
-  std::optional<Largest> row_sum;      // the distance of a row's sum from the sum of the truth's bounds; of whole rows
-  std::optional<Largest> reciprocity;  // |A_i F_ij - A_j F_ji| / min(A_i, A_j), if rows and columns are the same
-};
-
-// A file of `exactff matrix -o` and a matrix of another program, entry by entry.
-struct Matrices {
-  Truth truth;
-  std::vector<Measured> values;  // in its order
-  std::string candidate_file;
-  MatrixFacts facts;
-};
-// The candidate is recognised by its content: CSV with the columns from, to and value (or factor), or a table with
-// names above and beside it: matched by names; View3D's output, numbers only (CSV or blanks between) or a NumPy array:
-// in the order of the truth, whose size they must have, and whose areas if the file has areas. What meets backs and
-// what is open are judged if the candidate has these columns. Throws one InputError with file:line for every problem;
-// entries may be missing only if `partial`.
-[[nodiscard]] Matrices read_matrices(const std::filesystem::path& truth, const std::filesystem::path& candidate,
-                                     const CandidateColumns& columns = {}, bool partial = false);
-
 // --- Judging -------------------------------------------------------------------------------------------------------
 
 enum class Measure { kAbsolute, kRelative, kRadiosity };
@@ -220,9 +167,6 @@ struct Distribution {
   double rms = 0.0;
 };
 
-// As papers on denoising have it: e is the error, t the truth.
-inline constexpr double kRelativeMseEpsilon = 0.01;
-
 // Statistics over the rows with a finite value.
 struct Statistics {
   std::size_t rows = 0;        // all rows
@@ -232,7 +176,7 @@ struct Statistics {
   Distribution absolute;
   Distribution relative;
   std::optional<Distribution> radiosity;  // if rho B is known for every row
-  std::optional<double> relative_mse;     // of images: the mean of e^2 / (t^2 + kRelativeMseEpsilon)
+  std::optional<double> relative_mse;     // of images: the mean of e^2 / (t^2 + 0.01), t the truth
   double largest_value = 0.0;             // of the truth
   double largest_radiosity = 0.0;
 };
@@ -253,21 +197,13 @@ struct RowError {
 };
 
 struct Verdict {
-  std::string
-      criterion;  // "finite", "max-abs", "max-rel", "rms", "eps-b", "relative-mse", "quantile 0.99", "baseline rms"
+  // "finite", "max-abs", "max-rel", "rms", "eps-b", "relative-mse", "quantile 0.99", "baseline rms"
+  std::string criterion;
   std::string source;  // empty: all sources together
   double measured = 0.0;
   double limit = 0.0;
   bool passed = false;
   std::optional<RowError> worst;  // set if a single row decides
-};
-
-// A statistic that is better than the baseline by more than the slack.
-struct Improvement {
-  std::string criterion;
-  std::string source;
-  double recorded = 0.0;
-  double now = 0.0;
 };
 
 struct Report {
@@ -278,14 +214,12 @@ struct Report {
   Criteria criteria;
   std::size_t truth_rows = 0;
   std::size_t not_certified = 0;                  // rows judged by their enclosures
-  std::optional<MatrixFacts> matrix = {};         // if matrices are compared
   std::size_t statistical = 0, not_accurate = 0;  // entries of a matrix
   double widest = 0.0;                            // upper - lower of these
   Statistics overall;
   std::vector<std::string> sources;
-  std::vector<Statistics> by_source;  // of each
-  std::vector<Verdict> verdicts;      // the first one is about finiteness
-  std::vector<Improvement> improvements;
+  std::vector<Statistics> by_source;      // of each
+  std::vector<Verdict> verdicts;          // the first one is about finiteness
   Measure worst_by = Measure::kAbsolute;  // the measure of the first limit that is exceeded
   std::vector<RowError> worst;            // worst first; values that are not finite come before all others
   std::vector<double> magnitudes;         // magnitudes of the errors, ascending
@@ -301,76 +235,8 @@ struct Report {
 // As above, with one value for each row of the truth, in its order.
 [[nodiscard]] Report judge(const Truth& truth, std::span<const double> values, const Criteria& criteria);
 
-// --- Ratchet -------------------------------------------------------------------------------------------------------
-
-// The statistics in a baseline file. They must not get worse.
-inline constexpr std::array<std::string_view, 5> kRatcheted = {"max-abs", "max-rel", "rms", "quantile 0.99", "eps-b"};
-// Default slack: far above the noise that rounding adds to an error, far below the effect of any change of a method.
-inline constexpr double kDefaultSlack = 1e-9;
-
-// The statistics of the report as JSON, for a baseline file.
-[[nodiscard]] std::string baseline_text(const Report& report);
-
-// Adds to the report a verdict on every statistic of the baseline, and the improvements. A statistic is worse if it
-// exceeds the recorded one by more than the share `slack` of it and also by more than 4 units in the last place of the
-// largest truth, because different compilers do not agree more closely. Throws InputError if the file cannot be read,
-// or if it was recorded with other rows, other truths or another relative floor.
-void hold_against_baseline(Report& report, const std::filesystem::path& baseline, double slack = kDefaultSlack);
-
-// --- Output --------------------------------------------------------------------------------------------------------
-
 // Lines of text: every limit that is exceeded, then the worst rows.
 [[nodiscard]] std::string failure_message(const Report& report);
-
-// JUnit XML: one test case per verdict.
-[[nodiscard]] std::string junit_xml(const Report& report);
-
-// Workflow commands of GitHub Actions: an ::error for every verdict that failed, a ::warning for anything doubtful.
-[[nodiscard]] std::string github_annotations(const Report& report);
-[[nodiscard]] std::string github_annotations(const InputError& error);
-
-// The whole report as JSON.
-[[nodiscard]] std::string json_text(const Report& report);
-
-// A histogram of the magnitudes of the errors. The bins within a decade have equal width on a logarithmic axis.
-struct HistogramBin {
-  double low = 0.0;  // exclusive, except in the first bin, which also holds everything below it
-  double high = 0.0;
-  std::size_t count = 0;
-};
-struct Histogram {
-  std::size_t exact = 0;  // number of errors equal to 0
-  std::vector<HistogramBin> bins;
-};
-[[nodiscard]] Histogram histogram(const Report& report, int bins_per_decade = 1, std::size_t most_bins = 24);
-
-// A gnuplot script that plots the histogram as SVG to standard output; empty if every error is 0.
-[[nodiscard]] std::string histogram_script(const Report& report);
-
-// The picture that gnuplot makes of this script, or the reason why there is none. Throws InputError if there is no
-// place for temporary files. Ends gnuplot if `cancelled` returns true while it runs.
-struct Plot {
-  std::string svg;
-  std::string why_not;  // empty if there is a picture
-};
-[[nodiscard]] Plot plot_histogram(const Report& report, const std::function<bool()>& cancelled = {});
-
-// --- Words ---------------------------------------------------------------------------------------------------------
-
-[[nodiscard]] std::string name_of(const Quantile& quantile);  // "quantile 0.99"
-[[nodiscard]] std::string name_of(const Verdict& verdict);    // "max-abs, source light"
-// "max-abs, source light: 0.0123 is above the limit 0.01, at receiver '7'"
-[[nodiscard]] std::string sentence(const Verdict& verdict);
-// "receiver '7', source 'light'"
-[[nodiscard]] std::string name_of(const RowError& row);
-// "row 'floor', column 'light'"
-[[nodiscard]] std::string name_of_entry(const std::string& from, const std::string& to);
-// One sentence for each fact.
-[[nodiscard]] std::vector<std::string> sentences(const MatrixFacts& facts);
-// "exact 0.25, found 0.26, error 0.01, relative 0.04"
-[[nodiscard]] std::string describe(const RowError& row);
-// What the user should know about the result, whether it passed or not.
-[[nodiscard]] std::vector<std::string> warnings(const Report& report);
 
 // --- Single values -------------------------------------------------------------------------------------------------
 

@@ -4,9 +4,15 @@
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "check/baseline.h"
+#include "check/github.h"
+#include "check/json.h"
+#include "check/junit.h"
+#include "check/matrices.h"
 #include "exactff/check.h"
 #include "fuzz/complaints.h"
 #include "support/program.h"
@@ -21,12 +27,12 @@ void check_order(const check::Distribution& d) {
   if (d.median < 0.0 || !(d.rms <= d.max * (1.0 + 1e-12))) fail("a figure that no errors have");
 }
 
-void check_report(const check::Report& report) {
+void check_report(const check::Report& report, const std::optional<check::MatrixFacts>& matrix = {}) {
   check_order(report.overall.absolute);
   check_order(report.overall.relative);
   for (const check::Statistics& statistics : report.by_source) check_order(statistics.absolute);
-  if (!nlohmann::json::accept(check::json_text(report))) fail("not JSON");
-  for (const char c : check::junit_xml(report)) {
+  if (!nlohmann::json::accept(check::json_text(report, matrix))) fail("not JSON");
+  for (const char c : check::junit_xml(report, matrix)) {
     if (static_cast<unsigned char>(c) < 0x20 && c != '\n') fail("a control character in XML");
   }
   (void)check::github_annotations(report);
@@ -60,9 +66,8 @@ constexpr const char* kMatrix =
 void check_matrices(const std::filesystem::path& truth, const std::filesystem::path& candidate) {
   attempt([&] {
     const check::Matrices both = check::read_matrices(truth, candidate, {}, true);
-    check::Report report = check::judge(both.truth, both.values, {.max_abs = 1e-3, .per_source = true});
-    report.matrix = both.facts;
-    check_report(report);
+    const check::Report report = check::judge(both.truth, both.values, {.max_abs = 1e-3, .per_source = true});
+    check_report(report, both.facts);
     if (report.overall.rows > both.truth.rows.size()) fail("more values than entries");
   });
 }

@@ -13,13 +13,22 @@
 #include <utility>
 #include <vector>
 
-#include "cli/check_images.h"
+#include "check/baseline.h"
+#include "check/error_image.h"
+#include "check/github.h"
+#include "check/histogram.h"
+#include "check/images.h"
+#include "check/json.h"
+#include "check/junit.h"
+#include "check/matrices.h"
+#include "check/words.h"
 #include "cli/check_print.h"
 #include "cli/command.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "exactff/matrix.h"
 #include "exactff/pixels.h"
+#include "exactff/render.h"
 #include "files/file.h"
 #include "text/csv_lines.h"
 #include "text/escape.h"
@@ -172,6 +181,15 @@ void refuse_flags_of_rows(const CheckArguments& args, const std::string& what, c
                "remove --match, the tolerances and the columns of coordinates");
 }
 
+// Refuses a file that cannot be written as an image, and one for files that are not images.
+void check_error_image(const std::string& file, bool are_images) {
+  if (file.empty()) return;
+  static_cast<void>(render::image_kind(file));
+  if (are_images) return;
+  text::refuse("--error-image is given, but the files are tables", "only images have pixels to show",
+               "compare two .exr files, or use --plot");
+}
+
 void require_comparable_matrices(const CheckArguments& args) {
   check_error_image(args.error_image, false);
   refuse_flags_of_rows(args, "matrices", "entries are matched by the names of their patches, or by their order");
@@ -202,40 +220,49 @@ void require_comparable(const CheckArguments& args) {
   refuse_flags_of_rows(args, "images", "pixels are matched by their coordinates");
 }
 
-// The images, too, if they are wanted for a picture of the errors.
-check::Report report_of_images(const CheckArguments& args, std::optional<check::Images>& images) {
+struct Compared {
+  check::Report report = {};
+  std::optional<check::Images> images = {};
+  std::optional<check::MatrixFacts> matrix = {};
+  std::vector<check::Improvement> improvements = {};  // over the baseline
+};
+
+Compared compare_images(const CheckArguments& args) {
   const CheckArguments without;
   const check::ImageLayers layers{args.truth_column == without.truth_column ? "" : args.truth_column,
                                   args.columns.value};
-  images = check::read_images(args.truth, args.candidate, layers, args.partial);
-  return check::judge(images->truth, images->values, criteria_of(args), images->candidate_file);
+  check::Images images = check::read_images(args.truth, args.candidate, layers, args.partial);
+  check::Report report = check::judge(images.truth, images.values, criteria_of(args), images.candidate_file);
+  return {.report = std::move(report), .images = std::move(images)};
 }
 
-check::Report report_of_matrices(const CheckArguments& args) {
+Compared compare_matrices(const CheckArguments& args) {
   const check::Criteria criteria = criteria_of(args);
   const check::Matrices matrices = check::read_matrices(args.truth, args.candidate, args.columns, args.partial);
-  check::Report report = check::judge(matrices.truth, matrices.values, criteria, matrices.candidate_file);
-  report.matrix = matrices.facts;
-  return report;
+  return {.report = check::judge(matrices.truth, matrices.values, criteria, matrices.candidate_file),
+          .matrix = matrices.facts};
 }
 
-check::Report report_of_tables(const CheckArguments& args) {
+Compared compare_tables(const CheckArguments& args) {
   const check::Criteria criteria = criteria_of(args);
   const check::MatchOptions options = match_options_of(args);
   const check::CandidateColumns columns = columns_of(args);
   const auto [truth, candidate] = both([&] { return check::read_truth(args.truth, args.truth_column); },
                                        [&] { return check::read_candidate(args.candidate, columns, options.by); });
-  return check::judge(truth, check::match(truth, candidate, options), criteria, candidate.file);
+  return {.report = check::judge(truth, check::match(truth, candidate, options), criteria, candidate.file)};
 }
 
-check::Report report_of(const CheckArguments& args, std::optional<check::Images>& images) {
+Compared compare(const CheckArguments& args) {
   const bool are_matrices = matrix::is_csv(args.truth);
   are_matrices ? require_comparable_matrices(args) : require_comparable(args);
-  check::Report report = are_matrices        ? report_of_matrices(args)
-                         : args.are_images() ? report_of_images(args, images)
-                                             : report_of_tables(args);
-  if (!args.baseline.empty()) check::hold_against_baseline(report, args.baseline, to_limit(args.slack, "--slack"));
-  return report;
+  Compared compared = are_matrices        ? compare_matrices(args)
+                      : args.are_images() ? compare_images(args)
+                                          : compare_tables(args);
+  if (!args.baseline.empty()) {
+    compared.improvements =
+        check::hold_against_baseline(compared.report, args.baseline, to_limit(args.slack, "--slack"));
+  }
+  return compared;
 }
 
 void draw(const check::Report& report, const std::string& file) {
@@ -249,10 +276,13 @@ void draw(const check::Report& report, const std::string& file) {
   std::cerr << "note: " << text::printable(file) << " was not drawn: " << text::printable(plot.why_not) << '\n';
 }
 
-void write_files(const CheckArguments& args, const check::Report& report) {
-  if (!args.junit.empty()) write_whole_file(args.junit, check::junit_xml(report));
-  if (!args.json.empty()) write_whole_file(args.json, check::json_text(report));
+void write_files(const CheckArguments& args, const Compared& compared) {
+  const auto& [report, images, matrix, improvements] = compared;
+  if (!args.junit.empty()) write_whole_file(args.junit, check::junit_xml(report, matrix));
+  if (!args.json.empty()) write_whole_file(args.json, check::json_text(report, matrix, improvements));
   if (!args.plot.empty()) draw(report, args.plot);
+  if (args.error_image.empty() || !images) return;
+  write_whole_file(args.error_image, check::error_image(*images, render::image_kind(args.error_image)));
 }
 
 // The ratchet never loosens. Without an existing baseline, the present statistics are recorded whatever they are.
@@ -271,11 +301,10 @@ void record(const CheckArguments& args, const check::Report& report) {
 }
 
 int run_check(const CheckArguments& args) {
-  std::optional<check::Images> images;
-  const check::Report report = report_of(args, images);
-  write_files(args, report);
-  if (images && !args.error_image.empty()) write_error_image(args.error_image, *images);
-  print_check(report, args.write_baseline.empty() ? args.baseline : "");
+  const Compared compared = compare(args);
+  const check::Report& report = compared.report;
+  write_files(args, compared);
+  print_check(report, compared.matrix, compared.improvements, args.write_baseline.empty() ? args.baseline : "");
   record(args, report);
   if (args.github) std::cout << check::github_annotations(report);
   for (const std::string& warning : check::warnings(report))

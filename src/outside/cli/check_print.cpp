@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <vector>
 
+#include "check/errors.h"
+#include "check/histogram.h"
 #include "cli/text_table.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -68,23 +69,23 @@ void print_histogram(const check::Report& report) {
   std::cout << '\n';
 }
 
-void print_matrix_facts(const check::Report& report) {
-  if (!report.matrix) return;
+void print_matrix_facts(const std::optional<check::MatrixFacts>& matrix) {
+  if (!matrix) return;
   std::cout << "The matrix itself\n";
-  for (const std::string& fact : check::sentences(*report.matrix)) std::cout << "  " << text::printable(fact) << '\n';
+  for (const std::string& fact : check::sentences(*matrix)) std::cout << "  " << text::printable(fact) << '\n';
   std::cout << '\n';
 }
 
 // The first column is always our own text, so that no line can begin with text from a file.
-void print_worst(const check::Report& report) {
+void print_worst(const check::Report& report, bool of_matrix) {
   if (report.worst.empty()) return;
   std::cout << "Worst rows by " << to_string(report.worst_by) << '\n';
   TextTable table;
   table.add_column("#", Align::kRight);
-  for (const char* title : {report.matrix ? "from" : "receiver", report.matrix ? "to" : "source"}) {
+  for (const char* title : {of_matrix ? "from" : "receiver", of_matrix ? "to" : "source"}) {
     table.add_column(title);
   }
-  for (const char* title : {report.matrix ? "truth" : "exact", "found", "error", "relative", "line"})
+  for (const char* title : {of_matrix ? "truth" : "exact", "found", "error", "relative", "line"})
     table.add_column(title, Align::kRight);
   for (std::size_t i = 0; i < report.worst.size(); ++i) {
     const check::RowError& row = report.worst[i];
@@ -107,8 +108,8 @@ void print_verdicts(const check::Report& report) {
   table.print(std::cout);
 }
 
-void print_improvements(const check::Report& report) {
-  for (const check::Improvement& better : report.improvements) {
+void print_improvements(const std::vector<check::Improvement>& improvements) {
+  for (const check::Improvement& better : improvements) {
     std::cout << "Better than " << better.criterion
               << (better.source.empty() ? "" : ", source " + text::printable(better.source)) << ": "
               << text::short_number(better.recorded) << " -> " << text::short_number(better.now);
@@ -119,7 +120,7 @@ void print_improvements(const check::Report& report) {
   }
 }
 
-void print_end(const check::Report& report, const std::string& baseline_to_tighten) {
+void print_end(const check::Report& report, bool improved, const std::string& baseline_to_tighten) {
   const auto failed = static_cast<std::size_t>(std::count_if(
       report.verdicts.begin(), report.verdicts.end(), [](const check::Verdict& verdict) { return !verdict.passed; }));
   if (failed > 0) {
@@ -128,27 +129,27 @@ void print_end(const check::Report& report, const std::string& baseline_to_tight
   } else {
     std::cout << "Passed\n";
   }
-  const bool suggests = failed == 0 && !report.improvements.empty() && !baseline_to_tighten.empty();
+  const bool suggests = failed == 0 && improved && !baseline_to_tighten.empty();
   if (suggests)
     std::cout << "To record this improvement: --write-baseline " << text::printable(baseline_to_tighten) << '\n';
 }
 
 }  // namespace
 
-void print_check(const check::Report& report, const std::string& baseline_to_tighten) {
+void print_check(const check::Report& report, const std::optional<check::MatrixFacts>& matrix,
+                 const std::vector<check::Improvement>& improvements, const std::string& baseline_to_tighten) {
   std::cout << "truth      " << text::printable(report.truth_file) << " (" << text::printable(report.column) << ", "
-            << (report.matrix ? text::counted(report.truth_rows, "entry", "entries")
-                              : text::counted(report.truth_rows, "row"))
+            << (matrix ? text::counted(report.truth_rows, "entry", "entries") : text::counted(report.truth_rows, "row"))
             << ")\n"
             << "candidate  " << text::printable(report.candidate_file) << " ("
             << text::counted(report.overall.rows, "row") << " judged)\n\n";
   print_distribution(report);
   print_histogram(report);
-  print_matrix_facts(report);
-  print_worst(report);
+  print_matrix_facts(matrix);
+  print_worst(report, matrix.has_value());
   print_verdicts(report);
-  print_improvements(report);
-  print_end(report, baseline_to_tighten);
+  print_improvements(improvements);
+  print_end(report, !improvements.empty(), baseline_to_tighten);
 }
 
 }  // namespace exactff::cli

@@ -3,6 +3,8 @@
 
 #include <pybind11/stl/filesystem.h>
 
+#include "check/json.h"
+#include "check/words.h"
 #include "python/bindings.h"
 
 namespace exactff::python {

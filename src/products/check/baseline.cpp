@@ -1,10 +1,11 @@
-// The baseline works as a ratchet: the statistics recorded in a file are the limits of later checks.
+#include "check/baseline.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "exactff/check.h"
 #include "kernel/float_environment.h"
 #include "text/escape.h"
 #include "text/json_document.h"
@@ -17,6 +18,9 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr int kFormat = 1;
+
+// The statistics in a baseline file. They must not get worse.
+constexpr std::array<std::string_view, 5> kRatcheted = {"max-abs", "max-rel", "rms", "quantile 0.99", "eps-b"};
 
 struct Ratcheted {
   std::optional<double> now;
@@ -91,7 +95,7 @@ class Baseline {
 };
 
 void compare(Report& report, const Baseline& baseline, const std::string& source, const Statistics& statistics,
-             double slack) {
+             double slack, std::vector<Improvement>& improvements) {
   constexpr double kRoundings = 4.0 * std::numeric_limits<double>::epsilon();
   for (const std::string_view name : kRatcheted) {
     const auto recorded = baseline.recorded(source, name);
@@ -101,7 +105,7 @@ void compare(Report& report, const Baseline& baseline, const std::string& source
     const double limit = *recorded + allowance;
     const std::string criterion = "baseline " + std::string(name);
     report.verdicts.push_back({criterion, source, *one.now, limit, *one.now <= limit, {}});
-    if (*one.now < *recorded - allowance) report.improvements.push_back({criterion, source, *recorded, *one.now});
+    if (*one.now < *recorded - allowance) improvements.push_back({criterion, source, *recorded, *one.now});
   }
 }
 
@@ -122,7 +126,7 @@ std::string baseline_text(const Report& report) {
   return text::json_document(json) + '\n';
 }
 
-void hold_against_baseline(Report& report, const std::filesystem::path& path, double slack) {
+std::vector<Improvement> hold_against_baseline(Report& report, const std::filesystem::path& path, double slack) {
   const kernel::StandardArithmetic arithmetic;
   if (!(slack >= 0.0) || std::isinf(slack)) {
     throw InputError({.what = "the slack for the baseline is " + text::shortest(slack),
@@ -131,10 +135,12 @@ void hold_against_baseline(Report& report, const std::filesystem::path& path, do
   }
   const Baseline baseline(path);
   baseline.require_same_rows(report);
-  if (!report.criteria.per_source) return compare(report, baseline, {}, report.overall, slack);
-  for (std::size_t s = 0; s < report.sources.size(); ++s) {
-    compare(report, baseline, report.sources[s], report.by_source[s], slack);
+  std::vector<Improvement> improvements;
+  if (!report.criteria.per_source) compare(report, baseline, {}, report.overall, slack, improvements);
+  for (std::size_t s = 0; report.criteria.per_source && s < report.sources.size(); ++s) {
+    compare(report, baseline, report.sources[s], report.by_source[s], slack, improvements);
   }
+  return improvements;
 }
 
 }  // namespace exactff::check

@@ -9,6 +9,10 @@
 
 namespace exactff::check {
 
+// In the relative mean square error of images, e^2 / (t^2 + this), as papers on denoising have it: e is the error, t
+// the truth.
+inline constexpr double kRelativeMseEpsilon = 0.01;
+
 // F*: the true value; if it is not certified, the point of its enclosure nearest to `actual`.
 [[nodiscard]] double reference_of(double actual, const Expected& expected);
 // The error divided by max(|reference|, floor). 0 if the error is 0; otherwise infinite if both are 0.

@@ -1,7 +1,8 @@
-// Workflow commands of GitHub Actions: lines that the runner turns into annotations on files.
+#include "check/github.h"
+
 #include <string_view>
 
-#include "exactff/check.h"
+#include "check/words.h"
 #include "kernel/float_environment.h"
 #include "text/escape.h"
 

@@ -1,9 +1,9 @@
-// Histograms of errors on a logarithmic axis.
+#include "check/histogram.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "exactff/check.h"
 #include "files/work_folder.h"
 #include "kernel/float_environment.h"
 #include "page/gnuplot.h"

@@ -1,10 +1,9 @@
-// Images as truths and candidates: a row for each pixel and channel.
+#include "check/images.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "exactff/check.h"
-#include "exactff/pixels.h"
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"
 #include "text/nearest_names.h"

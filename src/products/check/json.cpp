@@ -1,8 +1,10 @@
-// The report as JSON, for other programs.
+#include "check/json.h"
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "exactff/check.h"
+#include "check/histogram.h"
+#include "check/words.h"
 #include "kernel/float_environment.h"
 #include "text/json_document.h"
 #include "text/phrases.h"
@@ -92,7 +94,8 @@ ordered_json list(const List& items) {
 
 }  // namespace
 
-std::string json_text(const Report& report) {
+std::string json_text(const Report& report, const std::optional<MatrixFacts>& matrix,
+                      const std::vector<Improvement>& improvements) {
   const kernel::StandardArithmetic arithmetic;
   ordered_json json;
   json["program"] = text::program_version();
@@ -102,10 +105,10 @@ std::string json_text(const Report& report) {
                    {"identity", report.identity}};
   json["candidate"] = report.candidate_file;
   json["passed"] = report.passed();
-  if (report.matrix) json["matrix"] = to_json(*report.matrix);
+  if (matrix) json["matrix"] = to_json(*matrix);
   json["warnings"] = warnings(report);
   json["verdicts"] = list(report.verdicts);
-  json["improvements"] = list(report.improvements);
+  json["improvements"] = list(improvements);
   json["relative_floor"] = report.criteria.relative_floor;
   json["overall"] = to_json(report.overall);
   json["sources"] = ordered_json::object();

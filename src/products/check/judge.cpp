@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "check/errors.h"
-#include "exactff/check.h"
+#include "check/words.h"
 #include "kernel/float_environment.h"
 #include "text/fnv1a.h"
 #include "text/phrases.h"

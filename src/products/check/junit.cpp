@@ -1,7 +1,8 @@
-// JUnit XML as Jenkins, GitLab and others read it: one test suite with one test case per verdict.
+#include "check/junit.h"
+
 #include <algorithm>
 
-#include "exactff/check.h"
+#include "check/words.h"
 #include "kernel/float_environment.h"
 #include "text/escape.h"
 
@@ -30,7 +31,7 @@ std::string property(const std::string& name, const std::string& value) {
 
 }  // namespace
 
-std::string junit_xml(const Report& report) {
+std::string junit_xml(const Report& report, const std::optional<MatrixFacts>& matrix) {
   const kernel::StandardArithmetic arithmetic;
   const auto failures = std::count_if(report.verdicts.begin(), report.verdicts.end(),
                                       [](const Verdict& verdict) { return !verdict.passed; });
@@ -42,7 +43,7 @@ std::string junit_xml(const Report& report) {
                      property("candidate", report.candidate_file) +
                      property("rows", std::to_string(report.overall.rows)) + "    </properties>\n";
   for (const Verdict& verdict : report.verdicts) text += test_case(report, verdict);
-  std::vector<std::string> lines = report.matrix ? sentences(*report.matrix) : std::vector<std::string>();
+  std::vector<std::string> lines = matrix ? sentences(*matrix) : std::vector<std::string>();
   for (const std::string& doubt : warnings(report)) lines.push_back("warning: " + doubt);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     text += (i == 0 ? "    <system-out>" : "\n") + text::html(lines[i]);

@@ -1,4 +1,5 @@
-// A matrix as truth, and what is compared with it.
+#include "check/matrices.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,7 +8,7 @@
 #include "check/name_list.h"
 #include "check/other_matrix.h"
 #include "check/row_keys.h"
-#include "exactff/check.h"
+#include "check/words.h"
 #include "exactff/matrix.h"
 #include "kernel/float_environment.h"
 #include "text/csv_lines.h"
@@ -225,6 +226,28 @@ Matrices read_matrices(const fs::path& truth, const fs::path& candidate, const C
   }
   result.facts = FactFinder(table, result).find();
   return result;
+}
+
+std::vector<std::string> sentences(const MatrixFacts& facts) {
+  std::vector<std::string> texts;
+  const auto at = [](const MatrixFacts::Largest& entry) { return ", at " + name_of_entry(entry.from, entry.to); };
+  if (facts.row_sum) {
+    texts.push_back("sums of rows are at most " + text::short_number(facts.row_sum->by) + " off those of the truth" +
+                    (facts.row_sum->by > 0.0 ? ", in the row of " + text::in_quotes(facts.row_sum->from) : ""));
+  }
+  if (facts.reciprocity) {
+    texts.push_back("A_i F_ij and A_j F_ji differ by at most " + text::short_number(facts.reciprocity->by) +
+                    " of the smaller area" + (facts.reciprocity->by > 0.0 ? at(*facts.reciprocity) : ""));
+  }
+  if (facts.negative > 0) {
+    texts.push_back(text::counted(facts.negative, "entry", "entries") + " below 0, the least " +
+                    text::shortest(facts.least.by) + at(facts.least));
+  }
+  if (facts.above_one > 0) {
+    texts.push_back(text::counted(facts.above_one, "entry", "entries") + " above 1, the largest " +
+                    text::shortest(facts.largest.by) + at(facts.largest));
+  }
+  return texts;
 }
 
 }  // namespace exactff::check

@@ -1,15 +1,15 @@
-#include <algorithm>
+#include "check/words.h"
+
 #include <array>
-#include <charconv>
 #include <cmath>
 
-#include "exactff/check.h"
 #include "kernel/float_environment.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "text/text_lines.h"
 
 namespace exactff::check {
+
 std::string_view to_string(Measure measure) {
   constexpr std::array<std::string_view, 3> kNames = {"absolute error", "relative error", "error in radiosity"};
   return kNames[static_cast<std::size_t>(measure)];
@@ -54,28 +54,6 @@ std::string sentence(const Verdict& verdict) {
             text::shortest(verdict.limit);
   }
   return text + (verdict.worst ? ", worst at " + name_of(*verdict.worst) : "");
-}
-
-std::vector<std::string> sentences(const MatrixFacts& facts) {
-  std::vector<std::string> texts;
-  const auto at = [](const MatrixFacts::Largest& entry) { return ", at " + name_of_entry(entry.from, entry.to); };
-  if (facts.row_sum) {
-    texts.push_back("sums of rows are at most " + text::short_number(facts.row_sum->by) + " off those of the truth" +
-                    (facts.row_sum->by > 0.0 ? ", in the row of " + text::in_quotes(facts.row_sum->from) : ""));
-  }
-  if (facts.reciprocity) {
-    texts.push_back("A_i F_ij and A_j F_ji differ by at most " + text::short_number(facts.reciprocity->by) +
-                    " of the smaller area" + (facts.reciprocity->by > 0.0 ? at(*facts.reciprocity) : ""));
-  }
-  if (facts.negative > 0) {
-    texts.push_back(text::counted(facts.negative, "entry", "entries") + " below 0, the least " +
-                    text::shortest(facts.least.by) + at(facts.least));
-  }
-  if (facts.above_one > 0) {
-    texts.push_back(text::counted(facts.above_one, "entry", "entries") + " above 1, the largest " +
-                    text::shortest(facts.largest.by) + at(facts.largest));
-  }
-  return texts;
 }
 
 namespace {

@@ -16,6 +16,12 @@
 #include <xmmintrin.h>
 #endif
 
+#include "check/baseline.h"
+#include "check/github.h"
+#include "check/histogram.h"
+#include "check/images.h"
+#include "check/json.h"
+#include "check/junit.h"
 #include "exactff/adaptive.h"
 #include "exactff/check.h"
 #include "exactff/exact.h"
@@ -404,8 +410,8 @@ TEST(ThreadsArithmetic, ChangesNoCheck) {
   expect_the_same([&] {
     check::Report report = judged();
     std::string text = check::baseline_text(report);
-    check::hold_against_baseline(report, baseline);
-    text += check::failure_message(report) + check::junit_xml(report) + check::json_text(report) +
+    const std::vector<check::Improvement> improvements = check::hold_against_baseline(report, baseline);
+    text += check::failure_message(report) + check::junit_xml(report) + check::json_text(report, {}, improvements) +
             check::github_annotations(report) + check::histogram_script(report);
     Record record;
     for (const check::HistogramBin& bin : check::histogram(report).bins) record.add(bin.low);

@@ -6,6 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "check/github.h"
+#include "check/histogram.h"
+#include "check/json.h"
+#include "check/junit.h"
 #include "exactff/check.h"
 #include "page/gnuplot.h"
 #include "support/holds.h"

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "check/histogram.h"
 #include "support/complaint.h"
 #include "unit/products/check_support.h"
 

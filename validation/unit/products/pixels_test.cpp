@@ -12,7 +12,7 @@
 #include <limits>
 #include <sstream>
 
-#include "exactff/check.h"
+#include "check/images.h"
 #include "exactff/error.h"
 #include "exactff/obj.h"
 #include "exactff/truth.h"

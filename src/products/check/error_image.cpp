@@ -1,20 +1,17 @@
-#include "cli/check_images.h"
+#include "check/error_image.h"
 
 #include <bit>
 #include <cmath>
-#include <limits>
+#include <cstdint>
 
-#include "cli/output.h"
 #include "exactff/pixels.h"
-#include "exactff/render.h"
 #include "text/phrases.h"
-#include "text/refuse.h"
 
-namespace exactff::cli {
+namespace exactff::check {
 namespace {
 
-// A number that is not one stands for no value.
-std::string exr_of_errors(const check::Images& images) {
+// NaN stands for no value.
+std::string exr_of_errors(const Images& images) {
   exr::Image image{images.window, images.window, {}, {}};
   image.about = {{"software", text::program_version()},
                  {"difference", images.candidate_file + " minus " + images.truth.file}};
@@ -29,7 +26,7 @@ std::string exr_of_errors(const check::Images& images) {
 }
 
 // A single channel is shown in all three.
-std::string png_of_errors(const check::Images& images) {
+std::string png_of_errors(const Images& images) {
   render::Picture exact, theirs;
   exact.size = theirs.size = {images.window.width, images.window.height};
   for (std::size_t i = 0; i < images.window.pixels(); ++i) {
@@ -54,17 +51,8 @@ std::string png_of_errors(const check::Images& images) {
 
 }  // namespace
 
-void check_error_image(const std::string& file, bool are_images) {
-  if (file.empty()) return;
-  static_cast<void>(render::image_kind(file));
-  if (are_images) return;
-  text::refuse("--error-image is given, but the files are tables", "only images have pixels to show",
-               "compare two .exr files, or use --plot");
+std::string error_image(const Images& images, render::ImageKind kind) {
+  return kind == render::ImageKind::kPng ? png_of_errors(images) : exr_of_errors(images);
 }
 
-void write_error_image(const std::string& file, const check::Images& images) {
-  const bool png = render::image_kind(file) == render::ImageKind::kPng;
-  write_whole_file(file, png ? png_of_errors(images) : exr_of_errors(images));
-}
-
-}  // namespace exactff::cli
+}  // namespace exactff::check

@@ -1,0 +1,34 @@
+// Images as truths and candidates: a row for each pixel and channel.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "exactff/check.h"
+#include "exactff/pixels.h"
+
+namespace exactff::check {
+
+// Names of layers or channels (exr::ExrFile::find). Empty: R, G, B.
+struct ImageLayers {
+  std::string truth = {};
+  std::string candidate = {};
+};
+
+// Two OpenEXR images, pixel by pixel. Pixels are matched by their coordinates.
+struct Images {
+  Truth truth;                   // a row for each pixel and channel whose true value is finite
+  std::vector<Measured> values;  // in its order
+  std::string candidate_file;
+  exr::Window window;                // of the truth
+  std::size_t channels = 3;          // 1 or 3
+  std::vector<float> exact, theirs;  // `channels` for each pixel of the window; NaN where there is none
+};
+// Throws InputError if a file cannot be read, if channels are missing, or if the candidate lacks a pixel that the truth
+// has, unless `partial`; throws Cancelled.
+[[nodiscard]] Images read_images(const std::filesystem::path& truth, const std::filesystem::path& candidate,
+                                 const ImageLayers& layers = {}, bool partial = false);
+
+}  // namespace exactff::check
