@@ -7,7 +7,20 @@
 
 namespace exactff::contour {
 
-using namespace kernel::double_double;
+using kernel::double_double::BasicBounded;
+using kernel::double_double::both;
+using kernel::double_double::Bounded;
+using kernel::double_double::differ;
+using kernel::double_double::DoubleDouble;
+using kernel::double_double::either;
+using kernel::double_double::fast_two_sum;
+using kernel::double_double::Four;
+using kernel::double_double::FourBounded;
+using kernel::double_double::kNegligible;
+using kernel::double_double::kUnderflow;
+using kernel::double_double::magnitude;
+using kernel::double_double::uniform;
+using kernel::double_double::where;
 
 inline constexpr int kAtanSteps = 256;  // intervals of the table from 0 to 1
 
@@ -23,7 +36,7 @@ const AngleConstants& angle_constants();
 
 EXACTFF_INLINE Bounded constant(const DoubleDouble& x) { return {x.hi, x.lo, 0x1p-106 * x.hi}; }
 
-// Entry k of the table. Requires a whole number k from 0 to kAtanSteps.
+// Entry k of the table. Requires a whole number k from 0 to kAtanSteps: atan_of_ratio rounds one in this range.
 EXACTFF_INLINE Bounded tabulated_atan(double k, const AngleConstants& known) {
   return constant(known.atan[static_cast<std::size_t>(k)]);
 }

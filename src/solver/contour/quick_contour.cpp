@@ -21,6 +21,8 @@
 
 namespace exactff::contour {
 
+using namespace kernel::double_double;
+
 // --- Constants ---
 
 namespace {

@@ -8,7 +8,13 @@
 
 namespace exactff::contour {
 
-using namespace kernel::double_double;
+using kernel::double_double::BasicBounded;
+using kernel::double_double::BasicDoubleDouble;
+using kernel::double_double::Four;
+using kernel::double_double::kUnderflow;
+using kernel::double_double::magnitude;
+using kernel::double_double::two_product;
+using kernel::double_double::two_sum;
 using kernel::double_double::where;
 
 template <class Real>

@@ -15,6 +15,7 @@
 namespace exactff::contour {
 namespace {
 
+using namespace kernel::double_double;
 using generate::Random;
 using kernel::Integer;
 using kernel::Rational;

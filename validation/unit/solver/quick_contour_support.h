@@ -19,6 +19,8 @@
 
 namespace exactff::contour {
 
+using kernel::double_double::kInflation;
+
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr long kBits = 600;
 

@@ -17,6 +17,7 @@
 namespace exactff::contour {
 namespace {
 
+using namespace kernel::double_double;
 using generate::Random;
 using kernel::ExactVec3;
 using kernel::Integer;

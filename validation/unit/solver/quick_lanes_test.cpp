@@ -20,6 +20,7 @@
 namespace exactff::contour {
 namespace {
 
+using namespace kernel::double_double;
 using generate::Random;
 
 // --- Numbers, vectors and angles ---
