@@ -103,8 +103,7 @@ class View {
 // closed room, the camera stands in a corner of the scene's box. `up`, `fov` and `ortho` are those of the given camera.
 [[nodiscard]] Camera default_camera(const Scene& scene, const Camera& like, const Size& size);
 
-// ------------------------------------------------------------------------------------------------- first face and
-// receiver
+// ---------------------------------------------------------------------------------------- first face and receiver
 
 // Where a ray meets a face first.
 struct Hit {

@@ -5,9 +5,8 @@
 // - Wavefront OBJ with MTL: see obj.h.
 // - PLY, in text and in both binary forms. Faces are polygons. An integer property `patch` (otherwise `material_index`)
 //   of the faces makes patches `patch_N` (`material_N`), or of the name that a comment "patch N NAME" gives.
-// - STL, in text and binary. A solid is a patch, with the rest of its line as its name. A vertex is shared if its
-// doubles
-//   are equal. Fronts follow from the order of the vertices; stored normals are ignored.
+// - STL, in text and binary. A solid is a patch, with the rest of its line as its name. Vertices with equal doubles are
+//   one vertex. Fronts follow from the order of the vertices; stored normals are ignored.
 // - OFF, in text.
 // - View3D (.vs3). A surface is a patch; a combined surface belongs to the patch of the other one; obstruction surfaces
 //   form one patch. Kd is 1 - emittance. Subsurfaces are cut from their base exactly, or refused.

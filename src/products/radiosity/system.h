@@ -11,9 +11,8 @@
 // every F within the bounds.
 //
 // Proof (monotonicity: I - rho U is an M-matrix). Let L <= F <= U and T = rho F, so 0 <= T <= rho U.
-// - By z: T z <= rho U z < z, so T z <= q z with some q < 1. For any x, |x| <= a z gives |T x| <= T |x| <= a q z. So
-// the
-//   sum S = I + T + T^2 + ... converges, S >= 0, S = (I - T)^-1, and B = S E is the only solution.
+// - By z: T z <= rho U z < z, so T z <= q z with some q < 1. For any x, |x| <= a z gives |T x| <= T |x| <= a q z.
+//   So the sum S = I + T + T^2 + ... converges, S >= 0, S = (I - T)^-1, and B = S E is the only solution.
 // - Upper: since w >= 0, T w <= rho U w, so (I - T) w >= (I - rho U) w >= E. Then w - B = S ((I - T) w - E) >= 0.
 // - Lower: since v >= 0, T v >= rho L v, so (I - T) v <= (I - rho L) v <= E. Then B - v = S (E - (I - T) v) >= 0.
 // - Step 4: if (I - rho L) y <= E, the same holds for v = max(y, E), since L v >= L y and L v >= 0: where y_i > E_i,

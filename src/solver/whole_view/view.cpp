@@ -1,8 +1,8 @@
 // The whole view: one sweep over all edges (view_edges.h), then one sum of terms of Eq. (4) for each thing seen.
 //
 // A term counts + for what is on the left of its arc and - for what is on its right. Let C be the sum over the arcs
-// with nothing on their right, the horizon's included: the share of all that is seen together. Nothing is seen in 1 -
-// C.
+// with nothing on their right, the horizon's included: the share of all that is seen together. In the rest, 1 - C,
+// nothing is seen.
 #include "exactff/view.h"
 
 #include <algorithm>
