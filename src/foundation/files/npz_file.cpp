@@ -4,6 +4,7 @@
 #include <boost/crc.hpp>
 #include <limits>
 
+#include "kernel/expect.h"
 #include "text/characters.h"
 #include "text/encoding.h"
 #include "text/refuse.h"
@@ -52,6 +53,7 @@ void NpzFile::append(const std::string& bytes) {
 }
 
 void NpzFile::add_bytes(std::string_view name, const std::string& header, const std::string& elements) {
+  EXACTFF_EXPECT(std::ranges::find(entries_, std::string(name) + ".npy", &Entry::name) == entries_.end());
   boost::crc_32_type checksum;
   checksum.process_bytes(header.data(), header.size());
   checksum.process_bytes(elements.data(), elements.size());

@@ -10,6 +10,7 @@
 
 #include "jobs/leader.h"
 #include "jobs/workers.h"
+#include "kernel/expect.h"
 #include "text/phrases.h"
 
 namespace exactff::jobs {
@@ -133,6 +134,7 @@ void for_each_chunk(const Rows& rows, const RowJournal& journal, const Hooks& ho
   const std::uint32_t chunk = rows.plan().chunk;
   Pace pace("writing the file", rows.shard_rows(), hooks);
   const std::vector<Block> blocks = journal.blocks();
+  std::uint64_t taken = 0;
   for (std::size_t i = 0; i < blocks.size();) {
     Range range{blocks[i].range.first, 0};
     std::string text;
@@ -142,7 +144,9 @@ void for_each_chunk(const Rows& rows, const RowJournal& journal, const Hooks& ho
     }
     if (!take(range, text)) throw std::logic_error("a block of the journal is not what it was");
     pace.add(range.rows);
+    taken += range.rows;
   }
+  EXACTFF_EXPECT(taken == rows.shard_rows());
 }
 
 void write_rows(const Rows& rows, const RowJournal& journal, const fs::path& file, const Hooks& hooks,

@@ -80,7 +80,7 @@ inline Disc square(const Disc& a) {
   return {c, (inherited + disc::kUnit * c) * disc::kUp + disc::kTiny};
 }
 
-// |1 / z - 1 / m| = |z - m| / (|m| |z|), so r = e / (|m| (|m| - e)). Requires that 0 lies outside the disc.
+// |1 / z - 1 / m| = |z - m| / (|m| |z|), so r = e / (|m| (|m| - e)). kFailed unless 0 lies outside the disc.
 inline Disc inverse(const Disc& a) {
   const double m = std::abs(a.centre), least = m - a.radius;
   if (!(least > 0.0)) return disc::kFailed;
@@ -89,7 +89,7 @@ inline Disc inverse(const Disc& a) {
 }
 inline Disc operator/(const Disc& a, const Disc& b) { return a * inverse(b); }
 
-// The root with a positive real part, analytic off the negative half of the real axis; requires a positive disc. A
+// The root with a positive real part, analytic off the negative half of the real axis; kFailed unless m > e. A
 // number z of it has |z| >= m - e and Re z >= m - e, so Re sqrt(z) = sqrt((|z| + Re z) / 2) >= sqrt(m - e). Since
 // |sqrt(z) - sqrt(m)| = |z - m| / |sqrt(z) + sqrt(m)|, r = e / (sqrt(m - e) + sqrt(m)).
 inline Disc square_root(const Disc& a) {
@@ -100,7 +100,7 @@ inline Disc square_root(const Disc& a) {
 }
 
 // A(z) = atan(sqrt(z)) / sqrt(z) = integral over t from 0 to 1 of 1 / (1 + t^2 z): analytic off the real numbers up to
-// -1, and at 0. Requires m - e > -1.
+// -1, and at 0. kFailed unless m - e > -3/4 and m >= -1/2.
 //
 // Radius. For z = m + v, |v| <= e: |1 + t^2 z| >= 1 + t^2 (m - e). So
 //   |A(z) - A(m)| <= e * integral of t^2 / ((1 + t^2 (m - e)) (1 + t^2 m)) <= e / (3 min(1, 1 + m - e) min(1, 1 + m)).

@@ -88,7 +88,8 @@ EXACTFF_INLINE BasicDoubleDouble<Real> two_sum(const Real& a, const Real& b) {
   return {sum, (a - (sum - b_part)) + (b - b_part)};
 }
 
-// a + b, exactly. Requires |a| >= |b|, or that a is a multiple of the last place of b.
+// a + b, exactly. Requires |a| >= |b|, or that a is a multiple of the last place of b, as the bounds beside
+// its uses show.
 template <class Real>
 EXACTFF_INLINE BasicDoubleDouble<Real> fast_two_sum(const Real& a, const Real& b) {
   const Real sum = a + b;

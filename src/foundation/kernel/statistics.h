@@ -9,7 +9,7 @@
 namespace exactff::kernel {
 
 // Nearest rank: the smallest value that at least `percent` % of the values do not exceed. Requires at least one value,
-// no NaN, and 0 < percent <= 100.
+// none of them NaN, and 0 < percent <= 100.
 [[nodiscard]] double percentile(std::vector<double> values, double percent);
 
 // The middle value, or the mean of the two middle values; 0 for an empty list.

@@ -10,8 +10,7 @@ namespace exactff::cli {
 // For App::formatter. Set it before commands are added, because they inherit it.
 [[nodiscard]] std::shared_ptr<CLI::Formatter> help_formatter();
 
-// Throws InputError if there is no such command.
-// Requires all commands in `app`.
+// Throws InputError if there is no such command. `app` must have all commands: main() adds them first.
 void require_command(const CLI::App& app, const std::string& name);
 
 }  // namespace exactff::cli

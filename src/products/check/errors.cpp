@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "kernel/expect.h"
 #include "kernel/statistics.h"
 
 namespace exactff::check {
@@ -76,6 +77,7 @@ RowError Errors::row(Index i) const {
 }
 
 Errors::Index Errors::worst(const std::vector<Index>& among, Measure measure) const {
+  EXACTFF_EXPECT(!among.empty());
   return *std::max_element(among.begin(), among.end(),
                            [&](Index a, Index b) { return magnitude(a, measure) < magnitude(b, measure); });
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kernel/exact_vec.h"
+#include "kernel/expect.h"
 #include "scene/places.h"
 
 namespace exactff::matrix {
@@ -69,9 +70,18 @@ bool are_boxes_apart(const Scene& scene, const Piece& a, const Piece& b) {
   return false;
 }
 
+// For a requirement.
+[[maybe_unused]] bool are_coplanar(const Scene& scene, const Piece& a, const Piece& b) {
+  const auto at = [&](std::uint32_t v) { return scene.vertices()[v]; };
+  return std::ranges::all_of(b.frame, [&](std::uint32_t v) {
+    return kernel::orientation(at(a.frame[0]), at(a.frame[1]), at(a.frame[2]), at(v)) == 0;
+  });
+}
+
 }  // namespace
 
 bool overlap(const Scene& scene, const Piece& a, const Piece& b) {
+  EXACTFF_EXPECT(are_coplanar(scene, a, b));
   if (are_boxes_apart(scene, a, b)) return false;
   int axis = 0;
   while (axis < 2 && turn_of(scene, a, axis) == 0) ++axis;

@@ -10,6 +10,8 @@
 
 #include "exactff/enclosure.h"
 #include "kernel/ball.h"
+#include "kernel/expect.h"
+#include "kernel/vec.h"
 
 namespace exactff::truth {
 namespace {
@@ -27,6 +29,7 @@ double component(double value, const Vec3& normal) {
 }  // namespace
 
 Vec3 unit_normal(const Vec3& normal) {
+  EXACTFF_EXPECT(kernel::is_finite(normal) && !(normal == Vec3{}));
   return {component(normal.x, normal), component(normal.y, normal), component(normal.z, normal)};
 }
 

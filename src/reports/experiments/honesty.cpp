@@ -10,6 +10,7 @@
 #include "exactff/models.h"
 #include "files/parallel.h"
 #include "kernel/disc.h"
+#include "kernel/expect.h"
 #include "kernel/statistics.h"
 #include "models/random.h"
 #include "view_factors/exact_scene.h"
@@ -140,6 +141,7 @@ Verdict verdict(const ViewFactor& entry, const Bounds& truth) {
 
 ErrorRatio error_ratio(const ViewFactor& entry, const Bounds& truth) {
   const double reported = magnitude_of_error(entry);
+  EXACTFF_EXPECT(reported > 0.0);
   const double below = truth.lower - entry.value, above = entry.value - truth.upper;
   return {std::max({0.0, below, above}) / reported,
           std::max(std::abs(entry.value - truth.lower), std::abs(entry.value - truth.upper)) / reported};

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "files/parallel.h"
+#include "kernel/expect.h"
 #include "kernel/vec.h"
 #include "study/ladders.h"
 #include "study/method_runs.h"
@@ -149,6 +150,7 @@ class Profiler {
 
 std::variant<Profile, LeftOut> find_profile(const Study& study, std::span<const ExactSource> sources,
                                             const Hooks& hooks) {
+  EXACTFF_EXPECT(study.exact.size() == study.request.receivers.size());
   const auto line = line_through_penumbra(study);
   if (auto profile = line ? Profiler(study, sources, hooks).along(*line) : std::nullopt) return *std::move(profile);
   return LeftOut{"penumbra profile",

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "kernel/expect.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 
@@ -261,6 +262,7 @@ std::vector<LeftOut> leave_out(Sweeps& sweeps, const Work& work) {
 }
 
 SettingPlan combine(const Sweeps& sweeps) {
+  EXACTFF_EXPECT(product_size(sweeps) > 0);
   const AdaptiveOptions base = base_of(sweeps);
   Collector settings(sweeps);
   SettingPlan plan;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "kernel/expect.h"
 #include "study/method_runs.h"
 #include "study/radiosity.h"
 #include "study/settings.h"
@@ -85,6 +86,7 @@ void require_possible(const Study& study, double base_seconds) {
 
 std::vector<std::size_t> over_budget(const Study& study, std::span<const ExactSource> sources,
                                      const AdaptiveSolver& solver, std::span<const AdaptiveSource> sampled_sources) {
+  EXACTFF_EXPECT(study.exact.size() == study.request.receivers.size() && !study.settings.empty());
   const std::vector<double> costs = SweepPlan(study, sources, solver, sampled_sources).costs();
   require_possible(study, costs[study.base]);
   std::vector<std::size_t> order(costs.size());

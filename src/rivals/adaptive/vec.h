@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "exactff/geometry.h"
+#include "kernel/expect.h"
 #include "kernel/vec.h"
 
 namespace exactff::adaptive {
@@ -23,6 +24,7 @@ inline constexpr double kLeastSquare = 0x1p-900;
 // `a` times the power of two that brings its max norm into [1, 2); `exponent` undoes it. Requires a finite a other
 // than 0.
 inline Vec3 normalised(const Vec3& a, int& exponent) {
+  EXACTFF_EXPECT(kernel::is_finite(a) && !(a == Vec3{}));
   exponent = std::ilogb(max_norm(a));
   return {std::scalbn(a.x, -exponent), std::scalbn(a.y, -exponent), std::scalbn(a.z, -exponent)};
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "adaptive/plane_side.h"
+#include "kernel/expect.h"
 #include "kernel/poll.h"
 
 namespace exactff::methods {
@@ -145,6 +146,7 @@ void RaySum::gather_from_all(const RayPlane& plane, const SourcePlane& seen, Hor
 }
 
 double RaySum::kernel(const Vec3& point) const {
+  EXACTFF_EXPECT(height_ >= 0.0);
   const double squared_distance = dot(point, point);
   if (squared_distance < kLeastSquare || height_ * height_ > 2.0 * squared_distance) return kernel_near_x(point);
   const double above = std::max(0.0, dot(view_.unit_normal, point));

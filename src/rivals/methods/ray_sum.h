@@ -59,8 +59,8 @@ class RaySum {
   [[nodiscard]] const adaptive::SubPatch& patch() const { return patch_; }  // the root, relative to x, unclipped
   [[nodiscard]] double height() const { return height_; }                   // of x above its plane; negative behind
 
-  // cos th_r cos th_s / (pi r^2) at a point of the root, 0 below the horizon; requires Reach::kVisible. At most
-  // kLargestKernel, so that no sum of it overflows.
+  // cos th_r cos th_s / (pi r^2) at a point of the root, 0 below the horizon. Requires a root that was aimed at with
+  // Reach::kVisible, so that x is not behind it. At most kLargestKernel, so that no sum of it overflows.
   [[nodiscard]] double kernel(const Vec3& point) const;
 
   // Cuts every root of the source that counts into splits x splits parts and calls add(part, key) for each, with its

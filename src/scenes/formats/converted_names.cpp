@@ -1,5 +1,6 @@
 #include "formats/converted_names.h"
 
+#include "kernel/expect.h"
 #include "text/encoding.h"
 #include "text/phrases.h"
 #include "text/text_lines.h"
@@ -15,6 +16,7 @@ void ConvertedNames::add(std::size_t line, std::string_view name) {
 }
 
 Problem ConvertedNames::warning(const std::string& file) const {
+  EXACTFF_EXPECT(!names_.empty());
   const std::size_t others = names_.size() - 1;
   return {file, first_line_,
           "the name " + text::in_quotes(text::in_utf8(first_), text::kShownName) + " is not written in UTF-8" +

@@ -13,7 +13,7 @@ class ConvertedNames {
  public:
   void add(std::size_t line, std::string_view name);
   [[nodiscard]] const std::set<std::string>& names() const { return names_; }  // as they are in the file
-  [[nodiscard]] Problem warning(const std::string& file) const;                // requires names
+  [[nodiscard]] Problem warning(const std::string& file) const;                // requires at least one name
 
  private:
   std::set<std::string> names_;

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "kernel/expect.h"
+
 namespace exactff::formats {
 
 struct StlLayout {
@@ -15,6 +17,7 @@ struct StlLayout {
 
   // Requires kHead bytes.
   static std::size_t triangle_count(std::string_view bytes) {
+    EXACTFF_EXPECT(bytes.size() >= kHead);
     std::size_t count = 0;
     for (std::size_t i = kHead; i-- > kTitle;) count = count << 8U | static_cast<unsigned char>(bytes[i]);
     return count;

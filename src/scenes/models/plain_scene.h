@@ -52,7 +52,7 @@ enum class Digits { kShortest, kSeventeen };
 [[nodiscard]] std::string to_text(double value, Digits digits = Digits::kShortest);
 
 // Joins the rings of one face along bridges into a single ring that bounds the same region. Requires that the rings lie
-// in one plane and do not meet.
+// in one plane and do not meet: who makes the face knows that.
 [[nodiscard]] Ring keyhole(const std::vector<Vec3>& vertices, const PlainFace& face);
 
 // Builds the scene with SceneBuilder, and throws what it throws. For a scene without holes the hash is the same as

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "kernel/expect.h"
+
 namespace exactff {
 
 using kernel::ExactVec3;
@@ -21,6 +23,7 @@ FacePlane::FacePlane(const Scene& scene, FaceId id)
 
 FacePlane::FacePlane(FacePoints points, const Vec3& first_corner)
     : points_(std::move(points)), first_corner_(first_corner), normal_(newell(points_, 0, points_.ring_start[1])) {
+  EXACTFF_EXPECT(!kernel::is_zero(normal_));
   kernel::make_primitive(normal_);
 }
 

@@ -32,7 +32,8 @@ class ClosedSurfaces {
 
   [[nodiscard]] bool empty() const { return surfaces_.empty(); }
   [[nodiscard]] std::span<const ClosedSurface> surfaces() const { return surfaces_; }
-  // The index of the closed surface that a piece belongs to, or kNone. Requires that the scene has a closed surface.
+  // The index of the closed surface that a piece belongs to, or kNone. Callers ask empty()
+  // first: without a closed surface, there is no list.
   [[nodiscard]] std::uint32_t of_piece(std::uint32_t piece) const { return of_piece_[piece]; }
 
  private:

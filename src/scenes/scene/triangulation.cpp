@@ -11,6 +11,8 @@
 #include <tuple>
 #include <utility>
 
+#include "kernel/expect.h"
+#include "kernel/vec.h"
 #include "scene/ear_clipping.h"
 #include "scene/edge_crossing.h"
 #include "scene/face_points.h"
@@ -246,6 +248,10 @@ void FaceCutter::report(const PlanarRegion& region) {
 }  // namespace
 
 CutFace cut_face(std::span<const Vec3> vertices, const std::vector<Ring>& rings) {
+  EXACTFF_EXPECT(std::ranges::all_of(rings, [&](const Ring& ring) {
+    return std::ranges::all_of(ring,
+                               [&](std::uint32_t v) { return v < vertices.size() && kernel::is_finite(vertices[v]); });
+  }));
   return FaceCutter(vertices, rings).run();
 }
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "kernel/expect.h"
 #include "kernel/poll.h"
 
 namespace exactff::contour {
@@ -27,6 +28,7 @@ ExactVec3 point_at(const BoundaryPiece& piece, const EdgeParameter& t) {
 
 void ContourIntegral::add(const BoundaryPiece& piece) {
   const ExactVec3 a_cross_b = cross(piece.a, piece.b);
+  EXACTFF_EXPECT(!kernel::is_zero(a_cross_b));
   const Integer w = piece.begin.l * piece.end.m - piece.begin.m * piece.end.l;
   if (sign(w) == 0) return;  // the piece begins where it ends
   const Integer normal_dot = dot(normal_, a_cross_b);

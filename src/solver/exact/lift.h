@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernel/direction.h"
+#include "kernel/expect.h"
 
 namespace exactff::exact {
 
@@ -13,6 +14,7 @@ class Lift {
       : normal_(normal), x_{kernel::to_rational(x.x), kernel::to_rational(x.y), kernel::to_rational(x.z)} {
     const kernel::ScaledVec3 s = kernel::exact_difference(point, x);
     distance_ = kernel::times_power_of_two(dot(normal_, s.v), s.exponent);
+    EXACTFF_EXPECT(distance_ != 0);
   }
 
   [[nodiscard]] Vec3 operator()(const kernel::ExactVec3& t) const {

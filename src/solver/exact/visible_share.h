@@ -28,7 +28,8 @@ namespace exactff::exact {
 
 class VisibleShare {
  public:
-  // Requires x in front of the plane, and a receiver as for exact_form_factor.
+  // Requires x in front of the plane, as it is in front of all that source_planes finds, and a receiver as for
+  // exact_form_factor.
   VisibleShare(const Scene& scene, const Receiver& receiver, const visibility::SourcePlane& plane,
                Workspace& workspace);
 
@@ -38,7 +39,9 @@ class VisibleShare {
   static constexpr double kAccuracy = 0x1p-30;
   // Visible area over whole area of the window: exactly 0, exactly 1, or strictly in between. The errors of the
   // window's corners then change it by less than kAccuracy, and so does rounding for each piece of the region's
-  // boundary (see window_blur); usually it is much closer. Requires three or four corners, convex, counter-clockwise as
+  // boundary (see window_blur); usually it is much closer.
+  //
+  // Requires three or four corners, convex, counter-clockwise as
   // seen from x. Returns 0 if rounding of the corners has left no window: all on one line, clockwise, or some
   // directions that do not meet the plane.
   [[nodiscard]] double of(std::span<const Vec3> directions);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "kernel/expect.h"
+
 namespace exactff::visibility {
 
 using kernel::Direction;
@@ -49,6 +51,7 @@ void drop_collinear_corners(Ring& ring) {
     const Direction& before = kept.empty() ? ring.back() : kept.back();
     if (orientation(before, ring[i], ring[(i + 1) % ring.size()]) != 0) kept.push_back(ring[i]);
   }
+  EXACTFF_EXPECT(kept.size() >= 3);
   ring = std::move(kept);
 }
 

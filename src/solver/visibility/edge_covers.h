@@ -70,7 +70,8 @@ class EdgeCovers {
   void cut_exactly(EdgeId edge, EdgeId line, int& sign_a, int& sign_b, Parameter& crossing);
 
  protected:
-  // Where the line crosses the edge. Requires ends strictly on different sides.
+  // Where the line crosses the edge. Requires ends strictly on different sides: callers
+  // know the exact signs.
   [[nodiscard]] Parameter crossing_of(EdgeId edge, EdgeId line);
   [[nodiscard]] bool lies_left(const Outlines::Edge& edge, OutlineId outline);
 };

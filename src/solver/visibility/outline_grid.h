@@ -25,7 +25,7 @@ namespace exactff::visibility {
 class OutlineGrid {
  public:
   // The first `source_count` outlines are the source's, the others go into the grid. Requires that edges marked in
-  // `dropped` are never queried.
+  // `dropped` are never queried: VisibleEdges leaves them out of `wanted`.
   void build(const Outlines& outlines, std::size_t source_count, std::span<const std::uint8_t> dropped);
 
   // Estimates how many pairs of an edge and an occluder find_near would return for all edges because cells cannot

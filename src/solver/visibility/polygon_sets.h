@@ -1,7 +1,8 @@
 // Polygon Booleans in exact rational arithmetic. Only this module uses CGAL's polygon sets.
 //
-// Requires polygons that are counter-clockwise, simple, of positive area, with coordinates of moderate size. PlaneFrame
-// ensures the last: the sets fail once a coordinate or a difference reaches 2^1024.
+// Requires polygons that are counter-clockwise, simple, of positive area, with coordinates of moderate size. They are
+// images of convex rings that were clipped, and PlaneFrame ensures the last: the sets fail once a coordinate or a
+// difference reaches 2^1024.
 #pragma once
 
 #include <span>

@@ -1,5 +1,6 @@
 #include "visibility/visible_boundary.h"
 
+#include "kernel/expect.h"
 #include "visibility/boolean_walk.h"
 #include "visibility/edge_walk.h"
 
@@ -7,6 +8,7 @@ namespace exactff::visibility {
 
 PlaneVisibility find_visible_boundary(const View& view, const SourcePlane& plane, const Request& request,
                                       EdgeWorkspace& workspace) {
+  EXACTFF_EXPECT(!(view.n == Vec3{}));
   if (request.engine == Engine::kBoolean) return find_by_booleans(view, plane, request);
   std::optional<PlaneVisibility> found = find_by_edges(view, plane, request, workspace);
   if (!found) return find_by_booleans(view, plane, request);

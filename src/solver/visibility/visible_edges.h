@@ -76,9 +76,8 @@ class VisibleEdges : public EdgeCovers {
   [[nodiscard]] bool hides_all(OutlineId occluder, std::size_t source_count);
 
   // Requires that the first `source_count` outlines are the source's and the others are the occluders', all of positive
-  // area.
-  // Returns false, with nothing found, if the grid fails to separate so many occluders and edges that the Booleans are
-  // the better method.
+  // area: who adds them has clipped them, and left out what has none. Returns false, with nothing found, if the grid
+  // fails to separate so many occluders and edges that the Booleans are the better method.
   [[nodiscard]] bool find(std::size_t source_count);
   // True if a few of the occluders hide all of the source; `cover` lists these. False proves nothing. Requires the same
   // as find. Nothing is visible, or nothing is found: parts() is empty.

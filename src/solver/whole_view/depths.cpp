@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/expect.h"
 #include "kernel/vec.h"
 
 namespace exactff::whole_view {
@@ -66,6 +67,7 @@ const Depths::Exact& Depths::exact(OutlineId outline) {
   kernel::set_difference(first_, vertices_[frame[0]], x_);
   kernel::set_dot(result.offset, result.normal, first_.v);
   result.exponent = first_.exponent;
+  EXACTFF_EXPECT(kernel::sign(result.offset) != 0);
   if (kernel::sign(result.offset) < 0) {
     kernel::negate(result.normal);
     mpz_neg(result.offset.get_mpz_t(), result.offset.get_mpz_t());

@@ -36,7 +36,8 @@ class Depths {
  public:
   // Forgets all outlines.
   void start(const Scene& scene, const Vec3& x, int scale_exponent);
-  // The next outline lies in the plane of this piece. Requires that the plane does not hold x.
+  // The next outline lies in the plane of this piece. Requires that the plane does not hold x; this
+  // is checked where the exact plane is needed.
   void add(const Piece& piece);
   [[nodiscard]] std::span<const InverseDepth> all() const { return depths_; }
   [[nodiscard]] const InverseDepth& of(OutlineId outline) const { return depths_[outline]; }

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernel/expect.h"
+
 namespace exactff::whole_view {
 
 class PairTable {
@@ -19,6 +21,7 @@ class PairTable {
 
   // The number of the pair; kNone if it is new. The reference is valid until the next call. Requires p != q.
   std::uint32_t& operator()(std::uint32_t p, std::uint32_t q) {
+    EXACTFF_EXPECT(p != q);
     if (2 * ++count_ > slots_.size()) grow();  // counts requests, so grows a little early
     return find(std::min(p, q), std::max(p, q)).number;
   }

@@ -14,7 +14,8 @@ using TriangleCorners = std::array<std::uint32_t, 3>;  // indices of points
 
 // A constrained Delaunay triangulation of the region that the loops have on one side. Exact: no point is added.
 // Requires distinct points, sides that do not cross, and a region that is on the left of all loops or on the right of
-// all. Triangles run counter-clockwise. Where four corners lie on a circle, the order of the loops decides.
+// all, as the loops of a Region are. Triangles run counter-clockwise. Where four corners lie on a circle, the order of
+// the loops decides.
 [[nodiscard]] std::vector<TriangleCorners> triangles_of(std::span<const visibility::Point2> points,
                                                         std::span<const std::vector<std::uint32_t>> loops);
 
