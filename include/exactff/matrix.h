@@ -21,10 +21,6 @@
 #include "exactff/scene.h"
 #include "exactff/view_factors.h"
 
-namespace exactff::jobs {
-class Team;
-}
-
 namespace exactff::matrix {
 
 struct Options {
@@ -132,13 +128,9 @@ struct Request {
 };
 // Computes the matrix and writes the bytes of csv_text. Throws InputError if the request, the file or the journal is
 // unusable, or if nothing can be written; throws Cancelled if the hooks cancel. Whatever is thrown, and even if the
-// process is killed, the finished pairs in the journal stay valid. With a team (team.h), rank 0 calls this, and
-// jobs::dismiss() must follow, whatever is thrown.
+// process is killed, the finished pairs in the journal stay valid.
 jobs::Summary write(const Request& request, const std::filesystem::path& file,
-                    jobs::Existing existing = jobs::Existing::kRefuse, const jobs::Hooks& hooks = {},
-                    jobs::Team* team = nullptr);
-// Runs a follower of a team, as truth::follow does.
-int follow(jobs::Team& team, const std::function<Request()>& request, const jobs::Hooks& hooks);
+                    jobs::Existing existing = jobs::Existing::kRefuse, const jobs::Hooks& hooks = {});
 // Merges all shards of one request into the same bytes as one write() without shards, as truth::merge does.
 jobs::Summary merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& file,
                     jobs::Existing existing = jobs::Existing::kRefuse, const jobs::Hooks& hooks = {});

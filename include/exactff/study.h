@@ -260,4 +260,10 @@ struct Study {
 // 1e290), or if the sampled methods do not accept the scene.
 [[nodiscard]] Study run(Request request, const Hooks& hooks = {}, jobs::Journal* journal = nullptr);
 
+// Writes tables and one HTML page with figures into a hidden folder beside `folder`, and renames it at the end. The
+// value files (values, exact, summary) contain no times and have the same bytes for any number of threads. Returns
+// notes for the user, such as a missing gnuplot. Throws InputError unless `folder` can be written and replaced: it does
+// not exist, is empty, or contains only files of an earlier study; throws Cancelled.
+std::vector<std::string> write_report(const Study& study, const std::filesystem::path& folder, const Hooks& hooks = {});
+
 }  // namespace exactff::study

@@ -25,10 +25,6 @@
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
 
-namespace exactff::jobs {
-class Team;
-}
-
 namespace exactff::truth {
 
 // Rows are distributed in chunks of this size, counted from the first row. A shard consists of whole chunks.
@@ -76,14 +72,9 @@ struct Summary : jobs::Summary {
 // Computes the rows and writes the file. Throws InputError if the request, the file or the journal is unusable (a
 // journal may be from another request or in use by another process), or if nothing can be written; throws
 // Cancelled if the hooks cancel. Whatever is thrown, and even if the process is killed, the rows in the journal
-// stay valid: at most a second of work and the current row of each thread are lost. With a team (team.h), rank 0 calls
-// this, and jobs::dismiss() must follow, whatever is thrown.
+// stay valid: at most a second of work and the current row of each thread are lost.
 Summary write(Request request, const std::filesystem::path& file, Existing existing = Existing::kRefuse,
-              const Hooks& hooks = {}, jobs::Team* team = nullptr);
-
-// Runs a follower of a team, that is, any other rank. `request` must make the same request as the leader's; what it
-// throws is sent to the leader. Only the hooks `cancelled` and slow_seconds are used. Returns the exit code.
-int follow(jobs::Team& team, const std::function<Request()>& request, const Hooks& hooks);
+              const Hooks& hooks = {});
 
 // Computes the rows and writes the same bytes to a stream, each row as soon as those before it are written. Keeps
 // nothing, so there is nothing to continue with. Throws InputError if the request is unusable or for a shard, or if the

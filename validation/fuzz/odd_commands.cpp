@@ -9,7 +9,7 @@
 #include "cli/command.h"
 #include "exactff/methods.h"
 #include "exactff/models.h"
-#include "exactff/stress.h"
+#include "stress/stress.h"
 
 namespace exactff::validation {
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "exactff/exact.h"
-#include "exactff/visibility_svg.h"
+#include "report/visibility_svg.h"
 #include "support/oracle_check.h"
 #include "support/random_scenes.h"
 
@@ -123,12 +123,12 @@ void expect_drawn_as_found(const PlainScene& plain) {
   const std::vector<PlaneDrawing> drawings = draw_visibility(scene, receiver, source);
   ASSERT_EQ(drawings.size(), found.planes.size());
   for (std::size_t p = 0; p < drawings.size(); ++p) expect_drawn_as_found(drawings[p], found.planes[p]);
-  const std::string svg = visibility_svg(scene, receiver, source, found);
+  const std::string svg = report::visibility_svg(scene, receiver, source, found);
   EXPECT_EQ(svg.find("nan"), std::string::npos);
   EXPECT_EQ(svg.find("inf"), std::string::npos);
   AdaptiveResult sampled;
   sampled.leaves = 3;
-  EXPECT_NE(visibility_svg(scene, receiver, source, found, &sampled).find(">3 leaves not drawn (too small)<"),
+  EXPECT_NE(report::visibility_svg(scene, receiver, source, found, &sampled).find(">3 leaves not drawn (too small)<"),
             std::string::npos);
 }
 

@@ -11,7 +11,7 @@
 #include "exactff/methods.h"
 #include "exactff/obj.h"
 #include "exactff/receiver.h"
-#include "exactff/visibility_svg.h"
+#include "report/visibility_svg.h"
 
 namespace exactff::validation {
 namespace {
@@ -68,7 +68,7 @@ TEST_P(RegressionScene, IsDrawn) {
       for (const auto* loops : {&drawing.source, &drawing.clipped_source, &drawing.visible}) expect_finite(*loops);
       for (const PlaneDrawing::Shadow& shadow : drawing.shadows) expect_finite({shadow.outline});
     }
-    const std::string svg = visibility_svg(scene_, receiver, source, f);
+    const std::string svg = report::visibility_svg(scene_, receiver, source, f);
     EXPECT_TRUE(svg.ends_with("</svg>\n"));
     EXPECT_EQ(svg.find("nan"), std::string::npos);
     EXPECT_EQ(svg.find("inf"), std::string::npos);

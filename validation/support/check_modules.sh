@@ -15,7 +15,7 @@ storeys=(foundation scenes solver rivals products reports outside)
 declare -A home=(
   [enclosure]=kernel [geometry]=kernel [progress]=kernel [error]=text [summary]=scene [settings]=text [version]=text
   [quantity]=whole_view [obj]=formats [scene_files]=formats [receiver]=receivers [record]=visibility [view]=whole_view
-  [view_regions]=whole_view [diagnosis]=slips [pixels]=exr [visibility_svg]=report [testing]=check [team]=jobs
+  [view_regions]=whole_view [diagnosis]=slips [pixels]=exr [testing]=check
 )
 
 # Pairs of rooms of which the first must not include the second, not even through others.

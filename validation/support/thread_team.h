@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "exactff/team.h"
+#include "jobs/team.h"
 
 namespace exactff::validation {
 

@@ -7,9 +7,9 @@
 #include <string_view>
 
 #include "exactff/jobs.h"
-#include "exactff/team.h"
 #include "jobs/journal.h"
 #include "jobs/rows.h"
+#include "jobs/team.h"
 
 namespace exactff::jobs {
 

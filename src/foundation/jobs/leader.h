@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "exactff/team.h"
+#include "jobs/team.h"
 #include "jobs/workers.h"
 
 namespace exactff::jobs {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "exactff/team.h"
+#include "jobs/team.h"
 
 namespace exactff::jobs {
 namespace {

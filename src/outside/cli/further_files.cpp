@@ -4,11 +4,11 @@
 #include <system_error>
 
 #include "exactff/error.h"
-#include "exactff/vtk.h"
 #include "files/file.h"
 #include "text/escape.h"
 #include "text/nearest_names.h"
 #include "text/refuse.h"
+#include "vtk/vtk.h"
 
 namespace exactff::cli {
 

@@ -6,7 +6,7 @@
 
 #include "cli/long_run.h"
 #include "exactff/jobs.h"
-#include "exactff/team.h"
+#include "jobs/team.h"
 
 namespace exactff::cli {
 

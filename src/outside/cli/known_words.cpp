@@ -2,8 +2,8 @@
 
 #include "exactff/methods.h"
 #include "exactff/models.h"
-#include "exactff/report.h"
-#include "exactff/stress.h"
+#include "report/plan.h"
+#include "stress/stress.h"
 
 namespace exactff::cli {
 

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "exactff/team.h"
+#include "jobs/team.h"
 
 namespace exactff::cli {
 

@@ -18,12 +18,15 @@
 #include "cli/output.h"
 #include "cli/text_table.h"
 #include "cli/view_factor_words.h"
+#include "exactff/version.h"
 #include "flags/lists.h"
 #include "flags/scene.h"
 #include "matrix/row_facts.h"
 #include "matrix/row_on_faces.h"
+#include "matrix/team.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
+#include "vtk/vtk.h"
 
 namespace exactff::cli {
 namespace {

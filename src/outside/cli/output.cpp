@@ -7,8 +7,8 @@
 #include <system_error>
 
 #include "cli/long_run.h"
-#include "exactff/report.h"
 #include "files/file.h"
+#include "page/output_folder.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/text_file.h"
@@ -78,7 +78,7 @@ void write_whole_file(const fs::path& path, const std::string& text) {
 }
 
 void check_output_folder(const fs::path& folder) {
-  report::check_output_folder(folder);
+  page::check_output_folder(folder);
   leave_if_interrupted();
 }
 

@@ -42,7 +42,7 @@ void print_warnings(std::span<const Problem> warnings);
 // Warnings on receivers that were probably meant to lie on a face.
 void print_near_misses(const Scene& scene, std::span<const Receiver> receivers);
 
-// Throws InputError unless a result can be written to `folder` (exactff/report.h).
+// Throws InputError unless a result can be written to `folder` (page/output_folder.h).
 void check_output_folder(const std::filesystem::path& folder);
 
 }  // namespace exactff::cli

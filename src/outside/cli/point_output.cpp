@@ -4,7 +4,7 @@
 #include "cli/output.h"
 #include "cli/point.h"
 #include "exactff/version.h"
-#include "exactff/visibility_svg.h"
+#include "report/visibility_svg.h"
 #include "text/json_document.h"
 #include "text/phrases.h"
 
@@ -241,7 +241,7 @@ void draw_point(const PointArguments& args, const Scene& scene, const PointResul
   const PointTerm& one = point.sources.front();
   const AdaptiveResult* const sampled = one.adaptive ? &*one.adaptive : nullptr;
   const ExactSource source(scene, one.source);
-  write_whole_file(args.svg, visibility_svg(scene, point.receiver, source, one.exact, sampled));
+  write_whole_file(args.svg, report::visibility_svg(scene, point.receiver, source, one.exact, sampled));
 }
 
 }  // namespace exactff::cli

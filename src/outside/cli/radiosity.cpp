@@ -22,6 +22,7 @@
 #include "radiosity/on_faces.h"
 #include "text/json_document.h"
 #include "text/phrases.h"
+#include "vtk/vtk.h"
 
 namespace exactff::cli {
 namespace {

@@ -1,5 +1,5 @@
 // exactff stress: makes scenes more and more extreme and shows where each method stops being usable.
-#include "exactff/stress.h"
+#include "stress/stress.h"
 
 #include <iostream>
 #include <string>
@@ -9,7 +9,7 @@
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/text_table.h"
-#include "exactff/report.h"
+#include "report/plan.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 

@@ -26,6 +26,7 @@
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
+#include "truth/team.h"
 
 namespace exactff::cli {
 namespace {

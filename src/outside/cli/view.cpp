@@ -16,13 +16,13 @@
 #include "exactff/scene_files.h"
 #include "exactff/version.h"
 #include "exactff/view_regions.h"
-#include "exactff/vtk.h"
 #include "flags/scene.h"
 #include "text/csv_row.h"
 #include "text/json_document.h"
 #include "text/nearest_names.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
+#include "vtk/vtk.h"
 #include "whole_view/referee.h"
 
 namespace exactff::cli {

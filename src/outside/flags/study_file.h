@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "exactff/report.h"
+#include "report/plan.h"
 
 namespace exactff::flags {
 

@@ -1,8 +1,8 @@
 // Exact form factors: of arrays of receivers, and of one pair with everything that is known about it.
 #include "exactff/batch.h"
-#include "exactff/visibility_svg.h"
 #include "python/bindings.h"
 #include "python/interrupt.h"
+#include "report/visibility_svg.h"
 
 namespace exactff::python {
 namespace {
@@ -123,7 +123,7 @@ class Pair {
     Interrupt interrupt;
     return interrupt.run([&] {
       const FormFactor drawn = exact_form_factor(scene(), receiver_, *source_, {.list_cutters = true});
-      return visibility_svg(scene(), receiver_, *source_, drawn);
+      return report::visibility_svg(scene(), receiver_, *source_, drawn);
     });
   }
 

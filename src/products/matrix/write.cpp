@@ -3,14 +3,13 @@
 #include <memory>
 #include <utility>
 
-#include "exactff/matrix.h"
-#include "exactff/team.h"
 #include "files/file.h"
 #include "jobs/compute.h"
 #include "jobs/leader.h"
 #include "jobs/shards.h"
 #include "kernel/float_environment.h"
 #include "matrix/rows.h"
+#include "matrix/team.h"
 #include "text/escape.h"
 #include "text/refuse.h"
 
@@ -78,6 +77,10 @@ jobs::Summary write(const Request& request, const fs::path& file, jobs::Existing
   }
   journal.remove();
   return summary;
+}
+
+jobs::Summary write(const Request& request, const fs::path& file, jobs::Existing existing, const jobs::Hooks& hooks) {
+  return write(request, file, existing, hooks, nullptr);
 }
 
 int follow(jobs::Team& team, const std::function<Request()>& request, const jobs::Hooks& hooks) {

@@ -8,7 +8,6 @@
 
 #include "exactff/pixels.h"
 #include "exactff/truth.h"
-#include "exactff/vtk.h"
 #include "files/file.h"
 #include "files/npy_file.h"
 #include "files/parallel.h"
@@ -16,6 +15,7 @@
 #include "kernel/float_environment.h"
 #include "text/csv_lines.h"
 #include "text/refuse.h"
+#include "vtk/vtk.h"
 
 namespace exactff::truth {
 

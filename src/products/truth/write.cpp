@@ -9,12 +9,11 @@
 #include <memory>
 #include <utility>
 
-#include "exactff/team.h"
-#include "exactff/truth.h"
 #include "jobs/compute.h"
 #include "jobs/leader.h"
 #include "kernel/float_environment.h"
 #include "truth/rows.h"
+#include "truth/team.h"
 
 namespace exactff::truth {
 namespace {
@@ -62,6 +61,10 @@ Summary write(Request request, const fs::path& file, Existing existing, const Ho
   journal.remove();
   summary.rows_by_status = tally.by_status();
   return summary;
+}
+
+Summary write(Request request, const fs::path& file, Existing existing, const Hooks& hooks) {
+  return write(std::move(request), file, existing, hooks, nullptr);
 }
 
 int follow(jobs::Team& team, const std::function<Request()>& request, const Hooks& hooks) {

@@ -9,7 +9,6 @@
 #include <span>
 #include <string_view>
 
-#include "exactff/vtk.h"
 #include "files/little_endian.h"
 #include "files/parallel.h"
 #include "text/base64.h"
@@ -17,6 +16,7 @@
 #include "text/nearest_names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
+#include "vtk/vtk.h"
 
 namespace exactff::vtk {
 namespace {

@@ -1,10 +1,10 @@
 #include <stdexcept>
 
-#include "exactff/vtk.h"
 #include "files/parallel.h"
 #include "kernel/float_environment.h"
 #include "vtk/cells.h"
 #include "vtk/data_set.h"
+#include "vtk/vtk.h"
 
 namespace exactff::vtk {
 namespace {

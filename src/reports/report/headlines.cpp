@@ -3,8 +3,8 @@
 #include <iterator>
 #include <string>
 
-#include "exactff/report.h"
 #include "kernel/float_environment.h"
+#include "report/plan.h"
 #include "report/studies.h"
 #include "report/verdicts.h"
 #include "study/settings.h"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "exactff/report.h"
+#include "report/plan.h"
 
 namespace exactff::report {
 

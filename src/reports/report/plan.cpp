@@ -1,8 +1,9 @@
 // What a report covers, and how it is carried out.
+#include "report/plan.h"
+
 #include <algorithm>
 #include <cctype>
 
-#include "exactff/report.h"
 #include "experiments/experiment.h"
 #include "files/parallel.h"
 #include "kernel/float_environment.h"

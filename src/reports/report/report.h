@@ -31,7 +31,7 @@ struct StudyReport {
   std::vector<LeftOut> left_out;  // scenes and chapters
 };
 
-// Like write(Study), but the files of a scene begin with its name and an underscore.
+// As study::write_report, but the files of a scene begin with its name and an underscore.
 std::vector<std::string> write(const StudyReport& report, const std::filesystem::path& folder, const Hooks& hooks = {});
 
 // What belongs to each scene and each chapter of a report, in their order.

@@ -3,9 +3,9 @@
 #include <functional>
 #include <set>
 
-#include "exactff/report.h"
 #include "page/page_text.h"
 #include "report/identity.h"
+#include "report/plan.h"
 #include "report/report.h"
 #include "report/scene_part.h"
 #include "report/tables.h"

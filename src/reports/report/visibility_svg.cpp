@@ -1,4 +1,4 @@
-#include "exactff/visibility_svg.h"
+#include "report/visibility_svg.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "text/escape.h"
 #include "text/phrases.h"
 
-namespace exactff {
+namespace exactff::report {
 
 namespace {
 
@@ -333,4 +333,4 @@ std::string visibility_svg(const Scene& scene, const Receiver& receiver, const E
   return head(y + kLegendHeight) + body + "</svg>\n";
 }
 
-}  // namespace exactff
+}  // namespace exactff::report

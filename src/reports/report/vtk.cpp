@@ -1,7 +1,7 @@
 // A study as arrays for ParaView.
-#include "exactff/vtk.h"
+#include "vtk/vtk.h"
 
-#include "exactff/report.h"
+#include "report/plan.h"
 #include "report/tables.h"
 #include "text/phrases.h"
 

@@ -1,6 +1,5 @@
 #include <iterator>
 
-#include "exactff/report.h"
 #include "files/file.h"
 #include "files/parallel.h"
 #include "kernel/float_environment.h"
@@ -68,8 +67,6 @@ std::string file_name(const SceneChapter& scene, const StudyTable& table) {
   return (scene.name.empty() ? std::string() : scene.name + '_') + std::string(table.file);
 }
 
-void check_output_folder(const fs::path& folder) { page::check_output_folder(folder); }
-
 std::vector<std::string> write(const StudyReport& report, const fs::path& folder, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
   page::StagedFolder staged(folder);
@@ -99,11 +96,15 @@ std::vector<std::string> write(const StudyReport& report, const fs::path& folder
   return messages;
 }
 
-std::vector<std::string> write(const Study& study, const fs::path& folder, const Hooks& hooks) {
-  StudyReport report;
+}  // namespace exactff::report
+
+namespace exactff::study {
+
+std::vector<std::string> write_report(const Study& study, const std::filesystem::path& folder, const Hooks& hooks) {
+  report::StudyReport report;
   report.scenes.push_back({"", study.request.scene_name, study});
   report.command_line = study.request.command_line;
   return write(report, folder, hooks);
 }
 
-}  // namespace exactff::report
+}  // namespace exactff::study

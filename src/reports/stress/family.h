@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "exactff/stress.h"
 #include "stress/stage.h"
+#include "stress/stress.h"
 
 namespace exactff::stress {
 

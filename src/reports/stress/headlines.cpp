@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "exactff/stress.h"
 #include "kernel/float_environment.h"
+#include "stress/stress.h"
 #include "text/phrases.h"
 
 namespace exactff::stress {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include "exactff/stress.h"
 #include "stress/family.h"
+#include "stress/stress.h"
 #include "text/phrases.h"
 
 namespace exactff::stress {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "exactff/stress.h"
 #include "page/figure.h"
+#include "stress/stress.h"
 
 namespace exactff::stress {
 

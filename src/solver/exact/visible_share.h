@@ -41,9 +41,8 @@ class VisibleShare {
   // window's corners then change it by less than kAccuracy, and so does rounding for each piece of the region's
   // boundary (see window_blur); usually it is much closer.
   //
-  // Requires three or four corners, convex, counter-clockwise as
-  // seen from x. Returns 0 if rounding of the corners has left no window: all on one line, clockwise, or some
-  // directions that do not meet the plane.
+  // Requires three or four corners, convex, counter-clockwise as seen from x. Returns 0 if rounding of the corners has
+  // left no window: all on one line, clockwise, or some directions that do not meet the plane.
   [[nodiscard]] double of(std::span<const Vec3> directions);
   // The same, computed in rational numbers and rounded once.
   [[nodiscard]] double of_exactly(std::span<const Vec3> directions);

@@ -30,14 +30,14 @@
 #include "exactff/obj.h"
 #include "exactff/pixels.h"
 #include "exactff/receiver.h"
-#include "exactff/report.h"
-#include "exactff/stress.h"
 #include "exactff/study.h"
 #include "exactff/truth.h"
 #include "exactff/view.h"
 #include "exactff/view_factors.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
+#include "report/plan.h"
+#include "stress/stress.h"
 #include "support/program.h"
 #include "support/random_scenes.h"
 #include "unit/reports/study_support.h"
@@ -442,7 +442,7 @@ TEST(ThreadsArithmetic, ChangesNoStudy) {
   const std::filesystem::path folder = directory.path() / "study";
   const auto write = [&] {
     const study::Study study = study::run(request);
-    report::write(study, folder);
+    study::write_report(study, folder);
     EXPECT_FALSE(report::headlines(study).empty());  // these contain times
     return std::string();
   };

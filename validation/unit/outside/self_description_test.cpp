@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "exactff/models.h"
-#include "exactff/stress.h"
+#include "stress/stress.h"
 #include "support/program.h"
 
 namespace exactff {

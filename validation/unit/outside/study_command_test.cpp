@@ -9,9 +9,9 @@
 #include <map>
 #include <thread>
 
-#include "exactff/report.h"
 #include "flags/study_file.h"
 #include "page/plot_script.h"
+#include "report/plan.h"
 #include "support/program.h"
 
 namespace exactff {

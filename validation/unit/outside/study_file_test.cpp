@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "exactff/report.h"
+#include "report/plan.h"
 #include "support/program.h"
 
 namespace exactff::cli {

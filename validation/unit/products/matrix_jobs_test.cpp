@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "exactff/matrix.h"
-#include "exactff/team.h"
 #include "generate/plain_scene.h"
+#include "jobs/team.h"
+#include "matrix/team.h"
 #include "support/complaint.h"
 #include "support/folder.h"
 #include "support/program.h"

@@ -12,9 +12,10 @@
 #include <thread>
 #include <vector>
 
-#include "exactff/team.h"
+#include "jobs/team.h"
 #include "support/program.h"
 #include "support/thread_team.h"
+#include "truth/team.h"
 #include "unit/products/truth_support.h"
 
 namespace exactff::truth {

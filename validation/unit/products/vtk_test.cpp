@@ -1,6 +1,6 @@
 // Files for ParaView of every family of random scenes, parsed by Python's XML parser. validation/vtk/vtk_test.py reads
 // files with VTK.
-#include "exactff/vtk.h"
+#include "vtk/vtk.h"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,9 @@
 #include <fstream>
 
 #include "exactff/models.h"
-#include "exactff/report.h"
 #include "flags/study_file.h"
 #include "report/field.h"
+#include "report/plan.h"
 #include "report/report.h"
 #include "report/scene_part.h"
 #include "report/strip.h"

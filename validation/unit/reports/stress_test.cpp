@@ -1,4 +1,4 @@
-#include "exactff/stress.h"
+#include "stress/stress.h"
 
 #include <gtest/gtest.h>
 

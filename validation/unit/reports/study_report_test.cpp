@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "exactff/report.h"
 #include "page/gnuplot.h"
+#include "page/output_folder.h"
 #include "report/figures.h"
 #include "report/report.h"
 #include "report/tables.h"
@@ -154,26 +154,26 @@ class OutputFolder : public ::testing::Test {
 
 TEST_F(OutputFolder, OfAStrangerIsRefused) {
   fs::create_directories(root_ / "out");
-  EXPECT_NO_THROW(report::check_output_folder(root_ / "out"));
+  EXPECT_NO_THROW(page::check_output_folder(root_ / "out"));
   std::ofstream(root_ / "out" / "thesis.txt") << "do not lose me";
-  EXPECT_THROW(report::check_output_folder(root_ / "out"), InputError);
+  EXPECT_THROW(page::check_output_folder(root_ / "out"), InputError);
   std::ofstream(root_ / "file") << "x";
-  EXPECT_THROW(report::check_output_folder(root_ / "file"), InputError);
+  EXPECT_THROW(page::check_output_folder(root_ / "file"), InputError);
 }
 
 TEST_F(OutputFolder, OfAnEarlierStudyMayBeReplaced) {
   fs::create_directories(root_ / "out");
   std::ofstream(root_ / "out" / "report.html") << "<!doctype html>\n";
-  EXPECT_THROW(report::check_output_folder(root_ / "out"), InputError) << "a page of anybody's";
+  EXPECT_THROW(page::check_output_folder(root_ / "out"), InputError) << "a page of anybody's";
   std::ofstream(root_ / "out" / "room_summary.csv") << "# exactff 0.1.0 compare: summary\n";
-  EXPECT_NO_THROW(report::check_output_folder(root_ / "out" / ""));
+  EXPECT_NO_THROW(page::check_output_folder(root_ / "out" / ""));
   std::ofstream(root_ / "out" / "values.csv") << "a,b\n";
-  EXPECT_THROW(report::check_output_folder(root_ / "out"), InputError) << "a table of somebody else's";
+  EXPECT_THROW(page::check_output_folder(root_ / "out"), InputError) << "a table of somebody else's";
 }
 
 TEST_F(OutputFolder, OfACancelledStudyIsNotThere) {
   const Hooks hooks{{}, [] { return true; }};
-  EXPECT_THROW((void)report::write(small_study(), root_ / "out", hooks), Cancelled);
+  EXPECT_THROW((void)study::write_report(small_study(), root_ / "out", hooks), Cancelled);
   EXPECT_TRUE(names_in(root_).empty());
 }
 
@@ -193,12 +193,12 @@ TEST_F(OutputFolder, OfSeveralScenesHasTheirNamesBeforeTheFiles) {
   EXPECT_FALSE(fs::exists(root_ / "out" / "values.csv"));
   const std::string table = validation::text_of(root_ / "out" / "more.csv");
   EXPECT_TRUE(table.starts_with("# exactff ") && table.ends_with(" compare: one\n# of one\nx\n1\n")) << table;
-  EXPECT_NO_THROW(report::check_output_folder(root_ / "out"));
+  EXPECT_NO_THROW(page::check_output_folder(root_ / "out"));
 }
 
 TEST_F(OutputFolder, WithoutGnuplotHoldsTablesAndAReportThatSaysSo) {
   const validation::EnvironmentVariable path("PATH", root_);
-  const auto messages = report::write(small_study(), root_ / "out");
+  const auto messages = study::write_report(small_study(), root_ / "out");
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_NE(messages.front().find("gnuplot"), std::string::npos);
   EXPECT_EQ(names_in(root_), std::set<std::string>{"out"});

@@ -7,11 +7,11 @@
 #include "exactff/adaptive.h"
 #include "exactff/exact.h"
 
-namespace exactff {
+namespace exactff::report {
 
 // Returns a self-contained SVG document. With `sampled`, it shows the leaves in its leaf_list. Leaves that are not in
 // the list, and planes that x does not face, are left out, with a note.
 [[nodiscard]] std::string visibility_svg(const Scene& scene, const Receiver& receiver, const ExactSource& source,
                                          const FormFactor& result, const AdaptiveResult* sampled = nullptr);
 
-}  // namespace exactff
+}  // namespace exactff::report

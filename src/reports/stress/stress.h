@@ -122,8 +122,8 @@ struct Report {
 // name.
 [[nodiscard]] Report run(Request request, const Hooks& hooks = {});
 
-// Writes report.html, values.csv, summary.csv and timings.csv in the same way as report::write: all or nothing, and
-// only over an earlier result. Returns notes for the user, such as a missing gnuplot.
+// Writes report.html, values.csv, summary.csv and timings.csv in the same way as study::write_report: all or nothing,
+// and only over an earlier result. Returns notes for the user, such as a missing gnuplot.
 std::vector<std::string> write(const Report& report, const std::filesystem::path& folder, const Hooks& hooks = {});
 
 // What write() leaves of a run that was interrupted: the same files in FOLDER.part, without figures, in milliseconds.

@@ -1,4 +1,4 @@
-// Reports on studies: tables and one HTML page with figures. A .study file describes a report on several scenes.
+// What a report covers, and how it is carried out. A .study file describes a report on several scenes.
 #pragma once
 
 #include <filesystem>
@@ -12,23 +12,12 @@
 
 namespace exactff::report {
 
-// Throws InputError unless `folder` can be written and replaced: it does not exist, is empty, or contains only files of
-// an earlier study.
-void check_output_folder(const std::filesystem::path& folder);
-
-// Writes the tables and the report into a hidden folder beside `folder`, and renames it at the end. The value files
-// (values, exact, summary) contain no times and have the same bytes for any number of threads. Returns notes for the
-// user, such as a missing gnuplot.
-std::vector<std::string> write(const study::Study& study, const std::filesystem::path& folder, const Hooks& hooks = {});
-
 // Writes the exact values, and the value and the error of each setting that was run at every receiver, for ParaView
 // (vtk::write): the settings of the adaptive algorithm, and of each method that of MethodField.
 void write_vtk(const study::Study& study, const std::filesystem::path& file, const Hooks& hooks = {});
 
 // The main result in a few sentences.
 [[nodiscard]] std::vector<std::string> headlines(const study::Study& study);
-
-// ---------------------------------------------------------------------------------------------------- several scenes
 
 struct Effort {
   bool abridged = false;  // a first look: coarser grids, fewer settings and receivers, shorter experiments
@@ -74,7 +63,7 @@ struct Plan {
 // What a finished report in a folder tells about itself.
 enum class Finished {
   kNone,       // there is no report
-  kOfAnother,  // a report on another plan, by another version, or written by write()
+  kOfAnother,  // a report on another plan, by another version, or by study::write_report
   kOfThis,     // a report that carry_out() made of the same plan: its values would be the same
 };
 [[nodiscard]] Finished finished_report(const Plan& plan, const std::filesystem::path& folder);
@@ -90,9 +79,9 @@ struct Outcome {
   std::vector<std::string> notes;  // such as a missing gnuplot
 };
 
-// Runs every study and experiment of the plan and writes one report on all of them, as write() does. The files of a
-// scene begin with its name and an underscore. What is finished is kept in `journal`, which is to be removed when
-// everything is done.
+// Runs every study and experiment of the plan and writes one report on all of them, as study::write_report does. The
+// files of a scene begin with its name and an underscore. What is finished is kept in `journal`, which is to be removed
+// when everything is done.
 Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::Journal& journal,
                   const Hooks& hooks = {});
 
