@@ -25,6 +25,7 @@
 
 #include "exactff/error.h"
 #include "exactff/exact.h"
+#include "exactff/exr.h"
 #include "exactff/geometry.h"
 #include "exactff/view_factors.h"
 

@@ -32,9 +32,9 @@
 #include "exactff/exact.h"
 #include "exactff/methods.h"
 #include "exactff/progress.h"
-#include "exactff/quantity.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
+#include "exactff/view.h"
 
 namespace exactff::jobs {
 class Journal;  // jobs.h

@@ -1,7 +1,7 @@
 // A scene: named patches of planar polygonal faces with materials. Coordinates are kept exactly as given.
 //
 // A Scene is immutable and safe to share between threads. SceneBuilder makes one from vertices and
-// faces; read_obj (obj.h) makes one from a Wavefront file.
+// faces; read_scene (scene_files.h) makes one from a file.
 #pragma once
 
 #include <cstdint>
@@ -218,5 +218,21 @@ class SceneBuilder {
   [[nodiscard]] State& state() const;
   std::unique_ptr<State> state_;
 };
+
+// What a scene contains, patch by patch: the rows of `exactff info`. For people who look at a scene; estimates.
+struct PatchSummary {
+  std::string name;
+  std::size_t face_count = 0;         // including ignored faces
+  double area = 0.0;                  // in the square of the scene's unit of length; finite
+  std::optional<Vec3> front;          // mean unit normal; empty if the faces have different directions
+  std::vector<MaterialId> materials;  // in the order of first use
+  bool emits = false;
+};
+
+[[nodiscard]] PatchSummary summarise(const Scene& scene, PatchId id);
+// Of every patch, in the order of the scene.
+[[nodiscard]] std::vector<PatchSummary> summarise(const Scene& scene);
+// The sum of the patches' areas; finite.
+[[nodiscard]] double total_area(const std::vector<PatchSummary>& rows);
 
 }  // namespace exactff

@@ -2,7 +2,7 @@
 //
 // read_scene recognises the format by the content of the file and, where that leaves a choice, by its extension:
 //
-// - Wavefront OBJ with MTL: see obj.h.
+// - Wavefront OBJ with MTL: see read_obj.
 // - PLY, in text and in both binary forms. Faces are polygons. An integer property `patch` (otherwise `material_index`)
 //   of the faces makes patches `patch_N` (`material_N`), or of the name that a comment "patch N NAME" gives.
 // - STL, in text and binary. A solid is a patch, with the rest of its line as its name. Vertices with equal doubles are
@@ -16,6 +16,7 @@
 #pragma once
 
 #include <filesystem>
+#include <istream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,21 @@ namespace exactff {
 // As above, from the bytes of the file. `path` stands for it in messages, gives the extension and locates MTL files.
 [[nodiscard]] Scene read_scene(std::string_view bytes, const std::filesystem::path& path,
                                const SceneOptions& options = {});
+
+// Reads Wavefront OBJ and MTL files.
+//
+// Read: v, f (v, v/vt, v//vn, v/vt/vn, negative indices, any number of vertices), g, o, usemtl, mtllib, continuation
+// lines, CRLF, comments. A patch is a group (g; in a file without g, an object o). A repeated name continues its patch.
+// Faces before any group belong to `default`. For `g a b` the first name counts, with a warning. Other OBJ statements,
+// which a form factor does not need (vt, s, p, l, ...), are ignored. MTL: Kd is the reflectance, Ke the radiosity.
+// Numbers are read with correct rounding. vn, d, Tr and illum affect no value; they are read for diagnoses
+// (Face::file_normals, Material::see_through).
+//
+// An unknown material in usemtl and a missing MTL file cause a warning and give a default material (Kd 1, Ke 0). All
+// other errors are collected and thrown as one InputError with file:line.
+[[nodiscard]] Scene read_obj(const std::filesystem::path& path, const SceneOptions& options = {});
+// As above, from an open stream. `name` stands for the file in messages and locates its MTL files.
+[[nodiscard]] Scene read_obj(std::istream& in, const std::filesystem::path& name, const SceneOptions& options = {});
 
 enum class Encoding {
   kDefault,  // binary for PLY, text for the others

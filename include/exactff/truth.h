@@ -18,12 +18,12 @@
 #include <vector>
 
 #include "exactff/exact.h"
+#include "exactff/exr.h"
 #include "exactff/jobs.h"
-#include "exactff/pixels.h"
 #include "exactff/progress.h"
-#include "exactff/quantity.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
+#include "exactff/view.h"
 
 namespace exactff::truth {
 

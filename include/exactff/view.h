@@ -1,4 +1,5 @@
-// The whole view from a point: what is seen in every direction, exactly, with the form factors of all patches.
+// The whole view from a point: what is seen in every direction, exactly, with the form factors of all patches; its
+// pictures, and the closed regions that it consists of.
 //
 // What is seen in a direction above the horizon is the nearest face whose plane does not hold x and that is not one of
 // the receiver's own faces. Transparent faces are left out. Of coplanar faces the one with the lowest index is seen. A
@@ -12,10 +13,17 @@
 // the question: T. Karkanis, "Accurate Point-To-Patch Form Factors", University of Toronto, about 1999.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "exactff/exact.h"
+#include "exactff/receiver.h"
+#include "exactff/scene.h"
 
 namespace exactff {
 
@@ -87,5 +95,79 @@ struct ViewOptions {
 // exception the content of `result` is unspecified.
 void view(const Scene& scene, const Receiver& receiver, const ViewOptions& options, WholeView& result,
           Workspace& workspace);
+
+// ---------------------------------------------------------------------------------------------------------- pictures
+
+// A view is a set of directions above the horizon. view_svg draws it on a disk whose rim is the horizon and whose
+// middle is the receiver's normal:
+//
+//   kNusselt   A direction is projected to the base of the unit hemisphere, along the normal (W. Nusselt, "Graphische
+//              Bestimmung des Winkelverhaeltnisses bei der Waermestrahlung", 1928). Areas are form factors times pi, in
+//              squares of the disk's radius. Straight edges become arcs of ellipses around the middle.
+//   kFisheye   Stereographic: the direction at the angle th to the normal is tan(th / 2) from the middle. Of all
+//              fisheyes this one keeps angles, so small things keep their shapes up to the rim, as in a photograph, and
+//              it maps straight edges to arcs of circles, which a file can hold without approximation.
+enum class ViewProjection { kNusselt, kFisheye };
+
+struct ViewPictureOptions {
+  ViewProjection projection = ViewProjection::kNusselt;
+  Vec3 up{0.0, 1.0, 0.0};  // points upwards in the picture; another axis if it is parallel to the normal
+};
+
+// A self-contained SVG document: every patch in the colours of its materials (Kd, shaded by the slope of its faces; Ke
+// for lamps), backs of faces darker, what is open in the colour of the sky, the outlines of the patches, and their
+// names where they fit; browsers show all names under the pointer. Arcs are SVG's elliptic arcs; corners are rounded to
+// 1e-5 pixels, 320 of which are the radius. Requires what `view` requires, and an `up` that is finite and not zero
+// (else InputError).
+[[nodiscard]] std::string view_svg(const Scene& scene, const Receiver& receiver,
+                                   const ViewPictureOptions& options = {});
+
+// ----------------------------------------------------------------------------------------------------------- regions
+
+// A region is the part of one face, front or back, that is seen. It lies in a plane: a face that is not exactly planar
+// has one for each of its triangles.
+struct SeenRegion {
+  FaceId face{};
+  std::uint32_t triangle = 0;  // of a face that is not exactly planar, the number of its triangle, from 1; else 0
+  bool front = true;           // x sees its front
+  std::string fraction;        // area over the area of the whole face, or triangle, exact: "p/q"
+};
+
+struct VisibilityMesh {
+  struct Triangle {
+    std::uint32_t region = 0;
+    std::array<std::uint32_t, 3> corners{};  // counter-clockwise as seen from the front of the face
+  };
+  std::vector<SeenRegion> regions;  // by face
+  std::vector<Vec3> points;         // exact corners, each coordinate rounded once: corners of the scene keep their bits
+  std::vector<Triangle> triangles;  // by region
+  std::size_t flat = 0;             // triangles left out because rounding their corners flattens or turns them
+};
+
+// All regions that the receiver sees, cut into triangles (constrained Delaunay). The triangles of a region have corners
+// at its corners only: where a region ends at the middle of another one's side, the mesh has no corner in that side.
+// Requires what `view` requires.
+[[nodiscard]] VisibilityMesh visibility_mesh(const Scene& scene, const Receiver& receiver);
+
+// The mesh as a scene, for files (scene_files.h): every triangle is a face in the patch and material of its
+// face. Backs are in patches of their own, named "NAME (back)". Throws InputError if there are no triangles.
+[[nodiscard]] Scene to_scene(const Scene& scene, const VisibilityMesh& mesh);
+
+// ------------------------------------------------------------------------------------------------ quantities of light
+
+// B = Ke + rho * sum over sources of B_s F_s is what leaves the point, in each colour channel: rho is Kd of its face,
+// Ke the emission of its face, B_s the radiosity of a source, F_s the exact form factor.
+enum class Quantity {
+  kRadiance,    // B / pi
+  kRadiosity,   // B
+  kIrradiance,  // sum of B_s F_s: what arrives, whatever the face reflects or emits
+  kFormFactor,  // sum of F_s, in every channel
+};
+[[nodiscard]] std::string_view name_of(Quantity quantity);  // "radiance", "form-factor"
+[[nodiscard]] std::optional<Quantity> quantity_named(std::string_view name);
+
+enum class KeMeans { kRadiosity, kRadiance };  // kRadiance: B_s is pi Ke, and a face emits pi Ke
+
+[[nodiscard]] std::string unit_of(Quantity quantity, KeMeans ke);  // "the unit of Ke / pi"
 
 }  // namespace exactff

@@ -11,8 +11,8 @@
 #include "bench/scenes.h"
 #include "bench/subjects.h"
 #include "exactff/exact.h"
-#include "exactff/obj.h"
 #include "exactff/receiver.h"
+#include "exactff/scene_files.h"
 
 namespace exactff::bench {
 

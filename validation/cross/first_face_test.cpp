@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "exactff/models.h"
-#include "exactff/obj.h"
 #include "exactff/render.h"
+#include "exactff/scene_files.h"
 #include "support/oracle_faces.h"
 #include "support/random_scenes.h"
 

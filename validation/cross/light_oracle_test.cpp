@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "exactff/models.h"
-#include "exactff/obj.h"
 #include "exactff/render.h"
+#include "exactff/scene_files.h"
 #include "support/oracle.h"
 #include "whole_view/light.h"
 

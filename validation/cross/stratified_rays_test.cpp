@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "exactff/models.h"
-#include "exactff/obj.h"
 #include "exactff/render.h"
+#include "exactff/scene_files.h"
 #include "generate/random.h"
 #include "support/random_scenes.h"
 

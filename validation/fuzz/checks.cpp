@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "exactff/exact.h"
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "support/oracle_check.h"
 #include "support/transform.h"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "exactff/pixels.h"
+#include "exactff/exr.h"
 #include "fuzz/complaints.h"
 #include "generate/plain_scene.h"
 

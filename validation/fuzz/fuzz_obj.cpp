@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "exactff/exact.h"
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "fuzz/complaints.h"
 #include "fuzz/scene_promises.h"
 #include "support/program.h"

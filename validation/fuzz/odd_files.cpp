@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "exactff/pixels.h"
+#include "exactff/exr.h"
 #include "exactff/scene_files.h"
 #include "fuzz/scene_bytes.h"
 #include "generate/families.h"

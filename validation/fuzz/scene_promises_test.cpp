@@ -5,7 +5,7 @@
 
 #include <sstream>
 
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "generate/plain_scene.h"
 #include "support/program.h"
 #include "support/random_scenes.h"

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <thread>
 
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "generate/families.h"
 #include "support/random_scenes.h"
 #include "support/solve.h"

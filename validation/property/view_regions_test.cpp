@@ -8,7 +8,7 @@
 #include <string>
 
 #include "exactff/models.h"
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "support/oracle_check.h"
 #include "support/random_scenes.h"
 #include "support/region_judge.h"

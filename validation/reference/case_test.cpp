@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "exactff/exact.h"
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "support/case_file.h"
 #include "support/decimal.h"
 #include "support/program.h"

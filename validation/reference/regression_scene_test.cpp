@@ -9,8 +9,8 @@
 
 #include "exactff/exact.h"
 #include "exactff/methods.h"
-#include "exactff/obj.h"
 #include "exactff/receiver.h"
+#include "exactff/scene_files.h"
 #include "report/visibility_svg.h"
 
 namespace exactff::validation {

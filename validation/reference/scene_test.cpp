@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "exactff/exact.h"
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "generate/families.h"
 
 namespace exactff::validation {

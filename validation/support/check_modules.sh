@@ -11,11 +11,10 @@ cd "$1"
 
 storeys=(foundation scenes solver rivals products reports outside)
 
-# The room of a public header that is not named after it.
+# The room of a public header that is not named after it. Where a header serves several rooms of a storey, the lowest.
 declare -A home=(
-  [enclosure]=kernel [geometry]=kernel [progress]=kernel [error]=text [summary]=scene [settings]=text [version]=text
-  [quantity]=whole_view [obj]=formats [scene_files]=formats [receiver]=receivers [record]=visibility [view]=whole_view
-  [view_regions]=whole_view [diagnosis]=slips [pixels]=exr [testing]=check
+  [enclosure]=kernel [geometry]=kernel [progress]=kernel [error]=text [settings]=text [version]=text
+  [scene_files]=formats [receiver]=receivers [exact]=visibility [view]=whole_view [testing]=check
 )
 
 # Pairs of rooms of which the first must not include the second, not even through others.

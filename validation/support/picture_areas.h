@@ -1,4 +1,4 @@
-// The areas of a picture of a whole view (exactff/view_regions.h), from the text of the SVG document alone. Arcs are
+// The areas of a picture of a whole view (exactff/view.h), from the text of the SVG document alone. Arcs are
 // read as the SVG 1.1 standard says (appendix F.6) and integrated numerically.
 #pragma once
 

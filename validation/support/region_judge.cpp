@@ -14,7 +14,6 @@
 
 #include "exactff/render.h"
 #include "exactff/view.h"
-#include "exactff/view_regions.h"
 #include "support/picture_areas.h"
 
 namespace exactff::validation {
@@ -85,7 +84,7 @@ std::vector<Name> names_in(const std::string& svg) {
   return names;
 }
 
-// From pixels to directions, with the disk as view_regions.h has it.
+// From pixels to directions, with the disk as view.h has it.
 class Directions {
  public:
   Directions(const Vec3& normal, const Vec3& up, bool fisheye) : n_(unit(normal)), fisheye_(fisheye) {

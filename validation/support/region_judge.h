@@ -1,4 +1,4 @@
-// Judges of the regions of a whole view (exactff/view_regions.h) that share no code with what makes them. Both need a
+// Judges of the regions of a whole view (exactff/view.h) that share no code with what makes them. Both need a
 // scene without glass.
 #pragma once
 

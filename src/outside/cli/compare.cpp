@@ -9,7 +9,7 @@
 #include "cli/further_files.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
-#include "exactff/diagnosis.h"
+#include "exactff/slips.h"
 #include "exactff/study.h"
 #include "files/file.h"
 #include "flags/comparison.h"

@@ -7,7 +7,7 @@
 #include "cli/command.h"
 #include "cli/exit_code.h"
 #include "cli/output.h"
-#include "exactff/diagnosis.h"
+#include "exactff/slips.h"
 #include "exactff/study.h"
 #include "text/number_text.h"
 #include "text/phrases.h"

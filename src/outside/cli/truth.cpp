@@ -16,7 +16,7 @@
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/truth_summary.h"
-#include "exactff/diagnosis.h"
+#include "exactff/slips.h"
 #include "flags/engine.h"
 #include "flags/receivers.h"
 #include "flags/scene.h"

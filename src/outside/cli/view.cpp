@@ -15,7 +15,7 @@
 #include "cli/text_table.h"
 #include "exactff/scene_files.h"
 #include "exactff/version.h"
-#include "exactff/view_regions.h"
+#include "exactff/view.h"
 #include "flags/scene.h"
 #include "text/csv_row.h"
 #include "text/json_document.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "exactff/error.h"
-#include "exactff/pixels.h"
+#include "exactff/exr.h"
 #include "exactff/receiver.h"
 #include "flags/scene.h"
 

@@ -3,7 +3,6 @@
 #include <iostream>
 
 #include "exactff/models.h"
-#include "exactff/obj.h"
 #include "exactff/scene_files.h"
 #include "flags/lists.h"
 #include "text/escape.h"

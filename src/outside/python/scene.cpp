@@ -2,12 +2,12 @@
 
 #include <pybind11/stl/filesystem.h>
 
-#include "exactff/diagnosis.h"
 #include "exactff/models.h"
 #include "exactff/scene_files.h"
-#include "exactff/summary.h"
+#include "exactff/slips.h"
 #include "python/bindings.h"
 #include "python/interrupt.h"
+#include "scene/unit_vector.h"
 
 namespace exactff::python {
 

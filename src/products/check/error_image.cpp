@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "exactff/pixels.h"
+#include "exactff/exr.h"
 #include "text/phrases.h"
 
 namespace exactff::check {

@@ -14,7 +14,7 @@
 #include <mutex>
 
 #include "exactff/error.h"
-#include "exactff/pixels.h"
+#include "exactff/exr.h"
 #include "exr/exr_guard.h"
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"

@@ -8,7 +8,7 @@
 
 #include <cstring>
 
-#include "exactff/pixels.h"
+#include "exactff/exr.h"
 #include "kernel/float_environment.h"
 
 namespace exactff::exr {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "exactff/error.h"
-#include "exactff/pixels.h"
+#include "exactff/exr.h"
 #include "exactff/version.h"
 #include "exr/layers.h"
 #include "kernel/float_environment.h"

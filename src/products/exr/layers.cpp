@@ -6,7 +6,7 @@
 #include <map>
 
 #include "exactff/error.h"
-#include "exactff/pixels.h"
+#include "exactff/exr.h"
 #include "text/escape.h"
 #include "text/nearest_names.h"
 #include "text/phrases.h"

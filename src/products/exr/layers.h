@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "exactff/pixels.h"
+#include "exactff/exr.h"
 
 namespace exactff::exr {
 

@@ -1,8 +1,9 @@
 // Pictures as OpenEXR files.
+#include "exactff/exr.h"
+
 #include <bit>
 #include <cmath>
 
-#include "exactff/pixels.h"
 #include "exactff/render.h"
 
 namespace exactff::render {

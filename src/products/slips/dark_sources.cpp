@@ -4,8 +4,8 @@
 #include <cmath>
 #include <set>
 
-#include "exactff/diagnosis.h"
 #include "exactff/exact.h"
+#include "exactff/slips.h"
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
 #include "scene/selections.h"

@@ -1,10 +1,9 @@
-#include "exactff/diagnosis.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
 
+#include "exactff/slips.h"
 #include "kernel/float_environment.h"
 #include "scene/selections.h"
 #include "slips/findings.h"

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "exactff/diagnosis.h"
+#include "exactff/slips.h"
 
 namespace exactff::slips {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "exactff/diagnosis.h"
+#include "exactff/slips.h"
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
 #include "scene/selections.h"

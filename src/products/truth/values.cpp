@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "exactff/pixels.h"
+#include "exactff/exr.h"
 #include "exactff/truth.h"
 #include "files/file.h"
 #include "files/npy_file.h"

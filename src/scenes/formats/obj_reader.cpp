@@ -15,7 +15,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "formats/converted_names.h"
 #include "formats/mtl_reader.h"
 #include "formats/readers.h"

@@ -1,9 +1,8 @@
-#include "exactff/summary.h"
-
 #include <algorithm>
 #include <limits>
 #include <set>
 
+#include "exactff/scene.h"
 #include "kernel/vec.h"
 
 namespace exactff {

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "exactff/exact.h"
 #include "exactff/receiver.h"
-#include "exactff/record.h"
 #include "scene/shaft_tree.h"
 #include "visibility/boundary_piece.h"
 #include "visibility/source_plane.h"

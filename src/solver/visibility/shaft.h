@@ -23,7 +23,7 @@
 #include <span>
 #include <vector>
 
-#include "exactff/record.h"
+#include "exactff/exact.h"
 #include "exactff/scene.h"
 #include "kernel/direction.h"
 #include "scene/shaft_tree.h"

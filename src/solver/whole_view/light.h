@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "exactff/exact.h"
-#include "exactff/quantity.h"
+#include "exactff/view.h"
 #include "kernel/ball.h"
 #include "whole_view/source_factors.h"
 

@@ -21,7 +21,7 @@
 
 #include "exact/lift.h"
 #include "exact/source_planes.h"
-#include "exactff/view_regions.h"
+#include "exactff/view.h"
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
 #include "text/escape.h"

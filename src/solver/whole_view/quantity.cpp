@@ -1,4 +1,4 @@
-#include "exactff/quantity.h"
+#include "exactff/view.h"
 
 namespace exactff {
 

@@ -8,7 +8,7 @@
 
 #include "exact/lift.h"
 #include "exact/source_planes.h"
-#include "exactff/view_regions.h"
+#include "exactff/view.h"
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"
 #include "scene/misuse.h"

@@ -1,7 +1,7 @@
 // Reads a scene and holds a form factor against the closed form for a point below the corner of a parallel rectangle.
 #include <exactff/error.h>
 #include <exactff/exact.h>
-#include <exactff/obj.h>
+#include <exactff/scene_files.h>
 #include <exactff/version.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
 #include <exactff/exact.h>
-#include <exactff/obj.h>
+#include <exactff/scene_files.h>
 #include <exactff/testing.h>
 #include <gtest/gtest-spi.h>
 

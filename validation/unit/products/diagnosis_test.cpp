@@ -1,6 +1,4 @@
 // What is said about scenes that were modelled with a slip, and that nothing is said about others.
-#include "exactff/diagnosis.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +7,8 @@
 
 #include "exactff/exact.h"
 #include "exactff/models.h"
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
+#include "exactff/slips.h"
 #include "generate/plain_scene.h"
 
 namespace exactff::slips {

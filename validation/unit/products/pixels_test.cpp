@@ -1,6 +1,4 @@
 // Images of other programs: files, whole and damaged; visible points; the values of their pixels; comparisons.
-#include "exactff/pixels.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,7 +12,8 @@
 
 #include "check/images.h"
 #include "exactff/error.h"
-#include "exactff/obj.h"
+#include "exactff/exr.h"
+#include "exactff/scene_files.h"
 #include "exactff/truth.h"
 #include "generate/plain_scene.h"
 #include "support/program.h"

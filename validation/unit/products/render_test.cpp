@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "exactff/models.h"
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "exactff/view.h"
 #include "generate/plain_scene.h"
 #include "support/complaint.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "exactff/truth.h"
 #include "jobs/blocks.h"
 #include "jobs/journal.h"

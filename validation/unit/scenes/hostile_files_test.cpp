@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <sstream>
 
-#include "exactff/obj.h"
 #include "exactff/receiver.h"
+#include "exactff/scene_files.h"
 #include "support/program.h"
 #include "text/nearest_names.h"
 

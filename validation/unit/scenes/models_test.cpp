@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "exactff/exact.h"
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "exactff/view.h"
 #include "generate/families.h"
 #include "models/model_files.h"

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <string>
 
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "support/program.h"
 
 namespace exactff {

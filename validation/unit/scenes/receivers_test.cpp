@@ -8,8 +8,8 @@
 #include <sstream>
 #include <string>
 
-#include "exactff/obj.h"
 #include "exactff/receiver.h"
+#include "exactff/scene_files.h"
 
 namespace exactff {
 namespace {

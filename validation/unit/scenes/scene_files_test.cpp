@@ -8,7 +8,7 @@
 
 #include "exactff/exact.h"
 #include "exactff/models.h"
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "generate/plain_scene.h"
 #include "generate/random.h"
 #include "support/program.h"

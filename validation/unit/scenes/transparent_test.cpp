@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "generate/plain_scene.h"
 #include "scene/closed_surfaces.h"
 #include "support/program.h"

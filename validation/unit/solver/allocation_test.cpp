@@ -18,7 +18,7 @@
 #include "exact/source_planes.h"
 #include "exactff/exact.h"
 #include "exactff/models.h"
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "exactff/view.h"
 #include "generate/families.h"
 #include "generate/plain_scene.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "exactff/obj.h"
+#include "exactff/scene_files.h"
 #include "generate/plain_scene.h"
 #include "support/view_judge.h"
 
