@@ -17,10 +17,6 @@
 
 namespace exactff {
 
-namespace adaptive {
-class PatchVisibility;
-}
-
 enum class SamplePattern { kCentre, kRegular, kJittered, kLowDiscrepancy };
 
 enum class Variant {
@@ -84,11 +80,11 @@ class AdaptiveSource {
   AdaptiveSource& operator=(AdaptiveSource&&) noexcept;
   ~AdaptiveSource();
 
-  struct Data;
-  [[nodiscard]] const Data& data() const;  // for the library's own modules
-
  private:
+  friend struct AdaptiveInside;  // see scene.h
   friend class AdaptiveSolver;
+  struct Data;
+  [[nodiscard]] const Data& data() const;
   explicit AdaptiveSource(std::unique_ptr<Data> data);
   std::unique_ptr<Data> data_;
 };
@@ -118,9 +114,6 @@ class AdaptiveSolver {
   // goes down to the depth cap wherever it sees the edge of a shadow: 2^depth leaves or more.
   [[nodiscard]] AdaptiveResult form_factor(const Receiver& receiver, const AdaptiveSource& source, double largest_rho_b,
                                            const AdaptiveOptions& options) const;
-  // For the library's own modules: where shaft culling leaves V undecided, `visibility` computes V instead of rays.
-  [[nodiscard]] AdaptiveResult form_factor(const Receiver& receiver, const AdaptiveSource& source, double largest_rho_b,
-                                           const AdaptiveOptions& options, adaptive::PatchVisibility& visibility) const;
   // As above, but calls prepare(source) each time, which visits every face of the scene.
   [[nodiscard]] AdaptiveResult form_factor(const Receiver& receiver, const Selection& source, double largest_rho_b,
                                            const AdaptiveOptions& options) const;
@@ -130,6 +123,7 @@ class AdaptiveSolver {
   [[nodiscard]] double build_seconds() const;
 
  private:
+  friend struct AdaptiveInside;  // see scene.h
   struct Impl;
   [[nodiscard]] const Impl& impl() const;
   std::unique_ptr<Impl> impl_;

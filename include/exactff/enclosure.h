@@ -7,14 +7,13 @@
 
 namespace exactff {
 
-class Ball;  // kernel/ball.h: midpoint and radius in arbitrary precision
+class Ball;  // private to the library: midpoint and radius in arbitrary precision
 
 // An enclosure of one real number. Copies are independent. The sum of two enclosures encloses the sum of the two
 // numbers (balls can be added; rounded values cannot).
 class Enclosure {
  public:
   Enclosure();  // exactly zero
-  explicit Enclosure(const Ball& ball);
   Enclosure(const Enclosure&);
   Enclosure& operator=(const Enclosure&);
   Enclosure(Enclosure&&) noexcept;
@@ -23,9 +22,6 @@ class Enclosure {
 
   // Exactly this number, which must be finite.
   [[nodiscard]] static Enclosure of(double value);
-
-  // Sets this to the ball, reusing the memory of this object.
-  void set(const Ball& ball);
 
   Enclosure& operator+=(const Enclosure& other);
   Enclosure& operator-=(const Enclosure& other);  // the same for the difference of two numbers
@@ -46,9 +42,12 @@ class Enclosure {
   [[nodiscard]] std::string midpoint() const;
   [[nodiscard]] std::string radius() const;
 
+ private:
+  friend struct EnclosureInside;  // see scene.h
+  explicit Enclosure(const Ball& ball);
+  void set(const Ball& ball);  // reuses the memory of this object
   [[nodiscard]] const Ball& ball() const;
 
- private:
   std::unique_ptr<Ball> ball_;  // null: zero
 };
 

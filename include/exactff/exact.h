@@ -145,10 +145,11 @@ class ExactSource {
   ~ExactSource();
 
   [[nodiscard]] const Selection& selection() const;
-  struct Planes;
-  [[nodiscard]] const Planes& planes() const;
 
  private:
+  friend struct ExactSourceInside;  // see scene.h
+  struct Planes;
+  [[nodiscard]] const Planes& planes() const;
   std::unique_ptr<Planes> planes_;
 };
 
@@ -162,10 +163,10 @@ class Workspace {
   Workspace& operator=(Workspace&&) noexcept;
   ~Workspace();
 
+ private:
+  friend struct WorkspaceInside;  // see scene.h
   struct Memory;
   [[nodiscard]] Memory& memory();
-
- private:
   std::unique_ptr<Memory> memory_;
 };
 

@@ -18,13 +18,10 @@
 
 namespace exactff::models {
 
-struct PlainScene;  // internal to the library
-
 struct Model {
   std::string name;     // letters, digits and hyphens
   std::string summary;  // what it shows, and its patches
   std::vector<SettingSpec> settings;
-  PlainScene (*make)(const Settings&) = nullptr;  // for internal use
 };
 
 // All models in the order of listing. The pointers stay valid as long as the program runs.

@@ -170,11 +170,13 @@ class Scene {
   // Number of edges that an odd number of faces use, matched by vertex positions. A closed solid has none.
   [[nodiscard]] std::size_t open_edge_count() const;
 
-  struct Data;
-  [[nodiscard]] const Data& data() const;  // for the library's own modules
-
  private:
+  // What the library's own sources need of a public class and nobody else, they reach through a friend named after it.
+  // A private header defines it: here scene/scene_data.h.
+  friend struct SceneInside;
   friend class SceneBuilder;
+  struct Data;
+  [[nodiscard]] const Data& data() const;
   explicit Scene(std::unique_ptr<Data> data);
   void set_warnings_of_glass();
   std::unique_ptr<Data> data_;

@@ -17,7 +17,7 @@ template <class Take>
 void for_every_plane(const BenchScene& s, Engine engine, const Take& take) {
   static visibility::EdgeWorkspace workspace;
   const visibility::View view(s.scene, s.receiver);
-  for (const visibility::SourcePlane& plane : s.source.planes().planes) {
+  for (const visibility::SourcePlane& plane : ExactSourceInside::planes(s.source).planes) {
     take(find_visible_boundary(view, plane, {.engine = engine}, workspace));
   }
 }

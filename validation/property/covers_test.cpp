@@ -89,7 +89,7 @@ TEST_P(Covers, ChangeNothingInAnyOrderOfReceivers) {
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k % receivers.size();
     shuffle(order, random);
     for (const std::size_t k : order) {
-      for (const visibility::SourcePlane& plane : source.planes().planes) {
+      for (const visibility::SourcePlane& plane : ExactSourceInside::planes(source).planes) {
         expect_same(find(scene, receivers[k], plane, {.fraction = true, .remembers_covers = true, .fewest_to_cover = 1},
                          shortened),
                     find(scene, receivers[k], plane, whole_search(), whole), counts);
@@ -200,7 +200,8 @@ INSTANTIATE_TEST_SUITE_P(All, CoversOfModels, testing::ValuesIn(model_cases()),
 Outcome outcome_of(const PlainScene& plain, const Request& request, EdgeWorkspace& workspace) {
   const Scene scene = generate::build(plain);
   const ExactSource source(scene, scene.select(plain.source));
-  return find(scene, receiver_of(plain), source.planes().planes.at(0), request, workspace).record.outcome;
+  return find(scene, receiver_of(plain), ExactSourceInside::planes(source).planes.at(0), request, workspace)
+      .record.outcome;
 }
 
 // The largest one hides the source's left half and its middle. Four others around a hole hide the rest.
@@ -252,7 +253,7 @@ TEST(Cover, LeavesASingleOccluderItsOutcome) {
   EdgeWorkspace workspace;
   const auto outcome_at = [&](double x) {
     Receiver receiver{.point = {x, 0, 0}, .normal = {0, 0, 1}, .on = {}, .id = {}};
-    const auto found = find(scene, receiver, source.planes().planes.at(0),
+    const auto found = find(scene, receiver, ExactSourceInside::planes(source).planes.at(0),
                             {.remembers_covers = true, .fewest_to_cover = 1}, workspace);
     return std::pair(to_string(found.record.outcome), found.record.cover_remembered);
   };

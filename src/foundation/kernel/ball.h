@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "exactff/enclosure.h"
 #include "kernel/numbers.h"
 
 namespace exactff {
@@ -91,4 +92,11 @@ double nearest_to_midpoint(const Ball& ball);
 long certain_bits(const Ball& ball);
 
 }  // namespace kernel
+
+struct EnclosureInside {
+  [[nodiscard]] static Enclosure of(const Ball& ball) { return Enclosure(ball); }
+  static void set(Enclosure& enclosure, const Ball& ball) { enclosure.set(ball); }
+  [[nodiscard]] static const Ball& ball(const Enclosure& enclosure) { return enclosure.ball(); }
+};
+
 }  // namespace exactff

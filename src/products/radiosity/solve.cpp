@@ -31,7 +31,7 @@ void require_one_material(const Scene& scene, const Selection& patch, std::vecto
     const Material& other = material_of(scene, face);
     if (other.reflectance == first.reflectance && other.radiosity == first.radiosity) continue;
     const char* what = other.reflectance == first.reflectance ? "Ke" : "Kd";
-    problems.push_back({.file = scene.data().file,
+    problems.push_back({.file = SceneInside::data(scene).file,
                         .line = scene.face(face).line,
                         .what = "the faces of patch '" + scene.name_of(patch) + "' differ in " + what,
                         .why = "'" + scene.name_of(faces.front()) + "' has material '" + first.name + "', '" +

@@ -6,6 +6,7 @@
 
 #include "exactff/enclosure.h"
 #include "exactff/render.h"
+#include "kernel/ball.h"
 #include "kernel/float_environment.h"
 #include "kernel/tangent.h"
 #include "kernel/vec.h"
@@ -29,7 +30,7 @@ Vec3 moved(const Vec3& from, double s, const Vec3& a, double r, const Vec3& b) {
 double tangent_of_half(double degrees) {
   for (long bits = 96;; bits *= 2) {
     const Ball half_angle = kernel::to_ball(degrees, bits) * kernel::pi(bits) / kernel::to_ball(360.0, bits);
-    if (const auto nearest = Enclosure(kernel::tan(half_angle)).nearest()) return *nearest;
+    if (const auto nearest = EnclosureInside::of(kernel::tan(half_angle)).nearest()) return *nearest;
   }
 }
 

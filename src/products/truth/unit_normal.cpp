@@ -22,7 +22,7 @@ double component(double value, const Vec3& normal) {
     const Ball x = kernel::to_ball(normal.x, bits), y = kernel::to_ball(normal.y, bits),
                z = kernel::to_ball(normal.z, bits);
     const Ball length = sqrt(x * x + y * y + z * z);
-    if (const auto nearest = Enclosure(kernel::to_ball(value, bits) / length).nearest()) return *nearest;
+    if (const auto nearest = EnclosureInside::of(kernel::to_ball(value, bits) / length).nearest()) return *nearest;
   }
 }
 

@@ -62,7 +62,7 @@ Enclosure ClosedForm::value() const {
   for (long bits = 2 * kFirst; bits <= kLast && kernel::certain_bits(ball) < kWanted; bits *= 2) {
     ball = evaluate(bits);
   }
-  return Enclosure(ball);
+  return EnclosureInside::of(ball);
 }
 
 }  // namespace exactff::stress

@@ -34,7 +34,7 @@ constexpr int kTruthDigits = 40;
 double relative_difference(double value, const Enclosure& truth, const Enclosure& scale) {
   if (!std::isfinite(value)) return std::numeric_limits<double>::quiet_NaN();
   constexpr long kBits = 256;
-  const auto at_bits = [](const Enclosure& of) { return kernel::with_bits(of.ball(), kBits); };
+  const auto at_bits = [](const Enclosure& of) { return kernel::with_bits(EnclosureInside::ball(of), kBits); };
   const double error =
       std::abs(kernel::nearest_to_midpoint((kernel::to_ball(value, kBits) - at_bits(truth)) / at_bits(scale)));
   return error < kTruthIsGoodTo ? 0.0 : error;

@@ -285,7 +285,7 @@ AdaptiveSource AdaptiveSolver::prepare(const Selection& source) const {
 
 namespace {
 
-AdaptiveResult estimate(const SampledScene& solver, const Receiver& receiver, const AdaptiveSource::Data& source,
+AdaptiveResult estimate(const SampledScene& solver, const Receiver& receiver, const AdaptiveInside::SourceData& source,
                         double largest_rho_b, const AdaptiveOptions& options, PatchVisibility* visibility) {
   const kernel::StandardArithmetic arithmetic;
   check(options, largest_rho_b);
@@ -308,9 +308,10 @@ AdaptiveResult AdaptiveSolver::form_factor(const Receiver& receiver, const Adapt
   return estimate(impl(), receiver, source.data(), largest_rho_b, options, nullptr);
 }
 
-AdaptiveResult AdaptiveSolver::form_factor(const Receiver& receiver, const AdaptiveSource& source, double largest_rho_b,
-                                           const AdaptiveOptions& options, PatchVisibility& visibility) const {
-  return estimate(impl(), receiver, source.data(), largest_rho_b, options, &visibility);
+AdaptiveResult AdaptiveInside::form_factor(const AdaptiveSolver& solver, const Receiver& receiver,
+                                           const AdaptiveSource& source, double largest_rho_b,
+                                           const AdaptiveOptions& options, PatchVisibility& visibility) {
+  return estimate(solver.impl(), receiver, source.data(), largest_rho_b, options, &visibility);
 }
 
 AdaptiveResult AdaptiveSolver::form_factor(const Receiver& receiver, const Selection& source, double largest_rho_b,

@@ -4,8 +4,10 @@
 #include <cstdint>
 
 #include "adaptive/sub_patch.h"
+#include "exactff/adaptive.h"
 
-namespace exactff::adaptive {
+namespace exactff {
+namespace adaptive {
 
 class PatchVisibility {
  public:
@@ -16,4 +18,16 @@ class PatchVisibility {
   virtual double fraction(const SubPatch& s) = 0;
 };
 
-}  // namespace exactff::adaptive
+}  // namespace adaptive
+
+struct AdaptiveInside {
+  using SourceData = AdaptiveSource::Data;
+  // As AdaptiveSolver::form_factor, but where shaft culling leaves V undecided, `visibility` computes V instead of
+  // rays.
+  [[nodiscard]] static AdaptiveResult form_factor(const AdaptiveSolver& solver, const Receiver& receiver,
+                                                  const AdaptiveSource& source, double largest_rho_b,
+                                                  const AdaptiveOptions& options,
+                                                  adaptive::PatchVisibility& visibility);
+};
+
+}  // namespace exactff

@@ -44,7 +44,7 @@ class ExactVisibility : public adaptive::PatchVisibility {
   ExactVisibility(const Scene& scene, const Receiver& receiver, const ExactSource& source, Workspace& workspace)
       : scene_(scene),
         receiver_(receiver),
-        planes_(source.planes().planes),
+        planes_(ExactSourceInside::planes(source).planes),
         workspace_(workspace),
         shares_(planes_.size()) {}
 

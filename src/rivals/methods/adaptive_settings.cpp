@@ -47,9 +47,9 @@ Estimate RecursionEvaluator::estimate(const AdaptiveSource& source, const Rgb& r
   const kernel::StandardArithmetic arithmetic;
   const Rgb rho = scene_.receiver_reflectance(receiver_.on);
   const double rho_b = Rgb{rho.r * radiosity.r, rho.g * radiosity.g, rho.b * radiosity.b}.largest();
-  const AdaptiveResult found = visibility == nullptr
-                                   ? solver_.form_factor(receiver_, source, rho_b, options_)
-                                   : solver_.form_factor(receiver_, source, rho_b, options_, *visibility);
+  const AdaptiveResult found =
+      visibility == nullptr ? solver_.form_factor(receiver_, source, rho_b, options_)
+                            : AdaptiveInside::form_factor(solver_, receiver_, source, rho_b, options_, *visibility);
   Estimate result{found.form_factor, {}};
   result.counters.add("leaves", found.leaves);
   result.counters.add("rays", found.rays);

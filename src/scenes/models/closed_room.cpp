@@ -76,15 +76,16 @@ PlainScene make_closed_room(const Settings& settings) {
 
 }  // namespace
 
-Model closed_room_model() {
-  return {.name = "closed-room",
-          .summary =
-              "a closed room of 6 x 4 x 3 m with a lamp, a table and boxes; the form factors from a point in it to all "
-              "patches sum to 1 (floor, ceiling, wall_*, lamp, table_*, box1 ...)",
-          .settings = {word_setting("lamp", {"flush", "hanging"},
-                                    "flush: in the ceiling; hanging: a box half a metre below it"),
-                       whole_setting("boxes", 6, 0, 1000, "number of boxes along the walls"), seed_setting()},
-          .make = &make_closed_room};
+Recipe closed_room_model() {
+  return {
+      {.name = "closed-room",
+       .summary =
+           "a closed room of 6 x 4 x 3 m with a lamp, a table and boxes; the form factors from a point in it to all "
+           "patches sum to 1 (floor, ceiling, wall_*, lamp, table_*, box1 ...)",
+       .settings = {word_setting("lamp", {"flush", "hanging"},
+                                 "flush: in the ceiling; hanging: a box half a metre below it"),
+                    whole_setting("boxes", 6, 0, 1000, "number of boxes along the walls"), seed_setting()}},
+      &make_closed_room};
 }
 
 }  // namespace exactff::models

@@ -65,16 +65,16 @@ PlainScene make_emitters(const Settings& settings) {
 
 }  // namespace
 
-Model emitters_model() {
+Recipe emitters_model() {
   return {
-      .name = "emitters",
-      .summary =
-          "a hall of 10 x 10 x 3 m with n small bright lamps, each a separate source, and boxes on the floor (floor, "
-          "ceiling, wall_*, box1 ..., lamp1 ...)",
-      .settings = {whole_setting("n", 64, 1, 2500, "number of lamps"),
-                   number_setting("size", 0.03, 1e-6, 0.1, "side of a lamp; it does not change the total light", "m"),
-                   whole_setting("boxes", 12, 0, 1000, "boxes on the floor"), seed_setting()},
-      .make = &make_emitters};
+      {.name = "emitters",
+       .summary =
+           "a hall of 10 x 10 x 3 m with n small bright lamps, each a separate source, and boxes on the floor (floor, "
+           "ceiling, wall_*, box1 ..., lamp1 ...)",
+       .settings = {whole_setting("n", 64, 1, 2500, "number of lamps"),
+                    number_setting("size", 0.03, 1e-6, 0.1, "side of a lamp; it does not change the total light", "m"),
+                    whole_setting("boxes", 12, 0, 1000, "boxes on the floor"), seed_setting()}},
+      &make_emitters};
 }
 
 }  // namespace exactff::models

@@ -66,63 +66,62 @@ SettingSpec count_setting(int fallback, int most, std::string meaning) {
 
 }  // namespace
 
-Model karkanis_model() {
-  return {.name = "karkanis",
-          .summary =
-              "n random triangles with the same normal, facing the receiver at the origin, in front of the square "
-              "source (occ, source, floor)",
-          .settings = {count_setting(50, kMostFaces, "triangles"), cover_setting(), floor_setting(), seed_setting()},
-          .make = &make_karkanis};
-}
-
-Model soup_model() {
-  return {.name = "soup",
-          .summary =
-              "n random triangles of any orientation between the origin and the square source (occ, source, "
-              "floor)",
-          .settings = {count_setting(50, kMostFaces, "triangles"), cover_setting(), floor_setting(), seed_setting()},
-          .make = &make_family<&soup>};
-}
-
-Model blinds_model() {
-  return {.name = "blinds",
-          .summary = "n tilted slats between the origin and the square source (occ, source, floor)",
-          .settings = {count_setting(50, kMostFaces, "slats"), floor_setting()},
-          .make = &make_family<&blinds>};
-}
-
-Model tiles_model() {
+Recipe karkanis_model() {
   return {
-      .name = "tiles",
-      .summary = "n x n abutting squares that hide the square source from the origin (occ, source, floor)",
-      .settings = {count_setting(16, kMostTilesASide, "tiles along a side; with a power of two, the corners are exact"),
-                   whole_setting("drop", 0, 0, kMostFaces, "leave out every k-th square; 0: none"), floor_setting()},
-      .make = &make_family<&tiles>};
+      {.name = "karkanis",
+       .summary = "n random triangles with the same normal, facing the receiver at the origin, in front of the square "
+                  "source (occ, source, floor)",
+       .settings = {count_setting(50, kMostFaces, "triangles"), cover_setting(), floor_setting(), seed_setting()}},
+      &make_karkanis};
 }
 
-Model mesh_model() {
-  return {.name = "mesh",
-          .summary =
-              "a closed sphere of about n triangles between the origin and the square source (occ, source, "
-              "floor)",
-          .settings = {count_setting(1000, kMostFaces, "triangles"), floor_setting()},
-          .make = &make_family<&mesh>};
+Recipe soup_model() {
+  return {{.name = "soup",
+           .summary = "n random triangles of any orientation between the origin and the square source (occ, source, "
+                      "floor)",
+           .settings = {count_setting(50, kMostFaces, "triangles"), cover_setting(), floor_setting(), seed_setting()}},
+          &make_family<&soup>};
 }
 
-Model lattice_model() {
-  return {.name = "lattice",
-          .summary = "n faces that touch, overlap and coincide, with corners on multiples of 1/64 (occ, source, floor)",
-          .settings = {count_setting(50, kMostFaces, "faces"), cover_setting(), floor_setting(), seed_setting()},
-          .make = &make_family<&lattice>};
+Recipe blinds_model() {
+  return {{.name = "blinds",
+           .summary = "n tilted slats between the origin and the square source (occ, source, floor)",
+           .settings = {count_setting(50, kMostFaces, "slats"), floor_setting()}},
+          &make_family<&blinds>};
 }
 
-Model room_model() {
-  return {.name = "room",
-          .summary =
-              "a room with a window behind a venetian blind of n slats, and a table (floor, ceiling, wall_*, "
-              "window, blind, table_*)",
-          .settings = {count_setting(32, kMostFaces, "slats")},
-          .make = &make_room};
+Recipe tiles_model() {
+  return {
+      {.name = "tiles",
+       .summary = "n x n abutting squares that hide the square source from the origin (occ, source, floor)",
+       .settings = {count_setting(16, kMostTilesASide,
+                                  "tiles along a side; with a power of two, the corners are exact"),
+                    whole_setting("drop", 0, 0, kMostFaces, "leave out every k-th square; 0: none"), floor_setting()}},
+      &make_family<&tiles>};
+}
+
+Recipe mesh_model() {
+  return {{.name = "mesh",
+           .summary = "a closed sphere of about n triangles between the origin and the square source (occ, source, "
+                      "floor)",
+           .settings = {count_setting(1000, kMostFaces, "triangles"), floor_setting()}},
+          &make_family<&mesh>};
+}
+
+Recipe lattice_model() {
+  return {
+      {.name = "lattice",
+       .summary = "n faces that touch, overlap and coincide, with corners on multiples of 1/64 (occ, source, floor)",
+       .settings = {count_setting(50, kMostFaces, "faces"), cover_setting(), floor_setting(), seed_setting()}},
+      &make_family<&lattice>};
+}
+
+Recipe room_model() {
+  return {{.name = "room",
+           .summary = "a room with a window behind a venetian blind of n slats, and a table (floor, ceiling, wall_*, "
+                      "window, blind, table_*)",
+           .settings = {count_setting(32, kMostFaces, "slats")}},
+          &make_room};
 }
 
 }  // namespace exactff::models

@@ -174,21 +174,20 @@ PlainScene make_forest(const Settings& settings) {
 
 }  // namespace
 
-Model forest_model() {
-  return {
-      .name = "forest",
-      .summary =
-          "trees with n triangular leaves between the ground and the sky, 40 x 40 m (ground, trunks, leaves, sky; with "
-          "a sun also plain, sun)",
-      .settings =
-          {whole_setting("n", 10'000, 1, kMostLeaves, "leaves"), whole_setting("trees", 25, 1, 10'000, "trees"),
-           number_setting(
-               "cover", 2.0, 1e-3, 100.0,
-               "total area of the leaves / area of the ground; less if leaves would be longer than about a metre"),
-           word_setting("light", {"sky", "sun"},
-                        "sky: as large as the ground; sun: half a degree wide, far away, and a sky all around"),
-           seed_setting()},
-      .make = &make_forest};
+Recipe forest_model() {
+  return {{.name = "forest",
+           .summary = "trees with n triangular leaves between the ground and the sky, 40 x 40 m (ground, trunks, "
+                      "leaves, sky; with "
+                      "a sun also plain, sun)",
+           .settings =
+               {whole_setting("n", 10'000, 1, kMostLeaves, "leaves"), whole_setting("trees", 25, 1, 10'000, "trees"),
+                number_setting(
+                    "cover", 2.0, 1e-3, 100.0,
+                    "total area of the leaves / area of the ground; less if leaves would be longer than about a metre"),
+                word_setting("light", {"sky", "sun"},
+                             "sky: as large as the ground; sun: half a degree wide, far away, and a sky all around"),
+                seed_setting()}},
+          &make_forest};
 }
 
 }  // namespace exactff::models

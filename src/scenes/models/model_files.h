@@ -6,17 +6,23 @@
 
 namespace exactff::models {
 
-Model blinds_model();
-Model closed_room_model();
-Model emitters_model();
-Model forest_model();
-Model karkanis_model();
-Model lattice_model();
-Model mesh_model();
-Model room_model();
-Model soup_model();
-Model teapot_model();
-Model tiles_model();
+// A model and how its scene is made.
+struct Recipe {
+  Model model;
+  PlainScene (*make)(const Settings&) = nullptr;
+};
+
+Recipe blinds_model();
+Recipe closed_room_model();
+Recipe emitters_model();
+Recipe forest_model();
+Recipe karkanis_model();
+Recipe lattice_model();
+Recipe mesh_model();
+Recipe room_model();
+Recipe soup_model();
+Recipe teapot_model();
+Recipe tiles_model();
 
 // The scene for a text such as "teapot:segments=4", with a comment that says how to generate it again. Throws
 // InputError.

@@ -9,34 +9,34 @@ namespace exactff::models {
 namespace {
 
 // In the order in which they are listed.
-const std::vector<Model>& list() {
-  static const std::vector<Model> models = {teapot_model(), forest_model(),   closed_room_model(), emitters_model(),
-                                            room_model(),   karkanis_model(), soup_model(),        blinds_model(),
-                                            tiles_model(),  mesh_model(),     lattice_model()};
-  return models;
+const std::vector<Recipe>& list() {
+  static const std::vector<Recipe> recipes = {teapot_model(), forest_model(),   closed_room_model(), emitters_model(),
+                                              room_model(),   karkanis_model(), soup_model(),        blinds_model(),
+                                              tiles_model(),  mesh_model(),     lattice_model()};
+  return recipes;
 }
 
-const Model& model_named(std::string_view name) {
-  const auto found = std::ranges::find(list(), name, &Model::name);
+const Recipe& recipe_named(std::string_view name) {
+  const auto found = std::ranges::find_if(list(), [&](const Recipe& recipe) { return recipe.model.name == name; });
   if (found != list().end()) return *found;
   std::vector<std::string_view> names;
-  for (const Model& model : list()) names.emplace_back(model.name);
+  for (const Recipe& recipe : list()) names.emplace_back(recipe.model.name);
   throw text::unknown_name("model", name, names);
 }
 
 struct Choice {
-  const Model& model;
+  const Recipe& recipe;
   Settings settings;
 
   // Includes all settings, so that the text stays valid when a default changes.
-  [[nodiscard]] std::string text() const { return model.name + ":" + settings.text(); }
+  [[nodiscard]] std::string text() const { return recipe.model.name + ":" + settings.text(); }
 };
 
 Choice parse(std::string_view text) {
   const auto [name, assignments] = text::take_apart(text);
-  const Model& model = model_named(name);
-  Choice choice{model, Settings(model.settings)};
-  text::read_assignments(assignments, "model '" + model.name + "'", choice.settings);
+  const Recipe& recipe = recipe_named(name);
+  Choice choice{recipe, Settings(recipe.model.settings)};
+  text::read_assignments(assignments, "model '" + recipe.model.name + "'", choice.settings);
   return choice;
 }
 
@@ -44,14 +44,14 @@ Choice parse(std::string_view text) {
 
 std::vector<const Model*> all_models() {
   std::vector<const Model*> models;
-  for (const Model& model : list()) models.push_back(&model);
+  for (const Recipe& recipe : list()) models.push_back(&recipe.model);
   return models;
 }
 
 PlainScene make_plain(std::string_view text) {
   const kernel::StandardArithmetic arithmetic;
   const Choice choice = parse(text);
-  PlainScene scene = choice.model.make(choice.settings);
+  PlainScene scene = choice.recipe.make(choice.settings);
   scene.comments.insert(scene.comments.begin(), "exactff model " + choice.text());
   return scene;
 }

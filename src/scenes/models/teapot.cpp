@@ -203,13 +203,13 @@ PlainScene make_teapot(const Settings& settings) {
 
 }  // namespace
 
-Model teapot_model() {
-  return {
-      .name = "teapot",
-      .summary = "the Utah teapot between a square light and a floor (floor, body, lid, handle, spout, light)",
-      .settings = {whole_setting(
-          "segments", 8, 2, 64, "s, the number of segments along each side of a Bezier patch; 64 s^2 - 8 s triangles")},
-      .make = &make_teapot};
+Recipe teapot_model() {
+  return {{.name = "teapot",
+           .summary = "the Utah teapot between a square light and a floor (floor, body, lid, handle, spout, light)",
+           .settings = {whole_setting(
+               "segments", 8, 2, 64,
+               "s, the number of segments along each side of a Bezier patch; 64 s^2 - 8 s triangles")}},
+          &make_teapot};
 }
 
 }  // namespace exactff::models

@@ -162,7 +162,7 @@ class ReceiverTable {
   // Searching for similar names takes time; it is skipped if the message would not be shown.
   std::vector<FaceId> faces_named(const std::string& name) {
     constexpr std::size_t kExplained = 20;
-    const auto& patches = scene_.data().patch_by_name;
+    const auto& patches = SceneInside::data(scene_).patch_by_name;
     const bool known = patches.contains(name) || patches.contains(name.substr(0, name.rfind(':')));
     if (problem_count_ >= kExplained && !known) {
       complain("there is no face " + text::in_quotes(name), "the receiver must lie on a face of the scene",

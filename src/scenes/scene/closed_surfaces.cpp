@@ -161,7 +161,7 @@ ClosedSurfaces::ClosedSurfaces(const Scene& scene) {
 }
 
 const ClosedSurfaces& closed_surfaces(const Scene& scene) {
-  const Scene::Data& data = scene.data();
+  const SceneInside::Data& data = SceneInside::data(scene);
   std::call_once(data.surfaces_found, [&] { data.surfaces = ClosedSurfaces(scene); });
   return data.surfaces;
 }

@@ -33,7 +33,7 @@ Extent extent_of(const Scene& scene) {
 }  // namespace
 
 const Extent& extent(const Scene& scene) {
-  const Scene::Data& data = scene.data();
+  const SceneInside::Data& data = SceneInside::data(scene);
   std::call_once(data.extent_found, [&] { data.extent = extent_of(scene); });
   return data.extent;
 }

@@ -221,7 +221,7 @@ std::vector<std::uint32_t> position_ids(std::span<const Vec3> vertices) {
 }  // namespace
 
 std::span<const std::uint32_t> places(const Scene& scene) {
-  const Scene::Data& data = scene.data();
+  const SceneInside::Data& data = SceneInside::data(scene);
   std::call_once(data.places_found, [&] { data.places = position_ids(data.vertices); });
   return data.places;
 }

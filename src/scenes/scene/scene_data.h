@@ -39,4 +39,9 @@ struct Scene::Data {
   static SceneId next_id();
 };
 
+struct SceneInside {
+  using Data = Scene::Data;
+  [[nodiscard]] static const Data& data(const Scene& scene) { return scene.data(); }
+};
+
 }  // namespace exactff

@@ -164,7 +164,7 @@ Box box_of(const Scene& scene, const Piece& piece) {
 }  // namespace
 
 const ShaftTree& shaft_tree(const Scene& scene) {
-  const Scene::Data& data = scene.data();
+  const SceneInside::Data& data = SceneInside::data(scene);
   std::call_once(data.tree_built, [&] {
     std::vector<Box> boxes;
     boxes.reserve(scene.pieces().size());

@@ -29,8 +29,8 @@ void flip(Piece& piece, std::vector<std::uint32_t>& corners) {
   std::swap(piece.frame[1], piece.frame[2]);
 }
 
-std::unique_ptr<Scene::Data> copy_of(const Scene::Data& data) {
-  auto copy = std::make_unique<Scene::Data>();
+std::unique_ptr<SceneInside::Data> copy_of(const SceneInside::Data& data) {
+  auto copy = std::make_unique<SceneInside::Data>();
   copy->file = data.file;
   copy->vertices = data.vertices;
   copy->materials = data.materials;

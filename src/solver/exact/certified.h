@@ -19,7 +19,7 @@ inline bool has_decimals(const Enclosure& enclosure, int digits) {
 // requested decimals.
 template <class Result>
 bool is_determined(const Ball& ball, int bits, int digits, Result& result) {
-  result.enclosure.set(ball);
+  EnclosureInside::set(result.enclosure, ball);
   result.precision_bits = bits;
   const std::optional<double> nearest = result.enclosure.nearest();
   if (!nearest || !has_decimals(result.enclosure, digits)) return false;

@@ -46,7 +46,8 @@ std::vector<PlaneDrawing> draw_visibility(const Scene& scene, const Receiver& re
   exact::check_arguments(scene, receiver, source);
   const visibility::View view(scene, receiver);
   std::vector<PlaneDrawing> drawings;
-  for (const visibility::SourcePlane& plane : source.planes().planes) drawings.push_back(draw(view, plane));
+  for (const visibility::SourcePlane& plane : ExactSourceInside::planes(source).planes)
+    drawings.push_back(draw(view, plane));
   return drawings;
 }
 

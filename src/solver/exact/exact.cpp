@@ -17,6 +17,7 @@
 #include "exact/fraction.h"
 #include "exact/source_planes.h"
 #include "exact/workspace.h"
+#include "kernel/ball.h"
 #include "kernel/float_environment.h"
 #include "kernel/vec.h"
 #include "scene/misuse.h"
@@ -72,7 +73,7 @@ void check_precision_cap(int cap) {
 namespace exact {
 
 void check_arguments(const Scene& scene, const Receiver& receiver, const ExactSource& source) {
-  require_of_scene(scene, source.planes().scene, "source");
+  require_of_scene(scene, ExactSourceInside::planes(source).scene, "source");
   check_receiver(receiver);
   for (const FaceId face : receiver.on) require_face(scene, face);
 }
@@ -110,7 +111,7 @@ void set_count(std::vector<PlaneRecord>& records, std::size_t count, std::vector
 void reset(FormFactor& result, std::size_t planes, std::vector<PlaneRecord>& spare) {
   FormFactor fresh;
   fresh.enclosure = std::move(result.enclosure);
-  fresh.enclosure.set(Ball());
+  EnclosureInside::set(fresh.enclosure, Ball());
   fresh.cutters = std::move(result.cutters);
   fresh.cutters.clear();
   fresh.planes = std::move(result.planes);
@@ -154,9 +155,9 @@ void sort_unique(std::vector<FaceId>& faces) {
 class Solver {
  public:
   Solver(const Scene& scene, const Receiver& receiver, const ExactSource& source, const ExactOptions& options,
-         FormFactor& result, Workspace::Memory& memory)
+         FormFactor& result, WorkspaceInside::Memory& memory)
       : scene_(scene),
-        planes_(source.planes().planes),
+        planes_(ExactSourceInside::planes(source).planes),
         options_(options),
         wants_fraction_(options.visible_fraction || options.exact_fraction),
         view_(scene, receiver),
@@ -233,14 +234,14 @@ class Solver {
   const visibility::View view_;
   const visibility::Request request_;
   FormFactor& result_;
-  Workspace::Memory& memory_;
+  WorkspaceInside::Memory& memory_;
   std::vector<PlaneShare> shares_;
   visibility::VisibleBoundary last_boundary_;
   bool something_visible_ = false;
 };
 
 void solve_by(Engine engine, const Scene& scene, const Receiver& receiver, const ExactSource& source,
-              ExactOptions options, FormFactor& result, Workspace::Memory& memory) {
+              ExactOptions options, FormFactor& result, WorkspaceInside::Memory& memory) {
   options.engine = engine;
   Solver(scene, receiver, source, options, result, memory).run();
 }
@@ -284,7 +285,7 @@ void exact_form_factor(const Scene& scene, const Receiver& receiver, const Exact
   check_options(scene, options);
   exact::check_arguments(scene, receiver, source);
   const bool both = options.engine == Engine::kBoth;
-  Workspace::Memory& memory = workspace.memory();
+  WorkspaceInside::Memory& memory = WorkspaceInside::memory(workspace);
   solve_by(both ? Engine::kEdges : options.engine, scene, receiver, source, options, result, memory);
   if (!both) return;
   FormFactor reference;

@@ -82,7 +82,7 @@ double visible_fraction(std::span<const PlaneShare> planes) {
   constexpr long kFirstBits = 128;
   constexpr long kBitsBeforeTheExactTest = 512;
   for (long bits = kFirstBits;; bits *= 2) {
-    if (const std::optional<double> nearest = Enclosure(ratio_at(planes, bits)).nearest()) return *nearest;
+    if (const std::optional<double> nearest = EnclosureInside::of(ratio_at(planes, bits)).nearest()) return *nearest;
     if (bits != kBitsBeforeTheExactTest) continue;
     if (const std::optional<Rational> ratio = rational_ratio(planes)) return kernel::nearest_double(*ratio);
   }

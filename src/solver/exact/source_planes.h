@@ -14,6 +14,11 @@ struct ExactSource::Planes {
   std::vector<visibility::SourcePlane> planes;
 };
 
+struct ExactSourceInside {
+  using Planes = ExactSource::Planes;
+  [[nodiscard]] static const Planes& planes(const ExactSource& source) { return source.planes(); }
+};
+
 namespace exact {
 
 // Throws InputError unless the point is finite and the normal is finite and not zero. Throws std::invalid_argument if

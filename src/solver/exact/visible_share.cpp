@@ -36,7 +36,8 @@ bool meets_exactly(const SmallPolygon<Rational>& polygon, const Point<Rational>&
 VisibleShare::VisibleShare(const Scene& scene, const Receiver& receiver, const visibility::SourcePlane& plane,
                            Workspace& workspace)
     : view_(scene, receiver), plane_(plane), away_(plane.normal.exact) {
-  const visibility::PlaneVisibility seen = find_visible_boundary(view_, plane, {}, workspace.memory().edges);
+  const visibility::PlaneVisibility seen =
+      find_visible_boundary(view_, plane, {}, WorkspaceInside::memory(workspace).edges);
   all_ = seen.record.outcome == Outcome::kUnoccluded;
   if (all_ || seen.boundary.empty()) return;
   make_frame();

@@ -23,4 +23,9 @@ struct Workspace::Memory {
   std::unique_ptr<Guest> view;  // of the whole view
 };
 
+struct WorkspaceInside {
+  using Memory = Workspace::Memory;
+  [[nodiscard]] static Memory& memory(Workspace& workspace) { return workspace.memory(); }
+};
+
 }  // namespace exactff

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/ball.h"
 #include "kernel/float_environment.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
@@ -25,7 +26,7 @@ CertifiedNumber certified(double value) {
 }
 
 CertifiedNumber not_certified(const Ball& ball) {
-  const Enclosure enclosure(ball);
+  const Enclosure enclosure = EnclosureInside::of(ball);
   return {kernel::nearest_to_midpoint(ball), std::max(0.0, enclosure.lower()), enclosure.upper(), false};
 }
 
@@ -99,7 +100,8 @@ Ball Light::ball(const std::vector<FormFactor>& factors, const LightFormula& for
   Ball received(bits);
   for (std::size_t s = 0; s < factors.size(); ++s) {
     if (factors[s].status == Status::kZero) continue;
-    received.add_product(kernel::to_ball(component(radiosities_[s], channel), bits), factors[s].enclosure.ball());
+    received.add_product(kernel::to_ball(component(radiosities_[s], channel), bits),
+                         EnclosureInside::ball(factors[s].enclosure));
   }
   Ball leaving = kernel::to_ball(component(formula.emitted, channel), bits);
   leaving.add_product(kernel::to_ball(component(formula.reflectance, channel), bits), received);
@@ -112,13 +114,13 @@ CertifiedNumber Light::channel(const Receiver& receiver, const LightFormula& for
                                const ExactOptions& options, Results& results) const {
   if (is_zero(results.at.factors, formula, channel)) return {};
   Ball best = ball(results.at.factors, formula, channel, kFirstBits);
-  if (const auto nearest = Enclosure(best).nearest()) return certified(*nearest);
+  if (const auto nearest = EnclosureInside::of(best).nearest()) return certified(*nearest);
   ExactOptions finer = options;
   finer.visible_fraction = finer.exact_fraction = finer.list_cutters = false;
   for (finer.digits = kFirstDigits; finer.digits <= kMostDigits; finer.digits *= 2) {
     sources_.find_all(receiver, finer, results.finer, results.at);
     best = ball(results.finer, formula, channel, 4L * finer.digits + kFirstBits);
-    if (const auto nearest = Enclosure(best).nearest()) return certified(*nearest);
+    if (const auto nearest = EnclosureInside::of(best).nearest()) return certified(*nearest);
   }
   return not_certified(best);
 }

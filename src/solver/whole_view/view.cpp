@@ -13,6 +13,7 @@
 #include "exact/quick_tier.h"
 #include "exact/source_planes.h"
 #include "exact/workspace.h"
+#include "kernel/ball.h"
 #include "kernel/float_environment.h"
 #include "scene/misuse.h"
 #include "whole_view/view_among.h"
@@ -29,7 +30,7 @@ using whole_view::kNothing;
 using whole_view::OutlineId;
 using whole_view::ViewEdges;
 
-struct ViewMemory : Workspace::Memory::Guest {
+struct ViewMemory : WorkspaceInside::Memory::Guest {
   ViewEdges edges;
   QuickTier quick;
   std::vector<Bounded> terms;
@@ -50,7 +51,7 @@ struct ViewMemory : Workspace::Memory::Guest {
 };
 
 ViewMemory& memory_of(Workspace& workspace) {
-  auto& guest = workspace.memory().view;
+  auto& guest = WorkspaceInside::memory(workspace).view;
   if (!guest) guest = std::make_unique<ViewMemory>();
   return static_cast<ViewMemory&>(*guest);
 }
@@ -58,7 +59,7 @@ ViewMemory& memory_of(Workspace& workspace) {
 void reset(ViewShare& share) {
   share.value = share.lower = share.upper = 0.0;
   share.status = Status::kZero;
-  share.enclosure.set(Ball());
+  EnclosureInside::set(share.enclosure, Ball());
   share.precision_bits = 0;
 }
 

@@ -180,7 +180,7 @@ TEST(Filter, ApproximationsAreWithinTheirStatedError) {
   }
 }
 
-Enclosure ball_of(const Rational& value, long bits) { return Enclosure(to_ball(value, bits)); }
+Enclosure ball_of(const Rational& value, long bits) { return EnclosureInside::of(to_ball(value, bits)); }
 
 TEST(Enclosure, NearestAgreesWithTheExactRounding) {
   Random random(6);

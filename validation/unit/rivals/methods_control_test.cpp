@@ -19,9 +19,11 @@ struct Window {
   Scene scene = generate::build(plain);
   ExactSource source{scene, scene.select(plain.source)};
   Workspace workspace;
-  VisibleShare share{scene, generate::receiver_of(plain), source.planes().planes.front(), workspace};
+  VisibleShare share{scene, generate::receiver_of(plain), ExactSourceInside::planes(source).planes.front(), workspace};
 
-  explicit Window(PlainScene given) : plain(std::move(given)) { share.start(source.planes().planes.front().pieces[0]); }
+  explicit Window(PlainScene given) : plain(std::move(given)) {
+    share.start(ExactSourceInside::planes(source).planes.front().pieces[0]);
+  }
 };
 
 std::vector<Vec3> square_at(double x, double y, double side) {

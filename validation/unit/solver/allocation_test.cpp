@@ -258,7 +258,7 @@ TEST(Allocation, IsNotMadeWhereSourcesTakeTurns) {
   const Scene scene = generate::build(scene_of_three_sources());
   const ExactSource one(scene, scene.select("one")), many(scene, scene.select("many")),
       round(scene, scene.select("round"));
-  ASSERT_EQ(many.planes().planes.size(), 9U);
+  ASSERT_EQ(ExactSourceInside::planes(many).planes.size(), 9U);
   Random random(2);
   std::vector<Pair> pairs;
   for (int i = 0; i < 100; ++i) {

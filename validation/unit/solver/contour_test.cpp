@@ -22,7 +22,7 @@ std::vector<ExactVec3> square() { return {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0
 Enclosure integrate(const std::vector<BoundaryPiece>& pieces, long bits, const ExactVec3& normal = kUp) {
   ContourIntegral contour(normal);
   for (const BoundaryPiece& piece : pieces) contour.add(piece);
-  return Enclosure(contour.evaluate(bits));
+  return EnclosureInside::of(contour.evaluate(bits));
 }
 
 std::vector<BoundaryPiece> loop_of(const std::vector<ExactVec3>& corners) {

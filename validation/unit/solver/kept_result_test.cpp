@@ -146,8 +146,8 @@ TEST(Enclosure, SetIsAsOneMadeAnew) {
     arb_add_error_2exp_si(ball.get(), -80);
     if (value == 0.0) arb_zero(ball.get());
     kept.set(ball);
-    EXPECT_EQ(kept.midpoint(), Enclosure(ball).midpoint());
-    EXPECT_EQ(kept.radius(), Enclosure(ball).radius());
+    EXPECT_EQ(kept.midpoint(), EnclosureInside::of(ball).midpoint());
+    EXPECT_EQ(kept.radius(), EnclosureInside::of(ball).radius());
   }
 }
 

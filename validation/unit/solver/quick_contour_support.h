@@ -102,7 +102,7 @@ struct Both {
     for (const Part& piece : pieces) {
       contour.add({exact[piece.a], exact[piece.b], parameter(piece, piece.begin), parameter(piece, piece.end)});
     }
-    return Enclosure(contour.evaluate(kBits));
+    return EnclosureInside::of(contour.evaluate(kBits));
   }
 };
 
@@ -114,7 +114,7 @@ inline Enclosure enclosure_of(const QuickContour::Value& value) {
   arb_add(ball.get(), ball.get(), part.get(), ARF_PREC_EXACT);
   arb_set_d(part.get(), value.error);
   arb_add_error(ball.get(), part.get());
-  return Enclosure(ball);
+  return EnclosureInside::of(ball);
 }
 
 inline bool answers(const QuickContour::Value& value) { return std::isfinite(value.error); }
@@ -181,7 +181,7 @@ inline kernel::Rational exactly(double hi, double lo) { return kernel::to_ration
 inline Enclosure true_angle(const kernel::Rational& sine, const kernel::Rational& cosine) {
   Ball ball = kernel::to_ball(sine, kBits);
   arb_atan2(ball.get(), ball.get(), kernel::to_ball(cosine, kBits).get(), kBits);
-  return Enclosure(ball);
+  return EnclosureInside::of(ball);
 }
 
 inline bool holds(const Bounded& angle, const Enclosure& truth) {
