@@ -31,11 +31,11 @@ enum class Existing {
   kReplace,  // start again; the old journal is lost at once, the old file when the new one is complete
 };
 
-// Callbacks. All are called from the thread that called the function, except `cancelled`, which is called from any
-// thread.
-struct Hooks {
+// What Hooks (progress.h) tell and ask, and what rows add. All are called from the thread that called the function,
+// except `cancelled`, which is called from any thread.
+struct RowHooks {
   std::function<void(const Progress&)> progress = {};  // in rows
-  std::function<bool()> cancelled = {};                // called often, as Hooks of exactff/progress.h
+  std::function<bool()> cancelled = {};                // called often, as Hooks::cancelled
   std::function<void(const std::string&)> note = {};   // notes for the user, such as a damaged journal
   std::function<void(const std::string& row, double seconds)> slow_row = {};  // "receiver '7', source 'light'"
   double slow_seconds = 1.0;  // a row that takes at least this long is slow
@@ -44,7 +44,7 @@ struct Hooks {
 struct Summary {
   std::uint64_t rows = 0;
   std::uint64_t resumed = 0;  // rows that were already finished
-  std::uint64_t slow = 0;     // rows reported to Hooks::slow_row
+  std::uint64_t slow = 0;     // rows reported to RowHooks::slow_row
   double seconds = 0.0;       // wall time of computing the other rows
 };
 

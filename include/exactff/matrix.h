@@ -130,10 +130,10 @@ struct Request {
 // unusable, or if nothing can be written; throws Cancelled if the hooks cancel. Whatever is thrown, and even if the
 // process is killed, the finished pairs in the journal stay valid.
 jobs::Summary write(const Request& request, const std::filesystem::path& file,
-                    jobs::Existing existing = jobs::Existing::kRefuse, const jobs::Hooks& hooks = {});
+                    jobs::Existing existing = jobs::Existing::kRefuse, const jobs::RowHooks& hooks = {});
 // Merges all shards of one request into the same bytes as one write() without shards, as truth::merge does.
 jobs::Summary merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& file,
-                    jobs::Existing existing = jobs::Existing::kRefuse, const jobs::Hooks& hooks = {});
+                    jobs::Existing existing = jobs::Existing::kRefuse, const jobs::RowHooks& hooks = {});
 // The matrix in the file that write() or merge() made for this request. Throws InputError if the file is damaged or of
 // other patches.
 [[nodiscard]] Matrix read(const Request& request, const std::filesystem::path& file);

@@ -30,12 +30,6 @@ namespace exactff::truth {
 // Rows are distributed in chunks of this size, counted from the first row. A shard consists of whole chunks.
 inline constexpr std::uint32_t kChunkRows = 64;
 
-using jobs::Existing;
-using jobs::Hooks;
-using jobs::journal_of;
-using jobs::require_free;
-using jobs::Shard;
-
 // The rows to compute. Keeps a reference to the scene.
 struct Request {
   const Scene* scene = nullptr;
@@ -59,7 +53,7 @@ struct Request {
   std::optional<Quantity> total = {};
   KeMeans ke = KeMeans::kRadiosity;  // of the totals
   Engine engine = Engine::kEdges;    // no byte depends on it
-  Shard shard;                       // if not 1/1, the file holds the rows of this shard, for merge()
+  jobs::Shard shard;                 // if not 1/1, the file holds the rows of this shard, for merge()
   int threads = 0;                   // 0: as many as this process may use
 };
 
@@ -73,35 +67,36 @@ struct Summary : jobs::Summary {
 // journal may be from another request or in use by another process), or if nothing can be written; throws
 // Cancelled if the hooks cancel. Whatever is thrown, and even if the process is killed, the rows in the journal
 // stay valid: at most a second of work and the current row of each thread are lost.
-Summary write(Request request, const std::filesystem::path& file, Existing existing = Existing::kRefuse,
-              const Hooks& hooks = {});
+Summary write(Request request, const std::filesystem::path& file, jobs::Existing existing = jobs::Existing::kRefuse,
+              const jobs::RowHooks& hooks = {});
 
 // Computes the rows and writes the same bytes to a stream, each row as soon as those before it are written. Keeps
 // nothing, so there is nothing to continue with. Throws InputError if the request is unusable or for a shard, or if the
 // stream fails; throws Cancelled if the hooks cancel. Whatever is thrown, the rows in the stream are then incomplete.
-Summary write(Request request, std::ostream& out, const Hooks& hooks = {});
+Summary write(Request request, std::ostream& out, const jobs::RowHooks& hooks = {});
 
 // Merges all shards of one request into the same bytes as one write() without shards. The order of the shards does not
 // matter. Throws one InputError that lists all problems: shards that are missing, duplicate, damaged, unfinished or of
 // another request. The file appears complete or not at all.
 Summary merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& file,
-              Existing existing = Existing::kRefuse, const Hooks& hooks = {});
+              jobs::Existing existing = jobs::Existing::kRefuse, const jobs::RowHooks& hooks = {});
 
 // Writes the values of a complete truth file as a NumPy array of float64 with a row for each receiver and a column for
 // each source, in the order of the file, then three columns for the totals if the file has them: NaN where a value is
 // not certified. The array appears complete or not at all, and replaces another file. Throws InputError if a file
 // cannot be read or written, and Cancelled.
-void write_npy(const std::filesystem::path& truth_file, const std::filesystem::path& file, const Hooks& hooks = {});
+void write_npy(const std::filesystem::path& truth_file, const std::filesystem::path& file,
+               const jobs::RowHooks& hooks = {});
 
 // Writes the values of a complete truth file for ParaView: see vtk::write. `request` is the one that the file was made
 // from. Visible fractions and totals are written if the file has them.
 void write_vtk(const Request& request, const std::filesystem::path& truth_file, const std::filesystem::path& file,
-               const Hooks& hooks = {});
+               const jobs::RowHooks& hooks = {});
 
 // Writes the totals of a complete truth file as an OpenEXR image in the pixels of `frame`, whose receivers the file
 // has: channels R, G and B in 32 bits, NaN where there is no certified value, and `mark` (exr::Mark). Throws
 // InputError if the file has no totals or other receivers, or cannot be read or written, and Cancelled.
 void write_exr(const exr::Frame& frame, const std::filesystem::path& truth_file, const std::filesystem::path& file,
-               const Hooks& hooks = {});
+               const jobs::RowHooks& hooks = {});
 
 }  // namespace exactff::truth

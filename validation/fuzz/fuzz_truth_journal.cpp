@@ -79,11 +79,11 @@ Texts make_texts(const Scene& scene) {
   const fs::path file = directory().path() / "whole.csv";
   int rows = 0;
   try {
-    (void)truth::write(request_of(scene), file, truth::Existing::kRefuse, {.cancelled = [&] { return ++rows > 60; }});
+    (void)truth::write(request_of(scene), file, jobs::Existing::kRefuse, {.cancelled = [&] { return ++rows > 60; }});
   } catch (const Cancelled&) {
   }
-  Texts texts{{}, text_of(truth::journal_of(file))};
-  (void)truth::write(request_of(scene), file, truth::Existing::kResume);
+  Texts texts{{}, text_of(jobs::journal_of(file))};
+  (void)truth::write(request_of(scene), file, jobs::Existing::kResume);
   texts.whole = text_of(file);
   if (texts.journal.find(kOpening) == std::string::npos) fail("no journal to begin with");
   return texts;
@@ -94,10 +94,10 @@ void check(const std::string& journal, const Scene& scene, const std::string* ex
   fs::remove(file);
   (void)directory().write("truth.csv.part", journal);
   try {
-    const truth::Summary summary = truth::write(request_of(scene), file, truth::Existing::kResume);
+    const truth::Summary summary = truth::write(request_of(scene), file, jobs::Existing::kResume);
     if (summary.rows != 72 || summary.resumed > summary.rows) fail("a count of rows that cannot be");
     if (expected != nullptr && text_of(file) != *expected) fail("resumed to other bytes");
-    if (fs::exists(truth::journal_of(file))) fail("a journal left behind");
+    if (fs::exists(jobs::journal_of(file))) fail("a journal left behind");
   } catch (const InputError& error) {
     require_words(error);
     if (fs::exists(file)) fail("refused, and written");

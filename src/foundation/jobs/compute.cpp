@@ -25,7 +25,7 @@ constexpr auto kSyncEvery = std::chrono::seconds(1);
 
 class Computation {
  public:
-  Computation(const Rows& rows, RowJournal& journal, Team* team, const Hooks& hooks)
+  Computation(const Rows& rows, RowJournal& journal, Team* team, const RowHooks& hooks)
       : rows_(rows), journal_(journal), hooks_(hooks), schedule_(rows, journal.blocks()) {
     if (team != nullptr && team->size() > 1) leader_.emplace(*team, rows);
   }
@@ -110,7 +110,7 @@ class Computation {
 
   const Rows& rows_;
   RowJournal& journal_;
-  const Hooks& hooks_;
+  const RowHooks& hooks_;
   Schedule schedule_;
   std::optional<Leader> leader_;
   std::mutex mutex_;
@@ -120,7 +120,7 @@ class Computation {
 
 }  // namespace
 
-void compute_missing(const Rows& rows, RowJournal& journal, Team* team, const Hooks& hooks, Summary& summary) {
+void compute_missing(const Rows& rows, RowJournal& journal, Team* team, const RowHooks& hooks, Summary& summary) {
   Computation(rows, journal, team, hooks).run(summary);
 }
 
@@ -130,7 +130,7 @@ files::FailureAdvice advice_while_in_journal(const RowJournal& journal) {
 }
 
 // A chunk may have been computed in several blocks. The result must not depend on where it was divided.
-void for_each_chunk(const Rows& rows, const RowJournal& journal, const Hooks& hooks, const TakeChunk& take) {
+void for_each_chunk(const Rows& rows, const RowJournal& journal, const RowHooks& hooks, const TakeChunk& take) {
   const std::uint32_t chunk = rows.plan().chunk;
   Pace pace("writing the file", rows.shard_rows(), hooks);
   const std::vector<Block> blocks = journal.blocks();
@@ -149,7 +149,7 @@ void for_each_chunk(const Rows& rows, const RowJournal& journal, const Hooks& ho
   EXACTFF_EXPECT(taken == rows.shard_rows());
 }
 
-void write_rows(const Rows& rows, const RowJournal& journal, const fs::path& file, const Hooks& hooks,
+void write_rows(const Rows& rows, const RowJournal& journal, const fs::path& file, const RowHooks& hooks,
                 const TakeChunk& see) {
   WholeFile whole(file, advice_while_in_journal(journal));
   const bool in_blocks = rows.plan().shard.count > 1;

@@ -16,7 +16,7 @@ namespace exactff::jobs {
 // Computes the rows that are not in the journal and appends them to it: on threads of this process, and on the other
 // processes if there is a team, whose leader this must be. Sets resumed, slow and seconds. Whatever is thrown, finished
 // rows are in the journal.
-void compute_missing(const Rows& rows, RowJournal& journal, Team* team, const Hooks& hooks, Summary& summary);
+void compute_missing(const Rows& rows, RowJournal& journal, Team* team, const RowHooks& hooks, Summary& summary);
 
 // A file in which nothing of the journal is lost, whatever happens to it.
 [[nodiscard]] files::FailureAdvice advice_while_in_journal(const RowJournal& journal);
@@ -24,11 +24,11 @@ void compute_missing(const Rows& rows, RowJournal& journal, Team* team, const Ho
 // Calls take(range, text) for every chunk, in order. Requires every row of the shard to be in the journal. `take`
 // returns false if the text cannot be that of these rows, which then is an internal failure.
 using TakeChunk = std::function<bool(Range range, const std::string& text)>;
-void for_each_chunk(const Rows& rows, const RowJournal& journal, const Hooks& hooks, const TakeChunk& take);
+void for_each_chunk(const Rows& rows, const RowJournal& journal, const RowHooks& hooks, const TakeChunk& take);
 
 // Writes the rows in order, after their head: one after another, or the chunks of a shard as blocks. Calls `see` with
 // each chunk.
-void write_rows(const Rows& rows, const RowJournal& journal, const std::filesystem::path& file, const Hooks& hooks,
+void write_rows(const Rows& rows, const RowJournal& journal, const std::filesystem::path& file, const RowHooks& hooks,
                 const TakeChunk& see);
 
 // Whether `existing` continues a run, and this file of it is complete: files appear only when they are complete.

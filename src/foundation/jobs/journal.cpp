@@ -38,7 +38,7 @@ std::string shortened(std::string_view line) {
   return text::printable(text::beginning(line, kMost)) + (line.size() > kMost ? "..." : "");
 }
 
-File opened(const fs::path& path, const Hooks& hooks) {
+File opened(const fs::path& path, const RowHooks& hooks) {
   File file = files::open_locked(
       path, {"the rows are kept in this file", "name a file in a folder that exists, is writable and has free space"},
       {.what = "another process is working on it",
@@ -98,7 +98,7 @@ void require_same_head(const fs::path& file, std::string_view head, std::string_
                     .suggestion = suggestion});
 }
 
-RowJournal::RowJournal(const fs::path& file, const Rows& rows, Existing existing, const Hooks& hooks)
+RowJournal::RowJournal(const fs::path& file, const Rows& rows, Existing existing, const RowHooks& hooks)
     : file_(opened(journal_of(file), hooks)) {
   take_over(rows, existing, hooks);
   file_.set_failure_advice({"it contains the rows finished so far", "free some space, then continue with --resume"});
@@ -108,7 +108,7 @@ RowJournal::~RowJournal() {
   if (blocks_.empty() && end_ > 0) remove();
 }
 
-void RowJournal::take_over(const Rows& rows, Existing existing, const Hooks& hooks) {
+void RowJournal::take_over(const Rows& rows, Existing existing, const RowHooks& hooks) {
   const std::string head = journal_head(rows);
   const std::optional<std::string> found = read_head(file_);
   // A journal that is cut off within its head holds no rows.
@@ -147,7 +147,7 @@ void RowJournal::begin(const std::string& head) {
 }
 
 // Keeps the rows of this request, each once. Nothing else is ever appended, but the file may have been tampered with.
-void RowJournal::keep_usable(std::vector<Block> found, const Rows& rows, const Hooks& hooks) {
+void RowJournal::keep_usable(std::vector<Block> found, const Rows& rows, const RowHooks& hooks) {
   std::stable_sort(found.begin(), found.end(),
                    [](const Block& a, const Block& b) { return a.range.first < b.range.first; });
   const std::size_t count = found.size();

@@ -25,7 +25,7 @@ class RowJournal {
   // Opens and locks the journal of `file` for rows under this head. Throws InputError if another process is using the
   // journal, if it holds rows of another request, or if it holds rows and `existing` allows neither to continue with
   // them nor to replace them.
-  RowJournal(const std::filesystem::path& file, const Rows& rows, Existing existing, const Hooks& hooks);
+  RowJournal(const std::filesystem::path& file, const Rows& rows, Existing existing, const RowHooks& hooks);
   // Removes a journal without rows, since it has no use.
   ~RowJournal();
   RowJournal(const RowJournal&) = delete;
@@ -46,9 +46,9 @@ class RowJournal {
   void remove() { file_.remove(); }
 
  private:
-  void take_over(const Rows& rows, Existing existing, const Hooks& hooks);
+  void take_over(const Rows& rows, Existing existing, const RowHooks& hooks);
   void begin(const std::string& head);
-  void keep_usable(std::vector<Block> found, const Rows& rows, const Hooks& hooks);
+  void keep_usable(std::vector<Block> found, const Rows& rows, const RowHooks& hooks);
 
   File file_;
   std::mutex mutex_;
@@ -60,13 +60,14 @@ class RowJournal {
 // Reports progress in rows. Throws Cancelled if the hooks request it.
 class Pace {
  public:
-  Pace(std::string_view stage, std::uint64_t total, const Hooks& hooks) : stage_(stage), total_(total), hooks_(hooks) {}
+  Pace(std::string_view stage, std::uint64_t total, const RowHooks& hooks)
+      : stage_(stage), total_(total), hooks_(hooks) {}
   void add(std::uint64_t rows);
 
  private:
   std::string_view stage_;
   std::uint64_t total_;
-  const Hooks& hooks_;
+  const RowHooks& hooks_;
   std::uint64_t done_ = 0;
 };
 

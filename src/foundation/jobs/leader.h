@@ -36,6 +36,6 @@ class Leader {
 
 // Runs a follower, that is, any other rank. `make_rows` must make the same rows as the leader's; what it throws is sent
 // to the leader. Only the hooks `cancelled` and slow_seconds are used. Returns the exit code.
-int follow(Team& team, const std::function<std::unique_ptr<Rows>()>& make_rows, const Hooks& hooks);
+int follow(Team& team, const std::function<std::unique_ptr<Rows>()>& make_rows, const RowHooks& hooks);
 
 }  // namespace exactff::jobs

@@ -143,7 +143,7 @@ void require_all(const ShardFiles& shards) {
          "every " + std::string(plan.kind.row) + " is needed", "add these files");
 }
 
-void take_chunks(const ShardFiles& shards, const Hooks& hooks, const MergedShards::Take& take) {
+void take_chunks(const ShardFiles& shards, const RowHooks& hooks, const MergedShards::Take& take) {
   const Plan& plan = shards.begin()->second.plan;
   Pace pace("writing the file", plan.count, hooks);
   for (std::uint64_t chunk = 0; chunk < plan.chunks(); ++chunk) {
@@ -172,7 +172,7 @@ std::string command_of_shard(const fs::path& file) {
   return {};
 }
 
-MergedShards read_shards(const std::vector<fs::path>& paths, const Kind& kind, const Hooks& hooks) {
+MergedShards read_shards(const std::vector<fs::path>& paths, const Kind& kind, const RowHooks& hooks) {
   Pace reading("reading shards", paths.size(), hooks);
   auto shards = std::make_shared<const ShardFiles>(read_all(paths, kind, reading));
   require_all(*shards);

@@ -25,6 +25,6 @@ struct MergedShards {
 // Throws one InputError that lists all problems: shards that are missing, duplicate, damaged, unfinished or of another
 // request.
 [[nodiscard]] MergedShards read_shards(const std::vector<std::filesystem::path>& paths, const Kind& kind,
-                                       const Hooks& hooks);
+                                       const RowHooks& hooks);
 
 }  // namespace exactff::jobs

@@ -241,7 +241,7 @@ class Desk {
 
 class Follower {
  public:
-  Follower(Team& team, const Hooks& hooks) : team_(team), hooks_(hooks) {}
+  Follower(Team& team, const RowHooks& hooks) : team_(team), hooks_(hooks) {}
 
   int run(const std::function<std::unique_ptr<Rows>()>& make_rows) {
     try {
@@ -338,7 +338,7 @@ class Follower {
   }
 
   Team& team_;
-  const Hooks& hooks_;
+  const RowHooks& hooks_;
   const Clock::time_point started_ = Clock::now();
   std::uint64_t threads_ = 1;
   bool asked_ = false;
@@ -350,7 +350,7 @@ class Follower {
 
 }  // namespace
 
-int follow(Team& team, const std::function<std::unique_ptr<Rows>()>& make_rows, const Hooks& hooks) {
+int follow(Team& team, const std::function<std::unique_ptr<Rows>()>& make_rows, const RowHooks& hooks) {
   return Follower(team, hooks).run(make_rows);
 }
 

@@ -47,7 +47,7 @@ std::optional<Range> Schedule::advance() {
   return std::nullopt;
 }
 
-Workers::Workers(const Rows& rows, int threads, const Hooks& hooks, Take take, Deliver deliver)
+Workers::Workers(const Rows& rows, int threads, const RowHooks& hooks, Take take, Deliver deliver)
     : rows_(rows), hooks_(hooks), take_(std::move(take)), deliver_(std::move(deliver)) {
   try {
     for (int i = 0; i < threads; ++i) {
@@ -67,7 +67,7 @@ Workers::Workers(const Rows& rows, int threads, const Hooks& hooks, Take take, D
 Workers::~Workers() { stop(); }
 
 void Workers::work() {
-  const exactff::Hooks polled{{}, hooks_.cancelled};
+  const Hooks polled{{}, hooks_.cancelled};
   const HooksOfThread within_rows(polled);
   try {
     while (!must_stop()) {

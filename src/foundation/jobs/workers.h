@@ -59,7 +59,7 @@ class Workers {
 
   // Starts the threads. They call `take`, `deliver` and `hooks.cancelled`. Finished rows are delivered at least every
   // second. `rows` and `hooks` must outlive this object.
-  Workers(const Rows& rows, int threads, const Hooks& hooks, Take take, Deliver deliver);
+  Workers(const Rows& rows, int threads, const RowHooks& hooks, Take take, Deliver deliver);
   ~Workers();
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
@@ -79,7 +79,7 @@ class Workers {
   [[nodiscard]] bool must_stop();
 
   const Rows& rows_;
-  const Hooks& hooks_;
+  const RowHooks& hooks_;
   const Take take_;
   const Deliver deliver_;
   std::atomic<bool> stop_{false};

@@ -29,7 +29,7 @@ jobs::Shard shard_of(const std::string& text) {
                "write number/count, for example --shard 1/4 to --shard 4/4");
 }
 
-jobs::Hooks Narrator::hooks(double slow_seconds) {
+jobs::RowHooks Narrator::hooks(double slow_seconds) {
   return {.progress = [this](const Progress& progress) { show(progress); },
           .cancelled = is_interrupted,
           .note = [this](const std::string& text) { tell("warning: " + text::printable(text)); },

@@ -19,7 +19,7 @@ class Narrator {
   // What a row is called: "row", "pair".
   explicit Narrator(std::string row) : row_(std::move(row)), rows_(row_ + 's') {}
 
-  [[nodiscard]] jobs::Hooks hooks(double slow_seconds);
+  [[nodiscard]] jobs::RowHooks hooks(double slow_seconds);
   void clear() const { bar_.clear(); }
   // Called when the work has been given up.
   void tell_what_is_kept(const std::string& reason, const std::string& file) const;

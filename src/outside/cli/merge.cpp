@@ -35,7 +35,7 @@ struct MergeArguments {
   FurtherFiles further;
 };
 
-int merge_matrix(const MergeArguments& args, const jobs::Hooks& hooks, const ProgressBar& bar) {
+int merge_matrix(const MergeArguments& args, const jobs::RowHooks& hooks, const ProgressBar& bar) {
   if (!args.further.npy.empty()) {
     text::refuse("--npy is given with shards of a matrix", "it writes the values of a truth file",
                  "run exactff matrix with --resume, -o for the merged file and --npz");
@@ -53,15 +53,15 @@ int run(const MergeArguments& args) {
   std::string given_up = "exactff: interrupted; nothing was written\n";
   const InterruptWatch watch(given_up);
   ProgressBar bar;
-  const truth::Hooks hooks{.progress = [&](const Progress& progress) { bar.show(progress); },
-                           .cancelled = is_interrupted};
+  const jobs::RowHooks hooks{.progress = [&](const Progress& progress) { bar.show(progress); },
+                             .cancelled = is_interrupted};
   truth::Summary summary;
   try {
     if (jobs::command_of_shard(args.shards.front()) == "matrix") {
       return merge_matrix(args, hooks, bar);
     }
     summary = truth::merge({args.shards.begin(), args.shards.end()}, args.file,
-                           args.force ? truth::Existing::kReplace : truth::Existing::kRefuse, hooks);
+                           args.force ? jobs::Existing::kReplace : jobs::Existing::kRefuse, hooks);
     given_up = "exactff: interrupted; " + text::printable(args.file) + " is complete, the NumPy file was not written\n";
     if (!args.further.npy.empty()) truth::write_npy(args.file, args.further.npy, hooks);
   } catch (const Cancelled&) {

@@ -73,8 +73,8 @@ struct TruthArguments {
   [[nodiscard]] std::optional<Quantity> quantity() const {
     return quantity_named(total.empty() && !further.exr.empty() ? "radiance" : total);
   }
-  [[nodiscard]] truth::Existing existing() const {
-    return resume ? truth::Existing::kResume : force ? truth::Existing::kReplace : truth::Existing::kRefuse;
+  [[nodiscard]] jobs::Existing existing() const {
+    return resume ? jobs::Existing::kResume : force ? jobs::Existing::kReplace : jobs::Existing::kRefuse;
   }
 };
 
@@ -86,7 +86,7 @@ struct Job {
 };
 
 std::unique_ptr<Job> job_of(const TruthArguments& args, const jobs::Team* team) {
-  const truth::Shard shard = shard_of(args.shard);
+  const jobs::Shard shard = shard_of(args.shard);
   flags::check_receiver_options(args.receivers);
   flags::check_standard_input(args.scene, args.receivers);
   auto job = std::make_unique<Job>(Job{args.scene.load(), {}});
@@ -159,7 +159,7 @@ int write_to_standard_output(const TruthArguments& args) {
   const std::string words = "exactff: interrupted; the printed rows are incomplete, and nothing is kept\n";
   const InterruptWatch watch(words);
   Narrator narrator("row");
-  truth::Hooks hooks = narrator.hooks(args.slow_seconds);
+  jobs::RowHooks hooks = narrator.hooks(args.slow_seconds);
   if (::isatty(STDOUT_FILENO) == 1) hooks.progress = {};  // the rows are to be seen
   truth::Summary summary;
   try {
@@ -178,7 +178,7 @@ int write_to_standard_output(const TruthArguments& args) {
 // Before anything that takes time.
 void check_outputs(const TruthArguments& args) {
   check_totals(args);
-  truth::require_free(args.file, args.existing());
+  jobs::require_free(args.file, args.existing());
   const std::vector<std::string> further = args.further.flags();
   if (further.empty()) return;
   if (!args.shard.empty()) {
@@ -189,11 +189,11 @@ void check_outputs(const TruthArguments& args) {
                                         : "after exactff merge, run this command without --shard, with --resume and -o "
                                           "FILE for the merged file"});
   }
-  check_further_files(args.further, args.file, args.existing() != truth::Existing::kRefuse);
+  check_further_files(args.further, args.file, args.existing() != jobs::Existing::kRefuse);
 }
 
 // Returns 0, or the exit code of the signal that interrupted it.
-int write_further_files(const TruthArguments& args, const Job& job, truth::Hooks hooks) {
+int write_further_files(const TruthArguments& args, const Job& job, jobs::RowHooks hooks) {
   const std::string words = "exactff: interrupted; " + text::printable(args.file) +
                             " is complete; for the other files, run the same command with --resume\n";
   const InterruptWatch watch(words);

@@ -11,9 +11,9 @@
 namespace exactff::python {
 namespace {
 
-truth::Existing existing_of(const std::string& word) {
-  if (word == "resume") return truth::Existing::kResume;
-  return word == "replace" ? truth::Existing::kReplace : truth::Existing::kRefuse;
+jobs::Existing existing_of(const std::string& word) {
+  if (word == "resume") return jobs::Existing::kResume;
+  return word == "replace" ? jobs::Existing::kReplace : jobs::Existing::kRefuse;
 }
 
 py::tuple write_rows(const SharedScene& scene, const std::string& scene_name, const std::vector<Receiver>& receivers,

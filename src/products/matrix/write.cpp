@@ -36,7 +36,8 @@ jobs::Summary account_of(const fs::path& path, const Rows& rows) {
   return summary;
 }
 
-void write_in_order(const Rows& rows, const jobs::RowJournal& journal, const fs::path& file, const jobs::Hooks& hooks) {
+void write_in_order(const Rows& rows, const jobs::RowJournal& journal, const fs::path& file,
+                    const jobs::RowHooks& hooks) {
   EntryLines lines;
   jobs::for_each_chunk(rows, journal, hooks, [&](jobs::Range range, const std::string& text) {
     return rows.may_be_text_of(range, text) && lines.add(text);
@@ -59,7 +60,7 @@ bool are_names(const std::vector<std::string>& fields, const std::vector<std::st
 
 }  // namespace
 
-jobs::Summary write(const Request& request, const fs::path& file, jobs::Existing existing, const jobs::Hooks& hooks,
+jobs::Summary write(const Request& request, const fs::path& file, jobs::Existing existing, const jobs::RowHooks& hooks,
                     jobs::Team* team) {
   const kernel::StandardArithmetic arithmetic;
   const Rows rows(request);
@@ -79,17 +80,18 @@ jobs::Summary write(const Request& request, const fs::path& file, jobs::Existing
   return summary;
 }
 
-jobs::Summary write(const Request& request, const fs::path& file, jobs::Existing existing, const jobs::Hooks& hooks) {
+jobs::Summary write(const Request& request, const fs::path& file, jobs::Existing existing,
+                    const jobs::RowHooks& hooks) {
   return write(request, file, existing, hooks, nullptr);
 }
 
-int follow(jobs::Team& team, const std::function<Request()>& request, const jobs::Hooks& hooks) {
+int follow(jobs::Team& team, const std::function<Request()>& request, const jobs::RowHooks& hooks) {
   return jobs::follow(
       team, [&] { return std::make_unique<Rows>(request()); }, hooks);
 }
 
 jobs::Summary merge(const std::vector<fs::path>& paths, const fs::path& file, jobs::Existing existing,
-                    const jobs::Hooks& hooks) {
+                    const jobs::RowHooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
   jobs::require_free(file, existing == jobs::Existing::kReplace ? existing : jobs::Existing::kRefuse);
   const jobs::MergedShards shards = jobs::read_shards(paths, kKind, hooks);

@@ -6,10 +6,10 @@
 
 namespace exactff::truth {
 
-Summary merge(const std::vector<std::filesystem::path>& paths, const std::filesystem::path& file, Existing existing,
-              const Hooks& hooks) {
+Summary merge(const std::vector<std::filesystem::path>& paths, const std::filesystem::path& file,
+              jobs::Existing existing, const jobs::RowHooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
-  require_free(file, existing == Existing::kReplace ? existing : Existing::kRefuse);
+  jobs::require_free(file, existing == jobs::Existing::kReplace ? existing : jobs::Existing::kRefuse);
   const jobs::MergedShards shards = jobs::read_shards(paths, kKind, hooks);
   files::WholeFile whole(file);
   whole.append(shards.head);

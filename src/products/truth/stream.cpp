@@ -18,7 +18,7 @@ constexpr auto kBetweenWrites = std::chrono::milliseconds(20);
 
 class Stream {
  public:
-  Stream(const Rows& rows, std::ostream& out, const Hooks& hooks)
+  Stream(const Rows& rows, std::ostream& out, const jobs::RowHooks& hooks)
       : rows_(rows), out_(out), hooks_(hooks), schedule_(rows, {}) {}
 
   void run(Summary& summary) {
@@ -82,7 +82,7 @@ class Stream {
 
   const Rows& rows_;
   std::ostream& out_;
-  const Hooks& hooks_;
+  const jobs::RowHooks& hooks_;
   jobs::Schedule schedule_;
   std::mutex mutex_;
   std::map<std::uint64_t, jobs::Finished> waiting_;  // by first row
@@ -93,7 +93,7 @@ class Stream {
 
 }  // namespace
 
-Summary write(Request request, std::ostream& out, const Hooks& hooks) {
+Summary write(Request request, std::ostream& out, const jobs::RowHooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
   const Rows rows(std::move(request));
   if (rows.request().shard.count > 1) {

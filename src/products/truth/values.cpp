@@ -120,9 +120,9 @@ struct Shape {
   std::vector<std::string> sources;
 };
 
-Shape shape_of(const fs::path& file, const Hooks& hooks) {
+Shape shape_of(const fs::path& file, const jobs::RowHooks& hooks) {
   ValueReader reader(file);
-  const Hooks silent{.cancelled = hooks.cancelled};  // the number of rows is not known yet
+  const jobs::RowHooks silent{.cancelled = hooks.cancelled};  // the number of rows is not known yet
   jobs::Pace pace("reading rows", 0, silent);
   Shape shape;
   bool one_receiver = true;
@@ -138,7 +138,7 @@ Shape shape_of(const fs::path& file, const Hooks& hooks) {
 
 }  // namespace
 
-void write_npy(const fs::path& truth_file, const fs::path& file, const Hooks& hooks) {
+void write_npy(const fs::path& truth_file, const fs::path& file, const jobs::RowHooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
   const Shape shape = shape_of(truth_file, hooks);
   ValueReader reader(truth_file);
@@ -176,7 +176,7 @@ void add(vtk::SourceValues& list, const Values& values, bool has_fractions) {
 }
 
 // What the cells show.
-std::vector<vtk::Field> fields_of(const fs::path& truth_file, const Request& request, const Hooks& hooks) {
+std::vector<vtk::Field> fields_of(const fs::path& truth_file, const Request& request, const jobs::RowHooks& hooks) {
   const Shape shape = shape_of(truth_file, hooks);
   require_receivers(shape, request.receivers.size(), truth_file);
   std::vector<vtk::SourceValues> list;
@@ -205,7 +205,7 @@ std::vector<std::string> about(const fs::path& truth_file) {
 
 }  // namespace
 
-void write_vtk(const Request& request, const fs::path& truth_file, const fs::path& file, const Hooks& hooks) {
+void write_vtk(const Request& request, const fs::path& truth_file, const fs::path& file, const jobs::RowHooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
   const vtk::Content content{.scene = request.scene,
                              .receivers = request.receivers,
@@ -214,7 +214,7 @@ void write_vtk(const Request& request, const fs::path& truth_file, const fs::pat
   vtk::write(content, file, {{}, hooks.cancelled});
 }
 
-void write_exr(const exr::Frame& frame, const fs::path& truth_file, const fs::path& file, const Hooks& hooks) {
+void write_exr(const exr::Frame& frame, const fs::path& truth_file, const fs::path& file, const jobs::RowHooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
   const Shape shape = shape_of(truth_file, hooks);
   require_receivers(shape, frame.pixels.size(), truth_file);

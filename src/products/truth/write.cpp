@@ -46,10 +46,11 @@ Summary account_of(const fs::path& path, const Rows& rows) {
 
 }  // namespace
 
-Summary write(Request request, const fs::path& file, Existing existing, const Hooks& hooks, jobs::Team* team) {
+Summary write(Request request, const fs::path& file, jobs::Existing existing, const jobs::RowHooks& hooks,
+              jobs::Team* team) {
   const kernel::StandardArithmetic arithmetic;
   const Rows rows(std::move(request));
-  require_free(file, existing);
+  jobs::require_free(file, existing);
   if (jobs::is_complete(file, existing)) return account_of(file, rows);
   Summary summary;
   summary.rows = rows.shard_rows();
@@ -63,11 +64,11 @@ Summary write(Request request, const fs::path& file, Existing existing, const Ho
   return summary;
 }
 
-Summary write(Request request, const fs::path& file, Existing existing, const Hooks& hooks) {
+Summary write(Request request, const fs::path& file, jobs::Existing existing, const jobs::RowHooks& hooks) {
   return write(std::move(request), file, existing, hooks, nullptr);
 }
 
-int follow(jobs::Team& team, const std::function<Request()>& request, const Hooks& hooks) {
+int follow(jobs::Team& team, const std::function<Request()>& request, const jobs::RowHooks& hooks) {
   return jobs::follow(
       team, [&] { return std::make_unique<Rows>(request()); }, hooks);
 }

@@ -353,13 +353,13 @@ TEST(ThreadsArithmetic, ChangesNoTruthFile) {
   request.total = Quantity::kRadiance;
   request.threads = 2;
   const auto write = [&] {
-    truth::write(request, whole, truth::Existing::kReplace);
+    truth::write(request, whole, jobs::Existing::kReplace);
     for (std::size_t part = 0; part < 2; ++part) {
       truth::Request shard = request;
       shard.shard = {part + 1, 2};
-      truth::write(shard, parts[part], truth::Existing::kReplace);
+      truth::write(shard, parts[part], jobs::Existing::kReplace);
     }
-    truth::merge(parts, merged, truth::Existing::kReplace);
+    truth::merge(parts, merged, jobs::Existing::kReplace);
     return std::string();
   };
   expect_the_same(joint_settings(), write, [&] { return validation::text_of(whole) + validation::text_of(merged); });
@@ -385,7 +385,7 @@ TEST(ThreadsArithmetic, ChangesNoImage) {
     exr::GBuffer gbuffer = exr::read_gbuffer(exr::ExrFile(points));
     exr::place_on_faces(scene, gbuffer);
     request.receivers = std::move(gbuffer.receivers);
-    truth::write(request, table, truth::Existing::kReplace);
+    truth::write(request, table, jobs::Existing::kReplace);
     truth::write_exr(gbuffer.frame, table, values);
     const check::Images images = check::read_images(values, values);
     const check::Report report = check::judge(images.truth, images.values, {.relative_mse = 1.0});

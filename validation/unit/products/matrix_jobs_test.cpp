@@ -72,7 +72,7 @@ class MatrixJobs : public testing::Test {
   // Ends the run when `cancelled` has been asked this often.
   void interrupt(const Request& asked, int questions) const {
     std::atomic<int> left = questions;
-    jobs::Hooks hooks;
+    jobs::RowHooks hooks;
     hooks.cancelled = [&left] { return left-- <= 0; };
     EXPECT_THROW(write(asked, file_, Existing::kResume, hooks), Cancelled);
   }

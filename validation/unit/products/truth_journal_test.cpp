@@ -98,7 +98,7 @@ TEST_F(Truth, ADamagedBlockIsComputedAgainAndTheOthersAreNot) {
     fs::remove(file_);
     write_text(journal_, damaged);
     std::string note;
-    Hooks hooks;
+    RowHooks hooks;
     hooks.note = [&](const std::string& text) { note = text; };
     const Summary summary = write(request(2), file_, Existing::kResume, hooks);
     ASSERT_EQ(text_of(file_), whole) << "damaged at " << at;
@@ -124,7 +124,7 @@ TEST_F(Truth, BlocksThatDoNotBelongAreLeftOut) {
     journal.append({1000000, 1}, line);
   }
   std::string note;
-  Hooks hooks;
+  RowHooks hooks;
   hooks.note = [&](const std::string& text) { note = text; };
   EXPECT_EQ(write(shard(10, 2, 3), file_, Existing::kResume, hooks).resumed, 1U);
   EXPECT_NE(note.find("6 blocks cannot be used here"), std::string::npos) << note;

@@ -93,7 +93,7 @@ TEST_F(TruthShards, InterruptionsDoNotShow) {
   const std::vector<fs::path> parts = write_shards(10, 2);
   for (const int rows : {30, 3, 50}) {
     std::atomic<int> left = rows;
-    Hooks hooks;
+    RowHooks hooks;
     hooks.cancelled = [&left] { return left-- <= 0; };
     EXPECT_THROW(write(shard(10, 1, 2), file_, Existing::kResume, hooks), Cancelled);
   }

@@ -23,6 +23,9 @@
 
 namespace exactff::truth {
 
+using jobs::Existing;
+using jobs::RowHooks;
+
 // A floor, two lights above it, and a board that hides the first from part of the floor.
 inline Scene room() {
   std::istringstream obj(
@@ -57,7 +60,7 @@ class Truth : public testing::Test {
   // Ends the run after about `rows` rows.
   void interrupt(Request asked, int rows) const {
     std::atomic<int> left = rows * kQuestions;
-    Hooks hooks;
+    RowHooks hooks;
     hooks.cancelled = [&left] { return left-- <= 0; };
     EXPECT_THROW(write(std::move(asked), file_, Existing::kResume, hooks), Cancelled);
   }

@@ -33,7 +33,8 @@ class TruthTeam : public Truth {
 
   // Runs every rank in a thread. The exit code of a leader that throws is 2, and all ranks must return the leader's
   // code. Returns what the leader threw.
-  std::exception_ptr run(int size, const Requests& request, const Hooks& leaders = {}, const Hooks& followers = {}) {
+  std::exception_ptr run(int size, const Requests& request, const RowHooks& leaders = {},
+                         const RowHooks& followers = {}) {
     std::vector<Mailbox> mail(static_cast<std::size_t>(size));
     std::vector<int> codes(mail.size(), -1);
     std::exception_ptr thrown;
@@ -85,15 +86,15 @@ TEST_F(TruthTeam, ManyProcessesWriteTheBytesOfOne) {
 }
 
 // Interrupted before this number of rows, by whichever thread asked.
-Hooks interrupted_after(std::atomic<int>& rows) {
-  Hooks hooks;
+RowHooks interrupted_after(std::atomic<int>& rows) {
+  RowHooks hooks;
   hooks.cancelled = [&rows] { return rows-- <= 0; };
   return hooks;
 }
 
 // A leader that is so slow that the others do the work.
-Hooks slow() {
-  Hooks hooks;
+RowHooks slow() {
+  RowHooks hooks;
   hooks.cancelled = [] {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     return false;
@@ -120,7 +121,7 @@ TEST_F(TruthTeam, AnInterruptedTeamKeepsWhatItFinished) {
 // At the interruption, no follower has finished a whole chunk; only the followers have their rows.
 TEST_F(TruthTeam, ALeaderThatStopsTakesWhatOthersHaveInHand) {
   std::atomic<int> asked = 0;
-  Hooks leaders, followers;
+  RowHooks leaders, followers;
   const auto pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
   followers.cancelled = [&] {
     pause();

@@ -161,7 +161,7 @@ TEST_F(Truth, TheSkyAloneIsASourceWithoutAFraction) {
 
 TEST_F(Truth, SlowRowsAreTold) {
   std::vector<std::string> told;
-  Hooks hooks;
+  RowHooks hooks;
   hooks.slow_seconds = 0.0;
   hooks.slow_row = [&](const std::string& row, double seconds) {
     EXPECT_GE(seconds, 0.0);
@@ -175,7 +175,7 @@ TEST_F(Truth, SlowRowsAreTold) {
 TEST_F(Truth, ProgressGoesFromWhatWasThereToAll) {
   interrupt(request(10), 100);
   std::vector<Progress> told;
-  Hooks hooks;
+  RowHooks hooks;
   hooks.progress = [&](const Progress& progress) { told.push_back(progress); };
   const Summary summary = write(request(10), file_, Existing::kResume, hooks);
   EXPECT_EQ(told.front().done, summary.resumed);
