@@ -32,15 +32,26 @@ struct Options {
   int threads = 0;  // 0: all; does not affect the result
 };
 
+struct Factors {
+  std::vector<Selection> from, to;
+  std::vector<ViewFactor> entries;  // row by row: from `from[0]` to each of `to`, ...
+
+  [[nodiscard]] const ViewFactor& at(std::size_t row, std::size_t column) const {
+    return entries[row * to.size() + column];
+  }
+};
+
 struct Matrix {
-  ViewFactorMatrix factors;
+  Factors factors;
   // For each row: the factor to the backs of all faces that are not transparent, and the share that meets nothing.
   // Empty if not asked for. As strong as their claims. Where a front lies on a back, seen from the same side, the
   // front counts. The area_to of `open` means nothing.
   std::vector<ViewFactor> back, open;
 };
 
-// Throws what view_factor_matrix throws; and InputError for `open` in a scene so large that doubles end near it.
+// All factors between two lists of patches. Where both directions of a pair are asked for and all faces are planar, one
+// is computed, unless options.factors.both_directions, and A_i F_ij = A_j F_ji gives the other. Throws what view_factor
+// throws; and InputError for `open` in a scene so large that doubles end near it.
 [[nodiscard]] Matrix compute(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
                              const Options& options = {}, const Hooks& hooks = {});
 

@@ -70,18 +70,19 @@ struct Solution {
 // Ke.
 [[nodiscard]] std::vector<Selection> patches_of(const Scene& scene);
 
+struct Options {
+  ViewFactorOptions factors;
+  int threads = 0;  // 0: all; does not affect the result
+};
+
 // What solve() needs to know of a scene, for matrix::compute: `back` and `open` as well, for the balance alone, and
 // therefore with at most 2,000 cells an entry.
-[[nodiscard]] matrix::Options matrix_options(const ViewFactorOptions& factors, int threads = 0);
+[[nodiscard]] matrix::Options matrix_options(const Options& options);
 
 // Requires the factors between all of patches_of(scene), as rows and as columns, with `back` and `open`. Throws
 // std::invalid_argument otherwise, and what patches_of throws.
 [[nodiscard]] Solution solve(const Scene& scene, const matrix::Matrix& matrix);
 
-struct Options {
-  ViewFactorOptions factors;
-  int threads = 0;  // 0: all; does not affect the result
-};
 // Computes the view factors first. Throws what matrix::compute and patches_of throw.
 [[nodiscard]] Solution solve(const Scene& scene, const Options& options = {}, const Hooks& hooks = {});
 

@@ -1,4 +1,4 @@
-// View factors from patch to patch.
+// View factors from patch to patch, one at a time; matrix.h computes all between two lists of patches.
 //
 //   F_ij = (1 / A_i) * integral over patch i of F(x -> j) dA
 //
@@ -14,11 +14,8 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <string_view>
-#include <vector>
 
-#include "exactff/progress.h"
 #include "exactff/scene.h"
 
 namespace exactff {
@@ -65,21 +62,5 @@ struct ViewFactor {
 // InputError for a patch without area or an accuracy that is not positive and finite, and Cancelled.
 [[nodiscard]] ViewFactor view_factor(const Scene& scene, const Selection& from, const Selection& to,
                                      const ViewFactorOptions& options = {});
-
-struct ViewFactorMatrix {
-  std::vector<Selection> from, to;
-  std::vector<ViewFactor> entries;  // row by row: from `from[0]` to each of `to`, ...
-
-  [[nodiscard]] const ViewFactor& at(std::size_t row, std::size_t column) const {
-    return entries[row * to.size() + column];
-  }
-};
-
-// All factors between two lists of patches. Where both directions of a pair are asked for and all faces are planar, one
-// is computed, unless options.both_directions, and A_i F_ij = A_j F_ji gives the other. threads = 0: all. The result
-// does not depend on their number.
-[[nodiscard]] ViewFactorMatrix view_factor_matrix(const Scene& scene, std::span<const Selection> from,
-                                                  std::span<const Selection> to, const ViewFactorOptions& options = {},
-                                                  int threads = 0, const Hooks& hooks = {});
 
 }  // namespace exactff

@@ -221,7 +221,7 @@ void give_random_colours(generate::PlainScene& plain, Random& random) {
 }
 
 Vector exact_radiosities(const Scene& scene, const matrix::Matrix& matrix, double Rgb::*colour, double t) {
-  const ViewFactorMatrix& all = matrix.factors;
+  const matrix::Factors& all = matrix.factors;
   const std::size_t n = all.from.size();
   Square a(n, Vector(n, 0));
   Vector e(n, 0);

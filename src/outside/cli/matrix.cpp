@@ -86,7 +86,7 @@ struct MatrixArguments {
 
 template <class Visit>
 void for_each_entry(const Scene& scene, const matrix::Matrix& matrix, const Visit& visit) {
-  const ViewFactorMatrix& all = matrix.factors;
+  const matrix::Factors& all = matrix.factors;
   for (std::size_t i = 0; i < all.from.size(); ++i) {
     for (std::size_t j = 0; j < all.to.size(); ++j) visit(i, shown_name(scene, all.to[j]), all.at(i, j));
     if (!matrix.back.empty()) visit(i, std::string(matrix::kBack), matrix.back[i]);
@@ -113,7 +113,7 @@ std::string drafted_sum_text(const matrix::Matrix& matrix, std::size_t row, cons
 }
 
 void print_table(const MatrixArguments& args, const Scene& scene, const matrix::Matrix& matrix) {
-  const ViewFactorMatrix& all = matrix.factors;
+  const matrix::Factors& all = matrix.factors;
   const std::vector<matrix::Sum> sums = row_sums(matrix);
   const std::size_t columns = std::min(all.to.size(), kMostShown), rows = std::min(all.from.size(), kMostShown);
   TextTable table;

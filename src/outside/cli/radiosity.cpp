@@ -266,7 +266,7 @@ int run(const RadiosityArguments& args) {
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
   const matrix::Matrix matrix =
-      matrix::compute(scene, patches, patches, radiosity::matrix_options(args.factors, args.threads), hooks);
+      matrix::compute(scene, patches, patches, radiosity::matrix_options({args.factors, args.threads}), hooks);
   bar.clear();
   const Solution solution = radiosity::solve(scene, matrix);
   warn_of_width(matrix::Matrix{matrix.factors, {}, {}}, args.factors);

@@ -61,7 +61,8 @@ py::tuple radiosity_of(const SharedScene& scene, double accuracy, std::size_t bu
   std::size_t wide = 0;
   const Solution solution = interrupt.run([&] {
     const std::vector<Selection> patches = radiosity::patches_of(in);
-    const matrix::Options options = radiosity::matrix_options({.accuracy = accuracy, .budget = budget}, threads);
+    const matrix::Options options =
+        radiosity::matrix_options({.factors = {.accuracy = accuracy, .budget = budget}, .threads = threads});
     const matrix::Matrix matrix = matrix::compute(in, patches, patches, options, interrupt.hooks());
     wide = wide_entries(matrix);
     return radiosity::solve(in, matrix);

@@ -38,7 +38,7 @@ std::string names_beside(Surroundings surroundings) {
 Surroundings surroundings_of(const Matrix& matrix) { return {!matrix.back.empty(), !matrix.open.empty()}; }
 
 std::string with_rows(std::string text, const Scene& scene, const Matrix& matrix) {
-  const ViewFactorMatrix& all = matrix.factors;
+  const Factors& all = matrix.factors;
   text += std::string(kColumns) + '\n';
   for (std::size_t i = 0; i < all.from.size(); ++i) {
     const std::string from = scene.name_of(all.from[i]);
@@ -72,7 +72,7 @@ void add_csv_row(std::string& text, const std::string& from, std::string_view to
 }
 
 std::string csv_text(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options) {
-  const ViewFactorMatrix& all = matrix.factors;
+  const Factors& all = matrix.factors;
   return with_rows(csv_comments(scene, all.from, all.to, options, surroundings_of(matrix)), scene, matrix);
 }
 

@@ -21,7 +21,7 @@ std::string formatted(double value, std::chars_format format, int digits) {
   return {buffer.data(), end};
 }
 
-void require_square(const ViewFactorMatrix& all, const std::string& program) {
+void require_square(const Factors& all, const std::string& program) {
   if (!all.from.empty() && all.from == all.to) return;
   text::refuse("the matrix has not the same patches as rows and as columns",
                program + " reads the factors of all pairs of some surfaces",
@@ -37,7 +37,7 @@ double emittance(const Scene& scene, const Selection& patch) {
 }  // namespace
 
 std::string view3d_text(const Scene& scene, const Matrix& matrix) {
-  const ViewFactorMatrix& all = matrix.factors;
+  const Factors& all = matrix.factors;
   require_square(all, "View3D's output");
   const std::size_t count = all.from.size();
   std::string text = "exactff " + std::string(kVersion) + " 0 0 0 " + std::to_string(count);
@@ -72,7 +72,7 @@ std::string energyplus_name(const std::string& given) {
 }  // namespace
 
 std::string energyplus_text(const Scene& scene, const Matrix& matrix, const std::string& zone) {
-  const ViewFactorMatrix& all = matrix.factors;
+  const Factors& all = matrix.factors;
   require_square(all, "EnergyPlus");
   std::vector<std::string> names;
   std::set<std::string> distinct;

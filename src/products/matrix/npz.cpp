@@ -34,7 +34,7 @@ void add_names(files::NpzFile& file, const char* name, const Scene& scene, const
 }  // namespace
 
 void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::path& path) {
-  const ViewFactorMatrix& all = matrix.factors;
+  const Factors& all = matrix.factors;
   std::vector<double> values, radii, area_from, area_to;
   std::vector<std::int64_t> columns, starts{0};
   std::vector<std::string> claims;

@@ -53,7 +53,7 @@ void add_pair(Reciprocity& result, std::size_t row, std::size_t column, const Vi
 
 Reciprocity reciprocity(const Scene& scene, const Matrix& matrix) {
   const kernel::StandardArithmetic arithmetic;
-  const ViewFactorMatrix& all = matrix.factors;
+  const Factors& all = matrix.factors;
   std::vector<std::optional<std::size_t>> column_of_row, row_of_column;
   for (const Selection& patch : all.from) {
     column_of_row.push_back(is_planar(scene, patch) ? place_of(patch, all.to) : std::nullopt);

@@ -42,7 +42,7 @@ void require_one_material(const Scene& scene, const Selection& patch, std::vecto
 }
 
 void require_complete(const Scene& scene, const matrix::Matrix& matrix) {
-  const ViewFactorMatrix& all = matrix.factors;
+  const matrix::Factors& all = matrix.factors;
   const std::vector<Selection> patches = patches_of(scene);
   if (all.from == patches && all.to == patches && all.entries.size() == patches.size() * patches.size() &&
       matrix.back.size() == patches.size() && matrix.open.size() == patches.size()) {
@@ -51,7 +51,7 @@ void require_complete(const Scene& scene, const matrix::Matrix& matrix) {
   throw std::invalid_argument("radiosity::solve needs the factors between all patches, with back and open");
 }
 
-Factors factors_of(const ViewFactorMatrix& all) {
+Factors factors_of(const matrix::Factors& all) {
   Factors factors;
   for (std::size_t i = 0; i < all.from.size(); ++i) {
     for (std::size_t j = 0; j < all.to.size(); ++j) {
@@ -179,15 +179,18 @@ Solution solve(const Scene& scene, const matrix::Matrix& matrix) {
   return solution;
 }
 
-matrix::Options matrix_options(const ViewFactorOptions& factors, int threads) {
+matrix::Options matrix_options(const Options& options) {
   constexpr std::size_t kBudgetOfBalance = 2000;
-  return {.factors = factors, .backs = true, .open = true, .budget_beside = kBudgetOfBalance, .threads = threads};
+  return {.factors = options.factors,
+          .backs = true,
+          .open = true,
+          .budget_beside = kBudgetOfBalance,
+          .threads = options.threads};
 }
 
 Solution solve(const Scene& scene, const Options& options, const Hooks& hooks) {
   const std::vector<Selection> patches = patches_of(scene);
-  return solve(scene,
-               matrix::compute(scene, patches, patches, matrix_options(options.factors, options.threads), hooks));
+  return solve(scene, matrix::compute(scene, patches, patches, matrix_options(options), hooks));
 }
 
 std::string_view claim_text(const Solution& solution, const Channel& channel) {

@@ -36,7 +36,7 @@ WidthCurve width_curve(const std::string& name, const Scene& scene, const char* 
     const ViewFactorOptions options{.accuracy = accuracy, .sample_crowds = false, .certify = certify};
     ViewFactor f;
     const double seconds = median_seconds([&] {
-      f = view_factor_matrix(scene, {&i, 1}, {&j, 1}, options, 1, hooks).entries.front();
+      f = matrix::compute(scene, {&i, 1}, {&j, 1}, {.factors = options, .threads = 1}, hooks).factors.entries.front();
     });
     curve.places.push_back({accuracy, f.upper - f.lower, seconds, f.cells});
   }

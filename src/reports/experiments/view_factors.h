@@ -34,7 +34,7 @@ struct WidthCurve {
 struct ViewFactorStudy {
   std::vector<WidthCurve> curves;
   std::vector<std::string> patches;  // of the room
-  ViewFactorMatrix matrix;
+  matrix::Factors matrix;
   std::vector<matrix::Sum> sums;  // of its rows: 1, since the room is closed
 };
 

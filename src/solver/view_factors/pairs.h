@@ -13,7 +13,7 @@ namespace exactff::view_factors {
 
 class Pairs {
  public:
-  // Throws what view_factor_matrix throws. Keeps a reference to the scene.
+  // Throws what view_factor throws. Keeps a reference to the scene.
   Pairs(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
         const ViewFactorOptions& options);
   ~Pairs();

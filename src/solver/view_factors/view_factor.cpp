@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "exactff/view_factors.h"
-#include "files/parallel.h"
 #include "kernel/float_environment.h"
+#include "kernel/poll.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "view_factors/disc_space.h"
@@ -388,20 +388,11 @@ std::string_view to_string(Claim claim) {
 
 ViewFactor view_factor(const Scene& scene, const Selection& from, const Selection& to,
                        const ViewFactorOptions& options) {
-  return view_factor_matrix(scene, {&from, 1}, {&to, 1}, options, 1).entries.front();
-}
-
-ViewFactorMatrix view_factor_matrix(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
-                                    const ViewFactorOptions& options, int threads, const Hooks& hooks) {
-  using namespace view_factors;
   const kernel::StandardArithmetic arithmetic;
-  if (threads <= 0) threads = files::usable_threads();
-  const Pairs pairs(scene, from, to, options);
-  ViewFactorMatrix result{{from.begin(), from.end()}, {to.begin(), to.end()}, {}};
-  result.entries.resize(from.size() * to.size());
-  files::parallel_for(pairs.count(), threads, "view factors", hooks, [&](std::size_t pair) {
-    pairs.compute(pair, [&](std::size_t entry, const ViewFactor& f) { result.entries[entry] = f; });
-  });
+  const view_factors::Pairs pair(scene, {&from, 1}, {&to, 1}, options);
+  kernel::poll();
+  ViewFactor result;
+  pair.compute(0, [&](std::size_t, const ViewFactor& f) { result = f; });
   return result;
 }
 

@@ -110,8 +110,10 @@ TEST(CertifiedFactor, BehindAPlateHoldsTheKnownValue) {
 // Every row adds up to 1, and an estimate that is much better than the accuracy lies in every interval.
 void expect_closed_room(const Scene& scene, double accuracy) {
   const std::vector<Selection> all = all_patches(scene);
-  const ViewFactorMatrix proved = view_factor_matrix(scene, all, all, {.accuracy = accuracy, .certify = true});
-  const ViewFactorMatrix estimated = view_factor_matrix(scene, all, all, {.accuracy = 1e-3 * accuracy});
+  const matrix::Factors proved =
+      matrix::compute(scene, all, all, {.factors = {.accuracy = accuracy, .certify = true}}).factors;
+  const matrix::Factors estimated =
+      matrix::compute(scene, all, all, {.factors = {.accuracy = 1e-3 * accuracy}}).factors;
   for (std::size_t i = 0; i < all.size(); ++i) {
     double lower = 0.0, upper = 0.0;
     for (std::size_t j = 0; j < all.size(); ++j) {
@@ -179,8 +181,8 @@ TEST(CertifiedFactor, IsTheSameForAnyUnitOfLengthAndAnyNumberOfThreads) {
   const Scene scene = scaled(1.0);
   const std::vector<Selection> all = all_patches(scene);
   const ViewFactorOptions options{.certify = true};
-  const ViewFactorMatrix a = view_factor_matrix(scene, all, all, options, 1);
-  const ViewFactorMatrix b = view_factor_matrix(scene, all, all, options, 3);
+  const matrix::Factors a = matrix::compute(scene, all, all, {.factors = options, .threads = 1}).factors;
+  const matrix::Factors b = matrix::compute(scene, all, all, {.factors = options, .threads = 3}).factors;
   for (std::size_t e = 0; e < a.entries.size(); ++e) EXPECT_EQ(a.entries[e].lower, b.entries[e].lower);
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "exactff/exact.h"
+#include "exactff/matrix.h"
 #include "exactff/receiver.h"
 #include "exactff/scene_files.h"
 #include "exactff/view_factors.h"
@@ -161,14 +162,14 @@ TEST(ViewFactor, WhereThreeEdgesMeetIsBounded) {
   }
 }
 
-ViewFactorMatrix matrix_of(const std::string& file, double accuracy) {
+matrix::Factors matrix_of(const std::string& file, double accuracy) {
   const Scene scene = read_scene(EXACTFF_DATA_DIR "/scenes/formats/" + file);
   std::vector<Selection> all;
   for (std::size_t i = 0; i < scene.patches().size(); ++i) all.push_back({PatchId(i), {}, scene.id()});
-  return view_factor_matrix(scene, all, all, {.accuracy = accuracy});
+  return matrix::compute(scene, all, all, {.factors = {.accuracy = accuracy}}).factors;
 }
 
-void expect_rows_to_hold_one(const ViewFactorMatrix& matrix, double accuracy) {
+void expect_rows_to_hold_one(const matrix::Factors& matrix, double accuracy) {
   for (std::size_t i = 0; i < matrix.from.size(); ++i) {
     double lower = 0.0, upper = 0.0;
     for (std::size_t j = 0; j < matrix.to.size(); ++j) {
@@ -182,7 +183,7 @@ void expect_rows_to_hold_one(const ViewFactorMatrix& matrix, double accuracy) {
 }
 
 TEST(ViewFactor, OfTheLShapedRoomIsTheKnownOneAndRowsAddUpToOne) {
-  const ViewFactorMatrix matrix = matrix_of("test4.vs3", 1e-8);
+  const matrix::Factors matrix = matrix_of("test4.vs3", 1e-8);
   EXPECT_LE(matrix.at(0, 5).lower, 0.1823559036685958);
   EXPECT_GE(matrix.at(0, 5).upper, 0.1823559036685958);
   expect_rows_to_hold_one(matrix, 1e-8);
@@ -198,8 +199,8 @@ TEST(ViewFactor, RowsOfOtherRoomsOfView3DAddUpToOne) {
 TEST(ViewFactor, OfAMatrixIsThatOfItsPair) {
   const Scene scene = generate::build(plates_with_plate(1.0, 0.5, 0.75));
   const std::vector<Selection> all{named(scene, "below"), named(scene, "above"), named(scene, "plate")};
-  const ViewFactorMatrix one = view_factor_matrix(scene, all, all, {}, 1),
-                         four = view_factor_matrix(scene, all, all, {}, 4);
+  const matrix::Factors one = matrix::compute(scene, all, all, {.threads = 1}).factors,
+                        four = matrix::compute(scene, all, all, {.threads = 4}).factors;
   for (std::size_t e = 0; e < one.entries.size(); ++e) {
     EXPECT_EQ(one.entries[e].value, four.entries[e].value);
     EXPECT_EQ(one.entries[e].lower, four.entries[e].lower);
@@ -276,7 +277,9 @@ TEST(ViewFactor, OfACrowdIsStatistical) {
   const Scene built = generate::build(plates_with_plate(1.0, 0.5, 0.75));
   const std::vector<Selection> below{named(built, "below")}, above{named(built, "above")};
   const auto matrix = [&](double accuracy, std::size_t budget, int threads) {
-    return view_factor_matrix(built, below, above, {.accuracy = accuracy, .budget = budget}, threads).entries.front();
+    return matrix::compute(built, below, above,
+                           {.factors = {.accuracy = accuracy, .budget = budget}, .threads = threads})
+        .factors.entries.front();
   };
   const ViewFactor f = matrix(1e-9, 1, 1);
   EXPECT_EQ(f.claim, Claim::kStatistical);
