@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -23,6 +24,11 @@ enum class Variant {
   kMended,   // with a horizon clip, a sound shaft cull and double precision
   kLiteral,  // as printed: drops perpendicular pairs, no horizon clip, Eq. (4) by acos in float
 };
+
+[[nodiscard]] std::string_view to_string(SamplePattern pattern);
+[[nodiscard]] std::string_view to_string(Variant variant);
+[[nodiscard]] std::optional<SamplePattern> pattern_named(std::string_view name);
+[[nodiscard]] std::optional<Variant> variant_named(std::string_view name);
 
 struct AdaptiveOptions {
   double eps_b = 1e-3;  // a radiosity: leaves with F <= eps_F are not split, eps_F = eps_B / max(rho_r B_s)

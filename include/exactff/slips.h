@@ -23,7 +23,7 @@ enum class Kind {
   kOppositeFaces,     // two faces have the same corners and opposite fronts
   kScale,             // coordinates suggest a wrong unit
 };
-[[nodiscard]] std::string_view name_of(Kind kind);  // "unseen-front"
+[[nodiscard]] std::string_view to_string(Kind kind);  // "unseen-front"
 
 struct Finding {
   Kind kind{};

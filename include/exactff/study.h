@@ -45,11 +45,6 @@ inline constexpr std::size_t kFullProductLimit = 40;
 enum class Parameter { kEpsB, kEpsA, kRays, kSeed, kPattern, kVariant };
 inline constexpr std::size_t kParameterCount = 6;
 
-[[nodiscard]] std::string_view name_of(SamplePattern pattern);
-[[nodiscard]] std::string_view name_of(Variant variant);
-[[nodiscard]] std::optional<SamplePattern> pattern_named(std::string_view name);
-[[nodiscard]] std::optional<Variant> variant_named(std::string_view name);
-
 // A method with increasing effort. Its rungs differ in one setting.
 struct Ladder {
   std::string name;                    // "area sampling, stratified"
@@ -90,7 +85,7 @@ inline constexpr double kNotTimed = std::numeric_limits<double>::quiet_NaN();
 
 // How much of the source a receiver sees, decided exactly.
 enum class Sight { kNothing, kHidden, kPartly, kVisible };  // kNothing: behind it or below the horizon
-[[nodiscard]] std::string_view name_of(Sight sight);
+[[nodiscard]] std::string_view to_string(Sight sight);
 
 // The exact result for one receiver and one source.
 struct ExactTerm {

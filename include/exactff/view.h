@@ -163,7 +163,7 @@ enum class Quantity {
   kIrradiance,  // sum of B_s F_s: what arrives, whatever the face reflects or emits
   kFormFactor,  // sum of F_s, in every channel
 };
-[[nodiscard]] std::string_view name_of(Quantity quantity);  // "radiance", "form-factor"
+[[nodiscard]] std::string_view to_string(Quantity quantity);  // "radiance", "form-factor"
 [[nodiscard]] std::optional<Quantity> quantity_named(std::string_view name);
 
 enum class KeMeans { kRadiosity, kRadiance };  // kRadiance: B_s is pi Ke, and a face emits pi Ke

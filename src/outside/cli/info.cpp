@@ -193,7 +193,7 @@ ordered_json faces_to_json(const Scene& scene) {
 }
 
 ordered_json to_json(const slips::Finding& finding, const Scene& scene) {
-  ordered_json json = {{"kind", slips::name_of(finding.kind)},
+  ordered_json json = {{"kind", to_string(finding.kind)},
                        {"message", finding.words.message()},
                        {"objects", ordered_json::array()},
                        {"flag", finding.flag}};

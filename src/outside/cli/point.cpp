@@ -182,7 +182,7 @@ void add_adaptive_flags(CLI::App& app, PointArguments& args) {
       ->type_name("NAME")
       ->capture_default_str()
       ->check([](const std::string& name) {
-        return study::pattern_named(name)
+        return pattern_named(name)
                    ? ""
                    : "there is no pattern " + name + "; choose jittered, centre, regular or low-discrepancy";
       });
@@ -191,7 +191,7 @@ void add_adaptive_flags(CLI::App& app, PointArguments& args) {
       ->type_name("NAME")
       ->capture_default_str()
       ->check([](const std::string& name) {
-        return study::variant_named(name) ? "" : "there is no variant " + name + "; choose mended or literal";
+        return variant_named(name) ? "" : "there is no variant " + name + "; choose mended or literal";
       });
 }
 

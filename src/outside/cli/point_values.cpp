@@ -57,8 +57,8 @@ void add_shares(const Scene& scene, const Receiver& receiver, const ExactSource&
 
 AdaptiveOptions adaptive_options(const PointArguments& args) {
   AdaptiveOptions options = args.adaptive_options;
-  options.pattern = *study::pattern_named(args.pattern);
-  options.variant = *study::variant_named(args.variant);
+  options.pattern = *pattern_named(args.pattern);
+  options.variant = *variant_named(args.variant);
   options.record_leaves = !args.svg.empty();  // for the drawing only: there can be millions
   options.most_recorded_leaves = kMostDrawnLeaves;
   options.most_leaves = kMostPointLeaves;

@@ -59,13 +59,13 @@ int to_rays(const std::string& text, const std::string& flag) {
 }
 
 SamplePattern to_pattern(const std::string& text, const std::string& flag) {
-  if (const auto pattern = study::pattern_named(text)) return *pattern;
+  if (const auto pattern = pattern_named(text)) return *pattern;
   text::refuse(flag + ": there is no pattern " + text::in_quotes(text), "the pattern says where rays end",
                "use centre, regular, jittered or low-discrepancy");
 }
 
 Variant to_variant(const std::string& text, const std::string& flag) {
-  if (const auto variant = study::variant_named(text)) return *variant;
+  if (const auto variant = variant_named(text)) return *variant;
   text::refuse(flag + ": there is no variant " + text::in_quotes(text), "the variant says which algorithm is run",
                "use mended or literal");
 }

@@ -153,7 +153,7 @@ py::list findings_of(const SharedScene& self) {
   const auto findings = interrupt.run([&] { return slips::diagnose(self.scene()); });
   py::list rows;
   for (const slips::Finding& finding : findings) {
-    rows.append(py::make_tuple(std::string(slips::name_of(finding.kind)), shown(finding.words.message()),
+    rows.append(py::make_tuple(std::string(to_string(finding.kind)), shown(finding.words.message()),
                                names_of(self.scene(), finding.objects), finding.flag));
   }
   return rows;

@@ -136,7 +136,7 @@ Metadata Job::metadata() const {
       {"scene", text::printable(request_.scene_name)},
       {"scene hash", scene.hash()},
       {"camera", flags_of(request_.view)},
-      {"quantity", std::string(name_of(request_.quantity)) + ", in " + unit_of(request_.quantity, request_.ke)},
+      {"quantity", std::string(to_string(request_.quantity)) + ", in " + unit_of(request_.quantity, request_.ke)},
       {"Ke", request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity"},
       {"sides", request_.sides == Sides::kBoth ? "both" : "front"},
       {"sources", names_of_sources()},

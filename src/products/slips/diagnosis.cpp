@@ -11,7 +11,7 @@
 
 namespace exactff::slips {
 
-std::string_view name_of(Kind kind) {
+std::string_view to_string(Kind kind) {
   constexpr std::array<std::string_view, 7> kNames = {
       "contradicting-normals", "inward-surface", "unseen-front", "emitter-looks-away",
       "doubled-faces",         "opposite-faces", "scale"};

@@ -112,7 +112,7 @@ class FigureMaker {
     literal.variant = base().variant == Variant::kMended ? Variant::kLiteral : Variant::kMended;
     if (const auto other = study::find_setting(study_.settings, literal)) {
       const auto other_line = study::line_through(study_.settings, *other, Parameter::kEpsB);
-      series.push_back({"RMS, " + std::string(name_of(literal.variant)),
+      series.push_back({"RMS, " + std::string(to_string(literal.variant)),
                         points(other_line, Parameter::kEpsB, &ErrorStatistics::rms), page::kOverlay});
     }
     page::Points diagonal;
@@ -120,7 +120,7 @@ class FigureMaker {
     series.push_back({"error = ε_B", diagonal, 0});
     add({"eps-b", title,
          "The error that was reached against the tolerance that was set, with " + std::to_string(base().rays) + ' ' +
-             std::string(name_of(base().pattern)) +
+             std::string(to_string(base().pattern)) +
              " rays per undecided leaf. Above the dashed line the tolerance is broken. ε_B bounds the error of each "
              "leaf of the recursion, not of their sum, and a leaf whose rays all agree is not split at all.",
          page::line_plot({kEpsB, kError, true, true, {}}, series)});
@@ -202,7 +202,7 @@ class FigureMaker {
     const auto line = sweep(study_.base, Parameter::kRays, title);
     if (!line) return;
     add({"rays", title,
-         "At ε_B = " + text::rounded(base().eps_b) + ", " + std::string(name_of(base().pattern)) +
+         "At ε_B = " + text::rounded(base().eps_b) + ", " + std::string(to_string(base().pattern)) +
              " rays per undecided leaf. " + slope_sentence(*line),
          page::line_plot({"rays per undecided leaf", kError, true, true, {}}, error_series(*line, Parameter::kRays))});
   }

@@ -88,7 +88,7 @@ void write_fields(const Study& study, std::ostream& out) {
   for (std::size_t i = 0; i < study.exact.size(); ++i) {
     const ExactRow& exact = study.exact[i];
     text::CsvRow row(out);
-    row << study.request.receivers[i].id << study.request.receivers[i].point << name_of(exact.sight)
+    row << study.request.receivers[i].id << study.request.receivers[i].point << to_string(exact.sight)
         << exact.visible_fraction << exact.radiosity.largest();
     row << (study.edge_distance.empty() ? std::nullopt : std::optional(study.edge_distance[i]));
     for (const MethodField& field : study.methods.fields) row << field.radiosity_errors[i];

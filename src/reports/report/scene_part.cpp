@@ -228,7 +228,7 @@ class ScenePart {
     const AdaptiveOptions& base = study().settings[study().base];
     return base.pattern == SamplePattern::kCentre
                ? "one ray to the centre of each undecided leaf"
-               : std::to_string(base.rays) + ' ' + std::string(name_of(base.pattern)) + " rays per undecided leaf";
+               : std::to_string(base.rays) + ' ' + std::string(to_string(base.pattern)) + " rays per undecided leaf";
   }
 
   [[nodiscard]] std::string methods_table() const {
@@ -297,9 +297,9 @@ class ScenePart {
     const Summary& summary = study().summaries[k];
     table.row(k == study().base ? "base" : "");
     table.cells({std::to_string(k + 1), text::rounded(s.eps_b), std::to_string(s.rays)});
-    table.cell(std::string(name_of(s.pattern)), kText);
+    table.cell(std::string(to_string(s.pattern)), kText);
     table.cells({text::rounded(s.eps_a), std::to_string(s.seed)});
-    table.cell(std::string(name_of(s.variant)), kText);
+    table.cell(std::string(to_string(s.variant)), kText);
     const ErrorStatistics& e = summary.radiosity;
     table.cells({signed_number(e.rms), signed_number(e.mean), signed_number(e.p99), signed_number(e.worst),
                  text::share(summary.violations, study().exact.size()), std::to_string(summary.leaves),

@@ -26,9 +26,9 @@ methods::Choice choice_of(const AdaptiveOptions& options) {
   choice.settings.set("eps_B", options.eps_b);
   choice.settings.set("eps_A", options.eps_a);
   choice.settings.set("rays", std::int64_t{options.rays});
-  choice.settings.set("pattern", std::string(name_of(options.pattern)));
+  choice.settings.set("pattern", std::string(to_string(options.pattern)));
   choice.settings.set("seed", static_cast<std::int64_t>(options.seed));
-  choice.settings.set("variant", std::string(name_of(options.variant)));
+  choice.settings.set("variant", std::string(to_string(options.variant)));
   return choice;
 }
 

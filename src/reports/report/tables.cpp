@@ -28,7 +28,7 @@ void write_names(std::ostream& out, std::string_view name, std::string names) {
 void write_head(const Study& study, std::ostream& out, std::string_view what) {
   const Sweeps& sweeps = study.request.sweeps;
   const auto number = [](double v) { return text::shortest(v); };
-  const auto name = [](auto v) { return name_of(v); };
+  const auto name = [](auto v) { return to_string(v); };
   out << "# " << text::program_version() << " compare: " << text::csv_comment(what) << '\n'
       << "# scene: " << text::csv_comment(study.request.scene_name) << ", hash " << study.request.scene->hash() << '\n';
   write_names(out, "flipped", flipped_names(study));
@@ -65,7 +65,7 @@ constexpr std::string_view kSettingColumns = "setting,variant,pattern,seed,eps_b
 // Setting numbers start at 1.
 void put_setting(text::CsvRow& row, const Study& study, std::size_t k) {
   const AdaptiveOptions& s = study.settings[k];
-  row << std::uint64_t{k + 1} << name_of(s.variant) << name_of(s.pattern) << s.seed << s.eps_b << s.eps_a << s.rays;
+  row << std::uint64_t{k + 1} << to_string(s.variant) << to_string(s.pattern) << s.seed << s.eps_b << s.eps_a << s.rays;
 }
 
 void write_exact(const Study& study, std::ostream& out) {
@@ -81,7 +81,7 @@ void write_exact(const Study& study, std::ostream& out) {
       const Rgb b = scene.source_radiosity(study.request.sources[s]);
       text::CsvRow(out) << receiver.id << on_name(study, receiver) << receiver.point << receiver.normal
                         << scene.name_of(study.request.sources[s]) << term.value << term.lower << term.upper
-                        << to_string(term.status) << name_of(term.sight) << term.visible_fraction
+                        << to_string(term.status) << to_string(term.sight) << term.visible_fraction
                         << rho.r * b.r * term.value << rho.g * b.g * term.value << rho.b * b.b * term.value;
     }
   }

@@ -285,8 +285,8 @@ std::vector<std::string> range_sentences(const Study& study) {
   std::vector<std::string> sentences;
   for (const Variant variant : {Variant::kMended, Variant::kLiteral}) {
     const auto place = static_cast<std::size_t>(variant == Variant::kLiteral);
-    add_range_sentences("the ray-sampled algorithm (" + std::string(name_of(variant)) + " variant)", of_variant[place],
-                        sentences);
+    add_range_sentences("the ray-sampled algorithm (" + std::string(to_string(variant)) + " variant)",
+                        of_variant[place], sentences);
   }
   for (std::size_t l = 0; l < of_ladder.size(); ++l) {
     add_range_sentences(study.methods.ladders[l].name, of_ladder[l], sentences);

@@ -35,8 +35,8 @@ std::vector<vtk::SourceValues> exact_values(const Study& study) {
 // In the words of the method `adaptive`; "sweep" keeps the name apart from the same setting of that method.
 std::string setting_words(const AdaptiveOptions& setting) {
   return "sweep:eps_B=" + text::shortest(setting.eps_b) + ",eps_A=" + text::shortest(setting.eps_a) +
-         ",rays=" + std::to_string(setting.rays) + ",pattern=" + std::string(study::name_of(setting.pattern)) +
-         ",variant=" + std::string(study::name_of(setting.variant)) + ",seed=" + std::to_string(setting.seed);
+         ",rays=" + std::to_string(setting.rays) + ",pattern=" + std::string(to_string(setting.pattern)) +
+         ",variant=" + std::string(to_string(setting.variant)) + ",seed=" + std::to_string(setting.seed);
 }
 
 void add_setting(std::vector<vtk::Field>& fields, const std::string& name, std::vector<double> values,

@@ -173,7 +173,7 @@ std::string rung_text(const Ladder& ladder, std::size_t rung) {
     if (settings.specs()[k].name != ladder.along) continue;
     const SettingValue& value = settings.values()[k];
     if (const double* number = std::get_if<double>(&value)) return text::rounded(*number);
-    return to_string(value);
+    return exactff::to_string(value);
   }
   return {};
 }

@@ -111,7 +111,7 @@ std::string settings_text(const Study& study) {
   for (const AdaptiveOptions& s : study.settings) {
     for (const double v : {s.eps_b, s.eps_a}) put(text::shortest(v));
     put(std::to_string(s.rays) + ' ' + std::to_string(s.seed));
-    put(std::string(name_of(s.pattern)) + ' ' + std::string(name_of(s.variant)));
+    put(std::string(to_string(s.pattern)) + ' ' + std::string(to_string(s.variant)));
   }
   return text;
 }

@@ -11,7 +11,6 @@
 #include "study/settings.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -206,22 +205,7 @@ AdaptiveOptions without(AdaptiveOptions setting, Parameter parameter) {
   return setting;
 }
 
-// In the order of the enumerators.
-constexpr std::array<std::string_view, 4> kPatternNames = {"centre", "regular", "jittered", "low-discrepancy"};
-constexpr std::array<std::string_view, 2> kVariantNames = {"mended", "literal"};
-
-template <class Enum>
-std::optional<Enum> named(std::span<const std::string_view> names, std::string_view name) {
-  const auto found = std::ranges::find(names, name);
-  return found == names.end() ? std::nullopt : std::optional(static_cast<Enum>(found - names.begin()));
-}
-
 }  // namespace
-
-std::string_view name_of(SamplePattern pattern) { return kPatternNames[static_cast<std::size_t>(pattern)]; }
-std::string_view name_of(Variant variant) { return kVariantNames[static_cast<std::size_t>(variant)]; }
-std::optional<SamplePattern> pattern_named(std::string_view name) { return named<SamplePattern>(kPatternNames, name); }
-std::optional<Variant> variant_named(std::string_view name) { return named<Variant>(kVariantNames, name); }
 
 void complete(Sweeps& sweeps, const Work& work) {
   const double unit = work.largest_rho_b > 0.0 ? work.largest_rho_b : 1.0;
@@ -303,9 +287,9 @@ std::string setting_name(const Study& study, std::size_t setting) {
   const AdaptiveOptions& s = study.settings[setting];
   const AdaptiveOptions& base = study.settings[study.base];
   std::string text = "ε_B = " + text::rounded(s.eps_b) + ", " + std::to_string(s.rays) + ' ' +
-                     std::string(name_of(s.pattern)) + (s.rays == 1 ? " ray" : " rays");
+                     std::string(to_string(s.pattern)) + (s.rays == 1 ? " ray" : " rays");
   if (s.eps_a != base.eps_a || s.eps_a != 0.0) text += ", ε_A = " + text::rounded(s.eps_a);
-  if (s.variant != base.variant) text += ", " + std::string(name_of(s.variant)) + " variant";
+  if (s.variant != base.variant) text += ", " + std::string(to_string(s.variant)) + " variant";
   if (s.seed != base.seed) text += ", seed " + std::to_string(s.seed);
   return text;
 }

@@ -43,7 +43,7 @@ bool needs_rays(const FormFactor& result) {
   });
 }
 
-std::string_view name_of(Sight sight) {
+std::string_view to_string(Sight sight) {
   constexpr std::array<std::string_view, 4> kNames = {"faces away", "hidden", "partly hidden", "visible"};
   return kNames[static_cast<std::size_t>(sight)];
 }

@@ -15,6 +15,7 @@
 #include <bit>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "adaptive/closed_form.h"
@@ -247,7 +248,22 @@ void check(const AdaptiveOptions& options, double largest_rho_b) {
   require(largest_rho_b >= 0.0, "rho B is negative or not a number", "give reflectance and radiosity of at least 0");
 }
 
+// In the order of the enumerators.
+constexpr std::array<std::string_view, 4> kPatternNames = {"centre", "regular", "jittered", "low-discrepancy"};
+constexpr std::array<std::string_view, 2> kVariantNames = {"mended", "literal"};
+
+template <class Enum>
+std::optional<Enum> named(std::span<const std::string_view> names, std::string_view name) {
+  const auto found = std::ranges::find(names, name);
+  return found == names.end() ? std::nullopt : std::optional(static_cast<Enum>(found - names.begin()));
+}
+
 }  // namespace
+
+std::string_view to_string(SamplePattern pattern) { return kPatternNames[static_cast<std::size_t>(pattern)]; }
+std::string_view to_string(Variant variant) { return kVariantNames[static_cast<std::size_t>(variant)]; }
+std::optional<SamplePattern> pattern_named(std::string_view name) { return named<SamplePattern>(kPatternNames, name); }
+std::optional<Variant> variant_named(std::string_view name) { return named<Variant>(kVariantNames, name); }
 
 std::string_view to_string(LeafReason reason) {
   constexpr std::array<std::string_view, kLeafReasonCount> kNames = {"shaft empty", "shaft cut", "V=1",      "V=0",

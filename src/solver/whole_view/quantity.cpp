@@ -2,7 +2,7 @@
 
 namespace exactff {
 
-std::string_view name_of(Quantity quantity) {
+std::string_view to_string(Quantity quantity) {
   switch (quantity) {
     case Quantity::kRadiance:
       return "radiance";
@@ -19,7 +19,7 @@ std::string_view name_of(Quantity quantity) {
 std::optional<Quantity> quantity_named(std::string_view name) {
   for (const Quantity quantity :
        {Quantity::kRadiance, Quantity::kRadiosity, Quantity::kIrradiance, Quantity::kFormFactor}) {
-    if (name_of(quantity) == name) return quantity;
+    if (to_string(quantity) == name) return quantity;
   }
   return std::nullopt;
 }

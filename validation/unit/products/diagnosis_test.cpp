@@ -21,7 +21,7 @@ Scene read(const std::string& text) {
 
 std::vector<std::string> kinds_of(const Scene& scene) {
   std::vector<std::string> kinds;
-  for (const Finding& finding : diagnose(scene)) kinds.emplace_back(name_of(finding.kind));
+  for (const Finding& finding : diagnose(scene)) kinds.emplace_back(to_string(finding.kind));
   return kinds;
 }
 
