@@ -30,6 +30,7 @@
 #include <vector>
 
 #include "exactff/exact.h"
+#include "exactff/jobs.h"
 #include "exactff/methods.h"
 #include "exactff/progress.h"
 #include "exactff/receiver.h"
@@ -125,10 +126,6 @@ struct Hit {
 [[nodiscard]] Receiver receiver_at(const Scene& scene, const Hit& hit);
 
 // ----------------------------------------------------------------------------------------------------------- picture
-
-using exactff::KeMeans;
-using exactff::name_of;
-using exactff::Quantity;
 
 enum class Sides { kFront, kBoth };  // kBoth: the back of a face is lit as its front, but emits nothing
 enum class Layers { kNone, kAll };

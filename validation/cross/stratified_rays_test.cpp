@@ -127,7 +127,7 @@ class Lamps {
 // Compares a dozen pixels. Of so many, none may be off by five standard errors.
 void compare(const Scene& scene, const render::Camera& camera) {
   const render::View view(camera, {24, 24});
-  const Picture picture = render::render({.scene = &scene, .view = view, .quantity = render::Quantity::kIrradiance});
+  const Picture picture = render::render({.scene = &scene, .view = view, .quantity = Quantity::kIrradiance});
   const Lamps lamps(scene);
   Random random(seed_of(3));
   int compared = 0, lit = 0;

@@ -152,7 +152,7 @@ render::Request request_of(const RenderArguments& args, const Scene& scene, std:
   request.sky = sources.sky;
   request.method = std::move(method);
   request.quantity = quantity_named(args.quantity).value_or(Quantity::kRadiance);
-  request.ke = args.ke == "radiance" ? render::KeMeans::kRadiance : render::KeMeans::kRadiosity;
+  request.ke = args.ke == "radiance" ? KeMeans::kRadiance : KeMeans::kRadiosity;
   request.sides = args.two_sided ? render::Sides::kBoth : render::Sides::kFront;
   request.spp = args.spp;
   request.bounds = args.bounds.empty() ? render::Bounds::kNone : render::Bounds::kAll;

@@ -44,7 +44,7 @@ UnitBox unit_box(const Box& bounds, std::size_t pieces) {
 }
 
 Problem refusal(const Scene& scene, FaceId face, std::string what) {
-  return {scene.data().file, scene.face(face).line, "face '" + scene.name_of(face) + "' " + std::move(what),
+  return {SceneInside::data(scene).file, scene.face(face).line, "face '" + scene.name_of(face) + "' " + std::move(what),
           "shadow rays work in single precision, so the sampled methods refuse this scene; the exact one does not",
           "leave out the sampled methods, or enlarge the detail or shrink the scene around it"};
 }

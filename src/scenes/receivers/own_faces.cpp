@@ -27,7 +27,7 @@ FaceId one_face(const Scene& scene, const std::string& name) {
 std::vector<FaceId> own_faces_named(const Scene& scene, std::string_view name) {
   const std::size_t plus = name.find('+', std::min(name.rfind(':'), name.size()));
   const auto first = text::numbered_name(name.substr(0, plus));
-  if (plus == std::string_view::npos || !first || scene.data().patch_by_name.contains(std::string(name))) {
+  if (plus == std::string_view::npos || !first || SceneInside::data(scene).patch_by_name.contains(std::string(name))) {
     return {one_face(scene, std::string(name))};
   }
   std::vector<FaceId> faces = {one_face(scene, first->patch + ':' + std::to_string(first->number))};
