@@ -5,9 +5,9 @@
 #include "exactff/models.h"
 #include "exactff/scene_files.h"
 #include "exactff/slips.h"
+#include "kernel/vec.h"
 #include "python/bindings.h"
 #include "python/interrupt.h"
-#include "scene/unit_vector.h"
 
 namespace exactff::python {
 
@@ -116,7 +116,7 @@ Numbers fronts_of(const SharedScene& self) {
   Numbers result({static_cast<py::ssize_t>(faces.size()), py::ssize_t{3}});
   double* out = result.mutable_data();
   for (const Face& face : faces) {
-    const Vec3 front = unit_vector(face.newell);
+    const Vec3 front = kernel::unit_by_inverse(face.newell);
     *out++ = front.x;
     *out++ = front.y;
     *out++ = front.z;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "exactff/check.h"
-#include "exactff/pixels.h"
+#include "exactff/exr.h"
 
 namespace exactff::check {
 

@@ -9,7 +9,7 @@
 namespace exactff::matrix {
 
 void write_vtk(const Scene& scene, const Matrix& matrix, const std::filesystem::path& file) {
-  const ViewFactorMatrix& all = matrix.factors;
+  const Factors& all = matrix.factors;
   EXACTFF_EXPECT(!all.from.empty());
   const auto field = [&](const char* name, double ViewFactor::*number) {
     return vtk::field_of_faces(scene, name, all.to, 1,

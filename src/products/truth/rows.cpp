@@ -112,7 +112,7 @@ std::string Rows::head() const {
            "nx,ny,nz\n";
   }
   if (request_.total) {
-    out << "# total: " << name_of(*request_.total) << ", in " << unit_of(*request_.total, request_.ke)
+    out << "# total: " << to_string(*request_.total) << ", in " << unit_of(*request_.total, request_.ke)
         << ", of all sources together, correctly rounded; Ke is a "
         << (request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity") << '\n';
   }

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "exactff/scene.h"
-#include "exactff/vtk.h"
+#include "vtk/vtk.h"
 
 namespace exactff::vtk {
 

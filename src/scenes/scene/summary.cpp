@@ -21,10 +21,10 @@ std::vector<MaterialId> materials_of(const Scene& scene, const Patch& patch) {
 std::optional<Vec3> common_front(const Scene& scene, const std::vector<FaceId>& faces) {
   constexpr double kSameWay = 0.999;  // the cosine of about 2.6 degrees
   Vec3 mean;
-  for (const FaceId face : faces) mean = kernel::sum(mean, unit_vector(scene.face(face).newell));
-  mean = unit_vector(mean);
+  for (const FaceId face : faces) mean = kernel::sum(mean, kernel::unit_by_inverse(scene.face(face).newell));
+  mean = kernel::unit_by_inverse(mean);
   for (const FaceId face : faces) {
-    const Vec3 n = unit_vector(scene.face(face).newell);
+    const Vec3 n = kernel::unit_by_inverse(scene.face(face).newell);
     if (kernel::dot(n, mean) < kSameWay) return std::nullopt;
   }
   return faces.empty() ? std::nullopt : std::optional(mean);
@@ -34,8 +34,6 @@ std::optional<Vec3> common_front(const Scene& scene, const std::vector<FaceId>& 
 double sum_of_areas(double a, double b) { return std::min(a + b, std::numeric_limits<double>::max()); }
 
 }  // namespace
-
-Vec3 unit_vector(const Vec3& v) { return kernel::unit_by_inverse(v); }
 
 PatchSummary summarise(const Scene& scene, PatchId id) {
   const Patch& patch = scene.patch(id);
