@@ -27,13 +27,13 @@ double by_hypot(const Vec3& a) { return std::hypot(a.x, a.y, a.z); }
 double by_squares(const Vec3& a) { return std::sqrt((a.x * a.x + a.y * a.y) + a.z * a.z); }
 
 template <class Length>
-Vec3 divided(const Vec3& a, const Length& length) {
+Vec3 with_division(const Vec3& a, const Length& length) {
   const Vec3 b = safe(a);
   const double size = length(b);
   return {b.x / size, b.y / size, b.z / size};
 }
 template <class Length>
-Vec3 multiplied(const Vec3& a, const Length& length) {
+Vec3 with_inverse(const Vec3& a, const Length& length) {
   const Vec3 b = safe(a);
   return scaled(b, 1.0 / length(b));
 }
@@ -52,10 +52,10 @@ Vec3 near_one_size(Random& random) {
 }
 
 void for_each_vector(const std::function<void(const Vec3&)>& visit) {
-  constexpr double kLargest = std::numeric_limits<double>::max();
-  constexpr double kLeast = std::numeric_limits<double>::min(), kDenormal = std::numeric_limits<double>::denorm_min();
-  const std::vector<double> extremes = {0.0,     -0.0,   1.0,        -1.0,          0x1p-538, 0x1p511,
-                                        0x1p512, kLeast, -kDenormal, 3 * kDenormal, kLargest, -kLargest};
+  using Limits = std::numeric_limits<double>;
+  const std::vector<double> extremes = {
+      0.0,     -0.0,    1.0,           -1.0,          0x1p-538, Limits::min(), -Limits::denorm_min(),
+      0x1p511, 0x1p512, Limits::max(), -Limits::max()};
   for (const double x : extremes) {
     for (const double y : extremes) {
       for (const double z : extremes) visit({x, y, z});
@@ -78,10 +78,10 @@ void expect_same_bits(const Vec3& a, const Vec3& b, const Vec3& of) {
 TEST(UnitVectors, HypotAndTheRootOfTheSumOfSquaresGiveTheSameBits) {
   for_each_vector([](const Vec3& v) {
     if (max_norm(v) == 0.0) return;
-    expect_same_bits(unit(v), divided(v, by_hypot), v);
-    expect_same_bits(unit(v), divided(v, by_squares), v);
-    expect_same_bits(unit_by_inverse(v), multiplied(v, by_hypot), v);
-    expect_same_bits(unit_by_inverse(v), multiplied(v, by_squares), v);
+    expect_same_bits(unit(v), with_division(v, by_hypot), v);
+    expect_same_bits(unit(v), with_division(v, by_squares), v);
+    expect_same_bits(unit_by_inverse(v), with_inverse(v, by_hypot), v);
+    expect_same_bits(unit_by_inverse(v), with_inverse(v, by_squares), v);
   });
 }
 
@@ -103,8 +103,8 @@ TEST(UnitVectors, TheThreeWaysDifferInTheLastBits) {
     if (!(max_norm(v) > 0x1p-1000 && max_norm(v) < 0x1p1000)) return;
     if (unit(v) != unit_by_inverse(v)) ++by_inverse;
     if (unit_by_inverse(v) != unit_unscaled(v)) ++unscaled;
-    ASSERT_LT(distance(unit(v), unit_by_inverse(v)), 0x1p-51);
-    ASSERT_LT(distance(unit(v), unit_unscaled(v)), 0x1p-51);
+    ASSERT_LT(kernel::distance(unit(v), unit_by_inverse(v)), 0x1p-51);
+    ASSERT_LT(kernel::distance(unit(v), unit_unscaled(v)), 0x1p-51);
   });
   EXPECT_GT(by_inverse, 1000) << "else one way would do";
   EXPECT_GT(unscaled, 1000) << "else one way would do";
