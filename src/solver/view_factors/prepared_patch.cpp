@@ -1,0 +1,14 @@
+#include "view_factors/prepared_patch.h"
+
+#include <tuple>
+
+#include "view_factors/patch_parts.h"
+
+namespace exactff::view_factors {
+
+PreparedPatch::PreparedPatch(const ExactScene& scene, const Selection& patch)
+    : selection(patch), parts(parts_of(scene, patch)), planar(is_planar(scene.scene, patch)) {
+  std::tie(unit_area, area) = areas_of(scene, patch, parts);
+}
+
+}  // namespace exactff::view_factors

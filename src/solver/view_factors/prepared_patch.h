@@ -1,0 +1,24 @@
+// A patch of a matrix: what all of its factors share, prepared once.
+#pragma once
+
+#include <vector>
+
+#include "view_factors/exact_scene.h"
+#include "view_factors/seen_parts.h"
+#include "view_factors/sight.h"
+
+namespace exactff::view_factors {
+
+struct PreparedPatch {
+  // Throws InputError for a patch without area.
+  PreparedPatch(const ExactScene& scene, const Selection& patch);
+
+  Selection selection;
+  std::vector<Part> parts;
+  double area = 0.0;       // in the scene's unit of length, squared
+  double unit_area = 0.0;  // in squares of the unit of Point::at
+  bool planar = true;      // all of its faces
+  SeenParts::OfPatch seen;
+};
+
+}  // namespace exactff::view_factors

@@ -1,0 +1,19 @@
+// One view factor between two patches that are prepared.
+#pragma once
+
+#include "exactff/view_factors.h"
+#include "view_factors/prepared_patch.h"
+
+namespace exactff::view_factors {
+
+class PairMemory;
+
+// F_ij, `from` being patch i and `to` patch j.
+[[nodiscard]] ViewFactor factor_between(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from,
+                                        const PreparedPatch& to, const ViewFactorOptions& options, PairMemory& memory);
+
+// F_ji, from f = F_ij. Requires A_i F_ij = A_j F_ji: planar patches.
+[[nodiscard]] ViewFactor transpose(const ExactScene& scene, const ViewFactor& f, const PreparedPatch& from,
+                                   const PreparedPatch& to);
+
+}  // namespace exactff::view_factors
