@@ -280,6 +280,7 @@ bool VisibleShare::all_meet_plane(std::span<const Vec3> directions) const {
 }
 
 double VisibleShare::of_exactly(std::span<const Vec3> directions) {
+  EXACTFF_EXPECT(directions.size() == 3 || directions.size() == 4);
   if (all_) return 1.0;
   if (pieces_.empty() || !all_meet_plane(directions)) return 0.0;
   const SmallPolygon<Rational> window = exact_window(directions);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 
+#include "kernel/expect.h"
 #include "visibility/plane_frame.h"
 
 namespace exactff::exact {
@@ -13,15 +14,18 @@ namespace exactff::exact {
 template <class Number>
 using Point = visibility::PlanePoint<Number>;
 
-// A polygon of at most kMost corners. A triangle or quadrilateral clipped by three lines has at most seven corners;
-// rounding may repeat some.
+// A polygon of at most kMost corners: those that three cuts (left_part) can leave of four. Without roundings there are
+// at most seven. With them, corners on one line may seem to lie on both sides of it in turn. If k of n corners are cut
+// off, n - k corners are left, and two crossings for each of min(k, n - k) corners at most. This is at most 3 n / 2, so
+// 4 corners become 6, 9 and 13.
 template <class Number>
 class SmallPolygon {
  public:
-  static constexpr std::size_t kMost = 12;
+  static constexpr std::size_t kMost = 13;
 
   void push_back(const Point<Number>& p) {
-    if (size_ < kMost) corners_[size_++] = p;
+    EXACTFF_EXPECT(size_ < kMost);
+    corners_[size_++] = p;
   }
   void clear() { size_ = 0; }
   void reverse() { std::reverse(corners_.begin(), corners_.begin() + static_cast<std::ptrdiff_t>(size_)); }
@@ -78,6 +82,7 @@ SmallPolygon<Number> left_part(const SmallPolygon<Number>& polygon, const Point<
 
 // Twice the area of triangle(c, p, q) within the window, negative if the triangle is clockwise. The sum over the
 // boundary pieces pq of a region, each with the region to its left, is twice the area of the region within the window.
+// Requires a window of at most four corners.
 template <class Number>
 Number wedge(const SmallPolygon<Number>& window, const Point<Number>& c, const Point<Number>& p,
              const Point<Number>& q) {
