@@ -14,7 +14,7 @@ using kernel::cross;
 using kernel::dot;
 
 constexpr double kInfinity = HUGE_VAL;
-constexpr double kRoundings = 0x1p-34;  // of a polar form of products of up to six coordinates (crossing_order.h)
+constexpr double kRoundings = 0x1p-34;  // of a coefficient of a polar form, eight times
 constexpr double kMargin = 1.0 + 0x1p-20;
 
 class Bounds {
@@ -22,32 +22,14 @@ class Bounds {
   Bounds(const Points& points, const Cell& cell, const Vec3& centre)
       : points_(points), corners_(rounded(cell.corners)), centre_(centre) {}
 
-  // The lengths of the triangle's sides, together.
-  [[nodiscard]] double perimeter(const CrossingTriple& t) const {
+  [[nodiscard]] double largest_order(const CrossingTriple& t) const {
     const auto f = [&](const Vec3& x) { return dot(normal(t[0], x), cross(normal(t[1], x), normal(t[2], x))); };
     double largest = 0.0;
     for_each_coefficient(f, corners_, [&](double b) {
       largest = std::max(largest, std::abs(b));
       return true;
     });
-    largest += kRoundings;
-    std::array<double, 3> least{};  // of |N_i x N_(i + 1)|
-    for (std::size_t i = 0; i < 3; ++i) least[i] = least_cross(t[i], t[(i + 1) % 3]);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double denominator = least[i] * least[(i + 2) % 3];
-      if (!(denominator > 0.0)) return kInfinity;
-      const double sine = largest_normal(t[i]) * largest / denominator;
-      if (!(sine < 0.5)) return kInfinity;
-      sum += std::asin(sine);
-    }
-    return sum * kMargin;
-  }
-
- private:
-  [[nodiscard]] Vec3 normal(LineId line, const Vec3& x) const {
-    const Line& ends = points_.line(line);
-    return cross(kernel::difference(points_[ends.a].at, x), kernel::difference(points_[ends.b].at, x));
+    return largest + kRoundings;
   }
 
   [[nodiscard]] double largest_normal(LineId line) const {
@@ -70,10 +52,29 @@ class Bounds {
     return least / kMargin - kRoundings;
   }
 
+ private:
+  [[nodiscard]] Vec3 normal(LineId line, const Vec3& x) const {
+    const Line& ends = points_.line(line);
+    return cross(kernel::difference(points_[ends.a].at, x), kernel::difference(points_[ends.b].at, x));
+  }
+
   const Points& points_;
   std::vector<Vec3> corners_;
   Vec3 centre_;
 };
+
+// The lengths of the triangle's sides, together.
+double perimeter(const TriangleBounds& bounds) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double denominator = bounds.cross[i] * bounds.cross[(i + 2) % 3];
+    if (!(denominator > 0.0)) return kInfinity;
+    const double sine = bounds.normal[i] * bounds.order / denominator;
+    if (!(sine < 0.5)) return kInfinity;
+    sum += std::asin(sine);
+  }
+  return sum * kMargin;
+}
 
 bool share_a_line(const std::vector<CrossingTriple>& triples) {
   std::vector<LineId> lines;
@@ -84,15 +85,26 @@ bool share_a_line(const std::vector<CrossingTriple>& triples) {
 
 }  // namespace
 
+TriangleBounds triangle_bounds(const Points& points, const Cell& cell, const Vec3& centre,
+                               const CrossingTriple& triple) {
+  const Bounds bounds(points, cell, centre);
+  TriangleBounds result;
+  result.order = bounds.largest_order(triple);
+  for (std::size_t i = 0; i < 3; ++i) {
+    result.normal[i] = bounds.largest_normal(triple[i]);
+    result.cross[i] = bounds.least_cross(triple[i], triple[(i + 1) % 3]);
+  }
+  return result;
+}
+
 double event_bound(const Points& points, const Cell& cell, const Vec3& centre, std::vector<CrossingTriple> triples) {
   std::ranges::sort(triples);
   triples.erase(std::unique(triples.begin(), triples.end()), triples.end());
-  const Bounds bounds(points, cell, centre);
   const bool shared = share_a_line(triples);
   double sum = 0.0;
   for (const CrossingTriple& triple : triples) {
-    const double perimeter = bounds.perimeter(triple);
-    sum += shared ? perimeter / std::numbers::pi : perimeter * perimeter / (std::numbers::pi * std::numbers::pi);
+    const double sides = perimeter(triangle_bounds(points, cell, centre, triple));
+    sum += shared ? sides / std::numbers::pi : sides * sides / (std::numbers::pi * std::numbers::pi);
   }
   return sum;
 }

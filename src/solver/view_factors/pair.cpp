@@ -31,7 +31,6 @@ constexpr double kShareOfParent = 0.125;           // of a cell's error that its
 // rules miss. At 1.5 radii, two points more divide the error by 2.6^4 = 46.
 constexpr double kLeastRadii = 1.5;
 constexpr double kRadiiForFour = 3.0;  // nearer to an edge, four points hardly ever suffice
-constexpr double kEventMargin = 1.01;  // of event_bound.h
 // Certified slopes. Coordinates are at most 1 and rounded once. A distance errs by less than 2^-45: that of a point of
 // the segment which is not quite the nearest one. A sum of 2^20 edges has a relative error below 2^-32.
 constexpr double kDistanceMargin = 0x1p-44;
