@@ -99,8 +99,8 @@ EXACTFF_INLINE BasicBounded<Real> dot(const BasicVector<Real>& p, const BasicVec
 }
 
 // p - t q for an exact double t, for the case that p and t q nearly cancel. Let m = |p.hi| + |t q.hi| for a component.
-// The parts that are added as doubles are together at most 4 u^2 m, so adding them is wrong by 7 u^3 m; 8 u^3 m =
-// 2^-156 m is used. The last sum is wrong by 4 u^2 of the result.
+// The parts that are added as doubles are together at most 4 u^2 m, so adding them is wrong by 7 u^3 m. Used is
+// 8 u^3 m = 2^-156 m. The last sum is wrong by 4 u^2 of the result.
 template <class Real>
 EXACTFF_INLINE BasicDoubleDouble<Real> near_cancellation(const BasicDoubleDouble<Real>& p, const Real& t,
                                                          const BasicDoubleDouble<Real>& q) {

@@ -7,9 +7,8 @@
 // that show x their backs cover nothing that the others do not cover, up to a set of area zero, and may be left out.
 //
 // - w is 0 outside the box of S.
-// - Let S lie on the front side of the receiver's plane, or in it. Behind the plane w is 0, so it is 0 above x as well
-// if
-//   x is in none of the pieces of S in this plane, its bases.
+// - Let S lie on the front side of the receiver's plane, or in it. Behind the plane w is 0. So it is 0 above x as well
+//   if x is in none of the pieces of S in this plane, its bases.
 // - Let S lie on the front side of the source's plane, or in it. Then w(y) is the number of bases there that hold y,
 //   those with the front towards x counting as -1: it is at least 0 if all of them face away.
 //

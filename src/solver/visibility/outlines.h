@@ -97,7 +97,7 @@ class Outlines {
   [[nodiscard]] const Outline& outline(OutlineId id) const { return outlines_[id]; }
   [[nodiscard]] const Corner& corner(CornerId id) const { return corners_[id]; }
   [[nodiscard]] std::size_t corner_count() const { return corners_.size(); }
-  // The scene's vertex at this corner, if the corner is a vertex; its doubles are those of (position - x) *
+  // The scene's vertex at this corner, if the corner is a vertex. Its doubles are those of its position less x, times
   // 2^scale_exponent.
   [[nodiscard]] std::optional<std::uint32_t> vertex(CornerId id) const {
     return origins_[id].is_vertex() ? std::optional(origins_[id].p) : std::nullopt;

@@ -11,8 +11,7 @@
 //   crossings lies inside a piece. For then no part of the boundary meets the inside of P, which is connected and of
 //   which some is in the wall. (If P has no inside, R sees Q edge on.)
 //
-// A piece that is hidden from all points of R can be left out of their views: whatever it hides, the wall hides as
-// well.
+// A piece that is hidden from all points of R can be left out of their views: the wall hides whatever it hides.
 #pragma once
 
 #include <cstdint>
