@@ -334,44 +334,43 @@ void CellView::find_all_undecided(const Edge& edge) {
   }
 }
 
+// What lies at `at` or beyond it on the edge. Nothing if an order is undecided.
+std::optional<CellView::Ahead> CellView::look_ahead(const Edge& edge, const End& at) {
+  Ahead ahead;
+  for (const Interval& cover : covers()) {
+    const int starts = order(edge, cover.from, at);
+    const int ends = order(edge, cover.to, at);
+    if (ends == -1 || ends == 0) continue;
+    if (starts == kMixed || ends == kMixed) return std::nullopt;
+    if (starts <= 0) {
+      ahead.covered_to = cover.to;
+      return ahead;
+    }
+    const int nearer = ahead.next_cover ? order(edge, cover.from, *ahead.next_cover) : -1;
+    if (nearer == kMixed) return std::nullopt;
+    if (nearer < 0) ahead.next_cover = cover.from;
+  }
+  return ahead;
+}
+
 // Goes along the edge from one covered stretch to the next. False if an order is undecided.
 bool CellView::emit_uncovered(const Edge& edge, int sign) {
   const Interval base = intervals_.front();
-  End at = base.from;
-  const auto emit_to = [&](const End& end) { parts_.push_back({edge, at, end, sign}); };
-  for (;;) {
-    bool moved = false;
-    std::optional<End> nearest;
-    for (const Interval& cover : covers()) {
-      const int starts = order(edge, cover.from, at);
-      const int ends = order(edge, cover.to, at);
-      if (ends == -1 || ends == 0) continue;
-      if (starts == kMixed || ends == kMixed) return false;
-      if (starts <= 0) {
-        at = cover.to;
-        moved = true;
-        break;
-      }
-      const int nearer = nearest ? order(edge, cover.from, *nearest) : -1;
-      if (nearer == kMixed) return false;
-      if (nearer < 0) nearest = cover.from;
-    }
+  for (End at = base.from;;) {
+    const std::optional<Ahead> ahead = look_ahead(edge, at);
+    if (!ahead) return false;
+    if (ahead->covered_to) at = *ahead->covered_to;
     const int left = order(edge, at, base.to);
     if (left == kMixed) return false;
     if (left >= 0) return true;
-    if (moved) continue;
-    if (!nearest) {
-      emit_to(base.to);
-      return true;
-    }
-    const int within = order(edge, *nearest, base.to);
+    if (ahead->covered_to) continue;
+    const int within = ahead->next_cover ? order(edge, *ahead->next_cover, base.to) : 1;
     if (within == kMixed) return false;
-    if (within >= 0) {
-      emit_to(base.to);
-      return true;
-    }
-    emit_to(*nearest);
-    at = *nearest;
+    const bool is_last = within >= 0;
+    const End end = is_last ? base.to : *ahead->next_cover;
+    parts_.push_back({edge, at, end, sign});
+    if (is_last) return true;
+    at = end;
   }
 }
 

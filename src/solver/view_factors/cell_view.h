@@ -100,6 +100,10 @@ class CellView {
     Overlap kind = Overlap::kNone;
     Interval interval{};
   };
+  // From a place of an edge: the end of a cover that holds it, or else the nearest start of one beyond, if any.
+  struct Ahead {
+    std::optional<End> covered_to, next_cover;
+  };
   enum class Along { kNo, kSameSide, kOppositeSide };
 
   // An edge's line and a point, whose plane cuts the cell.
@@ -128,6 +132,7 @@ class CellView {
   int order_of_apart(CrossingTriple lines);
   std::span<const Interval> covers() const { return std::span(intervals_).subspan(1); }
   bool is_known_before(const End& p, const End& q) const;
+  std::optional<Ahead> look_ahead(const Edge& edge, const End& at);
   [[nodiscard]] bool emit_uncovered(const Edge& edge, int sign);
   void find_all_undecided(const Edge& edge);
   void consider_cut(const std::shared_ptr<const Plane>& plane);
