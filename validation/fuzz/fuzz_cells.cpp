@@ -89,7 +89,7 @@ class CellJudge {
   // What lies in no share sees nothing.
   void judge_point(const Point& point, const NearPlanes& near, const ExactSource& source,
                    const std::vector<Share>& shares) const {
-    const std::optional<Vec3> rounded = near.rounded(point);
+    const std::optional<Vec3> rounded = near.round(point);
     const auto is_close = [&](const Share& share) { return distance_from_sides(share.cell, point.at) < kMargin; };
     if (!rounded || std::ranges::any_of(shares, is_close)) return;
     const auto share = std::ranges::find_if(shares, [&](const Share& s) { return holds(s, point); });

@@ -157,7 +157,7 @@ class RowOfMeans {
   // False where rounding the point may change what it sees.
   bool look_from(const Point& point, const view_factors::NearPlanes& near, std::span<const std::uint32_t> pieces,
                  double weight, std::vector<double>& numbers) {
-    const std::optional<Vec3> rounded = near.rounded(point);
+    const std::optional<Vec3> rounded = near.round(point);
     if (!rounded) return false;
     const Receiver receiver{.point = *rounded, .normal = near.normal(), .on = near.own(), .id = {}};
     whole_view::view_among(scene_, pieces, receiver, {}, seen_, workspace_);

@@ -98,7 +98,7 @@ double distance_from_sides(const Cell& cell, const Vec3& x) {
   return least;
 }
 
-std::vector<Vec3> rounded(const std::vector<Point>& points) {
+std::vector<Vec3> positions_of(const std::vector<Point>& points) {
   std::vector<Vec3> result;
   for (const Point& point : points) result.push_back(point.at);
   return result;

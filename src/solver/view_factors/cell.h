@@ -52,10 +52,10 @@ struct Halves {
 using kernel::length;
 [[nodiscard]] double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b);
 [[nodiscard]] double distance_from_sides(const Cell& cell, const Vec3& x);
-[[nodiscard]] std::vector<Vec3> rounded(const std::vector<Point>& points);
+[[nodiscard]] std::vector<Vec3> positions_of(const std::vector<Point>& points);
 // Of a planar polygon; in squares of the unit of Point::at.
 [[nodiscard]] double area(const std::vector<Vec3>& ring);
-[[nodiscard]] inline double area(const Cell& cell) { return area(rounded(cell.corners)); }
+[[nodiscard]] inline double area(const Cell& cell) { return area(positions_of(cell.corners)); }
 // The smaller of the two parts' areas, over the whole.
 [[nodiscard]] double balance(const Cell& cell, const Plane& plane);
 // More than that, from an estimate of the plane; 1 if it says nothing.

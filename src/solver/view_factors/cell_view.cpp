@@ -19,7 +19,7 @@ const Edge& previous(const Ring& ring, std::size_t i) { return ring[(i + ring.si
 }  // namespace
 
 CellView::CellView(const Sight& sight, PairMemory& memory, std::size_t id) : sight_(sight), memory_(memory), id_(id) {
-  for (const Occluder& occluder : sight.occluders) reversed_.push_back(reversed(occluder.ring));
+  for (const Occluder& occluder : sight.occluders) reversed_.push_back(reverse_of(occluder.ring));
 }
 
 Candidates CellView::all_candidates() const {

@@ -95,10 +95,10 @@ double quadrature_remainder(double bound, double rho, std::size_t nodes) {
 }
 
 Disc enclosed_area(const Cell& cell, const Plane& receiver) {
-  const DiscVec origin = enclosed(cell.corners[0]);
+  const DiscVec origin = enclose(cell.corners[0]);
   DiscVec sum;
   for (std::size_t i = 2; i < cell.corners.size(); ++i) {
-    sum = sum + cross(enclosed(cell.corners[i - 1]) - origin, enclosed(cell.corners[i]) - origin);
+    sum = sum + cross(enclose(cell.corners[i - 1]) - origin, enclose(cell.corners[i]) - origin);
   }
   return 0.5 * dot(sum, unit_normal(receiver));
 }

@@ -11,7 +11,7 @@ constexpr double kSmallestDouble = 0x1p-900;  // of those that are certainly not
 constexpr long kMantissaBits = 53;
 constexpr double kSteep = 0.25;  // the sine between a line and the receiver's normal, below which another frame is used
 
-Disc enclosed(const Integer& numerator, const Integer& denominator, double rounded) {
+Disc enclose(const Integer& numerator, const Integer& denominator, double rounded) {
   if (denominator == 1) {
     if (sgn(numerator) == 0) return {};
     const auto zeros = static_cast<long>(mpz_scan1(numerator.get_mpz_t(), 0));
@@ -46,9 +46,9 @@ DiscVec aside_of(const DiscVec& unit_vector, const DiscVec& normal) {
 
 }  // namespace
 
-DiscVec enclosed(const Point& point) {
-  return {enclosed(point.exact[0], point.exact[3], point.at.x), enclosed(point.exact[1], point.exact[3], point.at.y),
-          enclosed(point.exact[2], point.exact[3], point.at.z)};
+DiscVec enclose(const Point& point) {
+  return {enclose(point.exact[0], point.exact[3], point.at.x), enclose(point.exact[1], point.exact[3], point.at.y),
+          enclose(point.exact[2], point.exact[3], point.at.z)};
 }
 
 DiscVec unit_normal(const Plane& plane) {
@@ -57,10 +57,10 @@ DiscVec unit_normal(const Plane& plane) {
 }
 
 DiscFormula::DiscFormula(const Formula& formula, const Cell& cell)
-    : origin_(enclosed(cell.corners[0])), normal_(unit_normal(formula.receiver())) {
+    : origin_(enclose(cell.corners[0])), normal_(unit_normal(formula.receiver())) {
   DiscVec sum;
   for (const Point& corner : cell.corners) {
-    corners_.push_back(enclosed(corner) - origin_);
+    corners_.push_back(enclose(corner) - origin_);
     sum = sum + corners_.back();
   }
   const DiscVec middle = sum * kernel::rounded_once(1.0 / static_cast<double>(cell.corners.size()));
@@ -72,14 +72,12 @@ DiscFormula::DiscFormula(const Formula& formula, const Cell& cell)
   if (corners_.size() < 3) take({0, 0, 0, 0});
 }
 
-DiscVec DiscFormula::place(const Formula& formula, PointId id) const {
-  return enclosed(formula.points()[id]) - origin_;
-}
+DiscVec DiscFormula::place(const Formula& formula, PointId id) const { return enclose(formula.points()[id]) - origin_; }
 
 void DiscFormula::add(const Formula& formula, std::size_t index) {
   const BoundaryPart& boundary = formula.boundary()[index];
   const Point &first = formula.points()[boundary.edge.from], &second = formula.points()[boundary.edge.to];
-  const DiscVec a = enclosed(first) - origin_, edge = enclosed(second) - enclosed(first);
+  const DiscVec a = enclose(first) - origin_, edge = enclose(second) - enclose(first);
   Part part;
   part.size = square_root(squared_length(edge));
   const DiscVec along = edge * inverse(part.size), height = cross(along, normal_);

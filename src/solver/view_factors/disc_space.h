@@ -24,7 +24,7 @@ inline Disc squared_length(const DiscVec& a) { return square(a.x) + square(a.y) 
 inline DiscVec unit(const DiscVec& a) { return a * inverse(square_root(squared_length(a))); }
 
 // Coordinates that are doubles have the radius 0, so that differences lose nothing.
-[[nodiscard]] DiscVec enclosed(const Point& point);
+[[nodiscard]] DiscVec enclose(const Point& point);
 // The plane's normal, of length 1.
 [[nodiscard]] DiscVec unit_normal(const Plane& plane);
 

@@ -20,7 +20,7 @@ constexpr double kMargin = 1.0 + 0x1p-20;
 class Bounds {
  public:
   Bounds(const Points& points, const Cell& cell, const Vec3& centre)
-      : points_(points), corners_(rounded(cell.corners)), centre_(centre) {}
+      : points_(points), corners_(positions_of(cell.corners)), centre_(centre) {}
 
   [[nodiscard]] double largest_order(const CrossingTriple& t) const {
     const auto f = [&](const Vec3& x) { return dot(normal(t[0], x), cross(normal(t[1], x), normal(t[2], x))); };

@@ -17,7 +17,7 @@ bool is_nearly_in(const Plane& plane, const Point& point) {
 }
 
 // More than that on every side.
-Box widened(Box box) {
+Box widen(Box box) {
   box.low = {box.low.x - kNear, box.low.y - kNear, box.low.z - kNear};
   box.high = {box.high.x + kNear, box.high.y + kNear, box.high.z + kNear};
   return box;
@@ -44,7 +44,7 @@ NearPlanes::NearPlanes(const ExactScene& scene, const Part& part) : scene_(&scen
   const Plane plane = make_plane(join(part.corners[0], part.corners[1], part.corners[2]), scene.units);
   const Homogeneous behind = opposite(plane.exact);
   normal_ = {plane.rounded[0], plane.rounded[1], plane.rounded[2]};
-  const Box box = widened(box_of(part.corners));
+  const Box box = widen(box_of(part.corners));
   for (const ExactPiece& piece : scene.pieces) {
     if (piece.face == part.face || piece.box.is_apart_from(box)) continue;
     const bool is_in_plane = piece.plane.exact == plane.exact || piece.plane.exact == behind;
@@ -59,7 +59,7 @@ NearPlanes::NearPlanes(const ExactScene& scene, const Part& part) : scene_(&scen
   }
 }
 
-std::optional<Vec3> NearPlanes::rounded(const Point& point) const {
+std::optional<Vec3> NearPlanes::round(const Point& point) const {
   const Units& units = scene_->units;
   const int exponent = static_cast<int>(units.exponent + units.shift);
   const auto in_scene = [&](double x) { return std::ldexp(x, exponent); };
@@ -68,7 +68,7 @@ std::optional<Vec3> NearPlanes::rounded(const Point& point) const {
   }
   if (!nearly_.empty()) {
     const Point moved = point_at(point.at, units);
-    const Box box = widened(box_of({&point, 1}));
+    const Box box = widen(box_of({&point, 1}));
     const auto changes = [&](const ExactPiece* piece) {
       return !piece->box.is_apart_from(box) && side_of(piece->plane, point) != side_of(piece->plane, moved);
     };

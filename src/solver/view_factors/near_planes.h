@@ -8,7 +8,7 @@
 
 namespace exactff::view_factors {
 
-inline constexpr double kRoundedPoints = 0x1p-30;  // of F: see NearPlanes::rounded
+inline constexpr double kRoundedPoints = 0x1p-30;  // of F: see NearPlanes::round
 
 class NearPlanes {
  public:
@@ -23,7 +23,7 @@ class NearPlanes {
   // things than the point: where they lie on another side of the plane of a close face that is nearly in the part's
   // plane, or are less precise than in other units. Any other face in whose plane the point nearly lies is farther away
   // than 2^-20, and is seen within 2^-32 of the horizon or of its edge-on view: less than 2^-30 of F.
-  [[nodiscard]] std::optional<Vec3> rounded(const Point& point) const;
+  [[nodiscard]] std::optional<Vec3> round(const Point& point) const;
 
  private:
   const ExactScene* scene_;

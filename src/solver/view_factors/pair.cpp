@@ -201,8 +201,8 @@ bool Pair::add_if_dim(Cell& cell, Candidates& candidates, double enough, std::ve
 
 // By a rule of Gauss' and the one with a point less in each direction, from which the error is estimated; or it is the
 // whole cell. Four points where they suffice for a cell of this size, else six.
-Pair::Integrated Pair::integrated(const Formula& formula, const Cell& cell) const {
-  const std::vector<Vec3> ring = rounded(cell.corners);
+Pair::Integral Pair::integrate(const Formula& formula, const Cell& cell) const {
+  const std::vector<Vec3> ring = positions_of(cell.corners);
   const double size = area(cell), radii = resolution(cell, formula);
   const auto error = [&](double rule, double lower) {
     const double difference = 4.0 * std::abs(rule - lower);
@@ -217,7 +217,7 @@ Pair::Integrated Pair::integrated(const Formula& formula, const Cell& cell) cons
 }
 
 // Within the tolerance of a cell of its size, if it can be.
-Pair::Integrated Pair::enclosed(const Formula& formula, const Cell& cell, double most) const {
+Pair::Integral Pair::enclose(const Formula& formula, const Cell& cell, double most) const {
   const double share = std::sqrt(area(cell) / limits_.area);
   const double tolerance = std::min(most, limits_.certified * share * std::sqrt(share));
   const CertifiedIntegral found = certified_integral(formula, cell, tolerance);
@@ -225,7 +225,7 @@ Pair::Integrated Pair::enclosed(const Formula& formula, const Cell& cell, double
 }
 
 void Pair::add_smooth(Cell cell, std::shared_ptr<const Formula> formula, double most, std::vector<Share>& shares) {
-  const auto [integral, error, is_final] = certifies() ? enclosed(*formula, cell, most) : integrated(*formula, cell);
+  const auto [integral, error, is_final] = certifies() ? enclose(*formula, cell, most) : integrate(*formula, cell);
   if (whole_ != nullptr) check(cell, *formula);
   shares.push_back({std::move(cell), {}, std::move(formula), integral, error, is_final});
 }
@@ -263,13 +263,13 @@ void Pair::add_event(Cell cell, std::size_t depth, Candidates candidates, const 
   (void)view(at_centre, depth + 1, of_centre);  // at a single point every sign is known
   const Formula formula(sight_, view_.parts());
   if (certifies()) {
-    const Integrated found = enclosed_event(formula, cell, centre, candidates, triples);
+    const Integral found = enclose_event(formula, cell, centre, candidates, triples);
     shares.push_back({std::move(cell), std::move(candidates), nullptr, found.integral, found.error});
     return;
   }
   if (const double bound = triples.empty() ? HUGE_VAL : event_bound(sight_.points, cell, centre.at, triples);
       bound < 1.0) {
-    const auto [integral, error, is_final] = integrated(formula, cell);
+    const auto [integral, error, is_final] = integrate(formula, cell);
     shares.push_back({std::move(cell), std::move(candidates), nullptr, integral, error + bound * size, is_final});
     return;
   }
@@ -280,13 +280,13 @@ void Pair::add_event(Cell cell, std::size_t depth, Candidates candidates, const 
 }
 
 // The narrowest of what is known: 0 <= F <= 1; the centre's formula with event_bound; its value with the slope.
-Pair::Integrated Pair::enclosed_event(const Formula& formula, const Cell& cell, const Point& centre,
-                                      const Candidates& candidates, const std::vector<CrossingTriple>& triples) const {
+Pair::Integral Pair::enclose_event(const Formula& formula, const Cell& cell, const Point& centre,
+                                   const Candidates& candidates, const std::vector<CrossingTriple>& triples) const {
   const double size = size_of(cell);
-  const Integrated unknown{0.5 * size, 0.5 * size};
+  const Integral unknown{0.5 * size, 0.5 * size};
   const double bound = triples.empty() ? HUGE_VAL : kEventMargin * event_bound(sight_.points, cell, centre.at, triples);
   if (bound < 1.0) {
-    const Integrated found = enclosed(formula, cell, HUGE_VAL);
+    const Integral found = enclose(formula, cell, HUGE_VAL);
     const double error = (found.error + bound * size) * kSumMargin;
     if (error < unknown.error) return {found.integral, error};
   }
@@ -294,7 +294,7 @@ Pair::Integrated Pair::enclosed_event(const Formula& formula, const Cell& cell, 
   const Disc value = DiscFormula(formula, Cell{{centre}, {}}).value({}, {});
   const double change = slope_bound(candidates, centre.at, radius) * radius * kSumMargin;
   const Disc integral = widened(value, change) * enclosed_area(cell, sight_.receiver);
-  return integral.radius < unknown.error ? Integrated{integral.centre, integral.radius} : unknown;
+  return integral.radius < unknown.error ? Integral{integral.centre, integral.radius} : unknown;
 }
 
 std::vector<Share> Pair::halves(Share share) {

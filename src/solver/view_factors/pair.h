@@ -73,15 +73,14 @@ class Pair {
   // `triples`: all that is undecided; if empty, more may be.
   void add_event(Cell cell, std::size_t depth, Candidates candidates, const std::vector<CrossingTriple>& triples,
                  std::vector<Share>& shares);
-  struct Integrated {
+  struct Integral {
     double integral, error;
     bool is_final = false;  // rounding is most of the error
   };
-  [[nodiscard]] Integrated integrated(const Formula& formula, const Cell& cell) const;
-  [[nodiscard]] Integrated enclosed(const Formula& formula, const Cell& cell, double most) const;
-  [[nodiscard]] Integrated enclosed_event(const Formula& formula, const Cell& cell, const Point& centre,
-                                          const Candidates& candidates,
-                                          const std::vector<CrossingTriple>& triples) const;
+  [[nodiscard]] Integral integrate(const Formula& formula, const Cell& cell) const;
+  [[nodiscard]] Integral enclose(const Formula& formula, const Cell& cell, double most) const;
+  [[nodiscard]] Integral enclose_event(const Formula& formula, const Cell& cell, const Point& centre,
+                                       const Candidates& candidates, const std::vector<CrossingTriple>& triples) const;
   [[nodiscard]] bool certifies() const { return limits_.certified > 0.0; }
   [[nodiscard]] double size_of(const Cell& cell) const;
   bool add_if_negligible(Cell& cell, Candidates& candidates, std::vector<Share>& shares) const;

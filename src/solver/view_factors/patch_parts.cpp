@@ -45,9 +45,9 @@ std::vector<Part> outside(const Part& part, const std::vector<Plane>& sides, con
   Clippable rest(part, units);
   std::vector<Part> result;
   for (std::uint32_t i = 0; i < sides.size(); ++i) {
-    const Ring beyond = rest.points.clipped(rest.ring, sides[i], 2 * i);
+    const Ring beyond = rest.points.clip(rest.ring, sides[i], 2 * i);
     if (!beyond.empty()) result.push_back(rest.part(part.face, beyond));
-    rest.ring = rest.points.clipped(rest.ring, make_plane(opposite(sides[i].exact), units), 2 * i);
+    rest.ring = rest.points.clip(rest.ring, make_plane(opposite(sides[i].exact), units), 2 * i);
     if (rest.ring.empty()) return result;
   }
   return result;
@@ -80,7 +80,7 @@ std::optional<Contact> contact(const ExactScene& scene, const ExactPiece& piece,
   if (std::ranges::none_of(piece.corners, [&](std::uint32_t c) { return side(c) > 0; })) return std::nullopt;
   if (std::ranges::all_of(piece.corners, [&](std::uint32_t c) { return side(c) > 0; })) return std::nullopt;
   Clippable front(whole(scene, piece), scene.units);
-  front.ring = front.points.clipped(front.ring, plane, 0);
+  front.ring = front.points.clip(front.ring, plane, 0);
   std::vector<Vec3> met;
   for (const Edge& edge : front.ring) {
     if (side_of(plane, front.points[edge.from]) == 0) met.push_back(front.points[edge.from].at);
@@ -121,7 +121,7 @@ std::vector<Part> cut(const Part& part, const Plane& plane, const Units& units) 
   std::vector<Part> result;
   for (const Homogeneous& towards : {plane.exact, opposite(plane.exact)}) {
     Clippable clippable(part, units);
-    const Ring ring = clippable.points.clipped(clippable.ring, make_plane(towards, units), 0);
+    const Ring ring = clippable.points.clip(clippable.ring, make_plane(towards, units), 0);
     if (!ring.empty()) result.push_back(clippable.part(part.face, ring));
   }
   return result;
@@ -200,7 +200,7 @@ std::vector<Part> cut_at_contacts(const ExactScene& scene, const Part& part) {
 
 double area_of(const std::vector<Part>& parts) {
   double sum = 0.0;
-  for (const Part& part : parts) sum += area(rounded(part.corners));
+  for (const Part& part : parts) sum += area(positions_of(part.corners));
   return sum;
 }
 

@@ -48,7 +48,7 @@ PointId Points::crossing(const Edge& edge, const Plane& plane, std::uint32_t nam
   return place->second;
 }
 
-Ring Points::clipped(const Ring& ring, const Plane& plane, std::uint32_t name) {
+Ring Points::clip(const Ring& ring, const Plane& plane, std::uint32_t name) {
   std::vector<int> sides;
   for (const Edge& e : ring) sides.push_back(side_of(plane, *points_[e.from]));
   if (std::ranges::all_of(sides, [](int s) { return s >= 0; })) {

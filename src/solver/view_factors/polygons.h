@@ -30,7 +30,7 @@ struct Edge {
 // Counter-clockwise as seen from its front; no two consecutive edges lie on one line.
 using Ring = std::vector<Edge>;
 
-[[nodiscard]] inline Ring reversed(const Ring& ring) {
+[[nodiscard]] inline Ring reverse_of(const Ring& ring) {
   Ring result;
   for (auto edge = ring.rbegin(); edge != ring.rend(); ++edge) {
     result.push_back({edge->to, edge->from, edge->line, !edge->along});
@@ -56,7 +56,7 @@ class Points {
   Ring ring(const std::vector<PointId>& corners);
   // The part of the polygon on the positive side of the plane; empty if it has no area. `name` tells planes apart:
   // where one cuts a line that it has cut before, the point is the same.
-  Ring clipped(const Ring& ring, const Plane& plane, std::uint32_t name);
+  Ring clip(const Ring& ring, const Plane& plane, std::uint32_t name);
   [[nodiscard]] Plane plane_of(const Ring& ring) const;
   // Frees what only further rings need.
   void complete();

@@ -30,7 +30,7 @@ class PointFactors {
   Value at(const Point& point, std::size_t part) {
     std::optional<NearPlanes>& near = near_[part];
     if (!near) near.emplace(scene_, from_[part]);
-    const std::optional<Vec3> rounded = near->rounded(point);
+    const std::optional<Vec3> rounded = near->round(point);
     if (!rounded) return {0.5, 0.5};
     exact_form_factor(scene_.scene, {.point = *rounded, .normal = near->normal(), .on = near->own(), .id = {}}, source_,
                       {}, factor_);

@@ -22,8 +22,8 @@ class Maker {
     corners_of_parts_ = static_cast<PointId>(points.point_count());
     sight_.receiver = points.plane_of(receiver);
     source_plane_ = points.plane_of(source);
-    const Ring seeing = points.clipped(receiver, source_plane_, kBySource);
-    sight_.source = points.clipped(source, sight_.receiver, kByReceiver);
+    const Ring seeing = points.clip(receiver, source_plane_, kBySource);
+    sight_.source = points.clip(source, sight_.receiver, kByReceiver);
     if (seeing.empty() || sight_.source.empty()) return std::nullopt;
     sight_.root = cell_of(points, seeing, sight_.receiver);
     sight_.apex = std::ranges::find_if(sight_.source, [&](const Edge& edge) {
@@ -43,7 +43,7 @@ class Maker {
  private:
   Ring add(const Part& part) {
     std::vector<PointId> corners;
-    for (const Point& corner : part.corners) corners.push_back(known(corner));
+    for (const Point& corner : part.corners) corners.push_back(id_of(corner));
     return sight_.points.ring(corners);
   }
 
@@ -56,7 +56,7 @@ class Maker {
     return std::nullopt;
   }
 
-  PointId known(const Point& point) {
+  PointId id_of(const Point& point) {
     const std::optional<PointId> corner = corner_at(point);
     return corner ? *corner : sight_.points.add(point);
   }
@@ -139,7 +139,7 @@ class Maker {
     for (const std::uint32_t id : surface.pieces) {
       const ExactPiece& piece = scene_.pieces[id];
       if (piece.plane.exact == front) bases.push_back(ring_of(piece));
-      if (piece.plane.exact == back) bases.push_back(reversed(ring_of(piece)));
+      if (piece.plane.exact == back) bases.push_back(reverse_of(ring_of(piece)));
     }
     return bases;
   }
@@ -153,9 +153,9 @@ class Maker {
   void add_occluder(const ExactPiece& piece) {
     if (!may_lie_between(piece)) return;
     Points& points = sight_.points;
-    const Ring above = points.clipped(ring_of(piece), sight_.receiver, kByReceiver);
+    const Ring above = points.clip(ring_of(piece), sight_.receiver, kByReceiver);
     if (above.empty()) return;
-    Ring ring = points.clipped(above, source_plane_, kBySource);
+    Ring ring = points.clip(above, source_plane_, kBySource);
     if (!ring.empty()) sight_.occluders.push_back({std::move(ring), &piece.plane, solid(piece.surface)});
   }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kWeightBits = 32;
 
-std::uint64_t mixed(std::uint64_t key) { return kernel::split_mix(0, key); }
+std::uint64_t mix(std::uint64_t key) { return kernel::split_mix(0, key); }
 
 constexpr double kAreaRoundings = 0x1p-40;  // relative: far more than there are
 
@@ -75,15 +75,15 @@ Point point_at(const Part& part, const Tile& tile, const Integer& s, const Integ
 }  // namespace
 
 Draws::Draws(std::size_t look, std::size_t stratum, std::size_t number)
-    : key_(mixed(mixed(look) ^ mixed(stratum) << 1 ^ number)) {}
-std::uint64_t Draws::bits() { return mixed(key_ ^ ++count_ << 32); }
+    : key_(mix(mix(look) ^ mix(stratum) << 1 ^ number)) {}
+std::uint64_t Draws::bits() { return mix(key_ ^ ++count_ << 32); }
 double Draws::unit() { return kernel::unit_fraction(bits()); }
 
 Strata strata_of(const std::vector<Part>& parts, std::size_t count) {
   Strata result;
   const double largest = area_of(parts) / static_cast<double>(count);
   for (std::size_t p = 0; p < parts.size(); ++p) {
-    const std::vector<Vec3> ring = rounded(parts[p].corners);
+    const std::vector<Vec3> ring = positions_of(parts[p].corners);
     if (is_parallelogram(parts[p]) && area(ring) > 0.0) {
       cut_parallelogram(p, ring, largest, result.tiles);
       continue;
@@ -112,7 +112,7 @@ Strata strata_of(const std::vector<Part>& parts, std::size_t count) {
   return result;
 }
 
-const Tile& drawn(const Strata& strata, const Stratum& stratum, std::size_t draw, Draws& draws) {
+const Tile& draw_tile(const Strata& strata, const Stratum& stratum, std::size_t draw, Draws& draws) {
   std::size_t i = stratum.begin;
   for (double left = 0.5 * (static_cast<double>(draw) + draws.unit()) * stratum.area;
        i + 1 < stratum.end && left >= strata.tiles[i].area; ++i) {
@@ -142,7 +142,7 @@ std::vector<Point> points_in(const Part& part, const Tile& tile, Draws& draws, c
 Sample sample(const std::vector<Part>& parts, const Strata& strata, std::size_t look, std::size_t stratum,
               std::size_t draw, const Units& units) {
   Draws draws(look, stratum, draw);
-  const Tile& tile = drawn(strata, strata.strata[stratum], draw, draws);
+  const Tile& tile = draw_tile(strata, strata.strata[stratum], draw, draws);
   return {tile.part, points_in(parts[tile.part], tile, draws, units)};
 }
 

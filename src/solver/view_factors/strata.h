@@ -56,7 +56,7 @@ struct Strata {
 // The tile at a random place in the first or second half of the stratum's area, for its two draws. Where several tiles
 // share a stratum, this leaves their mean without bias, and the estimate of its variance is too large on average: by
 // the square of half the difference of the halves' means.
-[[nodiscard]] const Tile& drawn(const Strata& strata, const Stratum& stratum, std::size_t draw, Draws& draws);
+[[nodiscard]] const Tile& draw_tile(const Strata& strata, const Stratum& stratum, std::size_t draw, Draws& draws);
 
 // Points each of which is uniform in the tile, and whose mean is the tile's centre, so that the mean of a linear
 // function at them is exact: of a parallelogram two, opposite each other; of a triangle three, with the same weights in

@@ -83,7 +83,7 @@ class StrataOf : public testing::TestWithParam<Patch> {
   double exact_mean(const Function& f) {
     double sum = 0.0, whole = 0.0;
     for (const Part& part : parts_) {
-      const std::vector<Vec3> ring = rounded(part.corners);
+      const std::vector<Vec3> ring = positions_of(part.corners);
       for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
         const std::array<Vec3, 3> t{ring[0], ring[i], ring[i + 1]};
         const double size = area({t[0], t[1], t[2]});
@@ -113,7 +113,7 @@ TEST_P(StrataOf, PointsLieInTheirPart) {
   for (std::size_t s = 0; s < strata.strata.size(); ++s) {
     for (std::size_t d = 0; d < 2; ++d) {
       const auto [part, points] = sample(parts_, strata, 1, s, d, exact_.units);
-      const std::vector<Vec3> ring = rounded(parts_[part].corners);
+      const std::vector<Vec3> ring = positions_of(parts_[part].corners);
       for (const Point& point : points) {
         double sum = 0.0;
         for (std::size_t i = 0; i < ring.size(); ++i) sum += area({ring[i], ring[(i + 1) % ring.size()], point.at});
@@ -200,7 +200,7 @@ TEST(Strata, OfManyFacesShareTheirFacesWithoutBias) {
       std::array<double, 2> values{};
       for (std::size_t d = 0; d < 2; ++d) {
         Draws draws(look, s, d);
-        values[d] = drawn(strata, strata.strata[s], d, draws).part % 2 == 1 ? 1.0 : 0.0;
+        values[d] = draw_tile(strata, strata.strata[s], d, draws).part % 2 == 1 ? 1.0 : 0.0;
       }
       mean.add(values[0], values[1], strata.strata[s].area / strata.area);
     }
