@@ -31,6 +31,7 @@ EXACTFF_INLINE Four four(double a) { return Four{a, a, a, a}; }
 
 EXACTFF_INLINE FourMask four_whole(std::int64_t a) { return FourMask{a, a, a, a}; }
 EXACTFF_INLINE Four next_lane(const Four& v) { return Four{v[1], v[2], v[3], v[0]}; }
+EXACTFF_INLINE FourMask next_lane(const FourMask& v) { return FourMask{v[1], v[2], v[3], v[0]}; }
 EXACTFF_INLINE Four absolute(const Four& v) { return Four(FourMask(v) & 0x7FFFFFFFFFFFFFFF); }
 EXACTFF_INLINE Four larger(const Four& a, const Four& b) { return a < b ? b : a; }
 EXACTFF_INLINE Four smaller(const Four& a, const Four& b) { return b < a ? b : a; }

@@ -7,7 +7,7 @@ using Outline = Outlines::Outline;
 
 // The exact signs of the heights of the edge's ends above the line, and the crossing if the signs differ.
 //
-// The crossing's error, in the notation of the proof above. With heights in doubles: D >= 4e, so that the quotient
+// The crossing's error, in the notation of edge_lanes.h. With heights in doubles: D >= 4e, so that the quotient
 // differs by at most 2e / D; sum and division err by 2u, and 2^-50 is 8u, which leaves a margin for the test of D and
 // for differences of parameters. With exact heights: two mantissas truncated to 53 bits and their quotient err by 5u of
 // l / m, which moves m / (l + m) by less than 2u; two more roundings make 4u of at most 1, and 2^-49 is 16u. An

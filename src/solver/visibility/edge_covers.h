@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "kernel/lane_types.h"
+#include "visibility/edge_lanes.h"
 #include "visibility/edge_parameters.h"
 #include "visibility/outlines.h"
 
@@ -38,6 +38,14 @@ class EdgeCovers {
     Interval interval;
   };
 
+  // Of edge k of a run.
+  [[nodiscard]] Parameter parameter(const LaneParameters& of, unsigned k) const {
+    const auto line = static_cast<EdgeId>(of.line[k]);
+    return {of.value[k], rounded_up(of.error[k]), line < Parameter::kAtBegin ? line_[line] : line};
+  }
+  [[nodiscard]] Interval interval(const LaneIntervals& of, unsigned k) const {
+    return {parameter(of.begin, k), parameter(of.end, k)};
+  }
   // The part of an edge that is covered; false if none.
   [[nodiscard]] bool cover_exactly(EdgeId edge, OutlineId outline, Cover& result);
 

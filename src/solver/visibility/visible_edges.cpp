@@ -157,18 +157,6 @@ EXACTFF_INLINE void VisibleEdges::trace(Run& run, std::size_t source_count) {
   }
 }
 
-EXACTFF_INLINE void VisibleEdges::set_corners(Run& run) const {
-  const auto corner = [&](unsigned k) -> const Outlines::Corner& {
-    const Edge& edge = outlines_.edge(run.first + std::min(k, run.edges - 1));
-    return outlines_.corner(k < run.edges ? edge.a : edge.b);
-  };
-  const Outlines::Corner &a = corner(0), &b = corner(1), &c = corner(2), &d = corner(3);
-  run.x = Four{a.t.x, b.t.x, c.t.x, d.t.x};
-  run.y = Four{a.t.y, b.t.y, c.t.y, d.t.y};
-  run.z = Four{a.t.z, b.t.z, c.t.z, d.t.z};
-  run.size = Four{a.size, b.size, c.size, d.size};
-}
-
 void VisibleEdges::poll() {
   next_poll_ = pairs_ + kPairsPerPoll;
   kernel::poll();
@@ -177,7 +165,7 @@ void VisibleEdges::poll() {
 // Run by run.
 EXACTFF_CLONES void VisibleEdges::trace_outline(OutlineId id, std::size_t source_count) {
   const Outline& outline = outlines_.outline(id);
-  const unsigned step = outline.count <= kRunCorners ? outline.count : kRunCorners - 1;
+  const unsigned step = edges_of_run(outline.count);
   Run run{.outline = id, .of_source = id < source_count};
   for (unsigned at = 0; at < outline.count; at += step) {
     run.first = outline.first + at;
@@ -185,87 +173,20 @@ EXACTFF_CLONES void VisibleEdges::trace_outline(OutlineId id, std::size_t source
     run.wanted = 0;
     for (unsigned k = 0; k < run.edges; ++k) run.wanted |= (dropped_[run.first + k] == 0 ? 1U : 0U) << k;
     if (run.wanted == 0) continue;
-    set_corners(run);
+    run.corners.set(outlines_, run.first, run.edges);
     trace(run, source_count);
     if (pairs_ >= next_poll_) poll();
   }
 }
 
-EXACTFF_INLINE void VisibleEdges::replace(Parameters& parameters, const FourMask& where, const Parameters& by) {
-  using kernel::lanes::pick;
-  parameters.value = pick(where, by.value, parameters.value);
-  parameters.error = pick(where, by.error, parameters.error);
-  parameters.line = pick(where, by.line, parameters.line);
-}
-
-// By the filter alone, for all edges of the run at once. The edge enters or leaves a line's inner side where it crosses
-// the line: if its ends have heights m and l above the line, of different signs, the crossing is at the parameter
-// |m| / (|l| + |m|) = m / (m - l).
-//
-// Its error. Let D be |l| + |m| and e the larger error of the two heights, all as computed, and u = 2^-53. The quotient
-// of the true heights differs by at most e / (D - 2e) <= 2e / D where D >= 4e. Difference, inverse and product err by u
-// each, relatively, so that the quotient, at most 1, has an additional error of at most 4u; 4e / D is computed within a
-// relative error of 4u. 4e / D + 2^-50 covers all of this, with 4u and half of 4e / D to spare for the rounding of
-// differences of parameters and of sums of errors: computed values may be compared directly. Where D < 4e the error is
-// more than 1, which is more than the distance of any two parameters: it then decides nothing; nor does NaN.
-//
-// Every comparison that does not hold for all numbers within the errors makes the edge unsure, whatever is computed
-// from it afterwards, except that one line with both ends certainly below it is enough for the outline to cover
-// nothing. The side that an end lies on, and which of two parameters is larger, can therefore be read from the signs,
-// as masks whose other bits do not matter. A line whose inner side the edge enters can only move the beginning of the
-// covered interval; a line whose inner side it leaves can only move the end. So one comparison serves for both. A line
-// that has the whole run on its inner side moves neither and may be skipped.
-EXACTFF_INLINE void VisibleEdges::cut(const Run& run, std::span<const Edge> lines, EdgeId first, LineBits skipped,
-                                      Cuts& cuts) {
-  using namespace kernel::lanes;
-  const Four x = run.x, y = run.y, z = run.z, size = run.size;
-  const Four size_of_both = size + next_lane(size);  // at least the larger one; NaN if either is
-  Parameters begin{four(0.0), four(0.0), four_whole(Parameter::kAtBegin)};
-  Parameters end{four(1.0), four(0.0), four_whole(Parameter::kAtEnd)};
-  Parameters crossing;
-  FourMask outside = four_whole(0), sure = four_whole(-1);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (i < Outlines::kLineBits && (skipped >> i & 1U) != 0) continue;
-    const Edge& line = lines[i];
-    crossing.line = four_whole(static_cast<std::int64_t>(first + i));
-    const Four a = line.normal.x * x + line.normal.y * y + line.normal.z * z, b = next_lane(a);
-    const Four error = line.error * size_of_both;
-    const FourMask below_a = FourMask(a), below_b = FourMask(b);  // by their signs
-    const FourMask known = (absolute(a) > error) & (absolute(b) > error);
-    const Four inverse = 1.0 / (a - b);
-    crossing.value = a * inverse;
-    crossing.error = error * absolute(inverse) * 4.0 + 0x1p-50;
-    // From the end of the interval that the crossing may replace.
-    const Four beyond = crossing.value - pick(below_b, end.value, begin.value);
-    const Four beyond_error = crossing.error + pick(below_b, end.error, begin.error);
-    const FourMask before = FourMask(beyond);
-    outside |= known & below_a & below_b;
-    sure &= known & ~((below_a ^ below_b) & ~(absolute(beyond) > beyond_error));
-    replace(begin, below_a & ~(below_b | before), crossing);
-    replace(end, below_b & ~below_a & before, crossing);
-  }
-  outside = outside < 0;
-  sure = sure < 0;
-  const Four length = end.value - begin.value, length_error = end.error + begin.error;
-  cuts.covered = lane_bits(~outside & sure & (length > length_error));
-  cuts.unsure = lane_bits(~outside & ~(sure & (absolute(length) > length_error)));
-  cuts.intervals = {begin, end};
-}
-
-EXACTFF_INLINE void VisibleEdges::cut(const Run& run, OutlineId outline, Cuts& cuts, LineBits skipped) {
-  const Outline& o = outlines_.outline(outline);
-  cut(run, outlines_.edges().subspan(o.first, o.count), o.first, skipped, cuts);
-  cuts.by = outline;
+EXACTFF_INLINE void VisibleEdges::cut(const Run& run, OutlineId outline, LaneCuts& cuts, Outlines::LineBits skipped) {
+  UnknownCorners shared;
+  static_cast<void>(cut_run(run.corners, outlines_, outline, skipped, shared, cuts));
   pairs_ += bit_count(run.wanted);
   undecided_pairs_ += bit_count(cuts.unsure & run.wanted);
 }
 
-Parameter VisibleEdges::parameter(const Parameters& of, unsigned k) const {
-  const auto line = static_cast<EdgeId>(of.line[k]);
-  return {of.value[k], rounded_up(of.error[k]), line < Parameter::kAtBegin ? line_[line] : line};
-}
-
-void VisibleEdges::set(Parameters& parameters, unsigned k, const Parameter& parameter) {
+void VisibleEdges::set(LaneParameters& parameters, unsigned k, const Parameter& parameter) {
   parameters.value[k] = parameter.value;
   parameters.error[k] = parameter.error;
   parameters.line[k] = parameter.line;
@@ -273,16 +194,14 @@ void VisibleEdges::set(Parameters& parameters, unsigned k, const Parameter& para
 
 // The whole edge if it belongs to the source or lies inside it; otherwise the part with the source on both sides.
 EXACTFF_INLINE void VisibleEdges::find_allowed(Run& run, std::size_t source_count) {
-  using namespace kernel::lanes;
   for (unsigned k = 0; k < run.edges; ++k) removed_[k].clear();
-  run.left = {{four(0.0), four(0.0), four_whole(Parameter::kAtBegin)},
-              {four(1.0), four(0.0), four_whole(Parameter::kAtEnd)}};
+  run.left = whole_edges();
   if (run.of_source || outlines_.outline(run.outline).inside_source) return;
   if (source_count > 1) {
     find_allowed_in_union(run, source_count);
     return;
   }
-  Cuts cuts;
+  LaneCuts cuts;
   cut(run, 0, cuts, outlines_.outline(run.outline).within_lines);
   run.left = cuts.intervals;
   for (unsigned bits = cuts.unsure & run.wanted; bits != 0; bits &= bits - 1) {
@@ -301,7 +220,7 @@ EXACTFF_CLONES void VisibleEdges::find_allowed_in_union(Run& run, std::size_t so
     left_[k].clear();
     right_[k].clear();
   }
-  Cuts cuts;
+  LaneCuts cuts;
   Cover found;
   for (OutlineId s = 0; s < source_count; ++s) {
     cut(run, s, cuts);
@@ -341,7 +260,7 @@ void VisibleEdges::allow_common(Run& run, unsigned k) {
 
 // Removes from each edge the part that the outline covers on the side that must not be covered, or where the outline
 // coincides with it and comes first. Edges with nothing left are no longer wanted.
-EXACTFF_INLINE void VisibleEdges::remove(Run& run, const Cuts& cuts, bool same_kind) {
+EXACTFF_INLINE void VisibleEdges::remove(Run& run, const LaneCuts& cuts, bool same_kind) {
   const bool left_matters = run.of_source && !same_kind;
   Cover found;
   const unsigned unclear = take_off_by_filter(run, cuts) | cuts.unsure;
@@ -356,7 +275,7 @@ EXACTFF_INLINE void VisibleEdges::remove(Run& run, const Cuts& cuts, bool same_k
 // Occluders are processed a few at a time, so that the processor can work on the next cut while it resolves the
 // previous one.
 EXACTFF_INLINE void VisibleEdges::find_removed(Run& run, std::size_t source_count) {
-  Cuts cuts;
+  LaneCuts cuts;
   for (OutlineId s = 0; run.of_source && s < source_count && run.wanted != 0; ++s) {
     if (s == run.outline) continue;
     cut(run, s, cuts);
@@ -381,7 +300,7 @@ EXACTFF_INLINE void VisibleEdges::find_removed(Run& run, std::size_t source_coun
 //
 // Begins and ends: by how much the removed interval starts and stops after the remaining one. At begin and at end: how
 // far the removed interval extends over each end of the remaining one.
-EXACTFF_INLINE unsigned VisibleEdges::take_off_by_filter(Run& run, const Cuts& cuts) {
+EXACTFF_INLINE unsigned VisibleEdges::take_off_by_filter(Run& run, const LaneCuts& cuts) {
   using namespace kernel::lanes;
   const auto& [begin, end] = run.left;
   const auto& [off_begin, off_end] = cuts.intervals;
@@ -425,7 +344,7 @@ void VisibleEdges::take_off(Run& run, unsigned k, const Interval& off) {
   }
 }
 
-bool VisibleEdges::cover(const Run& run, unsigned k, const Cuts& cuts, Cover& result) {
+bool VisibleEdges::cover(const Run& run, unsigned k, const LaneCuts& cuts, Cover& result) {
   if ((cuts.unsure >> k & 1U) != 0) return cover_exactly(run.first + k, cuts.by, result);
   if ((cuts.covered >> k & 1U) == 0) return false;
   result = {.left = true, .right = true, .coincides = false, .interval = interval(cuts.intervals, k)};

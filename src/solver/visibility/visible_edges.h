@@ -34,9 +34,9 @@
 #include <span>
 #include <vector>
 
-#include "kernel/lane_types.h"
 #include "visibility/cover_choice.h"
 #include "visibility/edge_covers.h"
+#include "visibility/edge_lanes.h"
 #include "visibility/outline_grid.h"
 #include "visibility/outlines.h"
 
@@ -92,38 +92,17 @@ class VisibleEdges : public EdgeCovers {
   [[nodiscard]] std::uint64_t undecided_pairs() const { return undecided_pairs_; }
 
  private:
-  static constexpr unsigned kRunCorners = 4;
   static constexpr std::size_t kBatch = 4;
-  using Four = kernel::lanes::Four;
-  using FourMask = kernel::lanes::FourMask;
-  using LineBits = Outlines::LineBits;
 
-  // One parameter for each edge of a run. Equal lines are not yet replaced by their representative (line_).
-  struct Parameters {
-    Four value{}, error{};
-    FourMask line{};
-  };
-  struct Intervals {
-    Parameters begin, end;
-  };
-  // Consecutive edges of an outline with up to four corners between them: all edges of a triangle or a quadrilateral,
-  // otherwise three. Edge k runs from the corner in lane k to that in the next lane, lane 0 after the last; unused
-  // lanes repeat a corner.
+  // Edges of an outline (edge_lanes.h).
   struct Run {
     OutlineId outline = 0;
     bool of_source = false;
     EdgeId first = 0;
     unsigned edges = 0;
-    unsigned wanted = 0;  // a bit for every edge of which something may be left
-    Intervals left{};     // where it may be, except for the intervals in removed_
-    Four x{}, y{}, z{}, size{};
-  };
-  // What an outline covers of a run, by the filter alone.
-  struct Cuts {
-    OutlineId by = 0;
-    unsigned covered = 0;  // a bit for every edge that certainly crosses the outline's interior, in the interval
-    unsigned unsure = 0;   // a bit for every edge where nothing is certain
-    Intervals intervals;
+    unsigned wanted = 0;   // a bit for every edge of which something may be left
+    LaneIntervals left{};  // where it may be, except for the intervals in removed_
+    RunCorners corners{};
   };
   void start();
   void drop_inner_edges(std::size_t source_count);
@@ -132,26 +111,19 @@ class VisibleEdges : public EdgeCovers {
   [[nodiscard]] bool hide(OutlineId id, std::size_t source_count);
   [[nodiscard]] kernel::Approx3 direction_in_view(const Part& part, bool of_source) const;
   void trace_outline(OutlineId id, std::size_t source_count);
-  void set_corners(Run& run) const;
   void trace(Run& run, std::size_t source_count);
   void find_allowed(Run& run, std::size_t source_count);
   void find_allowed_in_union(Run& run, std::size_t source_count);
   void allow_common(Run& run, unsigned k);
   void find_removed(Run& run, std::size_t source_count);
-  void remove(Run& run, const Cuts& cuts, bool same_kind);
-  [[nodiscard]] Parameter parameter(const Parameters& of, unsigned k) const;
-  [[nodiscard]] Interval interval(const Intervals& of, unsigned k) const {
-    return {parameter(of.begin, k), parameter(of.end, k)};
-  }
-  static void set(Parameters& parameters, unsigned k, const Parameter& parameter);
-  static void replace(Parameters& parameters, const FourMask& where, const Parameters& by);
+  void remove(Run& run, const LaneCuts& cuts, bool same_kind);
+  static void set(LaneParameters& parameters, unsigned k, const Parameter& parameter);
   void take_off(Run& run, unsigned k, const Interval& interval);
-  [[nodiscard]] unsigned take_off_by_filter(Run& run, const Cuts& cuts);
+  [[nodiscard]] unsigned take_off_by_filter(Run& run, const LaneCuts& cuts);
 
-  static void cut(const Run& run, std::span<const Outlines::Edge> lines, EdgeId first, LineBits skipped, Cuts& cuts);
-  void cut(const Run& run, OutlineId outline, Cuts& cuts, LineBits skipped = 0);
+  void cut(const Run& run, OutlineId outline, LaneCuts& cuts, Outlines::LineBits skipped = 0);
   // The part of an edge that is covered; false if none.
-  [[nodiscard]] bool cover(const Run& run, unsigned k, const Cuts& cuts, Cover& result);
+  [[nodiscard]] bool cover(const Run& run, unsigned k, const LaneCuts& cuts, Cover& result);
   void keep_rest(EdgeId id, bool reversed, const Interval& allowed, std::span<const Interval> removed);
   void keep(EdgeId id, bool reversed, const Parameter& begin, const Parameter& end);
 
@@ -159,10 +131,10 @@ class VisibleEdges : public EdgeCovers {
 
   OutlineGrid grid_;
   CoverChoice choice_;
-  bool by_cover_ = false;              // only the chosen occluders count
-  std::vector<std::uint8_t> dropped_;  // by edge
-  std::span<const OutlineId> near_;    // occluders that the current run may meet
-  std::array<Cuts, kBatch> batch_;     // by some of these
+  bool by_cover_ = false;               // only the chosen occluders count
+  std::vector<std::uint8_t> dropped_;   // by edge
+  std::span<const OutlineId> near_;     // occluders that the current run may meet
+  std::array<LaneCuts, kBatch> batch_;  // by some of these
   std::vector<Part> parts_;
   std::uint64_t pairs_ = 0, undecided_pairs_ = 0;
   std::uint64_t next_poll_ = 0;  // in pairs

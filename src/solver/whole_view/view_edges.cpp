@@ -66,7 +66,7 @@ void ViewEdges::trace_outline(OutlineId id) {
   for (const Windows::Place& place : windows_.windows_of(id)) seen |= place.lines;
   if (seen == 0) return;
   if (outline.count > kRunCorners) note_rivals(id);
-  const unsigned step = outline.count <= kRunCorners ? outline.count : kRunCorners - 1;
+  const unsigned step = visibility::edges_of_run(outline.count);
   for (unsigned at = 0; at < outline.count; at += step) {
     Run run{.owner = id};
     run.first = outline.first + at;
@@ -89,21 +89,10 @@ void ViewEdges::trace_outline(OutlineId id) {
 }
 
 void ViewEdges::set_run(Run& run) const {
-  const auto id = [&](unsigned k) {
-    const Edge& edge = outlines_.edge(run.first + std::min(k, run.edges - 1));
-    return k < run.edges ? edge.a : edge.b;
-  };
-  const CornerId i = id(0), j = id(1), k = id(2), l = id(3);
-  const Outlines::Corner &a = outlines_.corner(i), &b = outlines_.corner(j), &c = outlines_.corner(k),
-                         &d = outlines_.corner(l);
-  run.x = Four{a.t.x, b.t.x, c.t.x, d.t.x};
-  run.y = Four{a.t.y, b.t.y, c.t.y, d.t.y};
-  run.z = Four{a.t.z, b.t.z, c.t.z, d.t.z};
-  run.size = Four{a.size, b.size, c.size, d.size};
-  run.id = FourMask{i, j, k, l};
+  run.corners.set(outlines_, run.first, run.edges);
   const InverseDepth& depth = depths_.of(run.owner);
-  run.w = depth.slope.x * run.x + depth.slope.y * run.y + depth.slope.z * run.z;
-  run.w_error = depth.error * run.size;
+  run.w = run.corners.dot(depth.slope);
+  run.w_error = depth.error * run.corners.size;
 }
 
 // All edges of the run, and again if an edge that was to be skipped has a third edge in its plane.
@@ -132,25 +121,43 @@ namespace {
 unsigned both_ends(unsigned corners) { return corners & (corners >> 1U | corners << 3U) & 15U; }
 unsigned ends(unsigned corners) { return (corners | corners >> 1U | corners << 3U) & 15U; }
 
+// What the lines of an outline tell of a run's corners, for cut_run().
+struct SharedCorners {
+  FourMask id;
+  FourMask same{}, reversed{};  // corners of the outline; edges that one of its edges runs back along
+  bool apart = false;           // a line has no corner of the run inside
+
+  [[nodiscard]] EXACTFF_INLINE FourMask at(CornerId end) const { return id == kernel::lanes::four_whole(end); }
+  EXACTFF_INLINE bool take_line(const FourMask& starts, const FourMask& back, const Four& height,
+                                const FourMask& certain) {
+    using kernel::lanes::all_lanes;
+    same |= starts;
+    reversed |= back;
+    apart = apart || all_lanes(certain & (height <= 0.0));
+    return !all_lanes(certain & (height < 0.0));
+  }
+};
+
 }  // namespace
 
 // Bit k of a set of edges stands for the edge from corner k to the next one.
 EXACTFF_INLINE void ViewEdges::look_at(Run& run, OutlineId by) {
   using namespace kernel::lanes;
   Cuts cuts;
-  const Outline& o = outlines_.outline(by);
+  SharedCorners shared{run.corners.id};
   ++work_.pairs;
-  if (!cut(run, outlines_.edges().subspan(o.first, o.count), o.first, cuts)) return;
-  cuts.by = by;
+  if (!cut_run(run.corners, outlines_, by, 0, shared, cuts)) return;
   const unsigned special = (cuts.unsure | cuts.coincident) & (run.wanted | run.skipped);
-  if (cuts.apart && special == 0) return;
+  if (shared.apart && special == 0) return;
+  cuts.reversed = lane_bits(shared.reversed);
+  cuts.same = lane_bits(shared.same);
   const InverseDepth& depth = depths_.of(by);
-  const Four difference = depth.slope.x * run.x + depth.slope.y * run.y + depth.slope.z * run.z - run.w;
-  const Four error = depth.error * run.size + run.w_error;
+  const Four difference = run.corners.dot(depth.slope) - run.w;
+  const Four error = depth.error * run.corners.size + run.w_error;
   cuts.nearer = lane_bits(difference > error) & ~cuts.same;
   cuts.further = lane_bits(difference < -error) & ~cuts.same;
   const bool clear = (cuts.nearer | cuts.same) == 15U || (cuts.further | cuts.same) == 15U;
-  if (!cuts.apart && (!clear || cuts.same == 15U) && outlines_.outline(run.owner).count <= kRunCorners) {
+  if (!shared.apart && (!clear || cuts.same == 15U) && outlines_.outline(run.owner).count <= kRunCorners) {
     rivals_.emplace_back(std::min(run.owner, by), std::max(run.owner, by));
   }
   for (unsigned bits = (cuts.covered | cuts.coincident | cuts.unsure) & (run.wanted | run.skipped); bits != 0;
@@ -163,69 +170,6 @@ EXACTFF_CLONES void ViewEdges::look_at_near(Run& run) {
   for (const OutlineId by : near_) look_at(run, by);
 }
 
-// As in visible_edges.cpp, where the errors are derived. A corner that is an end of a line has height 0 above it,
-// exactly: it lies neither below nor above. An edge with both ends on a line coincides with it; one with one end on a
-// line and the other below it is not covered at all. False where the outline certainly covers nothing, on either side.
-EXACTFF_INLINE bool ViewEdges::cut(const Run& run, std::span<const Edge> lines, EdgeId first, Cuts& cuts) {
-  using namespace kernel::lanes;
-  const Four size_of_both = run.size + next_lane(run.size);
-  Parameters begin{four(0.0), four(0.0), four_whole(Parameter::kAtBegin)};
-  Parameters end{four(1.0), four(0.0), four_whole(Parameter::kAtEnd)};
-  FourMask outside = four_whole(0), sure = four_whole(-1), coincident = four_whole(0), reversed = four_whole(0),
-           same = four_whole(0);
-  bool apart = false;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const Edge& line = lines[i];
-    const FourMask at_a = run.id == four_whole(line.a), at_b = run.id == four_whole(line.b), on_line = at_a | at_b;
-    const FourMask on_line_next{on_line[1], on_line[2], on_line[3], on_line[0]};
-    same |= at_a;
-    const Four height = line.normal.x * run.x + line.normal.y * run.y + line.normal.z * run.z;
-    const Four error = line.error * size_of_both;
-    if (all_lanes((height < -error) & ~on_line)) return false;
-    const Four a = pick(on_line, four(0.0), height), b = next_lane(a);
-    const FourMask certain_a = on_line | (absolute(a) > error), certain_b = on_line_next | (absolute(b) > error);
-    const FourMask known = certain_a & certain_b;
-    const FourMask below_a = a < 0.0, below_b = b < 0.0, on_both = on_line & on_line_next;
-    const FourMask at_or_below_a = a <= 0.0, at_or_below_b = b <= 0.0;
-    apart = apart || all_lanes(certain_a & at_or_below_a);
-    outside |= known & at_or_below_a & at_or_below_b & ~on_both;
-    coincident |= on_both;
-    reversed |= on_both & at_b;
-    const FourMask crosses = (below_a ^ below_b) & ~(on_line | on_line_next);
-    const Four inverse = 1.0 / (a - b);
-    const Four value = a * inverse, value_error = error * absolute(inverse) * 4.0 + 0x1p-50;
-    const Four beyond = value - pick(below_b, end.value, begin.value);
-    const Four beyond_error = value_error + pick(below_b, end.error, begin.error);
-    const FourMask before = beyond < 0.0;
-    sure &= known & ~(crosses & ~(absolute(beyond) > beyond_error));
-    const FourMask id = four_whole(static_cast<std::int64_t>(first + i));
-    const FourMask enters = crosses & below_a & ~before, leaves = crosses & below_b & before;
-    begin = {pick(enters, value, begin.value), pick(enters, value_error, begin.error), pick(enters, id, begin.line)};
-    end = {pick(leaves, value, end.value), pick(leaves, value_error, end.error), pick(leaves, id, end.line)};
-  }
-  const Four length = end.value - begin.value, length_error = end.error + begin.error;
-  coincident &= ~outside;
-  outside |= sure & (-length > length_error);
-  const FourMask covered = ~outside & ~coincident & sure & (length > length_error);
-  cuts.apart = apart;
-  cuts.covered = lane_bits(covered);
-  cuts.coincident = lane_bits(coincident);
-  cuts.reversed = lane_bits(reversed);
-  cuts.unsure = lane_bits(~(outside | coincident | covered));
-  cuts.same = lane_bits(same);
-  cuts.begin = begin;
-  cuts.end = end;
-  return true;
-}
-
-visibility::EdgeCovers::Interval ViewEdges::interval(const Cuts& cuts, unsigned k) const {
-  const auto parameter = [&](const Parameters& of) -> Parameter {
-    const auto line = static_cast<EdgeId>(of.line[k]);
-    return {of.value[k], visibility::rounded_up(of.error[k]), line < Parameter::kAtBegin ? line_[line] : line};
-  };
-  return {parameter(cuts.begin), parameter(cuts.end)};
-}
-
 bool ViewEdges::cover(const Run& run, unsigned k, const Cuts& cuts, Cover& result) {
   if ((cuts.coincident >> k & 1U) != 0) {
     const bool right = (cuts.reversed >> k & 1U) != 0;
@@ -236,7 +180,7 @@ bool ViewEdges::cover(const Run& run, unsigned k, const Cuts& cuts, Cover& resul
     ++work_.undecided;
     return cover_exactly(run.first + k, cuts.by, result);
   }
-  result = {.left = true, .right = true, .coincides = false, .interval = interval(cuts, k)};
+  result = {.left = true, .right = true, .coincides = false, .interval = interval(cuts.intervals, k)};
   return true;
 }
 

@@ -34,8 +34,8 @@
 #include <utility>
 #include <vector>
 
-#include "kernel/lane_types.h"
 #include "visibility/edge_covers.h"
+#include "visibility/edge_lanes.h"
 #include "visibility/plane_visibility.h"
 #include "visibility/visible_edges.h"
 #include "whole_view/depths.h"
@@ -44,6 +44,9 @@
 
 namespace exactff::whole_view {
 
+using visibility::Four;
+using visibility::FourMask;
+using visibility::kRunCorners;
 using visibility::Parameter;
 
 inline constexpr OutlineId kNothing = 0xFFFFFFFFU;
@@ -81,10 +84,7 @@ class ViewEdges : public visibility::EdgeCovers {
   [[nodiscard]] const Work& work() const { return work_; }
 
  private:
-  static constexpr unsigned kRunCorners = 4;
   static constexpr EdgeId kNoEdge = 0xFFFFFFFFU;
-  using Four = kernel::lanes::Four;
-  using FourMask = kernel::lanes::FourMask;
   using Lines = Windows::Lines;
 
   enum class Side { kLeft, kRight };
@@ -97,32 +97,20 @@ class ViewEdges : public visibility::EdgeCovers {
     bool coincides = false;  // it begins at the edge
     Interval interval;
   };
-  // Consecutive edges of an outline with up to four corners (visible_edges.h), or one line of two piercing faces.
+  // Edges of one outline (edge_lanes.h), or one line of two piercing faces.
   struct Run {
     OutlineId owner = kNothing;  // seen on the left
     OutlineId other = kNothing;  // of piercing faces: the one on the right
     EdgeId first = 0;
     unsigned edges = 0;
-    unsigned corners = 0;  // a bit for every lane with a corner of its own
     unsigned wanted = 0, skipped = 0, forced = 0;
-    Four x{}, y{}, z{}, size{};
-    FourMask id{};
+    visibility::RunCorners corners{};
     Four w{}, w_error{};  // inverse depths of the owner
   };
-  struct Parameters {
-    Four value{}, error{};
-    FourMask line{};
-  };
   // What an outline covers of a run, by the filter and by shared corners.
-  struct Cuts {
-    OutlineId by = 0;
-    bool apart = false;       // a line of the outline has no corner of the run inside
-    unsigned covered = 0;     // both sides of these edges, in the interval
-    unsigned coincident = 0;  // edges between the same two corners as one of the outline's
-    unsigned reversed = 0;    // of these: it runs the other way
-    unsigned unsure = 0;
+  struct Cuts : visibility::LaneCuts {
+    unsigned reversed = 0;                       // of the coincident edges: it runs the other way
     unsigned nearer = 0, further = 0, same = 0;  // of the outline, by corner; same: they share the corner
-    Parameters begin, end;
   };
   struct Piercing {
     OutlineId p = 0, q = 0;
@@ -145,12 +133,10 @@ class ViewEdges : public visibility::EdgeCovers {
   void trace(Run& run);
   void look_at_near(Run& run);
   void look_at(Run& run, OutlineId by);
-  [[nodiscard]] static bool cut(const Run& run, std::span<const Outlines::Edge> lines, EdgeId first, Cuts& cuts);
   void resolve(Run& run, unsigned k, const Cuts& cuts);
   [[nodiscard]] static bool may_hold(unsigned k, const Cuts& cuts);
   [[nodiscard]] bool holds(const Run& run, unsigned k, const Cuts& cuts);
   [[nodiscard]] bool cover(const Run& run, unsigned k, const Cuts& cuts, Cover& result);
-  [[nodiscard]] Interval interval(const Cuts& cuts, unsigned k) const;
   void hide(Run& run, unsigned k, const Interval& interval);
   void hide_where_nearer(Run& run, unsigned k, OutlineId by, const Interval& interval);
   void note_rivals(OutlineId outline);
