@@ -5,7 +5,7 @@
 //   scene cornell_box.obj --on floor --grid 32x32 --title "Cornell box"
 //   scene @karkanis:n=200 --on ... --unless-abridged
 //   experiment karkanis-times nettle-rule
-//   experiment honesty --unless-abridged
+//   experiment closure --unless-abridged
 //   field ../field/cycles.csv
 //
 // A scene line has the words and flags that `exactff compare` takes for one scene (flags/comparison.h). Files are

@@ -5,12 +5,9 @@
 #include "experiments/closure.h"
 #include "experiments/hemicube_resolution.h"
 #include "experiments/hemicube_scatter.h"
-#include "experiments/honesty.h"
 #include "experiments/karkanis_times.h"
 #include "experiments/nettle_rule.h"
 #include "experiments/small_emitters.h"
-#include "experiments/view_factors.h"
-#include "experiments/whole_view_times.h"
 #include "text/nearest_names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -25,14 +22,9 @@ constexpr Experiment kExperiments[] = {
     {"hemicube-resolution", "hemicube error against resolution, rotation and distance", &hemicube_resolution},
     {"karkanis-times", "time for all patches from one point against their number, compared with Karkanis' times",
      &karkanis_times},
-    {"whole-view", "all that one point sees, in one sweep: its time against the number of triangles",
-     &whole_view_times},
     {"nettle-rule", "Nettle's rule: error against the patch's size over its distance", &nettle_rule},
     {"small-emitters", "Karkanis' conclusion: many small bright emitters, in radiosity", &small_emitters},
-    {"closure", "a closed room: the form factors from a point to all patches sum to 1", &closure},
-    {"view-factors", "view factors from patch to patch: width against time, claims, and sums of rows", &view_factors},
-    {"honesty", "view factors in random scenes: how often the true error exceeds the reported one, for each claim",
-     &honesty}};
+    {"closure", "a closed room: the form factors from a point to all patches sum to 1", &closure}};
 
 }  // namespace
 

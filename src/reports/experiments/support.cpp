@@ -125,12 +125,6 @@ std::optional<double> reaches(const Points& points, double y) {
   return std::nullopt;
 }
 
-std::string accuracy_text(double accuracy) {
-  const double exponent = std::round(std::log10(accuracy));
-  if (std::abs(accuracy / std::pow(10.0, exponent) - 1.0) > 1e-9) return text::rounded(accuracy, 2);
-  return exponent == 0.0 ? "1" : "10" + text::superscript(static_cast<int>(exponent));
-}
-
 std::string percent(double share) { return text::rounded(100.0 * share, 2) + " %"; }
 
 TableWriter::TableWriter(std::string_view about, std::initializer_list<std::string_view> columns) {

@@ -108,9 +108,6 @@ struct ErrorCurve {
 // Nothing if it never does.
 [[nodiscard]] std::optional<double> reaches(const Points& points, double y);
 
-// "10⁻³" of a power of ten; of others, two digits.
-[[nodiscard]] std::string accuracy_text(double accuracy);
-
 // "1.5 %"
 [[nodiscard]] std::string percent(double share);
 

@@ -324,12 +324,12 @@ TEST_F(StudyCommand, NamesTheLineThatIsWrong) {
 }
 
 TEST_F(StudyCommand, LeavesExperimentsOutOfAbridgedReports) {
-  put(line("Room B", "2x2") + "experiment honesty closure --unless-abridged\n");
+  put(line("Room B", "2x2") + "experiment nettle-rule closure --unless-abridged\n");
   EXPECT_EQ(run(out_, {"--abridged"}), 0) << error_;
   const std::string page = text_of(out_ / "report.html");
-  EXPECT_NE(page.find("the experiment honesty"), std::string::npos);
-  EXPECT_EQ(page.find("chapter-honesty"), std::string::npos);
-  EXPECT_FALSE(fs::exists(out_ / "honesty.csv"));
+  EXPECT_NE(page.find("the experiment nettle-rule"), std::string::npos);
+  EXPECT_EQ(page.find("chapter-nettle-rule"), std::string::npos);
+  EXPECT_FALSE(fs::exists(out_ / "nettle-rule.csv"));
   EXPECT_FALSE(fs::exists(out_ / "closure.csv"));
 }
 

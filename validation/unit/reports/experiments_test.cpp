@@ -11,12 +11,9 @@
 #include "experiments/experiment.h"
 #include "experiments/hemicube_resolution.h"
 #include "experiments/hemicube_scatter.h"
-#include "experiments/honesty.h"
 #include "experiments/karkanis_times.h"
 #include "experiments/nettle_rule.h"
 #include "experiments/small_emitters.h"
-#include "experiments/view_factors.h"
-#include "experiments/whole_view_times.h"
 #include "page/plot_script.h"
 
 namespace exactff::experiments {
@@ -27,7 +24,7 @@ const Hooks kNoHooks;
 // --- what they share -----------------------------------------------------------------------------------
 
 TEST(Experiments, AreFoundByNameAndNearlyByAnother) {
-  ASSERT_EQ(all_experiments().size(), 9U);
+  ASSERT_EQ(all_experiments().size(), 6U);
   for (const Experiment& e : all_experiments()) EXPECT_EQ(&experiment_named(e.name), &e);
   try {
     (void)experiment_named("nettle");
@@ -66,13 +63,6 @@ struct SmallRun {
   std::function<Result(int threads, const Hooks&)> run;
 };
 
-HonestySize small_honesty() {
-  HonestySize size{.scenes = 6, .accuracies = {1e-1, 1e-4, 1e-8}};
-  size.budget = 100;
-  size.truth_budget = 400;
-  return size;
-}
-
 std::vector<SmallRun> small_runs() {
   const auto scatter = [](int threads, const Hooks& hooks) {
     return hemicube_scatter(ScatterSize{.scenes = 3, .triangles = 30, .resolutions = {20}}, threads, hooks);
@@ -97,15 +87,7 @@ std::vector<SmallRun> small_runs() {
   const auto room = [](int threads, const Hooks& hooks) {
     return closure(ClosureSize{.receivers = 4, .choices = {"hemicube", "nettle:rays=4"}}, threads, hooks);
   };
-  const auto whole_view = [](int, const Hooks& hooks) {
-    return whole_view_times({.triangles = {5, 20}, .models = {{"closed-room:boxes=1", "floor"}}, .points = 2}, hooks);
-  };
-  const auto honest = [](int threads, const Hooks& hooks) { return honesty(small_honesty(), threads, hooks); };
-  const auto factors = [](int threads, const Hooks& hooks) {
-    return view_factors({.accuracies = {1e-3}}, threads, hooks);
-  };
-  return {{"scatter", scatter}, {"resolution", resolution}, {"nettle", nettle},  {"emitters", emitters},
-          {"room", room},       {"whole view", whole_view}, {"honesty", honest}, {"view factors", factors}};
+  return {{"scatter", scatter}, {"resolution", resolution}, {"nettle", nettle}, {"emitters", emitters}, {"room", room}};
 }
 
 TEST(Experiments, GiveTheSameBytesOfValuesForAnyNumberOfThreads) {
@@ -299,85 +281,6 @@ TEST(Closure, ExactBallsHoldOneAndTheHemicubeClosesThoughItsValuesErr) {
   EXPECT_LT(study.methods[0].worst, 1e-12);
   EXPECT_GT(study.methods[0].single_rms, 1e-5);
   EXPECT_GT(study.methods[1].rms, 1e-3);
-}
-
-TEST(WholeViewTimes, SeeAsManyTrianglesAsTheSolverAndAddUpToOne) {
-  const std::vector<WholeViewRow> rows =
-      whole_view_rows({.triangles = {30, 200}, .models = {{"closed-room:boxes=2", "ceiling"}}, .points = 3}, kNoHooks);
-  ASSERT_EQ(rows.size(), 5U);
-  for (const WholeViewRow& row : rows) EXPECT_TRUE(row.holds_one) << row.scene;
-  EXPECT_EQ(rows[0].seen, work_row(30, false).visible + 1);  // and the source behind them
-  EXPECT_EQ(rows[1].seen, work_row(200, false).visible + 1);
-  EXPECT_GT(rows[2].open, 0.05);
-  EXPECT_EQ(rows[4].open, 0.0);
-}
-
-// --- view factors --------------------------------------------------------------------------------------
-
-TEST(ViewFactorChapter, TellsWidthsClaimsAndSums) {
-  const ViewFactorStudy study = view_factor_study({.accuracies = {1e-2, 1e-6}, .budget = 100}, 1, kNoHooks);
-  ASSERT_EQ(study.curves.size(), 4U);
-  EXPECT_EQ(study.curves.front().claim, Claim::kCertified);
-  for (const WidthCurve& curve : study.curves) {
-    for (const WidthAtAccuracy& place : curve.places) EXPECT_LE(place.width, place.accuracy) << curve.name;
-  }
-  EXPECT_GE(study.curves[0].places[0].width, study.curves[0].places[1].width);
-  ASSERT_EQ(study.sums.size(), 12U);
-  for (std::size_t i = 0; i < study.sums.size(); ++i) {
-    EXPECT_LE(study.sums[i].lower, 1.0) << study.patches[i];
-    EXPECT_GE(study.sums[i].upper, 1.0) << study.patches[i];
-  }
-  // The cube's sides see no side of the cube; with so few cells, some pairs of walls are crowds.
-  for (std::size_t i = 6; i < 12; ++i) {
-    for (std::size_t j = 6; j < 12; ++j) EXPECT_EQ(study.matrix.at(i, j).claim, Claim::kZero);
-  }
-  EXPECT_NE(std::ranges::count(study.matrix.entries, Claim::kStatistical, &ViewFactor::claim), 0);
-  const Result chapter = view_factors({.accuracies = {1e-2}, .budget = 100}, 1, kNoHooks);
-  EXPECT_EQ(chapter.figures.size(), 3U);
-  EXPECT_NE(chapter.paragraphs.front().find("every one of 12 rows"), std::string::npos);
-}
-
-TEST(Honesty, CountsAnErrorOnlyIfItIsProved) {
-  const ViewFactor entry{.value = 0.5, .lower = 0.4, .upper = 0.6};
-  EXPECT_EQ(verdict(entry, {0.45, 0.55}), Verdict::kHolds);
-  EXPECT_EQ(verdict(entry, {0.4, 0.6}), Verdict::kHolds);
-  EXPECT_EQ(verdict(entry, {0.55, 0.65}), Verdict::kOpen);
-  EXPECT_EQ(verdict(entry, {0.3, 0.7}), Verdict::kOpen);
-  EXPECT_EQ(verdict(entry, {0.6, 0.7}), Verdict::kOpen);
-  EXPECT_EQ(verdict(entry, {0.61, 0.7}), Verdict::kBroken);
-  EXPECT_EQ(verdict(entry, {0.1, 0.39}), Verdict::kBroken);
-  EXPECT_NEAR(error_ratio(entry, {0.65, 0.7}).at_least, 1.5, 1e-12);
-  EXPECT_NEAR(error_ratio(entry, {0.65, 0.7}).at_most, 2.0, 1e-12);
-  EXPECT_EQ(error_ratio(entry, {0.45, 0.52}).at_least, 0.0);
-  EXPECT_NEAR(error_ratio(entry, {0.45, 0.52}).at_most, 0.5, 1e-12);
-}
-
-TEST(Honesty, NoErrorExceedsTheReportedOneInAFewScenes) {
-  HonestyStudy study = honesty_study({.first = 31, .scenes = 6, .budget = 100, .truth_budget = 500}, 1, kNoHooks);
-  EXPECT_EQ(study.contradictions, 0U);
-  EXPECT_EQ(study.failures, 0U);
-  std::size_t entries = 0, holds = 0;
-  for (const HonestyRow& row : study.rows) {
-    EXPECT_EQ(row.broken, 0U) << to_string(row.claim) << ' ' << row.accuracy;
-    EXPECT_LE(row.worst.at_most, 1.0 + 1e-12) << to_string(row.claim) << ' ' << row.accuracy;
-    EXPECT_EQ(row.entries, row.holds + row.open);
-    entries += row.entries;
-    holds += row.holds;
-  }
-  EXPECT_GE(holds, entries * 8 / 10);
-  EXPECT_GE(study.rows.size(), 16U);  // eight accuracies of two claims
-  // The same entries beside a value that is not theirs.
-  for (HonestyScene& scene : study.scenes) {
-    for (HonestyEntry& entry : scene.entries) {
-      for (double* end : {&entry.factor.value, &entry.factor.lower, &entry.factor.upper}) *end += 2.0;
-    }
-  }
-  study.rows = honesty_rows(study.scenes);
-  for (const HonestyRow& row : study.rows) EXPECT_EQ(row.broken, row.entries);
-  const std::string said = honesty_chapter(study, {}).paragraphs.front();
-  EXPECT_NE(said.find(std::to_string(entries) + " of " + std::to_string(entries) + " view factors"), std::string::npos)
-      << said;
-  EXPECT_NE(said.find("statistical ones"), std::string::npos) << said;
 }
 
 // --- the plot they need --------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-#include "experiments/honesty.h"
+#include "studies/honesty.h"
 
 #include <algorithm>
 #include <array>
@@ -145,6 +145,16 @@ ErrorRatio error_ratio(const ViewFactor& entry, const Bounds& truth) {
   const double below = truth.lower - entry.value, above = entry.value - truth.upper;
   return {std::max({0.0, below, above}) / reported,
           std::max(std::abs(entry.value - truth.lower), std::abs(entry.value - truth.upper)) / reported};
+}
+
+HonestySize honesty_size(bool abridged) {
+  HonestySize size;
+  if (abridged) {
+    size.scenes = 8;
+    size.budget = 300;
+    size.truth_budget = 1000;
+  }
+  return size;
 }
 
 HonestyScene honesty_scene(std::uint64_t number) {

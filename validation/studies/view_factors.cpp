@@ -1,7 +1,8 @@
-#include "experiments/view_factors.h"
+#include "studies/view_factors.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "kernel/vec.h"
 #include "text/phrases.h"
@@ -178,6 +179,12 @@ Scene scene_of_cube_in_room() {
   add_sides(scene, {"cube1", "cube2", "cube3", "cube4", "cube5", "cube6"}, {0.5 - 5 * h, 0.5 + 7 * h, 0.5 - 13 * h},
             {{{8 * s, -4 * s, 1 * s}, {1 * s, 4 * s, 8 * s}, {-4 * s, -7 * s, 4 * s}}}, false);
   return scene.build();
+}
+
+std::string accuracy_text(double accuracy) {
+  const double exponent = std::round(std::log10(accuracy));
+  if (std::abs(accuracy / std::pow(10.0, exponent) - 1.0) > 1e-9) return text::rounded(accuracy, 2);
+  return exponent == 0.0 ? "1" : "10" + text::superscript(static_cast<int>(exponent));
 }
 
 ViewFactorStudy view_factor_study(const ViewFactorSize& size, int threads, const Hooks& hooks) {

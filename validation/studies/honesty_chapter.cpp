@@ -2,7 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/honesty.h"
+#include "studies/honesty.h"
+#include "studies/view_factors.h"
 #include "text/phrases.h"
 
 namespace exactff::experiments {
@@ -211,20 +212,6 @@ Result honesty_chapter(const HonestyStudy& study, const HonestySize& size) {
   result.figures = {error_figure(study)};
   result.values = {entry_table(study, size), row_table(study)};
   return result;
-}
-
-Result honesty(const HonestySize& size, int threads, const Hooks& hooks) {
-  return honesty_chapter(honesty_study(size, threads, hooks), size);
-}
-
-Result honesty(const Effort& effort, const Hooks& hooks) {
-  HonestySize size;
-  if (effort.abridged) {
-    size.scenes = 8;
-    size.budget = 300;
-    size.truth_budget = 1000;
-  }
-  return honesty(size, effort.threads, hooks);
 }
 
 }  // namespace exactff::experiments

@@ -43,6 +43,9 @@ struct ViewFactorStudy {
 // A room of 1 x 1 x 1 with a cube, tilted about all axes, in its middle: 12 patches.
 [[nodiscard]] Scene scene_of_cube_in_room();
 
+// "10⁻³" of a power of ten; of others, two digits.
+[[nodiscard]] std::string accuracy_text(double accuracy);
+
 [[nodiscard]] ViewFactorStudy view_factor_study(const ViewFactorSize& size, int threads, const Hooks& hooks);
 [[nodiscard]] Result view_factors(const ViewFactorSize& size, int threads, const Hooks& hooks);
 [[nodiscard]] Result view_factors(const Effort& effort, const Hooks& hooks);

@@ -26,6 +26,7 @@ struct HonestySize {
   std::vector<double> truth_accuracies = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
   std::size_t truth_budget = 3000;  // cells of each enclosure
 };
+[[nodiscard]] HonestySize honesty_size(bool abridged);
 
 // What is proved about a view factor.
 struct Bounds {
@@ -91,7 +92,5 @@ struct HonestyStudy {
 // The rows for readers.
 [[nodiscard]] NumberTable honesty_table(std::span<const HonestyRow> rows);
 [[nodiscard]] Result honesty_chapter(const HonestyStudy& study, const HonestySize& size);
-[[nodiscard]] Result honesty(const HonestySize& size, int threads, const Hooks& hooks);
-[[nodiscard]] Result honesty(const Effort& effort, const Hooks& hooks);
 
 }  // namespace exactff::experiments

@@ -1,4 +1,4 @@
-#include "experiments/whole_view_times.h"
+#include "studies/whole_view_times.h"
 
 #include <algorithm>
 #include <cmath>
