@@ -27,10 +27,10 @@ void check_words(const std::vector<std::string>& words) {
 }
 
 void check(const flags::StudyFile& study) {
-  if (study.scenes.empty() && study.experiments.empty() && study.fields.empty()) fail("a study of nothing is accepted");
-  for (const auto* lines : {&study.scenes, &study.experiments, &study.fields}) {
+  if (study.scenes.empty() && study.experiments.empty()) fail("a study of nothing is accepted");
+  for (const auto* lines : {&study.scenes, &study.experiments}) {
     std::size_t before = 0;
-    for (const report::StudyLine& line : *lines) {
+    for (const flags::StudyLine& line : *lines) {
       if (line.words.empty() || line.number <= before) fail("a line without words, or out of order");
       before = line.number;
       check_words(line.words);

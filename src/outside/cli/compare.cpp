@@ -36,7 +36,6 @@ constexpr const char* kCompareFooter =
     "  title Rooms\n"
     "  scene cornell_box.obj --on floor --grid 32x32 --title \"Cornell box\"\n"
     "  experiment karkanis-times\n"
-    "A line `field FILE.csv` adds a chapter on results that were measured with another renderer (data/README.md).\n"
     "Settings that cannot affect a scene are left out, and the report says which and why.\n"
     "Times are measured after all values, on one thread.\n"
     "DIR appears only when it is complete. Until then, finished values are kept in DIR.part. After an interruption, "

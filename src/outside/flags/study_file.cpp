@@ -4,7 +4,6 @@
 
 #include "flags/comparison.h"
 #include "kernel/float_environment.h"
-#include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_file.h"
 #include "text/text_lines.h"
@@ -45,14 +44,11 @@ void add_line(const text::TextLine& line, const std::string& file, StudyFile& st
   std::vector<std::string> words = split_words(line.text, file, line.number);
   const std::string kind = words.front();
   words.erase(words.begin());
-  std::vector<StudyLine>* list = kind == "scene"        ? &study.scenes
-                                 : kind == "experiment" ? &study.experiments
-                                 : kind == "field"      ? &study.fields
-                                                        : nullptr;
+  std::vector<StudyLine>* list = kind == "scene" ? &study.scenes : kind == "experiment" ? &study.experiments : nullptr;
   if (list == nullptr && kind != "title") {
     throw InputError(Problem{file, line.number, "a line begins with " + text::in_quotes(kind),
                              "the first word says what the line is",
-                             "begin it with title, scene, experiment or field, or with # for a comment"});
+                             "begin it with title, scene or experiment, or with # for a comment"});
   }
   if (words.empty()) {
     throw InputError(Problem{file, line.number, "nothing follows " + text::in_quotes(kind), "the line is incomplete",
@@ -81,7 +77,7 @@ StudyFile parse_study_file(const std::filesystem::path& path) {
       for (const Problem& problem : error.problems()) problems.add(problem);
     }
   }
-  if (problems.empty() && study.scenes.empty() && study.experiments.empty() && study.fields.empty()) {
+  if (problems.empty() && study.scenes.empty() && study.experiments.empty()) {
     problems.add({file, 0, "the study has no scene and no experiment", "there is nothing to do",
                   "add a line, for example: scene room.obj --on floor --grid 16x16"});
   }
@@ -159,14 +155,6 @@ void add_experiments(const StudyLine& line, report::Plan& plan) {
   }
 }
 
-void add_field(const StudyLine& line, const std::string& file, report::Plan& plan) {
-  if (line.words.size() != 1) {
-    throw InputError(Problem{file, line.number, "a field line names " + text::counted(line.words.size(), "file"),
-                             "each file becomes a chapter", "give each file a line, and quote a name with blanks"});
-  }
-  plan.add_field(std::filesystem::path(file).parent_path() / line.words.front());
-}
-
 }  // namespace
 
 report::Plan read_study_file(const std::filesystem::path& file, const report::Effort& effort) {
@@ -180,9 +168,6 @@ report::Plan read_study_file(const std::filesystem::path& file, const report::Ef
   }
   for (const StudyLine& line : study.experiments) {
     at_line(file.string(), line.number, [&] { add_experiments(line, plan); });
-  }
-  for (const StudyLine& line : study.fields) {
-    at_line(file.string(), line.number, [&] { add_field(line, file.string(), plan); });
   }
   return plan;
 }

@@ -6,10 +6,9 @@
 //   scene @karkanis:n=200 --on ... --unless-abridged
 //   experiment karkanis-times nettle-rule
 //   experiment closure --unless-abridged
-//   field ../field/cycles.csv
 //
 // A scene line has the words and flags that `exactff compare` takes for one scene (flags/comparison.h). Files are
-// looked up in the folder of the study. A field line names a file of measured results (report/field.h).
+// looked up in the folder of the study.
 #pragma once
 
 #include <filesystem>
@@ -36,7 +35,6 @@ struct StudyFile {
   std::string title;
   std::vector<StudyLine> scenes;
   std::vector<StudyLine> experiments;
-  std::vector<StudyLine> fields;
 };
 
 // Throws InputError with everything that is wrong in the syntax of the file. Flags are checked later, by the code that

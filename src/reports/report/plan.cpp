@@ -11,10 +11,8 @@
 #include "report/identity.h"
 #include "report/report.h"
 #include "report/verdicts.h"
-#include "text/fnv1a.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
-#include "text/text_file.h"
 
 namespace exactff::report {
 namespace {
@@ -99,37 +97,9 @@ void Plan::add_experiments(const std::vector<std::string>& names) {
   }
 }
 
-void Plan::add_field(const std::filesystem::path& csv) {
-  const FieldResults results = read_field(csv);
-  text::Fnv1a hash;
-  const auto add = [&](const std::string& bytes) {
-    hash.add(std::uint64_t{bytes.size()});
-    hash.add_bytes(bytes);
-  };
-  add(text::read_text_file(csv, "a CSV file"));
-  for (const FieldRow& row : results.rows) add(row.png);
-  fields.push_back({csv, hash.digits()});
-}
-
-namespace {
-
-// Read again, because a plan can be made long before it is carried out.
-std::vector<FieldResults> read_fields(const Plan& plan) {
-  std::vector<FieldResults> list;
-  for (const PlannedField& planned : plan.fields) {
-    FieldResults results = read_field(planned.file);
-    const auto same = [&](const FieldResults& other) { return other.name == results.name; };
-    if (std::ranges::any_of(list, same)) results.name += '-' + std::to_string(list.size() + 1);
-    list.push_back(std::move(results));
-  }
-  return list;
-}
-
-}  // namespace
-
 Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::Journal& journal, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
-  if (plan.scenes.empty() && plan.experiments.empty() && plan.fields.empty()) {
+  if (plan.scenes.empty() && plan.experiments.empty()) {
     text::refuse(
         plan.left_out.empty() ? "the report has no scene and no experiment" : "every scene of the study is left out",
         plan.left_out.empty() ? "there is nothing to do"
@@ -145,7 +115,6 @@ Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::J
   report.command_line = plan.command_line;
   report.identity = identity_of(plan);
   report.left_out = plan.left_out;
-  report.fields = read_fields(plan);
   for (const PlannedScene& scene : plan.scenes) {
     report.scenes.push_back({scene.name, scene.title, study::run(scene.request, titled(scene, hooks), &journal)});
   }

@@ -32,19 +32,12 @@ struct PlannedScene {
   std::vector<Problem> warnings;  // for the user, of how the request was made
 };
 
-// A file of results that another renderer was measured to have (data/README.md): a chapter of the report.
-struct PlannedField {
-  std::filesystem::path file;
-  std::string digest;  // of its content and its pictures
-};
-
 // What a report is to cover: scenes, and experiments that bring their own scenes.
 struct Plan {
   std::string title;  // of the report; empty: that of the only scene
   std::vector<PlannedScene> scenes;
   std::vector<std::string> experiments;  // names
-  std::vector<PlannedField> fields = {};
-  std::vector<LeftOut> left_out;  // scenes that an abridged report leaves out
+  std::vector<LeftOut> left_out;         // scenes that an abridged report leaves out
   Effort effort;
   std::string command_line;   // shown in the last section of the report
   std::filesystem::path vtk;  // the file of write_vtk for the only scene; empty: none
@@ -52,8 +45,6 @@ struct Plan {
   // Gives the scene a name that no other has.
   void add_scene(std::string scene_title, std::shared_ptr<const Scene> scene, study::Request request,
                  std::vector<Problem> warnings = {});
-  // Throws InputError with everything that is wrong with the file and its pictures.
-  void add_field(const std::filesystem::path& csv);
   // "all" stands for every experiment. Drops repetitions. Throws InputError for an unknown name.
   void add_experiments(const std::vector<std::string>& names);
 };

@@ -8,7 +8,6 @@
 
 #include "page/chapter.h"
 #include "page/figure.h"
-#include "report/field.h"
 #include "report/strip.h"
 #include "report/studies.h"
 #include "report/tables.h"
@@ -25,7 +24,6 @@ struct StudyReport {
   std::string title;  // empty: the title of the only scene
   std::vector<SceneChapter> scenes;
   std::vector<page::Chapter> chapters;
-  std::vector<FieldResults> fields;
   std::string command_line;
   std::string identity;           // of the plan (identity.h); empty if there is none
   std::vector<LeftOut> left_out;  // scenes and chapters
@@ -44,7 +42,6 @@ struct Page {
 struct Pages {
   std::vector<Page> scenes;
   std::vector<Page> chapters;
-  std::vector<Page> fields;
 };
 
 // The report as one HTML page that loads nothing and has no scripts.

@@ -31,7 +31,6 @@ class PageWriter {
     for (std::size_t i = 0; i < report_.scenes.size(); ++i) {
       text_ += scene_part(report_.scenes[i], pages_.scenes[i]);
     }
-    for (std::size_t i = 0; i < report_.fields.size(); ++i) text_ += field_part(report_.fields[i], pages_.fields[i]);
     for (std::size_t i = 0; i < report_.chapters.size(); ++i) chapter(report_.chapters[i], pages_.chapters[i]);
     left_out();
     definitions();
@@ -42,9 +41,7 @@ class PageWriter {
   }
 
  private:
-  [[nodiscard]] bool alone() const {
-    return report_.scenes.size() == 1 && report_.chapters.empty() && report_.fields.empty();
-  }
+  [[nodiscard]] bool alone() const { return report_.scenes.size() == 1 && report_.chapters.empty(); }
 
   [[nodiscard]] std::string title() const {
     if (!report_.title.empty()) return text::html(report_.title);
@@ -75,7 +72,6 @@ class PageWriter {
     };
     if (has_overview()) link("overview", "Which method for which error");
     for (const SceneChapter& scene : report_.scenes) link(anchor_of(scene), text::html(scene.title));
-    for (const FieldResults& field : report_.fields) link(anchor_of(field), text::html(field.title));
     for (const page::Chapter& chapter : report_.chapters) link("chapter-" + chapter.name, text::html(chapter.title));
     if (!report_.left_out.empty()) link("left-out", "What this report leaves out, and why");
     link("words", "Terms and sources");

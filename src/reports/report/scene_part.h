@@ -12,10 +12,6 @@ namespace exactff::report {
 [[nodiscard]] std::string scene_part(const SceneChapter& scene, const Page& page);
 [[nodiscard]] std::string anchor_of(const SceneChapter& scene);
 
-// The chapter of results that were measured elsewhere.
-[[nodiscard]] std::string field_part(const FieldResults& field, const Page& page);
-[[nodiscard]] std::string anchor_of(const FieldResults& field);
-
 // One figure, or all of those that are wanted, as HTML; empty if there are none.
 [[nodiscard]] std::string figure_text(const page::DrawnFigure& drawn);
 using WantsFigure = std::function<bool(const page::Figure& figure)>;

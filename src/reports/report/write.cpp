@@ -85,11 +85,6 @@ std::vector<std::string> write(const StudyReport& report, const fs::path& folder
     write_tables(chapter, staged.path());
     pages.chapters.push_back(drawer.draw(chapter.figures, chapter.left_out, chapter.name));
   }
-  for (const FieldResults& field : report.fields) {
-    std::vector<LeftOut> left_out;
-    std::vector<page::Figure> wanted = field_figures(field, left_out);
-    pages.fields.push_back(drawer.draw(std::move(wanted), std::move(left_out), anchor_of(field)));
-  }
   files::write_file(staged.path() / page::kReportFile, [&](std::ostream& out) { out << report_page(report, pages); });
   files::require_not_cancelled(hooks);
   staged.commit();

@@ -57,7 +57,8 @@ TEST_F(StudyFileReader, TellsEverythingThatIsWrongWithItsLine) {
       "scene 'a b.obj --on floor\n"
       "scene\n"
       "scene a.obj\n"
-      "experiment\n");
+      "experiment\n"
+      "field cycles.csv\n");
   EXPECT_NE(said.find("a.study:1: a line begins with 'Scene'"), std::string::npos) << said;
   EXPECT_NE(said.find("a.study:2: nothing follows 'title'"), std::string::npos) << said;
   EXPECT_NE(said.find("a.study:3: a quote is not closed (the end of the word is unknown); close it with '"),
@@ -65,6 +66,7 @@ TEST_F(StudyFileReader, TellsEverythingThatIsWrongWithItsLine) {
       << said;
   EXPECT_NE(said.find("a.study:4: nothing follows 'scene'"), std::string::npos) << said;
   EXPECT_NE(said.find("a.study:6: nothing follows 'experiment'"), std::string::npos) << said;
+  EXPECT_NE(said.find("a.study:7: a line begins with 'field'"), std::string::npos) << said;
   EXPECT_EQ(said.find("a.study:5"), std::string::npos) << said;
 }
 

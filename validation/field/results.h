@@ -9,7 +9,7 @@
 #include "exactff/progress.h"
 #include "page/figure.h"
 
-namespace exactff::report {
+namespace exactff::field {
 
 // One setting of the renderer at one number of samples per pixel. A number that the file does not state is NaN.
 struct FieldRow {
@@ -58,4 +58,4 @@ struct FieldResults {
 // Error against samples and against time.
 [[nodiscard]] std::vector<page::Figure> field_figures(const FieldResults& field, std::vector<LeftOut>& left_out);
 
-}  // namespace exactff::report
+}  // namespace exactff::field

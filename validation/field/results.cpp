@@ -1,4 +1,4 @@
-#include "report/field.h"
+#include "field/results.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "text/text_file.h"
 #include "text/text_lines.h"
 
-namespace exactff::report {
+namespace exactff::field {
 namespace {
 
 namespace fs = std::filesystem;
@@ -346,4 +346,4 @@ std::vector<page::Figure> field_figures(const FieldResults& field, std::vector<L
   return figures;
 }
 
-}  // namespace exactff::report
+}  // namespace exactff::field

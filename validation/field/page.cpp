@@ -1,7 +1,9 @@
-// The chapter of results that were measured elsewhere.
+#include "field/page.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "page/page_text.h"
@@ -9,7 +11,7 @@
 #include "text/escape.h"
 #include "text/phrases.h"
 
-namespace exactff::report {
+namespace exactff::field {
 namespace {
 
 using page::HtmlTable;
@@ -145,7 +147,7 @@ std::string opening(const FieldResults& field) {
 
 std::string anchor_of(const FieldResults& field) { return "field-" + field.name; }
 
-std::string field_part(const FieldResults& field, const Page& page) {
+std::string field_part(const FieldResults& field, const report::Page& page) {
   const std::string id = anchor_of(field);
   std::string text = "<section class=\"scene\" id=\"" + id + "\">\n<h2>" + text::html(field.title) + "</h2>\n";
   text += "<p class=\"verdict\">" + page::prose(text::html(verdict(field))) + "</p>\n";
@@ -154,7 +156,7 @@ std::string field_part(const FieldResults& field, const Page& page) {
   text += page::paragraph(opening(field));
   const Pictures pictures = pictures_of(field);
   if (!page.drawn.none.empty()) text += page::paragraph(text::html(page.drawn.none));
-  text += figure_group(page.drawn, [](const page::Figure&) { return true; });
+  text += report::figure_group(page.drawn, [](const page::Figure&) { return true; });
   const std::string colours =
       "Red: too bright; blue: too dark." + (field.maps.empty() ? "" : " " + page::prose(text::html(field.maps)));
   text += framed(pictures.leading, id + "-maps", "Signed error. " + colours);
@@ -169,8 +171,22 @@ std::string field_part(const FieldResults& field, const Page& page) {
   text += page::fold("All numbers of samples", results_table(field, all_rows(field)) + words);
   text += page::fold("Further maps of the error", framed(pictures.others, id + "-further-maps", colours));
   text += page::fold("How it was measured", how_measured(field));
-  if (!page.left_out.empty()) text += page::fold("What was left out, and why", left_out_list(page.left_out));
+  if (!page.left_out.empty()) text += page::fold("What was left out, and why", report::left_out_list(page.left_out));
   return text + "</section>\n";
 }
 
-}  // namespace exactff::report
+std::string field_page(const FieldResults& field, const std::filesystem::path& scratch,
+                       std::vector<std::string>& notes) {
+  report::Page page;
+  std::vector<page::Figure> figures = field_figures(field, page.left_out);
+  for (page::Figure& figure : figures) figure.id = anchor_of(field) + '-' + figure.id;
+  page.drawn = page::draw_figures(std::move(figures), scratch, notes, {});
+  std::ranges::move(page.drawn.left_out, std::back_inserter(page.left_out));
+  return page::page_head(text::html(field.title)) + "<h1>Another renderer against exact images</h1>\n" +
+         field_part(field, page) + page::heading("How to reproduce this page") +
+         page::facts_table(
+             {{"program", page::program_fact()}, {"processor", page::processor_fact()}, {"made", page::today()}}) +
+         page::page_end();
+}
+
+}  // namespace exactff::field

@@ -1,21 +1,15 @@
-// Results that another renderer was measured to have, as a chapter of a report; and the pictures of a scene's chapter.
+// Results that another renderer was measured to have, as a chapter of a report.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 
-#include "exactff/models.h"
-#include "flags/study_file.h"
-#include "report/field.h"
-#include "report/plan.h"
-#include "report/report.h"
-#include "report/scene_part.h"
-#include "report/strip.h"
+#include "field/page.h"
+#include "field/results.h"
 #include "support/program.h"
-#include "unit/reports/study_support.h"
 
-namespace exactff::report {
+namespace exactff::field {
 namespace {
 
 namespace fs = std::filesystem;
@@ -179,99 +173,14 @@ TEST_F(FieldFile, BecomesAChapterThatHoldsEveryRowAndPicture) {
   }
 }
 
-TEST_F(FieldFile, IsALineOfAStudy) {
-  (void)put(std::string(kHead) + kRow);
-  const fs::path study = directory_.write("a.study", "title T\nfield cycles.csv\n");
-  const Plan plan = flags::read_study_file(study);
-  ASSERT_EQ(plan.fields.size(), 1U);
-  const std::string digest = plan.fields.front().digest;
-  jobs::Journal journal(directory_.path() / "out.part", jobs::Existing::kRefuse);
-  (void)carry_out(plan, directory_.path() / "out", journal);
-  const std::string page = validation::text_of(directory_.path() / "out" / "report.html");
-  EXPECT_NE(page.find("<section class=\"scene\" id=\"field-cycles\">"), std::string::npos);
-  EXPECT_NE(page.find("<a href=\"#field-cycles\">"), std::string::npos);
-  EXPECT_EQ(finished_report(plan, directory_.path() / "out"), Finished::kOfThis);
-  (void)put(std::string(kHead) + kNaive);
-  EXPECT_EQ(finished_report(flags::read_study_file(study), directory_.path() / "out"), Finished::kOfAnother);
-  EXPECT_NE(flags::read_study_file(study).fields.front().digest, digest);
-}
-
-TEST_F(FieldFile, ThatIsWrongIsNamedWithTheLineOfTheStudy) {
-  (void)put(std::string(kHead));
-  const std::pair<const char*, const char*> table[] = {
-      {"field none.csv\n", "a.study:1: "},
-      {"title T\nfield cycles.csv\n", "a.study:2: "},
-      {"field a.csv b.csv\n", "a.study:1: a field line names 2 files"},
-  };
-  for (const auto& [text, expected] : table) {
-    try {
-      (void)flags::read_study_file(directory_.write("a.study", text));
-      ADD_FAILURE() << text;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
-    }
-  }
-}
-
-// ------------------------------------------------------------------------------------------- pictures of a scene
-
-study::Study room_study(const Scene& scene, int threads, const char* method, const char* source = "lamp") {
-  study::Request request;
-  request.scene = &scene;
-  request.scene_name = "room";
-  request.receivers = grid_receivers(scene, scene.select("floor"), {3, 3});
-  request.receivers_name = "floor, grid 3x3";
-  request.sources = {scene.select(source)};
-  request.sweeps.enabled = false;
-  request.methods.ladders = {study::parse_ladder("exact"), study::parse_ladder(method)};
-  request.methods.seeds = 2;
-  request.threads = threads;
-  request.seconds_for_a_time = 0.001;
-  return study::run(std::move(request));
-}
-
-TEST(Strip, HasTheSameBytesForAnyNumberOfThreads) {
-  const Scene scene = validation::small_room(true);
-  std::vector<Strip> strips;
-  for (const int threads : {1, 2}) {
-    std::vector<LeftOut> left_out;
-    const auto strip = strip_of(room_study(scene, threads, "area-sampling:samples=4"), left_out, {});
-    ASSERT_TRUE(strip) << left_out.front().why;
-    EXPECT_TRUE(left_out.empty());
-    strips.push_back(*strip);
-  }
-  EXPECT_EQ(strips[0].exact, strips[1].exact);
-  EXPECT_EQ(strips[0].method, strips[1].method);
-  EXPECT_EQ(strips[0].error, strips[1].error);
-  EXPECT_NE(strips[0].exact, strips[0].method);
-  EXPECT_GT(strips[0].rms, 0.0);
-  EXPECT_EQ(strips[0].outlined, "floor");
-}
-
-// From outside, the default camera sees the back of the source and the unlit sides of the triangles.
-TEST(Strip, ShowsReceiversFromTheirFrontWhereTheDefaultCameraDoesNot) {
-  const Scene scene = models::make_scene("karkanis:n=20");
-  std::vector<LeftOut> left_out;
-  const auto strip = strip_of(room_study(scene, 1, "area-sampling:samples=4", "source"), left_out, {});
-  ASSERT_TRUE(strip) << left_out.front().why;
-  EXPECT_EQ(strip->outlined, "floor");
-  EXPECT_GT(strip->rms, 0.0);
-}
-
-TEST(Strip, OfAMethodThatTakesTooLongIsLeftOutAndSaysWhy) {
-  const Scene scene = validation::small_room(true);
-  std::vector<LeftOut> left_out;
-  EXPECT_FALSE(strip_of(room_study(scene, 1, "hemicube:resolution=2048"), left_out, {}));
-  ASSERT_EQ(left_out.size(), 1U);
-  EXPECT_NE(left_out.front().why.find("they would take too long"), std::string::npos) << left_out.front().why;
-}
-
-TEST(Strip, StopsWhenItIsCancelled) {
-  const Scene scene = validation::small_room(true);
-  const study::Study study = room_study(scene, 1, "area-sampling:samples=4");
-  std::vector<LeftOut> left_out;
-  EXPECT_THROW((void)strip_of(study, left_out, {{}, [] { return true; }}), Cancelled);
+TEST_F(FieldFile, BecomesAPage) {
+  const validation::EnvironmentVariable without_gnuplot("PATH", "/nonexistent");
+  std::vector<std::string> notes;
+  const std::string page = field_page(read(std::string(kHead) + kRow), directory_.path(), notes);
+  EXPECT_NE(page.find("<section class=\"scene\" id=\"field-cycles\">"), std::string::npos) << page;
+  ASSERT_EQ(notes.size(), 1U) << "gnuplot is missing";
+  EXPECT_NE(page.find(notes.front()), std::string::npos) << page;
 }
 
 }  // namespace
-}  // namespace exactff::report
+}  // namespace exactff::field
