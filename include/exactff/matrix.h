@@ -24,7 +24,7 @@
 namespace exactff::matrix {
 
 struct Options {
-  ViewFactorOptions factors;
+  ViewFactorOptions factors = {};
   bool backs = false;  // also compute what meets the backs of faces
   bool open = false;   // also compute what meets nothing
   // Largest number of cells for an entry of these two, if that is less than factors.budget.

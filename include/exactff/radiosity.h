@@ -71,7 +71,7 @@ struct Solution {
 [[nodiscard]] std::vector<Selection> patches_of(const Scene& scene);
 
 struct Options {
-  ViewFactorOptions factors;
+  ViewFactorOptions factors = {};
   int threads = 0;  // 0: all; does not affect the result
 };
 
