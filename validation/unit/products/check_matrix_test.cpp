@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "check/json.h"
 #include "check/junit.h"
 #include "check/matrices.h"
 #include "check/words.h"
