@@ -45,7 +45,7 @@ TEST(PrintedBall, HoldsTheBall) {
   for (std::uint64_t i = 0; i < scaled_count(2000); ++i) {
     Random random(seed_of(i));
     const Sample original = sample(random);
-    const Enclosure enclosure(original.ball);
+    const Enclosure enclosure = EnclosureInside::of(original.ball);
     const mpq_class middle = read_decimal(enclosure.midpoint()).value;
     const mpq_class radius = read_decimal(enclosure.radius()).value;
     ASSERT_LE(abs(middle - original.middle) + original.radius, radius) << "seed " << seed_of(i);

@@ -13,7 +13,7 @@ import exactff._exactff as compiled
 from support import CORNELL, SCENES, SOURCE, run
 
 PACKAGE = pathlib.Path(exactff.__file__).parent
-EXAMPLES = SOURCE / "src" / "python" / "examples"
+EXAMPLES = SOURCE / "src" / "outside" / "python" / "examples"
 
 
 def arguments_in_docstring(function):

@@ -15,10 +15,10 @@ PACKAGE = pathlib.Path(exactff.__file__).parent
 
 def test_a_wheel_is_installed_and_works(tmp_path):
     """From the module of this build; validation/wheel.sh compiles it."""
-    tree = tmp_path / "tree" / "src" / "python"
+    tree = tmp_path / "tree" / "src" / "outside" / "python"
     pytest.importorskip("wheel")
     made = shutil.ignore_patterns("_skbuild", "build", "*.egg-info")
-    shutil.copytree(SOURCE / "src" / "python", tree, ignore=made)
+    shutil.copytree(SOURCE / "src" / "outside" / "python", tree, ignore=made)
     shutil.copy(SOURCE / "CMakeLists.txt", tmp_path / "tree")
     run(sys.executable, "-m", "venv", "--system-site-packages", tmp_path / "venv")
     python = tmp_path / "venv" / "bin" / "python"

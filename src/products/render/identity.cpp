@@ -4,7 +4,7 @@ namespace exactff::render {
 
 std::string identity_of(const Request& request, const std::optional<methods::Choice>& against) {
   std::string all =
-      request.scene->hash() + '\n' + flags_of(request.view) + '\n' + std::string(name_of(request.quantity)) + '\n';
+      request.scene->hash() + '\n' + flags_of(request.view) + '\n' + std::string(to_string(request.quantity)) + '\n';
   for (const Selection& source : request.sources) all += request.scene->name_of(source) + '\n';
   if (request.sky) all += "and the sky\n";
   all += (request.method ? request.method->text() : "exact") + '\n' + (against ? against->text() : "") + '\n';

@@ -9,15 +9,15 @@ namespace exactff::exact {
 // Maps a direction from x to the point where it meets a plane.
 class Lift {
  public:
-  // The plane through `point`. Requires that it does not hold x.
+  // The plane through `point`. If it holds x, no direction can be mapped.
   Lift(const kernel::ExactVec3& normal, const Vec3& point, const Vec3& x)
       : normal_(normal), x_{kernel::to_rational(x.x), kernel::to_rational(x.y), kernel::to_rational(x.z)} {
     const kernel::ScaledVec3 s = kernel::exact_difference(point, x);
     distance_ = kernel::times_power_of_two(dot(normal_, s.v), s.exponent);
-    EXACTFF_EXPECT(distance_ != 0);
   }
 
   [[nodiscard]] Vec3 operator()(const kernel::ExactVec3& t) const {
+    EXACTFF_EXPECT(distance_ != 0);
     const kernel::Rational factor = distance_ / kernel::Rational(dot(normal_, t));
     return {kernel::nearest_double(x_[0] + factor * t.x), kernel::nearest_double(x_[1] + factor * t.y),
             kernel::nearest_double(x_[2] + factor * t.z)};

@@ -65,6 +65,7 @@ class Bounds {
 
 // The lengths of the triangle's sides, together.
 double perimeter(const TriangleBounds& bounds) {
+  if (!std::ranges::all_of(bounds.cross, [](double cross) { return cross > 0.0; })) return kInfinity;
   double sum = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
     const double denominator = bounds.cross[i] * bounds.cross[(i + 2) % 3];

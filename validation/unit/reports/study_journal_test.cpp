@@ -21,6 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using jobs::Existing;
 using jobs::Journal;
+using jobs::journal_of_folder;
+using jobs::KeptWork;
 using validation::expect_same_values;
 using validation::request_with_methods;
 using validation::small_request;

@@ -242,5 +242,17 @@ TEST(EventBound, TimesItsMarginIsNotBelowTheTruth) {
   EXPECT_GE(tight, 10);  // with a margin below 1 / kEventMargin this test would fail
 }
 
+TEST(EventBound, IsInfiniteWhereCrossingsMayBeOpposite) {
+  Random random(6);
+  int unknown = 0;
+  for (int round = 0; round < 1000; ++round) {
+    const Event event = some_event(random, std::ldexp(1.0, -random.integer(0, 3)), false);
+    if (has_crossings(event.bounds())) continue;
+    ++unknown;
+    ASSERT_EQ(event.bound(), HUGE_VAL) << round;
+  }
+  EXPECT_GE(unknown, 50);
+}
+
 }  // namespace
 }  // namespace exactff::view_factors

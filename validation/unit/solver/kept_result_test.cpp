@@ -145,7 +145,7 @@ TEST(Enclosure, SetIsAsOneMadeAnew) {
     arb_set_d(ball.get(), value);
     arb_add_error_2exp_si(ball.get(), -80);
     if (value == 0.0) arb_zero(ball.get());
-    kept.set(ball);
+    EnclosureInside::set(kept, ball);
     EXPECT_EQ(kept.midpoint(), EnclosureInside::of(ball).midpoint());
     EXPECT_EQ(kept.radius(), EnclosureInside::of(ball).radius());
   }
@@ -154,7 +154,7 @@ TEST(Enclosure, SetIsAsOneMadeAnew) {
 TEST(Enclosure, IsItsOwnAfterACopy) {
   Ball half;
   arb_set_d(half.get(), 0.5);
-  Enclosure a(half), b;
+  Enclosure a = EnclosureInside::of(half), b;
   b = a;
   a += a;
   EXPECT_EQ(b.lower(), 0.5);

@@ -22,10 +22,10 @@ struct Shadowed {
   Scene scene = generate::build(plain);
   ExactSource source{scene, scene.select("source")};
   Workspace workspace;
-  VisibleShare share{scene, generate::receiver_of(plain), source.planes().planes.front(), workspace};
+  VisibleShare share{scene, generate::receiver_of(plain), ExactSourceInside::planes(source).planes.front(), workspace};
 
   explicit Shadowed(PlainScene given) : plain(std::move(given)) {
-    share.start(source.planes().planes.front().pieces[0]);
+    share.start(ExactSourceInside::planes(source).planes.front().pieces[0]);
   }
 };
 
