@@ -169,7 +169,7 @@ struct Picture {
   std::vector<double> lower, upper;  // on request: proved bounds
   std::vector<Shows> shows;          // of several points: the greatest
   // If a pixel has several points, 4 for each: the share of them that shows emitters, and the part of `values` that
-  // comes from these. Estimates, for developed().
+  // comes from these. Estimates, for develop().
   std::vector<double> lamps;
   std::vector<Layer> layers;        // on request
   std::uint64_t not_certified = 0;  // points at which a channel reached the precision cap; their bounds are valid
@@ -213,7 +213,7 @@ struct Colours {
 [[nodiscard]] double automatic_exposure(const Picture& picture);
 // In sRGB. Of a pixel with several points, what shows emitters and the rest are limited to white apart, each by its
 // share of the points: otherwise a lamp, far brighter than white, would fill every pixel that it touches.
-[[nodiscard]] Colours developed(const Picture& picture, double exposure);
+[[nodiscard]] Colours develop(const Picture& picture, double exposure);
 // Errors in colours: white is none, red too bright, blue too dark; full colour from `scale` on. Regions in which
 // most pixels are wrong are outlined.
 [[nodiscard]] Colours coloured(const Errors& errors, const Size& size, double scale);

@@ -120,7 +120,7 @@ Pictures pictures_of(const FieldResults& field) {
   return pictures;
 }
 
-std::string framed(const std::string& pictures, const std::string& id, const std::string& caption) {
+std::string figure_of(const std::string& pictures, const std::string& id, const std::string& caption) {
   if (pictures.empty()) return {};
   return "<figure id=\"" + id + "\">\n<div class=\"strip pictures\">\n" + pictures + "</div>\n<figcaption>" + caption +
          "</figcaption>\n</figure>\n";
@@ -159,7 +159,7 @@ std::string field_part(const FieldResults& field, const report::Page& page) {
   text += report::figure_group(page.drawn, [](const page::Figure&) { return true; });
   const std::string colours =
       "Red: too bright; blue: too dark." + (field.maps.empty() ? "" : " " + page::prose(text::html(field.maps)));
-  text += framed(pictures.leading, id + "-maps", "Signed error. " + colours);
+  text += figure_of(pictures.leading, id + "-maps", "Signed error. " + colours);
   const std::string words = page::paragraph(
       "Errors are relative to the brightest pixel. A ratio is the renderer’s value divided by the exact one. Noise is "
       "the "
@@ -169,7 +169,7 @@ std::string field_part(const FieldResults& field, const report::Page& page) {
   text += page::fold("What the settings are", about_list(field));
   text += page::fold("The most samples of each setting", results_table(field, last_rows(field)) + words);
   text += page::fold("All numbers of samples", results_table(field, all_rows(field)) + words);
-  text += page::fold("Further maps of the error", framed(pictures.others, id + "-further-maps", colours));
+  text += page::fold("Further maps of the error", figure_of(pictures.others, id + "-further-maps", colours));
   text += page::fold("How it was measured", how_measured(field));
   if (!page.left_out.empty()) text += page::fold("What was left out, and why", report::left_out_list(page.left_out));
   return text + "</section>\n";

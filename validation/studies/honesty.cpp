@@ -104,7 +104,7 @@ void fill(HonestyScene& scene, const HonestySize& size) {
 }
 
 // An internal error is a result here, among thousands of others.
-HonestyScene filled(HonestyScene scene, const HonestySize& size) {
+HonestyScene fill_or_note_failure(HonestyScene scene, const HonestySize& size) {
   try {
     fill(scene, size);
   } catch (const std::logic_error& error) {
@@ -209,8 +209,9 @@ std::vector<HonestyRow> honesty_rows(std::span<const HonestyScene> scenes) {
 HonestyStudy honesty_study(const HonestySize& size, int threads, const Hooks& hooks) {
   HonestyStudy study;
   study.scenes.resize(size.scenes);
-  files::parallel_for(size.scenes, threads, kHonestyStage, hooks,
-                      [&](std::size_t i) { study.scenes[i] = filled(honesty_scene(size.first + i), size); });
+  files::parallel_for(size.scenes, threads, kHonestyStage, hooks, [&](std::size_t i) {
+    study.scenes[i] = fill_or_note_failure(honesty_scene(size.first + i), size);
+  });
   study.rows = honesty_rows(study.scenes);
   for (const HonestyScene& scene : study.scenes) {
     study.contradictions += !scene.entries.empty() && scene.entries.front().truth.are_contradictory ? 1U : 0U;

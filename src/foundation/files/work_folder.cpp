@@ -84,7 +84,7 @@ void clear_abandoned(const fs::path& target) {
   }
 }
 
-bool exchanged(const fs::path& one, const fs::path& other) {
+bool exchange(const fs::path& one, const fs::path& other) {
 #ifdef RENAME_EXCHANGE
   return ::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0;
 #else
@@ -140,7 +140,7 @@ WorkFolder::~WorkFolder() {
 void WorkFolder::put_in_place() {
   if (!is_taken(target_)) {
     fs::rename(path_, target_);
-  } else if (!exchanged(path_, target_)) {
+  } else if (!exchange(path_, target_)) {
     replace_in_two_steps(path_, target_);
   }
   std::error_code ignored;

@@ -33,12 +33,12 @@ std::string_view line_at(std::string_view text, std::size_t at) {
   return text.substr(at, std::min(text.find('\n', at), text.size()) - at);
 }
 
-std::string shortened(std::string_view line) {
+std::string shorten(std::string_view line) {
   constexpr std::size_t kMost = 200;
   return text::printable(text::beginning(line, kMost)) + (line.size() > kMost ? "..." : "");
 }
 
-File opened(const fs::path& path, const RowHooks& hooks) {
+File open_journal(const fs::path& path, const RowHooks& hooks) {
   File file = files::open_locked(
       path, {"the rows are kept in this file", "name a file in a folder that exists, is writable and has free space"},
       {.what = "another process is working on it",
@@ -92,14 +92,14 @@ void require_same_head(const fs::path& file, std::string_view head, std::string_
   const std::size_t line = common.rfind('\n') + 1;  // npos + 1 is 0
   throw InputError({.file = file.string(),
                     .line = static_cast<std::size_t>(std::count(common.begin(), common.end(), '\n')) + 1,
-                    .what = "belongs to a different request: it says '" + shortened(line_at(head, line)) + "', and " +
-                            whose + " '" + shortened(line_at(other, line)) + "'",
+                    .what = "belongs to a different request: it says '" + shorten(line_at(head, line)) + "', and " +
+                            whose + " '" + shorten(line_at(other, line)) + "'",
                     .why = "rows of different requests must not be mixed" + about_old_ids(line_at(head, line)),
                     .suggestion = suggestion});
 }
 
 RowJournal::RowJournal(const fs::path& file, const Rows& rows, Existing existing, const RowHooks& hooks)
-    : file_(opened(journal_of(file), hooks)) {
+    : file_(open_journal(journal_of(file), hooks)) {
   take_over(rows, existing, hooks);
   file_.set_failure_advice({"it contains the rows finished so far", "free some space, then continue with --resume"});
 }

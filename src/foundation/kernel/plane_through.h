@@ -24,7 +24,7 @@ class PlaneThrough {
   // The sign of det(b - a, c - a, x - a): positive on the side from which a, b, c run counter-clockwise.
   [[nodiscard]] int side_of(const Vec3& x) const {
     const Approx3 d = approx_difference(x, a_);
-    const int filtered = decided(d.x * normal_.x + d.y * normal_.y + d.z * normal_.z, magnitudes(d), d);
+    const int filtered = sign_by_filter(d.x * normal_.x + d.y * normal_.y + d.z * normal_.z, magnitudes(d), d);
     if (filtered != kUncertain) return filtered;
     const bool is_zero = (vanishes_[0] || d.x == 0.0) && (vanishes_[1] || d.y == 0.0) && (vanishes_[2] || d.z == 0.0);
     return is_zero ? 0 : orientation(a_, b_, c_, x);
@@ -39,8 +39,8 @@ class PlaneThrough {
                     std::max(std::abs(p.z), std::abs(q.z))};
     const double m = magnitudes(d);
     // Rounded sums grow with their terms, so these are those of two corners and bound those of the others.
-    if (decided(std::min(x[0], x[1]) + std::min(y[0], y[1]) + std::min(z[0], z[1]), m, d) == 1) return 1;
-    if (decided(std::max(x[0], x[1]) + std::max(y[0], y[1]) + std::max(z[0], z[1]), m, d) == -1) return -1;
+    if (sign_by_filter(std::min(x[0], x[1]) + std::min(y[0], y[1]) + std::min(z[0], z[1]), m, d) == 1) return 1;
+    if (sign_by_filter(std::max(x[0], x[1]) + std::max(y[0], y[1]) + std::max(z[0], z[1]), m, d) == -1) return -1;
     return kUncertain;
   }
 
@@ -55,7 +55,7 @@ class PlaneThrough {
     return std::abs(d.x) * magnitude_.x + std::abs(d.y) * magnitude_.y + std::abs(d.z) * magnitude_.z;
   }
 
-  static int decided(double sum, double magnitude, const Approx3& d) {
+  static int sign_by_filter(double sum, double magnitude, const Approx3& d) {
     const bool moderate = max_norm(d) <= 0x1p300 && magnitude >= 0x1p-700;
     return moderate ? certified_sign(sum, magnitude) : kUncertain;
   }

@@ -31,7 +31,7 @@ DrawnFigures draw_figures(std::vector<Figure> figures, const std::filesystem::pa
       drawn.left_out.push_back({"figure: " + figure.title, "gnuplot could not draw it"});
       continue;
     }
-    std::string svg = inlined(plot.svg, figure.id, figure.title);
+    std::string svg = inline_svg(plot.svg, figure.id, figure.title);
     drawn.figures.push_back({std::move(figure), std::move(svg)});
   }
   return drawn;

@@ -174,7 +174,7 @@ PlotResult run_gnuplot(std::string_view script, const fs::path& scratch, const s
   return result;
 }
 
-std::string inlined(std::string_view svg, std::string_view prefix, std::string_view title) {
+std::string inline_svg(std::string_view svg, std::string_view prefix, std::string_view title) {
   const std::size_t begin = svg.find("<svg");
   const std::size_t end = svg.rfind("</svg>");
   if (begin == std::string_view::npos || end == std::string_view::npos) return {};

@@ -21,6 +21,6 @@ struct PlotResult {
 
 // Prepares gnuplot's SVG for an HTML page with several figures: no prolog, every id begins with `prefix`, black becomes
 // the page's text colour, the title is `title`, and nothing refers to anything outside.
-[[nodiscard]] std::string inlined(std::string_view svg, std::string_view prefix, std::string_view title);
+[[nodiscard]] std::string inline_svg(std::string_view svg, std::string_view prefix, std::string_view title);
 
 }  // namespace exactff::page

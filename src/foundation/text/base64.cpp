@@ -8,7 +8,7 @@ namespace {
 constexpr std::string_view kBase64Digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 // Of a multiple of three bytes.
-std::string encoded(std::string_view bytes) {
+std::string encode(std::string_view bytes) {
   std::string text;
   text.reserve(bytes.size() / 3 * 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
@@ -24,7 +24,7 @@ std::string encoded(std::string_view bytes) {
 std::string Base64::append(std::string_view bytes) {
   rest_ += bytes;
   const std::size_t whole = rest_.size() / 3 * 3;
-  std::string text = encoded(std::string_view(rest_).substr(0, whole));
+  std::string text = encode(std::string_view(rest_).substr(0, whole));
   rest_.erase(0, whole);
   return text;
 }
@@ -32,7 +32,7 @@ std::string Base64::append(std::string_view bytes) {
 std::string Base64::finish() {
   const std::size_t missing = (3 - rest_.size() % 3) % 3;
   rest_.append(missing, '\0');
-  std::string text = encoded(rest_);
+  std::string text = encode(rest_);
   text.replace(text.size() - missing, missing, missing, '=');
   rest_.clear();
   return text;

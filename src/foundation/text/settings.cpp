@@ -41,7 +41,7 @@ bool allows(const SettingSpec& spec, const std::string& value) {
 }
 
 // The value in the setting's type; nullopt if the type does not fit or the value is not allowed.
-std::optional<SettingValue> fitting(const SettingSpec& spec, SettingValue value) {
+std::optional<SettingValue> fit(const SettingSpec& spec, SettingValue value) {
   const bool wants_number = std::holds_alternative<double>(spec.fallback);
   if (const auto* whole = std::get_if<std::int64_t>(&value); whole != nullptr && wants_number) {
     value = static_cast<double>(*whole);
@@ -154,7 +154,7 @@ void Settings::set(std::string_view name, const SettingValue& value) {
   const kernel::StandardArithmetic arithmetic;
   const std::size_t place = must_find(name);
   const SettingSpec& spec = specs()[place];
-  std::optional<SettingValue> fits = fitting(spec, value);
+  std::optional<SettingValue> fits = fit(spec, value);
   if (!fits) refuse(spec, to_string(value));
   values_[place] = std::move(*fits);
 }
@@ -164,7 +164,7 @@ void Settings::set_text(std::string_view name, std::string_view text) {
   const std::size_t place = must_find(name);
   const SettingSpec& spec = specs()[place];
   std::optional<SettingValue> value = read(spec, text);
-  if (value) value = fitting(spec, std::move(*value));
+  if (value) value = fit(spec, std::move(*value));
   if (!value) refuse(spec, text);
   values_[place] = std::move(*value);
 }

@@ -22,7 +22,7 @@ std::string with_backslashes(const std::string& text, std::string_view before) {
   return result;
 }
 
-std::string spaced(const std::vector<std::string>& words) { return text::joined(words, " "); }
+std::string join_by_spaces(const std::vector<std::string>& words) { return text::joined(words, " "); }
 
 std::vector<std::string> command_names(const ProgramTable& program) {
   std::vector<std::string> names;
@@ -33,7 +33,7 @@ std::vector<std::string> command_names(const ProgramTable& program) {
 std::string option_names(const CommandTable& command) {
   std::vector<std::string> names;
   for (const OptionRow& option : command.options) names.insert(names.end(), option.names.begin(), option.names.end());
-  return spaced(names);
+  return join_by_spaces(names);
 }
 
 // What the shell is told, by what the option takes.
@@ -107,10 +107,10 @@ complete -F _exactff exactff
 )";
 
 std::string bash_offer(const OptionRow& row) {
-  return by_completion(row, {.choices = single_quoted(spaced(row.choices)),
-                             .words = single_quoted("LIST " + spaced(row.words)),
+  return by_completion(row, {.choices = single_quoted(join_by_spaces(row.choices)),
+                             .words = single_quoted("LIST " + join_by_spaces(row.words)),
                              .files = "FILES",
-                             .files_and_models = single_quoted("FILES " + spaced(row.words)),
+                             .files_and_models = single_quoted("FILES " + join_by_spaces(row.words)),
                              .folders = "FOLDERS",
                              .nothing = "''"});
 }
@@ -139,10 +139,10 @@ std::string bash_function(const std::string& name, const std::string& cases) {
 // --- zsh ---
 
 std::string zsh_action(const OptionRow& row) {
-  return by_completion(row, {.choices = "(" + spaced(row.choices) + ")",
-                             .words = "_sequence compadd - " + spaced(row.words),
+  return by_completion(row, {.choices = "(" + join_by_spaces(row.choices) + ")",
+                             .words = "_sequence compadd - " + join_by_spaces(row.words),
                              .files = "_files",
-                             .files_and_models = "{_files; compadd -- " + spaced(row.words) + "}",
+                             .files_and_models = "{_files; compadd -- " + join_by_spaces(row.words) + "}",
                              .folders = "_files -/",
                              .nothing = " "});
 }
@@ -157,7 +157,7 @@ std::string zsh_values(const OptionRow& row) {
 // (NAMES)'NAME[description]:value:action', once for each name of the option.
 std::string zsh_option(const OptionRow& option) {
   std::string lines;
-  const std::string others = option.repeats ? "'*'" : single_quoted("(" + spaced(option.names) + ")");
+  const std::string others = option.repeats ? "'*'" : single_quoted("(" + join_by_spaces(option.names) + ")");
   for (const std::string& name : option.names) {
     lines += " \\\n        " + others +
              single_quoted(name + "[" + with_backslashes(option.description, "[]\\") + "]" + zsh_values(option));
@@ -201,10 +201,10 @@ fi
 // --- fish ---
 
 std::string fish_takes(const OptionRow& row) {
-  return by_completion(row, {.choices = " -x -a " + single_quoted(spaced(row.choices)),
-                             .words = " -x -a " + single_quoted(spaced(row.words)),
+  return by_completion(row, {.choices = " -x -a " + single_quoted(join_by_spaces(row.choices)),
+                             .words = " -x -a " + single_quoted(join_by_spaces(row.words)),
                              .files = " -r -F",
-                             .files_and_models = " -F -a " + single_quoted(spaced(row.words)),
+                             .files_and_models = " -F -a " + single_quoted(join_by_spaces(row.words)),
                              .folders = " -x -a '(__fish_complete_directories)'",
                              .nothing = row.most_values > 0 ? " -x" : ""});
 }
@@ -233,7 +233,7 @@ std::string fish_command(const CommandTable& command) {
 
 std::string bash_completion(const ProgramTable& program) {
   std::string options = bash_case("''", "options=" + single_quoted(option_names(program.top)));
-  std::string arguments = bash_case("''", "offer=" + single_quoted(spaced(command_names(program))));
+  std::string arguments = bash_case("''", "offer=" + single_quoted(join_by_spaces(command_names(program))));
   std::string values;
   for (const CommandTable& command : program.commands) {
     options += bash_case(command.name, "options=" + single_quoted(option_names(command)));

@@ -64,7 +64,7 @@ std::string range_note(const std::string& check) {
   return " (" + range.substr(0, dash) + " to " + range.substr(dash + 3) + ")";
 }
 
-std::string described(const CLI::Option& option, const TypeText& type) {
+std::string description_of(const CLI::Option& option, const TypeText& type) {
   std::string text = option.get_description() + range_note(type.check);
   if (!option.get_default_str().empty()) text += " (default: " + option.get_default_str() + ")";
   for (const CLI::Option* other : option.get_excludes()) text += " (not with " + other->get_name() + ")";
@@ -106,7 +106,7 @@ OptionRow option_row(const CLI::Option& option) {
   OptionRow row;
   for (const std::string& name : option.get_snames()) row.names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) row.names.push_back("--" + name);
-  row.description = described(option, type);
+  row.description = description_of(option, type);
   row.required = option.get_required();
   if (option.get_items_expected_max() == 0) return row;  // a flag
 

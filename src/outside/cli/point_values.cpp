@@ -77,7 +77,7 @@ bool one_sweep_will_do(const PointArguments& args, const Scene& scene, const std
 }
 
 // The form factor of a patch in the whole view, which lists those above 0.
-FormFactor taken_from(const WholeView& seen, const Selection& source) {
+FormFactor factor_in_view(const WholeView& seen, const Selection& source) {
   const auto found = std::ranges::lower_bound(seen.patches, source.patch, {}, &SeenPatch::patch);
   if (found == seen.patches.end() || found->patch != source.patch) return {};
   return as_form_factor(found->form_factor);
@@ -85,7 +85,7 @@ FormFactor taken_from(const WholeView& seen, const Selection& source) {
 
 FormFactor exact_value(const PointArguments& args, const Scene& scene, const PointResult& point,
                        const ExactSource& source) {
-  if (point.seen) return taken_from(*point.seen, source.selection());
+  if (point.seen) return factor_in_view(*point.seen, source.selection());
   const ExactOptions options{.engine = args.engine.engine(),
                              .visible_fraction = args.fraction || args.exact_fraction,
                              .exact_fraction = args.exact_fraction,

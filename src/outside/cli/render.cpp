@@ -207,8 +207,8 @@ class Kept {
   std::size_t before_ = 0;
 };
 
-Rendered rendered(const render::Request& request, const std::optional<methods::Choice>& against, const Hooks& hooks,
-                  jobs::Journal* journal) {
+Rendered render_pictures(const render::Request& request, const std::optional<methods::Choice>& against,
+                         const Hooks& hooks, jobs::Journal* journal) {
   Rendered result{.picture = render::render(request, hooks, journal)};
   if (!against) return result;
   render::Request judged = request;
@@ -235,7 +235,7 @@ int run(const RenderArguments& args) {
   const RenderFiles files{args.image, args.doubles, args.bounds, args.exposure, args.strip, args.times};
   Rendered result;
   try {
-    result = rendered(request, against, hooks, kept.journal());
+    result = render_pictures(request, against, hooks, kept.journal());
     bar.clear();
     leave_if_interrupted();
     write_files(files, result);

@@ -61,9 +61,8 @@ render::Colours strip_of(const RenderFiles& files, const Rendered& rendered, dou
   };
   using Panel = std::pair<render::Colours, std::vector<std::string>>;
   const std::array<Panel, 3> panels = {
-      Panel{render::developed(rendered.picture, exposure),
-            caption(name_of_picture(rendered.picture), rendered.picture)},
-      Panel{render::developed(*rendered.judged, exposure), caption(rendered.judged_name, *rendered.judged)},
+      Panel{render::develop(rendered.picture, exposure), caption(name_of_picture(rendered.picture), rendered.picture)},
+      Panel{render::develop(*rendered.judged, exposure), caption(rendered.judged_name, *rendered.judged)},
       Panel{render::coloured(*rendered.errors, rendered.picture.size, scale),
             {"error: red too bright, blue too dark", "full colour at " + text::short_number(scale, 2),
              "RMS " + text::short_number(rendered.errors->rms, 2),
@@ -82,7 +81,7 @@ std::string image_bytes(const RenderFiles& files, const Rendered& rendered) {
     return render::png_of(render::coloured(*rendered.errors, rendered.picture.size, scale),
                           render::difference(*rendered.judged, rendered.picture).metadata);
   }
-  return png ? render::png_of(render::developed(rendered.picture, exposure()), metadata)
+  return png ? render::png_of(render::develop(rendered.picture, exposure()), metadata)
              : render::exr_of(rendered.picture);
 }
 

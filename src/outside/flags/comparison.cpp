@@ -72,7 +72,7 @@ Variant to_variant(const std::string& text, const std::string& flag) {
 
 // The flags of the list that were given.
 using GivenFlag = std::pair<const char*, const std::string*>;
-std::vector<std::string> given_of(std::initializer_list<GivenFlag> flags) {
+std::vector<std::string> given_flags(std::initializer_list<GivenFlag> flags) {
   std::vector<std::string> given;
   for (const auto& [flag, value] : flags) {
     if (!value->empty()) given.emplace_back(flag);
@@ -90,20 +90,20 @@ void refuse_idle(const std::vector<std::string>& flags, const std::string& besid
 
 void check_effects(const ComparisonArguments& args) {
   if (!args.methods.empty() && !args.sweep) {
-    refuse_idle(given_of({{"--eps-b", &args.eps_b},
-                          {"--eps-a", &args.eps_a},
-                          {"--rays", &args.rays},
-                          {"--seeds", &args.seeds},
-                          {"--pattern", &args.pattern},
-                          {"--variant", &args.variant},
-                          {"--sweep-budget", &args.sweep_budget}}),
+    refuse_idle(given_flags({{"--eps-b", &args.eps_b},
+                             {"--eps-a", &args.eps_a},
+                             {"--rays", &args.rays},
+                             {"--seeds", &args.seeds},
+                             {"--pattern", &args.pattern},
+                             {"--variant", &args.variant},
+                             {"--sweep-budget", &args.sweep_budget}}),
                 "beside --method", "with --method, the sweep of Tampieri's algorithm over these values does not run",
                 "add --sweep, or write a setting of the method, such as --method adaptive:eps_B=0.1|0.01,rays=16");
   }
   if (args.no_methods) {
-    refuse_idle(given_of({{"--method-seeds", &args.method_seeds},
-                          {"--method-receivers", &args.method_receivers},
-                          {"--method-budget", &args.method_budget}}),
+    refuse_idle(given_flags({{"--method-seeds", &args.method_seeds},
+                             {"--method-receivers", &args.method_receivers},
+                             {"--method-budget", &args.method_budget}}),
                 "beside --no-methods", "no method is compared", "remove --no-methods");
   }
 }

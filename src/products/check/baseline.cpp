@@ -27,7 +27,7 @@ struct Ratcheted {
   double scale = 0.0;  // the magnitude that rounding errors are relative to
 };
 
-Ratcheted ratcheted(const Statistics& statistics, std::string_view name) {
+Ratcheted ratchet_of(const Statistics& statistics, std::string_view name) {
   if (name == "max-abs") return {statistics.absolute.max, statistics.largest_value};
   if (name == "max-rel") return {statistics.relative.max, 1.0};
   if (name == "rms") return {statistics.absolute.rms, statistics.largest_value};
@@ -40,7 +40,7 @@ Ratcheted ratcheted(const Statistics& statistics, std::string_view name) {
 ordered_json numbers_json(const Statistics& statistics) {
   ordered_json json = ordered_json::object();
   for (const std::string_view name : kRatcheted) {
-    if (const auto value = ratcheted(statistics, name).now) json[std::string(name)] = *value;
+    if (const auto value = ratchet_of(statistics, name).now) json[std::string(name)] = *value;
   }
   return json;
 }
@@ -99,7 +99,7 @@ void compare(Report& report, const Baseline& baseline, const std::string& source
   constexpr double kRoundings = 4.0 * std::numeric_limits<double>::epsilon();
   for (const std::string_view name : kRatcheted) {
     const auto recorded = baseline.recorded(source, name);
-    const Ratcheted one = ratcheted(statistics, name);
+    const Ratcheted one = ratchet_of(statistics, name);
     if (!recorded || !one.now) continue;
     const double allowance = std::isinf(*recorded) ? 0.0 : std::max(*recorded * slack, kRoundings * one.scale);
     const double limit = *recorded + allowance;

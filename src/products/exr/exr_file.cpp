@@ -80,7 +80,7 @@ struct ExrFile::Content {
   }
   // Calls the library; what it throws becomes an InputError.
   template <class Call>
-  void guarded(const Call& call) {
+  void guard(const Call& call) {
     try {
       call();
     } catch (const IEX_NAMESPACE::BaseExc& error) {
@@ -102,7 +102,7 @@ void ExrFile::Content::open() {
                  "give an .exr file");
   }
   if (const std::string fault = fault_of_headers(bytes); !fault.empty()) refuse("is damaged", fault);
-  guarded([&] {
+  guard([&] {
     stream.emplace(bytes, name);
     file.emplace(*stream, 0, false);
     for (int part = 0; part < file->parts(); ++part) list_channels(part);
@@ -197,7 +197,7 @@ std::vector<std::vector<float>> ExrFile::read(std::span<const Channel> channels)
   }
   for (std::vector<float>& of_channel : numbers) of_channel.resize(window.pixels());
   const std::lock_guard lock(content_->mutex);
-  content_->guarded([&] { content_->read(channels, numbers); });
+  content_->guard([&] { content_->read(channels, numbers); });
   return numbers;
 }
 

@@ -15,7 +15,7 @@
 namespace exactff::matrix {
 namespace {
 
-std::string formatted(double value, std::chars_format format, int digits) {
+std::string digits_of(double value, std::chars_format format, int digits) {
   std::array<char, 64> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format, digits).ptr;
   return {buffer.data(), end};
@@ -44,7 +44,7 @@ std::string view3d_text(const Scene& scene, const Matrix& matrix) {
   text.resize(std::max<std::size_t>(text.size(), 30), ' ');
   text += '\n';
   const auto add_line = [&](std::chars_format format, int digits, const auto& number) {
-    for (std::size_t j = 0; j < count; ++j) text += (j > 0 ? " " : "") + formatted(number(j), format, digits);
+    for (std::size_t j = 0; j < count; ++j) text += (j > 0 ? " " : "") + digits_of(number(j), format, digits);
     text += '\n';
   };
   constexpr auto kGeneral = std::chars_format::general, kFixed = std::chars_format::fixed;

@@ -17,7 +17,7 @@ constexpr std::string_view kNumber = "entry,";  // the first column of a journal
 constexpr std::uint64_t kChunks = 4096;
 constexpr std::uint64_t kLargestChunk = 64;
 
-Request checked(Request request) {
+Request require_valid(Request request) {
   jobs::require_shard(request.shard);
   if (request.scene == nullptr || request.from.empty() || request.to.empty()) {
     text::refuse("the matrix has no rows or no columns", "there is nothing to compute",
@@ -61,7 +61,8 @@ class EntryComputer : public jobs::Rows::Computer {
 }  // namespace
 
 Rows::Rows(Request request)
-    : request_(checked(std::move(request))), entries_(*request_.scene, request_.from, request_.to, request_.options) {
+    : request_(require_valid(std::move(request))),
+      entries_(*request_.scene, request_.from, request_.to, request_.options) {
   const std::uint64_t count = entries_.count();
   const auto chunk = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(count / kChunks, 1, kLargestChunk));
   const int threads = request_.options.threads > 0 ? request_.options.threads : files::usable_threads();

@@ -111,7 +111,7 @@ double automatic_exposure(const Picture& picture) {
   return std::isfinite(exposure) ? exposure : 1.0;
 }
 
-Colours developed(const Picture& picture, double exposure) {
+Colours develop(const Picture& picture, double exposure) {
   const kernel::StandardArithmetic arithmetic;
   Colours colours{picture.size, {}};
   colours.bytes.reserve(picture.values.size());

@@ -21,7 +21,7 @@ void write_image(const std::filesystem::path& file, const Picture& picture, std:
     whole.append(exr_of(picture));
   } else {
     const double factor = exposure ? *exposure : automatic_exposure(picture);
-    whole.append(png_of(developed(picture, factor), picture.metadata));
+    whole.append(png_of(develop(picture, factor), picture.metadata));
   }
   whole.commit();
 }

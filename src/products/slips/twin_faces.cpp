@@ -16,7 +16,7 @@ using Ring = std::vector<std::uint32_t>;
 
 // From the lowest place on. A place that a ring visits twice may leave equal rings different: one pair less is
 // reported.
-Ring turned_to_lowest(Ring ring) {
+Ring begin_at_lowest(Ring ring) {
   std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
   return ring;
 }
@@ -65,7 +65,7 @@ class TwinFinder {
       Ring at_places;
       for (const std::uint32_t v : ring) at_places.push_back(places_[v]);
       if (reversed) std::ranges::reverse(at_places);
-      rings.push_back(turned_to_lowest(std::move(at_places)));
+      rings.push_back(begin_at_lowest(std::move(at_places)));
     }
     return rings;
   }

@@ -63,7 +63,7 @@ std::string rays_choice(int rays) { return "area-sampling:pattern=stratified,sam
 
 // Extrapolates from the two previous times. For the first two numbers of triangles there is nothing to extrapolate
 // from.
-double predicted(const std::vector<TimeRow>& rows, int triangles) {
+double predict_seconds(const std::vector<TimeRow>& rows, int triangles) {
   const TimeRow& last = rows.back();
   if (rows.size() < 2 || !last.without_shaft) return last.without_shaft.value_or(INFINITY);
   const TimeRow& before = rows[rows.size() - 2];
@@ -73,7 +73,7 @@ double predicted(const std::vector<TimeRow>& rows, int triangles) {
 }
 
 bool affordable_without_shaft(const std::vector<TimeRow>& rows, int triangles, double budget) {
-  return rows.empty() || predicted(rows, triangles) <= budget;
+  return rows.empty() || predict_seconds(rows, triangles) <= budget;
 }
 
 TimeRow time_row(const TimesSize& size, int triangles, const std::vector<TimeRow>& before, const Hooks& hooks) {

@@ -133,7 +133,7 @@ class MethodFigures {
   // RMS over the receivers of each bin, against the position of the bin on the axis. Bins with fewer than three
   // receivers are left out.
   template <class BinOf>
-  [[nodiscard]] std::vector<page::Series> binned(const BinOf& bin_of) const {
+  [[nodiscard]] std::vector<page::Series> series_by_bin(const BinOf& bin_of) const {
     constexpr std::size_t kFewest = 3;
     std::vector<page::Series> series;
     for (const Field& field : fields()) {
@@ -169,7 +169,7 @@ class MethodFigures {
          "seed.",
          page::line_plot(
              {"visible share of the source, %", kRelative, false, true, {"set xrange [-3:103]", kFloor}, {}},
-             binned(bin_of))},
+             series_by_bin(bin_of))},
         "every error is 0, or no bin has three receivers");
   }
 
@@ -188,7 +188,7 @@ class MethodFigures {
              text::rounded(unit, 2) +
              " cannot be distinguished. Bins are powers of two. The settings are those of the previous figure.",
          page::line_plot({"distance to the nearest shadow edge (scene’s unit)", kRelative, true, true, {kFloor}, {}},
-                         binned(bin_of))},
+                         series_by_bin(bin_of))},
         "every error is 0, or no bin has three receivers");
   }
 

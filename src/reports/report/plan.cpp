@@ -50,7 +50,7 @@ page::Chapter run_experiment(const experiments::Experiment& experiment, const Ef
 }
 
 // Progress of a scene's study is shown under the scene's title.
-Hooks titled(const PlannedScene& scene, const Hooks& hooks) {
+Hooks with_title(const PlannedScene& scene, const Hooks& hooks) {
   if (scene.name.empty() || !hooks.progress) return hooks;
   return {[&](const Progress& progress) {
             const std::string stage = scene.title + ": " + std::string(progress.stage);
@@ -116,7 +116,7 @@ Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::J
   report.identity = identity_of(plan);
   report.left_out = plan.left_out;
   for (const PlannedScene& scene : plan.scenes) {
-    report.scenes.push_back({scene.name, scene.title, study::run(scene.request, titled(scene, hooks), &journal)});
+    report.scenes.push_back({scene.name, scene.title, study::run(scene.request, with_title(scene, hooks), &journal)});
   }
   for (const std::string& name : plan.experiments) {
     report.chapters.push_back(run_experiment(experiments::experiment_named(name), plan.effort, journal, hooks));

@@ -195,7 +195,7 @@ std::string names_of(const Scene& scene, const std::set<PatchId>& patches) {
   return text::enumerate(names);
 }
 
-std::optional<Strip> drawn(const Study& study, const Shown& shown, const render::Size& size, const Hooks& hooks) {
+std::optional<Strip> draw_strip(const Study& study, const Shown& shown, const render::Size& size, const Hooks& hooks) {
   render::Request request{.scene = study.request.scene};
   render::Camera like;
   like.up = upwards(study);
@@ -221,8 +221,8 @@ std::optional<Strip> drawn(const Study& study, const Shown& shown, const render:
     return render::png_of(colours, {});
   };
   return Strip{
-      .exact = png(render::developed(exact, exposure)),
-      .method = png(render::developed(judged, exposure)),
+      .exact = png(render::develop(exact, exposure)),
+      .method = png(render::develop(judged, exposure)),
       .error = png(render::coloured(errors, size, scale)),
       .method_name = shown.name,
       .is_base = !study.settings.empty() && shown.choice.method->name == "adaptive",
@@ -285,7 +285,7 @@ std::optional<Strip> strip_of(const Study& study, std::vector<LeftOut>& left_out
     const HooksOfThread ours(hooks);
     const std::optional<Painting> painting = affordable_painting(study, *shown);
     if (!painting) return leave_out("they would take too long");
-    std::optional<Strip> strip = drawn(study, painting->shown, painting->size, hooks);
+    std::optional<Strip> strip = draw_strip(study, painting->shown, painting->size, hooks);
     if (!strip) return leave_out("no light falls on what the camera sees");
     return strip;
   } catch (const InputError& error) {

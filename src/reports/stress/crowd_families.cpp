@@ -16,7 +16,7 @@ int side_of(double count) { return static_cast<int>(std::lround(std::sqrt(count)
 Span tile(int k, int n) { return {static_cast<double>(k) / n - 0.5, static_cast<double>(k + 1) / n - 0.5}; }
 
 template <class Keep>
-Stage tiled(int n, const Keep& keep) {
+Stage tile_stage(int n, const Keep& keep) {
   Stage stage(kOrigin, kUp);
   stage.add_level_source(kSide, kSide, 1);
   for (int i = 0; i < n; ++i) {
@@ -28,14 +28,14 @@ Stage tiled(int n, const Keep& keep) {
 }
 
 Case tiles(double s) {
-  return tiled(side_of(s), [](int, int) { return true; }).finish(s, ClosedForm(kUp));
+  return tile_stage(side_of(s), [](int, int) { return true; }).finish(s, ClosedForm(kUp));
 }
 
 Case tiles_one_missing(double s) {
   const int n = side_of(s), middle = n / 2;
   ClosedForm truth(kUp);
   truth.add(LevelView(kOrigin, 1).shadow(tile(middle, n), tile(middle, n), 0.5));
-  return tiled(n, [&](int i, int j) { return i != middle || j != middle; }).finish(s, std::move(truth));
+  return tile_stage(n, [&](int i, int j) { return i != middle || j != middle; }).finish(s, std::move(truth));
 }
 
 Case rings(double s) {

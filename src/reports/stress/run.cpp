@@ -167,7 +167,7 @@ const Family& family_named(const std::string& name) {
   refuse_family(name);
 }
 
-std::vector<const Family*> selected(const std::vector<std::string>& names) {
+std::vector<const Family*> select_families(const std::vector<std::string>& names) {
   std::vector<const Family*> list;
   if (names.empty()) {
     for (const Family& family : all_families()) list.push_back(&family);
@@ -204,7 +204,7 @@ Report run(Request request, const Hooks& hooks) {
     std::size_t result, row;
   };
   std::vector<Place> places;
-  for (const Family* family : selected(report.request.families)) {
+  for (const Family* family : select_families(report.request.families)) {
     const std::size_t count = family->stiffnesses.size();
     for (std::size_t row = 0; row < count; ++row) places.push_back({family, report.families.size(), row});
     report.families.push_back({family->info, std::vector<Row>(count)});

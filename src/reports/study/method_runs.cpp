@@ -110,7 +110,7 @@ class MethodRunner {
     double left = request().methods.budget;
     std::size_t rung = 0;
     for (; rung < ladder.rungs.size(); ++rung) {
-      MethodCell cell = begun(l, rung);
+      MethodCell cell = new_cell(l, rung);
       const double planned = plan(cell, *prepared);
       if (planned > left) break;
       left -= planned;
@@ -137,7 +137,7 @@ class MethodRunner {
     result_.ladders = std::move(kept);
   }
 
-  [[nodiscard]] MethodCell begun(std::size_t l, std::size_t rung) const {
+  [[nodiscard]] MethodCell new_cell(std::size_t l, std::size_t rung) const {
     MethodCell cell;
     cell.ladder = l;
     cell.rung = rung;
@@ -158,7 +158,7 @@ class MethodRunner {
 
   [[nodiscard]] double plan(const MethodCell& cell, const PreparedMethod& prepared) const {
     if (result_.receivers.empty()) return 0.0;
-    const auto evaluator = prepared.scene->configure(seeded(choice_of(cell), cell.seeds.front()));
+    const auto evaluator = prepared.scene->configure(with_seed(choice_of(cell), cell.seeds.front()));
     const std::size_t middle = result_.receivers[result_.receivers.size() / 2];
     const Outcome outcome = evaluate(*evaluator, prepared, middle);
     const auto evaluations = static_cast<double>(cell.seeds.size() * result_.receivers.size());
@@ -183,7 +183,7 @@ class MethodRunner {
     std::vector<double> work(cell.seeds.size() * chunks, 0.0);
     const auto task = [&](std::size_t t) {
       const std::size_t seed = t / chunks, first = t % chunks * kReceiversPerTask;
-      const auto evaluator = prepared.scene->configure(seeded(choice_of(cell), cell.seeds[seed]));
+      const auto evaluator = prepared.scene->configure(with_seed(choice_of(cell), cell.seeds[seed]));
       for (std::size_t r = first; r < std::min(first + kReceiversPerTask, receivers); ++r) {
         const Outcome outcome = evaluate(*evaluator, prepared, result_.receivers[r]);
         cell.values[seed][r] = outcome.form_factor;
@@ -242,7 +242,7 @@ class MethodRunner {
           field.form_factors = field.radiosity_errors;
           files::parallel_for((count + kReceiversPerTask - 1) / kReceiversPerTask, request().threads, ladder.name,
                               hooks_, [&](std::size_t t) {
-                                const auto evaluator = prepared.scene->configure(seeded(choice, seed));
+                                const auto evaluator = prepared.scene->configure(with_seed(choice, seed));
                                 for (std::size_t i = t * kReceiversPerTask;
                                      i < std::min((t + 1) * kReceiversPerTask, count); ++i) {
                                   const Outcome outcome = evaluate(*evaluator, prepared, i);
@@ -302,7 +302,7 @@ PreparedMethod::PreparedMethod(const methods::Method& method, const Scene& given
   }
 }
 
-Settings seeded(const methods::Choice& choice, std::uint64_t seed) {
+Settings with_seed(const methods::Choice& choice, std::uint64_t seed) {
   Settings settings = choice.settings;
   if (seed > 0) settings.set("seed", static_cast<std::int64_t>(seed));
   return settings;

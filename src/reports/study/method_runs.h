@@ -20,7 +20,7 @@ struct PreparedMethod {
 };
 
 // The settings of a choice with this seed; seed 0 leaves them unchanged.
-[[nodiscard]] Settings seeded(const methods::Choice& choice, std::uint64_t seed);
+[[nodiscard]] Settings with_seed(const methods::Choice& choice, std::uint64_t seed);
 
 struct MethodResults {
   MethodStudy methods;

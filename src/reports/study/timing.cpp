@@ -149,7 +149,7 @@ class Stopwatch {
 
   void time_cell(const MethodCell& cell, const PreparedMethod& prepared, const std::vector<std::size_t>& order) {
     const methods::Choice& choice = study_.methods.ladders[cell.ladder].rungs[cell.rung];
-    const auto evaluator = prepared.scene->configure(seeded(choice, cell.seeds.front()));
+    const auto evaluator = prepared.scene->configure(with_seed(choice, cell.seeds.front()));
     std::vector<methods::Estimate> estimates(prepared.sources.size());
     std::vector<double> all, partly;
     spend(request().seconds_for_a_time, kFewestInCell, order, [&](std::size_t i) {

@@ -313,7 +313,8 @@ AdaptiveResult estimate(const SampledScene& solver, const Receiver& receiver, co
   thread_local Workspace work;
   Recursion recursion(solver, view, options, largest_rho_b, visibility, work, result);
   const double sum = recursion.compute_contribution(source.source, stream_key(view, source.selection, options.seed));
-  result.form_factor = settled(sum, options.variant == Variant::kLiteral ? Formula::kAny : Formula::kNotNegative);
+  result.form_factor =
+      move_into_range(sum, options.variant == Variant::kLiteral ? Formula::kAny : Formula::kNotNegative);
   return result;
 }
 

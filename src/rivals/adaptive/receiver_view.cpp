@@ -51,7 +51,7 @@ class Gatherer {
 
   // True if the plane of the last seen piece is too near x, or that piece too near the source's plane, for single
   // precision.
-  [[nodiscard]] bool blurred(double blur) const {
+  [[nodiscard]] bool is_blurred(double blur) const {
     const Vec3& normal = seen_.normal.value;
     if (std::abs(dot(normal, seen_.corners[0])) <= blur * length(normal)) return true;
     const Vec3 to_plane = plane_.frame[0] - view_.point;
@@ -225,7 +225,7 @@ bool gather_occluders(const ScaledScene& scene, const ReceiverView& view, const 
     if (gathered.looked_at > most) return false;
     const SeenPolygon* seen = gatherer.see(piece);
     if (seen == nullptr) return true;
-    if (gatherer.blurred(blur)) {
+    if (gatherer.is_blurred(blur)) {
       add_blurred(*seen, reach, gathered);
     } else {
       gathered.sharp_pieces.push_back(piece);

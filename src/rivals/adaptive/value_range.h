@@ -17,7 +17,7 @@ enum class Formula {
 
 // Requires a number, perhaps infinite: a formula may exceed the largest double. Returns the nearest finite double that
 // the formula could have had without rounding errors.
-[[nodiscard]] inline double settled(double value, Formula formula) {
+[[nodiscard]] inline double move_into_range(double value, Formula formula) {
   EXACTFF_EXPECT(!std::isnan(value));
   constexpr double kLargest = std::numeric_limits<double>::max();
   constexpr double kRoundingAboveOne = 1e-12;  // sums of a method's terms exceed 1 by no more through rounding

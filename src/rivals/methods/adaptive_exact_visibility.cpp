@@ -62,7 +62,7 @@ class ExactVisibility : public adaptive::PatchVisibility {
     return share_->of({corners.data(), count});
   }
 
-  [[nodiscard]] std::uint64_t asked() const { return asked_; }
+  [[nodiscard]] std::uint64_t request_count() const { return asked_; }
   // Decisions that needed rational numbers.
   [[nodiscard]] std::uint64_t undecided() const {
     std::uint64_t sum = 0;
@@ -111,7 +111,7 @@ class Control : public RecursionEvaluator {
     const auto& source = own<ControlSource>(prepared);
     ExactVisibility visibility(scene(), receiver(), source.exact, workspace_);
     Estimate result = estimate(source.adaptive, source.radiosity, &visibility);
-    result.counters.add("exact V", visibility.asked());
+    result.counters.add("exact V", visibility.request_count());
     result.counters.add("rational decisions", visibility.undecided());
     return result;
   }

@@ -52,7 +52,7 @@ class AreaSampling : public Evaluator {
     share_out(source);
     for (std::size_t root = 0; root < source.roots.size(); ++root) add_root(source, root);
     const double mean = rays_.take() * (source.area() / static_cast<double>(square_.size()));
-    result.form_factor = settled(mean, Formula::kNotNegative);
+    result.form_factor = move_into_range(mean, Formula::kNotNegative);
     result.counters.add("samples", square_.size());
     result.counters.add("rays", rays_.take_rays());
     return result;

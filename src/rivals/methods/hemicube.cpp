@@ -229,7 +229,7 @@ Estimate Hemicube::form_factor(const PreparedSource& source) {
     result.form_factor += shares_[index_of(face)].form_factor;
     pixels += shares_[index_of(face)].pixels;
   }
-  result.form_factor = settled(result.form_factor, Formula::kUnit);
+  result.form_factor = move_into_range(result.form_factor, Formula::kUnit);
   result.counters.add("pixels", pixels);
   result.counters.add("pixels drawn", pixels_.count());
   result.counters.add("polygons", drawn_);

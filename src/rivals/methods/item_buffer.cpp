@@ -13,7 +13,7 @@ using namespace adaptive;
 namespace {
 
 // (column, row, depth) axes of each face in terms of (u, v, n). Forms and points are turned in the same way.
-Vec3 turned_to(int face, const Vec3& p) {
+Vec3 turn_to(int face, const Vec3& p) {
   switch (face) {
     case 1:
       return {p.y, p.z, p.x};
@@ -112,7 +112,7 @@ void ItemBuffer::draw(const SeenItem& seen) {
 // The pixels to test: those around the clipped polygon, and one more on every side for rounding errors.
 bool ItemBuffer::clip_to_frustum(const SeenItem& seen, int face, Span& columns, Span& rows) {
   polygon_.clear();
-  for (const Vec3& p : seen.corners) polygon_.push_back(turned_to(face, p));
+  for (const Vec3& p : seen.corners) polygon_.push_back(turn_to(face, p));
   const Outcodes codes = outcodes(face, polygon_);
   if (codes.all != 0) return false;
   for (std::size_t side = 0; side < 4; ++side) {
@@ -140,10 +140,10 @@ bool ItemBuffer::clip_to_frustum(const SeenItem& seen, int face, Span& columns, 
 void ItemBuffer::draw_on(int face, const SeenItem& seen, const Span& columns, const Span& rows) {
   forms_.clear();
   for (const Vec3& side : sides_) {
-    const Vec3 turned = turned_to(face, side);
+    const Vec3 turned = turn_to(face, side);
     forms_.push_back({turned.x, turned.y, turned.z * n_});
   }
-  const Vec3 near = turned_to(face, seen.nearness);
+  const Vec3 near = turn_to(face, seen.nearness);
   for (int row = rows.first; row <= rows.last; ++row) {
     const Span span = inside(row_of(face, row), columns);
     if (span.empty()) continue;

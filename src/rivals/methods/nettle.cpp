@@ -67,7 +67,7 @@ class Nettle : public Evaluator {
         rays_.for_each_part(source, reach, splits_, key, plan_.ray_count(),
                             [this](const SubPatch& part, std::uint64_t part_key) { add_part(part, part_key); });
     Estimate result;
-    result.form_factor = settled(rays_.take(), literal() ? Formula::kAny : Formula::kNotNegative);
+    result.form_factor = move_into_range(rays_.take(), literal() ? Formula::kAny : Formula::kNotNegative);
     result.counters.add("sub-patches", sub_patches);
     result.counters.add("rays", rays_.take_rays());
     return result;

@@ -42,7 +42,7 @@ class Wallace : public Evaluator {
         rays_.for_each_part(source, Reach::kVisible, splits_, key, 1,
                             [this](const SubPatch& part, std::uint64_t part_key) { add_part(part, part_key); });
     Estimate result;
-    result.form_factor = settled(rays_.take(), Formula::kNotNegative);
+    result.form_factor = move_into_range(rays_.take(), Formula::kNotNegative);
     result.counters.add("samples", samples);
     result.counters.add("rays", rays_.take_rays());
     return result;

@@ -82,7 +82,7 @@ struct Tally {
   }
 };
 
-bool passed_over(std::string_view keyword) {
+bool is_passed_over(std::string_view keyword) {
   static constexpr std::array kWords = {
       std::string_view("vt"),         std::string_view("vp"),        std::string_view("p"),
       std::string_view("l"),          std::string_view("s"),         std::string_view("mg"),
@@ -176,7 +176,7 @@ Scene ObjReader::run() {
 void ObjReader::read_line() {
   std::string_view rest = line_.text;
   const std::string_view keyword = text::take_word(rest);
-  if (keyword.empty() || passed_over(keyword)) return;
+  if (keyword.empty() || is_passed_over(keyword)) return;
   if (keyword == "v") return read_vertex(rest);
   if (keyword == "vn") return read_normal(rest);
   if (keyword == "f" || keyword == "fo") return read_face(rest);

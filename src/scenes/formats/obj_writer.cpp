@@ -91,7 +91,7 @@ std::string write_obj(const Scene& scene, const std::string& mtl, Losses& losses
   const std::vector<std::string> materials = material_names(scene, told_by_mtl);
   std::string out;
   if (!mtl.empty()) {
-    if (fitted(mtl, kObjNames) != mtl) {
+    if (fit_name(mtl, kObjNames) != mtl) {
       throw InputError({losses.file(), 0, "the name of its MTL file cannot be written into an OBJ file",
                         "it contains characters that OBJ does not allow", "choose another name"});
     }

@@ -9,7 +9,7 @@
 
 namespace exactff::formats {
 
-std::string fitted(std::string name, const NameRules& rules) {
+std::string fit_name(std::string name, const NameRules& rules) {
   constexpr std::string_view kNever("\0\r\n", 3);
   const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; };
   if (name.empty()) return "_";
@@ -32,12 +32,12 @@ std::vector<std::string> output_names(std::vector<std::string> names, const Name
   std::unordered_set<std::string> taken;
   std::vector<std::size_t> changed;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (fitted(names[i], rules) != names[i] || !taken.insert(names[i]).second) changed.push_back(i);
+    if (fit_name(names[i], rules) != names[i] || !taken.insert(names[i]).second) changed.push_back(i);
   }
   if (changed.empty()) return names;
   const std::string before = names[changed.front()];
   for (const std::size_t i : changed) {
-    names[i] = fitted(names[i], rules);
+    names[i] = fit_name(names[i], rules);
     while (!taken.insert(names[i]).second) names[i] += "_" + std::to_string(i + 1);
   }
   losses.add("the " + noun + " " + text::in_quotes(before) + " is called " + text::in_quotes(names[changed.front()]) +

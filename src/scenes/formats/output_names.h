@@ -26,6 +26,6 @@ struct NameRules {
 [[nodiscard]] bool has_only_default_patch(const Scene& scene);
 
 // The name as the format can hold it.
-[[nodiscard]] std::string fitted(std::string name, const NameRules& rules);
+[[nodiscard]] std::string fit_name(std::string name, const NameRules& rules);
 
 }  // namespace exactff::formats

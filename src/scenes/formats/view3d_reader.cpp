@@ -59,7 +59,7 @@ class View3dReader {
   void fail(std::string what, std::string why, std::string suggestion) {
     input_.fail(at_line(line_.number), std::move(what), std::move(why), std::move(suggestion));
   }
-  std::string called(std::size_t place) const {
+  std::string name_at(std::size_t place) const {
     return std::to_string(place + 1) + " (" + text::in_quotes(surfaces_[place].name) + ")";
   }
 
@@ -231,10 +231,10 @@ void View3dReader::cut_from_base(std::size_t place) {
     }
   }
   if (surfaces_[base].obstructs_only) {
-    fail("the base of surface " + called(place) + " is an obstruction surface", "it has no area of its own to give",
+    fail("the base of surface " + name_at(place) + " is an obstruction surface", "it has no area of its own to give",
          "correct the base, or write 0");
   } else if (!in_one_plane(corners)) {
-    fail("surface " + called(place) + " is not exactly in the plane of its base " + called(base),
+    fail("surface " + name_at(place) + " is not exactly in the plane of its base " + name_at(base),
          "it cannot be cut out of it exactly", "move its vertices, or divide the base around it and write base 0");
   } else {
     surfaces_[base].subsurfaces.push_back(place);
@@ -254,7 +254,7 @@ PatchId View3dReader::patch_of(std::size_t place) {
   if (surface.combined_with == 0) return patches_[place] = input_.patch(distinct_name(place));
   const auto other = patches_.find(surface.combined_with - 1);
   if (other != patches_.end()) return other->second;
-  fail("surface " + called(place) + " is combined with surface " + called(surface.combined_with - 1),
+  fail("surface " + name_at(place) + " is combined with surface " + name_at(surface.combined_with - 1),
        "that one is itself combined, or an obstruction", "name the first surface of the combination");
   return input_.patch(surface.name);
 }
@@ -265,7 +265,7 @@ std::string View3dReader::distinct_name(std::size_t place) {
   if (names_.insert(name).second) return name;
   name += "#" + std::to_string(place + 1);
   while (!names_.insert(name).second) name += '_';
-  input_.warn(at_line(surfaces_[place].line), "surface " + called(place) + " has the name of another",
+  input_.warn(at_line(surfaces_[place].line), "surface " + name_at(place) + " has the name of another",
               "names select patches", "it is called " + text::in_quotes(name));
   return name;
 }
@@ -283,12 +283,12 @@ void View3dReader::check_subsurfaces(const Scene& scene) const {
       if (same_front(scene, base_face, faces.back())) continue;
       same_fronts = false;
       problems.add({input_.file(), surfaces_[place].line,
-                    "surface " + called(place) + " faces away from its base " + called(base),
+                    "surface " + name_at(place) + " faces away from its base " + name_at(base),
                     "it would be a part of the other side", "reverse the order of its vertices"});
     }
     if (same_fronts && !are_parts(scene, base_face, faces)) {
       problems.add({input_.file(), surfaces_[base].line,
-                    "subsurfaces of surface " + called(base) + " overlap, or reach beyond it",
+                    "subsurfaces of surface " + name_at(base) + " overlap, or reach beyond it",
                     "each point belongs to one surface", "correct them"});
     }
   }

@@ -101,7 +101,7 @@ Weights weights(int step, int steps) {
 }
 
 // A coordinate that all four points share is kept exactly, so that circles stay level and poles stay points.
-Vec3 combined(const std::array<Vec3, 4>& p, const Weights& w) {
+Vec3 weighted_sum(const std::array<Vec3, 4>& p, const Weights& w) {
   const auto sum = [&](double Vec3::*c) {
     if (p[0].*c == p[1].*c && p[1].*c == p[2].*c && p[2].*c == p[3].*c) return p[0].*c;
     return w[0] * p[0].*c + w[1] * p[1].*c + w[2] * p[2].*c + w[3] * p[3].*c;
@@ -111,8 +111,8 @@ Vec3 combined(const std::array<Vec3, 4>& p, const Weights& w) {
 
 Vec3 point(std::span<const Section, 4> patch, const Weights& along, const Weights& across) {
   std::array<Vec3, 4> crossing;
-  for (std::size_t i = 0; i < 4; ++i) crossing[i] = combined(patch[i], across);
-  return combined(crossing, along);
+  for (std::size_t i = 0; i < 4; ++i) crossing[i] = weighted_sum(patch[i], across);
+  return weighted_sum(crossing, along);
 }
 
 // The signs of x and y in a mirror image.

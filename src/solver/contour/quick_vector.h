@@ -60,7 +60,7 @@ EXACTFF_INLINE BasicVector<Real> difference(const BasicVector<Real>& p, const Ba
 
 // The error that a sum of products of a component of p and a component of q inherits from p and q.
 template <class Real>
-EXACTFF_INLINE Real inherited(const BasicVector<Real>& p, const BasicVector<Real>& q) {
+EXACTFF_INLINE Real inherited_error(const BasicVector<Real>& p, const BasicVector<Real>& q) {
   return (p.norm + 3.0 * p.error) * q.error + q.norm * p.error;
 }
 
@@ -68,7 +68,7 @@ template <class Real>
 EXACTFF_INLINE BasicVector<Real> cross(const BasicVector<Real>& p, const BasicVector<Real>& q) {
   return vector({sum_of_products(p.c[1], q.c[2], -p.c[2], q.c[1]), sum_of_products(p.c[2], q.c[0], -p.c[0], q.c[2]),
                  sum_of_products(p.c[0], q.c[1], -p.c[1], q.c[0])},
-                inherited(p, q) + 0x1p-102 * (p.norm * q.norm) + kUnderflow);
+                inherited_error(p, q) + 0x1p-102 * (p.norm * q.norm) + kUnderflow);
 }
 
 // l p + m q.
@@ -95,7 +95,7 @@ EXACTFF_INLINE BasicBounded<Real> dot(const BasicVector<Real>& p, const BasicVec
   const auto t = two_sum(s.hi, z.hi);
   const Real rest = ((x.lo + y.lo) + z.lo) + (s.lo + t.lo);
   const Real size = magnitude(x.hi) + magnitude(y.hi) + magnitude(z.hi);
-  return bounded(two_sum(t.hi, rest), inherited(p, q) + 0x1p-101 * size + kUnderflow);
+  return bounded(two_sum(t.hi, rest), inherited_error(p, q) + 0x1p-101 * size + kUnderflow);
 }
 
 // p - t q for an exact double t, for the case that p and t q nearly cancel. Let m = |p.hi| + |t q.hi| for a component.

@@ -11,7 +11,7 @@ namespace exactff {
 
 namespace {
 
-Loop lifted(const exact::Lift& lift, const kernel::Ring& ring) {
+Loop lift_ring(const exact::Lift& lift, const kernel::Ring& ring) {
   Loop loop;
   for (const kernel::Direction& corner : ring) loop.corners.push_back(lift(corner.exact));
   return loop;
@@ -23,10 +23,10 @@ PlaneDrawing draw(const visibility::View& view, const visibility::SourcePlane& p
   PlaneDrawing drawing;
   drawing.normal = exact::rounded(plane.normal.exact);
   if (side_of(plane, view.x) <= 0) return drawing;
-  for (const kernel::Ring& ring : seen.source) drawing.source.push_back(lifted(lift, ring));
-  for (const kernel::Ring& ring : seen.clipped) drawing.clipped_source.push_back(lifted(lift, ring));
+  for (const kernel::Ring& ring : seen.source) drawing.source.push_back(lift_ring(lift, ring));
+  for (const kernel::Ring& ring : seen.clipped) drawing.clipped_source.push_back(lift_ring(lift, ring));
   for (const visibility::Occluder& occluder : seen.occluders) {
-    drawing.shadows.push_back({occluder.face, lifted(lift, occluder.ring)});
+    drawing.shadows.push_back({occluder.face, lift_ring(lift, occluder.ring)});
   }
   for (const visibility::RegionLoop& loop : seen.visible) {
     Loop drawn{{}, loop.hole};

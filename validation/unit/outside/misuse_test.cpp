@@ -231,7 +231,7 @@ TEST(Misuse, BrokenRequirementsNameTheirPlace) {
   expect_broken("stl_layout.h", [] { (void)formats::StlLayout::triangle_count("solid"); });
   expect_broken("triangulation.cpp", [] { (void)cut_face({}, {{0, 1, 2}}); });
   expect_broken("pair_table.h", [] { (void)whole_view::PairTable()(1, 1); });
-  expect_broken("value_range.h", [] { (void)adaptive::settled(std::nan(""), adaptive::Formula::kAny); });
+  expect_broken("value_range.h", [] { (void)adaptive::move_into_range(std::nan(""), adaptive::Formula::kAny); });
   expect_broken("unit_normal.cpp", [] { (void)truth::unit_normal({}); });
   expect_broken("settings.cpp", [] { (void)study::combine({}); });
 }

@@ -299,7 +299,7 @@ TEST(DefaultCamera, KeepsAHeightThatIsGiven) {
 TEST(Colours, ExposureBringsTheBrightestToWhite) {
   const Picture picture = render(request(48, 48));
   const double exposure = automatic_exposure(picture);
-  const Colours colours = developed(picture, exposure);
+  const Colours colours = develop(picture, exposure);
   std::size_t full = 0, lit = 0;
   for (std::size_t i = 0; i < picture.pixels(); ++i) {
     const int red = colours.bytes[3 * i];
@@ -316,7 +316,7 @@ TEST(Colours, ExposureBringsTheBrightestToWhite) {
   // sRGB: 0.5 is 188.
   Picture grey = picture;
   grey.values.assign(grey.values.size(), 0.5);
-  EXPECT_EQ(developed(grey, 1.0).bytes[0], 188);
+  EXPECT_EQ(develop(grey, 1.0).bytes[0], 188);
 }
 
 TEST(Picture, UnderTheSkyShowsWhatIsOpen) {
@@ -345,9 +345,9 @@ TEST(Colours, APixelHalfOnALampIsHalfWhite) {
   picture.size = {2, 1};
   picture.values = {500.0, 500.0, 500.0, 0.25, 0.5, 0.75};
   picture.shows = {Shows::kEmitter, Shows::kEmitter};
-  EXPECT_EQ(developed(picture, 1.0).bytes, (std::vector<std::uint8_t>{255, 255, 255, 137, 188, 225}));
+  EXPECT_EQ(develop(picture, 1.0).bytes, (std::vector<std::uint8_t>{255, 255, 255, 137, 188, 225}));
   picture.lamps = {0.5, 500.0, 499.75, 499.5, 0.5, 0.25, 0.25, 0.5};
-  EXPECT_EQ(developed(picture, 1.0).bytes, (std::vector<std::uint8_t>{188, 225, 255, 137, 188, 225}));
+  EXPECT_EQ(develop(picture, 1.0).bytes, (std::vector<std::uint8_t>{188, 225, 255, 137, 188, 225}));
 }
 
 TEST(Picture, SeveralPointsSayWhichPartOfThemIsLamps) {

@@ -107,7 +107,7 @@ TEST(InlinedSvg, HasItsOwnIdsAndNothingFromOutside) {
       "<?xml version=\"1.0\"?>\n<svg viewBox=\"0 0 1 1\"\n xmlns=\"http://www.w3.org/2000/svg\"\n "
       "xmlns:xlink=\"http://www.w3.org/1999/xlink\">\n<title>x</title><circle id='p'/><use xlink:href='#p'/>"
       "<g color=\"black\" fill=\"black\"/></svg>\n";
-  const std::string text = page::inlined(svg, "fig", "A \"title\"");
+  const std::string text = page::inline_svg(svg, "fig", "A \"title\"");
   EXPECT_TRUE(text.starts_with("<svg role=\"img\" aria-label=\"A &quot;title&quot;\""));
   EXPECT_NE(text.find("id='fig-p'"), std::string::npos);
   EXPECT_NE(text.find("href='#fig-p'"), std::string::npos);
@@ -131,7 +131,7 @@ TEST(InlinedSvg, ComesFromEveryFigureThatGnuplotDraws) {
     if (plot.outcome == page::PlotResult::Outcome::kNoProgram) GTEST_SKIP() << "gnuplot is not installed";
     EXPECT_EQ(plot.outcome, page::PlotResult::Outcome::kDrawn) << plot.message;
     EXPECT_EQ(plot.message, "") << "gnuplot warned about " << figure.id;
-    EXPECT_EQ(page::inlined(plot.svg, figure.id, figure.title).find("http"), std::string::npos);
+    EXPECT_EQ(page::inline_svg(plot.svg, figure.id, figure.title).find("http"), std::string::npos);
   }
   EXPECT_EQ(kinds.size(), 2U);
 }
