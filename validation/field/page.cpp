@@ -15,7 +15,7 @@ namespace exactff::field {
 namespace {
 
 using page::HtmlTable;
-using enum HtmlTable::Kind;
+using enum HtmlTable::CellKind;
 
 // A column of the table; left out if no row has the number.
 struct ErrorColumn {

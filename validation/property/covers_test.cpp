@@ -24,18 +24,20 @@ namespace {
 
 using generate::PlainScene;
 using generate::Random;
+using visibility::BoundaryRequest;
 using visibility::EdgeWorkspace;
 using visibility::PlaneVisibility;
-using visibility::Request;
 
 struct Counts {
   std::uint64_t hidden = 0, few = 0, remembered = 0;
 };
 
-Request whole_search() { return {.fraction = true, .fewest_to_cover = std::numeric_limits<std::size_t>::max()}; }
+BoundaryRequest whole_search() {
+  return {.fraction = true, .fewest_to_cover = std::numeric_limits<std::size_t>::max()};
+}
 
 PlaneVisibility find(const Scene& scene, const Receiver& receiver, const visibility::SourcePlane& plane,
-                     const Request& request, EdgeWorkspace& workspace) {
+                     const BoundaryRequest& request, EdgeWorkspace& workspace) {
   return find_visible_boundary(visibility::View(scene, receiver), plane, request, workspace);
 }
 
@@ -197,7 +199,7 @@ TEST_P(CoversOfModels, ChangeNothingInAnyOrderOfReceivers) {
 INSTANTIATE_TEST_SUITE_P(All, CoversOfModels, testing::ValuesIn(model_cases()),
                          [](const auto& tested) { return tested.param.name; });
 
-Outcome outcome_of(const PlainScene& plain, const Request& request, EdgeWorkspace& workspace) {
+Outcome outcome_of(const PlainScene& plain, const BoundaryRequest& request, EdgeWorkspace& workspace) {
   const Scene scene = generate::build(plain);
   const ExactSource source(scene, scene.select(plain.source));
   return find(scene, receiver_of(plain), ExactSourceInside::planes(source).planes.at(0), request, workspace)

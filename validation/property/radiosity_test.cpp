@@ -101,7 +101,7 @@ System random_system(Random& random, double strength) {
   return system;
 }
 
-void expect_holds(const System& system, const Bounds& bounds, const Square& matrix, std::uint64_t s) {
+void expect_holds(const System& system, const SolutionBounds& bounds, const Square& matrix, std::uint64_t s) {
   const std::optional<Vector> b = solved(matrix, exactly(system.emissions));
   ASSERT_TRUE(b) << s;
   for (std::size_t i = 0; i < b->size(); ++i) {
@@ -125,7 +125,7 @@ TEST(RadiosityBounds, HoldForEveryMatrixBetweenItsBounds) {
   for (std::uint64_t s = 0; s < scaled_count(600); ++s) {
     Random random(seed_of(s));
     const System system = random_system(random, s % 3 == 0 ? 8.0 : 2.5);
-    const Bounds bounds = bounds_of(system);
+    const SolutionBounds bounds = bounds_of(system);
     const bool contracts = is_contraction(system);
     EXPECT_TRUE(!contracts || !bounds.upper.empty()) << s;
     (bounds.upper.empty() ? unbounded : bounded) += 1;
@@ -149,7 +149,7 @@ TEST(RadiosityBounds, AreThoseOfTheCornersUpToRoundings) {
   for (std::uint64_t s = 0; s < scaled_count(200); ++s) {
     Random random(seed_of(s));
     const System system = random_system(random, 0.9);
-    const Bounds bounds = bounds_of(system);
+    const SolutionBounds bounds = bounds_of(system);
     if (bounds.upper.empty() || !is_contraction(system)) continue;
     const Vector low = *solved(identity_without_reflected(system, lower_of), exactly(system.emissions));
     const Vector high = *solved(identity_without_reflected(system, upper_of), exactly(system.emissions));

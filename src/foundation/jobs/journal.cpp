@@ -23,7 +23,7 @@ namespace {
 std::string journal_head(const Rows& rows) {
   const std::string head = rows.head();
   const std::size_t columns = head.rfind('\n', head.size() - 2) + 1;
-  const Kind& kind = rows.plan().kind;
+  const RowKind& kind = rows.plan().kind;
   return head.substr(0, columns) + "# unfinished: " + std::string(kind.rows) +
          " in the order in which they were done; exactff " + std::string(kind.command) + " with --resume goes on\n" +
          head.substr(columns);

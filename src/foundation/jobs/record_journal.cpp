@@ -54,7 +54,7 @@ std::optional<RecordHead> head_at(std::string_view text) {
   return head;
 }
 
-struct Place {
+struct RecordPlace {
   std::uint64_t offset = 0;
   std::uint64_t bytes = 0;
 };
@@ -117,7 +117,7 @@ struct Journal::Impl {
   files::MadeFolders made;
   files::File file;
   mutable std::mutex mutex;
-  std::map<std::string, Place> places;
+  std::map<std::string, RecordPlace> places;
   std::uint64_t end = 0;
 };
 

@@ -20,7 +20,7 @@ struct Range {
 };
 
 // What is computed, for messages and for the lines of a head.
-struct Kind {
+struct RowKind {
   std::string_view command;  // "truth": of exactff
   std::string_view file;     // "a truth file"
   std::string_view row;      // "row"
@@ -29,7 +29,7 @@ struct Kind {
 
 // How many rows there are, and how they are distributed.
 struct Plan {
-  Kind kind;
+  RowKind kind;
   std::uint64_t count = 0;
   std::uint32_t chunk = 1;  // rows
   Shard shard;

@@ -72,7 +72,7 @@ void read_chunks(ShardFile& shard, std::uint64_t head_bytes) {
   shard.blocks = std::move(found.list);
 }
 
-ShardFile read_shard_file(const fs::path& path, const Kind& kind) {
+ShardFile read_shard_file(const fs::path& path, const RowKind& kind) {
   const std::string command(kind.command);
   ShardFile shard{File(path, File::Mode::kRead), {}, {.kind = kind, .shard = {}}, {}};
   const std::string head = read_head(shard.file).value_or("");
@@ -114,7 +114,7 @@ void add(ShardFiles& shards, ShardFile shard) {
          "its " + std::string(plan.kind.rows) + " would occur twice", "give each shard once");
 }
 
-ShardFiles read_all(const std::vector<fs::path>& paths, const Kind& kind, Pace& pace) {
+ShardFiles read_all(const std::vector<fs::path>& paths, const RowKind& kind, Pace& pace) {
   std::vector<Problem> problems;
   ShardFiles shards;
   for (const fs::path& path : paths) {
@@ -172,7 +172,7 @@ std::string command_of_shard(const fs::path& file) {
   return {};
 }
 
-MergedShards read_shards(const std::vector<fs::path>& paths, const Kind& kind, const RowHooks& hooks) {
+MergedShards read_shards(const std::vector<fs::path>& paths, const RowKind& kind, const RowHooks& hooks) {
   Pace reading("reading shards", paths.size(), hooks);
   auto shards = std::make_shared<const ShardFiles>(read_all(paths, kind, reading));
   require_all(*shards);

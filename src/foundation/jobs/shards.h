@@ -24,7 +24,7 @@ struct MergedShards {
 
 // Throws one InputError that lists all problems: shards that are missing, duplicate, damaged, unfinished or of another
 // request.
-[[nodiscard]] MergedShards read_shards(const std::vector<std::filesystem::path>& paths, const Kind& kind,
+[[nodiscard]] MergedShards read_shards(const std::vector<std::filesystem::path>& paths, const RowKind& kind,
                                        const RowHooks& hooks);
 
 }  // namespace exactff::jobs

@@ -68,8 +68,8 @@ HtmlTable::HtmlTable(Shape shape)
     : shape_(shape),
       text_("<div class=\"wide\"><table" + class_of(shape == Shape::kWide ? "cards" : "") + ">\n<thead><tr>") {}
 
-void HtmlTable::column(const std::string& heading, Kind kind) {
-  text_ += "<th" + class_of(kind == Kind::kText ? "text" : "") + '>' + prose(heading) + "</th>";
+void HtmlTable::column(const std::string& heading, CellKind kind) {
+  text_ += "<th" + class_of(kind == CellKind::kText ? "text" : "") + '>' + prose(heading) + "</th>";
   headings_.push_back(heading);
 }
 
@@ -79,8 +79,8 @@ void HtmlTable::row(const std::string& name) {
   column_ = 0;
 }
 
-void HtmlTable::cell(const std::string& content, Kind kind, int span) {
-  text_ += "<td" + class_of(kind == Kind::kText ? "text" : "");
+void HtmlTable::cell(const std::string& content, CellKind kind, int span) {
+  text_ += "<td" + class_of(kind == CellKind::kText ? "text" : "");
   if (span > 1) text_ += " colspan=\"" + std::to_string(span) + '"';
   if (shape_ == Shape::kWide && column_ < headings_.size()) text_ += " data-label=\"" + headings_[column_] + '"';
   text_ += '>' + content + "</td>";

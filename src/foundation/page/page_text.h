@@ -33,17 +33,17 @@ using Facts = std::vector<std::pair<std::string, std::string>>;
 // HTML; headings have no tags.
 class HtmlTable {
  public:
-  enum class Kind { kNumber, kText };
+  enum class CellKind { kNumber, kText };
   // kNarrow: fits on a phone. kWide: a phone shows each row as a card, each number behind the heading of its column.
   enum class Shape { kNarrow, kWide };
 
   explicit HtmlTable(Shape shape = Shape::kNarrow);
-  void column(const std::string& heading, Kind kind = Kind::kNumber);
+  void column(const std::string& heading, CellKind kind = CellKind::kNumber);
   void columns(std::initializer_list<const char*> headings) {
     for (const char* heading : headings) column(heading);
   }
   void row(const std::string& name = {});  // begins the next one
-  void cell(const std::string& content, Kind kind = Kind::kNumber, int span = 1);
+  void cell(const std::string& content, CellKind kind = CellKind::kNumber, int span = 1);
   void cells(std::initializer_list<std::string> contents) {
     for (const std::string& content : contents) cell(content);
   }

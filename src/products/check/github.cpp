@@ -9,12 +9,13 @@
 namespace exactff::check {
 namespace {
 
-struct Place {
+struct FileLine {
   std::string file = {};
   std::size_t line = 0;
 };
 
-std::string command(std::string_view kind, const Place& place, const std::string& title, const std::string& message) {
+std::string command(std::string_view kind, const FileLine& place, const std::string& title,
+                    const std::string& message) {
   std::string text = "::" + std::string(kind) + ' ';
   if (!place.file.empty()) text += "file=" + text::github_property(place.file) + ',';
   if (!place.file.empty() && place.line > 0) text += "line=" + std::to_string(place.line) + ',';

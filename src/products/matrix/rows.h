@@ -14,7 +14,7 @@
 
 namespace exactff::matrix {
 
-inline constexpr jobs::Kind kKind = {"matrix", "a matrix", "pair", "pairs"};
+inline constexpr jobs::RowKind kKind = {"matrix", "a matrix", "pair", "pairs"};
 
 class Rows : public jobs::Rows {
  public:

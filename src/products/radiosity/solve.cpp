@@ -94,7 +94,7 @@ BoundedValue between(double value, double lower, double upper) {
   return {std::isfinite(value) ? std::clamp(value, lower, upper) : 0.5 * lower + 0.5 * upper, lower, upper};
 }
 
-void set_bounded(Channel& channel, const System& system, const Bounds& bounds) {
+void set_bounded(Channel& channel, const System& system, const SolutionBounds& bounds) {
   for (std::size_t i = 0; i < system.factors.size(); ++i) {
     const auto row = system.factors.row(i);
     const double value = bounds.value.empty() ? kUnknown : bounds.value[i];
@@ -112,7 +112,7 @@ void set_unbounded(Channel& channel, const System& system, const Numbers& value)
 }
 
 Channel solve_channel(const Scene& scene, const matrix::Matrix& matrix, const System& system) {
-  const Bounds bounds = bounds_of(system);
+  const SolutionBounds bounds = bounds_of(system);
   Channel channel;
   if (bounds.upper.empty()) {
     channel.no_bound = why_unbounded(scene, matrix.factors.from, system.reflectances);

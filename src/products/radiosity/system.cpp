@@ -197,11 +197,11 @@ Numbers spread(const Reached& part, const Numbers& of_part, std::size_t size) {
 
 }  // namespace
 
-Bounds bounds_of(const System& system) {
+SolutionBounds bounds_of(const System& system) {
   const std::size_t size = system.factors.size();
   const Reached part = reached_part(system);
   if (part.patches.empty()) return {Numbers(size), Numbers(size), Numbers(size)};
-  Bounds result;
+  SolutionBounds result;
   const Numbers value = estimate(part.system);
   if (!value.empty()) result.value = spread(part, value, size);
   const std::optional<Numbers> z = contracting(part.system);

@@ -74,10 +74,10 @@ struct System {
 [[nodiscard]] double sum_below(std::span<const Entry> row, const Numbers& x);  // L x
 [[nodiscard]] double sum_above(std::span<const Entry> row, const Numbers& x);  // U x
 
-struct Bounds {
+struct SolutionBounds {
   Numbers value;         // of the system with the entries' values, an estimate; empty: the solver found none
   Numbers lower, upper;  // of B; empty: z, or a double that is large enough, was not found
 };
-[[nodiscard]] Bounds bounds_of(const System& system);
+[[nodiscard]] SolutionBounds bounds_of(const System& system);
 
 }  // namespace exactff::radiosity

@@ -17,7 +17,7 @@
 
 namespace exactff::truth {
 
-inline constexpr jobs::Kind kKind = {"truth", "a truth file", "row", "rows"};
+inline constexpr jobs::RowKind kKind = {"truth", "a truth file", "row", "rows"};
 
 // A checked request, with everything precomputed that depends on its sources alone. Threads may share it.
 class Rows : public jobs::Rows {

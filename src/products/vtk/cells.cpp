@@ -36,22 +36,22 @@ std::int64_t add_point(DataSet& data, const Vec3& point) {
 }
 
 // A place on a lattice: s along u and t along v, from 0 to 1.
-struct Place {
+struct LatticePoint {
   double s = 0.0, t = 0.0;
 };
-using Outline = std::vector<Place>;
+using Outline = std::vector<LatticePoint>;
 
 // Positive if p lies left of the line from a to b.
-double side(const Place& a, const Place& b, const Place& p) {
+double side(const LatticePoint& a, const LatticePoint& b, const LatticePoint& p) {
   return (b.s - a.s) * (p.t - a.t) - (b.t - a.t) * (p.s - a.s);
 }
 
 // The part of a convex polygon on the left of the line from a to b (Sutherland and Hodgman 1974). An estimate: it is
 // for the eye.
-Outline left_part(const Outline& polygon, const Place& a, const Place& b) {
+Outline left_part(const Outline& polygon, const LatticePoint& a, const LatticePoint& b) {
   Outline part;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Place &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+    const LatticePoint &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
     const double of_p = side(a, b, p), of_q = side(a, b, q);
     if (of_p >= 0.0) part.push_back(p);
     if ((of_p > 0.0 && of_q < 0.0) || (of_p < 0.0 && of_q > 0.0)) {
@@ -123,12 +123,12 @@ class LatticeNodes {
     Outline part = whole;
     bool is_cut = false;
     for (std::size_t i = 0; i < outline_.size(); ++i) {
-      const Place &a = outline_[i], &b = outline_[(i + 1) % outline_.size()];
-      is_cut = is_cut || std::ranges::any_of(whole, [&](const Place& p) { return side(a, b, p) < 0.0; });
+      const LatticePoint &a = outline_[i], &b = outline_[(i + 1) % outline_.size()];
+      is_cut = is_cut || std::ranges::any_of(whole, [&](const LatticePoint& p) { return side(a, b, p) < 0.0; });
       part = left_part(part, a, b);
     }
     if (!is_cut || part.size() < 3) return false;
-    for (const Place& p : part) data_.corners.push_back(add_point(data_, node(lattice_.corners, p.s, p.t)));
+    for (const LatticePoint& p : part) data_.corners.push_back(add_point(data_, node(lattice_.corners, p.s, p.t)));
     end_cell(data_);
     return true;
   }

@@ -208,7 +208,7 @@ CsvFile curve_table(const ResolutionCurves& c, const ResolutionSize& size) {
 }
 
 // One place along a curve.
-struct Place {
+struct CurvePlace {
   const CurvePlan* plan = nullptr;
   double at = 0.0;
 };
@@ -217,7 +217,7 @@ struct Place {
 
 std::vector<ErrorCurve> error_curves(std::size_t groups, std::span<const CurvePlan> plans, int threads,
                                      const Hooks& hooks) {
-  std::vector<Place> places;
+  std::vector<CurvePlace> places;
   for (const CurvePlan& plan : plans) {
     for (const double at : plan.at) places.push_back({&plan, at});
   }

@@ -35,11 +35,11 @@ double parameter_of(const AdaptiveOptions& s, Parameter parameter) {
 }
 
 // The kinds of error that a figure shows.
-struct Kind {
+struct ErrorKind {
   const char* title;
   double ErrorStatistics::*value;
 };
-constexpr std::array<Kind, 3> kKinds = {
+constexpr std::array<ErrorKind, 3> kKinds = {
     {{"worst", &ErrorStatistics::worst}, {"p99", &ErrorStatistics::p99}, {"RMS", &ErrorStatistics::rms}}};
 
 class FigureMaker {
@@ -76,7 +76,7 @@ class FigureMaker {
   [[nodiscard]] std::vector<page::Series> error_series(const std::vector<std::size_t>& line, Parameter x) const {
     std::vector<page::Series> series;
     int style = 0;
-    for (const Kind& kind : kKinds) series.push_back({kind.title, points(line, x, kind.value), ++style});
+    for (const ErrorKind& kind : kKinds) series.push_back({kind.title, points(line, x, kind.value), ++style});
     return series;
   }
 

@@ -17,7 +17,7 @@ namespace exactff::report {
 namespace {
 
 using page::HtmlTable;
-using enum HtmlTable::Kind;
+using enum HtmlTable::CellKind;
 
 class PageWriter {
  public:
@@ -155,7 +155,9 @@ class PageWriter {
   static std::string number_table(const page::NumberTable& numbers) {
     using Table = page::HtmlTable;
     Table table(numbers.columns.size() > 3 ? Table::Shape::kWide : Table::Shape::kNarrow);
-    const auto kind = [](std::size_t column) { return column == 0 ? Table::Kind::kText : Table::Kind::kNumber; };
+    const auto kind = [](std::size_t column) {
+      return column == 0 ? Table::CellKind::kText : Table::CellKind::kNumber;
+    };
     for (std::size_t i = 0; i < numbers.columns.size(); ++i) table.column(text::html(numbers.columns[i]), kind(i));
     for (const std::vector<std::string>& row : numbers.rows) {
       table.row();

@@ -17,7 +17,7 @@ namespace exactff::report {
 namespace {
 
 using page::HtmlTable;
-using enum HtmlTable::Kind;
+using enum HtmlTable::CellKind;
 
 // Figures of the adaptive algorithm's sweeps.
 constexpr std::array<std::string_view, 5> kSweepFigures = {"eps-b", "violations", "silent", "time", "rays"};

@@ -14,7 +14,7 @@ using page::HtmlTable;
 using page::paragraph;
 using text::counted;
 using text::html;
-using enum HtmlTable::Kind;
+using enum HtmlTable::CellKind;
 
 constexpr const char* kTitle = "Where each method stops being usable";
 

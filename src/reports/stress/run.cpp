@@ -199,11 +199,11 @@ Report run(Request request, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
   if (request.threads <= 0) request.threads = files::usable_threads();
   Report report{std::move(request), {}, {}};
-  struct Place {
+  struct ScenePlace {
     const Family* family;
     std::size_t result, row;
   };
-  std::vector<Place> places;
+  std::vector<ScenePlace> places;
   for (const Family* family : select_families(report.request.families)) {
     const std::size_t count = family->stiffnesses.size();
     for (std::size_t row = 0; row < count; ++row) places.push_back({family, report.families.size(), row});
@@ -212,7 +212,7 @@ Report run(Request request, const Hooks& hooks) {
   std::vector<std::atomic<std::size_t>> finished(report.families.size());  // rows
   try {
     files::parallel_for(places.size(), report.request.threads, "stiff scenes", hooks, [&](std::size_t i) {
-      const Place& place = places[i];
+      const ScenePlace& place = places[i];
       const Case scene_case = place.family->make(place.family->stiffnesses[place.row]);
       Trial(scene_case, report.families[place.result].rows[place.row]).run();
       ++finished[place.result];

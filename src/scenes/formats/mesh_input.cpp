@@ -28,20 +28,20 @@ MeshInput::MeshInput(const std::filesystem::path& path, const SceneOptions& opti
   builder_.add_material({std::string(kNoMaterial)});
 }
 
-Problem MeshInput::problem(const Place& place, std::string what, std::string why, std::string suggestion) const {
+Problem MeshInput::problem(const FilePlace& place, std::string what, std::string why, std::string suggestion) const {
   if (place.byte) what.insert(0, "byte " + std::to_string(*place.byte) + ": ");
   return {file_, place.line, std::move(what), std::move(why), std::move(suggestion)};
 }
 
-void MeshInput::fail(const Place& place, std::string what, std::string why, std::string suggestion) {
+void MeshInput::fail(const FilePlace& place, std::string what, std::string why, std::string suggestion) {
   problems_.add(problem(place, std::move(what), std::move(why), std::move(suggestion)));
 }
 
-void MeshInput::warn(const Place& place, std::string what, std::string why, std::string suggestion) {
+void MeshInput::warn(const FilePlace& place, std::string what, std::string why, std::string suggestion) {
   builder_.warn(problem(place, std::move(what), std::move(why), std::move(suggestion)));
 }
 
-void MeshInput::give_up(const Place& place, std::string what, std::string why, std::string suggestion) {
+void MeshInput::give_up(const FilePlace& place, std::string what, std::string why, std::string suggestion) {
   fail(place, what, why, suggestion);
   problems_.throw_if_any();
   throw InputError(problem(place, std::move(what), std::move(why), std::move(suggestion)));
@@ -63,7 +63,7 @@ Vec3 MeshInput::take_point(std::string_view& words, std::size_t line, const char
   return point;
 }
 
-std::uint32_t MeshInput::add_vertex(const Vec3& position, const Place& place) {
+std::uint32_t MeshInput::add_vertex(const Vec3& position, const FilePlace& place) {
   if (builder_.vertex_count() == kMostIndices)
     give_up(place, "more than 4294967295 vertices", "indices have 32 bits", "split the scene");
   return builder_.add_vertex(position);
@@ -75,7 +75,7 @@ PatchId MeshInput::default_patch() {
 }
 
 void MeshInput::add_face(PatchId patch, MaterialId material, std::vector<std::vector<std::uint32_t>> rings,
-                         const Place& place) {
+                         const FilePlace& place) {
   if (face_count_++ == kMostIndices)
     give_up(place, "more than 4294967295 faces", "indices have 32 bits", "split the scene");
   if (rings.front().size() < 3 && options_.bad_faces == BadFaces::kReject) {
@@ -86,7 +86,7 @@ void MeshInput::add_face(PatchId patch, MaterialId material, std::vector<std::ve
   builder_.add_face(patch, material, std::move(rings), place.line);
 }
 
-void MeshInput::add_face(PatchId patch, std::vector<std::uint32_t> ring, const Place& place) {
+void MeshInput::add_face(PatchId patch, std::vector<std::uint32_t> ring, const FilePlace& place) {
   std::vector<std::vector<std::uint32_t>> rings;
   rings.push_back(std::move(ring));
   add_face(patch, no_material(), std::move(rings), place);

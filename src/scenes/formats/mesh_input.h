@@ -18,12 +18,12 @@ inline constexpr std::string_view kDefaultPatch = "default";
 inline constexpr std::string_view kNoMaterial = "(none)";
 
 // A place in a file: a line of text, or a byte of binary data, counted from 0.
-struct Place {
+struct FilePlace {
   std::size_t line = 0;
   std::optional<std::size_t> byte;
 };
-inline Place at_line(std::size_t number) { return {number, std::nullopt}; }
-inline Place at_byte(std::size_t offset) { return {0, offset}; }
+inline FilePlace at_line(std::size_t number) { return {number, std::nullopt}; }
+inline FilePlace at_byte(std::size_t offset) { return {0, offset}; }
 
 // A whole number in decimal, with or without a sign; nothing if the word is none or does not fit.
 [[nodiscard]] std::optional<std::int64_t> whole_number(std::string_view word);
@@ -38,21 +38,22 @@ class MeshInput {
   [[nodiscard]] std::size_t vertex_count() const { return builder_.vertex_count(); }
   [[nodiscard]] MaterialId no_material() const { return MaterialId{0}; }  // Kd 1, Ke 0
 
-  void fail(const Place& place, std::string what, std::string why, std::string suggestion);
-  void warn(const Place& place, std::string what, std::string why, std::string suggestion);
+  void fail(const FilePlace& place, std::string what, std::string why, std::string suggestion);
+  void warn(const FilePlace& place, std::string what, std::string why, std::string suggestion);
   // For problems after which nothing in the file has a meaning. Those collected before are thrown with it.
-  [[noreturn]] void give_up(const Place& place, std::string what, std::string why, std::string suggestion);
+  [[noreturn]] void give_up(const FilePlace& place, std::string what, std::string why, std::string suggestion);
 
   // Removes three words from the front of `words` and reads them as coordinates. A faulty one is collected and read
   // as 0. `usage` says how the line is to be written: "write v x y z".
   Vec3 take_point(std::string_view& words, std::size_t line, const char* usage);
-  std::uint32_t add_vertex(const Vec3& position, const Place& place);
+  std::uint32_t add_vertex(const Vec3& position, const FilePlace& place);
 
   PatchId patch(std::string_view name) { return builder_.patch(name); }
   PatchId default_patch();
   MaterialId material(Material material) { return builder_.add_material(std::move(material)); }
-  void add_face(PatchId patch, MaterialId material, std::vector<std::vector<std::uint32_t>> rings, const Place& place);
-  void add_face(PatchId patch, std::vector<std::uint32_t> ring, const Place& place);
+  void add_face(PatchId patch, MaterialId material, std::vector<std::vector<std::uint32_t>> rings,
+                const FilePlace& place);
+  void add_face(PatchId patch, std::vector<std::uint32_t> ring, const FilePlace& place);
 
   // Warns if the last line of a text has no end.
   void warn_if_cut_off(const text::PlainLines& lines, std::size_t last_line);
@@ -60,7 +61,8 @@ class MeshInput {
   [[nodiscard]] Scene build();
 
  private:
-  [[nodiscard]] Problem problem(const Place& place, std::string what, std::string why, std::string suggestion) const;
+  [[nodiscard]] Problem problem(const FilePlace& place, std::string what, std::string why,
+                                std::string suggestion) const;
 
   std::string file_;
   SceneOptions options_;

@@ -123,7 +123,7 @@ void OffReader::read_faces() {
 
 // A colour after the vertices is ignored.
 void OffReader::read_face() {
-  const Place place = at_line(line_.number);
+  const FilePlace place = at_line(line_.number);
   const std::string_view word = text::take_word(rest_);
   const auto size = whole_number(word);
   if (!size || *size < 0 || static_cast<std::uint64_t>(*size) > rest_.size()) {

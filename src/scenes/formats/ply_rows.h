@@ -72,7 +72,7 @@ class TextRows {
          "correct the header or the line");
   }
 
-  [[nodiscard]] Place place() const { return at_line(line_.number); }
+  [[nodiscard]] FilePlace place() const { return at_line(line_.number); }
   [[nodiscard]] bool is_sound() const { return sound_; }
 
   // After the last row.
@@ -161,7 +161,7 @@ class BinaryRows {
   }
 
   void finish() {}
-  [[nodiscard]] Place place() const { return at_byte(row_); }
+  [[nodiscard]] FilePlace place() const { return at_byte(row_); }
   [[nodiscard]] bool is_sound() const { return sound_; }
 
   void warn_about_rest() {

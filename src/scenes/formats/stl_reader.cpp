@@ -25,7 +25,7 @@ class Triangles {
  public:
   explicit Triangles(MeshInput& input) : input_(input) {}
 
-  void add(PatchId patch, const std::array<Vec3, 3>& corners, const Place& place) {
+  void add(PatchId patch, const std::array<Vec3, 3>& corners, const FilePlace& place) {
     std::vector<std::uint32_t> ring(3);
     for (std::size_t i = 0; i < 3; ++i) {
       bool is_new = false;

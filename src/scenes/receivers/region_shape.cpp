@@ -272,7 +272,7 @@ std::size_t RegionShape::bin_of(double t) const {
 }
 
 // Positive: the place lies left of the tile's side that begins at the corner.
-int RegionShape::side(const Tile& tile, std::size_t corner, const Place& place) {
+int RegionShape::side(const Tile& tile, std::size_t corner, const PlanePlace& place) {
   const std::size_t next = corner + 1 < tile.a.size() ? corner + 1 : 0;
   const double rough = (tile.x[next] - tile.x[corner]) * (place.y - tile.y[corner]) -
                        (tile.y[next] - tile.y[corner]) * (place.x - tile.x[corner]);
@@ -287,8 +287,8 @@ int RegionShape::side(const Tile& tile, std::size_t corner, const Place& place) 
 std::optional<RegionShape::Foot> RegionShape::foot(const std::array<Rational, 3>& offset,
                                                    const FaceFrame::Coordinate& a,
                                                    const FaceFrame::Coordinate& b) const {
-  const Place place{a, b, as_double(a.numerator, a.denominator, a_bits_),
-                    as_double(b.numerator, b.denominator, b_bits_)};
+  const PlanePlace place{a, b, as_double(a.numerator, a.denominator, a_bits_),
+                         as_double(b.numerator, b.denominator, b_bits_)};
   for (const std::uint32_t t : tiles_in_bin_[bin_of(place.y) * bins_ + bin_of(place.x)]) {
     const Tile& tile = tiles_[t];
     int least = 1;

@@ -46,7 +46,7 @@ class RegionShape {
     std::vector<kernel::Integer> a, b;  // of the corners, in the frame
     std::vector<double> x, y;           // the same as doubles
   };
-  struct Place {
+  struct PlanePlace {
     const FaceFrame::Coordinate& a;
     const FaceFrame::Coordinate& b;
     double x, y;
@@ -56,7 +56,7 @@ class RegionShape {
   void add_tile(FaceId face, std::size_t ring);
   void fill_bins();
   [[nodiscard]] std::size_t bin_of(double t) const;
-  [[nodiscard]] static int side(const Tile& tile, std::size_t corner, const Place& place);
+  [[nodiscard]] static int side(const Tile& tile, std::size_t corner, const PlanePlace& place);
   [[nodiscard]] std::array<kernel::Rational, 3> on_plane(const Tile& tile,
                                                          const std::array<kernel::Rational, 3>& offset) const;
 

@@ -43,16 +43,16 @@ class Sweep {
 
   std::optional<std::pair<EdgeIndex, EdgeIndex>> run() {
     for (const Event& event : events_) {
-      if (event.kind == Kind::kEnd ? end(event.edge) : begin(event.edge)) return crossing_;
+      if (event.kind == EventKind::kEnd ? end(event.edge) : begin(event.edge)) return crossing_;
     }
     return std::nullopt;
   }
 
  private:
-  enum class Kind { kEnd, kBegin };  // in the order in which they take place at one position
+  enum class EventKind { kEnd, kBegin };  // in the order in which they take place at one position
   struct Event {
     std::size_t rank;
-    Kind kind;
+    EventKind kind;
     EdgeIndex edge;
     auto operator<=>(const Event&) const = default;
   };
@@ -69,8 +69,8 @@ class Sweep {
   void add_edge(EdgeIndex edge, std::size_t end) {
     edges_.push_back(rank_[edge] < rank_[end] ? Edge{edge, end} : Edge{end, edge});
     if (rank_[edge] == rank_[end]) return;
-    events_.push_back({rank_[edges_.back().left], Kind::kBegin, edge});
-    events_.push_back({rank_[edges_.back().right], Kind::kEnd, edge});
+    events_.push_back({rank_[edges_.back().left], EventKind::kBegin, edge});
+    events_.push_back({rank_[edges_.back().right], EventKind::kEnd, edge});
   }
 
   // The side of edge b's line on which edge a lies next to the sweep line, where a begins no earlier than b.

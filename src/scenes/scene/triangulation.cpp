@@ -183,14 +183,14 @@ void FaceCutter::cut_other() {
 
 // True if anything but the ring bounds the triangles in space, not only as seen along the Newell vector.
 bool FaceCutter::leaves_gap(const std::vector<TriangleIndices>& triangles) const {
-  using Place = std::tuple<double, double, double>;
-  std::vector<std::pair<Place, Place>> sides, reversed;
+  using Position = std::tuple<double, double, double>;
+  std::vector<std::pair<Position, Position>> sides, reversed;
   const auto place = [&](std::size_t point) {
     const Vec3& v = vertices_[points_.vertex[point]];
-    return Place{v.x, v.y, v.z};
+    return Position{v.x, v.y, v.z};
   };
   const auto add = [&](std::size_t from, std::size_t to) {
-    const Place a = place(from), b = place(to);
+    const Position a = place(from), b = place(to);
     if (a < b) sides.emplace_back(a, b);
     if (b < a) reversed.emplace_back(b, a);
   };

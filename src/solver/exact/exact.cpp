@@ -232,7 +232,7 @@ class Solver {
   const ExactOptions& options_;
   const bool wants_fraction_;
   const visibility::View view_;
-  const visibility::Request request_;
+  const visibility::BoundaryRequest request_;
   FormFactor& result_;
   WorkspaceInside::Memory& memory_;
   std::vector<PlaneShare> shares_;

@@ -17,9 +17,9 @@ constexpr double kInfinity = HUGE_VAL;
 constexpr double kRoundings = 0x1p-34;  // of a coefficient of a polar form, eight times
 constexpr double kMargin = 1.0 + 0x1p-20;
 
-class Bounds {
+class EventBounds {
  public:
-  Bounds(const Points& points, const Cell& cell, const Vec3& centre)
+  EventBounds(const Points& points, const Cell& cell, const Vec3& centre)
       : points_(points), corners_(positions_of(cell.corners)), centre_(centre) {}
 
   [[nodiscard]] double largest_order(const CrossingTriple& t) const {
@@ -88,7 +88,7 @@ bool share_a_line(const std::vector<CrossingTriple>& triples) {
 
 TriangleBounds triangle_bounds(const Points& points, const Cell& cell, const Vec3& centre,
                                const CrossingTriple& triple) {
-  const Bounds bounds(points, cell, centre);
+  const EventBounds bounds(points, cell, centre);
   TriangleBounds result;
   result.order = bounds.largest_order(triple);
   for (std::size_t i = 0; i < 3; ++i) {

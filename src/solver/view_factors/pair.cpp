@@ -85,7 +85,7 @@ double precise(const Function& f) {
 }
 
 // At the exact point of the receiver's plane that the place stands for.
-double precise_value(const Formula& formula, const Cell& cell, const Place& place) {
+double precise_value(const Formula& formula, const Cell& cell, const CellPlace& place) {
   return precise([&](long bits) {
     const auto corner = [&](std::size_t i) { return ball_point(cell.corners[i % cell.corners.size()], bits); };
     const auto between = [](const Ball& a, const Ball& b, const Ball& t) { return a + (b - a) * t; };

@@ -34,7 +34,7 @@ const std::array<Node, kCount>& gauss_rule() {
 
 // A point of the quadrilateral of the corners 0, i, i + 1 and i + 2, or 0 again where there is no corner i + 2:
 //   between(between(corner 0, corner i, s), between(the last corner, corner i + 1, s), t).
-struct Place {
+struct CellPlace {
   std::size_t i;
   double s, t;
 };
@@ -42,7 +42,7 @@ struct Place {
 struct WeightedPlace {
   Vec3 at;
   double weight;  // the rule's times the area of the map
-  Place place;
+  CellPlace place;
 };
 
 // The rule for integrals over the convex polygon, which is cut into quadrilaterals, and perhaps a triangle, at its

@@ -17,7 +17,7 @@ namespace {
 // Takes one plane through the steps, stopping as soon as nothing is left.
 class BooleanWalk {
  public:
-  BooleanWalk(const View& view, const SourcePlane& plane, const Request& request)
+  BooleanWalk(const View& view, const SourcePlane& plane, const BoundaryRequest& request)
       : view_(view), plane_(plane), request_(request) {
     result_.record.engine = Engine::kBoolean;
   }
@@ -59,7 +59,7 @@ class BooleanWalk {
 
   const View& view_;
   const SourcePlane& plane_;
-  const Request& request_;
+  const BoundaryRequest& request_;
   PlaneVisibility result_;
 
   std::vector<Ring> source_;   // convex pieces, whole
@@ -242,16 +242,16 @@ PlaneGeometry BooleanWalk::find_geometry() {
 
 }  // namespace
 
-PlaneVisibility find_by_booleans(const View& view, const SourcePlane& plane, const Request& request) {
+PlaneVisibility find_by_booleans(const View& view, const SourcePlane& plane, const BoundaryRequest& request) {
   return BooleanWalk(view, plane, request).run();
 }
 
-Cutters find_cutters(const View& view, const SourcePlane& plane, const Request& request) {
+Cutters find_cutters(const View& view, const SourcePlane& plane, const BoundaryRequest& request) {
   return BooleanWalk(view, plane, request).find_cutters();
 }
 
 PlaneGeometry find_geometry(const View& view, const SourcePlane& plane) {
-  const Request request;
+  const BoundaryRequest request;
   return BooleanWalk(view, plane, request).find_geometry();
 }
 

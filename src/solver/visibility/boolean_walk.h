@@ -16,10 +16,10 @@
 
 namespace exactff::visibility {
 
-PlaneVisibility find_by_booleans(const View& view, const SourcePlane& plane, const Request& request);
+PlaneVisibility find_by_booleans(const View& view, const SourcePlane& plane, const BoundaryRequest& request);
 
 // The cutters alone (steps 1 to 4).
-Cutters find_cutters(const View& view, const SourcePlane& plane, const Request& request);
+Cutters find_cutters(const View& view, const SourcePlane& plane, const BoundaryRequest& request);
 
 // The exact geometry behind a result, for drawings.
 struct PlaneGeometry {

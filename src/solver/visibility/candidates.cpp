@@ -18,7 +18,7 @@ void Candidates::start() {
 }
 
 std::optional<FaceId> Candidates::gather() {
-  const Request& request = query_.request;
+  const BoundaryRequest& request = query_.request;
   start();
   outlines_.watch_for_shared_corners();
   std::optional<FaceId> alone;

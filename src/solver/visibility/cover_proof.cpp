@@ -52,7 +52,7 @@ std::optional<PlaneRecord> hidden_by(std::span<const std::uint32_t> pieces, cons
 }  // namespace
 
 bool hidden_by_few(const PlaneQuery& query, std::size_t source_count, EdgeWorkspace& workspace) {
-  const Request& request = query.request;
+  const BoundaryRequest& request = query.request;
   VisibleEdges& edges = workspace.search.edges;
   const std::vector<std::uint32_t>& pieces = workspace.search.outline_pieces;
   if (!request.may_stop_early() || pieces.size() < request.fewest_to_cover) return false;

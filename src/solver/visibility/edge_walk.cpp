@@ -115,7 +115,7 @@ Rational EdgeWalk::fraction() {
 
 }  // namespace
 
-std::optional<PlaneVisibility> find_by_edges(const View& view, const SourcePlane& plane, const Request& request,
+std::optional<PlaneVisibility> find_by_edges(const View& view, const SourcePlane& plane, const BoundaryRequest& request,
                                              EdgeWorkspace& workspace) {
   return EdgeWalk({view, plane, request}, workspace).run();
 }

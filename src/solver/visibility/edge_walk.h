@@ -20,7 +20,7 @@ namespace exactff::visibility {
 
 // Lists a cutter only where one occluder hides all.
 // Returns nullopt where the Booleans are the better method (visible_edges.h).
-std::optional<PlaneVisibility> find_by_edges(const View& view, const SourcePlane& plane, const Request& request,
+std::optional<PlaneVisibility> find_by_edges(const View& view, const SourcePlane& plane, const BoundaryRequest& request,
                                              EdgeWorkspace& workspace);
 
 }  // namespace exactff::visibility

@@ -130,7 +130,7 @@ void OutlineGrid::find_bounds(const Outlines& outlines) {
       if (o >= first_) everywhere_.push_back(o);
       continue;
     }
-    Bounds bounds;
+    ImageBounds bounds;
     for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) {
       const Image& image = images_[outlines.edge(id).a];
       bounds.u.include(image.u);

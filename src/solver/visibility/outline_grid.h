@@ -87,11 +87,12 @@ class OutlineGrid {
   };
 
   // The bounds of an outline's image, widened; empty if it is not ahead.
-  struct Bounds {
+  struct ImageBounds {
     Range u{kInfinity, -kInfinity}, v{kInfinity, -kInfinity};
   };
-  // Bounds of an outline's image along the axes and both diagonals, in fine steps, rounded outwards: the four lower
-  // bounds, then the four upper ones with their signs changed, so that a smaller number is further out in all of them.
+  // ImageBounds of an outline's image along the axes and both diagonals, in fine steps, rounded outwards: the four
+  // lower bounds, then the four upper ones with their signs changed, so that a smaller number is further out in all of
+  // them.
   using Octagon = kernel::lanes::EightShorts;
 
   [[nodiscard]] bool choose_projection(const Outlines& outlines, std::size_t source_count);
@@ -126,11 +127,11 @@ class OutlineGrid {
   Vec3 e_, f_, w_;
   OutlineId first_ = 0;  // of the occluders
   Axis u_, v_;
-  bool single_ = true;          // too few outlines for a grid, or no projection: all are near all
-  bool too_fine_ = false;       // the accuracy of the images limits the cell size: many may share a cell
-  bool all_ahead_ = true;       // every corner is
-  std::vector<Image> images_;   // by corner
-  std::vector<Bounds> bounds_;  // by outline
+  bool single_ = true;               // too few outlines for a grid, or no projection: all are near all
+  bool too_fine_ = false;            // the accuracy of the images limits the cell size: many may share a cell
+  bool all_ahead_ = true;            // every corner is
+  std::vector<Image> images_;        // by corner
+  std::vector<ImageBounds> bounds_;  // by outline
   // By outline. The entries of outlines without cells are unspecified: such outlines have no part inside the source, or
   // none near an edge that may be queried, so it does not matter which outlines they find or which find them.
   std::vector<Octagon> octagons_;

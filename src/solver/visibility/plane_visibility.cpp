@@ -13,7 +13,7 @@ View::View(const Scene& scene_in, const Receiver& receiver)
 
 kernel::Direction View::normal() const { return kernel::make_direction(kernel::exact_vector(n).v); }
 
-bool may_occlude(const View& view, const SourcePlane& plane, const Request& request, std::uint32_t piece) {
+bool may_occlude(const View& view, const SourcePlane& plane, const BoundaryRequest& request, std::uint32_t piece) {
   const FaceId face = view.scene.pieces()[piece].face;
   if (view.is_own(face) || view.scene.pieces()[piece].transparent) return false;
   if (std::binary_search(plane.pieces.begin(), plane.pieces.end(), piece)) return false;

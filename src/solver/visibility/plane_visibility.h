@@ -35,7 +35,7 @@ struct View {
   [[nodiscard]] kernel::Direction normal() const;
 };
 
-struct Request {
+struct BoundaryRequest {
   Engine engine = Engine::kEdges;
   bool fraction = false;
   bool list_cutters = false;
@@ -52,7 +52,7 @@ struct Request {
 struct PlaneQuery {
   const View& view;
   const SourcePlane& plane;
-  const Request& request;
+  const BoundaryRequest& request;
 };
 
 // The boundary of the visible region, whichever engine found it. Refers to the workspace that it was found with: valid
@@ -104,7 +104,8 @@ void for_each_candidate(const View& view, const HalfSpaceGroups& shaft, ShaftCul
 
 // For both engines: true if a piece of the scene may occlude the plane. The source's own pieces in this plane cannot;
 // its pieces in other planes can.
-[[nodiscard]] bool may_occlude(const View& view, const SourcePlane& plane, const Request& request, std::uint32_t piece);
+[[nodiscard]] bool may_occlude(const View& view, const SourcePlane& plane, const BoundaryRequest& request,
+                               std::uint32_t piece);
 // The sign of det of three corners of the piece, seen from x: 0 where its plane holds x, positive where x sees the
 // back.
 [[nodiscard]] inline int facing(const View& view, const Piece& piece) {

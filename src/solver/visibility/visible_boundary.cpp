@@ -6,7 +6,7 @@
 
 namespace exactff::visibility {
 
-PlaneVisibility find_visible_boundary(const View& view, const SourcePlane& plane, const Request& request,
+PlaneVisibility find_visible_boundary(const View& view, const SourcePlane& plane, const BoundaryRequest& request,
                                       EdgeWorkspace& workspace) {
   EXACTFF_EXPECT(!(view.n == Vec3{}));
   if (request.engine == Engine::kBoolean) return find_by_booleans(view, plane, request);

@@ -8,7 +8,7 @@ namespace exactff::visibility {
 
 // Exact. Requires a receiver normal that is not zero. The edge engine, unless the Booleans are requested or are the
 // better method (visible_edges.h).
-PlaneVisibility find_visible_boundary(const View& view, const SourcePlane& plane, const Request& request,
+PlaneVisibility find_visible_boundary(const View& view, const SourcePlane& plane, const BoundaryRequest& request,
                                       EdgeWorkspace& workspace);
 
 }  // namespace exactff::visibility

@@ -185,17 +185,17 @@ class WallMaker {
 
   // Without pairs of edges that run opposite ways between the same two points, of which there are many in meshes.
   static std::vector<Edge> edges_of(const Wall& wall) {
-    using Place = std::array<double, 3>;
-    const auto place = [](const Vec3& v) { return Place{v.x, v.y, v.z}; };
-    std::map<std::pair<Place, Place>, int> excess;  // of edges one way over those the other way
+    using Position = std::array<double, 3>;
+    const auto place = [](const Vec3& v) { return Position{v.x, v.y, v.z}; };
+    std::map<std::pair<Position, Position>, int> excess;  // of edges one way over those the other way
     for (const Wall::Corners& piece : wall.pieces) {
       for (std::size_t i = 0; i < piece.size(); ++i) {
-        const Place from = place(piece[i]), to = place(piece[(i + 1) % piece.size()]);
+        const Position from = place(piece[i]), to = place(piece[(i + 1) % piece.size()]);
         excess[std::minmax(from, to)] += from < to ? 1 : -1;
       }
     }
     std::vector<Edge> edges;
-    const auto point = [](const Place& p) { return Vec3{p[0], p[1], p[2]}; };
+    const auto point = [](const Position& p) { return Vec3{p[0], p[1], p[2]}; };
     for (const auto& [ends, count] : excess) {
       if (count > 0) edges.push_back({point(ends.first), point(ends.second)});
       if (count < 0) edges.push_back({point(ends.second), point(ends.first)});

@@ -44,7 +44,7 @@ void Labels::add(std::uint32_t thing, std::span<const PixelLoop> loops) {
     }
   }
   if (crossings.empty()) return;
-  Bounds bounds{columns_, crossings.begin()->first, 0, crossings.rbegin()->first + 1};
+  SquareBounds bounds{columns_, crossings.begin()->first, 0, crossings.rbegin()->first + 1};
   for (auto& [row, places] : crossings) {
     std::ranges::sort(places);
     for (std::size_t i = 0; i + 1 < places.size(); i += 2) {
@@ -80,7 +80,7 @@ std::optional<Pixel> Labels::place(std::uint32_t thing, const std::string& text)
   if (run_.empty()) count_runs();
   const auto found = bounds_.find(thing);
   if (found == bounds_.end()) return {};
-  const Bounds& bounds = found->second;
+  const SquareBounds& bounds = found->second;
   const int width = squares(width_of(text)), height = squares(kHeight);
   std::vector<Pixel> middles;
   Pixel mean;

@@ -29,7 +29,7 @@ class Labels {
   [[nodiscard]] std::optional<Pixel> place(std::uint32_t thing, const std::string& text);
 
  private:
-  struct Bounds {  // of squares; the last ones do not belong to it
+  struct SquareBounds {  // of squares; the last ones do not belong to it
     int left = 0, top = 0, right = 0, bottom = 0;
   };
 
@@ -42,7 +42,7 @@ class Labels {
   int columns_, rows_;
   std::vector<std::uint64_t> thing_;  // of each square: 1 + the thing, or 0
   std::vector<int> run_;              // the number of squares of its thing from each square to the right
-  std::map<std::uint32_t, Bounds> bounds_;
+  std::map<std::uint32_t, SquareBounds> bounds_;
 };
 
 }  // namespace exactff::whole_view

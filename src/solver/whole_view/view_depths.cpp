@@ -158,14 +158,14 @@ void ViewEdges::trace_piercing(const Piercing& piercing) {
   ++run_;
   near_.clear();
   seen_in_[p] = seen_in_[q] = run_;
-  for (const Windows::Place& place : windows_.windows_of(p)) {
+  for (const Windows::WindowPlace& place : windows_.windows_of(p)) {
     const auto seats = windows_.seats(place.at);
     if (std::ranges::none_of(seats, [&, other = q](const Windows::Seat& seat) { return seat.outline == other; }))
       continue;
     for (const Windows::Seat& seat : seats) add_near(seat.outline);
   }
   for (const OutlineId of : {p, q}) {
-    for (const Windows::Place& place : windows_.hidden_by(of)) add_near(place.at);
+    for (const Windows::WindowPlace& place : windows_.hidden_by(of)) add_near(place.at);
   }
   set_run(run);
   hidden_[0].clear();

@@ -48,14 +48,14 @@ void ViewEdges::find_near(OutlineId outline, Lines lines) {
   ++run_;
   near_.clear();
   seen_in_[outline] = run_;
-  for (const Windows::Place& place : windows_.windows_of(outline)) {
+  for (const Windows::WindowPlace& place : windows_.windows_of(outline)) {
     if ((place.lines & lines) == 0) continue;
     const Windows::Seat& own = windows_.seat(place);
     for (const Windows::Seat& seat : windows_.seats(place.at)) {
       if (!seat.is_beside(own)) add_near(seat.outline);
     }
   }
-  for (const Windows::Place& place : windows_.hidden_by(outline)) {
+  for (const Windows::WindowPlace& place : windows_.hidden_by(outline)) {
     if ((place.lines & lines) != 0) add_near(place.at);
   }
 }
@@ -63,7 +63,7 @@ void ViewEdges::find_near(OutlineId outline, Lines lines) {
 void ViewEdges::trace_outline(OutlineId id) {
   const Outline outline = outlines_.outline(id);
   Lines seen = 0;
-  for (const Windows::Place& place : windows_.windows_of(id)) seen |= place.lines;
+  for (const Windows::WindowPlace& place : windows_.windows_of(id)) seen |= place.lines;
   if (seen == 0) return;
   if (outline.count > kRunCorners) note_rivals(id);
   const unsigned step = visibility::edges_of_run(outline.count);

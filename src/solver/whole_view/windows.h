@@ -40,7 +40,7 @@ class Windows {
   };
   // The same from the outline's side. Of a hidden outline `at` is the outline that hides it, otherwise the window, in
   // which the outline has this seat.
-  struct Place {
+  struct WindowPlace {
     std::uint32_t at = 0;
     Lines lines = 0;
     std::uint32_t seat = 0;
@@ -51,9 +51,9 @@ class Windows {
   [[nodiscard]] std::span<const Seat> seats(std::uint32_t window) const {
     return std::span(seats_).subspan(window_begin_[window], window_begin_[window + 1] - window_begin_[window]);
   }
-  [[nodiscard]] const Seat& seat(const Place& place) const { return seats_[place.seat]; }
-  [[nodiscard]] std::span<const Place> windows_of(OutlineId outline) const { return seen_.of(outline); }
-  [[nodiscard]] std::span<const Place> hidden_by(OutlineId outline) const { return hidden_.of(outline); }
+  [[nodiscard]] const Seat& seat(const WindowPlace& place) const { return seats_[place.seat]; }
+  [[nodiscard]] std::span<const WindowPlace> windows_of(OutlineId outline) const { return seen_.of(outline); }
+  [[nodiscard]] std::span<const WindowPlace> hidden_by(OutlineId outline) const { return hidden_.of(outline); }
   // Outlines that cover a window together, neither certainly nearer than the other.
   [[nodiscard]] std::span<const std::pair<OutlineId, OutlineId>> rivals() const { return rivals_; }
   [[nodiscard]] std::size_t count() const { return window_begin_.size() - 1; }
@@ -70,19 +70,19 @@ class Windows {
    public:
     struct Entry {
       OutlineId outline;
-      Place place;
+      WindowPlace place;
     };
     void clear() { entries_.clear(); }
-    void add(OutlineId outline, const Place& place) { entries_.push_back({outline, place}); }
+    void add(OutlineId outline, const WindowPlace& place) { entries_.push_back({outline, place}); }
     void sort(std::size_t outlines);
-    [[nodiscard]] std::span<const Place> of(OutlineId outline) const {
+    [[nodiscard]] std::span<const WindowPlace> of(OutlineId outline) const {
       return std::span(places_).subspan(begin_[outline], begin_[outline + 1] - begin_[outline]);
     }
 
    private:
     std::vector<Entry> entries_;
     std::vector<std::uint32_t> begin_, next_;
-    std::vector<Place> places_;
+    std::vector<WindowPlace> places_;
   };
 
   void start(const Window& face);
