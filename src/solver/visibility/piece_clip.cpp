@@ -91,11 +91,4 @@ OutlineId PieceClip::add_part_above(Outlines::Plane plane, bool mirrored) {
   return outlines_.add(ring, false);
 }
 
-int facing_of(const View& view, const Piece& piece) {
-  const auto vertex = [&](int f) -> const Vec3& { return view.scene.vertices()[piece.frame[f]]; };
-  const auto rounded = [&](int f) { return kernel::approx_difference(vertex(f), view.x); };
-  const int filtered = kernel::sign_of_det(rounded(0), rounded(1), rounded(2));
-  return filtered != kUncertain ? filtered : kernel::orientation(view.x, vertex(0), vertex(1), vertex(2));
-}
-
 }  // namespace exactff::visibility

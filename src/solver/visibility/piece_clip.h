@@ -50,7 +50,4 @@ class PieceClip {
   std::span<const std::uint32_t> vertices_;
 };
 
-// The sign of det of three corners of the piece as x sees them: +1 if it shows x its back, 0 where its plane holds x.
-[[nodiscard]] int facing_of(const View& view, const Piece& piece);
-
 }  // namespace exactff::visibility

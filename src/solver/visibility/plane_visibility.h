@@ -108,7 +108,7 @@ void for_each_candidate(const View& view, const HalfSpaceGroups& shaft, ShaftCul
                                std::uint32_t piece);
 // The sign of det of three corners of the piece, seen from x: 0 where its plane holds x, positive where x sees the
 // back.
-[[nodiscard]] inline int facing(const View& view, const Piece& piece) {
+[[nodiscard]] inline int facing_of(const View& view, const Piece& piece) {
   const auto vertices = view.scene.vertices();
   const auto vertex = [&](int f) -> const Vec3& { return vertices[piece.frame[f]]; };
   const auto rounded = [&](int f) { return kernel::approx_difference(vertex(f), view.x); };

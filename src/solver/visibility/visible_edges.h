@@ -17,8 +17,8 @@
 //   b. a grid over the source (outline_grid.h) finds the outlines that an edge may meet;
 //   c. edges are processed in runs of up to four corners, outline by outline; where there are many outlines, neighbours
 //      follow one another. The heights of a run's corners above the lines of an outline give, for each edge of the run,
-//      the interval that the outline covers: by the filter for all edges of the run at once, and exactly where the
-//      filter is not certain;
+//      the interval that the outline covers: by the filter for all edges of the run at once (edge_lanes.h), and
+//      exactly where the filter is not certain;
 //   d. for each edge, one sweep over its intervals gives its visible parts.
 //
 // Few occluders may prove that nothing is visible: if no part of any edge of the source or of these occluders bounds

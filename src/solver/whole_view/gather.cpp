@@ -72,7 +72,7 @@ void ViewEdges::gather(const visibility::View& view, Wholes wholes,
     const Piece& piece = pieces[index];
     steps.take();
     if (piece.transparent || (!view.on.empty() && view.is_own(piece.face))) return true;
-    const int facing = visibility::facing(view, piece);
+    const int facing = visibility::facing_of(view, piece);
     if (facing == 0) return true;
     const bool back_apart = wholes == Wholes::kFaces || wholes == Wholes::kPlanes;
     add(view, piece, facing > 0 && !back_apart ? kAllBacks : whole_of(view.scene, index, wholes), facing);
