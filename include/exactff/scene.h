@@ -171,8 +171,8 @@ class Scene {
   [[nodiscard]] std::size_t open_edge_count() const;
 
  private:
-  // What the library's own sources need of a public class and nobody else, they reach through a friend named after it.
-  // A private header defines it: here scene/scene_data.h.
+  // The library's own sources reach the private parts of a public class through a friend. A private header defines it:
+  // here scene/scene_data.h.
   friend struct SceneInside;
   friend class SceneBuilder;
   struct Data;

@@ -18,24 +18,10 @@ function(exactff_compile_group target name)
   endif()
 endfunction()
 
-# exactff_compile_together(TARGET [NAME FOLDER...]): compiles the sources of the target that lie in these folders as one,
-# or all of them.
+# exactff_compile_together(TARGET): compiles all sources of the target as one.
 function(exactff_compile_together target)
-  set(name ${target})
-  if(ARGC GREATER 1)
-    list(POP_FRONT ARGN name)
-  endif()
   get_target_property(sources ${target} SOURCES)
-  set(group "")
-  foreach(source ${sources})
-    cmake_path(ABSOLUTE_PATH source OUTPUT_VARIABLE path)
-    cmake_path(GET path PARENT_PATH folder)
-    cmake_path(GET folder FILENAME module)
-    if(ARGC EQUAL 1 OR module IN_LIST ARGN)
-      list(APPEND group ${source})
-    endif()
-  endforeach()
-  exactff_compile_group(${target} ${name} ${group})
+  exactff_compile_group(${target} ${target} ${sources})
 endfunction()
 
 # exactff_precompile(TARGET HEADER...). When optimising, GCC 12 gives warnings about code that it inlines from
