@@ -2,12 +2,13 @@
 // pictures, and the closed regions that it consists of.
 //
 // What is seen in a direction above the horizon is the nearest face whose plane does not hold x and that is not one of
-// the receiver's own faces. Transparent faces are left out. Of coplanar faces the one with the lowest index is seen. A
-// front counts for its patch, a back for `back`, and a direction that meets nothing for `open`. The shares of all
-// fronts, `back` and `open` add up to 1.
+// the receiver's own faces. Transparent faces are left out. Of faces in one plane a front is seen before a back, and of
+// several fronts the one with the lowest index. A front counts for its patch, a back for `back`, and a direction that
+// meets nothing for `open`. The shares of all fronts, `back` and `open` add up to 1. Except for the choice among
+// several fronts, nothing depends on the order of the faces.
 //
-// The form factor of a patch (exact.h) is its share, except where coplanar faces of different patches overlap, or of
-// one patch that look opposite ways: each then counts fully in its form factor.
+// The form factor of a patch (exact.h) is its share, except where a front of another patch with a lower index lies in
+// one plane with it and overlaps it: such a patch is stacked, and keeps its full form factor.
 //
 // All edges of the view are found in one sweep: every edge lies between two things seen, and counts for both. Source of
 // the question: T. Karkanis, "Accurate Point-To-Patch Form Factors", University of Toronto, about 1999.
@@ -47,7 +48,7 @@ struct SeenPatch {
   std::optional<FaceId> face;  // with ViewOptions::faces: values are those of this face
   ViewShare form_factor;       // as exact_form_factor gives it, in every bit
   ViewShare share;             // of the view; differs only where `stacked`
-  bool stacked = false;        // coplanar faces overlap: the two values may differ
+  bool stacked = false;        // a lower front overlaps one of its own in their plane: the share may be less
 };
 
 // A part of the boundary between two things seen. It lies in a plane through x. Seen from x, `left` is on its left and

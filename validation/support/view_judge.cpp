@@ -49,6 +49,67 @@ void expect_shares_to_add_up(const Scene& scene, const Receiver& receiver) {
 
 namespace {
 
+// The same faces, the first ones as the only patch "first", the others as "rest"; on request, after all of them, each
+// first one turned round, in the patch "first" as well.
+Scene joined(const Scene& scene, std::size_t first, bool turned_too = false) {
+  SceneBuilder builder;
+  for (const Vec3& vertex : scene.vertices()) builder.add_vertex(vertex);
+  for (const Material& material : scene.materials()) builder.add_material(material);
+  for (std::size_t f = 0; f < scene.faces().size(); ++f) {
+    const Face& face = scene.faces()[f];
+    builder.add_face(builder.patch(f < first ? "first" : "rest"), face.material, face.rings);
+  }
+  for (std::size_t f = 0; f < first && turned_too; ++f) {
+    auto rings = scene.faces()[f].rings;
+    for (auto& ring : rings) std::ranges::reverse(ring);
+    builder.add_face(builder.patch("first"), scene.faces()[f].material, std::move(rings));
+  }
+  return builder.build();
+}
+
+Enclosure factor_of_first(const Scene& scene, const Receiver& receiver) {
+  return exact_form_factor(scene, receiver, {scene, scene.select("first")}).enclosure;
+}
+
+Enclosure difference(Enclosure a, const Enclosure& b) {
+  a -= b;
+  return a;
+}
+
+void expect_meet(const Enclosure& share, const Enclosure& judged, const std::string& what) {
+  EXPECT_TRUE(share.overlaps(judged)) << what << ": " << share.midpoint() << " and " << judged.midpoint();
+}
+
+}  // namespace
+
+void expect_shares_of_unions(const Scene& scene, const Receiver& receiver) {
+  const std::size_t count = scene.faces().size();
+  const WholeView by_face = view(scene, receiver, {.faces = true}), by_patch = view(scene, receiver);
+  std::vector<Enclosure> of_patch(scene.patches().size());
+  Enclosure before;
+  for (std::uint32_t f = 0; f < count; ++f) {
+    const Enclosure with = factor_of_first(joined(scene, f + 1), receiver);
+    const auto seen = std::ranges::find(by_face.patches, std::optional(FaceId{f}), &SeenPatch::face);
+    const Enclosure share = seen == by_face.patches.end() ? Enclosure{} : seen->share.enclosure;
+    expect_meet(share, difference(with, before), scene.name_of(FaceId{f}));
+    of_patch[index_of(scene.faces()[f].patch)] += share;
+    before = with;
+  }
+  for (std::size_t p = 0; p < of_patch.size(); ++p) {
+    const SeenPatch* const patch = find_patch(by_patch, p);
+    expect_meet(patch ? patch->share.enclosure : Enclosure{}, of_patch[p], scene.patches()[p].name);
+  }
+  Receiver on_both_sides = receiver;
+  for (const FaceId face : receiver.on) {
+    on_both_sides.on.push_back(static_cast<FaceId>(index_of(face) + count));
+  }
+  const Enclosure all = factor_of_first(joined(scene, count, true), on_both_sides);
+  for (const WholeView* seen : {&by_face, &by_patch})
+    expect_meet(seen->back.enclosure, difference(all, before), "back");
+}
+
+namespace {
+
 // The sign of the first number that is not zero.
 int first_sign(const Integer& a, const Integer& b) { return sgn(a) != 0 ? sgn(a) : sgn(b); }
 
@@ -59,6 +120,7 @@ struct NearDirection {
 
 struct Plane {
   FaceId face{};
+  bool front = false;
   ExactVec3 normal;              // away from x
   mpq_class offset;              // > 0
   std::vector<ExactVec3> sides;  // inward
@@ -83,6 +145,7 @@ std::vector<Plane> planes_of(const Scene& scene, const Receiver& receiver) {
     Plane plane{.face = piece.face, .normal = cross(b - a, c - a), .offset = {}, .sides = {}};
     const Integer offset = dot(plane.normal, a);
     if (sgn(offset) == 0) continue;
+    plane.front = sgn(offset) < 0;
     plane.offset = kernel::times_power_of_two(mpq_class(abs(offset)), exponent);
     if (sgn(offset) < 0) kernel::negate(plane.normal);
     for (const std::uint32_t vertex : scene.corners(piece)) corners.push_back(corner(vertex));
@@ -107,8 +170,9 @@ std::optional<FaceId> seen_in(const std::vector<Plane>& planes, const NearDirect
   for (const Plane& plane : planes) {
     if (!covers(plane, d)) continue;
     const mpq_class depth = dot(plane.normal, d.m) / plane.offset, aside = dot(plane.normal, d.aside) / plane.offset;
-    const bool nearer = best == nullptr || depth > best_depth || (depth == best_depth && aside > best_aside);
-    if (!nearer) continue;  // of equal ones the first
+    const bool is_same = best != nullptr && depth == best_depth && aside == best_aside;
+    const bool is_nearer = best == nullptr || depth > best_depth || (depth == best_depth && aside > best_aside);
+    if (!is_nearer && !(is_same && plane.front && !best->front)) continue;  // otherwise of equal ones the first
     best = &plane;
     best_depth = depth;
     best_aside = aside;

@@ -26,8 +26,13 @@ void expect_same_bits(const A& a, const B& b, const std::string& what) {
 void expect_patches_as_the_solver(const Scene& scene, const Receiver& receiver);
 // The balls of all shares together contain 1.
 void expect_shares_to_add_up(const Scene& scene, const Receiver& receiver);
+// Faces of one source count once where they overlap. So the share of each face is what it adds, as a source, to the
+// faces before it; and the backs are what all faces turned round add to all fronts. The share of a patch is that of its
+// faces together. Requires a scene without glass.
+void expect_shares_of_unions(const Scene& scene, const Receiver& receiver);
 // On both sides of every arc lies what rational numbers find there: of all pieces that cover the direction of a point
-// of the arc, moved aside by an infinitely small step, the nearest.
+// of the arc, moved aside by an infinitely small step, the nearest; of
+// several in one plane a front, and of these the first.
 void expect_sides_as_rational_numbers_find(const Scene& scene, const Receiver& receiver);
 
 }  // namespace exactff::validation

@@ -56,7 +56,7 @@ void ViewEdges::start(const visibility::View& view) {
   crossings_.clear();
   lines_.clear();
   rivals_.clear();
-  stacked_.clear();
+  stacks_.clear();
   piercings_.clear();
   parts_.clear();
   sides_.clear();

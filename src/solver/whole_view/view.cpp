@@ -125,8 +125,8 @@ class ViewSolver {
       // All that is seen lies on the left of an arc with nothing on its right.
       add(memory_.sums[right], right == all_ ? term : -term);
     }
-    for (const auto& [p, q] : edges_.stacked()) {
-      for (const OutlineId o : {p, q}) memory_.sums[sum_of(o)].stacked = true;
+    for (const auto& [first, other] : edges_.stacks()) {
+      if (sum_of(first) != sum_of(other)) memory_.sums[sum_of(other)].stacked = true;
     }
   }
 

@@ -140,7 +140,13 @@ void ViewEdges::examine(OutlineId p, OutlineId q) {
     static_cast<void>(line_between(p, q));
     return;
   }
-  if (whole_[p] != whole_[q]) stacked_.emplace_back(p, q);
+  note_stack(p, q);
+}
+
+// Of outlines that overlap in one plane. A back beside a front is not seen, and has no form factor to compare.
+void ViewEdges::note_stack(OutlineId p, OutlineId q) {
+  if (whole_[p] == whole_[q] || !shows_front(p) || !shows_front(q)) return;
+  stacks_.push_back(comes_first(p, q) ? Stack{p, q} : Stack{q, p});
 }
 
 void ViewEdges::trace_piercing(const Piercing& piercing) {

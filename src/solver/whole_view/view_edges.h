@@ -1,9 +1,9 @@
 // All that is seen from x, as arcs: parts of edges, each with what is seen beside it on its left and on its right.
 //
 // What is seen in a direction is the nearest face whose plane does not hold x and that is not one of x's own; of faces
-// in one plane the one with the lowest index. An outline is the part above the horizon of a convex piece of a face, as
-// x sees it. Its edges have its inside on their left. An edge of outline O is an arc wherever O is seen just to the
-// left of it. What is seen just to the right is then
+// in one plane a front before a back, and of several fronts, or backs, the one with the lowest index. An outline is the
+// part above the horizon of a convex piece of a face, as x sees it. Its edges have its inside on their left. An edge of
+// outline O is an arc wherever O is seen just to the left of it. What is seen just to the right is then
 //   - the nearest of the outlines that cover the right side of the edge there, or
 //   - nothing.
 // Where two edges lie in one plane through x, and each is an arc with the other's outline on its right, only that of
@@ -75,8 +75,11 @@ class ViewEdges : public visibility::EdgeCovers {
   [[nodiscard]] FaceId face(OutlineId outline) const { return piece(outline).face; }
   [[nodiscard]] std::uint32_t whole(OutlineId outline) const { return whole_[outline]; }
   [[nodiscard]] bool shows_front(OutlineId outline) const { return front_[outline] != 0; }
-  // Overlapping outlines in one plane that belong to different wholes.
-  [[nodiscard]] std::span<const std::pair<OutlineId, OutlineId>> stacked() const { return stacked_; }
+  // Fronts of different wholes that overlap in one plane: where both could be seen, the first is.
+  struct Stack {
+    OutlineId first = kNothing, other = kNothing;
+  };
+  [[nodiscard]] std::span<const Stack> stacks() const { return stacks_; }
 
   struct Work {
     std::uint64_t outlines = 0, windows = 0, pairs = 0, undecided = 0, pierced = 0;
@@ -141,9 +144,9 @@ class ViewEdges : public visibility::EdgeCovers {
   void hide_where_nearer(Run& run, unsigned k, OutlineId by, const Interval& interval);
   void note_rivals(OutlineId outline);
   // Depths.
-  // Of outlines in one plane, whichever belongs to the lower face is seen.
+  // Of outlines in one plane, a front is seen before a back, and then the lower piece, which is of the lower face.
   [[nodiscard]] bool comes_first(OutlineId p, OutlineId q) const {
-    return index_of(face(p)) < index_of(face(q)) || (face(p) == face(q) && p < q);
+    return front_[p] != front_[q] ? shows_front(p) : &piece(p) < &piece(q);
   }
   [[nodiscard]] Order order(OutlineId p, OutlineId q, EdgeId edge, OutlineId owner, Side side);
   [[nodiscard]] int order_beside(OutlineId p, OutlineId q, EdgeId edge, OutlineId owner);
@@ -160,6 +163,7 @@ class ViewEdges : public visibility::EdgeCovers {
   // 5.
   void examine_rivals();
   void examine(OutlineId p, OutlineId q);
+  void note_stack(OutlineId p, OutlineId q);
   void trace_piercing(const Piercing& piercing);
 
   const Scene* scene_ = nullptr;
@@ -180,7 +184,8 @@ class ViewEdges : public visibility::EdgeCovers {
   std::array<std::vector<Interval>, kRunCorners> hidden_;
   std::array<std::vector<Background>, kRunCorners> backgrounds_;
   std::vector<Background> envelope_, next_envelope_;
-  std::vector<std::pair<OutlineId, OutlineId>> rivals_, stacked_;
+  std::vector<std::pair<OutlineId, OutlineId>> rivals_;
+  std::vector<Stack> stacks_;
   PairTable lines_;  // of pairs of outlines
   std::vector<Piercing> piercings_;
   std::vector<Part> parts_;

@@ -47,6 +47,7 @@ Receiver looking_up(const Vec3& x = {0, 0, 0}) { return {.point = x, .normal = {
 void judge(const Scene& scene, const Receiver& receiver) {
   validation::expect_patches_as_the_solver(scene, receiver);
   validation::expect_shares_to_add_up(scene, receiver);
+  validation::expect_shares_of_unions(scene, receiver);
   validation::expect_sides_as_rational_numbers_find(scene, receiver);
 }
 
@@ -135,22 +136,45 @@ TEST(View, OfAStackOfCoplanarFacesIsTheLowestAndEachFormFactorIsWhole) {
   validation::expect_same_bits(high.form_factor, low.share, "high");
   validation::expect_same_bits(low.form_factor, low.share, "low");
   EXPECT_TRUE(high.stacked);
+  EXPECT_FALSE(low.stacked) << "it has all that it could have";
   const SeenPatch& shifted = patch_of(seen, scene, "shifted");
   EXPECT_LT(shifted.share.value, shifted.form_factor.value);
   EXPECT_GT(shifted.share.value, 0.0);
   EXPECT_GT(seen.back.value, 0.0);  // the part of `turned` that nothing lower covers
 }
 
-TEST(View, OfADoubledFaceIsItsFrontOrItsBackByIndex) {
-  const Ring down = square(-1, -1, 1, 1, 1);
-  const Scene front_first = generate::build(plain_of({{"sheet", down}, {"sheet", reversed(down)}}));
-  const WholeView front = judged(front_first, looking_up());
-  EXPECT_EQ(front.back.status, Status::kZero);
-  const Scene back_first = generate::build(plain_of({{"sheet", reversed(down)}, {"sheet", down}}));
-  const WholeView back = judged(back_first, looking_up());
-  validation::expect_same_bits(back.back, front.patches.front().share, "back");
-  EXPECT_EQ(back.patches.front().share.status, Status::kZero);
-  validation::expect_same_bits(back.patches.front().form_factor, front.patches.front().form_factor, "sheet");
+// A thin lamp of two faces with opposite fronts, of one patch or of two.
+TEST(View, OfADoubledFaceIsItsFrontWhateverComesFirst) {
+  const Ring down = square(-1, -1, 1, 1, 1), up = reversed(down);
+  const Scene alone = generate::build(plain_of({{"down", down}}));
+  const WholeView single = judged(alone, looking_up());
+  const std::vector<std::vector<Named>> orders = {{{"down", down}, {"up", up}},
+                                                  {{"up", up}, {"down", down}},
+                                                  {{"down", down}, {"down", up}},
+                                                  {{"down", up}, {"down", down}}};
+  for (const std::vector<Named>& faces : orders) {
+    const Scene scene = generate::build(plain_of(faces));
+    const WholeView seen = judged(scene, looking_up());
+    ASSERT_EQ(seen.patches.size(), 1U);
+    const SeenPatch& lamp = patch_of(seen, scene, "down");
+    validation::expect_same_bits(lamp.share, single.patches.front().share, "down");
+    EXPECT_FALSE(lamp.stacked);
+    EXPECT_EQ(seen.back.status, Status::kZero);
+    validation::expect_same_bits(seen.open, single.open, "open");
+  }
+}
+
+// Of the sheet that shows its back, the front in its plane covers a part.
+TEST(View, OfABackIsWhatNoFrontInItsPlaneCovers) {
+  const Named back{"back", reversed(square(-1, -1, 1, 1, 1))}, front{"front", square(0, -1, 2, 1, 1)};
+  const Scene halves = generate::build(plain_of({{"left", reversed(square(-1, -1, 0, 1, 1))}}));
+  const ViewShare left = view(halves, looking_up()).back;
+  for (const auto& faces : {std::vector<Named>{back, front}, {front, back}}) {
+    const Scene scene = generate::build(plain_of(faces));
+    const WholeView seen = judged(scene, looking_up());
+    validation::expect_same_bits(seen.back, left, "back");
+    validation::expect_same_bits(patch_of(seen, scene, "front").share, patch_of(seen, scene, "front").form_factor, "");
+  }
 }
 
 // Both have an edge in the plane x = 0, at different depths.
