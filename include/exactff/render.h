@@ -115,10 +115,10 @@ struct Hit {
   friend bool operator==(const Hit&, const Hit&) = default;
 };
 
-// The first face that the ray meets, decided exactly; of several at the same distance, the one of lowest index.
-// Transparent faces are passed, and so is a face that the ray meets edge-on (in whose plane it runs). A face has its
-// boundary. Where two triangles of a face that is not planar meet, their front counts. A face on which the ray begins
-// is not met. Safe to call from several threads.
+// The first face that the ray meets, decided exactly; of several at the same distance, one that shows its front, and
+// then the one of lowest index, as in a view (view.h). Transparent faces are passed, and so is a face that the ray
+// meets edge-on (in whose plane it runs). A face has its boundary. A face on which the ray begins is not met. Safe to
+// call from several threads.
 [[nodiscard]] std::optional<Hit> first_hit(const Scene& scene, const Ray& ray);
 
 // The receiver at the point of a hit, as receivers made on a face are: with the face's Newell vector as its normal,

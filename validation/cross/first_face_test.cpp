@@ -53,10 +53,10 @@ class BruteForce {
   }
 
  private:
-  // Nearer; then the lower index; then the front, where triangles of one face meet.
+  // Nearer; then the front; then the lower index.
   static bool is_better(const Rational& t, FaceId face, bool back, const Met& best) {
     if (t != best.t) return t < best.t;
-    return face != best.face ? face < best.face : best.back && !back;
+    return back != best.back ? best.back : face < best.face;
   }
 
   // Requires a point in the plane. The boundary belongs to the face.
@@ -200,10 +200,25 @@ TEST(FirstFace, TiesGoToTheLowestIndex) {
   EXPECT_EQ(render::first_hit(scene, {{0.75, 0, 0}, {0, 0, 1}})->face, FaceId{0});
   EXPECT_EQ(render::first_hit(scene, {{0.75, 0, 4}, {0, 0, -1}})->face, FaceId{0});
   EXPECT_EQ(render::first_hit(scene, {{0.125, 0, 0}, {0, 0, 1}})->face, FaceId{3});
-  EXPECT_EQ(render::first_hit(scene, {{0.25, 0, 0}, {0, 0, 1}})->face, FaceId{0});  // where it pierces the stack
+  EXPECT_EQ(render::first_hit(scene, {{0.25, 0, 0}, {0, 0, 1}})->face, FaceId{3});  // pierces backs, shows its front
   EXPECT_EQ(render::first_hit(scene, {{0.75, 0, 2}, {0, 0, 1}}), std::nullopt);     // begins on the stack
   EXPECT_EQ(render::first_hit(scene, {{-5, 0, 2}, {1, 0, 0}})->face, FaceId{3});    // the stack is edge-on
   EXPECT_EQ(render::first_hit(scene, {{1, 1, 0}, {0, 0, 1}})->face, FaceId{0});     // through a corner
+}
+
+// A thin lamp: each side shows the face that looks to it, whichever comes first.
+TEST(FirstFace, OfCoincidentFacesIsAFront) {
+  const std::vector<Vec3> up = {{-1, -1, 2}, {1, -1, 2}, {1, 1, 2}, {-1, 1, 2}}, down(up.rbegin(), up.rend());
+  for (const bool up_first : {true, false}) {
+    generate::PlainScene plain;
+    plain.add_ring(plain.patch("first"), up_first ? up : down);
+    plain.add_ring(plain.patch("second"), up_first ? down : up);
+    const Scene scene = generate::build(plain);
+    const Hit below = *render::first_hit(scene, {{0, 0, 0}, {0.25, 0, 1}}),
+              above = *render::first_hit(scene, {{0, 0, 4}, {0.25, 0, -1}});
+    EXPECT_EQ(below, (Hit{FaceId{up_first ? 1U : 0U}, false, {0.5, 0, 2}}));
+    EXPECT_EQ(above, (Hit{FaceId{up_first ? 0U : 1U}, false, {0.5, 0, 2}}));
+  }
 }
 
 TEST(FirstFace, TransparentFacesArePassed) {

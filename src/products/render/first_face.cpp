@@ -7,7 +7,8 @@
 //      a. D = 0: the ray meets it edge-on, or not at all; pass on. N and D must have the same sign, since t > 0.
 //      b. t is certainly beyond the best piece so far: pass on.
 //      c. A side of the piece has the line on its outer side, by the sign of det(d, c_i - o, c_i+1 - o): pass on.
-//      d. Compare t with that of the best piece; of two that are equal, the lower face index is better.
+//      d. Compare t with that of the best piece; of two that are equal, a front is better than a back, and then the
+//         lower face index, as in a view (view.h).
 //   2. The point is o + t d for the best piece, rounded once per coordinate.
 //
 // Every sign is decided by a floating-point filter with a proved bound, or else by exact integers. For t the filter
@@ -165,15 +166,13 @@ class Search {
     return true;
   }
 
-  // Two triangles of one face that is not planar may meet in an edge with different sides towards the ray: the front is
-  // better.
   [[nodiscard]] bool is_better(const Best& other) const {
     if (other.depth.high < best_->depth.low) return true;
     if (other.depth.low > best_->depth.high) return false;
     const int order = compare(exact_depth(other.piece), exact_depth(best_->piece));
     if (order != 0) return order < 0;
-    const FaceId face = scene_.pieces()[other.piece].face, best_face = scene_.pieces()[best_->piece].face;
-    return face != best_face ? face < best_face : best_->back && !other.back;
+    if (other.back != best_->back) return best_->back;
+    return scene_.pieces()[other.piece].face < scene_.pieces()[best_->piece].face;
   }
 
   [[nodiscard]] ExactDepth exact_depth(std::uint32_t index) const {
