@@ -7,6 +7,12 @@
 
 namespace exactff::slips {
 
+namespace {
+
+constexpr double kSamePlace = 1e-9;  // of the scene's diameter
+
+}  // namespace
+
 using kernel::along;
 using kernel::cross;
 using kernel::difference;
@@ -41,13 +47,12 @@ std::vector<Vec3> SightLines::points_of(std::uint32_t piece) const {
 
 // Nothing if the ray misses the piece, runs along it, or starts on it.
 std::optional<double> SightLines::crossing(std::uint32_t piece, const Vec3& from, const Vec3& direction) const {
-  constexpr double kAtTheOrigin = 1e-9;  // of the scene's diameter
   const auto corners = scene_.corners(scene_.pieces()[piece]);
   const Vec3& normal = normals_[piece];
   const double height = dot(normal, difference(scene_.vertices()[corners.front()], from));
   const double speed = dot(normal, direction);
   const double t = height / speed;
-  if (!(std::abs(height) > kAtTheOrigin * diameter_) || !(t > 0.0) || !std::isfinite(t)) return std::nullopt;
+  if (!(std::abs(height) > kSamePlace * diameter_) || !(t > 0.0) || !std::isfinite(t)) return std::nullopt;
   const Vec3 point = along(from, direction, t);
   const Vec3* previous = &scene_.vertices()[corners.back()];
   for (const std::uint32_t corner : corners) {
@@ -65,12 +70,17 @@ std::optional<Hit> SightLines::first_hit(const Vec3& from, const Vec3& direction
   const double blur = 1e-12 * diameter_;
   const HalfSpace shaft[] = {
       {u, -blur}, {{-u.x, -u.y, -u.z}, -blur}, {v, -blur}, {{-v.x, -v.y, -v.z}, -blur}, {unit(direction), 0.0}};
+  const double same = kSamePlace * diameter_ / std::sqrt(dot(direction, direction));
+  const auto is_before = [&](const Hit& a, const Hit& b) {
+    return std::abs(a.distance - b.distance) > same || a.front == b.front ? a.distance < b.distance : a.front;
+  };
   std::optional<Hit> first;
   shaft_tree(scene_).query(from, shaft, [&](std::uint32_t piece) {
     const std::optional<double> t = crossing(piece, from, direction);
-    if (!t || !(*t < limit) || (first && *t >= first->distance)) return true;
-    const bool front = dot(normals_[piece], direction) < 0.0;
-    if (front || !scene_.pieces()[piece].transparent) first = Hit{piece, *t, front};
+    if (!t || !(*t < limit)) return true;
+    const Hit hit{piece, *t, dot(normals_[piece], direction) < 0.0};
+    if (!hit.front && scene_.pieces()[piece].transparent) return true;
+    if (!first || is_before(hit, *first)) first = hit;
     return true;
   });
   return first;

@@ -30,8 +30,9 @@ class SightLines {
   // Points inside the piece: its centre, and points near its corners.
   [[nodiscard]] std::vector<Vec3> points_of(std::uint32_t piece) const;
 
-  // The first face that a ray from a point meets, closer than `limit` in lengths of the direction. Transparent faces
-  // are met only on their fronts. Faces at the origin of the ray are not met.
+  // The first face that a ray from a point meets, closer than `limit` in lengths of the direction. Of coincident faces,
+  // which doubles cannot tell apart, a front is met. Transparent faces are met only on their fronts. Faces at the
+  // origin of the ray are not met.
   [[nodiscard]] std::optional<Hit> first_hit(const Vec3& from, const Vec3& direction, double limit) const;
 
  private:

@@ -138,6 +138,16 @@ TEST(Diagnosis, FindsFrontsThatNobodySees) {
   EXPECT_EQ(kinds_of(scene), Names{"unseen-front"});
 }
 
+// Of a thin lamp of two faces the floor sees the one that looks down, whichever comes first.
+TEST(Diagnosis, OfCoincidentFacesTheFrontIsSeen) {
+  const std::string places = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
+  const std::string floor = "g floor\nf 1 2 3 4\n", up = "g up\nf 5 6 7 8\n", down = "g down\nf 8 7 6 5\n";
+  for (const std::string& faces : {floor + up + down, floor + down + up, up + floor + down, down + up + floor}) {
+    EXPECT_EQ(kinds_of(read(places + faces)), Names{"opposite-faces"}) << faces;
+  }
+  EXPECT_EQ(kinds_of(read_obj(EXACTFF_DATA_DIR "/regression/lamp_of_two_faces.obj")), Names{"opposite-faces"});
+}
+
 // Nothing is above the roof of a house, and that is no slip.
 TEST(Diagnosis, LeavesTheRoofsOfSolidsAlone) {
   const std::string solid = "g bottom\nf 5 7 6\ng a\nf 5 6 8\ng b\nf 6 7 8\ng c\nf 7 5 8\n";
