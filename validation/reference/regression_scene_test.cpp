@@ -12,6 +12,7 @@
 #include "exactff/receiver.h"
 #include "exactff/scene_files.h"
 #include "report/visibility_svg.h"
+#include "support/view_judge.h"
 
 namespace exactff::validation {
 namespace {
@@ -73,6 +74,16 @@ TEST_P(RegressionScene, IsDrawn) {
     EXPECT_EQ(svg.find("nan"), std::string::npos);
     EXPECT_EQ(svg.find("inf"), std::string::npos);
   });
+}
+
+// Shares add up to 1, each front counts once, and form factors are those of the pairs.
+TEST_P(RegressionScene, IsSeenOnceInEachDirection) {
+  for (const Receiver& receiver : receivers_) {
+    expect_patches_as_the_solver(scene_, receiver);
+    expect_shares_to_add_up(scene_, receiver);
+    expect_shares_of_unions(scene_, receiver);
+    expect_sides_as_rational_numbers_find(scene_, receiver);
+  }
 }
 
 // A method may refuse a scene with a message.
