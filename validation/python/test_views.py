@@ -136,6 +136,18 @@ def test_a_view_has_the_bits_of_its_pairs():
     assert abs(total - 1.0) < 1e-14 and repr(seen).startswith("<exactff.View of ")
 
 
+def test_of_coincident_faces_a_front_is_seen():
+    lamp = exactff.Scene.read(str(SCENES.parent / "regression" / "lamp_of_two_faces.obj"))
+    seen = exactff.view(lamp, [0.5, 0.5, 0], [0, 0, 1], on="floor")
+    assert list(seen) == ["lamp_down"] and not seen["lamp_down"].stacked and float(seen.back) == 0.0
+    assert seen["lamp_down"].share == seen["lamp_down"].form_factor
+    twins = exactff.Scene.read(str(SCENES.parent / "regression" / "sheets_in_one_plane.obj"))
+    seen = exactff.view(twins, [0.5, 0.5, 0.5], [0, 0, 1], on="o0")
+    assert [name for name in seen if seen[name].stacked] == ["o2"]
+    assert 0.0 < float(seen["o2"].share) < float(seen["o2"].form_factor)
+    assert abs(sum(float(patch.share) for patch in seen.values()) + float(seen.back) + float(seen.open) - 1.0) < 1e-15
+
+
 def test_a_view_by_faces():
     seen = exactff.view(ROOM, POINT, UP, on="auto", patches="faces")
     assert all(":" in name or name in ROOM.names for name in seen) and len(seen) > len(exactff.view(ROOM, POINT, UP))

@@ -47,7 +47,8 @@ struct ViewArguments {
   bool force = false;
 };
 
-bool differ(const SeenPatch& patch) {
+// Of the view it has less than its form factor.
+bool is_stacked(const SeenPatch& patch) {
   return patch.share.value != patch.form_factor.value || patch.share.status != patch.form_factor.status;
 }
 
@@ -64,9 +65,11 @@ void for_each_share(const Scene& scene, const WholeView& seen, const Visit& visi
   visit(kOpen, seen.open, static_cast<const SeenPatch*>(nullptr));
 }
 
+// What is seen: the lines add up to 1.
 void print_plain(const ViewArguments& args, const Scene& scene, const WholeView& seen) {
   for_each_share(scene, seen, [&](const std::string& name, const ViewShare& share, const SeenPatch* patch) {
-    std::cout << text::printable(name) << '\t' << number(args, patch ? patch->form_factor : share) << '\n';
+    if (patch != nullptr && share.status == Status::kZero) return;
+    std::cout << text::printable(name) << '\t' << number(args, share) << '\n';
   });
 }
 
@@ -79,24 +82,31 @@ std::string receiver_text(const Scene& scene, const Receiver& receiver) {
   return place_text(receiver.point) + ", normal " + place_text(receiver.normal) + on;
 }
 
+// A stacked patch has two values; the form factor is not 0.
+std::string status_text(const SeenPatch& patch) {
+  if (!is_stacked(patch)) return std::string(to_string(patch.share.status));
+  const bool certified = patch.share.status != Status::kNotCertified;
+  return std::string(to_string(certified ? patch.form_factor.status : patch.share.status)) + ", stacked";
+}
+
 void print_table(const ViewArguments& args, const Scene& scene, const Receiver& receiver, const WholeView& seen) {
   std::vector<const SeenPatch*> by_size;
   for (const SeenPatch& patch : seen.patches) by_size.push_back(&patch);
   std::ranges::stable_sort(by_size, std::ranges::greater{}, [](const SeenPatch* patch) { return patch->share.value; });
-  const bool stacked = std::ranges::any_of(seen.patches, differ);
+  const bool stacked = std::ranges::any_of(seen.patches, is_stacked);
   std::cout << "receiver " << text::printable(receiver_text(scene, receiver)) << "\n\n";
   TextTable table;
   table.add_column("patch");
   table.add_column(stacked ? "share of the view" : "form factor");
   if (stacked) table.add_column("form factor");
   table.add_column("status");
-  const auto add = [&](const std::string& name, const ViewShare& share, const ViewShare* form_factor) {
+  const auto add = [&](const std::string& name, const ViewShare& share, const SeenPatch* patch) {
     std::vector<std::string> cells{name, number(args, share)};
-    if (stacked) cells.push_back(form_factor ? number(args, *form_factor) : "");
-    cells.emplace_back(to_string(share.status));
+    if (stacked) cells.push_back(patch ? number(args, patch->form_factor) : "");
+    cells.push_back(patch ? status_text(*patch) : std::string(to_string(share.status)));
     table.add_row(std::move(cells));
   };
-  for (const SeenPatch* patch : by_size) add(scene.patch(patch->patch).name, patch->share, &patch->form_factor);
+  for (const SeenPatch* patch : by_size) add(scene.patch(patch->patch).name, patch->share, patch);
   add(kBack, seen.back, nullptr);
   add(kOpen, seen.open, nullptr);
   table.print(std::cout);
@@ -108,7 +118,9 @@ void print_table(const ViewArguments& args, const Scene& scene, const Receiver& 
             << "  (of " << text::counted(seen.patches.size(), "patch", "patches")
             << "; with (back), backs of faces, and (open), directions that meet nothing: 1)\n";
   if (stacked) {
-    std::cout << "Coplanar faces overlap: the lowest index is seen, but each counts fully in its form factor.\n";
+    std::cout
+        << "stacked: in one plane with the front of another patch, which comes first in the file and has the share "
+           "of the view; each keeps its full form factor\n";
   }
 }
 
@@ -116,11 +128,12 @@ void print_csv(const ViewArguments& args, const Scene& scene, const Receiver& re
   std::cout << "# exactff " << kVersion << " view: shares of what is seen, correctly rounded, between proved bounds\n"
             << "# scene hash " << scene.hash() << "; receiver " << text::printable(receiver_text(scene, receiver))
             << '\n'
-            << "name,share,lower,upper,status,form_factor\n";
+            << "name,share,lower,upper,status,form_factor,stacked\n";
   for_each_share(scene, seen, [&](const std::string& name, const ViewShare& share, const SeenPatch* patch) {
     text::CsvRow row(std::cout);
     row << text::printable(name) << number(args, share) << share.lower << share.upper << to_string(share.status)
-        << (patch ? number(args, patch->form_factor) : std::string());
+        << (patch ? number(args, patch->form_factor) : std::string())
+        << (patch ? std::string(is_stacked(*patch) ? "yes" : "no") : std::string());
   });
 }
 
@@ -163,7 +176,10 @@ void print_json(const ViewArguments& args, const Scene& scene, const Receiver& r
   for (const SeenPatch& patch : seen.patches) {
     nlohmann::ordered_json one = {{"patch", scene.patch(patch.patch).name}};
     one.update(share_json(args, patch.share));
-    if (differ(patch)) one["form_factor"] = share_json(args, patch.form_factor);
+    if (is_stacked(patch)) {
+      one["stacked"] = true;
+      one["form_factor"] = share_json(args, patch.form_factor);
+    }
     json["patches"].push_back(one);
   }
   json["back"] = share_json(args, seen.back);
@@ -257,8 +273,9 @@ void add_output_flags(CLI::App& app, ViewArguments& args) {
   app.add_option("--precision-cap", args.precision_cap, "Largest precision, in bits, of the contour integral")
       ->check(CLI::Range(32, 1 << 24))
       ->capture_default_str();
-  auto* plain =
-      app.add_flag("--plain", args.plain, "Print one line per patch: name, tab, form factor; then (back) and (open)");
+  auto* plain = app.add_flag("--plain", args.plain,
+                             "Print one line per patch that is seen: name, tab, share of the view; then (back) and "
+                             "(open). The lines add up to 1. The share is the form factor, unless patches are stacked");
   auto* json = app.add_flag("--json", args.json, "Print JSON");
   auto* csv = app.add_flag("--csv", args.csv, "Print CSV");
   plain->excludes(json)->excludes(csv);
@@ -294,10 +311,12 @@ Command add_view(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("view", "Compute what one receiver sees in all directions: every patch's form factor");
   command->footer(
-      "What is seen in a direction is the nearest face that is not the receiver's own; of coplanar faces the one with\n"
-      "the lowest index. Fronts count for their patch, backs for (back), and directions that meet nothing for (open).\n"
-      "Together they are exactly 1. Patches that are not listed have a form factor of exactly 0. The exit code is 3\n"
-      "if a value is not certified within --precision-cap.\n"
+      "What is seen in a direction is the nearest face that is not the receiver's own; of faces in one plane a front\n"
+      "before a back, and of several fronts the first in the file. The others are stacked: each keeps its full form\n"
+      "factor. Fronts count for their patch, backs for (back), and directions that meet nothing for (open). Together\n"
+      "they are exactly 1. Patches that are not listed have a form factor of exactly 0; --plain leaves out stacked "
+      "ones\n"
+      "that are not seen. The exit code is 3 if a value is not certified within --precision-cap.\n"
       "\n"
       "Example:\n"
       "  exactff view data/scenes/cornell_box.obj --at 200 0 400 --normal 0 1 0 --on floor --svg view.svg");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -25,6 +26,12 @@ const std::string kTwins =
     "v -9 -9 -1\nv 9 -9 -1\nv 9 9 -1\nv -9 9 -1\n"
     "g light\nf 1 2 3 4\ng plate\nf 5 6 7 8\ng floor\nf 9 10 11 12\ng twin\nf 1 2 3 4\n";
 
+// The same groups in another order. Each has one face.
+std::string with_last_group_first(const std::string& obj) {
+  const std::size_t first = obj.find("g "), last = obj.rfind("g ");
+  return obj.substr(0, first) + obj.substr(last) + obj.substr(first, last - first);
+}
+
 struct ViewCommand : testing::Test {
   TemporaryDirectory directory;
   std::string scene = directory.write("a.obj", kTwins).string();
@@ -45,18 +52,19 @@ struct ViewCommand : testing::Test {
   }
 };
 
-TEST_F(ViewCommand, PlainPrintsNameTabValueThenBackAndOpen) {
+// The twin is stacked: it is not seen.
+TEST_F(ViewCommand, PlainPrintsNameTabShareThenBackAndOpen) {
   const ProgramRun run = up({"--plain"});
   EXPECT_EQ(run.exit_code, 0);
-  EXPECT_TRUE(run.output.starts_with("light\t0.31466995351879845\ntwin\t0.31466995351879845\n(back)\t")) << run.output;
+  EXPECT_TRUE(run.output.starts_with("light\t0.31466995351879845\n(back)\t")) << run.output;
   std::istringstream lines(run.output);
   std::vector<std::string> names;
   double sum = 0.0;
   for (std::string line; std::getline(lines, line);) {
     names.push_back(line.substr(0, line.find('\t')));
-    if (names.back() != "twin") sum += std::stod(line.substr(line.find('\t') + 1));
+    sum += std::stod(line.substr(line.find('\t') + 1));
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"light", "twin", "(back)", "(open)"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"light", "(back)", "(open)"}));
   EXPECT_NEAR(sum, 1.0, 1e-15);
 }
 
@@ -69,7 +77,11 @@ TEST_F(ViewCommand, PlainGivesThePointCommandsValue) {
 TEST_F(ViewCommand, TableTellsSharesFromFormFactorsOnlyWhereTheyDiffer) {
   const std::string stacked = up({}).output;
   EXPECT_NE(stacked.find("share of the view"), std::string::npos) << stacked;
-  EXPECT_NE(stacked.find("Coplanar faces overlap"), std::string::npos);
+  EXPECT_TRUE(std::regex_search(stacked, std::regex("\ntwin +0 +0\\.31466995351879845 +certified, stacked\n")));
+  EXPECT_TRUE(std::regex_search(stacked, std::regex("\nlight +(0\\.31466995351879845) +\\1 +certified\n"))) << stacked;
+  EXPECT_NE(stacked.find("\nstacked: in one plane with the front of another patch, which comes first in the file and "
+                         "has the share of the view; each keeps its full form factor\n"),
+            std::string::npos);
   const ProgramRun clear = up({"--transparent", "twin"});
   EXPECT_EQ(clear.output.find("share of the view"), std::string::npos) << clear.output;
   EXPECT_NE(clear.output.find("(open)"), std::string::npos);
@@ -80,18 +92,47 @@ TEST_F(ViewCommand, JsonHasEveryPatchSeenAndTheRest) {
   ASSERT_EQ(json["patches"].size(), 2U);
   EXPECT_EQ(json["patches"][0]["patch"], "light");
   EXPECT_EQ(json["patches"][0]["decimals"], "0.314669953518798448298026682526");
+  EXPECT_FALSE(json["patches"][0].contains("stacked"));
   EXPECT_EQ(json["patches"][1]["value"], 0.0);
+  EXPECT_EQ(json["patches"][1]["stacked"], true);
   EXPECT_EQ(json["patches"][1]["form_factor"]["status"], "certified");
   EXPECT_EQ(json["back"]["status"], "certified");
   EXPECT_GT(json["open"]["value"], 0.0);
   EXPECT_GT(json["work"]["arcs"], 0);
 }
 
-TEST_F(ViewCommand, CsvHasOneRowForEachLineOfPlain) {
+TEST_F(ViewCommand, CsvHasSharesAndFormFactors) {
   const std::string text = up({"--csv"}).output;
-  EXPECT_NE(text.find("name,share,lower,upper,status,form_factor\nlight,0.31466995351879845,"), std::string::npos)
+  EXPECT_NE(text.find("name,share,lower,upper,status,form_factor,stacked\nlight,0.31466995351879845,"),
+            std::string::npos)
       << text;
+  EXPECT_NE(text.find(",certified,0.31466995351879845,no\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\ntwin,0,0,0,zero,0.31466995351879845,yes\n"), std::string::npos) << text;
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 7);
+}
+
+// A thin lamp over a floor: two faces in one plane with opposite fronts. What looks down is seen, whichever comes
+// first.
+TEST_F(ViewCommand, OfALampOfTwoFacesHasItsFrontAndNoBack) {
+  const std::string lamp = EXACTFF_DATA_DIR "/regression/lamp_of_two_faces.obj";
+  const auto from_floor = [&](const std::string& file, const std::vector<std::string>& flags) {
+    std::vector<std::string> arguments = {"view",     file, "--at", ".5", ".5",   "0",
+                                          "--normal", "0",  "0",    "1",  "--on", "floor"};
+    arguments.insert(arguments.end(), flags.begin(), flags.end());
+    return run_program(EXACTFF_PROGRAM, arguments).output;
+  };
+  const std::string lines = "lamp_down\t0.23945647046077354\n(back)\t0\n(open)\t0.7605435295392264\n";
+  EXPECT_EQ(from_floor(lamp, {"--plain"}), lines);
+  EXPECT_EQ(
+      from_floor(directory.write("b.obj", with_last_group_first(validation::text_of(lamp))).string(), {"--plain"}),
+      lines);
+  EXPECT_TRUE(std::regex_search(from_floor(lamp, {}), std::regex("\nlamp_down +0\\.23945647046077354 +certified\n")));
+  const std::string svg = (directory.path() / "lamp.svg").string(), mesh = (directory.path() / "lamp.obj").string();
+  const nlohmann::json json = nlohmann::json::parse(from_floor(lamp, {"--json", "--svg", svg, "--mesh", mesh}));
+  EXPECT_EQ(json["back"]["status"], "zero");
+  EXPECT_EQ(json["regions"].dump(), R"([{"face":"lamp_down","fraction":"1","front":true}])");
+  EXPECT_NE(validation::text_of(svg).find("<g class=\"front\"><title>lamp_down</title>"), std::string::npos);
+  EXPECT_EQ(validation::text_of(svg).find("class=\"back\""), std::string::npos);
 }
 
 TEST_F(ViewCommand, BothEnginesAgree) {

@@ -103,13 +103,15 @@ class SeenPatch(NamedTuple):
 
     form_factor: Share  #: as :meth:`Scene.form_factor` gives it, in every bit
     share: Share  #: of the view; differs only where `stacked`
-    stacked: bool  #: coplanar faces overlap
+    stacked: bool  #: in one plane with a front of a lower index: the share may be less than the form factor
 
 
 class View(Mapping[str, SeenPatch]):
-    """All that a receiver sees: ``view["light"]``. Patches that it does not see are left out. Made by :func:`view`.
+    """All that a receiver sees: ``view["light"]``. Patches with a form factor of 0 are left out. Made by :func:`view`.
 
-    The shares of all patches, ``back`` (backs of faces) and ``open`` (nothing) add up to 1.
+    The shares of all patches, ``back`` (backs of faces) and ``open`` (nothing) add up to 1. Of faces in one plane a front
+    is seen before a back, and of several fronts the first in the file: the others are ``stacked``, and each keeps its
+    full form factor.
     """
 
     def __init__(self, patches: dict[str, SeenPatch], back: Share, open: Share) -> None:
