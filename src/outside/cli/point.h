@@ -61,6 +61,7 @@ struct PointResult {
   Rgb reflectance = {};
   std::vector<PointTerm> sources = {};
   bool every_patch = false;            // --source all
+  bool stacked = false;                // of these, some lie in one plane over each other, and each counts fully
   std::optional<WholeView> seen = {};  // if the values of all sources are taken from it
   std::size_t emitters = 0;
   Enclosure sum = {};              // of the form factors of all sources

@@ -22,16 +22,24 @@ std::string between(const Enclosure& sum) {
   return "between " + shortest(sum.lower()) + " and " + shortest(sum.upper());
 }
 
-std::string missing_words(const Enclosure& missing, int digits) {
+// What 1 less the sum is.
+std::string missing_meaning(const Scene& scene, const PointResult& point) {
+  if (point.stacked) {
+    return "patches lie in one plane over each other, and each counts fully; exactff view has the shares of what is "
+           "seen";
+  }
+  if (!scene.transparent().empty()) return "transparent patches count fully, and so does what is seen through them";
+  return "the share that reaches no patch's front: it leaves the scene or meets the back of a face";
+}
+
+std::string missing_words(const Enclosure& missing, const std::string& meaning, int digits) {
   const double low = missing.lower(), high = missing.upper();
   if (low <= 0.0 && high >= 0.0) {
     const double most = std::max(-low, high);
     return most == 0.0 ? "0 (exactly)" : "0, to within " + text::short_number(most, 2);
   }
   const std::string number = sum_text(missing, digits).value_or(between(missing));
-  if (high < 0.0)
-    return number + "  (the sum exceeds 1: patches lie in one plane over each other, and each counts fully)";
-  return number + "  (the share that reaches no patch's front: it leaves the scene or meets the back of a face)";
+  return number + "  (" + (high < 0.0 ? "the sum exceeds 1: " : "") + meaning + ')';
 }
 
 }  // namespace
@@ -56,7 +64,7 @@ void print_patch_table(const PointArguments& args, const Scene& scene, const Poi
   table.print(std::cout);
   std::cout << "\nsum           " << sum_text(point.sum, args.digits).value_or(between(point.sum)) << "  (of "
             << text::counted(point.sources.size(), "patch", "patches") << ", added as balls)\nmissing to 1  "
-            << missing_words(missing_to_one(point.sum), args.digits) << '\n';
+            << missing_words(missing_to_one(point.sum), missing_meaning(scene, point), args.digits) << '\n';
   if (point.is_mixed()) {
     std::cout << "emitters      "
               << sum_text(point.sum_of_emitters, args.digits).value_or(between(point.sum_of_emitters))

@@ -83,6 +83,13 @@ FormFactor factor_in_view(const WholeView& seen, const Selection& source) {
   return as_form_factor(found->form_factor);
 }
 
+// Whether the sum of all form factors counts a part of the view twice.
+bool has_stacked(const PointArguments& args, const Scene& scene, const PointResult& point) {
+  const auto is_stacked = [](const SeenPatch& patch) { return patch.share.value != patch.form_factor.value; };
+  const auto some = [&](const WholeView& seen) { return std::ranges::any_of(seen.patches, is_stacked); };
+  return some(point.seen ? *point.seen : view(scene, point.receiver, {.precision_cap = args.precision_cap}));
+}
+
 FormFactor exact_value(const PointArguments& args, const Scene& scene, const PointResult& point,
                        const ExactSource& source) {
   if (point.seen) return factor_in_view(*point.seen, source.selection());
@@ -160,6 +167,7 @@ PointResult compute_point(const PointArguments& args, const Scene& scene) {
     result.sources.push_back(compute_source(args, scene, result, source, sampler));
   }
   add_up(result);
+  result.stacked = result.every_patch && has_stacked(args, scene, result);
   return result;
 }
 

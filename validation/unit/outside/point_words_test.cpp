@@ -156,6 +156,28 @@ TEST_F(PointWords, InAClosedRoomNothingIsMissingToOne) {
   EXPECT_LT(json["missing_to_1"]["upper"], 1e-25);
 }
 
+// What the sum lacks is then not what reaches no front.
+TEST_F(PointWords, AllSaysWhereTheSumCountsSomeOfTheViewTwice) {
+  const std::string twin = kScene + "usemtl grey\ng twin\nf 12 13 14 15\n";
+  const std::string back = kScene + "usemtl grey\ng turned\nf 4 3 2 1\n";
+  const auto missing = [&](const std::string& scene, const Words& flags) {
+    Words all = {"--source", "all"};
+    all.insert(all.end(), flags.begin(), flags.end());
+    const std::string said = from(directory_.write("more.obj", scene).string(), {"0", "0", "0"}, all).output;
+    const std::size_t at = said.find("missing to 1");
+    return said.substr(at, said.find('\n', at) - at);
+  };
+  EXPECT_TRUE(std::regex_match(
+      missing(twin, {}), std::regex("missing to 1  0\\.[0-9]+  \\(patches lie in one plane over each other, and each "
+                                    "counts fully; exactff view has the shares of what is seen\\)")))
+      << missing(twin, {});
+  for (const std::string& scene : {back, kScene}) {
+    EXPECT_TRUE(holds(missing(scene, {}), "  (the share that reaches no patch's front: it leaves the scene or"));
+  }
+  EXPECT_TRUE(holds(missing(kScene, {"--transparent", "past"}),
+                    "  (transparent patches count fully, and so does what is seen through them)"));
+}
+
 TEST_F(PointWords, AllWithExplainShowsTheStagesAndTheTable) {
   const Said said = up({"--source", "all", "--explain"});
   EXPECT_TRUE(holds(said.output, "plane of light: "));
