@@ -315,6 +315,7 @@ std::span<const RandomFamily> random_families() {
                                      {"Magnitudes", 60, &scene_of_all_magnitudes}};
     const std::span<const RandomFamily> on_rays = families_on_rays();
     all.insert(all.end(), on_rays.begin(), on_rays.end());
+    all.push_back({"Sheets", 60, &sheets_scene});
     return all;
   }();
   return kAll;

@@ -36,6 +36,10 @@ namespace exactff::validation {
 // triangles_scene with its corners moved along their rays to any distance between 2^-1000 and 2^1000.
 [[nodiscard]] generate::PlainScene scene_of_all_magnitudes(generate::Random& random);
 
+// Coincident faces: sheets that lie over each other in one plane or two, each facing either way
+// (random_scenes_sheets.cpp).
+[[nodiscard]] generate::PlainScene sheets_scene(generate::Random& random);
+
 // Families whose corners lie on few rays from the receiver. Wherever the frame is exact, their coincidences survive
 // full mantissas, axes scaled separately by powers of two, and subnormal coordinates (random_scenes_rays.cpp). If a
 // scene has a patch `on`, its receiver lies on the only face of that patch.

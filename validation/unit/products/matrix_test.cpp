@@ -10,6 +10,7 @@
 
 #include "exactff/scene_files.h"
 #include "generate/plain_scene.h"
+#include "matrix/row_facts.h"
 #include "support/program.h"
 
 namespace exactff::matrix {
@@ -119,6 +120,23 @@ TEST(Matrix, ASheetOfTwoFacesHasNoBacks) {
   EXPECT_EQ(matrix.back[2].claim, Claim::kZero);  // it looks down on the front of the plate below
   EXPECT_GT(matrix.factors.at(0, 2).lower, 0.1);
   expect_rows_hold_one(scene, matrix, 1e-2);
+}
+
+// The draft that was wrong depended on the order of the two faces.
+TEST(Matrix, ADraftOfASheetOfTwoFacesHasNoBacks) {
+  for (const bool turned : {false, true}) {
+    PlainScene plain;
+    add(plain, "first", square(1.0, 1.0), turned);
+    add(plain, "below", square(1.0, 0.0));
+    add(plain, "second", square(1.0, 1.0), !turned);
+    const Scene scene = generate::build(plain);
+    const std::vector<Selection> all = all_of(scene);
+    const Matrix matrix = draft(scene, all, all, {.backs = true, .open = true});
+    EXPECT_EQ(matrix.back[1].value, 0.0);
+    EXPECT_NEAR(matrix.factors.at(1, turned ? 0 : 2).value, kOpposite, 1e-3);
+    EXPECT_NEAR(sum_of_values(matrix, 1), 1.0, 1e-13);
+    EXPECT_EQ(reasons_against_one(scene, matrix), std::vector<std::string>{});
+  }
 }
 
 // The backs are what the larger face, turned round, gets, less what the smaller one in its plane gets.

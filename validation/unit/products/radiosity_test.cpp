@@ -61,6 +61,24 @@ void expect_holds(const BoundedValue& q, double truth, double width) {
   EXPECT_LE(q.upper - q.lower, width);
 }
 
+// A thin lamp of two faces over a floor: of what the floor sends up, nothing meets a back.
+TEST(Radiosity, LosesNothingToTheBacksOfALampOfTwoFaces) {
+  for (const bool up_first : {true, false}) {
+    PlainScene scene;
+    add(scene, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {0.5, 0.5, 0.5}, {});
+    const std::vector<Vec3> up = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, down(up.rbegin(), up.rend());
+    add(scene, "first", up_first ? up : down, {}, {1, 1, 1});
+    add(scene, "second", up_first ? down : up, {}, {1, 1, 1});
+    const Solution solution = solution_of(scene, 1e-6);
+    const Balance& balance = solution.channels[0].balance;
+    EXPECT_EQ(balance.back.upper, 0.0);
+    EXPECT_EQ(solution.reasons_against_balance, std::vector<std::string>{});
+    EXPECT_TRUE(is_balanced(solution));
+    EXPECT_NEAR(balance.absorbed.lower, 0.5 * kOpposite + 0.5 * kOpposite * kOpposite, 1e-5);
+    EXPECT_LE(balance.absorbed.upper - balance.absorbed.lower, 1e-5);
+  }
+}
+
 // In a closed room in which all patches are alike, B = E / (1 - rho), whatever the view factors.
 TEST(Radiosity, OfAFurnaceIsEmissionOverAbsorption) {
   const Solution solution = solution_of(cube({0.5, 0.75, 0.0}, {1, 3, 0.1}), 1e-5);
