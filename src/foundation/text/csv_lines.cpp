@@ -82,7 +82,7 @@ bool is_csv_comment(std::string_view line) {
   return content.empty() || content.front() == '#';
 }
 
-bool split_csv_line(std::string_view line, std::vector<std::string>& fields) {
+bool split_csv_line(std::string_view line, std::vector<std::string>& fields, char separator) {
   std::size_t count = 0;
   for (std::size_t at = 0;; ++at) {
     if (count == fields.size()) fields.emplace_back();
@@ -91,11 +91,11 @@ bool split_csv_line(std::string_view line, std::vector<std::string>& fields) {
     while (at < line.size() && (line[at] == ' ' || line[at] == '\t')) ++at;
     const bool quoted = at < line.size() && line[at] == '"';
     if (quoted && !take_quoted(line, at, field)) return false;
-    const std::size_t comma = std::min(line.find(',', at), line.size());
-    const std::string_view rest = trimmed(line.substr(at, comma - at));
+    const std::size_t end = std::min(line.find(separator, at), line.size());
+    const std::string_view rest = trimmed(line.substr(at, end - at));
     if (quoted && !rest.empty()) return false;
     if (!quoted) field.assign(rest);
-    at = comma;
+    at = end;
     if (at == line.size()) break;
   }
   fields.resize(count);

@@ -52,6 +52,6 @@ class CsvLines {
 // false if a quote is not closed within its line, or text follows a closing quote. Reuses the memory of `fields`. A
 // field that is not UTF-8 is converted (text/encoding.h): names match those of scenes, and of files that older versions
 // and other programs wrote in Latin-1.
-[[nodiscard]] bool split_csv_line(std::string_view line, std::vector<std::string>& fields);
+[[nodiscard]] bool split_csv_line(std::string_view line, std::vector<std::string>& fields, char separator = ',');
 
 }  // namespace exactff::text

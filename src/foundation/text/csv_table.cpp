@@ -26,6 +26,7 @@ CsvTable::CsvTable(const std::filesystem::path& path, const std::string& purpose
 void CsvTable::read_names() {
   for (std::string_view line; lines_.next(line);) {
     if (!is_csv_comment(line)) {
+      dialect_ = CsvDialect(line);
       if (split(line)) take_names();
       return;
     }
@@ -42,9 +43,9 @@ void CsvTable::take_names() {
     if (std::find(names_.begin(), name, *name) == name) continue;
     complain("column " + in_quotes(*name) + " occurs twice", "only one can count", "rename one");
   }
-  if (names_.size() > 1 || names_.front().find_first_of(";\t") == std::string::npos) return;
-  complain("the column names are not separated by commas", "only comma-separated files are read",
-           "write commas instead of semicolons or tabs");
+  if (names_.size() > 1 || names_.front().find('\t') == std::string::npos) return;
+  complain("the column names are separated by tabs", "fields are separated by commas or semicolons",
+           "write commas instead of tabs");
 }
 
 std::optional<std::size_t> CsvTable::column(std::string_view name) const {
@@ -71,7 +72,7 @@ std::size_t CsvTable::needed_column(std::initializer_list<std::string_view> name
 }
 
 bool CsvTable::split(std::string_view line) {
-  if (split_csv_line(line, fields_)) return true;
+  if (dialect_.split(line, fields_)) return true;
   complain("a quotation mark is not closed in its line, or text follows it", "the fields cannot be separated",
            "write a quotation mark inside quotes twice");
   return false;
@@ -83,14 +84,15 @@ bool CsvTable::next() {
     if (fields_.size() == names_.size()) return true;
     complain(std::to_string(fields_.size()) + " fields where there are " + std::to_string(names_.size()) + " columns",
              "values would be assigned to the wrong columns",
-             "separate fields by commas, and quote fields that contain a comma");
+             dialect_.has_semicolons() ? "separate fields by semicolons, and quote fields that contain a semicolon"
+                                       : "separate fields by commas, and quote fields that contain a comma");
   }
   return false;
 }
 
 double CsvTable::number(std::size_t column, NotFinite not_finite) {
   const std::string& text = fields_[column];
-  const ParsedNumber number = parse_number(text);
+  const ParsedNumber number = dialect_.number(text);
   if (number.fault == NumberFault::kNone) return number.value;
   const bool meant = number.fault == NumberFault::kNotFinite || number.fault == NumberFault::kTooLarge;
   if (meant && not_finite == NotFinite::kAccept) return not_finite_value(text, number.fault);

@@ -1,4 +1,4 @@
-// A CSV file with a row of column names, read row by row. Problems are collected.
+// A CSV file with a row of column names, read row by row, in either dialect (csv_dialect.h). Problems are collected.
 #pragma once
 
 #include <array>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "exactff/geometry.h"
+#include "text/csv_dialect.h"
 #include "text/csv_lines.h"
 #include "text/text_lines.h"
 
@@ -52,6 +53,7 @@ class CsvTable {
   [[nodiscard]] bool split(std::string_view line);
 
   CsvLines lines_;
+  CsvDialect dialect_;
   std::vector<std::string> comments_;
   std::vector<std::string> names_;
   std::vector<std::string> fields_;

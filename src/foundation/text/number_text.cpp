@@ -139,9 +139,13 @@ double not_finite_value(std::string_view text, NumberFault fault) {
 }
 
 std::string describe(NumberFault fault, std::string_view text) {
-  constexpr std::array<std::string_view, 6> kWords = {
-      " is a number",    " is not a number",     " is not a finite number",
-      " is hexadecimal", " has a decimal comma", " is too large for a double"};
+  constexpr std::array<std::string_view, 7> kWords = {" is a number",
+                                                      " is not a number",
+                                                      " is not a finite number",
+                                                      " is hexadecimal",
+                                                      " has a decimal comma",
+                                                      " is too large for a double",
+                                                      " has a decimal point, and a number above it a decimal comma,"};
   return in_quotes(text).append(kWords[static_cast<std::size_t>(fault)]);
 }
 
@@ -156,6 +160,8 @@ std::string advice(NumberFault fault) {
       return "give a finite number";
     case NumberFault::kComma:
       return "write a decimal point";
+    case NumberFault::kPoint:
+      return "write all numbers alike";
     case NumberFault::kTooLarge:
       return "give a smaller number; the largest double is about 1.8e308";
   }

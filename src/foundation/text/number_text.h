@@ -13,6 +13,7 @@ enum class NumberFault {
   kHexadecimal,
   kComma,     // a number except for a decimal comma
   kTooLarge,  // rounds to infinity
+  kPoint,     // a decimal point beside numbers with decimal commas (csv_dialect.h)
 };
 
 struct ParsedNumber {

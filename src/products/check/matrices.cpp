@@ -11,7 +11,7 @@
 #include "check/words.h"
 #include "exactff/matrix.h"
 #include "kernel/float_environment.h"
-#include "text/csv_lines.h"
+#include "text/csv_dialect.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
@@ -86,7 +86,7 @@ CandidateColumns columns_of_list(const fs::path& file, CandidateColumns columns)
   text::CsvLines lines(file, "a CSV file of values");
   std::vector<std::string> names;
   for (std::string_view line; names.empty() && lines.next(line);) {
-    if (!text::is_csv_comment(line)) (void)text::split_csv_line(line, names);
+    if (!text::is_csv_comment(line)) (void)text::CsvDialect(line).split(line, names);
   }
   const auto has = [&](const char* name) { return std::ranges::find(names, name) != names.end(); };
   if (has("factor") && !has("value")) columns.value = "factor";

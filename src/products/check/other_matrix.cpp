@@ -7,8 +7,7 @@
 #include <string_view>
 
 #include "files/read_npy.h"
-#include "text/csv_lines.h"
-#include "text/number_text.h"
+#include "text/csv_dialect.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_file.h"
@@ -17,18 +16,18 @@
 namespace exactff::check {
 namespace {
 
-// Separated by commas, or by blanks in a line without commas. Returns false if a quotation mark is not closed.
-bool split(std::string_view line, std::vector<std::string>& fields) {
-  if (line.find(',') != std::string_view::npos || line.find('"') != std::string_view::npos) {
-    return text::split_csv_line(line, fields);
+// Separated by commas or semicolons, or by blanks in a line without them. Returns false if a quotation mark is not
+// closed.
+bool split(const text::CsvDialect& dialect, std::string_view line, std::vector<std::string>& fields) {
+  if (dialect.has_semicolons() || line.find_first_of(",\"") != std::string_view::npos) {
+    return dialect.split(line, fields);
   }
   fields.clear();
   for (const std::string_view word : text::words(line)) fields.emplace_back(word);
   return true;
 }
 
-bool is_number(std::string_view text) {
-  const text::NumberFault fault = text::parse_number(text).fault;
+bool is_number(text::NumberFault fault) {
   return fault == text::NumberFault::kNone || fault == text::NumberFault::kNotFinite ||
          fault == text::NumberFault::kTooLarge;
 }
@@ -38,10 +37,14 @@ class Numbers {
  public:
   explicit Numbers(std::string file) : file_(std::move(file)) {}
 
+  // `line`: the first one.
+  void recognise(std::string_view line) { dialect_ = text::CsvDialect(line); }
+  [[nodiscard]] const text::CsvDialect& dialect() const { return dialect_; }
+
   double take(std::string_view text, std::size_t line) {
-    const text::ParsedNumber number = text::parse_number(text);
+    const text::ParsedNumber number = dialect_.number(text);
     if (number.fault == text::NumberFault::kNone) return number.value;
-    if (is_number(text)) return text::not_finite_value(text, number.fault);
+    if (is_number(number.fault)) return text::not_finite_value(text, number.fault);
     complain(line, text.empty() ? "a field is empty" : describe(number.fault, text), "an entry of a matrix is a number",
              text.empty() ? "write nan if there is no result" : advice(number.fault));
     return 0.0;
@@ -53,6 +56,7 @@ class Numbers {
 
  private:
   std::string file_;
+  text::CsvDialect dialect_;
   text::ProblemList problems_;
 };
 
@@ -61,9 +65,12 @@ template <class Take>
 void for_each_line(const std::filesystem::path& file, Numbers& numbers, const Take& take) {
   text::CsvLines lines(file, "a matrix");
   std::vector<std::string> fields;
+  bool is_first = true;
   for (std::string_view line; lines.next(line);) {
     if (text::is_csv_comment(line)) continue;
-    if (!split(line, fields)) {
+    if (is_first) numbers.recognise(line);
+    is_first = false;
+    if (!split(numbers.dialect(), line, fields)) {
       numbers.complain(lines.number(), "a quotation mark is not closed in its line, or text follows it",
                        "the fields cannot be separated", "write a quotation mark inside quotes twice");
       continue;
@@ -91,7 +98,7 @@ struct View3dHead {
 };
 std::optional<View3dHead> view3d_head(std::string_view line) {
   const std::vector<std::string_view> words = text::words(line);
-  if (words.size() != 6 || is_number(words.front())) return std::nullopt;
+  if (words.size() != 6 || is_number(text::parse_number(words.front()).fault)) return std::nullopt;
   View3dHead head;
   std::size_t flag = 0;
   const bool whole = is_whole(words[2], head.format) && is_whole(words[3], flag) && is_whole(words[4], flag) &&
@@ -120,8 +127,9 @@ OtherKind kind_of(const std::filesystem::path& file, const CandidateColumns& col
   } while (text::is_csv_comment(line));
   if (view3d_head(line)) return OtherKind::kView3d;
   std::vector<std::string> fields;
-  (void)split(line, fields);
-  if (std::ranges::all_of(fields, [](const std::string& field) { return is_number(field); }))
+  text::CsvDialect dialect(line);
+  (void)split(dialect, line, fields);
+  if (std::ranges::all_of(fields, [&](const std::string& field) { return is_number(dialect.number(field).fault); }))
     return OtherKind::kNumbers;
   const auto has = [&](const std::string& given, const char* usual) {
     return std::ranges::find(fields, given.empty() ? usual : given) != fields.end();

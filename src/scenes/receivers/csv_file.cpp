@@ -8,6 +8,7 @@
 #include "exactff/receiver.h"
 #include "kernel/float_environment.h"
 #include "scene/scene_data.h"
+#include "text/csv_dialect.h"
 #include "text/csv_lines.h"
 #include "text/number_text.h"
 #include "text/text_lines.h"
@@ -62,7 +63,8 @@ class ReceiverTable {
   }
 
   void take(std::string_view line) {
-    if (!text::split_csv_line(line, fields_)) {
+    if (!header_read_) dialect_ = text::CsvDialect(line);
+    if (!dialect_.split(line, fields_)) {
       complain("a quotation mark is not closed, or text follows it", "the fields cannot be separated",
                "write a quotation mark inside quotes twice");
     } else if (!header_read_) {
@@ -112,7 +114,7 @@ class ReceiverTable {
     if (fields.size() != field_count_) {
       complain(std::to_string(fields.size()) + " fields where the header has " + std::to_string(field_count_),
                "values would be assigned to the wrong columns",
-               "separate fields by commas, and quote fields that contain a comma");
+               "separate fields as the header does, and quote fields that contain the separator");
       return;
     }
     const std::size_t before = problem_count_;
@@ -152,7 +154,7 @@ class ReceiverTable {
 
   double number_at(const std::vector<std::string>& fields, std::size_t c) {
     const std::string& text = fields[column_[c]];
-    const text::ParsedNumber number = text::parse_number(text);
+    const text::ParsedNumber number = dialect_.number(text);
     if (number.fault == text::NumberFault::kNone) return number.value;
     complain(describe(number.fault, text) + " in column " + std::string(kColumns[c]),
              "points and normals are made of finite doubles", advice(number.fault));
@@ -178,6 +180,7 @@ class ReceiverTable {
   }
 
   text::CsvLines lines_;
+  text::CsvDialect dialect_;
   const Scene& scene_;
   std::vector<std::string> fields_;
   bool header_read_ = false;

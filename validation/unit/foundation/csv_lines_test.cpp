@@ -1,5 +1,3 @@
-#include "text/csv_lines.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
@@ -7,6 +5,7 @@
 
 #include "exactff/error.h"
 #include "support/program.h"
+#include "text/csv_dialect.h"
 
 namespace exactff {
 namespace {
@@ -103,6 +102,39 @@ TEST(CsvComments, AreBlankOrBeginWithANumberSign) {
   EXPECT_TRUE(text::is_csv_comment("  # x"));
   EXPECT_FALSE(text::is_csv_comment("a # x"));
   EXPECT_FALSE(text::is_csv_comment("\"#\""));
+}
+
+// --- commas or semicolons ---
+
+TEST(CsvDialect, IsRecognisedByTheFirstLine) {
+  for (const char* line : {"receiver;value", "\"a,b\";c", "0,5;0,25;1", "7;8", ";b;a", "nan;0,5"}) {
+    EXPECT_TRUE(text::CsvDialect(line).has_semicolons()) << line;
+  }
+  for (const char* line : {"receiver,value", "a;b,c", "\"a;b\",c", "\"a;b\"", "0,5;0,x", ""}) {
+    EXPECT_FALSE(text::CsvDialect(line).has_semicolons()) << line;
+  }
+}
+
+TEST(CsvDialect, SplitsByItsSeparator) {
+  List fields;
+  EXPECT_TRUE(text::CsvDialect("a;b").split("\"x;y\" ; 0,25;", fields));
+  EXPECT_EQ(fields, (List{"x;y", "0,25", ""}));
+  EXPECT_TRUE(text::CsvDialect("a,b").split("x;y,1", fields));
+  EXPECT_EQ(fields, (List{"x;y", "1"}));
+}
+
+// 1,234 may be 1234: so a file has one decimal sign.
+TEST(CsvDialect, ReadsDecimalCommasBesideSemicolons) {
+  text::CsvDialect german("a;b"), other("a;b"), commas("a,b");
+  EXPECT_EQ(german.number("7").value, 7.0);
+  EXPECT_EQ(german.number("-1,5E-03").value, -1.5e-3);
+  EXPECT_EQ(german.number("0.5").fault, text::NumberFault::kPoint);
+  EXPECT_EQ(german.number("0,1").value, 0.1);
+  EXPECT_EQ(german.number("1,2,3").fault, text::NumberFault::kNotANumber);
+  EXPECT_EQ(german.number("1e999").fault, text::NumberFault::kTooLarge);
+  EXPECT_EQ(other.number("0.5").value, 0.5);
+  EXPECT_EQ(other.number("1,234").fault, text::NumberFault::kComma);
+  EXPECT_EQ(commas.number("1,5").fault, text::NumberFault::kComma);
 }
 
 }  // namespace

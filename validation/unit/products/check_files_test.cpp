@@ -96,7 +96,7 @@ TEST(TruthFile, IsRefusedWithoutColumnsOrRows) {
   EXPECT_HOLDS(what, "there is no column 'receiver' or 'id' among 'x,y'");
   EXPECT_HOLDS(what, "there is no column 'exact'");
   EXPECT_HOLDS(complaint([] { (void)truth_of("receiver,exact,exact\na,1,1\n"); }), "column 'exact' occurs twice");
-  EXPECT_HOLDS(complaint([] { (void)truth_of("receiver;exact\na;1\n"); }), "not separated by commas");
+  EXPECT_HOLDS(complaint([] { (void)truth_of("receiver\texact\na\t1\n"); }), "the column names are separated by tabs");
   EXPECT_HOLDS(complaint([] { (void)truth_of("\"receiver,exact\n"); }), "a quotation mark is not closed");
 }
 
@@ -110,6 +110,29 @@ TEST(CandidateFile, NamesItsColumnsByDefaultOrByRequest) {
   EXPECT_EQ(candidate.rows.front().value, 3.0);
   EXPECT_EQ(candidate.rows.front().receiver, "a");
   EXPECT_EQ(candidate.sources, std::vector<std::string>{"l"});
+}
+
+// As spreadsheets write it where the comma is the decimal sign, with a byte order mark.
+TEST(CandidateFile, MayHaveSemicolonsAndDecimalCommas) {
+  const Candidate german = candidate_of(
+      "\xEF\xBB\xBF"
+      "receiver;source;value\r\na;\"l;1\";0,25\r\nb;m;1,5E-05\r\n");
+  ASSERT_EQ(german.rows.size(), 2U);
+  EXPECT_EQ(german.rows[0].value, 0.25);
+  EXPECT_EQ(german.rows[1].value, 1.5e-5);
+  EXPECT_EQ(german.sources, (std::vector<std::string>{"l;1", "m"}));
+  EXPECT_EQ(candidate_of("receiver;value\na;0.25\n").rows.front().value, 0.25);
+  EXPECT_EQ(truth_of("receiver;exact\na;0,5\n").rows.front().value, 0.5);
+}
+
+TEST(CandidateFile, HasOneDecimalSign) {
+  EXPECT_HOLDS(complaint([] { (void)candidate_of("receiver;value\na;0,25\nb;0.5\n"); }),
+               "mine.csv:3: '0.5' has a decimal point, and a number above it a decimal comma, in column 'value' (this "
+               "column must contain numbers); write all numbers alike");
+  EXPECT_HOLDS(complaint([] { (void)candidate_of("receiver;value\na;0.25\nb;1,234\n"); }),
+               "mine.csv:3: '1,234' has a decimal comma in column 'value' (");
+  EXPECT_HOLDS(complaint([] { (void)candidate_of("receiver;value\na;0;1\n"); }),
+               "separate fields by semicolons, and quote fields that contain a semicolon");
 }
 
 TEST(CandidateFile, MayHoldValuesThatAreNoNumbers) {

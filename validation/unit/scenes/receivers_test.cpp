@@ -232,6 +232,12 @@ TEST_F(ReceiverFile, NeedsNeitherIdNorOn) {
   EXPECT_EQ(receivers[0].id, "1");
 }
 
+TEST_F(ReceiverFile, MayHaveSemicolonsAndDecimalCommas) {
+  EXPECT_EQ(read("x;y;z;nx;ny;nz\n1,5;2;3e-1;0;0;1\n")[0].point, (Vec3{1.5, 2, 0.3}));
+  EXPECT_EQ(fault("x;y;z;nx;ny;nz\n1,5;2.5;3;0;0;1\n"),
+            "2: '2.5' has a decimal point, and a number above it a decimal comma, in column y");
+}
+
 TEST_F(ReceiverFile, APatchOfOneFaceNamesThatFace) {
   EXPECT_EQ(read("x,y,z,nx,ny,nz,on\n1,2,3,0,0,1,lid\n")[0].on, std::vector{FaceId{2}});
 }
