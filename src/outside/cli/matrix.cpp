@@ -230,10 +230,12 @@ void check_outputs(const MatrixArguments& args) {
       args.existing() != jobs::Existing::kRefuse);
 }
 
-void check_row_of_vtk(const MatrixArguments& args, const std::vector<Selection>& from) {
-  if (args.vtk.empty() || from.size() == 1) return;
-  text::refuse("--vtk is given, and " + text::counted(from.size(), "row"), "the file shows one row on the scene",
-               "name one patch by --from");
+void check_row_of_vtk(const MatrixArguments& args, const std::vector<Selection>& from,
+                      const std::vector<Selection>& to) {
+  if (args.vtk.empty() || (from.size() == 1 && !to.empty())) return;
+  text::refuse("--vtk is given, and " + (to.empty() ? "no column is a patch" : text::counted(from.size(), "row")),
+               "the file shows one row on the patches of the scene",
+               to.empty() ? "name patches by --to" : "name one patch by --from");
 }
 
 matrix::DraftOptions draft_options(const MatrixArguments& args, const matrix::Options& options) {
@@ -273,7 +275,7 @@ void print_files(const MatrixArguments& args) {
 // Before anything that takes time, what the files cannot hold is refused.
 void check_content(const MatrixArguments& args, const Scene& scene, const std::vector<Selection>& from,
                    const std::vector<Selection>& to) {
-  check_row_of_vtk(args, from);
+  check_row_of_vtk(args, from, to);
   const matrix::Matrix empty{{from, to, std::vector<ViewFactor>(from.size() * to.size())}, {}, {}};
   if (!args.view3d.empty()) (void)view3d_text(scene, empty);
   if (!args.energyplus.empty()) (void)energyplus_text(scene, empty, args.zone);

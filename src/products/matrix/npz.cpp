@@ -4,6 +4,7 @@
 #include "exactff/matrix.h"
 #include "files/npz_file.h"
 #include "kernel/outward.h"
+#include "matrix/row_facts.h"
 
 namespace exactff::matrix {
 namespace {
@@ -41,7 +42,6 @@ void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::
   for (std::size_t i = 0; i < all.from.size(); ++i) {
     for (std::size_t j = 0; j < all.to.size(); ++j) {
       const ViewFactor& f = all.at(i, j);
-      if (j == 0) area_from.push_back(f.area_from);
       if (i == 0) area_to.push_back(f.area_to);
       if (f.claim == Claim::kZero) continue;
       values.push_back(f.value);
@@ -50,6 +50,7 @@ void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::
       claims.emplace_back(to_string(f.claim));
     }
     starts.push_back(static_cast<std::int64_t>(values.size()));
+    area_from.push_back(area_of_row(matrix, i));
   }
   files::NpzFile file(path);
   file.add_word("format", "csr");

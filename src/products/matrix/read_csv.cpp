@@ -111,7 +111,7 @@ class TableReader {
     }
     patches_ = width_;
     const auto take_off = [&](std::string_view name) {
-      const bool there = patches_ > 1 && rows_[patches_ - 1].to == name;
+      const bool there = patches_ > 0 && rows_[patches_ - 1].to == name;
       patches_ -= there ? 1 : 0;
       return there;
     };

@@ -5,6 +5,11 @@
 
 namespace exactff::matrix {
 
+double area_of_row(const Matrix& matrix, std::size_t row) {
+  if (!matrix.factors.to.empty()) return matrix.factors.at(row, 0).area_from;
+  return (matrix.open.empty() ? matrix.back : matrix.open)[row].area_from;
+}
+
 double sum_of_values(const Matrix& matrix, std::size_t row) {
   const std::size_t columns = matrix.factors.to.size();
   double value =

@@ -7,6 +7,9 @@
 
 namespace exactff::matrix {
 
+// The area of a row's patch. Requires a column, or back or open.
+[[nodiscard]] double area_of_row(const Matrix& matrix, std::size_t row);
+
 // The sum of the values of a row with its back and open, an estimate.
 [[nodiscard]] double sum_of_values(const Matrix& matrix, std::size_t row);
 

@@ -19,8 +19,9 @@ constexpr std::uint64_t kLargestChunk = 64;
 
 Request require_valid(Request request) {
   jobs::require_shard(request.shard);
-  if (request.scene == nullptr || request.from.empty() || request.to.empty()) {
-    text::refuse("the matrix has no rows or no columns", "there is nothing to compute",
+  const bool has_columns = !request.to.empty() || request.options.backs || request.options.open;
+  if (request.scene == nullptr || request.from.empty() || !has_columns) {
+    text::refuse(std::string("the matrix has no ") + (has_columns ? "rows" : "columns"), "there is nothing to compute",
                  "name patches by --from and --to");
   }
   return request;

@@ -376,6 +376,28 @@ TEST_F(MatrixFilesOfTheCommand, HaveBackAndOpenAsColumns) {
   EXPECT_EQ(run({scene, "--from", "sky"}).exit_code, 2);
 }
 
+// Without patches as columns: what is open alone, or beside what meets backs.
+TEST_F(MatrixFilesOfTheCommand, HoldTheSkyAlone) {
+  const std::string scene =
+      folder_.write("plate.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng plate\nf 1 2 3 4\n").string();
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--backs"}}) {
+    std::vector<std::string> command = {scene,         "--to",  "sky",         "--plain", "-o",
+                                        file("m.csv"), "--npz", file("m.npz"), "--force"};
+    command.insert(command.end(), more.begin(), more.end());
+    const validation::ProgramRun made = run(command);
+    ASSERT_EQ(made.exit_code, 0);
+    EXPECT_EQ(std::ranges::count(made.output, '\n'), 1 + static_cast<int>(more.size()));
+    EXPECT_NE(made.output.find("plate\t(open)\t0.99999"), std::string::npos) << made.output;
+    const Table read = read_csv(file("m.csv"));
+    EXPECT_EQ(read.to.size(), 0U);
+    EXPECT_EQ(read.open.size(), 1U);
+    EXPECT_EQ(read.back.size(), more.size());
+    std::ranges::replace(command, "--force", "--resume");
+    EXPECT_EQ(run(command).output, made.output);
+  }
+  EXPECT_EQ(run({scene, "--to", "sky", "--vtk", file("row.vtp")}).exit_code, 2);
+}
+
 TEST_F(MatrixFilesOfTheCommand, HaveBothDirectionsAndBothSides) {
   const validation::ProgramRun both = run({scene_, "--accuracy", "1e-4", "--both-directions"});
   EXPECT_EQ(both.exit_code, 0);

@@ -190,7 +190,8 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
 
     Parameters
     ----------
-    from_patches, to_patches : names of the rows and columns; default: every patch with area
+    from_patches, to_patches : names of the rows and columns; "all", the default: every patch with area. With `backs`
+        or `sky`, ``to_patches=[]`` computes these alone.
     accuracy, budget, certify : of each entry, as in :func:`view_factor`
     backs, sky : also compute what meets the backs of faces, and what is open
     both_directions : compute F_ij and F_ji apart, so that ``reciprocity`` tests one against the other
@@ -218,7 +219,7 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
     return ViewFactorMatrix(
         tuple(rows), tuple(columns), array(lambda f: f.value, np.float64), array(lambda f: f.lower, np.float64),
         array(lambda f: f.upper, np.float64), array(lambda f: f.claim, np.str_), array(lambda f: f.accurate, np.bool_),
-        np.array([row[0].area_from for row in by_rows if row]),
+        np.array([row[0].area_from for row in (by_rows if columns else zip(lists[0] or lists[1] or ()))]),
         np.array([f.area_to for f in by_rows[0]] if by_rows else []), lists[0], lists[1],
         np.array(sums, np.float64).reshape(-1, 2), tuple(reasons), reciprocity, by_rows)
 
