@@ -88,6 +88,16 @@ Summary merge(const std::vector<std::filesystem::path>& shards, const std::files
 void write_npy(const std::filesystem::path& truth_file, const std::filesystem::path& file,
                const jobs::RowHooks& hooks = {});
 
+// Writes receivers and values of a complete truth file as NumPy arrays in one file (.npz), in the order of the file:
+//
+//   points (n, 3)     normals (n, 3): unit vectors, correctly rounded     on (n): index into faces, -1 for none
+//   F (n, sources): NaN where a value is not certified                    sources, faces: names; about: the comments
+//
+// and visible_fraction and unoccluded (n, sources), total (n, 3), if the file has them. numpy.load(file) reads it. The
+// file appears complete or not at all, and replaces another one. Throws as write_npy, and if it were larger than 4 GiB.
+void write_npz(const std::filesystem::path& truth_file, const std::filesystem::path& file,
+               const jobs::RowHooks& hooks = {});
+
 // Writes the values of a complete truth file for ParaView: see vtk::write. `request` is the one that the file was made
 // from. Visible fractions and totals are written if the file has them.
 void write_vtk(const Request& request, const std::filesystem::path& truth_file, const std::filesystem::path& file,

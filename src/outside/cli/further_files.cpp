@@ -21,6 +21,7 @@ using Output = OutputFile;
 std::vector<Output> outputs(const FurtherFiles& files) {
   std::vector<Output> list;
   if (!files.npy.empty()) list.push_back({"--npy", files.npy});
+  if (!files.npz.empty()) list.push_back({"--npz", files.npz});
   if (!files.vtk.empty()) list.push_back({"--vtk", files.vtk});
   if (!files.vtk.empty()) list.push_back({"the scene of --vtk", vtk::scene_file(files.vtk)});
   if (!files.exr.empty()) list.push_back({"--exr", files.exr});
@@ -70,10 +71,14 @@ void require_writable(const Output& output, bool may_replace) {
 
 }  // namespace
 
-void FurtherFiles::add_npy_to(CLI::App& app) {
+void FurtherFiles::add_numpy_to(CLI::App& app) {
   app.add_option("--npy", npy,
                  "Also write the values as a NumPy array: float64, a row for each receiver and a column for each "
                  "source; NaN where not certified")
+      ->type_name("FILE");
+  app.add_option("--npz", npz,
+                 "Also write NumPy arrays in one small file: points, normals (unit vectors), on (index into faces), "
+                 "faces, sources, F as --npy")
       ->type_name("FILE");
 }
 
@@ -94,6 +99,7 @@ void FurtherFiles::add_exr_to(CLI::App& app) {
 std::vector<std::string> FurtherFiles::flags() const {
   std::vector<std::string> given;
   if (!npy.empty()) given.emplace_back("--npy");
+  if (!npz.empty()) given.emplace_back("--npz");
   if (!vtk.empty()) given.emplace_back("--vtk");
   if (!exr.empty()) given.emplace_back("--exr");
   return given;
@@ -127,7 +133,9 @@ void check_output_files(const std::vector<OutputFile>& files, std::vector<Output
 }
 
 void print_further_files(const FurtherFiles& files) {
-  if (!files.npy.empty()) std::cout << "NumPy file: " << text::printable(files.npy) << '\n';
+  for (const std::string& file : {files.npy, files.npz}) {
+    if (!file.empty()) std::cout << "NumPy file: " << text::printable(file) << '\n';
+  }
   if (!files.vtk.empty()) {
     std::cout << "VTK files: " << text::printable(files.vtk) << ", "
               << text::printable(vtk::scene_file(files.vtk).string()) << '\n';

@@ -1,4 +1,4 @@
-// Files that commands write besides their result: --npy, --vtk, --exr and others.
+// Files that commands write besides their result: --npy, --npz, --vtk, --exr and others.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,10 +10,11 @@ namespace exactff::cli {
 
 struct FurtherFiles {
   std::string npy;
+  std::string npz;
   std::string vtk;
   std::string exr;
 
-  void add_npy_to(CLI::App& app);
+  void add_numpy_to(CLI::App& app);  // --npy and --npz
   void add_vtk_to(CLI::App& app);
   void add_exr_to(CLI::App& app);
   // The flags that are given: "--npy", "--vtk".

@@ -36,8 +36,8 @@ struct MergeArguments {
 };
 
 int merge_matrix(const MergeArguments& args, const jobs::RowHooks& hooks, const ProgressBar& bar) {
-  if (!args.further.npy.empty()) {
-    text::refuse("--npy is given with shards of a matrix", "it writes the values of a truth file",
+  if (const std::vector<std::string> further = args.further.flags(); !further.empty()) {
+    text::refuse(further.front() + " is given with shards of a matrix", "it writes the values of a truth file",
                  "run exactff matrix with --resume, -o for the merged file and --npz");
   }
   const jobs::Summary summary = matrix::merge({args.shards.begin(), args.shards.end()}, args.file,
@@ -62,8 +62,9 @@ int run(const MergeArguments& args) {
     }
     summary = truth::merge({args.shards.begin(), args.shards.end()}, args.file,
                            args.force ? jobs::Existing::kReplace : jobs::Existing::kRefuse, hooks);
-    given_up = "exactff: interrupted; " + text::printable(args.file) + " is complete, the NumPy file was not written\n";
+    given_up = "exactff: interrupted; " + text::printable(args.file) + " is complete, a NumPy file was not written\n";
     if (!args.further.npy.empty()) truth::write_npy(args.file, args.further.npy, hooks);
+    if (!args.further.npz.empty()) truth::write_npz(args.file, args.further.npz, hooks);
   } catch (const Cancelled&) {
     bar.clear();
     std::cerr << given_up;
@@ -83,7 +84,7 @@ Command add_merge(CLI::App& app) {
       ->type_name("FILE");
   command->add_flag("--force", args->force, "Replace an existing file");
   command->add_option("-o,--output", args->file, "CSV file to write")->required()->type_name("FILE");
-  args->further.add_npy_to(*command);
+  args->further.add_numpy_to(*command);
   command->footer(kMergeFooter);
   return {command, [args] { return run(*args); }};
 }

@@ -40,8 +40,8 @@ constexpr const char* kTruthFooter =
     "--resume continues from there. Scripts can always give --resume; a complete FILE stays as it is.\n"
     "On several machines: run `mpirun -n 4 exactff truth ...` (every process reads the scene and computes; rank 0\n"
     "writes), or start separate jobs with --shard 1/4, 2/4, ... and join their files with `exactff merge`.\n"
-    "--npy, --vtk and --exr make their files from the finished FILE; --resume makes them again, also from a merged "
-    "FILE.\n"
+    "--npy, --npz, --vtk and --exr make their files from the finished FILE; --resume makes them again, also from a\n"
+    "merged FILE.\n"
     "The visible points of another renderer's pixels: --receivers GBUFFER.exr --on auto, with layers for position (in\n"
     "world coordinates) and normal, 32-bit, one sample a pixel. --exr writes the exact values in the same pixels.\n"
     "In a pipe, `-` as SCENE or --receivers is standard input, and -o - is standard output.\n"
@@ -182,10 +182,11 @@ void check_outputs(const TruthArguments& args) {
   const std::vector<std::string> further = args.further.flags();
   if (further.empty()) return;
   if (!args.shard.empty()) {
-    const bool npy = args.further.vtk.empty() && args.further.exr.empty();
+    const bool numpy = args.further.vtk.empty() && args.further.exr.empty();
     throw InputError({.what = text::enumerate(further) + (further.size() == 1 ? " is" : " are") + " given with --shard",
                       .why = "a shard has only a part of the rows",
-                      .suggestion = npy ? "give --npy to exactff merge"
+                      .suggestion = numpy
+                                        ? "give " + text::enumerate(further) + " to exactff merge"
                                         : "after exactff merge, run this command without --shard, with --resume and -o "
                                           "FILE for the merged file"});
   }
@@ -199,6 +200,7 @@ int write_further_files(const TruthArguments& args, const Job& job, jobs::RowHoo
   const InterruptWatch watch(words);
   try {
     if (!args.further.npy.empty()) truth::write_npy(args.file, args.further.npy, hooks);
+    if (!args.further.npz.empty()) truth::write_npz(args.file, args.further.npz, hooks);
     if (!args.further.vtk.empty()) truth::write_vtk(job.request, args.file, args.further.vtk, hooks);
     if (!args.further.exr.empty()) truth::write_exr(*job.frame, args.file, args.further.exr, hooks);
     return 0;
@@ -301,7 +303,7 @@ Command add_truth(CLI::App& app) {
                    "CSV file to write; - writes to standard output, without journal, --resume or shards")
       ->required()
       ->type_name("FILE");
-  args->further.add_npy_to(*command);
+  args->further.add_numpy_to(*command);
   args->further.add_vtk_to(*command);
   args->further.add_exr_to(*command);
   command->footer(kTruthFooter);

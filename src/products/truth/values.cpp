@@ -1,9 +1,6 @@
 // The values of a finished truth file in other formats. They are read from the file itself, so they are the same
 // whether its rows were computed at once, resumed, merged, or computed by several processes.
-#include <algorithm>
 #include <array>
-#include <charconv>
-#include <limits>
 #include <utility>
 
 #include "exactff/exr.h"
@@ -13,130 +10,13 @@
 #include "files/parallel.h"
 #include "jobs/journal.h"
 #include "kernel/float_environment.h"
-#include "text/csv_lines.h"
 #include "text/refuse.h"
+#include "truth/value_reader.h"
 #include "vtk/vtk.h"
 
 namespace exactff::truth {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
-constexpr std::size_t kRowsBetweenChecks = 256;  // whether the user has cancelled
-
-struct Values {
-  double exact = 0.0, lower = 0.0, upper = 0.0;
-  Status status = Status::kCertified;
-  double visible_fraction = 0.0;
-  Rgb radiosity, total;
-
-  // The number, or NaN where it is only an estimate.
-  [[nodiscard]] double certified(double number) const {
-    return status == Status::kNotCertified ? std::numeric_limits<double>::quiet_NaN() : number;
-  }
-};
-
-// Reads the rows of a truth file in order.
-class ValueReader {
- public:
-  explicit ValueReader(const fs::path& file) : lines_(file, "a truth file") {
-    for (std::string_view line; fields_.empty() && lines_.next(line);) {
-      if (!text::is_csv_comment(line) && !text::split_csv_line(line, fields_)) damaged();
-    }
-    const auto column = [&](std::string_view name) {
-      const auto found = std::ranges::find(fields_, name);
-      return found == fields_.end() ? kNoColumn : static_cast<std::size_t>(found - fields_.begin());
-    };
-    source_ = column("source");
-    status_ = column("status");
-    fraction_ = column("visible_fraction");
-    totals_ = {column("total_r"), column("total_g"), column("total_b")};
-    numbers_ = {column("exact"),       column("lower"),       column("upper"),
-                column("radiosity_r"), column("radiosity_g"), column("radiosity_b")};
-    if (source_ == kNoColumn || status_ == kNoColumn || std::ranges::find(numbers_, kNoColumn) != numbers_.end()) {
-      text::refuse(lines_.file(), "is not a truth file", "its values are read by the names of their columns",
-                   "name a file that exactff truth or merge has written");
-    }
-  }
-
-  [[nodiscard]] bool has_fractions() const { return fraction_ != kNoColumn; }
-  [[nodiscard]] bool has_totals() const { return std::ranges::find(totals_, kNoColumn) == totals_.end(); }
-
-  bool next() {
-    const std::size_t columns = columns_ == 0 ? fields_.size() : columns_;
-    columns_ = columns;
-    for (std::string_view line; lines_.next(line);) {
-      if (text::is_csv_comment(line)) continue;
-      if (!text::split_csv_line(line, fields_) || fields_.size() != columns) damaged();
-      return true;
-    }
-    return false;
-  }
-
-  // Of the row last read.
-  [[nodiscard]] const std::string& source() const { return fields_[source_]; }
-  [[nodiscard]] Values values() const {
-    std::array<double, 6> n{};
-    for (std::size_t i = 0; i < n.size(); ++i) n[i] = number(numbers_[i]);
-    const Rgb total = has_totals() ? Rgb{number(totals_[0]), number(totals_[1]), number(totals_[2])} : Rgb{};
-    return {n[0], n[1], n[2], status(), has_fractions() ? number(fraction_) : 0.0, {n[3], n[4], n[5]}, total};
-  }
-
-  [[noreturn]] void damaged() const {
-    throw InputError({.file = lines_.file(),
-                      .line = lines_.number(),
-                      .what = "is not a row of a truth file",
-                      .why = "every row of every source is needed",
-                      .suggestion = "compute the file again with --force"});
-  }
-
- private:
-  [[nodiscard]] double number(std::size_t column) const {
-    const std::string& field = fields_[column];
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (error != std::errc() || end != field.data() + field.size()) damaged();
-    return value;
-  }
-  [[nodiscard]] Status status() const {
-    for (const Status one : {Status::kCertified, Status::kZero, Status::kUnderflow, Status::kNotCertified}) {
-      if (fields_[status_] == to_string(one)) return one;
-    }
-    damaged();
-  }
-
-  text::CsvLines lines_;
-  std::vector<std::string> fields_;
-  std::size_t columns_ = 0, source_ = 0, status_ = 0, fraction_ = 0;
-  std::array<std::size_t, 6> numbers_{};
-  std::array<std::size_t, 3> totals_{};
-};
-
-// The sources of the first receiver: the rows before its first source returns.
-struct Shape {
-  std::size_t rows = 0;
-  std::vector<std::string> sources;
-};
-
-Shape shape_of(const fs::path& file, const jobs::RowHooks& hooks) {
-  ValueReader reader(file);
-  const jobs::RowHooks silent{.cancelled = hooks.cancelled};  // the number of rows is not known yet
-  jobs::Pace pace("reading rows", 0, silent);
-  Shape shape;
-  bool one_receiver = true;
-  for (; reader.next(); ++shape.rows) {
-    one_receiver = one_receiver && (shape.rows == 0 || reader.source() != shape.sources.front());
-    if (one_receiver) shape.sources.push_back(reader.source());
-    if (reader.source() != shape.sources[shape.rows % shape.sources.size()]) reader.damaged();
-    if (shape.rows % kRowsBetweenChecks == 0) pace.add(0);
-  }
-  if (shape.rows == 0 || shape.rows % shape.sources.size() != 0) reader.damaged();
-  return shape;
-}
-
-}  // namespace
 
 void write_npy(const fs::path& truth_file, const fs::path& file, const jobs::RowHooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
@@ -195,14 +75,6 @@ std::vector<vtk::Field> fields_of(const fs::path& truth_file, const Request& req
   return fields;
 }
 
-// The comments at the head of the file.
-std::vector<std::string> about(const fs::path& truth_file) {
-  std::vector<std::string> lines;
-  text::CsvLines file(truth_file, "a truth file");
-  for (std::string_view line; file.next(line) && line.starts_with("# ");) lines.emplace_back(line.substr(2));
-  return lines;
-}
-
 }  // namespace
 
 void write_vtk(const Request& request, const fs::path& truth_file, const fs::path& file, const jobs::RowHooks& hooks) {
@@ -210,7 +82,7 @@ void write_vtk(const Request& request, const fs::path& truth_file, const fs::pat
   const vtk::Content content{.scene = request.scene,
                              .receivers = request.receivers,
                              .fields = fields_of(truth_file, request, hooks),
-                             .about = about(truth_file)};
+                             .about = head_lines(truth_file)};
   vtk::write(content, file, {{}, hooks.cancelled});
 }
 
@@ -233,7 +105,7 @@ void write_exr(const exr::Frame& frame, const fs::path& truth_file, const fs::pa
     if ((row + 1) % kRowsBetweenChecks == 0) pace.add(kRowsBetweenChecks);
   }
   files::WholeFile whole(file);
-  whole.append(values.exr(about(truth_file)));
+  whole.append(values.exr(head_lines(truth_file)));
   whole.commit();
 }
 

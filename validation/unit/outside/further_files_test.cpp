@@ -67,6 +67,9 @@ TEST_F(FurtherFiles, AreNotWrittenWhereTheyCannotBe) {
   expect_refused(truth({"-o", "-", "--npy", path("t.npy")}), "--npy is given with -o -");
   expect_refused(truth({"-o", "-", "--npy", path("t.npy"), "--vtk", path("t.vtp")}), "--npy and --vtk are given");
   expect_refused(truth({"-o", csv, "--npy", path("t.npy"), "--shard", "1/2"}), "give --npy to exactff merge");
+  expect_refused(truth({"-o", csv, "--npz", path("t.npz"), "--shard", "1/2"}), "give --npz to exactff merge");
+  expect_refused(truth({"-o", csv, "--npz", path("t.npz"), "--npy", path("t.npz")}),
+                 "is given for two outputs (--npy and --npz)");
   expect_refused(truth({"-o", csv, "--vtk", path("t.vtp"), "--shard", "1/2"}), "with --resume and -o FILE");
   expect_refused({"compare", "some.study", "-o", path("report"), "--vtk", path("t.vtp")},
                  "--vtk is given with a study");
@@ -91,27 +94,32 @@ TEST_F(FurtherFiles, AreReplacedOnlyWithForceOrResume) {
 TEST_F(FurtherFiles, HaveTheSameBytesForAnyThreadsAndAreMadeAgainByResume) {
   const auto words = [&](const std::string& name, const Words& more) {
     Words all = truth({"--source", "light,back", "-o", path(name + ".csv"), "--npy", path(name + ".npy"), "--vtk",
-                       path(name + ".vtu")});
+                       path(name + ".vtu"), "--npz", path(name + ".npz")});
     all.insert(all.end(), more.begin(), more.end());
     return all;
   };
   ASSERT_EQ(run(words("a", {"--threads", "1"})), 0);
   ASSERT_EQ(run(words("b", {"--threads", "3"})), 0);
   fs::remove(path("b.vtu"));
+  fs::remove(path("b.npz"));
   std::ofstream(path("b.npy")) << "half";
   ASSERT_EQ(run(words("b", {"--resume"})), 0);
-  for (const char* name : {".csv", ".npy", ".vtu", "_scene.vtu"}) {
+  for (const char* name : {".csv", ".npy", ".npz", ".vtu", "_scene.vtu"}) {
     EXPECT_EQ(text_of(path(std::string("a") + name)), text_of(path(std::string("b") + name))) << name;
   }
   EXPECT_EQ(doubles("a.npy").size(), 72U);
 }
 
 TEST_F(FurtherFiles, OfMergedShardsAreThoseOfOneRun) {
-  ASSERT_EQ(run(truth({"--source", "light,back", "-o", path("a.csv"), "--npy", path("a.npy")}, "12x12")), 0);
+  ASSERT_EQ(run(truth({"--source", "light,back", "-o", path("a.csv"), "--npy", path("a.npy"), "--npz", path("a.npz")},
+                      "12x12")),
+            0);
   for (const char* k : {"1", "2"}) {
     ASSERT_EQ(run(truth({"--source", "light,back", "-o", path(k), "--shard", std::string(k) + "/2"}, "12x12")), 0);
   }
-  ASSERT_EQ(run({"merge", path("2"), path("1"), "-o", path("b.csv"), "--npy", path("b.npy")}), 0);
+  ASSERT_EQ(run({"merge", path("2"), path("1"), "-o", path("b.csv"), "--npy", path("b.npy"), "--npz", path("b.npz")}),
+            0);
+  EXPECT_EQ(text_of(path("a.npz")), text_of(path("b.npz")));
   EXPECT_EQ(text_of(path("a.npy")), text_of(path("b.npy")));
   EXPECT_EQ(run({"merge", path("2"), path("1"), "-o", path("c.csv"), "--npy", path("b.npy")}), 2);
   EXPECT_FALSE(fs::exists(path("c.csv")));
@@ -121,7 +129,8 @@ TEST_F(FurtherFiles, AreWholeOrAbsentWhateverMomentASignalComes) {
   for (int milliseconds = 5; milliseconds < 400; milliseconds *= 2) {
     const validation::RunningProgram running(
         EXACTFF_PROGRAM,
-        truth({"-o", path("t.csv"), "--npy", path("t.npy"), "--vtk", path("t.vtp"), "--resume"}, "60x60"),
+        truth({"-o", path("t.csv"), "--npz", path("t.npz"), "--npy", path("t.npy"), "--vtk", path("t.vtp"), "--resume"},
+              "60x60"),
         path("stderr"));
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
     running.send(SIGINT);
@@ -156,8 +165,18 @@ TEST_F(FurtherFiles, AreRefusedForFilesThatHoldOtherRows) {
                            "a,s,0,0,0,0,0,0\n", "a,s,x,0,0,0,0,0,zero\n", "a,s,0,0,0,0,0,0,zer\n", ""}) {
     const fs::path file = directory_.write("t.csv", head + rows);
     EXPECT_THROW(truth::write_npy(file, path("t.npy")), InputError) << rows;
+    EXPECT_THROW(truth::write_npz(file, path("t.npy")), InputError) << rows;
     EXPECT_FALSE(fs::exists(path("t.npy"))) << rows;
   }
+}
+
+TEST_F(FurtherFiles, HoldReceiversInOneFileOnlyIfThereAreSome) {
+  const std::string head = "receiver,source,exact,lower,upper,radiosity_r,radiosity_g,radiosity_b,status";
+  const fs::path without = directory_.write("t.csv", head + "\na,s,0,0,0,0,0,0,zero\n");
+  EXPECT_THROW(truth::write_npz(without, path("t.npz")), InputError);
+  const fs::path zero = directory_.write("z.csv", head + ",x,y,z,nx,ny,nz,on\na,s,0,0,0,0,0,0,zero,1,2,3,0,0,0,\n");
+  EXPECT_THROW(truth::write_npz(zero, path("t.npz")), InputError);
+  EXPECT_FALSE(fs::exists(path("t.npz")));
 }
 
 }  // namespace
