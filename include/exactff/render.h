@@ -198,6 +198,9 @@ struct Errors {
 };
 inline constexpr double kWrong = 0.1;
 [[nodiscard]] Errors errors_of(const Picture& judged, const Picture& truth);
+// The picture of another program, an OpenEXR file or a NumPy array of shape (height, width, 3), its rows from the top.
+// It does not say what its pixels show: `shows` is kFace for all. Throws InputError.
+[[nodiscard]] Picture read_picture(const std::filesystem::path& file);
 // judged - truth, channel by channel.
 [[nodiscard]] Picture difference(const Picture& judged, const Picture& truth);
 

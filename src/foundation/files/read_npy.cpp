@@ -6,8 +6,10 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "files/npy_file.h"
 #include "text/refuse.h"
@@ -118,6 +120,14 @@ class NpyReader {
 }  // namespace
 
 bool is_npy(std::string_view bytes) { return bytes.starts_with(kMagicNumber); }
+
+bool is_npy_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  std::array<char, kMagicNumber.size()> bytes{};
+  std::ifstream in(path, std::ios::binary);
+  return in.read(bytes.data(), bytes.size()) && is_npy({bytes.data(), bytes.size()});
+}
 
 NpyArray read_npy(const std::filesystem::path& path) { return NpyReader(path).read(); }
 

@@ -14,6 +14,8 @@ struct NpyArray {
 };
 
 [[nodiscard]] bool is_npy(std::string_view bytes);
+// The same of a file. False if it cannot be read.
+[[nodiscard]] bool is_npy_file(const std::filesystem::path& path);
 
 // Of float64 or float32, either byte order, in C or Fortran order. Throws InputError, with what to do, for a file that
 // cannot be read, holds other elements, or is not as long as its shape says.

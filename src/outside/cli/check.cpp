@@ -26,9 +26,9 @@
 #include "cli/command.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
-#include "exactff/exr.h"
 #include "exactff/matrix.h"
 #include "exactff/render.h"
+#include "exr/other_image.h"
 #include "files/file.h"
 #include "text/csv_lines.h"
 #include "text/escape.h"
@@ -52,8 +52,10 @@ constexpr const char* kCheckFooter =
     "by more than --slack and by more than 4 units in the last place. A program that draws new random numbers in\n"
     "every run needs a slack such as 0.2, or a fixed seed.\n"
     "With --baseline, --write-baseline writes the file only if nothing got worse.\n"
-    "Two EXR images are compared pixel by pixel, in each channel: pixels are receivers, channels are sources. A pixel\n"
-    "of the truth that is not a finite number does not count. --error-image shows where the errors are.\n"
+    "Tables may have commas, or semicolons as spreadsheets write them, then also with decimal commas.\n"
+    "Two images, .exr or .npy arrays (height, width, 3), are compared pixel by pixel, in each channel: pixels are\n"
+    "receivers, channels are sources. A pixel of the truth that is not a finite number does not count. --error-image\n"
+    "shows where the errors are.\n"
     "A file of `exactff matrix -o` is compared entry by entry with another program's matrix: CSV with from,to,value, "
     "a\n"
     "table with names, View3D's output, or numbers only or .npy in the same order. Rows are receivers, columns are\n"
@@ -84,7 +86,7 @@ struct CheckArguments {
   std::string relative_mse;
   bool github = false;
 
-  [[nodiscard]] bool are_images() const { return exr::is_exr(truth) && exr::is_exr(candidate); }
+  [[nodiscard]] bool are_images() const { return exr::is_image(truth) && exr::is_image(candidate); }
 };
 
 double to_limit(const std::string& text, const std::string& flag) {
@@ -187,7 +189,7 @@ void check_error_image(const std::string& file, bool are_images) {
   static_cast<void>(render::image_kind(file));
   if (are_images) return;
   text::refuse("--error-image is given, but the files are tables", "only images have pixels to show",
-               "compare two .exr files, or use --plot");
+               "compare two images, or use --plot");
 }
 
 void require_comparable_matrices(const CheckArguments& args) {
@@ -206,11 +208,12 @@ bool require_there(const std::string& file) {
 // Two images, or neither.
 void require_comparable(const CheckArguments& args) {
   both([&] { return require_there(args.truth); }, [&] { return require_there(args.candidate); });
-  const bool truth = exr::is_exr(args.truth), candidate = exr::is_exr(args.candidate);
+  const bool truth = exr::is_image(args.truth), candidate = exr::is_image(args.candidate);
   check_error_image(args.error_image, truth && candidate);
   if (truth != candidate) {
-    text::refuse(truth ? args.candidate : args.truth, "is no OpenEXR file, and the file to compare it with is one",
-                 "images are compared with images", "give two .exr files, or two tables");
+    text::refuse(truth ? args.candidate : args.truth, "is no image, and the file to compare it with is one",
+                 "images are OpenEXR files and NumPy arrays of shape (height, width, 3)",
+                 "give two images, or two tables");
   }
   if (!truth) return;
   if (!args.columns.receiver.empty() || !args.columns.source.empty()) {
@@ -412,11 +415,11 @@ Command add_check(CLI::App& app) {
   command
       ->add_option(
           "TRUTH", args->truth,
-          "File written by `exactff truth` or `exactff matrix -o`, or exact.csv of `exactff compare`; or an EXR "
-          "image")
+          "File written by `exactff truth` or `exactff matrix -o`, or exact.csv of `exactff compare`; or an image, "
+          ".exr or .npy")
       ->required()
       ->type_name("FILE");
-  command->add_option("CANDIDATE", args->candidate, "CSV file of the values to judge; or an EXR image, or a matrix")
+  command->add_option("CANDIDATE", args->candidate, "CSV file of the values to judge; or an image, or a matrix")
       ->required()
       ->type_name("FILE");
   add_matching(*command, *args);

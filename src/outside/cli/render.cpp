@@ -19,6 +19,7 @@
 #include "flags/sources.h"
 #include "render/identity.h"
 #include "text/escape.h"
+#include "text/nearest_names.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -38,14 +39,18 @@ constexpr const char* kRenderFooter =
     "regions\n"
     "that are wrong by over 10 % are outlined. --strip shows the picture, that of the method and the errors beside "
     "each\n"
-    "other. A METHOD is a name with settings, as for `exactff compare`: adaptive:eps_B=0.01,rays=16.\n"
+    "other. A METHOD is a name with settings, as for `exactff compare`: adaptive:eps_B=0.01,rays=16. --against also "
+    "takes\n"
+    "the picture of another program, of the same camera, size and --quantity: a .npy array (height, width, 3) or "
+    ".exr.\n"
     "Until IMAGE is complete, finished tiles are kept in IMAGE.part. After an interruption, the same command with\n"
     "--resume continues from there. The numbers do not depend on threads or interruptions.\n"
     "Exit codes: 0 done, 2 bad input, 3 done but some pixels are not certified, 128 + signal when interrupted.\n"
     "\n"
     "Examples:\n"
     "  exactff render data/scenes/cornell_box.obj --eye 278 273 -800 --look 278 273 0 --fov 39.3 -o cornell.png\n"
-    "  exactff render data/scenes/blinds_room.obj --against hemicube --strip -o blinds.png";
+    "  exactff render data/scenes/blinds_room.obj --against hemicube --strip -o blinds.png\n"
+    "  exactff render data/scenes/blinds_room.obj --size 256x256 --against mine.npy -o errors.png";
 
 using ThreeNumbers = std::vector<std::string>;
 
@@ -139,6 +144,26 @@ std::optional<methods::Choice> method_named(const std::string& text) {
   return methods::parse(text);
 }
 
+// What --against names: a method, or a picture of the same size.
+struct Opponent {
+  std::optional<methods::Choice> method = {};
+  std::optional<render::Picture> picture = {};
+};
+
+Opponent opponent_named(const std::string& text, const render::Size& size) {
+  const std::string extension = text::in_lower_case(std::filesystem::path(text).extension().string());
+  if (extension != ".npy" && extension != ".exr") return {.method = method_named(text)};
+  render::Picture picture = render::read_picture(text);
+  const auto words = [](const render::Size& one) {
+    return std::to_string(one.width) + 'x' + std::to_string(one.height);
+  };
+  if (words(picture.size) != words(size)) {
+    text::refuse(std::filesystem::path(text), "has " + words(picture.size) + " pixels, and the picture " + words(size),
+                 "each pixel is compared with one of the same place", "give --size " + words(picture.size));
+  }
+  return {.picture = std::move(picture)};
+}
+
 render::Request request_of(const RenderArguments& args, const Scene& scene, std::optional<methods::Choice> method) {
   render::Request request{.scene = &scene};
   request.scene_name = args.scene.from_standard_input() ? std::string(flags::kStandardInput)
@@ -207,28 +232,32 @@ class Kept {
   std::size_t before_ = 0;
 };
 
-Rendered render_pictures(const render::Request& request, const std::optional<methods::Choice>& against,
-                         const Hooks& hooks, jobs::Journal* journal) {
-  Rendered result{.picture = render::render(request, hooks, journal)};
-  if (!against) return result;
-  render::Request judged = request;
-  judged.method = against;
-  judged.bounds = render::Bounds::kNone;
-  result.judged = render::render(judged, hooks, journal);
-  result.judged_name = against->text();
+Rendered render_pictures(const render::Request& request, const Opponent& against, const Hooks& hooks,
+                         jobs::Journal* journal) {
+  Rendered result{.picture = render::render(request, hooks, journal), .judged = against.picture};
+  if (against.method) {
+    render::Request judged = request;
+    judged.method = against.method;
+    judged.bounds = render::Bounds::kNone;
+    result.judged = render::render(judged, hooks, journal);
+  }
+  if (!result.judged) return result;
+  result.judged->shows = result.picture.shows;
+  result.judged_name = against.method ? against.method->text() : result.judged->metadata.front().second;
   result.errors = render::errors_of(*result.judged, result.picture);
   return result;
 }
 
 int run(const RenderArguments& args) {
   check_arguments(args);
-  const auto method = method_named(args.method), against = method_named(args.against);
+  const auto method = method_named(args.method);
+  const Opponent against = opponent_named(args.against, size_of(args.size));
   const Scene scene = with_progress([&] { return args.scene.load(); });
   print_warnings(scene.warnings());
   const render::Request request = with_progress([&] { return request_of(args, scene, method); });
   const std::string note = flags::note_on_sources_without_emission(scene, request.sources);
   if (!note.empty()) std::cerr << "note: " << text::printable(note) << '\n';
-  Kept kept(args, render::identity_of(request, against));
+  Kept kept(args, render::identity_of(request, against.method));
   const InterruptWatch watch("exactff: interrupted; " + kept.words());
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
@@ -288,7 +317,8 @@ void add_value_flags(CLI::App& app, RenderArguments& args) {
       ->check(CLI::IsMember({"radiosity", "radiance"}))
       ->capture_default_str();
   app.add_option("--method", args.method, "Render by this method instead of exactly")->type_name("METHOD");
-  app.add_option("--against", args.against, "Show and print the errors of this method")->type_name("METHOD");
+  app.add_option("--against", args.against, "Show and print the errors of this method, or of this picture")
+      ->type_name("METHOD|FILE");
   app.add_flag("--strip", args.strip, "With --against: the picture, that of the method and the errors side by side");
   app.add_flag("--times", args.times, "With --strip: add processor times, which differ from run to run");
 }

@@ -38,6 +38,9 @@ void write_array(const std::string& file, const std::vector<std::size_t>& shape,
 
 std::string took(const render::Picture& picture) { return text::duration(picture.seconds); }
 
+// Not read from a file.
+bool is_computed(const render::Picture& picture) { return picture.seconds > 0.0; }
+
 std::string error_words(const render::Errors& errors) {
   return "RMS " + text::short_number(errors.rms) + ", 99th percentile " + text::short_number(errors.p99) + ", worst " +
          text::short_number(errors.worst);
@@ -57,7 +60,7 @@ std::string name_of_picture(const render::Picture& picture) {
 render::Colours strip_of(const RenderFiles& files, const Rendered& rendered, double exposure) {
   const double scale = render::colour_scale(*rendered.errors);
   const auto caption = [&](const std::string& name, const render::Picture& picture) {
-    return files.times ? std::vector{name, took(picture)} : std::vector{name};
+    return files.times && is_computed(picture) ? std::vector{name, took(picture)} : std::vector{name};
   };
   using Panel = std::pair<render::Colours, std::vector<std::string>>;
   const std::array<Panel, 3> panels = {
@@ -134,7 +137,8 @@ void print_rendered(const render::Request& request, const Rendered& rendered, co
   const render::Picture& picture = rendered.picture;
   std::cout << picture.size.width << " x " << picture.size.height << " pixels: " << words_of_pixels(picture) << '\n';
   std::cout << "computed in " << took(picture) << " of processor time";
-  if (rendered.judged) std::cout << ", " << text::printable(rendered.judged_name) << " in " << took(*rendered.judged);
+  if (rendered.judged && is_computed(*rendered.judged))
+    std::cout << ", " << text::printable(rendered.judged_name) << " in " << took(*rendered.judged);
   std::cout << '\n';
   if (tell_camera) std::cout << "camera: " << render::flags_of(request.view) << '\n';
   if (rendered.errors) {

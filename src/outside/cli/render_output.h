@@ -11,7 +11,7 @@ namespace exactff::cli {
 
 struct Rendered {
   render::Picture picture = {};
-  std::optional<render::Picture> judged = {};  // by the method of --against
+  std::optional<render::Picture> judged = {};  // by the method of --against, or its file
   std::string judged_name = {};
   std::optional<render::Errors> errors = {};
 };

@@ -19,7 +19,7 @@ std::string exr_of_errors(const Images& images) {
     exr::Numbers& channel = image.channels.emplace_back();
     channel.name = images.truth.sources[c];
     for (std::size_t i = c; i < images.exact.size(); i += images.channels) {
-      channel.bits.push_back(std::bit_cast<std::uint32_t>(images.theirs[i] - images.exact[i]));
+      channel.bits.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(images.theirs[i] - images.exact[i])));
     }
   }
   return exr::exr_of(image);

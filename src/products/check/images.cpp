@@ -1,9 +1,10 @@
 #include "check/images.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "exr/other_image.h"
 #include "kernel/float_environment.h"
 #include "kernel/poll.h"
 #include "text/nearest_names.h"
@@ -15,31 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of the layer that is named. If none is: the plain channels R, G, B, or those of the only layer that has them.
-std::vector<exr::Channel> channels_of(const exr::ExrFile& file, const std::string& layer, const std::string& flag) {
-  if (!layer.empty()) return file.find(layer, flag);
-  std::vector<std::string> with_colours;
-  for (const exr::Layer& one : file.layers()) {
-    const std::string prefix = one.name.empty() ? "" : one.name + '.';
-    const bool has_all = std::ranges::all_of(std::string("RGB"), [&](char letter) {
-      return std::ranges::find(file.channels(), prefix + letter, &exr::Channel::name) != file.channels().end();
-    });
-    if (has_all) with_colours.push_back(one.name);
-  }
-  const bool has_plain = std::ranges::find(with_colours, "") != with_colours.end();
-  return file.find(has_plain || with_colours.size() != 1 ? "" : with_colours.front(), flag);
-}
-
-std::string short_name(const exr::Channel& channel) {
-  const std::size_t dot = channel.name.rfind('.');
-  return dot == std::string::npos ? channel.name : channel.name.substr(dot + 1);
-}
-
-std::string names_of(const std::vector<exr::Channel>& channels) {
-  std::vector<std::string> names;
-  for (const exr::Channel& one : channels) names.push_back(one.name);
-  return text::joined(names);
-}
+std::string short_name(const std::string& channel) { return channel.substr(channel.rfind('.') + 1); }
 
 // Where a pixel of one window is in another.
 std::optional<std::size_t> place_in(const exr::Window& window, const exr::Window& of, std::size_t index) {
@@ -58,41 +35,40 @@ std::string words_of(const exr::Window& window) {
 class ImageReader {
  public:
   ImageReader(const fs::path& truth, const fs::path& candidate, const ImageLayers& layers)
-      : truth_file_(truth), candidate_file_(candidate) {
-    truth_channels_ = channels_of(truth_file_, layers.truth, "--truth-column");
-    candidate_channels_ = channels_of(candidate_file_, layers.candidate, "--value-column");
-    if (truth_channels_.size() != candidate_channels_.size()) {
-      text::refuse(candidate,
-                   "'" + names_of(candidate_channels_) + "' is compared with '" + names_of(truth_channels_) + "'",
-                   "each channel is compared with one of the truth", "name a layer for both, or one channel for both");
+      : truth_(exr::read_image(truth, layers.truth, "--truth-column")),
+        candidate_(exr::read_image(candidate, layers.candidate, "--value-column")) {
+    if (truth_.channels.size() != candidate_.channels.size()) {
+      text::refuse(
+          candidate,
+          "'" + text::joined(candidate_.channels) + "' is compared with '" + text::joined(truth_.channels) + "'",
+          "each channel is compared with one of the truth", "name a layer for both, or one channel for both");
     }
-    images_.window = truth_file_.data_window(truth_channels_.front());
-    theirs_ = candidate_file_.data_window(candidate_channels_.front());
-    images_.channels = truth_channels_.size();
-    images_.candidate_file = candidate_file_.file();
-    images_.truth.file = truth_file_.file();
-    images_.truth.column = names_of(truth_channels_);
+    place_like(candidate_, truth_);
+    place_like(truth_, candidate_);
+    images_.window = truth_.data;
+    images_.channels = truth_.channels.size();
+    images_.candidate_file = candidate_.file;
+    images_.truth.file = truth_.file;
+    images_.truth.column = text::joined(truth_.channels);
     images_.truth.is_image = true;
     images_.truth.faces = {""};
-    for (const exr::Channel& one : truth_channels_) images_.truth.sources.push_back(short_name(one));
+    for (const std::string& one : truth_.channels) images_.truth.sources.push_back(short_name(one));
   }
 
   Images read(bool partial) {
-    truth_ = truth_file_.read(truth_channels_);
-    candidate_ = candidate_file_.read(candidate_channels_);
     kernel::Steps steps("pixels", images_.window.pixels());
     for (std::size_t i = 0; i < images_.window.pixels(); ++i) {
       steps.take();
       add_pixel(i);
     }
     if (images_.truth.rows.empty()) {
-      text::refuse(fs::path(truth_file_.file()), "no pixel has a value in " + images_.truth.column,
+      text::refuse(fs::path(truth_.file), "no pixel has a value in " + images_.truth.column,
                    "there is nothing to compare with", "give an image with numbers that are finite");
     }
     if (missing_ > 0 && !partial) {
-      text::refuse(fs::path(candidate_file_.file()),
+      text::refuse(fs::path(candidate_.file),
                    text::counted(missing_, "pixel") + " of the truth " + (missing_ == 1 ? "is" : "are") + " missing",
-                   "it has " + words_of(theirs_) + ", the truth " + words_of(images_.window),
+                   "it has " + words_of(candidate_.data) + ", the truth " + words_of(images_.window),
                    "render the same window, or compare the pixels that there are with --partial");
     }
     return std::move(images_);
@@ -101,14 +77,15 @@ class ImageReader {
  private:
   // A truth that is not finite stands for no value.
   void add_pixel(std::size_t i) {
-    const std::optional<std::size_t> there = place_in(theirs_, images_.window, i);
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    const std::optional<std::size_t> there = place_in(candidate_.data, images_.window, i);
     bool is_missing = false;
     for (std::size_t c = 0; c < images_.channels; ++c) {
-      const float exact = truth_[c][i];
+      const double exact = truth_.values[c][i];
       const bool counts = std::isfinite(exact);
       is_missing = is_missing || (counts && !there);
-      const float theirs = there ? candidate_[c][*there] : std::numeric_limits<float>::quiet_NaN();
-      images_.exact.push_back(counts ? exact : std::numeric_limits<float>::quiet_NaN());
+      const double theirs = there ? candidate_.values[c][*there] : kNaN;
+      images_.exact.push_back(counts ? exact : kNaN);
       images_.theirs.push_back(theirs);
       if (!counts) continue;
       const auto row = static_cast<std::uint32_t>(images_.truth.rows.size());
@@ -121,10 +98,7 @@ class ImageReader {
     if (is_missing) ++missing_;
   }
 
-  exr::ExrFile truth_file_, candidate_file_;
-  std::vector<exr::Channel> truth_channels_, candidate_channels_;
-  exr::Window theirs_;
-  std::vector<std::vector<float>> truth_, candidate_;
+  exr::OtherImage truth_, candidate_;
   std::size_t missing_ = 0;
   Images images_;
 };

@@ -17,14 +17,15 @@ struct ImageLayers {
   std::string candidate = {};
 };
 
-// Two OpenEXR images, pixel by pixel. Pixels are matched by their coordinates.
+// Two images, each an OpenEXR file or a NumPy array, pixel by pixel. Pixels are matched by their coordinates; an array
+// has the place of the other image.
 struct Images {
   Truth truth;                   // a row for each pixel and channel whose true value is finite
   std::vector<Measured> values;  // in its order
   std::string candidate_file;
-  exr::Window window;                // of the truth
-  std::size_t channels = 3;          // 1 or 3
-  std::vector<float> exact, theirs;  // `channels` for each pixel of the window; NaN where there is none
+  exr::Window window;                 // of the truth
+  std::size_t channels = 3;           // 1 or 3
+  std::vector<double> exact, theirs;  // `channels` for each pixel of the window; NaN where there is none
 };
 // Throws InputError if a file cannot be read, if channels are missing, or if the candidate lacks a pixel that the truth
 // has, unless `partial`; throws Cancelled.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exactff/check.h"
+#include "files/npy_file.h"
 #include "support/program.h"
 #include "text/phrases.h"
 
@@ -249,6 +250,28 @@ TEST(CheckOfATruthFile, CatchesAThousandthAndForgivesABillionth) {
     EXPECT_EQ(run.exit_code, bug == 1e-3 ? 1 : 0) << run.output;
     EXPECT_HOLDS(run.output, "1 r3c2 light ");
   }
+}
+
+TEST_F(CheckCommand, TakesASpreadsheetsSemicolons) {
+  const std::string file =
+      directory_.write("mine.csv", "receiver;source;value\na;s;0,5\na;t;0,25\nb;s;0,125\nb;t;0,26\nc;s;0\nc;t;0,25\n")
+          .string();
+  const ProgramRun run = check(file, {"--max-abs", "0.011"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_HOLDS(run.output, "1 b t 0.25 0.26 0.01 0.04 5");
+}
+
+TEST_F(CheckCommand, TakesImagesOfNumPyAndNoTableBesideThem) {
+  const std::string mine = path("mine.npy");
+  const std::vector<std::size_t> shape{1, 2, 3};
+  files::write_npy<double>(mine, shape, std::vector<double>{1, 1, 1, 2, 2, 2});
+  files::write_npy<double>(path("truth.npy"), shape, std::vector<double>{1, 1, 1, 2, 2, 2.5});
+  const ProgramRun run = run_program(
+      EXACTFF_PROGRAM, {"check", path("truth.npy"), mine, "--max-abs", "0.4", "--error-image", path("e.png")});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_HOLDS(run.output, "1 x1y0 B 2.5 2 -0.5 0.2");
+  EXPECT_TRUE(contents(path("e.png")).starts_with("\x89PNG"));
+  EXPECT_EQ(check(mine, {}).exit_code, 2);
 }
 
 TEST_F(CheckCommand, ShowsAnExample) {

@@ -1,10 +1,14 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <thread>
+#include <vector>
 
+#include "files/npy_file.h"
+#include "files/read_npy.h"
 #include "support/program.h"
 
 namespace exactff {
@@ -74,6 +78,29 @@ TEST_F(RenderCommand, ComparesMethods) {
   EXPECT_NE(text_of(path("e.exr")).find("minus exact"), std::string::npos);
 }
 
+// The exact picture itself as that of another program; with one wrong pixel.
+TEST_F(RenderCommand, JudgesThePictureOfAnotherProgram) {
+  ASSERT_EQ(render({"-o", path("a.exr"), "--double", path("a.npy"), "--size", "9x7"}).code, 0);
+  std::vector<double> numbers = files::read_npy(path("a.npy")).values;
+  const auto judged = [&](const std::string& file, const std::string& result) {
+    const auto run = validation::run_program(EXACTFF_PROGRAM, words({"-o", path(result), "--against", path(file)}));
+    EXPECT_EQ(run.exit_code, 0);
+    return run.output;
+  };
+  const std::string same = judged("a.npy", "e.exr");
+  EXPECT_NE(same.find("errors: RMS 0, 99th percentile 0, worst 0;"), std::string::npos) << same;
+  EXPECT_EQ(same.find("a.npy in "), std::string::npos) << same;  // nothing was computed
+  EXPECT_NE(text_of(path("e.exr")).find("a.npy"), std::string::npos);
+  EXPECT_NE(judged("a.exr", "e.png").find("0 % of pixels wrong"), std::string::npos);
+  const std::size_t lit = static_cast<std::size_t>(
+      std::ranges::find_if(numbers, [](double number) { return number > 0.0; }) - numbers.begin());
+  numbers[lit] += 1.0;
+  const std::vector<std::size_t> shape{7, 9, 3};
+  files::write_npy<double>(path("b.npy"), shape, numbers);
+  EXPECT_NE(judged("b.npy", "e.png").find("worst 1;"), std::string::npos);
+  EXPECT_EQ(render({"-o", path("s.png"), "--against", path("b.npy"), "--strip", "--times"}).code, 0);
+}
+
 TEST_F(RenderCommand, BadInputIsRefusedWithWords) {
   const auto refused = [&](const Words& more, const std::string& fragment) {
     const Ended ended = render(more);
@@ -103,6 +130,13 @@ TEST_F(RenderCommand, BadInputIsRefusedWithWords) {
   refused({"-o", path("x.exr"), "--layers", "--spp", "2"}, "several points");
   refused({"-o", image, "--method", "nothing"}, "nothing");
   refused({"-o", image, "--source", "floor", "--source", "floor"}, "named twice");
+  refused({"-o", image, "--against", path("none.npy")}, "none.npy");
+  const std::vector<std::size_t> shape{4, 5, 3};
+  files::write_npy<double>(path("a.npy"), shape, std::vector<double>(60));
+  refused({"-o", image, "--against", path("a.npy")},
+          "a.npy: has 5x4 pixels, and the picture 9x7 (each pixel is compared with one of the same place); give --size "
+          "5x4");
+  fs::remove(path("a.npy"));
   EXPECT_EQ(files(), 1U);  // the file of errors
 }
 

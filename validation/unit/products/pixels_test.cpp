@@ -15,7 +15,10 @@
 #include "exactff/exr.h"
 #include "exactff/scene_files.h"
 #include "exactff/truth.h"
+#include "files/npy_file.h"
 #include "generate/plain_scene.h"
+#include "support/complaint.h"
+#include "support/holds.h"
 #include "support/program.h"
 #include "support/random_scenes.h"
 
@@ -446,12 +449,50 @@ TEST(CheckImages, MatchesPixelsByTheirCoordinates) {
   EXPECT_EQ(check::read_images(truth, smaller, {}, true).values.size(), 3U);
   EXPECT_EQ(check::read_images(truth, theirs, {"G", "R"}).truth.sources, std::vector<std::string>{"G"});
   EXPECT_THROW((void)check::read_images(truth, theirs, {"G", ""}), InputError);
+  EXPECT_TRUE(std::isnan(images.exact[6]));
   check::Truth table;
   table.sources = table.faces = {""};
   table.rows.emplace_back();
   const std::vector<check::Measured> values = {{0, 0, 0.0}};
   EXPECT_NO_THROW((void)check::judge(table, values, {.rms = 1.0}));
   EXPECT_THROW((void)check::judge(table, values, {.relative_mse = 1.0}), InputError);
+}
+
+// An array has no place of its own: it takes that of the other image. Doubles are compared as doubles.
+TEST(CheckImages, TakesArraysOfNumPy) {
+  const TemporaryDirectory directory;
+  const auto array = [&](const std::string& name, const std::vector<std::size_t>& shape,
+                         const std::vector<double>& values) {
+    files::write_npy<double>(directory.path() / name, shape, values);
+    return directory.path() / name;
+  };
+  Image image{{1, 1, 2, 1}, {0, 0, 3, 3}, {}, {}};
+  for (const char* channel : {"R", "G", "B"}) add_channel(image, channel, {1, 2});
+  const auto exr = directory.path() / "t.exr";
+  std::ofstream(exr, std::ios::binary) << exr::exr_of(image);
+  const double above = 1 + 0x1p-40;
+  const auto data = array("d.npy", {1, 2, 3}, {1, 1, above, 2, 2, 2});
+  const check::Images of_data = check::read_images(exr, data);
+  EXPECT_EQ(check::judge(of_data.truth, of_data.values, {}).overall.absolute.max, 0x1p-40);
+  std::vector<double> whole(27, 9.0);
+  std::fill_n(whole.begin() + 3 * 4, 3, 1.0);  // x1y1
+  std::fill_n(whole.begin() + 3 * 5, 3, 2.0);
+  const auto display = array("w.npy", {3, 3, 3}, whole);
+  for (const check::Images& images : {check::read_images(exr, display), check::read_images(data, exr)}) {
+    EXPECT_EQ(images.window, (Window{1, 1, 2, 1}));
+    EXPECT_EQ(images.truth.sources, (std::vector<std::string>{"R", "G", "B"}));
+    EXPECT_LE(check::judge(images.truth, images.values, {}).overall.absolute.max, 0x1p-40);
+  }
+  EXPECT_EQ(check::read_images(data, data).truth.rows[3].receiver, "x1y0");
+  const auto refusal = [&](const std::filesystem::path& candidate, const check::ImageLayers& layers = {}) {
+    return validation::complaint([&] { (void)check::read_images(exr, candidate, layers); });
+  };
+  EXPECT_TRUE(
+      validation::holds(refusal(array("a.npy", {1, 2, 4}, std::vector<double>(8))),
+                        "a.npy: is a NumPy array of the shape (1, 2, 4) (an image has the shape (height, width, "
+                        "3), its rows from the top); save array[:, :, :3]"));
+  EXPECT_TRUE(validation::holds(refusal(array("f.npy", {6}, std::vector<double>(6))), "of the shape (6) ("));
+  EXPECT_TRUE(validation::holds(refusal(data, {"", "R"}), "--value-column names a layer"));
 }
 
 }  // namespace
