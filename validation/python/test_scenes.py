@@ -156,6 +156,33 @@ def test_receivers_of_every_kind(tmp_path):
     assert read.ids == ["a"] and read.on.tolist() == [[scene.faces_of("floor")[0]]] and "r.csv" in repr(read)
 
 
+def test_receivers_on_every_patch_are_those_of_the_program(tmp_path):
+    """All have different ids, and the truth file has the program's bytes."""
+    scene = exactff.Scene.read(CORNELL)
+    for number, (more, flags) in enumerate([(dict(grid=(2, 3)), ["--grid", "2x3"]),
+                                            (dict(centres=True, per_face=True), ["--centres", "--per-face"]),
+                                            (dict(samples=7, seed=2), ["--samples", 7, "--sample-seed", 2])]):
+        at = scene.receivers("all", **more)
+        assert len(set(at.ids)) == len(at) and "all, " in repr(at)
+        ours, theirs = tmp_path / f"{number}.csv", tmp_path / f"{number}.program.csv"
+        exactff.truth(scene, at, ours, "light")
+        program("truth", CORNELL, "--on", "all", *flags, "--source", "light", "-o", theirs)
+        assert ours.read_bytes() == theirs.read_bytes()
+    named = build([[0, 1, 2, 3], [4, 5, 6, 7]], patch=["all", "other"])
+    assert len(named.receivers("all", grid=1)) == 1 and len(named.receivers(["all", "other"], grid=1)) == 2
+
+
+@pytest.mark.parametrize("arguments, words", [
+    (dict(on=["floor", "floor"], grid=2), "is named twice"), (dict(on="flor", grid=2), "floor"),
+    (dict(on="floor", grid=(2.5, 2)), "so many columns and rows"), (dict(on="floor", grid=(1, 2, 3)), "columns and rows"),
+    (dict(on="floor", vertices=True, per_face=True), "--per-face"), (dict(on=[], grid=2), "on names no patch"),
+    (dict(on=[3], grid=2), "patches and faces have names"),
+])
+def test_receivers_that_cannot_be_made(arguments, words):
+    with pytest.raises(exactff.InputError, match=words):
+        exactff.Scene.read(CORNELL).receivers(**arguments)
+
+
 def test_names_beyond_ascii():
     scene = build([[0, 1, 2, 3], [4, 5, 6, 7]], patch=["Lämpchen", "床"])
     assert scene.names == ("Lämpchen", "床")

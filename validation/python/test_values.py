@@ -33,7 +33,7 @@ def test_values_are_those_of_a_truth_file(tmp_path, scene, on, grid, sources):
     assert found.value.dtype == np.float64 and found.value.shape == (len(receivers), count)
     assert same_bits(receivers.points[:, 0], [float(row["x"]) for row in rows[::count]])
     for name, values in [("exact", found.value), ("lower", found.lower), ("upper", found.upper),
-                         ("visible_fraction", found.fraction)]:
+                         ("visible_fraction", found.visible_fraction)]:
         assert same_bits(values, column(rows, name, count)), name
     assert [STATUS[row["status"]] for row in rows] == found.status.ravel().tolist()
     assert found.value.any() and found.sources == tuple(sources)
@@ -84,7 +84,7 @@ def test_every_status():
     assert seen.status.tolist() == [status.CERTIFIED] and seen.lower[0] < seen.value[0] < seen.upper[0]
     hidden = lamp_above((0.5, 2.0)).form_factors([0, 0, 0], [0, 0, 1], full=True, fraction=True)
     assert hidden.status.tolist() == [status.ZERO]
-    assert (hidden.value[0], hidden.upper[0], hidden.fraction[0]) == (0.0, 0.0, 0.0)
+    assert (hidden.value[0], hidden.upper[0], hidden.visible_fraction[0]) == (0.0, 0.0, 0.0)
     far = tiny_lamp(2e-170).form_factors([0, 0, 0], [0, 0, 1], "lamp", full=True)
     assert far.status.tolist() == [status.UNDERFLOW] and far.value[0] == 0.0 < far.upper[0]
 

@@ -88,6 +88,16 @@ def test_a_matrix_is_certified_on_request():
     assert (matrix.row_sums[:, 0] <= 1).all() and (matrix.row_sums[:, 1] >= 1).all()
 
 
+def test_the_sky_alone():
+    lamp = lamp_above((0.5, 0.5))
+    whole = exactff.view_factor_matrix(lamp, accuracy=1e-3, backs=True, sky=True)
+    for more in (dict(sky=True), dict(backs=True), dict(backs=True, sky=True)):
+        alone = exactff.view_factor_matrix(lamp, "all", [], accuracy=1e-3, **more)
+        assert alone.value.shape == (2, 0) and alone.from_names == ("lamp", "plates") and alone.to_names == ()
+        assert same_bits(alone.areas_from, whole.areas_from) and alone.areas_to.shape == (0,)
+        assert (alone.open, alone.back) == (whole.open if "sky" in more else None, whole.back if "backs" in more else None)
+
+
 def test_some_rows_and_columns():
     lamp = lamp_above((0.5, 1.0))
     matrix = exactff.view_factor_matrix(lamp, "lamp", ["plates", "lamp"])

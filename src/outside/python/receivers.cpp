@@ -1,3 +1,5 @@
+#include "flags/receivers.h"
+
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
@@ -58,47 +60,22 @@ Integers padded(const Lists& lists, const FacesOf& faces_of) {
   return result;
 }
 
-std::vector<Region> regions_named(const SharedScene& scene, const std::vector<std::string>& names) {
-  std::vector<Region> all;
-  for (const Selection& selection : scene.selections(names)) {
-    for (Region& region : regions(scene.scene(), selection)) all.push_back(std::move(region));
+// On patches or faces, as the flags of the program make them, and what the head of a truth file says of them.
+py::tuple make_on(const SharedScene& scene, const std::vector<std::string>& names, const std::string& grid,
+                  bool vertices, bool centres, std::uint64_t samples, std::uint64_t seed, bool per_face) {
+  flags::ReceiverArguments args;
+  args.on = names;
+  args.grid = grid;
+  args.vertices = vertices;
+  args.centres = centres;
+  args.per_face = per_face;
+  if (samples > 0) {
+    args.samples = std::to_string(samples);
+    args.sample_seed = std::to_string(seed);
   }
-  return all;
-}
-
-std::vector<FaceId> faces_named(const SharedScene& scene, const std::vector<std::string>& names) {
-  std::vector<FaceId> all;
-  for (const Selection& selection : scene.selections(names)) {
-    for (const FaceId face : scene.scene().faces_of(selection)) all.push_back(face);
-  }
-  return all;
-}
-
-List make_grid(const SharedScene& scene, const std::vector<std::string>& names, int u, int v, bool per_face) {
   Interrupt interrupt;
-  return interrupt.run([&] {
-    return per_face ? grid_receivers(scene.scene(), faces_named(scene, names), {u, v})
-                    : grid_receivers(scene.scene(), regions_named(scene, names), {u, v});
-  });
-}
-
-List make_centres(const SharedScene& scene, const std::vector<std::string>& names, bool per_face) {
-  Interrupt interrupt;
-  return interrupt.run([&] {
-    return per_face ? centre_receivers(scene.scene(), faces_named(scene, names))
-                    : centre_receivers(scene.scene(), regions_named(scene, names));
-  });
-}
-
-List make_vertices(const SharedScene& scene, const std::vector<std::string>& names) {
-  Interrupt interrupt;
-  return interrupt.run([&] { return vertex_receivers(scene.scene(), faces_named(scene, names)); });
-}
-
-List make_samples(const SharedScene& scene, const std::vector<std::string>& names, std::uint64_t count,
-                  std::uint64_t seed) {
-  Interrupt interrupt;
-  return interrupt.run([&] { return sample_receivers(scene.scene(), faces_named(scene, names), count, seed); });
+  flags::ChosenReceivers chosen = interrupt.run([&] { return flags::receivers_of(args, scene.scene()); });
+  return py::make_tuple(std::make_shared<List>(std::move(chosen.receivers)), shown(chosen.description));
 }
 
 List from_arrays(const Numbers& points, const Numbers& normals, const Integers& on, std::vector<std::string> ids) {
@@ -137,11 +114,8 @@ std::vector<std::string> misses(const SharedScene& scene, const Numbers& points,
 
 void bind_receivers(py::module_& module) {
   py::class_<List, std::shared_ptr<List>>(module, "ReceiverList", py::module_local())
-      .def_static("grid", &make_grid, py::arg("scene"), py::arg("names"), py::arg("u"), py::arg("v"),
-                  py::arg("per_face"))
-      .def_static("centres", &make_centres, py::arg("scene"), py::arg("names"), py::arg("per_face"))
-      .def_static("vertices", &make_vertices, py::arg("scene"), py::arg("names"))
-      .def_static("samples", &make_samples, py::arg("scene"), py::arg("names"), py::arg("count"), py::arg("seed"))
+      .def_static("on_faces", &make_on, py::arg("scene"), py::arg("names"), py::arg("grid"), py::arg("vertices"),
+                  py::arg("centres"), py::arg("samples"), py::arg("seed"), py::arg("per_face"))
       .def_static("from_arrays", &from_arrays, py::arg("points"), py::arg("normals"), py::arg("on"), py::arg("ids"))
       .def_static("read", &read_csv, py::arg("scene"), py::arg("path"))
       .def("__len__", [](const List& list) { return list.size(); })

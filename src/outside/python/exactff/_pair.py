@@ -218,5 +218,5 @@ class FormFactors:
     upper: Floats  #: encloses: not below the true value
     status: NDArray[np.int8]  #: see :class:`Status`
     precision_bits: NDArray[np.int32]  #: of the last evaluation of the contour integral; 0 if none was needed
-    fraction: Optional[Floats]  #: exact: visible over whole area; None unless ``fraction=True``
+    visible_fraction: Optional[Floats]  #: exact: visible over whole area; None unless ``fraction=True``
     sources: tuple[str, ...]  #: names of the columns

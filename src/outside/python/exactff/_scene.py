@@ -184,32 +184,27 @@ class Scene:
     def receivers(self, on: Union[str, Sequence[str]], *, grid: Union[None, int, tuple[int, int]] = None,
                   vertices: bool = False, centres: bool = False, samples: int = 0, seed: int = 1,
                   per_face: bool = False) -> Receivers:
-        """Receivers on patches or faces, as the program's ``--on`` makes them. Give one of
+        """Receivers on patches or faces, as the program's ``--on`` makes them.
 
+        Parameters
+        ----------
+        on : names ``NAME`` or ``NAME:k``; "all" for every patch
         grid : (columns, rows), at the centres of the cells of each region (neighbouring faces in one plane)
         vertices : at every corner of every face
         centres : one in the middle of each region
         samples : so many at random, uniformly by area, by `seed`
+        per_face : take each face by itself, with `grid` or `centres`
 
-        ``per_face=True`` takes each face by itself. The receivers remember their own faces (:attr:`Receivers.on`)."""
+        Give one of grid, vertices, centres and samples. The receivers remember their own faces
+        (:attr:`Receivers.on`), and have names (:attr:`Receivers.ids`). Raises InputError."""
         names = [on] if isinstance(on, str) else list(on)
         if not names:
             refuse("on names no patch", "receivers lie on patches", "name one")
         if (grid is not None) + bool(vertices) + bool(centres) + (samples > 0) != 1:
             refuse("give one of grid, vertices, centres and samples", "each places the receivers in a different way",
                    "for example grid=(32, 32)")
-        where = ",".join(names)
-        make = _exactff.ReceiverList
-        if grid is not None:
-            u, v = (grid, grid) if isinstance(grid, int) else grid
-            made, name = make.grid(self._scene, names, u, v, per_face), f"{where}, grid {u}x{v}"
-        elif vertices:
-            made, name = make.vertices(self._scene, names), f"{where}, vertices"
-        elif centres:
-            made, name = make.centres(self._scene, names, per_face), f"{where}, centres"
-        else:
-            made, name = make.samples(self._scene, names, samples, seed), f"{where}, {samples} samples, seed {seed}"
-        return Receivers(made, name)
+        return Receivers(*_exactff.ReceiverList.on_faces(self._scene, _arrays_names(names), _grid(grid), bool(vertices),
+                                                         bool(centres), samples, seed, bool(per_face)))
 
     def read_receivers(self, path: Union[str, os.PathLike[str]]) -> Receivers:
         """Reads a CSV file with the columns id,x,y,z,nx,ny,nz,on, or a truth file."""
@@ -316,6 +311,13 @@ class Scene:
 
     # --- names and own faces ---
 
+    def _named(self, names: list[str]) -> list[str]:
+        """The names, with every patch that has area in place of "all"."""
+        if "all" not in names or "all" in self.names:
+            return names
+        every = [patch.name for patch in self.patches if patch.area > 0.0]
+        return [name for one in names for name in (every if one == "all" else [one])]
+
     def _source(self, name: Optional[str]) -> str:
         if name is None:
             emitters = self.emitters
@@ -334,9 +336,7 @@ class Scene:
                 refuse("no patch of the scene emits", "without sources, every emitting patch is one",
                        "name them: sources=['window']")
             return names
-        names = _arrays_names(sources)
-        if names == ["all"] and "all" not in self.names:
-            names = [patch.name for patch in self.patches if patch.area > 0.0]
+        names = self._named(_arrays_names(sources))
         if not names:
             refuse("sources is empty", "there would be no values", "name a patch, or leave it out")
         twice = [name for i, name in enumerate(names) if name in names[:i]]
@@ -422,6 +422,16 @@ def _arrays_names(names: Names) -> list[str]:
         if not isinstance(name, str):
             refuse(f"{name!r} is no name", "patches and faces have names: NAME or NAME:k", "give strings")
     return listed
+
+
+def _grid(cells: Union[None, int, tuple[int, int]]) -> str:
+    """As the program writes it: "32x24"; empty for no grid."""
+    if cells is None:
+        return ""
+    columns_and_rows = np.array((cells, cells) if np.ndim(cells) == 0 else cells)
+    if columns_and_rows.shape != (2,) or columns_and_rows.dtype.kind not in "iu":
+        refuse(f"grid is {cells!r}", "a grid has so many columns and rows", "for example grid=(32, 24), or grid=32")
+    return "x".join(map(str, columns_and_rows.tolist()))
 
 
 def _bits(precision_cap: int) -> int:

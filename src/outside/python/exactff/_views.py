@@ -174,13 +174,11 @@ def view_factor(scene: Scene, a: str, b: str, accuracy: float = 1e-6, *, budget:
 
 
 def _patches(scene: Scene, names: Names, what: str) -> list[str]:
-    if names is None:
-        return [patch.name for patch in scene.patches if patch.area > 0.0]
-    listed = [names] if isinstance(names, str) else list(names)
+    listed = ["all"] if names is None else [names] if isinstance(names, str) else list(names)
     for name in listed:
         if not isinstance(name, str):
             refuse(f"{what} holds {name!r}", "it lists names of patches or faces", "for example ['floor', 'light']")
-    return listed
+    return scene._named(listed)
 
 
 def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Names = None, *, accuracy: float = 1e-6,
