@@ -88,6 +88,74 @@ def test_values_are_checked_with_a_truth_file(tmp_path):
         exactff.check(file, TRUE.value[:29])
 
 
+def test_reports_name_receivers():
+    wrong = TRUE.value.copy()
+    wrong[7, 0] += 0.25
+    report = exactff.check(TRUE, wrong, max_abs=1e-3, rms=1.0, receivers=GRID)
+    assert report.worst[0].receiver == GRID.ids[7] == "r2c2" and "at receiver 'r2c2'" in report.message
+    assert exactff.check(TRUE, wrong, receivers=[f"p{i}" for i in range(30)]).worst[0].receiver == "p7"
+    unnamed = ROOM.receivers_at(*AT, on="floor")
+    assert exactff.check(TRUE, wrong, receivers=unnamed).worst[0].receiver == "7"
+    with pytest.raises(exactff.InputError, match="receivers has 2 names, and there are 30"):
+        exactff.check(TRUE, wrong, receivers=["a", "b"])
+    assert len(repr(report)) < 160 and "of 30 values: failed (max-abs: 0.25 is above" in repr(report)
+    assert repr(exactff.check(TRUE, TRUE.value)) == "<exactff.CheckReport of 30 values: passed, largest error 0>"
+
+
+def test_a_baseline_is_never_loosened(tmp_path):
+    file, junit = tmp_path / "accuracy.json", tmp_path / "check.xml"
+
+    def check(error, **more):
+        values = TRUE.value.copy()
+        values[7, 0] += error
+        return exactff.check(TRUE, values, receivers=GRID, **more)
+
+    with pytest.raises(exactff.InputError, match="does not exist"):
+        check(0.1, baseline=file)
+    assert check(0.1, write_baseline=file)
+    first = file.read_text()
+    worse = check(0.2, baseline=file, write_baseline=file, junit=junit)
+    assert not worse and file.read_text() == first and not worse.improvements
+    assert "baseline max-abs" in junit.read_text() and "r2c2" in junit.read_text()
+    assert check(0.11, baseline=file, slack=0.2)
+    better = check(0.05, baseline=file, write_baseline=file)
+    assert better and better.improvements[0][:2] == ("baseline max-abs", "") and file.read_text() != first
+    assert not check(0.1, baseline=file) and not check(np.nan, write_baseline=tmp_path / "none.json")
+    assert not (tmp_path / "none.json").exists()
+
+
+def test_receivers_and_values_in_one_file(tmp_path):
+    """What `truth --npz` writes, read by NumPy."""
+    program("truth", CORNELL, "--on", "all", "--grid", "16x16", "--source", "light,back", "--fraction", "--unoccluded",
+            "--total", "radiance", "-o", tmp_path / "t.csv", "--npz", tmp_path / "t.npz")
+    at = ROOM.receivers("all", grid=16)
+    with np.load(tmp_path / "t.npz") as all_of_it:
+        arrays = dict(all_of_it)
+    assert same_bits(arrays["points"], at.points)
+    lengths = np.linalg.norm(at.normals, axis=1, keepdims=True)
+    assert arrays["normals"] == pytest.approx(at.normals / lengths, abs=1e-15)
+    rows = truth_rows(tmp_path / "t.csv")
+    assert [arrays["faces"][k] for k in arrays["on"]] == [row["on"] for row in rows[::2]]
+    assert arrays["on"].dtype == np.int32 and list(arrays["sources"]) == ["light", "back"]
+    exact = ROOM.form_factors(at.points, at.normals, ["light", "back"], at.on, fraction=True)
+    assert same_bits(arrays["F"], exact.value) and same_bits(arrays["visible_fraction"], exact.visible_fraction)
+    assert same_bits(arrays["unoccluded"], column(rows, "unoccluded", 2))
+    assert same_bits(arrays["total"][:, 1], column(rows, "total_g", 2)[:, 0])
+    assert arrays["about"][0].startswith("exactff ") and any("hash" in line for line in arrays["about"])
+
+
+def test_a_small_file_of_receivers_and_values(tmp_path):
+    """Sixty bytes for each receiver of one source, and the arrays' heads; -1 where a receiver lies on no face."""
+    receivers = tmp_path / "r.csv"
+    receivers.write_text("x,y,z,nx,ny,nz\n" + "".join(f"{10 + i % 50},1,{9 + i // 50},0,3,4\n" for i in range(1000)))
+    program("truth", CORNELL, "--receivers", receivers, "-o", tmp_path / "t.csv", "--npz", tmp_path / "t.npz")
+    with np.load(tmp_path / "t.npz") as arrays:
+        assert (arrays["on"] == -1).all() and arrays["faces"].shape == (0,)
+        assert arrays["normals"][0].tolist() == [0.0, 0.6, 0.8]
+        about = arrays["about"].nbytes
+    assert (tmp_path / "t.npz").stat().st_size - about < 60 * 1000 + 2500
+
+
 @pytest.mark.parametrize("arguments, words", [
     ((TRUE, TRUE.value[:3]), "same shape"), ((TRUE.value, "mine.csv"), "truth is not"),
     ((TRUE.value, TRUE.value.astype(complex)), "complex128"), (("nowhere.csv", "mine.csv"), "nowhere.csv"),
@@ -95,3 +163,9 @@ def test_values_are_checked_with_a_truth_file(tmp_path):
 def test_bad_checks(arguments, words):
     with pytest.raises(exactff.InputError, match=words):
         exactff.check(*arguments)
+
+
+def test_names_belong_to_arrays(tmp_path):
+    exactff.truth(ROOM, GRID, tmp_path / "t.csv", "light")
+    with pytest.raises(exactff.InputError, match="its rows name their receivers"):
+        exactff.check(tmp_path / "t.csv", TRUE.value, receivers=GRID)

@@ -288,13 +288,10 @@ void write_files(const CheckArguments& args, const Compared& compared) {
   write_whole_file(args.error_image, check::error_image(*images, render::image_kind(args.error_image)));
 }
 
-// The ratchet never loosens. Without an existing baseline, the present statistics are recorded whatever they are.
+// Without an existing baseline, the present statistics are recorded whatever they are.
 void record(const CheckArguments& args, const check::Report& report) {
   if (args.write_baseline.empty()) return;
-  const auto is_worse = [](const check::Verdict& verdict) {
-    return !verdict.passed && (verdict.criterion == "finite" || verdict.criterion.starts_with("baseline "));
-  };
-  if (std::any_of(report.verdicts.begin(), report.verdicts.end(), is_worse)) {
+  if (!check::may_be_recorded(report)) {
     std::cerr << "note: " << text::printable(args.write_baseline) << " was not written: "
               << (report.overall.not_finite > 0 ? "some values are not numbers\n" : "errors got worse\n");
     return;

@@ -126,6 +126,12 @@ std::string baseline_text(const Report& report) {
   return text::json_document(json) + '\n';
 }
 
+bool may_be_recorded(const Report& report) {
+  return std::ranges::all_of(report.verdicts, [](const Verdict& verdict) {
+    return verdict.passed || !(verdict.criterion == "finite" || verdict.criterion.starts_with("baseline "));
+  });
+}
+
 std::vector<Improvement> hold_against_baseline(Report& report, const std::filesystem::path& path, double slack) {
   const kernel::StandardArithmetic arithmetic;
   if (!(slack >= 0.0) || std::isinf(slack)) {

@@ -23,6 +23,10 @@ struct Improvement {
 // The statistics of the report as JSON, for a baseline file.
 [[nodiscard]] std::string baseline_text(const Report& report);
 
+// Whether these errors may become a baseline: no value is not a number, and nothing got worse than the baseline that
+// the report was held against. So the ratchet never loosens.
+[[nodiscard]] bool may_be_recorded(const Report& report);
+
 // Adds to the report a verdict on every statistic of the baseline, and returns the improvements. A statistic is worse
 // if it exceeds the recorded one by more than the share `slack` of it and also by more than 4 units in the last place
 // of the largest truth, because different compilers do not agree more closely. Throws InputError if the file cannot be

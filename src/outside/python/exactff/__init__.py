@@ -24,7 +24,7 @@ except ImportError as error:
     ) from error
 
 from . import methods
-from ._check import CheckReport, Distribution, RowError, Verdict, check
+from ._check import CheckReport, Distribution, Improvement, RowError, Verdict, check
 from ._errors import InputError, ModellingWarning, Problem
 from ._pair import Drawing, Enclosure, FormFactor, FormFactors, Status
 from ._radiosity import Balance, Radiosity, radiosity
@@ -39,7 +39,7 @@ __version__ = _exactff.version
 
 __all__ = [
     "Balance", "CheckReport", "Distribution", "Drawing", "Enclosure", "Finding", "FormFactor", "FormFactors",
-    "InputError", "Material", "ModellingWarning", "PairOfPatches", "Patch", "Problem", "Radiosity", "Receivers",
+    "Improvement", "InputError", "Material", "ModellingWarning", "PairOfPatches", "Patch", "Problem", "Radiosity", "Receivers",
     "Reciprocity", "Report", "RowError",
     "Scene", "SeenPatch", "Share", "Status", "TruthSummary", "Verdict", "View", "ViewFactor", "ViewFactorMatrix",
     "__version__", "check", "methods", "radiosity", "truth", "view", "view_factor", "view_factor_matrix",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import dataclass
-from typing import Any, Literal, Mapping, NamedTuple, Optional, Union
+from typing import Any, Literal, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from . import _exactff
 from ._errors import refuse
 from ._pair import FormFactors, Status
+from ._receivers import Receivers
 
 _Path = Union[str, "os.PathLike[str]"]
 
@@ -40,7 +41,7 @@ class Verdict(NamedTuple):
 
 
 class RowError(NamedTuple):
-    """The error of one value. For arrays, `receiver` is the index of the receiver."""
+    """The error of one value. For arrays, `receiver` is the name that was given, or the index of the receiver."""
 
     receiver: str
     source: str
@@ -50,9 +51,18 @@ class RowError(NamedTuple):
     relative: float
 
 
-@dataclass(frozen=True)
+class Improvement(NamedTuple):
+    """An error that is smaller than the recorded one by more than the slack."""
+
+    criterion: str
+    source: str  #: empty: all sources together
+    recorded: float
+    now: float
+
+
+@dataclass(frozen=True, repr=False)
 class CheckReport:
-    """The result of :func:`check`. ``bool(report)`` tells whether it passed."""
+    """The result of :func:`check`. ``bool(report)`` tells whether it passed; tests call :meth:`raise_if_failed`."""
 
     passed: bool
     rows: int
@@ -64,6 +74,7 @@ class CheckReport:
     verdicts: tuple[Verdict, ...]
     worst: tuple[RowError, ...]  #: worst first
     warnings: tuple[str, ...]
+    improvements: tuple[Improvement, ...]  #: over the baseline; ``write_baseline`` keeps them
     message: str  #: the limits that are exceeded, and the worst rows
     json: Mapping[str, Any]  #: everything, as ``exactff check --json`` writes it
 
@@ -71,18 +82,27 @@ class CheckReport:
         return self.passed
 
     def raise_if_failed(self) -> None:
-        """Raises AssertionError with the message, for tests."""
+        """Raises AssertionError unless all limits hold. Its text is `message`: the limits that are exceeded, and the
+        worst rows with their receivers. For tests; pytest shows the line of the test that calls this."""
+        __tracebackhide__ = True
         if not self.passed:
             raise AssertionError(self.message)
+
+    def __repr__(self) -> str:
+        failed = [verdict.sentence for verdict in self.verdicts if not verdict.passed]
+        more = f"; and {len(failed) - 1} more" if len(failed) > 1 else ""
+        result = f"failed ({failed[0]}{more})" if failed else f"passed, largest error {self.absolute.max:.3g}"
+        return f"<exactff.CheckReport of {self.rows} values: {result}>"
 
 
 def check(truth: Union[_Path, FormFactors, ArrayLike], values: Union[_Path, ArrayLike], *,
           max_abs: Optional[float] = None, max_rel: Optional[float] = None, rms: Optional[float] = None,
           eps_b: Optional[float] = None, quantiles: Optional[Mapping[float, float]] = None, per_source: bool = False,
           relative_floor: float = 0.0, worst: int = 10, truth_column: str = "exact", value_column: str = "",
-          match: Literal["receiver", "position"] = "receiver", tolerance: float = 0.0,
-          partial: bool = False) -> CheckReport:
-    """Compares values with true ones.
+          match: Literal["receiver", "position"] = "receiver", tolerance: float = 0.0, partial: bool = False,
+          receivers: Union[Receivers, Sequence[str]] = (), baseline: Optional[_Path] = None,
+          write_baseline: Optional[_Path] = None, slack: float = 1e-9, junit: Optional[_Path] = None) -> CheckReport:
+    """Compares values with true ones. In a test: ``exactff.check(...).raise_if_failed()``.
 
     Parameters
     ----------
@@ -95,7 +115,13 @@ def check(truth: Union[_Path, FormFactors, ArrayLike], values: Union[_Path, Arra
     per_source : every source must meet every limit
     relative_floor : relative errors are relative to the truth or to this, whichever is larger
     match, tolerance, partial, truth_column, value_column : as of ``exactff check``
+    receivers : names for the report, of arrays: the :class:`Receivers` themselves, or one name for each
+    baseline : a file of recorded errors; an error that is worse by more than the share `slack` of it is a failure
+    write_baseline : record these errors in the file, unless one got worse or a value is not finite; so a baseline
+        is never loosened
+    junit : write the verdicts as JUnit XML, for Jenkins, GitLab and others
 
+    Without any limit only finiteness is checked. Raises InputError for files, arrays and limits that cannot be used.
     Errors of values that are not certified are measured from the nearest point of their enclosure.
     """
     if match not in ("receiver", "position"):
@@ -104,13 +130,18 @@ def check(truth: Union[_Path, FormFactors, ArrayLike], values: Union[_Path, Arra
     limits.max_abs, limits.max_rel, limits.rms, limits.eps_b = max_abs, max_rel, rms, eps_b
     limits.quantiles = list((quantiles or {}).items())
     limits.per_source, limits.relative_floor, limits.worst = per_source, relative_floor, worst
+    files = _exactff.CheckFiles()
+    files.baseline, files.write_baseline, files.slack, files.junit = baseline, write_baseline, slack, junit
+    names = list(receivers.ids if isinstance(receivers, Receivers) else receivers)
     if not isinstance(truth, (str, os.PathLike)):
-        return _arrays_report(truth, values, limits)
+        return _arrays_report(truth, values, names, limits, files)
+    if names:
+        refuse("receivers is given with a truth file", "its rows name their receivers", "leave it out")
     if isinstance(values, (str, os.PathLike)):
         return _report(_exactff.check_files(os.fspath(truth), os.fspath(values), truth_column, value_column,
-                                            match == "position", tolerance, partial, limits))
+                                            match == "position", tolerance, partial, limits, files))
     return _report(_exactff.check_values(os.fspath(truth), np.ascontiguousarray(_any_numbers(values)).ravel(),
-                                         truth_column, limits))
+                                         truth_column, limits, files))
 
 
 def _any_numbers(values: Any) -> Any:
@@ -122,7 +153,8 @@ def _any_numbers(values: Any) -> Any:
     return array.astype(np.float64)
 
 
-def _arrays_report(truth: Any, values: Any, limits: _exactff.Limits) -> CheckReport:
+def _arrays_report(truth: Any, values: Any, receivers: Sequence[str], limits: _exactff.Limits,
+                   files: _exactff.CheckFiles) -> CheckReport:
     if isinstance(values, (str, os.PathLike)):
         refuse("values is a file, and truth is not", "rows of a file are matched with a truth file",
                "write the truth with exactff.truth, or give arrays")
@@ -138,12 +170,17 @@ def _arrays_report(truth: Any, values: Any, limits: _exactff.Limits) -> CheckRep
                "give arrays of the same shape")
     table = (-1, len(truth.sources))
     parts = [np.reshape(part, table) for part in (truth.value, truth.lower, truth.upper, truth.status)]
-    return _report(_exactff.check_arrays(parts[0], parts[1], parts[2], parts[3], list(truth.sources),
-                                         np.ascontiguousarray(candidates).ravel(), limits))
+    if receivers and len(receivers) != len(parts[0]):
+        refuse(f"receivers has {len(receivers)} names, and there are {len(parts[0])} receivers", "each has one",
+               "give as many, or none")
+    ids = [name or str(i) for i, name in enumerate(receivers)]
+    return _report(_exactff.check_arrays(parts[0], parts[1], parts[2], parts[3], ids, list(truth.sources),
+                                         np.ascontiguousarray(candidates).ravel(), limits, files))
 
 
 def _report(result: Any) -> CheckReport:
-    passed, rows, not_finite, leaks, bias, absolute, relative, verdicts, worst, warnings, message, text = result
+    passed, statistics, verdicts, worst, warnings, improvements, message, text = result
+    rows, not_finite, leaks, bias, absolute, relative = statistics
     return CheckReport(passed, rows, not_finite, leaks, bias, Distribution(*absolute), Distribution(*relative),
                        tuple(Verdict(*v) for v in verdicts), tuple(RowError(*row) for row in worst), tuple(warnings),
-                       message, json.loads(text))
+                       tuple(Improvement(*one) for one in improvements), message, json.loads(text))
