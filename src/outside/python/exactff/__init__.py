@@ -10,11 +10,20 @@ Form factors are pure numbers; lengths are in the unit of the scene. Every coord
 double. Errors in the input raise :class:`InputError`; likely slips of modelling warn as :class:`ModellingWarning`.
 """
 
+import importlib.util
+import sys
+
+if importlib.util.find_spec("numpy") is None:
+    raise ImportError(
+        f"exactff needs NumPy, which {sys.executable} (Python {sys.version.split()[0]}) does not have. Install it: "
+        f"`{sys.executable} -m pip install numpy` in a virtual environment, or Debian's package python3-numpy for its own "
+        "Python"
+    )
+
 try:
     from . import _exactff
 except ImportError as error:
     import pathlib
-    import sys
 
     found = ", ".join(file.name for file in pathlib.Path(__file__).parent.glob("_exactff*.so")) or "is missing"
     raise ImportError(
