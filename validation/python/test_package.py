@@ -4,6 +4,8 @@ import ast
 import inspect
 import pathlib
 import re
+import shutil
+import subprocess
 import sys
 
 import pytest
@@ -83,6 +85,34 @@ def test_the_mesh_for_paraview(tmp_path):
     exact = scene.form_factors(at.points, at.normals, "light", at.on)
     assert sum(len(block.data) for block in mesh.cells) == len(exact)
     assert sorted(v for block in mesh.cell_data["form_factor"] for v in block) == sorted(exact[:, 0])
+
+
+def test_the_test_of_accuracy(tmp_path):
+    """The example passes; where its limits are too strict, it says where."""
+    pytest_of = (sys.executable, "-B", "-m", "pytest", "-q", "-p", "no:cacheprovider")
+    example = (EXAMPLES / "test_accuracy.py").read_text()
+    shutil.copy(EXAMPLES / "test_accuracy.py", tmp_path)
+    assert "4 passed" in run(*pytest_of, "test_accuracy.py", cwd=tmp_path)
+    (tmp_path / "test_strict.py").write_text(example.replace("max_abs=0.05", "max_abs=1e-9"))
+    strict = subprocess.run([*pytest_of, "test_strict.py"], capture_output=True, text=True, cwd=tmp_path)
+    assert strict.returncode == 1 and "AssertionError: max-abs: " in strict.stdout
+    assert "worst at receiver 'r" in strict.stdout and "_check.py" not in strict.stdout
+
+
+def test_the_page_on_pytest_is_a_test_file(tmp_path):
+    page = (SOURCE / "include" / "README.md").read_text().split("### With pytest")[1]
+    code = re.search(r"```python\n(.*?)```", page, re.S)[1]
+    (tmp_path / "test_page.py").write_text(code)
+    printed = run(sys.executable, "-B", "-m", "pytest", "-q", "-p", "no:cacheprovider", tmp_path / "test_page.py", cwd=SOURCE)
+    assert "3 passed" in printed
+
+
+def test_without_numpy_it_says_what_to_install():
+    """-S: without the folders in which NumPy is."""
+    failed = subprocess.run([sys.executable, "-S", "-c", "import exactff"], capture_output=True, text=True)
+    assert failed.returncode == 1 and "\nImportError: exactff needs NumPy" in failed.stderr
+    assert "-m pip install numpy" in failed.stderr and "python3-numpy" in failed.stderr
+    assert "ModuleNotFoundError" not in failed.stderr
 
 
 def test_examples_are_short():
