@@ -13,7 +13,7 @@ test_optimised() {
   validation/setup.sh libboost-mpi-dev libopenmpi-dev openmpi-bin \
     chromium chromium-driver python3-selenium clang-format python3-openimageio \
     python3-pytest python3-mpmath python3-tqdm python3-matplotlib python3-meshio mypy python3-venv \
-    python3-setuptools python3-wheel python3-vtk9
+    python3-setuptools python3-wheel patchelf python3-vtk9
   # These are for tests of a build option, of reports, of the layout, of images, of the package for Python, and of files
   # for ParaView.
   validation/build_shared.sh
