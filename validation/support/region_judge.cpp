@@ -14,6 +14,8 @@
 
 #include "exactff/render.h"
 #include "exactff/view.h"
+#include "kernel/exact_vec.h"
+#include "matrix/coplanar.h"
 #include "support/picture_areas.h"
 
 namespace exactff::validation {
@@ -167,13 +169,34 @@ std::string fraction_in(const Fractions& fractions, FaceId face, std::uint32_t t
   return at == fractions.end() ? "0" : at->second;
 }
 
-// Where coplanar faces overlap, only the lowest is seen, but the Booleans see each.
-void expect_fractions_of_booleans(const Scene& scene, const Receiver& receiver, const Fractions& found) {
+bool share_points(const Scene& scene, const Piece& a, const Piece& b) {
+  const auto at = [&](std::uint32_t v) { return scene.vertices()[v]; };
+  const bool in_one_plane = std::ranges::all_of(b.frame, [&](std::uint32_t v) {
+    return kernel::orientation(at(a.frame[0]), at(a.frame[1]), at(a.frame[2]), at(v)) == 0;
+  });
+  return in_one_plane && matrix::overlap(scene, a, b);
+}
+
+// In its plane.
+bool overlaps_another(const Scene& scene, FaceId id) {
+  return std::ranges::any_of(scene.pieces(), [&](const Piece& other) {
+    return other.face != id && std::ranges::any_of(scene.pieces_of(id), [&](const Piece& piece) {
+             return share_points(scene, piece, other);
+           });
+  });
+}
+
+enum class FrontsAre { kFronts, kBacks };  // of the scene whose fractions were found
+
+// Where faces in one plane overlap, only one is seen, but the Booleans see each. A front is seen unless it is stacked.
+void expect_fractions_of_booleans(const Scene& scene, const Receiver& receiver, const Fractions& found,
+                                  FrontsAre fronts) {
   const WholeView seen = view(scene, receiver, {.faces = true});
   for (std::uint32_t k = 0; k < scene.faces().size(); ++k) {
     const FaceId id{k};
     const auto patch = std::ranges::find(seen.patches, std::optional(id), &SeenPatch::face);
     if (patch != seen.patches.end() && patch->stacked) continue;
+    if (fronts == FrontsAre::kBacks && overlaps_another(scene, id)) continue;
     const Selection face{.patch = scene.face(id).patch, .face = id, .scene = scene.id()};
     const FormFactor f =
         exact_form_factor(scene, receiver, {scene, face}, {.engine = Engine::kBoolean, .exact_fraction = true});
@@ -235,12 +258,12 @@ void expect_areas_of_triangles(const Scene& scene, const VisibilityMesh& mesh) {
 
 void expect_regions_as_booleans_find(const Scene& scene, const Receiver& receiver) {
   const VisibilityMesh mesh = visibility_mesh(scene, receiver);
-  expect_fractions_of_booleans(scene, receiver, fractions_of(mesh, true));
+  expect_fractions_of_booleans(scene, receiver, fractions_of(mesh, true), FrontsAre::kFronts);
   std::vector<Selection> all;
   for (std::size_t p = 0; p < scene.patches().size(); ++p) {
     all.push_back({.patch = static_cast<PatchId>(p), .face = {}, .scene = scene.id()});
   }
-  expect_fractions_of_booleans(scene.with_flipped(all), receiver, fractions_of(mesh, false));
+  expect_fractions_of_booleans(scene.with_flipped(all), receiver, fractions_of(mesh, false), FrontsAre::kBacks);
   expect_areas_of_triangles(scene, mesh);
 }
 
