@@ -32,9 +32,12 @@ struct BoundedValue {
   double upper = 0.0;
 };
 
-// Where the light goes, in the unit of Ke times area: bounds of sums over all patches.
+// Where the light goes, in the unit of Ke times area: bounds of sums over all patches and bounces.
 //   emitted = absorbed + what meets backs of faces + what meets nothing
-// Without an upper bound of the radiosities, B may be infinite: then only the bounds of `emitted` say something.
+// The bounds of the sums are clipped by what is proved (src/products/radiosity/balance.h), however wide the view factors
+// are. None of them is below 0, and while `reasons_against_balance` is empty none of the three is above what is emitted.
+// But if some Kd is above 1, `absorbed` may be negative and light may be gained: then only sums that are bounded have
+// upper bounds. Where B is infinite, light that bounces for ever is in none of the three.
 struct Balance {
   matrix::Sum emitted, absorbed, back, open;
 };
@@ -43,6 +46,7 @@ struct Channel {
   std::vector<BoundedValue> radiosity;   // B, for each patch
   std::vector<BoundedValue> irradiance;  // sum_j F_ij B_j, for each patch
   Balance balance;
+  bool is_balanced = true;  // as is_balanced() below, of this channel
   // Why there is no upper bound: "Kd is 1 on floor and lamp, ...". Empty: there is one. Without it, upper bounds are
   // infinite, and lower bounds are E_i and 0, which hold all the same.
   std::string no_bound;

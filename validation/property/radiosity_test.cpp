@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -257,6 +259,172 @@ TEST(Radiosity, OfRandomBuildingsIsBoundedInEveryChannel) {
           EXPECT_LE(to_rational(channel.radiosity[i].lower), b[i]) << s << ' ' << c << ' ' << i;
           EXPECT_GE(to_rational(channel.radiosity[i].upper), b[i]) << s << ' ' << c << ' ' << i;
         }
+      }
+    }
+  }
+}
+
+// --- Where the light goes ---
+
+// A room of whole numbers: what patch i sends to j is w_ij = w_ji, to backs b_i and away o_i, and its area is their
+// sum. So reciprocity holds, and rows add up to 1, exactly.
+struct Exchange {
+  std::vector<std::vector<int>> between;
+  std::vector<int> back, open;
+  [[nodiscard]] std::size_t size() const { return back.size(); }
+  [[nodiscard]] int area(std::size_t i) const {
+    int sum = back[i] + open[i];
+    for (const int w : between[i]) sum += w;
+    return sum;
+  }
+};
+
+Exchange random_exchange(Random& random) {
+  const std::size_t n = 1 + random.below(6);
+  const int most = random.integer(1, 40), lost = random.one_in(3) ? 0 : random.integer(0, 30);
+  Exchange exchange{std::vector(n, std::vector<int>(n)), std::vector<int>(n), std::vector<int>(n)};
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j <= i; ++j)
+      exchange.between[i][j] = exchange.between[j][i] = random.one_in(4) ? 0 : random.integer(0, most);
+    exchange.back[i] = random.one_in(2) ? 0 : random.integer(0, lost);
+    exchange.open[i] = random.one_in(2) ? 0 : random.integer(0, lost);
+    if (exchange.area(i) == 0) exchange.between[i][i] = 1;
+  }
+  return exchange;
+}
+
+// Triangles far from each other, each with a material.
+Scene scene_of(Random& random, std::size_t patches, double most_reflected) {
+  generate::PlainScene plain;
+  for (std::size_t i = 0; i < patches; ++i) {
+    generate::PlainPatch& patch = plain.patch("patch" + std::to_string(i));
+    const double z = static_cast<double>(i);
+    plain.add_ring(patch, {{0, 0, z}, {1, 0, z}, {0, 1, z}});
+    patch.material = "material" + std::to_string(i);
+    const double kd = random.one_in(4) ? most_reflected : most_reflected * random.unit();
+    const double ke = random.one_in(2) ? 0.0 : random.between(0.0, 20.0);
+    plain.materials.push_back({.name = patch.material, .reflectance = {kd, kd, kd}, .radiosity = {ke, ke, ke}});
+  }
+  return generate::build(plain);
+}
+
+// An interval that holds the share, of about this width.
+ViewFactor bounds_of_share(Random& random, int part, int whole, double width) {
+  const double share = static_cast<double>(part) / whole;
+  if (part == 0 && random.one_in(2)) return {.area_from = static_cast<double>(whole), .area_to = 1.0};
+  const double lower = std::max(0.0, share - width * random.unit() - 0x1p-50);
+  const double upper = std::min(1.0, share + width * random.unit() + 0x1p-50);
+  return {.value = std::clamp(share, lower, upper),
+          .lower = lower,
+          .upper = upper,
+          .area_from = static_cast<double>(whole),
+          .area_to = 1.0,
+          .claim = Claim::kCertified};
+}
+
+matrix::Matrix matrix_of(Random& random, const Scene& scene, const Exchange& exchange, double width) {
+  const std::vector<Selection> patches = patches_of(scene);
+  matrix::Matrix matrix{{patches, patches, {}}, {}, {}};
+  for (std::size_t i = 0; i < exchange.size(); ++i) {
+    const int area = exchange.area(i);
+    for (const int w : exchange.between[i]) matrix.factors.entries.push_back(bounds_of_share(random, w, area, width));
+    matrix.back.push_back(bounds_of_share(random, exchange.back[i], area, width));
+    matrix.open.push_back(bounds_of_share(random, exchange.open[i], area, width));
+  }
+  return matrix;
+}
+
+struct TrueBalance {
+  Rational emitted = 0, absorbed = 0, back = 0, open = 0;
+};
+
+// Nothing if light bounces for ever.
+std::optional<TrueBalance> true_balance(const Scene& scene, const Exchange& exchange) {
+  const std::size_t n = exchange.size();
+  Square a(n, Vector(n, 0));
+  Vector e(n, 0), rho(n, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Material& m = scene.material(scene.faces()[i].material);
+    e[i] = to_rational(m.radiosity.r);
+    rho[i] = to_rational(m.reflectance.r);
+    for (std::size_t j = 0; j < n; ++j)
+      a[i][j] = (i == j ? 1 : 0) - rho[i] * Rational(exchange.between[i][j]) / exchange.area(i);
+  }
+  const std::optional<Vector> z = solved(a, Vector(n, 1));
+  if (!z || !all_positive(*z)) return std::nullopt;
+  const Vector b = *solved(a, e);
+  TrueBalance balance;
+  for (std::size_t i = 0; i < n; ++i) {
+    balance.emitted += exchange.area(i) * e[i];
+    for (std::size_t j = 0; j < n; ++j) balance.absorbed += (1 - rho[i]) * exchange.between[i][j] * b[j];
+    balance.back += exchange.back[i] * b[i];
+    balance.open += exchange.open[i] * b[i];
+  }
+  return balance;
+}
+
+void expect_holds(const matrix::Sum& part, const Rational& truth, std::uint64_t s) {
+  EXPECT_LE(part.lower, part.upper) << s;
+  EXPECT_TRUE(!std::isfinite(part.lower) || to_rational(part.lower) <= truth) << s;
+  EXPECT_TRUE(!std::isfinite(part.upper) || to_rational(part.upper) >= truth) << s;
+}
+
+// However wide the view factors are.
+TEST(RadiosityBalance, HoldsTheTruthAndWhatIsPossible) {
+  std::size_t finite = 0, wide = 0, gains = 0, endless = 0, without_bound = 0;
+  for (std::uint64_t s = 0; s < scaled_count(600); ++s) {
+    Random random(seed_of(s));
+    const Exchange exchange = random_exchange(random);
+    const double most_reflected = s % 5 == 0 ? 1.4 : s % 5 == 1 ? 1.0 : random.unit();
+    const Scene scene = scene_of(random, exchange.size(), most_reflected);
+    const double width = random.one_in(3) ? 0x1p-40 : random.between(0.0, 0.6);
+    const Solution solution = solve(scene, matrix_of(random, scene, exchange, width));
+    ASSERT_TRUE(solution.reasons_against_balance.empty()) << solution.reasons_against_balance[0];
+    EXPECT_TRUE(is_balanced(solution)) << s;
+    const Channel& channel = solution.channels[0];
+    const Balance& balance = channel.balance;
+    without_bound += channel.is_bounded() ? 0 : 1;
+    for (const matrix::Sum& part : {balance.emitted, balance.back, balance.open}) EXPECT_GE(part.lower, 0.0) << s;
+    if (most_reflected <= 1.0) {
+      EXPECT_GE(balance.absorbed.lower, 0.0) << s;
+      for (const matrix::Sum& part : {balance.absorbed, balance.back, balance.open}) {
+        EXPECT_LE(part.upper, balance.emitted.upper) << s;
+        wide += part.upper > 0.5 * balance.emitted.upper ? 1 : 0;
+      }
+    }
+    const std::optional<TrueBalance> truth = true_balance(scene, exchange);
+    if (!truth) {
+      endless += 1;
+      continue;
+    }
+    (most_reflected > 1.0 ? gains : finite) += 1;
+    expect_holds(balance.emitted, truth->emitted, s);
+    expect_holds(balance.absorbed, truth->absorbed, s);
+    expect_holds(balance.back, truth->back, s);
+    expect_holds(balance.open, truth->open, s);
+  }
+  for (const std::size_t count : {finite, wide, gains, without_bound}) EXPECT_GT(count, scaled_count(40));
+  EXPECT_GT(endless, scaled_count(10));
+}
+
+// Emitters in boxes that are open above: the coarse bounds hold what fine view factors give.
+TEST(RadiosityBalance, OfCoarseViewFactorsHoldsThatOfFineOnes) {
+  for (std::uint64_t s = 0; s < scaled_count(6); ++s) {
+    Random random(seed_of(s));
+    generate::PlainScene plain;
+    validation::add_room(plain, validation::box({0, 0, 0}, {random.between(1, 3), random.between(1, 3), 1}));
+    if (random.one_in(2)) plain.patches.pop_back();
+    give_random_colours(plain, random);
+    const Scene scene = generate::build(plain);
+    const Solution coarse = solve(scene, {.factors = {.accuracy = 0.3}}),
+                   fine = solve(scene, {.factors = {.accuracy = 1e-4}});
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Balance &a = coarse.channels[c].balance, &b = fine.channels[c].balance;
+      for (matrix::Sum Balance::*part : {&Balance::emitted, &Balance::absorbed, &Balance::back, &Balance::open}) {
+        EXPECT_LE((a.*part).lower, (b.*part).upper) << s;
+        EXPECT_GE((a.*part).upper, (b.*part).lower) << s;
+        EXPECT_GE((a.*part).lower, 0.0) << s;
+        EXPECT_LE((a.*part).upper, a.emitted.upper) << s;
       }
     }
   }

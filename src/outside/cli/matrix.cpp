@@ -25,6 +25,7 @@
 #include "matrix/row_on_faces.h"
 #include "matrix/team.h"
 #include "text/phrases.h"
+#include "text/interval.h"
 #include "text/refuse.h"
 #include "vtk/vtk.h"
 
@@ -106,15 +107,9 @@ std::string factor_text(const ViewFactor& f) {
   return text::rounded(f.value, 6) + (f.accurate ? "" : " *");
 }
 
-// Intervals of a draft are not symmetric: what no view has met is 0, with an upper bound.
-std::string drafted_sum_text(const matrix::Matrix& matrix, std::size_t row, const matrix::Sum& sum) {
-  const double value = sum_of_values(matrix, row);
-  return text::rounded(value, 6) + " +- " + text::rounded(std::max(value - sum.lower, sum.upper - value), 1);
-}
-
-void print_table(const MatrixArguments& args, const Scene& scene, const matrix::Matrix& matrix) {
+void print_table(const Scene& scene, const matrix::Matrix& matrix) {
   const matrix::Factors& all = matrix.factors;
-  const std::vector<matrix::Sum> sums = row_sums(matrix);
+  const std::vector<matrix::Sum> sums = clipped_row_sums(scene, matrix);
   const std::size_t columns = std::min(all.to.size(), kMostShown), rows = std::min(all.from.size(), kMostShown);
   TextTable table;
   table.add_column("from \\ to");
@@ -127,7 +122,7 @@ void print_table(const MatrixArguments& args, const Scene& scene, const matrix::
     for (std::size_t j = 0; j < columns; ++j) cells.push_back(factor_text(all.at(i, j)));
     if (!matrix.back.empty()) cells.push_back(factor_text(matrix.back[i]));
     if (!matrix.open.empty()) cells.push_back(factor_text(matrix.open[i]));
-    cells.push_back(args.draft ? drafted_sum_text(matrix, i, sums[i]) : interval_text(sums[i]));
+    cells.push_back(text::interval(sums[i].lower, sums[i].upper));
     table.add_row(std::move(cells));
   }
   table.print(std::cout);
@@ -329,7 +324,7 @@ int finish(const MatrixArguments& args, const MatrixJob& job, const matrix::Matr
   const matrix::Options& options = job.request.options;
   args.draft ? warn_of_width(matrix, draft_options(args, options)) : warn_of_width(matrix, options.factors);
   write_files(args, job.scene, options, matrix);
-  args.plain ? print_plain(job.scene, matrix) : print_table(args, job.scene, matrix);
+  args.plain ? print_plain(job.scene, matrix) : print_table(job.scene, matrix);
   const bool rows_hold = test_rows(args, job.scene, matrix),
              directions_agree = test_reciprocity(args, job.scene, matrix);
   if (!args.plain) print_files(args);

@@ -22,6 +22,7 @@
 #include "radiosity/on_faces.h"
 #include "text/json_document.h"
 #include "text/phrases.h"
+#include "text/interval.h"
 #include "vtk/vtk.h"
 
 namespace exactff::cli {
@@ -42,6 +43,8 @@ constexpr const char* kRadiosityFooter =
     "What is emitted must be what is absorbed, meets backs of faces and leaves; if it is not, the exit code is 1.\n"
     "\n"
     "Examples:\n"
+    "The balance is printed as bounds, [lower, upper], within what is possible; a number alone is rounded to six "
+    "digits.\n"
     "  exactff radiosity data/scenes/cornell_box.obj --accuracy 1e-4\n"
     "  exactff radiosity data/scenes/cornell_box.obj --accuracy 1e-4 -o build/box.csv --vtk build/box.vtp";
 
@@ -96,8 +99,13 @@ void print_radiosities(const Scene& scene, const Solution& solution, std::size_t
   }
 }
 
-std::string part_text(const matrix::Sum& part) {
-  return std::isfinite(part.upper) ? interval_text(part) : "at least " + text::shortest(part.lower);
+// Where the inequalities of the balance hold, no end is shown above what is emitted.
+std::string part_text(const matrix::Sum& part, const matrix::Sum& emitted) {
+  if (!std::isfinite(part.upper)) {
+    return std::isfinite(part.lower) ? "at least " + text::shortest(part.lower) : "unknown";
+  }
+  if (part.upper > emitted.upper) return text::interval(part.lower, part.upper);
+  return text::interval(part.lower, part.upper, emitted.upper);
 }
 
 void print_balance(const Solution& solution, std::size_t channels) {
@@ -110,7 +118,7 @@ void print_balance(const Solution& solution, std::size_t channels) {
     std::vector<std::string> cells;
     if (channels > 1) cells.emplace_back(kChannelNames[c]);
     for (const matrix::Sum& part : {balance.emitted, balance.absorbed, balance.back, balance.open}) {
-      cells.push_back(part_text(part));
+      cells.push_back(part_text(part, balance.emitted));
     }
     table.add_row(std::move(cells));
   }

@@ -42,9 +42,4 @@ void warn_of_width(const matrix::Matrix& draft, const matrix::DraftOptions& opti
                 "give more views by --views");
 }
 
-std::string interval_text(const matrix::Sum& interval) {
-  return text::rounded(0.5 * interval.lower + 0.5 * interval.upper, 6) + " +- " +
-         text::rounded(0.5 * interval.upper - 0.5 * interval.lower, 1);
-}
-
 }  // namespace exactff::cli

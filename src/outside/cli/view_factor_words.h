@@ -16,9 +16,6 @@ namespace exactff::cli {
 void warn_of_width(const matrix::Matrix& matrix, const ViewFactorOptions& options);
 void warn_of_width(const matrix::Matrix& draft, const matrix::DraftOptions& options);
 
-// "0.199825 +- 3e-07".
-[[nodiscard]] std::string interval_text(const matrix::Sum& interval);
-
 inline constexpr const char* kTwoSidedHelp =
     "Patches or faces whose backs are patches as well, NAME (back), with the same Kd and Ke";
 

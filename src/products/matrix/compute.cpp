@@ -7,6 +7,7 @@
 #include "kernel/float_environment.h"
 #include "kernel/outward.h"
 #include "matrix/entry_jobs.h"
+#include "matrix/row_facts.h"
 #include "matrix/surroundings.h"
 
 namespace exactff::matrix {
@@ -26,6 +27,18 @@ bool has_every_patch(const Scene& scene, const std::vector<Selection>& to) {
     if (!scene.faces_of(patch).empty() && !seen.contains(patch.patch)) return false;
   }
   return true;
+}
+
+// No patch or face is a column twice, and no face beside its patch.
+bool are_different(const std::vector<Selection>& to) {
+  std::set<PatchId> patches, with_faces;
+  std::set<FaceId> faces;
+  for (const Selection& column : to) {
+    const bool is_new = column.face ? faces.insert(*column.face).second : patches.insert(column.patch).second;
+    if (!is_new) return false;
+    if (column.face) with_faces.insert(column.patch);
+  }
+  return std::ranges::none_of(with_faces, [&](PatchId patch) { return patches.contains(patch); });
 }
 
 // At a point of a face that is not planar, its other triangles are seen, but hide nothing.
@@ -75,6 +88,18 @@ std::vector<Sum> row_sums(const Matrix& matrix) {
     for (std::size_t j = 0; j < matrix.factors.to.size(); ++j) add(matrix.factors.at(i, j));
     if (!matrix.back.empty()) add(matrix.back[i]);
     if (!matrix.open.empty()) add(matrix.open[i]);
+  }
+  return sums;
+}
+
+std::vector<Sum> clipped_row_sums(const Scene& scene, const Matrix& matrix) {
+  std::vector<Sum> sums = row_sums(matrix);
+  if (!are_different(matrix.factors.to) || !scene.transparent().empty() || has_bent_rows(scene, matrix.factors.from) ||
+      have_fronts_in_common(scene)) {
+    return sums;
+  }
+  for (Sum& sum : sums) {
+    if (sum.lower <= 1.0) sum.upper = std::min(sum.upper, 1.0);  // else a bound does not hold, and it shows
   }
   return sums;
 }

@@ -10,14 +10,6 @@ double area_of_row(const Matrix& matrix, std::size_t row) {
   return (matrix.open.empty() ? matrix.back : matrix.open)[row].area_from;
 }
 
-double sum_of_values(const Matrix& matrix, std::size_t row) {
-  const std::size_t columns = matrix.factors.to.size();
-  double value =
-      (matrix.back.empty() ? 0.0 : matrix.back[row].value) + (matrix.open.empty() ? 0.0 : matrix.open[row].value);
-  for (std::size_t j = 0; j < columns; ++j) value += matrix.factors.at(row, j).value;
-  return value;
-}
-
 bool has_statistical(const Matrix& matrix, std::size_t row) {
   const auto is_statistical = [](const ViewFactor& f) { return f.claim == Claim::kStatistical; };
   const std::size_t columns = matrix.factors.to.size();

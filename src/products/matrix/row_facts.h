@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "exactff/matrix.h"
 
@@ -10,8 +11,9 @@ namespace exactff::matrix {
 // The area of a row's patch. Requires a column, or back or open.
 [[nodiscard]] double area_of_row(const Matrix& matrix, std::size_t row);
 
-// The sum of the values of a row with its back and open, an estimate.
-[[nodiscard]] double sum_of_values(const Matrix& matrix, std::size_t row);
+// row_sums(), but not above 1 where that is proved: a ray meets the front of one patch, a back or nothing first, so the
+// shares of different columns do not overlap, unless fronts do, faces are transparent or rows are bent.
+[[nodiscard]] std::vector<Sum> clipped_row_sums(const Scene& scene, const Matrix& matrix);
 
 // Whether an entry of the row, or its back or open, is statistical.
 [[nodiscard]] bool has_statistical(const Matrix& matrix, std::size_t row);

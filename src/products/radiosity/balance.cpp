@@ -1,9 +1,9 @@
 #include "radiosity/balance.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
-#include "kernel/float_environment.h"
 #include "kernel/outward.h"
 
 namespace exactff::radiosity {
@@ -13,6 +13,7 @@ using kernel::above;
 using kernel::below;
 using matrix::Sum;
 
+constexpr std::array<Sum Balance::*, 3> kWays = {&Balance::absorbed, &Balance::back, &Balance::open};
 constexpr double kRoundedAreas = 0x1p-44;  // relative; as in view_factors/view_factor.cpp
 
 bool is_zero(const Sum& x) { return x.lower == 0.0 && x.upper == 0.0; }
@@ -34,12 +35,14 @@ Sum times_nonnegative(const Sum& a, const Sum& b) {
 
 Sum one_minus(double rho) { return rho == 1.0 ? Sum{} : Sum{below(1.0 - rho), above(1.0 - rho)}; }
 
+Sum operator-(const Sum& a, const Sum& b) { return a + Sum{-b.upper, -b.lower}; }
+
 Sum interval(const BoundedValue& q) { return {q.lower, q.upper}; }
 Sum interval(const ViewFactor& f) { return {f.lower, f.upper}; }
 
 }  // namespace
 
-Balance balance_of(const Channel& channel, const System& system, const matrix::Matrix& matrix) {
+Balance sums_of(const Channel& channel, const System& system, const matrix::Matrix& matrix, const Laws& laws) {
   Balance balance;
   for (std::size_t i = 0; i < system.factors.size(); ++i) {
     const double given = matrix.factors.at(i, 0).area_from, emission = system.emissions[i];
@@ -52,20 +55,32 @@ Balance balance_of(const Channel& channel, const System& system, const matrix::M
     balance.open = balance.open + times_nonnegative(leaving, interval(matrix.open[i]));
   }
   for (Sum* part : {&balance.emitted, &balance.back, &balance.open}) part->lower = std::max(0.0, part->lower);
-  if (channel.is_bounded()) return balance;
-  for (Sum* part : {&balance.absorbed, &balance.back, &balance.open}) {
-    part->upper = std::numeric_limits<double>::infinity();
-  }
+  if (laws.loses_at_each_bounce) balance.absorbed.lower = std::max(0.0, balance.absorbed.lower);
+  if (laws.is_finite) return balance;
+  for (Sum Balance::*way : kWays) (balance.*way).upper = std::numeric_limits<double>::infinity();
   return balance;
 }
 
+bool is_contradiction(const Balance& sums) {
+  const Sum gone = sums.absorbed + sums.back + sums.open;
+  return gone.lower > sums.emitted.upper || gone.upper < sums.emitted.lower;
+}
+
+Balance clip(const Balance& sums, const Laws& laws) {
+  Balance clipped = sums;
+  if (!laws.adds_up || !(laws.is_finite || laws.loses_at_each_bounce)) return clipped;
+  for (std::size_t k = 0; k < kWays.size(); ++k) {
+    const Sum &a = sums.*kWays[(k + 1) % 3], &b = sums.*kWays[(k + 2) % 3], rest = sums.emitted - (a + b);
+    Sum& part = clipped.*kWays[k];
+    part.upper = std::min(part.upper, rest.upper);
+    if (a.lower >= 0.0 && b.lower >= 0.0) part.upper = std::min(part.upper, sums.emitted.upper);  // without a rounding
+    if (laws.is_finite) part.lower = std::max(part.lower, rest.lower);
+  }
+  return clipped;
+}
+
 bool is_balanced(const Solution& solution) {
-  const kernel::StandardArithmetic arithmetic;
-  return std::ranges::all_of(solution.channels, [](const Channel& channel) {
-    const Balance& b = channel.balance;
-    const Sum gone = b.absorbed + b.back + b.open;
-    return !channel.is_bounded() || (gone.lower <= b.emitted.upper && b.emitted.lower <= gone.upper);
-  });
+  return std::ranges::all_of(solution.channels, [](const Channel& channel) { return channel.is_balanced; });
 }
 
 }  // namespace exactff::radiosity

@@ -111,7 +111,16 @@ void set_unbounded(Channel& channel, const System& system, const Numbers& value)
   }
 }
 
-Channel solve_channel(const Scene& scene, const matrix::Matrix& matrix, const System& system) {
+// Sums that are a contradiction are kept as they are, to show it.
+void set_balance(Channel& channel, const System& system, const matrix::Matrix& matrix, bool adds_up) {
+  const bool loses = std::ranges::all_of(system.reflectances, [](double rho) { return rho <= 1.0; });
+  const Laws laws{.loses_at_each_bounce = loses, .adds_up = adds_up, .is_finite = channel.is_bounded()};
+  const Balance sums = sums_of(channel, system, matrix, laws);
+  channel.is_balanced = !laws.is_finite || !is_contradiction(sums);
+  channel.balance = channel.is_balanced ? clip(sums, laws) : sums;
+}
+
+Channel solve_channel(const Scene& scene, const matrix::Matrix& matrix, const System& system, bool adds_up) {
   const SolutionBounds bounds = bounds_of(system);
   Channel channel;
   if (bounds.upper.empty()) {
@@ -120,7 +129,7 @@ Channel solve_channel(const Scene& scene, const matrix::Matrix& matrix, const Sy
   } else {
     set_bounded(channel, system, bounds);
   }
-  channel.balance = balance_of(channel, system, matrix);
+  set_balance(channel, system, matrix, adds_up);
   return channel;
 }
 
@@ -167,15 +176,16 @@ Solution solve(const Scene& scene, const matrix::Matrix& matrix) {
   for (std::size_t i = 0; i < solution.patches.size(); ++i) {
     solution.areas.push_back(matrix.factors.at(i, 0).area_from);
   }
+  solution.reasons_against_balance = reasons_against_one(scene, matrix);
+  const bool adds_up = solution.reasons_against_balance.empty();
   System system{factors_of(matrix.factors), {}, {}};
   for (std::size_t c = 0; c < kChannels.size(); ++c) {
     const System before{{}, system.reflectances, system.emissions};
     set_colours(scene, solution.patches, kChannels[c], system);
     const bool is_same = c > 0 && before.reflectances == system.reflectances && before.emissions == system.emissions;
-    solution.channels[c] = is_same ? solution.channels[c - 1] : solve_channel(scene, matrix, system);
+    solution.channels[c] = is_same ? solution.channels[c - 1] : solve_channel(scene, matrix, system, adds_up);
   }
   set_claims(matrix, solution);
-  solution.reasons_against_balance = reasons_against_one(scene, matrix);
   return solution;
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exactff/scene_files.h"
@@ -226,7 +227,8 @@ TEST(Radiosity, OfAnySizeIsBounded) {
 class RadiosityCommand : public testing::Test {
  protected:
   [[nodiscard]] validation::ProgramRun run(const std::string& scene, std::vector<std::string> flags) const {
-    flags.insert(flags.begin(), {"radiosity", scene, "--accuracy", "1e-3"});
+    if (std::ranges::find(flags, "--accuracy") == flags.end()) flags.insert(flags.begin(), {"--accuracy", "1e-3"});
+    flags.insert(flags.begin(), {"radiosity", scene});
     return validation::run_program(EXACTFF_PROGRAM, flags);
   }
   [[nodiscard]] std::string write(const PlainScene& scene) const {
@@ -291,6 +293,44 @@ TEST_F(RadiosityCommand, WritesColoursForParaView) {
   const std::string text = validation::text_of(file("b.vtp"));
   for (const char* name : {"radiosity", "lower", "upper", "irradiance"}) {
     EXPECT_NE(text.find("Name=\"" + std::string(name) + "\" NumberOfComponents=\"3\""), std::string::npos) << name;
+  }
+}
+
+// The two numbers of each "[lower, upper]" in the line below the heading, by column.
+std::vector<std::pair<double, double>> balance_of(const std::string& output) {
+  std::istringstream lines(output.substr(output.find("Where the light goes")));
+  std::string line;
+  for (int i = 0; i < 3; ++i) std::getline(lines, line);
+  std::vector<std::pair<double, double>> parts;
+  std::istringstream cells(line);
+  for (std::string cell; cells >> cell;) {
+    const bool is_interval = cell.front() == '[';
+    const double lower = std::stod(cell.substr(is_interval ? 1 : 0));
+    if (is_interval) cells >> cell;
+    parts.emplace_back(lower, std::stod(cell));
+  }
+  return parts;
+}
+
+// Bounds that are wider than what is emitted are clipped.
+TEST_F(RadiosityCommand, PrintsABalanceThatIsPossible) {
+  PlainScene box = cube({0.75, 0.75, 0.75}, {0, 0, 0});
+  box.patches.pop_back();
+  box.materials[0].radiosity = {14, 14, 14};
+  const auto open = run(write(box), {"--accuracy", "0.2"});
+  const auto parts = balance_of(open.output);
+  ASSERT_EQ(parts.size(), 4U) << open.output;
+  EXPECT_EQ(parts[0], std::pair(14.0, 14.0)) << open.output;
+  for (const auto& [lower, upper] : parts) {
+    EXPECT_GE(lower, 0.0) << open.output;
+    EXPECT_LE(lower, upper) << open.output;
+    EXPECT_LE(upper, 14.0) << open.output;
+  }
+  EXPECT_LT(parts[3].first, parts[3].second);
+  const auto closed = run(write(cube({1, 1, 1}, {1, 1, 1})), {});  // nothing bounds its radiosities
+  for (const auto& [lower, upper] : balance_of(closed.output)) {
+    EXPECT_GE(lower, 0.0) << closed.output;
+    EXPECT_LE(upper, 6.0) << closed.output;
   }
 }
 

@@ -18,7 +18,9 @@ from ._views import _accuracy, _budget, _warn_of_width
 class Balance:
     """Where the light goes, in the unit of Ke times area: bounds of sums over all patches, one row for each channel.
 
-    ``emitted`` is the sum of the others, unless ``Radiosity.reasons_against_balance`` says why it need not be.
+    ``emitted`` is the sum of the others, unless ``Radiosity.reasons_against_balance`` says why it need not be. Then no
+    part is above what is emitted, and none is ever below 0; but a Kd above 1 may make ``absorbed`` negative, and, in a
+    channel without a bound, every upper bound infinite. Bounds are as strong as ``Radiosity.claim_of_balance``.
     """
 
     emitted: Floats  #: (3, 2)
