@@ -15,13 +15,15 @@
 namespace exactff::slips {
 
 enum class Kind {
-  kNormals,           // normals in the file (vn) contradict the winding
-  kInwardSurface,     // a closed surface looks inward, but encloses nothing, and there are faces outside
-  kUnseenFront,       // no other patch can see the front of a patch
-  kEmitterLooksAway,  // nothing lies before the front of an emitter
-  kDoubledFaces,      // two faces have the same corners and the same front
-  kOppositeFaces,     // two faces have the same corners and opposite fronts
-  kScale,             // coordinates suggest a wrong unit
+  kNormals,            // normals in the file (vn) contradict the winding
+  kInwardSurface,      // a closed surface looks inward, but encloses nothing, and there are faces outside
+  kUnseenFront,        // no other patch can see the front of a patch
+  kEmitterLooksAway,   // nothing lies before the front of an emitter
+  kDoubledFaces,       // two faces have the same corners and the same front
+  kOppositeFaces,      // two faces have the same corners and opposite fronts
+  kOverlappingFronts,  // fronts of different patches overlap in one plane, such as a window and its wall
+  kNearlyCoplanar,     // likewise, but their planes are a rounding apart
+  kScale,              // coordinates suggest a wrong unit
 };
 [[nodiscard]] std::string_view to_string(Kind kind);  // "unseen-front"
 
@@ -39,7 +41,30 @@ struct Finding {
 // look for one that another patch can see. A patch that can only be seen through narrow gaps may be reported. Parts of
 // closed surfaces are not, unless they emit. The number of rays and lines in a scene is limited, so that 100,000 faces
 // take about a second; patches beyond it are not reported.
+//
+// A flip is advised only after it was tried: by such rays, patches must then see each other that did not, and no fewer
+// pairs in all, nor fewer of which one emits. A room is seen from inside: a closed surface that looks inward is
+// reported only if a flip helps, and if an emitter, or more area than its own, comes into its sight. Where vn
+// contradict the winding, which is evidence of its own, it suffices that no fewer pairs see each other.
+//
+// kOverlappingFronts, kNearlyCoplanar: as overlapping_fronts() says, without pairs of kDoubledFaces. The largest few
+// are named.
 [[nodiscard]] std::vector<Finding> diagnose(const Scene& scene);
+
+// Two patches or faces whose fronts lie on each other in one plane. Each has its full form factor there, so what sees
+// them counts the common part twice.
+struct Overlap {
+  Selection smaller, larger;  // by area
+  double area = 0.0;          // of the common part, in the square of the scene's unit of length; an estimate
+  double apart = 0.0;         // the least distance, at most a millionth of a face's diameter; 0: exactly one plane
+  bool doubled = false;       // all faces of the common part have the same corners
+};
+// Between the selections, the largest area first. Faces that only touch do not overlap, but for slivers of a millionth
+// of the smaller face (of a ten-thousandth, if their planes differ). The time is near-linear in the number of faces,
+// unless many lie on each other: after two million overlapping pieces no more are looked for.
+[[nodiscard]] std::vector<Overlap> overlapping_fronts(const Scene& scene, std::span<const Selection> selections);
+// What they are, what follows and what to do. Requires overlaps that are exactly in one plane, at least one.
+[[nodiscard]] Problem warning_of_overlaps(const Scene& scene, std::span<const Overlap> overlaps);
 
 // Receivers and a source for a first try: a patch or a face each.
 struct FirstTry {

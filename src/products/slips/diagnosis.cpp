@@ -12,9 +12,9 @@
 namespace exactff::slips {
 
 std::string_view to_string(Kind kind) {
-  constexpr std::array<std::string_view, 7> kNames = {
-      "contradicting-normals", "inward-surface", "unseen-front", "emitter-looks-away",
-      "doubled-faces",         "opposite-faces", "scale"};
+  constexpr std::array<std::string_view, 9> kNames = {"contradicting-normals", "inward-surface",  "unseen-front",
+                                                      "emitter-looks-away",    "doubled-faces",   "opposite-faces",
+                                                      "overlapping-fronts",    "nearly-coplanar", "scale"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -153,3 +153,4 @@ std::vector<Finding> diagnose(const Scene& scene) {
 }
 
 }  // namespace exactff::slips
+  std::ranges::move(overlap_findings(scene), std::back_inserter(findings));

@@ -14,7 +14,8 @@ namespace exactff::slips {
 [[nodiscard]] std::optional<Finding> inward_surfaces(const Scene& scene);
 // kUnseenFront, kEmitterLooksAway. `inward`: the surfaces that inward_surfaces() has found.
 [[nodiscard]] std::vector<Finding> unseen_fronts(const Scene& scene, std::span<const Selection> inward);
-[[nodiscard]] std::vector<Finding> twin_faces(const Scene& scene);  // kDoubledFaces, kOppositeFaces
+[[nodiscard]] std::vector<Finding> twin_faces(const Scene& scene);        // kDoubledFaces, kOppositeFaces
+[[nodiscard]] std::vector<Finding> overlap_findings(const Scene& scene);  // kOverlappingFronts, kNearlyCoplanar
 [[nodiscard]] std::optional<Finding> odd_scale(const Scene& scene);
 
 }  // namespace exactff::slips
