@@ -75,7 +75,8 @@ struct FirstTry {
 // faces each other. Nothing if the scene has fewer than two faces with area.
 [[nodiscard]] std::optional<FirstTry> first_try(const Scene& scene);
 
-// "turn it round with --flip lamp", or, if that has been done, "leave out --flip for lamp". For a shell.
+// "turn it round with --flip lamp", or, if that has been done, "leave out --flip for lamp". For a shell. Empty if fewer
+// pairs of patches would then see each other, by the rays of diagnose().
 [[nodiscard]] std::string advice_to_flip(const Scene& scene, std::span<const Selection> selections);
 
 // Sources that are proved to give 0 at every receiver for a reason that suggests a slip: the receivers are behind the

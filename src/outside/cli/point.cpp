@@ -22,9 +22,10 @@ constexpr int kMostDigits = 10000;
 void warn_if_flipped(const Scene& scene, const PointResult& point) {
   for (const PointTerm& one : point.sources) {
     if (!behind_every_face(one.exact)) continue;
+    const std::string advice = slips::advice_to_flip(scene, std::span(&one.source, 1));
     std::cerr << "exactff: warning: the receiver is behind every face of '" << shown_name(scene, one.source)
-              << "' (a source emits only from its front, so the form factor is 0); if the other side is meant, "
-              << text::printable(slips::advice_to_flip(scene, std::span(&one.source, 1))) << '\n';
+              << "' (a source emits only from its front, so the form factor is 0)"
+              << (advice.empty() ? "" : "; if the other side is meant, " + text::printable(advice)) << '\n';
   }
 }
 

@@ -127,11 +127,11 @@ class Wording {
       const std::string who = count < looked_at_ ? std::to_string(count) : count == 1 ? "it" : "they";
       reasons.push_back(who + ' ' + (count == 1 ? one : many) + ' ' + rest);
       if (!law.empty()) laws.push_back(law);
-      advice.push_back(what_to_do);
+      if (std::ranges::find(advice, what_to_do) == advice.end()) advice.push_back(what_to_do);
     };
     add(counts.on_it, "lies", "lie", "on the source", "", "choose other receivers or another source");
     add(counts.behind, "is", "are", "behind the source", "a source emits only from its front",
-        "if the other side of " + name + " is meant, " + advice_to_flip(scene_, std::span(&source, 1)));
+        advice_to_turn(name, std::span(&source, 1)));
     add(counts.below, "looks", "look", "away from the source", "a receiver sees only what lies before it",
         advice_to_turn_receivers());
     add(counts.hidden, "lies", "lie", "just behind a face that hides the source, such as " + hiding_face(counts), "",
@@ -151,7 +151,13 @@ class Wording {
   [[nodiscard]] std::string advice_to_turn_receivers() const {
     const std::vector<Selection> patches = receiver_patches(scene_, receivers_);
     if (patches.empty()) return "if the other side is meant, turn the normals of the receivers round";
-    return "if the other side of " + listed(scene_, patches) + " is meant, " + advice_to_flip(scene_, patches);
+    return advice_to_turn(listed(scene_, patches), patches);
+  }
+
+  [[nodiscard]] std::string advice_to_turn(const std::string& names, std::span<const Selection> selections) const {
+    const std::string advice = advice_to_flip(scene_, selections);
+    return advice.empty() ? "choose other receivers or another source"
+                          : "if the other side of " + names + " is meant, " + advice;
   }
 
   [[nodiscard]] std::string hiding_face(const Counts& counts) const {
@@ -184,7 +190,8 @@ std::vector<Problem> warnings_of_dark_sources(const Scene& scene, std::span<cons
     const std::optional<Counts> counts = finder.counts(ExactSource(scene, source));
     if (counts) warnings.push_back(wording.problem(source, *counts));
   }
-  if (const auto inward = inward_surfaces(scene)) {
+  FlipTrials trials(scene);
+  if (const auto inward = inward_surfaces(scene, trials)) {
     const auto has_receivers = [&](const Selection& object) {
       return std::ranges::any_of(own, [&](const Selection& one) { return one.patch == object.patch; });
     };

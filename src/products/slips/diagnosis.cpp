@@ -40,7 +40,7 @@ std::string flag_to_flip(const Scene& scene, std::span<const Selection> selectio
   return flag_words(scene, "--flip", turned(scene, selections).not_yet);
 }
 
-std::string advice_to_flip(const Scene& scene, std::span<const Selection> selections) {
+std::string words_to_flip(const Scene& scene, std::span<const Selection> selections) {
   const Turned parts = turned(scene, selections);
   std::string advice;
   if (!parts.not_yet.empty()) {
@@ -52,7 +52,11 @@ std::string advice_to_flip(const Scene& scene, std::span<const Selection> select
   return advice + (advice.empty() ? "" : ", and ") + "leave out --flip for " + listed(scene, parts.by_flag);
 }
 
-std::optional<Finding> contradicting_normals(const Scene& scene) {
+std::string advice_to_flip(const Scene& scene, std::span<const Selection> selections) {
+  return FlipTrials(scene).try_flip(selections).darkens() ? std::string() : words_to_flip(scene, selections);
+}
+
+std::optional<Finding> contradicting_normals(const Scene& scene, FlipTrials& trials) {
   std::vector<FaceId> faces;
   std::vector<std::size_t> of_patch(scene.patches().size(), 0);
   std::size_t stated = 0;
@@ -76,11 +80,14 @@ std::optional<Finding> contradicting_normals(const Scene& scene) {
   }
   if (patches > kShown) counts += " and " + std::to_string(patches - kShown) + " more patches";
   Finding finding{.kind = Kind::kNormals, .objects = selections_of(scene, faces)};
-  finding.flag = flag_to_flip(scene, finding.objects);
+  const bool darkens = trials.try_flip(finding.objects).darkens();
+  if (!darkens) finding.flag = flag_to_flip(scene, finding.objects);
   finding.words = {.what = "the normals in the file (vn) contradict the winding of " +
                            text::counted_of(faces.size(), stated, "face") + ": " + counts,
                    .why = "the front is the side from which the vertices run counter-clockwise, whatever vn says",
-                   .suggestion = "if vn is right, " + advice_to_flip(scene, finding.objects)};
+                   .suggestion = darkens
+                                     ? "turning them round may hide patches from each other: look first which is right"
+                                     : "if vn is right, " + words_to_flip(scene, finding.objects)};
   return finding;
 }
 
@@ -142,15 +149,16 @@ std::vector<Finding> diagnose(const Scene& scene) {
   const auto add = [&](std::optional<Finding> finding) {
     if (finding) findings.push_back(std::move(*finding));
   };
-  add(contradicting_normals(scene));
-  const std::optional<Finding> inward = inward_surfaces(scene);
+  FlipTrials trials(scene);
+  add(contradicting_normals(scene, trials));
+  const std::optional<Finding> inward = inward_surfaces(scene, trials);
   add(inward);
   const std::vector<Selection> surfaces = inward ? inward->objects : std::vector<Selection>();
-  std::ranges::move(unseen_fronts(scene, surfaces), std::back_inserter(findings));
+  std::ranges::move(unseen_fronts(scene, surfaces, trials), std::back_inserter(findings));
   std::ranges::move(twin_faces(scene), std::back_inserter(findings));
+  std::ranges::move(overlap_findings(scene), std::back_inserter(findings));
   add(odd_scale(scene));
   return findings;
 }
 
 }  // namespace exactff::slips
-  std::ranges::move(overlap_findings(scene), std::back_inserter(findings));

@@ -4,16 +4,21 @@
 #include <optional>
 
 #include "exactff/slips.h"
+#include "slips/flip_trial.h"
 
 namespace exactff::slips {
 
 // "--flip a,b" for those that --flip has not turned round already.
 [[nodiscard]] std::string flag_to_flip(const Scene& scene, std::span<const Selection> selections);
 
-[[nodiscard]] std::optional<Finding> contradicting_normals(const Scene& scene);
-[[nodiscard]] std::optional<Finding> inward_surfaces(const Scene& scene);
+// The words of advice_to_flip(), which has tried it.
+[[nodiscard]] std::string words_to_flip(const Scene& scene, std::span<const Selection> selections);
+
+[[nodiscard]] std::optional<Finding> contradicting_normals(const Scene& scene, FlipTrials& trials);
+[[nodiscard]] std::optional<Finding> inward_surfaces(const Scene& scene, FlipTrials& trials);
 // kUnseenFront, kEmitterLooksAway. `inward`: the surfaces that inward_surfaces() has found.
-[[nodiscard]] std::vector<Finding> unseen_fronts(const Scene& scene, std::span<const Selection> inward);
+[[nodiscard]] std::vector<Finding> unseen_fronts(const Scene& scene, std::span<const Selection> inward,
+                                                 FlipTrials& trials);
 [[nodiscard]] std::vector<Finding> twin_faces(const Scene& scene);        // kDoubledFaces, kOppositeFaces
 [[nodiscard]] std::vector<Finding> overlap_findings(const Scene& scene);  // kOverlappingFronts, kNearlyCoplanar
 [[nodiscard]] std::optional<Finding> odd_scale(const Scene& scene);

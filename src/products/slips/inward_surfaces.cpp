@@ -1,7 +1,10 @@
 // Closed surfaces whose fronts look inward. A room does so rightly, and so does the wall of a hollow in a solid; a box
-// that stands among other things does not.
+// that stands among other things does not. A room that stands beside a few other faces is told from a box by what a
+// flip would change.
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "kernel/vec.h"
 #include "scene/closed_surfaces.h"
@@ -59,15 +62,39 @@ class InwardSurfaces {
     return wrong;
   }
 
-  [[nodiscard]] std::vector<FaceId> faces_of(const std::vector<std::uint32_t>& surfaces) const {
+  [[nodiscard]] std::vector<Selection> selections(const std::vector<std::uint32_t>& surfaces) const {
     std::vector<FaceId> faces;
     for (const std::uint32_t s : surfaces) {
       for (const std::uint32_t piece : pieces_[s]) faces.push_back(scene_.pieces()[piece].face);
     }
-    return faces;
+    return selections_of(scene_, std::move(faces));
+  }
+
+  // A flip brings patches into sight of each other, and is no mistake about a room beside a stray face: an emitter, or
+  // more area than its own, comes into its sight.
+  [[nodiscard]] bool is_better_turned(std::uint32_t surface, FlipTrials& trials) const {
+    const FlipEffect effect = trials.try_flip(selections({surface}));
+    return effect.helps() && (effect.lit_after > effect.lit_before || gains_area(surface, effect));
   }
 
  private:
+  [[nodiscard]] bool gains_area(std::uint32_t surface, const FlipEffect& effect) const {
+    std::set<FaceId> own;
+    std::set<std::size_t> patches;
+    for (const std::uint32_t piece : pieces_[surface]) own.insert(scene_.pieces()[piece].face);
+    for (const auto& [first, second] : effect.gained()) patches.insert({first, second});
+    double inside = 0.0, gained = 0.0;
+    for (std::size_t f = 0; f < scene_.faces().size(); ++f) {
+      const Face& face = scene_.faces()[f];
+      if (own.contains(static_cast<FaceId>(f))) {
+        inside += face.area;
+      } else if (patches.contains(index_of(face.patch))) {
+        gained += face.area;
+      }
+    }
+    return gained > inside;
+  }
+
   bool encloses_anything(std::uint32_t surface) {
     const Box& box = found_.surfaces()[surface].box;
     std::vector<Vec3> points;
@@ -122,17 +149,18 @@ class InwardSurfaces {
 
 }  // namespace
 
-std::optional<Finding> inward_surfaces(const Scene& scene) {
+std::optional<Finding> inward_surfaces(const Scene& scene, FlipTrials& trials) {
   InwardSurfaces surfaces(scene);
-  const std::vector<std::uint32_t> wrong = surfaces.find();
-  if (wrong.empty()) return std::nullopt;
-  Finding finding{.kind = Kind::kInwardSurface, .objects = selections_of(scene, surfaces.faces_of(wrong))};
+  std::vector<std::uint32_t> wrong = surfaces.find();
+  std::erase_if(wrong, [&](std::uint32_t surface) { return !surfaces.is_better_turned(surface, trials); });
+  Finding finding{.kind = Kind::kInwardSurface, .objects = surfaces.selections(wrong)};
+  if (wrong.empty() || (wrong.size() > 1 && !trials.try_flip(finding.objects).helps())) return std::nullopt;
   finding.flag = flag_to_flip(scene, finding.objects);
   finding.words = {.what = text::counted(wrong.size(), "closed surface") + (wrong.size() == 1 ? " looks" : " look") +
                            " inward and enclose" + (wrong.size() == 1 ? "s" : "") +
                            " no other face: " + listed(scene, finding.objects),
                    .why = "its outer side is its back, which emits nothing and receives nothing",
-                   .suggestion = advice_to_flip(scene, finding.objects)};
+                   .suggestion = words_to_flip(scene, finding.objects)};
   return finding;
 }
 

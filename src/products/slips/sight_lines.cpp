@@ -19,6 +19,12 @@ using kernel::difference;
 using kernel::dot;
 using kernel::unit;
 
+namespace {
+
+constexpr double kAtTheOrigin = 1e-9;  // of the scene's diameter
+
+}  // namespace
+
 SightLines::SightLines(const Scene& scene) : scene_(scene) {
   if (scene.pieces().empty()) return;
   const Vec3 first = scene.vertices()[scene.corners(scene.pieces().front()).front()];
@@ -63,27 +69,64 @@ std::optional<double> SightLines::crossing(std::uint32_t piece, const Vec3& from
   return t;
 }
 
-std::optional<Hit> SightLines::first_hit(const Vec3& from, const Vec3& direction, double limit) const {
+// Calls visit(piece, t) for each piece that the ray meets, in any order.
+template <class Visit>
+void SightLines::visit_crossings(const Vec3& from, const Vec3& direction, const Visit& visit) const {
   // Two pairs of half-spaces whose boundary planes hold the ray, and the one before its origin.
   const Vec3 axis = std::abs(direction.x) < 0.6 * kernel::max_norm(direction) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 u = unit(cross(direction, axis)), v = unit(cross(direction, u));
   const double blur = 1e-12 * diameter_;
   const HalfSpace shaft[] = {
       {u, -blur}, {{-u.x, -u.y, -u.z}, -blur}, {v, -blur}, {{-v.x, -v.y, -v.z}, -blur}, {unit(direction), 0.0}};
+  shaft_tree(scene_).query(from, shaft, [&](std::uint32_t piece) {
+    if (const std::optional<double> t = crossing(piece, from, direction)) visit(piece, *t);
+    return true;
+  });
+}
+
+std::optional<Hit> SightLines::first_hit(const Vec3& from, const Vec3& direction, double limit) const {
   const double same = kSamePlace * diameter_ / std::sqrt(dot(direction, direction));
   const auto is_before = [&](const Hit& a, const Hit& b) {
     return std::abs(a.distance - b.distance) > same || a.front == b.front ? a.distance < b.distance : a.front;
   };
   std::optional<Hit> first;
-  shaft_tree(scene_).query(from, shaft, [&](std::uint32_t piece) {
-    const std::optional<double> t = crossing(piece, from, direction);
-    if (!t || !(*t < limit)) return true;
-    const Hit hit{piece, *t, dot(normals_[piece], direction) < 0.0};
-    if (!hit.front && scene_.pieces()[piece].transparent) return true;
+  visit_crossings(from, direction, [&](std::uint32_t piece, double t) {
+    if (!(t < limit)) return;
+    const Hit hit{piece, t, dot(normals_[piece], direction) < 0.0};
+    if (!hit.front && scene_.pieces()[piece].transparent) return;
     if (!first || is_before(hit, *first)) first = hit;
-    return true;
   });
   return first;
+}
+
+std::vector<Hit> SightLines::hits_in_sight(const Vec3& from, const Vec3& direction, double limit) const {
+  const double same = kAtTheOrigin * diameter_ / kernel::length(direction);
+  std::vector<Hit> hits;
+  double end = limit;
+  visit_crossings(from, direction, [&](std::uint32_t piece, double t) {
+    if (!(t < end)) return;
+    hits.push_back({piece, t, dot(normals_[piece], direction) < 0.0});
+    if (!scene_.pieces()[piece].transparent) end = std::min(end, t + same);
+  });
+  std::erase_if(hits, [&](const Hit& hit) { return !(hit.distance < end); });
+  std::ranges::sort(hits, {}, &Hit::distance);
+  return hits;
+}
+
+std::vector<std::uint32_t> spread(const std::vector<std::uint32_t>& all, std::size_t count) {
+  if (all.size() <= count) return all;
+  std::vector<std::uint32_t> chosen;
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
+  return chosen;
+}
+
+Vec3 ray_before(const Vec3& normal, int index) {
+  const double share = (index + 0.5) / kRaysOfAnOrigin, radius = std::sqrt(share), turn = 2.399963229728653 * index;
+  const Vec3 axis = std::abs(normal.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 u = cross(normal, axis), v = cross(normal, u);
+  const double scale = radius / std::sqrt(dot(u, u)), up = std::sqrt(1.0 - share);
+  const double a = scale * std::cos(turn), b = scale * std::sin(turn);
+  return {a * u.x + b * v.x + up * normal.x, a * u.y + b * v.y + up * normal.y, a * u.z + b * v.z + up * normal.z};
 }
 
 }  // namespace exactff::slips

@@ -11,6 +11,13 @@
 
 namespace exactff::slips {
 
+// How a patch is looked at.
+inline constexpr std::size_t kOrigins = 6;  // pieces of a patch from which rays start
+inline constexpr int kRaysOfAnOrigin = 16;
+inline constexpr std::size_t kLinesFrom = 4;       // pieces of a patch from which lines start
+inline constexpr std::size_t kLinesTo = 256;       // other pieces at which they end
+inline constexpr std::uint64_t kMostLines = 3000;  // of a patch
+
 // What a ray meets first.
 struct Hit {
   std::uint32_t piece = 0;
@@ -34,8 +41,13 @@ class SightLines {
   // which doubles cannot tell apart, a front is met. Transparent faces are met only on their fronts. Faces at the
   // origin of the ray are not met.
   [[nodiscard]] std::optional<Hit> first_hit(const Vec3& from, const Vec3& direction, double limit) const;
+  // All faces that it meets up to the first one that is not transparent, with those at the same distance as that one,
+  // in the order of distances.
+  [[nodiscard]] std::vector<Hit> hits_in_sight(const Vec3& from, const Vec3& direction, double limit) const;
 
  private:
+  template <class Visit>
+  void visit_crossings(const Vec3& from, const Vec3& direction, const Visit& visit) const;
   [[nodiscard]] std::optional<double> crossing(std::uint32_t piece, const Vec3& from, const Vec3& direction) const;
 
   const Scene& scene_;
@@ -43,6 +55,13 @@ class SightLines {
   double diameter_ = 0.0;
   bool usable_ = false;
 };
+
+// At most `count` members, evenly spread.
+[[nodiscard]] std::vector<std::uint32_t> spread(const std::vector<std::uint32_t>& all, std::size_t count);
+
+// One of kRaysOfAnOrigin directions that are distributed about the normal by the cosine: a spiral with the golden
+// angle.
+[[nodiscard]] Vec3 ray_before(const Vec3& normal, int index);
 
 // The pieces whose bounding boxes come within `reach` of a box, until `visit` returns false.
 template <class Visit>

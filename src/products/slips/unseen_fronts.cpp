@@ -22,34 +22,10 @@ namespace exactff::slips {
 
 namespace {
 
-using kernel::cross;
 using kernel::difference;
 using kernel::dot;
 
-constexpr std::size_t kOrigins = 6;  // pieces of a patch from which rays start
-constexpr int kRaysOfAnOrigin = 16;
-constexpr std::size_t kLinesFrom = 4;         // pieces of a patch from which lines start
-constexpr std::size_t kLinesTo = 256;         // other pieces at which they end
-constexpr std::uint64_t kMostLines = 3000;    // of a patch
 constexpr std::uint64_t kMostRays = 100'000;  // in the scene, lines included
-
-// At most `count` members, evenly spread.
-std::vector<std::uint32_t> spread(const std::vector<std::uint32_t>& all, std::size_t count) {
-  if (all.size() <= count) return all;
-  std::vector<std::uint32_t> chosen;
-  for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
-  return chosen;
-}
-
-// Directions distributed by the cosine: a spiral with the golden angle.
-Vec3 direction(const Vec3& normal, int index) {
-  const double share = (index + 0.5) / kRaysOfAnOrigin, radius = std::sqrt(share), turn = 2.399963229728653 * index;
-  const Vec3 axis = std::abs(normal.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 u = cross(normal, axis), v = cross(normal, u);
-  const double scale = radius / std::sqrt(dot(u, u)), up = std::sqrt(1.0 - share);
-  const double a = scale * std::cos(turn), b = scale * std::sin(turn);
-  return {a * u.x + b * v.x + up * normal.x, a * u.y + b * v.y + up * normal.y, a * u.z + b * v.z + up * normal.z};
-}
 
 // What lies before the front of a patch.
 struct Front {
@@ -100,7 +76,7 @@ class FrontFinder {
       const Vec3 from = sight_.points_of(piece).front();
       for (int i = 0; i < kRaysOfAnOrigin; ++i) {
         if (!may_cast(front)) return;
-        const std::optional<Hit> hit = sight_.first_hit(from, direction(sight_.normal(piece), i), HUGE_VAL);
+        const std::optional<Hit> hit = sight_.first_hit(from, ray_before(sight_.normal(piece), i), HUGE_VAL);
         if (hit && !note(patch, *hit, front)) return;
       }
     }
@@ -214,9 +190,18 @@ Unseen find_unseen(const Scene& scene, std::span<const Selection> inward) {
   return unseen;
 }
 
+// `useful`: those of the objects that a flip brings into sight.
+std::string suggestion(const Scene& scene, std::span<const Selection> objects, std::span<const Selection> useful) {
+  if (useful.empty()) {
+    return std::string("turning ") + (objects.size() == 1 ? "it" : "them") + " round does not help; check the place";
+  }
+  const std::string whose = useful.size() == objects.size() ? "" : " of " + listed(scene, useful);
+  return "if the other side" + whose + " is meant, " + words_to_flip(scene, useful);
+}
+
 }  // namespace
 
-std::vector<Finding> unseen_fronts(const Scene& scene, std::span<const Selection> inward) {
+std::vector<Finding> unseen_fronts(const Scene& scene, std::span<const Selection> inward, FlipTrials& trials) {
   std::vector<Finding> findings;
   if (scene.patches().size() < 2) return findings;
   const Unseen unseen = find_unseen(scene, inward);
@@ -226,12 +211,12 @@ std::vector<Finding> unseen_fronts(const Scene& scene, std::span<const Selection
                                       text::counted(unseen.to_look_at, "patch", "patches");
   const auto add = [&](Kind kind, const std::vector<Selection>& objects, std::string what, std::string why) {
     if (objects.empty()) return;
-    findings.push_back({.kind = kind,
-                        .objects = objects,
-                        .flag = flag_to_flip(scene, objects),
-                        .words = {.what = std::move(what),
-                                  .why = std::move(why),
-                                  .suggestion = "if the other side is meant, " + advice_to_flip(scene, objects)}});
+    const std::vector<Selection> useful = trials.useful_flips(objects);
+    findings.push_back(
+        {.kind = kind,
+         .objects = objects,
+         .flag = flag_to_flip(scene, useful),
+         .words = {.what = std::move(what), .why = std::move(why), .suggestion = suggestion(scene, objects, useful)}});
   };
   add(Kind::kUnseenFront, unseen.patches,
       "no other patch sees the front of " + listed(scene, unseen.patches) + ", as far as rays can tell" + limit,

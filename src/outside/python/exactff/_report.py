@@ -30,7 +30,8 @@ class Finding(NamedTuple):
     kind: str  #: such as ``unseen-front``
     message: str
     objects: tuple[str, ...]  #: names of patches or faces
-    flag: str  #: for the program, such as ``--flip lamp``: in Python, ``scene.with_flipped("lamp")``
+    #: for the program, such as ``--flip lamp``: in Python, ``scene.with_flipped("lamp")``; empty if none helps
+    flag: str
 
 
 class Report(NamedTuple):
