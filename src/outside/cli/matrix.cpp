@@ -6,6 +6,7 @@
 #include <iostream>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -24,8 +25,8 @@
 #include "matrix/row_facts.h"
 #include "matrix/row_on_faces.h"
 #include "matrix/team.h"
-#include "text/phrases.h"
 #include "text/interval.h"
+#include "text/phrases.h"
 #include "text/refuse.h"
 #include "vtk/vtk.h"
 
@@ -53,7 +54,9 @@ constexpr const char* kMatrixFooter =
     "with --shard 1/4, 2/4, ... whose files `exactff merge` joins. With --resume and a complete FILE, also a merged\n"
     "one, the other files are made again. The bytes depend on none of this.\n"
     "View3D's output has six decimals and no bounds; its rows add up to 1 only within that. EnergyPlus reads the\n"
-    "names of patches as names of surfaces.\n"
+    "names of patches as names of surfaces. Where fronts of two patches overlap in one plane, such as a window and "
+    "its\n"
+    "wall, both count in full and rows exceed 1: a warning names them, and neither file is written without --force.\n"
     "\n"
     "Examples:\n"
     "  exactff matrix data/scenes/cornell_box.obj --from light --to floor,ceiling --accuracy 1e-4\n"
@@ -267,10 +270,23 @@ void print_files(const MatrixArguments& args) {
   }
 }
 
+// Programs for heat take the rows as they are, and would make energy of what exceeds 1.
+void check_overlaps(const MatrixArguments& args, const Scene& scene, const std::vector<Selection>& to) {
+  std::optional<Problem> overlaps = problem_of_overlaps(scene, to);
+  if (!overlaps) return;
+  if (!args.force && !(args.view3d.empty() && args.energyplus.empty())) {
+    overlaps->why = "a file for EnergyPlus or View3D with such rows makes energy, and was not written";
+    overlaps->suggestion += "; --force writes it all the same";
+    throw InputError(std::move(*overlaps));
+  }
+  print_warnings(std::vector<Problem>{std::move(*overlaps)});
+}
+
 // Before anything that takes time, what the files cannot hold is refused.
 void check_content(const MatrixArguments& args, const Scene& scene, const std::vector<Selection>& from,
                    const std::vector<Selection>& to) {
   check_row_of_vtk(args, from, to);
+  check_overlaps(args, scene, to);
   const matrix::Matrix empty{{from, to, std::vector<ViewFactor>(from.size() * to.size())}, {}, {}};
   if (!args.view3d.empty()) (void)view3d_text(scene, empty);
   if (!args.energyplus.empty()) (void)energyplus_text(scene, empty, args.zone);
@@ -401,7 +417,10 @@ void add_outputs(CLI::App& command, MatrixArguments& args) {
   command.add_option("--shard", args.shard, "Compute only part I of N, for exactff merge: 1/4 is the first of four")
       ->type_name("I/N");
   CLI::Option* resume = command.add_flag("--resume", args.resume, "Continue an interrupted run, if there is one");
-  command.add_flag("--force", args.force, "Start again and replace existing files")->excludes(resume);
+  command
+      .add_flag("--force", args.force,
+                "Start again and replace existing files; write those for EnergyPlus and View3D even if fronts overlap")
+      ->excludes(resume);
 }
 
 }  // namespace

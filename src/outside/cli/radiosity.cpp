@@ -6,7 +6,9 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/command.h"
@@ -20,9 +22,9 @@
 #include "flags/lists.h"
 #include "flags/scene.h"
 #include "radiosity/on_faces.h"
+#include "text/interval.h"
 #include "text/json_document.h"
 #include "text/phrases.h"
-#include "text/interval.h"
 #include "vtk/vtk.h"
 
 namespace exactff::cli {
@@ -41,10 +43,10 @@ constexpr const char* kRadiosityFooter =
     "no\n"
     "upper bound; the output says so and why, and the exit code is 3. 'radiosity' is then an estimate.\n"
     "What is emitted must be what is absorbed, meets backs of faces and leaves; if it is not, the exit code is 1.\n"
-    "\n"
-    "Examples:\n"
     "The balance is printed as bounds, [lower, upper], within what is possible; a number alone is rounded to six "
     "digits.\n"
+    "\n"
+    "Examples:\n"
     "  exactff radiosity data/scenes/cornell_box.obj --accuracy 1e-4\n"
     "  exactff radiosity data/scenes/cornell_box.obj --accuracy 1e-4 -o build/box.csv --vtk build/box.vtp";
 
@@ -271,6 +273,9 @@ int run(const RadiosityArguments& args) {
   const Scene scene = load(args.scene, args.two_sided);
   const std::vector<Selection> patches = radiosity::patches_of(scene);
   warn_of_darkness(scene, patches);
+  if (std::optional<Problem> overlaps = problem_of_overlaps(scene, patches)) {
+    print_warnings(std::vector<Problem>{std::move(*overlaps)});
+  }
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
   const matrix::Matrix matrix =

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cli/output.h"
+#include "exactff/slips.h"
 #include "flags/lists.h"
 #include "text/phrases.h"
 
@@ -30,6 +31,13 @@ Scene load(const flags::SceneArguments& args, const std::vector<std::string>& tw
   print_warnings(scene.warnings());
   if (two_sided.empty()) return scene;
   return matrix::with_two_sided(scene, flags::selections_named(scene, two_sided));
+}
+
+std::optional<Problem> problem_of_overlaps(const Scene& scene, std::span<const Selection> columns) {
+  std::vector<slips::Overlap> overlaps = slips::overlapping_fronts(scene, columns);
+  std::erase_if(overlaps, [](const slips::Overlap& one) { return one.apart > 0.0; });
+  if (overlaps.empty()) return std::nullopt;
+  return slips::warning_of_overlaps(scene, overlaps);
 }
 
 void warn_of_width(const matrix::Matrix& matrix, const ViewFactorOptions& options) {

@@ -1,6 +1,8 @@
 // What the commands that compute view factors do and say alike.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,10 @@ namespace exactff::cli {
 
 // With the backs of the patches and faces in `two_sided`. Prints the scene's warnings.
 [[nodiscard]] Scene load(const flags::SceneArguments& args, const std::vector<std::string>& two_sided);
+
+// Of fronts of these columns that overlap, if any do: what to do about it. Found by estimates, before anything is
+// computed.
+[[nodiscard]] std::optional<Problem> problem_of_overlaps(const Scene& scene, std::span<const Selection> columns);
 
 // Warns of the entries that are wider than the accuracy.
 void warn_of_width(const matrix::Matrix& matrix, const ViewFactorOptions& options);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -440,6 +441,44 @@ TEST_F(MatrixFilesOfTheCommand, ShowOneRowInParaView) {
   EXPECT_EQ(run({scene_, "--from", "srf-1", "--vtk", file("row.vtp")}).exit_code, 0);
   const std::string text = validation::text_of(file("row.vtp"));
   EXPECT_NE(text.find("Name=\"factor\""), std::string::npos);
+}
+
+// A window on a wall counts besides it.
+TEST_F(MatrixFilesOfTheCommand, OfOverlappingFrontsAreWrittenOnlyByForce) {
+  const validation::TemporaryDirectory aside;
+  std::string told;
+  const auto command = [&](std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {"matrix", EXACTFF_DATA_DIR "/regression/window_on_a_wall.obj", "--accuracy", "0.1"});
+    const validation::RunningProgram program(EXACTFF_PROGRAM, flags, aside.path() / "told");
+    const int exit_code = program.wait();
+    told = program.error();
+    return exit_code;
+  };
+  const std::string names = "'window' lies in the plane of 'east' and overlaps it by 1 (area)";
+  for (const char* flag : {"--energyplus", "--view3d"}) {
+    EXPECT_EQ(command({flag, file("factors.txt"), "-o", file("m.csv")}), 2);
+    EXPECT_NE(told.find(names), std::string::npos) << told;
+    EXPECT_NE(told.find("; --force writes it all the same\n"), std::string::npos) << told;
+    EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+    EXPECT_EQ(command({flag, file("factors.txt"), "--force"}), 0);
+    EXPECT_TRUE(std::filesystem::remove(file("factors.txt")));
+    EXPECT_EQ(command({flag, file("factors.txt"), "--from", "floor,east", "--to", "floor,east"}), 0) << told;
+    EXPECT_TRUE(std::filesystem::remove(file("factors.txt"))) << "the window is no column";
+  }
+  EXPECT_EQ(command({"-o", file("m.csv")}), 0);
+  EXPECT_EQ(told.find("warning: " + names), 0U) << told;
+  EXPECT_EQ(command({"--from", "floor", "--to", "east", "--plain"}), 0);
+  EXPECT_EQ(told, "");
+}
+
+// A draft's bounds of a row, or those of a coarse matrix, may reach beyond 1, which no row does.
+TEST_F(MatrixFilesOfTheCommand, ShowsNoSumAboveOneThatCannotBe) {
+  const std::string room = EXACTFF_DATA_DIR "/scenes/cornell_box.obj";
+  const auto draft = run({room, "--draft", "--from", "floor", "--backs", "--to", "all,sky"});
+  EXPECT_NE(draft.output.find(", 1]\n"), std::string::npos) << draft.output;
+  const auto doubled =
+      run({EXACTFF_DATA_DIR "/regression/window_on_a_wall.obj", "--accuracy", "0.1", "--from", "west"});
+  EXPECT_EQ(doubled.output.find(", 1]\n"), std::string::npos) << doubled.output;
 }
 
 }  // namespace
