@@ -174,6 +174,30 @@ TEST(Overlaps, AStrayFaceOutsideTurnsNoRoom) {
   }
 }
 
+// The ground outside would see five walls, but fifteen pairs of them would no longer see each other.
+TEST(Overlaps, ARoomAboveTheGroundIsNotTurned) {
+  std::istringstream in(
+      "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 0\nv 0 0 2.5\nv 4 0 2.5\nv 4 3 2.5\nv 0 3 2.5\n"
+      "v -50 -50 -1\nv 50 -50 -1\nv 50 50 -1\nv -50 50 -1\n"
+      "g floor\nf 1 2 3 4\ng ceiling\nf 8 7 6 5\ng south\nf 5 6 2 1\ng east\nf 6 7 3 2\ng north\nf 7 8 4 3\n"
+      "g west\nf 8 5 1 4\ng ground\nf 9 10 11 12\n");
+  const Scene scene = read_obj(in, "s.obj");
+  EXPECT_EQ(kinds_in(scene), Names{"unseen-front"});
+  EXPECT_EQ(diagnose(scene)[0].flag, "");
+}
+
+// Turned round, a carpet that looks down would lie on the floor as a second front.
+TEST(Overlaps, NoFrontIsTurnedOntoAnother) {
+  PlainScene plain;
+  add_tile(plain, "floor", 0, 0, 4, 4);
+  plain.add_ring(plain.patch("carpet"), {{1, 1, 0}, {1, 2, 0}, {2, 2, 0}, {2, 1, 0}});
+  plain.add_ring(plain.patch("wall"), {{0, 0, 0}, {0, 4, 0}, {0, 4, 4}, {0, 0, 4}});
+  const Scene scene = generate::build(plain);
+  EXPECT_EQ(words_in(scene, Kind::kUnseenFront),
+            "no other patch sees the front of 'carpet', as far as rays can tell (receivers there see nothing, and it "
+            "lights nothing); turning it round does not help; check the place");
+}
+
 // Walls whose vn all contradict a winding under which they see each other.
 TEST(Overlaps, NormalsThatWouldDarkenARoomAreDoubted) {
   std::istringstream in(
