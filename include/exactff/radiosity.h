@@ -34,10 +34,10 @@ struct BoundedValue {
 
 // Where the light goes, in the unit of Ke times area: bounds of sums over all patches and bounces.
 //   emitted = absorbed + what meets backs of faces + what meets nothing
-// The bounds of the sums are clipped by what is proved (src/products/radiosity/balance.h), however wide the view factors
-// are. None of them is below 0, and while `reasons_against_balance` is empty none of the three is above what is emitted.
-// But if some Kd is above 1, `absorbed` may be negative and light may be gained: then only sums that are bounded have
-// upper bounds. Where B is infinite, light that bounces for ever is in none of the three.
+// The bounds of the sums are clipped by what is proved (src/products/radiosity/balance.h), however wide the view
+// factors are. None of them is below 0, and while `reasons_against_balance` is empty none of the three is above what is
+// emitted. But if some Kd is above 1, `absorbed` may be negative and light may be gained: then only sums that are
+// bounded have upper bounds. Where B is infinite, light that bounces for ever is in none of the three.
 struct Balance {
   matrix::Sum emitted, absorbed, back, open;
 };

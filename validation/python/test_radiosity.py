@@ -1,6 +1,7 @@
 """Radiosities after all bounces, judged by NumPy's dense solver."""
 
 import csv
+import warnings
 
 import numpy as np
 import pytest
@@ -64,6 +65,15 @@ def test_radiosities_are_the_programs(tmp_path):
     assert found.reasons_against_balance == () and (found.balance.back == 0.0).all()
     gone = found.balance.absorbed + found.balance.back + found.balance.open
     assert (gone[:, 0] <= found.balance.emitted[:, 1]).all() and (found.balance.emitted[:, 0] <= gone[:, 1]).all()
+
+
+def test_the_balance_is_possible_however_coarse_the_view_factors_are():
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", exactff.ModellingWarning)
+        balance = exactff.radiosity(cube([0.9, 0.5, 1.0], [1.0, 2.0, 3.0]), accuracy=0.5).balance
+    for part in (balance.absorbed, balance.back, balance.open):
+        assert (part[:, 0] >= 0.0).all() and (part[:, 0] <= part[:, 1]).all()
+        assert (part[:, 1] <= balance.emitted[:, 1]).all()
 
 
 def test_without_a_bound_there_is_a_warning():
