@@ -91,8 +91,7 @@ void RaySum::look_from(const Receiver& receiver) {
   rays_ = 0;
 }
 
-bool RaySum::aim(const RaySource& source, std::size_t index, Reach reach, std::size_t points) {
-  trace();
+bool RaySum::look_at(const RaySource& source, std::size_t index, Reach reach) {
   const SourceRoot& root = source.roots[index];
   const RayPlane& plane = source.planes[root.plane];
   if (view_.is_own(root.face) || max_norm(view_.point) > kFarthest) return false;
@@ -104,8 +103,13 @@ bool RaySum::aim(const RaySource& source, std::size_t index, Reach reach, std::s
   patch_ = make_sub_patch(polygon_);
   height_ = dot(plane.unit_normal, view_.point - plane.front.frame[0]);
   if (reach == Reach::kVisible) height_ = std::max(0.0, height_);  // x is in front: a negative one is rounding
-  if (!clip(reach)) return false;
-  gather(plane, reach, points);
+  return clip(reach);
+}
+
+bool RaySum::aim(const RaySource& source, std::size_t index, Reach reach, std::size_t points) {
+  trace();
+  if (!look_at(source, index, reach)) return false;
+  gather(source.planes[source.roots[index].plane], reach, points);
   return true;
 }
 
@@ -164,6 +168,11 @@ double RaySum::kernel_near_x(const Vec3& point) const {
   const double source_cosine = std::min(1.0, height_ / distance);
   const double kernel = std::numbers::inv_pi * receiver_cosine * source_cosine / distance / distance;
   return std::min(kernel, kLargestKernel);
+}
+
+double RaySum::cosine_kernel(const Vec3& point) const {
+  const double distance = length(point);
+  return distance > 0.0 ? std::numbers::inv_pi * std::max(0.0, dot(view_.unit_normal, point)) / distance : 0.0;
 }
 
 void RaySum::add(const Vec3& point, double weight) {

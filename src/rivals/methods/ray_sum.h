@@ -54,14 +54,19 @@ class RaySum {
   void look_from(const Receiver& receiver);
   [[nodiscard]] const adaptive::ReceiverView& view() const { return view_; }
 
-  // Selects a root, for about `points` visibility queries. False if no part of it counts.
+  // The part of a root that counts, clipped by the horizon, is polygon() afterwards, unless this is false: none counts.
+  [[nodiscard]] bool look_at(const RaySource& source, std::size_t root, Reach reach);
+  // The same, and selects the root for about `points` visibility queries.
   [[nodiscard]] bool aim(const RaySource& source, std::size_t root, Reach reach, std::size_t points);
-  [[nodiscard]] const adaptive::SubPatch& patch() const { return patch_; }  // the root, relative to x, unclipped
-  [[nodiscard]] double height() const { return height_; }                   // of x above its plane; negative behind
+  [[nodiscard]] const adaptive::SubPatch& patch() const { return patch_; }     // the root, relative to x, unclipped
+  [[nodiscard]] double height() const { return height_; }                      // of x above its plane; negative behind
+  [[nodiscard]] const std::vector<Vec3>& polygon() const { return polygon_; }  // convex, corners relative to x
 
   // cos th_r cos th_s / (pi r^2) at a point of the root, 0 below the horizon. Requires a root that was aimed at with
   // Reach::kVisible, so that x is not behind it. At most kLargestKernel, so that no sum of it overflows.
   [[nodiscard]] double kernel(const Vec3& point) const;
+  // cos th_r / pi at a point, 0 below the horizon.
+  [[nodiscard]] double cosine_kernel(const Vec3& point) const;
 
   // Cuts every root of the source that counts into splits x splits parts and calls add(part, key) for each, with its
   // own key for random numbers. `points` is the number of queries in each part. Returns the number of parts.
