@@ -38,6 +38,19 @@ double within_unit(double t) { return within(t, 0.0, 1.0); }
 // The components are about 1 or negligible: nothing overflows.
 double plain_hypotenuse(double a, double b) { return std::sqrt(a * a + b * b); }
 
+double cosine(const Vec3& a, const Vec3& b) {
+  const double lengths = length(a) * length(b);
+  return lengths > 0.0 ? dot(a, b) / lengths : 1.0;
+}
+
+// |a| |b| + a.b
+double half_angle_term(const Vec3& a, const Vec3& b) {
+  const double lengths = length(a) * length(b), product = dot(a, b);
+  if (product >= 0.0) return lengths + product;
+  const Vec3 normal = cross(a, b);
+  return dot(normal, normal) / (lengths - product);
+}
+
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
 
 // Only the choice of the map depends on it, as for parallelograms (sub_patch.cpp).
@@ -53,6 +66,11 @@ bool is_rectangle(std::span<const Vec3> corners) {
 SolidAnglePart SolidAnglePart::triangle(const Vec3& a, const Vec3& b, const Vec3& c, double height) {
   SolidAnglePart part;
   part.corners_ = {a, b, c};
+  // The side that x sees under the largest angle becomes (A, B): where that is almost a half turn, only p tells how far
+  // x is from the side.
+  const double ab = cosine(a, b), bc = cosine(b, c), ca = cosine(c, a);
+  if (bc < ab && bc <= ca) part.corners_ = {b, c, a};
+  if (ca < ab && ca < bc) part.corners_ = {c, a, b};
   part.prepare_triangle(height);
   return part;
 }
@@ -75,7 +93,7 @@ void SolidAnglePart::prepare_triangle(double height) {
   length_e_ = length(e_);
   const double length_c = length(c);
   det_ = length(cross(b - a, e_)) * height;
-  p_ = length_a_ * length_b_ + dot(a, b);
+  p_ = half_angle_term(a, b);
   q_ = length_a_ * dot(b, e_) + length_b_ * dot(a, e_);
   solid_angle_ = 2.0 * std::atan2(det_, p_ * length_c + dot(b, c) * length_a_ + dot(c, a) * length_b_);
 }
