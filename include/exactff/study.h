@@ -1,10 +1,14 @@
 // A study of one scene: approximate methods compared with the exact form factor over many receivers, with tables and a
-// report. Tampieri's ray-sampled adaptive algorithm is run at every receiver, for values of all its parameters. All
-// methods are compared with each other, with increasing effort and many seeds, at some of the receivers.
+// report. Every setting of every method is run at some of the receivers, with many seeds; these runs alone decide which
+// method is the best for a wanted error. Tampieri's ray-sampled adaptive algorithm is also run at every receiver, for
+// values of all its parameters, and its leaves are compared with what is really visible.
 //
 // Errors are approximate minus exact. The error in F is a pure number. The error in radiosity is the value of rho_c *
 // sum over sources of B_c (F~ - F) that has the largest magnitude over the colour channels c, with its sign. eps_B is
 // compared with the error in radiosity, summed over the sources.
+//
+// A setting is accurate to e if its RMS error in radiosity, over the chosen receivers and the seeds, is at most e times
+// the radiosity of the brightest receiver. Its time is a multiple of the exact method's: see MethodCell.
 #pragma once
 
 #include <array>
@@ -35,7 +39,7 @@ struct Sweeps {
   std::vector<std::uint64_t> seeds = {};     // default: 1 .. 10
   std::vector<SamplePattern> patterns = {};  // default: jittered, then the other three
   std::vector<Variant> variants = {};        // default: mended, then literal
-  bool enabled = true;                       // false: the adaptive algorithm is not run on its own
+  bool enabled = true;                       // false: the adaptive algorithm is not swept
 };
 
 // All combinations of the lists are run if there are at most this many. Otherwise the plane eps_B x rays is run, and
@@ -45,11 +49,12 @@ inline constexpr std::size_t kFullProductLimit = 40;
 enum class Parameter { kEpsB, kEpsA, kRays, kSeed, kPattern, kVariant };
 inline constexpr std::size_t kParameterCount = 6;
 
-// A method with increasing effort. Its rungs differ in one setting.
+// A method with increasing effort. Its rungs differ in one setting, or are what no other ladder has of the sweeps.
 struct Ladder {
   std::string name;                    // "area sampling, stratified"
-  std::string along;                   // the setting that differs; empty if there is only one rung
+  std::string along;                   // the setting that differs; empty if there is only one rung, or no such setting
   std::vector<methods::Choice> rungs;  // in order of increasing effort
+  bool only_of_sweeps = false;         // it is there for the settings of the sweeps alone
 };
 
 // Parses "area-sampling:pattern=stratified,samples=4|16|64": the text of a method as for methods::parse, where one
@@ -58,7 +63,7 @@ struct Ladder {
 
 // How the methods are compared with each other.
 struct MethodSweep {
-  bool enabled = true;
+  bool enabled = true;               // false: only the exact method and the sweeps
   std::vector<Ladder> ladders = {};  // default: every method of the library
   std::size_t seeds = 30;            // stochastic methods run with the seeds 1 .. seeds
   std::size_t receivers = 48;        // at most this many, chosen evenly among those that see something
@@ -156,20 +161,29 @@ struct TimeSummary {
   double mean_partly = 0.0;
 };
 
-// The results of one rung of a ladder at the chosen receivers.
+// The results of one rung of a ladder at the chosen receivers: of one setting.
+//
+// Times are those of one thread at work. At each receiver in turn, the exact method and the setting are called, in
+// several rounds. The time at a receiver is the median over the rounds of the ratio of the two, times the median time
+// of the exact method there; so the machine's speed may drift. `seconds` is the mean over all chosen receivers. A slow
+// setting is measured at some of them, and its time at the others is taken to be in proportion to the exact method's.
 struct MethodCell {
   std::size_t ladder = 0;
   std::size_t rung = 0;
+  std::vector<std::size_t> settings;                  // those of Study::settings that are this one, with whatever seed
   std::vector<std::uint64_t> seeds;                   // a single 0 if the method uses no random numbers
   std::vector<std::vector<double>> values;            // F, by seed, then by chosen receiver
   std::vector<std::vector<double>> radiosity_errors;  // the same
   ErrorStatistics error;                              // errors in radiosity, over seeds and receivers
   ErrorStatistics error_partly;                       // where the source is partly hidden
   ErrorStatistics error_visible;                      // where it is wholly visible
-  double work = 0.0;  // samples or pixels, or else leaves and rays, per receiver on average
-  // Seconds per receiver for all sources: the median over repetitions, then the mean over receivers. NaN if not timed.
-  double seconds = kNotTimed;
+  double work = 0.0;             // samples or pixels, or else leaves and rays, per receiver on average
+  double planned_seconds = 0.0;  // of one evaluation, by counted work
+  double seconds = kNotTimed;    // per receiver for all sources
   double seconds_partly = kNotTimed;
+  // The quartiles of the ratios over the rounds, averaged over the receivers as the times are.
+  double ratio_low = kNotTimed;
+  double ratio_high = kNotTimed;
 };
 
 // The exponent of error = c * work^exponent, fitted over the rungs for each seed: the mean over the seeds, with its
@@ -187,7 +201,7 @@ struct LadderSlopes {
   std::optional<Slope> visible;  // over the receivers that see all of it
 };
 
-// The results of the middle rung of a ladder at every receiver, with its first seed.
+// The results of the middle rung of a ladder at every receiver, with its first seed. Not of ladders of the sweeps only.
 struct MethodField {
   std::size_t ladder = 0;
   std::size_t rung = 0;
@@ -197,7 +211,7 @@ struct MethodField {
 
 // The comparison of the methods. A ladder stops before the rung whose counted work (rays, pixels, ...), at a fixed
 // price per unit, would exceed the budget. The set of rungs run therefore depends on the request alone, never on a
-// clock.
+// clock. Settings of the sweeps are run nevertheless, with fewer seeds.
 struct MethodStudy {
   std::vector<Ladder> ladders;
   std::vector<std::size_t> receivers;  // the chosen receivers: indices into Study::exact, ascending
@@ -224,14 +238,18 @@ struct Profile {
 struct Study {
   Request request;  // sources, sweeps and threads filled in
   double largest_rho_b = 0.0;
-  std::vector<AdaptiveOptions> settings;  // none, and no samples, summaries or times, if the sweeps are not enabled
+  std::vector<AdaptiveOptions> settings;  // of the sweeps; none, and no samples, summaries or times, without them
   std::size_t base = 0;                   // index into settings: the point where the sweeps cross
   bool full_product = false;
   std::vector<ExactRow> exact;                  // by receiver
   std::vector<std::vector<SampleRow>> samples;  // by setting, then receiver
   std::vector<Summary> summaries;               // by setting
   TimeSummary exact_time;
-  std::vector<TimeSummary> times;  // by setting
+  std::vector<TimeSummary> times;  // by setting; the means are those of its MethodCell
+  // The exact method's time while one setting was measured, divided by its median over all: the 5th and the 95th
+  // percentile over the settings. Far from 1 on a machine whose speed drifted.
+  double exact_fastest = 1.0;
+  double exact_slowest = 1.0;
   std::array<std::size_t, 4> receivers_by_sight{};
   std::vector<std::size_t> timed;  // the receivers that were timed
   // The receivers whose leaves were compared with the exact visible region, in ascending order: all of them, or some of
@@ -249,10 +267,9 @@ struct Study {
 };
 
 // Runs the study. Everything except the times depends on the request alone, not on the number of threads. Times are
-// measured afterwards with one thread and no other work: the median of three calls by a steady clock, after a first
-// call with the same arguments. Values in `journal` are taken from it, and new values are stored there. Throws
-// InputError if there is no receiver or no source, if the sources' radiosities are too large to be added (beyond
-// 1e290), or if the sampled methods do not accept the scene.
+// measured afterwards with one thread and no other work (MethodCell). Values in `journal` are taken from it, and new
+// values are stored there. Throws InputError if there is no receiver or no source, if the sources' radiosities are too
+// large to be added (beyond 1e290), or if the sampled methods do not accept the scene.
 [[nodiscard]] Study run(Request request, const Hooks& hooks = {}, jobs::Journal* journal = nullptr);
 
 // Writes tables and one HTML page with figures into a hidden folder beside `folder`, and renames it at the end. The

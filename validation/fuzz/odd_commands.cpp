@@ -170,7 +170,6 @@ class CommandWriter {
     if (has_any({"--exr", "--position-layer", "--normal-layer"})) {
       std::ranges::replace(words_, "in/receivers.csv", "in/gbuffer.exr");
     }
-    if (has_any({"--method-seeds", "--method-receivers", "--method-budget"})) std::erase(words_, "--no-methods");
   }
 
   void give(const OptionRow& row) {

@@ -16,7 +16,7 @@
 namespace exactff::flags {
 namespace {
 
-constexpr int kMostRays = 1 << 20;
+constexpr int kMostRays = 65536;  // as of the method
 
 double to_tolerance(const std::string& text, const std::string& flag) {
   const text::ParsedNumber number = text::parse_number(text);
@@ -99,12 +99,6 @@ void check_effects(const ComparisonArguments& args) {
                              {"--sweep-budget", &args.sweep_budget}}),
                 "beside --method", "with --method, the sweep of Tampieri's algorithm over these values does not run",
                 "add --sweep, or write a setting of the method, such as --method adaptive:eps_B=0.1|0.01,rays=16");
-  }
-  if (args.no_methods) {
-    refuse_idle(given_flags({{"--method-seeds", &args.method_seeds},
-                             {"--method-receivers", &args.method_receivers},
-                             {"--method-budget", &args.method_budget}}),
-                "beside --no-methods", "no method is compared", "remove --no-methods");
   }
 }
 
@@ -272,7 +266,7 @@ void ComparisonArguments::add_to(CLI::App& app) {
                      "sweep)")
           ->type_name("METHOD")
           ->take_all();
-  app.add_flag("--no-methods", no_methods, "Run only the sweep of the ray-sampled adaptive algorithm")
+  app.add_flag("--no-methods", no_methods, "Run only the exact method and the sweep of the ray-sampled adaptive algorithm")
       ->excludes(method);
   app.add_flag("--sweep", sweep,
                "Also run the ray-sampled adaptive algorithm over --eps-b, --eps-a, --rays, --seeds, --pattern and "

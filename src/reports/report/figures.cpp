@@ -10,8 +10,10 @@
 #include "kernel/vec.h"
 #include "page/plot_script.h"
 #include "report/strip.h"
+#include "report/verdicts.h"
 #include "study/ladders.h"
 #include "study/settings.h"
+#include "study/statistics.h"
 #include "text/escape.h"
 #include "text/phrases.h"
 
@@ -179,21 +181,19 @@ class FigureMaker {
   }
 
   void add_error_against_time() {
-    const bool partly = study_.receivers_by_sight[static_cast<std::size_t>(Sight::kPartly)] > 0;
-    const auto time_of = [&](const TimeSummary& t) { return 1e6 * (partly ? t.median_partly : t.median); };
-    std::vector<page::Series> series = series_by_rays([&](std::size_t k) {
-      const Summary& s = study_.summaries[k];
-      return std::pair(time_of(study_.times[k]), partly ? s.radiosity_partly.rms : s.radiosity.rms);
+    const double brightest = study::largest_radiosity(study_);
+    if (!(brightest > 0.0))
+      return leave_out("figure: Tampieri’s algorithm: error against run time", "every error is 0");
+    const std::vector<page::Series> series = series_by_rays([&](std::size_t k) {
+      const MethodCell* cell = cell_of_setting(study_, k);
+      return std::pair(1e6 * study_.times[k].mean, cell != nullptr ? relative_error(study_, *cell) : 0.0);
     });
-    const double exact = time_of(study_.exact_time);
-    page::Axes axes{"time per receiver, µs (median)", "RMS error (radiosity)", true, true, {}, {}};
-    axes.marks = {{"exact: error 0", exact}};
+    page::Axes axes{"time per receiver, µs", "RMS error / brightest receiver", true, true, {}, {}};
+    axes.marks = {{"exact: error 0", 1e6 * exact_seconds(study_)}};
     add({"time", "Tampieri’s algorithm: error against run time",
-         std::string("The median time of one call and the RMS error, over the receivers that ") +
-             (partly ? "see the source partly hidden" : "were compared") +
-             ". Each line is one number of rays with varying ε_B. The vertical line is the median time of the exact "
-             "method at the same receivers, " +
-             text::duration(exact * 1e-6) + "; the time at the head of the chapter is a mean.",
+         "Each line is one number of rays with varying ε_B, at the " +
+             text::counted(study_.methods.receivers.size(), "receiver") +
+             " at which all methods are compared. The vertical line is the exact method.",
          page::line_plot(axes, series)});
   }
 

@@ -19,6 +19,7 @@ constexpr const char* kRelative = "RMS error / brightest receiver";
 
 // If there are many methods, figures show each once; its variants are in the tables.
 bool is_variant(const Ladder& ladder) {
+  if (ladder.only_of_sweeps) return true;
   const methods::Choice& choice = ladder.rungs.front();
   if (choice.method->name == "adaptive" && choice.settings.whole("rays") > 16) return true;
   const auto has = [&](const char* setting, const char* word) {
@@ -31,11 +32,7 @@ class MethodFigures {
  public:
   MethodFigures(const Study& study, std::vector<page::Figure>& figures, std::vector<LeftOut>& left_out)
       : study_(study), figures_(figures), left_out_(left_out), brightest_(study::largest_radiosity(study)) {
-    for (std::size_t l = 0; l < methods().ladders.size() && shown_.size() < kMostLines; ++l) {
-      const Ladder& ladder = methods().ladders[l];
-      const bool few = methods().ladders.size() <= kMostLines;
-      if (ladder.rungs.front().method->name != "exact" && (few || !is_variant(ladder))) shown_.push_back(l);
-    }
+    choose_ladders();
   }
 
   void add_all() {
@@ -43,13 +40,33 @@ class MethodFigures {
     add_error_against_time();
     add_convergence(Sight::kPartly, "convergence-partly", "Convergence where the source is partly hidden");
     add_convergence(Sight::kVisible, "convergence-visible", "Convergence where the whole source is visible");
-    add_by_fraction();
-    add_by_distance();
+    if (!methods().fields.empty()) add_by_fraction();
+    if (!methods().fields.empty()) add_by_distance();
     add_profile();
   }
 
  private:
   [[nodiscard]] const MethodStudy& methods() const { return study_.methods; }
+
+  // The recommended one and those that are the best for their time come first, then each method once.
+  void choose_ladders() {
+    const std::vector<const MethodCell*> front = pareto_front(study_);
+    const MethodCell* best = recommended(study_);
+    const auto rank = [&](std::size_t l) {
+      if (best != nullptr && best->ladder == l) return 0;
+      if (std::ranges::find(front, l, &MethodCell::ladder) != front.end()) return 1;
+      return is_variant(methods().ladders[l]) ? 3 : 2;
+    };
+    for (std::size_t l = 0; l < methods().ladders.size(); ++l) {
+      if (methods().ladders[l].rungs.front().method->name != "exact") shown_.push_back(l);
+    }
+    std::ranges::stable_sort(shown_, {}, rank);
+    if (shown_.size() > kMostLines) {
+      std::erase_if(shown_, [&](std::size_t l) { return rank(l) == 3; });
+      shown_.resize(std::min(shown_.size(), kMostLines));
+    }
+    std::ranges::sort(shown_);
+  }
 
   void leave_out(const std::string& title, std::string why) {
     left_out_.push_back({"figure: " + title, std::move(why)});
@@ -71,7 +88,12 @@ class MethodFigures {
       for (const MethodCell& cell : methods().cells) {
         if (cell.ladder == l) one.points.emplace_back(1e6 * cell.seconds, relative_error(study_, cell));
       }
+      if (methods().ladders[l].along.empty()) one.drawn = page::Drawn::kMarks;
       series.push_back(std::move(one));
+    }
+    const MethodCell* best = recommended(study_);
+    if (best != nullptr) {
+      series.push_back({"recommended", {{1e6 * best->seconds, relative_error(study_, *best)}}, page::kOverlay});
     }
     page::Series front{"best for its time", {}, 0};
     for (const MethodCell* cell : pareto_front(study_)) {
@@ -84,6 +106,9 @@ class MethodFigures {
     const std::string caption =
         "Each line is a method with increasing effort, at " + text::counted(methods().receivers.size(), "receiver") +
         "; the vertical line is the exact method." +
+        (best != nullptr
+             ? " The open mark is " + text::html(cell_name(study_, *best)) + ", which the verdict recommends."
+             : "") +
         (drawn > 1 ? " The dashed line joins the settings that no other setting beats in both time and error." : "");
     add({"methods-time", "Error against run time", caption, page::line_plot(axes, series)},
         "no method has an error that a logarithmic axis can show");

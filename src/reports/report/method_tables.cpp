@@ -1,4 +1,5 @@
 #include "report/tables.h"
+#include "report/verdicts.h"
 #include "study/ladders.h"
 #include "study/statistics.h"
 #include "text/csv_row.h"
@@ -9,6 +10,7 @@ namespace exactff::report {
 namespace {
 
 bool has_cells(const Study& study) { return !study.methods.cells.empty(); }
+bool has_fields(const Study& study) { return has_cells(study) && study.request.methods.enabled; }
 bool has_profile(const Study& study) { return study.profile.has_value(); }
 
 constexpr std::string_view kCellColumns = "method,setting";
@@ -112,11 +114,13 @@ void write_profile(const Study& study, std::ostream& out) {
 
 void write_method_timings(const Study& study, std::ostream& out) {
   write_head(study, out, "seconds per receiver and all sources, one thread at work");
-  out << kCellColumns << ",seconds,seconds_partly_hidden,seconds_set_up\n";
+  if (const std::string drift = drift_warning(study); !drift.empty()) out << "# warning: " << drift << '\n';
+  out << kCellColumns << ",seconds,seconds_partly_hidden,seconds_set_up,times_exact,lower_quartile,upper_quartile\n";
   for (const MethodCell& cell : study.methods.cells) {
     text::CsvRow row(out);
     put_choice(row, choice_of(study, cell.ladder, cell.rung));
-    row << cell.seconds << cell.seconds_partly << study.methods.setup_seconds[cell.ladder];
+    row << cell.seconds << cell.seconds_partly << study.methods.setup_seconds[cell.ladder]
+        << cell.seconds / exact_seconds(study) << cell.ratio_low << cell.ratio_high;
   }
 }
 
@@ -130,7 +134,7 @@ const std::vector<StudyTable>& method_tables() {
       {"method_values.csv", "the values of the first seed, receiver by receiver", write_method_values, has_cells},
       {"slopes.csv", "how the error falls with the work, with confidence intervals", write_slopes, has_cells},
       {"receivers.csv", "one row per receiver: visibility of the source, and the error of each method", write_fields,
-       has_cells},
+       has_fields},
       {"profile.csv", "the radiosity along a line, exact and by other methods", write_profile, has_profile},
       {"method_timings.csv", "one row per method and setting: seconds per receiver", write_method_timings, has_cells,
        Holds::kTimes},

@@ -65,6 +65,9 @@ Outcome outcome_of(const StudyReport& report) {
     std::vector<std::string> sentences = method_sentences(scene.study);
     if (report.scenes.size() == 1) std::ranges::move(headlines(scene.study), std::back_inserter(sentences));
     outcome.scenes.push_back({scene.title, std::move(sentences)});
+    if (const std::string drift = drift_warning(scene.study); !drift.empty()) {
+      outcome.notes.push_back(report.scenes.size() > 1 ? scene.title + ": " + drift : drift);
+    }
   }
   return outcome;
 }
@@ -123,7 +126,7 @@ Outcome carry_out(const Plan& plan, const std::filesystem::path& folder, jobs::J
   }
   if (!plan.vtk.empty()) write_vtk(report.scenes.front().study, plan.vtk, hooks);
   Outcome outcome = outcome_of(report);
-  outcome.notes = write(report, folder, hooks);
+  std::ranges::move(write(report, folder, hooks), std::back_inserter(outcome.notes));
   return outcome;
 }
 

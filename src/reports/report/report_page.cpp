@@ -221,7 +221,7 @@ class PageWriter {
            "Hemicube: the scene is drawn on the pixels of half a cube around the receiver. Nettle: for each of m × m "
            "sub-patches, the form factor from centre to centre times a visible share found by rays. Wallace: for each "
            "of m × m sub-patches, one ray and the form factor of a disc. Area sampling: rays to random, stratified or "
-           "low-discrepancy points of the source.");
+           "low-discrepancy points of the source, uniform in its area or in the solid angle that the receiver sees.");
     define("Sources",
            "F. Tampieri, “Accurate Form-Factor Computation”, in D. Kirk (ed.), <em>Graphics Gems III</em>, Academic "
            "Press, 1992, pp. 329–333 and 577–581. Its Eq. (4), the contour integral: F = −1/(2π) Σ<sub>i</sub> "
@@ -252,9 +252,11 @@ class PageWriter {
     facts.emplace_back("made", page::today());
     text_ += page::facts_table(facts);
     text_ += page::paragraph(
-        "All values are the same in every run and for any number of threads. Times are not. They were measured on one "
-        "thread, after all values had been computed. Each time is the median of three calls, after a first call with "
-        "the same arguments.");
+        "All values are the same in every run and for any number of threads. Times are not. They are those of one "
+        "thread at "
+        "work, measured after all values had been computed. At each receiver in turn, the exact method and a "
+        "setting were called, in several rounds. A time is the median ratio of the two, times the median time of the "
+        "exact method there, and the mean of this over the receivers.");
     text_ += page::fold("Files in this folder", files());
     text_ += "</section>\n";
   }

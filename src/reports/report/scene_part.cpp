@@ -58,6 +58,9 @@ class ScenePart {
     for (const std::string& sentence : receiver_warnings(study())) {
       text_ += page::paragraph("Warning: " + text::html(sentence) + ".");
     }
+    if (const std::string drift = drift_warning(study()); !drift.empty()) {
+      text_ += page::paragraph("Warning: " + text::html(drift));
+    }
     if (!page_.drawn.none.empty()) text_ += page::paragraph(text::html(page_.drawn.none));
   }
 
@@ -124,7 +127,8 @@ class ScenePart {
                            text::duration(exact->seconds) + " per receiver, mean over " +
                            text::counted(study().methods.receivers.size(), "receiver") +
                            "). Errors are RMS over receivers and seeds, relative to the brightest receiver. A dash: "
-                           "no setting that was run is that accurate.") +
+                           "no setting that was run is that accurate. “Every method and setting” below has the spread "
+                           "of the times.") +
            table.text() + '\n';
   }
 
@@ -219,8 +223,8 @@ class ScenePart {
     return "<h3>What the tolerance achieves</h3>\n" +
            page::paragraph("Per receiver, with " + text::html(rays_words()) +
                            ". Errors in radiosity. “Above ε_B”: receivers whose error exceeds the tolerance. The time "
-                           "is a mean over the receivers; the exact method takes " +
-                           text::duration(study().exact_time.mean) + " by the same measure.") +
+                           "is that at the receivers at which all methods are compared; the exact method takes " +
+                           text::duration(exact_seconds(study())) + " there.") +
            table.text() + '\n';
   }
 
@@ -235,20 +239,27 @@ class ScenePart {
     if (study().methods.cells.empty()) return {};
     HtmlTable table(HtmlTable::Shape::kWide);
     table.column("method", kText);
-    table.columns(
-        {"work", "seeds", "RMS", "partly hidden", "visible", "mean", "p99", "worst", "time per receiver", "exact ×"});
-    const MethodCell* exact = exact_cell(study());
+    table.columns({"work", "seeds", "RMS", "partly hidden", "visible", "mean", "p99", "worst", "time per receiver",
+                   "exact ×", "quartiles"});
+    const double exact = exact_seconds(study());
     for (const MethodCell& c : study().methods.cells) {
       table.row(is_exact(study(), c) ? "exact" : "");
       table.cell(page::prose(text::html(cell_name(study(), c))), kText);
       table.cells({text::rounded(c.work), c.seeds.front() == 0 ? "–" : std::to_string(c.seeds.size()),
                    signed_number(c.error.rms), signed_number(c.error_partly.rms), signed_number(c.error_visible.rms),
                    signed_number(c.error.mean), signed_number(c.error.p99), signed_number(c.error.worst),
-                   text::duration(c.seconds), exact != nullptr ? text::rounded(c.seconds / exact->seconds, 2) : "–"});
+                   text::duration(c.seconds), text::rounded(c.seconds / exact, 2), quartiles(c)});
     }
     return page::paragraph("Errors are in radiosity, approximate minus exact, at " +
-                           text::counted(study().methods.receivers.size(), "receiver") + ".") +
+                           text::counted(study().methods.receivers.size(), "receiver") +
+                           ". “Exact ×”: the time as a multiple of the exact method’s, which was measured in turn with "
+                           "it, in several rounds; the quartiles are over the rounds.") +
            table.text() + '\n';
+  }
+
+  [[nodiscard]] std::string quartiles(const MethodCell& cell) const {
+    if (is_exact(study(), cell) || std::isnan(cell.ratio_low)) return "–";
+    return text::rounded(cell.ratio_low, 2) + "–" + text::rounded(cell.ratio_high, 2);
   }
 
   // Values that no form factor can have.
@@ -265,17 +276,16 @@ class ScenePart {
     table.column("pattern", kText);
     table.columns({"ε_A", "seed"});
     table.column("variant", kText);
-    table.columns({"RMS", "mean", "p99", "worst", "off", "leaves", "rays traced", "silent", "median time"});
-    if (partly()) table.column("median, partly hidden");
+    table.columns({"RMS", "mean", "p99", "worst", "off", "leaves", "rays traced", "silent", "time per receiver"});
+    if (partly()) table.column("partly hidden");
     exact_row(table);
     for (std::size_t k = 0; k < study().settings.size(); ++k) setting_row(table, k);
     return page::paragraph(
                "Errors are in radiosity, approximate minus exact, over all receivers. The marked row is the base "
                "setting; each sweep varies one parameter of it. “Off” is the share of receivers whose error exceeds "
                "ε_B. “Silent” counts the leaves with a silent error: all their rays agreed, and were wrong for a part "
-               "of the leaf. Times are medians per receiver, also that of the exact method" +
-               std::string(partly() ? "; the last column covers only receivers that see the source partly hidden."
-                                    : ".")) +
+               "of the leaf. Times are those at the receivers at which all methods are compared" +
+               std::string(partly() ? "; the last column covers only those that see the source partly hidden." : ".")) +
            table.text() + '\n';
   }
 
@@ -288,8 +298,8 @@ class ScenePart {
   }
 
   void times(HtmlTable& table, const TimeSummary& t) const {
-    table.cell(text::duration(t.median));
-    if (partly()) table.cell(text::duration(t.median_partly));
+    table.cell(text::duration(t.mean));
+    if (partly()) table.cell(text::duration(t.mean_partly));
   }
 
   void setting_row(HtmlTable& table, std::size_t k) const {

@@ -21,17 +21,6 @@ constexpr int kWidth = 192, kHeight = 144;  // of the largest picture
 constexpr int kLeastHeight = 36;
 constexpr const char* kLeftOut = "pictures of the scene";
 
-methods::Choice choice_of(const AdaptiveOptions& options) {
-  methods::Choice choice = methods::parse("adaptive");
-  choice.settings.set("eps_B", options.eps_b);
-  choice.settings.set("eps_A", options.eps_a);
-  choice.settings.set("rays", std::int64_t{options.rays});
-  choice.settings.set("pattern", std::string(to_string(options.pattern)));
-  choice.settings.set("seed", static_cast<std::int64_t>(options.seed));
-  choice.settings.set("variant", std::string(to_string(options.variant)));
-  return choice;
-}
-
 // Seconds per pixel that a method is planned to need, from its counted work at some of the receivers.
 double planned_seconds_per_pixel(const Study& study, const methods::Choice& choice) {
   constexpr std::size_t kMostPoints = 12;
@@ -236,7 +225,8 @@ std::optional<Strip> draw_strip(const Study& study, const Shown& shown, const re
 
 std::optional<Shown> shown_method(const Study& study) {
   if (!study.settings.empty()) {
-    Shown shown{"the base setting", study::setting_name(study, study.base), choice_of(study.settings[study.base]), {}};
+    Shown shown{
+        "the base setting", study::setting_name(study, study.base), study::choice_of(study.settings[study.base]), {}};
     for (const SampleRow& row : study.samples[study.base]) shown.errors.push_back(row.radiosity_error);
     return shown;
   }

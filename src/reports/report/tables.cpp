@@ -136,7 +136,7 @@ void write_summary(const Study& study, std::ostream& out) {
 }
 
 void write_timings(const Study& study, std::ostream& out) {
-  write_head(study, out, "wall time of single calls, one thread at work");
+  write_head(study, out, "time of single calls, one thread at work");
   out << "receiver,on,setting,seconds\n";
   for (const std::size_t i : study.timed) {
     const Receiver& receiver = study.request.receivers[i];
@@ -154,7 +154,7 @@ void put_times(text::CsvRow& row, const TimeSummary& t) {
 }
 
 void write_summary_timings(const Study& study, std::ostream& out) {
-  write_head(study, out, "wall time per receiver, in seconds, one thread at work");
+  write_head(study, out, "time per receiver, in seconds, one thread at work");
   out << "# set up once: exact " << text::shortest(study.exact_setup_seconds) << ", ray structure "
       << text::shortest(study.ray_setup_seconds) << '\n';
   out << kSettingColumns

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "study/ladders.h"
-#include "study/settings.h"
 #include "study/statistics.h"
 #include "text/phrases.h"
 
@@ -72,6 +71,13 @@ const MethodCell* exact_cell(const Study& study) {
   return nullptr;
 }
 
+const MethodCell* cell_of_setting(const Study& study, std::size_t setting) {
+  for (const MethodCell& cell : study.methods.cells) {
+    if (std::ranges::find(cell.settings, setting) != cell.settings.end()) return &cell;
+  }
+  return nullptr;
+}
+
 const MethodCell* cheapest(const Study& study, double wanted, std::optional<std::size_t> ladder) {
   const MethodCell* best = nullptr;
   for (const MethodCell& cell : study.methods.cells) {
@@ -135,27 +141,6 @@ std::string cost_sentence(const Study& study, const MethodCell& exact) {
          (missed > 0.0 ? ", and no other setting that was run is accurate to " + power_of_ten(missed) : "") + '.';
 }
 
-// The most accurate of the cells that are at least as fast as the exact method; null if there is none.
-const MethodCell* best_in_time(const Study& study, const MethodCell& exact) {
-  const MethodCell* within = nullptr;
-  for (const MethodCell& cell : study.methods.cells) {
-    if (!is_rival(study, cell) || !is_timed(cell) || cell.seconds > exact.seconds) continue;
-    if (!std::isfinite(relative_error(study, cell))) continue;
-    if (within == nullptr || relative_error(study, cell) < relative_error(study, *within)) within = &cell;
-  }
-  return within;
-}
-
-// The error that other methods reach in the time of the exact one.
-std::string overtaking_sentence(const Study& study, const MethodCell& exact) {
-  const MethodCell* within = best_in_time(study, exact);
-  if (within == nullptr) return "No setting of another method is as fast as the exact method.";
-  return "For errors below " + text::rounded(100.0 * relative_error(study, *within), 2) +
-         " % of the brightest receiver (RMS), the exact method is the fastest: no other setting that is at least as "
-         "fast is more accurate than this (best: " +
-         cell_name(study, *within) + ").";
-}
-
 }  // namespace
 
 double exact_seconds(const Study& study) {
@@ -163,65 +148,56 @@ double exact_seconds(const Study& study) {
   return exact != nullptr && is_timed(*exact) ? exact->seconds : study.exact_time.mean;
 }
 
-namespace {
-
-// The setting that a verdict recommends where its error will do.
-struct Alternative {
-  std::string name;
-  double error = INFINITY;  // RMS, relative to the brightest receiver
-  double seconds = 0.0;
-};
-
-std::optional<Alternative> alternative_of_methods(const Study& study, const MethodCell& exact) {
-  const MethodCell* within = best_in_time(study, exact);
-  if (within == nullptr) return std::nullopt;
-  return Alternative{cell_name(study, *within), relative_error(study, *within), within->seconds};
-}
-
-std::optional<Alternative> alternative_of_sweeps(const Study& study, double brightest) {
-  std::optional<Alternative> best;
-  for (std::size_t k = 0; k < study.settings.size(); ++k) {
-    const double error = study.summaries[k].radiosity.rms / brightest;
-    if (!(study.times[k].mean <= study.exact_time.mean) || !std::isfinite(error)) continue;
-    if (best && best->error <= error) continue;
-    best = Alternative{"Tampieri’s algorithm (" + study::setting_name(study, k) + ")", error, study.times[k].mean};
+const MethodCell* recommended(const Study& study) {
+  const MethodCell* best = nullptr;
+  for (const MethodCell& cell : study.methods.cells) {
+    if (!is_rival(study, cell) || !is_timed(cell) || cell.seconds > exact_seconds(study)) continue;
+    if (!std::isfinite(relative_error(study, cell))) continue;
+    if (best == nullptr || relative_error(study, cell) < relative_error(study, *best)) best = &cell;
   }
   return best;
 }
 
-}  // namespace
-
 std::string verdict(const Study& study) {
-  const double brightest = study::largest_radiosity(study);
-  if (!(brightest > 0.0)) return "Use any method: every form factor of this scene is 0, and all of them find that out.";
-  const MethodCell* exact = exact_cell(study);
-  const bool compared = exact != nullptr && is_timed(*exact) && study.methods.cells.size() > 1;
-  if (!compared && study.settings.empty()) {
-    return "Use the exact method: it takes " + text::duration(exact_seconds(study)) +
-           " per receiver, and no other method was run that could be compared with it.";
+  if (!(study::largest_radiosity(study) > 0.0)) {
+    return "Use any method: every form factor of this scene is 0, and all of them find that out.";
   }
-  const auto other = compared ? alternative_of_methods(study, *exact) : alternative_of_sweeps(study, brightest);
-  if (!other) {
-    return "Use the exact method whatever error you accept: it takes " + text::duration(exact_seconds(study)) +
-           " per receiver, and no setting of another method that was run is as fast.";
+  const std::string time = text::duration(exact_seconds(study)) + " per receiver";
+  const auto& cells = study.methods.cells;
+  if (std::ranges::none_of(cells, [&](const MethodCell& cell) { return is_rival(study, cell) && is_timed(cell); })) {
+    return "Use the exact method: it takes " + time + ", and no other method was run that could be compared with it.";
   }
-  const std::string faster = text::rounded(100.0 * other->seconds / exact_seconds(study), 2) + " % of its time";
+  const MethodCell* other = recommended(study);
+  if (other == nullptr) {
+    return "Use the exact method whatever error you accept: it takes " + time +
+           ", and no setting of another method that was run is as fast.";
+  }
+  const std::string name = cell_name(study, *other);
+  const double percent = 100.0 * other->seconds / exact_seconds(study);
+  const std::string faster = percent < 99.5 ? text::rounded(percent, 2) + " % of its time" : "the same time";
   constexpr double kRounding = 1e-12;
-  if (other->error < kRounding) {
-    return "Use " + other->name + " in a scene like this, where it errs by rounding alone, in " + faster +
-           "; use the exact method (" + text::duration(exact_seconds(study)) +
-           " per receiver) when every digit must be proved.";
+  if (relative_error(study, *other) < kRounding) {
+    return "Use " + name + " in a scene like this, where it errs by rounding alone, in " + faster +
+           "; use the exact method (" + time + ") when every digit must be proved.";
   }
-  const std::string error = text::rounded(100.0 * other->error, 2) + " %";
-  return "Use the exact method (" + text::duration(exact_seconds(study)) +
-         " per receiver) when the RMS error must stay below " + error + " of the brightest receiver; when " + error +
-         " will do, use " + other->name + ", in " + faster + ".";
+  const std::string error = text::rounded(100.0 * relative_error(study, *other), 2) + " %";
+  return "Use the exact method (" + time + ") when the RMS error must stay below " + error +
+         " of the brightest receiver; when " + error + " will do, use " + name + ", in " + faster + ".";
 }
 
 std::vector<std::string> method_sentences(const Study& study) {
   const MethodCell* exact = exact_cell(study);
   if (exact == nullptr || !is_timed(*exact) || study.methods.cells.size() < 2) return {};
-  return {cost_sentence(study, *exact), overtaking_sentence(study, *exact)};
+  return {cost_sentence(study, *exact), verdict(study)};
+}
+
+std::string drift_warning(const Study& study) {
+  constexpr double kMuch = 1.25;
+  if (!(study.exact_slowest > kMuch * study.exact_fastest)) return {};
+  return "The machine’s speed drifted while times were measured: the exact method took from " +
+         text::rounded(study.exact_fastest, 2) + " to " + text::rounded(study.exact_slowest, 2) +
+         " times its median time. Every setting was measured in turn with the exact method, so ratios of times hold "
+         "better than seconds do; for reliable times, run it again on an idle machine.";
 }
 
 namespace {
@@ -289,6 +265,7 @@ std::vector<std::string> range_sentences(const Study& study) {
                         of_variant[place], sentences);
   }
   for (std::size_t l = 0; l < of_ladder.size(); ++l) {
+    if (study.methods.ladders[l].only_of_sweeps) continue;  // told already
     add_range_sentences(study.methods.ladders[l].name, of_ladder[l], sentences);
   }
   return sentences;

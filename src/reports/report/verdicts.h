@@ -1,8 +1,9 @@
 // Conclusions from the runs of the methods: which is cheapest for a wanted error, and what theory predicts for the
 // slopes.
 //
-// Errors here are RMS errors over the chosen receivers and seeds, divided by the radiosity of the brightest receiver.
-// Times are seconds per receiver for all sources, averaged over the chosen receivers.
+// All conclusions are drawn from the same runs, MethodStudy::cells, by the same two numbers: the RMS error over the
+// chosen receivers and seeds, divided by the radiosity of the brightest receiver, and the time per receiver for all
+// sources, averaged over the chosen receivers.
 #pragma once
 
 #include <array>
@@ -21,6 +22,8 @@ inline constexpr std::array kWantedErrors = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
 [[nodiscard]] bool is_exact(const Study& study, const MethodCell& cell);
 // Null if the exact method is not among the ladders.
 [[nodiscard]] const MethodCell* exact_cell(const Study& study);
+// That of a setting of the sweeps; null if it was not run at the chosen receivers.
+[[nodiscard]] const MethodCell* cell_of_setting(const Study& study, std::size_t setting);
 
 // False for the control, which is given the exact visibilities and so is not a method that anybody could use instead.
 [[nodiscard]] bool is_rival(const Study& study, const MethodCell& cell);
@@ -39,9 +42,12 @@ inline constexpr std::array kWantedErrors = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
 // "1e-4" in typeset form: "10⁻⁴".
 [[nodiscard]] std::string power_of_ten(double value);
 
-// The time of an exact value that a chapter states: seconds per receiver on average, over the receivers at which the
-// methods are compared, or over all if none are.
+// The time of an exact value that a chapter states.
 [[nodiscard]] double exact_seconds(const Study& study);
+
+// The rival that a verdict recommends where its error will do: the most accurate of those that are at least as fast as
+// the exact method. Null if there is none.
+[[nodiscard]] const MethodCell* recommended(const Study& study);
 
 // One sentence that says when to use the exact method and when another one.
 [[nodiscard]] std::string verdict(const Study& study);
@@ -49,9 +55,11 @@ inline constexpr std::array kWantedErrors = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
 // What the runs of Tampieri's algorithm over its settings show, in sentences; empty without such runs.
 [[nodiscard]] std::vector<std::string> sweep_findings(const Study& study);
 
-// One or two sentences that can be quoted: the cost of an exact value, and what the other methods need for a similar
-// accuracy.
+// Sentences that can be quoted: what other methods need for a similar accuracy, and the verdict; empty without others.
 [[nodiscard]] std::vector<std::string> method_sentences(const Study& study);
+
+// Says that the machine's speed drifted while times were measured; empty if it did not.
+[[nodiscard]] std::string drift_warning(const Study& study);
 
 // For each method, and each variant of the sweeps: how many values are not finite, and how many lie outside [0, 1] by
 // more than rounding. One sentence for each that has any. Values are sums over the sources.

@@ -139,10 +139,103 @@ std::vector<Ladder> default_ladders(double largest_rho_b) {
                            "nettle:variant=literal,rays=16,splits=1|2|4|8|16", "wallace:splits=1|2|4|8|16|32|64",
                            "area-sampling:pattern=random,samples=4|16|64|256|1024|4096",
                            "area-sampling:pattern=stratified,samples=4|16|64|256|1024|4096",
-                           "area-sampling:pattern=sobol,samples=4|16|64|256|1024|4096"}) {
+                           "area-sampling:pattern=sobol,samples=4|16|64|256|1024|4096",
+                           "area-sampling:measure=solid-angle,pattern=sobol,samples=4|16|64|256|1024|4096"}) {
     ladders.push_back(parse_ladder(text));
   }
   return ladders;
+}
+
+methods::Choice without_seed(methods::Choice choice) {
+  for (const SettingSpec& spec : choice.settings.specs()) {
+    if (spec.name == "seed") choice.settings.set("seed", spec.fallback);
+  }
+  choice.settings = choice.method->normalised(choice.settings);
+  return choice;
+}
+
+namespace {
+
+double eps_b_of(const methods::Choice& choice) { return choice.settings.number("eps_B"); }
+
+methods::Choice with_eps_b(methods::Choice choice, double eps_b) {
+  choice.settings.set("eps_B", eps_b);
+  return choice;
+}
+
+bool differ_in_eps_b_only(const methods::Choice& a, const methods::Choice& b) {
+  return a.method == b.method && with_eps_b(a, eps_b_of(b)) == b;
+}
+
+bool has_rung(const Ladder& ladder, const methods::Choice& choice) {
+  return std::ranges::find(ladder.rungs, choice) != ladder.rungs.end();
+}
+
+// Effort rises as eps_B falls.
+void insert(Ladder& ladder, const methods::Choice& choice) {
+  const auto less_effort = [&](const methods::Choice& rung) { return eps_b_of(rung) > eps_b_of(choice); };
+  ladder.rungs.insert(std::ranges::find_if_not(ladder.rungs, less_effort), choice);
+}
+
+// "adaptive, 4 rays, literal": eps_B is what differs.
+std::string line_name(const methods::Choice& choice) {
+  std::string name = "adaptive";
+  const Settings& s = choice.settings;
+  if (s.word("pattern") != "centre")
+    name += ", " + setting_words(*choice.method, "rays", std::to_string(s.whole("rays")));
+  if (s.word("pattern") != "jittered") name += ", " + s.word("pattern");
+  if (s.word("variant") != "mended") name += ", " + s.word("variant");
+  if (s.number("eps_A") > 0.0) name += ", ε_A " + text::rounded(s.number("eps_A"));
+  return name;
+}
+
+std::vector<Ladder> lines_of(const std::vector<methods::Choice>& choices) {
+  std::vector<Ladder> lines;
+  for (const methods::Choice& choice : choices) {
+    const auto line =
+        std::ranges::find_if(lines, [&](const Ladder& one) { return differ_in_eps_b_only(one.rungs.front(), choice); });
+    if (line != lines.end()) {
+      insert(*line, choice);
+    } else {
+      lines.push_back({line_name(choice), "eps_B", {choice}, true});
+    }
+  }
+  return lines;
+}
+
+}  // namespace
+
+void add_sweeps(std::vector<Ladder>& ladders, std::span<const AdaptiveOptions> settings) {
+  std::vector<methods::Choice> others;
+  for (const AdaptiveOptions& setting : settings) {
+    const methods::Choice choice = without_seed(choice_of(setting));
+    const auto has = [&](const Ladder& ladder) { return has_rung(ladder, choice); };
+    if (std::ranges::any_of(ladders, has) || std::ranges::find(others, choice) != others.end()) continue;
+    const auto line = std::ranges::find_if(ladders, [&](const Ladder& ladder) {
+      return ladder.along == "eps_B" && differ_in_eps_b_only(ladder.rungs.front(), choice);
+    });
+    if (line != ladders.end()) {
+      insert(*line, choice);
+    } else {
+      others.push_back(choice);
+    }
+  }
+  std::vector<Ladder> added;
+  Ladder rest{"adaptive, other settings", "", {}, true};
+  for (Ladder& line : lines_of(others)) {
+    if (line.rungs.size() > 1) {
+      added.push_back(std::move(line));
+    } else {
+      rest.rungs.push_back(line.rungs.front());
+    }
+  }
+  if (rest.rungs.size() == 1) {
+    rest.name = line_name(rest.rungs.front()) + ", ε_B " + text::rounded(eps_b_of(rest.rungs.front()));
+  }
+  if (!rest.rungs.empty()) added.push_back(std::move(rest));
+  const auto is_adaptive = [](const Ladder& ladder) { return ladder.rungs.front().method->name == "adaptive"; };
+  const auto last = std::find_if(ladders.rbegin(), ladders.rend(), is_adaptive);
+  ladders.insert(last == ladders.rend() ? ladders.end() : last.base(), added.begin(), added.end());
 }
 
 std::vector<LeftOut> leave_out(std::vector<Ladder>& ladders, const Sightings& sightings) {
@@ -179,6 +272,10 @@ std::string rung_text(const Ladder& ladder, std::size_t rung) {
 }
 
 std::string rung_name(const Ladder& ladder, std::size_t rung) {
+  if (ladder.along.empty() && ladder.rungs.size() > 1) {
+    const methods::Choice& choice = ladder.rungs[rung];
+    return line_name(choice) + ", ε_B " + text::rounded(eps_b_of(choice));
+  }
   if (ladder.along.empty()) return ladder.name;
   std::string along = ladder.along;
   if (along == "eps_B") along = "ε_B";

@@ -2,6 +2,7 @@
 // settings of rising effort; a rung is one of these settings.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "exactff/study.h"
@@ -11,6 +12,14 @@ namespace exactff::study {
 
 // Every method of the library over its range of effort. The values of eps_B are tenths of the largest rho B.
 [[nodiscard]] std::vector<Ladder> default_ladders(double largest_rho_b);
+
+// Gives every setting of the sweeps a rung, whatever its seed: of a ladder that has it or goes along eps_B with the
+// same other settings, or else of a new ladder after the others of its method. Those without a line along eps_B share
+// one.
+void add_sweeps(std::vector<Ladder>& ladders, std::span<const AdaptiveOptions> settings);
+
+// The choice with the default seed, and with the defaults of what does not affect it.
+[[nodiscard]] methods::Choice without_seed(methods::Choice choice);
 
 // What the exact values show about the work that sampling has in the scene.
 struct Sightings {

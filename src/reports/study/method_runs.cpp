@@ -1,8 +1,8 @@
-// Runs the methods to be compared, ladder by ladder.
+// Runs the settings to be compared, ladder by ladder.
 //
 //   1. Choose receivers.
 //   2. For each rung: evaluate it once and price the counted work of all receivers and seeds. End the ladder if the
-//      price exceeds what is left of its budget.
+//      price exceeds what is left of its budget; a setting of the sweeps is run all the same, with fewer seeds.
 //   3. Evaluate the rung for every seed and receiver. A task is one seed and a few receivers; threads share the tasks.
 //   4. Fit error = c * work^exponent over the rungs, for each seed separately.
 //   5. Evaluate the middle rung at every receiver.
@@ -15,7 +15,7 @@
 #include "files/parallel.h"
 #include "kernel/statistics.h"
 #include "study/ladders.h"
-#include "study/radiosity.h"
+#include "study/settings.h"
 #include "study/statistics.h"
 #include "text/escape.h"
 #include "text/phrases.h"
@@ -61,9 +61,10 @@ class MethodRunner {
     for (const Selection& source : request().sources) radiosities_.push_back(scene().source_radiosity(source));
   }
 
-  MethodResults run() {
-    result_.ladders = request().methods.ladders;
+  MethodResults run(std::vector<Ladder> ladders) {
+    result_.ladders = std::move(ladders);
     result_.receivers = choose_receivers(study_.exact, request().methods.receivers);
+    for (const AdaptiveOptions& setting : study_.settings) swept_.push_back(without_seed(choice_of(setting)));
     for (std::size_t l = 0; l < result_.ladders.size(); ++l) run_ladder(l);
     drop_idle_ladders();
     for (std::size_t l = 0; l < result_.ladders.size(); ++l) result_.slopes.push_back(slopes_of(l));
@@ -87,14 +88,13 @@ class MethodRunner {
     evaluator.look_from(receiver);
     evaluator.form_factors(prepared.sources, estimates);
     Outcome outcome;
-    Rgb error;
+    SourceSum sum;
     for (std::size_t s = 0; s < estimates.size(); ++s) {
-      const double value = estimates[s].form_factor;
-      outcome.form_factor += value;
-      add(error, times(radiosities_[s], value - study_.exact[i].terms[s].value));
+      sum.add(estimates[s].form_factor, study_.exact[i].terms[s].value, radiosities_[s]);
       for (const auto& counter : estimates[s].counters.list()) outcome.counters.add(counter.name, counter.count);
     }
-    outcome.radiosity_error = largest_in_magnitude(times(scene().receiver_reflectance(receiver.on), error));
+    outcome.form_factor = sum.form_factor;
+    outcome.radiosity_error = sum.radiosity_error(scene().receiver_reflectance(receiver.on));
     return outcome;
   }
 
@@ -108,18 +108,38 @@ class MethodRunner {
       return;
     }
     double left = request().methods.budget;
-    std::size_t rung = 0;
-    for (; rung < ladder.rungs.size(); ++rung) {
+    std::size_t ended = ladder.rungs.size();
+    std::vector<std::size_t> skipped;
+    for (std::size_t rung = 0; rung < ladder.rungs.size(); ++rung) {
       MethodCell cell = new_cell(l, rung);
-      const double planned = plan(cell, *prepared);
-      if (planned > left) break;
-      left -= planned;
+      const bool swept = !cell.settings.empty();
+      if (rung >= ended && !swept) {
+        skipped.push_back(rung);
+        continue;
+      }
+      const double of_seed = plan(cell, *prepared);
+      if (of_seed * static_cast<double>(cell.seeds.size()) > left) {
+        ended = std::min(ended, rung);
+        if (!swept) {
+          skipped.push_back(rung);
+          continue;
+        }
+        keep_seeds(cell, std::max(1.0, left / of_seed));
+      }
+      left = std::max(0.0, left - of_seed * static_cast<double>(cell.seeds.size()));
       fill(cell, *prepared);
       summarise(cell);
       result_.cells.push_back(std::move(cell));
     }
-    if (rung < ladder.rungs.size()) tell_truncation(ladder, rung);
-    add_field(l, rung, *prepared);
+    if (!skipped.empty()) tell_truncation(ladder, skipped);
+    add_field(l, ended, *prepared);
+  }
+
+  static void keep_seeds(MethodCell& cell, double most) {
+    if (most >= static_cast<double>(cell.seeds.size())) return;
+    cell.seeds.resize(static_cast<std::size_t>(most));
+    cell.values.resize(cell.seeds.size());
+    cell.radiosity_errors.resize(cell.seeds.size());
   }
 
   // Drops ladders that were refused, or over the budget from the first rung on. The ladders after them move up.
@@ -149,25 +169,29 @@ class MethodRunner {
     }
     cell.values.resize(cell.seeds.size());
     cell.radiosity_errors.resize(cell.seeds.size());
+    for (std::size_t k = 0; k < swept_.size(); ++k) {
+      if (swept_[k] == choice) cell.settings.push_back(k);
+    }
     return cell;
   }
 
-  [[nodiscard]] const methods::Choice& choice_of(const MethodCell& cell) const {
+  [[nodiscard]] const methods::Choice& rung_of(const MethodCell& cell) const {
     return result_.ladders[cell.ladder].rungs[cell.rung];
   }
 
-  [[nodiscard]] double plan(const MethodCell& cell, const PreparedMethod& prepared) const {
+  // The planned time of all receivers with one seed.
+  [[nodiscard]] double plan(MethodCell& cell, const PreparedMethod& prepared) const {
     if (result_.receivers.empty()) return 0.0;
-    const auto evaluator = prepared.scene->configure(with_seed(choice_of(cell), cell.seeds.front()));
+    const auto evaluator = prepared.scene->configure(with_seed(rung_of(cell), cell.seeds.front()));
     const std::size_t middle = result_.receivers[result_.receivers.size() / 2];
     const Outcome outcome = evaluate(*evaluator, prepared, middle);
-    const auto evaluations = static_cast<double>(cell.seeds.size() * result_.receivers.size());
-    return evaluations * planned_seconds(outcome.counters, scene().faces().size());
+    cell.planned_seconds = planned_seconds(outcome.counters, scene().faces().size());
+    return static_cast<double>(result_.receivers.size()) * cell.planned_seconds;
   }
 
   void fill(MethodCell& cell, const PreparedMethod& prepared) {
     kept_.get(
-        "method/" + jobs::short_hash(choice_of(cell).text()), [&] { compute(cell, prepared); },
+        "method/" + jobs::short_hash(rung_of(cell).text()), [&] { compute(cell, prepared); },
         [&](auto& words) {
           words(cell.work);
           for (std::size_t s = 0; s < cell.seeds.size(); ++s) words(cell.values[s], cell.radiosity_errors[s]);
@@ -183,7 +207,7 @@ class MethodRunner {
     std::vector<double> work(cell.seeds.size() * chunks, 0.0);
     const auto task = [&](std::size_t t) {
       const std::size_t seed = t / chunks, first = t % chunks * kReceiversPerTask;
-      const auto evaluator = prepared.scene->configure(with_seed(choice_of(cell), cell.seeds[seed]));
+      const auto evaluator = prepared.scene->configure(with_seed(rung_of(cell), cell.seeds[seed]));
       for (std::size_t r = first; r < std::min(first + kReceiversPerTask, receivers); ++r) {
         const Outcome outcome = evaluate(*evaluator, prepared, result_.receivers[r]);
         cell.values[seed][r] = outcome.form_factor;
@@ -217,9 +241,9 @@ class MethodRunner {
     }
   }
 
-  void tell_truncation(const Ladder& ladder, std::size_t rung) {
+  void tell_truncation(const Ladder& ladder, const std::vector<std::size_t>& skipped) {
     std::vector<std::string> names;
-    for (std::size_t k = rung; k < ladder.rungs.size(); ++k) names.push_back(rung_text(ladder, k));
+    for (const std::size_t rung : skipped) names.push_back(rung_text(ladder, rung));
     left_out_.push_back(
         {"method " + ladder.name +
              (ladder.along.empty() ? std::string() : ", " + ladder.along + ' ' + text::enumerate(names)),
@@ -227,10 +251,10 @@ class MethodRunner {
              " for a method on this scene (--method-budget)"});
   }
 
-  // `rungs`: how many rungs of the ladder were run.
+  // `rungs`: how many rungs of the ladder were run before its budget ended.
   void add_field(std::size_t l, std::size_t rungs, const PreparedMethod& prepared) {
     const Ladder& ladder = result_.ladders[l];
-    if (rungs == 0 || ladder.rungs.front().method->name == "exact") return;
+    if (rungs == 0 || ladder.only_of_sweeps || ladder.rungs.front().method->name == "exact") return;
     MethodField field{l, std::min(ladder.rungs.size() / 2, rungs - 1), {}, {}};
     const methods::Choice& choice = ladder.rungs[field.rung];
     const std::uint64_t seed = choice.method->stochastic(choice.settings) ? 1 : 0;
@@ -264,14 +288,15 @@ class MethodRunner {
     for (const MethodCell& cell : result_.cells) {
       if (cell.ladder == l && cell.work > 0.0) cells.push_back(&cell);
     }
-    if (cells.size() < 3) return std::nullopt;
+    // Settings of the sweeps may have fewer seeds than the others, and need not be in any order of effort.
+    std::erase_if(cells, [&](const MethodCell* cell) { return cell->seeds.size() < cells.front()->seeds.size(); });
+    if (cells.size() < 3 || result_.ladders[l].along.empty()) return std::nullopt;
     std::vector<double> exponents;
     for (std::size_t seed = 0; seed < cells.front()->seeds.size(); ++seed) {
       std::vector<std::pair<double, double>> points;
       for (const MethodCell* cell : cells) {
         std::vector<double> errors;
-        append(errors, cell->radiosity_errors[std::min(seed, cell->seeds.size() - 1)],
-               [&](Sight s) { return s == sight; });
+        append(errors, cell->radiosity_errors[seed], [&](Sight s) { return s == sight; });
         const double rms = error_statistics(errors).rms;
         if (rms > kRoundingError * brightest_) points.emplace_back(cell->work, rms);
       }
@@ -288,6 +313,7 @@ class MethodRunner {
   const Hooks& hooks_;
   const double brightest_;
   std::vector<Rgb> radiosities_;
+  std::vector<methods::Choice> swept_;  // the settings of the sweeps, without their seeds
   MethodStudy result_;
   std::vector<LeftOut> left_out_;
 };
@@ -330,8 +356,9 @@ double planned_seconds(const methods::Counters& counters, std::size_t faces) {
   return 1e-9 * nanoseconds;
 }
 
-MethodResults run_methods(const Study& study, const jobs::KeptWork& kept, const Hooks& hooks) {
-  return MethodRunner(study, kept, hooks).run();
+MethodResults run_methods(const Study& study, std::vector<Ladder> ladders, const jobs::KeptWork& kept,
+                          const Hooks& hooks) {
+  return MethodRunner(study, kept, hooks).run(std::move(ladders));
 }
 
 }  // namespace exactff::study

@@ -1,4 +1,4 @@
-// Runs the methods of a study that are compared.
+// Runs the settings of a study at the chosen receivers.
 #pragma once
 
 #include <memory>
@@ -7,6 +7,7 @@
 
 #include "exactff/study.h"
 #include "jobs/kept_work.h"
+#include "study/radiosity.h"
 
 namespace exactff::study {
 
@@ -27,8 +28,23 @@ struct MethodResults {
   std::vector<LeftOut> left_out;
 };
 // Values of every ladder at chosen receivers, and of its middle rung at all receivers. `study` must have its exact
-// values.
-[[nodiscard]] MethodResults run_methods(const Study& study, const jobs::KeptWork& kept, const Hooks& hooks);
+// values and the settings of its sweeps.
+[[nodiscard]] MethodResults run_methods(const Study& study, std::vector<Ladder> ladders, const jobs::KeptWork& kept,
+                                        const Hooks& hooks);
+
+// The largest error of the channels of the receiver's radiosity, and the sum of the form factors.
+struct SourceSum {
+  double form_factor = 0.0;
+  Rgb error;  // of what arrives, before the receiver's reflectance
+
+  void add(double value, double exact, const Rgb& radiosity) {
+    form_factor += value;
+    study::add(error, times(radiosity, value - exact));
+  }
+  [[nodiscard]] double radiosity_error(const Rgb& reflectance) const {
+    return largest_in_magnitude(times(reflectance, error));
+  }
+};
 
 // The receivers that a study examines in detail: evenly spaced among those that see the source partly, and for one
 // third among those that see all of it; other receivers if there are too few. Ascending.

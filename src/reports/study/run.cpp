@@ -3,11 +3,11 @@
 //   1. Complete the request: sources, threads. Refuse a request without receivers or sources.
 //   2. Compute the exact values of every receiver and source. They also show what there is to sample.
 //   3. Choose sweeps and ladders: defaults, without those that cannot affect the scene; list the settings.
-//   4. Run every setting of the adaptive algorithm for every receiver. Compare its leaves with the exact visible
-//      region.
-//   5. Run every method at chosen receivers; find where visibility changes in kind; compute a profile along a line.
-//   6. Measure times, with nothing else running.
-//   7. Compute statistics.
+//   4. Run every setting of the sweeps for every receiver. Compare its leaves with the exact visible region.
+//   5. Run every setting, of sweeps and ladders, at chosen receivers; these are the runs that are compared.
+//   6. Find where visibility changes in kind; compute a profile along a line.
+//   7. Measure the times of every setting, with nothing else running.
+//   8. Compute statistics.
 // Threads share the receivers. The place of a result is its index, so nothing depends on the number of threads.
 #include <algorithm>
 #include <iterator>
@@ -127,8 +127,9 @@ class Runner {
     set_up();
     find_exact_values();
     choose_settings();
-    choose_ladders();
+    std::vector<Ladder> ladders = choose_ladders();
     if (sweeps().enabled) sample();
+    run_settings(std::move(ladders));
     if (request().methods.enabled) look_closer();
     take_times(measure_times(study_, hooks_));
     summarise();
@@ -234,11 +235,14 @@ class Runner {
     leave_out_settings(over_budget(study_, sources_, *solver_, sampled_sources_));
   }
 
-  void choose_ladders() {
+  std::vector<Ladder> choose_ladders() {
     MethodSweep& methods = study_.request.methods;
-    if (!methods.enabled) return;
+    if (!methods.enabled) methods.ladders = {parse_ladder("exact")};
     if (methods.ladders.empty()) methods.ladders = default_ladders(study_.largest_rho_b);
     leave_out(study::leave_out(methods.ladders, {anything_seen(), anything_sampled(), study_.largest_rho_b}));
+    std::vector<Ladder> ladders = methods.ladders;
+    add_sweeps(ladders, study_.settings);
+    return ladders;
   }
 
   void leave_out(std::vector<LeftOut> items) { std::ranges::move(items, std::back_inserter(study_.left_out)); }
@@ -287,18 +291,24 @@ class Runner {
   }
 
   void sample_receiver(std::size_t i) {
-    std::vector<Rgb> errors(study_.settings.size());
+    std::vector<SourceSum> sums(study_.settings.size());
     for (auto& of_setting : study_.samples) of_setting[i] = {};
     for (std::size_t s = 0; s < sources_.size(); ++s) {
       std::optional<std::vector<PlaneDrawing>> truth;
-      for (std::size_t k = 0; k < study_.settings.size(); ++k) add_sample(i, s, k, truth, errors[k]);
+      for (std::size_t k = 0; k < study_.settings.size(); ++k) add_sample(i, s, k, truth, sums[k]);
     }
-    for (std::size_t k = 0; k < study_.settings.size(); ++k) finish_sample(i, k, errors[k]);
+    const Rgb reflectance = scene().receiver_reflectance(request().receivers[i].on);
+    for (std::size_t k = 0; k < study_.settings.size(); ++k) {
+      SampleRow& row = study_.samples[k][i];
+      row.form_factor = sums[k].form_factor;
+      row.error = row.form_factor - study_.exact[i].form_factor;
+      row.radiosity_error = sums[k].radiosity_error(reflectance);
+    }
   }
 
   // `truth` is drawn when the first setting needs it.
   void add_sample(std::size_t i, std::size_t s, std::size_t k, std::optional<std::vector<PlaneDrawing>>& truth,
-                  Rgb& error) {
+                  SourceSum& sum) {
     const Receiver& receiver = request().receivers[i];
     SampleRow& row = study_.samples[k][i];
     AdaptiveOptions options = study_.settings[k];
@@ -306,9 +316,7 @@ class Runner {
     const AdaptiveResult result =
         solver_->form_factor(receiver, sampled_sources_[s], largest_rho_b(receiver, s), options);
     add_counts(row, result);
-    const double value = study_.exact[i].terms[s].value;
-    row.form_factor += result.form_factor;
-    add(error, times(radiosities_[s], result.form_factor - value));
+    sum.add(result.form_factor, study_.exact[i].terms[s].value, radiosities_[s]);
     if (!options.record_leaves || sampled_leaves(result) == 0) return;
     if (!truth) truth = draw_visibility(scene(), receiver, sources_[s]);
     const SampledVerdict verdict = judge_leaves(result.leaf_list, *truth);
@@ -329,19 +337,16 @@ class Runner {
     for (std::size_t r = 0; r < kLeafReasonCount; ++r) row.leaves_by_reason[r] += result.leaves_by_reason[r];
   }
 
-  void finish_sample(std::size_t i, std::size_t k, const Rgb& error) {
-    SampleRow& row = study_.samples[k][i];
-    row.error = row.form_factor - study_.exact[i].form_factor;
-    row.radiosity_error = largest_in_magnitude(times(scene().receiver_reflectance(request().receivers[i].on), error));
-  }
-
-  void look_closer() {
+  void run_settings(std::vector<Ladder> ladders) {
     const MethodSweep& methods = request().methods;
     const jobs::KeptWork kept(
         journal_, request_hash_ + '-' + std::to_string(methods.seeds) + '-' + std::to_string(methods.receivers));
-    MethodResults found = run_methods(study_, kept, hooks_);
+    MethodResults found = run_methods(study_, std::move(ladders), kept, hooks_);
     study_.methods = std::move(found.methods);
     leave_out(std::move(found.left_out));
+  }
+
+  void look_closer() {
     auto edges = find_shadow_edges(request(), sources_, hooks_);
     if (auto* why = std::get_if<LeftOut>(&edges)) {
       leave_out({std::move(*why)});
@@ -358,21 +363,32 @@ class Runner {
   }
 
   void take_times(Times times) {
-    const std::size_t count = study_.exact.size();
-    for (std::size_t i = 0; i < count; ++i) study_.exact[i].seconds = times.exact[i];
-    study_.exact_time = summarise_times(times.exact, study_.exact);
-    for (std::size_t k = 0; k < times.samples.size(); ++k) {
-      for (std::size_t i = 0; i < count; ++i) study_.samples[k][i].seconds = times.samples[k][i];
-      study_.times.push_back(summarise_times(times.samples[k], study_.exact));
-    }
-    for (std::size_t c = 0; c < times.cells.size(); ++c) {
-      study_.methods.cells[c].seconds = times.cells[c].all;
-      study_.methods.cells[c].seconds_partly = times.cells[c].partly;
-    }
     study_.timed = std::move(times.receivers);
+    study_.exact_time = times.exact.summary;
+    study_.exact_fastest = times.exact_fastest;
+    study_.exact_slowest = times.exact_slowest;
+    for (std::size_t t = 0; t < study_.timed.size(); ++t) {
+      study_.exact[study_.timed[t]].seconds = times.exact.by_receiver[t];
+    }
+    study_.times.resize(study_.settings.size());
+    for (std::size_t c = 0; c < times.cells.size(); ++c) take_times(times.cells[c], study_.methods.cells[c]);
     study_.methods.setup_seconds = std::move(times.method_setup);
     study_.exact_setup_seconds = times.exact_setup;
-    study_.ray_setup_seconds = times.ray_setup;
+    std::ranges::sort(study_.timed);
+    if (solver_) study_.ray_setup_seconds = solver_->build_seconds();  // built at the first long candidate list
+  }
+
+  void take_times(const Times::Setting& times, MethodCell& cell) {
+    cell.seconds = times.summary.mean;
+    if (times.summary.mean_partly > 0.0) cell.seconds_partly = times.summary.mean_partly;
+    cell.ratio_low = times.ratio_low;
+    cell.ratio_high = times.ratio_high;
+    for (const std::size_t k : cell.settings) {
+      study_.times[k] = times.summary;
+      for (std::size_t t = 0; t < times.by_receiver.size(); ++t) {
+        study_.samples[k][study_.timed[t]].seconds = times.by_receiver[t];
+      }
+    }
   }
 
   void summarise() {

@@ -261,6 +261,17 @@ SettingPlan combine(const Sweeps& sweeps) {
   return plan;
 }
 
+methods::Choice choice_of(const AdaptiveOptions& setting) {
+  methods::Choice choice = methods::parse("adaptive");
+  choice.settings.set("eps_B", setting.eps_b);
+  choice.settings.set("eps_A", setting.eps_a);
+  choice.settings.set("rays", std::int64_t{setting.rays});
+  choice.settings.set("pattern", std::string(to_string(setting.pattern)));
+  choice.settings.set("seed", static_cast<std::int64_t>(setting.seed));
+  choice.settings.set("variant", std::string(to_string(setting.variant)));
+  return choice;
+}
+
 bool same_setting(const AdaptiveOptions& a, const AdaptiveOptions& b) {
   return a.eps_b == b.eps_b && a.eps_a == b.eps_a && a.rays == b.rays && a.pattern == b.pattern && a.seed == b.seed &&
          a.variant == b.variant && a.depth_cap == b.depth_cap;

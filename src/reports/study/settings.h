@@ -34,6 +34,9 @@ void complete(Sweeps& sweeps, const Work& work);
 // Whether the two agree in everything that can change a value.
 [[nodiscard]] bool same_setting(const AdaptiveOptions& a, const AdaptiveOptions& b);
 
+// The setting as one of the method `adaptive`.
+[[nodiscard]] methods::Choice choice_of(const AdaptiveOptions& setting);
+
 // The settings that differ from `from` in this one parameter only, including `from`.
 [[nodiscard]] std::vector<std::size_t> line_through(const std::vector<AdaptiveOptions>& settings, std::size_t from,
                                                     Parameter parameter);

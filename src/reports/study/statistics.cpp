@@ -59,14 +59,4 @@ double largest_radiosity(const Study& study) {
   return largest;
 }
 
-TimeSummary summarise_times(std::span<const double> seconds, const std::vector<ExactRow>& exact) {
-  std::vector<double> all, partly;
-  for (std::size_t i = 0; i < seconds.size(); ++i) {
-    if (std::isnan(seconds[i])) continue;  // not timed
-    all.push_back(seconds[i]);
-    if (exact[i].sight == Sight::kPartly) partly.push_back(seconds[i]);
-  }
-  return {kernel::median(all), kernel::mean(all), kernel::median(partly), kernel::mean(partly)};
-}
-
 }  // namespace exactff::study

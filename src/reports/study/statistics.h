@@ -1,4 +1,4 @@
-// Statistics of the errors and times of a study. All sums run in the given order, so that the bits are the same
+// Statistics of the errors of a study. All sums run in the given order, so that the bits are the same
 // everywhere.
 #pragma once
 
@@ -15,8 +15,5 @@ namespace exactff::study {
 [[nodiscard]] Summary summarise(const std::vector<SampleRow>& rows, const Study& study, double eps_b);
 // The radiosity of the brightest receiver, largest channel.
 [[nodiscard]] double largest_radiosity(const Study& study);
-
-// NaN stands for a time that was not measured.
-[[nodiscard]] TimeSummary summarise_times(std::span<const double> seconds, const std::vector<ExactRow>& exact);
 
 }  // namespace exactff::study

@@ -1,7 +1,19 @@
+// Times of settings, as multiples of the exact method's time.
+//
+//   1. Measure the exact method at every chosen receiver.
+//   2. For each setting, go through receivers in rounds. At each of them call the exact method, then the setting, so
+//   that
+//      both meet the same machine: its clock, its caches, and what other programs take of them.
+//   3. The time at a receiver is the median of the ratios times the exact method's median time there over all settings.
+//
+// Other programs may run. Long calls are measured by the processor time of the thread. Reading that clock can take
+// microseconds, so short calls are measured on the steady clock: they are seldom interrupted, and a median leaves out
+// those that are. Very short ones are repeated.
 #include "study/timing.h"
 
+#include <time.h>
+
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -10,63 +22,115 @@
 #include "files/stopwatch.h"
 #include "kernel/statistics.h"
 #include "study/method_runs.h"
-#include "study/radiosity.h"
 
 namespace exactff::study {
 namespace {
 
-constexpr double kLongCallSeconds = 0.02;  // a first call this long needs no warm-up
-constexpr std::size_t kMostTimed = 256;    // receivers
-constexpr std::size_t kFewestTimed = 12;
-constexpr std::size_t kFewestInCell = 4;
+constexpr double kLong = 1e-4, kShortest = 1e-5;  // seconds: calls by processor time; repeated calls together
+constexpr std::size_t kFewestRounds = 3, kMostRounds = 9;
+constexpr std::size_t kFewestReceivers = 12;
+constexpr double kOverpriced = 4.0;  // planned times of approximate methods are that much too long, or less
 
-template <class Call>
-double typical_time(const Call& call) {
-  const double first = files::seconds_of(call);
-  return first >= kLongCallSeconds ? first : files::median_seconds(call, 3, std::numeric_limits<double>::infinity());
+double thread_seconds() {
+  timespec time{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
+
+// Evaluates one setting, and knows how often to repeat it at each receiver.
+class Subject {
+ public:
+  Subject(const PreparedMethod& prepared, const Settings& settings)
+      : evaluator_(prepared.scene->configure(settings)),
+        sources_(prepared.sources),
+        estimates_(prepared.sources.size()) {}
+
+  [[nodiscard]] double value(const Receiver& receiver) {
+    evaluate(receiver);
+    double sum = 0.0;
+    for (const methods::Estimate& estimate : estimates_) sum += estimate.form_factor;
+    return sum;
+  }
+
+  // Of one call at the receiver of this place. The first call at a place finds out how long it takes.
+  [[nodiscard]] double seconds(const Receiver& receiver, std::size_t place) {
+    if (repeats_.size() <= place) repeats_.resize(place + 1, 0);
+    int& repeats = repeats_[place];
+    if (repeats == 0) {
+      const double once = std::max(kShortest / 100.0, files::seconds_of([&] { evaluate(receiver); }));
+      repeats = once > kLong ? kByProcessorTime : static_cast<int>(std::ceil(kShortest / once));
+    }
+    if (repeats != kByProcessorTime) {
+      return files::seconds_of([&] {
+               for (int k = 0; k < repeats; ++k) evaluate(receiver);
+             }) /
+             repeats;
+    }
+    const double start = thread_seconds();
+    evaluate(receiver);
+    return thread_seconds() - start;
+  }
+
+ private:
+  static constexpr int kByProcessorTime = -1;
+
+  void evaluate(const Receiver& receiver) {
+    evaluator_->look_from(receiver);
+    evaluator_->form_factors(sources_, estimates_);
+  }
+
+  std::unique_ptr<methods::Evaluator> evaluator_;
+  std::span<const methods::PreparedSource* const> sources_;
+  std::vector<methods::Estimate> estimates_;
+  std::vector<int> repeats_;
+};
+
+// What was measured for one setting.
+struct Rounds {
+  std::vector<std::vector<double>> exact, ratios;  // by place, then round
+};
 
 class Stopwatch {
  public:
-  Stopwatch(const Study& study, const Hooks& hooks) : study_(study), hooks_(hooks) {}
+  Stopwatch(const Study& study, const Hooks& hooks)
+      : study_(study), hooks_(hooks), total_(1 + study.methods.cells.size()) {}
 
   Times run() {
-    total_ = 1 + study_.settings.size() + study_.methods.cells.size();
-    prepare();
+    const methods::Choice exact = exact_choice();
+    times_.exact_setup = files::seconds_of([&] { exact_method_.emplace(*exact.method, scene(), request().sources); });
+    exact_.emplace(*exact_method_, exact.settings);
     choose();
     time_exact();
-    for (std::size_t k = 0; k < study_.settings.size(); ++k) time_setting(k);
-    if (solver_) times_.ray_setup = solver_->build_seconds();  // built at the first long candidate list
-    time_methods();
+    time_cells();
+    finish();
     return std::move(times_);
   }
 
  private:
   [[nodiscard]] const Request& request() const { return study_.request; }
   [[nodiscard]] const Scene& scene() const { return *request().scene; }
+  [[nodiscard]] const Receiver& receiver(std::size_t place) const {
+    return request().receivers[times_.receivers[place]];
+  }
+  [[nodiscard]] bool is_partly(std::size_t place) const {
+    return study_.exact[times_.receivers[place]].sight == Sight::kPartly;
+  }
 
-  void prepare() {
-    times_.exact_setup = files::seconds_of([&] {
-      for (const Selection& source : request().sources) sources_.emplace_back(scene(), source);
-    });
-    if (study_.settings.empty()) return;
-    solver_.emplace(scene());
-    for (const Selection& source : request().sources) {
-      sampled_sources_.push_back(solver_->prepare(source));
-      radiosities_.push_back(scene().source_radiosity(source));
-    }
+  [[nodiscard]] methods::Choice exact_choice() const {
+    methods::Choice choice = methods::parse("exact");
+    if (request().engine == Engine::kBoolean) choice.settings.set("engine", std::string("boolean"));
+    if (request().engine == Engine::kBoth) choice.settings.set("engine", std::string("both"));
+    return choice;
   }
 
   void choose() {
-    std::vector<std::size_t> order = spread_order(study_.exact.size());
-    order.resize(std::min(order.size(), kMostTimed));
-    const auto is_partly = [&](std::size_t i) { return study_.exact[i].sight == Sight::kPartly; };
-    if (std::none_of(order.begin(), order.end(), is_partly)) {
-      for (std::size_t i = 0; i < study_.exact.size() && order.size() < kMostTimed + 3; ++i) {
-        if (is_partly(i)) order.push_back(i);
-      }
+    std::vector<std::size_t> all = study_.methods.receivers;
+    if (all.empty()) {
+      all = spread_order(study_.exact.size());
+      all.resize(std::min(all.size(), request().methods.receivers));
     }
-    order_ = std::move(order);
+    times_.receivers = order_of_timing(all, study_.exact);
+    exact_seconds_.resize(times_.receivers.size());
   }
 
   void report() {
@@ -74,104 +138,162 @@ class Stopwatch {
     if (hooks_.progress) hooks_.progress({"times", ++done_, total_});
   }
 
-  // Calls measure(i) for receivers until the time is used up. Always includes some that see the source partly, if there
-  // are any.
-  template <class Measure>
-  void spend(double seconds, std::size_t fewest, const std::vector<std::size_t>& order, const Measure& measure) {
-    const auto start = std::chrono::steady_clock::now();
-    const std::chrono::duration<double> limit(seconds);
-    std::size_t done = 0, partly = 0;
-    const std::size_t all_partly = static_cast<std::size_t>(std::count_if(
-        order.begin(), order.end(), [&](std::size_t i) { return study_.exact[i].sight == Sight::kPartly; }));
-    for (const std::size_t i : order) {
-      const bool is_partly = study_.exact[i].sight == Sight::kPartly;
-      const bool spent = std::chrono::steady_clock::now() - start > limit && done >= fewest;
-      if (spent && partly >= std::min<std::size_t>(3, all_partly)) break;
-      if (spent && !is_partly) continue;
-      measure(i);
-      ++done;
-      partly += is_partly ? 1 : 0;
+  // Calls round() until the time is used up, or half of it by enough rounds.
+  template <class Round>
+  void repeat(double seconds, const Round& round) {
+    double spent = 0.0;
+    for (std::size_t done = 0; done < kMostRounds; ++done) {
+      if (spent > seconds || (2.0 * spent > seconds && done >= kFewestRounds)) break;
+      files::require_not_cancelled(hooks_);
+      spent += files::seconds_of(round);
     }
   }
 
+  // As many receivers as a round of this planned time for each has time for.
+  [[nodiscard]] std::size_t count_within(double seconds, double planned) const {
+    const double most = std::min(seconds / planned, static_cast<double>(times_.receivers.size()));
+    return std::max(static_cast<std::size_t>(most), std::min(kFewestReceivers, times_.receivers.size()));
+  }
+
   void time_exact() {
-    FormFactor result;
-    times_.exact.assign(study_.exact.size(), kNotTimed);
-    spend(4.0 * request().seconds_for_a_time, kFewestTimed, order_, [&](std::size_t i) {
-      times_.receivers.push_back(i);
-      const ExactOptions options{.engine = request().engine};
-      double sum = 0.0;
-      for (const ExactSource& source : sources_) {
-        sum += typical_time([&] { exact_form_factor(scene(), request().receivers[i], source, options, result); });
-      }
-      times_.exact[i] = sum;
-    });
-    std::sort(times_.receivers.begin(), times_.receivers.end());
-    report();
-  }
-
-  void time_setting(std::size_t k) {
-    std::vector<double>& seconds = times_.samples.emplace_back(study_.exact.size(), kNotTimed);
-    spend(request().seconds_for_a_time, kFewestTimed, order_, [&](std::size_t i) {
-      const Receiver& receiver = request().receivers[i];
-      double form_factor = 0.0;
-      seconds[i] = 0.0;
-      for (std::size_t s = 0; s < sampled_sources_.size(); ++s) {
-        const double rho_b = largest_rho_b(scene(), receiver, radiosities_[s]);
-        double value = 0.0;
-        seconds[i] += typical_time([&] {
-          value = solver_->form_factor(receiver, sampled_sources_[s], rho_b, study_.settings[k]).form_factor;
-        });
-        form_factor += value;
-      }
-      const double before = study_.samples[k][i].form_factor;
-      if (form_factor != before && !(std::isnan(form_factor) && std::isnan(before))) {
-        throw std::logic_error("the adaptive algorithm gave two results for one receiver and setting");
+    const double seconds = 4.0 * request().seconds_for_a_time;
+    times_.receivers.resize(count_within(seconds, planned_exact()));
+    repeat(seconds, [&] {
+      for (std::size_t p = 0; p < times_.receivers.size(); ++p) {
+        exact_seconds_[p].push_back(exact_->seconds(receiver(p), p));
       }
     });
     report();
   }
 
-  void time_methods() {
+  [[nodiscard]] double planned_exact() const {
+    for (const MethodCell& cell : study_.methods.cells) {
+      const methods::Choice& choice = study_.methods.ladders[cell.ladder].rungs[cell.rung];
+      if (choice.method->name == "exact") return std::max(kShortest, cell.planned_seconds);
+    }
+    return kShortest;
+  }
+
+  void time_cells() {
     const MethodStudy& methods = study_.methods;
-    std::vector<std::size_t> order;
-    for (const std::size_t k : spread_order(methods.receivers.size())) order.push_back(methods.receivers[k]);
-    for (std::size_t first = 0, l = 0; l < methods.ladders.size(); ++l) {
+    std::size_t c = 0;
+    for (std::size_t l = 0; l < methods.ladders.size(); ++l) {
       const methods::Choice& choice = methods.ladders[l].rungs.front();
       std::optional<PreparedMethod> prepared;
       times_.method_setup.push_back(
           files::seconds_of([&] { prepared.emplace(*choice.method, scene(), request().sources); }));
-      for (; first < methods.cells.size() && methods.cells[first].ladder == l; ++first) {
-        time_cell(methods.cells[first], *prepared, order);
-      }
+      for (; c < methods.cells.size() && methods.cells[c].ladder == l; ++c) time_cell(methods.cells[c], *prepared);
     }
   }
 
-  void time_cell(const MethodCell& cell, const PreparedMethod& prepared, const std::vector<std::size_t>& order) {
+  void time_cell(const MethodCell& cell, const PreparedMethod& prepared) {
     const methods::Choice& choice = study_.methods.ladders[cell.ladder].rungs[cell.rung];
-    const auto evaluator = prepared.scene->configure(with_seed(choice, cell.seeds.front()));
-    std::vector<methods::Estimate> estimates(prepared.sources.size());
-    std::vector<double> all, partly;
-    spend(request().seconds_for_a_time, kFewestInCell, order, [&](std::size_t i) {
-      all.push_back(typical_time([&] {
-        evaluator->look_from(request().receivers[i]);
-        evaluator->form_factors(prepared.sources, estimates);
-      }));
-      if (study_.exact[i].sight == Sight::kPartly) partly.push_back(all.back());
-    });
-    const auto mean_of = [](const std::vector<double>& list) { return list.empty() ? kNotTimed : kernel::mean(list); };
-    times_.cells.push_back({mean_of(all), mean_of(partly)});
+    Rounds& rounds = rounds_.emplace_back();
+    if (choice.method->name != "exact") {
+      Subject subject(prepared, with_seed(choice, cell.seeds.front()));
+      const double planned = planned_exact() + std::max(kShortest, cell.planned_seconds / kOverpriced);
+      const std::size_t count = count_within(request().seconds_for_a_time, planned);
+      rounds.exact.resize(count);
+      rounds.ratios.resize(count);
+      check_value(subject, cell);
+      repeat(request().seconds_for_a_time, [&] { add_round(subject, rounds); });
+    }
     report();
+  }
+
+  void add_round(Subject& subject, Rounds& rounds) {
+    for (std::size_t p = 0; p < rounds.exact.size(); ++p) {
+      const double exact = exact_->seconds(receiver(p), p), seconds = subject.seconds(receiver(p), p);
+      exact_seconds_[p].push_back(exact);
+      rounds.exact[p].push_back(exact);
+      rounds.ratios[p].push_back(seconds / exact);
+    }
+  }
+
+  void check_value(Subject& subject, const MethodCell& cell) const {
+    if (study_.methods.receivers.empty() || cell.values.empty()) return;
+    const double before = cell.values.front().front();
+    const double now = subject.value(request().receivers[study_.methods.receivers.front()]);
+    if (now != before && !(std::isnan(now) && std::isnan(before))) {
+      throw std::logic_error("a method gave two results for one receiver and setting");
+    }
+  }
+
+  void finish() {
+    for (std::size_t p = 0; p < times_.receivers.size(); ++p) {
+      times_.exact.by_receiver.push_back(kernel::median(exact_seconds_[p]));
+    }
+    times_.exact.summary = summary_of(times_.exact.by_receiver);
+    times_.exact.ratio_low = times_.exact.ratio_high = 1.0;
+    std::vector<double> speeds;
+    for (const Rounds& rounds : rounds_) {
+      times_.cells.push_back(rounds.exact.empty() ? times_.exact : setting_of(rounds));
+      if (!rounds.exact.empty()) speeds.push_back(exact_speed(rounds));
+    }
+    if (speeds.empty()) return;
+    times_.exact_fastest = kernel::percentile(speeds, 5.0);
+    times_.exact_slowest = kernel::percentile(speeds, 95.0);
+  }
+
+  [[nodiscard]] Times::Setting setting_of(const Rounds& rounds) const {
+    Times::Setting setting;
+    for (std::size_t p = 0; p < rounds.ratios.size(); ++p) {
+      setting.by_receiver.push_back(kernel::median(rounds.ratios[p]) * times_.exact.by_receiver[p]);
+    }
+    setting.summary = summary_of(setting.by_receiver);
+    setting.ratio_low = ratio_at(rounds, 25.0);
+    setting.ratio_high = ratio_at(rounds, 75.0);
+    return setting;
+  }
+
+  // The percentile of the ratios at each receiver, averaged like the times.
+  [[nodiscard]] double ratio_at(const Rounds& rounds, double percent) const {
+    double sum = 0.0, exact = 0.0;
+    for (std::size_t p = 0; p < rounds.ratios.size(); ++p) {
+      sum += kernel::percentile(rounds.ratios[p], percent) * times_.exact.by_receiver[p];
+      exact += times_.exact.by_receiver[p];
+    }
+    return sum / exact;
+  }
+
+  // Means over all receivers, from those at the first of them.
+  [[nodiscard]] TimeSummary summary_of(const std::vector<double>& seconds) const {
+    std::vector<double> partly, exact_partly;
+    for (std::size_t p = 0; p < seconds.size(); ++p) {
+      if (!is_partly(p)) continue;
+      partly.push_back(seconds[p]);
+      exact_partly.push_back(times_.exact.by_receiver[p]);
+    }
+    std::vector<double> all_partly;
+    for (std::size_t p = 0; p < times_.receivers.size(); ++p) {
+      if (is_partly(p)) all_partly.push_back(times_.exact.by_receiver[p]);
+    }
+    const std::span<const double> exact(times_.exact.by_receiver.data(), seconds.size());
+    return {kernel::median(seconds), in_proportion(seconds, exact, times_.exact.by_receiver), kernel::median(partly),
+            in_proportion(partly, exact_partly, all_partly)};
+  }
+
+  static double in_proportion(std::span<const double> seconds, std::span<const double> exact,
+                              std::span<const double> all_exact) {
+    return seconds.empty() ? 0.0 : kernel::mean(all_exact) * (kernel::mean(seconds) / kernel::mean(exact));
+  }
+
+  [[nodiscard]] double exact_speed(const Rounds& rounds) const {
+    double here = 0.0, usual = 0.0;
+    for (std::size_t p = 0; p < rounds.exact.size(); ++p) {
+      here += kernel::median(rounds.exact[p]);
+      usual += times_.exact.by_receiver[p];
+    }
+    return here / usual;
   }
 
   const Study& study_;
   const Hooks& hooks_;
   Times times_;
-  std::vector<ExactSource> sources_;
-  std::optional<AdaptiveSolver> solver_;
-  std::vector<AdaptiveSource> sampled_sources_;
-  std::vector<Rgb> radiosities_;
-  std::vector<std::size_t> order_;
+  std::optional<PreparedMethod> exact_method_;
+  std::optional<Subject> exact_;
+  std::vector<std::vector<double>> exact_seconds_;  // by place, over all settings
+  std::vector<Rounds> rounds_;                      // by cell; empty for the exact method
   std::size_t done_ = 0;
   std::size_t total_ = 0;
 };
@@ -186,6 +308,24 @@ std::vector<std::size_t> spread_order(std::size_t count) {
       std::max<std::size_t>(1, static_cast<std::size_t>(std::llround(0.6180339887 * static_cast<double>(count))));
   while (std::gcd(step, count) != 1) ++step;
   for (std::size_t k = 0; k < count; ++k) order.push_back((count / 2 + k * step) % count);
+  return order;
+}
+
+std::vector<std::size_t> order_of_timing(const std::vector<std::size_t>& receivers,
+                                         const std::vector<ExactRow>& exact) {
+  std::vector<std::pair<double, std::size_t>> placed;
+  for (const bool partly : {true, false}) {
+    std::vector<std::size_t> group;
+    std::ranges::copy_if(receivers, std::back_inserter(group),
+                         [&](std::size_t i) { return (exact[i].sight == Sight::kPartly) == partly; });
+    const std::vector<std::size_t> order = spread_order(group.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      placed.emplace_back((static_cast<double>(k) + 0.5) / static_cast<double>(order.size()), group[order[k]]);
+    }
+  }
+  std::ranges::stable_sort(placed, {}, &std::pair<double, std::size_t>::first);
+  std::vector<std::size_t> order;
+  for (const auto& [place, receiver] : placed) order.push_back(receiver);
   return order;
 }
 

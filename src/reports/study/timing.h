@@ -5,27 +5,33 @@
 
 namespace exactff::study {
 
-// Seconds; kNotTimed where nothing was measured.
+// Seconds.
 struct Times {
-  double exact_setup = 0.0;                  // once per source
-  double ray_setup = 0.0;                    // once per scene
-  std::vector<std::size_t> receivers;        // those that were timed, ascending
-  std::vector<double> exact;                 // by receiver
-  std::vector<std::vector<double>> samples;  // by setting, then receiver
-  std::vector<double> method_setup;          // by ladder
-  struct Cell {
-    double all = kNotTimed;
-    double partly = kNotTimed;
+  struct Setting {
+    TimeSummary summary;
+    std::vector<double> by_receiver;  // at the first of the receivers
+    double ratio_low = kNotTimed;     // quartiles, as in MethodCell
+    double ratio_high = kNotTimed;
   };
-  std::vector<Cell> cells;  // by cell of the methods
+  std::vector<std::size_t> receivers;  // that were timed, in that order
+  Setting exact;                       // at all of them
+  std::vector<Setting> cells;          // by cell of the methods
+  double exact_fastest = 1.0;          // as in Study
+  double exact_slowest = 1.0;
+  double exact_setup = 0.0;          // once per source
+  std::vector<double> method_setup;  // by ladder
 };
 
-// Times everything that a study with its values has computed. A time is the median of three calls after a first call
-// with the same arguments; if the first call is long, it is the time. Receivers are timed in an order that is spread
-// over all of them, until the time reserved for the setting is used up.
+// Times every setting that a study with its values has run, as MethodCell describes it. Which receivers a setting is
+// timed at depends on counted work alone, so that its time means the same in every run. Throws std::logic_error if a
+// value is not that of the study.
 [[nodiscard]] Times measure_times(const Study& study, const Hooks& hooks);
 
 // A permutation of the numbers below `count` whose every prefix is spread evenly.
 [[nodiscard]] std::vector<std::size_t> spread_order(std::size_t count);
+
+// Every prefix is spread evenly, and has about the same share of receivers that see the source partly.
+[[nodiscard]] std::vector<std::size_t> order_of_timing(const std::vector<std::size_t>& receivers,
+                                                       const std::vector<ExactRow>& exact);
 
 }  // namespace exactff::study

@@ -218,9 +218,6 @@ TEST_F(NamedMethods, OptionsWithoutEffectAreRefused) {
       "exactff: --eps-b and --sweep-budget have no effect beside --method (with --method, the sweep of Tampieri's "
       "algorithm over these values does not run); add --sweep, or write a setting of the method, such as --method "
       "adaptive:eps_B=0.1|0.01,rays=16, or remove them\n");
-  (void)output({"--no-methods", "--method-seeds", "3"});
-  EXPECT_EQ(code_, 2);
-  EXPECT_TRUE(said("--method-seeds has no effect beside --no-methods (no method is compared)")) << error_;
   (void)output({"--method", "hemicube", "--method-seeds", "3"});
   EXPECT_EQ(code_, 2);
   EXPECT_TRUE(said("--method-seeds has no effect here (none of the named methods uses random numbers)")) << error_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <set>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "exactff/study.h"
 #include "study/ladders.h"
 #include "study/method_runs.h"
+#include "study/settings.h"
 #include "study/timing.h"
 #include "support/complaint.h"
 #include "unit/reports/study_support.h"
@@ -109,6 +111,33 @@ TEST(LeaveOut, TakesLaddersThatCannotShowAnything) {
   EXPECT_EQ(left({true, true, 0.0}).size(), 5U) << "the adaptive ones";
 }
 
+TEST(AddSweeps, MakesEachSettingOneRung) {
+  Sweeps sweeps;
+  complete(sweeps, {20.0, 100.0, true});
+  const std::vector<AdaptiveOptions> settings = combine(sweeps).settings;
+  std::vector<Ladder> ladders = default_ladders(20.0);
+  add_sweeps(ladders, settings);
+  std::vector<std::string> rungs;
+  std::set<std::string> names;
+  for (const Ladder& ladder : ladders) {
+    for (std::size_t r = 0; r < ladder.rungs.size(); ++r) {
+      rungs.push_back(ladder.rungs[r].text());
+      EXPECT_TRUE(names.insert(rung_name(ladder, r)).second) << rung_name(ladder, r);
+    }
+  }
+  for (const AdaptiveOptions& setting : settings) {
+    EXPECT_EQ(std::ranges::count(rungs, without_seed(choice_of(setting)).text()), 1);
+  }
+  std::vector<std::string> added;
+  for (const Ladder& ladder : ladders) {
+    if (ladder.only_of_sweeps) added.push_back(ladder.name);
+  }
+  EXPECT_EQ(added, (std::vector<std::string>{"adaptive, 1 ray", "adaptive, 4 rays", "adaptive, 16 rays, literal",
+                                             "adaptive, other settings"}));
+  EXPECT_TRUE(names.contains("adaptive, 64 rays, regular, ε_B 0.02"));
+  EXPECT_TRUE(names.contains("adaptive, 256 rays, ε_A 0.1, ε_B 0.0002"));
+}
+
 // --- choices -------------------------------------------------------------------------------------------------
 
 std::vector<ExactRow> rows_seeing(const std::vector<Sight>& sights) {
@@ -140,6 +169,20 @@ TEST(ChooseReceivers, TakesOthersWhereThereAreTooFew) {
   EXPECT_EQ(choose_receivers(rows_seeing({kPartly, kPartly, kPartly}), 3), (std::vector<std::size_t>{0, 1, 2}));
   EXPECT_TRUE(choose_receivers(rows_seeing({kHidden, kNothing}), 4).empty());
   EXPECT_TRUE(choose_receivers({}, 4).empty());
+}
+
+TEST(OrderOfTiming, HasTheSameShareOfPartlyHiddenFromTheStart) {
+  std::vector<Sight> sights(60, Sight::kPartly);
+  sights.insert(sights.end(), 30, Sight::kVisible);
+  std::vector<std::size_t> all(90);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const std::vector<std::size_t> order = order_of_timing(all, rows_seeing(sights));
+  EXPECT_EQ(std::set(order.begin(), order.end()).size(), 90U);
+  for (std::size_t first = 3; first <= 90; first += 3) {
+    const auto partly = std::count_if(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(first),
+                                      [](std::size_t i) { return i < 60; });
+    EXPECT_NEAR(static_cast<double>(partly), 2.0 * static_cast<double>(first) / 3.0, 1.0) << first;
+  }
 }
 
 TEST(PlannedSeconds, CountWorkAtFixedPrices) {

@@ -14,6 +14,7 @@
 #include "report/verdicts.h"
 #include "study/ladders.h"
 #include "study/method_runs.h"
+#include "study/settings.h"
 #include "study/statistics.h"
 #include "text/escape.h"
 #include "unit/reports/study_support.h"
@@ -29,8 +30,7 @@ using validation::small_room;
 Study study_of(const Scene& scene, const std::vector<std::string>& ladders, const MethodSweep& sweep) {
   Request request = small_request(scene, 2);
   validation::scatter(request);
-  request.sweeps.rays = {1};
-  request.sweeps.seeds = {1};
+  request.sweeps.enabled = false;
   request.methods = sweep;
   for (const std::string& text : ladders) request.methods.ladders.push_back(parse_ladder(text));
   return run(std::move(request));
@@ -115,6 +115,84 @@ TEST(MethodStudy, HoldsEveryRungAtTheChosenReceivers) {
   }
 }
 
+// Every setting of the sweeps is compared with the methods, with as many seeds as the budget allows.
+TEST(MethodStudy, HoldsEverySettingOfTheSweeps) {
+  const Scene scene = small_room(true);
+  Request request = request_with_methods(scene, 2);
+  validation::scatter(request);
+  request.methods.ladders = {parse_ladder("exact"), parse_ladder("adaptive:rays=4,eps_B=0.5|0.1")};
+  for (const double budget : {10.0, 1e-9}) {
+    request.methods.budget = budget;
+    const Study study = run(request);
+    std::vector<std::size_t> found(study.settings.size(), 0);
+    for (const MethodCell& cell : study.methods.cells) {
+      const methods::Choice& rung = study.methods.ladders[cell.ladder].rungs[cell.rung];
+      for (const std::size_t k : cell.settings) {
+        ++found[k];
+        EXPECT_EQ(rung, without_seed(choice_of(study.settings[k])));
+        EXPECT_EQ(study.times[k].mean, cell.seconds);
+      }
+      const bool stochastic = rung.method->stochastic(rung.settings);
+      EXPECT_EQ(cell.seeds.size(), stochastic && budget > 1.0 ? 3U : 1U);
+    }
+    EXPECT_EQ(found, std::vector<std::size_t>(study.settings.size(), 1)) << "each setting once, whatever its seed";
+    const Ladder& line = study.methods.ladders[budget > 1.0 ? 1 : 0];
+    ASSERT_EQ(line.name, "adaptive, 4 rays");
+    EXPECT_EQ(line.rungs.size(), 3U) << "0.5, 0.1, and 0.05 of the sweeps";
+    EXPECT_EQ(rung_text(line, 2), "0.05");
+  }
+}
+
+// As the exact method three times over.
+struct ThreeTimesExact : methods::Evaluator {
+  std::unique_ptr<methods::Evaluator> exact;
+  Receiver receiver;
+  void look_from(const Receiver& from) override { receiver = from; }
+  using Evaluator::form_factor;
+  methods::Estimate form_factor(const methods::PreparedSource& source) override {
+    for (int k = 0; k < 2; ++k) (void)exact->form_factor(receiver, source);
+    return exact->form_factor(receiver, source);
+  }
+};
+
+struct ThreeTimesOnScene : methods::PreparedScene {
+  explicit ThreeTimesOnScene(const Scene& given)
+      : PreparedScene(given), exact(methods::method_named("exact").prepare(given)) {}
+  std::unique_ptr<methods::PreparedSource> prepare_source(const Selection& selection) const override {
+    return exact->prepare_source(selection);
+  }
+  std::unique_ptr<methods::Evaluator> configure(const Settings& /*settings*/) const override {
+    auto evaluator = std::make_unique<ThreeTimesExact>();
+    evaluator->exact = exact->configure(methods::method_named("exact").defaults());
+    return evaluator;
+  }
+  std::unique_ptr<methods::PreparedScene> exact;
+};
+
+TEST(MethodTimes, AreMultiplesOfTheExactMethods) {
+  methods::add_method({.name = "three-times-exact",
+                       .summary = "the exact method, called three times",
+                       .source = "",
+                       .settings = {},
+                       .prepare = [](const Scene& scene) { return std::make_unique<ThreeTimesOnScene>(scene); }});
+  const Scene scene = small_room(true);
+  Request request = request_with_methods(scene, 1);
+  validation::scatter(request);
+  request.sweeps.enabled = false;
+  request.seconds_for_a_time = 0.02;
+  request.methods.ladders = {parse_ladder("exact"), parse_ladder("three-times-exact")};
+  const Study study = run(std::move(request));
+  ASSERT_EQ(study.methods.cells.size(), 2U);
+  const MethodCell &exact = study.methods.cells[0], &thrice = study.methods.cells[1];
+  EXPECT_EQ(exact.seconds, study.exact_time.mean);
+  EXPECT_EQ(exact.seconds_partly, study.exact_time.mean_partly);
+  EXPECT_NEAR(thrice.seconds / exact.seconds, 3.0, 0.5);
+  EXPECT_LE(thrice.ratio_low, thrice.seconds / exact.seconds);
+  EXPECT_GE(thrice.ratio_high, thrice.seconds / exact.seconds);
+  EXPECT_GT(thrice.ratio_low, 2.0);
+  EXPECT_LT(thrice.ratio_high, 4.5);
+}
+
 // A user-defined method: the exact value plus 1 / n, added as include/README.md explains.
 struct OffByOneOverN : methods::Evaluator {
   std::unique_ptr<methods::Evaluator> exact;
@@ -153,6 +231,7 @@ TEST(MethodStudy, TakesAUsersMethodLikeAnyOther) {
   Request request = request_with_methods(scene, 1);
   validation::scatter(request);
   request.methods.budget = 1.0;
+  request.sweeps.enabled = false;
   request.methods.ladders = {parse_ladder("off-by-one-over-n:n=10|100|1000")};
   const Study study = run(std::move(request));
   ASSERT_EQ(study.methods.cells.size(), 3U);
@@ -196,6 +275,7 @@ TEST(MethodStudy, CountsValuesThatAreNoNumbersOrLeaveTheRange) {
     Request request = request_with_methods(scene, 1);
     validation::scatter(request);
     request.methods.budget = 1.0;
+    request.sweeps.enabled = false;
     for (const std::string& ladder : ladders) request.methods.ladders.push_back(parse_ladder(ladder));
     return run(std::move(request));
   };
@@ -258,7 +338,7 @@ TEST(MethodStudy, TellsWhichMethodRefusesTheScene) {
   request.scene = &scene;
   request.receivers = grid_receivers(scene, scene.select("floor"), {4, 4});
   request.sources = {scene.select("light")};
-  request.sweeps.eps_b = {0.1};
+  request.sweeps.enabled = false;
   request.seconds_for_a_time = 0.001;
   methods::Method picky = methods::method_named("hemicube");
   picky.name = "picky";

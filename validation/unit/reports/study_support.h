@@ -34,7 +34,7 @@ inline Scene small_room(bool with_plate) {
   return builder.build();
 }
 
-// Of the adaptive algorithm only.
+// Of the adaptive algorithm and the exact method only.
 inline study::Request small_request(const Scene& scene, int threads) {
   study::Request request;
   request.scene = &scene;
@@ -44,7 +44,7 @@ inline study::Request small_request(const Scene& scene, int threads) {
   request.sweeps.eps_b = {0.5, 0.05};
   request.sweeps.rays = {1, 4};
   request.sweeps.seeds = {1, 2};
-  request.methods.enabled = false;
+  request.methods = {.enabled = false, .seeds = 1, .receivers = 6, .budget = 0.005};
   request.threads = threads;
   request.seconds_for_a_time = 0.001;
   return request;

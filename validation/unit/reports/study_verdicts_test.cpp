@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "exactff/study.h"
+#include "report/figures.h"
 #include "report/verdicts.h"
 #include "study/ladders.h"
 
@@ -89,8 +90,7 @@ TEST_F(Verdicts, SayWhatTheOthersNeed) {
                 "On this scene the exact value takes 100 µs per receiver on average; the fastest other method that is "
                 "accurate to 10⁻³ of the brightest receiver (RMS), hemicube, resolution 128, takes 8 times as long, "
                 "and no other setting that was run is accurate to 10⁻⁴.",
-                "For errors below 20 % of the brightest receiver (RMS), the exact method is the fastest: no other "
-                "setting that is at least as fast is more accurate than this (best: wallace, splits 1)."}));
+                report::verdict(study_)}));
 }
 
 TEST_F(Verdicts, NameTheErrorFromWhichOnAnotherIsFaster) {
@@ -120,6 +120,33 @@ TEST_F(Verdicts, GrantAMethodThatErrsByRoundingAlone) {
             "exact method (100 µs per receiver) when every digit must be proved.");
 }
 
+TEST_F(Verdicts, AreDrawnWithWhatTheyRecommend) {
+  study_.request.scene = nullptr;
+  add_exact();
+  for (int k = 1; k <= 9; ++k) add("area-sampling:samples=" + std::to_string(k), {{0.3, 2e-4}});
+  add("nettle:variant=literal,splits=1|2", {{0.1, 5e-5}, {0.05, 9e-5}});
+  std::vector<page::Figure> figures;
+  std::vector<LeftOut> left_out;
+  study_.methods.slopes.resize(study_.methods.ladders.size());
+  report::add_method_figures(study_, figures, left_out);
+  ASSERT_FALSE(figures.empty());
+  ASSERT_EQ(figures.front().id, "methods-time");
+  EXPECT_NE(figures.front().script.find("nettle, literal"), std::string::npos);
+  EXPECT_NE(figures.front().script.find("recommended"), std::string::npos);
+  EXPECT_NE(figures.front().caption.find("nettle, literal, splits 2, which the verdict recommends"), std::string::npos)
+      << figures.front().caption;
+}
+
+TEST_F(Verdicts, WarnWhereTheMachineDrifted) {
+  EXPECT_EQ(report::drift_warning(study_), "");
+  study_.exact_fastest = 0.9;
+  study_.exact_slowest = 1.6;
+  EXPECT_TRUE(report::drift_warning(study_).starts_with(
+      "The machine’s speed drifted while times were measured: the exact method took from 0.9 to 1.6 times its median "
+      "time."))
+      << report::drift_warning(study_);
+}
+
 TEST_F(Verdicts, OfADarkSceneSaySo) {
   study_.exact[0].radiosity = {};
   add_exact();
@@ -132,7 +159,7 @@ TEST_F(Verdicts, SayThatNoOtherIsRightOrAsFast) {
   EXPECT_EQ(report::method_sentences(study_),
             (std::vector<std::string>{"On this scene the exact value takes 100 µs per receiver on average; no other "
                                       "setting that was run is accurate to 10⁻² of the brightest receiver (RMS).",
-                                      "No setting of another method is as fast as the exact method."}));
+                                      report::verdict(study_)}));
 }
 
 TEST_F(Verdicts, SayNothingOfExactAlone) {
