@@ -31,11 +31,12 @@ std::string npy_header(std::string_view type, std::span<const std::size_t> shape
   return bytes + text;
 }
 
-std::size_t npy_count(std::span<const std::size_t> shape) {
+std::size_t npy_count(const std::filesystem::path& path, std::span<const std::size_t> shape) {
   std::size_t count = 1;
   for (const std::size_t extent : shape) {
     if (__builtin_mul_overflow(count, extent, &count)) {
-      text::refuse("the array has more than 2^64 elements", "no file holds them", "ask for fewer");
+      text::refuse(path, "an array of the shape " + tuple(shape) + " has more than 2^64 elements", "no file holds them",
+                   "use a smaller array");
     }
   }
   return count;

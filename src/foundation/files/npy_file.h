@@ -37,8 +37,8 @@ inline constexpr std::string_view kNpyType<std::uint8_t> = "|u1";
 // for more than 65,535 bytes, which is some thousand axes.
 [[nodiscard]] std::string npy_header(std::string_view type, std::span<const std::size_t> shape);
 
-// The number of elements; throws InputError if it is more than a std::size_t holds.
-[[nodiscard]] std::size_t npy_count(std::span<const std::size_t> shape);
+// The number of elements of the array in this file; throws InputError if it is more than a std::size_t holds.
+[[nodiscard]] std::size_t npy_count(const std::filesystem::path& path, std::span<const std::size_t> shape);
 
 // An array that is written element by element, in C order.
 template <class T>
@@ -49,7 +49,7 @@ class NpyFile {
   // The file appears at `path`, and replaces another one there, when commit() returns. The constructor throws
   // InputError if the file cannot be written.
   NpyFile(const std::filesystem::path& path, std::span<const std::size_t> shape, FailureAdvice advice = {})
-      : missing_(npy_count(shape)), file_(path, std::move(advice)) {
+      : missing_(npy_count(path, shape)), file_(path, std::move(advice)) {
     file_.append(npy_header(kNpyType<T>, shape));
   }
 

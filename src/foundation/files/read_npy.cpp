@@ -32,7 +32,7 @@ class NpyReader {
     const std::string_view header = take_header();
     const std::string_view type = value_of(header, "descr");
     NpyArray array{shape_of(value_of(header, "shape")), {}};
-    const std::size_t count = npy_count(array.shape);
+    const std::size_t count = npy_count(path_, array.shape);
     if (type.find("f8") != std::string_view::npos) {
       read_elements<double, std::uint64_t>(type, count, array.values);
     } else if (type.find("f4") != std::string_view::npos) {
@@ -73,11 +73,12 @@ class NpyReader {
   std::vector<std::size_t> shape_of(std::string_view text) const {
     const std::size_t end = text.find(')');
     if (!text.starts_with('(') || end == std::string_view::npos) damaged("has no shape in its header");
+    const std::string all(text.substr(0, end + 1));
     std::vector<std::size_t> shape;
     for (text = text.substr(1, end - 1); !text::trimmed(text).empty();) {
       text = text::trimmed(text);
       const auto number = std::from_chars(text.data(), text.data() + text.size(), shape.emplace_back());
-      if (number.ec != std::errc{}) damaged("has no shape in its header");
+      if (number.ec != std::errc{}) damaged("has an impossible shape in its header: " + text::in_quotes(all));
       text.remove_prefix(static_cast<std::size_t>(number.ptr - text.data()));
       if (text.starts_with(',')) text.remove_prefix(1);
     }

@@ -204,7 +204,24 @@ TEST(ReadNpy, IsWhatNumpyWrites) {
   EXPECT_EQ(array.values, (std::vector<double>{1.5}));
   EXPECT_THROW((void)files::read_npy(file("<f4", "False", "(2, 3)", floats({1}))), InputError);
   EXPECT_THROW((void)files::read_npy(file("<i8", "False", "(1,)", floats({1, 2}))), InputError);
-  EXPECT_THROW((void)files::read_npy(file("<f8", "False", "(4294967296, 4294967296)", "")), InputError);
+}
+
+TEST(ReadNpy, AnImpossibleShapeIsRefusedWithTheNameOfTheFile) {
+  const validation::TemporaryDirectory directory;
+  for (const auto& [shape, what] :
+       {std::pair("(4294967296, 4294967296)",
+                  "an array of the shape (4294967296, 4294967296) has more than 2^64 elements"),
+        std::pair("(-3, 4)", "has an impossible shape in its header: '(-3, 4)'"),
+        std::pair("(99999999999999999999999, 4)", "has an impossible shape in its header: '(9999999999999999")}) {
+    const std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': " + std::string(shape) + ", }\n";
+    const auto file = directory.write("m.npy", std::string("\x93NUMPY\1") + '\0' + char(header.size()) + '\0' + header);
+    try {
+      (void)files::read_npy(file);
+      ADD_FAILURE() << shape;
+    } catch (const InputError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with(file.string() + ": " + what)) << error.what();
+    }
+  }
 }
 
 // --- the command -----------------------------------------------------------------------------------------------------
