@@ -1,5 +1,6 @@
 #include "check/github.h"
 
+#include <algorithm>
 #include <string_view>
 
 #include "check/words.h"
@@ -22,17 +23,25 @@ std::string command(std::string_view kind, const FileLine& place, const std::str
   return text + "title=" + text::github_property(title) + "::" + text::github_message(message) + '\n';
 }
 
+// The row that decides, or an example of the worst: of this source, if the verdict is on one. Null if there is none.
+const RowError* row_to_show(const Report& report, const Verdict& verdict) {
+  if (verdict.worst) return &*verdict.worst;
+  const auto found = std::ranges::find_if(
+      report.worst, [&](const RowError& row) { return verdict.source.empty() || row.source == verdict.source; });
+  return found == report.worst.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 std::string github_annotations(const Report& report) {
   const kernel::StandardArithmetic arithmetic;
   std::string text;
-  const std::size_t own = report.worst.empty() ? 0 : report.worst.front().line;
   for (const Verdict& verdict : report.verdicts) {
     if (verdict.passed) continue;
+    const RowError* row = row_to_show(report, verdict);
     std::string message = sentence(verdict);
-    if (verdict.worst) message += "\n" + describe(*verdict.worst);
-    text += command("error", {report.candidate_file, verdict.worst ? verdict.worst->line : own},
+    if (row != nullptr) message += "\n" + (verdict.worst ? "" : "worst row: " + name_of(*row) + ": ") + describe(*row);
+    text += command("error", {report.candidate_file, row != nullptr ? row->line : 0},
                     "exactff check: " + name_of(verdict), message);
   }
   for (const std::string& warning : warnings(report)) {

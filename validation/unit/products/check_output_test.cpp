@@ -86,6 +86,20 @@ TEST(GitHubAnnotations, OfStatisticsPointToTheWorstRowOfAll) {
   const std::string text = github_annotations(awkward_report({.rms = 0.125}));
   EXPECT_TRUE(text.starts_with("::error file=c%2Cd%3A50%25.csv,line=9,title=exactff check%3A rms::rms: 0.17677"))
       << text;
+  EXPECT_TRUE(
+      text.ends_with(" is above the limit 0.125%0Aworst row: receiver 'a\\x01\\xff\\x0a]]>', source 'l<&>\"amp': "
+                     "exact 0.25, found 0.5, error 0.25, relative 1\n"))
+      << text;
+}
+
+// Of a source that is judged apart, its own worst row.
+TEST(GitHubAnnotations, OfStatisticsOfASourceShowItsRows) {
+  const Truth truth = truth_of("receiver,source,exact\na,s,.5\na,t,.5\n");
+  const std::vector<Measured> values = {{0, 2, 0.75}, {1, 3, 1.0}};
+  const std::string text = github_annotations(judge(truth, values, {.rms = 0.125, .per_source = true}, "mine.csv"));
+  EXPECT_HOLDS(text, "line=2,title=exactff check%3A rms, source s::");
+  EXPECT_HOLDS(text, "worst row: receiver 'a', source 's': exact 0.5, found 0.75, error 0.25, relative 0.5\n");
+  EXPECT_HOLDS(text, "worst row: receiver 'a', source 't': exact 0.5, found 1, error 0.5, relative 1\n");
 }
 
 TEST(GitHubAnnotations, AreOneLineEach) {
