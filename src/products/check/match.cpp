@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "check/row_keys.h"
@@ -66,6 +67,15 @@ class PositionIndex {
     std::vector<std::uint32_t> rows;
     for (const auto& [away, row] : found) rows.push_back(row);
     return rows;
+  }
+
+  // The distance to the nearest row of the source, whatever its normal.
+  [[nodiscard]] double distance_to_nearest(const Vec3& point, std::uint32_t source) const {
+    const auto is_of_source = [&](const Entry& entry) { return truth_.rows[entry.second].source == source; };
+    const auto found =
+        tree_.qbegin(bg::index::nearest(Point(point.x, point.y, point.z), 1) && bg::index::satisfies(is_of_source));
+    if (found == tree_.qend()) return std::numeric_limits<double>::infinity();
+    return kernel::distance(truth_.rows[found->second].point, point);
   }
 
  private:
@@ -177,6 +187,7 @@ class Matcher {
 
   void match_positions() {
     const PositionIndex index(truth_, options_, truth_.has_normals && candidate_.has_normals);
+    std::vector<std::uint32_t> unmatched;
     for (std::uint32_t i = 0; i < candidate_.rows.size(); ++i) {
       const CandidateRow& row = candidate_.rows[i];
       if (!has_known_source(row)) continue;
@@ -184,13 +195,45 @@ class Matcher {
       if (found.size() == 1) {
         take(found.front(), i);
       } else if (found.empty()) {
-        complain(row.line,
-                 "the truth has no receiver within " + text::shortest(options_.tolerance) + of_source(name_of(row)),
-                 "its value cannot be checked", "use a larger --tolerance if the coordinates were rounded");
+        unmatched.push_back(i);
       } else {
         complain_about_choice(row, found);
       }
     }
+    complain_about_distances(index, unmatched);
+    for (const std::uint32_t i : unmatched) {
+      const CandidateRow& row = candidate_.rows[i];
+      complain(row.line,
+               "the truth has no receiver within " + text::shortest(options_.tolerance) + " of " + place_of(row.point) +
+                   of_source(name_of(row)),
+               "its value cannot be checked", "use a larger --tolerance if the coordinates were rounded");
+    }
+  }
+
+  [[nodiscard]] static std::string place_of(const Vec3& p) {
+    return '(' + text::shortest(p.x) + ", " + text::shortest(p.y) + ", " + text::shortest(p.z) + ')';
+  }
+
+  // Told once for all rows without a match: it shows whether a tolerance would do, or the units are others.
+  void complain_about_distances(const PositionIndex& index, std::span<const std::uint32_t> unmatched) {
+    double nearest = std::numeric_limits<double>::infinity(), furthest = 0.0;
+    for (const std::uint32_t i : unmatched) {
+      const CandidateRow& row = candidate_.rows[i];
+      const double distance = index.distance_to_nearest(row.point, source_[row.source]);
+      nearest = std::min(nearest, distance);
+      furthest = std::max(furthest, distance);
+    }
+    if (unmatched.empty()) return;
+    const bool near = nearest <= options_.tolerance;
+    const std::string least = text::short_number(nearest), most = text::short_number(furthest);
+    complain(0,
+             text::counted(unmatched.size(), "row") + (unmatched.size() == 1 ? " has" : " have") +
+                 " no match; the distance to the nearest receiver of the truth is " + least +
+                 (least == most ? "" : " to " + most),
+             near ? "the normals of such receivers differ by more than --normal-tolerance"
+                  : "points match up to --tolerance",
+             near ? "check the normals, or use a larger --normal-tolerance"
+                  : "check the unit of length and the columns, or use a larger --tolerance");
   }
 
   void complain_about_choice(const CandidateRow& row, const std::vector<std::uint32_t>& found) {
@@ -230,7 +273,9 @@ class Matcher {
     for (std::size_t i = 0; i < found_.size() && names.size() < kShown; ++i) {
       if (found_[i] != kNothing) continue;
       const TruthRow& row = truth_.rows[i];
-      names.push_back(text::in_quotes(row.receiver) + of_source(truth_.source_of(row)));
+      const bool by_position = options_.by == MatchBy::kPosition;
+      names.push_back(text::in_quotes(row.receiver) + (by_position ? " at " + place_of(row.point) : "") +
+                      of_source(truth_.source_of(row)));
     }
     if (missing > kShown) names.push_back(std::to_string(missing - kShown) + " more");
     complain(0,

@@ -83,7 +83,36 @@ TEST(MatchByPosition, TakesTheToleranceAsADistance) {
   const std::string near = "x,y,z,nx,ny,nz,source,value\n1,0.003,0.004,0,0,1,s,2\n";
   EXPECT_EQ(matched_by_position(near, 0.0051), std::vector<double>{2});
   EXPECT_HOLDS(complaint([&] { (void)matched_by_position(near, 0.0049); }),
-               "mine.csv:2: the truth has no receiver within 0.0049 of source 's' (");
+               "mine.csv:2: the truth has no receiver within 0.0049 of (1, 0.003, 0.004) of source 's' (");
+}
+
+TEST(MatchByPosition, TellsThePlacesOfRowsWithoutAMatchAndOnceHowFarTheyAre) {
+  const std::string what = complaint(
+      [] { (void)matched_by_position("x,y,z,source,value\n1,0.25,0,s,2\n0,0,0.5,t,3\n1,0,0,s,1\n", 0.01, false); });
+  EXPECT_HOLDS(what, "mine.csv:2: the truth has no receiver within 0.01 of (1, 0.25, 0) of source 's' (");
+  EXPECT_HOLDS(what, "mine.csv:3: the truth has no receiver within 0.01 of (0, 0, 0.5) of source 't' (");
+  const std::string distance =
+      "mine.csv: 2 rows have no match; the distance to the nearest receiver of the truth is 0.25 to 0.5 (points match "
+      "up "
+      "to --tolerance); check the unit of length and the columns, or use a larger --tolerance";
+  EXPECT_HOLDS(what, distance);
+  EXPECT_EQ(what.find("the distance to the nearest"), what.rfind("the distance to the nearest")) << what;
+  EXPECT_HOLDS(what, "no value for 3 of 4 rows of the truth: receiver 'a' at (0, 0, 0) of source 's', ");
+}
+
+// However many there are.
+TEST(MatchByPosition, TellsTheDistanceOfThousandsOfRowsWithoutAMatch) {
+  std::string mine = "x,y,z,source,value\n";
+  for (int i = 0; i < 3000; ++i) mine += "1,0,3,s,1\n";
+  EXPECT_HOLDS(complaint([&] { (void)matched_by_position(mine, 0.0); }),
+               "mine.csv: 3000 rows have no match; the distance to the nearest receiver of the truth is 3 (");
+}
+
+TEST(MatchByPosition, TellsThatNormalsAreToBlame) {
+  EXPECT_HOLDS(
+      complaint([] { (void)matched_by_position("x,y,z,nx,ny,nz,source,value\n1,0,0,0,0,-1,s,2\n", 0.0); }),
+      "mine.csv: 1 row has no match; the distance to the nearest receiver of the truth is 0 (the normals of such "
+      "receivers differ by more than --normal-tolerance); check the normals");
 }
 
 TEST(MatchByPosition, RefusesAChoice) {
