@@ -12,6 +12,7 @@
 #include "cli/launch.h"
 #include "cli/long_run.h"
 #include "cli/memory.h"
+#include "cli/misused_flags.h"
 #include "cli/output.h"
 #include "cli/streams.h"
 #include "exactff/version.h"
@@ -61,6 +62,9 @@ int parse_and_run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    const bool tells = error.get_exit_code() != 0 && exactff::cli::launched_rank() == 0;
+    if (tells) exactff::cli::refuse_misused_flags(app, words);
     return end_of_parsing(app, error);
   }
   for (const exactff::cli::Command& command : commands) {

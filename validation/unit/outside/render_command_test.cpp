@@ -115,7 +115,7 @@ TEST_F(RenderCommand, BadInputIsRefusedWithWords) {
   refused({"-o", image, "--eye", "1", "2", "3", "--look", "1", "2", "3"}, "are the same");
   refused({"-o", image, "--eye", "1", "2", "3", "--look", "1", "9", "3"}, "parallel to the line of sight");
   refused({"-o", image, "--eye", "1", "2", "x", "--look", "1", "9", "3"}, "'x'");
-  refused({"-o", image, "--eye", "1", "2", "--look", "1", "9", "3"}, "3 required");
+  refused({"-o", image, "--eye", "1", "2", "--look", "1", "9", "3"}, "--eye takes three numbers");
   refused({"-o", image, "--fov", "180"}, "angle of view");
   refused({"-o", image, "--fov", "0"}, "not a positive number");
   refused({"-o", image, "--size", "12"}, "is not a size");

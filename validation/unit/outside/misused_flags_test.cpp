@@ -1,0 +1,74 @@
+// What the program says to flags that are misspelt, or have the wrong number of numbers.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "support/program.h"
+
+namespace exactff {
+namespace {
+
+struct MisusedFlags : testing::Test {
+  const validation::TemporaryDirectory directory;
+  const std::string scene = EXACTFF_DATA_DIR "/scenes/cornell_box.obj";
+
+  void expect_refused(const std::vector<std::string>& words, const std::string& message) const {
+    const validation::RunningProgram program(EXACTFF_PROGRAM, words, directory.path() / "error");
+    EXPECT_EQ(program.wait(), 2);
+    EXPECT_EQ(program.error(), "exactff: " + message + '\n');
+  }
+};
+
+TEST_F(MisusedFlags, NumbersWithCommasAreShownWithSpaces) {
+  const std::string what = "--at takes three numbers with spaces between them (it has '1,0,1'); write --at 1 0 1";
+  expect_refused({"point", scene, "--at", "1,0,1", "--normal", "0", "1", "0", "--source", "light"}, what);
+  expect_refused({"view", scene, "--normal", "0", "1", "0", "--at", "1,0,1"}, what);
+  expect_refused({"view", scene, "--at=1,0,1", "--normal", "0", "1", "0"}, what);
+  expect_refused(
+      {"view", scene, "--at", "(1,", "0,", "1)", "--normal", "0,-1e-3,.5"},
+      "--at takes three numbers with spaces between them (it has '(1, 0, 1)'); write --at 1 0 1\n"
+      "--normal takes three numbers with spaces between them (it has '0,-1e-3,.5'); write --normal 0 -1e-3 .5");
+  expect_refused({"render", scene, "--eye", "1,2,3", "--look", "0", "0", "0", "-o", directory.path() / "a.png"},
+                 "--eye takes three numbers with spaces between them (it has '1,2,3'); write --eye 1 2 3");
+}
+
+TEST_F(MisusedFlags, AnotherNumberOfNumbersIsToldWithTheForm) {
+  const std::string form = "); write --at X Y Z", what = "--at takes three numbers with spaces between them (it has ";
+  expect_refused({"view", scene, "--at", "1", "0", "--normal", "0", "1", "0"}, what + "'1 0'" + form);
+  expect_refused({"view", scene, "--at", "1", "0", "1", "2", "--normal", "0", "1", "0"}, what + "'1 0 1 2'" + form);
+  expect_refused({"view", scene, "--at", "--normal", "0", "1", "0"},
+                 "--at takes three numbers with spaces between them (it has none); write --at X Y Z");
+}
+
+TEST_F(MisusedFlags, TheNearestFlagIsSuggestedAndWordsKeepTheirOrder) {
+  const std::vector<std::string> point = {"point", scene, "--at", "200", "0", "400", "--normal", "0", "1", "0"};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = point;
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  expect_refused(with({"--onn", "floor", "--source", "light"}),
+                 "exactff point has no flag --onn (the command line has '--onn floor'); did you mean --on?");
+  expect_refused(with({"--sourec", "light", "--plian"}),
+                 "exactff point has no flag --sourec (the command line has '--sourec light'); did you mean --source?\n"
+                 "exactff point has no flag --plian (the command line has '--plian'); did you mean --plain?");
+  expect_refused(with({"--sour", "light"}),
+                 "exactff point has no flag --sour (the command line has '--sour light'); did you mean --source?");
+  expect_refused(
+      with({"--quickly"}),
+      "exactff point has no flag --quickly (the command line has '--quickly'); `exactff help point` lists its "
+      "flags");
+  // Another error of the same line would only hide the cause.
+  expect_refused({"point", scene, "--att", "200", "0", "400", "--normal", "0", "1", "0"},
+                 "exactff point has no flag --att (the command line has '--att 200 0 400'); did you mean --at?");
+}
+
+TEST_F(MisusedFlags, NumbersMayBeNegativeOrWithoutADigitBeforeThePoint) {
+  const auto run = validation::run_program(
+      EXACTFF_PROGRAM, {"view", scene, "--at", "-1", "-.5", "-1e-3", "--normal", "-0", "1", "+0", "--plain"});
+  EXPECT_EQ(run.exit_code, 0);
+}
+
+}  // namespace
+}  // namespace exactff
