@@ -17,6 +17,7 @@
 #include "cli/kept_work.h"
 #include "cli/long_run.h"
 #include "cli/output.h"
+#include "cli/speed_advice.h"
 #include "cli/text_table.h"
 #include "cli/view_factor_words.h"
 #include "exactff/version.h"
@@ -315,10 +316,18 @@ std::unique_ptr<MatrixJob> job_of(const MatrixArguments& args, const jobs::Team*
   return job;
 }
 
+// A draft keeps no pairs, takes whole rows by itself, and has whole patches as columns.
+LateNote note_on_speed(const MatrixArguments& args, const matrix::Request& request, const jobs::Team* team) {
+  const bool whole = std::ranges::none_of(request.to, [](const Selection& to) { return to.face.has_value(); });
+  const bool can_draft = !args.draft && whole && team == nullptr && args.shard.empty() && !args.resume;
+  return LateNote(words_on_speed({&request, args.draft ? std::optional(args.views) : std::nullopt, can_draft}));
+}
+
 matrix::Matrix compute(const MatrixArguments& args, const MatrixJob& job) {
   const InterruptWatch watch("exactff: interrupted; nothing was written\n");
+  LateNote note = note_on_speed(args, job.request, nullptr);
   ProgressBar bar;
-  const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
+  const Hooks hooks = with_note(note, Hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted});
   const matrix::Request& request = job.request;
   matrix::Matrix result = args.draft
                               ? draft(job.scene, request.from, request.to, draft_options(args, request.options), hooks)
@@ -360,7 +369,8 @@ int write(const MatrixArguments& args, jobs::Team* team) {
   try {
     job = job_of(args, team);
     const InterruptWatch watch(words_of_interruption("pair", args.csv));
-    summary = matrix::write(job->request, args.csv, args.existing(), narrator.hooks(kNeverSlow), team);
+    LateNote note = note_on_speed(args, job->request, team);
+    summary = matrix::write(job->request, args.csv, args.existing(), with_note(note, narrator.hooks(kNeverSlow)), team);
   } catch (const Cancelled&) {
     narrator.tell_what_is_kept("interrupted", args.csv);
     return exit_code_of_interruption();

@@ -1,0 +1,60 @@
+#include "cli/speed_advice.h"
+
+#include <unistd.h>
+
+#include <iostream>
+#include <vector>
+
+#include "text/nearest_names.h"
+#include "text/phrases.h"
+
+namespace exactff::cli {
+
+void LateNote::follow(const Progress& progress) {
+  if (!done_before_) done_before_ = progress.done;
+  if (progress.total <= *done_before_) return;
+  share_done_ =
+      static_cast<double>(progress.done - *done_before_) / static_cast<double>(progress.total - *done_before_);
+}
+
+void LateNote::tell_if_late() {
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+  if (elapsed.count() < kLate || told_) return;
+  const double left = elapsed.count() * (1.0 - share_done_) / share_done_;  // infinite as long as nothing is done
+  if (left < kLate || told_.exchange(true)) return;
+  const std::string clear_line = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
+  std::cerr << clear_line + "note: this takes more than " + text::short_number(kLate) + " s. " + text_ + '\n';
+}
+
+std::string words_on_speed(const MatrixWork& work) {
+  const matrix::Options& options = work.request->options;
+  const ViewFactorOptions& factors = options.factors;
+  constexpr double kCoarse = 1e-3;
+  std::vector<std::string> ways;
+  if (work.can_draft) {
+    std::vector<std::string> instead;
+    if (factors.certify) instead.emplace_back("--certify");
+    if (factors.both_directions) instead.emplace_back("--both-directions");
+    if (factors.budget != ViewFactorOptions().budget) instead.emplace_back("--budget");
+    ways.push_back("--draft" + (instead.empty() ? "" : " instead of " + text::enumerate(instead)) +
+                   ", whose entries are statistical");
+  }
+  if (work.views && *work.views > matrix::DraftOptions().views) {
+    ways.push_back("fewer --views than " + std::to_string(*work.views));
+  }
+  if (!work.views) {
+    if (factors.certify) ways.emplace_back("no --certify, so that errors are estimated");
+    if (factors.both_directions) ways.emplace_back("no --both-directions");
+    if (factors.accuracy < kCoarse) {
+      ways.push_back("--accuracy " + text::short_number(kCoarse) + " instead of " + text::shortest(factors.accuracy));
+    }
+    ways.push_back("a smaller --budget than " + std::to_string(factors.budget) + ", for wider entries");
+    if (options.backs) ways.emplace_back("no --backs");
+  }
+  if (work.request->from.size() > 1) {
+    ways.push_back("fewer rows than " + std::to_string(work.request->from.size()) + " by --from");
+  }
+  return ways.empty() ? "" : "Faster: " + text::joined(ways, "; ");
+}
+
+}  // namespace exactff::cli

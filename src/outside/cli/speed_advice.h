@@ -1,0 +1,56 @@
+// What `exactff matrix` says while it takes long: what would be faster.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "exactff/matrix.h"
+#include "exactff/progress.h"
+
+namespace exactff::cli {
+
+// A note that is printed once, on stderr, if the work is neither done after some seconds nor soon will be.
+class LateNote {
+ public:
+  explicit LateNote(std::string text) : text_(std::move(text)) {}
+
+  void follow(const Progress& progress);  // from one thread at a time
+  void tell_if_late();                    // from any thread, every few milliseconds
+
+ private:
+  static constexpr double kLate = 5.0;  // seconds
+
+  const std::string text_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::atomic<double> share_done_ = 0.0;
+  std::optional<std::size_t> done_before_;  // by a run that is continued
+  std::atomic<bool> told_ = false;
+};
+
+// Of these hooks (Hooks, jobs::RowHooks), those that also serve the note. Keeps a reference to it.
+template <class Kind>
+Kind with_note(LateNote& note, Kind hooks) {
+  hooks.progress = [&note, show = std::move(hooks.progress)](const Progress& progress) {
+    note.follow(progress);
+    show(progress);
+  };
+  hooks.cancelled = [&note, is_cancelled = std::move(hooks.cancelled)] {
+    note.tell_if_late();
+    return is_cancelled();
+  };
+  return hooks;
+}
+
+struct MatrixWork {
+  const matrix::Request* request = nullptr;
+  std::optional<std::size_t> views = {};  // of a draft
+  bool can_draft = false;                 // --draft could be given instead
+};
+// "Faster: --draft, whose entries are statistical; --accuracy 1e-3 instead of 1e-06; ..."
+[[nodiscard]] std::string words_on_speed(const MatrixWork& work);
+
+}  // namespace exactff::cli

@@ -1,0 +1,80 @@
+// What exactff matrix says while it takes long.
+#include "cli/speed_advice.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <string>
+#include <thread>
+
+#include "exactff/models.h"
+#include "support/program.h"
+
+namespace exactff::cli {
+namespace {
+
+using validation::RunningProgram;
+
+struct Asked {
+  Scene scene = models::make_scene("closed-room");
+  matrix::Request request{&scene, {scene.select("floor"), scene.select("lamp")}, {scene.select("floor")}, {}, {}};
+
+  [[nodiscard]] std::string words(bool can_draft, std::optional<std::size_t> views = {}) const {
+    return words_on_speed({&request, views, can_draft});
+  }
+};
+
+TEST(SpeedAdvice, DependsOnWhatWasAsked) {
+  Asked asked;
+  EXPECT_EQ(
+      asked.words(true),
+      "Faster: --draft, whose entries are statistical; --accuracy 0.001 instead of 1e-06; a smaller --budget than "
+      "100000, for wider entries; fewer rows than 2 by --from");
+  asked.request.options.factors.certify = true;
+  asked.request.options.factors.accuracy = 0.01;
+  asked.request.options.backs = true;
+  asked.request.from.pop_back();
+  EXPECT_EQ(asked.words(true),
+            "Faster: --draft instead of --certify, whose entries are statistical; no --certify, so that errors are "
+            "estimated; a smaller --budget than 100000, for wider entries; no --backs");
+  asked.request.options.factors.both_directions = true;
+  EXPECT_EQ(asked.words(false),
+            "Faster: no --certify, so that errors are estimated; no --both-directions; a smaller --budget than 100000, "
+            "for wider entries; no --backs");
+}
+
+TEST(SpeedAdvice, OfADraftSpeaksOfItsViews) {
+  Asked asked;
+  EXPECT_EQ(asked.words(false, 4000), "Faster: fewer --views than 4000; fewer rows than 2 by --from");
+  asked.request.from.pop_back();
+  EXPECT_EQ(asked.words(false, matrix::DraftOptions().views), "");
+}
+
+// Once, on stderr, and only while it takes long.
+TEST(SpeedAdvice, IsGivenOnceAfterSomeSeconds) {
+  const validation::TemporaryDirectory directory;
+  const RunningProgram slow(EXACTFF_PROGRAM,
+                            {"matrix", "@closed-room", "--threads", "2", "-o", directory.path() / "m.csv"},
+                            directory.path() / "slow");
+  const auto start = std::chrono::steady_clock::now();
+  const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  while (slow.error().empty() && !slow.has_ended() && elapsed() < 60) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  EXPECT_GT(elapsed(), 3.0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  slow.send(SIGINT);
+  EXPECT_EQ(slow.wait(), 128 + SIGINT);
+  const std::string said = slow.error();
+  EXPECT_TRUE(said.starts_with("note: this takes more than 5 s. Faster: --draft, whose entries are statistical; "))
+      << said;
+  EXPECT_EQ(said.find("note: "), said.rfind("note: ")) << said;
+  const RunningProgram quick(EXACTFF_PROGRAM, {"matrix", "@closed-room", "--from", "lamp", "--to", "ceiling"},
+                             directory.path() / "quick");
+  EXPECT_EQ(quick.wait(), 0);
+  EXPECT_EQ(quick.error(), "");
+}
+
+}  // namespace
+}  // namespace exactff::cli
