@@ -196,9 +196,13 @@ void WholeFile::flush() {
   buffer_.clear();
 }
 
-void WholeFile::commit() {
+void WholeFile::sync() {
   flush();
   file_.sync();
+}
+
+void WholeFile::commit() {
+  sync();
   std::error_code error;
   fs::rename(file_.path(), target_, error);
   if (error) file_.fail(error.value());

@@ -83,6 +83,8 @@ class WholeFile {
   WholeFile& operator=(const WholeFile&) = delete;
 
   void append(std::string_view bytes);
+  // Flushes what there is to disk. After that, commit() does not fail for lack of space.
+  void sync();
   // Flushes the file to disk, then renames it to its final name.
   void commit();
 

@@ -45,7 +45,7 @@ int run(const ConvertArguments& args) {
   const SceneFiles result = scene_files(scene, args.out, args.chosen_encoding());
   for (const SceneFiles::File& file : result.files) require_free_file(file.path, args.force);
   print_warnings(result.losses);
-  for (const SceneFiles::File& file : result.files) write_whole_file(file.path, file.bytes);
+  write_scene_files(result);
   for (const SceneFiles::File& file : result.files)
     std::cout << "wrote " << text::printable(file.path.string()) << '\n';
   check_output(std::cout);

@@ -4,7 +4,9 @@
 #include <cstring>
 #include <fstream>
 #include <iostream>
+#include <memory>
 #include <system_error>
+#include <vector>
 
 #include "cli/long_run.h"
 #include "files/file.h"
@@ -67,13 +69,35 @@ void require_free_file(const fs::path& path, bool force) {
                     "name another file, or replace it with --force"});
 }
 
-void write_whole_file(const fs::path& path, const std::string& text) {
+namespace {
+
+// Null for a pipe or device, which has been written directly.
+std::unique_ptr<files::WholeFile> begin_whole_file(const fs::path& path, const std::string& text) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) cannot_write(path, "it is a folder");
-  if (fs::is_other(path, ignored)) return write_through(path, text);
-  files::WholeFile file(path, {}, files::WholeFile::WhenBusy::kWait);
-  file.append(text);
-  file.commit();
+  if (fs::is_other(path, ignored)) {
+    write_through(path, text);
+    return nullptr;
+  }
+  auto file = std::make_unique<files::WholeFile>(path, files::FailureAdvice(), files::WholeFile::WhenBusy::kWait);
+  file->append(text);
+  file->sync();
+  return file;
+}
+
+}  // namespace
+
+void write_whole_file(const fs::path& path, const std::string& text) {
+  if (const auto file = begin_whole_file(path, text)) file->commit();
+  leave_if_interrupted();
+}
+
+void write_scene_files(const SceneFiles& scene) {
+  std::vector<std::unique_ptr<files::WholeFile>> begun;
+  for (const SceneFiles::File& file : scene.files) begun.push_back(begin_whole_file(file.path, file.bytes));
+  for (const auto& file : begun) {
+    if (file) file->commit();
+  }
   leave_if_interrupted();
 }
 

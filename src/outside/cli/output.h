@@ -8,6 +8,7 @@
 
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
+#include "exactff/scene_files.h"
 #include "text/escape.h"
 
 namespace exactff::cli {
@@ -30,6 +31,9 @@ std::string shown_name(const Scene& scene, const Named& named) {
 
 // Writes a file beside `path` and renames it: the file appears complete or not at all. Throws InputError.
 void write_whole_file(const std::filesystem::path& path, const std::string& text);
+
+// The same for all of these files: if one cannot be written, none appears.
+void write_scene_files(const SceneFiles& scene);
 
 // Throws InputError if the file exists, unless it may be replaced. Pipes and devices may always be written to.
 void require_free_file(const std::filesystem::path& path, bool force);

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <filesystem>
 
@@ -68,6 +69,33 @@ TEST_F(ConvertCommand, NothingIsLeftWhereNothingCanBeWritten) {
   EXPECT_EQ(convert({room_, path("s.off"), "--encoding", "binary"}).code, 2);
   EXPECT_EQ(convert({path("missing.obj"), path("s.ply")}).code, 2);
   for (const auto& entry : fs::directory_iterator(directory_.path())) EXPECT_EQ(entry.path().filename(), "error");
+}
+
+// The MTL file fits on the disk, the OBJ file does not.
+TEST_F(ConvertCommand, AFullDiskLeavesNeitherFile) {
+  for (const bool replaces : {false, true}) {
+    if (replaces) {
+      (void)directory_.write("s.mtl", "mine");
+      (void)directory_.write("s.obj", "mine, too");
+    }
+    const auto limit = [] {
+      const rlimit bytes{400, 400};
+      ::setrlimit(RLIMIT_FSIZE, &bytes);
+    };
+    const RunningProgram program(EXACTFF_PROGRAM, {"convert", room_, path("s.obj"), "--force"},
+                                 directory_.path() / "error", limit);
+    EXPECT_EQ(program.wait(), 2);
+    EXPECT_NE(program.error().find("s.obj: cannot be written: File too large (nothing was written); "),
+              std::string::npos)
+        << program.error();
+    for (const auto& entry : fs::directory_iterator(directory_.path())) {
+      const std::string name = entry.path().filename();
+      EXPECT_TRUE(name == "error" || (replaces && validation::text_of(entry.path()).starts_with("mine"))) << name;
+    }
+  }
+  ASSERT_EQ(convert({room_, path("s.obj"), "--force"}).code, 0);
+  EXPECT_LT(fs::file_size(path("s.mtl")), 400U);
+  EXPECT_GT(fs::file_size(path("s.obj")), 400U);
 }
 
 TEST_F(ConvertCommand, EveryCommandReadsEveryFormat) {
