@@ -151,7 +151,7 @@ struct VisibilityMesh {
 [[nodiscard]] VisibilityMesh visibility_mesh(const Scene& scene, const Receiver& receiver);
 
 // The mesh as a scene, for files (scene_files.h): every triangle is a face in the patch and material of its
-// face. Backs are in patches of their own, named "NAME (back)". Throws InputError if there are no triangles.
+// face. Backs are in patches of their own, named "NAME (back)".
 [[nodiscard]] Scene to_scene(const Scene& scene, const VisibilityMesh& mesh);
 
 // ------------------------------------------------------------------------------------------------ quantities of light

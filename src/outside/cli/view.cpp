@@ -211,11 +211,12 @@ void write_mesh(const ViewArguments& args, const Scene& scene, const VisibilityM
     std::cerr << "exactff: warning: " << text::counted(mesh.flat, "triangle") << " of the mesh "
               << (mesh.flat == 1 ? "is" : "are") << " left out: rounding the corners leaves no area\n";
   }
+  if (mesh.triangles.empty()) std::cerr << "note: the receiver sees nothing of the scene; the mesh is empty\n";
   if (is_for_vtk(args.mesh)) return vtk::write_faces(triangles, {}, {}, args.mesh);
   const SceneFiles result = scene_files(triangles, args.mesh);
   for (const SceneFiles::File& file : result.files) require_free_file(file.path, args.force);
   print_warnings(result.losses);
-  for (const SceneFiles::File& file : result.files) write_whole_file(file.path, file.bytes);
+  write_scene_files(result);
 }
 
 void write_files(const ViewArguments& args, const Scene& scene, const Receiver& receiver,

@@ -166,11 +166,6 @@ VisibilityMesh visibility_mesh(const Scene& scene, const Receiver& receiver) {
 }
 
 Scene to_scene(const Scene& scene, const VisibilityMesh& mesh) {
-  if (mesh.triangles.empty()) {
-    throw InputError({.what = "the receiver sees nothing of the scene",
-                      .why = "a mesh of what it sees has no triangles",
-                      .suggestion = "turn --normal, or move --at"});
-  }
   SceneBuilder builder;
   for (const Vec3& point : mesh.points) builder.add_vertex(point);
   for (const Material& material : scene.materials()) builder.add_material(material);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
@@ -66,6 +67,25 @@ TEST_F(ViewCommand, PlainPrintsNameTabShareThenBackAndOpen) {
   }
   EXPECT_EQ(names, (std::vector<std::string>{"light", "(back)", "(open)"}));
   EXPECT_NEAR(sum, 1.0, 1e-15);
+}
+
+TEST_F(ViewCommand, AViewOfNothingGivesAnEmptyPictureAndMesh) {
+  const std::filesystem::path picture = directory.path() / "empty.svg", mesh = directory.path() / "empty";
+  for (const char* extension : {".obj", ".ply", ".stl", ".off", ".vs3", ".vtp", ".vtu"}) {
+    const std::string file = mesh.string() + extension;
+    const validation::RunningProgram program(
+        EXACTFF_PROGRAM,
+        {"view", scene, "--at", "0", "0", "3", "--normal", "0", "0", "1", "--svg", picture, "--mesh", file},
+        directory.path() / "errors");
+    EXPECT_EQ(program.wait(), 0) << program.error();
+    EXPECT_NE(program.error().find("note: the receiver sees nothing of the scene; the mesh is empty\n"),
+              std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(file)) << file;
+  }
+  const std::string svg = validation::text_of(picture);
+  EXPECT_NE(svg.find("<title>(open)</title>"), std::string::npos) << svg;
+  EXPECT_EQ(svg.find("class=\"front\""), std::string::npos) << svg;
+  EXPECT_EQ(validation::text_of(mesh.string() + ".off"), "OFF\n0 0 0\n");
 }
 
 TEST_F(ViewCommand, PlainGivesThePointCommandsValue) {
