@@ -222,8 +222,8 @@ struct Colours {
 [[nodiscard]] Colours coloured(const Errors& errors, const Size& size, double scale);
 // The 99th percentile of the errors, or the worst one if that is 0; 1 if there is none.
 [[nodiscard]] double colour_scale(const Errors& errors);
-// Pictures side by side, each above its caption, in letters that grow with the pictures.
-[[nodiscard]] Colours strip(std::span<const std::pair<Colours, std::vector<std::string>>> panels);
+// Pictures side by side, with white between them. At least one.
+[[nodiscard]] Colours strip(std::span<const Colours> pictures);
 
 enum class ImageKind { kExr, kPng };
 // By the extension. Throws InputError for any other.

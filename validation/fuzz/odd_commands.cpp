@@ -164,7 +164,6 @@ class CommandWriter {
         const std::string missing = has_any({"--eye"}) ? "--look" : "--eye";
         give(*std::ranges::find_if(table_.options, [&](const OptionRow& row) { return row.names.back() == missing; }));
       }
-      if (has_any({"--times"}) && !has_any({"--strip"})) words_.emplace_back("--strip");
       if (has_any({"--strip"}) && !has_any({"--against"})) words_.insert(words_.end(), {"--against", quick_method()});
     }
     if (has_any({"--exr", "--position-layer", "--normal-layer"})) {

@@ -39,10 +39,9 @@ constexpr const char* kRenderFooter =
     "regions\n"
     "that are wrong by over 10 % are outlined. --strip shows the picture, that of the method and the errors beside "
     "each\n"
-    "other. A METHOD is a name with settings, as for `exactff compare`: adaptive:eps_B=0.01,rays=16. --against also "
-    "takes\n"
-    "the picture of another program, of the same camera, size and --quantity: a .npy array (height, width, 3) or "
-    ".exr.\n"
+    "other; what they are is printed, and not written into the image. A METHOD is a name with settings, as for\n"
+    "`exactff compare`: adaptive:eps_B=0.01,rays=16. --against also takes the picture of another program, of the same\n"
+    "camera, size and --quantity: a .npy array (height, width, 3) or .exr.\n"
     "Until IMAGE is complete, finished tiles are kept in IMAGE.part. After an interruption, the same command with\n"
     "--resume continues from there. The numbers do not depend on threads or interruptions.\n"
     "Exit codes: 0 done, 2 bad input, 3 done but some pixels are not certified, 128 + signal when interrupted.\n"
@@ -67,7 +66,6 @@ struct RenderArguments {
   std::string ke = "radiosity";
   std::string method, against;
   bool strip = false;
-  bool times = false;
   bool layers = false;
   std::optional<double> exposure;
   std::string doubles, bounds;
@@ -118,9 +116,6 @@ void check_arguments(const RenderArguments& args) {
   if (args.strip && args.against.empty()) {
     text::refuse("--strip is given without --against", "a strip shows a method beside the exact picture",
                  "add --against METHOD");
-  }
-  if (args.times && !args.strip) {
-    text::refuse("--times is given without --strip", "only a strip shows times", "add --strip, or remove it");
   }
   if (args.strip && kind == render::ImageKind::kExr) {
     text::refuse(args.image, "a strip is a picture to look at", "an EXR file holds numbers", "name a .png file");
@@ -261,7 +256,7 @@ int run(const RenderArguments& args) {
   const InterruptWatch watch("exactff: interrupted; " + kept.words());
   ProgressBar bar;
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
-  const RenderFiles files{args.image, args.doubles, args.bounds, args.exposure, args.strip, args.times};
+  const RenderFiles files{args.image, args.doubles, args.bounds, args.exposure, args.strip};
   Rendered result;
   try {
     result = render_pictures(request, against, hooks, kept.journal());
@@ -320,7 +315,6 @@ void add_value_flags(CLI::App& app, RenderArguments& args) {
   app.add_option("--against", args.against, "Show and print the errors of this method, or of this picture")
       ->type_name("METHOD|FILE");
   app.add_flag("--strip", args.strip, "With --against: the picture, that of the method and the errors side by side");
-  app.add_flag("--times", args.times, "With --strip: add processor times, which differ from run to run");
 }
 
 void add_output_flags(CLI::App& app, RenderArguments& args) {

@@ -56,28 +56,29 @@ std::string name_of_picture(const render::Picture& picture) {
   return found == picture.metadata.end() ? "" : found->second.substr(0, found->second.find(", correctly"));
 }
 
-// Without times, the same input gives the same bytes.
-render::Colours strip_of(const RenderFiles& files, const Rendered& rendered, double exposure) {
+render::Colours strip_of(const Rendered& rendered, double exposure) {
   const double scale = render::colour_scale(*rendered.errors);
-  const auto caption = [&](const std::string& name, const render::Picture& picture) {
-    return files.times && is_computed(picture) ? std::vector{name, took(picture)} : std::vector{name};
-  };
-  using Panel = std::pair<render::Colours, std::vector<std::string>>;
-  const std::array<Panel, 3> panels = {
-      Panel{render::develop(rendered.picture, exposure), caption(name_of_picture(rendered.picture), rendered.picture)},
-      Panel{render::develop(*rendered.judged, exposure), caption(rendered.judged_name, *rendered.judged)},
-      Panel{render::coloured(*rendered.errors, rendered.picture.size, scale),
-            {"error: red too bright, blue too dark", "full colour at " + text::short_number(scale, 2),
-             "RMS " + text::short_number(rendered.errors->rms, 2),
-             wrong_words(*rendered.errors) + "; black outline where most are"}}};
-  return render::strip(panels);
+  return render::strip(std::array{render::develop(rendered.picture, exposure),
+                                  render::develop(*rendered.judged, exposure),
+                                  render::coloured(*rendered.errors, rendered.picture.size, scale)});
+}
+
+// What the strip shows, from left to right.
+std::string strip_words(const Rendered& rendered) {
+  const double scale = render::colour_scale(*rendered.errors);
+  return name_of_picture(rendered.picture) + " | " + rendered.judged_name +
+         " | errors: red too bright, blue too dark, full colour from " + text::short_number(scale, 2) +
+         " on, black outlines around regions that are mostly wrong by over 10 %";
 }
 
 std::string image_bytes(const RenderFiles& files, const Rendered& rendered) {
   const bool png = render::image_kind(files.image) == render::ImageKind::kPng;
   const auto exposure = [&] { return files.exposure ? *files.exposure : render::automatic_exposure(rendered.picture); };
-  const render::Metadata& metadata = rendered.picture.metadata;
-  if (files.strip) return render::png_of(strip_of(files, rendered, exposure()), metadata);
+  render::Metadata metadata = rendered.picture.metadata;
+  if (files.strip) {
+    metadata.emplace_back("strip", strip_words(rendered));
+    return render::png_of(strip_of(rendered, exposure()), metadata);
+  }
   if (rendered.errors) {
     if (!png) return render::exr_of(render::difference(*rendered.judged, rendered.picture));
     const double scale = render::colour_scale(*rendered.errors);
@@ -147,6 +148,7 @@ void print_rendered(const render::Request& request, const Rendered& rendered, co
               << text::short_number(errors.relative_median) << ", 99th percentile "
               << text::short_number(errors.relative_p99) << "; " << wrong_words(errors) << '\n';
   }
+  if (files.strip) std::cout << "strip: " << text::printable(strip_words(rendered)) << '\n';
   const bool develops = render::image_kind(files.image) == render::ImageKind::kPng && (files.strip || !rendered.errors);
   if (develops && !files.exposure) {
     std::cout << "automatic exposure: " << text::short_number(render::automatic_exposure(picture), 6) << '\n';

@@ -23,7 +23,6 @@ struct RenderFiles {
   std::string image, doubles, bounds;
   std::optional<double> exposure;
   bool strip = false;
-  bool times = false;  // in the strip
 };
 void write_files(const RenderFiles& files, const Rendered& rendered);
 

@@ -124,7 +124,6 @@ TEST_F(RenderCommand, BadInputIsRefusedWithWords) {
   refused({"-o", image, "--double", path("x.txt")}, "does not end in .npy");
   refused({"-o", image, "--double", path("x.npy"), "--bounds", path("./x.npy")}, "named for two results");
   refused({"-o", image, "--strip"}, "--strip is given without --against");
-  refused({"-o", image, "--times"}, "--times is given without --strip");
   refused({"-o", image, "--layers"}, "--layers needs an EXR file");
   refused({"-o", path("x.exr"), "--exposure", "2"}, "not scaled");
   refused({"-o", path("x.exr"), "--layers", "--spp", "2"}, "several points");

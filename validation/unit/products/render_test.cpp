@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -380,54 +382,18 @@ TEST(Colours, ErrorsAreWhiteRedAndBlue) {
   EXPECT_EQ(at(4, 0), at(4, 2));
 }
 
-TEST(Strip, ShowsPicturesAboveTheirCaptions) {
-  const Colours red{{40, 20}, std::vector<std::uint8_t>(3 * 40 * 20, 9)};
-  const std::vector<std::pair<Colours, std::vector<std::string>>> panels = {{red, {"a"}}, {red, {"bcd efg hij", "k"}}};
-  const Colours strip_of_two = strip(panels);
-  EXPECT_GE(strip_of_two.size.width, 80);
-  EXPECT_GT(strip_of_two.size.height, 20 + 4 * 8);  // the second caption is broken into lines
-  EXPECT_EQ(strip_of_two.bytes.front(), 9);
-  EXPECT_EQ(strip_of_two.bytes.back(), 255);
-  EXPECT_NE(std::ranges::count(strip_of_two.bytes, 30), 0);
-}
-
-// Up to the last column with ink in the rows from `top` on.
-int inked_width(const Colours& sheet, int top) {
-  int width = 0;
-  for (int column = 0; column < sheet.size.width; ++column) {
-    for (int row = top; row < sheet.size.height; ++row) {
-      if (sheet.bytes[3 * static_cast<std::size_t>(row * sheet.size.width + column)] == 30) width = column + 1;
-    }
-  }
-  return width;
-}
-
-TEST(Strip, LettersGrowWithThePictures) {
-  const auto letters_of = [](int width) {
-    const Colours grey{{width, 10}, std::vector<std::uint8_t>(static_cast<std::size_t>(3 * width * 10), 99)};
-    const std::vector<std::pair<Colours, std::vector<std::string>>> panels = {{grey, {"HHHHHHHHHH"}}};
-    return inked_width(strip(panels), 10) - 6;  // and the border
+TEST(Strip, HasThePicturesSideBySideAndNothingElse) {
+  const auto plain = [](int width, int height, std::uint8_t value) {
+    return Colours{{width, height}, std::vector<std::uint8_t>(static_cast<std::size_t>(3 * width * height), value)};
   };
-  EXPECT_EQ(letters_of(200), 10 * 6 - 1);
-  EXPECT_EQ(letters_of(300), 2 * letters_of(200));
-  EXPECT_EQ(letters_of(800), 6 * letters_of(200));
-}
-
-// Nothing is lost where a line is broken or ends.
-TEST(Strip, NoLetterIsCut) {
-  for (const int width : {45, 131, 150, 264, 300, 527, 640}) {
-    const Colours grey{{width, 4}, std::vector<std::uint8_t>(static_cast<std::size_t>(3 * width * 4), 99)};
-    const auto ink_of = [&](const std::string& caption) {
-      const std::vector<std::pair<Colours, std::vector<std::string>>> panels = {{grey, {caption}}};
-      return std::ranges::count(strip(panels).bytes, 30);
-    };
-    const auto letter = ink_of("H");
-    for (const char* text :
-         {"HHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHHH", "HHHH HHHHHHHHHHHHHHHHHHHH HHHHHH HHHHHH HHHHHHH"}) {
-      const std::string caption = text;
-      EXPECT_EQ(ink_of(caption), letter * std::ranges::count(caption, 'H')) << width;
-    }
-  }
+  const Colours sheet = strip(std::array{plain(40, 20, 9), plain(30, 25, 99)});
+  EXPECT_EQ(sheet.size.width, 40 + 6 + 30);
+  EXPECT_EQ(sheet.size.height, 25);
+  EXPECT_EQ(std::ranges::count(sheet.bytes, 9), 3 * 40 * 20);
+  EXPECT_EQ(std::ranges::count(sheet.bytes, 99), 3 * 30 * 25);
+  EXPECT_EQ(std::ranges::count(sheet.bytes, 255), 3 * (6 * 25 + 40 * 5));
+  EXPECT_EQ(sheet.bytes.front(), 9);
+  EXPECT_EQ(sheet.bytes.back(), 99);
 }
 
 TEST(ImageKind, GoesByTheExtension) {
