@@ -99,10 +99,19 @@ class View {
 // The camera and size as flags of exactff render.
 [[nodiscard]] std::string flags_of(const View& view);
 
+// What a default camera is to have.
+struct CameraWishes {
+  Vec3 up{0.0, 1.0, 0.0};
+  std::optional<double> fov = {};  // empty: that of Camera, and a wide angle inside a closed room
+  std::optional<double> ortho = {};
+};
+inline constexpr double kWideFov = 70.0;
+
 // A camera that shows the whole scene from its most open side: of the directions along the axes and between them, the
 // one from which the largest share of a test picture shows fronts. If hardly any fronts are seen from outside, as of a
-// closed room, the camera stands in a corner of the scene's box. `up`, `fov` and `ortho` are those of the given camera.
-[[nodiscard]] Camera default_camera(const Scene& scene, const Camera& like, const Size& size);
+// closed room, the camera stands near a corner of the scene's box, below the ceiling: where it sees a lamp, and then
+// where it sees most patches from far.
+[[nodiscard]] Camera default_camera(const Scene& scene, const CameraWishes& wishes, const Size& size);
 
 // ---------------------------------------------------------------------------------------- first face and receiver
 

@@ -34,11 +34,9 @@ void warn_of_turned_normal(const Scene& scene, const Receiver& receiver) {
 }  // namespace
 
 void OneReceiver::add_to(CLI::App& app) {
-  app.add_option("--at", at, "The receiver's point")->required()->type_name("X Y Z")->check(is_no_flag);
-  app.add_option("--normal", normal, "The receiver's normal, of any length except zero")
-      ->required()
-      ->type_name("NX NY NZ")
-      ->check(is_no_flag);
+  flags::add_vector_option(app, "--at", at, "The receiver's point")->required();
+  flags::add_vector_option(app, "--normal", normal, "The receiver's normal, of any length except zero", "NX NY NZ")
+      ->required();
   app.add_option("--on", on,
                  "The receiver lies on this face, or on several (floor:1+2), which then neither occlude nor illuminate "
                  "it; auto or "
@@ -47,7 +45,7 @@ void OneReceiver::add_to(CLI::App& app) {
 }
 
 Receiver OneReceiver::make(const Scene& scene) const {
-  Receiver receiver{parse_vector(at, "--at"), parse_vector(normal, "--normal"), {}, ""};
+  Receiver receiver{flags::vector_of(at, "--at"), flags::vector_of(normal, "--normal"), {}, ""};
   if (!on.empty()) receiver.on = own_faces(on, scene, receiver);
   return receiver;
 }

@@ -2,18 +2,17 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "exactff/receiver.h"
+#include "flags/vector.h"
 
 namespace exactff::cli {
 
 struct OneReceiver {
-  std::array<std::string, 3> at;
-  std::array<std::string, 3> normal;
+  flags::ThreeNumbers at, normal;
   std::string on;
 
   void add_to(CLI::App& app);

@@ -11,7 +11,6 @@
 #include "cli/long_run.h"
 #include "files/file.h"
 #include "page/output_folder.h"
-#include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/text_file.h"
 #include "text/text_lines.h"
@@ -24,22 +23,6 @@ std::string percent(double share) { return text::rounded(100.0 * share, 4) + " %
 
 std::string pad(const std::string& text, std::size_t width) {
   return text + std::string(text.size() < width ? width - text.size() : 1, ' ');
-}
-
-double parse_finite(const std::string& text, const std::string& flag) {
-  const text::ParsedNumber number = text::parse_number(text);
-  if (number.fault == text::NumberFault::kNone) return number.value;
-  throw InputError({.what = flag + ": " + describe(number.fault, text),
-                    .why = "a coordinate is a finite decimal number",
-                    .suggestion = "give three numbers, for example " + flag + " 0 0.5 -1e-3"});
-}
-
-Vec3 parse_vector(std::span<const std::string> words, const std::string& flag) {
-  return {parse_finite(words[0], flag), parse_finite(words[1], flag), parse_finite(words[2], flag)};
-}
-
-std::string is_no_flag(const std::string& text) {
-  return text.starts_with("--") ? "needs three numbers; found '" + text + "' among them" : "";
 }
 
 namespace {

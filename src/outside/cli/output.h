@@ -1,4 +1,4 @@
-// Small helpers of the commands: parse numbers and faces, write files that appear complete or not at all.
+// Small helpers of the commands: words for numbers and faces, files that appear complete or not at all.
 #pragma once
 
 #include <filesystem>
@@ -15,13 +15,6 @@ namespace exactff::cli {
 
 std::string percent(double share);
 std::string pad(const std::string& text, std::size_t width);
-
-// Parses a finite double with correct rounding. The InputError for other texts names the flag.
-double parse_finite(const std::string& text, const std::string& flag);
-// The same for the three words of a vector.
-Vec3 parse_vector(std::span<const std::string> words, const std::string& flag);
-// A check of each of the words: if numbers are missing, the flag that follows would be read as one of them.
-std::string is_no_flag(const std::string& text);
 
 // For a terminal.
 template <class Named>

@@ -13,6 +13,7 @@
 #include "cli/long_run.h"
 #include "cli/output.h"
 #include "cli/render_output.h"
+#include "flags/camera.h"
 #include "flags/engine.h"
 #include "flags/lists.h"
 #include "flags/scene.h"
@@ -32,9 +33,8 @@ constexpr const char* kRenderFooter =
     "Each pixel shows the first face that its ray meets, decided exactly, and the light that this point receives\n"
     "directly from all sources, correctly rounded: soft shadows without noise. IMAGE is OpenEXR (.exr, 32-bit linear\n"
     "values) or PNG (.png, in sRGB, for looking). Backs of faces are black.\n"
-    "Without --eye and --look, the camera shows the whole scene from its most open side and is printed, so that it "
-    "can\n"
-    "be changed.\n"
+    "Without --eye and --look, the camera shows the whole scene from its most open side, or stands in a corner of a\n"
+    "closed room. It is printed, so that it can be changed.\n"
     "With --against METHOD, IMAGE shows the errors of this method: white is none, red too bright, blue too dark; "
     "regions\n"
     "that are wrong by over 10 % are outlined. --strip shows the picture, that of the method and the errors beside "
@@ -51,13 +51,10 @@ constexpr const char* kRenderFooter =
     "  exactff render data/scenes/blinds_room.obj --against hemicube --strip -o blinds.png\n"
     "  exactff render data/scenes/blinds_room.obj --size 256x256 --against mine.npy -o errors.png";
 
-using ThreeNumbers = std::vector<std::string>;
-
 struct RenderArguments {
   flags::SceneArguments scene;
   flags::SourceArguments sources;
-  ThreeNumbers eye, look, up;
-  double fov = render::Camera{}.fov;
+  flags::CameraArguments camera;
   std::optional<double> ortho;
   std::string size = "512x512";
   int spp = 1;
@@ -89,29 +86,23 @@ render::Size size_of(const std::string& text) {
                "write WIDTHxHEIGHT: --size 512x512");
 }
 
-// The camera as far as it is given.
-render::Camera given_camera(const RenderArguments& args) {
-  render::Camera camera;
-  if (args.eye.empty() != args.look.empty()) {
-    text::refuse(std::string(args.eye.empty() ? "--look" : "--eye") + " is given without " +
-                     (args.eye.empty() ? "--eye" : "--look"),
-                 "a camera stands at one point and looks at another", "give both, or neither for a view of the whole");
-  }
-  if (!args.eye.empty()) {
-    camera.eye = parse_vector(args.eye, "--eye");
-    camera.look = parse_vector(args.look, "--look");
-  }
-  if (!args.up.empty()) camera.up = parse_vector(args.up, "--up");
-  camera.fov = args.fov;
+// The camera of --eye and --look.
+render::Camera placed_camera(const RenderArguments& args) {
+  render::Camera camera = args.camera.camera();
   camera.ortho = args.ortho;
   return camera;
 }
 
+render::Camera default_camera(const RenderArguments& args, const Scene& scene, const render::Size& size) {
+  render::CameraWishes wishes = args.camera.wishes();
+  wishes.ortho = args.ortho;
+  return render::default_camera(scene, wishes, size);
+}
+
 // What can be refused before the scene is read.
 void check_arguments(const RenderArguments& args) {
-  const render::Camera camera = given_camera(args);
   const render::Size size = size_of(args.size);
-  if (!args.eye.empty()) render::View(camera, size);
+  if (args.camera.is_placed()) render::View(placed_camera(args), size);
   const render::ImageKind kind = render::image_kind(args.image);
   if (args.strip && args.against.empty()) {
     text::refuse("--strip is given without --against", "a strip shows a method beside the exact picture",
@@ -164,9 +155,7 @@ render::Request request_of(const RenderArguments& args, const Scene& scene, std:
   request.scene_name = args.scene.from_standard_input() ? std::string(flags::kStandardInput)
                                                         : std::filesystem::path(args.scene.path).filename().string();
   const render::Size size = size_of(args.size);
-  render::Camera camera = given_camera(args);
-  if (args.eye.empty()) camera = render::default_camera(scene, camera, size);
-  request.view = render::View(camera, size);
+  request.view = render::View(args.camera.is_placed() ? placed_camera(args) : default_camera(args, scene, size), size);
   flags::SourcesUnderSky sources = flags::sources_under_sky(args.sources, scene);
   request.sources = std::move(sources.sources);
   request.sky = sources.sky;
@@ -269,31 +258,17 @@ int run(const RenderArguments& args) {
     return 128 + interrupting_signal();
   }
   kept.done();
-  print_rendered(request, result, files, args.eye.empty());
+  print_rendered(request, result, files, !args.camera.is_placed());
   check_output(std::cout);
   return warn_of_uncertified_points(result);
 }
 
-std::string is_positive(const std::string& text) {
-  const text::ParsedNumber number = text::parse_number(text);
-  return number.fault == text::NumberFault::kNone && number.value > 0.0 ? ""
-                                                                        : "'" + text + "' is not a positive number";
-}
-
 void add_camera_flags(CLI::App& app, RenderArguments& args) {
-  const auto add_vector = [&](const std::string& flag, ThreeNumbers& numbers, const std::string& meaning) {
-    app.add_option(flag, numbers, meaning)->expected(3)->type_name("X Y Z")->check(is_no_flag);
-  };
-  add_vector("--eye", args.eye, "Where the camera stands (default: where it shows the whole scene)");
-  add_vector("--look", args.look, "The point that it looks at");
-  add_vector("--up", args.up, "The direction that points upwards in the picture (default: 0 1 0)");
-  app.add_option("--fov", args.fov, "Vertical angle of view in degrees")
-      ->capture_default_str()
-      ->type_name("DEGREES")
-      ->check(is_positive);
+  args.camera.add_to(app, "Where the camera stands (default: where it shows the whole scene)",
+                     "The point that it looks at");
   app.add_option("--ortho", args.ortho, "Parallel rays; the picture has this height in the scene's unit")
       ->type_name("LENGTH")
-      ->check(is_positive);
+      ->check(flags::is_positive);
   app.add_option("--size", args.size, "Width and height in pixels")->type_name("WxH")->capture_default_str();
   app.add_option("--spp", args.spp,
                  "Anti-aliasing: a pixel is the mean of the exact values at the centres of N x N parts of it")
@@ -323,7 +298,7 @@ void add_output_flags(CLI::App& app, RenderArguments& args) {
                "patch");
   app.add_option("--exposure", args.exposure, "PNG: multiply by this factor (default: the 99th percentile becomes 0.8)")
       ->type_name("NUMBER")
-      ->check(is_positive);
+      ->check(flags::is_positive);
   app.add_option(
          "--double", args.doubles,
          "Also write the numbers as a NumPy file of doubles, shape (height, width, 3), NaN where nothing is met")

@@ -17,6 +17,7 @@
 #include "exactff/version.h"
 #include "exactff/view.h"
 #include "flags/scene.h"
+#include "flags/vector.h"
 #include "text/csv_row.h"
 #include "text/json_document.h"
 #include "text/nearest_names.h"
@@ -43,7 +44,7 @@ struct ViewArguments {
   bool json = false;
   bool csv = false;
   std::string svg, projection = "nusselt", mesh;
-  std::vector<std::string> up;  // three numbers, or none
+  flags::ThreeNumbers up;
   bool force = false;
 };
 
@@ -196,7 +197,7 @@ void print_json(const ViewArguments& args, const Scene& scene, const Receiver& r
 ViewPictureOptions picture_options(const ViewArguments& args) {
   ViewPictureOptions options;
   if (args.projection == "fisheye") options.projection = ViewProjection::kFisheye;
-  if (!args.up.empty()) options.up = parse_vector(args.up, "--up");
+  if (!args.up.empty()) options.up = flags::vector_of(args.up, "--up");
   return options;
 }
 
@@ -298,10 +299,7 @@ void add_file_flags(CLI::App& app, ViewArguments& args) {
                      ".vtu; --json then has their exact shares of the faces")
           ->type_name("FILE");
   app.add_flag("--force", args.force, "Replace an existing file of --mesh")->needs(mesh);
-  app.add_option("--up", args.up, "The direction that points upwards in the picture (default: 0 1 0)")
-      ->expected(3)
-      ->type_name("X Y Z")
-      ->check(is_no_flag)
+  flags::add_vector_option(app, "--up", args.up, "The direction that points upwards in the picture (default: 0 1 0)")
       ->needs(svg);
 }
 

@@ -62,23 +62,6 @@ Camera camera_from(const Extents& box, const Vec3& direction, const Camera& like
   return camera;
 }
 
-// From near a corner of the box, at a fifth of its height from the top, to a point low on the other side.
-Camera camera_within(const Extents& box, int corner, const Camera& like) {
-  constexpr double kNear = 0.04, kAbove = 0.72, kBelow = 0.36;
-  Camera camera = like;
-  const double a = (corner & 1) != 0 ? 1.0 - kNear : kNear, b = (corner & 2) != 0 ? 1.0 - kNear : kNear;
-  const Vec3 up = unit_unscaled(like.up);
-  const auto place = [&](double first, double second, double height) {
-    if (std::abs(up.z) > 0.7) return box.at(first, second, up.z > 0.0 ? height : 1.0 - height);
-    if (std::abs(up.x) > 0.7) return box.at(up.x > 0.0 ? height : 1.0 - height, first, second);
-    return box.at(first, up.y >= 0.0 ? height : 1.0 - height, second);
-  };
-  camera.eye = place(a, b, kAbove);
-  camera.look = place(1.0 - a, 1.0 - b, kBelow);
-  camera.ortho.reset();
-  return camera;
-}
-
 // The share of a test picture that shows fronts. Between views that show as much, the number of patches decides.
 double fronts_seen(const Scene& scene, const Camera& camera) {
   const View view(camera, {kTestSide, kTestSide});
@@ -137,22 +120,97 @@ void look_from_outside(const Scene& scene, const Extents& box, const Camera& lik
   }
 }
 
+// --- Inside a closed room ---
+
+// Near a corner of the box, below its top. The camera looks across the middle, at a point low on the other side.
+struct Corner {
+  int number = 0;       // bit 0: at the upper end of the first axis that is level, bit 1: of the second one
+  double inset = 0.04;  // shares of the box
+  double height = 0.72;
+};
+
+Camera camera_within(const Extents& box, const Corner& corner, const Camera& like) {
+  constexpr double kBelow = 0.36;
+  Camera camera = like;
+  const double a = (corner.number & 1) != 0 ? 1.0 - corner.inset : corner.inset,
+               b = (corner.number & 2) != 0 ? 1.0 - corner.inset : corner.inset;
+  const Vec3 up = unit_unscaled(like.up);
+  const auto place = [&](double first, double second, double height) {
+    if (std::abs(up.z) > 0.7) return box.at(first, second, up.z > 0.0 ? height : 1.0 - height);
+    if (std::abs(up.x) > 0.7) return box.at(up.x > 0.0 ? height : 1.0 - height, first, second);
+    return box.at(first, up.y >= 0.0 ? height : 1.0 - height, second);
+  };
+  camera.eye = place(a, b, corner.height);
+  camera.look = place(1.0 - a, 1.0 - b, kBelow);
+  return camera;
+}
+
+// What a test picture shows of a room: 0 unless most of it shows fronts, as it does wherever the room is closed. Views
+// with a lamp come first. Then many patches count, far away: furniture right before the camera hides the rest.
+double room_seen(const Scene& scene, const Camera& camera, const Size& size) {
+  const View view(camera, size);
+  int fronts = 0;
+  double distances = 0.0;
+  bool lamp = false;
+  std::set<PatchId> patches;
+  for (int row = 0; row < size.height; ++row) {
+    for (int column = 0; column < size.width; ++column) {
+      const auto hit = first_hit(scene, view.ray(column + 0.5, row + 0.5));
+      if (!hit || hit->back) continue;
+      ++fronts;
+      const Face& face = scene.face(hit->face);
+      patches.insert(face.patch);
+      lamp = lamp || scene.material(face.material).emits();
+      distances += kernel::distance(hit->point, camera.eye);
+    }
+  }
+  if (2 * fronts < size.width * size.height) return 0.0;
+  constexpr double kOfLamp = 1e3;
+  return (lamp ? kOfLamp : 1.0) * static_cast<double>(patches.size()) * distances;
+}
+
+// A test picture of the same shape.
+Size small_size(const Size& size) {
+  const double aspect = static_cast<double>(size.width) / size.height;
+  return {static_cast<int>(std::clamp(kTestSide * aspect, 1.0, 3.0 * kTestSide)), kTestSide};
+}
+
+void look_from_inside(const Scene& scene, const Extents& box, const Camera& like, const Size& size, Best& best) {
+  double most = 0.0;
+  for (const double height : {Corner{}.height, 0.88}) {
+    for (const double inset : {Corner{}.inset, 0.12}) {
+      for (int number = 0; number < 4; ++number) {
+        const Camera candidate = camera_within(box, {number, inset, height}, like);
+        if (!is_usable(candidate)) continue;
+        const double seen = room_seen(scene, candidate, small_size(size));
+        if (seen <= most) continue;
+        most = seen;
+        best = {candidate, seen};
+      }
+    }
+  }
+}
+
 }  // namespace
 
-Camera default_camera(const Scene& scene, const Camera& like, const Size& size) {
+Camera default_camera(const Scene& scene, const CameraWishes& wishes, const Size& size) {
   const kernel::StandardArithmetic arithmetic;
-  Camera test = like;  // the given numbers are refused with words, not left out of the search
-  test.eye = {0, 0, 0};
+  Camera like;  // the given numbers are refused with words, not left out of the search
+  like.up = wishes.up;
+  like.fov = wishes.fov.value_or(like.fov);
+  like.ortho = wishes.ortho;
   const Vec3 across = cross(like.up, Vec3{1, 0, 0});
-  test.look = kernel::max_norm(across) > 0.0 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  View(test, size);
+  like.look = kernel::max_norm(across) > 0.0 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  View(like, size);
   Best best;
-  if (scene.pieces().empty()) return test;
+  if (scene.pieces().empty()) return like;
   const Extents box = extents_of(scene);
   look_from_outside(scene, box, like, size, best);
   constexpr double kHardlyAny = 0.02;
   if (best.score < kHardlyAny && !like.ortho) {
-    for (int corner = 0; corner < 4; ++corner) best.offer(scene, camera_within(box, corner, like), 1.0);
+    for (int number = 0; number < 4; ++number) best.offer(scene, camera_within(box, {number}, like), 1.0);
+    like.fov = wishes.fov.value_or(kWideFov);
+    look_from_inside(scene, box, like, size, best);
   }
   if (best.score < 0.0) {
     throw InputError({.what = "no camera was found that shows the scene",

@@ -186,9 +186,8 @@ std::string names_of(const Scene& scene, const std::set<PatchId>& patches) {
 
 std::optional<Strip> draw_strip(const Study& study, const Shown& shown, const render::Size& size, const Hooks& hooks) {
   render::Request request{.scene = study.request.scene};
-  render::Camera like;
-  like.up = upwards(study);
-  request.view = render::View(render::default_camera(*study.request.scene, like, size), size);
+  request.view =
+      render::View(render::default_camera(*study.request.scene, {.up = upwards(study)}, size), size);
   request.sources = study.request.sources;
   request.threads = study.request.threads;
   render::Picture exact = render::render(request, hooks);

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <string>
 
 #include "exactff/models.h"
 #include "exactff/scene_files.h"
@@ -292,6 +294,73 @@ TEST(DefaultCamera, LooksIntoTheOpenSide) {
   EXPECT_LT(inside.eye.x, 4.0);
   const View view(inside, size);
   for (int row = 0; row < 16; ++row) EXPECT_FALSE(first_hit(room, view.ray(8, row + 0.5))->back);
+}
+
+// Doubles of the first version. Images by the default camera keep their bytes.
+TEST(DefaultCamera, OfScenesThatAreNoClosedRoomsStaysAsItWas) {
+  const auto expect_camera = [](const Scene& scene, const Vec3& eye, const Vec3& look) {
+    const Camera camera = default_camera(scene, {}, {8, 6});
+    EXPECT_EQ(camera.eye, eye);
+    EXPECT_EQ(camera.look, look);
+    EXPECT_EQ(camera.up, (Vec3{0, 1, 0}));
+    EXPECT_EQ(camera.fov, 40.0);
+  };
+  expect_camera(cornell_box(), {278, 274.4, -791.6031940932656}, {278, 274.4, 279.6});
+  expect_camera(read_obj(EXACTFF_DATA_DIR "/scenes/slats.obj"), {0, 25.484081191583492, -24.734081191583492},
+                {0, 0.75, 0});
+  expect_camera(models::make_scene("teapot"), {0, 0, 20.424256452136767}, {0, 0, 3});
+  expect_camera(models::make_scene("mesh"), {0, 2.413638467820515, -1.913638467820515}, {0, 0, 0.5});
+  expect_camera(models::make_scene("lattice"), {0.125, -3.0411012904273527, -2.7598512904273527},
+                {0.125, 0.203125, 0.484375});
+}
+
+struct Shown {
+  int lamp = 0, back = 0;
+  std::set<std::string> furniture;  // the patches that are no wall, floor, ceiling or lamp
+};
+Shown shown_of(const Scene& scene, const Camera& camera, const Size& size) {
+  const View view(camera, size);
+  Shown shown;
+  for (int row = 0; row < size.height; ++row) {
+    for (int column = 0; column < size.width; ++column) {
+      const auto hit = first_hit(scene, view.ray(column + 0.5, row + 0.5));
+      if (!hit || hit->back) {
+        ++shown.back;
+        continue;
+      }
+      const Face& face = scene.face(hit->face);
+      const std::string name = scene.patch(face.patch).name;
+      if (scene.material(face.material).emits()) ++shown.lamp;
+      if (name.starts_with("box") || name.starts_with("table")) shown.furniture.insert(name);
+    }
+  }
+  return shown;
+}
+
+TEST(DefaultCamera, InAClosedRoomShowsALampAndTheFurniture) {
+  for (const Size size : {Size{80, 80}, Size{80, 60}, Size{96, 54}}) {
+    for (int seed = 1; seed <= 8; ++seed) {
+      for (const char* lamp : {"flush", "hanging"}) {
+        const std::string model = std::string("closed-room:lamp=") + lamp + ",seed=" + std::to_string(seed);
+        SCOPED_TRACE(model);
+        const Scene room = models::make_scene(model);
+        const Camera camera = default_camera(room, {}, size);
+        EXPECT_EQ(camera.fov, kWideFov);
+        const Shown shown = shown_of(room, camera, size);
+        EXPECT_GT(shown.lamp, size.height / 3);
+        EXPECT_EQ(shown.back, 0);
+        EXPECT_GE(shown.furniture.size(), 5U) << testing::PrintToString(shown.furniture);
+      }
+    }
+  }
+  const Scene hall = models::make_scene("emitters:n=9,size=0.1");
+  EXPECT_GT(shown_of(hall, default_camera(hall, {}, {320, 240}), {320, 240}).lamp, 10);
+}
+
+TEST(DefaultCamera, KeepsAnAngleThatIsGiven) {
+  const Scene room = models::make_scene("closed-room");
+  EXPECT_EQ(default_camera(room, {.fov = 50.0}, {16, 16}).fov, 50.0);
+  EXPECT_EQ(default_camera(cornell_box(), {.fov = 50.0}, {16, 16}).fov, 50.0);
 }
 
 TEST(DefaultCamera, KeepsAHeightThatIsGiven) {

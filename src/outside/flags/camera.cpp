@@ -1,0 +1,59 @@
+#include "flags/camera.h"
+
+#include "text/number_text.h"
+#include "text/phrases.h"
+#include "text/refuse.h"
+
+namespace exactff::flags {
+
+void CameraArguments::add_to(CLI::App& app, const std::string& eye_meaning, const std::string& look_meaning) {
+  add_vector_option(app, "--eye", eye, eye_meaning);
+  add_vector_option(app, "--look", look, look_meaning);
+  add_vector_option(app, "--up", up, "The direction that points upwards in the picture (default: 0 1 0)");
+  app.add_option("--fov", fov,
+                 "Vertical angle of view in degrees (default: " + text::shortest(render::Camera{}.fov) + "; " +
+                     text::shortest(render::kWideFov) + " where the program places a camera inside a closed room)")
+      ->type_name("DEGREES")
+      ->check(is_positive);
+}
+
+bool CameraArguments::is_placed() const {
+  if (eye.empty() == look.empty()) return !eye.empty();
+  text::refuse(
+      std::string(eye.empty() ? "--look" : "--eye") + " is given without " + (eye.empty() ? "--eye" : "--look"),
+      "a camera stands at one point and looks at another", "give both, or neither for a view of the whole");
+}
+
+render::CameraWishes CameraArguments::wishes() const {
+  render::CameraWishes wishes{.fov = fov};
+  if (!up.empty()) wishes.up = vector_of(up, "--up");
+  return wishes;
+}
+
+render::Camera CameraArguments::camera() const {
+  render::Camera camera{.eye = vector_of(eye, "--eye"), .look = vector_of(look, "--look"), .up = wishes().up};
+  if (fov) camera.fov = *fov;
+  return camera;
+}
+
+std::string is_positive(const std::string& text) {
+  const text::ParsedNumber number = text::parse_number(text);
+  return number.fault == text::NumberFault::kNone && number.value > 0.0 ? ""
+                                                                        : "'" + text + "' is not a positive number";
+}
+
+std::string command_words(const CameraArguments& args) {
+  std::string line;
+  const auto add = [&](const char* flag, const ThreeNumbers& numbers) {
+    if (numbers.empty()) return;
+    line += std::string(" ") + flag;
+    for (const std::string& number : numbers) line += ' ' + number;
+  };
+  add("--eye", args.eye);
+  add("--look", args.look);
+  add("--up", args.up);
+  if (args.fov) line += " --fov " + text::shortest(*args.fov);
+  return line;
+}
+
+}  // namespace exactff::flags

@@ -1,0 +1,31 @@
+// The flags of a camera, shared by `exactff render` and `exactff compare`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "exactff/render.h"
+#include "flags/vector.h"
+
+namespace exactff::flags {
+
+struct CameraArguments {
+  ThreeNumbers eye, look, up;
+  std::optional<double> fov;
+
+  void add_to(CLI::App& app, const std::string& eye_meaning, const std::string& look_meaning);
+  // Whether --eye and --look are given. Throws InputError if only one of them is.
+  [[nodiscard]] bool is_placed() const;
+  // Requires both.
+  [[nodiscard]] render::Camera camera() const;
+  [[nodiscard]] render::CameraWishes wishes() const;
+};
+
+// A check of a flag's value.
+[[nodiscard]] std::string is_positive(const std::string& text);
+
+// The flags again, each preceded by a blank.
+[[nodiscard]] std::string command_words(const CameraArguments& args);
+
+}  // namespace exactff::flags
