@@ -27,6 +27,7 @@
 #include "exactff/methods.h"
 #include "exactff/progress.h"
 #include "exactff/receiver.h"
+#include "exactff/render.h"
 #include "exactff/scene.h"
 
 namespace exactff::study {
@@ -84,6 +85,7 @@ struct Request {
   std::string command_line;         // shown in the last section of the report
   double sweep_budget = 15.0;       // seconds for all settings of the adaptive algorithm, as for MethodSweep::budget
   double seconds_for_a_time = 0.1;  // approximate seconds spent on timing one setting
+  std::optional<render::Camera> camera = {};  // of the report's pictures; empty: one that shows the scene
 };
 
 inline constexpr double kNotTimed = std::numeric_limits<double>::quiet_NaN();

@@ -159,11 +159,15 @@ class CommandWriter {
         words_.insert(words_.end(), {"--svg", "out/view.svg"});
       if (has_any({"--force"}) && !has_any({"--mesh"})) words_.insert(words_.end(), {"--mesh", "out/mesh.obj"});
     }
-    if (table_.name == "render") {
-      if (has_any({"--eye"}) != has_any({"--look"})) {
-        const std::string missing = has_any({"--eye"}) ? "--look" : "--eye";
-        give(*std::ranges::find_if(table_.options, [&](const OptionRow& row) { return row.names.back() == missing; }));
+    if (table_.name == "render" || table_.name == "compare") {
+      const bool needs_eye = table_.name == "compare" && has_any({"--up", "--fov"});
+      for (const auto& [missing, other] : {std::pair("--eye", "--look"), std::pair("--look", "--eye")}) {
+        if (has_any({missing}) || !(has_any({other}) || needs_eye)) continue;
+        const std::string name = missing;
+        give(*std::ranges::find_if(table_.options, [&](const OptionRow& row) { return row.names.back() == name; }));
       }
+    }
+    if (table_.name == "render") {
       if (has_any({"--strip"}) && !has_any({"--against"})) words_.insert(words_.end(), {"--against", quick_method()});
     }
     if (has_any({"--exr", "--position-layer", "--normal-layer"})) {

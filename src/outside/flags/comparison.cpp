@@ -159,6 +159,14 @@ study::MethodSweep methods_of(const ComparisonArguments& args) {
   return sweep;
 }
 
+// Refused before anything is computed, not when the pictures are made.
+std::optional<render::Camera> camera_of(const CameraArguments& args) {
+  if (!args.is_placed()) return std::nullopt;
+  const render::Camera camera = args.camera();
+  (void)render::View(camera, {4, 3});
+  return camera;
+}
+
 // The most cells along a side.
 constexpr int kAbridgedGrid = 12;
 
@@ -195,6 +203,7 @@ Comparison comparison_of(ComparisonArguments args, bool abridged, int threads) {
   check_receiver_options(args.receivers);
   check_effects(args);
   check_standard_input(args.scene, args.receivers);
+  const std::optional<render::Camera> camera = camera_of(args.camera);
   Comparison comparison;
   study::Request& request = comparison.request;
   request.sweeps = sweeps_of(args);
@@ -206,6 +215,7 @@ Comparison comparison_of(ComparisonArguments args, bool abridged, int threads) {
   request.sources = sources_of(args.sources, *comparison.scene);
   request.engine = args.engine.engine();
   request.threads = threads;
+  request.camera = camera;
   ChosenReceivers chosen = receivers_of(args.receivers, *comparison.scene);
   comparison.warnings = warnings_of_receivers(chosen);
   request.receivers = std::move(chosen.receivers);
@@ -235,6 +245,7 @@ std::string command_words(const ComparisonArguments& args) {
   add("--method-budget", args.method_budget);
   add("--sweep-budget", args.sweep_budget);
   if (args.engine.engine() != Engine::kEdges) add("--engine", args.engine.name);
+  line += command_words(args.camera);
   add("--title", args.title);
   if (args.unless_abridged) line += " --unless-abridged";
   return line;
@@ -284,6 +295,9 @@ void ComparisonArguments::add_to(CLI::App& app) {
                  "The same limit for all settings of the adaptive algorithm together (default: 15)")
       ->type_name("SECONDS");
   engine.add_to(app);
+  camera.add_to(app, "Pictures in the report: where the camera stands (default: where it shows the whole scene)",
+                "The point that it looks at");
+  for (const char* flag : {"--up", "--fov"}) app.get_option(flag)->needs(app.get_option("--eye"));
   app.add_option("--title", title, "Name of the scene in the report")->type_name("TEXT");
   app.add_flag("--unless-abridged", unless_abridged, "Leave this scene out of abridged reports");
 }

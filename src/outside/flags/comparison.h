@@ -8,6 +8,7 @@
 
 #include "exactff/error.h"
 #include "exactff/study.h"
+#include "flags/camera.h"
 #include "flags/engine.h"
 #include "flags/receivers.h"
 #include "flags/scene.h"
@@ -26,6 +27,7 @@ struct ComparisonArguments {
   bool sweep = false;
   std::string method_seeds, method_receivers, method_budget, sweep_budget;
   flags::EngineArgument engine;
+  flags::CameraArguments camera;  // of the report's pictures
   std::string title;
   bool unless_abridged = false;
 

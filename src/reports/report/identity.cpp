@@ -59,6 +59,7 @@ class Identity {
     add(request.methods);
     add(request.sweep_budget);
     add(request.seconds_for_a_time);
+    if (request.camera) add(*request.camera);  // without one, reports keep the identity that earlier builds gave them
   }
 
   [[nodiscard]] std::string digits() const { return hash_.digits(); }
@@ -72,6 +73,10 @@ class Identity {
     add(sweeps.seeds);
     add(sweeps.patterns);
     add(sweeps.variants);
+  }
+  void add(const render::Camera& camera) {
+    for (const Vec3& v : {camera.eye, camera.look, camera.up}) hash_.add(v);
+    add(camera.fov);
   }
   void add(const study::MethodSweep& methods) {
     add(std::uint64_t{methods.enabled});

@@ -186,12 +186,14 @@ std::string names_of(const Scene& scene, const std::set<PatchId>& patches) {
 
 std::optional<Strip> draw_strip(const Study& study, const Shown& shown, const render::Size& size, const Hooks& hooks) {
   render::Request request{.scene = study.request.scene};
-  request.view =
-      render::View(render::default_camera(*study.request.scene, {.up = upwards(study)}, size), size);
+  const std::optional<render::Camera>& given = study.request.camera;
+  const auto chosen = [&] { return render::default_camera(*study.request.scene, {.up = upwards(study)}, size); };
+  request.view = render::View(given ? *given : chosen(), size);
   request.sources = study.request.sources;
   request.threads = study.request.threads;
   render::Picture exact = render::render(request, hooks);
-  if (Membership(study, request.view).pixels() == 0 || !(brightest_pixel(exact) > 0.0)) {
+  const auto is_dull = [&] { return Membership(study, request.view).pixels() == 0 || !(brightest_pixel(exact) > 0.0); };
+  if (!given && is_dull()) {
     if (const auto view = view_of_receivers(study, size)) {
       request.view = *view;
       exact = render::render(request, hooks);

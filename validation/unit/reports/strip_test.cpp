@@ -60,6 +60,29 @@ TEST(Strip, OfAMethodThatTakesTooLongIsLeftOutAndSaysWhy) {
   EXPECT_NE(left_out.front().why.find("they would take too long"), std::string::npos) << left_out.front().why;
 }
 
+TEST(Strip, IsSeenByTheCameraThatIsAskedFor) {
+  const Scene scene = validation::small_room(true);
+  const auto strip_by = [&](const std::optional<render::Camera>& camera) {
+    study::Study study = room_study(scene, 1, "area-sampling:samples=4");
+    study.request.camera = camera;
+    std::vector<LeftOut> left_out;
+    return strip_of(study, left_out, {});
+  };
+  const auto by_default = strip_by({});
+  const render::Camera same = render::default_camera(scene, {.up = {0, 0, 1}}, {192, 144});
+  const auto given = strip_by(same);
+  ASSERT_TRUE(by_default && given);
+  EXPECT_EQ(given->exact, by_default->exact);
+  render::Camera nearer = same;
+  nearer.fov = 0.7 * same.fov;
+  const auto other = strip_by(nearer);
+  ASSERT_TRUE(other);
+  EXPECT_NE(other->exact, given->exact);
+  render::Camera away = same;  // what it sees is not replaced by another view
+  away.look = {2 * same.eye.x - same.look.x, 2 * same.eye.y - same.look.y, 2 * same.eye.z - same.look.z};
+  EXPECT_FALSE(strip_by(away));
+}
+
 TEST(Strip, StopsWhenItIsCancelled) {
   const Scene scene = validation::small_room(true);
   const study::Study study = room_study(scene, 1, "area-sampling:samples=4");
