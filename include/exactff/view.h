@@ -116,10 +116,10 @@ struct ViewPictureOptions {
 };
 
 // A self-contained SVG document: every patch in the colours of its materials (Kd, shaded by the slope of its faces; Ke
-// for lamps), backs of faces darker, what is open in the colour of the sky, the outlines of the patches, and their
-// names where they fit; browsers show all names under the pointer. Arcs are SVG's elliptic arcs; corners are rounded to
-// 1e-5 pixels, 320 of which are the radius. Requires what `view` requires, and an `up` that is finite and not zero
-// (else InputError).
+// for lamps), or in other ones where neighbours would look alike, backs of faces darker, what is open in the colour of
+// the sky, the outlines of the patches, and their names where they fit; browsers show all names under the pointer. Arcs
+// are SVG's elliptic arcs; corners are rounded to 1e-5 pixels, 320 of which are the radius. Requires what `view`
+// requires, and an `up` that is finite and not zero (else InputError).
 [[nodiscard]] std::string view_svg(const Scene& scene, const Receiver& receiver,
                                    const ViewPictureOptions& options = {});
 

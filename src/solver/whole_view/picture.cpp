@@ -27,6 +27,7 @@
 #include "text/escape.h"
 #include "text/phrases.h"
 #include "whole_view/labels.h"
+#include "whole_view/patch_colours.h"
 #include "whole_view/regions.h"
 
 namespace exactff {
@@ -52,7 +53,7 @@ constexpr double kBelowMiddle = 4.0;  // the base line of a text
 constexpr double kMark = 4.0;         // half of the cross at the normal
 constexpr std::uint32_t kNoName = Regions::kOpen - 1;
 constexpr int kDecimals = 5;
-constexpr const char* kSky = "#dce8f2";
+constexpr Rgb kSky{0.72, 0.81, 0.89};
 
 Vec3 unit(const Vec3& a) {
   const Vec3 b = scaled(a, std::ldexp(1.0, -std::ilogb(kernel::max_norm(a))));  // squares neither overflow nor vanish
@@ -144,20 +145,39 @@ std::string colour_text(const Rgb& linear) {
   return text.data();
 }
 
-// As if lit from one side, so that faces of different slopes can be told apart; a back looks as if in the shade.
-std::string colour_of(const Scene& scene, FaceId id, bool front) {
-  const Face& face = scene.face(id);
-  const Material& material = scene.material(face.material);
-  if (front && material.emits()) {
-    const double most = material.radiosity.largest();
-    const auto warm = [&](double channel) { return 0.7 + 0.3 * channel / most; };
-    return colour_text({warm(material.radiosity.r), warm(material.radiosity.g), warm(material.radiosity.b)});
+// What has one colour, but for its slopes.
+struct Thing {
+  PatchId patch{};
+  MaterialId material{};
+  bool back = false;
+  friend auto operator<=>(const Thing&, const Thing&) = default;
+};
+
+bool emits(const Scene& scene, const Thing& thing) { return !thing.back && scene.material(thing.material).emits(); }
+
+// Lamps are warm, and backs look as if in the shade.
+whole_view::Tinted tinted(const Scene& scene, const Thing& thing) {
+  constexpr Rgb kWarm{1.0, 0.93, 0.6};
+  constexpr double kOfFronts = 0.94, kOfBacks = 0.35;
+  const Material& material = scene.material(thing.material);
+  if (emits(scene, thing)) {
+    const auto channel = [&](double emitted) { return 0.7 + 0.3 * emitted / material.radiosity.largest(); };
+    const Rgb& ke = material.radiosity;
+    return {{kWarm.r * channel(ke.r), kWarm.g * channel(ke.g), kWarm.b * channel(ke.b)}};
   }
-  constexpr Vec3 kLight{0.36, 0.8, 0.48};
-  const Vec3 normal = unit(face.newell);
-  const double shade = front ? 0.8 + 0.2 * dot(normal, kLight) : 0.35 - 0.1 * dot(normal, kLight);
+  const auto channel = [&](double reflected) {
+    return (thing.back ? kOfBacks : kOfFronts) * std::clamp(reflected, 0.0, 1.0);
+  };
   const Rgb& kd = material.reflectance;
-  return colour_text({kd.r * shade, kd.g * shade, kd.b * shade});
+  return {{channel(kd.r), channel(kd.g), channel(kd.b)}, thing.back ? kOfBacks : 1.0};
+}
+
+// As if lit from one side, so that faces of different slopes can be told apart.
+double shade_of(const Scene& scene, FaceId face, const Thing& thing) {
+  constexpr Vec3 kLight{0.36, 0.8, 0.48};
+  if (emits(scene, thing)) return 1.0;
+  const double slope = dot(unit(scene.face(face).newell), kLight);
+  return 0.9 + (thing.back ? -0.1 : 0.1) * slope;
 }
 
 // --- The picture ---
@@ -181,8 +201,8 @@ class Picture {
     const std::string circle = "<circle id=\"horizon\" cx=\"" + number(kCentreX) + "\" cy=\"" + number(kCentreY) +
                                "\" r=\"" + number(kRadius) + "\" fill=\"none\" stroke=\"#222222\"/>\n";
     const std::string x = number(kCentreX), y = number(kCentreY);
-    return body + circle + "<path id=\"normal\" d=\"M" + number(kCentreX - kMark) + ' ' + y + "h8M" + x + ' ' +
-           number(kCentreY - kMark) +
+    return body + circle + legend() + "<path id=\"normal\" d=\"M" + number(kCentreX - kMark) + ' ' + y + "h8M" + x +
+           ' ' + number(kCentreY - kMark) +
            "v8\" fill=\"none\" stroke=\"#222222\"><title>the receiver's normal</title></path>\n" + "</svg>\n";
   }
 
@@ -222,6 +242,13 @@ class Picture {
                         "fill=\"#555555\"");
   }
 
+  [[nodiscard]] static std::string legend() {
+    constexpr const char* kGrey = "fill=\"#555555\"";
+    return line_of_text(732, "+ is the direction of the receiver's normal; the rim is its horizon.", kGrey) +
+           line_of_text(
+               748, "Patches have the colours of their materials, or others where neighbours would look alike.", kGrey);
+  }
+
   [[nodiscard]] Vec3 direction(std::uint32_t corner) const { return directions_[corner]; }
 
   [[nodiscard]] std::string path_of(const SideLoop& loop) const {
@@ -239,12 +266,44 @@ class Picture {
     return regions;
   }
 
+  [[nodiscard]] Thing thing_of(OutlineId outline) const {
+    const Face& face = scene_.face(edges_.face(outline));
+    return {face.patch, face.material, !edges_.shows_front(outline)};
+  }
+
+  // Of all things that are seen.
+  [[nodiscard]] std::map<Thing, Rgb> colours() const {
+    std::map<Thing, std::uint32_t> index;
+    std::vector<whole_view::Tinted> things{{kSky}};
+    const auto index_of_thing = [&](OutlineId outline) {
+      const Thing thing = thing_of(outline);
+      const auto [at, is_new] = index.try_emplace(thing, static_cast<std::uint32_t>(things.size()));
+      if (is_new) things.push_back(tinted(scene_, thing));
+      return at->second;
+    };
+    for (const ViewEdges::Sides& sides : edges_.sides()) {
+      const std::uint32_t left = index_of_thing(sides.left);
+      if (!sides.on_horizon) {
+        const std::uint32_t right = sides.right == whole_view::kNothing ? 0 : index_of_thing(sides.right);
+        things[left].touching.push_back(right);
+      }
+    }
+    const std::vector<Rgb> chosen = whole_view::distinct_colours(things);
+    std::map<Thing, Rgb> result;
+    for (const auto& [thing, place] : index) result.emplace(thing, chosen[place]);
+    return result;
+  }
+
   // A group for each patch, for its backs, and for what is open.
   std::string fills() {
+    const std::map<Thing, Rgb> colours_of_things = colours();
     std::map<Fill, std::uint32_t> number_of;
     const auto fill_of = [&](OutlineId o) {
-      const bool front = edges_.shows_front(o);
-      return Fill{patch_of(o), !front, colour_of(scene_, edges_.face(o), front)};
+      const Thing thing = thing_of(o);
+      const auto found = colours_of_things.find(thing);
+      const Rgb colour = found == colours_of_things.end() ? Rgb{} : found->second;  // not seen
+      const double shade = shade_of(scene_, edges_.face(o), thing);
+      return Fill{patch_of(o), thing.back, colour_text({shade * colour.r, shade * colour.g, shade * colour.b})};
     };
     for (OutlineId o = 0; o < edges_.outline_count(); ++o) number_of.emplace(fill_of(o), 0);
     std::vector<const Fill*> fills;
@@ -257,7 +316,7 @@ class Picture {
     const Fill* group = nullptr;
     for (const whole_view::Region& region : regions.regions()) {
       const bool open = region.thing == Regions::kOpen;
-      const Fill sky{0, false, kSky};
+      const Fill sky{0, false, colour_text(kSky)};
       const Fill& fill = open ? sky : *fills[region.thing];
       if (open || group == nullptr || group->patch != fill.patch || group->back != fill.back) {
         if (!result.empty()) result += "</g>\n";
