@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # gallery.sh [FOLDER]: renders the pictures of the READMEs with build/exactff (EXACTFF_BUILD names another build folder)
-# into data/pictures, or into FOLDER. Takes some minutes. The same program gives the same bytes.
+# into data/pictures, or into FOLDER: 1,200 pixels wide, with 3 x 3 points a pixel. Takes about an hour on two cores, most of
+# it for the forest. The same program gives the same bytes.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 program=${EXACTFF_BUILD:-build}/exactff
@@ -10,20 +11,19 @@ mkdir -p "$out"
 render() {  # NAME SCENE [FLAG...]
   local name=$1
   shift
-  "$program" render "$@" -o "$out/$name.png" --force
+  "$program" render "$@" --spp 3 -o "$out/$name.png" --force
 }
 
 box=(data/scenes/cornell_box.obj --eye 278 273 -800 --look 278 273 0 --fov 39.30764811610662)
-render cornell_box_strip "${box[@]}" --size 300x300 --against area-sampling:samples=64 --strip
-render cornell_box "${box[@]}" --size 400x400 --spp 3 --exposure 16
-render blinds_room @room:n=12 --eye 3.9 2 3.8 --look 0.5 0.6 0.9 --fov 62 --size 400x300 --spp 3 --exposure 10
-render slats data/scenes/slats.obj --eye -0.6 2.9 -1.8 --look 0.3 0 1.4 --fov 46 --size 400x300 --spp 3 --exposure 40
-render closed_room @closed-room:boxes=4,seed=5 --eye 0.2 1.9 3.85 --look 3.4 1 1.5 --fov 62 --size 400x300 --spp 3 \
-  --exposure 10
-render emitters @emitters:n=9,size=0.1 --eye 9.8 2.2 9.8 --look 5 1 5 --fov 75 --size 400x300 --spp 3
-render teapot @teapot:segments=16 --eye 3 -5.5 6.5 --look 0.4 0.1 1.1 --up 0 0 1 --fov 38 --size 400x300 --spp 3 --exposure 22
+render cornell_box_strip "${box[@]}" --size 396x396 --against area-sampling:samples=16 --strip
+render cornell_box "${box[@]}" --size 1200x1200 --exposure 16
+render blinds_room @room:n=12 --eye 3.9 2 3.8 --look 0.5 0.6 0.9 --fov 62 --size 1200x900 --exposure 10
+render slats data/scenes/slats.obj --eye -0.6 2.9 -1.8 --look 0.3 0 1.4 --fov 46 --size 1200x900 --exposure 40
+render closed_room @closed-room:boxes=4,seed=5 --eye 0.2 2.2 3.85 --look 3.2 1 1.3 --fov 70 --size 1200x900 --exposure 10
+render emitters @emitters:n=9,size=0.1 --eye 9.8 2.4 9.8 --look 5 1 5 --fov 68 --size 1200x900
+render teapot @teapot:segments=16 --eye 3 -5.5 6.5 --look 0.4 0.1 1.1 --up 0 0 1 --fov 38 --size 1200x900 --exposure 22
 render forest @forest:n=400,trees=1,cover=0.12,light=sun --two-sided --eye 16 -13 8.4 --look 5.7 4.7 4.1 --up 0 0 1 --fov 47 \
-  --size 400x300 --spp 2
+  --size 1200x900
 "$program" view data/scenes/cornell_box.obj --at 240 0 300 --normal 0 1 0 --on floor --up 0 0 1 --plain \
   --svg "$out/cornell_box_view.svg" > /dev/null
 ls -l "$out"

@@ -13,13 +13,15 @@ import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (the renderer)
 from vtkmodules.vtkCommonCore import vtkLookupTable
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkThreshold
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
+from vtkmodules.vtkImagingCore import vtkImageShrink3D
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow,
                                          vtkWindowToImageFilter)
 
-WIDTH, HEIGHT, MARGIN = 1080, 880, 0.84  # the map takes this share of the width, the scale the rest
+WIDTH, HEIGHT, MAP = 1200, 1000, 0.84  # the map takes this share of the width, the scale the rest
+FINER = 3  # the picture is drawn this many times as large; each pixel is the mean of its parts, so that edges are smooth
 MOST = 0.03  # of the scale. More have only cells on the top of the tall block, which is not seen, and a few on the other
 INK = (0.13, 0.14, 0.16)
 # From dark to light, each step lighter than the one before, so that the picture can be printed in grey.
@@ -96,7 +98,7 @@ def edges(data, colour, width):
     found.Update()
     made = actor(found.GetOutput())
     made.GetProperty().SetColor(colour)
-    made.GetProperty().SetLineWidth(width)
+    made.GetProperty().SetLineWidth(FINER * width)
     return made
 
 
@@ -111,7 +113,7 @@ def scale(table):
     for text in bar.GetTitleTextProperty(), bar.GetLabelTextProperty():
         text.SetColor(INK)
         text.SetFontFamilyToArial()
-        text.SetFontSize(20)
+        text.SetFontSize(FINER * 20)
         text.BoldOff()
         text.ItalicOff()
         text.ShadowOff()
@@ -127,7 +129,7 @@ def main(map_path, picture):
     table = colours(MOST)
     renderer = vtkRenderer()
     renderer.SetBackground(1, 1, 1)
-    renderer.SetViewport(0, 0, MARGIN, 1)
+    renderer.SetViewport(0, 0, MAP, 1)
     renderer.AddActor(actor(cells, table))
     renderer.AddActor(filled(patch(scene, "light"), (1.0, 0.99, 0.92), -4))  # cells of the ceiling reach over its edge
     renderer.AddActor(filled(patch(scene, "left"), INK, 4))  # two triangles: cells with centres beside them are missing
@@ -137,24 +139,28 @@ def main(map_path, picture):
     camera.SetPosition(278, 300, -820)
     camera.SetFocalPoint(278, 262, 280)
     camera.SetViewUp(0, 1, 0)
-    camera.SetViewAngle(38)
+    camera.SetViewAngle(42)
     renderer.ResetCameraClippingRange()
     beside = vtkRenderer()
     beside.SetBackground(1, 1, 1)
-    beside.SetViewport(MARGIN, 0, 1, 1)
+    beside.SetViewport(MAP, 0, 1, 1)
     beside.AddActor2D(scale(table))
     window = vtkRenderWindow()
     window.SetOffScreenRendering(True)
-    window.SetMultiSamples(8)
-    window.SetSize(WIDTH, HEIGHT)
+    window.SetMultiSamples(0)
+    window.SetSize(FINER * WIDTH, FINER * HEIGHT)
     window.AddRenderer(renderer)
     window.AddRenderer(beside)
     window.Render()
     image = vtkWindowToImageFilter()
     image.SetInput(window)
     image.ReadFrontBufferOff()
+    shrunk = vtkImageShrink3D()
+    shrunk.SetInputConnection(image.GetOutputPort())
+    shrunk.SetShrinkFactors(FINER, FINER, 1)
+    shrunk.AveragingOn()
     writer = vtkPNGWriter()
-    writer.SetInputConnection(image.GetOutputPort())
+    writer.SetInputConnection(shrunk.GetOutputPort())
     writer.SetCompressionLevel(9)
     writer.SetFileName(str(picture))
     writer.Write()
