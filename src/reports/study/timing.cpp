@@ -1,14 +1,13 @@
 // Times of settings, as multiples of the exact method's time.
 //
 //   1. Measure the exact method at every chosen receiver.
-//   2. For each setting, go through receivers in rounds. At each of them call the exact method, then the setting, so
-//   that
-//      both meet the same machine: its clock, its caches, and what other programs take of them.
+//   2. For each setting, go through receivers in rounds. At each of them call the exact method, then the setting: both
+//      meet the same machine, with its clock and what other programs take of it.
 //   3. The time at a receiver is the median of the ratios times the exact method's median time there over all settings.
 //
 // Other programs may run. Long calls are measured by the processor time of the thread. Reading that clock can take
 // microseconds, so short calls are measured on the steady clock: they are seldom interrupted, and a median leaves out
-// those that are. Very short ones are repeated.
+// those that are. They follow a first call with the same arguments, and very short ones are repeated.
 #include "study/timing.h"
 
 #include <time.h>
@@ -61,6 +60,7 @@ class Subject {
       repeats = once > kLong ? kByProcessorTime : static_cast<int>(std::ceil(kShortest / once));
     }
     if (repeats != kByProcessorTime) {
+      evaluate(receiver);  // what was called before may have taken the caches
       return files::seconds_of([&] {
                for (int k = 0; k < repeats; ++k) evaluate(receiver);
              }) /
@@ -143,7 +143,7 @@ class Stopwatch {
   void repeat(double seconds, const Round& round) {
     double spent = 0.0;
     for (std::size_t done = 0; done < kMostRounds; ++done) {
-      if (spent > seconds || (2.0 * spent > seconds && done >= kFewestRounds)) break;
+      if (spent > 3.0 * seconds || (2.0 * spent > seconds && done >= kFewestRounds)) break;
       files::require_not_cancelled(hooks_);
       spent += files::seconds_of(round);
     }
