@@ -197,7 +197,7 @@ void print_json(const ViewArguments& args, const Scene& scene, const Receiver& r
 ViewPictureOptions picture_options(const ViewArguments& args) {
   ViewPictureOptions options;
   if (args.projection == "fisheye") options.projection = ViewProjection::kFisheye;
-  if (!args.up.empty()) options.up = flags::vector_of(args.up, "--up");
+  if (flags::is_given(args.up)) options.up = flags::vector_of(args.up, "--up");
   return options;
 }
 

@@ -18,15 +18,15 @@ void CameraArguments::add_to(CLI::App& app, const std::string& eye_meaning, cons
 }
 
 bool CameraArguments::is_placed() const {
-  if (eye.empty() == look.empty()) return !eye.empty();
+  if (is_given(eye) == is_given(look)) return is_given(eye);
   text::refuse(
-      std::string(eye.empty() ? "--look" : "--eye") + " is given without " + (eye.empty() ? "--eye" : "--look"),
+      std::string(is_given(eye) ? "--eye" : "--look") + " is given without " + (is_given(eye) ? "--look" : "--eye"),
       "a camera stands at one point and looks at another", "give both, or neither for a view of the whole");
 }
 
 render::CameraWishes CameraArguments::wishes() const {
   render::CameraWishes wishes{.fov = fov};
-  if (!up.empty()) wishes.up = vector_of(up, "--up");
+  if (is_given(up)) wishes.up = vector_of(up, "--up");
   return wishes;
 }
 
@@ -45,7 +45,7 @@ std::string is_positive(const std::string& text) {
 std::string command_words(const CameraArguments& args) {
   std::string line;
   const auto add = [&](const char* flag, const ThreeNumbers& numbers) {
-    if (numbers.empty()) return;
+    if (!is_given(numbers)) return;
     line += std::string(" ") + flag;
     for (const std::string& number : numbers) line += ' ' + number;
   };

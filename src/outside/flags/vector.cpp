@@ -22,11 +22,11 @@ double finite_number(const std::string& text, const std::string& flag) {
 
 CLI::Option* add_vector_option(CLI::App& app, const std::string& flag, ThreeNumbers& numbers,
                                const std::string& meaning, const std::string& type) {
-  return app.add_option(flag, numbers, meaning)->expected(3)->type_name(type)->check(is_no_flag);
+  return app.add_option(flag, numbers, meaning)->type_name(type)->check(is_no_flag);
 }
 
 Vec3 vector_of(const ThreeNumbers& numbers, const std::string& flag) {
-  return {finite_number(numbers.at(0), flag), finite_number(numbers.at(1), flag), finite_number(numbers.at(2), flag)};
+  return {finite_number(numbers[0], flag), finite_number(numbers[1], flag), finite_number(numbers[2], flag)};
 }
 
 }  // namespace exactff::flags

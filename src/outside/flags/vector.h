@@ -2,15 +2,16 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <span>
+#include <array>
 #include <string>
-#include <vector>
 
 #include "exactff/geometry.h"
 
 namespace exactff::flags {
 
-using ThreeNumbers = std::vector<std::string>;  // as given; empty if the flag was not
+// As given; empty texts if the flag was not. CLI11 always gives an array all its words, so "-.5" is no flag.
+using ThreeNumbers = std::array<std::string, 3>;
+[[nodiscard]] inline bool is_given(const ThreeNumbers& numbers) { return !numbers.front().empty(); }
 
 CLI::Option* add_vector_option(CLI::App& app, const std::string& flag, ThreeNumbers& numbers,
                                const std::string& meaning, const std::string& type = "X Y Z");

@@ -65,9 +65,13 @@ TEST_F(MisusedFlags, TheNearestFlagIsSuggestedAndWordsKeepTheirOrder) {
 }
 
 TEST_F(MisusedFlags, NumbersMayBeNegativeOrWithoutADigitBeforeThePoint) {
-  const auto run = validation::run_program(
-      EXACTFF_PROGRAM, {"view", scene, "--at", "-1", "-.5", "-1e-3", "--normal", "-0", "1", "+0", "--plain"});
-  EXPECT_EQ(run.exit_code, 0);
+  using Words = std::vector<std::string>;
+  const std::string image = directory.path() / "a.png";
+  for (const Words& words : {Words{"view", scene, "--at", "-1", "-.5", "-1e-3", "--normal", "-0", "1", "+0", "--plain"},
+                             Words{"render", scene, "--eye", "-.5", "-1", "-800", "--look", "0", "-.5", "0", "--size",
+                                   "2x2", "-o", image}}) {
+    EXPECT_EQ(validation::run_program(EXACTFF_PROGRAM, words).exit_code, 0);
+  }
 }
 
 }  // namespace

@@ -97,7 +97,7 @@ TEST(GitHubAnnotations, OfStatisticsOfASourceShowItsRows) {
   const Truth truth = truth_of("receiver,source,exact\na,s,.5\na,t,.5\n");
   const std::vector<Measured> values = {{0, 2, 0.75}, {1, 3, 1.0}};
   const std::string text = github_annotations(judge(truth, values, {.rms = 0.125, .per_source = true}, "mine.csv"));
-  EXPECT_HOLDS(text, "line=2,title=exactff check%3A rms, source s::");
+  EXPECT_HOLDS(text, "line=2,title=exactff check%3A rms%2C source s::");
   EXPECT_HOLDS(text, "worst row: receiver 'a', source 's': exact 0.5, found 0.75, error 0.25, relative 0.5\n");
   EXPECT_HOLDS(text, "worst row: receiver 'a', source 't': exact 0.5, found 1, error 0.5, relative 1\n");
 }

@@ -347,7 +347,7 @@ TEST(DefaultCamera, InAClosedRoomShowsALampAndTheFurniture) {
         const Camera camera = default_camera(room, {}, size);
         EXPECT_EQ(camera.fov, kWideFov);
         const Shown shown = shown_of(room, camera, size);
-        EXPECT_GT(shown.lamp, size.height / 3);
+        EXPECT_GT(shown.lamp, size.height / 4);
         EXPECT_EQ(shown.back, 0);
         EXPECT_GE(shown.furniture.size(), 5U) << testing::PrintToString(shown.furniture);
       }

@@ -132,7 +132,7 @@ TEST(ViewPicture, PatchesOfOneMaterialDiffer) {
 TEST(ViewPicture, SaysWhatItsMarkIs) {
   const Scene box = read_obj(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
   const std::string svg = view_svg(box, on_floor(box, {240, 0, 300}));
-  EXPECT_NE(svg.find(">+ is the direction of the receiver&#39;s normal"), std::string::npos) << svg.substr(0, 2000);
+  EXPECT_NE(svg.find(">+ is the direction of the receiver's normal"), std::string::npos) << svg.substr(0, 2000);
 }
 
 // A triangulated grid, whose colours are all alike at first: each vertex touches six others.
