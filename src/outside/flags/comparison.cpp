@@ -277,7 +277,8 @@ void ComparisonArguments::add_to(CLI::App& app) {
                      "sweep)")
           ->type_name("METHOD")
           ->take_all();
-  app.add_flag("--no-methods", no_methods, "Run only the exact method and the sweep of the ray-sampled adaptive algorithm")
+  app.add_flag("--no-methods", no_methods,
+               "Run only the exact method and the sweep of the ray-sampled adaptive algorithm")
       ->excludes(method);
   app.add_flag("--sweep", sweep,
                "Also run the ray-sampled adaptive algorithm over --eps-b, --eps-a, --rays, --seeds, --pattern and "

@@ -235,7 +235,7 @@ class Cases:
         self.run("check", *files, "--rms", "1e-9", "--per-source", code=1)
         self.run("check", *files, "--value-column", "view.Combined.G", "--truth-column", "G", "--rms", "1")
         assert "its layers are" in self.run("check", *files, "--value-column", "nothing", code=2)
-        assert "no OpenEXR file" in self.run("check", files[0], self.folder / "values.csv", code=2)
+        assert "is no image" in self.run("check", files[0], self.folder / "values.csv", code=2)
         assert "cannot be opened" in self.run("check", files[0], self.folder / "missing.exr", code=2)
 
 
