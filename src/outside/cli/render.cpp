@@ -20,6 +20,7 @@
 #include "flags/sources.h"
 #include "render/identity.h"
 #include "text/escape.h"
+#include "text/nearest_names.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
