@@ -8,6 +8,7 @@
 
 #include "exactff/scene.h"
 #include "scene/closed_surfaces.h"
+#include "scene/edges.h"
 #include "scene/extent.h"
 #include "scene/shaft_tree.h"
 
@@ -32,6 +33,8 @@ struct Scene::Data {
   mutable ShaftTree tree;
   mutable std::once_flag surfaces_found;  // see closed_surfaces()
   mutable ClosedSurfaces surfaces;
+  mutable std::once_flag edges_found;  // see scene_edges()
+  mutable SceneEdges edges;
   mutable std::once_flag extent_found;  // see extent()
   mutable Extent extent;
 

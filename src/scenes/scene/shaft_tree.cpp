@@ -26,13 +26,13 @@ Vec3 centre(const Box& box) {
   return {0.5 * box.low.x + 0.5 * box.high.x, 0.5 * box.low.y + 0.5 * box.high.y, 0.5 * box.low.z + 0.5 * box.high.z};
 }
 
+}  // namespace
+
 int longest_axis(const Box& box) {
   const Vec3 size{0.5 * box.high.x - 0.5 * box.low.x, 0.5 * box.high.y - 0.5 * box.low.y,
                   0.5 * box.high.z - 0.5 * box.low.z};
   return size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
 }
-
-}  // namespace
 
 void HalfSpaceGroups::set(std::span<const HalfSpace> half_spaces) {
   constexpr HalfSpace kEverything{{}, -1.0};

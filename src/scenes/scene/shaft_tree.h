@@ -36,6 +36,8 @@ struct Box {
   }
 };
 
+[[nodiscard]] int longest_axis(const Box& box);
+
 // Half-spaces in groups of four, for vector registers. A missing one is replaced by a half-space that contains
 // everything.
 class HalfSpaceGroups {
@@ -168,14 +170,19 @@ class ShaftTree {
   static bool certainly_outside(const Box& box, const Vec3& apex, std::span<const HalfSpace> shaft);
   static bool certainly_inside(const Box& box, const Vec3& apex, const HalfSpace& half_space);
 
- private:
-  static constexpr int kDepthLimit = 64;  // the tree is balanced: depth <= 32 for any 32-bit count
-  static constexpr std::uint32_t kLeafSize = 4;
-
   // A set of groups of half-spaces as bits; groups beyond the 62nd are always tested.
   static constexpr std::size_t kGroupBits = 62;
   static constexpr std::uint64_t kAllGroups = (std::uint64_t{1} << kGroupBits) - 1;
   static constexpr std::uint64_t kOutside = std::uint64_t{1} << 63U;
+  // Of the groups in `asked`, those with a half-space that may cut the box. The box, and so every part of it, certainly
+  // lies inside the other groups. kOutside if the box lies certainly outside one half-space.
+  static std::uint64_t crossed_groups(const Box& box, const Vec3& apex, std::span<const HalfSpaceGroups::Group> shaft,
+                                      std::uint64_t asked);
+
+ private:
+  static constexpr int kDepthLimit = 64;  // the tree is balanced: depth <= 32 for any 32-bit count
+  static constexpr std::uint32_t kLeafSize = 4;
+
   struct Waiting {
     std::uint32_t node;
     std::uint64_t crossed;
@@ -189,11 +196,6 @@ class ShaftTree {
   };
 
   void build(std::span<const Box> boxes, std::uint32_t first, std::uint32_t last);
-  // Of the groups in `asked`, those with a half-space that may cut the box. The box, and so every part of it, certainly
-  // lies inside the other groups. kOutside if the box lies certainly outside one half-space.
-  static std::uint64_t crossed_groups(const Box& box, const Vec3& apex, std::span<const HalfSpaceGroups::Group> shaft,
-                                      std::uint64_t asked);
-
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_;
   std::vector<Box> boxes_;  // in the order of order_

@@ -1,0 +1,332 @@
+// Steps, each in about linear time except for the tree:
+//   1. sort the uses by their edges;
+//   2. turn pieces over so that neighbours agree, from piece to piece across edges with two uses;
+//   3. build the tree by median splits; bound the normals from the leaves upwards.
+#include "scene/edges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "kernel/vec.h"
+#include "scene/places.h"
+#include "scene/scene_data.h"
+
+namespace exactff {
+
+namespace {
+
+constexpr std::uint32_t kLeafSize = 4;
+constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
+
+struct NormalBounds {
+  std::array<float, 3> least{kNoNumber, kNoNumber, kNoNumber}, largest{kNoNumber, kNoNumber, kNoNumber};
+};
+
+float rounded_down(double x) {
+  const auto f = static_cast<float>(x);
+  return f <= x ? f : std::nextafter(f, -std::numeric_limits<float>::infinity());
+}
+
+NormalBounds turned_over(const NormalBounds& n) {
+  NormalBounds result;
+  for (std::size_t i = 0; i < 3; ++i) {
+    result.least[i] = -n.largest[i];
+    result.largest[i] = -n.least[i];
+  }
+  return result;
+}
+
+// Bounds of some positive multiple of the piece's exact normal, of length about 1; NaN if they cannot be found.
+//
+// Each difference of coordinates, scaled by a power of two so that the largest of its vector is in [1/2, 1), errs
+// relatively by u = 2^-53, or by 2^-1074 if it underflows. A product of two errs by 3u of itself, the difference of two
+// products by u more of at most their magnitudes' sum: in all by less than 2^-50 of that sum, plus 2^-1000. Dividing by
+// the largest component rounds once more, relatively; 2^-49 covers that.
+NormalBounds normal_bounds(const Vec3& p, const Vec3& q, const Vec3& r) {
+  const auto scaled_difference = [](const Vec3& to, const Vec3& from, std::array<double, 3>& d) {
+    d = {to.x - from.x, to.y - from.y, to.z - from.z};
+    const double largest = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+    if (!(largest > 0.0) || !std::isfinite(largest)) return false;
+    int exponent = 0;
+    std::frexp(largest, &exponent);
+    for (double& x : d) x = std::ldexp(x, -exponent);
+    return true;
+  };
+  std::array<double, 3> a{}, b{}, n{}, error{};
+  if (!scaled_difference(q, p, a) || !scaled_difference(r, p, b)) return {};
+  double largest = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    const double first = a[j] * b[k], second = a[k] * b[j];
+    n[i] = first - second;
+    error[i] = 0x1p-49 * (std::abs(first) + std::abs(second)) + 0x1p-1000;
+    largest = std::max(largest, std::abs(n[i]));
+  }
+  if (!(largest > 0x1p-200)) return {};
+  NormalBounds bounds;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double middle = n[i] / largest, radius = error[i] / largest + 0x1p-50;
+    bounds.least[i] = rounded_down(middle - radius);
+    bounds.largest[i] = -rounded_down(-middle - radius);
+  }
+  return bounds;
+}
+
+}  // namespace
+
+// With u = 2^-53: each difference is rounded once, each product once more, three sums err by at most 3u of the sum m of
+// the largest magnitudes: below 6u m in all, against 2^-48 m = 32u m. The bounds of the normals are exact as doubles.
+// For a corner p of a piece, in the box, and the piece's normal n, n . (x - p) lies between `low` and `high`.
+bool SceneEdges::Node::sees_one_side(const Vec3& x) const {
+  double low = 0.0, high = 0.0, m = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const double from = kernel::coordinate(x, i) - kernel::coordinate(box.high, i);
+    const double to = kernel::coordinate(x, i) - kernel::coordinate(box.low, i);
+    const double n = least_normal[static_cast<std::size_t>(i)], k = largest_normal[static_cast<std::size_t>(i)];
+    const double a = n * from, b = n * to, c = k * from, d = k * to;
+    low += std::min(std::min(a, b), std::min(c, d));
+    high += std::max(std::max(a, b), std::max(c, d));
+    m += std::max(std::abs(n), std::abs(k)) * std::max(std::abs(from), std::abs(to));
+  }
+  if (!(m >= 0x1p-900 && m <= 0x1p1000)) return false;
+  return low > 0x1p-48 * m || high < -0x1p-48 * m;
+}
+
+class SceneEdgesBuilder {
+ public:
+  SceneEdgesBuilder(const Scene& scene, SceneEdges& result)
+      : scene_(scene), pieces_(scene.pieces()), vertices_(scene.vertices()), result_(result) {}
+
+  void build() {
+    sort_uses();
+    turn_pieces_over();
+    const std::size_t count = result_.size();
+    if (count == 0) return;
+    find_bounds();
+    order_.resize(count);
+    std::iota(order_.begin(), order_.end(), 0U);
+    result_.nodes_.reserve(2 * count / kLeafSize + 2);
+    add_node(0, static_cast<std::uint32_t>(count));
+    number_in_order();
+  }
+
+ private:
+  void sort_uses();
+  void turn_pieces_over();
+  void find_bounds();
+  void add_node(std::uint32_t first, std::uint32_t last);
+  void number_in_order();
+  [[nodiscard]] Box box_of_edge(std::uint32_t edge) const;
+  [[nodiscard]] NormalBounds normals_of_edge(std::uint32_t edge) const;
+  [[nodiscard]] bool is_balanced(std::uint32_t edge) const;
+  // The middle of an edge. Only the shape of the tree depends on it.
+  [[nodiscard]] Vec3 middle(std::uint32_t edge) const {
+    const Vec3 &a = vertices_[result_.edge(edge).a], &b = vertices_[result_.edge(edge).b];
+    return {0.5 * a.x + 0.5 * b.x, 0.5 * a.y + 0.5 * b.y, 0.5 * a.z + 0.5 * b.z};
+  }
+
+  const Scene& scene_;
+  const std::span<const Piece> pieces_;
+  const std::span<const Vec3> vertices_;
+  SceneEdges& result_;
+  std::vector<std::uint8_t> turned_;   // by piece
+  std::vector<NormalBounds> normals_;  // by piece, after turning
+  std::vector<std::uint32_t> order_;   // edges, in the order of the leaves
+};
+
+void SceneEdgesBuilder::sort_uses() {
+  struct Use {
+    std::uint32_t high, piece, corner;
+    bool upwards;
+  };
+  const auto place = places(scene_);
+  std::vector<std::uint32_t> begin(vertices_.size() + 1, 0);
+  const auto for_each_use = [&](const auto& take) {
+    for (std::uint32_t p = 0; p < pieces_.size(); ++p) {
+      if (pieces_[p].transparent) continue;
+      const auto corners = scene_.corners(pieces_[p]);
+      for (std::uint32_t c = 0; c < corners.size(); ++c) {
+        const std::uint32_t from = place[corners[c]], to = place[corners[c + 1 == corners.size() ? 0 : c + 1]];
+        take(std::min(from, to), Use{std::max(from, to), p, pieces_[p].first_corner + c, from < to});
+      }
+    }
+  };
+  std::uint32_t corner_count = 0;
+  for (const Piece& piece : pieces_) corner_count = std::max(corner_count, piece.first_corner + piece.corner_count);
+  for_each_use([&](std::uint32_t low, const Use&) { ++begin[low + 1]; });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<Use> uses(begin.back());
+  {
+    std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+    for_each_use([&](std::uint32_t low, const Use& use) { uses[next[low]++] = use; });
+  }
+  result_.edge_of_corner_.resize(corner_count);
+  result_.uses_.reserve(uses.size());
+  for (std::uint32_t low = 0; low < vertices_.size(); ++low) {
+    const auto first = uses.begin() + begin[low], last = uses.begin() + begin[low + 1];
+    std::stable_sort(first, last, [](const Use& a, const Use& b) { return a.high < b.high; });
+    for (auto use = first; use != last; ++use) {
+      if (use == first || use->high != (use - 1)->high) {
+        result_.edges_.push_back({low, use->high, static_cast<std::uint32_t>(result_.uses_.size())});
+      }
+      result_.edge_of_corner_[use->corner] = static_cast<std::uint32_t>(result_.edges_.size() - 1);
+      result_.uses_.emplace_back(use->piece, use->upwards);
+    }
+  }
+  if (!result_.edges_.empty()) result_.edges_.push_back({0, 0, static_cast<std::uint32_t>(result_.uses_.size())});
+  result_.edges_.shrink_to_fit();
+}
+
+void SceneEdgesBuilder::turn_pieces_over() {
+  turned_.assign(pieces_.size(), 0);
+  std::vector<std::uint8_t> reached(pieces_.size(), 0);
+  std::vector<std::uint32_t> waiting;
+  for (std::uint32_t seed = 0; seed < pieces_.size(); ++seed) {
+    if (reached[seed] != 0 || pieces_[seed].transparent) continue;
+    reached[seed] = 1;
+    waiting.assign(1, seed);
+    while (!waiting.empty()) {
+      const std::uint32_t piece = waiting.back();
+      waiting.pop_back();
+      for (const std::uint32_t edge : result_.of_piece(pieces_[piece])) {
+        const auto uses = result_.uses(edge);
+        if (uses.size() != 2) continue;
+        const EdgeUse& other = uses[uses[0].piece() == piece ? 1 : 0];
+        if (reached[other.piece()] != 0) continue;
+        reached[other.piece()] = 1;
+        turned_[other.piece()] = turned_[piece] ^ (uses[0].upwards() == uses[1].upwards() ? 1U : 0U);
+        waiting.push_back(other.piece());
+      }
+    }
+  }
+}
+
+bool SceneEdgesBuilder::is_balanced(std::uint32_t edge) const {
+  int balance = 0;
+  for (const EdgeUse& use : result_.uses(edge)) balance += use.upwards() != (turned_[use.piece()] != 0) ? 1 : -1;
+  return balance == 0;
+}
+
+void SceneEdgesBuilder::find_bounds() {
+  normals_.resize(pieces_.size());
+  for (std::uint32_t p = 0; p < pieces_.size(); ++p) {
+    const auto& frame = pieces_[p].frame;
+    const NormalBounds n = normal_bounds(vertices_[frame[0]], vertices_[frame[1]], vertices_[frame[2]]);
+    normals_[p] = turned_[p] != 0 ? turned_over(n) : n;
+  }
+  std::size_t balanced = 0;
+  for (std::uint32_t edge = 0; edge < result_.size(); ++edge) balanced += is_balanced(edge) ? 1U : 0U;
+  result_.balanced_share_ = static_cast<double>(balanced) / static_cast<double>(result_.size());
+}
+
+namespace {
+
+void include(Box& box, const Box& other) {
+  box.include(other.low);
+  box.include(other.high);
+}
+
+// NaN if either is.
+void include(NormalBounds& bounds, const NormalBounds& other) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float least = other.least[i], largest = other.largest[i];
+    if (!(bounds.least[i] <= least)) bounds.least[i] = bounds.least[i] == bounds.least[i] ? least : kNoNumber;
+    if (!(bounds.largest[i] >= largest))
+      bounds.largest[i] = bounds.largest[i] == bounds.largest[i] ? largest : kNoNumber;
+  }
+}
+
+}  // namespace
+
+Box SceneEdgesBuilder::box_of_edge(std::uint32_t edge) const {
+  const Vec3& a = vertices_[result_.edge(edge).a];
+  Box box{a, a};
+  for (const EdgeUse& use : result_.uses(edge)) {
+    for (const std::uint32_t corner : scene_.corners(pieces_[use.piece()])) box.include(vertices_[corner]);
+  }
+  return box;
+}
+
+NormalBounds SceneEdgesBuilder::normals_of_edge(std::uint32_t edge) const {
+  if (!is_balanced(edge)) return {};
+  const auto uses = result_.uses(edge);
+  NormalBounds bounds = normals_[uses.front().piece()];
+  for (const EdgeUse& use : uses.subspan(1)) include(bounds, normals_[use.piece()]);
+  return bounds;
+}
+
+void SceneEdgesBuilder::add_node(std::uint32_t first, std::uint32_t last) {
+  std::vector<std::uint32_t>& order = order_;
+  const auto index = static_cast<std::uint32_t>(result_.nodes_.size());
+  result_.nodes_.emplace_back();
+  Box box;
+  NormalBounds normals;
+  if (last - first <= kLeafSize) {
+    box = box_of_edge(order[first]);
+    normals = normals_of_edge(order[first]);
+    for (std::uint32_t i = first + 1; i < last; ++i) {
+      include(box, box_of_edge(order[i]));
+      include(normals, normals_of_edge(order[i]));
+    }
+  } else {
+    Box middles{middle(order[first]), middle(order[first])};
+    for (std::uint32_t i = first + 1; i < last; ++i) middles.include(middle(order[i]));
+    const int axis = longest_axis(middles);
+    const std::uint32_t half = first + (last - first) / 2;
+    std::nth_element(order.begin() + first, order.begin() + half, order.begin() + last,
+                     [&](std::uint32_t a, std::uint32_t b) {
+                       const double u = kernel::coordinate(middle(a), axis), v = kernel::coordinate(middle(b), axis);
+                       return u != v ? u < v : a < b;
+                     });
+    add_node(first, half);
+    const auto right = static_cast<std::uint32_t>(result_.nodes_.size());
+    add_node(half, last);
+    SceneEdges::Node &node = result_.nodes_[index], &l = result_.nodes_[index + 1], &r = result_.nodes_[right];
+    node.right = right;
+    box = l.box;
+    include(box, r.box);
+    normals = {l.least_normal, l.largest_normal};
+    include(normals, {r.least_normal, r.largest_normal});
+  }
+  SceneEdges::Node& node = result_.nodes_[index];
+  node.box = box;
+  node.least_normal = normals.least;
+  node.largest_normal = normals.largest;
+  node.first = first;
+  node.last = last;
+}
+
+// Edges that are near each other get numbers that are near each other, and so do their uses.
+void SceneEdgesBuilder::number_in_order() {
+  std::vector<SceneEdge> edges;
+  std::vector<EdgeUse> uses;
+  std::vector<std::uint32_t> number(order_.size());
+  edges.reserve(result_.edges_.size());
+  uses.reserve(result_.uses_.size());
+  for (const std::uint32_t edge : order_) {
+    number[edge] = static_cast<std::uint32_t>(edges.size());
+    edges.push_back({result_.edge(edge).a, result_.edge(edge).b, static_cast<std::uint32_t>(uses.size())});
+    const auto own = result_.uses(edge);
+    uses.insert(uses.end(), own.begin(), own.end());
+  }
+  edges.push_back({0, 0, static_cast<std::uint32_t>(uses.size())});
+  for (std::uint32_t& edge : result_.edge_of_corner_) edge = number[edge];  // of transparent pieces it is unused
+  result_.edges_ = std::move(edges);
+  result_.uses_ = std::move(uses);
+}
+
+std::span<const std::uint32_t> SceneEdges::of_piece(const Piece& piece) const {
+  return {edge_of_corner_.data() + piece.first_corner, piece.corner_count};
+}
+
+SceneEdges::SceneEdges(const Scene& scene) { SceneEdgesBuilder(scene, *this).build(); }
+
+const SceneEdges& scene_edges(const Scene& scene) {
+  const SceneInside::Data& data = SceneInside::data(scene);
+  std::call_once(data.edges_found, [&] { data.edges = SceneEdges(scene); });
+  return data.edges;
+}
+
+}  // namespace exactff
