@@ -62,8 +62,13 @@ struct PlaneRecord {
   bool source_joined = false;         // the faces consist of several convex pieces that had to be joined
   std::uint64_t tree_candidates = 0;  // pieces that the bounding-volume tree did not rule out, for all shafts
   std::uint64_t candidates = 0;       // pieces that remain after the exact predicates
+  // If silhouettes were searched for: edges that the tree of edges did not rule out, and of these the silhouettes,
+  // across which the number of occluders changes, with a part before the source. The pieces beside the former are
+  // candidates.
+  std::uint64_t tree_edges = 0;
+  std::uint64_t silhouettes = 0;
   std::uint64_t clipped = 0;          // candidates cut by the source's plane, or by the Booleans' shaft
-  std::uint64_t pairs = 0;            // pairs of an edge and another face that the edge engine examined
+  std::uint64_t pairs = 0;            // pairs of an edge and another face, or edge, that the edge engine examined
   std::uint64_t undecided_pairs = 0;  // pairs that the floating-point filter left to exact predicates
   std::uint64_t loops = 0;            // boundary loops integrated; the edge engine does not count them
   std::uint64_t edges = 0;            // boundary pieces integrated; the Booleans merge collinear ones

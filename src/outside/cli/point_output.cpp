@@ -168,6 +168,8 @@ nlohmann::ordered_json plane_json(const Scene& scene, const PlaneRecord& plane) 
                                  {"outcome", to_string(decided_outcome(plane))},
                                  {"tree_candidates", plane.tree_candidates},
                                  {"candidates", plane.candidates},
+                                 {"tree_edges", plane.tree_edges},
+                                 {"silhouettes", plane.silhouettes},
                                  {"clipped", plane.clipped},
                                  {"loops", plane.loops},
                                  {"edges", plane.edges},

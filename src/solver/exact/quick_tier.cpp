@@ -37,7 +37,7 @@ void QuickTier::add(const visibility::VisibleBoundary& boundary) {
   if (boundary.edges() == nullptr) {
     declined_ = true;
   } else {
-    visibility::VisibleEdges& found = *boundary.edges();
+    EdgeCovers& found = *boundary.edges();
     for_each_batch(found, found.parts(), [&] { contour_.add(pieces_, lines_); });
   }
 }

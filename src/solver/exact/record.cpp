@@ -63,6 +63,11 @@ StageNote shaft_note(const PlaneRecord& plane) {
   if (plane.cover_remembered) {
     return {"shaft", false, "only " + counted(plane.candidates, "piece") + " that hid it from an earlier receiver"};
   }
+  if (plane.tree_edges > 0) {
+    return {"shaft", true,
+            counted(plane.tree_edges, "edge") + " from the tree of edges, " + std::to_string(plane.silhouettes) +
+                (plane.silhouettes == 1 ? " of them a silhouette" : " of them silhouettes") + " before the source"};
+  }
   return {"shaft", true,
           counted(plane.tree_candidates, "piece") + " from the tree, " + std::to_string(plane.candidates) +
               " in the shaft"};
@@ -104,6 +109,11 @@ StageNote engine_note(const PlaneRecord& plane) {
                 " were enough to hide all together"};
   }
   const bool all = decided_outcome(plane) == Outcome::kUnoccluded;
+  if (by_edges && plane.tree_edges > 0) {
+    return {stage, true,
+            "the number of occluders along " + counted(plane.silhouettes, "silhouette") +
+                (nothing ? ": nothing is visible" : ": it is 0 on one side of each part")};
+  }
   if (by_edges) {
     return {stage, true,
             "the part of each edge that " + counted(plane.candidates, "candidate") +

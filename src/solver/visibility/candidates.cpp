@@ -34,17 +34,17 @@ std::optional<FaceId> Candidates::gather() {
   return alone;
 }
 
-bool Candidates::one_hides_all() {
+std::optional<FaceId> Candidates::one_that_hides_all() {
   start();
   shaft_.set(0);
   shaft_.narrow();
-  bool hidden = false;
+  std::optional<FaceId> alone;
   for_each_candidate(query_.view, shaft_.half_spaces(), query_.request.culling,
                      [&](std::uint32_t piece, bool /*inside*/) {
-                       hidden = visit(piece, false);
-                       return !hidden;
+                       if (visit(piece, false)) alone = query_.view.scene.pieces()[piece].face;
+                       return !alone;
                      });
-  return hidden;
+  return alone;
 }
 
 // True if the piece hides all. `inside`: it lies inside every half-space of the shaft, and therefore above all side

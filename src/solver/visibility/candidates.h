@@ -8,6 +8,7 @@
 
 #include <optional>
 
+#include "visibility/edge_workspace.h"
 #include "visibility/piece_clip.h"
 #include "visibility/source_shaft.h"
 #include "visibility/surface_backs.h"
@@ -23,14 +24,14 @@ class Candidates {
         search_(search),
         outlines_(search.edges.outlines()),
         record_(record),
-        clip_(query, search),
-        shaft_(query, clip_, search),
+        clip_(query, outlines_, search.clip),
+        shaft_(query, clip_, outlines_, search.shaft),
         backs_(query, shaft_, search.backs) {}
 
   // Adds the outlines of all candidates. If one hides all, returns its face; the others are then not needed.
   [[nodiscard]] std::optional<FaceId> gather();
-  // Whether a candidate hides all. Looks only at those that may. Adds outlines. Requires culling.
-  [[nodiscard]] bool one_hides_all();
+  // A face that hides all, if there is one. Looks only at those that may. Adds outlines. Requires culling.
+  [[nodiscard]] std::optional<FaceId> one_that_hides_all();
 
  private:
   void start();

@@ -24,14 +24,14 @@ void add_if_between(const View& view, const Piece& piece, PieceClip& clip, Plane
 
 bool one_hides_all(const PlaneQuery& query, std::size_t source_count, EdgeSearch& search) {
   PlaneRecord uncounted;
-  return Candidates(query, source_count, search, uncounted).one_hides_all();
+  return Candidates(query, source_count, search, uncounted).one_that_hides_all().has_value();
 }
 
 std::optional<PlaneRecord> hidden_by(std::span<const std::uint32_t> pieces, const PlaneQuery& query,
                                      EdgeSearch& search) {
   const View& view = query.view;
   PlaneRecord record;
-  PieceClip clip(query, search);
+  PieceClip clip(query, search.edges.outlines(), search.clip);
   const ClippedSource source = clip.add_source();
   for (const std::uint32_t index : pieces) {
     if (index >= view.scene.pieces().size() || !may_occlude(view, query.plane, query.request, index)) continue;

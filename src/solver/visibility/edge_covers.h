@@ -23,6 +23,11 @@ class EdgeCovers {
   Outlines& outlines() { return outlines_; }
   [[nodiscard]] const Outlines& outlines() const { return outlines_; }
   [[nodiscard]] BoundaryPiece exact(const Part& part);
+  // What a search found.
+  [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
+  // Pairs of an edge and an outline, or another edge: those examined, and those for which the filter was not certain.
+  [[nodiscard]] std::uint64_t pairs() const { return pairs_; }
+  [[nodiscard]] std::uint64_t undecided_pairs() const { return undecided_pairs_; }
 
  protected:
   static constexpr Parameter kBegin{0.0, 0.0F, Parameter::kAtBegin};
@@ -73,6 +78,8 @@ class EdgeCovers {
   Outlines outlines_;
   std::vector<EdgeId> line_;  // by edge: the first edge between the same two corners
   ExactParameters exact_;
+  std::vector<Part> parts_;
+  std::uint64_t pairs_ = 0, undecided_pairs_ = 0;
 
  private:
   void cut_exactly(EdgeId edge, EdgeId line, int& sign_a, int& sign_b, Parameter& crossing);

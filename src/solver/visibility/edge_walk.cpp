@@ -31,12 +31,15 @@ class EdgeWalk {
  private:
   [[nodiscard]] std::optional<Outcome> find_outcome();
   [[nodiscard]] bool is_own() const;
-  void note_edges();
+  [[nodiscard]] bool prefers_silhouettes() const;
+  [[nodiscard]] std::optional<Outcome> find_by_silhouettes();
+  void note_edges(const EdgeCovers& found);
   [[nodiscard]] Rational fraction();
 
   const PlaneQuery query_;
   EdgeWorkspace& work_;
   VisibleEdges& edges_;
+  Outlines* outlines_ = &edges_.outlines();  // that hold the source
   PlaneVisibility result_;
   ClippedSource source_;
 };
@@ -48,13 +51,16 @@ std::optional<Outcome> EdgeWalk::find_outcome() {
   if (is_own()) return Outcome::kReceiverFace;
   if (side_of(query_.plane, query_.view.x) <= 0) return Outcome::kBehind;
   // 2. Clip by the receiver's horizon.
-  source_ = PieceClip(query_, work_.search).add_source();
+  source_ = PieceClip(query_, edges_.outlines(), work_.search.clip).add_source();
   record.horizon_clipped = source_.is_cut;
   if (source_.count == 0) return Outcome::kBelowHorizon;
   // 5. Try what hid the plane before.
   if (std::optional<PlaneRecord> hidden = hidden_as_before(query_, work_)) {
     record = std::move(*hidden);
     return Outcome::kHiddenByUnion;
+  }
+  if (prefers_silhouettes()) {
+    if (const std::optional<Outcome> outcome = find_by_silhouettes()) return outcome;
   }
   // 3. Find candidates. 4. Stop if one hides all.
   if (const auto alone = Candidates(query_, source_.count, work_.search, record).gather()) {
@@ -67,10 +73,41 @@ std::optional<Outcome> EdgeWalk::find_outcome() {
   // 6. Cut the edges.
   if (!hidden && !edges_.find(source_.count)) return std::nullopt;
   result_.boundary = VisibleBoundary(edges_);
-  note_edges();
+  note_edges(edges_);
   if (record.candidates == 0) return Outcome::kUnoccluded;
   if (!result_.boundary.empty()) return Outcome::kPartlyHidden;
   record.cover = hidden ? edges_.cover().size() : record.candidates;
+  return Outcome::kHiddenByUnion;
+}
+
+// Where most edges are inside a mesh of many pieces, few are silhouettes.
+bool EdgeWalk::prefers_silhouettes() const {
+  constexpr std::size_t kFewestPieces = 256;
+  constexpr double kLeastShare = 0.5;
+  const BoundaryRequest& request = query_.request;
+  const Scene& scene = query_.view.scene;
+  if (request.silhouettes == Silhouetting::kNever || !request.culls() || request.only_occluders != nullptr)
+    return false;
+  return request.silhouettes == Silhouetting::kAlways ||
+         (scene.pieces().size() >= kFewestPieces && scene_edges(scene).balanced_share() >= kLeastShare);
+}
+
+// Nullopt: declined.
+std::optional<Outcome> EdgeWalk::find_by_silhouettes() {
+  PlaneRecord record = result_.record, uncounted;
+  if (const auto alone = Candidates(query_, source_.count, work_.search, uncounted).one_that_hides_all()) {
+    result_.cutters = {*alone};
+    result_.record.cover = 1;
+    return Outcome::kHiddenByOne;
+  }
+  SilhouetteWalk& walk = work_.silhouettes;
+  if (!walk.find(query_, record)) return std::nullopt;
+  outlines_ = &walk.outlines();
+  result_.record = std::move(record);
+  result_.boundary = VisibleBoundary(walk);
+  note_edges(walk);
+  if (!result_.boundary.empty()) return walk.some_hidden() ? Outcome::kPartlyHidden : Outcome::kUnoccluded;
+  result_.record.cover = result_.record.candidates;
   return Outcome::kHiddenByUnion;
 }
 
@@ -81,18 +118,18 @@ bool EdgeWalk::is_own() const {
                              [&](std::uint32_t piece) { return query_.view.is_own(pieces[piece].face); });
 }
 
-void EdgeWalk::note_edges() {
+void EdgeWalk::note_edges(const EdgeCovers& found) {
   PlaneRecord& record = result_.record;
-  record.pairs = edges_.pairs();
-  record.undecided_pairs = edges_.undecided_pairs();
-  record.edges = edges_.parts().size();
+  record.pairs = found.pairs();
+  record.undecided_pairs = found.undecided_pairs();
+  record.edges = found.parts().size();
   record.source_joined = source_.count > 1;
 }
 
 Rational EdgeWalk::fraction() {
   if (result_.boundary.empty()) return 0;
   if (result_.record.outcome == Outcome::kUnoccluded && !source_.is_cut && !source_.lacks_pieces) return 1;
-  Outlines& outlines = edges_.outlines();
+  Outlines& outlines = *outlines_;
   std::vector<Ring> source;
   for (OutlineId o = 0; o < source_.count; ++o) {
     Ring& ring = source.emplace_back();

@@ -7,21 +7,11 @@
 #include "scene/shaft_tree.h"
 #include "visibility/cover_memory.h"
 #include "visibility/run_marks.h"
-#include "visibility/side_planes.h"
+#include "visibility/search_memory.h"
+#include "visibility/silhouette_walk.h"
 #include "visibility/visible_edges.h"
 
 namespace exactff::visibility {
-
-struct ClipMemory {
-  std::vector<CornerId> corners, ring;
-  std::vector<int> depths;  // of the corners: on which side of the plane that may cut them
-};
-
-struct ShaftMemory {
-  std::vector<HalfSpace> half_spaces;
-  HalfSpaceGroups groups;  // the same
-  std::vector<SidePlane> side_planes;
-};
 
 // By closed surface.
 struct BacksMemory {
@@ -43,6 +33,7 @@ struct EdgeWorkspace {
   EdgeSearch search;   // what it found remains valid until the next one
   EdgeSearch attempt;  // to hide the plane as before
   CoverMemory covers;
+  SilhouetteWalk silhouettes;
 };
 
 }  // namespace exactff::visibility

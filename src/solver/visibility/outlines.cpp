@@ -84,6 +84,8 @@ EXACTFF_INLINE CornerId Outlines::corner_of_vertex(std::uint32_t any_vertex) {
   return corner;
 }
 
+CornerId Outlines::corner_at(std::uint32_t vertex) { return corner_of_vertex(vertex); }
+
 void Outlines::corners_of(std::span<const std::uint32_t> vertices, std::vector<CornerId>& corners) {
   corners.clear();
   for (const std::uint32_t vertex : vertices) corners.push_back(corner_of_vertex(vertex));
@@ -132,6 +134,8 @@ EXACTFF_INLINE Outlines::Edge Outlines::edge_between(CornerId a, CornerId b, Out
           {q.y * p.z - q.z * p.y, q.z * p.x - q.x * p.z, q.x * p.y - q.y * p.x},
           kSideError * corners_[a].size * corners_[b].size};
 }
+
+Outlines::Edge Outlines::line_through(CornerId a, CornerId b) const { return edge_between(a, b, kNone); }
 
 OutlineId Outlines::add(std::span<const CornerId> corners, bool whole) {
   const auto outline = static_cast<OutlineId>(outlines_.size());

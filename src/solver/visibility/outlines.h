@@ -55,6 +55,7 @@ class Outlines {
   };
   using LineBits = std::uint32_t;  // a bit for each of an outline's first edges
   static constexpr std::size_t kLineBits = 32;
+  static constexpr OutlineId kNone = 0xFFFFFFFFU;
   struct Outline {
     EdgeId first = 0;
     std::uint32_t count = 0;
@@ -82,6 +83,10 @@ class Outlines {
 
   // An edge of no outline.
   EdgeId add_edge(CornerId a, CornerId b);
+  // The same, but it is not added.
+  [[nodiscard]] Edge line_through(CornerId a, CornerId b) const;
+  // The corner at a vertex.
+  [[nodiscard]] CornerId corner_at(std::uint32_t vertex);
 
   void remove_last();
   void set_inside_source(OutlineId id) { outlines_[id].inside_source = true; }
@@ -128,7 +133,6 @@ class Outlines {
   void set_exact_height(kernel::Integer& result, const Edge& edge, CornerId t);
 
  private:
-  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
   // Where a corner comes from: the vertex p, or where the segment from p to q crosses a plane.
   struct Origin {
     std::uint32_t p, q = kNone;

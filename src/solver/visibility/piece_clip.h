@@ -4,8 +4,8 @@
 
 #include <span>
 
-#include "visibility/edge_workspace.h"
 #include "visibility/plane_visibility.h"
+#include "visibility/search_memory.h"
 
 namespace exactff::visibility {
 
@@ -18,8 +18,8 @@ struct ClippedSource {
 
 class PieceClip {
  public:
-  PieceClip(const PlaneQuery& query, EdgeSearch& search)
-      : view_(query.view), plane_(query.plane), outlines_(search.edges.outlines()), memory_(search.clip) {}
+  PieceClip(const PlaneQuery& query, Outlines& outlines, ClipMemory& memory)
+      : view_(query.view), plane_(query.plane), outlines_(outlines), memory_(memory) {}
 
   // Discards all outlines and starts with those of the source.
   [[nodiscard]] ClippedSource add_source();
@@ -36,11 +36,12 @@ class PieceClip {
   [[nodiscard]] int toward_sign(CornerId corner) const;
   // Adds the part on x's side of the source's plane. `is_cut`: that is not all of it. `facing`: see below.
   OutlineId add_occluder(bool is_cut, int facing);
+  // For every vertex: the sign of its height above the source's plane.
+  [[nodiscard]] int depth_sign(std::uint32_t vertex) const;
 
  private:
   bool add_above_horizon(const Piece& piece, ClippedSource& source);
   [[nodiscard]] int horizon_side(CornerId corner) const;
-  [[nodiscard]] int depth_sign(std::uint32_t vertex) const;
   OutlineId add_part_above(Outlines::Plane plane, bool mirrored);
 
   const View& view_;

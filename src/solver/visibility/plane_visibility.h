@@ -14,8 +14,8 @@
 #include "exactff/receiver.h"
 #include "scene/shaft_tree.h"
 #include "visibility/boundary_piece.h"
+#include "visibility/edge_covers.h"
 #include "visibility/source_plane.h"
-#include "visibility/visible_edges.h"
 
 namespace exactff::visibility {
 
@@ -35,13 +35,17 @@ struct View {
   [[nodiscard]] kernel::Direction normal() const;
 };
 
+// Whether the edge engine searches for the silhouettes of meshes (silhouettes.h) or compares outlines.
+enum class Silhouetting { kWherePromising, kAlways, kNever };
+
 struct BoundaryRequest {
   Engine engine = Engine::kEdges;
   bool fraction = false;
   bool list_cutters = false;
   const std::vector<FaceId>* only_occluders = nullptr;  // ascending
   ShaftCulling culling = ShaftCulling::kTree;
-  bool remembers_covers = false;     // see CoverMemory; the counts in the record then depend on earlier calls
+  bool remembers_covers = false;  // see CoverMemory; the counts in the record then depend on earlier calls
+  Silhouetting silhouettes = Silhouetting::kWherePromising;
   std::size_t fewest_to_cover = 64;  // candidates: with fewer, a search for a small cover saves nothing
 
   [[nodiscard]] bool culls() const { return culling == ShaftCulling::kTree; }
@@ -61,7 +65,7 @@ class VisibleBoundary {
  public:
   VisibleBoundary() = default;  // nothing is visible
   explicit VisibleBoundary(std::vector<BoundaryPiece> pieces) : pieces_(std::move(pieces)) {}
-  explicit VisibleBoundary(VisibleEdges& found) : edges_(found.parts().empty() ? nullptr : &found) {}
+  explicit VisibleBoundary(EdgeCovers& found) : edges_(found.parts().empty() ? nullptr : &found) {}
 
   [[nodiscard]] bool empty() const { return pieces_.empty() && edges_ == nullptr; }
   // Calls visit(piece) for every piece of the boundary.
@@ -69,14 +73,14 @@ class VisibleBoundary {
   void for_each_piece(const Visit& visit) const {
     for (const BoundaryPiece& piece : pieces_) visit(piece);
     if (edges_ == nullptr) return;
-    for (const VisibleEdges::Part& part : edges_->parts()) visit(edges_->exact(part));
+    for (const EdgeCovers::Part& part : edges_->parts()) visit(edges_->exact(part));
   }
   // The same pieces for arithmetic in doubles, if the edge engine found them; else null.
-  [[nodiscard]] VisibleEdges* edges() const { return edges_; }
+  [[nodiscard]] EdgeCovers* edges() const { return edges_; }
 
  private:
   std::vector<BoundaryPiece> pieces_;
-  VisibleEdges* edges_ = nullptr;
+  EdgeCovers* edges_ = nullptr;
 };
 
 // One occluder that hides all needs no allocation.

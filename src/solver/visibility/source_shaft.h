@@ -21,8 +21,8 @@ class SourceShaft {
  public:
   static constexpr unsigned kSidePlanesBeforeEdges = 2;
 
-  SourceShaft(const PlaneQuery& query, PieceClip& clip, EdgeSearch& search)
-      : query_(query), clip_(clip), outlines_(search.edges.outlines()), memory_(search.shaft) {}
+  SourceShaft(const PlaneQuery& query, PieceClip& clip, Outlines& outlines, ShaftMemory& memory)
+      : query_(query), clip_(clip), outlines_(outlines), memory_(memory) {}
 
   // Selects an outline of the source.
   void set(OutlineId source);
@@ -30,6 +30,8 @@ class SourceShaft {
   void narrow();
 
   [[nodiscard]] const HalfSpaceGroups& half_spaces() const { return memory_.groups; }
+  // The same as a list: those of the edges, then two for the sides of the source's plane.
+  [[nodiscard]] std::span<const HalfSpace> half_space_list() const { return memory_.half_spaces; }
   // x's side of the source's plane. Requires culling.
   [[nodiscard]] const HalfSpace& front() const { return memory_.half_spaces.back(); }
   // Of the piece that the clip has taken.

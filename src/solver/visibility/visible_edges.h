@@ -69,7 +69,7 @@ class EdgeTable {
   std::vector<EdgeId> slots_;
 };
 
-// A workspace: its memory is reused from one call to the next.
+// A workspace: its memory is reused from one call to the next. Each of its parts has V to its left.
 class VisibleEdges : public EdgeCovers {
  public:
   // True if the occluder covers every corner of the source, and therefore all of it.
@@ -85,11 +85,6 @@ class VisibleEdges : public EdgeCovers {
   // The same for all occluders, which should be few: false if they leave a part of the source visible.
   [[nodiscard]] bool all_cover(std::size_t source_count);
   [[nodiscard]] std::span<const OutlineId> cover() const { return choice_.chosen(); }
-  // Each has V to its left.
-  [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
-  // Pairs of an edge and an outline: those examined, and those for which the filter was not certain.
-  [[nodiscard]] std::uint64_t pairs() const { return pairs_; }
-  [[nodiscard]] std::uint64_t undecided_pairs() const { return undecided_pairs_; }
 
  private:
   static constexpr std::size_t kBatch = 4;
@@ -135,9 +130,7 @@ class VisibleEdges : public EdgeCovers {
   std::vector<std::uint8_t> dropped_;   // by edge
   std::span<const OutlineId> near_;     // occluders that the current run may meet
   std::array<LaneCuts, kBatch> batch_;  // by some of these
-  std::vector<Part> parts_;
-  std::uint64_t pairs_ = 0, undecided_pairs_ = 0;
-  std::uint64_t next_poll_ = 0;  // in pairs
+  std::uint64_t next_poll_ = 0;         // in pairs
   // By edge of the run: the intervals removed, and the intervals with the source on the left and on the right.
   std::array<std::vector<Interval>, kRunCorners> removed_, left_, right_;
   EdgeTable table_;  // of drop_inner_edges

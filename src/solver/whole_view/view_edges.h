@@ -68,7 +68,6 @@ class ViewEdges : public visibility::EdgeCovers {
 
   void find(const visibility::View& view, Wholes wholes, std::optional<std::span<const std::uint32_t>> among = {});
 
-  [[nodiscard]] std::span<const Part> parts() const { return parts_; }
   [[nodiscard]] std::span<const Sides> sides() const { return sides_; }
   [[nodiscard]] std::size_t outline_count() const { return whole_.size(); }
   [[nodiscard]] const Piece& piece(OutlineId outline) const { return depths_.piece(outline); }
@@ -188,7 +187,6 @@ class ViewEdges : public visibility::EdgeCovers {
   std::vector<Stack> stacks_;
   PairTable lines_;  // of pairs of outlines
   std::vector<Piercing> piercings_;
-  std::vector<Part> parts_;
   std::vector<Sides> sides_;
   Work work_;
 };
