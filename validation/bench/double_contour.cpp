@@ -122,7 +122,7 @@ double form_factor(std::span<const DoubleEdge> edges, const Vec3& normal) {
 // A part runs from a + s d to a + t d, d = b - a, along an edge with the inward normal b x a, so that the cross product
 // of its ends is (s - t) times that: of length |s - t| |b x a|, and on the side of n where n . (b x a) has the sign of
 // t - s.
-EXACTFF_CLONES double form_factor(const visibility::VisibleEdges& visible, const Vec3& normal) {
+EXACTFF_CLONES double form_factor(const visibility::EdgeCovers& visible, const Vec3& normal) {
   using namespace kernel::lanes;
   const visibility::Outlines& outlines = visible.outlines();
   Four sum = four(0.0);

@@ -20,6 +20,6 @@ struct DoubleEdge {
 [[nodiscard]] double form_factor(std::span<const DoubleEdge> edges, const Vec3& normal);
 
 // Estimates F from the edge engine's result for one plane, four parts at a time.
-[[nodiscard]] double form_factor(const visibility::VisibleEdges& visible, const Vec3& normal);
+[[nodiscard]] double form_factor(const visibility::EdgeCovers& visible, const Vec3& normal);
 
 }  // namespace exactff::bench

@@ -27,7 +27,7 @@ void append(const visibility::VisibleBoundary& boundary, std::vector<DoubleEdge>
 }
 
 // The result of the edge engine, in its doubles.
-void append(visibility::VisibleEdges& engine, std::vector<DoubleEdge>& edges) {
+void append(visibility::EdgeCovers& engine, std::vector<DoubleEdge>& edges) {
   const visibility::Outlines& outlines = engine.outlines();
   const auto direction = [&](visibility::CornerId corner) {
     const kernel::Approx3& t = outlines.corner(corner).t;
