@@ -49,7 +49,7 @@ void expect_same(const visibility::View& view, const PlaneVisibility& found, con
 }
 
 std::vector<Receiver> receivers_about(const Scene& scene, const PlainScene& plain, Random& random) {
-  std::vector<Receiver> receivers{receiver_in(scene, plain)};
+  std::vector<Receiver> receivers{validation::receiver_in(scene, plain)};
   Receiver moved = receivers.front();
   moved.on.clear();
   moved.point.x += random.integer(-2, 2) / 4.0;

@@ -24,14 +24,14 @@ using validation::square_source;
 
 // All fields of a record and of a result. If a field is added, this does not compile.
 std::string text_of(const PlaneRecord& record) {
-  const auto& [faces, engine, outcome, horizon_clipped, source_joined, tree_candidates, candidates, clipped, pairs,
-               undecided_pairs, loops, edges, cover, cover_remembered, visible_fraction, exact_fraction, cutters] =
-      record;
+  const auto& [faces, engine, outcome, horizon_clipped, source_joined, tree_candidates, candidates, tree_edges,
+               silhouettes, clipped, pairs, undecided_pairs, loops, edges, cover, cover_remembered, visible_fraction,
+               exact_fraction, cutters] = record;
   std::ostringstream text;
   for (const FaceId face : faces) text << index_of(face) << ' ';
   text << to_string(engine) << ", " << to_string(outcome) << ", " << horizon_clipped << source_joined << ' '
-       << tree_candidates << ' ' << candidates << ' ' << clipped << ' ' << pairs << ' ' << undecided_pairs << ' '
-       << loops << ' ' << edges << ' ' << cover << cover_remembered << ' '
+       << tree_candidates << ' ' << candidates << ' ' << tree_edges << ' ' << silhouettes << ' ' << clipped << ' '
+       << pairs << ' ' << undecided_pairs << ' ' << loops << ' ' << edges << ' ' << cover << cover_remembered << ' '
        << generate::to_text(visible_fraction.value_or(-1.0)) << ' ' << exact_fraction.value_or("none") << '\n';
   return text.str();
 }
