@@ -347,7 +347,9 @@ TEST_F(StudyCommand, HasTheValuesOfTheLibraryCall) {
   ASSERT_EQ(outcome.scenes.size(), 2U);
   EXPECT_EQ(outcome.scenes.front().title, "Room A");
   EXPECT_FALSE(outcome.scenes.front().sentences.empty());
-  EXPECT_EQ(outcome.notes.size(), 1U) << "gnuplot is missing";
+  // A busy machine may add a note on its speed.
+  const auto names_gnuplot = [](const std::string& note) { return note.find("gnuplot was not found") != note.npos; };
+  EXPECT_EQ(std::ranges::count_if(outcome.notes, names_gnuplot), 1);
 }
 
 TEST_F(StudyCommand, OfNothingButLeftOutScenesIsRefused) {
