@@ -152,14 +152,14 @@ void SilhouetteWalk::make_images() {
 // computed one, component by component. Each dot product then errs by less than 4 r, and a quotient U / W by less than
 // 4 r (1 + |U / W|) / (W - 4 r). The ends bound the image, since lines have lines as images.
 SilhouetteWalk::Image SilhouetteWalk::image_of(const Stretch& stretch) const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr double kUnbounded = std::numeric_limits<double>::infinity();
   const Edge& edge = outlines_.edge(stretch.edge);
   const Outlines::Corner &a = outlines_.corner(edge.a), &b = outlines_.corner(edge.b);
-  Image image{kInfinity, -kInfinity, kInfinity, -kInfinity, 0};
+  Image image{kUnbounded, -kUnbounded, kUnbounded, -kUnbounded, 0};
   for (const Parameter& end : {stretch.interval.begin, stretch.interval.end}) {
     const Approx3 d = between(a, b, end.value);
     const double r = 2.0 * (static_cast<double>(end.error) + 0x1p-50) * (a.size + b.size), w = dot(ahead_, d);
-    if (!(w > 16.0 * r)) return {-kInfinity, kInfinity, -kInfinity, kInfinity, 0};
+    if (!(w > 16.0 * r)) return {-kUnbounded, kUnbounded, -kUnbounded, kUnbounded, 0};
     const double u = dot(axis_u_, d) / w, v = dot(axis_v_, d) / w, slack = 8.0 * r / w + 0x1p-48;
     const double slack_u = slack * (1.0 + std::abs(u)), slack_v = slack * (1.0 + std::abs(v));
     image.low_u = std::min(image.low_u, u - slack_u);
