@@ -13,12 +13,6 @@
 
 namespace exactff::visibility {
 
-// By closed surface.
-struct BacksMemory {
-  RunMarks decided;
-  std::vector<std::uint8_t> left_out;  // where it is decided
-};
-
 // What a search for the visible parts of one plane works on. It depends on nothing that an earlier search left here.
 struct EdgeSearch {
   VisibleEdges edges;

@@ -1,10 +1,12 @@
 // Memory of the parts of a search, reused from one plane to the next.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "scene/shaft_tree.h"
 #include "visibility/outlines.h"
+#include "visibility/run_marks.h"
 #include "visibility/side_planes.h"
 
 namespace exactff::visibility {
@@ -18,6 +20,12 @@ struct ShaftMemory {
   std::vector<HalfSpace> half_spaces;
   HalfSpaceGroups groups;  // the same
   std::vector<SidePlane> side_planes;
+};
+
+// By closed surface.
+struct BacksMemory {
+  RunMarks decided;
+  std::vector<std::uint8_t> left_out;  // where it is decided
 };
 
 }  // namespace exactff::visibility

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "scene/closed_surfaces.h"
+#include "visibility/search_memory.h"
 #include "visibility/source_shaft.h"
 
 namespace exactff::visibility {
