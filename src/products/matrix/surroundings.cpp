@@ -7,7 +7,7 @@
 
 #include "kernel/poll.h"
 #include "matrix/coplanar.h"
-#include "matrix/scene_copy.h"
+#include "scene/scene_copy.h"
 #include "text/refuse.h"
 #include "visibility/source_plane.h"
 

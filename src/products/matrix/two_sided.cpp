@@ -3,7 +3,7 @@
 
 #include "exactff/matrix.h"
 #include "kernel/float_environment.h"
-#include "matrix/scene_copy.h"
+#include "scene/scene_copy.h"
 #include "text/refuse.h"
 #include "text/text_lines.h"
 

@@ -2,17 +2,19 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "exactff/scene.h"
 
-namespace exactff::matrix {
+namespace exactff {
 
 // The ids of all patches, faces and vertices of the given scene stay the same. Refers to that scene.
 class SceneCopy {
  public:
-  explicit SceneCopy(const Scene& scene);
+  // Vertices are relative to the origin, and rounded if that is not exact.
+  explicit SceneCopy(const Scene& scene, const Vec3& origin = {});
 
   // Named so, with an apostrophe if the scene has a patch of this name.
   Selection add_patch(std::string name);
@@ -34,4 +36,10 @@ class SceneCopy {
   std::size_t added_ = 0;
 };
 
-}  // namespace exactff::matrix
+// The same scene near the origin, where coordinates of far away leave few bits for its shape. Only where every
+// difference is exact: an axis is moved if all its coordinates lie within a sixteenth of the nearest one, so that each
+// of them is at most twice another (Sterbenz, "Floating-Point Computation", 1974), and if this is at least sixteen
+// times the scene's extent. Nothing if no axis is.
+[[nodiscard]] std::optional<Scene> near_origin(const Scene& scene);
+
+}  // namespace exactff
