@@ -46,6 +46,7 @@ struct TruthRow {
   double upper = 0.0;
   std::optional<double> largest_rho_b;  // over the colour channels; empty if the file does not give it
   std::optional<Claim> claim;           // of an entry of a matrix
+  Way way = Way::kCells;                // the same
   bool accurate = true;                 // of an entry: within the accuracy that was asked for
 };
 
@@ -214,9 +215,9 @@ struct Report {
   std::string identity;        // 16 hexadecimal digits that identify the rows judged and their truths, in any order
   Criteria criteria;
   std::size_t truth_rows = 0;
-  std::size_t not_certified = 0;                  // rows judged by their enclosures
-  std::size_t statistical = 0, not_accurate = 0;  // entries of a matrix
-  double widest = 0.0;                            // upper - lower of these
+  std::size_t not_certified = 0;                // rows judged by their enclosures
+  std::size_t by_points = 0, not_accurate = 0;  // entries of a matrix
+  double widest = 0.0;                          // upper - lower of these
   Statistics overall;
   std::vector<std::string> sources;
   std::vector<Statistics> by_source;      // of each

@@ -63,7 +63,7 @@ struct DraftOptions {
 };
 
 // A draft for thousands of patches, in which all entries of a row come from the same whole views (view.h) of points of
-// its patch. Every entry is `statistical`, or `zero` if that is proved; `cells` is the number of views. An entry that
+// its patch. Every entry is `estimated`, or `zero` if that is proved; `cells` is the number of views. An entry that
 // no view has met has the value 0 and an upper bound. Without coplanar fronts, the values of a row with backs and open
 // add up to 1 by construction, which proves nothing about any of them. Throws as compute(); and InputError for a column
 // that is a face or transparent.
@@ -111,7 +111,7 @@ struct Reciprocity {
 inline constexpr std::string_view kBack = "(back)";
 inline constexpr std::string_view kOpen = "(open)";
 
-// A row for each entry: from,to,factor,lower,upper,claim,accurate,area_from,area_to,cells,event_cells. Doubles read
+// A row for each entry: from,to,factor,lower,upper,claim,way,accurate,area_from,area_to,cells,event_cells. Doubles read
 // back to the same bits.
 [[nodiscard]] std::string csv_text(const Scene& scene, const Matrix& matrix, const ViewFactorOptions& options);
 [[nodiscard]] std::string csv_text(const Scene& scene, const Matrix& draft, const DraftOptions& options);
@@ -124,8 +124,9 @@ struct Table {
   std::vector<ViewFactor> entries;     // row by row
   std::vector<ViewFactor> back, open;  // for each row; empty if the file does not have them
   std::vector<std::uint32_t> lines;    // of all entries, in the order of the file: row by row, with back and open
+  bool has_old_claims = false;         // "topology-proved" or "statistical", which are read as `estimated`
 };
-// Reads what csv_text wrote. Throws one InputError with file:line for every problem.
+// Reads what csv_text wrote, also before `way` was a column. Throws one InputError with file:line for every problem.
 [[nodiscard]] Table read_csv(const std::filesystem::path& file);
 // Whether a file begins like one of these, by its content.
 [[nodiscard]] bool is_csv(const std::filesystem::path& file);
@@ -150,9 +151,9 @@ jobs::Summary merge(const std::vector<std::filesystem::path>& shards, const std:
 [[nodiscard]] Matrix read(const Request& request, const std::filesystem::path& file);
 
 // Writes the arrays of a sparse matrix (CSR) for NumPy and SciPy: scipy.sparse.load_npz(path) gives the factors.
-// `radius`, in the order of `data`: data - radius and data + radius are bounds. `claim` likewise. `from` and `to` are
-// names; `area_from`, `area_to`; if computed, `back`, `back_radius`, `open`, `open_radius` for each row. Proved zeros
-// are left out. The file appears complete or not at all. Throws InputError if it cannot be written.
+// `radius`, in the order of `data`: data - radius and data + radius are bounds. `claim` and `way` likewise. `from` and
+// `to` are names; `area_from`, `area_to`; if computed, `back`, `back_radius`, `open`, `open_radius` for each row.
+// Proved zeros are left out. The file appears complete or not at all. Throws InputError if it cannot be written.
 void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::path& path);
 
 // The output of View3D in its text format (0): areas, rows, emittances (1 - Kd) without names. It holds six decimals.

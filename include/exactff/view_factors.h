@@ -20,29 +20,36 @@
 
 namespace exactff {
 
-// What is known about a view factor, the weakest first.
+// An interval is proved or it is not.
 enum class Claim {
-  // Estimated in a crowd, where cells do not suffice, from exact point factors: the mean over at least 36 strata of the
-  // patch, two independent pairs or triples of points in each. The interval misses the factor with a probability of at
-  // most 1e-6: that of Student's t, with degrees of freedom estimated from the strata, as far as the mean is normally
-  // distributed; where Hoeffding's bound is narrower, without this condition. What is too small for any of the points
-  // to meet is not known (validation/view_factors.md measures this): with so few points, do not rely on the level.
-  kStatistical,
-  // The visible boundary is proved for every cell. The error of quadrature is estimated: four times the difference of
-  // two Gauss rules, or, closer to an edge than 1.5 radii of the cell, the cell's whole area. Where the order of edges
-  // could not be decided on a cell (event cells), a bound is added.
-  kTopologyProved,
+  // The error is an estimate, with roundings counted: the factor lies in the interval as far as the rule's estimate of
+  // its own error is right, or, by points, but with a probability of at most 1e-6.
+  kEstimated,
   // Every step is proved: the visible boundary on every cell, the remainder of the quadrature, all roundings. Only on
   // request. An entry keeps this claim, and its width, if it misses its accuracy.
   kCertified,
   kZero,  // proved: no point of one patch sees a point of the other
 };
-[[nodiscard]] std::string_view to_string(Claim claim);  // "statistical", "topology-proved", "certified", "zero"
+[[nodiscard]] std::string_view to_string(Claim claim);  // "estimated", "certified", "zero"
+
+// How a factor was found.
+enum class Way {
+  // By cells, on each of which the visible boundary is proved. The error of an estimated factor is four times the
+  // difference of two Gauss rules, or, closer to an edge than 1.5 radii of the cell, the cell's whole area. Where the
+  // order of edges could not be decided on a cell (event cells), a bound is added.
+  kCells,
+  // In a crowd, where cells do not suffice: the mean of exact point factors over at least 36 strata of the patch, two
+  // independent draws in each. The interval assumes nothing of the point factor but its largest value, which distance
+  // and slope bound.
+  kPoints,
+  kViews,  // The same from whole views, which serve a row (matrix::draft).
+};
+[[nodiscard]] std::string_view to_string(Way way);  // "cells", "points", "views"
 
 struct ViewFactorOptions {
   double accuracy = 1e-6;       // of F_ij and of F_ji: upper - lower is at most this
   std::size_t budget = 100000;  // cells, one with many edges counts for several; if they do not suffice, it is a crowd
-  bool sample_crowds = true;    // take `statistical` in a crowd if it is narrower; else the width is kept
+  bool sample_crowds = true;    // take points in a crowd if they give a narrower interval; else the width is kept
   // Compute F_ij and F_ji apart, each by cells of its own patch, so that each tests the other. Otherwise one of them
   // is computed, by cells of whichever patch seems to need fewer.
   bool both_directions = false;
@@ -54,6 +61,7 @@ struct ViewFactor {
   double lower = 0.0, upper = 0.0;
   double area_from = 0.0, area_to = 0.0;  // A_i, A_j, in the square of the scene's unit of length
   Claim claim = Claim::kZero;
+  Way way = Way::kCells;
   bool accurate = true;  // within the accuracy asked for
   std::size_t cells = 0, event_cells = 0;
 };

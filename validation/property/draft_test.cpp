@@ -57,7 +57,7 @@ TEST(Draft, OfACubeHoldsTheKnownFactors) {
           EXPECT_EQ(f.upper, 0.0);
           continue;
         }
-        EXPECT_EQ(f.claim, Claim::kStatistical);
+        EXPECT_EQ(f.claim, Claim::kEstimated);
         const double truth = i / 2 == j / 2 ? opposite : beside;
         EXPECT_LE(f.lower, truth);
         EXPECT_GE(f.upper, truth);
@@ -96,7 +96,7 @@ TEST(Draft, WhatNoViewHasMetHasAnUpperBound) {
                    truth = view_factor(scene, scene.select("low"), scene.select("high"), {.accuracy = 1e-10});
   ASSERT_GT(truth.lower, 0.0);
   ASSERT_EQ(f.value, 0.0);
-  EXPECT_EQ(f.claim, Claim::kStatistical);
+  EXPECT_EQ(f.claim, Claim::kEstimated);
   EXPECT_LE(f.lower, truth.lower);
   EXPECT_GE(f.upper, truth.upper);
   EXPECT_LE(f.upper, 1.0 / (100.0 * 3.14159)) << "A / (pi d^2)";

@@ -36,14 +36,15 @@ namespace {
 
 constexpr const char* kMatrixFooter =
     "F_ij is the share of the light leaving patch i, in all directions, that reaches patch j: the mean over i of the\n"
-    "form factor from a point to j. An entry is 'zero' if that is proved. It is 'topology-proved' if what is seen is\n"
-    "proved on every cell of the patch, and the error of the quadrature is estimated from two rules. Where the cells\n"
-    "of --budget do not suffice, it is 'statistical' if that is narrower: an interval of Student's t, at the level\n"
-    "1 - 1e-6, from exact point factors. A warning counts the entries that are wider than the accuracy.\n"
-    "With --certify every entry is 'zero' or 'certified': the remainder of the quadrature and all roundings are\n"
-    "proved as well. It costs up to a few times as much.\n"
-    "--draft takes a row from some whole views of its patch, for thousands of patches: all entries are 'statistical' "
-    "or\n"
+    "form factor from a point to j. Its interval is proved or estimated. 'zero' is proved. 'estimated' says that the\n"
+    "error is an estimate, with all roundings in it: by cells, on each of which what is seen is proved, from two "
+    "rules\n"
+    "of quadrature; or, where the cells of --budget do not suffice and if that is narrower, by points, from the exact\n"
+    "form factors of random points, but with a probability of 1e-6. A warning counts the entries that are wider than\n"
+    "the accuracy.\n"
+    "With --claim certified, or --certify, every entry is 'zero' or 'certified': the remainder of the quadrature and\n"
+    "all roundings are proved as well. It costs up to a few times as much.\n"
+    "--draft takes a row from some whole views of its patch, for thousands of patches: all entries are 'estimated' or\n"
     "'zero', and an entry that no view has met is 0 with an upper bound.\n"
     "With --backs and --to all,sky each row also has what meets the backs of faces, and what is open. Then it must\n"
     "add up to 1; if a row does not, the exit code is 1. Likewise if the bounds of the two directions of a pair\n"
@@ -102,7 +103,7 @@ void for_each_entry(const Scene& scene, const matrix::Matrix& matrix, const Visi
 void print_plain(const Scene& scene, const matrix::Matrix& matrix) {
   for_each_entry(scene, matrix, [&](std::size_t i, const std::string& to, const ViewFactor& f) {
     std::cout << shown_name(scene, matrix.factors.from[i]) << '\t' << to << '\t' << text::shortest(f.lower) << '\t'
-              << text::shortest(f.upper) << '\t' << to_string(f.claim) << '\n';
+              << text::shortest(f.upper) << '\t' << to_string(f.claim) << '\t' << to_string(f.way) << '\n';
   });
 }
 
@@ -154,9 +155,8 @@ bool test_rows(const MatrixArguments& args, const Scene& scene, const matrix::Ma
     all = false;
     warn("the row of " + scene.name_of(matrix.factors.from[i]) + " adds up to between " +
              text::shortest(sums[i].lower) + " and " + text::shortest(sums[i].upper),
-         has_statistical(matrix, i)
-             ? "a statistical entry of it is one of the few that miss their interval, or a bound does not hold"
-             : "with back and open it must add up to 1, so a bound of it does not hold",
+         has_estimates(matrix, i) ? "an estimated entry of it misses its interval, or a bound does not hold"
+                                  : "with back and open it must add up to 1, so a bound of it does not hold",
          "please report the scene");
   }
   if (args.plain || !all) return all;
@@ -458,20 +458,21 @@ Command add_matrix(CLI::App& app) {
       command->add_option("--budget", args->options.factors.budget, "Largest number of cells for an entry")
           ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
           ->capture_default_str();
-  CLI::Option* certify =
-      command->add_flag("--certify", args->options.factors.certify, "Prove the quadrature, too: entries are certified");
+  const ClaimOptions claims = add_claim(*command, args->options.factors.certify);
   CLI::Option* draft =
       command
           ->add_flag("--draft", args->draft,
-                     "For thousands of patches: take each row from some whole views; entries are statistical")
+                     "For thousands of patches: take each row from some whole views; entries are estimated")
           ->excludes(budget)
-          ->excludes(certify)
+          ->excludes(claims.claim)
+          ->excludes(claims.certify)
           ->excludes(both);
   command->add_option("--views", args->views, "Least number of views of each row's patch")
       ->check(CLI::Range(std::size_t{144}, std::size_t{1} << 24))
       ->needs(draft)
       ->capture_default_str();
-  command->add_flag("--plain", args->plain, "Print a line for each entry: FROM, TO, LOWER, UPPER, CLAIM, with tabs");
+  command->add_flag("--plain", args->plain,
+                    "Print a line for each entry: FROM, TO, LOWER, UPPER, CLAIM, WAY, with tabs");
   add_outputs(*command, *args);
   command
       ->add_option("--threads", args->options.threads,

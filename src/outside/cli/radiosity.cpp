@@ -245,12 +245,12 @@ void warn_of_no_bound(const Solution& solution) {
 // Whether the balance holds, or cannot be tested.
 bool test_balance(const Solution& solution) {
   if (!solution.reasons_against_balance.empty() || is_balanced(solution)) return true;
-  print_warnings(std::vector<Problem>{
-      {.what = "what is emitted is not what is absorbed, meets backs and leaves",
-       .why = solution.claim_of_balance == Claim::kStatistical
-                  ? "a statistical view factor is one of the few that miss their interval, or a bound does not hold"
-                  : "it must be, so a bound of a view factor does not hold",
-       .suggestion = "please report the scene"}});
+  print_warnings(
+      std::vector<Problem>{{.what = "what is emitted is not what is absorbed, meets backs and leaves",
+                            .why = solution.claim_of_balance == Claim::kEstimated
+                                       ? "an estimated view factor misses its interval, or a bound does not hold"
+                                       : "it must be, so a bound of a view factor does not hold",
+                            .suggestion = "please report the scene"}});
   return false;
 }
 
@@ -320,7 +320,7 @@ Command add_radiosity(CLI::App& app) {
   command->add_option("--budget", args->factors.budget, "Largest number of cells for a view factor")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
       ->capture_default_str();
-  command->add_flag("--certify", args->factors.certify, "Prove the quadrature, too: view factors are certified");
+  add_claim(*command, args->factors.certify);
   add_outputs(*command, *args);
   command->add_option("--threads", args->threads, "Number of threads (default: all); it does not affect the values")
       ->check(CLI::Range(0, 1024));

@@ -37,7 +37,7 @@ std::string words_on_speed(const MatrixWork& work) {
     if (factors.both_directions) instead.emplace_back("--both-directions");
     if (factors.budget != ViewFactorOptions().budget) instead.emplace_back("--budget");
     ways.push_back("--draft" + (instead.empty() ? "" : " instead of " + text::enumerate(instead)) +
-                   ", whose entries are statistical");
+                   ", whose entries are estimated");
   }
   if (work.views && *work.views > matrix::DraftOptions().views) {
     ways.push_back("fewer --views than " + std::to_string(*work.views));

@@ -50,7 +50,7 @@ struct MatrixWork {
   std::optional<std::size_t> views = {};  // of a draft
   bool can_draft = false;                 // --draft could be given instead
 };
-// "Faster: --draft, whose entries are statistical; --accuracy 1e-3 instead of 1e-06; ..."
+// "Faster: --draft, whose entries are estimated; --accuracy 1e-3 instead of 1e-06; ..."
 [[nodiscard]] std::string words_on_speed(const MatrixWork& work);
 
 }  // namespace exactff::cli

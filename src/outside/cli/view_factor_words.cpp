@@ -40,6 +40,20 @@ std::optional<Problem> problem_of_overlaps(const Scene& scene, std::span<const S
   return slips::warning_of_overlaps(scene, overlaps);
 }
 
+ClaimOptions add_claim(CLI::App& command, bool& certify) {
+  ClaimOptions options;
+  options.certify = command.add_flag("--certify", certify, "The same as --claim certified");
+  options.claim =
+      command
+          .add_option_function<std::string>(
+              "--claim", [&certify](const std::string& claim) { certify = claim == "certified"; },
+              "What to claim of entries: estimated (the default), or certified, which proves the quadrature, too")
+          ->type_name("CLAIM")
+          ->check(CLI::IsMember({"estimated", "certified"}))
+          ->excludes(options.certify);
+  return options;
+}
+
 void warn_of_width(const matrix::Matrix& matrix, const ViewFactorOptions& options) {
   warn_of_width(matrix, options.accuracy, "the budget of " + std::to_string(options.budget) + " cells is used up",
                 "give more cells by --budget");

@@ -1,6 +1,7 @@
 // What the commands that compute view factors do and say alike.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,12 @@ namespace exactff::cli {
 // Of fronts of these columns that overlap, if any do: what to do about it. Found by estimates, before anything is
 // computed.
 [[nodiscard]] std::optional<Problem> problem_of_overlaps(const Scene& scene, std::span<const Selection> columns);
+
+// The flags --claim and --certify, which is short for --claim certified.
+struct ClaimOptions {
+  CLI::Option *claim = nullptr, *certify = nullptr;
+};
+ClaimOptions add_claim(CLI::App& command, bool& certify);
 
 // Warns of the entries that are wider than the accuracy.
 void warn_of_width(const matrix::Matrix& matrix, const ViewFactorOptions& options);

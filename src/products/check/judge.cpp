@@ -87,10 +87,10 @@ class Judge {
       if (row.status == Status::kNotCertified) ++report_.not_certified;
       return;
     }
-    const bool statistical = *row.claim == Claim::kStatistical;
-    if (statistical) ++report_.statistical;
+    const bool by_points = *row.claim == Claim::kEstimated && row.way != Way::kCells;
+    if (by_points) ++report_.by_points;
     if (!row.accurate) ++report_.not_accurate;
-    if (statistical || !row.accurate) report_.widest = std::max(report_.widest, row.upper - row.lower);
+    if (by_points || !row.accurate) report_.widest = std::max(report_.widest, row.upper - row.lower);
   }
 
   // A sum, so that the order of the rows has no effect.

@@ -36,6 +36,7 @@ TruthRow truth_row(const std::string& from, std::size_t column, const ViewFactor
   row.lower = f.lower;
   row.upper = f.upper;
   row.claim = f.claim;
+  row.way = f.way;
   row.accurate = f.accurate;
   return row;
 }
@@ -225,11 +226,16 @@ Matrices read_matrices(const fs::path& truth, const fs::path& candidate, const C
       break;
   }
   result.facts = FactFinder(table, result).find();
+  result.facts.old_claims = table.has_old_claims;
   return result;
 }
 
 std::vector<std::string> sentences(const MatrixFacts& facts) {
   std::vector<std::string> texts;
+  if (facts.old_claims) {
+    texts.emplace_back(
+        "the truth is of an older version, whose claims 'topology-proved' and 'statistical' count as estimated");
+  }
   const auto at = [](const MatrixFacts::Largest& entry) { return ", at " + name_of_entry(entry.from, entry.to); };
   if (facts.row_sum) {
     texts.push_back("sums of rows are at most " + text::short_number(facts.row_sum->by) + " off those of the truth" +

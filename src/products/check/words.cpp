@@ -66,7 +66,7 @@ void add_words_of_matrix(const Report& report, std::vector<std::string>& texts) 
                     (count == 1 ? "its" : "their") + " bounds, which are up to " + text::short_number(report.widest) +
                     " wide");
   };
-  add(report.statistical, "statistical");
+  add(report.by_points, "estimated by points");
   add(report.not_accurate, "wider than the accuracy it was computed with");
 }
 

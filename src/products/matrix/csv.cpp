@@ -60,13 +60,13 @@ std::string csv_comments(const Scene& scene, std::span<const Selection> from, st
       "accuracy " + text::shortest(options.accuracy) + ", budget " + std::to_string(options.budget) + " cells");
   if (options.certify) text += ", certify";
   if (options.both_directions) text += ", both directions";
-  if (!options.sample_crowds) text += ", no entry statistical";
+  if (!options.sample_crowds) text += ", no entry by points";
   return text + names_beside(surroundings) + '\n';
 }
 
 void add_csv_row(std::string& text, const std::string& from, std::string_view to, const ViewFactor& f,
                  std::optional<double> area_to) {
-  text::CsvRow(text) << from << to << f.value << f.lower << f.upper << to_string(f.claim)
+  text::CsvRow(text) << from << to << f.value << f.lower << f.upper << to_string(f.claim) << to_string(f.way)
                      << std::string_view(f.accurate ? "yes" : "no") << f.area_from << area_to << f.cells
                      << f.event_cells;
 }

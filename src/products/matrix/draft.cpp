@@ -16,6 +16,7 @@
 #include "exactff/view.h"
 #include "files/parallel.h"
 #include "kernel/float_environment.h"
+#include "scene/scene_copy.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "view_factors/near_planes.h"
@@ -117,6 +118,8 @@ class RowOfMeans {
     strata_ = strata_of(
         parts, std::max(view_factors::kFewestStrata, views / (view_factors::kDraws * view_factors::kFewestPoints)));
     const view_factors::Strata& strata = strata_;
+    of_ones_ = ranges_of(strata_, 1.0);
+    of_shares_ = error_of_shares(parts, scene.units);
     std::vector<std::optional<view_factors::NearPlanes>> near(parts.size());
     for (std::size_t s = 0; s < strata.strata.size(); ++s) {
       const double share = strata.strata[s].area / strata.area;
@@ -141,8 +144,10 @@ class RowOfMeans {
   [[nodiscard]] const StratifiedMean& beside(std::size_t which) const {
     return means_[scene_.patches().size() + which];
   }
-  [[nodiscard]] double error(const StratifiedMean& mean) const {
-    return mean.error(view_factors::kRisk, strata_) + unknown_ + view_factors::kRoundedPoints + kRoundings * mean.value;
+  // `range`: at least the largest factor from any of the points.
+  [[nodiscard]] double error(const StratifiedMean& mean, double range) const {
+    return mean.error(view_factors::kRisk, of_ones_.scaled(range)) + unknown_ + of_shares_ +
+           view_factors::kRoundedPoints + kRoundings * mean.value;
   }
   [[nodiscard]] std::size_t points() const { return points_; }
 
@@ -192,15 +197,17 @@ class RowOfMeans {
   std::vector<std::size_t> touched_;
   WholeView seen_;
   Workspace workspace_;
-  double unknown_ = 0.0;
+  view_factors::Ranges of_ones_;
+  double unknown_ = 0.0, of_shares_ = 0.0;
   std::size_t points_ = 0;
 };
 
 ViewFactor entry(const StratifiedMean& mean, const RowOfMeans& row, double largest) {
   ViewFactor f;
-  f.claim = Claim::kStatistical;
+  f.claim = Claim::kEstimated;
+  f.way = Way::kViews;
   f.value = std::clamp(mean.value, 0.0, 1.0);
-  const double error = row.error(mean);
+  const double error = row.error(mean, largest);
   f.lower = std::max(0.0, f.value - error);
   f.upper = std::max(f.value, std::min({1.0, largest, f.value + error}));
   f.cells = row.points();
@@ -228,15 +235,20 @@ void require_whole_patches(const Scene& scene, std::span<const Selection> to) {
 
 }  // namespace
 
-Matrix draft(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
+Matrix draft(const Scene& given, std::span<const Selection> from, std::span<const Selection> to,
              const DraftOptions& options, const Hooks& hooks) {
   const kernel::StandardArithmetic arithmetic;
-  require_whole_patches(scene, to);
+  require_whole_patches(given, to);
+  const std::optional<Scene> moved = near_origin(given);
+  const Scene& scene = moved ? *moved : given;
   const ExactScene exact(scene);
   const std::vector<Wall> walls = visibility::walls_of(scene);
   std::vector<DraftPatch> rows, columns;
-  for (const Selection& patch : from) rows.push_back(prepared(exact, patch));
-  for (const Selection& patch : to) columns.push_back(prepared(exact, patch));
+  for (const Selection& patch : from) {
+    (void)given.faces_of(patch);  // throws if it is of another scene
+    rows.push_back(prepared(exact, {patch.patch, patch.face}));
+  }
+  for (const Selection& patch : to) columns.push_back(prepared(exact, {patch.patch, patch.face}));
   Matrix result{{{from.begin(), from.end()}, {to.begin(), to.end()}, {}}, {}, {}};
   result.factors.entries.resize(rows.size() * columns.size());
   if (options.backs) result.back.resize(rows.size());

@@ -22,6 +22,7 @@ std::vector<Selection> of_any_scene(std::span<const Selection> patches) {
 
 void take_work(ViewFactor& sum, const ViewFactor& f) {
   sum.claim = weaker(sum.claim, f.claim);
+  sum.way = std::max(sum.way, f.way);
   sum.accurate = sum.accurate && f.accurate;
   sum.cells += f.cells;
   sum.event_cells += f.event_cells;

@@ -38,7 +38,7 @@ void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::
   const Factors& all = matrix.factors;
   std::vector<double> values, radii, area_from, area_to;
   std::vector<std::int64_t> columns, starts{0};
-  std::vector<std::string> claims;
+  std::vector<std::string> claims, ways;
   for (std::size_t i = 0; i < all.from.size(); ++i) {
     for (std::size_t j = 0; j < all.to.size(); ++j) {
       const ViewFactor& f = all.at(i, j);
@@ -48,6 +48,7 @@ void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::
       radii.push_back(radius_of(f));
       columns.push_back(static_cast<std::int64_t>(j));
       claims.emplace_back(to_string(f.claim));
+      ways.emplace_back(to_string(f.way));
     }
     starts.push_back(static_cast<std::int64_t>(values.size()));
     area_from.push_back(area_of_row(matrix, i));
@@ -60,6 +61,7 @@ void write_npz(const Scene& scene, const Matrix& matrix, const std::filesystem::
   file.add("data", values);
   file.add("radius", radii);
   file.add_texts("claim", claims);
+  file.add_texts("way", ways);
   add_names(file, "from", scene, all.from);
   add_names(file, "to", scene, all.to);
   file.add("area_from", area_from);

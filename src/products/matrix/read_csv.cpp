@@ -17,12 +17,16 @@
 namespace exactff::matrix {
 namespace {
 
-std::optional<Claim> claim_named(std::string_view word) {
-  for (int i = 0; !to_string(static_cast<Claim>(i)).empty(); ++i) {
-    if (word == to_string(static_cast<Claim>(i))) return static_cast<Claim>(i);
+template <class Word>
+std::optional<Word> named(std::string_view word) {
+  for (int i = 0; !to_string(static_cast<Word>(i)).empty(); ++i) {
+    if (word == to_string(static_cast<Word>(i))) return static_cast<Word>(i);
   }
   return std::nullopt;
 }
+
+// The words for two kinds of estimates that files had before `way` was a column.
+constexpr std::string_view kOldByCells = "topology-proved", kOldByPoints = "statistical";
 
 class TableReader {
  public:
@@ -37,6 +41,7 @@ class TableReader {
     for (std::size_t i = 0; i < kNumbers.size(); ++i) numbers_[i] = column(kNumbers[i]);
     area_to_ = column("area_to");
     claim_ = column("claim");
+    way_ = csv_.column("way");
     accurate_ = column("accurate");
   }
 
@@ -91,16 +96,27 @@ class TableReader {
   }
 
   void take_words(ViewFactor& f) {
-    const std::optional<Claim> claim = claim_named(csv_.field(claim_));
+    const std::string claim = csv_.field(claim_);
+    const bool is_old = claim == kOldByCells || claim == kOldByPoints;
+    table_.has_old_claims = table_.has_old_claims || is_old;
+    f.claim = is_old ? Claim::kEstimated : known<Claim>("claim", claim);
+    f.way = way_ ? known<Way>("way", csv_.field(*way_)) : claim == kOldByPoints ? Way::kPoints : Way::kCells;
     const std::string& accurate = csv_.field(accurate_);
-    if (!claim || (accurate != "yes" && accurate != "no")) {
-      csv_.complain(
-          claim ? "'accurate' is " + text::in_quotes(accurate) : "unknown claim " + text::in_quotes(csv_.field(claim_)),
-          "it says what is known of the entry",
-          claim ? "write yes or no" : "use the file as `exactff matrix` wrote it");
+    if (accurate != "yes" && accurate != "no") {
+      csv_.complain("'accurate' is " + text::in_quotes(accurate), "it says what is known of the entry",
+                    "write yes or no");
     }
-    f.claim = claim.value_or(Claim::kStatistical);
     f.accurate = accurate == "yes";
+  }
+
+  template <class Word>
+  Word known(const char* column, const std::string& word) {
+    const std::optional<Word> found = named<Word>(word);
+    if (!found) {
+      csv_.complain(std::string("unknown ") + column + ' ' + text::in_quotes(word),
+                    "it says what is known of the entry", "use the file as `exactff matrix` wrote it");
+    }
+    return found.value_or(Word{});
   }
 
   // Those of the first row: up to the first entry of another.
@@ -141,6 +157,7 @@ class TableReader {
   Table table_;
   std::vector<Row> rows_;
   std::size_t from_ = 0, to_ = 0, area_to_ = 0, claim_ = 0, accurate_ = 0;
+  std::optional<std::size_t> way_;
   std::array<std::size_t, kNumbers.size()> numbers_{};
   std::size_t width_ = 1;    // entries of a row
   std::size_t patches_ = 1;  // those to patches

@@ -10,12 +10,12 @@ double area_of_row(const Matrix& matrix, std::size_t row) {
   return (matrix.open.empty() ? matrix.back : matrix.open)[row].area_from;
 }
 
-bool has_statistical(const Matrix& matrix, std::size_t row) {
-  const auto is_statistical = [](const ViewFactor& f) { return f.claim == Claim::kStatistical; };
+bool has_estimates(const Matrix& matrix, std::size_t row) {
+  const auto is_estimate = [](const ViewFactor& f) { return f.claim == Claim::kEstimated; };
   const std::size_t columns = matrix.factors.to.size();
-  return std::ranges::any_of(std::span(matrix.factors.entries).subspan(row * columns, columns), is_statistical) ||
-         (!matrix.back.empty() && is_statistical(matrix.back[row])) ||
-         (!matrix.open.empty() && is_statistical(matrix.open[row]));
+  return std::ranges::any_of(std::span(matrix.factors.entries).subspan(row * columns, columns), is_estimate) ||
+         (!matrix.back.empty() && is_estimate(matrix.back[row])) ||
+         (!matrix.open.empty() && is_estimate(matrix.open[row]));
 }
 
 }  // namespace exactff::matrix

@@ -15,7 +15,7 @@ namespace exactff::matrix {
 // shares of different columns do not overlap, unless fronts do, faces are transparent or rows are bent.
 [[nodiscard]] std::vector<Sum> clipped_row_sums(const Scene& scene, const Matrix& matrix);
 
-// Whether an entry of the row, or its back or open, is statistical.
-[[nodiscard]] bool has_statistical(const Matrix& matrix, std::size_t row);
+// Whether an entry of the row, or its back or open, is estimated.
+[[nodiscard]] bool has_estimates(const Matrix& matrix, std::size_t row);
 
 }  // namespace exactff::matrix

@@ -25,25 +25,31 @@ double gap(const Box& a, const Box& b) {
                     along(a.low.z, a.high.z, b.low.z, b.high.z));
 }
 
-}  // namespace
-
-FactorBound::FactorBound(const Sight& sight) : source_plane_(sight.points.plane_of(sight.source)) {
+std::vector<Vec3> corners_of(const Sight& sight) {
   std::vector<Vec3> corners;
-  for (const Edge& edge : sight.source) {
-    const Vec3& corner = sight.points[edge.from].at;
-    corners.push_back(corner);
-    source_.include(corner);
-    height_ = std::max(height_, height_above(sight.receiver, corner));
-  }
-  area_ = area(corners);
+  for (const Edge& edge : sight.source) corners.push_back(sight.points[edge.from].at);
+  return corners;
 }
 
-double FactorBound::on(const Cell& cell) const {
+}  // namespace
+
+FactorBound::FactorBound(const Sight& sight)
+    : FactorBound(corners_of(sight), sight.points.plane_of(sight.source), sight.receiver) {}
+
+FactorBound::FactorBound(std::span<const Vec3> source, const Plane& source_plane, const Plane& receiver)
+    : source_plane_(source_plane), area_(area({source.begin(), source.end()})) {
+  for (const Vec3& corner : source) {
+    source_.include(corner);
+    height_ = std::max(height_, height_above(receiver, corner));
+  }
+}
+
+double FactorBound::on(std::span<const Vec3> corners) const {
   Box box;
   double height = 0.0;
-  for (const Point& corner : cell.corners) {
-    box.include(corner.at);
-    height = std::max(height, height_above(source_plane_, corner.at));
+  for (const Vec3& corner : corners) {
+    box.include(corner);
+    height = std::max(height, height_above(source_plane_, corner));
   }
   const double distance = gap(box, source_) - kAside;
   if (!(distance > 0.0)) return 1.0;

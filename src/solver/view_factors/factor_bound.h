@@ -10,6 +10,8 @@
 // an area are computed to within 2^-46; each is moved by kAside to the safe side.
 #pragma once
 
+#include <span>
+
 #include "view_factors/cell.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/sight.h"
@@ -19,9 +21,13 @@ namespace exactff::view_factors {
 class FactorBound {
  public:
   explicit FactorBound(const Sight& sight);
+  // Of the convex source in this plane, for points in the receiver's plane.
+  FactorBound(std::span<const Vec3> source, const Plane& source_plane, const Plane& receiver);
 
-  // At least F(x -> j) for every point x of the cell; at most 1.
-  [[nodiscard]] double on(const Cell& cell) const;
+  // At least F(x -> j) for every point x of the cell, or of the convex hull of corners in the receiver's plane; at most
+  // 1.
+  [[nodiscard]] double on(const Cell& cell) const { return on(positions_of(cell.corners)); }
+  [[nodiscard]] double on(std::span<const Vec3> corners) const;
 
  private:
   Plane source_plane_;

@@ -24,7 +24,7 @@ class Formula {
   // Keeps a reference to the points.
   Formula(const Sight& sight, const std::vector<BoundaryPart>& parts);
 
-  // In double. The estimate is large where edges almost meet the point, or hide one another but for a sliver.
+  // In double. The rounding is large where edges almost meet the point, or hide one another but for a sliver.
   void at(std::span<const Vec3> points, std::span<Evaluated> values) const;
   [[nodiscard]] Evaluated at(const Vec3& x) const;
   [[nodiscard]] Ball at(const BallPoint& x) const;

@@ -35,6 +35,8 @@ constexpr double kRadiiForFour = 3.0;  // nearer to an edge, four points hardly 
 // the segment which is not quite the nearest one. A sum of 2^20 edges has a relative error below 2^-32.
 constexpr double kDistanceMargin = 0x1p-44;
 constexpr double kSumMargin = 1.0 + 0x1p-30;
+constexpr double kOfBall = 0x1p-50;  // relative: of a value that was made precise
+constexpr double kOfSum = 0x1p-46;   // relative: of the weights of a rule and of their sum with values
 
 Point middle(const Point& p, const Point& q, const Units& units) {
   Homogeneous sum;
@@ -55,6 +57,14 @@ Vec3 near_point_inside(const Cell& cell) {
   return {middle_of(a.x, b.x, c.x), middle_of(a.y, b.y, c.y), middle_of(a.z, b.z, c.z)};
 }
 
+// Of the area, or of the sum of the weights of a rule. A corner's coordinates err by 2^-53 at most, and an area by its
+// perimeter times that, before roundings of the arithmetic, which are smaller.
+double error_of_area(const std::vector<Vec3>& ring) {
+  double perimeter = 0.0;
+  for (std::size_t i = 0; i < ring.size(); ++i) perimeter += distance(ring[i], ring[(i + 1) % ring.size()]);
+  return perimeter * 0x1p-50;
+}
+
 double radius_about(const Cell& cell, const Vec3& centre) {
   double radius = 0.0;
   for (const Point& corner : cell.corners) radius = std::max(radius, distance(corner.at, centre));
@@ -73,19 +83,20 @@ double resolution(const Cell& cell, const Formula& formula) {
 
 // The value of a ball, with as many bits as it takes to make it small.
 template <class Function>
-double precise(const Function& f) {
+Evaluated precise(const Function& f) {
   constexpr long kFirstBits = 192, kMostBits = 12288, kEnough = 60, kBitsForZero = 768;
   constexpr double kTiny = 0x1p-100;
   for (long bits = kFirstBits;; bits *= 2) {
     const Ball ball = f(bits);
     const double value = kernel::nearest_to_midpoint(ball);
     const bool tiny = std::abs(value) < kTiny && bits >= kBitsForZero;  // perhaps exactly 0
-    if (kernel::certain_bits(ball) >= kEnough || tiny || bits >= kMostBits) return std::isnan(value) ? 0.0 : value;
+    if (kernel::certain_bits(ball) >= kEnough || tiny) return {value, kOfBall * std::abs(value) + kTiny};
+    if (bits >= kMostBits) return {0.5, 0.5};
   }
 }
 
 // At the exact point of the receiver's plane that the place stands for.
-double precise_value(const Formula& formula, const Cell& cell, const CellPlace& place) {
+Evaluated precise_value(const Formula& formula, const Cell& cell, const CellPlace& place) {
   return precise([&](long bits) {
     const auto corner = [&](std::size_t i) { return ball_point(cell.corners[i % cell.corners.size()], bits); };
     const auto between = [](const Ball& a, const Ball& b, const Ball& t) { return a + (b - a) * t; };
@@ -133,23 +144,28 @@ std::vector<Share> Pair::cells(std::size_t budget) {
 }
 
 template <unsigned kCount>
-double Pair::gauss_integral(const Formula& formula, const Cell& cell, const std::vector<Vec3>& ring) const {
+Pair::Rule Pair::gauss_integral(const Formula& formula, const Cell& cell, const std::vector<Vec3>& ring) const {
   const std::vector<WeightedPlace> places = gauss_places<kCount>(ring);
   std::vector<Vec3> points;
   for (const WeightedPlace& p : places) points.push_back(p.at);
   std::vector<Evaluated> values(points.size());
   formula.at(points, values);
-  double sum = 0.0;
+  Rule rule;
+  double largest = 0.0;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const bool is_enough = values[i].rounding <= limits_.rounding;
-    sum += places[i].weight * (is_enough ? values[i].value : precise_value(formula, cell, places[i].place));
+    const auto [value, rounding] = is_enough ? values[i] : precise_value(formula, cell, places[i].place);
+    rule.integral += places[i].weight * value;
+    rule.rounding += places[i].weight * rounding;
+    largest = std::max(largest, std::abs(value));
   }
-  return sum;
+  rule.rounding += largest * (error_of_area(ring) + kOfSum * area(ring));
+  return rule;
 }
 
-double Pair::value_at(const Formula& formula, const Point& x) const {
+Evaluated Pair::value_at(const Formula& formula, const Point& x) const {
   const Evaluated quick = formula.at(x.at);
-  if (quick.rounding <= limits_.rounding) return quick.value;
+  if (quick.rounding <= limits_.rounding) return quick;
   return precise([&](long bits) { return formula.at(ball_point(x, bits)); });
 }
 
@@ -204,16 +220,16 @@ bool Pair::add_if_dim(Cell& cell, Candidates& candidates, double enough, std::ve
 Pair::Integral Pair::integrate(const Formula& formula, const Cell& cell) const {
   const std::vector<Vec3> ring = positions_of(cell.corners);
   const double size = area(cell), radii = resolution(cell, formula);
-  const auto error = [&](double rule, double lower) {
-    const double difference = 4.0 * std::abs(rule - lower);
-    return radii >= kLeastRadii ? difference : std::max(difference, size);
+  const auto estimate = [&](const Rule& rule, const Rule& lower) {
+    const double difference = 4.0 * std::abs(rule.integral - lower.integral);
+    const double error = (radii >= kLeastRadii ? difference : std::max(difference, size)) + rule.rounding;
+    return Integral{rule.integral, error, rule.rounding};
   };
   if (radii >= kRadiiForFour) {
-    const double four = gauss_integral<4>(formula, cell, ring), three = gauss_integral<3>(formula, cell, ring);
-    if (error(four, three) <= limits_.quadrature * size) return {four, error(four, three)};
+    const Integral four = estimate(gauss_integral<4>(formula, cell, ring), gauss_integral<3>(formula, cell, ring));
+    if (four.error <= limits_.quadrature * size) return four;
   }
-  const double six = gauss_integral<6>(formula, cell, ring), five = gauss_integral<5>(formula, cell, ring);
-  return {six, error(six, five)};
+  return estimate(gauss_integral<6>(formula, cell, ring), gauss_integral<5>(formula, cell, ring));
 }
 
 // Within the tolerance of a cell of its size, if it can be.
@@ -221,13 +237,14 @@ Pair::Integral Pair::enclose(const Formula& formula, const Cell& cell, double mo
   const double share = std::sqrt(area(cell) / limits_.area);
   const double tolerance = std::min(most, limits_.certified * share * std::sqrt(share));
   const CertifiedIntegral found = certified_integral(formula, cell, tolerance);
-  return {found.value, found.error, found.is_final};
+  return {found.value, found.error, found.is_final ? found.error : 0.0};
 }
 
 void Pair::add_smooth(Cell cell, std::shared_ptr<const Formula> formula, double most, std::vector<Share>& shares) {
-  const auto [integral, error, is_final] = certifies() ? enclose(*formula, cell, most) : integrate(*formula, cell);
+  const Integral found = certifies() ? enclose(*formula, cell, most) : integrate(*formula, cell);
   if (whole_ != nullptr) check(cell, *formula);
-  shares.push_back({std::move(cell), {}, std::move(formula), integral, error, is_final});
+  shares.push_back(
+      {std::move(cell), {}, std::move(formula), found.integral, found.error, found.is_most_of(found.error)});
 }
 
 // From every point, F differs from its value at the centre by at most the slope times the distance: visibility in a
@@ -269,13 +286,16 @@ void Pair::add_event(Cell cell, std::size_t depth, Candidates candidates, const 
   }
   if (const double bound = triples.empty() ? HUGE_VAL : event_bound(sight_.points, cell, centre.at, triples);
       bound < 1.0) {
-    const auto [integral, error, is_final] = integrate(formula, cell);
-    shares.push_back({std::move(cell), std::move(candidates), nullptr, integral, error + bound * size, is_final});
+    const Integral found = integrate(formula, cell);
+    const double error = found.error + bound * size;
+    shares.push_back({std::move(cell), std::move(candidates), nullptr, found.integral, error, found.is_most_of(error)});
     return;
   }
-  const double value = std::clamp(value_at(formula, centre), 0.0, 1.0);
+  const auto [found, rounding] = value_at(formula, centre);
+  const double value = std::clamp(found, 0.0, 1.0);
   const double radius = radius_about(cell, centre.at);
-  const double bound = std::min(slope_bound(candidates, centre.at, radius) * radius, std::max(value, 1.0 - value));
+  const double bound =
+      std::min(slope_bound(candidates, centre.at, radius) * radius + rounding, std::max(value, 1.0 - value));
   shares.push_back({std::move(cell), std::move(candidates), nullptr, value * size, bound * size});
 }
 

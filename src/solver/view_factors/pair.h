@@ -20,7 +20,8 @@ struct Share {
   Candidates candidates;                   // of an event cell
   std::shared_ptr<const Formula> formula;  // null for an event cell: the boundary is not constant on it
   double integral = 0.0;
-  double error = 0.0;   // of the integral: an estimate, and for an event cell a bound besides; or, certified, a bound
+  // Of the integral: an estimate, and for an event cell a bound besides; with its roundings. Or, certified, a bound.
+  double error = 0.0;
   bool narrow = false;  // not worth a cut: too narrow in double, or only rounding is left
   bool is_event = formula == nullptr;
 
@@ -35,7 +36,7 @@ struct Share {
 class Pair {
  public:
   struct Limits {
-    double rounding = 0.0;         // larger estimates of the rounding error of F ask for balls
+    double rounding = 0.0;         // larger bounds of the rounding error of F ask for balls; at most 2^-6
     double negligible_area = 0.0;  // on smaller cells F is only known to lie in [0, 1]
     double quadrature = 0.0;       // larger errors of the mean of F on a cell ask for more points
     double enough = 0.0;           // a cell to be cut stays undecided if its error is at most this
@@ -75,7 +76,8 @@ class Pair {
                  std::vector<Share>& shares);
   struct Integral {
     double integral, error;
-    bool is_final = false;  // rounding is most of the error
+    double rounding = 0.0;  // in the error
+    [[nodiscard]] bool is_most_of(double all) const { return rounding > 0.5 * all; }
   };
   [[nodiscard]] Integral integrate(const Formula& formula, const Cell& cell) const;
   [[nodiscard]] Integral enclose(const Formula& formula, const Cell& cell, double most) const;
@@ -85,9 +87,13 @@ class Pair {
   [[nodiscard]] double size_of(const Cell& cell) const;
   bool add_if_negligible(Cell& cell, Candidates& candidates, std::vector<Share>& shares) const;
   bool add_if_dim(Cell& cell, Candidates& candidates, double enough, std::vector<Share>& shares) const;
+  struct Rule {
+    double integral = 0.0;
+    double rounding = 0.0;  // of the values and of the cell's area
+  };
   template <unsigned kCount>
-  [[nodiscard]] double gauss_integral(const Formula& formula, const Cell& cell, const std::vector<Vec3>& ring) const;
-  [[nodiscard]] double value_at(const Formula& formula, const Point& x) const;
+  [[nodiscard]] Rule gauss_integral(const Formula& formula, const Cell& cell, const std::vector<Vec3>& ring) const;
+  [[nodiscard]] Evaluated value_at(const Formula& formula, const Point& x) const;
   [[nodiscard]] double factor_near(const Vec3& at) const;
   void check(const Cell& cell, const Formula& formula) const;
   [[nodiscard]] double slope_bound(const Candidates& candidates, const Vec3& centre, double radius) const;

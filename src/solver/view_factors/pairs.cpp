@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "kernel/float_environment.h"
+#include "scene/scene_copy.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 #include "view_factors/exact_scene.h"
@@ -23,9 +24,13 @@ void check_accuracy(double accuracy) {
                "give a positive number; the default is 1e-6");
 }
 
-std::vector<PreparedPatch> prepare(const ExactScene& scene, std::span<const Selection> patches) {
+// Patches of the given scene, in a copy of it.
+std::vector<PreparedPatch> prepare(const Scene& given, const ExactScene& scene, std::span<const Selection> patches) {
   std::vector<PreparedPatch> result;
-  for (const Selection& patch : patches) result.emplace_back(scene, patch);
+  for (const Selection& patch : patches) {
+    (void)given.faces_of(patch);  // throws if it is of another scene
+    result.emplace_back(scene, Selection{patch.patch, patch.face});
+  }
   return result;
 }
 
@@ -53,8 +58,13 @@ std::vector<std::vector<std::size_t>> pairs_of(const std::vector<PreparedPatch>&
 
 struct Pairs::Patches {
   Patches(const Scene& given, std::span<const Selection> from, std::span<const Selection> to)
-      : scene(given), seen(scene), rows(prepare(scene, from)), columns(prepare(scene, to)) {}
+      : moved(near_origin(given)),
+        scene(moved ? *moved : given),
+        seen(scene),
+        rows(prepare(given, scene, from)),
+        columns(prepare(given, scene, to)) {}
 
+  std::optional<Scene> moved;
   ExactScene scene;
   SeenParts seen;
   std::vector<PreparedPatch> rows, columns;
@@ -81,8 +91,7 @@ void Pairs::compute(std::size_t pair, const std::function<void(std::size_t, cons
   const ViewFactor computed = factor_between(patches_->scene, patches_->seen, from, to, options_, *memory);
   patches_->memories.give_back(std::move(memory));
   take(first, computed);
-  for (const std::size_t entry : std::span(entries).subspan(1))
-    take(entry, transpose(patches_->scene, computed, from, to));
+  for (const std::size_t entry : std::span(entries).subspan(1)) take(entry, transpose(computed, from, to));
 }
 
 }  // namespace exactff::view_factors

@@ -210,6 +210,16 @@ kernel::Disc enclosed_area_of(const std::vector<Part>& parts, const Units& units
   return sum;
 }
 
+double error_of_shares(const std::vector<Part>& parts, const Units& units) {
+  double radii = 0.0, sum = 0.0;
+  for (const Part& part : parts) {
+    const kernel::Disc area = enclosed_area(part, units);
+    radii += area.radius;
+    sum += area.centre;
+  }
+  return sum > radii ? 2.0 * radii / (sum - radii) : 1.0;
+}
+
 bool is_planar(const Scene& scene, const Selection& patch) {
   return std::ranges::all_of(scene.faces_of(patch),
                              [&](FaceId face) { return scene.face(face).shape == FaceShape::kPlanar; });

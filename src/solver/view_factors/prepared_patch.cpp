@@ -7,7 +7,10 @@
 namespace exactff::view_factors {
 
 PreparedPatch::PreparedPatch(const ExactScene& scene, const Selection& patch)
-    : selection(patch), parts(parts_of(scene, patch)), planar(is_planar(scene.scene, patch)) {
+    : selection(patch),
+      parts(parts_of(scene, patch)),
+      enclosed_area(enclosed_area_of(parts, scene.units)),
+      planar(is_planar(scene.scene, patch)) {
   std::tie(unit_area, area) = areas_of(scene, patch, parts);
 }
 

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "kernel/disc.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/seen_parts.h"
 #include "view_factors/sight.h"
@@ -15,9 +16,10 @@ struct PreparedPatch {
 
   Selection selection;
   std::vector<Part> parts;
-  double area = 0.0;       // in the scene's unit of length, squared
-  double unit_area = 0.0;  // in squares of the unit of Point::at
-  bool planar = true;      // all of its faces
+  double area = 0.0;           // in the scene's unit of length, squared
+  double unit_area = 0.0;      // in squares of the unit of Point::at
+  kernel::Disc enclosed_area;  // the same
+  bool planar = true;          // all of its faces
   SeenParts::OfPatch seen;
 };
 

@@ -19,6 +19,8 @@ using kernel::lanes::FourMask;
 constexpr double kInfinity = __builtin_inf();
 // Of a difference of two points whose coordinates are at most 1 and carry a few roundings.
 constexpr double kDifferenceError = 0x1p-50;
+constexpr double kOfFirstOrder = 4.0;
+constexpr double kOfTerm = 0x1p-49;
 
 struct FourVec {
   Four x, y, z;
@@ -108,8 +110,9 @@ EXACTFF_CLONES void evaluate_four(std::span<const QuickPart> parts, const Vec3& 
     const FourVec &p = from.direction, &q = to.direction;
     const Four angle = angle_of(dot(cross(p, q - p), plane) / size, dot(p, q));
     const Four cosine = dot(plane, n) / size;
-    const Four of_part = magnitude(angle) * kDifferenceError * (at_least_length(a) + part.edge.length) / size +
-                         magnitude(cosine) * (from.error + to.error);
+    const Four of_plane = magnitude(angle) * kDifferenceError * (at_least_length(a) + part.edge.length) / size;
+    const Four of_part =
+        kOfFirstOrder * (of_plane + magnitude(cosine) * (from.error + to.error)) + kOfTerm * magnitude(angle * cosine);
     const FourMask is_seen = size > 0.0;
     sum += where(is_seen, part.sign * angle * cosine, Four{});
     error += where(is_seen, of_part, four(kInfinity));

@@ -8,7 +8,7 @@ namespace exactff::view_factors {
 namespace {
 
 constexpr std::size_t kStepsBetweenSums = 4096;
-constexpr double kShareOfRounding = 0x1p-10;               // of the accuracy
+constexpr double kShareOfRounding = 0x1p-8;                // of the accuracy
 constexpr double kShareOfNegligible = 0x1p-24;             // of the error that is allowed
 constexpr double kShareOfQuadrature = 0.0625;              // the same, of a cell as large as the patch
 constexpr double kShareOfDim = 0.25;                       // the same, of a cell that is left undecided

@@ -32,7 +32,7 @@ class Refinement {
 
   [[nodiscard]] double integral() const { return gave_up_ ? 0.5 * area_ : sum_of(&Share::integral); }
   [[nodiscard]] double error() const { return gave_up_ ? 0.5 * area_ : sum_of(&Share::error); }
-  // The integral, certified; requires options.certify. `area`: of the patch `from`.
+  // The integral with its error, and the roundings of the sums. `area`: of the patch `from`.
   [[nodiscard]] kernel::Disc enclosure(const kernel::Disc& area) const;
   [[nodiscard]] bool is_zero() const { return waiting_.empty() && settled_.empty() && !gave_up_; }
   [[nodiscard]] std::size_t cells() const { return cells_; }

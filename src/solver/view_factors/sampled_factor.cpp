@@ -8,6 +8,7 @@
 
 #include "exactff/exact.h"
 #include "kernel/poll.h"
+#include "view_factors/factor_bound.h"
 #include "view_factors/near_planes.h"
 #include "view_factors/strata.h"
 
@@ -45,14 +46,57 @@ class PointFactors {
   FormFactor factor_;
 };
 
+Plane plane_of(const Part& part, const Units& units) {
+  return make_plane(join(part.corners[0], part.corners[1], part.corners[2]), units);
+}
+
+// The largest F that distance and slope allow.
+class LargestFactors {
+ public:
+  LargestFactors(const ExactScene& scene, const std::vector<Part>& from, const std::vector<Part>& to)
+      : units_(scene.units), from_(from) {
+    if (to.size() > kMostParts) return;
+    for (const Part& source : to) sources_.push_back({positions_of(source.corners), plane_of(source, units_)});
+    bounds_.resize(from.size());
+  }
+
+  // From every point of the tile.
+  double on(const Tile& tile) {
+    if (bounds_.empty()) return 1.0;
+    std::vector<FactorBound>& bounds = bounds_[tile.part];
+    if (bounds.empty()) {
+      const Plane receiver = plane_of(from_[tile.part], units_);
+      for (const Source& source : sources_) bounds.emplace_back(source.corners, source.plane, receiver);
+    }
+    const std::vector<Vec3> corners = corners_of(from_[tile.part], tile, units_);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < bounds.size() && sum < 1.0; ++i) sum += bounds[i].on(corners);
+    return std::min(1.0, sum * kSum);
+  }
+
+ private:
+  struct Source {
+    std::vector<Vec3> corners;
+    Plane plane;
+  };
+  static constexpr std::size_t kMostParts = 256;  // of more, F is only known to be at most 1
+  static constexpr double kSum = 1.0 + 0x1p-40;   // more than the roundings of the sum
+
+  const Units& units_;
+  const std::vector<Part>& from_;
+  std::vector<Source> sources_;
+  std::vector<std::vector<FactorBound>> bounds_;  // by part; made when asked for
+};
+
 // Of means over the patch.
 struct Look {
   StratifiedMean f;
+  Ranges ranges;
   double unknown = 0.0;  // of the error of F
 };
 
 Look look_at(const ExactScene& scene, const std::vector<Part>& from, const Strata& strata, std::size_t number,
-             PointFactors& factors) {
+             PointFactors& factors, LargestFactors& largest) {
   Look look;
   for (std::size_t s = 0; s < strata.strata.size(); ++s) {
     kernel::poll();
@@ -67,7 +111,12 @@ Look look_at(const ExactScene& scene, const std::vector<Part>& from, const Strat
       }
     }
     const double share = strata.strata[s].area / strata.area;
+    double range = 0.0;
+    for (std::size_t t = strata.strata[s].begin; t < strata.strata[s].end; ++t) {
+      range = std::max(range, largest.on(strata.tiles[t]));
+    }
     look.f.add(means[0], means[1], share);
+    look.ranges.add(range, share);
     look.unknown += unknown * share;
   }
   return look;
@@ -75,8 +124,8 @@ Look look_at(const ExactScene& scene, const std::vector<Part>& from, const Strat
 
 }  // namespace
 
-SampledIntegral sampled_integral(const ExactScene& scene, const std::vector<Part>& parts, const Selection& to,
-                                 std::size_t budget, double target) {
+SampledMean sampled_mean(const ExactScene& scene, const std::vector<Part>& parts, const PreparedPatch& to,
+                         std::size_t budget, double target) {
   std::vector<Part> from;
   for (const Part& part : parts) {
     kernel::poll();
@@ -84,14 +133,16 @@ SampledIntegral sampled_integral(const ExactScene& scene, const std::vector<Part
   }
   std::size_t looks = 1;
   for (std::size_t strata = 4 * kFirstStrata; strata * kPointsOfStratum <= budget; strata *= 4) ++looks;
-  PointFactors factors(scene, from, to);
-  const double area = area_of(from);
-  SampledIntegral result{0.5 * area, 0.5 * area};
+  PointFactors factors(scene, from, to.selection);
+  LargestFactors largest(scene, from, to.parts);
+  const double of_shares = error_of_shares(from, scene.units);
+  SampledMean result;
   for (std::size_t number = 0, strata = kFirstStrata; number < looks; ++number, strata *= 4) {
     const Strata cut = strata_of(from, strata);
-    const Look look = look_at(scene, from, cut, number, factors);
-    const double error = (look.unknown + look.f.error(kRisk / static_cast<double>(looks), cut)) * area;
-    if (error < result.error) result = {look.f.value * area, error};
+    const Look look = look_at(scene, from, cut, number, factors, largest);
+    const double risk = kRisk / static_cast<double>(looks);
+    const double error = look.f.error(risk, look.ranges) + look.unknown + of_shares + kRoundedPoints;
+    if (error < result.error) result = {look.f.value, error};
     if (result.error <= target) break;
   }
   return result;

@@ -1,7 +1,6 @@
 #include "view_factors/strata.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
 #include "kernel/split_mix.h"
@@ -104,11 +103,6 @@ Strata strata_of(const std::vector<Part>& parts, std::size_t count) {
     result.strata.back().area += size;
   }
   for (const Stratum& stratum : result.strata) result.area += stratum.area;
-  for (const Stratum& stratum : result.strata) {
-    const double share = stratum.area / result.area;
-    result.squares_of_shares += share * share;
-    result.largest_share = std::max(result.largest_share, share);
-  }
   return result;
 }
 
@@ -146,20 +140,44 @@ Sample sample(const std::vector<Part>& parts, const Strata& strata, std::size_t 
   return {tile.part, points_in(parts[tile.part], tile, draws, units)};
 }
 
-void StratifiedMean::add(double a, double b, double share) {
-  const double half = 0.5 * (a - b) * share, square = half * half;
-  value += 0.5 * (a + b) * share;
-  variance += square;
-  of_variance += square * square;
+std::vector<Vec3> corners_of(const Part& part, const Tile& tile, const Units& units) {
+  const Integer whole = Integer(tile.columns) * Integer(tile.rows);
+  const auto at = [&](std::uint32_t across, std::uint32_t up) {
+    return point_at(part, tile, Integer(tile.column + across) * Integer(tile.rows),
+                    Integer(tile.row + up) * Integer(tile.columns), whole, units)
+        .at;
+  };
+  std::vector<Vec3> corners{at(0, 0), at(1, 0), at(0, 1)};
+  if (tile.shape == Tile::Shape::kParallelogram) corners.push_back(at(1, 1));
+  return corners;
 }
 
-double StratifiedMean::error(double risk, const Strata& strata) const {
-  if (!(of_variance > 0.0)) return std::min(1.0, -0.5 * std::log(risk) * strata.largest_share);
-  const double freedom = std::max(1.0, variance * variance / of_variance);
-  const boost::math::students_t_distribution<double> student(freedom);
-  const double t = boost::math::quantile(boost::math::complement(student, 0.25 * risk));
-  const double hoeffding = 0.5 * std::sqrt(std::log(4.0 / risk) * strata.squares_of_shares);
-  return std::min({1.0, t * std::sqrt(variance), hoeffding});
+void Ranges::add(double range, double share) {
+  const double weighted = range * share;
+  largest = std::max(largest, weighted);
+  squares += weighted * weighted;
+}
+
+Ranges ranges_of(const Strata& strata, double range) {
+  Ranges ranges;
+  for (const Stratum& stratum : strata.strata) ranges.add(range, stratum.area / strata.area);
+  return ranges;
+}
+
+void StratifiedMean::add(double a, double b, double share) {
+  const double half = 0.5 * (a - b) * share;
+  value += 0.5 * (a + b) * share;
+  square += half * half;
+}
+
+double StratifiedMean::error(double risk, const Ranges& ranges) const {
+  const double of_two = std::log(8.0 / risk), of_one = std::log(4.0 / risk), r = 0.5 * ranges.largest;
+  const double unmet = 2.0 * r * r * of_one;
+  const double deviation = 0.5 * (std::sqrt(unmet) + std::sqrt(unmet + 4.0 * square)), third = r * of_two / 3.0;
+  const double bernstein = third + std::sqrt(third * third + 2.0 * deviation * deviation * of_two);
+  const double hoeffding = 0.5 * std::sqrt(of_two * ranges.squares);
+  const double none_met = value == 0.0 ? 0.5 * of_one * ranges.largest : HUGE_VAL;
+  return std::min({1.0, bernstein, hoeffding, none_met});
 }
 
 }  // namespace exactff::view_factors

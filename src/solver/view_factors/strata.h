@@ -9,7 +9,7 @@
 
 namespace exactff::view_factors {
 
-inline constexpr std::size_t kFewestStrata = 36;  // for an interval of Student's t; with fewer it is too narrow
+inline constexpr std::size_t kFewestStrata = 36;
 
 // Counter-based random numbers: the n-th number depends on the key alone. Different keys, independent numbers.
 class Draws {
@@ -42,15 +42,13 @@ struct Stratum {
 struct Strata {
   std::vector<Tile> tiles;
   std::vector<Stratum> strata;
-  double area = 0.0;               // of all
-  double squares_of_shares = 0.0;  // sum of the squares of the strata's shares of it
-  double largest_share = 0.0;
+  double area = 0.0;  // of all
 };
 
 // About `count` strata, and not fewer. A part that is a parallelogram is cut into small ones; any other part into those
 // of its fan's triangles. Each tile is a stratum, unless there are more than 2 `count`: then tiles in a row share one
 // until it has an area of total / count, those of fragments (cut_at_contacts) only if there are more than 4 `count`. If
-// only a few strata were shared, most of the variance would come from them, and the mean would not be nearly normal.
+// only a few strata were shared, most of the variance would come from them.
 [[nodiscard]] Strata strata_of(const std::vector<Part>& parts, std::size_t count);
 
 // The tile at a random place in the first or second half of the stratum's area, for its two draws. Where several tiles
@@ -64,6 +62,9 @@ struct Strata {
 [[nodiscard]] std::vector<Point> points_in(const Part& part, const Tile& tile, Draws& draws, const Units& units);
 inline constexpr std::size_t kFewestPoints = 2;  // of a draw
 
+// Its corners, rounded once.
+[[nodiscard]] std::vector<Vec3> corners_of(const Part& part, const Tile& tile, const Units& units);
+
 // The points of one of the two draws of a stratum, in one part.
 struct Sample {
   std::size_t part;
@@ -73,24 +74,47 @@ inline constexpr std::size_t kDraws = 2;
 [[nodiscard]] Sample sample(const std::vector<Part>& parts, const Strata& strata, std::size_t look, std::size_t stratum,
                             std::size_t draw, const Units& units);
 
-// The mean over the strata of a function between 0 and 1, from two independent numbers in each: their mean has a
-// variance that (difference / 2)^2 estimates without bias. The strata's variances add up; their sum has an estimated
-// number of degrees of freedom (Welch, Biometrika 34, 1947), for which Student's t gives the interval.
+// Proved bounds of a function on strata: it lies in [0, R_s] on stratum s, with the share w_s of the area.
+struct Ranges {
+  double largest = 0.0;  // of w_s R_s
+  double squares = 0.0;  // the sum of (w_s R_s)^2
+
+  void add(double range, double share);
+  // For a range that is so many times as large everywhere.
+  [[nodiscard]] Ranges scaled(double factor) const { return {factor * largest, factor * factor * squares}; }
+};
+// Of a function with the same range everywhere.
+[[nodiscard]] Ranges ranges_of(const Strata& strata, double range);
+
+// The mean over the strata of a function, from two independent numbers a_s and b_s in each.
 //
-// Where a few strata vary most, there are few degrees of freedom, and the bound of Hoeffding (J. Am. Stat. Assoc. 58,
-// 1963) may be narrower. The mean is a sum of independent terms, two of each stratum, between 0 and half its share s.
-// So it is off by e or more with a probability of at most 2 exp(-4 e^2 / sum s^2). Each bound has half of the risk.
+// It is the sum of independent terms w_s a_s / 2 and w_s b_s / 2, which lie in [0, r] with r = max w_s R_s / 2. Let V
+// be its variance. D_s = (w_s (a_s - b_s) / 2)^2 has a mean of at least the variance of stratum s, and lies in
+// [0, r^2]. No stratum is believed for agreeing with itself: nothing is assumed of the function but its ranges. Three
+// bounds of the error hold together with a probability of 1 - risk:
+//
+//   Bernstein     e = r L / 3 + sqrt((r L / 3)^2 + 2 V L),  L = log(8 / risk). V is not known, but a sum S of
+//   independent
+//                 numbers in [0, r^2] falls below its mean M by t or more with a probability of at most
+//                 exp(-t^2 / (2 r^2 M)) (Maurer, J. Inequal. Pure Appl. Math. 4(1), 2003). So with S the sum of the
+//                 D_s and l = log(4 / risk), sqrt(V) <= sqrt(M) <= (sqrt(2 r^2 l) + sqrt(2 r^2 l + 4 S)) / 2, except
+//                 with a probability of risk / 4. (As Maurer and Pontil, "Empirical Bernstein Bounds", COLT 2009, but
+//                 with differences inside strata.)
+//   Hoeffding     e = sqrt(log(8 / risk) sum (w_s R_s)^2) / 2 (J. Am. Stat. Assoc. 58, 1963).
+//   none is met   If all numbers are 0: let the function be positive on the share p_s of stratum s. Both numbers are 0
+//                 with a probability of at most (1 - p_s)^2 <= exp(-2 p_s), of all strata exp(-2 sum p_s), which is
+//                 risk / 4 if the sum is l / 2. The mean is at most sum w_s R_s p_s <= l / 2 max w_s R_s.
+//
+// The points of one draw are not independent, and need not be. Where two draws of a stratum lie in different halves of
+// it, their mean has no bias, the mean of D_s is even larger, and (1 - p)(1 - q) <= exp(-(p + q)) as well.
 struct StratifiedMean {
   double value = 0.0;
-  double variance = 0.0, of_variance = 0.0;  // sums of the strata's variances, and of their squares
+  double square = 0.0;  // the sum of the D_s
 
   // The numbers of a stratum with this share of the area.
   void add(double a, double b, double share);
-  // Exceeded with a probability of at most `risk`. Where all numbers agree, the function may differ where no point was.
-  // Let the set where it does have a share p_s of stratum s. Both draws miss it with a probability of at most the
-  // product of (1 - p_s)^2 <= exp(-2 sum p_s), which is the risk if the sum is -log(risk) / 2, and the set's share of
-  // all is at most this sum times the largest share of a stratum. (The points of one draw are not independent.)
-  [[nodiscard]] double error(double risk, const Strata& strata) const;
+  // Exceeded with a probability of at most `risk`.
+  [[nodiscard]] double error(double risk, const Ranges& ranges) const;
 };
 
 }  // namespace exactff::view_factors

@@ -34,14 +34,10 @@ namespace view_factors {
 namespace {
 
 constexpr std::size_t kCellsOfAPoint = 4;  // that cost about as much as a point factor in a crowd
-constexpr double kShareOfTarget = 0.99;    // certified: leaves room for the roundings of sums
-constexpr double kRounding = 0x1p-44;      // relative: more than the roundings of formula and sums in usual scenes
+constexpr double kShareOfTarget = 0.99;    // leaves room for the roundings of sums
 
-void take_enclosure(const ExactScene& scene, const Refinement& refinement, const PreparedPatch& from,
-                    ViewFactor& result) {
-  const Disc area = enclosed_area_of(from.parts, scene.units);
-  const Disc f = refinement.enclosure(area) / area;
-  result.claim = Claim::kCertified;
+void take_interval(const Refinement& refinement, const PreparedPatch& from, ViewFactor& result) {
+  const Disc f = refinement.enclosure(from.enclosed_area) / from.enclosed_area;
   result.lower = is_finite(f) ? std::clamp(lower_end(f), 0.0, 1.0) : 0.0;
   result.upper = is_finite(f) ? std::clamp(upper_end(f), 0.0, 1.0) : 1.0;
   result.value = is_finite(f) ? std::clamp(f.centre, result.lower, result.upper) : 0.5;
@@ -52,27 +48,18 @@ bool is_within(double accuracy, const ViewFactor& f, const PreparedPatch& from, 
   return std::max(width, width * from.unit_area / to.unit_area) <= accuracy;
 }
 
-void take_estimate(const Refinement& refinement, const PreparedPatch& from, ViewFactor& result) {
-  result.claim = Claim::kTopologyProved;
-  result.value = std::clamp(refinement.integral() / from.unit_area, 0.0, 1.0);
-  const double error = refinement.error() / from.unit_area + kRounding * result.value;
-  result.lower = std::max(0.0, result.value - error);
-  result.upper = std::min(1.0, result.value + error);
-}
-
 // If the cells of a crowd tell less than statistics.
 void sample_if_better(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to,
                       const ViewFactorOptions& options, double target, ViewFactor& result) {
-  const SampledIntegral sampled =
-      sampled_integral(scene, from.parts, to.selection, options.budget / kCellsOfAPoint, target);
-  const double value = sampled.value / from.unit_area, error = sampled.error / from.unit_area + kRoundedPoints;
+  const auto [value, error] =
+      sampled_mean(scene, from.parts, to, options.budget / kCellsOfAPoint, target / from.unit_area);
   const double lower = std::max(0.0, value - error), upper = std::min(1.0, value + error);
   if (!(upper - lower < result.upper - result.lower)) return;
-  result.claim = Claim::kStatistical;
+  result.way = Way::kPoints;
   result.value = std::clamp(value, 0.0, 1.0);
   result.lower = lower;
   result.upper = upper;
-  result.accurate = error * from.unit_area <= target;
+  result.accurate = is_within(options.accuracy, result, from, to);
 }
 
 }  // namespace
@@ -86,34 +73,31 @@ ViewFactor factor_between(const ExactScene& scene, const SeenParts& seen, const 
   Refinement refinement(scene, seen, from, to, options, target, memory);
   result.cells = refinement.cells();
   if (refinement.is_zero()) return result;
-  refinement.refine(options.certify ? kShareOfTarget * target : target);
+  refinement.refine(kShareOfTarget * target);
   result.cells = refinement.cells();
   result.event_cells = refinement.event_cells();
-  if (options.certify) {
-    take_enclosure(scene, refinement, from, result);
-    result.accurate = is_within(options.accuracy, result, from, to);
-    return result;
+  result.claim = options.certify ? Claim::kCertified : Claim::kEstimated;
+  take_interval(refinement, from, result);
+  result.accurate = is_within(options.accuracy, result, from, to);
+  if (!options.certify && !result.accurate && options.sample_crowds) {
+    sample_if_better(scene, from, to, options, target, result);
   }
-  take_estimate(refinement, from, result);
-  result.accurate = refinement.error() <= target;
-  if (!result.accurate && options.sample_crowds) sample_if_better(scene, from, to, options, target, result);
   return result;
 }
 
-ViewFactor transpose(const ExactScene& scene, const ViewFactor& f, const PreparedPatch& from, const PreparedPatch& to) {
+ViewFactor transpose(const ViewFactor& f, const PreparedPatch& from, const PreparedPatch& to) {
   ViewFactor result = f;
   std::swap(result.area_from, result.area_to);
-  if (f.claim == Claim::kCertified) {
-    const Disc exact = enclosed_area_of(from.parts, scene.units) / enclosed_area_of(to.parts, scene.units);
-    result.lower = std::clamp(lower_end(f.lower * exact), 0.0, 1.0);
-    result.upper = std::clamp(upper_end(f.upper * exact), 0.0, 1.0);
-    result.value = std::clamp(f.value * exact.centre, result.lower, result.upper);
-    return result;
+  if (f.claim == Claim::kZero) return result;
+  const Disc ratio = from.enclosed_area / to.enclosed_area;
+  if (!is_finite(ratio)) {
+    result.lower = 0.0;
+    result.upper = 1.0;
+  } else {
+    result.lower = std::clamp(lower_end(f.lower * ratio), 0.0, 1.0);
+    result.upper = std::clamp(upper_end(f.upper * ratio), 0.0, 1.0);
   }
-  const double ratio = from.unit_area / to.unit_area;
-  result.value = std::min(1.0, f.value * ratio);
-  result.lower = std::min(1.0, f.lower * ratio * (1.0 - kRounding));
-  result.upper = std::min(1.0, f.upper * ratio * (1.0 + kRounding));
+  result.value = std::clamp(f.value * (from.unit_area / to.unit_area), result.lower, result.upper);
   return result;
 }
 
@@ -121,14 +105,24 @@ ViewFactor transpose(const ExactScene& scene, const ViewFactor& f, const Prepare
 
 std::string_view to_string(Claim claim) {
   switch (claim) {
-    case Claim::kStatistical:
-      return "statistical";
-    case Claim::kTopologyProved:
-      return "topology-proved";
+    case Claim::kEstimated:
+      return "estimated";
     case Claim::kCertified:
       return "certified";
     case Claim::kZero:
       return "zero";
+  }
+  return {};
+}
+
+std::string_view to_string(Way way) {
+  switch (way) {
+    case Way::kCells:
+      return "cells";
+    case Way::kPoints:
+      return "points";
+    case Way::kViews:
+      return "views";
   }
   return {};
 }

@@ -13,7 +13,6 @@ class PairMemory;
                                         const PreparedPatch& to, const ViewFactorOptions& options, PairMemory& memory);
 
 // F_ji, from f = F_ij. Requires A_i F_ij = A_j F_ji: planar patches.
-[[nodiscard]] ViewFactor transpose(const ExactScene& scene, const ViewFactor& f, const PreparedPatch& from,
-                                   const PreparedPatch& to);
+[[nodiscard]] ViewFactor transpose(const ViewFactor& f, const PreparedPatch& from, const PreparedPatch& to);
 
 }  // namespace exactff::view_factors

@@ -27,16 +27,15 @@ struct Asked {
 
 TEST(SpeedAdvice, DependsOnWhatWasAsked) {
   Asked asked;
-  EXPECT_EQ(
-      asked.words(true),
-      "Faster: --draft, whose entries are statistical; --accuracy 0.001 instead of 1e-06; a smaller --budget than "
-      "100000, for wider entries; fewer rows than 2 by --from");
+  EXPECT_EQ(asked.words(true),
+            "Faster: --draft, whose entries are estimated; --accuracy 0.001 instead of 1e-06; a smaller --budget than "
+            "100000, for wider entries; fewer rows than 2 by --from");
   asked.request.options.factors.certify = true;
   asked.request.options.factors.accuracy = 0.01;
   asked.request.options.backs = true;
   asked.request.from.pop_back();
   EXPECT_EQ(asked.words(true),
-            "Faster: --draft instead of --certify, whose entries are statistical; no --certify, so that errors are "
+            "Faster: --draft instead of --certify, whose entries are estimated; no --certify, so that errors are "
             "estimated; a smaller --budget than 100000, for wider entries; no --backs");
   asked.request.options.factors.both_directions = true;
   EXPECT_EQ(asked.words(false),
@@ -67,7 +66,7 @@ TEST(SpeedAdvice, IsGivenOnceAfterSomeSeconds) {
   slow.send(SIGINT);
   EXPECT_EQ(slow.wait(), 128 + SIGINT);
   const std::string said = slow.error();
-  EXPECT_TRUE(said.starts_with("note: this takes more than 5 s. Faster: --draft, whose entries are statistical; "))
+  EXPECT_TRUE(said.starts_with("note: this takes more than 5 s. Faster: --draft, whose entries are estimated; "))
       << said;
   EXPECT_EQ(said.find("note: "), said.rfind("note: ")) << said;
   const RunningProgram quick(EXACTFF_PROGRAM, {"matrix", "@closed-room", "--from", "lamp", "--to", "ceiling"},

@@ -19,7 +19,7 @@
 namespace exactff::check {
 namespace {
 
-constexpr const char* kHead = "from,to,factor,lower,upper,claim,accurate,area_from,area_to,cells,event_cells\n";
+constexpr const char* kHead = "from,to,factor,lower,upper,claim,way,accurate,area_from,area_to,cells,event_cells\n";
 
 struct OfMatrix : Report {
   MatrixFacts matrix;
@@ -27,21 +27,21 @@ struct OfMatrix : Report {
 
 class CheckMatrix : public testing::Test {
  protected:
-  // Areas 1, 2 and 4. F_ab = 0.5 within 1e-3; F_ac is statistical and wide.
+  // Areas 1, 2 and 4. F_ab = 0.5 within 1e-3; F_ac is by points and wide.
   void SetUp() override {
     truth_ = write("truth.csv", std::string("# exactff 0.1.0 matrix: view factors\n") + kHead +
-                                    "a,a,0,0,0,zero,yes,1,1,0,0\n"
-                                    "a,b,0.5,0.4995,0.5005,topology-proved,yes,1,2,9,0\n"
-                                    "a,c,0.4,0.35,0.45,statistical,no,1,4,9,0\n"
-                                    "a,(back),0.1,0.1,0.1,topology-proved,yes,1,3,9,0\n"
-                                    "b,a,0.25,0.24975,0.25025,topology-proved,yes,2,1,9,0\n"
-                                    "b,b,0,0,0,zero,yes,2,2,0,0\n"
-                                    "b,c,0.5,0.5,0.5,topology-proved,yes,2,4,9,0\n"
-                                    "b,(back),0.25,0.25,0.25,topology-proved,yes,2,3,9,0\n"
-                                    "c,a,0.1,0.0875,0.1125,statistical,no,4,1,9,0\n"
-                                    "c,b,0.25,0.25,0.25,topology-proved,yes,4,2,9,0\n"
-                                    "c,c,0,0,0,zero,yes,4,4,0,0\n"
-                                    "c,(back),0.65,0.65,0.65,topology-proved,yes,4,3,9,0\n");
+                                    "a,a,0,0,0,zero,cells,yes,1,1,0,0\n"
+                                    "a,b,0.5,0.4995,0.5005,estimated,cells,yes,1,2,9,0\n"
+                                    "a,c,0.4,0.35,0.45,estimated,points,no,1,4,9,0\n"
+                                    "a,(back),0.1,0.1,0.1,estimated,cells,yes,1,3,9,0\n"
+                                    "b,a,0.25,0.24975,0.25025,estimated,cells,yes,2,1,9,0\n"
+                                    "b,b,0,0,0,zero,cells,yes,2,2,0,0\n"
+                                    "b,c,0.5,0.5,0.5,estimated,cells,yes,2,4,9,0\n"
+                                    "b,(back),0.25,0.25,0.25,estimated,cells,yes,2,3,9,0\n"
+                                    "c,a,0.1,0.0875,0.1125,estimated,points,no,4,1,9,0\n"
+                                    "c,b,0.25,0.25,0.25,estimated,cells,yes,4,2,9,0\n"
+                                    "c,c,0,0,0,zero,cells,yes,4,4,0,0\n"
+                                    "c,(back),0.65,0.65,0.65,estimated,cells,yes,4,3,9,0\n");
   }
   std::string write(const std::string& name, const std::string& text) const {
     return directory_.write(name, text).string();
@@ -114,15 +114,34 @@ TEST_F(CheckMatrix, AnErrorIsTheDistanceFromTheBounds) {
   EXPECT_NEAR(low.worst[0].error, -0.0005, 1e-15);
 }
 
+TEST_F(CheckMatrix, ClaimsOfOlderFilesAreEstimates) {
+  truth_ = write("old.csv",
+                 "from,to,factor,lower,upper,claim,accurate,area_from,area_to,cells,event_cells\n"
+                 "a,a,0,0,0,zero,yes,1,1,0,0\na,b,0.5,0.4995,0.5005,topology-proved,yes,1,2,9,0\n"
+                 "b,a,0.25,0.2,0.3,statistical,no,2,1,9,0\nb,b,0,0,0,zero,yes,2,2,0,0\n");
+  const matrix::Table table = matrix::read_csv(truth_);
+  EXPECT_TRUE(table.has_old_claims);
+  EXPECT_EQ(table.entries[1].claim, Claim::kEstimated);
+  EXPECT_EQ(table.entries[1].way, Way::kCells);
+  EXPECT_EQ(table.entries[2].claim, Claim::kEstimated);
+  EXPECT_EQ(table.entries[2].way, Way::kPoints);
+  const OfMatrix found = report(write("m.csv", "0,0.5\n0.25,0\n"));
+  EXPECT_TRUE(found.passed());
+  EXPECT_NE(sentences(found.matrix).front().find("'topology-proved' and 'statistical' count as estimated"),
+            std::string::npos);
+  SetUp();
+  EXPECT_FALSE(matrix::read_csv(truth_).has_old_claims);
+}
+
 TEST_F(CheckMatrix, WidthsThatWereAcceptedAreTold) {
   const OfMatrix found = report(write("m.csv", "0,0.5,0.4\n0.25,0,0.5\n0.1,0.25,0\n"), {.max_abs = 0.0});
   EXPECT_TRUE(found.passed());
-  EXPECT_EQ(found.statistical, 2U);
+  EXPECT_EQ(found.by_points, 2U);
   EXPECT_EQ(found.not_accurate, 2U);
   EXPECT_EQ(found.not_certified, 0U);
   std::string all;
   for (const std::string& warning : warnings(found)) all += warning + '\n';
-  EXPECT_NE(all.find("2 entries of the truth statistical: judged by their bounds, which are up to 0.1 wide"),
+  EXPECT_NE(all.find("2 entries of the truth estimated by points: judged by their bounds, which are up to 0.1 wide"),
             std::string::npos)
       << all;
   EXPECT_NE(junit_xml(found, found.matrix).find("sums of rows"), std::string::npos);
@@ -173,13 +192,15 @@ TEST_F(CheckMatrix, WhatCannotBeComparedIsRefusedWithItsPlace) {
   for (const auto& [file, words] : cases) {
     EXPECT_NE(refusal(file).find(words), std::string::npos) << file << ": " << refusal(file);
   }
-  truth_ = write("bad.csv", std::string(kHead) + "a,a,0.5,0.6,0.7,zero,yes,1,1,0,0\n");
+  truth_ = write("bad.csv", std::string(kHead) + "a,a,0.5,0.6,0.7,zero,cells,yes,1,1,0,0\n");
   EXPECT_NE(refusal(truth_).find("bad.csv:2: the entry is not within its bounds"), std::string::npos);
-  truth_ = write("claim.csv", std::string(kHead) + "a,a,0,0,0,perfect,yes,1,1,0,0\n");
+  truth_ = write("claim.csv", std::string(kHead) + "a,a,0,0,0,perfect,cells,yes,1,1,0,0\n");
   EXPECT_NE(refusal(truth_).find("claim.csv:2: unknown claim 'perfect'"), std::string::npos);
+  truth_ = write("way.csv", std::string(kHead) + "a,a,0,0,0,zero,magic,yes,1,1,0,0\n");
+  EXPECT_NE(refusal(truth_).find("way.csv:2: unknown way 'magic'"), std::string::npos);
   truth_ = write("torn.csv", std::string(kHead) +
-                                 "a,a,0,0,0,zero,yes,1,1,0,0\na,b,0,0,0,zero,yes,1,1,0,0\n"
-                                 "b,a,0,0,0,zero,yes,1,1,0,0\n");
+                                 "a,a,0,0,0,zero,cells,yes,1,1,0,0\na,b,0,0,0,zero,cells,yes,1,1,0,0\n"
+                                 "b,a,0,0,0,zero,cells,yes,1,1,0,0\n");
   EXPECT_NE(refusal(truth_).find("has not the columns of the first row"), std::string::npos);
 }
 
@@ -238,7 +259,7 @@ TEST_F(CheckMatrix, TheCommandJudgesWritesAndHoldsABaseline) {
   EXPECT_NE(validation::text_of(path("a.xml")).find("row 'a', column 'c'"), std::string::npos);
   const auto json = nlohmann::json::parse(validation::text_of(path("a.json")));
   EXPECT_EQ(json["matrix"]["negative"], 0);
-  EXPECT_EQ(json["worst"][0]["status"], "statistical");
+  EXPECT_EQ(json["worst"][0]["status"], "estimated");
   EXPECT_EQ(check({"--max-abs", "0.2"}).exit_code, 0);
   EXPECT_EQ(check({"--write-baseline", path("base.json")}).exit_code, 0);
   EXPECT_EQ(check({"--baseline", path("base.json")}).exit_code, 0);

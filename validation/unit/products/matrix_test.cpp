@@ -198,8 +198,8 @@ TEST(Matrix, SaysWhyRowsNeedNotAddUpToOne) {
 }
 
 TEST(Matrix, TheWeakerClaimIsMadeOfASum) {
-  EXPECT_EQ(weaker(Claim::kZero, Claim::kTopologyProved), Claim::kTopologyProved);
-  EXPECT_EQ(weaker(Claim::kTopologyProved, Claim::kZero), Claim::kTopologyProved);
+  EXPECT_EQ(weaker(Claim::kZero, Claim::kEstimated), Claim::kEstimated);
+  EXPECT_EQ(weaker(Claim::kEstimated, Claim::kZero), Claim::kEstimated);
   EXPECT_EQ(weaker(Claim::kZero, Claim::kZero), Claim::kZero);
 }
 
@@ -368,9 +368,9 @@ TEST_F(MatrixFilesOfTheCommand, HaveBackAndOpenAsColumns) {
   EXPECT_EQ(plain.exit_code, 0);
   EXPECT_NE(plain.output.find("below\t(back)\t0.199"), std::string::npos) << plain.output;
   EXPECT_NE(plain.output.find("below\t(open)\t0.80017"), std::string::npos) << plain.output;
-  EXPECT_NE(plain.output.find("cover\t(back)\t0\t0\tzero\n"), std::string::npos) << plain.output;
+  EXPECT_NE(plain.output.find("cover\t(back)\t0\t0\tzero\tcells\n"), std::string::npos) << plain.output;
   EXPECT_EQ(std::ranges::count(plain.output, '\n'), 2 * 4);
-  EXPECT_NE(validation::text_of(file("m.csv")).find("\ncover,(back),0,0,0,zero,yes,1,2,"), std::string::npos);
+  EXPECT_NE(validation::text_of(file("m.csv")).find("\ncover,(back),0,0,0,zero,cells,yes,1,2,"), std::string::npos);
   const validation::ProgramRun table = run({scene, "--accuracy", "1e-3", "--backs", "--to", "all", "--to", "sky"});
   EXPECT_NE(table.output.find("Every row adds up to 1 within its bounds."), std::string::npos);
   EXPECT_NE(table.output.find("(open)"), std::string::npos);
@@ -410,7 +410,7 @@ TEST_F(MatrixFilesOfTheCommand, HaveBothDirectionsAndBothSides) {
   const validation::ProgramRun sided =
       run({scene_, "--accuracy", "1e-3", "--two-sided", "srf-1", "--from", "srf-1 (back)", "--to", "srf-2", "--plain"});
   EXPECT_EQ(sided.exit_code, 0);
-  EXPECT_EQ(sided.output, "srf-1 (back)\tsrf-2\t0\t0\tzero\n");
+  EXPECT_EQ(sided.output, "srf-1 (back)\tsrf-2\t0\t0\tzero\tcells\n");
   EXPECT_EQ(run({scene_, "--two-sided", "srf-9"}).exit_code, 2);
 }
 

@@ -91,7 +91,7 @@ TEST(Radiosity, OfAFurnaceIsEmissionOverAbsorption) {
     expect_holds(solution.channels[2].irradiance[i], 0.1, 1e-4);
   }
   EXPECT_TRUE(solution.is_bounded());
-  EXPECT_EQ(solution.claim, Claim::kTopologyProved);
+  EXPECT_EQ(solution.claim, Claim::kEstimated);
   EXPECT_EQ(solution.reasons_against_balance, std::vector<std::string>{});
   EXPECT_TRUE(is_balanced(solution));
   EXPECT_EQ(solution.channels[0].balance.back.upper, 0.0);
@@ -203,12 +203,12 @@ TEST(Radiosity, MakesTheWeakestClaimOfItsEntries) {
   const std::vector<Selection> patches = patches_of(scene);
   matrix::Matrix matrix =
       matrix::compute(scene, patches, patches, {.factors = {.accuracy = 1e-2}, .backs = true, .open = true});
-  EXPECT_EQ(solve(scene, matrix).claim, Claim::kTopologyProved);
-  matrix.open[1].claim = Claim::kStatistical;
-  EXPECT_EQ(solve(scene, matrix).claim, Claim::kTopologyProved);
-  EXPECT_EQ(solve(scene, matrix).claim_of_balance, Claim::kStatistical);
-  matrix.factors.entries[1].claim = Claim::kStatistical;
-  EXPECT_EQ(solve(scene, matrix).claim, Claim::kStatistical);
+  EXPECT_EQ(solve(scene, matrix).claim, Claim::kEstimated);
+  matrix.open[1].claim = Claim::kEstimated;
+  EXPECT_EQ(solve(scene, matrix).claim, Claim::kEstimated);
+  EXPECT_EQ(solve(scene, matrix).claim_of_balance, Claim::kEstimated);
+  matrix.factors.entries[1].claim = Claim::kEstimated;
+  EXPECT_EQ(solve(scene, matrix).claim, Claim::kEstimated);
 }
 
 // Radiosities far from 1, up to the limits of doubles.
@@ -256,7 +256,7 @@ TEST_F(RadiosityCommand, PrintsTheSameNumbersInEveryForm) {
       EXPECT_EQ(std::stod(value), b.value);
       EXPECT_EQ(std::stod(lower), b.lower);
       EXPECT_EQ(std::stod(upper), b.upper);
-      EXPECT_EQ(claim, "topology-proved");
+      EXPECT_EQ(claim, "estimated");
     }
   }
   const std::string csv = validation::text_of(file("b.csv"));

@@ -104,7 +104,7 @@ TEST_P(StrataOf, AreAtLeastAsManyAsAskedForAndShareTheArea) {
     EXPECT_GE(strata.strata.size(), count);
     EXPECT_LE(strata.strata.size(), 2 * count + 10);
     EXPECT_NEAR(strata.area, area_of(parts_), 1e-12 * strata.area);
-    EXPECT_LE(strata.largest_share, 1.00001 / static_cast<double>(count));
+    EXPECT_LE(ranges_of(strata, 1.0).largest, 1.00001 / static_cast<double>(count));
   }
 }
 
@@ -127,7 +127,7 @@ TEST_P(StrataOf, MeansOfLinearFunctionsAreExact) {
   const auto f = [](const Vec3& p) { return 0.25 + 0.5 * p.x - 0.125 * p.y + 0.75 * p.z; };
   const StratifiedMean mean = mean_of(strata_of(parts_, 36), 0, f);
   EXPECT_NEAR(mean.value, exact_mean(f), 1e-9);
-  EXPECT_LT(mean.variance, 1e-18);
+  EXPECT_LT(mean.square, 1e-18);
 }
 
 // The mean over many looks, within five standard errors; and what the looks say of their variance.
@@ -140,7 +140,7 @@ TEST_P(StrataOf, MeansOfSquaresAreUnbiased) {
     const StratifiedMean mean = mean_of(strata, look, f);
     sum += mean.value;
     squares += mean.value * mean.value;
-    variance += mean.variance / kLooks;
+    variance += mean.square / kLooks;
   }
   const double average = sum / kLooks, spread = squares / kLooks - average * average;
   EXPECT_NEAR(average, exact_mean(f), 5.0 * std::sqrt(spread / kLooks));
@@ -206,25 +206,62 @@ TEST(Strata, OfManyFacesShareTheirFacesWithoutBias) {
     }
     sum += mean.value;
     squares += mean.value * mean.value;
-    variance += mean.variance / kLooks;
+    variance += mean.square / kLooks;
   }
   const double average = sum / kLooks, spread = squares / kLooks - average * average;
   EXPECT_NEAR(average, odd / x, 5.0 * std::sqrt(spread / kLooks));
   EXPECT_GT(variance, 0.9 * spread);
 }
 
-// Both draws of each of 36 strata agree, so only what no draw has met may differ.
-TEST(Strata, WhereAllNumbersAgreeWhatNoDrawHasMetCounts) {
+// All draws of 36 strata are 0.
+TEST(Strata, WhatNoDrawHasMetCounts) {
   PlainScene plain;
   plain.add_ring(plain.patch("square"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
   const Scene scene = generate::build(plain);
   const ExactScene exact(scene);
   const Strata strata = strata_of(parts_of(exact, scene.select("square")), 36);
   const StratifiedMean none;
-  const double error = none.error(1e-6, strata);
-  EXPECT_NEAR(error, 0.19188, 1e-4);
+  const double error = none.error(1e-6, ranges_of(strata, 1.0));
+  EXPECT_NEAR(error, 0.21114, 1e-4);
+  EXPECT_NEAR(none.error(1e-6, ranges_of(strata, 0.125)), 0.125 * error, 1e-12);
   EXPECT_LE(std::pow(1.0 - error, 72.0), 1e-6)
       << "the probability that 72 draws miss a set of this share, evenly spread";
+}
+
+// The mean of a function that is 1 on a strip of the unit square and 0 elsewhere. However the strip lies, the interval
+// holds its width, though all draws of most strata agree.
+TEST(Strata, IntervalsHoldTheMeansOfStrips) {
+  PlainScene plain;
+  plain.add_ring(plain.patch("square"), {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  const Scene scene = generate::build(plain);
+  const ExactScene exact(scene);
+  const std::vector<Part> parts = parts_of(exact, scene.select("square"));
+  constexpr std::size_t kLooks = 100;
+  for (const std::size_t count : {36, 100}) {
+    const Strata strata = strata_of(parts, count);
+    for (const double width : {1e-4, 1e-3, 0.01, 0.03, 0.1, 0.5}) {
+      double largest = 0.0;
+      for (std::size_t look = 0; look < kLooks; ++look) {
+        const double from = 0.9 * (1.0 - width) * static_cast<double>(look) / kLooks;
+        StratifiedMean mean;
+        for (std::size_t s = 0; s < strata.strata.size(); ++s) {
+          std::array<double, 2> means{};
+          for (std::size_t d = 0; d < 2; ++d) {
+            const std::vector<Point> points = sample(parts, strata, look, s, d, exact.units).points;
+            for (const Point& p : points) {
+              const double x = std::ldexp(p.at.x, static_cast<int>(exact.units.exponent + exact.units.shift));
+              means[d] += (x >= from && x < from + width ? 1.0 : 0.0) / static_cast<double>(points.size());
+            }
+          }
+          mean.add(means[0], means[1], strata.strata[s].area / strata.area);
+        }
+        const double error = mean.error(1e-6, ranges_of(strata, 1.0)), off = std::abs(mean.value - width);
+        EXPECT_LE(off, error) << count << ' ' << width << ' ' << look;
+        largest = std::max(largest, off / error);
+      }
+      EXPECT_LT(largest, 1.0);
+    }
+  }
 }
 
 // Of a unit square with other faces on it.

@@ -46,7 +46,7 @@ PlainScene plates_with_plate(double side, double plate, double height) {
 void expect_factor(const Scene& scene, const char* from, const char* to, double accuracy, double truth) {
   const ViewFactor f = view_factor(scene, named(scene, from), named(scene, to), {.accuracy = accuracy});
   EXPECT_TRUE(f.accurate);
-  EXPECT_EQ(f.claim, Claim::kTopologyProved);
+  EXPECT_EQ(f.claim, Claim::kEstimated);
   EXPECT_LE(f.lower, truth);
   EXPECT_GE(f.upper, truth);
   EXPECT_LE(f.upper - f.lower, accuracy * 1.001);
@@ -225,7 +225,7 @@ TEST(ViewFactor, ProvesZeros) {
   EXPECT_EQ(claim("below", "above"), Claim::kZero);
   EXPECT_EQ(claim("back", "above"), Claim::kZero);
   EXPECT_EQ(claim("below", "below"), Claim::kZero);
-  EXPECT_EQ(claim("lid", "above"), Claim::kTopologyProved);
+  EXPECT_EQ(claim("lid", "above"), Claim::kEstimated);
 }
 
 TEST(ViewFactor, SplittingAPatchAddsUp) {
@@ -266,14 +266,14 @@ TEST(ViewFactor, KeepsItsWidthWhereTheBudgetIsUsedUp) {
   EXPECT_GT(fine.event_cells, 0U);
   const ViewFactor coarse = view_factor(built, from, to, {.accuracy = 1e-4, .budget = 50, .sample_crowds = false});
   EXPECT_FALSE(coarse.accurate);
-  EXPECT_EQ(coarse.claim, Claim::kTopologyProved);
+  EXPECT_EQ(coarse.claim, Claim::kEstimated);
   EXPECT_GT(coarse.upper - coarse.lower, 1e-4);
   EXPECT_LE(coarse.lower, fine.upper);
   EXPECT_GE(coarse.upper, fine.lower);
 }
 
 // With a single cell, everything is a crowd.
-TEST(ViewFactor, OfACrowdIsStatistical) {
+TEST(ViewFactor, OfACrowdIsByPoints) {
   const Scene built = generate::build(plates_with_plate(1.0, 0.5, 0.75));
   const std::vector<Selection> below{named(built, "below")}, above{named(built, "above")};
   const auto matrix = [&](double accuracy, std::size_t budget, int threads) {
@@ -282,18 +282,69 @@ TEST(ViewFactor, OfACrowdIsStatistical) {
         .factors.entries.front();
   };
   const ViewFactor f = matrix(1e-9, 1, 1);
-  EXPECT_EQ(f.claim, Claim::kStatistical);
+  EXPECT_EQ(f.claim, Claim::kEstimated);
+  EXPECT_EQ(f.way, Way::kPoints);
   EXPECT_FALSE(f.accurate);
   EXPECT_LE(f.lower, 0.115620602132415020312711990740);
   EXPECT_GE(f.upper, 0.115620602132415020312711990740);
   EXPECT_GT(f.upper - f.lower, 1e-5);
-  EXPECT_LT(f.upper - f.lower, 0.05);
+  EXPECT_LT(f.upper - f.lower, 0.2);
   const ViewFactor again = matrix(1e-9, 1, 4);
   EXPECT_EQ(f.lower, again.lower);
   EXPECT_EQ(f.upper, again.upper);
-  const ViewFactor enough = matrix(0.05, 1, 1);
+  const ViewFactor enough = matrix(0.2, 1, 1);
   EXPECT_TRUE(enough.accurate);
-  EXPECT_LE(enough.upper - enough.lower, 0.05);
+  EXPECT_LE(enough.upper - enough.lower, 0.2);
+}
+
+// Certified enclosures, and for the second one a bound: sizes and distance alone.
+TEST(ViewFactor, OfWhatOnceBrokeItHoldsTheTruth) {
+  struct Case {
+    const char *scene, *from, *to;
+    double lower, upper;
+  };
+  for (const auto& [name, from, to, lower, upper] :
+       {Case{"thin_gap", "B", "o0", 0.002674704022611416, 0.0026877799322701885},
+        Case{"sizes_of_1e9_and_1e-7", "A", "o0", 8e-35, 9e-35},
+        Case{"far_from_the_origin", "A", "B", 0.0950352248, 0.0950352255}}) {
+    const Scene scene = read_obj(EXACTFF_DATA_DIR "/regression/" + std::string(name) + ".obj");
+    for (const double accuracy : {1e-3, 1e-4, 1e-8}) {
+      for (const std::size_t budget : {1, 100, 500}) {
+        const ViewFactor f =
+            view_factor(scene, named(scene, from), named(scene, to), {.accuracy = accuracy, .budget = budget});
+        EXPECT_LE(f.lower, lower) << name << ' ' << accuracy << ' ' << budget;
+        EXPECT_GE(f.upper, upper) << name << ' ' << accuracy << ' ' << budget;
+      }
+    }
+    const std::vector<Selection> row{named(scene, from)}, column{named(scene, to)};
+    const matrix::Matrix draft = matrix::draft(scene, row, column);
+    EXPECT_LE(draft.factors.entries[0].lower, lower) << name;
+    EXPECT_GE(draft.factors.entries[0].upper, upper) << name;
+  }
+}
+
+// Every coordinate less its least is exact.
+TEST(ViewFactor, OfAFarSceneIsThatOfTheSameSceneAtTheOrigin) {
+  const auto scene_at = [](const Vec3& corner) {
+    PlainScene plain = plates_with_plate(1.0, 0.5, 0.75);
+    for (Vec3& v : plain.vertices) v = {v.x + corner.x, v.y + corner.y, v.z + corner.z};
+    return generate::build(plain);
+  };
+  for (const Vec3& corner : {Vec3{5e6, -4e6, 0}, Vec3{0, 0, 0x1p40}, Vec3{-1e9, 1e9, 1e9}}) {
+    for (const bool certify : {false, true}) {
+      const auto factor = [&](const Scene& scene) {
+        return view_factor(scene, named(scene, "below"), named(scene, "above"), {.accuracy = 1e-9, .certify = certify});
+      };
+      const ViewFactor far = factor(scene_at(corner)), near = factor(scene_at({}));
+      EXPECT_TRUE(far.accurate);
+      EXPECT_EQ(far.lower, near.lower);
+      EXPECT_EQ(far.upper, near.upper);
+    }
+    const Scene scene = scene_at(corner), origin = scene_at({});
+    const std::vector<Selection> row{scene.select("below")}, near{origin.select("below")};
+    EXPECT_EQ(matrix::draft(scene, row, row, {.backs = true}).back[0].value,
+              matrix::draft(origin, near, near, {.backs = true}).back[0].value);
+  }
 }
 
 // Nothing is seen through a gap that no point of the sample looks through; the width says how much there may be.
@@ -372,7 +423,7 @@ TEST(MatrixProgram, PrintsAndWritesTheSameNumbers) {
   const validation::ProgramRun plain = run({scene, "--plain", "-o", file});
   EXPECT_EQ(plain.exit_code, 0);
   EXPECT_EQ(std::ranges::count(plain.output, '\n'), 64);
-  EXPECT_NE(plain.output.find("srf-1\tsrf-1\t0\t0\tzero\n"), std::string::npos);
+  EXPECT_NE(plain.output.find("srf-1\tsrf-1\t0\t0\tzero\tcells\n"), std::string::npos);
   const std::string written = validation::text_of(file);
   EXPECT_EQ(std::ranges::count(written, '\n'), 4 + 64);
   EXPECT_NE(written.find("\nsrf-1,srf-6,0.18235"), std::string::npos);

@@ -46,7 +46,7 @@ class Radiosity:
     irradiance: Floats  #: (n, 3), the sum of F_ij B_j
     irradiance_lower: Floats  #: (n, 3)
     irradiance_upper: Floats  #: (n, 3)
-    claim: str  #: "topology-proved", "statistical", ...
+    claim: str  #: "zero", "certified" or "estimated"
     no_bound: tuple[str, str, str]  #: for red, green and blue; empty if there is a bound
     balance: Balance
     claim_of_balance: str

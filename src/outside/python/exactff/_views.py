@@ -24,7 +24,8 @@ class ViewFactor(NamedTuple):
     value: float  #: a pure number in [0, 1]
     lower: float
     upper: float
-    claim: str  #: "zero", "certified" (proved), "topology-proved" (quadrature is estimated) or "statistical"
+    claim: str  #: "zero", "certified" (both proved), or "estimated": the error is an estimate, with roundings in it
+    way: str  #: how: "cells", "points" or "views"
     accurate: bool  #: upper - lower is at most the accuracy, in both directions
     area_from: float  #: in the square of the scene's unit of length
     area_to: float
@@ -67,6 +68,7 @@ class ViewFactorMatrix:
     lower: Floats  #: (n, m)
     upper: Floats  #: (n, m)
     claim: NDArray[np.str_]  #: (n, m)
+    way: NDArray[np.str_]  #: (n, m)
     accurate: NDArray[np.bool_]  #: (n, m)
     areas_from: Floats  #: (n,)
     areas_to: Floats  #: (m,)
@@ -148,7 +150,7 @@ def _budget(budget: int) -> int:
 def _warn_of_width(wide: int, accuracy: float, budget: int) -> None:
     if wide:
         warn(f"{wide} view factor{'s are' if wide > 1 else ' is'} wider than the accuracy {accuracy:g} (the budget of "
-             f"{budget} cells is used up; bounds hold all the same)")
+             f"{budget} cells is used up; intervals are as strong as their claims)")
 
 
 def view_factor(scene: Scene, a: str, b: str, accuracy: float = 1e-6, *, budget: int = 100_000,
@@ -216,7 +218,8 @@ def view_factor_matrix(scene: Scene, from_patches: Names = None, to_patches: Nam
     reciprocity = _reciprocity(mutual, rows, columns) if both_directions else None
     return ViewFactorMatrix(
         tuple(rows), tuple(columns), array(lambda f: f.value, np.float64), array(lambda f: f.lower, np.float64),
-        array(lambda f: f.upper, np.float64), array(lambda f: f.claim, np.str_), array(lambda f: f.accurate, np.bool_),
+        array(lambda f: f.upper, np.float64), array(lambda f: f.claim, np.str_),
+        array(lambda f: f.way, np.str_), array(lambda f: f.accurate, np.bool_),
         np.array([row[0].area_from for row in (by_rows if columns else zip(lists[0] or lists[1] or ()))]),
         np.array([f.area_to for f in by_rows[0]] if by_rows else []), lists[0], lists[1],
         np.array(sums, np.float64).reshape(-1, 2), tuple(reasons), reciprocity, by_rows)
