@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "exactff/models.h"
@@ -13,6 +14,7 @@
 #include "kernel/expect.h"
 #include "kernel/statistics.h"
 #include "models/random.h"
+#include "studies/honest_families.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/patch_parts.h"
 
@@ -66,7 +68,7 @@ Bounds enclosure(const PreparedPair& pair, const Selection& from, const Selectio
 }
 
 PreparedPair prepared_pair(const HonestyScene& named, const HonestySize& size) {
-  PreparedPair pair{models::make_scene(named.model), {}, {}, {}, {}};
+  PreparedPair pair{scene_of(named), {}, {}, {}, {}};
   pair.from = pair.scene.select(named.from);
   pair.to = pair.scene.select(named.to);
   const Bounds forth = enclosure(pair, pair.from, pair.to, size), back = enclosure(pair, pair.to, pair.from, size);
@@ -78,28 +80,28 @@ PreparedPair prepared_pair(const HonestyScene& named, const HonestySize& size) {
   return pair;
 }
 
-void add_entry(const PreparedPair& pair, Claim asked, double accuracy, bool is_turned, const HonestySize& size,
+void add_entry(const PreparedPair& pair, Asked asked, double accuracy, bool is_turned, const HonestySize& size,
                HonestyScene& scene) {
   ViewFactorOptions options{.accuracy = accuracy, .budget = size.budget, .sample_crowds = false};
-  options.certify = asked == Claim::kCertified;
-  if (asked == Claim::kStatistical) {
+  options.certify = asked == Asked::kCertified;
+  if (asked == Asked::kPoints) {
     options.budget = 1;
     options.sample_crowds = true;
   }
   const Selection &i = is_turned ? pair.to : pair.from, &j = is_turned ? pair.from : pair.to;
   const ViewFactor factor = view_factor(pair.scene, i, j, options);
   // With one cell, what needs none is proved, and not of interest here.
-  if (asked == Claim::kStatistical && factor.claim != asked) return;
+  if (asked == Asked::kPoints && factor.way != Way::kPoints) return;
   scene.entries.push_back({asked, accuracy, is_turned, factor, is_turned ? pair.back : pair.forth});
 }
 
 void fill(HonestyScene& scene, const HonestySize& size) {
   const PreparedPair pair = prepared_pair(scene, size);
-  for (const Claim claim : {Claim::kCertified, Claim::kTopologyProved}) {
-    for (const double accuracy : size.accuracies) add_entry(pair, claim, accuracy, scene.is_turned, size, scene);
+  for (const Asked asked : {Asked::kCertified, Asked::kCells}) {
+    for (const double accuracy : size.accuracies) add_entry(pair, asked, accuracy, scene.is_turned, size, scene);
   }
   for (const bool is_turned : {false, true}) {
-    add_entry(pair, Claim::kStatistical, size.accuracies.back(), is_turned, size, scene);
+    add_entry(pair, Asked::kPoints, size.accuracies.back(), is_turned, size, scene);
   }
 }
 
@@ -162,6 +164,18 @@ HonestyScene honesty_scene(std::uint64_t number) {
   constexpr std::array<double, 4> kCovers{0.25, 0.5, 1.0, 2.0};
   constexpr std::array<std::pair<const char*, const char*>, 4> kPairs{
       {{"floor", "source"}, {"floor", "source"}, {"floor", "occ"}, {"occ", "source"}}};
+  if (number % 2 == 0) {
+    const std::size_t family = number / 2 % kHardFamilies.size();
+    HonestyScene scene{std::string(kHardFamilies[family]) + ", seed " + std::to_string(number),
+                       family + 1,
+                       number,
+                       "floor",
+                       "source",
+                       number / 32 % 2 == 0,
+                       {},
+                       {}};
+    return scene;
+  }
   models::Random random(number);
   const char* const model = kModels[random.below(kModels.size())];
   const int faces = random.integer(1, 4);
@@ -169,6 +183,8 @@ HonestyScene honesty_scene(std::uint64_t number) {
   std::pair<const char*, const char*> pair = kPairs[random.below(kPairs.size())];
   HonestyScene scene{std::string(model) + ":n=" + std::to_string(faces) + ",cover=" + text::shortest(cover) +
                          ",seed=" + std::to_string(number),
+                     0,
+                     0,
                      "floor",
                      "source",
                      random.one_in(2),
@@ -182,18 +198,23 @@ HonestyScene honesty_scene(std::uint64_t number) {
   return scene;
 }
 
+Scene scene_of(const HonestyScene& named) {
+  return named.family > 0 ? hard_scene(named.family - 1, named.seed) : models::make_scene(named.model);
+}
+
 std::vector<HonestyRow> honesty_rows(std::span<const HonestyScene> scenes) {
   const auto key = [](const HonestyEntry& entry) {
-    const Claim claim = entry.factor.claim;
-    const bool one_row = claim == Claim::kZero || claim == Claim::kStatistical;
-    return std::pair(-static_cast<int>(claim), one_row ? 0.0 : -entry.accuracy);
+    const auto [claim, way] = std::pair(entry.factor.claim, entry.factor.way);
+    const bool one_row = claim == Claim::kZero || way == Way::kPoints;
+    return std::tuple(-static_cast<int>(claim), static_cast<int>(way), one_row ? 0.0 : -entry.accuracy);
   };
-  std::map<std::pair<int, double>, std::pair<HonestyRow, std::vector<ErrorRatio>>> sorted;
+  std::map<std::tuple<int, int, double>, std::pair<HonestyRow, std::vector<ErrorRatio>>> sorted;
   for (const HonestyScene& scene : scenes) {
     for (const HonestyEntry& entry : scene.entries) {
       auto& [row, ratios] = sorted[key(entry)];
       row.claim = entry.factor.claim;
-      row.accuracy = std::abs(key(entry).second);
+      row.way = entry.factor.way;
+      row.accuracy = std::abs(std::get<2>(key(entry)));
       count_entry(entry, row, ratios);
     }
   }

@@ -1,10 +1,11 @@
 // Whether view factors keep their word: in random scenes, how often the true error of an entry exceeds the one that is
 // reported with it, for each claim and accuracy.
 //
-// A scene has a floor, a source above it and one to four faces between, of the models karkanis, soup and lattice. Two
-// of its patches are compared. The truth is what two certified enclosures have in common, one of F_ij and one of F_ji,
-// computed apart at a small accuracy. So an error counts only if it is proved: the entry's interval and the truth have
-// no number in common. Where they overlap without the truth being inside, the entry is left open.
+// Every second scene has a floor, a source above it and one to four faces between, of the models karkanis, soup and
+// lattice; the others are made to break what is claimed (honest_families.h). Two patches of it are compared. The truth
+// is what two certified enclosures have in common, one of F_ij and one of F_ji, computed apart at a small accuracy. So
+// an error counts only if it is proved: the entry's interval and the truth have no number in common. Where they overlap
+// without the truth being inside, the entry is left open.
 #pragma once
 
 #include <cstdint>
@@ -48,10 +49,11 @@ struct ErrorRatio {
 // Requires an interval with a width.
 [[nodiscard]] ErrorRatio error_ratio(const ViewFactor& entry, const Bounds& truth);
 
-// How an entry was asked for. `kStatistical`: with a budget of one cell, at the smallest accuracy. The claim that comes
-// back may be a better one.
+// How an entry was asked for. `kPoints`: with a budget of one cell, at the smallest accuracy. What comes back may be a
+// better one.
+enum class Asked { kCertified, kCells, kPoints };
 struct HonestyEntry {
-  Claim asked = Claim::kCertified;
+  Asked asked = Asked::kCertified;
   double accuracy = 0.0;
   bool turned = false;  // F_ji instead of F_ij
   ViewFactor factor;
@@ -60,16 +62,19 @@ struct HonestyEntry {
 
 struct HonestyScene {
   std::string model;
+  std::size_t family = 0;  // of honest_families.h, from 1 on; 0: a model of the library
+  std::uint64_t seed = 0;  // of such a family
   std::string from, to;
-  bool is_turned = false;  // entries are of F_ji, but statistical ones of both
+  bool is_turned = false;  // entries are of F_ji, but those by points of both
   std::vector<HonestyEntry> entries;
   std::string failure;  // a cell failed its own check: there are no further entries
 };
 
-// All entries of one claim and accuracy. Proved zeros are one row, and statistical entries another: their accuracy is
-// 0.
+// All entries of one claim, way and accuracy. Proved zeros are one row, and entries by points another: their accuracy
+// is 0.
 struct HonestyRow {
   Claim claim = Claim::kZero;
+  Way way = Way::kCells;
   double accuracy = 0.0;
   std::size_t entries = 0, holds = 0, open = 0, broken = 0;
   std::size_t wide = 0;           // wider than the accuracy asked for
@@ -86,6 +91,7 @@ struct HonestyStudy {
 
 // A random scene's model, and the names of the two patches. Depends on the number alone.
 [[nodiscard]] HonestyScene honesty_scene(std::uint64_t number);
+[[nodiscard]] Scene scene_of(const HonestyScene& named);
 [[nodiscard]] HonestyStudy honesty_study(const HonestySize& size, int threads, const Hooks& hooks);
 [[nodiscard]] std::vector<HonestyRow> honesty_rows(std::span<const HonestyScene> scenes);
 

@@ -13,10 +13,6 @@ namespace {
 using text::counted;
 using text::rounded;
 
-// The 97.5 % quantile of the normal distribution over that of a statistical entry's level, 1 - 1e-6 / 4 on each side
-// (view_factors/strata.h): 95 % of the errors are at most this share of the reported one.
-constexpr double kNormalShare = 1.9600 / 5.0263;
-
 std::string_view word_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::kHolds:
@@ -45,19 +41,25 @@ Sums sums_of(const HonestyStudy& study) {
 
 // ---------------------------------------------------------------------------------------------------------- sentences
 
-// "2 of 854 statistical ones"
+// "estimated by points"
+std::string words_of(Claim claim, Way way) {
+  return std::string(to_string(claim)) + (claim == Claim::kEstimated ? " by " + std::string(to_string(way)) : "");
+}
+
+// "2 of 854 estimated by points"
 std::vector<std::string> broken_claims(const HonestyStudy& study) {
   std::vector<std::string> claims;
-  for (const Claim claim : {Claim::kZero, Claim::kCertified, Claim::kTopologyProved, Claim::kStatistical}) {
+  for (const auto& [claim, way] :
+       {std::pair(Claim::kZero, Way::kCells), std::pair(Claim::kCertified, Way::kCells),
+        std::pair(Claim::kEstimated, Way::kCells), std::pair(Claim::kEstimated, Way::kPoints)}) {
     std::size_t entries = 0, broken = 0;
     for (const HonestyRow& row : study.rows) {
-      if (row.claim != claim) continue;
+      if (row.claim != claim || row.way != way) continue;
       entries += row.entries;
       broken += row.broken;
     }
     if (broken == 0) continue;
-    claims.push_back(std::to_string(broken) + " of " + std::to_string(entries) + ' ' + std::string(to_string(claim)) +
-                     " ones");
+    claims.push_back(std::to_string(broken) + " of " + std::to_string(entries) + ' ' + words_of(claim, way));
   }
   return claims;
 }
@@ -79,7 +81,7 @@ std::string method_sentence(const HonestyStudy& study, const HonestySize& size) 
                                                " the two enclosures are disjoint, so one of them is wrong.";
   return "A scene has a floor, a source above it and one to four faces between them. A view factor from one of these "
          "patches to another is asked for at " +
-         counted(size.accuracies.size(), "accuracy", "accuracies") + ", as certified and as topology-proved, with " +
+         counted(size.accuracies.size(), "accuracy", "accuracies") + ", as certified and as estimated, with " +
          std::to_string(size.budget) +
          " cells at most; and with a single cell, which leaves statistics. The truth is what two certified enclosures "
          "have in common, one from each patch to the other, of up to " +
@@ -94,19 +96,16 @@ std::string open_sentence(const HonestyStudy& study) {
   if (sums.open == 0) return {};
   return "The truth is not known well enough to judge " + std::to_string(sums.open) + " of " +
          counted(sums.entries, "entry", "entries") +
-         ". Topology-proved entries often report errors that are smaller than the width of these enclosures.";
+         ". Entries estimated by cells often report errors that are smaller than the width of these enclosures.";
 }
 
 std::string level_sentence(const HonestyStudy& study) {
-  const auto row = std::ranges::find(study.rows, Claim::kStatistical, &HonestyRow::claim);
+  const auto row = std::ranges::find(study.rows, Way::kPoints, &HonestyRow::way);
   if (row == study.rows.end() || !row->p95) return {};
-  return "Statistical entries promise their error with a probability of 1 − 10⁻⁶, which " +
-         counted(row->entries, "entry", "entries") +
-         " cannot measure. But their errors have a distribution: the true error over the reported one has a 95th "
-         "percentile between " +
-         rounded(row->p95->at_least, 2) + " and " + rounded(row->p95->at_most, 2) +
-         " (the truth is an interval, too), and the level means " + rounded(kNormalShare, 2) +
-         " for a normal distribution.";
+  return "Entries by points promise their error but with a probability of 10⁻⁶, whatever the point factor does, so "
+         "most "
+         "errors are far smaller: the true error over the reported one has a 95th percentile between " +
+         rounded(row->p95->at_least, 2) + " and " + rounded(row->p95->at_most, 2) + " (the truth is an interval, too).";
 }
 
 std::string failure_sentence(const HonestyStudy& study) {
@@ -124,7 +123,7 @@ std::string failure_sentence(const HonestyStudy& study) {
 
 page::Figure error_figure(const HonestyStudy& study) {
   using page::Series;
-  Series proved{"topology-proved", {}, 1}, statistical{"statistical", {}, 2}, certified{"certified", {}, 3};
+  Series by_cells{"estimated by cells", {}, 1}, by_points{"estimated by points", {}, 2}, certified{"certified", {}, 3};
   double low = 1.0, high = 0.0;
   for (const HonestyScene& scene : study.scenes) {
     for (const HonestyEntry& entry : scene.entries) {
@@ -134,9 +133,9 @@ page::Figure error_figure(const HonestyStudy& study) {
       const double error = error_ratio(f, entry.truth).at_most * reported;
       low = std::min(low, reported);
       high = std::max(high, reported);
-      (f.claim == Claim::kCertified        ? certified
-       : f.claim == Claim::kTopologyProved ? proved
-                                           : statistical)
+      (f.claim == Claim::kCertified ? certified
+       : f.way == Way::kCells       ? by_cells
+                                    : by_points)
           .points.emplace_back(reported, error);
     }
   }
@@ -145,7 +144,7 @@ page::Figure error_figure(const HonestyStudy& study) {
           "One point for each entry. The true error is drawn at the largest value that the truth leaves possible, so a "
           "point above the line is a doubt, and not yet a wrong error.",
           page::scatter_plot({.x = "reported error", .y = "true error, at most"},
-                             {diagonal, certified, proved, statistical})};
+                             {diagonal, certified, by_cells, by_points})};
 }
 
 // ------------------------------------------------------------------------------------------------------------- tables
@@ -155,16 +154,16 @@ CsvFile entry_table(const HonestyStudy& study, const HonestySize& size) {
       "view factors in random scenes, each model as for exactff matrix @MODEL --from FROM --to TO, with "
       "--budget " +
           std::to_string(size.budget) +
-          ", or 1 for statistical ones\n"
+          ", or 1 for those by points; models without @ are families and seeds of studies/honest_families.h\n"
           "truth_lower and truth_upper: what certified enclosures of both directions have in common",
-      {"model", "from", "to", "accuracy", "claim", "factor", "lower", "upper", "truth_lower", "truth_upper",
+      {"model", "from", "to", "accuracy", "claim", "way", "factor", "lower", "upper", "truth_lower", "truth_upper",
        "verdict"});
   for (const HonestyScene& scene : study.scenes) {
     for (const HonestyEntry& entry : scene.entries) {
       const ViewFactor& f = entry.factor;
       table.row() << scene.model << (entry.turned ? scene.to : scene.from) << (entry.turned ? scene.from : scene.to)
-                  << entry.accuracy << to_string(f.claim) << f.value << f.lower << f.upper << entry.truth.lower
-                  << entry.truth.upper << word_of(verdict(f, entry.truth));
+                  << entry.accuracy << to_string(f.claim) << to_string(f.way) << f.value << f.lower << f.upper
+                  << entry.truth.lower << entry.truth.upper << word_of(verdict(f, entry.truth));
     }
   }
   return table.finish("honesty.csv", "view factors in random scenes, with their true values");
@@ -174,17 +173,17 @@ CsvFile row_table(const HonestyStudy& study) {
   TableWriter table(
       "true errors of view factors over the reported ones, by claim and accuracy (0: all)\n"
       "at_least: the largest ratio that is proved; at_most: the largest possible one of entries that hold",
-      {"claim", "accuracy", "entries", "holds", "open", "broken", "wide", "at_least", "at_most"});
+      {"claim", "way", "accuracy", "entries", "holds", "open", "broken", "wide", "at_least", "at_most"});
   for (const HonestyRow& row : study.rows) {
-    table.row() << to_string(row.claim) << row.accuracy << std::uint64_t{row.entries} << std::uint64_t{row.holds}
-                << std::uint64_t{row.open} << std::uint64_t{row.broken} << std::uint64_t{row.wide} << row.worst.at_least
-                << row.worst.at_most;
+    table.row() << to_string(row.claim) << to_string(row.way) << row.accuracy << std::uint64_t{row.entries}
+                << std::uint64_t{row.holds} << std::uint64_t{row.open} << std::uint64_t{row.broken}
+                << std::uint64_t{row.wide} << row.worst.at_least << row.worst.at_most;
   }
   return table.finish("honesty-rows.csv", "true errors of view factors over the reported ones");
 }
 
 std::string name_of(const HonestyRow& row) {
-  const std::string claim(to_string(row.claim));
+  const std::string claim = words_of(row.claim, row.way);
   return row.accuracy > 0.0 ? claim + ", " + accuracy_text(row.accuracy) : claim;
 }
 

@@ -31,7 +31,7 @@ void add_sides(SmallScene& scene, const std::array<std::string, 6>& names, const
 
 WidthCurve width_curve(const std::string& name, const Scene& scene, const char* from, const char* to, bool certify,
                        const ViewFactorSize& size, const Hooks& hooks) {
-  WidthCurve curve{name, certify ? Claim::kCertified : Claim::kTopologyProved, {}};
+  WidthCurve curve{name, certify ? Claim::kCertified : Claim::kEstimated, {}};
   const Selection i = scene.select(from), j = scene.select(to);
   for (const double accuracy : size.accuracies) {
     const ViewFactorOptions options{.accuracy = accuracy, .sample_crowds = false, .certify = certify};
@@ -57,7 +57,7 @@ std::string sums_sentence(const ViewFactorStudy& study) {
 
 std::string claims_sentence(const ViewFactorStudy& study, const ViewFactorSize& size) {
   std::vector<std::string> parts;
-  for (const Claim claim : {Claim::kZero, Claim::kCertified, Claim::kTopologyProved, Claim::kStatistical}) {
+  for (const Claim claim : {Claim::kZero, Claim::kCertified, Claim::kEstimated}) {
     const auto count = std::ranges::count(study.matrix.entries, claim, &ViewFactor::claim);
     if (count > 0) parts.push_back(std::to_string(count) + ' ' + std::string(to_string(claim)));
   }
@@ -80,7 +80,7 @@ page::Figure width_figure(const ViewFactorStudy& study) {
 }
 
 // In the order of Claim.
-constexpr const char* kShortClaims[] = {"statistical", "topology", "certified", "zero"};
+constexpr const char* kShortClaims[] = {"estimated", "certified", "zero"};
 
 // Only the claims that are made, so that their names have room.
 page::Figure claim_figure(const ViewFactorStudy& study) {
@@ -106,7 +106,7 @@ page::Figure claim_figure(const ViewFactorStudy& study) {
     }
   }
   return {"view-factors.claims", "What is claimed of each entry",
-          "Topology: topology-proved. Patches in order: " + text::enumerate(study.patches) + '.', page::map_plot(map)};
+          "Patches in order: " + text::enumerate(study.patches) + '.', page::map_plot(map)};
 }
 
 page::Figure sum_figure(const ViewFactorStudy& study) {

@@ -27,7 +27,7 @@ struct WidthAtAccuracy {
 
 struct WidthCurve {
   std::string name;
-  Claim claim = Claim::kTopologyProved;
+  Claim claim = Claim::kEstimated;
   std::vector<WidthAtAccuracy> places;
 };
 

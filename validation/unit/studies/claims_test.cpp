@@ -90,7 +90,7 @@ TEST(ViewFactorChapter, TellsWidthsClaimsAndSums) {
   for (std::size_t i = 6; i < 12; ++i) {
     for (std::size_t j = 6; j < 12; ++j) EXPECT_EQ(study.matrix.at(i, j).claim, Claim::kZero);
   }
-  EXPECT_NE(std::ranges::count(study.matrix.entries, Claim::kStatistical, &ViewFactor::claim), 0);
+  EXPECT_NE(std::ranges::count(study.matrix.entries, Way::kPoints, &ViewFactor::way), 0);
   const Result chapter = view_factors({.accuracies = {1e-2}, .budget = 100}, 1, kUndisturbed);
   EXPECT_EQ(chapter.figures.size(), 3U);
   EXPECT_NE(chapter.paragraphs.front().find("every one of 12 rows"), std::string::npos);
@@ -136,7 +136,7 @@ TEST(Honesty, NoErrorExceedsTheReportedOneInAFewScenes) {
   const std::string said = honesty_chapter(study, {}).paragraphs.front();
   EXPECT_NE(said.find(std::to_string(entries) + " of " + std::to_string(entries) + " view factors"), std::string::npos)
       << said;
-  EXPECT_NE(said.find("statistical ones"), std::string::npos) << said;
+  EXPECT_NE(said.find("estimated by points"), std::string::npos) << said;
 }
 
 }  // namespace
