@@ -41,6 +41,7 @@ struct AdaptiveOptions {
   std::uint64_t most_leaves = 0;  // splitting stops at this number of leaves; 0: no bound
   bool record_leaves = false;
   std::uint64_t most_recorded_leaves = 0;  // records all leaves down to a depth, at most so many; 0: no bound
+  friend bool operator==(const AdaptiveOptions&, const AdaptiveOptions&) = default;
 };
 
 // Why the recursion stopped at a leaf.

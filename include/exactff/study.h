@@ -47,9 +47,6 @@ struct Sweeps {
 // every other list on its own with the other parameters at the base.
 inline constexpr std::size_t kFullProductLimit = 40;
 
-enum class Parameter { kEpsB, kEpsA, kRays, kSeed, kPattern, kVariant };
-inline constexpr std::size_t kParameterCount = 6;
-
 // A method with increasing effort. Its rungs differ in one setting, or are what no other ladder has of the sweeps.
 struct Ladder {
   std::string name;                    // "area sampling, stratified"

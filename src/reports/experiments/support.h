@@ -13,7 +13,7 @@
 #include "exactff/methods.h"
 #include "experiments/experiment.h"
 #include "page/plot_script.h"
-#include "study/method_runs.h"
+#include "study/prepared_method.h"
 #include "text/csv_row.h"
 
 namespace exactff::experiments {

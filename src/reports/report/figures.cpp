@@ -23,18 +23,10 @@ namespace {
 constexpr const char* kEpsB = "tolerance ε_B (radiosity)";
 constexpr const char* kError = "error (radiosity)";
 
-double parameter_of(const AdaptiveOptions& s, Parameter parameter) {
-  switch (parameter) {
-    case Parameter::kEpsB:
-      return s.eps_b;
-    case Parameter::kEpsA:
-      return s.eps_a;
-    case Parameter::kRays:
-      return s.rays;
-    default:
-      return 0.0;
-  }
-}
+// The value of a parameter of the sweeps.
+using ValueOf = double (*)(const AdaptiveOptions&);
+double eps_b_of(const AdaptiveOptions& s) { return s.eps_b; }
+double rays_of(const AdaptiveOptions& s) { return s.rays; }
 
 // The kinds of error that a figure shows.
 struct ErrorKind {
@@ -66,16 +58,15 @@ class FigureMaker {
     add_error_against_rays();
   }
 
-  [[nodiscard]] page::Points points(const std::vector<std::size_t>& line, Parameter x,
-                                    double ErrorStatistics::*y) const {
+  [[nodiscard]] page::Points points(const std::vector<std::size_t>& line, ValueOf x, double ErrorStatistics::*y) const {
     page::Points result;
     for (std::size_t k : line) {
-      result.emplace_back(parameter_of(study_.settings[k], x), study_.summaries[k].radiosity.*y);
+      result.emplace_back(x(study_.settings[k]), study_.summaries[k].radiosity.*y);
     }
     return result;
   }
 
-  [[nodiscard]] std::vector<page::Series> error_series(const std::vector<std::size_t>& line, Parameter x) const {
+  [[nodiscard]] std::vector<page::Series> error_series(const std::vector<std::size_t>& line, ValueOf x) const {
     std::vector<page::Series> series;
     int style = 0;
     for (const ErrorKind& kind : kKinds) series.push_back({kind.title, points(line, x, kind.value), ++style});
@@ -95,11 +86,12 @@ class FigureMaker {
 
   // The settings that differ from `from` in this parameter only. If there are fewer than two: nothing, and the reason
   // is recorded.
-  std::optional<std::vector<std::size_t>> sweep(std::size_t from, Parameter parameter, const std::string& title) {
+  std::optional<std::vector<std::size_t>> sweep(std::size_t from, std::string_view parameter,
+                                                const std::string& title) {
     std::vector<std::size_t> line = study::line_through(study_.settings, from, parameter);
     if (line.size() >= 2) return line;
     const bool told = std::any_of(study_.left_out.begin(), study_.left_out.end(), [&](const LeftOut& item) {
-      return parameter == Parameter::kEpsB ? item.what == "sweep of eps_B" : item.what != "sweep of eps_B";
+      return parameter == "eps_B" ? item.what == "sweep of eps_B" : item.what != "sweep of eps_B";
     });
     leave_out("figure: " + title, told ? "its sweep was left out" : "the sweep has a single value");
     return std::nullopt;
@@ -107,15 +99,15 @@ class FigureMaker {
 
   void add_error_against_eps_b() {
     const std::string title = "Achieved error against the tolerance ε_B";
-    const auto line = sweep(study_.base, Parameter::kEpsB, title);
+    const auto line = sweep(study_.base, "eps_B", title);
     if (!line) return;
-    std::vector<page::Series> series = error_series(*line, Parameter::kEpsB);
+    std::vector<page::Series> series = error_series(*line, eps_b_of);
     AdaptiveOptions literal = base();
     literal.variant = base().variant == Variant::kMended ? Variant::kLiteral : Variant::kMended;
     if (const auto other = study::find_setting(study_.settings, literal)) {
-      const auto other_line = study::line_through(study_.settings, *other, Parameter::kEpsB);
+      const auto other_line = study::line_through(study_.settings, *other, "eps_B");
       series.push_back({"RMS, " + std::string(to_string(literal.variant)),
-                        points(other_line, Parameter::kEpsB, &ErrorStatistics::rms), page::kOverlay});
+                        points(other_line, eps_b_of, &ErrorStatistics::rms), page::kOverlay});
     }
     page::Points diagonal;
     for (std::size_t k : *line) diagonal.emplace_back(study_.settings[k].eps_b, study_.settings[k].eps_b);
@@ -133,9 +125,9 @@ class FigureMaker {
   [[nodiscard]] std::vector<page::Series> series_by_rays(const PointOf& point_of) const {
     std::vector<page::Series> series;
     int style = 0;
-    for (std::size_t k : study::line_through(study_.settings, study_.base, Parameter::kRays)) {
+    for (std::size_t k : study::line_through(study_.settings, study_.base, "rays")) {
       page::Series one{text::counted(static_cast<std::uint64_t>(study_.settings[k].rays), "ray"), {}, ++style};
-      for (std::size_t j : study::line_through(study_.settings, k, Parameter::kEpsB)) one.points.push_back(point_of(j));
+      for (std::size_t j : study::line_through(study_.settings, k, "eps_B")) one.points.push_back(point_of(j));
       series.push_back(std::move(one));
     }
     return series;
@@ -143,7 +135,7 @@ class FigureMaker {
 
   void add_violations() {
     const std::string title = "How often the tolerance is broken";
-    if (!sweep(study_.base, Parameter::kEpsB, title)) return;
+    if (!sweep(study_.base, "eps_B", title)) return;
     const auto count = static_cast<double>(study_.exact.size());
     const auto series = series_by_rays([&](std::size_t k) {
       return std::pair(study_.settings[k].eps_b, 100.0 * static_cast<double>(study_.summaries[k].violations) / count);
@@ -156,7 +148,7 @@ class FigureMaker {
 
   void add_silent_errors() {
     const std::string title = "Silent errors against the tolerance ε_B";
-    const auto line = sweep(study_.base, Parameter::kEpsB, title);
+    const auto line = sweep(study_.base, "eps_B", title);
     if (!line) return;
     page::Series all{"RMS error of F", {}, 1}, silent{"RMS error from silent leaves", {}, 2},
         worst{"worst error from silent leaves", {}, 4};
@@ -199,16 +191,16 @@ class FigureMaker {
 
   void add_error_against_rays() {
     const std::string title = "Error against the number of rays";
-    const auto line = sweep(study_.base, Parameter::kRays, title);
+    const auto line = sweep(study_.base, "rays", title);
     if (!line) return;
     add({"rays", title,
          "At ε_B = " + text::rounded(base().eps_b) + ", " + std::string(to_string(base().pattern)) +
              " rays per undecided leaf. " + slope_sentence(*line),
-         page::line_plot({"rays per undecided leaf", kError, true, true, {}}, error_series(*line, Parameter::kRays))});
+         page::line_plot({"rays per undecided leaf", kError, true, true, {}}, error_series(*line, rays_of))});
   }
 
   [[nodiscard]] std::string slope_sentence(const std::vector<std::size_t>& line) const {
-    const auto slope = kernel::fitted_slope(points(line, Parameter::kRays, &ErrorStatistics::rms));
+    const auto slope = kernel::fitted_slope(points(line, rays_of, &ErrorStatistics::rms));
     if (!slope) return {};
     return std::string("The RMS error falls as the number of rays to the power ") + (*slope < 0.0 ? "−" : "") +
            text::rounded(std::abs(*slope), 2) +

@@ -46,7 +46,7 @@ std::string base_sentence(const Study& study) {
 
 // What a smaller eps_B alone achieves.
 std::string tolerance_sentence(const Study& study) {
-  const std::vector<std::size_t> line = study::line_through(study.settings, study.base, Parameter::kEpsB);
+  const std::vector<std::size_t> line = study::line_through(study.settings, study.base, "eps_B");
   const auto smaller = [&](std::size_t a, std::size_t b) { return study.settings[a].eps_b < study.settings[b].eps_b; };
   const auto [low, high] = std::minmax_element(line.begin(), line.end(), smaller);
   const double low_eps = study.settings[*low].eps_b, high_eps = study.settings[*high].eps_b;
@@ -60,7 +60,7 @@ std::string tolerance_sentence(const Study& study) {
 }
 
 std::string seeds_sentence(const Study& study) {
-  const std::vector<std::size_t> line = study::line_through(study.settings, study.base, Parameter::kSeed);
+  const std::vector<std::size_t> line = study::line_through(study.settings, study.base, "seed");
   if (line.size() < 2) return {};
   std::vector<double> rms;
   for (std::size_t k : line) rms.push_back(study.summaries[k].radiosity.rms);

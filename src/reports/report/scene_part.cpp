@@ -207,7 +207,7 @@ class ScenePart {
   // One row per tolerance, the other parameters as in the base setting.
   [[nodiscard]] std::string eps_b_table() const {
     if (!is_swept()) return {};
-    std::vector<std::size_t> line = study::line_through(study().settings, study().base, Parameter::kEpsB);
+    std::vector<std::size_t> line = study::line_through(study().settings, study().base, "eps_B");
     std::ranges::sort(line, std::greater<>{}, [&](std::size_t k) { return study().settings[k].eps_b; });
     HtmlTable table;
     table.columns({"ε_B", "RMS error", "worst", "above ε_B", "leaves", "time"});

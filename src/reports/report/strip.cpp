@@ -9,8 +9,8 @@
 #include "exactff/render.h"
 #include "kernel/vec.h"
 #include "report/tables.h"
+#include "study/budget.h"
 #include "study/ladders.h"
-#include "study/method_runs.h"
 #include "study/settings.h"
 #include "text/phrases.h"
 
@@ -24,24 +24,13 @@ constexpr const char* kLeftOut = "pictures of the scene";
 // Seconds per pixel that a method is planned to need, from its counted work at some of the receivers.
 double planned_seconds_per_pixel(const Study& study, const methods::Choice& choice) {
   constexpr std::size_t kMostPoints = 12;
-  const Scene& scene = *study.request.scene;
-  const auto prepared = choice.method->prepare(scene);
-  std::vector<std::unique_ptr<methods::PreparedSource>> sources;
-  std::vector<const methods::PreparedSource*> pointers;
-  for (const Selection& source : study.request.sources) {
-    sources.push_back(prepared->prepare_source(source));
-    pointers.push_back(sources.back().get());
-  }
-  const auto evaluator = prepared->configure(choice.settings);
-  std::vector<methods::Estimate> estimates(sources.size());
+  constexpr double kTooDear = 1.0;  // seconds for a pixel
+  const study::PreparedMethod prepared(*choice.method, *study.request.scene, study.request.sources);
+  study::Estimator estimator(choice, prepared, kTooDear);
   const std::size_t all = study.request.receivers.size(), points = std::min(all, kMostPoints);
   double seconds = 0.0;
   for (std::size_t i = 0; i < points; ++i) {
-    evaluator->look_from(study.request.receivers[(2 * i + 1) * all / (2 * points)]);
-    evaluator->form_factors(pointers, estimates);
-    for (const methods::Estimate& one : estimates) {
-      seconds += study::planned_seconds(one.counters, scene.faces().size());
-    }
+    seconds += estimator.seconds_at(study.request.receivers[(2 * i + 1) * all / (2 * points)]);
   }
   return seconds / static_cast<double>(points);
 }

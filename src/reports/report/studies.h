@@ -12,7 +12,6 @@ using study::Ladder;
 using study::MethodCell;
 using study::MethodField;
 using study::MethodStudy;
-using study::Parameter;
 using study::Profile;
 using study::SampleRow;
 using study::Sight;

@@ -147,9 +147,7 @@ std::vector<Ladder> default_ladders(double largest_rho_b) {
 }
 
 methods::Choice without_seed(methods::Choice choice) {
-  for (const SettingSpec& spec : choice.settings.specs()) {
-    if (spec.name == "seed") choice.settings.set("seed", spec.fallback);
-  }
+  choice = without(std::move(choice), "seed");
   choice.settings = choice.method->normalised(choice.settings);
   return choice;
 }
@@ -158,13 +156,8 @@ namespace {
 
 double eps_b_of(const methods::Choice& choice) { return choice.settings.number("eps_B"); }
 
-methods::Choice with_eps_b(methods::Choice choice, double eps_b) {
-  choice.settings.set("eps_B", eps_b);
-  return choice;
-}
-
 bool differ_in_eps_b_only(const methods::Choice& a, const methods::Choice& b) {
-  return a.method == b.method && with_eps_b(a, eps_b_of(b)) == b;
+  return a.method == b.method && without(a, "eps_B") == without(b, "eps_B");
 }
 
 bool has_rung(const Ladder& ladder, const methods::Choice& choice) {

@@ -8,7 +8,7 @@
 #include "kernel/expect.h"
 #include "kernel/vec.h"
 #include "study/ladders.h"
-#include "study/method_runs.h"
+#include "study/prepared_method.h"
 #include "study/radiosity.h"
 #include "study/shadow_edges.h"
 #include "study/sight.h"

@@ -2,12 +2,13 @@
 //
 //   1. Complete the request: sources, threads. Refuse a request without receivers or sources.
 //   2. Compute the exact values of every receiver and source. They also show what there is to sample.
-//   3. Choose sweeps and ladders: defaults, without those that cannot affect the scene; list the settings.
-//   4. Run every setting of the sweeps for every receiver. Compare its leaves with the exact visible region.
-//   5. Run every setting, of sweeps and ladders, at chosen receivers; these are the runs that are compared.
-//   6. Find where visibility changes in kind; compute a profile along a line.
-//   7. Measure the times of every setting, with nothing else running.
-//   8. Compute statistics.
+//   3. Choose sweeps and ladders: defaults, without those that cannot affect the scene. Join them to one list of
+//   ladders,
+//      whose rungs are the settings, and plan how much of it is run (budget.h).
+//   4. Run the settings (runs.h).
+//   5. Find where visibility changes in kind; compute a profile along a line.
+//   6. Measure the times of every setting, with nothing else running.
+//   7. Compute statistics.
 // Threads share the receivers. The place of a result is its index, so nothing depends on the number of threads.
 #include <algorithm>
 #include <iterator>
@@ -17,15 +18,17 @@
 #include "files/parallel.h"
 #include "jobs/kept_work.h"
 #include "kernel/float_environment.h"
+#include "methods/adaptive_settings.h"
 #include "scene/misuse.h"
+#include "study/budget.h"
 #include "study/ladders.h"
-#include "study/method_runs.h"
+#include "study/prepared_method.h"
 #include "study/profile.h"
 #include "study/radiosity.h"
+#include "study/runs.h"
 #include "study/settings.h"
 #include "study/shadow_edges.h"
 #include "study/sight.h"
-#include "study/silent_errors.h"
 #include "study/statistics.h"
 #include "study/timing.h"
 #include "text/phrases.h"
@@ -85,13 +88,6 @@ void fields(Words& words, ExactRow& row) {
   words(row.certified, row.sampled);
 }
 
-template <class Words>
-void fields(Words& words, SampleRow& row) {
-  words(row.form_factor, row.error, row.radiosity_error, row.silent_error, row.leaves, row.rays, row.shaft_tests);
-  for (std::uint64_t& leaves : row.leaves_by_reason) words(leaves);
-  words(row.silent_leaves, row.wrong_leaves);
-}
-
 // Everything that the exact values depend on.
 std::string request_text(const Request& request) {
   std::string text = request.scene->hash();
@@ -102,17 +98,6 @@ std::string request_text(const Request& request) {
     if (r.on.empty()) put("free");
   }
   for (const Selection& source : request.sources) put(request.scene->name_of(source));
-  return text;
-}
-
-std::string settings_text(const Study& study) {
-  std::string text;
-  const auto put = [&](const std::string& part) { text += '\n' + part; };
-  for (const AdaptiveOptions& s : study.settings) {
-    for (const double v : {s.eps_b, s.eps_a}) put(text::shortest(v));
-    put(std::to_string(s.rays) + ' ' + std::to_string(s.seed));
-    put(std::string(to_string(s.pattern)) + ' ' + std::string(to_string(s.variant)));
-  }
   return text;
 }
 
@@ -127,9 +112,8 @@ class Runner {
     set_up();
     find_exact_values();
     choose_settings();
-    std::vector<Ladder> ladders = choose_ladders();
-    if (sweeps().enabled) sample();
-    run_settings(std::move(ladders));
+    plan_runs(study_, choose_ladders(), prepared_);
+    run_settings();
     if (request().methods.enabled) look_closer();
     take_times(measure_times(study_, hooks_));
     summarise();
@@ -149,24 +133,16 @@ class Runner {
       areas_.push_back(0.0);
       for (const FaceId face : scene().faces_of(source)) areas_.back() += scene().face(face).area;
     }
-    if (sweeps().enabled) {
-      solver_.emplace(scene());
-      for (const Selection& source : request().sources) sampled_sources_.push_back(solver_->prepare(source));
-    }
     for (const Receiver& receiver : request().receivers) {
       double of_all_sources = 0.0;
       for (std::size_t s = 0; s < sources_.size(); ++s) {
-        const double rho_b = largest_rho_b(receiver, s);
+        const double rho_b = largest_rho_b(scene(), receiver, radiosities_[s]);
         study_.largest_rho_b = std::max(study_.largest_rho_b, rho_b);
         of_all_sources += rho_b;
       }
       require_moderate(of_all_sources, request());
     }
     request_hash_ = jobs::short_hash(request_text(request()));
-  }
-
-  [[nodiscard]] double largest_rho_b(const Receiver& receiver, std::size_t source) const {
-    return study::largest_rho_b(scene(), receiver, radiosities_[source]);
   }
 
   void find_exact_values() {
@@ -232,8 +208,10 @@ class Runner {
     study_.settings = std::move(plan.settings);
     study_.base = plan.base;
     study_.full_product = plan.full_product;
-    leave_out_settings(over_budget(study_, sources_, *solver_, sampled_sources_));
+    leave_out_settings(over_budget(study_, adaptive()));
   }
+
+  [[nodiscard]] const PreparedMethod& adaptive() { return prepared_.of(methods::method_named("adaptive")); }
 
   std::vector<Ladder> choose_ladders() {
     MethodSweep& methods = study_.request.methods;
@@ -265,85 +243,11 @@ class Runner {
     study_.settings = std::move(kept);
   }
 
-  void choose_judged() {
-    constexpr std::size_t kLargeScene = 300, kJudged = 32;
-    if (scene().faces().size() > kLargeScene) {
-      study_.judged = choose_receivers(study_.exact, kJudged);
-      leave_out({{"silent errors at all but " + text::counted(study_.judged.size(), "receiver"),
-                  "the exact visible region of so many faces takes long to draw"}});
-    } else {
-      for (std::size_t i = 0; i < study_.exact.size(); ++i) study_.judged.push_back(i);
-    }
-  }
-
-  void sample() {
-    choose_judged();
-    const std::size_t count = request().receivers.size();
-    study_.samples.assign(study_.settings.size(), std::vector<SampleRow>(count));
-    const jobs::KeptWork kept(journal_, request_hash_ + '-' + jobs::short_hash(settings_text(study_)));
-    files::parallel_for(count, threads(), "sampling", hooks_, [&](std::size_t i) {
-      kept.get(
-          "samples/" + std::to_string(i), [&] { sample_receiver(i); },
-          [&](auto& words) {
-            for (auto& of_setting : study_.samples) fields(words, of_setting[i]);
-          });
-    });
-  }
-
-  void sample_receiver(std::size_t i) {
-    std::vector<SourceSum> sums(study_.settings.size());
-    for (auto& of_setting : study_.samples) of_setting[i] = {};
-    for (std::size_t s = 0; s < sources_.size(); ++s) {
-      std::optional<std::vector<PlaneDrawing>> truth;
-      for (std::size_t k = 0; k < study_.settings.size(); ++k) add_sample(i, s, k, truth, sums[k]);
-    }
-    const Rgb reflectance = scene().receiver_reflectance(request().receivers[i].on);
-    for (std::size_t k = 0; k < study_.settings.size(); ++k) {
-      SampleRow& row = study_.samples[k][i];
-      row.form_factor = sums[k].form_factor;
-      row.error = row.form_factor - study_.exact[i].form_factor;
-      row.radiosity_error = sums[k].radiosity_error(reflectance);
-    }
-  }
-
-  // `truth` is drawn when the first setting needs it.
-  void add_sample(std::size_t i, std::size_t s, std::size_t k, std::optional<std::vector<PlaneDrawing>>& truth,
-                  SourceSum& sum) {
-    const Receiver& receiver = request().receivers[i];
-    SampleRow& row = study_.samples[k][i];
-    AdaptiveOptions options = study_.settings[k];
-    options.record_leaves = std::binary_search(study_.judged.begin(), study_.judged.end(), i);
-    const AdaptiveResult result =
-        solver_->form_factor(receiver, sampled_sources_[s], largest_rho_b(receiver, s), options);
-    add_counts(row, result);
-    sum.add(result.form_factor, study_.exact[i].terms[s].value, radiosities_[s]);
-    if (!options.record_leaves || sampled_leaves(result) == 0) return;
-    if (!truth) truth = draw_visibility(scene(), receiver, sources_[s]);
-    const SampledVerdict verdict = judge_leaves(result.leaf_list, *truth);
-    row.silent_leaves += verdict.silent;
-    row.wrong_leaves += verdict.wrong;
-    row.silent_error += verdict.error;
-  }
-
-  static std::uint64_t sampled_leaves(const AdaptiveResult& result) {
-    return result.leaves_by_reason[static_cast<std::size_t>(LeafReason::kSampledVisible)] +
-           result.leaves_by_reason[static_cast<std::size_t>(LeafReason::kSampledHidden)];
-  }
-
-  static void add_counts(SampleRow& row, const AdaptiveResult& result) {
-    row.leaves += result.leaves;
-    row.rays += result.rays;
-    row.shaft_tests += result.shaft_tests;
-    for (std::size_t r = 0; r < kLeafReasonCount; ++r) row.leaves_by_reason[r] += result.leaves_by_reason[r];
-  }
-
-  void run_settings(std::vector<Ladder> ladders) {
+  void run_settings() {
     const MethodSweep& methods = request().methods;
     const jobs::KeptWork kept(
         journal_, request_hash_ + '-' + std::to_string(methods.seeds) + '-' + std::to_string(methods.receivers));
-    MethodResults found = run_methods(study_, std::move(ladders), kept, hooks_);
-    study_.methods = std::move(found.methods);
-    leave_out(std::move(found.left_out));
+    study::run_settings(study_, sources_, prepared_, kept, hooks_);
   }
 
   void look_closer() {
@@ -375,7 +279,13 @@ class Runner {
     study_.methods.setup_seconds = std::move(times.method_setup);
     study_.exact_setup_seconds = times.exact_setup;
     std::ranges::sort(study_.timed);
-    if (solver_) study_.ray_setup_seconds = solver_->build_seconds();  // built at the first long candidate list
+    if (!study_.settings.empty()) study_.ray_setup_seconds = ray_setup_seconds();
+  }
+
+  // Of the structure, which is built at the first long candidate list.
+  [[nodiscard]] double ray_setup_seconds() {
+    const auto evaluator = adaptive().scene->configure(methods::method_named("adaptive").defaults());
+    return dynamic_cast<const methods::RecursionEvaluator&>(*evaluator).build_seconds();
   }
 
   void take_times(const Times::Setting& times, MethodCell& cell) {
@@ -405,8 +315,7 @@ class Runner {
   std::vector<ExactSource> sources_;
   std::vector<Rgb> radiosities_;
   std::vector<double> areas_;
-  std::optional<AdaptiveSolver> solver_;
-  std::vector<AdaptiveSource> sampled_sources_;
+  PreparedMethods prepared_{study_.request};
 };
 
 }  // namespace

@@ -180,31 +180,6 @@ void leave_out_sampling(Sweeps& sweeps, const std::string& why, std::vector<Left
   shorten(sweeps.patterns, sweeps.patterns.front(), "comparison of sample patterns", why, left_out);
 }
 
-AdaptiveOptions without(AdaptiveOptions setting, Parameter parameter) {
-  const AdaptiveOptions none{};
-  switch (parameter) {
-    case Parameter::kEpsB:
-      setting.eps_b = none.eps_b;
-      break;
-    case Parameter::kEpsA:
-      setting.eps_a = none.eps_a;
-      break;
-    case Parameter::kRays:
-      setting.rays = none.rays;
-      break;
-    case Parameter::kSeed:
-      setting.seed = none.seed;
-      break;
-    case Parameter::kPattern:
-      setting.pattern = none.pattern;
-      break;
-    case Parameter::kVariant:
-      setting.variant = none.variant;
-      break;
-  }
-  return setting;
-}
-
 }  // namespace
 
 void complete(Sweeps& sweeps, const Work& work) {
@@ -272,24 +247,25 @@ methods::Choice choice_of(const AdaptiveOptions& setting) {
   return choice;
 }
 
-bool same_setting(const AdaptiveOptions& a, const AdaptiveOptions& b) {
-  return a.eps_b == b.eps_b && a.eps_a == b.eps_a && a.rays == b.rays && a.pattern == b.pattern && a.seed == b.seed &&
-         a.variant == b.variant && a.depth_cap == b.depth_cap;
+methods::Choice without(methods::Choice choice, std::string_view parameter) {
+  for (const SettingSpec& spec : choice.settings.specs()) {
+    if (spec.name == parameter) choice.settings.set(spec.name, spec.fallback);
+  }
+  return choice;
 }
 
 std::vector<std::size_t> line_through(const std::vector<AdaptiveOptions>& settings, std::size_t from,
-                                      Parameter parameter) {
+                                      std::string_view parameter) {
   std::vector<std::size_t> line;
-  const AdaptiveOptions common = without(settings[from], parameter);
+  const methods::Choice common = without(choice_of(settings[from]), parameter);
   for (std::size_t i = 0; i < settings.size(); ++i) {
-    if (same_setting(without(settings[i], parameter), common)) line.push_back(i);
+    if (without(choice_of(settings[i]), parameter) == common) line.push_back(i);
   }
   return line;
 }
 
 std::optional<std::size_t> find_setting(const std::vector<AdaptiveOptions>& settings, const AdaptiveOptions& wanted) {
-  const auto found =
-      std::find_if(settings.begin(), settings.end(), [&](const AdaptiveOptions& s) { return same_setting(s, wanted); });
+  const auto found = std::ranges::find(settings, wanted);
   if (found == settings.end()) return std::nullopt;
   return static_cast<std::size_t>(std::distance(settings.begin(), found));
 }

@@ -12,4 +12,8 @@ namespace exactff::study {
 // True if the adaptive algorithm needs rays to decide what is visible.
 [[nodiscard]] bool needs_rays(const FormFactor& result);
 
+// The receivers that a study examines in detail: evenly spaced among those that see the source partly, and for one
+// third among those that see all of it; other receivers if there are too few. Ascending.
+[[nodiscard]] std::vector<std::size_t> choose_receivers(const std::vector<ExactRow>& exact, std::size_t count);
+
 }  // namespace exactff::study

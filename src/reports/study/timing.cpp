@@ -20,7 +20,7 @@
 #include "files/parallel.h"
 #include "files/stopwatch.h"
 #include "kernel/statistics.h"
-#include "study/method_runs.h"
+#include "study/prepared_method.h"
 
 namespace exactff::study {
 namespace {
@@ -190,7 +190,7 @@ class Stopwatch {
     const methods::Choice& choice = study_.methods.ladders[cell.ladder].rungs[cell.rung];
     Rounds& rounds = rounds_.emplace_back();
     if (choice.method->name != "exact") {
-      Subject subject(prepared, with_seed(choice, cell.seeds.front()));
+      Subject subject(prepared, with_seed(choice, cell.seeds.front()).settings);
       const double planned = planned_exact() + std::max(kShortest, cell.planned_seconds / kOverpriced);
       const std::size_t count = count_within(request().seconds_for_a_time, planned);
       rounds.exact.resize(count);

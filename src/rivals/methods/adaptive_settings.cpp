@@ -43,13 +43,13 @@ void check_tolerances(const Settings& settings) {
 }
 
 Estimate RecursionEvaluator::estimate(const AdaptiveSource& source, const Rgb& radiosity,
-                                      adaptive::PatchVisibility* visibility) const {
+                                      adaptive::PatchVisibility* visibility) {
   const kernel::StandardArithmetic arithmetic;
   const Rgb rho = scene_.receiver_reflectance(receiver_.on);
   const double rho_b = Rgb{rho.r * radiosity.r, rho.g * radiosity.g, rho.b * radiosity.b}.largest();
-  const AdaptiveResult found =
-      visibility == nullptr ? solver_.form_factor(receiver_, source, rho_b, options_)
-                            : AdaptiveInside::form_factor(solver_, receiver_, source, rho_b, options_, *visibility);
+  AdaptiveResult found = visibility == nullptr
+                             ? solver_.form_factor(receiver_, source, rho_b, options_)
+                             : AdaptiveInside::form_factor(solver_, receiver_, source, rho_b, options_, *visibility);
   Estimate result{found.form_factor, {}};
   result.counters.add("leaves", found.leaves);
   result.counters.add("rays", found.rays);
@@ -57,6 +57,7 @@ Estimate RecursionEvaluator::estimate(const AdaptiveSource& source, const Rgb& r
   for (std::size_t reason = 0; reason < kLeafReasonCount; ++reason) {
     result.counters.add(kLeafCounters[reason], found.leaves_by_reason[reason]);
   }
+  if (keeps_results_) results_.push_back(std::move(found));
   return result;
 }
 

@@ -13,8 +13,8 @@
 #include "report/report.h"
 #include "report/verdicts.h"
 #include "study/ladders.h"
-#include "study/method_runs.h"
 #include "study/settings.h"
+#include "study/sight.h"
 #include "study/statistics.h"
 #include "text/escape.h"
 #include "unit/reports/study_support.h"
@@ -115,11 +115,13 @@ TEST(MethodStudy, HoldsEveryRungAtTheChosenReceivers) {
   }
 }
 
-// Every setting of the sweeps is compared with the methods, with as many seeds as the budget allows.
+// Every setting of the sweeps is compared with the methods, with as many seeds as the budget allows, but never on one
+// or two seeds alone. What was run at every receiver is not run again.
 TEST(MethodStudy, HoldsEverySettingOfTheSweeps) {
   const Scene scene = small_room(true);
   Request request = request_with_methods(scene, 2);
   validation::scatter(request);
+  request.methods.seeds = 5;
   request.methods.ladders = {parse_ladder("exact"), parse_ladder("adaptive:rays=4,eps_B=0.5|0.1")};
   for (const double budget : {10.0, 1e-9}) {
     request.methods.budget = budget;
@@ -131,9 +133,15 @@ TEST(MethodStudy, HoldsEverySettingOfTheSweeps) {
         ++found[k];
         EXPECT_EQ(rung, without_seed(choice_of(study.settings[k])));
         EXPECT_EQ(study.times[k].mean, cell.seconds);
+        const std::uint64_t seed = cell.seeds.front() == 0 ? 0 : study.settings[k].seed - 1;
+        for (std::size_t r = 0; r < study.methods.receivers.size(); ++r) {
+          const SampleRow& row = study.samples[k][study.methods.receivers[r]];
+          EXPECT_EQ(cell.values[seed][r], row.form_factor);
+          EXPECT_EQ(cell.radiosity_errors[seed][r], row.radiosity_error);
+        }
       }
       const bool stochastic = rung.method->stochastic(rung.settings);
-      EXPECT_EQ(cell.seeds.size(), stochastic && budget > 1.0 ? 3U : 1U);
+      EXPECT_EQ(cell.seeds.size(), !stochastic ? 1U : budget > 1.0 ? 5U : 3U);
     }
     EXPECT_EQ(found, std::vector<std::size_t>(study.settings.size(), 1)) << "each setting once, whatever its seed";
     const Ladder& line = study.methods.ladders[budget > 1.0 ? 1 : 0];

@@ -1,0 +1,38 @@
+// What a setting is planned to cost, from counted work at fixed prices: no plan depends on a clock.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "exactff/study.h"
+#include "study/prepared_method.h"
+
+namespace exactff::study {
+
+// Seconds of one evaluation with this work.
+[[nodiscard]] double planned_seconds(const methods::Counters& counters, std::size_t faces);
+// Finds the planned seconds of evaluations by doing them.
+class Estimator {
+ public:
+  // A recursion is stopped when it has certainly exceeded `most_seconds`.
+  Estimator(const methods::Choice& choice, const PreparedMethod& prepared, double most_seconds);
+  // For all sources.
+  [[nodiscard]] double seconds_at(const Receiver& receiver);
+
+ private:
+  const PreparedMethod& prepared_;
+  std::unique_ptr<methods::Evaluator> evaluator_;
+};
+
+// The settings of the sweeps to leave out: those with the most planned work, but not the base, until the rest fits into
+// Request::sweep_budget. In order of decreasing work. Requires exact values and settings. Throws InputError if even the
+// base would take far too long.
+[[nodiscard]] std::vector<std::size_t> over_budget(const Study& study, const PreparedMethod& adaptive);
+
+// Chooses the receivers of MethodStudy, and plans its ladders, cells and fields. Every rung is evaluated once. A ladder
+// ends before the rung that would take more than what is left of MethodSweep::budget. A setting of the sweeps is run
+// all the same, with fewer seeds, but never on one or two alone; on a ladder of such settings every rung gets an equal
+// share of what is left.
+void plan_runs(Study& study, std::vector<Ladder> ladders, PreparedMethods& methods);
+
+}  // namespace exactff::study
