@@ -44,6 +44,13 @@ std::string base_sentence(const Study& study) {
   return text + ".";
 }
 
+// "lowers the RMS error by a factor of 3".
+std::string change_words(double before, double after) {
+  const std::string factor = text::rounded(std::max(before / after, after / before), 2);
+  if (factor == "1") return "hardly changes the RMS error";
+  return std::string(after < before ? "lowers" : "raises") + " the RMS error by a factor of " + factor;
+}
+
 // What a smaller eps_B alone achieves.
 std::string tolerance_sentence(const Study& study) {
   const std::vector<std::size_t> line = study::line_through(study.settings, study.base, "eps_B");
@@ -51,10 +58,10 @@ std::string tolerance_sentence(const Study& study) {
   const auto [low, high] = std::minmax_element(line.begin(), line.end(), smaller);
   const double low_eps = study.settings[*low].eps_b, high_eps = study.settings[*high].eps_b;
   const double low_rms = study.summaries[*low].radiosity.rms, high_rms = study.summaries[*high].radiosity.rms;
-  if (!(low_eps > 0.0) || low_eps == high_eps || !(low_rms > 0.0)) return {};
+  if (!(low_eps > 0.0) || low_eps == high_eps || !(low_rms > 0.0) || !(high_rms > 0.0)) return {};
   return "Lowering ε_B by a factor of " + text::rounded(high_eps / low_eps) + ", from " + text::rounded(high_eps) +
-         " to " + text::rounded(low_eps) + ", lowers the RMS error by a factor of " +
-         text::rounded(high_rms / low_rms, 2) + "; the share of receivers off by more than ε_B goes from " +
+         " to " + text::rounded(low_eps) + ", " + change_words(high_rms, low_rms) +
+         "; the share of receivers off by more than ε_B goes from " +
          text::share(study.summaries[*high].violations, study.exact.size()) + " to " +
          text::share(study.summaries[*low].violations, study.exact.size()) + ".";
 }

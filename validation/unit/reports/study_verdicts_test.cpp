@@ -10,6 +10,7 @@
 
 #include "exactff/study.h"
 #include "report/figures.h"
+#include "report/plan.h"
 #include "report/verdicts.h"
 #include "study/ladders.h"
 
@@ -135,6 +136,29 @@ TEST_F(Verdicts, AreDrawnWithWhatTheyRecommend) {
   EXPECT_NE(figures.front().script.find("recommended"), std::string::npos);
   EXPECT_NE(figures.front().caption.find("nettle, literal, splits 2, which the verdict recommends"), std::string::npos)
       << figures.front().caption;
+}
+
+// What a smaller eps_B does to the RMS error is told in the direction in which it goes.
+TEST_F(Verdicts, SayWhetherASmallerToleranceHelps) {
+  study_.settings = {{.eps_b = 0.1}, {.eps_b = 0.01}};
+  study_.summaries.resize(2);
+  study_.samples.resize(2);
+  study_.times.resize(2);
+  const auto said = [&](double before, double after) {
+    study_.summaries[0].radiosity.rms = before;
+    study_.summaries[1].radiosity.rms = after;
+    std::string found;
+    for (const std::string& sentence : report::headlines(study_)) {
+      if (sentence.starts_with("Lowering")) found = sentence;
+    }
+    return found.substr(0, found.find(';'));
+  };
+  const std::string begin = "Lowering ε_B by a factor of 10, from 0.1 to 0.01, ";
+  EXPECT_EQ(said(0.3, 0.1), begin + "lowers the RMS error by a factor of 3");
+  EXPECT_EQ(said(0.28, 0.3), begin + "raises the RMS error by a factor of 1.1");
+  EXPECT_EQ(said(0.3, 0.3001), begin + "hardly changes the RMS error");
+  EXPECT_EQ(said(0.3, 0.0), "") << "no factor";
+  EXPECT_EQ(said(0.0, 0.3), "") << "no factor";
 }
 
 TEST_F(Verdicts, WarnWhereTheMachineDrifted) {
