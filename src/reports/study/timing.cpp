@@ -7,7 +7,8 @@
 //
 // Other programs may run. Long calls are measured by the processor time of the thread. Reading that clock can take
 // microseconds, so short calls are measured on the steady clock: they are seldom interrupted, and a median leaves out
-// those that are. They follow a first call with the same arguments, and very short ones are repeated.
+// those that are. They follow a first call with the same arguments, and very short ones are repeated. Long calls need
+// no such warming up.
 #include "study/timing.h"
 
 #include <time.h>
@@ -25,10 +26,12 @@
 namespace exactff::study {
 namespace {
 
-constexpr double kLong = 1e-4, kShortest = 1e-5;  // seconds: calls by processor time; repeated calls together
+constexpr double kLong = 1e-4, kShortest = 5e-6;  // seconds: calls by processor time; repeated calls together
 constexpr std::size_t kFewestRounds = 3, kMostRounds = 9;
 constexpr std::size_t kFewestReceivers = 12;
-constexpr double kOverpriced = 4.0;  // planned times of approximate methods are that much too long, or less
+
+// A planned time is this many times the true one, or less: prices of rays and samples are high, those of pixels low.
+double overpriced(const methods::Method& method) { return method.all_sources_at_once ? 0.5 : 4.0; }
 
 double thread_seconds() {
   timespec time{};
@@ -55,20 +58,20 @@ class Subject {
   [[nodiscard]] double seconds(const Receiver& receiver, std::size_t place) {
     if (repeats_.size() <= place) repeats_.resize(place + 1, 0);
     int& repeats = repeats_[place];
-    if (repeats == 0) {
-      const double once = std::max(kShortest / 100.0, files::seconds_of([&] { evaluate(receiver); }));
-      repeats = once > kLong ? kByProcessorTime : static_cast<int>(std::ceil(kShortest / once));
+    if (repeats == 0 || repeats == kByProcessorTime) {
+      const double start = thread_seconds();
+      const double once = files::seconds_of([&] { evaluate(receiver); }), of_thread = thread_seconds() - start;
+      if (repeats == 0) {
+        repeats = once > kLong ? kByProcessorTime
+                               : static_cast<int>(std::ceil(kShortest / std::max(kShortest / 100.0, once)));
+      }
+      if (repeats == kByProcessorTime) return of_thread;
     }
-    if (repeats != kByProcessorTime) {
-      evaluate(receiver);  // what was called before may have taken the caches
-      return files::seconds_of([&] {
-               for (int k = 0; k < repeats; ++k) evaluate(receiver);
-             }) /
-             repeats;
-    }
-    const double start = thread_seconds();
-    evaluate(receiver);
-    return thread_seconds() - start;
+    evaluate(receiver);  // what was called before may have taken the caches
+    return files::seconds_of([&] {
+             for (int k = 0; k < repeats; ++k) evaluate(receiver);
+           }) /
+           repeats;
   }
 
  private:
@@ -191,7 +194,7 @@ class Stopwatch {
     Rounds& rounds = rounds_.emplace_back();
     if (choice.method->name != "exact") {
       Subject subject(prepared, with_seed(choice, cell.seeds.front()).settings);
-      const double planned = planned_exact() + std::max(kShortest, cell.planned_seconds / kOverpriced);
+      const double planned = planned_exact() + std::max(kShortest, cell.planned_seconds / overpriced(*choice.method));
       const std::size_t count = count_within(request().seconds_for_a_time, planned);
       rounds.exact.resize(count);
       rounds.ratios.resize(count);
