@@ -211,13 +211,13 @@ Study study_of_model(const Scene& scene, const char* floor) {
   Request request;
   request.scene = &scene;
   request.scene_name = "model";
-  request.receivers = grid_receivers(scene, scene.select(floor), {4, 4});
-  request.receivers_name = "floor, grid 4x4";
+  request.receivers = grid_receivers(scene, scene.select(floor), {3, 3});
+  request.receivers_name = "floor, grid 3x3";
   request.sweeps.rays = {1, 64};
   request.sweeps.patterns = {SamplePattern::kJittered};
   request.sweeps.seeds = {1, 2};
-  request.methods = {.enabled = true, .seeds = 1, .receivers = 6, .budget = 0.004};
-  request.sweep_budget = 0.03;
+  request.methods = {.enabled = true, .seeds = 1, .receivers = 3, .budget = 0.001};
+  request.sweep_budget = 0.01;
   request.seconds_for_a_time = 0.001;
   request.threads = 2;
   validation::scatter(request);
