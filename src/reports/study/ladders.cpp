@@ -160,10 +160,6 @@ bool differ_in_eps_b_only(const methods::Choice& a, const methods::Choice& b) {
   return a.method == b.method && without(a, "eps_B") == without(b, "eps_B");
 }
 
-bool has_rung(const Ladder& ladder, const methods::Choice& choice) {
-  return std::ranges::find(ladder.rungs, choice) != ladder.rungs.end();
-}
-
 // Effort rises as eps_B falls.
 void insert(Ladder& ladder, const methods::Choice& choice) {
   const auto less_effort = [&](const methods::Choice& rung) { return eps_b_of(rung) > eps_b_of(choice); };
@@ -182,46 +178,37 @@ std::string line_name(const methods::Choice& choice) {
   return name;
 }
 
-std::vector<Ladder> lines_of(const std::vector<methods::Choice>& choices) {
-  std::vector<Ladder> lines;
-  for (const methods::Choice& choice : choices) {
-    const auto line =
-        std::ranges::find_if(lines, [&](const Ladder& one) { return differ_in_eps_b_only(one.rungs.front(), choice); });
-    if (line != lines.end()) {
-      insert(*line, choice);
-    } else {
-      lines.push_back({line_name(choice), "eps_B", {choice}, true});
-    }
+// The ladder that has the setting, or can take it.
+Ladder* ladder_for(const methods::Choice& choice, std::vector<Ladder>& ladders) {
+  auto found = std::ranges::find_if(
+      ladders, [&](const Ladder& one) { return std::ranges::find(one.rungs, choice) != one.rungs.end(); });
+  if (found == ladders.end()) {
+    found = std::ranges::find_if(ladders, [&](const Ladder& one) {
+      return one.along == "eps_B" && differ_in_eps_b_only(one.rungs.front(), choice);
+    });
   }
-  return lines;
+  return found == ladders.end() ? nullptr : &*found;
 }
 
 }  // namespace
 
 void add_sweeps(std::vector<Ladder>& ladders, std::span<const AdaptiveOptions> settings) {
-  std::vector<methods::Choice> others;
+  std::vector<Ladder> added;
   for (const AdaptiveOptions& setting : settings) {
     const methods::Choice choice = without_seed(choice_of(setting));
-    const auto has = [&](const Ladder& ladder) { return has_rung(ladder, choice); };
-    if (std::ranges::any_of(ladders, has) || std::ranges::find(others, choice) != others.end()) continue;
-    const auto line = std::ranges::find_if(ladders, [&](const Ladder& ladder) {
-      return ladder.along == "eps_B" && differ_in_eps_b_only(ladder.rungs.front(), choice);
-    });
-    if (line != ladders.end()) {
-      insert(*line, choice);
-    } else {
-      others.push_back(choice);
+    Ladder* ladder = ladder_for(choice, ladders);
+    if (ladder == nullptr) ladder = ladder_for(choice, added);
+    if (ladder == nullptr) {
+      added.push_back({line_name(choice), "eps_B", {choice}, true});
+    } else if (std::ranges::find(ladder->rungs, choice) == ladder->rungs.end()) {
+      insert(*ladder, choice);
     }
   }
-  std::vector<Ladder> added;
   Ladder rest{"adaptive, other settings", "", {}, true};
-  for (Ladder& line : lines_of(others)) {
-    if (line.rungs.size() > 1) {
-      added.push_back(std::move(line));
-    } else {
-      rest.rungs.push_back(line.rungs.front());
-    }
+  for (const Ladder& line : added) {
+    if (line.rungs.size() == 1) rest.rungs.push_back(line.rungs.front());
   }
+  std::erase_if(added, [](const Ladder& line) { return line.rungs.size() == 1; });
   if (rest.rungs.size() == 1) {
     rest.name = line_name(rest.rungs.front()) + ", ε_B " + text::rounded(eps_b_of(rest.rungs.front()));
   }
@@ -231,7 +218,7 @@ void add_sweeps(std::vector<Ladder>& ladders, std::span<const AdaptiveOptions> s
   ladders.insert(last == ladders.rend() ? ladders.end() : last.base(), added.begin(), added.end());
 }
 
-std::vector<LeftOut> leave_out(std::vector<Ladder>& ladders, const Sightings& sightings) {
+std::vector<LeftOut> leave_out(std::vector<Ladder>& ladders, const Scope& scope) {
   std::vector<LeftOut> left_out;
   const auto drop = [&](const auto& is_idle, const std::string& why) {
     std::erase_if(ladders, [&](const Ladder& ladder) {
@@ -242,11 +229,11 @@ std::vector<LeftOut> leave_out(std::vector<Ladder>& ladders, const Sightings& si
   };
   const auto adaptive = [](const methods::Choice& c) { return c.method->name.starts_with("adaptive"); };
   const auto control = [](const methods::Choice& c) { return c.method->name == "adaptive-exact-visibility"; };
-  if (!sightings.any) {
+  if (!scope.anything_seen) {
     drop([](const methods::Choice&) { return true; }, "no receiver sees any part of a source");
   }
-  if (!(sightings.largest_rho_b > 0.0)) drop(adaptive, "nothing is emitted or reflected, so that it returns 0 at once");
-  if (!sightings.sampled) {
+  if (!(scope.largest_rho_b > 0.0)) drop(adaptive, "nothing is emitted or reflected, so that it returns 0 at once");
+  if (!scope.anything_sampled) {
     drop(control, "no receiver has a source hidden in part, so that there is no sampling to be replaced");
   }
   return left_out;

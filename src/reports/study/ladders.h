@@ -21,15 +21,8 @@ void add_sweeps(std::vector<Ladder>& ladders, std::span<const AdaptiveOptions> s
 // The choice with the default seed, and with the defaults of what does not affect it.
 [[nodiscard]] methods::Choice without_seed(methods::Choice choice);
 
-// What the exact values show about the work that sampling has in the scene.
-struct Sightings {
-  bool any = true;      // some receiver sees something
-  bool sampled = true;  // some receiver has a source hidden in part, or by several occluders together
-  double largest_rho_b = 0.0;
-};
-
 // Removes the ladders that cannot show anything, and returns the reasons.
-[[nodiscard]] std::vector<LeftOut> leave_out(std::vector<Ladder>& ladders, const Sightings& sightings);
+[[nodiscard]] std::vector<LeftOut> leave_out(std::vector<Ladder>& ladders, const Scope& scope);
 
 // The value of the setting that varies along the ladder, at this rung: "64". Empty if no setting varies.
 [[nodiscard]] std::string rung_text(const Ladder& ladder, std::size_t rung);

@@ -115,7 +115,8 @@ class Runner {
     plan_runs(study_, choose_ladders(), prepared_);
     run_settings();
     if (request().methods.enabled) look_closer();
-    take_times(measure_times(study_, hooks_));
+    measure_times(study_, hooks_);
+    if (!study_.settings.empty()) study_.ray_setup_seconds = ray_setup_seconds();
     summarise();
     return std::move(study_);
   }
@@ -187,12 +188,12 @@ class Runner {
 
   static double nearest(const Enclosure& sum) { return sum.nearest().value_or(0.5 * sum.lower() + 0.5 * sum.upper()); }
 
-  [[nodiscard]] bool anything_sampled() const {
-    return std::any_of(study_.exact.begin(), study_.exact.end(), [](const ExactRow& row) { return row.sampled; });
-  }
-  [[nodiscard]] bool anything_seen() const {
-    return std::any_of(study_.exact.begin(), study_.exact.end(),
-                       [](const ExactRow& row) { return row.sight == Sight::kPartly || row.sight == Sight::kVisible; });
+  // Derived from the exact values before anything is sampled.
+  [[nodiscard]] Scope scope() const {
+    const auto sampled = [](const ExactRow& row) { return row.sampled; };
+    const auto seen = [](const ExactRow& row) { return row.sight == Sight::kPartly || row.sight == Sight::kVisible; };
+    return {study_.largest_rho_b, mean_face_area(request()), std::ranges::any_of(study_.exact, sampled),
+            std::ranges::any_of(study_.exact, seen)};
   }
 
   void choose_settings() {
@@ -200,10 +201,9 @@ class Runner {
       return leave_out({{"the ray-sampled algorithm over its own tolerances",
                          "the comparison is about named methods (--sweep runs it, too)"}});
     }
-    const Work work{study_.largest_rho_b, mean_face_area(request()), anything_sampled()};
     Sweeps& sweeps = study_.request.sweeps;
-    study::complete(sweeps, work);
-    leave_out(study::leave_out(sweeps, work));
+    study::complete(sweeps, scope());
+    leave_out(study::leave_out(sweeps, scope()));
     SettingPlan plan = combine(sweeps);
     study_.settings = std::move(plan.settings);
     study_.base = plan.base;
@@ -217,7 +217,7 @@ class Runner {
     MethodSweep& methods = study_.request.methods;
     if (!methods.enabled) methods.ladders = {parse_ladder("exact")};
     if (methods.ladders.empty()) methods.ladders = default_ladders(study_.largest_rho_b);
-    leave_out(study::leave_out(methods.ladders, {anything_seen(), anything_sampled(), study_.largest_rho_b}));
+    leave_out(study::leave_out(methods.ladders, scope()));
     std::vector<Ladder> ladders = methods.ladders;
     add_sweeps(ladders, study_.settings);
     return ladders;
@@ -266,39 +266,10 @@ class Runner {
     }
   }
 
-  void take_times(Times times) {
-    study_.timed = std::move(times.receivers);
-    study_.exact_time = times.exact.summary;
-    study_.exact_fastest = times.exact_fastest;
-    study_.exact_slowest = times.exact_slowest;
-    for (std::size_t t = 0; t < study_.timed.size(); ++t) {
-      study_.exact[study_.timed[t]].seconds = times.exact.by_receiver[t];
-    }
-    study_.times.resize(study_.settings.size());
-    for (std::size_t c = 0; c < times.cells.size(); ++c) take_times(times.cells[c], study_.methods.cells[c]);
-    study_.methods.setup_seconds = std::move(times.method_setup);
-    study_.exact_setup_seconds = times.exact_setup;
-    std::ranges::sort(study_.timed);
-    if (!study_.settings.empty()) study_.ray_setup_seconds = ray_setup_seconds();
-  }
-
   // Of the structure, which is built at the first long candidate list.
   [[nodiscard]] double ray_setup_seconds() {
     const auto evaluator = adaptive().scene->configure(methods::method_named("adaptive").defaults());
     return dynamic_cast<const methods::RecursionEvaluator&>(*evaluator).build_seconds();
-  }
-
-  void take_times(const Times::Setting& times, MethodCell& cell) {
-    cell.seconds = times.summary.mean;
-    if (times.summary.mean_partly > 0.0) cell.seconds_partly = times.summary.mean_partly;
-    cell.ratio_low = times.ratio_low;
-    cell.ratio_high = times.ratio_high;
-    for (const std::size_t k : cell.settings) {
-      study_.times[k] = times.summary;
-      for (std::size_t t = 0; t < times.by_receiver.size(); ++t) {
-        study_.samples[k][study_.timed[t]].seconds = times.by_receiver[t];
-      }
-    }
   }
 
   void summarise() {

@@ -69,21 +69,6 @@ AdaptiveOptions normalised(AdaptiveOptions setting, const Sweeps& sweeps) {
   return setting;
 }
 
-class Collector {
- public:
-  explicit Collector(const Sweeps& sweeps) : sweeps_(sweeps) {}
-
-  void add(const AdaptiveOptions& wanted) {
-    const AdaptiveOptions setting = normalised(wanted, sweeps_);
-    if (!find_setting(settings_, setting)) settings_.push_back(setting);
-  }
-  std::vector<AdaptiveOptions> take() { return std::move(settings_); }
-
- private:
-  const Sweeps& sweeps_;
-  std::vector<AdaptiveOptions> settings_;
-};
-
 AdaptiveOptions base_of(const Sweeps& sweeps) {
   AdaptiveOptions base;
   base.eps_b = middle(sweeps.eps_b);
@@ -100,70 +85,47 @@ std::size_t product_size(const Sweeps& sweeps) {
          sweeps.variants.size();
 }
 
-void add_plane(Collector& settings, AdaptiveOptions setting, const Sweeps& sweeps) {
-  for (int rays : sweeps.rays) {
-    for (double eps_b : sweeps.eps_b) {
-      setting.rays = rays;
-      setting.eps_b = eps_b;
-      settings.add(setting);
+using SettingList = std::vector<AdaptiveOptions>;
+
+// Every setting with every value of this parameter.
+template <class T>
+SettingList times_values(const SettingList& settings, T AdaptiveOptions::*parameter, const std::vector<T>& values) {
+  SettingList all;
+  for (AdaptiveOptions setting : settings) {
+    for (const T& value : values) {
+      setting.*parameter = value;
+      all.push_back(setting);
     }
   }
+  return all;
 }
 
-void add_full_product(Collector& settings, const Sweeps& sweeps) {
-  AdaptiveOptions setting;
-  for (Variant variant : sweeps.variants) {
-    for (SamplePattern pattern : sweeps.patterns) {
-      for (std::uint64_t seed : sweeps.seeds) {
-        for (double eps_a : sweeps.eps_a) {
-          setting.variant = variant;
-          setting.pattern = pattern;
-          setting.seed = seed;
-          setting.eps_a = eps_a;
-          add_plane(settings, setting, sweeps);
-        }
-      }
-    }
-  }
+SettingList plane_through(const SettingList& settings, const Sweeps& sweeps) {
+  return times_values(times_values(settings, &AdaptiveOptions::rays, sweeps.rays), &AdaptiveOptions::eps_b,
+                      sweeps.eps_b);
 }
 
-void add_areas(Collector& settings, AdaptiveOptions setting, const Sweeps& sweeps) {
-  setting.eps_b = *std::min_element(sweeps.eps_b.begin(), sweeps.eps_b.end());
-  setting.rays = *std::max_element(sweeps.rays.begin(), sweeps.rays.end());
-  for (double eps_a : sweeps.eps_a) {
-    setting.eps_a = eps_a;
-    settings.add(setting);
-  }
+SettingList full_product(const Sweeps& sweeps) {
+  SettingList all = times_values({AdaptiveOptions{}}, &AdaptiveOptions::variant, sweeps.variants);
+  all = times_values(all, &AdaptiveOptions::pattern, sweeps.patterns);
+  all = times_values(all, &AdaptiveOptions::seed, sweeps.seeds);
+  return plane_through(times_values(all, &AdaptiveOptions::eps_a, sweeps.eps_a), sweeps);
 }
 
-void add_variants_and_patterns(Collector& settings, const AdaptiveOptions& base, const Sweeps& sweeps) {
-  for (Variant variant : sweeps.variants) {
-    for (double eps_b : sweeps.eps_b) {
-      AdaptiveOptions setting = base;
-      setting.variant = variant;
-      setting.eps_b = eps_b;
-      settings.add(setting);
-    }
+SettingList sweeps_through(const AdaptiveOptions& base, const Sweeps& sweeps) {
+  AdaptiveOptions finest = base;
+  finest.eps_b = std::ranges::min(sweeps.eps_b);
+  finest.rays = std::ranges::max(sweeps.rays);
+  const SettingList variants = times_values({base}, &AdaptiveOptions::variant, sweeps.variants);
+  const SettingList patterns = times_values({base}, &AdaptiveOptions::pattern, sweeps.patterns);
+  SettingList all = plane_through({base}, sweeps);
+  for (const SettingList& sweep : {times_values({finest}, &AdaptiveOptions::eps_a, sweeps.eps_a),
+                                   times_values(variants, &AdaptiveOptions::eps_b, sweeps.eps_b),
+                                   times_values(patterns, &AdaptiveOptions::rays, sweeps.rays),
+                                   times_values({base}, &AdaptiveOptions::seed, sweeps.seeds)}) {
+    all.insert(all.end(), sweep.begin(), sweep.end());
   }
-  for (SamplePattern pattern : sweeps.patterns) {
-    for (int rays : sweeps.rays) {
-      AdaptiveOptions setting = base;
-      setting.pattern = pattern;
-      setting.rays = rays;
-      settings.add(setting);
-    }
-  }
-}
-
-void add_sweeps(Collector& settings, const AdaptiveOptions& base, const Sweeps& sweeps) {
-  add_plane(settings, base, sweeps);
-  add_areas(settings, base, sweeps);
-  add_variants_and_patterns(settings, base, sweeps);
-  AdaptiveOptions setting = base;
-  for (std::uint64_t seed : sweeps.seeds) {
-    setting.seed = seed;
-    settings.add(setting);
-  }
+  return all;
 }
 
 template <class T>
@@ -182,11 +144,11 @@ void leave_out_sampling(Sweeps& sweeps, const std::string& why, std::vector<Left
 
 }  // namespace
 
-void complete(Sweeps& sweeps, const Work& work) {
-  const double unit = work.largest_rho_b > 0.0 ? work.largest_rho_b : 1.0;
+void complete(Sweeps& sweeps, const Scope& scope) {
+  const double unit = scope.largest_rho_b > 0.0 ? scope.largest_rho_b : 1.0;
   if (sweeps.eps_b.empty()) sweeps.eps_b = powers_of_ten(unit, 1, 5);
   if (sweeps.eps_a.empty()) {
-    sweeps.eps_a = powers_of_ten(work.mean_source_area, 1, 4);
+    sweeps.eps_a = powers_of_ten(scope.mean_source_area, 1, 4);
     sweeps.eps_a.insert(sweeps.eps_a.begin(), 0.0);
   }
   if (sweeps.rays.empty()) sweeps.rays = {1, 4, 16, 64, 256};
@@ -205,13 +167,13 @@ void complete(Sweeps& sweeps, const Work& work) {
   check_ranges(sweeps);
 }
 
-std::vector<LeftOut> leave_out(Sweeps& sweeps, const Work& work) {
+std::vector<LeftOut> leave_out(Sweeps& sweeps, const Scope& scope) {
   std::vector<LeftOut> left_out;
-  if (work.largest_rho_b <= 0.0) {
+  if (scope.largest_rho_b <= 0.0) {
     const std::string why = "no receiver reflects anything (rho B is 0), so the adaptive algorithm returns 0 at once";
     shorten(sweeps.eps_b, middle(sweeps.eps_b), "sweep of eps_B", why, left_out);
     leave_out_sampling(sweeps, why, left_out);
-  } else if (!work.anything_sampled) {
+  } else if (!scope.anything_sampled) {
     leave_out_sampling(
         sweeps,
         "every receiver sees all of a source or nothing of it, or one occluder hides it: no ray decides anything",
@@ -223,15 +185,11 @@ std::vector<LeftOut> leave_out(Sweeps& sweeps, const Work& work) {
 SettingPlan combine(const Sweeps& sweeps) {
   EXACTFF_EXPECT(product_size(sweeps) > 0);
   const AdaptiveOptions base = base_of(sweeps);
-  Collector settings(sweeps);
   SettingPlan plan;
   plan.full_product = product_size(sweeps) <= kFullProductLimit;
-  if (plan.full_product) {
-    add_full_product(settings, sweeps);
-  } else {
-    add_sweeps(settings, base, sweeps);
-  }
-  plan.settings = settings.take();
+  plan.settings = plan.full_product ? full_product(sweeps) : sweeps_through(base, sweeps);
+  for (AdaptiveOptions& setting : plan.settings) setting = normalised(setting, sweeps);
+  drop_repetitions(plan.settings);
   plan.base = find_setting(plan.settings, base).value();
   return plan;
 }

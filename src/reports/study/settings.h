@@ -15,18 +15,19 @@ struct SettingPlan {
   bool full_product = false;
 };
 
-// What the scene lets a sweep show. Derived from the exact values before any sampling.
-struct Work {
+// What the exact values show about the work that a method has in the scene.
+struct Scope {
   double largest_rho_b = 0.0;     // over receivers and sources
   double mean_source_area = 0.0;  // of a face
   bool anything_sampled = true;   // some receiver has a source hidden in part, or by several occluders together
+  bool anything_seen = true;
 };
 
 // Fills empty lists with the defaults, drops repetitions, checks ranges. Throws InputError.
-void complete(Sweeps& sweeps, const Work& work);
+void complete(Sweeps& sweeps, const Scope& scope);
 
 // Shortens every list that cannot affect the results to one value, and returns the reasons.
-[[nodiscard]] std::vector<LeftOut> leave_out(Sweeps& sweeps, const Work& work);
+[[nodiscard]] std::vector<LeftOut> leave_out(Sweeps& sweeps, const Scope& scope);
 
 // Requires completed sweeps. No setting occurs twice. The order depends on the lists alone.
 [[nodiscard]] SettingPlan combine(const Sweeps& sweeps);

@@ -27,7 +27,7 @@ namespace exactff::study {
 namespace {
 
 constexpr double kLong = 1e-4, kShortest = 5e-6;  // seconds: calls by processor time; repeated calls together
-constexpr std::size_t kFewestRounds = 3, kMostRounds = 9;
+constexpr std::size_t kFewestRounds = 3, kMostRounds = 5;
 constexpr std::size_t kFewestReceivers = 12;
 
 // A planned time is this many times the true one, or less: prices of rays and samples are high, those of pixels low.
@@ -95,28 +95,25 @@ struct Rounds {
 
 class Stopwatch {
  public:
-  Stopwatch(const Study& study, const Hooks& hooks)
-      : study_(study), hooks_(hooks), total_(1 + study.methods.cells.size()) {}
+  Stopwatch(Study& study, const Hooks& hooks) : study_(study), hooks_(hooks), total_(1 + study.methods.cells.size()) {}
 
-  Times run() {
+  void run() {
     const methods::Choice exact = exact_choice();
-    times_.exact_setup = files::seconds_of([&] { exact_method_.emplace(*exact.method, scene(), request().sources); });
+    study_.exact_setup_seconds =
+        files::seconds_of([&] { exact_method_.emplace(*exact.method, scene(), request().sources); });
     exact_.emplace(*exact_method_, exact.settings);
     choose();
     time_exact();
     time_cells();
     finish();
-    return std::move(times_);
   }
 
  private:
   [[nodiscard]] const Request& request() const { return study_.request; }
   [[nodiscard]] const Scene& scene() const { return *request().scene; }
-  [[nodiscard]] const Receiver& receiver(std::size_t place) const {
-    return request().receivers[times_.receivers[place]];
-  }
+  [[nodiscard]] const Receiver& receiver(std::size_t place) const { return request().receivers[receivers_[place]]; }
   [[nodiscard]] bool is_partly(std::size_t place) const {
-    return study_.exact[times_.receivers[place]].sight == Sight::kPartly;
+    return study_.exact[receivers_[place]].sight == Sight::kPartly;
   }
 
   [[nodiscard]] methods::Choice exact_choice() const {
@@ -132,8 +129,8 @@ class Stopwatch {
       all = spread_order(study_.exact.size());
       all.resize(std::min(all.size(), request().methods.receivers));
     }
-    times_.receivers = order_of_timing(all, study_.exact);
-    exact_seconds_.resize(times_.receivers.size());
+    receivers_ = order_of_timing(all, study_.exact);
+    exact_seconds_.resize(receivers_.size());
   }
 
   void report() {
@@ -154,15 +151,15 @@ class Stopwatch {
 
   // As many receivers as a round of this planned time for each has time for.
   [[nodiscard]] std::size_t count_within(double seconds, double planned) const {
-    const double most = std::min(seconds / planned, static_cast<double>(times_.receivers.size()));
-    return std::max(static_cast<std::size_t>(most), std::min(kFewestReceivers, times_.receivers.size()));
+    const double most = std::min(seconds / planned, static_cast<double>(receivers_.size()));
+    return std::max(static_cast<std::size_t>(most), std::min(kFewestReceivers, receivers_.size()));
   }
 
   void time_exact() {
     const double seconds = 4.0 * request().seconds_for_a_time;
-    times_.receivers.resize(count_within(seconds, planned_exact()));
+    receivers_.resize(count_within(seconds, planned_exact()));
     repeat(seconds, [&] {
-      for (std::size_t p = 0; p < times_.receivers.size(); ++p) {
+      for (std::size_t p = 0; p < receivers_.size(); ++p) {
         exact_seconds_[p].push_back(exact_->seconds(receiver(p), p));
       }
     });
@@ -183,7 +180,7 @@ class Stopwatch {
     for (std::size_t l = 0; l < methods.ladders.size(); ++l) {
       const methods::Choice& choice = methods.ladders[l].rungs.front();
       std::optional<PreparedMethod> prepared;
-      times_.method_setup.push_back(
+      study_.methods.setup_seconds.push_back(
           files::seconds_of([&] { prepared.emplace(*choice.method, scene(), request().sources); }));
       for (; c < methods.cells.size() && methods.cells[c].ladder == l; ++c) time_cell(methods.cells[c], *prepared);
     }
@@ -223,38 +220,47 @@ class Stopwatch {
   }
 
   void finish() {
-    for (std::size_t p = 0; p < times_.receivers.size(); ++p) {
-      times_.exact.by_receiver.push_back(kernel::median(exact_seconds_[p]));
+    for (std::size_t p = 0; p < receivers_.size(); ++p) {
+      exact_medians_.push_back(kernel::median(exact_seconds_[p]));
+      study_.exact[receivers_[p]].seconds = exact_medians_[p];
     }
-    times_.exact.summary = summary_of(times_.exact.by_receiver);
-    times_.exact.ratio_low = times_.exact.ratio_high = 1.0;
+    study_.exact_time = summary_of(exact_medians_);
+    study_.times.resize(study_.settings.size());
     std::vector<double> speeds;
-    for (const Rounds& rounds : rounds_) {
-      times_.cells.push_back(rounds.exact.empty() ? times_.exact : setting_of(rounds));
-      if (!rounds.exact.empty()) speeds.push_back(exact_speed(rounds));
+    for (std::size_t c = 0; c < rounds_.size(); ++c) {
+      set_times(study_.methods.cells[c], rounds_[c]);
+      if (!rounds_[c].exact.empty()) speeds.push_back(exact_speed(rounds_[c]));
     }
+    study_.timed = receivers_;
+    std::ranges::sort(study_.timed);
     if (speeds.empty()) return;
-    times_.exact_fastest = kernel::percentile(speeds, 5.0);
-    times_.exact_slowest = kernel::percentile(speeds, 95.0);
+    study_.exact_fastest = kernel::percentile(speeds, 5.0);
+    study_.exact_slowest = kernel::percentile(speeds, 95.0);
   }
 
-  [[nodiscard]] Times::Setting setting_of(const Rounds& rounds) const {
-    Times::Setting setting;
+  void set_times(MethodCell& cell, const Rounds& rounds) {
+    const bool is_exact = rounds.exact.empty();
+    std::vector<double> seconds = is_exact ? exact_medians_ : std::vector<double>();
     for (std::size_t p = 0; p < rounds.ratios.size(); ++p) {
-      setting.by_receiver.push_back(kernel::median(rounds.ratios[p]) * times_.exact.by_receiver[p]);
+      seconds.push_back(kernel::median(rounds.ratios[p]) * exact_medians_[p]);
     }
-    setting.summary = summary_of(setting.by_receiver);
-    setting.ratio_low = ratio_at(rounds, 25.0);
-    setting.ratio_high = ratio_at(rounds, 75.0);
-    return setting;
+    const TimeSummary summary = summary_of(seconds);
+    cell.seconds = summary.mean;
+    if (summary.mean_partly > 0.0) cell.seconds_partly = summary.mean_partly;
+    cell.ratio_low = is_exact ? 1.0 : ratio_at(rounds, 25.0);
+    cell.ratio_high = is_exact ? 1.0 : ratio_at(rounds, 75.0);
+    for (const std::size_t k : cell.settings) {
+      study_.times[k] = summary;
+      for (std::size_t p = 0; p < seconds.size(); ++p) study_.samples[k][receivers_[p]].seconds = seconds[p];
+    }
   }
 
   // The percentile of the ratios at each receiver, averaged like the times.
   [[nodiscard]] double ratio_at(const Rounds& rounds, double percent) const {
     double sum = 0.0, exact = 0.0;
     for (std::size_t p = 0; p < rounds.ratios.size(); ++p) {
-      sum += kernel::percentile(rounds.ratios[p], percent) * times_.exact.by_receiver[p];
-      exact += times_.exact.by_receiver[p];
+      sum += kernel::percentile(rounds.ratios[p], percent) * exact_medians_[p];
+      exact += exact_medians_[p];
     }
     return sum / exact;
   }
@@ -265,14 +271,14 @@ class Stopwatch {
     for (std::size_t p = 0; p < seconds.size(); ++p) {
       if (!is_partly(p)) continue;
       partly.push_back(seconds[p]);
-      exact_partly.push_back(times_.exact.by_receiver[p]);
+      exact_partly.push_back(exact_medians_[p]);
     }
     std::vector<double> all_partly;
-    for (std::size_t p = 0; p < times_.receivers.size(); ++p) {
-      if (is_partly(p)) all_partly.push_back(times_.exact.by_receiver[p]);
+    for (std::size_t p = 0; p < receivers_.size(); ++p) {
+      if (is_partly(p)) all_partly.push_back(exact_medians_[p]);
     }
-    const std::span<const double> exact(times_.exact.by_receiver.data(), seconds.size());
-    return {kernel::median(seconds), in_proportion(seconds, exact, times_.exact.by_receiver), kernel::median(partly),
+    const std::span<const double> exact(exact_medians_.data(), seconds.size());
+    return {kernel::median(seconds), in_proportion(seconds, exact, exact_medians_), kernel::median(partly),
             in_proportion(partly, exact_partly, all_partly)};
   }
 
@@ -285,18 +291,19 @@ class Stopwatch {
     double here = 0.0, usual = 0.0;
     for (std::size_t p = 0; p < rounds.exact.size(); ++p) {
       here += kernel::median(rounds.exact[p]);
-      usual += times_.exact.by_receiver[p];
+      usual += exact_medians_[p];
     }
     return here / usual;
   }
 
-  const Study& study_;
+  Study& study_;
   const Hooks& hooks_;
-  Times times_;
+  std::vector<std::size_t> receivers_;  // a place is an index into them
   std::optional<PreparedMethod> exact_method_;
   std::optional<Subject> exact_;
   std::vector<std::vector<double>> exact_seconds_;  // by place, over all settings
-  std::vector<Rounds> rounds_;                      // by cell; empty for the exact method
+  std::vector<double> exact_medians_;
+  std::vector<Rounds> rounds_;  // by cell; empty for the exact method
   std::size_t done_ = 0;
   std::size_t total_ = 0;
 };
@@ -332,6 +339,6 @@ std::vector<std::size_t> order_of_timing(const std::vector<std::size_t>& receive
   return order;
 }
 
-Times measure_times(const Study& study, const Hooks& hooks) { return Stopwatch(study, hooks).run(); }
+void measure_times(Study& study, const Hooks& hooks) { Stopwatch(study, hooks).run(); }
 
 }  // namespace exactff::study

@@ -94,22 +94,22 @@ TEST(DefaultLadders, NeedNoLight) {
 }
 
 TEST(LeaveOut, TakesLaddersThatCannotShowAnything) {
-  const auto left = [](const Sightings& sightings) {
+  const auto left = [](const Scope& scope) {
     std::vector<Ladder> ladders = default_ladders(1.0);
     const std::size_t all = ladders.size();
-    const auto left_out = leave_out(ladders, sightings);
+    const auto left_out = leave_out(ladders, scope);
     EXPECT_EQ(ladders.size() + left_out.size(), all);
     for (const LeftOut& item : left_out) {
       for (const Ladder& ladder : ladders) EXPECT_NE(item.what, "method " + ladder.name);
     }
     return left_out;
   };
-  EXPECT_TRUE(left({true, true, 1.0}).empty());
-  EXPECT_EQ(left({false, false, 1.0}).size(), default_ladders(1.0).size());
-  EXPECT_EQ(left_out_text(left({true, false, 1.0})),
+  EXPECT_TRUE(left({1.0, 1.0, true, true}).empty());
+  EXPECT_EQ(left({1.0, 1.0, false, false}).size(), default_ladders(1.0).size());
+  EXPECT_EQ(left_out_text(left({1.0, 1.0, false, true})),
             "method adaptive, exact V: no receiver has a source hidden in part, so that there is no sampling to be "
             "replaced\n");
-  EXPECT_EQ(left({true, true, 0.0}).size(), 5U) << "the adaptive ones";
+  EXPECT_EQ(left({0.0, 1.0, true, true}).size(), 5U) << "the adaptive ones";
 }
 
 TEST(AddSweeps, MakesEachSettingOneRung) {
