@@ -80,7 +80,7 @@ struct Request {
   Engine engine = Engine::kEdges;
   int threads = 0;                  // 0: as many as this process may use; times are always measured on a single thread
   std::string command_line;         // shown in the last section of the report
-  double sweep_budget = 15.0;       // seconds for all settings of the adaptive algorithm, as for MethodSweep::budget
+  double sweep_budget = 25.0;       // seconds for all settings of the adaptive algorithm, as for MethodSweep::budget
   double seconds_for_a_time = 0.1;  // approximate seconds spent on timing one setting
   std::optional<render::Camera> camera = {};  // of the report's pictures; empty: one that shows the scene
 };
@@ -210,7 +210,7 @@ struct MethodField {
 
 // The comparison of the methods. A ladder stops before the rung whose counted work (rays, pixels, ...), at a fixed
 // price per unit, would exceed the budget. The set of rungs run therefore depends on the request alone, never on a
-// clock. Settings of the sweeps are run nevertheless, with fewer seeds.
+// clock. Settings of the sweeps are run nevertheless, with fewer seeds, but with three at least.
 struct MethodStudy {
   std::vector<Ladder> ladders;
   std::vector<std::size_t> receivers;  // the chosen receivers: indices into Study::exact, ascending

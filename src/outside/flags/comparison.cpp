@@ -187,7 +187,7 @@ void abridge(study::Request& request) {
   if (request.sweeps.variants.empty()) request.sweeps.variants = {Variant::kMended};
   request.methods.receivers = std::min<std::size_t>(request.methods.receivers, 12);
   request.methods.budget = std::min(request.methods.budget, 0.2);
-  request.sweep_budget = std::min(request.sweep_budget, 1.0);
+  request.sweep_budget = std::min(request.sweep_budget, 1.5);
   request.seconds_for_a_time = 0.02;
 }
 
@@ -293,7 +293,7 @@ void ComparisonArguments::add_to(CLI::App& app) {
                  "that the settings that run do not depend on the machine (default: 2)")
       ->type_name("SECONDS");
   app.add_option("--sweep-budget", sweep_budget,
-                 "The same limit for all settings of the adaptive algorithm together (default: 15)")
+                 "The same limit for all settings of the adaptive algorithm together (default: 25)")
       ->type_name("SECONDS");
   engine.add_to(app);
   camera.add_to(app, "Pictures in the report: where the camera stands (default: where it shows the whole scene)",
