@@ -71,32 +71,22 @@ class Planner {
     const PreparedMethod* const prepared = prepared_or_left_out(ladder);
     if (prepared == nullptr) return false;
     const std::size_t rungs = ladder.rungs.size(), before = study_.methods.cells.size();
-    double left = request().methods.budget;
-    std::size_t ended = rungs;
+    left_ = request().methods.budget;
+    ended_ = rungs;
     std::vector<std::size_t> skipped;
     for (std::size_t rung = 0; rung < rungs; ++rung) {
       MethodCell cell = new_cell(ladder.rungs[rung]);
       cell.ladder = place;
       cell.rung = rung;
-      const bool swept = !cell.settings.empty();
-      if (swept || rung < ended) {
-        const double share = ladder.only_of_sweeps ? left / static_cast<double>(rungs - rung) : left;
-        const double of_seed = price_seed(cell, ladder.rungs[rung], *prepared, share);
-        if (of_seed * static_cast<double>(cell.seeds.size()) > share) {
-          if (!ladder.only_of_sweeps) ended = std::min(ended, rung);
-          keep_seeds(cell, share / of_seed);
-        }
-        left = std::max(0.0, left - of_seed * static_cast<double>(cell.seeds.size()));
-      }
-      if (swept || rung < ended) {
+      if (is_affordable(cell, ladder, *prepared)) {
         study_.methods.cells.push_back(std::move(cell));
       } else {
         skipped.push_back(rung);
       }
     }
     if (!skipped.empty()) tell_truncation(ladder, skipped);
-    if (ended > 0 && !ladder.only_of_sweeps && ladder.rungs.front().method->name != "exact") {
-      study_.methods.fields.push_back({place, std::min(rungs / 2, ended - 1), {}, {}});
+    if (ended_ > 0 && !ladder.only_of_sweeps && ladder.rungs.front().method->name != "exact") {
+      study_.methods.fields.push_back({place, std::min(rungs / 2, ended_ - 1), {}, {}});
     }
     return study_.methods.cells.size() > before;
   }
@@ -122,6 +112,22 @@ class Planner {
       if (swept_[k] == choice) cell.settings.push_back(k);
     }
     return cell;
+  }
+
+  // Takes the cost from what is left. A setting of the sweeps is always affordable, with fewer seeds.
+  bool is_affordable(MethodCell& cell, const Ladder& ladder, const PreparedMethod& prepared) {
+    const bool swept = !cell.settings.empty();
+    if (cell.rung >= ended_ && !swept) return false;
+    const auto rungs_left = static_cast<double>(ladder.rungs.size() - cell.rung);
+    const double share = ladder.only_of_sweeps ? left_ / rungs_left : left_;
+    const double of_seed = price_seed(cell, ladder.rungs[cell.rung], prepared, share);
+    if (of_seed * static_cast<double>(cell.seeds.size()) > share) {
+      if (!ladder.only_of_sweeps) ended_ = std::min(ended_, cell.rung);
+      if (!swept) return false;
+      keep_seeds(cell, share / of_seed);
+    }
+    left_ = std::max(0.0, left_ - of_seed * static_cast<double>(cell.seeds.size()));
+    return true;
   }
 
   // The planned time of all chosen receivers with one seed.
@@ -153,6 +159,8 @@ class Planner {
   Study& study_;
   PreparedMethods& prepared_;
   std::vector<methods::Choice> swept_;  // the settings of the sweeps, without their seeds
+  double left_ = 0.0;                   // of the budget of the current ladder
+  std::size_t ended_ = 0;               // its first rung that was over the budget
 };
 
 }  // namespace
