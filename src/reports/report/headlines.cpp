@@ -7,6 +7,7 @@
 #include "report/plan.h"
 #include "report/studies.h"
 #include "report/verdicts.h"
+#include "study/ladders.h"
 #include "study/settings.h"
 #include "study/statistics.h"
 #include "text/phrases.h"

@@ -178,6 +178,10 @@ std::string line_name(const methods::Choice& choice) {
   return name;
 }
 
+std::string name_with_eps_b(const methods::Choice& choice) {
+  return line_name(choice) + ", ε_B " + text::rounded(eps_b_of(choice));
+}
+
 // The ladder that has the setting, or can take it.
 Ladder* ladder_for(const methods::Choice& choice, std::vector<Ladder>& ladders) {
   auto found = std::ranges::find_if(
@@ -210,7 +214,7 @@ void add_sweeps(std::vector<Ladder>& ladders, std::span<const AdaptiveOptions> s
   }
   std::erase_if(added, [](const Ladder& line) { return line.rungs.size() == 1; });
   if (rest.rungs.size() == 1) {
-    rest.name = line_name(rest.rungs.front()) + ", ε_B " + text::rounded(eps_b_of(rest.rungs.front()));
+    rest.name = name_with_eps_b(rest.rungs.front());
   }
   if (!rest.rungs.empty()) added.push_back(std::move(rest));
   const auto is_adaptive = [](const Ladder& ladder) { return ladder.rungs.front().method->name == "adaptive"; };
@@ -252,14 +256,17 @@ std::string rung_text(const Ladder& ladder, std::size_t rung) {
 }
 
 std::string rung_name(const Ladder& ladder, std::size_t rung) {
-  if (ladder.along.empty() && ladder.rungs.size() > 1) {
-    const methods::Choice& choice = ladder.rungs[rung];
-    return line_name(choice) + ", ε_B " + text::rounded(eps_b_of(choice));
-  }
+  if (ladder.along.empty() && ladder.rungs.size() > 1) return name_with_eps_b(ladder.rungs[rung]);
   if (ladder.along.empty()) return ladder.name;
   std::string along = ladder.along;
   if (along == "eps_B") along = "ε_B";
   return ladder.name + ", " + along + ' ' + rung_text(ladder, rung);
+}
+
+std::string setting_name(const Study& study, std::size_t setting) {
+  const AdaptiveOptions& one = study.settings[setting];
+  const std::string seed = one.seed == study.settings[study.base].seed ? "" : ", seed " + std::to_string(one.seed);
+  return name_with_eps_b(without_seed(choice_of(one))) + seed;
 }
 
 }  // namespace exactff::study

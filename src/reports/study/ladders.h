@@ -28,5 +28,8 @@ void add_sweeps(std::vector<Ladder>& ladders, std::span<const AdaptiveOptions> s
 [[nodiscard]] std::string rung_text(const Ladder& ladder, std::size_t rung);
 // "area sampling, stratified, samples 64".
 [[nodiscard]] std::string rung_name(const Ladder& ladder, std::size_t rung);
+// Of a setting of the sweeps, as its rung is named: "adaptive, 16 rays, ε_B 0.0123". A seed that is not that of the
+// base is added.
+[[nodiscard]] std::string setting_name(const Study& study, std::size_t setting);
 
 }  // namespace exactff::study

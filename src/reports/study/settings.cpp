@@ -228,15 +228,4 @@ std::optional<std::size_t> find_setting(const std::vector<AdaptiveOptions>& sett
   return static_cast<std::size_t>(std::distance(settings.begin(), found));
 }
 
-std::string setting_name(const Study& study, std::size_t setting) {
-  const AdaptiveOptions& s = study.settings[setting];
-  const AdaptiveOptions& base = study.settings[study.base];
-  std::string text = "ε_B = " + text::rounded(s.eps_b) + ", " + std::to_string(s.rays) + ' ' +
-                     std::string(to_string(s.pattern)) + (s.rays == 1 ? " ray" : " rays");
-  if (s.eps_a != base.eps_a || s.eps_a != 0.0) text += ", ε_A = " + text::rounded(s.eps_a);
-  if (s.variant != base.variant) text += ", " + std::string(to_string(s.variant)) + " variant";
-  if (s.seed != base.seed) text += ", seed " + std::to_string(s.seed);
-  return text;
-}
-
 }  // namespace exactff::study

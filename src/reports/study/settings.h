@@ -45,7 +45,4 @@ void complete(Sweeps& sweeps, const Scope& scope);
 [[nodiscard]] std::optional<std::size_t> find_setting(const std::vector<AdaptiveOptions>& settings,
                                                       const AdaptiveOptions& wanted);
 
-// "ε_B = 0.0123, 16 jittered rays": names the parameters that differ from the base.
-[[nodiscard]] std::string setting_name(const Study& study, std::size_t setting);
-
 }  // namespace exactff::study

@@ -145,7 +145,7 @@ double power(const std::string& superscript) { return std::pow(10.0, -digit(supe
 
 // What was compared, so that no kind of sentence goes unseen.
 struct Seen {
-  int cheapest = 0, none = 0, crossover = 0, always_exact = 0, exact_times = 0;
+  int cheapest = 0, none = 0, crossover = 0, always_exact = 0, exact_times = 0, base_settings = 0;
 };
 
 void compare_times_of_exact(const Report& report, const std::string& text, Seen& seen) {
@@ -193,6 +193,15 @@ void compare_crossover(const Report& report, const std::string& text, Seen& seen
     EXPECT_TRUE(std::isinf(best)) << text;
     ++seen.always_exact;
   }
+}
+
+// A setting of the sweeps has the name under which it is compared with the methods.
+void compare_names(const Report& report, const std::string& text, Seen& seen) {
+  static const std::regex kBase("at the base setting \\((.*)\\) takes");
+  std::smatch match;
+  if (!std::regex_search(text, match, kBase)) return;
+  EXPECT_NE(std::ranges::find(report.settings, match[1].str(), &Setting::name), report.settings.end()) << text;
+  ++seen.base_settings;
 }
 
 // There must be one sentence that says from which error on another method is faster, and one place for it.
@@ -245,12 +254,14 @@ TEST(Report, AgreesWithItsTablesForEveryModel) {
       compare_cost(report, one, seen);
       compare_crossover(report, one, seen);
     }
+    for (const std::string& sentence : report.said) compare_names(report, sentence, seen);
     expect_one_crossover(report);
   }
   EXPECT_GT(seen.cheapest, 0);
   EXPECT_GT(seen.none, 0);
   EXPECT_GT(seen.crossover, 10);
   EXPECT_GT(seen.exact_times, 40);
+  EXPECT_GT(seen.base_settings, 5);
 }
 
 // The script of a figure has its points and the titles of its lines.
