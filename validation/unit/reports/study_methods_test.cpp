@@ -134,6 +134,7 @@ TEST(MethodStudy, HoldsEverySettingOfTheSweeps) {
         EXPECT_EQ(rung, without_seed(choice_of(study.settings[k])));
         EXPECT_EQ(study.times[k].mean, cell.seconds);
         const std::uint64_t seed = cell.seeds.front() == 0 ? 0 : study.settings[k].seed - 1;
+        ASSERT_LT(seed, cell.values.size());
         for (std::size_t r = 0; r < study.methods.receivers.size(); ++r) {
           const SampleRow& row = study.samples[k][study.methods.receivers[r]];
           EXPECT_EQ(cell.values[seed][r], row.form_factor);
