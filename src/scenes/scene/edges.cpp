@@ -216,9 +216,6 @@ void SceneEdgesBuilder::find_bounds() {
     const NormalBounds n = normal_bounds(vertices_[frame[0]], vertices_[frame[1]], vertices_[frame[2]]);
     normals_[p] = turned_[p] != 0 ? turned_over(n) : n;
   }
-  std::size_t balanced = 0;
-  for (std::uint32_t edge = 0; edge < result_.size(); ++edge) balanced += is_balanced(edge) ? 1U : 0U;
-  result_.balanced_share_ = static_cast<double>(balanced) / static_cast<double>(result_.size());
 }
 
 namespace {

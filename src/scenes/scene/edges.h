@@ -49,8 +49,6 @@ class SceneEdges {
   }
   // The edges of a piece, in the order of its corners. Requires a piece that is not transparent.
   [[nodiscard]] std::span<const std::uint32_t> of_piece(const Piece& piece) const;
-  // The share of edges that are balanced: of a soup of faces 0, of a closed mesh 1.
-  [[nodiscard]] double balanced_share() const { return balanced_share_; }
 
   // Calls visit(edge, in_front) for every edge that may have a part in the shaft, except for some that are certainly
   // smooth from the apex. The first group of half-spaces decides what is in front: `in_front` means that all pieces of
@@ -108,7 +106,6 @@ class SceneEdges {
   std::vector<EdgeUse> uses_;
   std::vector<std::uint32_t> edge_of_corner_;  // for every corner of every piece, the edge that begins there
   std::vector<Node> nodes_;
-  double balanced_share_ = 0.0;
 };
 
 // The edges of the scene, found at the first call; safe to call from several threads.

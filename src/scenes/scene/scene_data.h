@@ -33,6 +33,8 @@ struct Scene::Data {
   mutable ShaftTree tree;
   mutable std::once_flag surfaces_found;  // see closed_surfaces()
   mutable ClosedSurfaces surfaces;
+  mutable std::once_flag connectedness_found;  // see edges_per_silhouette()
+  mutable double edges_per_silhouette = 1.0;
   mutable std::once_flag edges_found;  // see scene_edges()
   mutable SceneEdges edges;
   mutable std::once_flag extent_found;  // see extent()

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "kernel/poll.h"
+#include "scene/connectedness.h"
 #include "visibility/candidates.h"
 #include "visibility/cover_proof.h"
 #include "visibility/piece_clip.h"
@@ -80,16 +81,14 @@ std::optional<Outcome> EdgeWalk::find_outcome() {
   return Outcome::kHiddenByUnion;
 }
 
-// Where most edges are inside a mesh of many pieces, few are silhouettes.
+// Where few of the edges are silhouettes from a typical point.
 bool EdgeWalk::prefers_silhouettes() const {
-  constexpr std::size_t kFewestPieces = 256;
-  constexpr double kLeastShare = 0.5;
+  constexpr double kLeastSaving = 4.0;
   const BoundaryRequest& request = query_.request;
-  const Scene& scene = query_.view.scene;
-  if (request.silhouettes == Silhouetting::kNever || !request.culls() || request.only_occluders != nullptr)
+  if (request.silhouettes == Silhouetting::kNever || !request.culls() || request.only_occluders != nullptr) {
     return false;
-  return request.silhouettes == Silhouetting::kAlways ||
-         (scene.pieces().size() >= kFewestPieces && scene_edges(scene).balanced_share() >= kLeastShare);
+  }
+  return request.silhouettes == Silhouetting::kAlways || edges_per_silhouette(query_.view.scene) >= kLeastSaving;
 }
 
 // Nullopt: declined.
