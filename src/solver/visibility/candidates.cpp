@@ -15,20 +15,22 @@ void Candidates::start() {
   search_.outline_pieces.clear();
   search_.seen.clear(query_.view.scene.pieces().size());
   backs_.start();
+  too_many_ = false;
 }
 
-std::optional<FaceId> Candidates::gather() {
+std::optional<FaceId> Candidates::gather(std::uint64_t most) {
   const BoundaryRequest& request = query_.request;
   start();
   outlines_.watch_for_shared_corners();
   std::optional<FaceId> alone;
   const OutlineId shafts = request.culls() ? static_cast<OutlineId>(source_count_) : 1;
-  for (OutlineId source = 0; source < shafts && !alone; ++source) {
+  for (OutlineId source = 0; source < shafts && !alone && !too_many_; ++source) {
     shaft_.set(source);
     for_each_candidate(query_.view, shaft_.half_spaces(), request.culling, [&](std::uint32_t piece, bool inside) {
       if (visit(piece, inside)) alone = query_.view.scene.pieces()[piece].face;
       if (record_.tree_candidates % kCandidatesPerPoll == 0) kernel::poll();
-      return !alone;
+      too_many_ = record_.candidates > most;
+      return !alone && !too_many_;
     });
   }
   return alone;

@@ -6,6 +6,8 @@
 // (surface_backs.h).
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "visibility/edge_workspace.h"
@@ -17,6 +19,8 @@ namespace exactff::visibility {
 
 class Candidates {
  public:
+  static constexpr std::uint64_t kAny = std::numeric_limits<std::uint64_t>::max();
+
   // Requires that the first `source_count` outlines of the search are the source's. Counts its work in the record.
   Candidates(const PlaneQuery& query, std::size_t source_count, EdgeSearch& search, PlaneRecord& record)
       : query_(query),
@@ -28,8 +32,10 @@ class Candidates {
         shaft_(query, clip_, outlines_, search.shaft),
         backs_(query, shaft_, search.backs) {}
 
-  // Adds the outlines of all candidates. If one hides all, returns its face; the others are then not needed.
-  [[nodiscard]] std::optional<FaceId> gather();
+  // Adds the outlines of all candidates. If one hides all, returns its face; the others are then not needed. Stops
+  // after more than `most` candidates: see too_many().
+  [[nodiscard]] std::optional<FaceId> gather(std::uint64_t most = kAny);
+  [[nodiscard]] bool too_many() const { return too_many_; }
   // A face that hides all, if there is one. Looks only at those that may. Adds outlines. Requires culling.
   [[nodiscard]] std::optional<FaceId> one_that_hides_all();
 
@@ -45,6 +51,7 @@ class Candidates {
   PieceClip clip_;
   SourceShaft shaft_;
   SurfaceBacks backs_;
+  bool too_many_ = false;
 };
 
 }  // namespace exactff::visibility

@@ -32,7 +32,7 @@ class EdgeWalk {
  private:
   [[nodiscard]] std::optional<Outcome> find_outcome();
   [[nodiscard]] bool is_own() const;
-  [[nodiscard]] bool prefers_silhouettes() const;
+  [[nodiscard]] std::uint64_t most_candidates() const;
   [[nodiscard]] std::optional<Outcome> find_by_silhouettes();
   void note_edges(const EdgeCovers& found);
   [[nodiscard]] Rational fraction();
@@ -60,11 +60,16 @@ std::optional<Outcome> EdgeWalk::find_outcome() {
     record = std::move(*hidden);
     return Outcome::kHiddenByUnion;
   }
-  if (prefers_silhouettes()) {
-    if (const std::optional<Outcome> outcome = find_by_silhouettes()) return outcome;
-  }
   // 3. Find candidates. 4. Stop if one hides all.
-  if (const auto alone = Candidates(query_, source_.count, work_.search, record).gather()) {
+  Candidates candidates(query_, source_.count, work_.search, record);
+  auto alone = candidates.gather(most_candidates());
+  if (candidates.too_many()) {
+    record.tree_candidates = record.candidates = record.clipped = 0;
+    if (const std::optional<Outcome> outcome = find_by_silhouettes()) return outcome;
+    source_ = PieceClip(query_, edges_.outlines(), work_.search.clip).add_source();
+    alone = candidates.gather();
+  }
+  if (alone) {
     result_.cutters = {*alone};
     record.cover = 1;
     return Outcome::kHiddenByOne;
@@ -81,14 +86,16 @@ std::optional<Outcome> EdgeWalk::find_outcome() {
   return Outcome::kHiddenByUnion;
 }
 
-// Where few of the edges are silhouettes from a typical point.
-bool EdgeWalk::prefers_silhouettes() const {
+// With more, silhouettes are searched for: where few of the edges are silhouettes from a typical point.
+std::uint64_t EdgeWalk::most_candidates() const {
+  constexpr std::uint64_t kFew = 32;
   constexpr double kLeastSaving = 4.0;
   const BoundaryRequest& request = query_.request;
   if (request.silhouettes == Silhouetting::kNever || !request.culls() || request.only_occluders != nullptr) {
-    return false;
+    return Candidates::kAny;
   }
-  return request.silhouettes == Silhouetting::kAlways || edges_per_silhouette(query_.view.scene) >= kLeastSaving;
+  if (request.silhouettes == Silhouetting::kAlways) return 0;
+  return edges_per_silhouette(query_.view.scene) >= kLeastSaving ? kFew : Candidates::kAny;
 }
 
 // Nullopt: declined.
