@@ -8,6 +8,7 @@
 
 #include "generate/families.h"
 #include "generate/random.h"
+#include "scene/connectedness.h"
 #include "scene/shaft_tree.h"
 
 namespace exactff::bench {
@@ -88,6 +89,7 @@ void for_every_scene(const std::string& subject, const Register& add) {
 BenchScene::BenchScene(const PlainScene& plain)
     : scene(build(plain)), source(scene, scene.select(plain.source)), receiver(receiver_of(plain)) {
   (void)shaft_tree(scene);
+  (void)edges_per_silhouette(scene);  // and the edges, where they will be used
 }
 
 double BenchScene::value() const {
