@@ -79,11 +79,12 @@ std::string method_sentence(const HonestyStudy& study, const HonestySize& size) 
                                          ? "The two enclosures are disjoint in no scene."
                                          : "In " + counted(study.contradictions, "scene") +
                                                " the two enclosures are disjoint, so one of them is wrong.";
-  return "A scene has a floor, a source above it and one to four faces between them. A view factor from one of these "
-         "patches to another is asked for at " +
+  return "Half of the scenes have a floor, a source above it and one to four faces between them; the others were made to "
+         "break what is claimed, with thin gaps, cut corners, slits, holes, sheets of two faces, extreme sizes and "
+         "offsets. A view factor from one patch to another is asked for at " +
          counted(size.accuracies.size(), "accuracy", "accuracies") + ", as certified and as estimated, with " +
          std::to_string(size.budget) +
-         " cells at most; and with a single cell, which leaves statistics. The truth is what two certified enclosures "
+         " cells at most; and with a single cell, which leaves points. The truth is what two certified enclosures "
          "have in common, one from each patch to the other, of up to " +
          std::to_string(size.truth_budget) +
          " cells each. An error exceeds the reported one if the entry’s interval and the truth have no number in "
