@@ -79,7 +79,8 @@ std::string method_sentence(const HonestyStudy& study, const HonestySize& size) 
                                          ? "The two enclosures are disjoint in no scene."
                                          : "In " + counted(study.contradictions, "scene") +
                                                " the two enclosures are disjoint, so one of them is wrong.";
-  return "Half of the scenes have a floor, a source above it and one to four faces between them; the others were made to "
+  return "Half of the scenes have a floor, a source above it and one to four faces between them; the others were made "
+         "to "
          "break what is claimed, with thin gaps, cut corners, slits, holes, sheets of two faces, extreme sizes and "
          "offsets. A view factor from one patch to another is asked for at " +
          counted(size.accuracies.size(), "accuracy", "accuracies") + ", as certified and as estimated, with " +
