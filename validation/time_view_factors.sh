@@ -49,7 +49,7 @@ row() { # TEXT SCENE OPTION...: a row of the table
   for ((run = 0; run < runs; ++run)); do
     { time "$build/exactff" matrix "${@:2}" --threads 1 --force -o factors.csv > log 2>&1; } 2>> times
   done
-  printf '| %s | %s | %s | %s |\n' "$text" "$(sum_of 10)" "$(sum_of 11)" "$(sort -n times | sed -n "$(((runs + 1) / 2))p")"
+  printf '| %s | %s | %s | %s |\n' "$text" "$(sum_of 11)" "$(sum_of 12)" "$(sort -n times | sed -n "$(((runs + 1) / 2))p")"
   rm times
 }
 
