@@ -123,6 +123,7 @@ class RowOfMeans {
     std::vector<std::optional<view_factors::NearPlanes>> near(parts.size());
     for (std::size_t s = 0; s < strata.strata.size(); ++s) {
       const double share = strata.strata[s].area / strata.area;
+      std::array<double, view_factors::kDraws> unknown{};
       for (std::size_t d = 0; d < view_factors::kDraws; ++d) {
         const auto [part, points] = view_factors::sample(parts, strata, 0, s, d, scene.units);
         if (!near[part]) near[part].emplace(scene, parts[part]);
@@ -130,10 +131,11 @@ class RowOfMeans {
         for (const Point& point : points) {
           ++points_;
           const bool is_known = look_from(point, *near[part], seen_pieces_[seen_from_[part]], weight, numbers_[d]);
-          if (!is_known) unknown_ += share * weight / view_factors::kDraws;
+          if (!is_known) unknown[d] += weight;
         }
       }
       add(share);
+      unknown_.add(unknown[0], unknown[1], share);
     }
   }
 
@@ -146,7 +148,7 @@ class RowOfMeans {
   }
   // `range`: at least the largest factor from any of the points.
   [[nodiscard]] double error(const StratifiedMean& mean, double range) const {
-    return mean.error(view_factors::kRisk, of_ones_.scaled(range)) + unknown_ + of_shares_ +
+    return mean.error(view_factors::kRisk, of_ones_.scaled(range), unknown_.scaled(range)) + of_shares_ +
            view_factors::kRoundedPoints + kRoundings * mean.value;
   }
   [[nodiscard]] std::size_t points() const { return points_; }
@@ -198,7 +200,8 @@ class RowOfMeans {
   WholeView seen_;
   Workspace workspace_;
   view_factors::Ranges of_ones_;
-  double unknown_ = 0.0, of_shares_ = 0.0;
+  StratifiedMean unknown_;  // the share of the points that are not known
+  double of_shares_ = 0.0;
   std::size_t points_ = 0;
 };
 

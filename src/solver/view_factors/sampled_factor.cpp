@@ -19,23 +19,20 @@ constexpr std::size_t kPointsOfStratum = kDraws * kFewestPoints;
 constexpr std::size_t kFirstStrata = 54;
 static_assert(kFirstStrata >= kFewestStrata);
 
-// F at exact points of a patch, with an error where rounding matters.
+// F at exact points of a patch. Nothing where rounding matters.
 class PointFactors {
  public:
   PointFactors(const ExactScene& scene, const std::vector<Part>& from, const Selection& to)
       : scene_(scene), from_(from), source_(scene.scene, to), near_(from.size()) {}
 
-  struct Value {
-    double value, error;
-  };
-  Value at(const Point& point, std::size_t part) {
+  std::optional<double> at(const Point& point, std::size_t part) {
     std::optional<NearPlanes>& near = near_[part];
     if (!near) near.emplace(scene_, from_[part]);
     const std::optional<Vec3> rounded = near->round(point);
-    if (!rounded) return {0.5, 0.5};
+    if (!rounded) return std::nullopt;
     exact_form_factor(scene_.scene, {.point = *rounded, .normal = near->normal(), .on = near->own(), .id = {}}, source_,
                       {}, factor_);
-    return {factor_.value, 0.0};
+    return factor_.value;
   }
 
  private:
@@ -91,8 +88,8 @@ class LargestFactors {
 // Of means over the patch.
 struct Look {
   StratifiedMean f;
+  StratifiedMean unknown;  // what F may be where it is not known
   Ranges ranges;
-  double unknown = 0.0;  // of the error of F
 };
 
 Look look_at(const ExactScene& scene, const std::vector<Part>& from, const Strata& strata, std::size_t number,
@@ -100,24 +97,22 @@ Look look_at(const ExactScene& scene, const std::vector<Part>& from, const Strat
   Look look;
   for (std::size_t s = 0; s < strata.strata.size(); ++s) {
     kernel::poll();
-    std::array<double, kDraws> means{};
-    double unknown = 0.0;
-    for (std::size_t d = 0; d < kDraws; ++d) {
-      const auto [part, points] = sample(from, strata, number, s, d, scene.units);
-      for (const Point& point : points) {
-        const auto [value, error] = factors.at(point, part);
-        means[d] += value / static_cast<double>(points.size());
-        unknown += error / static_cast<double>(kDraws * points.size());
-      }
-    }
-    const double share = strata.strata[s].area / strata.area;
     double range = 0.0;
     for (std::size_t t = strata.strata[s].begin; t < strata.strata[s].end; ++t) {
       range = std::max(range, largest.on(strata.tiles[t]));
     }
+    std::array<double, kDraws> means{}, unknown{};
+    for (std::size_t d = 0; d < kDraws; ++d) {
+      const auto [part, points] = sample(from, strata, number, s, d, scene.units);
+      for (const Point& point : points) {
+        const std::optional<double> value = factors.at(point, part);
+        (value ? means : unknown)[d] += value.value_or(range) / static_cast<double>(points.size());
+      }
+    }
+    const double share = strata.strata[s].area / strata.area;
     look.f.add(means[0], means[1], share);
+    look.unknown.add(unknown[0], unknown[1], share);
     look.ranges.add(range, share);
-    look.unknown += unknown * share;
   }
   return look;
 }
@@ -141,7 +136,7 @@ SampledMean sampled_mean(const ExactScene& scene, const std::vector<Part>& parts
     const Strata cut = strata_of(from, strata);
     const Look look = look_at(scene, from, cut, number, factors, largest);
     const double risk = kRisk / static_cast<double>(looks);
-    const double error = look.f.error(risk, look.ranges) + look.unknown + of_shares + kRoundedPoints;
+    const double error = look.f.error(risk, look.ranges, look.unknown) + of_shares + kRoundedPoints;
     if (error < result.error) result = {look.f.value, error};
     if (result.error <= target) break;
   }

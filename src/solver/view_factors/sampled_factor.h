@@ -11,7 +11,7 @@
 //
 // Rounding. The solver's receivers are doubles, a hair off the receiver's plane. Faces in this plane are their own, as
 // they are for the exact point. Where a point has moved to the other side of a face that is nearly in this plane, and
-// near it, only 0 <= F <= 1 is used. The shares of the strata are as wrong as their areas, whose roundings are
+// near it, only the largest F is used. The shares of the strata are as wrong as their areas, whose roundings are
 // enclosed.
 #pragma once
 

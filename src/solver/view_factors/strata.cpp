@@ -180,4 +180,9 @@ double StratifiedMean::error(double risk, const Ranges& ranges) const {
   return std::min({1.0, bernstein, hoeffding, none_met});
 }
 
+double StratifiedMean::error(double risk, const Ranges& ranges, const StratifiedMean& unknown) const {
+  const double root = std::sqrt(square) + std::sqrt(unknown.square);
+  return unknown.value + StratifiedMean{value + unknown.value, root * root}.error(0.5 * risk, ranges);
+}
+
 }  // namespace exactff::view_factors

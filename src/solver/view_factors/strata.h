@@ -115,6 +115,11 @@ struct StratifiedMean {
   void add(double a, double b, double share);
   // Exceeded with a probability of at most `risk`.
   [[nodiscard]] double error(double risk, const Ranges& ranges) const;
+  // The same where the function is only known to lie between f, whose mean this is, and f + u, both within the ranges;
+  // `unknown` is the mean of u. Both bounds have half of the risk. The differences of f + u are at most the sums of
+  // those of f and of u, so their squares add up to at most the square of the sum of the two roots (Minkowski).
+  [[nodiscard]] double error(double risk, const Ranges& ranges, const StratifiedMean& unknown) const;
+  [[nodiscard]] StratifiedMean scaled(double factor) const { return {factor * value, factor * factor * square}; }
 };
 
 }  // namespace exactff::view_factors
