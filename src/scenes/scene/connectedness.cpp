@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "kernel/vec.h"
 #include "scene/edges.h"
 #include "scene/places.h"
 #include "scene/scene_data.h"
@@ -89,9 +90,9 @@ double by_bodies(const Scene& scene) {
 
 Vec3 normal_of(const Scene& scene, const Piece& piece) {
   const auto vertices = scene.vertices();
-  const Vec3 &p = vertices[piece.frame[0]], &q = vertices[piece.frame[1]], &r = vertices[piece.frame[2]];
-  const Vec3 a{q.x - p.x, q.y - p.y, q.z - p.z}, b{r.x - p.x, r.y - p.y, r.z - p.z};
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  const Vec3& p = vertices[piece.frame[0]];
+  return kernel::cross(kernel::difference(vertices[piece.frame[1]], p),
+                       kernel::difference(vertices[piece.frame[2]], p));
 }
 
 double probability(const Scene& scene, std::span<const EdgeUse> uses) {
@@ -99,7 +100,7 @@ double probability(const Scene& scene, std::span<const EdgeUse> uses) {
   const Vec3 n = normal_of(scene, scene.pieces()[uses[0].piece()]),
              m = normal_of(scene, scene.pieces()[uses[1].piece()]);
   const double sizes = std::hypot(n.x, n.y, n.z) * std::hypot(m.x, m.y, m.z);
-  const double cosine = (n.x * m.x + n.y * m.y + n.z * m.z) / sizes;
+  const double cosine = kernel::dot(n, m) / sizes;
   if (!(sizes > 0.0) || !std::isfinite(cosine)) return 1.0;
   const double agreeing = uses[0].upwards() != uses[1].upwards() ? cosine : -cosine;
   return std::acos(std::clamp(agreeing, -1.0, 1.0)) / std::numbers::pi;
