@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kernel/vec.h"
+#include "view_factors/patch_parts.h"
 
 namespace exactff::view_factors {
 namespace {
@@ -41,7 +42,7 @@ Point point_at(const Vec3& at, const Units& units) {
 }  // namespace
 
 NearPlanes::NearPlanes(const ExactScene& scene, const Part& part) : scene_(&scene), own_{part.face} {
-  const Plane plane = make_plane(join(part.corners[0], part.corners[1], part.corners[2]), scene.units);
+  const Plane plane = plane_of(part, scene.units);
   const Homogeneous behind = opposite(plane.exact);
   normal_ = {plane.rounded[0], plane.rounded[1], plane.rounded[2]};
   const Box box = widen(box_of(part.corners));

@@ -103,7 +103,7 @@ bool is_on_both_sides(const Part& part, const Plane& plane) {
 
 // Those that may cut the part, the longest first.
 std::vector<Contact> contacts(const ExactScene& scene, const Part& part) {
-  const Plane plane = make_plane(join(part.corners[0], part.corners[1], part.corners[2]), scene.units);
+  const Plane plane = plane_of(part, scene.units);
   const Box box = box_of(part.corners);
   std::vector<Contact> result;
   for (const ExactPiece& piece : scene.pieces) {
@@ -171,6 +171,10 @@ std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch) {
     }
   }
   return result;
+}
+
+Plane plane_of(const Part& part, const Units& units) {
+  return make_plane(join(part.corners[0], part.corners[1], part.corners[2]), units);
 }
 
 std::vector<Part> cut_at_contacts(const ExactScene& scene, const Part& part) {

@@ -12,6 +12,9 @@ namespace exactff::view_factors {
 // The patch's pieces; of pieces that overlap in one oriented plane, each point belongs to the first.
 [[nodiscard]] std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch);
 
+// Positive in front.
+[[nodiscard]] Plane plane_of(const Part& part, const Units& units);
+
 // For sampling: the part, cut along the lines in which other faces meet its plane from the front. Form factors jump
 // there. At most eight lines cut it, the longest that do. A line cuts, from side to side, the fragments whose boxes it
 // meets. Transparent faces do not cut.

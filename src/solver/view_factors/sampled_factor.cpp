@@ -43,10 +43,6 @@ class PointFactors {
   FormFactor factor_;
 };
 
-Plane plane_of(const Part& part, const Units& units) {
-  return make_plane(join(part.corners[0], part.corners[1], part.corners[2]), units);
-}
-
 // The largest F that distance and slope allow.
 class LargestFactors {
  public:
