@@ -109,10 +109,11 @@ void Refinement::add(Share share, std::size_t pair) {
   std::ranges::push_heap(waiting_, is_less_urgent);
 }
 
-double Refinement::sum_of(double Share::*member) const {
+double Refinement::error() const {
+  if (gave_up_) return 0.5 * area_;
   double sum = 0.0;
-  for (const Waiting& w : waiting_) sum += w.share.*member;
-  for (const Share& share : settled_) sum += share.*member;
+  for (const Waiting& w : waiting_) sum += w.share.error;
+  for (const Share& share : settled_) sum += share.error;
   return sum;
 }
 

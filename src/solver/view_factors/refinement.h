@@ -30,8 +30,7 @@ class Refinement {
   // Steps 2 and 3: then error() <= target, if it can be.
   void refine(double target);
 
-  [[nodiscard]] double integral() const { return gave_up_ ? 0.5 * area_ : sum_of(&Share::integral); }
-  [[nodiscard]] double error() const { return gave_up_ ? 0.5 * area_ : sum_of(&Share::error); }
+  [[nodiscard]] double error() const;
   // The integral with its error, and the roundings of the sums. `area`: of the patch `from`.
   [[nodiscard]] kernel::Disc enclosure(const kernel::Disc& area) const;
   [[nodiscard]] bool is_zero() const { return waiting_.empty() && settled_.empty() && !gave_up_; }
@@ -54,7 +53,6 @@ class Refinement {
   template <class Call>
   void work_on(std::size_t id, const Call& call);
   void add(Share share, std::size_t pair);
-  [[nodiscard]] double sum_of(double Share::*member) const;
 
   double area_;
   std::size_t budget_;
