@@ -18,12 +18,12 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 root=$work/root
 mmdebstrap --quiet --variant=minbase --include=python3-venv,python3-numpy bookworm "$root"
-mkdir "$root/work"
-cp "$folder"/*.whl "$folder"/{exactff,python3-exactff}_*.deb validation/python/try_wheel.py data/scenes/cornell_box.* "$root/work"
+mkdir "$root/trial"
+cp "$folder"/*.whl "$folder"/{exactff,python3-exactff}_*.deb validation/python/try_wheel.py data/scenes/cornell_box.* "$root/trial"
 cp /etc/resolv.conf "$root/etc/"
-cat > "$root/work/try.sh" << 'END'
+cat > "$root/trial/try.sh" << 'END'
 set -euo pipefail
-cd /work
+cd /trial
 if command -v c++ cmake; then exit 1; fi
 python3 -m venv --system-site-packages venv
 env -u PIP_FIND_LINKS venv/bin/pip install --no-index ./*.whl
@@ -33,7 +33,7 @@ venv/bin/python try_wheel.py cornell_box.obj
   { cat log >&2; exit 1; }
 exactff point cornell_box.obj --at 200 0 400 --normal 0 1 0 --on floor --source light --plain
 cd /
-python3 -c 'import exactff, sys; print(exactff.__file__, exactff.Scene.read(sys.argv[1]))' /work/cornell_box.obj
+python3 -c 'import exactff, sys; print(exactff.__file__, exactff.Scene.read(sys.argv[1]))' /trial/cornell_box.obj
 END
-unshare --mount bash -c 'mount -t proc proc "$1/proc" && exec chroot "$1" bash /work/try.sh' try "$root"
+unshare --mount bash -c 'mount -t proc proc "$1/proc" && exec chroot "$1" bash /trial/try.sh' try "$root"
 echo "the wheel and the Debian packages serve a machine without a compiler: $folder"
