@@ -19,19 +19,9 @@ Ball twice(const Ball& a) {
 
 namespace kernel {
 
-namespace {
-
-// FLINT keeps memory and constants for each thread. They are freed when the thread ends.
-struct ThreadCache {
-  ~ThreadCache() { flint_cleanup(); }
-  void touch() const {}
-};
-thread_local const ThreadCache thread_cache;
-
-}  // namespace
+ThreadCache::~ThreadCache() { flint_cleanup(); }
 
 Ball to_ball(const Integer& value, long bits) {
-  thread_cache.touch();  // constructs it, and so schedules its destructor, in every thread that works with balls
   fmpz_t copy;
   fmpz_init(copy);
   fmpz_set_mpz(copy, value.get_mpz_t());

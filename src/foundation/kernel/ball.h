@@ -15,9 +15,24 @@
 
 namespace exactff {
 
+namespace kernel {
+
+// FLINT keeps memory and constants for each thread. They are freed when the thread ends.
+class ThreadCache {
+ public:
+  ~ThreadCache();
+  void touch() const {}
+};
+inline thread_local const ThreadCache thread_cache;
+
+}  // namespace kernel
+
 class Ball {
  public:
-  explicit Ball(long bits = 0) : bits_(bits) { arb_init(x_); }  // zero
+  explicit Ball(long bits = 0) : bits_(bits) {  // zero
+    kernel::thread_cache.touch();  // constructs it, and so schedules its destructor, in every thread that makes balls
+    arb_init(x_);
+  }
   Ball(const Ball& other) : Ball(other.bits_) { arb_set(x_, other.x_); }
   Ball(Ball&& other) noexcept : Ball(other.bits_) { arb_swap(x_, other.x_); }
   Ball& operator=(const Ball& other) {

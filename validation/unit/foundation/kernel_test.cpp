@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <thread>
 #include <vector>
 
 #include "exactff/enclosure.h"
@@ -240,6 +241,14 @@ TEST(Enclosure, PrintsABallThatHoldsTheNumber) {
   EXPECT_NE(third.radius(), "0");
   EXPECT_EQ(Enclosure().midpoint(), "0");
   EXPECT_EQ(Enclosure().radius(), "0");
+}
+
+// LeakSanitizer judges it when the process ends.
+TEST(Balls, AThreadThatOnlyMultipliesGivesTheMemoryOfItsThreadBack) {
+  const Ball third = to_ball(Rational(1, 3), 1000);
+  Ball ninth;
+  std::jthread([&] { ninth = third * third; }).join();
+  EXPECT_GE(certain_bits(ninth), 990);
 }
 
 }  // namespace
