@@ -49,9 +49,8 @@ struct Matrix {
   std::vector<ViewFactor> back, open;
 };
 
-// All factors between two lists of patches. Where both directions of a pair are asked for and all faces are planar, one
-// is computed, unless options.factors.both_directions, and A_i F_ij = A_j F_ji gives the other. Throws what view_factor
-// throws; and InputError for `open` in a scene so large that doubles end near it.
+// All factors between two lists of patches, each as view_factor gives it alone. Throws what view_factor throws; and
+// InputError for `open` in a scene so large that doubles end near it.
 [[nodiscard]] Matrix compute(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
                              const Options& options = {}, const Hooks& hooks = {});
 

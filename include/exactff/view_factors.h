@@ -47,11 +47,13 @@ enum class Way {
 [[nodiscard]] std::string_view to_string(Way way);  // "cells", "points", "views"
 
 struct ViewFactorOptions {
-  double accuracy = 1e-6;       // of F_ij and of F_ji: upper - lower is at most this
+  // Of F_ij and of F_ji: upper - lower is at most this. At the same budget, a smaller one never yields more.
+  double accuracy = 1e-6;
   std::size_t budget = 100000;  // cells, one with many edges counts for several; if they do not suffice, it is a crowd
   bool sample_crowds = true;    // take points in a crowd if they give a narrower interval; else the width is kept
-  // Compute F_ij and F_ji apart, each by cells of its own patch, so that each tests the other. Otherwise one of them
-  // is computed, by cells of whichever patch seems to need fewer.
+  // Compute F_ij and F_ji apart, each by cells of its own patch, so that each tests the other. Otherwise, if all faces
+  // are planar, one of them is computed, whichever is asked for, by cells of whichever patch seems to need fewer, and
+  // A_i F_ij = A_j F_ji gives the other.
   bool both_directions = false;
   bool certify = false;  // enclose every factor: all claims are `certified` or `zero`, also in a crowd
 };

@@ -9,9 +9,11 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "exactff/exact.h"
+#include "exactff/matrix.h"
 #include "exactff/receiver.h"
 #include "kernel/exact_vec.h"
 #include "property/closed_rooms.h"
@@ -167,6 +169,68 @@ TEST(ViewFactors, CertifiedHoldBetterEstimates) {
     }
   }
   EXPECT_GE(judged, 5U);
+}
+
+// At the same limit of cells, whether or not they suffice.
+TEST(ViewFactors, ASmallerAccuracyNeverWidensThem) {
+  std::size_t limited = 0;
+  for (std::uint64_t s = 0; s < scaled_count(30); ++s) {
+    Random random(seed_of(s));
+    const Scene scene = generate::build(s % 2 == 0 ? degenerate_scene(random) : generic_scene(random));
+    const Selection to = scene.select("source");
+    const Selection from = patch_of(scene, random.below(scene.patches().size()));
+    if (!has_area(scene, from) || !has_area(scene, to)) continue;
+    for (const bool certify : {false, true}) {
+      double width = 1.0;
+      for (const double accuracy : {0.3, 2e-2, 1.5e-2, 1e-3, 7e-5, 6e-5, 1e-8}) {
+        const ViewFactor f =
+            view_factor(scene, from, to, {.accuracy = accuracy, .budget = s % 3 == 0 ? 40U : 400U, .certify = certify});
+        EXPECT_LE(f.upper - f.lower, width) << s << ' ' << scene.name_of(from) << ' ' << accuracy;
+        width = f.upper - f.lower;
+        limited += f.accurate ? 0 : 1;
+      }
+    }
+  }
+  EXPECT_GE(limited, 5U);
+}
+
+void expect_equal_factors(const ViewFactor& a, const ViewFactor& b, const std::string& where) {
+  const auto numbers = [](const ViewFactor& f) {
+    return std::tuple(f.value, f.lower, f.upper, f.area_from, f.area_to, f.claim, f.way, f.accurate, f.cells,
+                      f.event_cells);
+  };
+  EXPECT_EQ(numbers(a), numbers(b)) << where;
+}
+
+// Neither on what else is computed, nor on the order or the number of threads.
+TEST(ViewFactors, DependOnTheirPairAlone) {
+  std::size_t positive = 0;
+  for (std::uint64_t s = 0; s < scaled_count(12); ++s) {
+    Random random(seed_of(s));
+    const Scene scene = generate::build(s % 3 == 0   ? degenerate_scene(random)
+                                        : s % 3 == 1 ? generic_scene(random)
+                                                     : random_building(random).scene);
+    std::vector<Selection> all;
+    for (std::size_t i = 0; i < scene.patches().size() && all.size() < 6; ++i) {
+      if (has_area(scene, patch_of(scene, i))) all.push_back(patch_of(scene, i));
+    }
+    const std::vector<Selection> turned(all.rbegin(), all.rend());
+    const matrix::Options options{.factors = {.accuracy = 1e-3, .budget = 60}, .threads = 2};
+    const matrix::Factors whole = matrix::compute(scene, all, all, options).factors,
+                          other = matrix::compute(scene, turned, turned, options).factors;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const matrix::Factors row = matrix::compute(scene, {&all[i], 1}, turned, options).factors;
+      for (std::size_t j = 0; j < all.size(); ++j) {
+        const std::string where = std::to_string(s) + ": " + scene.name_of(all[i]) + " -> " + scene.name_of(all[j]);
+        const std::size_t last = all.size() - 1;
+        expect_equal_factors(whole.at(i, j), other.at(last - i, last - j), where);
+        expect_equal_factors(whole.at(i, j), row.at(0, last - j), where);
+        expect_equal_factors(whole.at(i, j), view_factor(scene, all[i], all[j], options.factors), where);
+        positive += whole.at(i, j).value > 0.0 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GE(positive, 20U);
 }
 
 // With a single cell every pair is a crowd. Its interval is judged by the cells of a larger budget.

@@ -112,12 +112,11 @@ Evaluated precise_value(const Formula& formula, const Cell& cell, const CellPlac
 }  // namespace
 
 Pair::Pair(const Scene& scene, Sight sight, FaceId receiver_face, std::shared_ptr<const ExactSource> whole,
-           const Limits& limits, PairMemory& memory, std::size_t id)
+           PairMemory& memory, std::size_t id)
     : scene_(scene),
       sight_(std::move(sight)),
       receiver_face_(receiver_face),
       whole_(std::move(whole)),
-      limits_(limits),
       bound_(sight_),
       view_(sight_, memory, id) {}
 
@@ -135,11 +134,11 @@ std::size_t Pair::events() {
   return view_.count_events(sight_.root, candidates);
 }
 
-std::vector<Share> Pair::cells(std::size_t budget) {
-  budget_ = budget;
+std::vector<Share> Pair::cells(double enough, std::size_t budget) {
+  budget_ = cost() + budget;
   std::vector<Share> shares;
   view_.start();
-  look(sight_.root, 0, view_.all_candidates(), limits_.enough, shares);
+  look(sight_.root, 0, view_.all_candidates(), enough, shares);
   return shares;
 }
 
@@ -175,7 +174,9 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enou
   ++cells_made_;
   const CellView::Outcome outcome = view(cell, depth, candidates);
   if (outcome == CellView::Outcome::kKnown && view_.parts().empty()) return;
-  if (add_if_negligible(cell, candidates, shares)) return;
+  if (size_of(cell) <= limits_.negligible_area) {
+    return add_dark(std::move(cell), std::move(candidates), nullptr, Share::Next::kNextStage, shares);
+  }
   switch (outcome) {
     case CellView::Outcome::kKnown:
       return add_smooth(std::move(cell), std::make_shared<const Formula>(sight_, view_.parts()), HUGE_VAL, shares);
@@ -184,7 +185,9 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enou
     case CellView::Outcome::kCut:
       break;
   }
-  if (add_if_dim(cell, candidates, enough, shares)) return;
+  if (0.5 * largest_integral(cell) <= enough) {
+    return add_dark(std::move(cell), std::move(candidates), view_.best_cut(), Share::Next::kCut, shares);
+  }
   if (cost() >= budget_) return add_event(std::move(cell), depth, std::move(candidates), {}, shares);
   Halves halves = cut(cell, sight_.receiver, view_.best_cut(), sight_.points.units());
   look(std::move(halves.negative), depth + 1, candidates, enough, shares);
@@ -196,40 +199,50 @@ double Pair::size_of(const Cell& cell) const {
   return certifies() ? magnitude(enclosed_area(cell, sight_.receiver)) : area(cell);
 }
 
-bool Pair::add_if_negligible(Cell& cell, Candidates& candidates, std::vector<Share>& shares) const {
-  const double size = size_of(cell);
-  if (!(size <= limits_.negligible_area)) return false;
-  const double half = 0.5 * size;
-  shares.push_back({std::move(cell), std::move(candidates), nullptr, half, half});
-  return true;
+double Pair::largest_integral(const Cell& cell) const { return bound_.on(cell) * size_of(cell); }
+
+void Pair::add_dark(Cell cell, Candidates candidates, std::shared_ptr<const Plane> cut, Share::Next next,
+                    std::vector<Share>& shares) const {
+  const double half = 0.5 * largest_integral(cell);
+  shares.push_back({.cell = std::move(cell),
+                    .candidates = std::move(candidates),
+                    .formula = nullptr,
+                    .cut = std::move(cut),
+                    .integral = half,
+                    .error = half * kSlack,
+                    .next = next,
+                    .stage = limits_.stage,
+                    .is_event = true,
+                    .is_dark = true});
 }
 
-// Where F is so small on the cell that its bound suffices. The value is that of one point.
-bool Pair::add_if_dim(Cell& cell, Candidates& candidates, double enough, std::vector<Share>& shares) const {
-  const double bound = bound_.on(cell);
-  const double size = size_of(cell);
-  if (!(bound * size <= enough)) return false;
-  const double value = std::min(bound, whole_ != nullptr ? factor_near(near_point_inside(cell)) : 0.5 * bound);
-  const double error = std::max(value, bound - value) * size * kSlack;
-  shares.push_back({std::move(cell), std::move(candidates), nullptr, value * size, error});
-  return true;
+Pair::Integral Pair::integral_by(const Rule& rule, const Rule& lower, const Formula& formula, const Cell& cell) const {
+  const double difference = 4.0 * std::abs(rule.integral - lower.integral);
+  const double least = resolution(cell, formula) >= kLeastRadii ? 0.0 : area(cell);
+  return {.integral = rule.integral, .error = std::max(difference, least) + rule.rounding, .rounding = rule.rounding};
+}
+
+Pair::Integral Pair::integrate_by_six(const Formula& formula, const Cell& cell) const {
+  const std::vector<Vec3> ring = positions_of(cell.corners);
+  return integral_by(gauss_integral<6>(formula, cell, ring), gauss_integral<5>(formula, cell, ring), formula, cell);
 }
 
 // By a rule of Gauss' and the one with a point less in each direction, from which the error is estimated; or it is the
 // whole cell. Four points where they suffice for a cell of this size, else six.
 Pair::Integral Pair::integrate(const Formula& formula, const Cell& cell) const {
-  const std::vector<Vec3> ring = positions_of(cell.corners);
-  const double size = area(cell), radii = resolution(cell, formula);
-  const auto estimate = [&](const Rule& rule, const Rule& lower) {
-    const double difference = 4.0 * std::abs(rule.integral - lower.integral);
-    const double error = (radii >= kLeastRadii ? difference : std::max(difference, size)) + rule.rounding;
-    return Integral{rule.integral, error, rule.rounding};
-  };
-  if (radii >= kRadiiForFour) {
-    const Integral four = estimate(gauss_integral<4>(formula, cell, ring), gauss_integral<3>(formula, cell, ring));
-    if (four.error <= limits_.quadrature * size) return four;
+  if (resolution(cell, formula) >= kRadiiForFour) {
+    const std::vector<Vec3> ring = positions_of(cell.corners);
+    Integral four =
+        integral_by(gauss_integral<4>(formula, cell, ring), gauss_integral<3>(formula, cell, ring), formula, cell);
+    four.more_points = true;
+    if (four.error <= limits_.quadrature * area(ring)) return four;
   }
-  return estimate(gauss_integral<6>(formula, cell, ring), gauss_integral<5>(formula, cell, ring));
+  return integrate_by_six(formula, cell);
+}
+
+Share::Next Pair::next_of(const Integral& found) const {
+  if (found.rounding > 0.5 * found.error) return certifies() ? Share::Next::kNothing : Share::Next::kNextStage;
+  return found.more_points ? Share::Next::kMorePoints : Share::Next::kCut;
 }
 
 // Within the tolerance of a cell of its size, if it can be.
@@ -237,14 +250,23 @@ Pair::Integral Pair::enclose(const Formula& formula, const Cell& cell, double mo
   const double share = std::sqrt(area(cell) / limits_.area);
   const double tolerance = std::min(most, limits_.certified * share * std::sqrt(share));
   const CertifiedIntegral found = certified_integral(formula, cell, tolerance);
-  return {found.value, found.error, found.is_final ? found.error : 0.0};
+  return {.integral = found.value,
+          .error = found.error,
+          .rounding = found.is_final ? found.error : 0.0,
+          .more_points = found.error <= tolerance};
 }
 
 void Pair::add_smooth(Cell cell, std::shared_ptr<const Formula> formula, double most, std::vector<Share>& shares) {
   const Integral found = certifies() ? enclose(*formula, cell, most) : integrate(*formula, cell);
   if (whole_ != nullptr) check(cell, *formula);
-  shares.push_back(
-      {std::move(cell), {}, std::move(formula), found.integral, found.error, found.is_most_of(found.error)});
+  shares.push_back({.cell = std::move(cell),
+                    .candidates = {},
+                    .formula = std::move(formula),
+                    .cut = nullptr,
+                    .integral = found.integral,
+                    .error = found.error,
+                    .next = next_of(found),
+                    .stage = limits_.stage});
 }
 
 // From every point, F differs from its value at the centre by at most the slope times the distance: visibility in a
@@ -269,75 +291,116 @@ double Pair::slope_bound(const Candidates& candidates, const Vec3& centre, doubl
 // By the formula of a point inside, and a bound on how far F can be from it elsewhere.
 void Pair::add_event(Cell cell, std::size_t depth, Candidates candidates, const std::vector<CrossingTriple>& triples,
                      std::vector<Share>& shares) {
-  const double size = size_of(cell);
   if (triples.empty() && candidates.size() > kCrowd) {
-    shares.push_back({std::move(cell), std::move(candidates), nullptr, 0.5 * size, 0.5 * size});
-    return;
+    return add_dark(std::move(cell), std::move(candidates), nullptr, Share::Next::kCut, shares);
   }
   const Point centre = point_inside(cell, sight_.points.units());
   const Cell at_centre{{centre}, {}};
   Candidates of_centre = candidates;
   (void)view(at_centre, depth + 1, of_centre);  // at a single point every sign is known
   const Formula formula(sight_, view_.parts());
-  if (certifies()) {
-    const Integral found = enclose_event(formula, cell, centre, candidates, triples);
-    shares.push_back({std::move(cell), std::move(candidates), nullptr, found.integral, found.error});
-    return;
-  }
-  if (const double bound = triples.empty() ? HUGE_VAL : event_bound(sight_.points, cell, centre.at, triples);
-      bound < 1.0) {
-    const Integral found = integrate(formula, cell);
-    const double error = found.error + bound * size;
-    shares.push_back({std::move(cell), std::move(candidates), nullptr, found.integral, error, found.is_most_of(error)});
-    return;
-  }
-  const auto [found, rounding] = value_at(formula, centre);
-  const double value = std::clamp(found, 0.0, 1.0);
-  const double radius = radius_about(cell, centre.at);
-  const double bound =
-      std::min(slope_bound(candidates, centre.at, radius) * radius + rounding, std::max(value, 1.0 - value));
-  shares.push_back({std::move(cell), std::move(candidates), nullptr, value * size, bound * size});
+  const Integral found = certifies() ? enclose_event(formula, cell, centre, candidates, triples)
+                                     : integrate_event(formula, cell, centre, candidates, triples);
+  shares.push_back({.cell = std::move(cell),
+                    .candidates = std::move(candidates),
+                    .formula = nullptr,
+                    .cut = nullptr,
+                    .integral = found.integral,
+                    .error = found.error,
+                    .next = certifies() ? Share::Next::kCut : next_of(found),
+                    .stage = limits_.stage,
+                    .is_event = true});
 }
 
-// The narrowest of what is known: 0 <= F <= 1; the centre's formula with event_bound; its value with the slope.
+Pair::Integral Pair::integrate_event(const Formula& formula, const Cell& cell, const Point& centre,
+                                     const Candidates& candidates, const std::vector<CrossingTriple>& triples) const {
+  const double size = size_of(cell);
+  if (const double bound = triples.empty() ? HUGE_VAL : event_bound(sight_.points, cell, centre.at, triples);
+      bound < 1.0) {
+    Integral found = integrate(formula, cell);
+    found.error += bound * size;
+    found.more_points = false;
+    return found;
+  }
+  const auto [found, rounding] = value_at(formula, centre);
+  const double most = bound_.on(cell), value = std::clamp(found, 0.0, most);
+  const double radius = radius_about(cell, centre.at);
+  const double bound =
+      std::min(slope_bound(candidates, centre.at, radius) * radius + rounding, std::max(value, most - value));
+  return {.integral = value * size, .error = bound * size};
+}
+
+// The narrowest of what is known: the largest F; the centre's formula with event_bound; its value with the slope.
 Pair::Integral Pair::enclose_event(const Formula& formula, const Cell& cell, const Point& centre,
                                    const Candidates& candidates, const std::vector<CrossingTriple>& triples) const {
   const double size = size_of(cell);
-  const Integral unknown{0.5 * size, 0.5 * size};
+  const double half = 0.5 * largest_integral(cell);
+  const Integral unknown{.integral = half, .error = half * kSlack};
   const double bound = triples.empty() ? HUGE_VAL : kEventMargin * event_bound(sight_.points, cell, centre.at, triples);
   if (bound < 1.0) {
     const Integral found = enclose(formula, cell, HUGE_VAL);
     const double error = (found.error + bound * size) * kSumMargin;
-    if (error < unknown.error) return {found.integral, error};
+    if (error < unknown.error) return {.integral = found.integral, .error = error};
   }
   const double radius = radius_about(cell, centre.at) + kDistanceMargin;
   const Disc value = DiscFormula(formula, Cell{{centre}, {}}).value({}, {});
   const double change = slope_bound(candidates, centre.at, radius) * radius * kSumMargin;
   const Disc integral = widened(value, change) * enclosed_area(cell, sight_.receiver);
-  return integral.radius < unknown.error ? Integral{integral.centre, integral.radius} : unknown;
+  if (!(integral.radius < unknown.error)) return unknown;
+  return {.integral = integral.centre, .error = integral.radius};
 }
 
-std::vector<Share> Pair::halves(Share share) {
+bool Pair::improve_whole(Share& share) {
+  const bool is_new_stage = share.stage < limits_.stage;
+  share.stage = limits_.stage;
+  if (share.formula == nullptr) return false;
+  const bool more_points = share.next == Share::Next::kMorePoints;
+  const bool is_due = (more_points && !certifies()) || (is_new_stage && share.next != Share::Next::kCut);
+  if (!is_due) return false;
+  ++extra_cost_;
+  const Integral found = certifies()   ? enclose(*share.formula, share.cell, HUGE_VAL)
+                         : more_points ? integrate_by_six(*share.formula, share.cell)
+                                       : integrate(*share.formula, share.cell);
+  if (!(found.error < share.error)) return false;
+  share.integral = found.integral;
+  share.error = found.error;
+  share.next = next_of(found);
+  return true;
+}
+
+std::vector<Share> Pair::improve(Share share, std::size_t budget) {
+  budget_ = cost() + budget;
   std::vector<Share> result;
-  const std::shared_ptr<const Plane> by = bisector(share.cell, sight_.points.units());
-  if (by == nullptr) {
-    share.narrow = true;
+  if (improve_whole(share)) {
     result.push_back(std::move(share));
     return result;
   }
-  Halves parts = cut(share.cell, sight_.receiver, by, sight_.points.units());
+  const Units& units = sight_.points.units();
+  const std::shared_ptr<const Plane> by = share.cut != nullptr ? share.cut : bisector(share.cell, units);
+  if (by == nullptr) {
+    share.next = Share::Next::kNothing;
+    result.push_back(std::move(share));
+    return result;
+  }
+  Halves parts = cut(share.cell, sight_.receiver, by, units);
+  const double enough = kShareOfParent * share.error;
   if (share.formula != nullptr) {
     cells_made_ += 2;
-    const double most = kShareOfParent * share.error;
-    add_smooth(std::move(parts.negative), share.formula, most, result);
-    add_smooth(std::move(parts.positive), share.formula, most, result);
+    add_smooth(std::move(parts.negative), share.formula, enough, result);
+    add_smooth(std::move(parts.positive), share.formula, enough, result);
   } else {
     view_.start();
-    const double enough = kShareOfParent * share.error;
     look(std::move(parts.negative), 1, share.candidates, enough, result);
     look(std::move(parts.positive), 1, std::move(share.candidates), enough, result);
   }
   return result;
+}
+
+// Where only bounds are known, the value is that of one point.
+double Pair::estimate(const Share& share) const {
+  if (!share.is_dark || whole_ == nullptr || share.cell.corners.empty()) return share.integral;
+  const double value = factor_near(near_point_inside(share.cell)) * area(share.cell);
+  return std::clamp(value, share.integral - share.error, share.integral + share.error);
 }
 
 // The form factor of the exact solver, at a rounded point.

@@ -17,29 +17,40 @@ namespace exactff::view_factors {
 // A cell with the integral of the point factor over it, in squares of the unit of Point::at.
 struct Share {
   Cell cell;
-  Candidates candidates;                   // of an event cell
-  std::shared_ptr<const Formula> formula;  // null for an event cell: the boundary is not constant on it
+  Candidates candidates;                   // of a cell without a formula
+  std::shared_ptr<const Formula> formula;  // null: the boundary is not constant on the cell
+  std::shared_ptr<const Plane> cut;        // decides more; null: see Pair::improve
   double integral = 0.0;
   // Of the integral: an estimate, and for an event cell a bound besides; with its roundings. Or, certified, a bound.
   double error = 0.0;
-  bool narrow = false;  // not worth a cut: too narrow in double, or only rounding is left
-  bool is_event = formula == nullptr;
+  // What may improve it.
+  enum class Next {
+    kCut,
+    kMorePoints,  // a rule of more points
+    kNextStage,   // only rounding is left, which a later stage's limits make smaller
+    kNothing,     // too narrow in double, or only rounding is left
+  };
+  Next next = Next::kCut;
+  std::size_t stage = 0;  // whose limits it is within
+  bool is_event = false;  // without a formula, or with a bound of its event
+  bool is_dark = false;   // all that is known are bounds of the point factor
 
-  // For a share that will not be cut.
+  // For a share that will not be improved.
   void keep_numbers_only() {
     cell = {};
     candidates = {};
     formula = nullptr;
+    cut = nullptr;
   }
 };
 
 class Pair {
  public:
   struct Limits {
+    std::size_t stage = 0;         // their number
     double rounding = 0.0;         // larger bounds of the rounding error of F ask for balls; at most 2^-6
     double negligible_area = 0.0;  // on smaller cells F is only known to lie in [0, 1]
     double quadrature = 0.0;       // larger errors of the mean of F on a cell ask for more points
-    double enough = 0.0;           // a cell to be cut stays undecided if its error is at most this
     // Integrals are enclosed, within (cell's area / area)^(3/4) of this, so that cells about a singular point may
     // together have it. 0: they are estimated.
     double certified = 0.0;
@@ -48,49 +59,61 @@ class Pair {
   // Where the source part is a whole face, `whole` is that face: a point factor to it checks each cell. `id` tells the
   // pairs apart that share the memory.
   Pair(const Scene& scene, Sight sight, FaceId receiver_face, std::shared_ptr<const ExactSource> whole,
-       const Limits& limits, PairMemory& memory, std::size_t id);
+       PairMemory& memory, std::size_t id);
 
   [[nodiscard]] std::size_t point_count() const { return sight_.points.point_count(); }
-  // True if Limits::enough will do for all of the receiver.
-  [[nodiscard]] bool is_dim() const { return bound_.on(sight_.root) * size_of(sight_.root) <= limits_.enough; }
   // An estimate of how many lines cut the receiver (CellView::count_events).
   [[nodiscard]] std::size_t events();
 
-  // Cuts the receiver until every cell is smooth, an event cell, or sees nothing; the last are left out. Gives up when
-  // cost() reaches the budget: what is left then counts as event cells.
-  [[nodiscard]] std::vector<Share> cells(std::size_t budget);
-  // The two halves of a cell, without parts that see nothing.
-  [[nodiscard]] std::vector<Share> halves(Share share);
+  // For what is called from now on.
+  void set_limits(const Limits& limits) { limits_ = limits; }
+  // Cuts the receiver until every cell is smooth, an event cell, has an error of at most `enough`, or sees nothing; the
+  // last are left out. Gives up when the cost of the call reaches the budget.
+  [[nodiscard]] std::vector<Share> cells(double enough, std::size_t budget);
+  // The cell by a better rule or, cut in two, its halves, without parts that see nothing.
+  [[nodiscard]] std::vector<Share> improve(Share share, std::size_t budget);
+  // Of the share's integral. It lies within the error, but a point of the cell may tell more than the middle does.
+  [[nodiscard]] double estimate(const Share& share) const;
   [[nodiscard]] std::size_t cells_made() const { return cells_made_; }
   // In cells; one that asks for very many signs counts for several.
   [[nodiscard]] std::size_t cost() const { return cells_made_ + extra_cost_; }
 
  private:
   CellView::Outcome view(const Cell& cell, std::size_t depth, Candidates& candidates);
-  // `enough`: see Limits.
   void look(Cell cell, std::size_t depth, Candidates candidates, double enough, std::vector<Share>& shares);
   // `most`: the largest error that is useful.
   void add_smooth(Cell cell, std::shared_ptr<const Formula> formula, double most, std::vector<Share>& shares);
   // `triples`: all that is undecided; if empty, more may be.
   void add_event(Cell cell, std::size_t depth, Candidates candidates, const std::vector<CrossingTriple>& triples,
                  std::vector<Share>& shares);
+  // All that is known is the largest factor.
+  void add_dark(Cell cell, Candidates candidates, std::shared_ptr<const Plane> cut, Share::Next next,
+                std::vector<Share>& shares) const;
+  // By a better rule on the same cell, if there is one.
+  [[nodiscard]] bool improve_whole(Share& share);
   struct Integral {
-    double integral, error;
-    double rounding = 0.0;  // in the error
-    [[nodiscard]] bool is_most_of(double all) const { return rounding > 0.5 * all; }
+    double integral = 0.0, error = 0.0;
+    double rounding = 0.0;     // in the error
+    bool more_points = false;  // would lessen it
   };
+  [[nodiscard]] Share::Next next_of(const Integral& found) const;
   [[nodiscard]] Integral integrate(const Formula& formula, const Cell& cell) const;
+  [[nodiscard]] Integral integrate_by_six(const Formula& formula, const Cell& cell) const;
+  [[nodiscard]] Integral integrate_event(const Formula& formula, const Cell& cell, const Point& centre,
+                                         const Candidates& candidates,
+                                         const std::vector<CrossingTriple>& triples) const;
   [[nodiscard]] Integral enclose(const Formula& formula, const Cell& cell, double most) const;
   [[nodiscard]] Integral enclose_event(const Formula& formula, const Cell& cell, const Point& centre,
                                        const Candidates& candidates, const std::vector<CrossingTriple>& triples) const;
   [[nodiscard]] bool certifies() const { return limits_.certified > 0.0; }
   [[nodiscard]] double size_of(const Cell& cell) const;
-  bool add_if_negligible(Cell& cell, Candidates& candidates, std::vector<Share>& shares) const;
-  bool add_if_dim(Cell& cell, Candidates& candidates, double enough, std::vector<Share>& shares) const;
+  [[nodiscard]] double largest_integral(const Cell& cell) const;
   struct Rule {
     double integral = 0.0;
     double rounding = 0.0;  // of the values and of the cell's area
   };
+  [[nodiscard]] Integral integral_by(const Rule& rule, const Rule& lower, const Formula& formula,
+                                     const Cell& cell) const;
   template <unsigned kCount>
   [[nodiscard]] Rule gauss_integral(const Formula& formula, const Cell& cell, const std::vector<Vec3>& ring) const;
   [[nodiscard]] Evaluated value_at(const Formula& formula, const Point& x) const;

@@ -19,7 +19,7 @@ std::vector<PairEnd> ends_of(const Scene& scene, const PreparedPatch& patch) {
 std::unique_ptr<Pair> PairChoice::choose(std::span<const std::uint32_t> pieces, const PairEnd& from,
                                          const PairEnd& to) {
   std::unique_ptr<Pair> pair = make(pieces, from, to);
-  if (pair == nullptr || !either_ || pair->is_dim()) return pair;
+  if (pair == nullptr || !either_) return pair;
   const std::size_t events = pair->events();
   if (events == 0) return pair;
   std::unique_ptr<Pair> other = make(pieces, to, from);
@@ -30,8 +30,7 @@ std::unique_ptr<Pair> PairChoice::make(std::span<const std::uint32_t> pieces, co
                                        const PairEnd& source) {
   std::optional<Sight> sight = sight_of(scene_, pieces, receiver.part, source.part, receiver.part.face);
   if (!sight) return nullptr;
-  return std::make_unique<Pair>(scene_.scene, std::move(*sight), receiver.part.face, source.whole, limits_, memory_,
-                                made_++);
+  return std::make_unique<Pair>(scene_.scene, std::move(*sight), receiver.part.face, source.whole, memory_, made_++);
 }
 
 }  // namespace exactff::view_factors

@@ -22,8 +22,8 @@ struct PairEnd {
 class PairChoice {
  public:
   // Keeps references. `either`: A_i F_ij = A_j F_ji holds, so either of two parts may be cut.
-  PairChoice(const ExactScene& scene, const Pair::Limits& limits, PairMemory& memory, bool either)
-      : scene_(scene), limits_(limits), memory_(memory), either_(either) {}
+  PairChoice(const ExactScene& scene, PairMemory& memory, bool either)
+      : scene_(scene), memory_(memory), either_(either) {}
 
   // Cuts `from`, or the one that fewer lines seem to cut. `pieces`: all that may occlude, by ascending index. Null if
   // the two do not see each other.
@@ -35,7 +35,6 @@ class PairChoice {
                                            const PairEnd& source);
 
   const ExactScene& scene_;
-  const Pair::Limits& limits_;
   PairMemory& memory_;
   bool either_;
   std::size_t made_ = 0;  // numbers the pairs in the memory

@@ -1,5 +1,6 @@
 #include "view_factors/pairs.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -24,50 +25,45 @@ void check_accuracy(double accuracy) {
                "give a positive number; the default is 1e-6");
 }
 
-// Patches of the given scene, in a copy of it.
-std::vector<PreparedPatch> prepare(const Scene& given, const ExactScene& scene, std::span<const Selection> patches) {
-  std::vector<PreparedPatch> result;
-  for (const Selection& patch : patches) {
-    (void)given.faces_of(patch);  // throws if it is of another scene
-    result.emplace_back(scene, Selection{patch.patch, patch.face});
-  }
-  return result;
-}
+using Key = std::pair<PatchId, std::optional<FaceId>>;
+Key key_of(const Selection& selection) { return {selection.patch, selection.face}; }
 
-// The entries that are computed, each with those that are its transposes.
-std::vector<std::vector<std::size_t>> pairs_of(const std::vector<PreparedPatch>& from,
-                                               const std::vector<PreparedPatch>& to, bool both_directions) {
-  std::map<std::pair<std::pair<PatchId, std::optional<FaceId>>, std::pair<PatchId, std::optional<FaceId>>>, std::size_t>
-      known;
-  const auto key = [](const PreparedPatch& p) { return std::pair(p.selection.patch, p.selection.face); };
-  std::vector<std::vector<std::size_t>> result;
-  for (std::size_t e = 0; e < from.size() * to.size(); ++e) {
-    const PreparedPatch &i = from[e / to.size()], &j = to[e % to.size()];
-    const bool once = i.planar && j.planar && !both_directions;
-    if (const auto other = once ? known.find({key(j), key(i)}) : known.end(); other != known.end()) {
-      result[other->second].push_back(e);
-    } else {
-      if (once) known.emplace(std::pair(key(i), key(j)), result.size());
-      result.push_back({e});
+// Whether a part of the one may see a part of the other.
+bool may_see(const SeenParts& seen, const PreparedPatch& from, const PreparedPatch& to) {
+  for (std::size_t i = 0; i < from.parts.size(); ++i) {
+    for (const Part& part : to.parts) {
+      if (from.seen.sees(seen, from.parts, i, part)) return true;
     }
   }
-  return result;
+  return false;
 }
 
 }  // namespace
 
 struct Pairs::Patches {
+  // Selections of the given scene, in a copy of it.
   Patches(const Scene& given, std::span<const Selection> from, std::span<const Selection> to)
-      : moved(near_origin(given)),
-        scene(moved ? *moved : given),
-        seen(scene),
-        rows(prepare(given, scene, from)),
-        columns(prepare(given, scene, to)) {}
+      : moved(near_origin(given)), scene(moved ? *moved : given), seen(scene) {
+    rows = prepare(given, from);
+    columns = prepare(given, to);
+  }
+
+  std::vector<const PreparedPatch*> prepare(const Scene& given, std::span<const Selection> patches) {
+    std::vector<const PreparedPatch*> result;
+    for (const Selection& patch : patches) {
+      (void)given.faces_of(patch);  // throws if it is of another scene
+      std::unique_ptr<const PreparedPatch>& known = prepared[key_of(patch)];
+      if (known == nullptr) known = std::make_unique<const PreparedPatch>(scene, Selection{patch.patch, patch.face});
+      result.push_back(known.get());
+    }
+    return result;
+  }
 
   std::optional<Scene> moved;
   ExactScene scene;
   SeenParts seen;
-  std::vector<PreparedPatch> rows, columns;
+  std::map<Key, std::unique_ptr<const PreparedPatch>> prepared;
+  std::vector<const PreparedPatch*> rows, columns;
   mutable PairMemories memories;
 };
 
@@ -76,22 +72,43 @@ Pairs::Pairs(const Scene& scene, std::span<const Selection> from, std::span<cons
     : options_(options) {
   check_accuracy(options.accuracy);
   patches_ = std::make_unique<const Patches>(scene, from, to);
-  entries_ = pairs_of(patches_->rows, patches_->columns, options.both_directions);
+  std::map<std::pair<Key, Key>, std::size_t> known;
+  for (std::size_t e = 0; e < from.size() * to.size(); ++e) {
+    const Ends ends = ends_of(e);
+    const auto [place, is_new] =
+        known.try_emplace({key_of(ends.from->selection), key_of(ends.to->selection)}, entries_.size());
+    if (is_new) entries_.emplace_back();
+    entries_[place->second].push_back(e);
+  }
 }
 Pairs::~Pairs() = default;
 
-double Pairs::area_from(std::size_t row) const { return patches_->rows[row].area; }
+double Pairs::area_from(std::size_t row) const { return patches_->rows[row]->area; }
+
+// A_i F_ij = A_j F_ji holds for planar patches. The one that comes first in the scene is seen from, whichever is asked
+// for.
+Pairs::Ends Pairs::ends_of(std::size_t entry) const {
+  const std::size_t columns = patches_->columns.size();
+  const PreparedPatch *const row = patches_->rows[entry / columns], *const column = patches_->columns[entry % columns];
+  const bool turned =
+      row->planar && column->planar && !options_.both_directions && key_of(column->selection) < key_of(row->selection);
+  return turned ? Ends{column, row, true} : Ends{row, column, false};
+}
 
 void Pairs::compute(std::size_t pair, const std::function<void(std::size_t, const ViewFactor&)>& take) const {
   const kernel::StandardArithmetic of_thread;
-  const std::vector<std::size_t>& entries = entries_[pair];
-  const std::size_t columns = patches_->columns.size(), first = entries.front();
-  const PreparedPatch &from = patches_->rows[first / columns], &to = patches_->columns[first % columns];
+  const auto [from, to, turned] = ends_of(entries_[pair].front());
+  // First what the row may see, which all of its entries ask for.
+  const PreparedPatch &row = turned ? *to : *from, &column = turned ? *from : *to;
   std::unique_ptr<PairMemory> memory = patches_->memories.take();
-  const ViewFactor computed = factor_between(patches_->scene, patches_->seen, from, to, options_, *memory);
+  ViewFactor computed{.area_from = from->area, .area_to = to->area};
+  if (may_see(patches_->seen, row, column)) {
+    computed = factor_between(patches_->scene, patches_->seen, *from, *to, options_, *memory);
+  }
   patches_->memories.give_back(std::move(memory));
-  take(first, computed);
-  for (const std::size_t entry : std::span(entries).subspan(1)) take(entry, transpose(computed, from, to));
+  for (const std::size_t entry : entries_[pair]) {
+    take(entry, ends_of(entry).turned ? transpose(computed, *from, *to) : computed);
+  }
 }
 
 }  // namespace exactff::view_factors

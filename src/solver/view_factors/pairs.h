@@ -1,4 +1,6 @@
 // The entries of a matrix of view factors, pair by pair: each pair is an independent job.
+//
+// An entry depends on the scene, its two patches and the options alone, not on what else is computed, nor on the order.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +13,8 @@
 
 namespace exactff::view_factors {
 
+struct PreparedPatch;
+
 class Pairs {
  public:
   // Throws what view_factor throws. Keeps a reference to the scene.
@@ -21,7 +25,7 @@ class Pairs {
   Pairs& operator=(const Pairs&) = delete;
 
   [[nodiscard]] std::size_t count() const { return entries_.size(); }
-  // The entries that a pair gives, numbered row by row: the one that is computed, then its transposes.
+  // The entries that a pair gives, numbered row by row, in ascending order: equal ones, and transposes.
   [[nodiscard]] const std::vector<std::size_t>& entries_of(std::size_t pair) const { return entries_[pair]; }
   [[nodiscard]] double area_from(std::size_t row) const;
   // In the order of entries_of. From any thread.
@@ -29,6 +33,12 @@ class Pairs {
 
  private:
   struct Patches;
+  // What is computed for an entry: F of these, or, if they are turned, its transpose.
+  struct Ends {
+    const PreparedPatch *from, *to;
+    bool turned;
+  };
+  [[nodiscard]] Ends ends_of(std::size_t entry) const;
 
   const ViewFactorOptions options_;
   std::unique_ptr<const Patches> patches_;

@@ -1,60 +1,62 @@
 #include "view_factors/refinement.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 
 #include "view_factors/pair_choice.h"
 
 namespace exactff::view_factors {
 namespace {
 
-constexpr std::size_t kStepsBetweenSums = 4096;
-constexpr double kShareOfRounding = 0x1p-8;                // of the accuracy
+// What is below 2^-14 decides nothing between few and many cells. A stage's limits are those of its accuracy.
+constexpr int kFirstStage = -10, kStep = -10;              // exponents of the stages' accuracies
+constexpr double kShareOfRounding = 0x1p-4;                // of the accuracy
 constexpr double kShareOfNegligible = 0x1p-24;             // of the error that is allowed
 constexpr double kShareOfQuadrature = 0.0625;              // the same, of a cell as large as the patch
-constexpr double kShareOfDim = 0.25;                       // the same, of a cell that is left undecided
-constexpr double kShareOfCell = 0x1p-4;                    // the same, of a certified cell as large as the patch
+constexpr double kShareOfCell = 0x1p-12;                   // the same, of a certified cell as large as the patch
+constexpr double kCoarse = 0x1p-7;                         // of the smaller area: the error of a cell of step 1
+constexpr std::size_t kSharesOfARound = 64;                // one of so many is improved before the error is summed
 constexpr std::size_t kMostPoints = std::size_t{1} << 20;  // of all pairs of parts: some 200 MB
-
-Pair::Limits limits_of(const ViewFactorOptions& options, double target, double area, std::size_t parts_seen) {
-  const double certified = options.certify ? target * kShareOfCell / static_cast<double>(parts_seen) : 0.0;
-  return {.rounding = options.accuracy * kShareOfRounding,
-          .negligible_area = target * kShareOfNegligible,
-          .quadrature = target / area * kShareOfQuadrature,
-          .enough = target * kShareOfDim,
-          .certified = certified,
-          .area = area};
-}
 
 }  // namespace
 
 Refinement::Refinement(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from,
-                       const PreparedPatch& to, const ViewFactorOptions& options, double target, PairMemory& memory)
-    : area_(from.unit_area), budget_(options.budget), least_error_(target / (4.0 * static_cast<double>(budget_))) {
-  const Pair::Limits limits = limits_of(options, target, area_, to.parts.size());
-  PairChoice choice(scene, limits, memory, from.planar && to.planar && !options.both_directions);
-  const SeenParts::Lists& seen_from = from.seen.lists(seen, from.parts);
+                       const PreparedPatch& to, const ViewFactorOptions& options, PairMemory& memory)
+    : from_(from),
+      to_(to),
+      options_(options),
+      smaller_area_(std::min(from.unit_area, to.unit_area)),
+      least_error_(0.5 * options.accuracy * smaller_area_ / (4.0 * static_cast<double>(options.budget))),
+      narrowest_(widened(0.5 * from.enclosed_area, 0.5 * magnitude(from.enclosed_area))) {
+  PairChoice choice(scene, memory, from.planar && to.planar && !options.both_directions);
   const std::vector<PairEnd> receivers = ends_of(scene.scene, from), sources = ends_of(scene.scene, to);
   std::size_t points = 0;
   for (std::size_t r = 0; r < receivers.size(); ++r) {
-    for (const PairEnd& source : sources) {
-      if (!sees(scene.scene, seen_from[r], source.part)) continue;
-      std::unique_ptr<Pair> pair = choice.choose(seen_from[r].occluders, receivers[r], source);
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      const bool may_see =
+          from.seen.sees(seen, from.parts, r, to.parts[s]) && to.seen.sees(seen, to.parts, s, from.parts[r]);
+      if (!may_see) continue;
+      std::unique_ptr<Pair> pair =
+          choice.choose(from.seen.lists(seen, from.parts)[r].occluders, receivers[r], sources[s]);
       if (pair == nullptr) continue;
       points += pair->point_count();
-      if (cost_ >= budget_ || points > kMostPoints) {
+      if (cost_ >= options.budget || points > kMostPoints) {
         give_up();
         return;
       }
       add_pair(std::move(pair));
     }
   }
+  narrow();
 }
 
 void Refinement::add_pair(std::unique_ptr<Pair> pair) {
+  pair->set_limits(limits());
   pairs_.push_back(std::move(pair));
   const std::size_t made = made_;
-  const std::size_t left = budget_ - cost_;
-  work_on(pairs_.size() - 1, [&](Pair& p) { return p.cells(left); });
+  const std::size_t left = options_.budget - cost_;
+  work_on(pairs_.size() - 1, [&](Pair& p) { return p.cells(kCoarse * smaller_area_, left); });
   if (made_ == made) pairs_.back().reset();
 }
 
@@ -66,23 +68,59 @@ void Refinement::give_up() {
   gave_up_ = true;
 }
 
-void Refinement::refine(double target) {
-  for (std::size_t steps = 0; !waiting_.empty() && cost_ < budget_;) {
-    if (running_error_ <= target || ++steps % kStepsBetweenSums == 0) {
-      running_error_ = error();  // without the roundings of its updates
-      if (running_error_ <= target) return;
-    }
-    if (!(waiting_.front().share.error >= least_error_)) return;
-    cut_worst();
-  }
+double Refinement::accuracy_of_stage() const { return std::ldexp(1.0, kFirstStage + kStep * static_cast<int>(stage_)); }
+
+double Refinement::target_of_stage() const { return 0.5 * accuracy_of_stage() * smaller_area_; }
+
+Pair::Limits Refinement::limits() const {
+  const double target = target_of_stage();
+  const double certified = options_.certify ? target * kShareOfCell / static_cast<double>(to_.parts.size()) : 0.0;
+  return {.stage = stage_,
+          .rounding = accuracy_of_stage() * kShareOfRounding,
+          .negligible_area = target * kShareOfNegligible,
+          .quadrature = target / from_.unit_area * kShareOfQuadrature,
+          .certified = certified,
+          .area = from_.unit_area};
 }
 
-void Refinement::cut_worst() {
+void Refinement::refine(const std::function<bool(const kernel::Disc&)>& is_enough) {
+  while (!is_enough(narrowest_) && (improve_some() || start_next_stage())) narrow();
+}
+
+// False if the accuracy that is asked for is none of a later stage.
+bool Refinement::start_next_stage() {
+  if (gave_up_ || accuracy_of_stage() < options_.accuracy || cost_ >= options_.budget) return false;
+  ++stage_;
+  for (const std::unique_ptr<Pair>& pair : pairs_) {
+    if (pair != nullptr) pair->set_limits(limits());
+  }
+  const auto last =
+      std::ranges::partition(settled_, [](const Waiting& w) { return w.share.next == Share::Next::kNothing; });
+  std::ranges::move(last, std::back_inserter(waiting_));
+  settled_.erase(last.begin(), last.end());
+  std::ranges::make_heap(waiting_, is_less_urgent);
+  return true;
+}
+
+// A part of the shares, so that sums over all of them cost little. False if nothing can or need be done in this stage.
+bool Refinement::improve_some() {
+  const std::size_t most = 1 + (waiting_.size() + settled_.size()) / kSharesOfARound;
+  std::size_t improved = 0;
+  while (improved < most && !waiting_.empty() && cost_ < options_.budget && running_error_ > target_of_stage() &&
+         waiting_.front().share.error >= least_error_) {
+    improve_worst();
+    ++improved;
+  }
+  return improved > 0;
+}
+
+void Refinement::improve_worst() {
   std::ranges::pop_heap(waiting_, is_less_urgent);
   Waiting worst = std::move(waiting_.back());
   waiting_.pop_back();
   running_error_ -= worst.share.error;
-  work_on(worst.pair, [&](Pair& pair) { return pair.halves(std::move(worst.share)); });
+  const std::size_t left = options_.budget - cost_;
+  work_on(worst.pair, [&](Pair& pair) { return pair.improve(std::move(worst.share), left); });
 }
 
 // Adds the shares that the call makes of the pair.
@@ -95,39 +133,43 @@ void Refinement::work_on(std::size_t id, const Call& call) {
   cost_ += pair.cost() - cost;
 }
 
-// No more than 4 * budget_ shares are ever made, so the worst of them has an error of at least least_error_ while they
-// exceed the target: of others, only the numbers are needed.
+// No more than 4 * budget shares are ever made, so the worst of them has an error of at least least_error_ while they
+// exceed what is wanted: of others, only the numbers are needed.
 void Refinement::add(Share share, std::size_t pair) {
   ++made_;
   running_error_ += share.error;
   if (share.error < least_error_) share.keep_numbers_only();
-  if (share.narrow) {
-    settled_.push_back(std::move(share));
-    return;
-  }
-  waiting_.push_back({std::move(share), pair, made_});
-  std::ranges::push_heap(waiting_, is_less_urgent);
+  const bool waits = share.next == Share::Next::kCut || share.next == Share::Next::kMorePoints;
+  std::vector<Waiting>& shares = waits ? waiting_ : settled_;
+  shares.push_back({std::move(share), pair, made_});
+  if (waits) std::ranges::push_heap(waiting_, is_less_urgent);
 }
 
-double Refinement::error() const {
-  if (gave_up_) return 0.5 * area_;
-  double sum = 0.0;
-  for (const Waiting& w : waiting_) sum += w.share.error;
-  for (const Share& share : settled_) sum += share.error;
-  return sum;
-}
-
-kernel::Disc Refinement::enclosure(const kernel::Disc& area) const {
-  if (gave_up_) return widened(0.5 * area, 0.5 * magnitude(area));
+// Sums up anew, without the roundings of updates.
+void Refinement::narrow() {
   kernel::Disc sum;
-  for (const Waiting& w : waiting_) sum = sum + kernel::Disc{w.share.integral, w.share.error};
-  for (const Share& share : settled_) sum = sum + kernel::Disc{share.integral, share.error};
+  running_error_ = 0.0;
+  for (const std::vector<Waiting>* shares : {&waiting_, &settled_}) {
+    for (const Waiting& w : *shares) {
+      sum = sum + kernel::Disc{w.share.integral, w.share.error};
+      running_error_ += w.share.error;
+    }
+  }
+  if (sum.radius < narrowest_.radius) narrowest_ = sum;
+}
+
+double Refinement::estimate() const {
+  if (gave_up_) return narrowest_.centre;
+  double sum = 0.0;
+  for (const std::vector<Waiting>* shares : {&waiting_, &settled_}) {
+    for (const Waiting& w : *shares) sum += pairs_[w.pair]->estimate(w.share);
+  }
   return sum;
 }
 
 std::size_t Refinement::event_cells() const {
-  const auto is_event = [](const Share& share) { return share.is_event; };
-  return static_cast<std::size_t>(std::ranges::count_if(waiting_, is_event, &Waiting::share) +
+  const auto is_event = [](const Waiting& w) { return w.share.is_event; };
+  return static_cast<std::size_t>(std::ranges::count_if(waiting_, is_event) +
                                   std::ranges::count_if(settled_, is_event));
 }
 

@@ -2,14 +2,20 @@
 //
 // A share is a cell with its part of the integral and an error (pair.h).
 //
-// 1. Cut one part of each pair of parts that may see each other into cells, and integrate over each.
+// 1. Cut one part of each pair of parts that may see each other into a few cells, and integrate over each.
 // 2. Keep the shares that can be improved in a heap, that of the largest error on top.
-// 3. Replace the top one by its two halves, until the sum of all errors is small enough, the budget is used up, or no
-//    share is worth a cut.
+// 3. Improve the top one, by a better rule or by its two halves, until the sum of all errors is small enough, the
+//    budget is used up, or no share can be improved.
 //
 // At any time the shares make up the whole integral, and their errors its error.
+//
+// What is done next depends on the scene and the two patches alone, never on the accuracy that is wanted: this only
+// decides when it is enough. Limits that must be small if the accuracy is small belong to stages, which follow one
+// another. So a smaller accuracy goes on where a larger one stopped, and since the narrowest interval so far is the
+// result, it never yields a wider one.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -23,16 +29,17 @@ namespace exactff::view_factors {
 
 class Refinement {
  public:
-  // Step 1. `target`: of the integral's error, in squares of the unit of Point::at. Keeps a reference to the memory.
+  // Step 1. Keeps references to the patches and the memory.
   Refinement(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from, const PreparedPatch& to,
-             const ViewFactorOptions& options, double target, PairMemory& memory);
+             const ViewFactorOptions& options, PairMemory& memory);
 
-  // Steps 2 and 3: then error() <= target, if it can be.
-  void refine(double target);
+  // Steps 2 and 3. Asks now and then whether the integral is known well enough.
+  void refine(const std::function<bool(const kernel::Disc& integral)>& is_enough);
 
-  [[nodiscard]] double error() const;
-  // The integral with its error, and the roundings of the sums. `area`: of the patch `from`.
-  [[nodiscard]] kernel::Disc enclosure(const kernel::Disc& area) const;
+  // The narrowest that has been found, in squares of the unit of Point::at, with the roundings of sums.
+  [[nodiscard]] const kernel::Disc& enclosure() const { return narrowest_; }
+  // Of the integral; in the enclosure but for roundings.
+  [[nodiscard]] double estimate() const;
   [[nodiscard]] bool is_zero() const { return waiting_.empty() && settled_.empty() && !gave_up_; }
   [[nodiscard]] std::size_t cells() const { return cells_; }
   [[nodiscard]] std::size_t event_cells() const;
@@ -49,21 +56,31 @@ class Refinement {
 
   void add_pair(std::unique_ptr<Pair> pair);
   void give_up();
-  void cut_worst();
+  [[nodiscard]] double accuracy_of_stage() const;
+  [[nodiscard]] double target_of_stage() const;
+  [[nodiscard]] Pair::Limits limits() const;
+  [[nodiscard]] bool start_next_stage();
+  [[nodiscard]] bool improve_some();
+  void improve_worst();
+  void narrow();
   template <class Call>
   void work_on(std::size_t id, const Call& call);
   void add(Share share, std::size_t pair);
 
-  double area_;
-  std::size_t budget_;
-  double least_error_;
+  const PreparedPatch& from_;
+  const PreparedPatch& to_;
+  ViewFactorOptions options_;
+  double smaller_area_;                       // of the two patches
+  double least_error_;                        // shares of less are never improved
   std::vector<std::unique_ptr<Pair>> pairs_;  // null: sees nothing
   std::vector<Waiting> waiting_;              // a heap
-  std::vector<Share> settled_;                // not worth a cut
+  std::vector<Waiting> settled_;              // cannot be improved in this stage
+  std::size_t stage_ = 0;
   double running_error_ = 0.0;
   std::size_t made_ = 0;  // shares
   std::size_t cells_ = 0, cost_ = 0;
   bool gave_up_ = false;  // nothing but 0 <= F <= 1 is known
+  kernel::Disc narrowest_;
 };
 
 }  // namespace exactff::view_factors

@@ -5,6 +5,11 @@
 #include "visibility/seen_pieces.h"
 
 namespace exactff::view_factors {
+namespace {
+
+constexpr std::size_t kFewQuestions = 4;  // of a part: more cost as much as its list
+
+}  // namespace
 
 SeenParts::SeenParts(const ExactScene& scene) : scene_(scene), walls_(visibility::walls_of(scene.scene)) {}
 
@@ -17,13 +22,30 @@ const SeenParts::Lists& SeenParts::OfPatch::lists(const SeenParts& scene, std::s
   return state_->lists;
 }
 
+bool SeenParts::OfPatch::sees(const SeenParts& scene, std::span<const Part> parts, std::size_t i,
+                              const Part& other) const {
+  const Face& face = scene.scene_.scene.face(other.face);
+  if (state_->questions++ < kFewQuestions * parts.size()) {
+    return visibility::sees_any_of(scene.scene_.scene, scene.walls_, scene.region_of(parts[i]), face.first_piece,
+                                   face.piece_count);
+  }
+  const std::vector<std::uint32_t>& seen = lists(scene, parts)[i].seen;
+  const auto first = std::ranges::lower_bound(seen, face.first_piece);
+  return first != seen.end() && *first < face.first_piece + face.piece_count;
+}
+
 // Corners of a part may be rounded; those of its face are not.
-SeenPieces SeenParts::seen_from(const Part& part) const {
+exactff::Box SeenParts::region_of(const Part& part) const {
   const Scene& scene = scene_.scene;
   const std::vector<std::uint32_t>& ring = scene.face(part.face).rings.front();
   exactff::Box box{scene.vertices()[ring.front()], scene.vertices()[ring.front()]};
   for (const std::uint32_t corner : ring) box.include(scene.vertices()[corner]);
-  SeenPieces result{visibility::pieces_seen_from(scene, walls_, box), {}};
+  return box;
+}
+
+SeenPieces SeenParts::seen_from(const Part& part) const {
+  const Scene& scene = scene_.scene;
+  SeenPieces result{visibility::pieces_seen_from(scene, walls_, region_of(part)), {}};
   std::ranges::sort(result.seen);
   std::vector<bool> occludes(scene.pieces().size());
   for (const std::uint32_t piece : result.seen) {
@@ -36,12 +58,6 @@ SeenPieces SeenParts::seen_from(const Part& part) const {
     if (occludes[piece]) result.occluders.push_back(piece);
   }
   return result;
-}
-
-bool sees(const Scene& scene, const SeenPieces& from, const Part& part) {
-  const Face& face = scene.face(part.face);
-  const auto first = std::ranges::lower_bound(from.seen, face.first_piece);
-  return first != from.seen.end() && *first < face.first_piece + face.piece_count;
 }
 
 }  // namespace exactff::view_factors

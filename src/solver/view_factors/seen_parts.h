@@ -1,6 +1,7 @@
 // The pieces that each part of a patch may see (visibility/seen_pieces.h), found when they are first asked for.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -33,10 +34,15 @@ class SeenParts {
   class OfPatch {
    public:
     [[nodiscard]] const Lists& lists(const SeenParts& scene, std::span<const Part> parts) const;
+    // Whether parts[i] may see some of the other part's face: whether its list holds some. The first few questions are
+    // answered without the lists.
+    [[nodiscard]] bool sees(const SeenParts& scene, std::span<const Part> parts, std::size_t i,
+                            const Part& other) const;
 
    private:
     struct State {
       std::once_flag once;
+      std::atomic<std::size_t> questions{0};
       Lists lists;
     };
     std::unique_ptr<State> state_ = std::make_unique<State>();
@@ -45,11 +51,10 @@ class SeenParts {
   [[nodiscard]] SeenPieces seen_from(const Part& part) const;
 
  private:
+  [[nodiscard]] exactff::Box region_of(const Part& part) const;
+
   const ExactScene& scene_;
   std::vector<visibility::Wall> walls_;
 };
-
-// Whether some of the part's face may be seen.
-[[nodiscard]] bool sees(const Scene& scene, const SeenPieces& from, const Part& part);
 
 }  // namespace exactff::view_factors

@@ -34,13 +34,12 @@ namespace view_factors {
 namespace {
 
 constexpr std::size_t kCellsOfAPoint = 4;  // that cost about as much as a point factor in a crowd
-constexpr double kShareOfTarget = 0.99;    // leaves room for the roundings of sums
 
-void take_interval(const Refinement& refinement, const PreparedPatch& from, ViewFactor& result) {
-  const Disc f = refinement.enclosure(from.enclosed_area) / from.enclosed_area;
+// What all of the patch sees, from the integral.
+void take_interval(const Disc& integral, const PreparedPatch& from, ViewFactor& result) {
+  const Disc f = integral / from.enclosed_area;
   result.lower = is_finite(f) ? std::clamp(lower_end(f), 0.0, 1.0) : 0.0;
   result.upper = is_finite(f) ? std::clamp(upper_end(f), 0.0, 1.0) : 1.0;
-  result.value = is_finite(f) ? std::clamp(f.centre, result.lower, result.upper) : 0.5;
 }
 
 bool is_within(double accuracy, const ViewFactor& f, const PreparedPatch& from, const PreparedPatch& to) {
@@ -50,9 +49,9 @@ bool is_within(double accuracy, const ViewFactor& f, const PreparedPatch& from, 
 
 // If the cells of a crowd tell less than statistics.
 void sample_if_better(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to,
-                      const ViewFactorOptions& options, double target, ViewFactor& result) {
-  const auto [value, error] =
-      sampled_mean(scene, from.parts, to, options.budget / kCellsOfAPoint, target / from.unit_area);
+                      const ViewFactorOptions& options, ViewFactor& result) {
+  const double target = 0.5 * options.accuracy * std::min(1.0, to.unit_area / from.unit_area);
+  const auto [value, error] = sampled_mean(scene, from.parts, to, options.budget / kCellsOfAPoint, target);
   const double lower = std::max(0.0, value - error), upper = std::min(1.0, value + error);
   if (!(upper - lower < result.upper - result.lower)) return;
   result.way = Way::kPoints;
@@ -69,18 +68,19 @@ ViewFactor factor_between(const ExactScene& scene, const SeenParts& seen, const 
   ViewFactor result;
   result.area_from = from.area;
   result.area_to = to.area;
-  const double target = 0.5 * options.accuracy * std::min(from.unit_area, to.unit_area);
-  Refinement refinement(scene, seen, from, to, options, target, memory);
+  Refinement refinement(scene, seen, from, to, options, memory);
   result.cells = refinement.cells();
   if (refinement.is_zero()) return result;
-  refinement.refine(kShareOfTarget * target);
+  refinement.refine([&](const Disc& integral) {
+    take_interval(integral, from, result);
+    return result.accurate = is_within(options.accuracy, result, from, to);
+  });
   result.cells = refinement.cells();
   result.event_cells = refinement.event_cells();
   result.claim = options.certify ? Claim::kCertified : Claim::kEstimated;
-  take_interval(refinement, from, result);
-  result.accurate = is_within(options.accuracy, result, from, to);
+  result.value = std::clamp(refinement.estimate() / from.unit_area, result.lower, result.upper);
   if (!options.certify && !result.accurate && options.sample_crowds) {
-    sample_if_better(scene, from, to, options, target, result);
+    sample_if_better(scene, from, to, options, result);
   }
   return result;
 }

@@ -146,6 +146,11 @@ class Hider {
   std::vector<std::vector<Fan>> edges_;  // of its pieces, if there are several
 };
 
+bool meets(const Box& a, const Box& b) {
+  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y &&
+         a.low.z <= b.high.z && b.low.z <= a.high.z;
+}
+
 class SeeingRegion {
  public:
   SeeingRegion(std::span<const Wall> walls, const Box& region) : corners_(corners_of(region)) {
@@ -201,6 +206,22 @@ std::vector<std::uint32_t> pieces_seen_from(const Scene& scene, std::span<const 
                                   steps.take();
                                   if (from.may_see(scene, scene.pieces()[piece], depth)) seen.push_back(piece);
                                 });
+  return seen;
+}
+
+bool sees_any_of(const Scene& scene, std::span<const Wall> walls, const Box& region, std::uint32_t first,
+                 std::uint32_t count) {
+  Box target{scene.vertices()[scene.pieces()[first].frame[0]], scene.vertices()[scene.pieces()[first].frame[0]]};
+  for (const Piece& piece : std::span(scene.pieces()).subspan(first, count)) {
+    for (const std::uint32_t corner : scene.corners(piece)) target.include(scene.vertices()[corner]);
+  }
+  SeeingRegion from(walls, region);
+  bool seen = false;
+  shaft_tree(scene).visit_where(
+      [&](const Box& box, std::size_t depth) { return !seen && meets(box, target) && from.may_see_into(box, depth); },
+      [&](std::uint32_t piece, std::size_t depth) {
+        seen = seen || (piece - first < count && from.may_see(scene, scene.pieces()[piece], depth));
+      });
   return seen;
 }
 
