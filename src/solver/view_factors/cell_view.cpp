@@ -22,6 +22,21 @@ CellView::CellView(const Sight& sight, PairMemory& memory, std::size_t id) : sig
   for (const Occluder& occluder : sight.occluders) reversed_.push_back(reverse_of(occluder.ring));
 }
 
+void CellView::start() {
+  memory_.start(id_, sight_.points.line_count(), sight_.points.point_count());
+  top_ = 0;
+}
+
+void CellView::resume(PairMemory::Way way) {
+  top_ = way.size();
+  memory_.resume(id_, sight_.points.line_count(), sight_.points.point_count(), std::move(way));
+}
+
+PairMemory::Way CellView::way(std::size_t depth) const {
+  const auto begin = memory_.way().begin();
+  return {begin, begin + static_cast<std::ptrdiff_t>(depth) + 1};
+}
+
 Candidates CellView::all_candidates() const {
   Candidates all(sight_.occluders.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i].occluder = i;
@@ -432,7 +447,7 @@ CellView::Outcome CellView::look(const Cell& cell, std::size_t depth, Candidates
   }
   std::erase_if(candidates, [](const Candidate& c) { return c.facing == 0; });
   if (best_cut_ != nullptr) return Outcome::kCut;
-  if (depth <= 1) drop_covered(candidates);
+  if (depth <= top_ + 1) drop_covered(candidates);
   if (!look_at_edges()) return Outcome::kCut;
   return best_cut_ != nullptr ? Outcome::kCut : !triples_.empty() ? Outcome::kCrossings : Outcome::kKnown;
 }

@@ -73,9 +73,14 @@ class CellView {
     kCrossings,  // only orders of crossings are undecided
   };
   // To be called before the first look at the parts of a cell that is not the last one looked at.
-  void start() { memory_.start(id_, sight_.points.line_count(), sight_.points.point_count()); }
-  // `depth`: of the cell below the one at which start() was called; each cell is a part of the last one at the depth
-  // before. Takes out candidates that turn out to cover nothing.
+  void start();
+  // The same, but parts of a cell that was looked at before follow, at the depth way.size(). What has been found out
+  // for it still holds.
+  void resume(PairMemory::Way way);
+  // To the last cell that was looked at, at this depth.
+  [[nodiscard]] PairMemory::Way way(std::size_t depth) const;
+  // `depth`: of the cell below the root; each cell is a part of the last one at the depth before. Takes out candidates
+  // that turn out to cover nothing.
   [[nodiscard]] Outcome look(const Cell& cell, std::size_t depth, Candidates& candidates);
   [[nodiscard]] Candidates all_candidates() const;
 
@@ -141,6 +146,7 @@ class CellView {
   const Sight& sight_;
   PairMemory& memory_;
   std::size_t id_;
+  std::size_t top_ = 0;         // depth of the first cells that are looked at
   std::vector<Ring> reversed_;  // of every occluder
 
   const Cell* cell_ = nullptr;

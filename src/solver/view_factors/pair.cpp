@@ -142,6 +142,12 @@ std::vector<Share> Pair::cells(double enough, std::size_t budget) {
   return shares;
 }
 
+std::vector<Share> Pair::without_cells() const {
+  std::vector<Share> shares;
+  add_dark(sight_.root, view_.all_candidates(), {}, nullptr, shares);
+  return shares;
+}
+
 template <unsigned kCount>
 Pair::Rule Pair::gauss_integral(const Formula& formula, const Cell& cell, const std::vector<Vec3>& ring) const {
   const std::vector<WeightedPlace> places = gauss_places<kCount>(ring);
@@ -175,7 +181,9 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enou
   const CellView::Outcome outcome = view(cell, depth, candidates);
   if (outcome == CellView::Outcome::kKnown && view_.parts().empty()) return;
   if (size_of(cell) <= limits_.negligible_area) {
-    return add_dark(std::move(cell), std::move(candidates), nullptr, Share::Next::kNextStage, shares);
+    add_dark(std::move(cell), std::move(candidates), view_.way(depth), nullptr, shares);
+    shares.back().next = Share::Next::kNextStage;
+    return;
   }
   switch (outcome) {
     case CellView::Outcome::kKnown:
@@ -186,7 +194,7 @@ void Pair::look(Cell cell, std::size_t depth, Candidates candidates, double enou
       break;
   }
   if (0.5 * largest_integral(cell) <= enough) {
-    return add_dark(std::move(cell), std::move(candidates), view_.best_cut(), Share::Next::kCut, shares);
+    return add_dark(std::move(cell), std::move(candidates), view_.way(depth), view_.best_cut(), shares);
   }
   if (cost() >= budget_) return add_event(std::move(cell), depth, std::move(candidates), {}, shares);
   Halves halves = cut(cell, sight_.receiver, view_.best_cut(), sight_.points.units());
@@ -201,16 +209,16 @@ double Pair::size_of(const Cell& cell) const {
 
 double Pair::largest_integral(const Cell& cell) const { return bound_.on(cell) * size_of(cell); }
 
-void Pair::add_dark(Cell cell, Candidates candidates, std::shared_ptr<const Plane> cut, Share::Next next,
+void Pair::add_dark(Cell cell, Candidates candidates, PairMemory::Way way, std::shared_ptr<const Plane> cut,
                     std::vector<Share>& shares) const {
   const double half = 0.5 * largest_integral(cell);
   shares.push_back({.cell = std::move(cell),
                     .candidates = std::move(candidates),
                     .formula = nullptr,
+                    .way = std::move(way),
                     .cut = std::move(cut),
                     .integral = half,
                     .error = half * kSlack,
-                    .next = next,
                     .stage = limits_.stage,
                     .is_event = true,
                     .is_dark = true});
@@ -262,6 +270,7 @@ void Pair::add_smooth(Cell cell, std::shared_ptr<const Formula> formula, double 
   shares.push_back({.cell = std::move(cell),
                     .candidates = {},
                     .formula = std::move(formula),
+                    .way = {},
                     .cut = nullptr,
                     .integral = found.integral,
                     .error = found.error,
@@ -292,7 +301,7 @@ double Pair::slope_bound(const Candidates& candidates, const Vec3& centre, doubl
 void Pair::add_event(Cell cell, std::size_t depth, Candidates candidates, const std::vector<CrossingTriple>& triples,
                      std::vector<Share>& shares) {
   if (triples.empty() && candidates.size() > kCrowd) {
-    return add_dark(std::move(cell), std::move(candidates), nullptr, Share::Next::kCut, shares);
+    return add_dark(std::move(cell), std::move(candidates), view_.way(depth), nullptr, shares);
   }
   const Point centre = point_inside(cell, sight_.points.units());
   const Cell at_centre{{centre}, {}};
@@ -304,6 +313,7 @@ void Pair::add_event(Cell cell, std::size_t depth, Candidates candidates, const 
   shares.push_back({.cell = std::move(cell),
                     .candidates = std::move(candidates),
                     .formula = nullptr,
+                    .way = view_.way(depth),
                     .cut = nullptr,
                     .integral = found.integral,
                     .error = found.error,
@@ -389,9 +399,10 @@ std::vector<Share> Pair::improve(Share share, std::size_t budget) {
     add_smooth(std::move(parts.negative), share.formula, enough, result);
     add_smooth(std::move(parts.positive), share.formula, enough, result);
   } else {
-    view_.start();
-    look(std::move(parts.negative), 1, share.candidates, enough, result);
-    look(std::move(parts.positive), 1, std::move(share.candidates), enough, result);
+    const std::size_t depth = std::max(share.way.size(), std::size_t{1});
+    share.way.empty() ? view_.start() : view_.resume(std::move(share.way));
+    look(std::move(parts.negative), depth, share.candidates, enough, result);
+    look(std::move(parts.positive), depth, std::move(share.candidates), enough, result);
   }
   return result;
 }

@@ -19,6 +19,7 @@ struct Share {
   Cell cell;
   Candidates candidates;                   // of a cell without a formula
   std::shared_ptr<const Formula> formula;  // null: the boundary is not constant on the cell
+  PairMemory::Way way;                     // to the cell, the same; empty if it has not been looked at
   std::shared_ptr<const Plane> cut;        // decides more; null: see Pair::improve
   double integral = 0.0;
   // Of the integral: an estimate, and for an event cell a bound besides; with its roundings. Or, certified, a bound.
@@ -39,6 +40,7 @@ struct Share {
   void keep_numbers_only() {
     cell = {};
     candidates = {};
+    way = {};
     formula = nullptr;
     cut = nullptr;
   }
@@ -70,6 +72,8 @@ class Pair {
   // Cuts the receiver until every cell is smooth, an event cell, has an error of at most `enough`, or sees nothing; the
   // last are left out. Gives up when the cost of the call reaches the budget.
   [[nodiscard]] std::vector<Share> cells(double enough, std::size_t budget);
+  // The receiver as one cell of which only bounds are known.
+  [[nodiscard]] std::vector<Share> without_cells() const;
   // The cell by a better rule or, cut in two, its halves, without parts that see nothing.
   [[nodiscard]] std::vector<Share> improve(Share share, std::size_t budget);
   // Of the share's integral. It lies within the error, but a point of the cell may tell more than the middle does.
@@ -87,7 +91,7 @@ class Pair {
   void add_event(Cell cell, std::size_t depth, Candidates candidates, const std::vector<CrossingTriple>& triples,
                  std::vector<Share>& shares);
   // All that is known is the largest factor.
-  void add_dark(Cell cell, Candidates candidates, std::shared_ptr<const Plane> cut, Share::Next next,
+  void add_dark(Cell cell, Candidates candidates, PairMemory::Way way, std::shared_ptr<const Plane> cut,
                 std::vector<Share>& shares) const;
   // By a better rule on the same cell, if there is one.
   [[nodiscard]] bool improve_whole(Share& share);

@@ -14,12 +14,24 @@ constexpr std::size_t kMostPlanes = std::size_t{1} << 14;   // some 5 MB
 
 }  // namespace
 
-void PairMemory::start(std::size_t pair, std::size_t line_count, std::size_t point_count) {
+void PairMemory::take(std::size_t pair, std::size_t line_count, std::size_t point_count) {
   pair_ = pair;
   point_count_ = point_count;
   const std::size_t wanted = std::min(std::bit_ceil(line_count * point_count), kMostEntries);
   if (wanted > entries_.size()) entries_.assign(wanted, {});
+}
+
+void PairMemory::start(std::size_t pair, std::size_t line_count, std::size_t point_count) {
+  take(pair, line_count, point_count);
   enter(0);
+}
+
+// Cells have numbers of their own, so what other pairs have left behind is about none on the way.
+void PairMemory::resume(std::size_t pair, std::size_t line_count, std::size_t point_count, Way way) {
+  EXACTFF_EXPECT(!way.empty());
+  take(pair, line_count, point_count);
+  depth_ = way.size() - 1;
+  way_ = std::move(way);
 }
 
 void PairMemory::enter(std::size_t depth) {

@@ -30,6 +30,11 @@ class PairMemory {
   void forget_pairs() { planes_.clear(); }
   // To be called first: what is asked from here on is about the cells of another pair, or of this one from a new root.
   void start(std::size_t pair, std::size_t line_count, std::size_t point_count);
+  // The cells from the root to one, by depth.
+  using Way = std::vector<std::uint64_t>;
+  // The same, but what follows are parts of a cell that was the present one before.
+  void resume(std::size_t pair, std::size_t line_count, std::size_t point_count, Way way);
+  [[nodiscard]] const Way& way() const { return way_; }
   // The present cell becomes one at this depth, a part of the last one at the depth before.
   void enter(std::size_t depth);
 
@@ -49,14 +54,15 @@ class PairMemory {
     std::int8_t sign = 0;
   };
   [[nodiscard]] static std::uint64_t key(LineId line, PointId point) { return std::uint64_t{line} << 32 | point; }
+  void take(std::size_t pair, std::size_t line_count, std::size_t point_count);
   [[nodiscard]] std::size_t slot(LineId line, PointId point) const {
     return (line * point_count_ + point) & (entries_.size() - 1);
   }
 
   std::size_t pair_ = 0, point_count_ = 0, depth_ = 0;
   std::uint64_t cells_ = 0;
-  std::vector<Entry> entries_;      // a power of two of them; each place is taken by the last sign that falls on it
-  std::vector<std::uint64_t> way_;  // the cells from the root to the present one, by depth
+  std::vector<Entry> entries_;  // a power of two of them; each place is taken by the last sign that falls on it
+  Way way_;                     // to the present cell
   std::map<std::tuple<std::size_t, LineId, PointId>, std::shared_ptr<const Plane>> planes_;
 };
 

@@ -33,6 +33,28 @@ TEST(PairMemory, SignsHoldForTheCellAndItsParts) {
   EXPECT_EQ(memory.sign(1, 2), kUnasked);
 }
 
+// After other cells, and after another pair has asked for the same signs.
+TEST(PairMemory, ResumesAtACellOfBefore) {
+  PairMemory memory;
+  memory.start(0, 4, 5);
+  memory.keep_sign(1, 2, -1);
+  memory.enter(1);
+  memory.keep_sign(3, 4, 1);
+  const PairMemory::Way way = memory.way();
+  memory.enter(1);
+  memory.keep_sign(2, 2, 1);
+  memory.start(1, 4, 5);
+  EXPECT_EQ(memory.sign(1, 2), kUnasked);
+  memory.keep_sign(2, 3, 1);
+  memory.resume(0, 4, 5, way);
+  EXPECT_EQ(memory.sign(3, 4), 1);
+  memory.enter(2);
+  EXPECT_EQ(memory.sign(1, 2), -1);
+  EXPECT_EQ(memory.sign(3, 4), 1);
+  EXPECT_EQ(memory.sign(2, 2), kUnasked);
+  EXPECT_EQ(memory.sign(2, 3), kUnasked);
+}
+
 TEST(PairMemory, MixedSignsHoldForTheCellAlone) {
   PairMemory memory;
   memory.start(0, 4, 5);
