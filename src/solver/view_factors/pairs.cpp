@@ -85,13 +85,11 @@ Pairs::~Pairs() = default;
 
 double Pairs::area_from(std::size_t row) const { return patches_->rows[row]->area; }
 
-// A_i F_ij = A_j F_ji holds for planar patches. The one that comes first in the scene is seen from, whichever is asked
-// for.
+// Of two patches that may be exchanged, the one that comes first in the scene is seen from, whichever is asked for.
 Pairs::Ends Pairs::ends_of(std::size_t entry) const {
   const std::size_t columns = patches_->columns.size();
   const PreparedPatch *const row = patches_->rows[entry / columns], *const column = patches_->columns[entry % columns];
-  const bool turned =
-      row->planar && column->planar && !options_.both_directions && key_of(column->selection) < key_of(row->selection);
+  const bool turned = is_symmetric(*row, *column, options_) && key_of(column->selection) < key_of(row->selection);
   return turned ? Ends{column, row, true} : Ends{row, column, false};
 }
 

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "view_factors/pair_choice.h"
+#include "view_factors/view_factor.h"
 
 namespace exactff::view_factors {
 namespace {
@@ -29,7 +30,7 @@ Refinement::Refinement(const ExactScene& scene, const SeenParts& seen, const Pre
       smaller_area_(std::min(from.unit_area, to.unit_area)),
       least_error_(0.5 * options.accuracy * smaller_area_ / (4.0 * static_cast<double>(options.budget))),
       narrowest_(widened(0.5 * from.enclosed_area, 0.5 * magnitude(from.enclosed_area))) {
-  PairChoice choice(scene, memory, from.planar && to.planar && !options.both_directions);
+  PairChoice choice(scene, memory, is_symmetric(from, to, options));
   const std::vector<PairEnd> receivers = ends_of(scene.scene, from), sources = ends_of(scene.scene, to);
   std::size_t points = 0;
   for (std::size_t r = 0; r < receivers.size(); ++r) {
@@ -41,7 +42,7 @@ Refinement::Refinement(const ExactScene& scene, const SeenParts& seen, const Pre
           choice.choose(from.seen.lists(seen, from.parts)[r].occluders, receivers[r], sources[s]);
       if (pair == nullptr) continue;
       points += pair->point_count();
-      if (cost_ >= options.budget || points > kMostPoints) {
+      if (points > kMostPoints) {
         give_up();
         return;
       }
@@ -55,8 +56,9 @@ void Refinement::add_pair(std::unique_ptr<Pair> pair) {
   pair->set_limits(limits());
   pairs_.push_back(std::move(pair));
   const std::size_t made = made_;
-  const std::size_t left = options_.budget - cost_;
-  work_on(pairs_.size() - 1, [&](Pair& p) { return p.cells(kCoarse * smaller_area_, left); });
+  const std::size_t left = options_.budget - std::min(cost_, options_.budget);
+  work_on(pairs_.size() - 1,
+          [&](Pair& p) { return left > 0 ? p.cells(kCoarse * smaller_area_, left) : p.without_cells(); });
   if (made_ == made) pairs_.back().reset();
 }
 

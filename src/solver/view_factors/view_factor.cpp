@@ -47,21 +47,40 @@ bool is_within(double accuracy, const ViewFactor& f, const PreparedPatch& from, 
   return std::max(width, width * from.unit_area / to.unit_area) <= accuracy;
 }
 
-// If the cells of a crowd tell less than statistics.
-void sample_if_better(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to,
-                      const ViewFactorOptions& options, ViewFactor& result) {
+ViewFactor sampled(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to,
+                   const ViewFactorOptions& options) {
   const double target = 0.5 * options.accuracy * std::min(1.0, to.unit_area / from.unit_area);
   const auto [value, error] = sampled_mean(scene, from.parts, to, options.budget / kCellsOfAPoint, target);
-  const double lower = std::max(0.0, value - error), upper = std::min(1.0, value + error);
-  if (!(upper - lower < result.upper - result.lower)) return;
-  result.way = Way::kPoints;
+  ViewFactor result;
+  result.area_from = from.area;
+  result.area_to = to.area;
   result.value = std::clamp(value, 0.0, 1.0);
-  result.lower = lower;
-  result.upper = upper;
+  result.lower = std::max(0.0, value - error);
+  result.upper = std::min(1.0, value + error);
+  result.claim = Claim::kEstimated;
+  return result;
+}
+
+// If the cells of a crowd tell less than statistics. The points lie on the smaller patch, if A_i F_ij = A_j F_ji holds:
+// the error of a mean over the larger one counts as many times as it is larger.
+void sample_if_better(const ExactScene& scene, const PreparedPatch& from, const PreparedPatch& to,
+                      const ViewFactorOptions& options, ViewFactor& result) {
+  const bool turned = is_symmetric(from, to, options) && to.unit_area < from.unit_area;
+  const ViewFactor found =
+      turned ? transpose(sampled(scene, to, from, options), to, from) : sampled(scene, from, to, options);
+  if (!(found.upper - found.lower < result.upper - result.lower)) return;
+  result.way = Way::kPoints;
+  result.value = found.value;
+  result.lower = found.lower;
+  result.upper = found.upper;
   result.accurate = is_within(options.accuracy, result, from, to);
 }
 
 }  // namespace
+
+bool is_symmetric(const PreparedPatch& i, const PreparedPatch& j, const ViewFactorOptions& options) {
+  return i.planar && j.planar && !options.both_directions;
+}
 
 ViewFactor factor_between(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from,
                           const PreparedPatch& to, const ViewFactorOptions& options, PairMemory& memory) {

@@ -8,6 +8,9 @@ namespace exactff::view_factors {
 
 class PairMemory;
 
+// Whether A_i F_ij = A_j F_ji holds and may be used.
+[[nodiscard]] bool is_symmetric(const PreparedPatch& i, const PreparedPatch& j, const ViewFactorOptions& options);
+
 // F_ij, `from` being patch i and `to` patch j.
 [[nodiscard]] ViewFactor factor_between(const ExactScene& scene, const SeenParts& seen, const PreparedPatch& from,
                                         const PreparedPatch& to, const ViewFactorOptions& options, PairMemory& memory);

@@ -272,6 +272,40 @@ TEST(ViewFactor, KeepsItsWidthWhereTheBudgetIsUsedUp) {
   EXPECT_GE(coarse.upper, fine.lower);
 }
 
+// Nine parts see nine parts, and the budget is used up by the first pair.
+TEST(ViewFactor, OfManyPartsIsBoundedByDistanceWhereTheBudgetIsUsedUp) {
+  PlainScene scene;
+  for (int i = 0; i < 9; ++i) {
+    const double x = 2.0 * (i % 3), y = 2.0 * (i / 3);
+    add(scene, "below", {{x, y, 0}, {x + 1, y, 0}, {x + 1, y + 1, 0}, {x, y + 1, 0}});
+    add(scene, "above", {{x, y + 1, 20}, {x + 1, y + 1, 20}, {x + 1, y, 20}, {x, y, 20}});
+  }
+  const Scene built = generate::build(scene);
+  const Selection from = named(built, "below"), to = named(built, "above");
+  const ViewFactor fine = view_factor(built, from, to);
+  EXPECT_TRUE(fine.accurate);
+  for (const bool certify : {false, true}) {
+    const ViewFactor f = view_factor(built, from, to, {.budget = 1, .sample_crowds = false, .certify = certify});
+    EXPECT_FALSE(f.accurate);
+    EXPECT_LE(f.upper, 0.02);
+    EXPECT_LE(f.lower, fine.upper);
+    EXPECT_GE(f.upper, fine.lower);
+  }
+}
+
+// A mean over the larger patch would be wider by the ratio of the areas.
+TEST(ViewFactor, OfACrowdIsByPointsOfTheSmallerPatch) {
+  PlainScene scene = plates(8.0, 1.0);
+  add(scene, "small", {{3, 3, 0.5}, {4, 3, 0.5}, {4, 4, 0.5}, {3, 4, 0.5}});
+  const Scene built = generate::build(scene);
+  const ViewFactorOptions options{.accuracy = 1e-9, .budget = 1};
+  const ViewFactor f = view_factor(built, named(built, "small"), named(built, "above"), options),
+                   back = view_factor(built, named(built, "above"), named(built, "small"), options);
+  EXPECT_EQ(f.way, Way::kPoints);
+  EXPECT_EQ(back.way, Way::kPoints);
+  EXPECT_NEAR((back.upper - back.lower) * 64.0, f.upper - f.lower, 1e-12);
+}
+
 // With a single cell, everything is a crowd.
 TEST(ViewFactor, OfACrowdIsByPoints) {
   const Scene built = generate::build(plates_with_plate(1.0, 0.5, 0.75));
