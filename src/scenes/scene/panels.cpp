@@ -1,7 +1,8 @@
 // Steps:
 //   1. Sort the edges of all pieces by the places of their ends. Where just two pieces share one, are of planar faces
 //   of
-//      one patch, and lie side by side in one oriented plane, connect them.
+//      one patch, and lie side by side in one oriented plane, connect them. The
+//      edges that then have one piece are cut where corners of others lie on them (T-junctions), and looked at again.
 //   2. Of each connected set of several faces, keep the edges that do not cancel: its boundary. Chain them into rings;
 //      drop corners in the middle of a straight side.
 //   3. Cut what the rings enclose as a face with holes is cut (triangulation.h).
@@ -56,6 +57,23 @@ void for_each_edge(std::vector<EdgeOfPiece>& uses, const Take& take) {
   }
 }
 
+// Leaves the edges that do not cancel. False if one remains more than once.
+bool cancel(std::vector<EdgeOfPiece>& edges) {
+  bool overlap = false;
+  auto kept = edges.begin();
+  for_each_edge(edges, [&](auto first, auto last) {
+    std::ptrdiff_t balance = 0;
+    for (auto use = first; use != last; ++use) balance += use->upwards ? 1 : -1;
+    overlap = overlap || balance > 1 || balance < -1;
+    if (balance == 0) return;
+    EdgeOfPiece edge = *first;
+    edge.upwards = balance > 0;
+    *kept++ = edge;
+  });
+  edges.erase(kept, edges.end());
+  return !overlap;
+}
+
 class Joiner {
  public:
   explicit Joiner(const Scene& scene)
@@ -68,6 +86,11 @@ class Joiner {
 
  private:
   void add_edges(std::uint32_t piece, std::vector<EdgeOfPiece>& edges) const;
+  void connect(std::vector<EdgeOfPiece>& edges);
+  void connect_at_junctions(std::vector<EdgeOfPiece>& single);
+  void cut_at_corners(std::vector<EdgeOfPiece>& edges) const;
+  [[nodiscard]] bool is_inside(std::uint32_t place, const EdgeOfPiece& edge) const;
+  [[nodiscard]] PatchId patch_of(const EdgeOfPiece& edge) const { return scene_.face(pieces_[edge.piece].face).patch; }
   [[nodiscard]] bool lie_side_by_side(const EdgeOfPiece& a, const EdgeOfPiece& b) const;
   [[nodiscard]] bool is_in_plane(const Piece& piece, std::uint32_t vertex) const;
   [[nodiscard]] kernel::ExactVec3 normal(const Piece& piece) const;
@@ -85,6 +108,7 @@ class Joiner {
   const std::span<const Vec3> vertices_;
   const std::span<const std::uint32_t> places_;
   std::vector<std::uint32_t> parent_;  // by piece
+  bool several_faces_ = false;         // in a set
 };
 
 void Joiner::add_edges(std::uint32_t piece, std::vector<EdgeOfPiece>& edges) const {
@@ -103,15 +127,10 @@ std::vector<std::vector<std::uint32_t>> Joiner::connected_sets() {
   std::vector<EdgeOfPiece> edges;
   edges.reserve(3 * pieces_.size());
   for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece) add_edges(piece, edges);
-  bool several_faces = false;
-  for_each_edge(edges, [&](auto first, auto last) {
-    if (last - first != 2 || !lie_side_by_side(*first, *(first + 1))) return;
-    const std::uint32_t a = root(first->piece), b = root((first + 1)->piece);
-    parent_[std::max(a, b)] = std::min(a, b);
-    several_faces = several_faces || pieces_[first->piece].face != pieces_[(first + 1)->piece].face;
-  });
+  connect(edges);
+  connect_at_junctions(edges);
   std::vector<std::vector<std::uint32_t>> sets;
-  if (!several_faces) return sets;
+  if (!several_faces_) return sets;
   std::map<std::uint32_t, std::size_t> set_of_root;
   for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece) {
     const std::uint32_t first = root(piece);
@@ -124,6 +143,64 @@ std::vector<std::vector<std::uint32_t>> Joiner::connected_sets() {
     return pieces_[set.front()].face == pieces_[set.back()].face;
   });
   return sets;
+}
+
+// Leaves the edges that only one piece has.
+void Joiner::connect(std::vector<EdgeOfPiece>& edges) {
+  auto single = edges.begin();
+  for_each_edge(edges, [&](auto first, auto last) {
+    if (last - first == 1) *single++ = *first;
+    if (last - first != 2 || !lie_side_by_side(*first, *(first + 1))) return;
+    const std::uint32_t a = root(first->piece), b = root((first + 1)->piece);
+    parent_[std::max(a, b)] = std::min(a, b);
+    several_faces_ = several_faces_ || pieces_[first->piece].face != pieces_[(first + 1)->piece].face;
+  });
+  edges.erase(single, edges.end());
+}
+
+void Joiner::connect_at_junctions(std::vector<EdgeOfPiece>& single) {
+  std::ranges::stable_sort(single, {}, [&](const EdgeOfPiece& edge) { return patch_of(edge); });
+  std::vector<EdgeOfPiece> of_patch;
+  for (auto first = single.begin(); first != single.end();) {
+    const auto last = std::find_if(first, single.end(), [&](const auto& e) { return patch_of(e) != patch_of(*first); });
+    of_patch.assign(first, last);
+    first = last;
+    const std::size_t count = of_patch.size();
+    cut_at_corners(of_patch);
+    if (of_patch.size() > count) connect(of_patch);
+  }
+}
+
+// Cuts edges where ends of others lie inside them. Of very many edges none is cut: the time is quadratic.
+void Joiner::cut_at_corners(std::vector<EdgeOfPiece>& edges) const {
+  constexpr std::size_t kMost = 512;
+  if (edges.size() > kMost) return;
+  std::vector<std::uint32_t> ends;
+  for (const EdgeOfPiece& edge : edges) ends.insert(ends.end(), {edge.low, edge.high});
+  std::ranges::sort(ends);
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto inside = std::ranges::find_if(ends, [&](std::uint32_t end) { return is_inside(end, edges[e]); });
+    if (inside == ends.end()) continue;
+    // Two edges with the direction of the whole. Both are looked at later.
+    const auto [low, high, piece, upwards] = edges[e];
+    edges.push_back({std::min(low, *inside), std::max(low, *inside), piece, upwards == (low < *inside)});
+    edges.push_back({std::min(high, *inside), std::max(high, *inside), piece, upwards == (*inside < high)});
+    edges[e] = edges.back();
+    edges.pop_back();
+    --e;
+  }
+}
+
+// Between the ends of the edge, on its line.
+bool Joiner::is_inside(std::uint32_t place, const EdgeOfPiece& edge) const {
+  if (place == edge.low || place == edge.high) return false;
+  const Vec3 &x = vertices_[place], &a = vertices_[edge.low], &b = vertices_[edge.high];
+  const auto within = [](double u, double from, double to) {
+    return std::min(from, to) <= u && u <= std::max(from, to);
+  };
+  return within(x.x, a.x, b.x) && within(x.y, a.y, b.y) && within(x.z, a.z, b.z) &&
+         are_straight(edge.low, place, edge.high);
 }
 
 // The pieces lie on different sides of the edge, in one plane, with their fronts on one side of it.
@@ -176,16 +253,13 @@ std::optional<std::vector<ConvexPart>> Joiner::parts_of(std::span<const std::uin
 std::optional<std::vector<Ring>> Joiner::boundary_of(std::span<const std::uint32_t> set) const {
   std::vector<EdgeOfPiece> edges;
   for (const std::uint32_t piece : set) add_edges(piece, edges);
+  if (!cancel(edges)) return std::nullopt;
+  cut_at_corners(edges);
+  if (!cancel(edges)) return std::nullopt;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> left;  // from, to
-  bool overlap = false;
-  for_each_edge(edges, [&](auto first, auto last) {
-    std::ptrdiff_t balance = 0;
-    for (auto use = first; use != last; ++use) balance += use->upwards ? 1 : -1;
-    if (balance > 0) left.emplace_back(first->low, first->high);
-    if (balance < 0) left.emplace_back(first->high, first->low);
-    overlap = overlap || balance > 1 || balance < -1;
-  });
-  if (overlap) return std::nullopt;
+  for (const EdgeOfPiece& edge : edges) {
+    left.emplace_back(edge.upwards ? edge.low : edge.high, edge.upwards ? edge.high : edge.low);
+  }
   // As many edges end at a place as begin there, so every chain ends where it began.
   std::ranges::sort(left);
   std::vector<bool> used(left.size());

@@ -17,10 +17,12 @@ const SeenParts::Lists& SeenParts::OfPatch::lists(const SeenParts& scene, std::s
   return state_->lists;
 }
 
-// Corners of a part may be rounded; those of its face are not.
+// Corners of a part may be rounded; those of its face, or of its joined panel, are not.
 SeenPieces SeenParts::seen_from(const Part& part) const {
   const Scene& scene = scene_.scene;
-  const std::vector<std::uint32_t>& ring = scene.face(part.face).rings.front();
+  const Panels& panels = exactff::panels(scene);
+  const std::span<const std::uint32_t> ring =
+      panels.is_joined(part.panel) ? panels.corners(part.panel) : scene.face(part.face).rings.front();
   exactff::Box box{scene.vertices()[ring.front()], scene.vertices()[ring.front()]};
   for (const std::uint32_t corner : ring) box.include(scene.vertices()[corner]);
   SeenPieces result{visibility::pieces_seen_from(scene, walls_, box), {}};
@@ -39,6 +41,10 @@ SeenPieces SeenParts::seen_from(const Part& part) const {
 }
 
 bool sees(const Scene& scene, const SeenPieces& from, const Part& part) {
+  if (const Panels& all = panels(scene); all.is_joined(part.panel)) {
+    const Sheet& sheet = all.sheets()[all.sheet_of_joined(part.panel)];
+    return std::ranges::any_of(sheet.pieces, [&](auto piece) { return std::ranges::binary_search(from.seen, piece); });
+  }
   const Face& face = scene.face(part.face);
   const auto first = std::ranges::lower_bound(from.seen, face.first_piece);
   return first != from.seen.end() && *first < face.first_piece + face.piece_count;

@@ -49,7 +49,7 @@ class SeenParts {
   std::vector<visibility::Wall> walls_;
 };
 
-// Whether some of the part's face may be seen.
+// Whether some of the part's face, or sheet, may be seen.
 [[nodiscard]] bool sees(const Scene& scene, const SeenPieces& from, const Part& part);
 
 }  // namespace exactff::view_factors

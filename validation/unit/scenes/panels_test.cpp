@@ -176,13 +176,33 @@ TEST(Panels, OfOneFaceAreItsPieces) {
   EXPECT_TRUE(panels(scene).empty());
 }
 
-// One side of a square is cut, its neighbour's is not.
-TEST(Panels, AreNotJoinedWhereEdgesDiffer) {
+// One side of a rectangle is cut, its neighbour's is not.
+TEST(Panels, AreJoinedAtJunctions) {
   const Corners left{{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0}}, low{{1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}},
       high{{1, 1, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}};
   const Scene scene = generate::build(patch_of({left, low, high}));
   ASSERT_EQ(panels(scene).sheets().size(), 1U);
-  EXPECT_EQ(panels(scene).sheets()[0].pieces, (std::vector<std::uint32_t>{1, 2}));
+  EXPECT_EQ(panels(scene).sheets()[0].pieces, (std::vector<std::uint32_t>{0, 1, 2}));
+  ASSERT_EQ(panels(scene).sheets()[0].panel_count, 1U);
+  EXPECT_EQ(panels(scene).corners(3).size(), 4U);
+}
+
+// Long and short bars, none of which share a whole edge, around six openings.
+TEST(Panels, OfALadderLeaveItsOpenings) {
+  std::vector<Corners> faces;
+  const auto rectangle = [&](double x, double y, double u, double v) {
+    faces.push_back({{x, y, 0}, {u, y, 0}, {u, v, 0}, {x, v, 0}});
+  };
+  for (int k = 0; k < 7; ++k) {
+    rectangle(0, 2.0 * k, 5, 2.0 * k + 1);
+    if (k == 6) break;
+    rectangle(0, 2.0 * k + 1, 1, 2.0 * k + 2);
+    rectangle(4, 2.0 * k + 1, 5, 2.0 * k + 2);
+  }
+  const Scene scene = generate::build(patch_of(faces));
+  ASSERT_EQ(panels(scene).sheets().size(), 1U);
+  EXPECT_LT(panels(scene).sheets()[0].panel_count, faces.size());
+  EXPECT_EQ(area_of_panels(scene, panels(scene).sheets()[0]), 35.0 + 12.0);
 }
 
 TEST(Panels, KnowTheirClosedSurface) {
