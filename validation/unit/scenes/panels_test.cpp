@@ -115,6 +115,9 @@ TEST(Panels, JoinNothingThatIsOffThePlaneByAnUlp) {
   std::vector<Corners> faces = split_squares({{1, 1}});
   faces[1][2].z = std::nextafter(faces[1][2].z, 10.0);
   EXPECT_TRUE(panels(generate::build(patch_of(faces))).empty());
+  // A pyramid that is an ulp high: its rim lies in one plane.
+  const Vec3 apex{0.5, 0.5, std::nextafter(0.75, 1.0)}, a{0, 0, 0}, b{1, 0, 1}, c{1, 1, 1.5}, d{0, 1, 0.5};
+  EXPECT_TRUE(panels(generate::build(patch_of({{a, b, apex}, {b, c, apex}, {c, d, apex}, {d, a, apex}}))).empty());
 }
 
 TEST(Panels, JoinNoFacesWithOppositeFronts) {
