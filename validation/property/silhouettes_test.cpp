@@ -55,6 +55,9 @@ std::vector<Receiver> receivers_about(const Scene& scene, const PlainScene& plai
   moved.point.x += random.integer(-2, 2) / 4.0;
   moved.point.y += random.integer(-2, 2) / 4.0;
   receivers.push_back(moved);
+  // That says it is on a face elsewhere: a hole in a mesh, where the tree of edges takes all for smooth.
+  moved.on = {FaceId{static_cast<std::uint32_t>(random.below(scene.faces().size()))}};
+  receivers.push_back(moved);
   return receivers;
 }
 

@@ -10,6 +10,7 @@
 #include "scene/closed_surfaces.h"
 #include "scene/edges.h"
 #include "scene/extent.h"
+#include "scene/panels.h"
 #include "scene/shaft_tree.h"
 
 namespace exactff {
@@ -31,6 +32,10 @@ struct Scene::Data {
   mutable std::vector<std::uint32_t> places;
   mutable std::once_flag tree_built;  // the tree is built at first use: see shaft_tree()
   mutable ShaftTree tree;
+  mutable std::once_flag panels_found;  // see panels()
+  mutable Panels panels;
+  mutable std::once_flag panel_tree_built;  // see panel_tree()
+  mutable ShaftTree panel_tree;
   mutable std::once_flag surfaces_found;  // see closed_surfaces()
   mutable ClosedSurfaces surfaces;
   mutable std::once_flag connectedness_found;  // see edges_per_silhouette()

@@ -91,13 +91,15 @@ bool ShaftTree::certainly_inside(const Box& box, const Vec3& apex, const HalfSpa
   return crossed_groups(box, apex, HalfSpaceGroups({&half_space, 1}).groups(), kAllGroups) == 0;
 }
 
-ShaftTree::ShaftTree(std::span<const Box> boxes) : order_(boxes.size()) {
+ShaftTree::ShaftTree(std::span<const Box> boxes, std::span<const std::uint32_t> ids) : order_(boxes.size()) {
   if (boxes.empty()) return;
   std::iota(order_.begin(), order_.end(), 0U);
   nodes_.reserve(2 * boxes.size() / kLeafSize + 2);
   build(boxes, 0, static_cast<std::uint32_t>(boxes.size()));
   boxes_.reserve(boxes.size());
   for (const std::uint32_t index : order_) boxes_.push_back(boxes[index]);
+  if (ids.empty()) return;
+  for (std::uint32_t& index : order_) index = ids[index];
 }
 
 // Components below this are not divided by: the ray then counts as meeting the slab everywhere.
@@ -148,10 +150,7 @@ void ShaftTree::build(std::span<const Box> boxes, std::uint32_t first, std::uint
   build(boxes, middle, last);
 }
 
-namespace {
-
-Box box_of(const Scene& scene, const Piece& piece) {
-  const auto corners = scene.corners(piece);
+Box box_of(const Scene& scene, std::span<const std::uint32_t> corners) {
   const Vec3& first = scene.vertices()[corners.front()];
   Box box{first, first};
   for (const std::uint32_t corner : corners) {
@@ -161,14 +160,12 @@ Box box_of(const Scene& scene, const Piece& piece) {
   return box;
 }
 
-}  // namespace
-
 const ShaftTree& shaft_tree(const Scene& scene) {
   const SceneInside::Data& data = SceneInside::data(scene);
   std::call_once(data.tree_built, [&] {
     std::vector<Box> boxes;
     boxes.reserve(scene.pieces().size());
-    for (const Piece& piece : scene.pieces()) boxes.push_back(box_of(scene, piece));
+    for (const Piece& piece : scene.pieces()) boxes.push_back(box_of(scene, scene.corners(piece)));
     data.tree = ShaftTree(boxes);
   });
   return data.tree;

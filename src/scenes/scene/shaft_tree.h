@@ -79,7 +79,8 @@ class RaySlabs {
 class ShaftTree {
  public:
   ShaftTree() = default;
-  explicit ShaftTree(std::span<const Box> boxes);
+  // Boxes are known by their indices, or by these ids.
+  explicit ShaftTree(std::span<const Box> boxes, std::span<const std::uint32_t> ids = {});
 
   // Calls visit(index) for every box not certainly outside, in a fixed order, until one call returns false.
   template <class Visit>
@@ -202,6 +203,8 @@ class ShaftTree {
 };
 
 class Scene;
+
+[[nodiscard]] Box box_of(const Scene& scene, std::span<const std::uint32_t> corners);
 
 // The tree over the scene's pieces, built at the first call; safe to call from several threads.
 const ShaftTree& shaft_tree(const Scene& scene);

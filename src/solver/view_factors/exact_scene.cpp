@@ -47,23 +47,32 @@ Box box_of(std::span<const Point> points) {
 
 ExactScene::ExactScene(const Scene& scene_in)
     : scene(scene_in), units(Units::of(scene_in.vertices())), vertices(scene_in.vertices().size()) {
-  const auto place_of = places(scene);
+  const Panels& panels = exactff::panels(scene);
   pieces.reserve(scene.pieces().size());
-  for (const Piece& piece : scene.pieces()) {
+  for (PanelId id = 0; id < panels.end(); ++id) {
     kernel::poll();
-    ExactPiece made{piece.face, piece.transparent, kNoSurface, {}, {}, {}};
-    for (const std::uint32_t corner : scene.corners(piece)) {
-      const std::uint32_t place = place_of[corner];
-      if (sgn(vertices[place].exact[3]) == 0) vertices[place] = point_of(scene.vertices()[place], units);
-      made.corners.push_back(place);
-      made.box.include(vertices[place].at);
+    ExactPiece made = exact_piece(panels.piece(id), panels.corners(id));
+    if (panels.is_joined(id)) {
+      const std::uint32_t surface = panels.sheets()[panels.sheet_of_joined(id)].surface;
+      made.surface = surface == ClosedSurfaces::kNone ? kNoSurface : surface;
     }
-    made.corners = true_corners(std::move(made.corners), vertices);
-    made.plane =
-        make_plane(join(vertices[made.corners[0]], vertices[made.corners[1]], vertices[made.corners[2]]), units);
-    pieces.push_back(std::move(made));
+    (panels.is_joined(id) ? joined : pieces).push_back(std::move(made));
   }
   add_surfaces();
+}
+
+ExactPiece ExactScene::exact_piece(const Piece& piece, std::span<const std::uint32_t> corners) {
+  const auto place_of = places(scene);
+  ExactPiece made{piece.face, piece.transparent, kNoSurface, {}, {}, {}};
+  for (const std::uint32_t corner : corners) {
+    const std::uint32_t place = place_of[corner];
+    if (sgn(vertices[place].exact[3]) == 0) vertices[place] = point_of(scene.vertices()[place], units);
+    made.corners.push_back(place);
+    made.box.include(vertices[place].at);
+  }
+  made.corners = true_corners(std::move(made.corners), vertices);
+  made.plane = make_plane(join(vertices[made.corners[0]], vertices[made.corners[1]], vertices[made.corners[2]]), units);
+  return made;
 }
 
 void ExactScene::add_surfaces() {

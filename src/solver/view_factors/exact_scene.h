@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exactff/scene.h"
+#include "scene/panels.h"
 #include "view_factors/exact_space.h"
 
 namespace exactff::view_factors {
@@ -25,9 +26,9 @@ struct Box {
 
 inline constexpr std::uint32_t kNoSurface = std::numeric_limits<std::uint32_t>::max();
 
-// A convex piece, without corners in the middle of a straight side.
+// A convex piece, or a panel of several (scene/panels.h), without corners in the middle of a straight side.
 struct ExactPiece {
-  FaceId face{};
+  FaceId face{};  // of a joined panel one of several
   bool transparent = false;
   std::uint32_t surface = kNoSurface;  // an index of ExactScene::surfaces
   std::vector<std::uint32_t> corners;  // vertex indices, counter-clockwise from the front; one index for each position
@@ -45,13 +46,20 @@ struct ExactSurface {
 struct ExactScene {
   explicit ExactScene(const Scene& scene);
 
+  // Of a piece or a joined panel.
+  [[nodiscard]] const ExactPiece& panel(PanelId id) const {
+    return id < pieces.size() ? pieces[id] : joined[id - pieces.size()];
+  }
+
   const Scene& scene;
   Units units;
   std::vector<Point> vertices;     // by vertex index; those of other vertices at a known position are left empty
   std::vector<ExactPiece> pieces;  // as Scene::pieces()
+  std::vector<ExactPiece> joined;  // the panels of several pieces
   std::vector<ExactSurface> surfaces;
 
  private:
+  [[nodiscard]] ExactPiece exact_piece(const Piece& piece, std::span<const std::uint32_t> corners);
   void add_surfaces();
 };
 

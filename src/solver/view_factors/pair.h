@@ -58,9 +58,9 @@ class Pair {
     double certified = 0.0;
     double area = 0.0;  // of the receiver's patch
   };
-  // Where the source part is a whole face, `whole` is that face: a point factor to it checks each cell. `id` tells the
+  // Where the source part is whole faces, `whole` is these: a point factor to it checks each cell. `id` tells the
   // pairs apart that share the memory.
-  Pair(const Scene& scene, Sight sight, FaceId receiver_face, std::shared_ptr<const ExactSource> whole,
+  Pair(const Scene& scene, Sight sight, std::vector<FaceId> receiver_faces, std::shared_ptr<const ExactSource> whole,
        PairMemory& memory, std::size_t id);
 
   [[nodiscard]] std::size_t point_count() const { return sight_.points.point_count(); }
@@ -127,7 +127,7 @@ class Pair {
 
   const Scene& scene_;
   Sight sight_;
-  FaceId receiver_face_;
+  std::vector<FaceId> receiver_faces_;
   std::shared_ptr<const ExactSource> whole_;
   Limits limits_;
   FactorBound bound_;

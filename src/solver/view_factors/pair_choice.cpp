@@ -5,14 +5,28 @@
 
 namespace exactff::view_factors {
 
+namespace {
+
+// The faces of the part's panel as a source, if they are nothing else.
+std::shared_ptr<const ExactSource> source_of(const Scene& scene, const Selection& patch, const Part& part) {
+  if (!part.is_piece) return nullptr;
+  const Panels& all = panels(scene);
+  Selection source = patch;
+  if (all.is_joined(part.panel)) {
+    const Sheet& sheet = all.sheets()[all.sheet_of_joined(part.panel)];
+    if (sheet.panel_count > 1 || faces_of(scene, part) != scene.faces_of(patch)) return nullptr;
+  } else {
+    if (scene.pieces_of(part.face).size() > 1) return nullptr;
+    source.face = part.face;
+  }
+  return std::make_shared<const ExactSource>(scene, source);
+}
+
+}  // namespace
+
 std::vector<PairEnd> ends_of(const Scene& scene, const PreparedPatch& patch) {
   std::vector<PairEnd> ends;
-  for (const Part& part : patch.parts) {
-    const bool whole = part.is_piece && scene.pieces_of(part.face).size() == 1;
-    Selection face = patch.selection;
-    face.face = part.face;
-    ends.push_back({part, whole ? std::make_shared<const ExactSource>(scene, face) : nullptr});
-  }
+  for (const Part& part : patch.parts) ends.push_back({part, source_of(scene, patch.selection, part)});
   return ends;
 }
 
@@ -30,7 +44,8 @@ std::unique_ptr<Pair> PairChoice::make(std::span<const std::uint32_t> pieces, co
                                        const PairEnd& source) {
   std::optional<Sight> sight = sight_of(scene_, pieces, receiver.part, source.part, receiver.part.face);
   if (!sight) return nullptr;
-  return std::make_unique<Pair>(scene_.scene, std::move(*sight), receiver.part.face, source.whole, memory_, made_++);
+  return std::make_unique<Pair>(scene_.scene, std::move(*sight), faces_of(scene_.scene, receiver.part), source.whole,
+                                memory_, made_++);
 }
 
 }  // namespace exactff::view_factors

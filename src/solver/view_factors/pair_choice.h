@@ -11,7 +11,7 @@
 
 namespace exactff::view_factors {
 
-// A part, and the source that checks the cells which see it if it is a whole face.
+// A part, and the source that checks the cells which see it if it is a whole face or several.
 struct PairEnd {
   const Part& part;
   std::shared_ptr<const ExactSource> whole;

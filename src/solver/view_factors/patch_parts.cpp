@@ -24,8 +24,8 @@ struct Clippable {
     for (const Point& corner : part.corners) corners.push_back(points.add(corner));
     ring = points.ring(corners);
   }
-  [[nodiscard]] Part part(FaceId face, const Ring& of) const {
-    Part result{face, {}, false};
+  [[nodiscard]] Part part(const Part& whole, const Ring& of) const {
+    Part result{whole.face, whole.panel, {}, false};
     for (const Edge& edge : of) result.corners.push_back(points[edge.from]);
     return result;
   }
@@ -46,7 +46,7 @@ std::vector<Part> outside(const Part& part, const std::vector<Plane>& sides, con
   std::vector<Part> result;
   for (std::uint32_t i = 0; i < sides.size(); ++i) {
     const Ring beyond = rest.points.clip(rest.ring, sides[i], 2 * i);
-    if (!beyond.empty()) result.push_back(rest.part(part.face, beyond));
+    if (!beyond.empty()) result.push_back(rest.part(part, beyond));
     rest.ring = rest.points.clip(rest.ring, make_plane(opposite(sides[i].exact), units), 2 * i);
     if (rest.ring.empty()) return result;
   }
@@ -61,8 +61,9 @@ std::vector<Part> outside(const std::vector<Part>& parts, const std::vector<Plan
   return result;
 }
 
-Part whole(const ExactScene& scene, const ExactPiece& piece) {
-  Part part{piece.face, {}, true};
+Part whole(const ExactScene& scene, PanelId panel) {
+  const ExactPiece& piece = scene.panel(panel);
+  Part part{piece.face, panel, {}, true};
   for (const std::uint32_t corner : piece.corners) part.corners.push_back(scene.vertices[corner]);
   return part;
 }
@@ -74,12 +75,13 @@ struct Contact {
   double half_length;
 };
 
-std::optional<Contact> contact(const ExactScene& scene, const ExactPiece& piece, const Plane& plane) {
+std::optional<Contact> contact(const ExactScene& scene, PanelId index, const Plane& plane) {
+  const ExactPiece& piece = scene.panel(index);
   constexpr double kInner = 1.0 - 0x1p-20;  // what only the segment's ends touch is not cut
   const auto side = [&](std::uint32_t corner) { return side_of(plane, scene.vertices[corner]); };
   if (std::ranges::none_of(piece.corners, [&](std::uint32_t c) { return side(c) > 0; })) return std::nullopt;
   if (std::ranges::all_of(piece.corners, [&](std::uint32_t c) { return side(c) > 0; })) return std::nullopt;
-  Clippable front(whole(scene, piece), scene.units);
+  Clippable front(whole(scene, index), scene.units);
   front.ring = front.points.clip(front.ring, plane, 0);
   std::vector<Vec3> met;
   for (const Edge& edge : front.ring) {
@@ -106,10 +108,11 @@ std::vector<Contact> contacts(const ExactScene& scene, const Part& part) {
   const Plane plane = plane_of(part, scene.units);
   const Box box = box_of(part.corners);
   std::vector<Contact> result;
-  for (const ExactPiece& piece : scene.pieces) {
+  for (std::uint32_t index = 0; index < scene.pieces.size(); ++index) {
+    const ExactPiece& piece = scene.pieces[index];
     if (piece.face == part.face || piece.transparent || piece.box.is_apart_from(box)) continue;
     if (!is_on_both_sides(part, piece.plane)) continue;
-    const std::optional<Contact> one = contact(scene, piece, plane);
+    const std::optional<Contact> one = contact(scene, index, plane);
     if (one && !one->box.is_apart_from(box)) result.push_back(*one);
   }
   std::ranges::stable_sort(result, std::ranges::greater(), &Contact::half_length);
@@ -122,7 +125,7 @@ std::vector<Part> cut(const Part& part, const Plane& plane, const Units& units) 
   for (const Homogeneous& towards : {plane.exact, opposite(plane.exact)}) {
     Clippable clippable(part, units);
     const Ring ring = clippable.points.clip(clippable.ring, make_plane(towards, units), 0);
-    if (!ring.empty()) result.push_back(clippable.part(part.face, ring));
+    if (!ring.empty()) result.push_back(clippable.part(part, ring));
   }
   return result;
 }
@@ -156,17 +159,23 @@ kernel::Disc enclosed_area(const Part& part, const Units& units) {
 }  // namespace
 
 std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch) {
+  const Panels& panels = exactff::panels(scene.scene);
+  // Pieces of one face, and panels of one sheet.
+  const auto never_overlap = [&](PanelId a, PanelId b) {
+    if (panels.is_joined(a) != panels.is_joined(b)) return false;
+    return panels.is_joined(a) ? panels.sheet_of_joined(a) == panels.sheet_of_joined(b)
+                               : scene.pieces[a].face == scene.pieces[b].face;
+  };
   std::vector<Part> result;
   for (const visibility::SourcePlane& plane : visibility::group_by_plane(scene.scene, scene.scene.faces_of(patch))) {
-    std::vector<const ExactPiece*> earlier;
-    for (const std::uint32_t id : plane.pieces) {
-      const ExactPiece& piece = scene.pieces[id];
-      std::vector<Part> left{whole(scene, piece)};
-      for (const ExactPiece* other : earlier) {
-        if (piece.face == other->face || piece.box.is_apart_from(other->box)) continue;
-        left = outside(left, sides_of(whole(scene, *other), scene.units), scene.units);
+    std::vector<PanelId> earlier;
+    for (const PanelId panel : plane.panels) {
+      std::vector<Part> left{whole(scene, panel)};
+      for (const PanelId other : earlier) {
+        if (never_overlap(panel, other) || scene.panel(panel).box.is_apart_from(scene.panel(other).box)) continue;
+        left = outside(left, sides_of(whole(scene, other), scene.units), scene.units);
       }
-      earlier.push_back(&piece);
+      earlier.push_back(panel);
       result.insert(result.end(), left.begin(), left.end());
     }
   }

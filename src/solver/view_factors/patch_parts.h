@@ -9,7 +9,7 @@
 
 namespace exactff::view_factors {
 
-// The patch's pieces; of pieces that overlap in one oriented plane, each point belongs to the first.
+// The patch's panels (scene/panels.h); where they overlap in one oriented plane, each point belongs to the first.
 [[nodiscard]] std::vector<Part> parts_of(const ExactScene& scene, const Selection& patch);
 
 // Positive in front.

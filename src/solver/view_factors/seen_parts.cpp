@@ -1,6 +1,7 @@
 #include "view_factors/seen_parts.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "visibility/seen_pieces.h"
 
@@ -8,6 +9,17 @@ namespace exactff::view_factors {
 namespace {
 
 constexpr std::size_t kFewQuestions = 4;  // of a part: more cost as much as its list
+
+// Of the part's face, or sheet, ascending.
+std::vector<std::uint32_t> pieces_of(const Scene& scene, const Part& part) {
+  if (const Panels& all = panels(scene); all.is_joined(part.panel)) {
+    return all.sheets()[all.sheet_of_joined(part.panel)].pieces;
+  }
+  const Face& face = scene.face(part.face);
+  std::vector<std::uint32_t> pieces(face.piece_count);
+  std::iota(pieces.begin(), pieces.end(), face.first_piece);
+  return pieces;
+}
 
 }  // namespace
 
@@ -24,20 +36,20 @@ const SeenParts::Lists& SeenParts::OfPatch::lists(const SeenParts& scene, std::s
 
 bool SeenParts::OfPatch::sees(const SeenParts& scene, std::span<const Part> parts, std::size_t i,
                               const Part& other) const {
-  const Face& face = scene.scene_.scene.face(other.face);
+  const std::vector<std::uint32_t> pieces = pieces_of(scene.scene_.scene, other);
   if (state_->questions++ < kFewQuestions * parts.size()) {
-    return visibility::sees_any_of(scene.scene_.scene, scene.walls_, scene.region_of(parts[i]), face.first_piece,
-                                   face.piece_count);
+    return visibility::sees_any_of(scene.scene_.scene, scene.walls_, scene.region_of(parts[i]), pieces);
   }
   const std::vector<std::uint32_t>& seen = lists(scene, parts)[i].seen;
-  const auto first = std::ranges::lower_bound(seen, face.first_piece);
-  return first != seen.end() && *first < face.first_piece + face.piece_count;
+  return std::ranges::any_of(pieces, [&](std::uint32_t piece) { return std::ranges::binary_search(seen, piece); });
 }
 
-// Corners of a part may be rounded; those of its face are not.
+// Corners of a part may be rounded; those of its face, or of its joined panel, are not.
 exactff::Box SeenParts::region_of(const Part& part) const {
   const Scene& scene = scene_.scene;
-  const std::vector<std::uint32_t>& ring = scene.face(part.face).rings.front();
+  const Panels& panels = exactff::panels(scene);
+  const std::span<const std::uint32_t> ring =
+      panels.is_joined(part.panel) ? panels.corners(part.panel) : scene.face(part.face).rings.front();
   exactff::Box box{scene.vertices()[ring.front()], scene.vertices()[ring.front()]};
   for (const std::uint32_t corner : ring) box.include(scene.vertices()[corner]);
   return box;

@@ -34,8 +34,8 @@ class SeenParts {
   class OfPatch {
    public:
     [[nodiscard]] const Lists& lists(const SeenParts& scene, std::span<const Part> parts) const;
-    // Whether parts[i] may see some of the other part's face: whether its list holds some. The first few questions are
-    // answered without the lists.
+    // Whether parts[i] may see some of the other part's face, or sheet: whether its list holds some. The first few
+    // questions are answered without the lists.
     [[nodiscard]] bool sees(const SeenParts& scene, std::span<const Part> parts, std::size_t i,
                             const Part& other) const;
 

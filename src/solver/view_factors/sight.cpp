@@ -35,7 +35,7 @@ class Maker {
     between_.include(source_box_.low);
     between_.include(source_box_.high);
     shaft_.emplace(receiver_box_, source_box_);
-    for (const std::uint32_t piece : pieces_) add_occluder(scene_.pieces[piece]);
+    add_occluders();
     points.complete();
     return std::move(sight_);
   }
@@ -150,6 +150,22 @@ class Maker {
     return sight_.points.ring(corners);
   }
 
+  // Instead of the pieces of a sheet, all of its panels: also those parts that are not seen are there.
+  void add_occluders() {
+    const Panels& panels = exactff::panels(scene_.scene);
+    std::vector<bool> is_added(panels.sheets().size());
+    for (const std::uint32_t piece : pieces_) {
+      const std::uint32_t index = panels.sheet_of_piece(piece);
+      if (index == Panels::kNoSheet) {
+        add_occluder(scene_.pieces[piece]);
+      } else if (!is_added[index]) {
+        is_added[index] = true;
+        const Sheet& sheet = panels.sheets()[index];
+        for (PanelId k = 0; k < sheet.panel_count; ++k) add_occluder(scene_.panel(sheet.first_panel + k));
+      }
+    }
+  }
+
   void add_occluder(const ExactPiece& piece) {
     if (!may_lie_between(piece)) return;
     Points& points = sight_.points;
@@ -172,6 +188,17 @@ class Maker {
 };
 
 }  // namespace
+
+std::vector<FaceId> faces_of(const Scene& scene, const Part& part) {
+  const Panels& all = panels(scene);
+  if (!all.is_joined(part.panel)) return {part.face};
+  std::vector<FaceId> faces;
+  for (const std::uint32_t piece : all.sheets()[all.sheet_of_joined(part.panel)].pieces) {
+    const FaceId face = scene.pieces()[piece].face;
+    if (faces.empty() || faces.back() != face) faces.push_back(face);
+  }
+  return faces;
+}
 
 std::optional<Sight> sight_of(const ExactScene& scene, std::span<const std::uint32_t> pieces, const Part& receiver,
                               const Part& source, FaceId own) {

@@ -57,11 +57,15 @@ struct Sight {
 
 // A convex part of a patch: corners counter-clockwise as seen from the front, none in the middle of a straight side.
 struct Part {
-  FaceId face{};
+  FaceId face{};      // of a part of a joined panel one of several: see faces_of
+  PanelId panel = 0;  // that it is a part of
   std::vector<Point> corners;
-  bool is_piece = false;  // a whole piece of the scene
+  bool is_piece = false;  // the whole panel
   bool is_cut = false;    // a fragment of cut_at_contacts()
 };
+
+// The faces that it is a part of: of a joined panel all of its sheet, which lie in its plane.
+[[nodiscard]] std::vector<FaceId> faces_of(const Scene& scene, const Part& part);
 
 // Empty if no point of the receiver lies in front of the source, or the other way round: the factor is 0. `own` does
 // not occlude. `pieces`: all that may occlude, by ascending index (seen_parts.h).

@@ -1,4 +1,4 @@
-// Steps 3 and 4 of the exact method, for the edge engine: finds the pieces that enter the shaft and adds their
+// Steps 3 and 4 of the exact method, for the edge engine: finds the panels that enter the shaft and adds their
 // outlines, unless one of them hides all.
 //
 // Candidates come from the bounding-volume tree; then signs decide (source_shaft.h). A face that the source's plane
@@ -24,6 +24,7 @@ class Candidates {
   // Requires that the first `source_count` outlines of the search are the source's. Counts its work in the record.
   Candidates(const PlaneQuery& query, std::size_t source_count, EdgeSearch& search, PlaneRecord& record)
       : query_(query),
+        panels_(*query.plane.scene_panels),
         source_count_(source_count),
         search_(search),
         outlines_(search.edges.outlines()),
@@ -32,18 +33,19 @@ class Candidates {
         shaft_(query, clip_, outlines_, search.shaft),
         backs_(query, shaft_, search.backs) {}
 
-  // Adds the outlines of all candidates. If one hides all, returns its face; the others are then not needed. Stops
+  // Adds the outlines of all candidates. If one hides all, returns it; the others are then not needed. Stops
   // after more than `most` candidates: see too_many().
-  [[nodiscard]] std::optional<FaceId> gather(std::uint64_t most = kAny);
+  [[nodiscard]] std::optional<PanelId> gather(std::uint64_t most = kAny);
   [[nodiscard]] bool too_many() const { return too_many_; }
-  // A face that hides all, if there is one. Looks only at those that may. Adds outlines. Requires culling.
-  [[nodiscard]] std::optional<FaceId> one_that_hides_all();
+  // A panel that hides all, if there is one. Looks only at those that may. Adds outlines. Requires culling.
+  [[nodiscard]] std::optional<PanelId> one_that_hides_all();
 
  private:
   void start();
-  [[nodiscard]] bool visit(std::uint32_t index, bool inside);
+  [[nodiscard]] bool visit(PanelId panel, bool inside);
 
   const PlaneQuery& query_;
+  const Panels& panels_;
   const std::size_t source_count_;
   EdgeSearch& search_;
   Outlines& outlines_;

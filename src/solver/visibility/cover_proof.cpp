@@ -9,13 +9,14 @@ namespace exactff::visibility {
 
 namespace {
 
-// Adds the part of the piece between x and the source's plane, if there is any.
-void add_if_between(const View& view, const Piece& piece, PieceClip& clip, PlaneRecord& record) {
-  clip.take(view.scene.corners(piece));
+// Adds the part of the panel between x and the source's plane, if there is any.
+void add_if_between(const PlaneQuery& query, PanelId panel, PieceClip& clip, PlaneRecord& record) {
+  const Panels& panels = *query.plane.scene_panels;
+  clip.take(panels.corners(panel));
   const std::span<const int> depths = clip.find_depths();
   if (std::ranges::none_of(depths, [](int depth) { return depth > 0; })) return;
   if (std::ranges::none_of(clip.corners(), [&](CornerId corner) { return clip.toward_sign(corner) > 0; })) return;
-  const int facing = facing_of(view, piece);
+  const int facing = facing_of(query.view, panels.piece(panel));
   if (facing == 0) return;
   const bool is_cut = std::ranges::any_of(depths, [](int depth) { return depth < 0; });
   if (is_cut) ++record.clipped;
@@ -27,15 +28,14 @@ bool one_hides_all(const PlaneQuery& query, std::size_t source_count, EdgeSearch
   return Candidates(query, source_count, search, uncounted).one_that_hides_all().has_value();
 }
 
-std::optional<PlaneRecord> hidden_by(std::span<const std::uint32_t> pieces, const PlaneQuery& query,
-                                     EdgeSearch& search) {
-  const View& view = query.view;
+std::optional<PlaneRecord> hidden_by(std::span<const PanelId> remembered, const PlaneQuery& query, EdgeSearch& search) {
   PlaneRecord record;
   PieceClip clip(query, search.edges.outlines(), search.clip);
   const ClippedSource source = clip.add_source();
-  for (const std::uint32_t index : pieces) {
-    if (index >= view.scene.pieces().size() || !may_occlude(view, query.plane, query.request, index)) continue;
-    add_if_between(view, view.scene.pieces()[index], clip, record);
+  const std::size_t end = query.plane.scene_panels->end();
+  for (const PanelId panel : remembered) {
+    if (panel >= end || !may_occlude(query.view, query.plane, query.request, panel)) continue;
+    add_if_between(query, panel, clip, record);
   }
   VisibleEdges& edges = search.edges;
   const std::size_t cover = edges.outlines().outlines().size() - source.count;
@@ -54,12 +54,12 @@ std::optional<PlaneRecord> hidden_by(std::span<const std::uint32_t> pieces, cons
 bool hidden_by_few(const PlaneQuery& query, std::size_t source_count, EdgeWorkspace& workspace) {
   const BoundaryRequest& request = query.request;
   VisibleEdges& edges = workspace.search.edges;
-  const std::vector<std::uint32_t>& pieces = workspace.search.outline_pieces;
-  if (!request.may_stop_early() || pieces.size() < request.fewest_to_cover) return false;
+  const std::vector<PanelId>& panels = workspace.search.outline_panels;
+  if (!request.may_stop_early() || panels.size() < request.fewest_to_cover) return false;
   if (!edges.find_cover(source_count)) return false;
   if (request.remembers_covers) {
-    const auto piece_of = [&](OutlineId o) { return pieces[o - source_count]; };
-    workspace.covers.set(query.plane.pieces.front(), edges.cover(), piece_of);
+    const auto panel_of = [&](OutlineId o) { return panels[o - source_count]; };
+    workspace.covers.set(query.plane.pieces.front(), edges.cover(), panel_of);
   }
   return true;
 }

@@ -34,6 +34,7 @@ class EdgeWalk {
   [[nodiscard]] bool is_own() const;
   [[nodiscard]] std::uint64_t most_candidates() const;
   [[nodiscard]] std::optional<Outcome> find_by_silhouettes();
+  [[nodiscard]] Outcome hidden_by_panel(PanelId panel);
   void note_edges(const EdgeCovers& found);
   [[nodiscard]] Rational fraction();
 
@@ -69,11 +70,7 @@ std::optional<Outcome> EdgeWalk::find_outcome() {
     source_ = PieceClip(query_, edges_.outlines(), work_.search.clip).add_source();
     alone = candidates.gather();
   }
-  if (alone) {
-    result_.cutters = {*alone};
-    record.cover = 1;
-    return Outcome::kHiddenByOne;
-  }
+  if (alone) return hidden_by_panel(*alone);
   // 5. Try a few occluders.
   const bool hidden = hidden_by_few(query_, source_.count, work_);
   // 6. Cut the edges.
@@ -98,13 +95,19 @@ std::uint64_t EdgeWalk::most_candidates() const {
   return edges_per_silhouette(query_.view.scene) >= kLeastSaving ? kFew : Candidates::kAny;
 }
 
+// A joined panel is several faces together.
+Outcome EdgeWalk::hidden_by_panel(PanelId panel) {
+  result_.record.cover = 1;
+  if (query_.plane.scene_panels->is_joined(panel)) return Outcome::kHiddenByUnion;
+  result_.cutters = {query_.view.scene.pieces()[panel].face};
+  return Outcome::kHiddenByOne;
+}
+
 // Nullopt: declined.
 std::optional<Outcome> EdgeWalk::find_by_silhouettes() {
   PlaneRecord record = result_.record, uncounted;
   if (const auto alone = Candidates(query_, source_.count, work_.search, uncounted).one_that_hides_all()) {
-    result_.cutters = {*alone};
-    result_.record.cover = 1;
-    return Outcome::kHiddenByOne;
+    return hidden_by_panel(*alone);
   }
   SilhouetteWalk& walk = work_.silhouettes;
   if (!walk.find(query_, record)) return std::nullopt;

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "scene/shaft_tree.h"
+#include "scene/panels.h"
 #include "visibility/cover_memory.h"
 #include "visibility/run_marks.h"
 #include "visibility/search_memory.h"
@@ -19,8 +19,8 @@ struct EdgeSearch {
   ClipMemory clip;
   ShaftMemory shaft;
   BacksMemory backs;
-  RunMarks seen;                              // pieces
-  std::vector<std::uint32_t> outline_pieces;  // of the occluders' outlines
+  RunMarks seen;                        // panels
+  std::vector<PanelId> outline_panels;  // of the occluders' outlines
 };
 
 struct EdgeWorkspace {

@@ -11,12 +11,13 @@ ClippedSource PieceClip::add_source() {
   const kernel::Approx3 s = kernel::approx_difference(plane_.point, view_.x);
   outlines_.start(view_.scene, view_.x, std::max({std::abs(s.x), std::abs(s.y), std::abs(s.z)}));
   outlines_.set_source_plane(plane_.normal.exact, plane_.fine_normal, plane_.point);
+  const Panels& all = *plane_.scene_panels;
+  const bool has_own = std::ranges::any_of(plane_.faces, [&](FaceId face) { return view_.is_own(face); });
   ClippedSource source;
-  for (const std::uint32_t index : plane_.pieces) {
-    const Piece& piece = view_.scene.pieces()[index];
-    if (view_.is_own(piece.face)) {
+  for (const PanelId panel : has_own ? plane_.pieces : plane_.panels) {
+    if (has_own && view_.is_own(all.piece(panel).face)) {
       source.lacks_pieces = true;
-    } else if (add_above_horizon(piece, source)) {
+    } else if (add_above_horizon(all.corners(panel), source)) {
       ++source.count;
     }
   }
@@ -30,8 +31,8 @@ int PieceClip::horizon_side(CornerId corner) const {
 }
 
 // False if nothing with an interior is left.
-bool PieceClip::add_above_horizon(const Piece& piece, ClippedSource& source) {
-  take(view_.scene.corners(piece));
+bool PieceClip::add_above_horizon(std::span<const std::uint32_t> corners, ClippedSource& source) {
+  take(corners);
   std::vector<int>& depths = memory_.depths;
   depths.clear();
   for (const CornerId corner : memory_.corners) depths.push_back(horizon_side(corner));

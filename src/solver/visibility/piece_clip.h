@@ -11,7 +11,7 @@ namespace exactff::visibility {
 
 // The part of the source above the horizon: the first outlines.
 struct ClippedSource {
-  std::size_t count = 0;      // outlines, each of one piece
+  std::size_t count = 0;      // outlines, each of one panel
   bool is_cut = false;        // by the horizon
   bool lacks_pieces = false;  // those of the receiver's own faces
 };
@@ -40,7 +40,7 @@ class PieceClip {
   [[nodiscard]] int depth_sign(std::uint32_t vertex) const;
 
  private:
-  bool add_above_horizon(const Piece& piece, ClippedSource& source);
+  bool add_above_horizon(std::span<const std::uint32_t> corners, ClippedSource& source);
   [[nodiscard]] int horizon_side(CornerId corner) const;
   OutlineId add_part_above(Outlines::Plane plane, bool mirrored);
 

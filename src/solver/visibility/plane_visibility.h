@@ -12,6 +12,7 @@
 
 #include "exactff/exact.h"
 #include "exactff/receiver.h"
+#include "scene/panels.h"
 #include "scene/shaft_tree.h"
 #include "visibility/boundary_piece.h"
 #include "visibility/edge_covers.h"
@@ -49,6 +50,8 @@ struct BoundaryRequest {
   std::size_t fewest_to_cover = 64;  // candidates: with fewer, a search for a small cover saves nothing
 
   [[nodiscard]] bool culls() const { return culling == ShaftCulling::kTree; }
+  // Whether the edge engine looks at panels instead of pieces.
+  [[nodiscard]] bool joins_pieces() const { return culls() && only_occluders == nullptr; }
   // Whether a proof that all is hidden may end the search before every candidate has been looked at.
   [[nodiscard]] bool may_stop_early() const { return culls() && !list_cutters; }
 };
@@ -106,18 +109,43 @@ void for_each_candidate(const View& view, const HalfSpaceGroups& shaft, ShaftCul
   }
 }
 
-// For both engines: true if a piece of the scene may occlude the plane. The source's own pieces in this plane cannot;
+// Whether a sheet has a piece of the receiver's own faces. Then its pieces are candidates, not its panels.
+[[nodiscard]] bool is_own_sheet(const View& view, const Panels& panels, std::uint32_t sheet);
+// Whether x lies beside the plane of such a sheet. Otherwise its pieces hide nothing.
+[[nodiscard]] bool is_beside_own_sheet(const View& view, const Panels& panels);
+
+// For the edge engine: the same for panels.
+template <class Visit>
+void for_each_panel(const PlaneQuery& query, const HalfSpaceGroups& shaft, const Visit& visit) {
+  const View& view = query.view;
+  if (!query.request.joins_pieces()) return for_each_candidate(view, shaft, query.request.culling, visit);
+  const Panels& panels = *query.plane.scene_panels;
+  bool goes_on = true;
+  panel_tree(view.scene).query_with_inside(view.x, shaft, [&](PanelId panel, bool inside) {
+    return goes_on = visit(panel, inside);
+  });
+  if (!goes_on || panels.empty() || !is_beside_own_sheet(view, panels)) return;
+  shaft_tree(view.scene).query_with_inside(view.x, shaft, [&](std::uint32_t piece, bool inside) {
+    const std::uint32_t sheet = panels.sheet_of_piece(piece);
+    return sheet == Panels::kNoSheet || !is_own_sheet(view, panels, sheet) || visit(piece, inside);
+  });
+}
+
+// For both engines: true if a panel of the scene may occlude the plane. The source's own pieces in this plane cannot;
 // its pieces in other planes can.
 [[nodiscard]] bool may_occlude(const View& view, const SourcePlane& plane, const BoundaryRequest& request,
-                               std::uint32_t piece);
+                               PanelId panel);
 // The sign of det of three corners of the piece, seen from x: 0 where its plane holds x, positive where x sees the
 // back.
 [[nodiscard]] inline int facing_of(const View& view, const Piece& piece) {
   const auto vertices = view.scene.vertices();
   const auto vertex = [&](int f) -> const Vec3& { return vertices[piece.frame[f]]; };
   const auto rounded = [&](int f) { return kernel::approx_difference(vertex(f), view.x); };
-  const int filtered = kernel::sign_of_det(rounded(0), rounded(1), rounded(2));
-  return filtered != kernel::kUncertain ? filtered : kernel::orientation(view.x, vertex(0), vertex(1), vertex(2));
+  const kernel::Approx3 a = rounded(0), b = rounded(1), c = rounded(2);
+  if (const int filtered = kernel::sign_of_det(a, b, c); filtered != kernel::kUncertain) return filtered;
+  const bool across_axis = (a.x == 0.0 && b.x == 0.0 && c.x == 0.0) || (a.y == 0.0 && b.y == 0.0 && c.y == 0.0) ||
+                           (a.z == 0.0 && b.z == 0.0 && c.z == 0.0);
+  return across_axis ? 0 : kernel::orientation(view.x, vertex(0), vertex(1), vertex(2));
 }
 // Twice an area in the frame's unit square, as a share of the whole unclipped source in the plane.
 [[nodiscard]] kernel::Rational share_of_source(const View& view, const SourcePlane& plane, const PlaneFrame& frame,

@@ -209,18 +209,19 @@ std::vector<std::uint32_t> pieces_seen_from(const Scene& scene, std::span<const 
   return seen;
 }
 
-bool sees_any_of(const Scene& scene, std::span<const Wall> walls, const Box& region, std::uint32_t first,
-                 std::uint32_t count) {
-  Box target{scene.vertices()[scene.pieces()[first].frame[0]], scene.vertices()[scene.pieces()[first].frame[0]]};
-  for (const Piece& piece : std::span(scene.pieces()).subspan(first, count)) {
-    for (const std::uint32_t corner : scene.corners(piece)) target.include(scene.vertices()[corner]);
+bool sees_any_of(const Scene& scene, std::span<const Wall> walls, const Box& region,
+                 std::span<const std::uint32_t> pieces) {
+  const Vec3& first = scene.vertices()[scene.corners(scene.pieces()[pieces.front()]).front()];
+  Box target{first, first};
+  for (const std::uint32_t piece : pieces) {
+    for (const std::uint32_t corner : scene.corners(scene.pieces()[piece])) target.include(scene.vertices()[corner]);
   }
   SeeingRegion from(walls, region);
   bool seen = false;
   shaft_tree(scene).visit_where(
       [&](const Box& box, std::size_t depth) { return !seen && meets(box, target) && from.may_see_into(box, depth); },
       [&](std::uint32_t piece, std::size_t depth) {
-        seen = seen || (piece - first < count && from.may_see(scene, scene.pieces()[piece], depth));
+        seen = seen || (std::ranges::binary_search(pieces, piece) && from.may_see(scene, scene.pieces()[piece], depth));
       });
   return seen;
 }

@@ -29,8 +29,8 @@ namespace exactff::visibility {
 [[nodiscard]] std::vector<std::uint32_t> pieces_seen_from(const Scene& scene, std::span<const Wall> walls,
                                                           const Box& region);
 
-// Whether any of these consecutive pieces is among them, found without looking at most of the others.
-[[nodiscard]] bool sees_any_of(const Scene& scene, std::span<const Wall> walls, const Box& region, std::uint32_t first,
-                               std::uint32_t count);
+// Whether any of these pieces, in ascending order, is among them, found without looking at most of the others.
+[[nodiscard]] bool sees_any_of(const Scene& scene, std::span<const Wall> walls, const Box& region,
+                               std::span<const std::uint32_t> pieces);
 
 }  // namespace exactff::visibility

@@ -40,6 +40,27 @@ std::string plane_key(const ExactVec3& normal, const Vec3& point) {
   return key + std::to_string(exponent);
 }
 
+// Of a sheet that is not all in the plane, as when one of its faces is selected, the pieces remain.
+std::vector<PanelId> panels_of(const Panels& all, const std::vector<std::uint32_t>& pieces) {
+  if (all.empty()) return pieces;
+  std::vector<PanelId> result;
+  std::map<std::uint32_t, bool> is_whole;  // by sheet
+  for (const std::uint32_t piece : pieces) {
+    const std::uint32_t index = all.sheet_of_piece(piece);
+    if (index == Panels::kNoSheet) {
+      result.push_back(piece);
+      continue;
+    }
+    const Sheet& sheet = all.sheets()[index];
+    const auto [known, is_new] = is_whole.try_emplace(index);
+    if (is_new) known->second = std::ranges::includes(pieces, sheet.pieces);
+    if (!known->second) result.push_back(piece);
+    for (PanelId k = 0; is_new && known->second && k < sheet.panel_count; ++k) result.push_back(sheet.first_panel + k);
+  }
+  std::ranges::sort(result);
+  return result;
+}
+
 }  // namespace
 
 std::vector<SourcePlane> group_by_plane(const Scene& scene, const std::vector<FaceId>& faces) {
@@ -55,13 +76,15 @@ std::vector<SourcePlane> group_by_plane(const Scene& scene, const std::vector<Fa
       if (is_new) {
         const FineNormal fine = fine_normal(normal);
         const Vec3 &second = scene.vertices()[piece.frame[1]], &third = scene.vertices()[piece.frame[2]];
-        planes.push_back({{}, {}, kernel::make_direction(std::move(normal)), fine, point, second, third});
+        planes.push_back(
+            {&panels(scene), {}, {}, {}, kernel::make_direction(std::move(normal)), fine, point, second, third});
       }
       SourcePlane& plane = planes[entry->second];
       if (plane.faces.empty() || plane.faces.back() != id) plane.faces.push_back(id);
       plane.pieces.push_back(p);
     }
   }
+  for (SourcePlane& plane : planes) plane.panels = panels_of(*plane.scene_panels, plane.pieces);
   return planes;
 }
 
@@ -72,9 +95,9 @@ int side_of(const SourcePlane& plane, const Vec3& x) {
 
 namespace {
 
-Polygon2 projected(const Scene& scene, const Piece& piece, int axis, bool reverse) {
+Polygon2 projected(const Scene& scene, std::span<const std::uint32_t> corners, int axis, bool reverse) {
   Polygon2 polygon;
-  for (const std::uint32_t corner : scene.corners(piece)) {
+  for (const std::uint32_t corner : corners) {
     const Vec3& p = scene.vertices()[corner];
     const double coordinates[] = {p.x, p.y, p.z};
     polygon.push_back(
@@ -102,15 +125,25 @@ Rational normalise(std::vector<Polygon2>& polygons) {
   return width * height;
 }
 
+// The pieces of one face do not overlap, nor do the panels of one sheet.
+bool certainly_do_not_overlap(const SourcePlane& plane) {
+  if (plane.faces.size() == 1) return true;
+  const Panels& all = *plane.scene_panels;
+  const PanelId first = plane.panels.front();
+  return all.is_joined(first) && all.sheets()[all.sheet_of_joined(first)].panel_count == plane.panels.size();
+}
+
 }  // namespace
 
 ProjectedArea union_area(const Scene& scene, const SourcePlane& plane) {
   const int axis = longest_axis(plane.normal.exact);
   const bool reverse = sign(plane.normal.exact[axis]) < 0;
   std::vector<Polygon2> polygons;
-  for (const std::uint32_t p : plane.pieces) polygons.push_back(projected(scene, scene.pieces()[p], axis, reverse));
+  for (const PanelId panel : plane.panels) {
+    polygons.push_back(projected(scene, plane.scene_panels->corners(panel), axis, reverse));
+  }
   Rational doubled;
-  if (plane.faces.size() == 1) {  // the pieces of one face do not overlap
+  if (certainly_do_not_overlap(plane)) {
     for (const Polygon2& polygon : polygons) doubled += doubled_area(polygon);
   } else {
     const Rational box = normalise(polygons);

@@ -6,13 +6,16 @@
 
 #include "exactff/scene.h"
 #include "kernel/direction.h"
+#include "scene/panels.h"
 #include "visibility/plane_crossings.h"
 
 namespace exactff::visibility {
 
 struct SourcePlane {
+  const Panels* scene_panels = nullptr;
   std::vector<FaceId> faces;          // ascending
   std::vector<std::uint32_t> pieces;  // their pieces that lie in it, ascending; into Scene::pieces()
+  std::vector<PanelId> panels;        // the same region, ascending: sheets of these pieces as they are joined
   kernel::Direction normal;           // front, primitive integers
   FineNormal fine_normal;             // the same, for plane_crossings.h
   Vec3 point;                         // a vertex in the plane

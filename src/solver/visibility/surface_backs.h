@@ -9,6 +9,7 @@
 #pragma once
 
 #include "scene/closed_surfaces.h"
+#include "scene/panels.h"
 #include "visibility/search_memory.h"
 #include "visibility/source_shaft.h"
 
@@ -17,17 +18,26 @@ namespace exactff::visibility {
 class SurfaceBacks {
  public:
   SurfaceBacks(const PlaneQuery& query, const SourceShaft& shaft, BacksMemory& memory)
-      : query_(query), shaft_(shaft), surfaces_(closed_surfaces(query.view.scene)), memory_(memory) {}
+      : query_(query),
+        shaft_(shaft),
+        surfaces_(closed_surfaces(query.view.scene)),
+        panels_(*query.plane.scene_panels),
+        memory_(memory) {}
 
   void start();
-  // `facing`: facing_of the piece. Requires the shaft of an outline.
-  [[nodiscard]] bool is_left_out(std::uint32_t piece, int facing) {
-    if (surfaces_.empty() || surfaces_.of_piece(piece) == ClosedSurfaces::kNone) return false;
-    const std::uint32_t surface = surfaces_.of_piece(piece);
+  // `facing`: facing_of the panel. Requires the shaft of an outline.
+  [[nodiscard]] bool is_left_out(PanelId panel, int facing) {
+    if (surfaces_.empty()) return false;
+    const std::uint32_t surface = surface_of(panel);
+    if (surface == ClosedSurfaces::kNone) return false;
     return backs_left_out(surface) && (facing > 0) != surfaces_.surfaces()[surface].turned_inside_out;
   }
 
  private:
+  [[nodiscard]] std::uint32_t surface_of(PanelId panel) const {
+    return panels_.is_joined(panel) ? panels_.sheets()[panels_.sheet_of_joined(panel)].surface
+                                    : surfaces_.of_piece(panel);
+  }
   [[nodiscard]] bool backs_left_out(std::uint32_t surface);
   [[nodiscard]] bool may_leave_out_backs(std::uint32_t surface) const;
   [[nodiscard]] bool has_piece_in(const Face& face, std::uint32_t surface) const;
@@ -35,6 +45,7 @@ class SurfaceBacks {
   const PlaneQuery& query_;
   const SourceShaft& shaft_;
   const ClosedSurfaces& surfaces_;
+  const Panels& panels_;
   BacksMemory& memory_;
 };
 

@@ -128,6 +128,8 @@ PlainScene scene_of(const Case& tested, int copies, bool reversed) {
   }
   for (const Corners& s : sources) scene.add_ring(scene.patch("source"), s);
   for (const Corners& o : occluders) scene.add_ring(scene.patch("occluders"), o);
+  // A fin behind the source, along the seam: an edge of three faces, so that the source's are not joined (panels.h).
+  scene.add_ring(scene.patch("fin"), {{0, -1, 1}, {0, 1, 1}, {0, 0, 2}});
   return scene;
 }
 

@@ -1,0 +1,377 @@
+// Steps:
+//   1. Sort the edges of all pieces by the places of their ends. Where just two pieces share one, are of planar faces
+//   of
+//      one patch, and lie side by side in one oriented plane, connect them. The
+//      edges that then have one piece are cut where corners of others lie on them (T-junctions), and looked at again.
+//   2. Of each connected set of several faces, keep the edges that do not cancel: its boundary. Chain them into rings;
+//      drop corners in the middle of a straight side.
+//   3. Cut what the rings enclose as a face with holes is cut (triangulation.h).
+//   4. Keep the parts if they are fewer than the pieces.
+//
+// Why the parts are the union. Let m(y) be the number of pieces that hold a point y of the plane. The rings are the
+// boundary of all pieces together, so m is the sum of their winding numbers, almost everywhere. One ring encloses
+// positive area, R say, and winds around every point at most once; the parts are the points of R inside an even number
+// of other rings. There m = 1 + an even number, and m >= 0, so m is odd and at least 1. The integral of m is the area
+// that the rings enclose by their directions. If the parts have that area, m is 1 in them and 0 elsewhere.
+#include "scene/panels.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "kernel/filter.h"
+#include "kernel/poll.h"
+#include "scene/closed_surfaces.h"
+#include "scene/face_points.h"
+#include "scene/places.h"
+#include "scene/scene_data.h"
+#include "scene/triangulation.h"
+
+namespace exactff {
+
+namespace {
+
+// A directed edge of a piece.
+struct EdgeOfPiece {
+  std::uint32_t low = 0, high = 0;  // places
+  std::uint32_t piece = 0;
+  bool upwards = false;  // from `low` to `high`
+
+  [[nodiscard]] bool joins_what(const EdgeOfPiece& other) const { return low == other.low && high == other.high; }
+};
+
+bool comes_before(const EdgeOfPiece& a, const EdgeOfPiece& b) {
+  return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.piece < b.piece;
+}
+
+// Calls take(first, last) for every run of uses of one edge.
+template <class Take>
+void for_each_edge(std::vector<EdgeOfPiece>& uses, const Take& take) {
+  std::sort(uses.begin(), uses.end(), comes_before);
+  for (auto first = uses.begin(); first != uses.end();) {
+    const auto last = std::find_if(first, uses.end(), [&](const EdgeOfPiece& use) { return !use.joins_what(*first); });
+    take(first, last);
+    first = last;
+  }
+}
+
+// Leaves the edges that do not cancel. False if one remains more than once.
+bool cancel(std::vector<EdgeOfPiece>& edges) {
+  bool overlap = false;
+  auto kept = edges.begin();
+  for_each_edge(edges, [&](auto first, auto last) {
+    std::ptrdiff_t balance = 0;
+    for (auto use = first; use != last; ++use) balance += use->upwards ? 1 : -1;
+    overlap = overlap || balance > 1 || balance < -1;
+    if (balance == 0) return;
+    EdgeOfPiece edge = *first;
+    edge.upwards = balance > 0;
+    *kept++ = edge;
+  });
+  edges.erase(kept, edges.end());
+  return !overlap;
+}
+
+class Joiner {
+ public:
+  explicit Joiner(const Scene& scene)
+      : scene_(scene), pieces_(scene.pieces()), vertices_(scene.vertices()), places_(places(scene)) {}
+
+  // Sets of at least two faces, each ascending, by their first pieces.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> connected_sets();
+  // The convex parts of a set's union, if they are fewer than its pieces.
+  [[nodiscard]] std::optional<std::vector<ConvexPart>> parts_of(std::span<const std::uint32_t> set) const;
+
+ private:
+  void add_edges(std::uint32_t piece, std::vector<EdgeOfPiece>& edges) const;
+  void connect(std::vector<EdgeOfPiece>& edges);
+  void connect_at_junctions(std::vector<EdgeOfPiece>& single);
+  void cut_at_corners(std::vector<EdgeOfPiece>& edges) const;
+  [[nodiscard]] bool is_inside(std::uint32_t place, const EdgeOfPiece& edge) const;
+  [[nodiscard]] PatchId patch_of(const EdgeOfPiece& edge) const { return scene_.face(pieces_[edge.piece].face).patch; }
+  [[nodiscard]] bool lie_side_by_side(const EdgeOfPiece& a, const EdgeOfPiece& b) const;
+  [[nodiscard]] bool is_in_plane(const Piece& piece, std::uint32_t vertex) const;
+  [[nodiscard]] kernel::ExactVec3 normal(const Piece& piece) const;
+  [[nodiscard]] std::uint32_t root(std::uint32_t piece) {
+    while (parent_[piece] != piece) piece = parent_[piece] = parent_[parent_[piece]];
+    return piece;
+  }
+  [[nodiscard]] std::optional<std::vector<Ring>> boundary_of(std::span<const std::uint32_t> set) const;
+  [[nodiscard]] Ring without_straight_corners(Ring ring) const;
+  [[nodiscard]] bool are_straight(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
+  [[nodiscard]] bool have_one_area(const std::vector<Ring>& rings, const std::vector<ConvexPart>& parts) const;
+
+  const Scene& scene_;
+  const std::span<const Piece> pieces_;
+  const std::span<const Vec3> vertices_;
+  const std::span<const std::uint32_t> places_;
+  std::vector<std::uint32_t> parent_;  // by piece
+  bool several_faces_ = false;         // in a set
+};
+
+void Joiner::add_edges(std::uint32_t piece, std::vector<EdgeOfPiece>& edges) const {
+  const auto corners = scene_.corners(pieces_[piece]);
+  std::uint32_t from = places_[corners.back()];
+  for (const std::uint32_t corner : corners) {
+    const std::uint32_t to = places_[corner];
+    edges.push_back({std::min(from, to), std::max(from, to), piece, from < to});
+    from = to;
+  }
+}
+
+std::vector<std::vector<std::uint32_t>> Joiner::connected_sets() {
+  parent_.resize(pieces_.size());
+  std::iota(parent_.begin(), parent_.end(), 0U);
+  std::vector<EdgeOfPiece> edges;
+  edges.reserve(3 * pieces_.size());
+  for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece) add_edges(piece, edges);
+  connect(edges);
+  connect_at_junctions(edges);
+  std::vector<std::vector<std::uint32_t>> sets;
+  if (!several_faces_) return sets;
+  std::map<std::uint32_t, std::size_t> set_of_root;
+  for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece) {
+    const std::uint32_t first = root(piece);
+    if (first == piece) continue;
+    const auto [at, is_new] = set_of_root.try_emplace(first, sets.size());
+    if (is_new) sets.push_back({first});
+    sets[at->second].push_back(piece);
+  }
+  std::erase_if(sets, [&](const std::vector<std::uint32_t>& set) {
+    return pieces_[set.front()].face == pieces_[set.back()].face;
+  });
+  return sets;
+}
+
+// Leaves the edges that only one piece has.
+void Joiner::connect(std::vector<EdgeOfPiece>& edges) {
+  auto single = edges.begin();
+  for_each_edge(edges, [&](auto first, auto last) {
+    if (last - first == 1) *single++ = *first;
+    if (last - first != 2 || !lie_side_by_side(*first, *(first + 1))) return;
+    const std::uint32_t a = root(first->piece), b = root((first + 1)->piece);
+    parent_[std::max(a, b)] = std::min(a, b);
+    several_faces_ = several_faces_ || pieces_[first->piece].face != pieces_[(first + 1)->piece].face;
+  });
+  edges.erase(single, edges.end());
+}
+
+void Joiner::connect_at_junctions(std::vector<EdgeOfPiece>& single) {
+  std::ranges::stable_sort(single, {}, [&](const EdgeOfPiece& edge) { return patch_of(edge); });
+  std::vector<EdgeOfPiece> of_patch;
+  for (auto first = single.begin(); first != single.end();) {
+    const auto last = std::find_if(first, single.end(), [&](const auto& e) { return patch_of(e) != patch_of(*first); });
+    of_patch.assign(first, last);
+    first = last;
+    const std::size_t count = of_patch.size();
+    cut_at_corners(of_patch);
+    if (of_patch.size() > count) connect(of_patch);
+  }
+}
+
+// Cuts edges where ends of others lie inside them. Of very many edges none is cut: the time is quadratic.
+void Joiner::cut_at_corners(std::vector<EdgeOfPiece>& edges) const {
+  constexpr std::size_t kMost = 512;
+  if (edges.size() > kMost) return;
+  std::vector<std::uint32_t> ends;
+  for (const EdgeOfPiece& edge : edges) ends.insert(ends.end(), {edge.low, edge.high});
+  std::ranges::sort(ends);
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto inside = std::ranges::find_if(ends, [&](std::uint32_t end) { return is_inside(end, edges[e]); });
+    if (inside == ends.end()) continue;
+    // Two edges with the direction of the whole. Both are looked at later.
+    const auto [low, high, piece, upwards] = edges[e];
+    edges.push_back({std::min(low, *inside), std::max(low, *inside), piece, upwards == (low < *inside)});
+    edges.push_back({std::min(high, *inside), std::max(high, *inside), piece, upwards == (*inside < high)});
+    edges[e] = edges.back();
+    edges.pop_back();
+    --e;
+  }
+}
+
+// Between the ends of the edge, on its line.
+bool Joiner::is_inside(std::uint32_t place, const EdgeOfPiece& edge) const {
+  if (place == edge.low || place == edge.high) return false;
+  const Vec3 &x = vertices_[place], &a = vertices_[edge.low], &b = vertices_[edge.high];
+  const auto within = [](double u, double from, double to) {
+    return std::min(from, to) <= u && u <= std::max(from, to);
+  };
+  return within(x.x, a.x, b.x) && within(x.y, a.y, b.y) && within(x.z, a.z, b.z) &&
+         are_straight(edge.low, place, edge.high);
+}
+
+// The pieces lie on different sides of the edge, in one plane, with their fronts on one side of it.
+bool Joiner::lie_side_by_side(const EdgeOfPiece& a, const EdgeOfPiece& b) const {
+  const Piece &p = pieces_[a.piece], &q = pieces_[b.piece];
+  if (a.upwards == b.upwards || p.transparent != q.transparent) return false;
+  const Face &f = scene_.face(p.face), &g = scene_.face(q.face);
+  if (f.patch != g.patch || f.shape != FaceShape::kPlanar || g.shape != FaceShape::kPlanar) return false;
+  for (const std::uint32_t vertex : q.frame) {
+    if (!is_in_plane(p, vertex)) return false;
+  }
+  return kernel::sign(dot(normal(p), normal(q))) > 0;
+}
+
+bool Joiner::is_in_plane(const Piece& piece, std::uint32_t vertex) const {
+  const Vec3 &x = vertices_[vertex], &a = vertices_[piece.frame[0]], &b = vertices_[piece.frame[1]],
+             &c = vertices_[piece.frame[2]];
+  if (x == a || x == b || x == c) return true;
+  using kernel::approx_difference;
+  const int filtered = kernel::sign_of_det(approx_difference(a, x), approx_difference(b, x), approx_difference(c, x));
+  return (filtered != kernel::kUncertain ? filtered : kernel::orientation(x, a, b, c)) == 0;
+}
+
+kernel::ExactVec3 Joiner::normal(const Piece& piece) const {
+  const Vec3& a = vertices_[piece.frame[0]];
+  return cross(kernel::exact_difference(vertices_[piece.frame[1]], a).v,
+               kernel::exact_difference(vertices_[piece.frame[2]], a).v);
+}
+
+std::optional<std::vector<ConvexPart>> Joiner::parts_of(std::span<const std::uint32_t> set) const {
+  std::optional<std::vector<Ring>> rings = boundary_of(set);
+  if (!rings) return std::nullopt;
+  // The outer ring first: the one that runs as the pieces do.
+  const kernel::ExactVec3 front = normal(pieces_[set.front()]);
+  const FacePoints points = face_points(vertices_, *rings);
+  std::size_t outer = 0, outer_count = 0;
+  for (std::size_t r = 0; r < rings->size(); ++r) {
+    const int sense = kernel::sign(dot(front, newell(points, points.ring_start[r], points.ring_start[r + 1])));
+    if (sense > 0) ++outer_count, outer = r;
+  }
+  if (outer_count != 1) return std::nullopt;
+  std::swap(rings->front(), (*rings)[outer]);
+  CutFace cut = cut_face(vertices_, *rings);
+  if (cut.fault || cut.shape != FaceShape::kPlanar || cut.parts.size() >= set.size()) return std::nullopt;
+  if (!have_one_area(*rings, cut.parts)) return std::nullopt;
+  return std::move(cut.parts);
+}
+
+// Nullopt where pieces overlap for certain.
+std::optional<std::vector<Ring>> Joiner::boundary_of(std::span<const std::uint32_t> set) const {
+  std::vector<EdgeOfPiece> edges;
+  for (const std::uint32_t piece : set) add_edges(piece, edges);
+  if (!cancel(edges)) return std::nullopt;
+  cut_at_corners(edges);
+  if (!cancel(edges)) return std::nullopt;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> left;  // from, to
+  for (const EdgeOfPiece& edge : edges) {
+    left.emplace_back(edge.upwards ? edge.low : edge.high, edge.upwards ? edge.high : edge.low);
+  }
+  // As many edges end at a place as begin there, so every chain ends where it began.
+  std::ranges::sort(left);
+  std::vector<bool> used(left.size());
+  std::vector<Ring> rings;
+  for (std::size_t start = 0; start < left.size(); ++start) {
+    if (used[start]) continue;
+    Ring ring;
+    for (std::size_t at = start;;) {
+      used[at] = true;
+      ring.push_back(left[at].first);
+      if (left[at].second == left[start].first) break;
+      at = static_cast<std::size_t>(std::ranges::lower_bound(left, std::pair(left[at].second, 0U)) - left.begin());
+      while (used[at]) ++at;
+    }
+    ring = without_straight_corners(std::move(ring));
+    if (!ring.empty()) rings.push_back(std::move(ring));
+  }
+  return rings;
+}
+
+// Without corners on a line with their neighbours. Winding numbers do not change, almost everywhere.
+Ring Joiner::without_straight_corners(Ring ring) const {
+  Ring kept;
+  const auto drop_straight = [&](std::uint32_t next) {
+    while (kept.size() > 1 && are_straight(kept[kept.size() - 2], kept.back(), next)) kept.pop_back();
+  };
+  for (const std::uint32_t corner : ring) {
+    drop_straight(corner);
+    kept.push_back(corner);
+  }
+  while (kept.size() > 2 && are_straight(kept[kept.size() - 2], kept.back(), kept.front())) kept.pop_back();
+  while (kept.size() > 2 && are_straight(kept.back(), kept.front(), kept[1])) kept.erase(kept.begin());
+  return kept.size() > 2 ? kept : Ring{};
+}
+
+bool Joiner::are_straight(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+  const Vec3& middle = vertices_[b];
+  return is_zero(
+      cross(kernel::exact_difference(vertices_[a], middle).v, kernel::exact_difference(vertices_[c], middle).v));
+}
+
+bool Joiner::have_one_area(const std::vector<Ring>& rings, const std::vector<ConvexPart>& parts) const {
+  std::vector<Ring> all = rings;
+  for (const ConvexPart& part : parts) all.push_back(part.corners);
+  const FacePoints points = face_points(vertices_, all);
+  kernel::ExactVec3 difference;
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    const kernel::ExactVec3 area = newell(points, points.ring_start[r], points.ring_start[r + 1]);
+    difference = r < rings.size() ? difference + area : difference - area;
+  }
+  return is_zero(difference);
+}
+
+std::uint32_t common_surface(const Scene& scene, std::span<const std::uint32_t> pieces) {
+  const ClosedSurfaces& surfaces = closed_surfaces(scene);
+  if (surfaces.empty()) return ClosedSurfaces::kNone;
+  const std::uint32_t first = surfaces.of_piece(pieces.front());
+  const bool all = std::ranges::all_of(pieces, [&](std::uint32_t p) { return surfaces.of_piece(p) == first; });
+  return all ? first : ClosedSurfaces::kNone;
+}
+
+}  // namespace
+
+Panels::Panels(const Scene& scene) : pieces_(scene.pieces()), corners_(SceneInside::data(scene).corners) {
+  Joiner joiner(scene);
+  for (std::vector<std::uint32_t>& set : joiner.connected_sets()) {
+    kernel::poll();
+    if (const auto parts = joiner.parts_of(set)) add(scene, std::move(set), *parts);
+  }
+}
+
+void Panels::add(const Scene& scene, std::vector<std::uint32_t> pieces, const std::vector<ConvexPart>& parts) {
+  if (empty()) sheet_of_piece_.assign(pieces_.size(), kNoSheet);
+  const auto sheet = static_cast<std::uint32_t>(sheets_.size());
+  for (const std::uint32_t piece : pieces) sheet_of_piece_[piece] = sheet;
+  const Piece& first = pieces_[pieces.front()];
+  const auto first_panel = static_cast<PanelId>(end());
+  for (const ConvexPart& part : parts) {
+    const auto [a, b, c] = part.frame;
+    joined_.push_back({.face = first.face,
+                       .first_corner = static_cast<std::uint32_t>(joined_corners_.size()),
+                       .corner_count = static_cast<std::uint32_t>(part.corners.size()),
+                       .frame = {a, b, c},
+                       .transparent = first.transparent});
+    joined_corners_.insert(joined_corners_.end(), part.corners.begin(), part.corners.end());
+    sheet_of_joined_.push_back(sheet);
+  }
+  const std::uint32_t surface = common_surface(scene, pieces);
+  sheets_.push_back({std::move(pieces), first_panel, static_cast<std::uint32_t>(parts.size()), surface});
+}
+
+const Panels& panels(const Scene& scene) {
+  const SceneInside::Data& data = SceneInside::data(scene);
+  std::call_once(data.panels_found, [&] { data.panels = Panels(scene); });
+  return data.panels;
+}
+
+const ShaftTree& panel_tree(const Scene& scene) {
+  const Panels& all = panels(scene);
+  if (all.empty()) return shaft_tree(scene);
+  const SceneInside::Data& data = SceneInside::data(scene);
+  std::call_once(data.panel_tree_built, [&] {
+    std::vector<PanelId> ids;
+    for (PanelId id = 0; id < all.end(); ++id) {
+      if (all.is_joined(id) || all.sheet_of_piece(id) == Panels::kNoSheet) ids.push_back(id);
+    }
+    std::vector<Box> boxes;
+    boxes.reserve(ids.size());
+    for (const PanelId id : ids) boxes.push_back(box_of(scene, all.corners(id)));
+    data.panel_tree = ShaftTree(boxes, ids);
+  });
+  return data.panel_tree;
+}
+
+}  // namespace exactff
