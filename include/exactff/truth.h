@@ -48,6 +48,9 @@ struct Request {
   bool unit_normals = false;
   // Adds two columns: u and v of the receiver on its lattice, from 0 to 1. Every receiver must be the cell of a grid.
   bool uv = false;
+  // Adds columns dF_dx,dF_dy,dF_dz,gradient_status: the derivatives by the receiver's point (Gradient::position), and
+  // the worst of their statuses. At a kink the derivatives are empty and the status is "kink". Not for `sky`.
+  bool gradient = false;
   // Adds columns total_r,total_g,total_b: this quantity from all sources together, taken from their balls and rounded
   // once, as an image shows it (render.h). The value is repeated in the rows of all sources of a receiver.
   std::optional<Quantity> total = {};
