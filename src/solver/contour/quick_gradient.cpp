@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "contour/quick_angle.h"
+#include "contour/quick_lanes.h"
 #include "contour/quick_vector.h"
 #include "kernel/vec.h"
 
@@ -13,37 +14,24 @@ using namespace kernel::double_double;
 
 namespace {
 
-Vector vector_of(const QuickCorner& corner) {
+EXACTFF_INLINE Vector vector_of_corner(const QuickCorner& corner) {
   const auto component = [&](int i) -> DoubleDouble { return {corner.hi[i], corner.lo[i]}; };
   return vector<double>({component(0), component(1), component(2)}, corner.error);
 }
 
-// The receiver's normal with an error, because scaling it may have lost a component to underflow.
-Vector vector_of(const std::array<double, 3>& normal) {
-  return vector<double>({DoubleDouble{normal[0], 0.0}, {normal[1], 0.0}, {normal[2], 0.0}}, kUnderflow);
+template <class Real>
+EXACTFF_INLINE BasicBounded<Real> component(const BasicVector<Real>& v, int i) {
+  return {v.c[i].hi, v.c[i].lo, v.error};
 }
 
-Bounded component(const Vector& v, int i) { return {v.c[i].hi, v.c[i].lo, v.error}; }
-
-// False for NaN.
-bool has_moderate_size(const Vector& v) {
-  const double largest = std::max({std::abs(v.c[0].hi), std::abs(v.c[1].hi), std::abs(v.c[2].hi)});
-  return largest >= 0x1p-200 && largest <= 0x1p200 && v.norm <= 0x1p202;
+EXACTFF_INLINE FourBounded psi_of(const FourVector& w, const FourVector& n, const FourVector& d) {
+  return dot(w, n) * dot(w, d) / dot(w, w);
 }
-
-Bounded psi(const Vector& w, const Vector& n, const Vector& d) { return dot(w, n) * dot(w, d) / dot(w, w); }
-
-// A point of a line: s a + m d.
-struct Point {
-  Bounded s, m;
-  Vector direction;
-  Bounded psi;
-};
 
 }  // namespace
 
 QuickCorner lifted(const QuickCorner& direction, const std::array<Bounded, 3>& normal, const Bounded& offset) {
-  const Vector c = vector_of(direction);
+  const Vector c = vector_of_corner(direction);
   const Bounded height = normal[0] * component(c, 0) + normal[1] * component(c, 1) + normal[2] * component(c, 2);
   const Bounded factor = offset / height;
   QuickCorner result;
@@ -64,54 +52,103 @@ QuickGradient::QuickGradient(const Vec3& normal) {
   normal_ = {std::ldexp(normal.x, -exponent), std::ldexp(normal.y, -exponent), std::ldexp(normal.z, -exponent)};
 }
 
-QuickGradient::Line QuickGradient::line_between(const QuickCorner& p, const QuickCorner& q) const {
-  Line line;
-  const Vector n = vector_of(normal_), from = vector_of(p), to = vector_of(q);
-  line.reversed = to.norm < from.norm;
-  line.a = line.reversed ? to : from;
-  line.b = line.reversed ? from : to;
-  line.along = difference(line.b, line.a);
-  line.cross = cross(line.a, line.along);
-  if (!has_moderate_size(from) || !has_moderate_size(to)) line.cross.error = kDeclined.error;
-  const Bounded squared = dot(line.cross, line.cross);
-  line.size = square_root(squared);
-  line.inverse = Bounded{1.0, 0.0, 0.0} / line.size;
-  line.growth = dot(cross(n, line.along), line.cross) * line.inverse / squared;
-  line.psi_a = psi(line.a, n, line.along);
-  line.psi_b = psi(line.b, n, line.along);
-  return line;
-}
-
 namespace {
 
 using Line = QuickGradient::Line;
 
-// Where the plane through x and another line crosses the line. Declined unless that is certain.
-Point crossing(const Line& line, const Line& other, const Vector& n) {
-  const Bounded height_a = dot(other.cross, line.a), rise = dot(other.cross, line.along), height_b = height_a + rise;
-  const bool crosses =
-      sign_is_certain(height_a) && sign_is_certain(height_b) && (height_a.hi < 0.0) != (height_b.hi < 0.0);
-  if (!crosses) return {kDeclined, kDeclined, line.a, kDeclined};
-  int exponent = 0;
-  std::frexp(rise.hi, &exponent);
-  const double scale = std::ldexp(1.0, std::clamp(-exponent, -900, 900));
-  Point point;
-  point.s = scale * (rise.hi < 0.0 ? -rise : rise);
-  point.m = scale * (height_a.hi < 0.0 ? -height_a : height_a);
-  point.direction = combination(point.s, line.a, point.m, line.along);
-  point.psi = psi(point.direction, n, line.along);
-  return point;
+EXACTFF_CLONES
+void gradient_lines_of(const std::array<double, 3>& normal, std::span<const QuickCorner> corners,
+                       std::span<const QuickEdge> edges, std::span<Line> result) {
+  const FourVector n = vector_of<Four>(normal);
+  for (std::size_t i = 0; i < edges.size(); i += kLanes) {
+    const std::size_t count = std::min(kLanes, edges.size() - i);
+    const FourOf<QuickEdge> edge = four_of(edges.subspan(i, count));
+    const auto ends = [&](std::uint32_t QuickEdge::*end) __attribute__((always_inline)) {
+      return gather(FourOf<QuickCorner>{&corners[edge[0]->*end], &corners[edge[1]->*end], &corners[edge[2]->*end],
+                                        &corners[edge[3]->*end]});
+    };
+    const FourVector p = ends(&QuickEdge::a), q = ends(&QuickEdge::b);
+    const FourMask reversed = q.norm < p.norm;
+    const FourVector a = where(reversed, q, p), b = where(reversed, p, q), d = difference(b, a);
+    FourVector c = cross(a, d);
+    c.error = where(both(has_moderate_size(p), has_moderate_size(q)), c.error, uniform<Four>(kDeclined.error));
+    const FourBounded squared = dot(c, c), size = square_root(squared);
+    const FourBounded inverse = FourBounded{uniform<Four>(1.0), {}, {}} / size;
+    const FourBounded growth = dot(cross(n, d), c) * inverse / squared;
+    const FourBounded psi_a = psi_of(a, n, d), psi_b = psi_of(b, n, d);
+    for (std::size_t k = 0; k < count; ++k) {
+      result[i + k] = {reversed[k] != 0, lane(a, k),       lane(b, k),      lane(d, k),     lane(c, k),
+                       lane(size, k),    lane(inverse, k), lane(growth, k), lane(psi_a, k), lane(psi_b, k)};
+    }
+  }
 }
 
-Point end_of(const Line& line, std::uint32_t end, std::span<const Line> lines, const Vector& n) {
-  if (end < QuickPiece::kAtA) return crossing(line, lines[end], n);
-  const bool at_a = end == (line.reversed ? QuickPiece::kAtB : QuickPiece::kAtA);
-  constexpr Bounded kOne{1.0, 0.0, 0.0};
-  return at_a ? Point{kOne, Bounded{}, line.a, line.psi_a} : Point{kOne, kOne, line.b, line.psi_b};
+// --- Pieces ---
+
+struct FourEnds {
+  FourPoints point;
+  FourBounded psi;
+};
+
+EXACTFF_INLINE FourEnds ends_of(const FourOf<Line>& line, const FourVector& n, const FourOf<QuickPiece>& pieces,
+                                std::uint32_t QuickPiece::*which, std::span<const Line> lines) {
+  FourOf<Line> crossing = line;  // the default: a line does not cross itself, so this declines
+  FourMask at_a{}, at_b{};
+  for (std::size_t k = 0; k < kLanes; ++k) {
+    const std::uint32_t end = pieces[k]->*which;
+    const std::uint32_t end_at_a = line[k]->reversed ? QuickPiece::kAtB : QuickPiece::kAtA;
+    at_a[k] = end == end_at_a ? -1 : 0;
+    at_b[k] = end >= QuickPiece::kAtA && end != end_at_a ? -1 : 0;
+    if (end < QuickPiece::kAtA) crossing[k] = &lines[end];
+  }
+  const FourMask at_corner = either(at_a, at_b);
+  const FourVector a = gather(line, &Line::a);
+  FourEnds corner;
+  if (in_some_lane(at_corner)) {
+    const FourBounded zero{}, one{uniform<Four>(1.0), {}, {}};
+    corner = {{one, where(at_b, one, zero), where(at_b, gather(line, &Line::b), a)},
+              where(at_b, gather(line, &Line::psi_b), gather(line, &Line::psi_a))};
+    if (in_every_lane(at_corner)) return corner;
+  }
+  const FourPoints found =
+      cross_edges(gather(crossing, &Line::cross), gather(crossing, &Line::a), a, gather(line, &Line::along));
+  return {where(at_corner, corner.point, found),
+          where(at_corner, corner.psi, psi_of(found.direction, n, gather(line, &Line::along)))};
 }
+
+using FourSums = std::array<FourBounded, 3>;
+
+EXACTFF_CLONES
+void add_arcs(const std::array<double, 3>& normal, std::span<const QuickPiece> pieces, std::span<const Line> lines,
+              const AngleConstants& known, FourSums& position, FourSums& v) {
+  const FourVector n = vector_of<Four>(normal);
+  for (std::size_t i = 0; i < pieces.size(); i += kLanes) {
+    const std::size_t count = std::min(kLanes, pieces.size() - i);
+    const FourOf<QuickPiece> piece = four_of(pieces.subspan(i, count));
+    const FourOf<Line> line = {&lines[piece[0]->edge], &lines[piece[1]->edge], &lines[piece[2]->edge],
+                               &lines[piece[3]->edge]};
+    const FourEnds p = ends_of(line, n, piece, &QuickPiece::begin, lines);
+    const FourEnds q = ends_of(line, n, piece, &QuickPiece::end, lines);
+    const FourBounded w = sum_of_products(p.point.s, q.point.m, -p.point.m, q.point.s);
+    const FourBounded theta = atan2(w * gather(line, &Line::size), dot(p.point.direction, q.point.direction), known);
+    const FourBounded inverse = gather(line, &Line::inverse);
+    const FourMask present = FourMask{0, 1, 2, 3} < static_cast<std::int64_t>(count);
+    const FourBounded over_size = where(present, theta * inverse, FourBounded{});
+    const FourBounded moved =
+        where(present, theta * gather(line, &Line::growth) + (q.psi - p.psi) * (inverse * inverse), FourBounded{});
+    FourVector c = gather(line, &Line::cross);
+    c.error = where(present, c.error, Four{});
+    for (int axis = 0; axis < 3; ++axis) {
+      position[axis] = position[axis] - component(c, axis) * moved;
+      v[axis] = v[axis] - component(c, axis) * over_size;
+    }
+  }
+}
+
+Bounded sum_of_lanes(const FourBounded& x) { return (lane(x, 0) + lane(x, 1)) + (lane(x, 2) + lane(x, 3)); }
 
 // x 2^exponent; declined where that is not certain to be exact.
-Bounded scaled(const Bounded& x, int exponent) {
+Bounded times_power(const Bounded& x, int exponent) {
   if (exponent < -900 || exponent > 900) return kDeclined;
   const double scale = std::ldexp(1.0, exponent);
   return {x.hi * scale, x.lo * scale, x.error * scale + kUnderflow};
@@ -119,24 +156,18 @@ Bounded scaled(const Bounded& x, int exponent) {
 
 }  // namespace
 
+void QuickGradient::make_lines(std::span<const QuickCorner> corners, std::span<const QuickEdge> edges,
+                               std::span<Line> lines) const {
+  gradient_lines_of(normal_, corners, edges, lines);
+}
+
 void QuickGradient::add(std::span<const QuickPiece> pieces, std::span<const Line> lines, int exponent) {
-  const Vector n = vector_of(normal_);
-  const AngleConstants& known = angle_constants();
-  std::array<Bounded, 3> sum{};
-  for (const QuickPiece& piece : pieces) {
-    const Line& line = lines[piece.edge];
-    const Point p = end_of(line, piece.begin, lines, n), q = end_of(line, piece.end, lines, n);
-    const Bounded w = sum_of_products(p.s, q.m, -p.m, q.s);
-    const Bounded theta = atan2(w * line.size, dot(p.direction, q.direction), known);
-    const Bounded over_size = theta * line.inverse;
-    const Bounded moved = theta * line.growth + (q.psi - p.psi) * (line.inverse * line.inverse);
-    for (int i = 0; i < 3; ++i) {
-      const Bounded c = component(line.cross, i);
-      sum[i] = sum[i] - c * moved;
-      v_[i] = v_[i] - c * over_size;
-    }
+  FourSums position{}, v{};
+  add_arcs(normal_, pieces, lines, angle_constants(), position, v);
+  for (int axis = 0; axis < 3; ++axis) {
+    position_[axis] = position_[axis] + times_power(sum_of_lanes(position[axis]), exponent);
+    v_[axis] = v_[axis] + sum_of_lanes(v[axis]);
   }
-  for (int i = 0; i < 3; ++i) position_[i] = position_[i] + scaled(sum[i], exponent);
 }
 
 void QuickGradient::decline() {
@@ -154,7 +185,7 @@ QuickGradient::Value value_of(const Bounded& x) {
 }  // namespace
 
 QuickGradient::Value QuickGradient::position(int axis) const {
-  const Vector n = vector_of(normal_);
+  const Vector n = vector_of<double>(normal_);
   return value_of(position_[axis] / (square_root(dot(n, n)) * (2.0 * constant(angle_constants().pi))));
 }
 

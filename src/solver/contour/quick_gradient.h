@@ -40,7 +40,8 @@ class QuickGradient {
   QuickGradient() = default;
   explicit QuickGradient(const Vec3& normal);
 
-  [[nodiscard]] Line line_between(const QuickCorner& a, const QuickCorner& b) const;
+  // Computes the line of each edge; `lines` has the same length as `edges`.
+  void make_lines(std::span<const QuickCorner> corners, std::span<const QuickEdge> edges, std::span<Line> lines) const;
   // Adds pieces of lines, as QuickContour does. `exponent`: the corners are distances times 2^exponent.
   void add(std::span<const QuickPiece> pieces, std::span<const Line> lines, int exponent);
   // From now on, all errors are infinite.

@@ -31,21 +31,34 @@ void QuickArcs::add(const visibility::PlaneQuery& query, const visibility::Visib
   offset_ = {};
   for (int i = 0; i < 3; ++i) offset_ = offset_ + plane_->fine_normal[i] * Bounded{s.hi[i], s.lo[i], s.error};
   number_.assign(outlines.edges().size(), kNone);
-  lines_.clear();
+  corner_number_.assign(outlines.corner_count(), kNone);
+  edges_.clear();
+  corners_.clear();
   pieces_.clear();
   const auto end = [&](EdgeId line) { return line < Parameter::kAtBegin ? number_of_line(outlines, line) : line; };
   for (const EdgeCovers::Part& part : found.parts()) {
     pieces_.push_back({number_of_line(outlines, part.edge), end(part.begin.line), end(part.end.line)});
   }
-  sum_.add(pieces_, lines_, outlines.scale_exponent());
+  if (lines_.size() < edges_.size()) lines_.resize(edges_.size());
+  const std::span lines = std::span(lines_).first(edges_.size());
+  sum_.make_lines(corners_, edges_, lines);
+  sum_.add(pieces_, lines, outlines.scale_exponent());
 }
 
 std::uint32_t QuickArcs::number_of_line(Outlines& outlines, EdgeId id) {
   if (number_[id] != kNone) return number_[id];
   const Outlines::Edge edge = outlines.edge(id);
-  number_[id] = static_cast<std::uint32_t>(lines_.size());
-  lines_.push_back(sum_.line_between(point_at(outlines, edge.a), point_at(outlines, edge.b)));
+  number_[id] = static_cast<std::uint32_t>(edges_.size());
+  edges_.push_back({number_of_corner(outlines, edge.a), number_of_corner(outlines, edge.b)});
   return number_[id];
+}
+
+std::uint32_t QuickArcs::number_of_corner(Outlines& outlines, CornerId id) {
+  if (corner_number_[id] == kNone) {
+    corner_number_[id] = static_cast<std::uint32_t>(corners_.size());
+    corners_.push_back(point_at(outlines, id));
+  }
+  return corner_number_[id];
 }
 
 // Relative to x. A corner that is not a vertex lies in the source's plane.

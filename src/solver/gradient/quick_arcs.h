@@ -20,12 +20,15 @@ class QuickArcs {
 
  private:
   [[nodiscard]] std::uint32_t number_of_line(visibility::Outlines& outlines, visibility::EdgeId id);
+  [[nodiscard]] std::uint32_t number_of_corner(visibility::Outlines& outlines, visibility::CornerId id);
   [[nodiscard]] contour::QuickCorner point_at(visibility::Outlines& outlines, visibility::CornerId corner) const;
 
   contour::QuickGradient sum_;
   const visibility::SourcePlane* plane_ = nullptr;
   kernel::double_double::Bounded offset_;  // of the source's plane, in the scale of its normal and of the corners
-  std::vector<std::uint32_t> number_;      // by edge
+  std::vector<std::uint32_t> number_, corner_number_;  // by edge, by corner
+  std::vector<contour::QuickCorner> corners_;
+  std::vector<contour::QuickEdge> edges_;
   std::vector<contour::QuickGradient::Line> lines_;
   std::vector<contour::QuickPiece> pieces_;
 };
