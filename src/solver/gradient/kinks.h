@@ -11,7 +11,9 @@
 // Along the horizon w . n = 0: nothing there counts.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "gradient/profile.h"

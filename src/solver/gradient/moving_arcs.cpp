@@ -1,6 +1,7 @@
 #include "gradient/moving_arcs.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "kernel/poll.h"
 

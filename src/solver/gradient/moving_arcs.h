@@ -2,6 +2,7 @@
 // (contour/arc_sum.h).
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "contour/arc_sum.h"

@@ -1,6 +1,7 @@
 #include "gradient/profile.h"
 
 #include <algorithm>
+#include <array>
 
 #include "kernel/expect.h"
 #include "kernel/poll.h"

@@ -2,6 +2,7 @@
 // lines and pieces, and adds these in double-double arithmetic (contour/quick_gradient.h).
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "contour/quick_gradient.h"

@@ -1,7 +1,7 @@
 #include "gradient/sight_plane.h"
 
 #include <algorithm>
-#include <set>
+#include <utility>
 
 #include "kernel/expect.h"
 #include "kernel/poll.h"
