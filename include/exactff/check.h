@@ -68,9 +68,10 @@ struct Truth {
 
 // Reads a file of `exactff truth`, the exact.csv of `exactff compare`, or any CSV with the columns receiver (or id) and
 // exact. Optional columns: source, on, x,y,z, nx,ny,nz, lower, upper, status, largest_rho_b and radiosity_r, _g, _b.
-// `column` names the column with the true values if it is not `exact`, such as unoccluded or radiosity_g. A total
-// (total_r, _g, _b) is one value for all sources: only the first row of each receiver counts. Throws one InputError
-// with file:line for every problem, including rows that occur twice.
+// `column` names the column with the true values if it is not `exact`, such as unoccluded or radiosity_g. Where a
+// derivative (dF_dx, dF_dy, dF_dz) is empty, at a kink, the row is not certified and its bounds are the largest
+// doubles, so that no value has an error. A total (total_r, _g, _b) is one value for all sources: only the first row of
+// each receiver counts. Throws one InputError with file:line for every problem, including rows that occur twice.
 [[nodiscard]] Truth read_truth(const std::filesystem::path& path, const std::string& column = "exact");
 
 // --- Candidate -----------------------------------------------------------------------------------------------------

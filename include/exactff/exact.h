@@ -10,6 +10,7 @@
 // Source: F. Tampieri, "Accurate Form-Factor Computation", Graphics Gems III (1992).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -112,6 +113,57 @@ struct StageNote {
 enum class VisiblePart { kNothing, kSome, kAll };
 [[nodiscard]] std::string_view to_string(VisiblePart part);
 
+// ---------------------------------------------------------------------------------------------------------- gradient
+
+enum class DerivativeStatus {
+  kCertified,  // value is the correctly rounded derivative, which is not 0
+  kZero,       // the derivative is proved to be exactly 0
+  kUnderflow,  // the derivative is not 0 and rounds to 0
+  kEnclosed,   // the enclosure is valid, but does not determine the double: it still contains 0 at 256 bits, or the
+               // derivative is beyond the range of doubles, or the precision cap was reached. value is 0 if the
+               // enclosure contains 0, else its rounded midpoint
+  kNone,       // the derivative does not exist: value is NaN, and there is no enclosure
+};
+[[nodiscard]] std::string_view to_string(DerivativeStatus status);
+
+// One number, with its proof.
+struct Derivative {
+  double value = 0.0;
+  DerivativeStatus status = DerivativeStatus::kZero;
+  Enclosure enclosure;
+};
+
+// Why F has no derivative by the receiver's point.
+enum class KinkReason {
+  kEdgeOn,        // x sees a face edge-on, where a movement shows or hides something
+  kCoincident,    // x sees lines at different depths as one line, where a movement shows or hides something
+  kSourceEdgeOn,  // x sees the source edge-on, and sees it from one side of its plane
+  kOnFace,        // x lies on a face that is not its own
+};
+[[nodiscard]] std::string_view to_string(KinkReason reason);
+
+struct Kink {
+  KinkReason reason = KinkReason::kEdgeOn;
+  std::vector<FaceId> faces;  // that meet there, ascending; of the source those in its plane
+};
+
+// An arc of the visible boundary whose line in space moves it: what it adds to dF/dx. Estimates, for people.
+struct GradientArc {
+  Vec3 begin, end;  // on the line, at the ends of the arc
+  Vec3 part;
+};
+
+// The derivatives of F at a receiver. F = n . V / |n|, where V does not depend on the normal n.
+struct Gradient {
+  std::optional<Kink> kink;            // set if dF/dx does not exist: the first one found
+  std::array<Derivative, 3> position;  // dF/dx by each coordinate of the point, per unit of length
+  std::array<Derivative, 3> normal;    // V, a pure number: dF/dn at a unit normal. It exists at kinks, too
+  // On request: the one-sided derivative by a movement along a direction, per unit of length. Exists at kinks except
+  // kOnFace, where F may jump.
+  std::optional<Derivative> along;
+  std::vector<GradientArc> arcs;  // on request, the largest part first; not at kinks
+};
+
 struct FormFactor {
   double value = 0.0;
   double lower = 0.0;  // if certified: the neighbouring doubles of value, clamped to [0, 1]
@@ -124,7 +176,8 @@ struct FormFactor {
   // plane, it is the only one listed for that plane, because the search stops there.
   std::vector<FaceId> cutters;
   std::vector<PlaneRecord> planes;
-  int precision_bits = 0;  // precision of the last contour evaluation; 0 if none was needed
+  int precision_bits = 0;            // precision of the last contour evaluation; 0 if none was needed
+  std::optional<Gradient> gradient;  // on request
 };
 
 struct ExactOptions {
@@ -132,8 +185,11 @@ struct ExactOptions {
   bool visible_fraction = false;
   bool exact_fraction = false;  // implies visible_fraction
   bool list_cutters = false;
-  int digits = 0;             // raises the precision until this many significant digits are certified, if possible
-  int precision_cap = 65536;  // bits, at least 1 (else InputError)
+  bool gradient = false;
+  bool list_arcs = false;          // of the gradient, which is then computed
+  std::optional<Vec3> along = {};  // implies gradient; a direction of any length other than zero (else InputError)
+  int digits = 0;                  // raises the precision until this many significant digits are certified, if possible
+  int precision_cap = 65536;       // bits, at least 1 (else InputError)
   const std::vector<FaceId>* only_occluders = nullptr;  // ascending; all other faces are ignored
   ShaftCulling culling = ShaftCulling::kTree;
   // Does not try first what hid the source from an earlier receiver (with the same workspace). Otherwise the counts in

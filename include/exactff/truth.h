@@ -48,6 +48,9 @@ struct Request {
   bool unit_normals = false;
   // Adds two columns: u and v of the receiver on its lattice, from 0 to 1. Every receiver must be the cell of a grid.
   bool uv = false;
+  // Adds columns dF_dx,dF_dy,dF_dz,gradient_status: the derivatives by the receiver's point (Gradient::position), and
+  // the worst of their statuses. At a kink the derivatives are empty and the status is "kink". Not for `sky`.
+  bool gradient = false;
   // Adds columns total_r,total_g,total_b: this quantity from all sources together, taken from their balls and rounded
   // once, as an image shows it (render.h). The value is repeated in the rows of all sources of a receiver.
   std::optional<Quantity> total = {};
@@ -83,8 +86,9 @@ Summary merge(const std::vector<std::filesystem::path>& shards, const std::files
 
 // Writes the values of a complete truth file as a NumPy array of float64 with a row for each receiver and a column for
 // each source, in the order of the file, then three columns for the totals if the file has them: NaN where a value is
-// not certified. The array appears complete or not at all, and replaces another file. Throws InputError if a file
-// cannot be read or written, and Cancelled.
+// not certified. If the file has gradients, each source has four columns: F, dF/dx, dF/dy, dF/dz, NaN at kinks. The
+// array appears complete or not at all, and replaces another file. Throws InputError if a file cannot be read or
+// written, and Cancelled.
 void write_npy(const std::filesystem::path& truth_file, const std::filesystem::path& file,
                const jobs::RowHooks& hooks = {});
 
@@ -93,7 +97,8 @@ void write_npy(const std::filesystem::path& truth_file, const std::filesystem::p
 //   points (n, 3)     normals (n, 3): unit vectors, correctly rounded     on (n): index into faces, -1 for none
 //   F (n, sources): NaN where a value is not certified                    sources, faces: names; about: the comments
 //
-// and visible_fraction and unoccluded (n, sources), total (n, 3), if the file has them. numpy.load(file) reads it. The
+// and visible_fraction and unoccluded (n, sources), gradient (n, sources, 3): NaN at kinks, total (n, 3), if the file
+// has them. numpy.load(file) reads it. The
 // file appears complete or not at all, and replaces another one. Throws as write_npy, and if it were larger than 4 GiB.
 void write_npz(const std::filesystem::path& truth_file, const std::filesystem::path& file,
                const jobs::RowHooks& hooks = {});

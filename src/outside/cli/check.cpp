@@ -339,8 +339,8 @@ void add_matching(CLI::App& command, CheckArguments& args) {
   command
       .add_option(
           "--truth-column", args.truth_column,
-          "The truth's column to compare with, such as unoccluded, radiosity_g or total_g; of an image its layer "
-          "or channel")
+          "The truth's column to compare with, such as unoccluded, radiosity_g, total_g or dF_dx; of an image its "
+          "layer or channel")
       ->capture_default_str()
       ->type_name("NAME");
   command.add_option("--match", args.match, "How rows are matched: by the receiver's id or by its position")

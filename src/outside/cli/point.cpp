@@ -9,6 +9,7 @@
 #include "cli/output.h"
 #include "exactff/slips.h"
 #include "exactff/study.h"
+#include "flags/vector.h"
 #include "text/number_text.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
@@ -68,6 +69,12 @@ void refuse_settings_without_adaptive(const CLI::App& command, const PointArgume
                std::string("add --adaptive, or remove ") + (one ? "it" : "them"));
 }
 
+void refuse_along_without_gradient(const PointArguments& args) {
+  if (args.gradient || !flags::is_given(args.along)) return;
+  text::refuse("--along is given without --gradient", "it names the direction of a one-sided derivative",
+               "add --gradient, or remove it");
+}
+
 // These change nothing that is printed. A script may give them all the same.
 void warn_of_idle_options(const CLI::App& command, const PointArguments& args) {
   const auto warn = [&](const std::vector<std::string>& idle, const std::string& why) {
@@ -77,7 +84,7 @@ void warn_of_idle_options(const CLI::App& command, const PointArguments& args) {
   };
   if (args.plain) {
     const bool leaves_are_drawn = args.adaptive && !args.svg.empty();
-    std::vector<std::string> idle = given(command, {"--fraction", "--exact-fraction", "--explain"});
+    std::vector<std::string> idle = given(command, {"--fraction", "--exact-fraction", "--explain", "--along"});
     for (const std::string& flag : given(command, {"--reflectance", "--adaptive"})) {
       if (!leaves_are_drawn) idle.push_back(flag);
     }
@@ -89,8 +96,20 @@ void warn_of_idle_options(const CLI::App& command, const PointArguments& args) {
   }
 }
 
+// A derivative whose ball contains 0 is a result.
+bool is_certified(const FormFactor& f) {
+  const auto is_open = [](const Derivative& d) { return d.status == DerivativeStatus::kEnclosed && d.value != 0.0; };
+  if (f.gradient &&
+      (std::ranges::any_of(f.gradient->position, is_open) || std::ranges::any_of(f.gradient->normal, is_open) ||
+       (f.gradient->along && is_open(*f.gradient->along)))) {
+    return false;
+  }
+  return f.status != Status::kNotCertified;
+}
+
 int run(const CLI::App& command, const PointArguments& args) {
   refuse_settings_without_adaptive(command, args);
+  refuse_along_without_gradient(args);
   warn_of_idle_options(command, args);
   const Scene scene = load_point_scene(args);
   const PointResult point = compute_point(args, scene);
@@ -101,8 +120,9 @@ int run(const CLI::App& command, const PointArguments& args) {
   warn_of_stopped_recursion(scene, point);
   if (!args.svg.empty()) draw_point(args, scene, point);
   if (args.plain) {
-    std::cout << (args.digits > 0 ? value_text(point.sources.front().exact, args.digits)
-                                  : plain_value(point.sources.front().exact))
+    std::cout << (args.gradient     ? plain_gradient(point.sources.front().exact)
+                  : args.digits > 0 ? value_text(point.sources.front().exact, args.digits)
+                                    : plain_value(point.sources.front().exact))
               << '\n';
   } else if (args.json) {
     print_point_json(args, scene, point);
@@ -111,7 +131,7 @@ int run(const CLI::App& command, const PointArguments& args) {
   }
   check_output(std::cout);
   const bool certified = std::all_of(point.sources.begin(), point.sources.end(),
-                                     [](const PointTerm& one) { return one.exact.status != Status::kNotCertified; });
+                                     [](const PointTerm& one) { return is_certified(one.exact); });
   return certified ? 0 : kNotCertified;
 }
 
@@ -153,6 +173,14 @@ void add_output_flags(CLI::App& app, PointArguments& args) {
   app.add_flag("--fraction", args.fraction, "Also print the visible fraction of the source");
   app.add_flag("--exact-fraction", args.exact_fraction,
                "Also print the visible fractions as exact rationals, one per plane of the source");
+  app.add_flag("--gradient", args.gradient,
+               "Also print dF/dx, dF/dy, dF/dz, per unit of length, and the vector V with F = n . V / |n|; where the "
+               "derivative does not exist (a kink), the reason. With --plain: one line of value and derivatives, or "
+               "of value and the word kink, separated by tabs");
+  flags::add_vector_option(app, "--along", args.along,
+                           "With --gradient: also the one-sided derivative if the point moves in this direction, per "
+                           "unit of length. It exists at most kinks",
+                           "DX DY DZ");
   auto* plain = app.add_flag("--plain", args.plain, "Print only the value: 0 is a proved zero, 0.0 an underflow");
   auto* json = app.add_flag("--json", args.json, "Print JSON");
   plain->excludes(json);

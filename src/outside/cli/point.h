@@ -13,6 +13,7 @@
 #include "exactff/view.h"
 #include "flags/engine.h"
 #include "flags/scene.h"
+#include "flags/vector.h"
 
 namespace exactff::cli {
 
@@ -29,6 +30,8 @@ struct PointArguments {
   flags::EngineArgument engine;
   bool fraction = false;
   bool exact_fraction = false;
+  bool gradient = false;
+  flags::ThreeNumbers along;
   bool plain = false;
   bool json = false;
   bool explain = false;
@@ -80,6 +83,9 @@ void warn_of_near_face(const Scene& scene, const PointResult& point);
 
 // `--plain`: "0" is a proved zero; a positive value that rounds to zero prints "0.0".
 [[nodiscard]] std::string plain_value(const FormFactor& result);
+// The value and dF/dx, dF/dy, dF/dz, separated by tabs; the value and "kink" where there are none. "0" is a proved
+// zero, "0.0" an underflow or a derivative whose ball contains 0.
+[[nodiscard]] std::string plain_gradient(const FormFactor& result);
 [[nodiscard]] std::string value_text(const FormFactor& result, int digits);
 // To the precision of --digits, else the nearest double; empty if the ball does not determine it.
 [[nodiscard]] std::optional<std::string> sum_text(const Enclosure& sum, int digits);

@@ -6,6 +6,7 @@
 #include "exactff/version.h"
 #include "report/visibility_svg.h"
 #include "text/json_document.h"
+#include "text/number_text.h"
 #include "text/phrases.h"
 
 namespace exactff::cli {
@@ -16,6 +17,22 @@ std::string plain_value(const FormFactor& result) {
   if (result.status == Status::kZero) return "0";
   if (result.status == Status::kUnderflow) return "0.0";
   return shortest(result.value);
+}
+
+namespace {
+
+std::string plain_derivative(const Derivative& d) {
+  if (d.status == DerivativeStatus::kZero) return "0";
+  return d.value == 0.0 ? "0.0" : shortest(d.value);
+}
+
+}  // namespace
+
+std::string plain_gradient(const FormFactor& result) {
+  std::string line = plain_value(result);
+  if (result.gradient->kink) return line + "\tkink";
+  for (const Derivative& d : result.gradient->position) line += '\t' + plain_derivative(d);
+  return line;
 }
 
 std::string value_text(const FormFactor& result, int digits) {
@@ -74,6 +91,57 @@ void print_exact_fractions(const Scene& scene, const PointTerm& one) {
   }
 }
 
+std::string derivative_words(const Derivative& d) {
+  const bool holds_zero = d.status == DerivativeStatus::kEnclosed && d.value == 0.0;
+  if (holds_zero) return "0.0  (enclosed: within " + d.enclosure.radius() + " of " + d.enclosure.midpoint() + ")";
+  return plain_derivative(d) + "  (" + std::string(to_string(d.status)) + ")";
+}
+
+std::string names_of(const Scene& scene, const std::vector<FaceId>& faces) {
+  constexpr std::size_t kMost = 4;
+  std::string names;
+  for (std::size_t i = 0; i < faces.size() && i < kMost; ++i)
+    names += (i > 0 ? ", " : "") + shown_name(scene, faces[i]);
+  return faces.size() > kMost ? names + ", ..." : names;
+}
+
+void print_gradient(const Scene& scene, const Gradient& gradient) {
+  static constexpr const char* kAxes[] = {"x", "y", "z"};
+  if (gradient.kink) {
+    std::cout << "  gradient     none: a kink, since " << to_string(gradient.kink->reason) << " ("
+              << names_of(scene, gradient.kink->faces) << ")\n";
+  } else {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::cout << "  dF/d" << kAxes[axis] << "        " << derivative_words(gradient.position[axis]) << '\n';
+    }
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::cout << "  V" << kAxes[axis] << "           " << derivative_words(gradient.normal[axis]) << '\n';
+  }
+  if (!gradient.along) return;
+  const bool exists = gradient.along->status != DerivativeStatus::kNone;
+  std::cout << "  along        " << (exists ? derivative_words(*gradient.along) : "none: F may jump") << '\n';
+}
+
+// Each arc of the visible boundary with the line in space that moves it.
+void print_arcs(const Gradient& gradient) {
+  constexpr std::size_t kMostArcs = 20;
+  if (gradient.kink) return;
+  std::cout << "\n  arcs of the visible boundary that move: " << gradient.arcs.size() << '\n';
+  for (std::size_t i = 0; i < gradient.arcs.size() && i < kMostArcs; ++i) {
+    const GradientArc& arc = gradient.arcs[i];
+    const auto brief = [](const Vec3& v) {
+      return "(" + text::short_number(v.x, 6) + ", " + text::short_number(v.y, 6) + ", " + text::short_number(v.z, 6) +
+             ")";
+    };
+    std::cout << "    the line through " << brief(arc.begin) << " and " << brief(arc.end) << " adds " << brief(arc.part)
+              << '\n';
+  }
+  if (gradient.arcs.size() > kMostArcs) {
+    std::cout << "    ... and " << gradient.arcs.size() - kMostArcs << " more (--json has them all)\n";
+  }
+}
+
 void print_adaptive(const PointTerm& one) {
   const AdaptiveResult& a = *one.adaptive;
   std::cout << "  ray-sampled adaptive: " << shortest(a.form_factor) << " (error "
@@ -89,11 +157,13 @@ void print_source(const PointArguments& args, const Scene& scene, const PointTer
               << to_string(*one.exact.visible_part) << " of it)\n";
   }
   if (args.exact_fraction) print_exact_fractions(scene, one);
+  if (one.exact.gradient) print_gradient(scene, *one.exact.gradient);
   if (!one.emits) std::cout << "  emits        nothing (Ke 0), so it counts with a radiosity of 1\n";
   if (one.adaptive) print_adaptive(one);
   if (!args.explain) return;
   print_stages(scene, one);
   print_shares(scene, one);
+  if (one.exact.gradient) print_arcs(*one.exact.gradient);
 }
 
 void print_sum(const PointArguments& args, const std::string& title, const Enclosure& sum) {
@@ -127,7 +197,7 @@ void print_point_table(const PointArguments& args, const Scene& scene, const Poi
   std::cout << "receiver " << vec_text(point.receiver.point) << ", normal " << vec_text(point.receiver.normal);
   if (!point.receiver.on.empty()) std::cout << ", on " << text::printable(scene.name_of(point.receiver.on));
   std::cout << "\n\n";
-  const bool blocks = !point.every_patch || args.explain || args.exact_fraction;
+  const bool blocks = !point.every_patch || args.explain || args.exact_fraction || args.gradient;
   for (const PointTerm& one : point.sources) {
     if (blocks) print_source(args, scene, one);
   }
@@ -188,6 +258,35 @@ nlohmann::ordered_json adaptive_json(const AdaptiveResult& a) {
           {"shaft_tests", a.shaft_tests}, {"leaves_by_reason", reasons}, {"leaves_by_depth", a.leaves_by_depth}};
 }
 
+nlohmann::ordered_json derivative_json(const Derivative& d) {
+  if (d.status == DerivativeStatus::kNone) return {{"value", nullptr}, {"status", to_string(d.status)}};
+  return {{"value", d.value}, {"status", to_string(d.status)}, {"ball", ball_json(d.enclosure)}};
+}
+
+nlohmann::ordered_json gradient_json(const PointArguments& args, const Scene& scene, const Gradient& gradient) {
+  nlohmann::ordered_json json;
+  if (gradient.kink) {
+    nlohmann::ordered_json faces = nlohmann::ordered_json::array();
+    for (const FaceId face : gradient.kink->faces) faces.push_back(scene.name_of(face));
+    json["kink"] = {{"reason", to_string(gradient.kink->reason)}, {"faces", faces}};
+  } else {
+    json["kink"] = nullptr;
+  }
+  json["position"] = nlohmann::ordered_json::array();
+  for (const Derivative& d : gradient.position) json["position"].push_back(derivative_json(d));
+  json["normal"] = nlohmann::ordered_json::array();
+  for (const Derivative& d : gradient.normal) json["normal"].push_back(derivative_json(d));
+  if (gradient.along) json["along"] = derivative_json(*gradient.along);
+  if (args.explain) {
+    json["arcs"] = nlohmann::ordered_json::array();
+    for (const GradientArc& arc : gradient.arcs) {
+      json["arcs"].push_back(
+          {{"begin", numbers_json(arc.begin)}, {"end", numbers_json(arc.end)}, {"part", numbers_json(arc.part)}});
+    }
+  }
+  return json;
+}
+
 nlohmann::ordered_json source_json(const PointArguments& args, const Scene& scene, const PointTerm& one) {
   nlohmann::ordered_json json = {{"source", scene.name_of(one.source)},
                                  {"value", one.exact.value},
@@ -203,6 +302,7 @@ nlohmann::ordered_json source_json(const PointArguments& args, const Scene& scen
     json["visible_fraction"] = *one.exact.visible_fraction;
     json["visible_part"] = to_string(*one.exact.visible_part);
   }
+  if (one.exact.gradient) json["gradient"] = gradient_json(args, scene, *one.exact.gradient);
   if (one.unoccluded) json["unoccluded"] = *one.unoccluded;
   if (args.explain) {
     json["cutters"] = nlohmann::ordered_json::array();

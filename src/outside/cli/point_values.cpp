@@ -69,7 +69,8 @@ AdaptiveOptions adaptive_options(const PointArguments& args) {
 // value was found, and nothing about transparent patches.
 bool one_sweep_will_do(const PointArguments& args, const Scene& scene, const std::vector<Selection>& sources) {
   constexpr std::size_t kFewestFaces = 400;
-  const bool shows_more = args.fraction || args.exact_fraction || args.explain || args.json || !args.svg.empty();
+  const bool shows_more =
+      args.fraction || args.gradient || args.exact_fraction || args.explain || args.json || !args.svg.empty();
   const bool every_patch = flags::names_all(scene, args.sources) &&
                            std::ranges::none_of(sources, [](const Selection& s) { return s.face.has_value(); });
   return every_patch && !shows_more && scene.faces().size() >= kFewestFaces && scene.transparent().empty() &&
@@ -90,6 +91,10 @@ bool has_stacked(const PointArguments& args, const Scene& scene, const PointResu
   return some(point.seen ? *point.seen : view(scene, point.receiver, {.precision_cap = args.precision_cap}));
 }
 
+std::optional<Vec3> direction_of(const PointArguments& args) {
+  return flags::is_given(args.along) ? std::optional(flags::vector_of(args.along, "--along")) : std::nullopt;
+}
+
 FormFactor exact_value(const PointArguments& args, const Scene& scene, const PointResult& point,
                        const ExactSource& source) {
   if (point.seen) return factor_in_view(*point.seen, source.selection());
@@ -97,6 +102,9 @@ FormFactor exact_value(const PointArguments& args, const Scene& scene, const Poi
                              .visible_fraction = args.fraction || args.exact_fraction,
                              .exact_fraction = args.exact_fraction,
                              .list_cutters = args.explain || !args.svg.empty(),
+                             .gradient = args.gradient,
+                             .list_arcs = args.gradient && args.explain,
+                             .along = direction_of(args),
                              .digits = args.digits,
                              .precision_cap = args.precision_cap};
   return exact_form_factor(scene, point.receiver, source, options);

@@ -57,6 +57,7 @@ struct TruthArguments {
   flags::SourceArguments sources;
   bool unoccluded = false;
   bool fraction = false;
+  bool gradient = false;
   bool unit_normals = false;
   bool uv = false;
   std::string total, ke;
@@ -106,6 +107,7 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const jobs::Team* team) 
   request.sky = sources.sky;
   request.unoccluded = args.unoccluded;
   request.visible_fraction = args.fraction;
+  request.gradient = args.gradient;
   request.unit_normals = args.unit_normals;
   request.uv = args.uv;
   request.total = args.quantity();
@@ -272,6 +274,10 @@ Command add_truth(CLI::App& app) {
   flags::add_source_options_under_sky(*command, args->sources);
   command->add_flag("--unoccluded", args->unoccluded, "Add a column: the form factor without occluders");
   command->add_flag("--fraction", args->fraction, "Add a column: the visible fraction of the source");
+  command->add_flag("--gradient", args->gradient,
+                    "Add columns: the derivatives of the form factor by the receiver's point (dF_dx, dF_dy, dF_dz, per "
+                    "unit of length; empty where they do not exist) and their status (certified, zero, underflow, "
+                    "enclosed or kink)");
   command->add_flag("--unit-normals", args->unit_normals,
                     "Add columns ux,uy,uz: the normal scaled to length 1, correctly rounded; the values belong to the "
                     "exact normals in nx,ny,nz");

@@ -36,7 +36,7 @@ Table<Value> table(std::size_t rows, std::size_t columns) {
 // Results in arrays (receivers, sources), which threads fill without the GIL.
 class Tables {
  public:
-  Tables(std::size_t rows, std::size_t columns, bool full, bool fraction)
+  Tables(std::size_t rows, std::size_t columns, bool full, bool fraction, bool gradient)
       : value_(table<double>(rows, columns)), status_(table<std::int8_t>(rows, columns)) {
     if (full) {
       lower_ = table<double>(rows, columns);
@@ -44,18 +44,29 @@ class Tables {
       bits_ = table<std::int32_t>(rows, columns);
     }
     if (fraction) fraction_ = table<double>(rows, columns);
+    if (gradient) {
+      gradient_ = table<double>(rows, 3 * columns);
+      gradient_status_ = table<std::int8_t>(rows, 3 * columns);
+    }
     columns_ = {value_.mutable_data(),
                 status_.mutable_data(),
                 full ? lower_->mutable_data() : nullptr,
                 full ? upper_->mutable_data() : nullptr,
                 full ? bits_->mutable_data() : nullptr,
-                fraction ? fraction_->mutable_data() : nullptr};
+                fraction ? fraction_->mutable_data() : nullptr,
+                gradient ? gradient_->mutable_data() : nullptr,
+                gradient ? gradient_status_->mutable_data() : nullptr};
   }
 
   void set(std::size_t at, const FormFactor& f) const {
     columns_.value[at] = f.value;
     columns_.status[at] = static_cast<std::int8_t>(f.status);
     if (columns_.fraction != nullptr) columns_.fraction[at] = f.visible_fraction.value_or(0.0);
+    for (std::size_t axis = 0; columns_.gradient != nullptr && axis < 3; ++axis) {
+      const Derivative& d = f.gradient->position[axis];
+      columns_.gradient[3 * at + axis] = d.value;
+      columns_.gradient_status[3 * at + axis] = static_cast<std::int8_t>(d.status);
+    }
     if (columns_.lower == nullptr) return;
     columns_.lower[at] = f.lower;
     columns_.upper[at] = f.upper;
@@ -63,7 +74,9 @@ class Tables {
   }
 
   // None for what was not requested.
-  [[nodiscard]] py::tuple tuple() const { return py::make_tuple(value_, status_, lower_, upper_, bits_, fraction_); }
+  [[nodiscard]] py::tuple tuple() const {
+    return py::make_tuple(value_, status_, lower_, upper_, bits_, fraction_, gradient_, gradient_status_);
+  }
 
  private:
   struct Columns {
@@ -73,32 +86,36 @@ class Tables {
     double* upper = nullptr;
     std::int32_t* bits = nullptr;
     double* fraction = nullptr;
+    double* gradient = nullptr;
+    std::int8_t* gradient_status = nullptr;
   };
 
   Table<double> value_;
   Table<std::int8_t> status_;
-  std::optional<Table<double>> lower_, upper_, fraction_;
+  std::optional<Table<double>> lower_, upper_, fraction_, gradient_;
+  std::optional<Table<std::int8_t>> gradient_status_;
   std::optional<Table<std::int32_t>> bits_;
   Columns columns_;
 };
 
-// Value, status, lower, upper, bits, fraction.
+// Value, status, lower, upper, bits, fraction, gradient and its status (receivers, 3 sources).
 py::tuple form_factors_of(const SharedScene& scene, const Numbers& points, const Numbers& normals, const Integers& on,
-                          const std::vector<std::string>& names, bool full, bool fraction, int precision_cap,
-                          int threads, const py::object& progress) {
+                          const std::vector<std::string>& names, bool full, bool fraction, bool gradient,
+                          int precision_cap, int threads, const py::object& progress) {
   const ArrayReceivers receivers(points, normals, on);
   std::vector<std::shared_ptr<const ExactSource>> sources;
   std::vector<const ExactSource*> list;
   for (const Selection& selection : scene.selections(names)) {
     list.push_back(sources.emplace_back(scene.source(selection)).get());
   }
-  const Tables out(receivers.count(), list.size(), full, fraction);
+  const Tables out(receivers.count(), list.size(), full, fraction, gradient);
   Interrupt interrupt(progress);
   interrupt.run([&] {
-    batch::exact_form_factors(
-        scene.scene(), receivers.in_batch(), list, {.visible_fraction = fraction, .precision_cap = precision_cap},
-        {threads, interrupt.hooks()},
-        [&](std::size_t i, std::size_t s, const FormFactor& f) { out.set(i * list.size() + s, f); });
+    batch::exact_form_factors(scene.scene(), receivers.in_batch(), list,
+                              {.visible_fraction = fraction, .gradient = gradient, .precision_cap = precision_cap},
+                              {threads, interrupt.hooks()}, [&](std::size_t i, std::size_t s, const FormFactor& f) {
+                                out.set(i * list.size() + s, f);
+                              });
   });
   return out.tuple();
 }
@@ -136,7 +153,7 @@ class Pair {
 
 std::shared_ptr<Pair> pair_of(const std::shared_ptr<SharedScene>& scene, const std::array<double, 3>& point,
                               const std::array<double, 3>& normal, const std::vector<std::uint32_t>& on,
-                              const std::string& source, bool fraction, bool list_cutters, int digits,
+                              const std::string& source, bool fraction, bool list_cutters, bool gradient, int digits,
                               int precision_cap, const std::optional<std::vector<std::uint32_t>>& only_occluders) {
   Receiver receiver{{point[0], point[1], point[2]}, {normal[0], normal[1], normal[2]}, {}, {}};
   for (const std::uint32_t face : on) receiver.on.push_back(static_cast<FaceId>(face));
@@ -147,6 +164,7 @@ std::shared_ptr<Pair> pair_of(const std::shared_ptr<SharedScene>& scene, const s
   const ExactOptions options{.visible_fraction = fraction,
                              .exact_fraction = fraction,
                              .list_cutters = list_cutters,
+                             .gradient = gradient,
                              .digits = digits,
                              .precision_cap = precision_cap,
                              .only_occluders = only_occluders ? &only : nullptr};
@@ -162,6 +180,26 @@ py::list planes_of(const Pair& pair) {
     planes.append(py::make_tuple(faces, std::string(to_string(decided_outcome(plane))), notes, plane.exact_fraction));
   }
   return planes;
+}
+
+// The reason of the kink and its faces (or none), then (value, status, enclosure) for dF/dx and for V.
+py::object gradient_of(const Pair& pair) {
+  if (!pair.result().gradient) return py::none();
+  const Gradient& gradient = *pair.result().gradient;
+  const auto list = [](const std::array<Derivative, 3>& derivatives) {
+    py::list result;
+    for (const Derivative& d : derivatives) {
+      result.append(py::make_tuple(d.value, static_cast<int>(d.status), d.enclosure));
+    }
+    return result;
+  };
+  py::object kink = py::none();
+  if (gradient.kink) {
+    py::list faces;
+    for (const FaceId face : gradient.kink->faces) faces.append(pair.scene().name_of(face));
+    kink = py::make_tuple(std::string(to_string(gradient.kink->reason)), faces);
+  }
+  return py::make_tuple(kink, list(gradient.position), list(gradient.normal));
 }
 
 std::vector<std::size_t> cutters_of(const Pair& pair) {
@@ -189,6 +227,7 @@ void bind_pair(py::module_& module) {
       .def_property_readonly("source", &Pair::source_name)
       .def("planes", &planes_of)
       .def("cutters", &cutters_of)
+      .def("gradient", &gradient_of)
       .def("svg", &Pair::svg);
 }
 
@@ -198,10 +237,10 @@ void bind_form_factors(py::module_& module) {
   bind_enclosure(module);
   bind_pair(module);
   module.def("form_factors", &form_factors_of, py::arg("scene"), py::arg("points"), py::arg("normals"), py::arg("on"),
-             py::arg("sources"), py::arg("full"), py::arg("fraction"), py::arg("precision_cap"), py::arg("threads"),
-             py::arg("progress"));
+             py::arg("sources"), py::arg("full"), py::arg("fraction"), py::arg("gradient"), py::arg("precision_cap"),
+             py::arg("threads"), py::arg("progress"));
   module.def("form_factor", &pair_of, py::arg("scene"), py::arg("point"), py::arg("normal"), py::arg("on"),
-             py::arg("source"), py::arg("fraction"), py::arg("list_cutters"), py::arg("digits"),
+             py::arg("source"), py::arg("fraction"), py::arg("list_cutters"), py::arg("gradient"), py::arg("digits"),
              py::arg("precision_cap"), py::arg("only_occluders"));
   module.def(
       "status_name", [](int status) { return std::string(to_string(static_cast<Status>(status))); }, py::arg("status"));

@@ -31,6 +31,7 @@ py::tuple write_rows(const SharedScene& scene, const std::string& scene_name, co
   request.visible_fraction = wanted("visible_fraction");
   request.unit_normals = wanted("unit_normals");
   request.uv = wanted("uv");
+  request.gradient = wanted("gradient");
   request.threads = threads;
   Interrupt interrupt(progress);
   const truth::Summary summary = interrupt.run([&] {

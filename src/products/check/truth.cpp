@@ -1,6 +1,7 @@
 // Reads truth files.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <unordered_map>
 
@@ -16,6 +17,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kChannels = {"radiosity_r", "radiosity_g", "radiosity_b"};
 constexpr std::array<std::string_view, 3> kTotals = {"total_r", "total_g", "total_b"};
+constexpr std::array<std::string_view, 3> kGradient = {"dF_dx", "dF_dy", "dF_dz"};
 constexpr std::size_t kNoColumn = static_cast<std::size_t>(-1);
 
 class TruthReader {
@@ -102,7 +104,18 @@ class TruthReader {
     return !truth_.rows.empty() && truth_.rows.back().receiver == receiver;
   }
 
+  // At a kink there is no derivative, so that no value is wrong.
+  [[nodiscard]] bool is_kink() const {
+    return std::ranges::find(kGradient, truth_.column) != kGradient.end() && table_.field(value_).empty();
+  }
+
   void take_value(TruthRow& row) {
+    if (is_kink()) {
+      row.status = Status::kNotCertified;
+      row.lower = -std::numeric_limits<double>::max();
+      row.upper = std::numeric_limits<double>::max();
+      return;
+    }
     row.value = row.lower = row.upper = table_.number(value_);
     row.status = status_ == kNoColumn ? Status::kCertified : status_named(table_.field(status_));
     if (lower_ == kNoColumn) return;

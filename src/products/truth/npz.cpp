@@ -29,6 +29,7 @@ class Arrays {
   void add_value(const ValueReader& reader) {
     const Values values = reader.values();
     factors_.push_back(values.certified(values.exact));
+    if (reader.has_gradients()) add(gradients_, values.gradient);
     if (reader.has_fractions()) fractions_.push_back(values.certified(values.visible_fraction));
     if (reader.has_unoccluded()) unoccluded_.push_back(values.certified(values.unoccluded));
   }
@@ -40,6 +41,10 @@ class Arrays {
     file.add_texts("sources", sources);
     add_table(file, "F", factors_, sources.size());
     if (!fractions_.empty()) add_table(file, "visible_fraction", fractions_, sources.size());
+    if (!gradients_.empty()) {
+      const std::array shape{gradients_.size() / (3 * sources.size()), sources.size(), std::size_t{3}};
+      file.add("gradient", shape, std::span<const double>(gradients_));
+    }
     if (!unoccluded_.empty()) add_table(file, "unoccluded", unoccluded_, sources.size());
     if (!totals_.empty()) add_table(file, "total", totals_, 3);
   }
@@ -59,7 +64,7 @@ class Arrays {
     return found->second;
   }
 
-  std::vector<double> points_, normals_, factors_, fractions_, unoccluded_, totals_;
+  std::vector<double> points_, normals_, factors_, fractions_, gradients_, unoccluded_, totals_;
   std::vector<std::int32_t> on_;
   std::vector<std::string> faces_;
   std::map<std::string, std::int32_t> numbers_;

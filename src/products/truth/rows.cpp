@@ -53,6 +53,10 @@ void complete(Request& request) {
   if (request.sky && request.visible_fraction) {
     text::refuse("the visible fraction of the sky is requested", "the sky has no area", "leave out --fraction, or sky");
   }
+  if (request.sky && request.gradient) {
+    text::refuse("the gradient of the sky is requested", "gradients are computed for patches",
+                 "leave out --gradient, or sky");
+  }
   jobs::require_shard(request.shard);
   if (request.threads <= 0) request.threads = files::usable_threads();
 }
@@ -111,6 +115,10 @@ std::string Rows::head() const {
     out << "# unit normals: ux,uy,uz is nx,ny,nz scaled to length 1, correctly rounded; the values belong to "
            "nx,ny,nz\n";
   }
+  if (request_.gradient) {
+    out << "# gradient: dF_dx,dF_dy,dF_dz are the derivatives of the form factor by the receiver's point, correctly "
+           "rounded, per unit of length; empty at a kink, where they do not exist\n";
+  }
   if (request_.total) {
     out << "# total: " << to_string(*request_.total) << ", in " << unit_of(*request_.total, request_.ke)
         << ", of all sources together, correctly rounded; Ke is a "
@@ -118,8 +126,10 @@ std::string Rows::head() const {
   }
   out << "receiver,on,x,y,z,nx,ny,nz" << (request_.unit_normals ? ",ux,uy,uz" : "") << (request_.uv ? ",u,v" : "")
       << ",source,exact,lower,upper" << (request_.unoccluded ? ",unoccluded" : "")
-      << (request_.visible_fraction ? ",visible_fraction" : "") << ",radiosity_r,radiosity_g,radiosity_b,largest_rho_b"
-      << (request_.total ? ",total_r,total_g,total_b" : "") << ",status\n";
+      << (request_.visible_fraction ? ",visible_fraction" : "")
+      << (request_.gradient ? ",dF_dx,dF_dy,dF_dz,gradient_status" : "")
+      << ",radiosity_r,radiosity_g,radiosity_b,largest_rho_b" << (request_.total ? ",total_r,total_g,total_b" : "")
+      << ",status\n";
   return std::move(out).str();
 }
 
@@ -150,6 +160,34 @@ whole_view::FaceSide side_of(const Scene& scene, const Receiver& receiver) {
 
 }  // namespace
 
+namespace {
+
+// The worst status of the three.
+std::string_view status_of(const Gradient& gradient) {
+  if (gradient.kink) return "kink";
+  DerivativeStatus worst = DerivativeStatus::kZero;
+  for (const DerivativeStatus status :
+       {DerivativeStatus::kCertified, DerivativeStatus::kUnderflow, DerivativeStatus::kEnclosed}) {
+    if (std::ranges::any_of(gradient.position, [&](const Derivative& d) { return d.status == status; })) worst = status;
+  }
+  return to_string(worst);
+}
+
+void append_gradient(const Gradient& gradient, text::CsvRow& line) {
+  for (const Derivative& d : gradient.position) {
+    if (gradient.kink) {
+      line << std::string_view();
+    } else if (d.value == 0.0 && d.status != DerivativeStatus::kZero) {
+      line << "0.0";
+    } else {
+      line << d.value;
+    }
+  }
+  line << status_of(gradient);
+}
+
+}  // namespace
+
 void Rows::append(std::uint64_t row, std::string& lines, Results& results) const {
   const std::size_t number = row / sources_->count(), source = row % sources_->count();
   const Receiver& receiver = request_.receivers[number];
@@ -174,6 +212,7 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
     keep_worst(free.status != Status::kNotCertified);
   }
   if (request_.visible_fraction) line << f.visible_fraction.value_or(0.0);
+  if (request_.gradient) append_gradient(*f.gradient, line);
   const Rgb rho = request_.scene->receiver_reflectance(receiver.on), b = radiosities_[source];
   line << rho.r * b.r * f.value << rho.g * b.g * f.value << rho.b * b.b * f.value
        << std::max({rho.r * b.r, rho.g * b.g, rho.b * b.b});
@@ -205,7 +244,8 @@ class RowComputer : public Rows::Computer {
 std::unique_ptr<Rows::Computer> Rows::computer() const { return std::make_unique<RowComputer>(*this); }
 
 const FormFactor& Rows::factor(std::size_t receiver, std::size_t source, Results& results) const {
-  const ExactOptions options{.engine = request_.engine, .visible_fraction = request_.visible_fraction};
+  const ExactOptions options{
+      .engine = request_.engine, .visible_fraction = request_.visible_fraction, .gradient = request_.gradient};
   if (!light_ && !sources_->sweeps(options)) {
     sources_->find_one(request_.receivers[receiver], source, options, results.exact, results.all.at);
     return results.exact;

@@ -24,6 +24,7 @@ ValueReader::ValueReader(const std::filesystem::path& file) : lines_(file, "a tr
   unoccluded_ = column("unoccluded");
   on_ = column("on");
   totals_ = columns("total_r", "total_g", "total_b");
+  gradient_ = columns("dF_dx", "dF_dy", "dF_dz");
   point_ = columns("x", "y", "z");
   normal_ = columns("nx", "ny", "nz");
   numbers_ = {column("exact"),       column("lower"),       column("upper"),
@@ -67,7 +68,13 @@ Values ValueReader::values() const {
           has_fractions() ? number(fraction_) : 0.0,
           has_unoccluded() ? number(unoccluded_) : 0.0,
           {n[3], n[4], n[5]},
-          total};
+          total,
+          has_gradients() ? gradient() : Vec3{}};
+}
+
+Vec3 ValueReader::gradient() const {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  return fields_[gradient_[0]].empty() ? Vec3{kNone, kNone, kNone} : vector(gradient_);
 }
 
 Vec3 ValueReader::normal() const {

@@ -22,6 +22,7 @@ struct Values {
   Status status = Status::kCertified;
   double visible_fraction = 0.0, unoccluded = 0.0;
   Rgb radiosity, total;
+  Vec3 gradient;  // NaN at a kink
 
   // The number, or NaN where it is only an estimate.
   [[nodiscard]] double certified(double number) const;
@@ -34,6 +35,7 @@ class ValueReader {
   [[nodiscard]] bool has_fractions() const { return has(fraction_); }
   [[nodiscard]] bool has_unoccluded() const { return has(unoccluded_); }
   [[nodiscard]] bool has_totals() const { return has(totals_.back()); }
+  [[nodiscard]] bool has_gradients() const { return has(gradient_.back()); }
   [[nodiscard]] bool has_receivers() const;
 
   bool next();
@@ -58,6 +60,7 @@ class ValueReader {
   [[nodiscard]] static bool has(std::size_t column) { return column != kNoColumn; }
   [[nodiscard]] double number(std::size_t column) const;
   [[nodiscard]] Vec3 vector(const Three& of) const { return {number(of[0]), number(of[1]), number(of[2])}; }
+  [[nodiscard]] Vec3 gradient() const;
   [[nodiscard]] Status status() const;
 
   text::CsvLines lines_;
@@ -65,7 +68,7 @@ class ValueReader {
   std::size_t count_ = 0;  // of the columns
   std::size_t source_ = 0, status_ = 0, fraction_ = 0, unoccluded_ = 0, on_ = 0;
   std::array<std::size_t, 6> numbers_{};
-  Three totals_{}, point_{}, normal_{};
+  Three totals_{}, gradient_{}, point_{}, normal_{};
 };
 
 // The sources of the first receiver: the rows before its first source returns.

@@ -23,12 +23,16 @@ void write_npy(const fs::path& truth_file, const fs::path& file, const jobs::Row
   const Shape shape = shape_of(truth_file, hooks);
   ValueReader reader(truth_file);
   const std::size_t sources = shape.sources.size();
-  const std::array extents{shape.rows / sources, sources + (reader.has_totals() ? 3 : 0)};
+  const std::size_t of_source = reader.has_gradients() ? 4 : 1;
+  const std::array extents{shape.rows / sources, of_source * sources + (reader.has_totals() ? 3 : 0)};
   files::NpyFile<double> array(file, extents);
   jobs::Pace pace("writing the NumPy file", shape.rows, hooks);
   for (std::size_t row = 0; row < shape.rows && reader.next(); ++row) {
     const Values values = reader.values();
     array.append(values.certified(values.exact));
+    if (reader.has_gradients()) {
+      for (const double d : {values.gradient.x, values.gradient.y, values.gradient.z}) array.append(d);
+    }
     if (reader.has_totals() && row % sources == sources - 1) {
       for (const double total : {values.total.r, values.total.g, values.total.b}) array.append(values.certified(total));
     }
@@ -46,12 +50,13 @@ void require_receivers(const Shape& shape, std::size_t receivers, const fs::path
                "use the flags with which the file was made");
 }
 
-void add(vtk::SourceValues& list, const Values& values, bool has_fractions) {
+void add(vtk::SourceValues& list, const Values& values, const ValueReader& reader) {
   list.exact.push_back(values.exact);
   list.lower.push_back(values.lower);
   list.upper.push_back(values.upper);
   list.status.push_back(static_cast<std::uint8_t>(values.status));
-  if (has_fractions) list.visible_fraction.push_back(values.visible_fraction);
+  if (reader.has_gradients()) list.gradient.push_back(values.gradient);
+  if (reader.has_fractions()) list.visible_fraction.push_back(values.visible_fraction);
   list.radiosity.push_back(values.radiosity);
 }
 
@@ -60,13 +65,13 @@ std::vector<vtk::Field> fields_of(const fs::path& truth_file, const Request& req
   const Shape shape = shape_of(truth_file, hooks);
   require_receivers(shape, request.receivers.size(), truth_file);
   std::vector<vtk::SourceValues> list;
-  for (const std::string& source : shape.sources) list.push_back({source, {}, {}, {}, {}, {}, {}});
+  for (const std::string& source : shape.sources) list.push_back({source, {}, {}, {}, {}, {}, {}, {}});
   std::vector<double> totals;
   ValueReader reader(truth_file);
   jobs::Pace pace("reading rows", shape.rows, hooks);
   for (std::size_t row = 0; row < shape.rows && reader.next(); ++row) {
     const Values values = reader.values();
-    add(list[row % list.size()], values, reader.has_fractions());
+    add(list[row % list.size()], values, reader);
     if (row % list.size() == 0) totals.insert(totals.end(), {values.total.r, values.total.g, values.total.b});
     if ((row + 1) % kRowsBetweenChecks == 0) pace.add(kRowsBetweenChecks);
   }

@@ -31,9 +31,10 @@ struct SourceValues {
   std::vector<std::uint8_t> status;      // 0 certified, 1 zero, 2 underflow, 3 not certified (Status)
   std::vector<double> visible_fraction;  // empty: left out
   std::vector<Rgb> radiosity;            // rho B_s F
+  std::vector<Vec3> gradient = {};       // empty: left out
 };
-// "exact", "lower", "upper", "status", "visible fraction" and "radiosity". If there are several sources, the name of
-// the source follows, "exact (lamp)", and "radiosity" is the sum, added in the order of the sources.
+// "exact", "lower", "upper", "status", "visible fraction", "gradient" and "radiosity". If there are several sources,
+// the name of the source follows, "exact (lamp)", and "radiosity" is the sum, added in the order of the sources.
 [[nodiscard]] std::vector<Field> fields_of(std::vector<SourceValues> sources);
 
 struct Content {

@@ -58,6 +58,16 @@ void add(std::vector<Rgb>& sum, const std::vector<Rgb>& more) {
 
 }  // namespace
 
+namespace {
+
+std::vector<double> components_of(const std::vector<Vec3>& vectors) {
+  std::vector<double> numbers;
+  for (const Vec3& v : vectors) numbers.insert(numbers.end(), {v.x, v.y, v.z});
+  return numbers;
+}
+
+}  // namespace
+
 std::vector<Field> fields_of(std::vector<SourceValues> sources) {
   const bool several = sources.size() > 1;
   std::vector<Field> fields;
@@ -71,6 +81,7 @@ std::vector<Field> fields_of(std::vector<SourceValues> sources) {
     fields.push_back({name("upper"), 1, std::move(one.upper)});
     fields.push_back({name("status"), 1, std::move(one.status)});
     if (!one.visible_fraction.empty()) fields.push_back({name("visible fraction"), 1, std::move(one.visible_fraction)});
+    if (!one.gradient.empty()) fields.push_back({name("gradient"), 3, components_of(one.gradient)});
     fields.push_back({name("radiosity"), 3, as_vectors(one.radiosity)});
     if (several) add(sum, one.radiosity);
   }

@@ -15,6 +15,7 @@
 #include <limits>
 
 #include "contour/quick_angle.h"
+#include "contour/quick_lanes.h"
 #include "contour/quick_vector.h"
 #include "kernel/ball.h"
 #include "kernel/vec.h"
@@ -56,62 +57,7 @@ const AngleConstants& angle_constants() {
 
 namespace {
 
-constexpr std::size_t kLanes = 4;
-
-template <class T>
-using FourOf = std::array<const T*, kLanes>;  // pointers into memory, one per lane
-
-// Pointers to up to four items; the last item is repeated if there are fewer.
-template <class T>
-EXACTFF_INLINE FourOf<T> four_of(std::span<const T> some) {
-  const std::size_t last = some.size() - 1;
-  return {&some[0], &some[std::min<std::size_t>(1, last)], &some[std::min<std::size_t>(2, last)],
-          &some[std::min<std::size_t>(3, last)]};
-}
-
-EXACTFF_INLINE FourBounded gather(const FourOf<QuickLine>& lines, Bounded QuickLine::*part) {
-  const Bounded &x = lines[0]->*part, &y = lines[1]->*part, &z = lines[2]->*part, &t = lines[3]->*part;
-  return {Four{x.hi, y.hi, z.hi, t.hi}, Four{x.lo, y.lo, z.lo, t.lo}, Four{x.error, y.error, z.error, t.error}};
-}
-
-EXACTFF_INLINE FourVector gather(const FourOf<QuickLine>& lines, Vector QuickLine::*part) {
-  const Vector &p = lines[0]->*part, &q = lines[1]->*part, &r = lines[2]->*part, &s = lines[3]->*part;
-  const auto component = [&](int i) -> BasicDoubleDouble<Four> {
-    return {Four{p.c[i].hi, q.c[i].hi, r.c[i].hi, s.c[i].hi}, Four{p.c[i].lo, q.c[i].lo, r.c[i].lo, s.c[i].lo}};
-  };
-  return {{component(0), component(1), component(2)},
-          Four{p.norm, q.norm, r.norm, s.norm},
-          Four{p.error, q.error, r.error, s.error}};
-}
-
-EXACTFF_INLINE FourVector gather(const FourOf<QuickCorner>& corners) {
-  const QuickCorner &p = *corners[0], &q = *corners[1], &r = *corners[2], &s = *corners[3];
-  const auto component = [&](int i) -> BasicDoubleDouble<Four> {
-    return {Four{p.hi[i], q.hi[i], r.hi[i], s.hi[i]}, Four{p.lo[i], q.lo[i], r.lo[i], s.lo[i]}};
-  };
-  return vector({component(0), component(1), component(2)}, Four{p.error, q.error, r.error, s.error});
-}
-
-EXACTFF_INLINE Bounded lane(const FourBounded& x, std::size_t k) { return {x.hi[k], x.lo[k], x.error[k]}; }
-
-EXACTFF_INLINE Vector lane(const FourVector& v, std::size_t k) {
-  const auto component = [&](int i) -> DoubleDouble { return {v.c[i].hi[k], v.c[i].lo[k]}; };
-  return {{component(0), component(1), component(2)}, v.norm[k], v.error[k]};
-}
-
 // --- Edges ---
-
-// The receiver's normal with an error, because scaling it may have lost a component to underflow.
-template <class Real>
-EXACTFF_INLINE BasicVector<Real> vector_of(const std::array<double, 3>& normal) {
-  const auto component = [&](int i) -> BasicDoubleDouble<Real> { return {uniform<Real>(normal[i]), Real{}}; };
-  return vector({component(0), component(1), component(2)}, uniform<Real>(kUnderflow));
-}
-
-EXACTFF_INLINE FourMask has_moderate_size(const FourVector& v) {
-  const Four largest = larger(larger(magnitude(v.c[0].hi), magnitude(v.c[1].hi)), magnitude(v.c[2].hi));
-  return both(both(largest >= 0x1p-200, largest <= 0x1p200), v.norm <= 0x1p202);  // the last condition is false for NaN
-}
 
 struct FourLines {
   FourMask reversed;
@@ -123,7 +69,7 @@ struct FourLines {
   FourBounded weight;
 };
 
-EXACTFF_INLINE QuickLine lane(const FourLines& lines, std::size_t k) {
+EXACTFF_INLINE QuickLine line_of(const FourLines& lines, std::size_t k) {
   return {lines.reversed[k] != 0, lane(lines.a, k),    lane(lines.b, k),     lane(lines.along, k),
           lane(lines.cross, k),   lane(lines.size, k), lane(lines.weight, k)};
 }
@@ -144,8 +90,8 @@ EXACTFF_INLINE FourLines lines_between(const FourVector& normal, const FourVecto
 }
 
 // The corner at one end of each of up to four edges.
-EXACTFF_INLINE FourVector gather(std::span<const QuickCorner> corners, const FourOf<QuickEdge>& edges,
-                                 std::uint32_t QuickEdge::*end) {
+EXACTFF_INLINE FourVector gather_ends(std::span<const QuickCorner> corners, const FourOf<QuickEdge>& edges,
+                                      std::uint32_t QuickEdge::*end) {
   return gather(FourOf<QuickCorner>{&corners[edges[0]->*end], &corners[edges[1]->*end], &corners[edges[2]->*end],
                                     &corners[edges[3]->*end]});
 }
@@ -158,58 +104,12 @@ void lines_of(const std::array<double, 3>& normal, std::span<const QuickCorner> 
     const std::size_t count = std::min(kLanes, edges.size() - i);
     const FourOf<QuickEdge> edge = four_of(edges.subspan(i, count));
     const FourLines lines =
-        lines_between(n, gather(corners, edge, &QuickEdge::a), gather(corners, edge, &QuickEdge::b));
-    for (std::size_t k = 0; k < count; ++k) result[i + k] = lane(lines, k);
+        lines_between(n, gather_ends(corners, edge, &QuickEdge::a), gather_ends(corners, edge, &QuickEdge::b));
+    for (std::size_t k = 0; k < count; ++k) result[i + k] = line_of(lines, k);
   }
 }
 
 // --- Crossings ---
-
-// Four points s a + m d, each of one edge, and their (s : m).
-struct FourPoints {
-  FourBounded s;
-  FourBounded m;
-  FourVector direction;
-};
-
-EXACTFF_INLINE FourPoints where(const FourMask& condition, const FourPoints& p, const FourPoints& q) {
-  return {where(condition, p.s, q.s), where(condition, p.m, q.m), where(condition, p.direction, q.direction)};
-}
-
-// normal . p, where `normal` is that of a plane through c. normal . (p - t c) loses less accuracy if p and t c are near
-// each other.
-EXACTFF_INLINE FourBounded height(const FourVector& normal, const FourVector& c, const FourVector& p) {
-  const Four t = p.norm / c.norm;
-  const Four distance = magnitude(p.c[0].hi - t * c.c[0].hi) + magnitude(p.c[1].hi - t * c.c[1].hi) +
-                        magnitude(p.c[2].hi - t * c.c[2].hi);
-  const FourMask near = distance < 0.25 * p.norm;
-  return dot(normal, in_some_lane(near) ? where(near, near_cancellation(p, t, c), p) : p);
-}
-
-// x times a power of two. Requires that nothing overflows.
-EXACTFF_INLINE FourBounded scaled(const FourBounded& x, const Four& scale) {
-  return {x.hi * scale, x.lo * scale, x.error * scale + kUnderflow};
-}
-
-// The power of two that scales x into [1, 2), if x and its inverse are normal; otherwise an arbitrary number.
-EXACTFF_INLINE Four inverse_power_of_two(const Four& x) {
-  const FourMask biased = (FourMask(x) >> 52) & 0x7FF;
-  return Four((2046 - biased) << 52);
-}
-
-// The point where the plane with the given normal, through x and c, crosses the edge from a to a + d. Declined unless
-// the crossing is certain.
-EXACTFF_INLINE FourPoints cross_edges(const FourVector& normal, const FourVector& c, const FourVector& a,
-                                      const FourVector& d) {
-  const FourBounded height_a = height(normal, c, a), rise = dot(normal, d);
-  const FourBounded height_b = height_a + rise;
-  const FourMask crosses =
-      both(both(sign_is_certain(height_a), sign_is_certain(height_b)), differ(height_a.hi < 0.0, height_b.hi < 0.0));
-  const Four scale = inverse_power_of_two(magnitude(rise.hi));
-  const FourBounded s = only_where(crosses, scaled(absolute(rise), scale));
-  const FourBounded m = only_where(crosses, scaled(absolute(height_a), scale));
-  return {s, m, combination(s, a, m, d)};
-}
 
 // The edges of four pieces.
 struct FourEdges {

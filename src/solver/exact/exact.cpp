@@ -68,6 +68,13 @@ void check_precision_cap(int cap) {
                     .suggestion = "give a cap of at least 1; the default is 65536"});
 }
 
+void check_direction(const Vec3& along) {
+  if (kernel::is_finite(along) && !(along == Vec3{})) return;
+  throw InputError({.what = "the direction of the movement is zero or not finite",
+                    .why = "a derivative along it is not defined",
+                    .suggestion = "give three finite numbers that are not all 0"});
+}
+
 }  // namespace
 
 namespace exact {
@@ -90,6 +97,7 @@ namespace {
 
 void check_options(const Scene& scene, const ExactOptions& options) {
   check_precision_cap(options.precision_cap);
+  if (options.along) check_direction(*options.along);
   const std::vector<FaceId>* only = options.only_occluders;
   if (only == nullptr || only->empty()) return;
   if (!std::is_sorted(only->begin(), only->end())) {
@@ -108,7 +116,7 @@ void set_count(std::vector<PlaneRecord>& records, std::size_t count, std::vector
 }
 
 // Resets the result but keeps its memory; the records are still to be set.
-void reset(FormFactor& result, std::size_t planes, std::vector<PlaneRecord>& spare) {
+void reset(FormFactor& result, std::size_t planes, bool keeps_gradient, std::vector<PlaneRecord>& spare) {
   FormFactor fresh;
   fresh.enclosure = std::move(result.enclosure);
   EnclosureInside::set(fresh.enclosure, Ball());
@@ -116,6 +124,7 @@ void reset(FormFactor& result, std::size_t planes, std::vector<PlaneRecord>& spa
   fresh.cutters.clear();
   fresh.planes = std::move(result.planes);
   set_count(fresh.planes, planes, spare);
+  if (keeps_gradient) fresh.gradient = std::move(result.gradient);
   result = std::move(fresh);
 }
 
@@ -160,6 +169,7 @@ class Solver {
         planes_(ExactSourceInside::planes(source).planes),
         options_(options),
         wants_fraction_(options.visible_fraction || options.exact_fraction),
+        wants_gradient_(options.gradient || options.list_arcs || options.along.has_value()),
         view_(scene, receiver),
         request_{.engine = options.engine,
                  .fraction = wants_fraction_,
@@ -171,16 +181,19 @@ class Solver {
         memory_(memory) {}
 
   void run() {
-    reset(result_, planes_.size(), memory_.spare_records);
+    reset(result_, planes_.size(), wants_gradient_, memory_.spare_records);
     memory_.quick.start(view_.n);
+    if (wants_gradient_) start_gradient();
     for (std::size_t p = 0; p < planes_.size(); ++p) {
       PlaneVisibility seen = find(planes_[p]);
       memory_.quick.add(seen.boundary);
+      if (wants_gradient_) memory_.gradient->add({view_, planes_[p], request_}, seen.boundary);
       note(planes_[p], std::move(seen), result_.planes[p]);
     }
     sort_unique(result_.cutters);
     if (something_visible_ && !sum_is_certain()) integrate_in_balls();
     exact::set_bounds(result_);
+    if (wants_gradient_) find_gradient();
     if (wants_fraction_) set_fraction(shares_, result_);
   }
 
@@ -200,6 +213,23 @@ class Solver {
     result_.cutters.insert(result_.cutters.end(), seen.cutters.begin(), seen.cutters.end());
     set_record(record, std::move(seen.record), plane.faces);
     last_boundary_ = std::move(seen.boundary);
+  }
+
+  void start_gradient() {
+    if (memory_.gradient == nullptr) memory_.gradient = std::make_unique<gradient::PointGradient>();
+    memory_.gradient->start(view_, {options_.along, options_.list_arcs});
+  }
+
+  // As for the value, the boundaries are found again where double-double does not suffice.
+  void find_gradient() {
+    gradient::PointGradient& gradient = *memory_.gradient;
+    if (!result_.gradient) result_.gradient.emplace();
+    if (gradient.finish(options_.precision_cap, *result_.gradient)) return;
+    for (const SourcePlane& plane : planes_) {
+      const PlaneVisibility seen = find(plane);
+      gradient.add_exactly({view_, plane, request_}, seen.boundary);
+    }
+    gradient.certify(options_.precision_cap, *result_.gradient);
   }
 
   // Step 7 in double-double: takes the value from the sum over all planes. False if that does not determine it.
@@ -230,7 +260,7 @@ class Solver {
   const Scene& scene_;
   const std::vector<SourcePlane>& planes_;
   const ExactOptions& options_;
-  const bool wants_fraction_;
+  const bool wants_fraction_, wants_gradient_;
   const visibility::View view_;
   const visibility::BoundaryRequest request_;
   FormFactor& result_;
@@ -253,7 +283,21 @@ bool same_value(const FormFactor& a, const FormFactor& b) {
   return a.value == b.value && a.status == b.status;
 }
 
+bool same(const Derivative& a, const Derivative& b) {
+  if (a.status == DerivativeStatus::kNone || b.status == DerivativeStatus::kNone) return a.status == b.status;
+  const bool open = a.status == DerivativeStatus::kEnclosed || b.status == DerivativeStatus::kEnclosed;
+  return (open || (a.value == b.value && a.status == b.status)) && a.enclosure.overlaps(b.enclosure);
+}
+
+bool same_gradient(const std::optional<Gradient>& a, const std::optional<Gradient>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  const auto all = [](const auto& p, const auto& q) { return std::equal(p.begin(), p.end(), q.begin(), same); };
+  return a->kink.has_value() == b->kink.has_value() && all(a->position, b->position) && all(a->normal, b->normal) &&
+         (!a->along || same(*a->along, b->along.value()));
+}
+
 void require_agreement(const FormFactor& a, const FormFactor& b) {
+  if (!same_gradient(a.gradient, b.gradient)) throw std::logic_error("the two engines disagree about the gradient");
   if (same_value(a, b) && a.enclosure.overlaps(b.enclosure) && a.visible_fraction == b.visible_fraction &&
       a.visible_part == b.visible_part) {
     return;

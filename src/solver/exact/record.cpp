@@ -17,6 +17,18 @@ std::string_view to_string(VisiblePart part) {
   return kNames[static_cast<std::size_t>(part)];
 }
 
+std::string_view to_string(DerivativeStatus status) {
+  constexpr std::string_view kNames[] = {"certified", "zero", "underflow", "enclosed", "none"};
+  return kNames[static_cast<std::size_t>(status)];
+}
+
+std::string_view to_string(KinkReason reason) {
+  constexpr std::string_view kNames[] = {"a face is seen edge-on", "lines at different depths are seen as one",
+                                         "the source is seen edge-on",
+                                         "the receiver lies on a face that is not its own"};
+  return kNames[static_cast<std::size_t>(reason)];
+}
+
 std::string_view to_string(Engine engine) {
   constexpr std::string_view kNames[] = {"edges", "boolean", "both"};
   return kNames[static_cast<std::size_t>(engine)];

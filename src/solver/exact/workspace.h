@@ -6,6 +6,7 @@
 
 #include "exact/quick_tier.h"
 #include "exactff/exact.h"
+#include "gradient/gradient.h"
 #include "visibility/edge_workspace.h"
 
 namespace exactff {
@@ -18,6 +19,7 @@ struct Workspace::Memory {
 
   visibility::EdgeWorkspace edges;
   exact::QuickTier quick;
+  std::unique_ptr<gradient::PointGradient> gradient;  // made where one is asked for
   // Sources differ in their number of planes: records that one source does not need are kept for the next one.
   std::vector<PlaneRecord> spare_records;
   std::unique_ptr<Guest> view;  // of the whole view

@@ -48,7 +48,8 @@ Rgb SourceFactors::radiosity(std::size_t source) const {
 }
 
 bool SourceFactors::sweeps(const ExactOptions& options) const {
-  const bool values_alone = !options.visible_fraction && !options.exact_fraction && !options.list_cutters;
+  const bool values_alone = !options.visible_fraction && !options.exact_fraction && !options.list_cutters &&
+                            !options.gradient && !options.list_arcs && !options.along;
   return in_view_ && (are_most_ || sky_ == Sky::kLastSource) && values_alone && options.engine == Engine::kEdges &&
          options.only_occluders == nullptr;
 }

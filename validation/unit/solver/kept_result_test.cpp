@@ -36,9 +36,33 @@ std::string text_of(const PlaneRecord& record) {
   return text.str();
 }
 
+std::string text_of(const Derivative& derivative) {
+  const auto& [value, status, enclosure] = derivative;
+  std::ostringstream text;
+  text << (status == DerivativeStatus::kNone ? "none" : generate::to_text(value)) << ' ' << to_string(status) << ", "
+       << enclosure.midpoint() << " +- " << enclosure.radius() << '\n';
+  return text.str();
+}
+
+std::string text_of(const Gradient& gradient) {
+  const auto& [kink, position, normal, along, arcs] = gradient;
+  std::string text = kink ? std::string(to_string(kink->reason)) : "no kink";
+  for (std::size_t i = 0; kink && i < kink->faces.size(); ++i) text += ' ' + std::to_string(index_of(kink->faces[i]));
+  text += '\n';
+  for (const Derivative& d : position) text += text_of(d);
+  for (const Derivative& d : normal) text += text_of(d);
+  if (along) text += "along " + text_of(*along);
+  for (const GradientArc& arc : arcs) {
+    for (const Vec3& v : {arc.begin, arc.end, arc.part}) {
+      text += generate::to_text(v.x) + ' ' + generate::to_text(v.y) + ' ' + generate::to_text(v.z) + ' ';
+    }
+  }
+  return text;
+}
+
 std::string text_of(const FormFactor& result) {
-  const auto& [value, lower, upper, status, enclosure, visible_fraction, visible_part, cutters, planes,
-               precision_bits] = result;
+  const auto& [value, lower, upper, status, enclosure, visible_fraction, visible_part, cutters, planes, precision_bits,
+               gradient] = result;
   std::ostringstream text;
   for (const double number : {value, lower, upper, visible_fraction.value_or(-1.0)}) {
     text << generate::to_text(number) << ' ';
@@ -48,6 +72,7 @@ std::string text_of(const FormFactor& result) {
   for (const FaceId face : cutters) text << ' ' << index_of(face);
   text << '\n';
   for (const PlaneRecord& record : planes) text << text_of(record);
+  if (gradient) text << text_of(*gradient);
   return text.str();
 }
 
@@ -84,6 +109,10 @@ const std::vector<ExactOptions> kOptions = {
     {.list_cutters = true, .culling = ShaftCulling::kNone},
     {.engine = Engine::kBoolean, .exact_fraction = true, .list_cutters = true},
     {.only_occluders = &kNobody},
+    {.gradient = true},
+    {.list_arcs = true, .along = Vec3{1.0, 2.0, 0.0}},
+    {.engine = Engine::kBoth, .gradient = true},
+    {.gradient = true, .precision_cap = 20},
 };
 
 TEST_F(KeptResult, IsAsOneMadeAnew) {

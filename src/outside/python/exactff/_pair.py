@@ -29,6 +29,16 @@ class Status(enum.IntEnum):
         return _exactff.status_name(int(self))
 
 
+class DerivativeStatus(enum.IntEnum):
+    """How far a derivative is proved."""
+
+    CERTIFIED = 0  #: the true derivative, rounded to the nearest double; not 0
+    ZERO = 1  #: the derivative is proved to be exactly 0
+    UNDERFLOW = 2  #: it is not 0 and rounds to 0
+    ENCLOSED = 3  #: its ball does not determine the double; 0 if the ball still contains 0 at 256 bits
+    KINK = 4  #: the derivative does not exist; its value is NaN
+
+
 class Enclosure:
     """A ball that is proved to contain a real number: every number within ``radius`` of ``midpoint`` may be it.
 
@@ -101,6 +111,22 @@ class Drawing:
         return f"<exactff.Drawing: {len(self.svg)} characters of SVG>"
 
 
+@dataclass(frozen=True)
+class Gradient:
+    """The derivatives of one form factor F by the receiver's point, per unit of length, and V with F = n . V / abs(n).
+
+    At a kink dF/dx does not exist: `position` is NaN, and `kink` says why. V, dF/dn at a unit normal, always exists."""
+
+    position: Floats  #: exact: (3,) dF/dx, dF/dy, dF/dz, correctly rounded where certified
+    position_status: tuple[DerivativeStatus, ...]  #: of each
+    position_enclosures: tuple[Enclosure, ...]  #: encloses: a ball for each; without meaning at a kink
+    normal: Floats  #: exact: (3,) V, correctly rounded where certified
+    normal_status: tuple[DerivativeStatus, ...]  #: of each
+    normal_enclosures: tuple[Enclosure, ...]  #: encloses: a ball for each
+    kink: Optional[str]  #: why dF/dx does not exist; None if it does
+    kink_faces: tuple[str, ...]  #: names of the faces that meet there
+
+
 class FormFactor:
     """The exact form factor from one receiver to one source. ``float(f)`` is its value.
 
@@ -158,6 +184,16 @@ class FormFactor:
         """``none``, ``some`` or ``all`` of the source, decided exactly; None unless ``fraction=True``."""
         return self._pair.visible_part
 
+    @property
+    def gradient(self) -> Optional[Gradient]:
+        """The derivatives by the receiver's point and normal; None unless ``gradient=True``."""
+        found = self._pair.gradient()
+        if found is None:
+            return None
+        kink, position, normal = found
+        return Gradient(*_derivatives(position), *_derivatives(normal), None if kink is None else kink[0],
+                        () if kink is None else tuple(kink[1]))
+
     def explain(self) -> str:
         """What was computed and why, in words: the stages for each plane of the source, and the occluders that hide a
         part of it, with the share of the unoccluded form factor that each hides alone (estimates)."""
@@ -175,6 +211,13 @@ class FormFactor:
         return f"<exactff.FormFactor to {self.source!r}: {self.value!r} ({self.status})>"
 
 
+def _derivatives(
+    found: list[tuple[float, int, _exactff.Enclosure]]
+) -> tuple[Floats, tuple[DerivativeStatus, ...], tuple[Enclosure, ...]]:
+    return (np.array([value for value, _, _ in found]), tuple(DerivativeStatus(status) for _, status, _ in found),
+            tuple(Enclosure(ball) for _, _, ball in found))
+
+
 class _Again:
     """Computes the same pair with other options."""
 
@@ -184,8 +227,8 @@ class _Again:
         self._fixed = (point, normal, on, source)
 
     def __call__(self, fraction: bool = False, list_cutters: bool = False, digits: int = 0, precision_cap: int = 65536,
-                 only_occluders: Optional[list[int]] = None) -> _exactff.Pair:
-        return _exactff.form_factor(self.scene, *self._fixed, fraction, list_cutters, digits, precision_cap,
+                 only_occluders: Optional[list[int]] = None, gradient: bool = False) -> _exactff.Pair:
+        return _exactff.form_factor(self.scene, *self._fixed, fraction, list_cutters, gradient, digits, precision_cap,
                                     only_occluders)
 
 
@@ -220,3 +263,6 @@ class FormFactors:
     precision_bits: NDArray[np.int32]  #: of the last evaluation of the contour integral; 0 if none was needed
     visible_fraction: Optional[Floats]  #: exact: visible over whole area; None unless ``fraction=True``
     sources: tuple[str, ...]  #: names of the columns
+    #: exact: dF/dx, dF/dy, dF/dz on a last axis of 3, NaN at kinks; None unless ``gradient=True``
+    gradient: Optional[Floats] = None
+    gradient_status: Optional[NDArray[np.int8]] = None  #: of each, see :class:`DerivativeStatus`

@@ -232,16 +232,18 @@ class Scene:
     @overload
     def form_factors(self, points: ArrayLike, normals: ArrayLike, sources: Names = None, on: On = None, *,
                      threads: int = 0, transparent: Names = None, fraction: Literal[False] = False,
-                     full: Literal[False] = False, progress: Progress = None, precision_cap: int = 65536) -> Floats: ...
+                     gradient: Literal[False] = False, full: Literal[False] = False, progress: Progress = None, precision_cap: int = 65536) -> Floats: ...
 
     @overload
     def form_factors(self, points: ArrayLike, normals: ArrayLike, sources: Names = None, on: On = None, *,
-                     threads: int = 0, transparent: Names = None, fraction: bool = False, full: bool = False,
-                     progress: Progress = None, precision_cap: int = 65536) -> Union[Floats, FormFactors]: ...
+                     threads: int = 0, transparent: Names = None, fraction: bool = False, gradient: bool = False,
+                     full: bool = False, progress: Progress = None,
+                     precision_cap: int = 65536) -> Union[Floats, FormFactors]: ...
 
     def form_factors(self, points: ArrayLike, normals: ArrayLike, sources: Names = None, on: On = None, *,
-                     threads: int = 0, transparent: Names = None, fraction: bool = False, full: bool = False,
-                     progress: Progress = None, precision_cap: int = 65536) -> Union[Floats, FormFactors]:
+                     threads: int = 0, transparent: Names = None, fraction: bool = False, gradient: bool = False,
+                     full: bool = False, progress: Progress = None,
+                     precision_cap: int = 65536) -> Union[Floats, FormFactors]:
         """Exact form factors from receivers to sources.
 
         F is the share of the diffuse light leaving a point that reaches the source directly: the integral over the
@@ -258,6 +260,8 @@ class Scene:
         threads : 0 for as many as this process may use; no value depends on it
         transparent : patches or faces that hide nothing, here only
         fraction : also compute the visible fractions; implies `full`
+        gradient : also compute the derivatives by the receiver's point, per unit of length; implies `full`. Where they
+            do not exist (kinks), they are NaN and their status says so
         full : return :class:`FormFactors` with bounds, status and precision
         progress : None for a bar of tqdm on a terminal; True, False, or a function of (done, total)
         precision_cap : the largest precision, in bits
@@ -279,8 +283,9 @@ class Scene:
         own = scene._own_faces(on, shape, p, n, count)
         scene._warn_of_misses(p, n, own)
         with shown(progress, "receiver") as tell:
-            value, status, lower, upper, bits, share = _exactff.form_factors(
-                scene._scene, p, n, own, names, full or fraction, fraction, _bits(precision_cap), count, tell)
+            value, status, lower, upper, bits, share, slope, slope_status = _exactff.form_factors(
+                scene._scene, p, n, own, names, full or fraction or gradient, fraction, gradient, _bits(precision_cap),
+                count, tell)
         missing = int(np.count_nonzero(status == Status.NOT_CERTIFIED))
         if missing:
             warn(f"{missing} of {status.size} values are not certified (the precision cap was reached); "
@@ -289,15 +294,18 @@ class Scene:
         if lower is None or upper is None or bits is None:
             return value.reshape(size)
         return FormFactors(value.reshape(size), lower.reshape(size), upper.reshape(size), status.reshape(size),
-                           bits.reshape(size), None if share is None else share.reshape(size), tuple(names))
+                           bits.reshape(size), None if share is None else share.reshape(size), tuple(names),
+                           None if slope is None else slope.reshape(size + (3,)),
+                           None if slope_status is None else slope_status.reshape(size + (3,)))
 
     def form_factor(self, point: ArrayLike, normal: ArrayLike, source: Optional[str] = None, on: On = None, *,
                     transparent: Names = None, fraction: bool = False, digits: int = 0,
-                    precision_cap: int = 65536) -> FormFactor:
+                    precision_cap: int = 65536, gradient: bool = False) -> FormFactor:
         """The exact form factor of one pair, with its proof, an explanation and a drawing.
 
         Parameters are those of :meth:`form_factors`. `source` may be left out if one patch emits. `digits` raises the
-        precision until so many significant digits are proved: ``f.enclosure.decimals(digits)``.
+        precision until so many significant digits are proved: ``f.enclosure.decimals(digits)``. ``gradient=True`` sets
+        :attr:`FormFactor.gradient`.
         """
         scene = self if transparent is None else self.with_transparent(*_arrays_names(transparent))
         shape, p, n = _arrays.receivers(point, normal)
@@ -307,7 +315,8 @@ class Scene:
         scene._warn_of_misses(p, n, own)
         ask = _Again(scene._scene, tuple(p[0].tolist()), tuple(n[0].tolist()), [int(f) for f in own[0] if f >= 0],
                      self._source(source))
-        return FormFactor(ask(fraction=fraction, digits=digits, precision_cap=_bits(precision_cap)), ask)
+        return FormFactor(ask(fraction=fraction, digits=digits, precision_cap=_bits(precision_cap),
+                              gradient=gradient), ask)
 
     # --- names and own faces ---
 

@@ -27,6 +27,7 @@ class TruthSummary(NamedTuple):
 
 def truth(scene: Scene, receivers: Receivers, path: Union[str, os.PathLike[str]], sources: Names = None, *,
           unoccluded: bool = False, fraction: bool = False, unit_normals: bool = False, uv: bool = False,
+          gradient: bool = False,
           existing: Literal["refuse", "resume", "replace"] = "refuse", threads: int = 0,
           progress: Progress = None) -> TruthSummary:
     """Writes a truth file: the bytes that ``exactff truth`` writes for the same scene, receivers and sources.
@@ -34,14 +35,15 @@ def truth(scene: Scene, receivers: Receivers, path: Union[str, os.PathLike[str]]
     Parameters
     ----------
     receivers : from :meth:`Scene.receivers`, :meth:`Scene.read_receivers` or :meth:`Scene.receivers_at`
-    unoccluded, fraction, unit_normals, uv : additional columns
+    unoccluded, fraction, unit_normals, uv, gradient : additional columns
     existing : what to do if there is a file or a journal of an interrupted run: "refuse", "resume" or "replace"
 
     After Ctrl-C or a crash, finished rows are kept in ``PATH.part``; ``existing="resume"`` continues.
     """
     if existing not in ("refuse", "resume", "replace"):
         refuse(f"existing is {existing!r}", "", "choose 'refuse', 'resume' or 'replace'")
-    wanted = {"unoccluded": unoccluded, "visible_fraction": fraction, "unit_normals": unit_normals, "uv": uv}
+    wanted = {"unoccluded": unoccluded, "visible_fraction": fraction, "unit_normals": unit_normals, "uv": uv,
+              "gradient": gradient}
     count = _arrays.thread_count(threads)
     with shown(progress, "row") as tell:
         rows, by_status, resumed, seconds = _exactff.write_truth(

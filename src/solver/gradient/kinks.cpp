@@ -1,0 +1,218 @@
+#include "gradient/kinks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "kernel/expect.h"
+#include "kernel/poll.h"
+#include "kernel/vec.h"
+
+namespace exactff::gradient {
+
+using kernel::ExactVec3;
+using kernel::sign;
+using visibility::CornerId;
+using visibility::EdgeId;
+using visibility::OutlineId;
+using visibility::Outlines;
+using visibility::PlaneQuery;
+
+void KinkSearch::note(KinkReason reason, const Scene& scene, std::span<const std::uint32_t> pieces) {
+  if (kink_) return;
+  kink_.emplace(Kink{reason, {}});
+  for (const std::uint32_t piece : pieces) kink_->faces.push_back(scene.pieces()[piece].face);
+  std::ranges::sort(kink_->faces);
+  const auto rest = std::ranges::unique(kink_->faces);
+  kink_->faces.erase(rest.begin(), rest.end());
+}
+
+void KinkSearch::find(const PlaneQuery& query, bool is_visible, Extent extent) {
+  kink_.reset();
+  planes_.clear();
+  judged_.clear();
+  const auto& [view, plane, request] = query;
+  const auto pieces = view.scene.pieces();
+  const bool is_own = std::ranges::all_of(plane.pieces, [&](std::uint32_t p) { return view.is_own(pieces[p].face); });
+  if (is_own) return;
+  const int side = side_of(plane, view.x);
+  if (side > 0) find_around_source(query, is_visible, extent);
+  if (side == 0) find_edge_on(query);
+}
+
+// --- The source edge-on ---
+
+namespace {
+
+// Two vertices of a piece whose plane holds x, which x does not see in line.
+std::pair<std::uint32_t, std::uint32_t> apart(const visibility::View& view, const Piece& piece) {
+  const auto arrow = [&](std::uint32_t v) { return kernel::exact_difference(view.scene.vertices()[v], view.x).v; };
+  for (int i = 0; i < 3; ++i) {
+    const std::uint32_t p = piece.frame[i], q = piece.frame[(i + 1) % 3];
+    if (!is_zero(cross(arrow(p), arrow(q)))) return {p, q};
+  }
+  EXACTFF_EXPECT(false);  // the three would lie on a line
+  return {};
+}
+
+}  // namespace
+
+void KinkSearch::find_edge_on(const PlaneQuery& query) {
+  const auto& [view, plane, request] = query;
+  const auto holds = [&](std::uint32_t own) {
+    return !view.is_own(view.scene.pieces()[own].face) && holds_x(view, view.scene.pieces()[own]);
+  };
+  const bool on_source = std::ranges::any_of(plane.pieces, holds);
+  const ExactVec3 n = view.normal().exact;
+  if (is_zero(cross(plane.normal.exact, n))) {  // it is the horizon
+    if (on_source && sign(dot(plane.normal.exact, n)) < 0) note(KinkReason::kOnFace, view.scene, plane.pieces);
+    return;
+  }
+  if (on_source) return note(KinkReason::kOnFace, view.scene, plane.pieces);
+  profile_.gather_around_plane(query);
+  const Piece& piece = view.scene.pieces()[plane.pieces.front()];
+  const auto [p, q] = apart(view, piece);
+  Outlines& outlines = profile_.outlines();
+  const CornerId a = outlines.corner_at(p), b = outlines.corner_at(q);
+  const bool reversed = sign(dot(cross(outlines.exact(b), outlines.exact(a)), plane.normal.exact)) < 0;
+  SightPlane sight(query, profile_, reversed ? outlines.line_through(b, a) : outlines.line_through(a, b));
+  std::vector<SightArc> arcs = sight.arcs_of_source_edge_on();
+  if (arcs.empty()) return;
+  note(profile_.touching() ? KinkReason::kOnFace : KinkReason::kSourceEdgeOn, view.scene, plane.pieces);
+  planes_.push_back({sight.normal(), std::move(arcs)});
+}
+
+// --- The source before x ---
+
+void KinkSearch::find_around_source(const PlaneQuery& query, bool is_visible, Extent extent) {
+  visibility::BoundaryRequest request = query.request;
+  request.culling = ShaftCulling::kTree;
+  const PlaneQuery closed{query.view, query.plane, request};
+  profile_.gather(closed);
+  if (profile_.source_count() == 0 || profile_.stays_hidden()) return;
+  const std::optional<std::uint32_t>& touching = profile_.touching();
+  if (!(touching && is_visible)) {
+    find_open_edges();
+    if (judge_sheets(closed, extent)) static_cast<void>(judge_groups(closed, extent));
+    if (!(touching && kink_)) return;
+  }
+  kink_.reset();
+  note(KinkReason::kOnFace, query.view.scene, std::span(&*touching, 1));
+}
+
+namespace {
+
+// A direction in general position.
+constexpr Vec3 kAnywhere{0.5398041762934, 0.2874930211667, 0.7911734960021};
+
+}  // namespace
+
+// 2. Edges without a piece on both sides, in the order of their numbers.
+//
+// The number of the plane with the normal N is |N . c| / |N| for a fixed vector c of about unit length. The components
+// of N are known to within e = 2^-49 |a||b| (outlines.h). So its error is below 2 sqrt(3) e / |N| + 8u, for which
+// edge.error / |N| + 2^-48 is more than enough.
+void KinkSearch::find_open_edges() {
+  const Outlines& outlines = profile_.outlines();
+  const auto edges = outlines.edges();
+  sides_.assign(edges.size(), 0);
+  table_.clear(std::max<std::size_t>(edges.size(), 1));
+  const EdgeId first_occluder = profile_.source_count() < outlines.outlines().size()
+                                    ? outlines.outline(static_cast<OutlineId>(profile_.source_count())).first
+                                    : static_cast<EdgeId>(edges.size());
+  entries_.clear();
+  const auto add = [&](EdgeId id) {
+    const Outlines::Edge& edge = edges[id];
+    const double length = std::sqrt(kernel::dot(edge.normal, edge.normal));
+    const double number = std::abs(kernel::dot(edge.normal, kAnywhere)) / length;
+    const double error = edge.error / length + 0x1p-48;
+    constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+    if (error < 0x1p-10 && number <= 2.0) {
+      entries_.push_back({number - error, number + error, id});
+    } else {
+      entries_.push_back({-kUnbounded, kUnbounded, id});
+    }
+  };
+  for (EdgeId id = 0; id < first_occluder; ++id) add(id);
+  for (EdgeId id = first_occluder; id < edges.size(); ++id) {
+    const EdgeId first = table_.add(id, edges);
+    sides_[first] = static_cast<std::uint8_t>(sides_[first] | (edges[first].a == edges[id].a ? 1U : 2U));
+  }
+  for (EdgeId id = first_occluder; id < edges.size(); ++id) {
+    if (sides_[id] == 1) add(id);
+  }
+  std::ranges::sort(entries_,
+                    [](const Entry& p, const Entry& q) { return p.low != q.low ? p.low < q.low : p.edge < q.edge; });
+}
+
+// 3. and 4. False: stopped.
+bool KinkSearch::judge_groups(const PlaneQuery& query, Extent extent) {
+  Outlines& outlines = profile_.outlines();
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (entries_[i].done) continue;
+    const Outlines::Edge edge = outlines.edge(entries_[i].edge);
+    group_.assign(1, entries_[i].edge);
+    for (std::size_t j = i + 1; j < entries_.size() && entries_[j].low <= entries_[i].high; ++j) {
+      Entry& other = entries_[j];
+      if (other.done) continue;
+      const Outlines::Edge& line = outlines.edge(other.edge);
+      if (outlines.side(edge, line.a) != 0 || outlines.side(edge, line.b) != 0) continue;
+      other.done = true;
+      group_.push_back(other.edge);
+    }
+    if (group_.size() < 2) continue;
+    kernel::poll();
+    if (!are_at_one_depth(group_)) judge(query, edge);
+    if (kink_ && extent == Extent::kFirst) return false;
+  }
+  return true;
+}
+
+// Whether all edges, which lie in one plane through x, lie on one line in space. Those of pieces cut by the source's
+// plane are not compared.
+bool KinkSearch::are_at_one_depth(std::span<const EdgeId> group) {
+  const Outlines& outlines = profile_.outlines();
+  const auto ends_of = [&](EdgeId id) {
+    const Outlines::Edge& edge = outlines.edge(id);
+    return std::pair(outlines.vertex(edge.a), outlines.vertex(edge.b));
+  };
+  const auto [p, q] = ends_of(group.front());
+  if (!p || !q) return false;
+  const ExactVec3 along = kernel::exact_difference(outlines.position(*q), outlines.position(*p)).v;
+  return std::ranges::all_of(group, [&](EdgeId id) {
+    const auto [a, b] = ends_of(id);
+    const auto is_on_line = [&](std::uint32_t v) {
+      return is_zero(cross(along, kernel::exact_difference(outlines.position(v), outlines.position(*p)).v));
+    };
+    return a && b && is_on_line(*a) && is_on_line(*b);
+  });
+}
+
+bool KinkSearch::judge_sheets(const PlaneQuery& query, Extent extent) {
+  Outlines& outlines = profile_.outlines();
+  for (const std::uint32_t sheet : profile_.sheets()) {
+    kernel::poll();
+    const auto [p, q] = apart(query.view, query.view.scene.pieces()[sheet]);
+    judge(query, outlines.line_through(outlines.corner_at(p), outlines.corner_at(q)));
+    if (kink_ && extent == Extent::kFirst) return false;
+  }
+  return true;
+}
+
+bool KinkSearch::is_judged(const ExactVec3& normal) const {
+  return std::ranges::any_of(judged_, [&](const ExactVec3& other) { return is_zero(cross(normal, other)); });
+}
+
+void KinkSearch::judge(const PlaneQuery& query, const Outlines::Edge& edge) {
+  SightPlane sight(query, profile_, edge);
+  if (is_judged(sight.normal()) || is_zero(cross(sight.normal(), query.view.normal().exact))) return;
+  judged_.push_back(sight.normal());
+  std::vector<SightArc> arcs = sight.arcs();
+  const auto kink = std::ranges::find_if(arcs, &SightArc::is_kink);
+  if (kink == arcs.end()) return;
+  note(kink->edge_on ? KinkReason::kEdgeOn : KinkReason::kCoincident, query.view.scene, kink->pieces);
+  planes_.push_back({sight.normal(), std::move(arcs)});
+}
+
+}  // namespace exactff::gradient

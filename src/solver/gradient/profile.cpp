@@ -1,0 +1,150 @@
+#include "gradient/profile.h"
+
+#include <algorithm>
+#include <array>
+
+#include "kernel/expect.h"
+#include "kernel/poll.h"
+
+namespace exactff::gradient {
+
+using kernel::sign;
+using visibility::CornerId;
+using visibility::EdgeId;
+using visibility::OutlineId;
+using visibility::Outlines;
+using visibility::PieceClip;
+using visibility::PlaneQuery;
+
+namespace {
+
+constexpr std::uint32_t kPiecesPerPoll = 1'024;
+
+}  // namespace
+
+void Profile::start() {
+  pieces_.clear();
+  sheets_.clear();
+  touching_.reset();
+  source_count_ = 0;
+  stays_hidden_ = false;
+}
+
+void Profile::gather(const PlaneQuery& query) {
+  start();
+  PieceClip clip(query, outlines_, clip_);
+  source_count_ = clip.add_source().count;
+  for (const std::uint32_t piece : query.plane.pieces) {
+    if (pieces_.size() < source_count_) pieces_.push_back(piece);
+  }
+  seen_.clear(query.view.scene.pieces().size());
+  visibility::SourceShaft shaft(query, clip, outlines_, shaft_);
+  std::uint32_t visited = 0;
+  for (OutlineId source = 0; source < source_count_ && !stays_hidden_; ++source) {
+    shaft.set(source);
+    for_each_candidate(query.view, shaft.half_spaces(), ShaftCulling::kTree, [&](std::uint32_t index, bool /*inside*/) {
+      if (++visited % kPiecesPerPoll == 0) kernel::poll();
+      if (!seen_.is_set(index) && may_occlude(query.view, query.plane, query.request, index)) {
+        visit(query, clip, index, source);
+      }
+      return !stays_hidden_;
+    });
+  }
+}
+
+void Profile::visit(const PlaneQuery& query, PieceClip& clip, std::uint32_t index, OutlineId source) {
+  const Piece& piece = query.view.scene.pieces()[index];
+  clip.take(query.view.scene.corners(piece));
+  if (is_beside(source, clip.corners())) return;
+  seen_.set(index);
+  const std::span<const int> depths = clip.find_depths();
+  const bool some_before = std::ranges::any_of(depths, [](int depth) { return depth > 0; });
+  const bool some_behind = std::ranges::any_of(depths, [](int depth) { return depth < 0; });
+  if (!some_before) return;
+  const int facing = facing_of(query.view, piece);
+  if (facing == 0) {
+    sheets_.push_back(index);
+    if (!touching_ && holds_x(query.view, piece)) touching_ = index;
+    return;
+  }
+  const OutlineId outline = clip.add_occluder(some_behind, facing);
+  pieces_.push_back(index);
+  stays_hidden_ = hides_more(outline);
+}
+
+// Certainly outside the closed shaft of one outline of the source.
+bool Profile::is_beside(OutlineId source, std::span<const CornerId> corners) const {
+  const Outlines::Outline& outline = outlines_.outline(source);
+  for (EdgeId side = outline.first; side < outline.first + outline.count; ++side) {
+    const auto is_outside = [&](CornerId corner) {
+      const visibility::Height height = outlines_.height(outlines_.edge(side), corner);
+      return height.value < -height.error;
+    };
+    if (std::ranges::all_of(corners, is_outside)) return true;
+  }
+  return false;
+}
+
+bool Profile::hides_more(OutlineId occluder) {
+  const Outlines::Outline& o = outlines_.outline(occluder);
+  const Outlines::Outline& last = outlines_.outline(static_cast<OutlineId>(source_count_ - 1));
+  for (EdgeId f = o.first; f < o.first + o.count; ++f) {
+    for (EdgeId s = 0; s < last.first + last.count; ++s) {
+      if (outlines_.side(outlines_.edge(f), outlines_.edge(s).a) <= 0) return false;
+    }
+  }
+  return true;
+}
+
+Outlines::Edge Profile::edge_in_plane(const kernel::ExactVec3& normal) {
+  const kernel::Approx3 rounded = kernel::approx(normal);
+  const auto holds = [&](CornerId corner) {
+    const int filtered = outlines_.side_by_filter(rounded, corner);
+    if (filtered != kernel::kUncertain) return filtered == 0;
+    return sign(dot(normal, outlines_.exact(corner))) == 0;
+  };
+  const auto found = std::ranges::find_if(outlines_.edges(),
+                                          [&](const Outlines::Edge& edge) { return holds(edge.a) && holds(edge.b); });
+  EXACTFF_EXPECT(found != outlines_.edges().end());
+  return *found;
+}
+
+void Profile::gather_around_plane(const PlaneQuery& query) {
+  start();
+  const auto& [view, plane, request] = query;
+  outlines_.start(view.scene, view.x, kernel::max_norm(kernel::approx_difference(plane.second, plane.point)));
+  outlines_.set_source_plane(plane.normal.exact, plane.fine_normal, plane.point);
+  const Vec3 front = kernel::to_vec3(plane.normal.approx), back{-front.x, -front.y, -front.z};
+  const std::array<HalfSpace, 2> slab{{{front, 0.0}, {back, 0.0}}};
+  PieceClip clip(query, outlines_, clip_);
+  std::vector<CornerId> corners;
+  for_each_candidate(view, HalfSpaceGroups(slab), ShaftCulling::kTree, [&](std::uint32_t index, bool /*inside*/) {
+    const Piece& piece = view.scene.pieces()[index];
+    if (!may_occlude(view, plane, request, index)) return true;
+    if (facing_of(view, piece) == 0) {
+      if (!touching_ && holds_x(view, piece)) touching_ = index;
+      return true;
+    }
+    clip.take(view.scene.corners(piece));
+    corners.assign(clip.corners().begin(), clip.corners().end());
+    outlines_.add(corners, true);
+    pieces_.push_back(index);
+    return true;
+  });
+}
+
+bool holds_x(const visibility::View& view, const Piece& piece) {
+  const auto vertices = view.scene.vertices();
+  const auto corners = view.scene.corners(piece);
+  const auto arrow = [&](std::uint32_t v) { return kernel::exact_difference(vertices[v], view.x).v; };
+  const kernel::ExactVec3 normal =
+      cross(kernel::exact_difference(vertices[piece.frame[1]], vertices[piece.frame[0]]).v,
+            kernel::exact_difference(vertices[piece.frame[2]], vertices[piece.frame[0]]).v);
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    const kernel::ExactVec3 p = arrow(corners[c]), q = arrow(corners[c + 1 == corners.size() ? 0 : c + 1]);
+    if (sign(dot(normal, cross(p, q))) < 0) return false;
+  }
+  return true;
+}
+
+}  // namespace exactff::gradient

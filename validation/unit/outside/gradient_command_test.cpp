@@ -1,0 +1,152 @@
+// The gradient as scripts use it: exactff point --gradient and exactff truth --gradient.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/program.h"
+
+namespace exactff {
+namespace {
+
+using validation::ProgramRun;
+using validation::run_program;
+using validation::TemporaryDirectory;
+using validation::text_of;
+
+// A light [-1,1]^2 at z = 1 facing down, a plate, a floor, and far away a sheet that is seen edge-on from y = 20.
+const std::string kGradientScene =
+    "v -1 1 1\nv 1 1 1\nv 1 -1 1\nv -1 -1 1\n"
+    "v -.25 -.25 .5\nv .25 -.25 .5\nv .25 .25 .5\nv -.25 .25 .5\n"
+    "v -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\n"
+    "v -1 .5 .25\nv -1 .5 .5\nv -2 .5 .5\nv -2 .5 .25\n"
+    "g light\nf 1 2 3 4\ng plate\nf 5 6 7 8\ng floor\nf 9 10 11 12\ng sheet\nf 13 14 15 16\n";
+
+struct GradientCommand : testing::Test {
+  TemporaryDirectory directory;
+  std::string scene = directory.write("a.obj", kGradientScene).string();
+
+  ProgramRun point(const std::string& x, const std::string& y, std::vector<std::string> flags) const {
+    std::vector<std::string> arguments = {"point", scene, "--at", x,      y,       "0",        "--normal",
+                                          "0",     "0",   "1",    "--on", "floor", "--source", "light"};
+    arguments.insert(arguments.end(), flags.begin(), flags.end());
+    return run_program(EXACTFF_PROGRAM, arguments);
+  }
+};
+
+std::vector<std::string> split_at(const std::string& line, char separator) {
+  std::vector<std::string> fields;
+  std::istringstream in(line);
+  for (std::string field; std::getline(in, field, separator);) fields.push_back(field);
+  return fields;
+}
+
+TEST_F(GradientCommand, PlainPrintsValueAndDerivativesSeparatedByTabs) {
+  const ProgramRun run = point("0.375", "0.25", {"--gradient", "--plain"});
+  EXPECT_EQ(run.exit_code, 0);
+  ASSERT_EQ(run.output.back(), '\n');
+  const std::vector<std::string> fields = split_at(run.output.substr(0, run.output.size() - 1), '\t');
+  ASSERT_EQ(fields.size(), 4U);
+  EXPECT_EQ(fields[0] + '\n', point("0.375", "0.25", {"--plain"}).output);
+  const double ahead = std::stod(point("0.37501", "0.25", {"--plain"}).output);
+  const double back = std::stod(point("0.37499", "0.25", {"--plain"}).output);
+  EXPECT_NEAR(std::stod(fields[1]), (ahead - back) / 2e-5, 1e-7);
+}
+
+TEST_F(GradientCommand, PlainTellsProvedZerosFromKinks) {
+  const ProgramRun middle = point("0", "0", {"--gradient", "--plain"});
+  const std::vector<std::string> fields = split_at(middle.output, '\t');
+  ASSERT_EQ(fields.size(), 4U);
+  EXPECT_EQ(fields[1], "0");
+  EXPECT_EQ(fields[2], "0");
+  const ProgramRun kink = point("-3", "0.5", {"--gradient", "--plain"});
+  EXPECT_EQ(kink.exit_code, 0);
+  EXPECT_EQ(kink.output, split_at(point("-3", "0.5", {"--plain"}).output, '\n').front() + "\tkink\n");
+}
+
+TEST_F(GradientCommand, TextNamesTheReasonOfAKink) {
+  const ProgramRun smooth = point("0.375", "0.25", {"--gradient"});
+  EXPECT_NE(smooth.output.find("  dF/dx        "), std::string::npos) << smooth.output;
+  EXPECT_NE(smooth.output.find("  Vz           "), std::string::npos) << smooth.output;
+  const ProgramRun kink = point("-3", "0.5", {"--gradient", "--along", "0", "1", "0"});
+  EXPECT_NE(kink.output.find("none: a kink, since a face is seen edge-on (sheet)"), std::string::npos) << kink.output;
+  EXPECT_NE(kink.output.find("  along        "), std::string::npos) << kink.output;
+}
+
+TEST_F(GradientCommand, JsonHasBallsAndArcs) {
+  const auto json = nlohmann::json::parse(point("0.375", "0.25", {"--gradient", "--json", "--explain"}).output);
+  const auto& gradient = json.at("sources").at(0).at("gradient");
+  EXPECT_TRUE(gradient.at("kink").is_null());
+  double sum = 0.0;
+  for (const auto& arc : gradient.at("arcs")) sum += arc.at("part").at(0).get<double>();
+  EXPECT_NEAR(sum, gradient.at("position").at(0).at("value").get<double>(), 1e-14);
+  EXPECT_EQ(gradient.at("normal").at(2).at("status"), "certified");
+  const auto kink = nlohmann::json::parse(point("-3", "0.5", {"--gradient", "--json"}).output).at("sources").at(0);
+  EXPECT_TRUE(kink.at("gradient").at("position").at(0).at("value").is_null());
+  EXPECT_EQ(kink.at("gradient").at("kink").at("faces").at(0), "sheet");
+}
+
+TEST_F(GradientCommand, ExplainListsTheArcs) {
+  const ProgramRun run = point("0.375", "0.25", {"--gradient", "--explain"});
+  EXPECT_NE(run.output.find("arcs of the visible boundary that move: 8"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("    the line through ("), std::string::npos) << run.output;
+}
+
+TEST_F(GradientCommand, AlongNeedsGradient) {
+  const ProgramRun run = point("0", "0", {"--along", "1", "0", "0"});
+  EXPECT_EQ(run.exit_code, 2);
+}
+
+TEST_F(GradientCommand, TruthHasColumnsThatAreEmptyAtKinks) {
+  const auto receivers =
+      directory.write("r.csv", "id,x,y,z,nx,ny,nz,on\na,0.375,0.25,0,0,0,1,floor\nb,-3,0.5,0,0,0,1,floor\n");
+  const std::string file = (directory.path() / "truth.csv").string(), npy = (directory.path() / "truth.npy").string();
+  const std::string vtk = (directory.path() / "truth.vtp").string();
+  const ProgramRun run = run_program(EXACTFF_PROGRAM, {"truth", scene, "--receivers", receivers.string(), "--source",
+                                                       "light", "--gradient", "-o", file, "--npy", npy, "--vtk", vtk});
+  EXPECT_EQ(run.exit_code, 0);
+  std::vector<std::string> lines;
+  for (const std::string& line : split_at(text_of(file), '\n')) {
+    if (line.front() != '#') lines.push_back(line);
+  }
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_NE(lines[0].find(",upper,dF_dx,dF_dy,dF_dz,gradient_status,"), std::string::npos) << lines[0];
+  const std::vector<std::string> plain =
+      split_at(split_at(point("0.375", "0.25", {"--gradient", "--plain"}).output, '\n').front(), '\t');
+  EXPECT_NE(lines[1].find(',' + plain[1] + ',' + plain[2] + ',' + plain[3] + ",certified,"), std::string::npos)
+      << lines[1];
+  EXPECT_NE(lines[2].find(",,,,kink,"), std::string::npos) << lines[2];
+  EXPECT_NE(text_of(npy).find("(2, 4)"), std::string::npos);
+  EXPECT_NE(text_of(vtk).find("Name=\"gradient\""), std::string::npos);
+}
+
+// Whatever a program says at a kink, it is not wrong.
+TEST_F(GradientCommand, CheckComparesAColumnWithoutTheKinks) {
+  const auto receivers =
+      directory.write("r.csv", "id,x,y,z,nx,ny,nz,on\na,0.375,0.25,0,0,0,1,floor\nb,-3,0.5,0,0,0,1,floor\n");
+  const std::string file = (directory.path() / "truth.csv").string();
+  ASSERT_EQ(run_program(EXACTFF_PROGRAM, {"truth", scene, "--receivers", receivers.string(), "--source", "light",
+                                          "--gradient", "-o", file})
+                .exit_code,
+            0);
+  const std::string x = split_at(point("0.375", "0.25", {"--gradient", "--plain"}).output, '\t')[1];
+  const auto check = [&](const std::string& value) {
+    const auto mine = directory.write("mine.csv", "receiver,source,value\na,light," + value + "\nb,light,17\n");
+    return run_program(EXACTFF_PROGRAM, {"check", file, mine.string(), "--truth-column", "dF_dx", "--max-abs", "1e-6"})
+        .exit_code;
+  };
+  EXPECT_EQ(check(x), 0);
+  EXPECT_EQ(check(std::to_string(std::stod(x) + 1e-3)), 1);
+}
+
+TEST_F(GradientCommand, TruthRefusesTheGradientOfTheSky) {
+  const ProgramRun run = run_program(EXACTFF_PROGRAM, {"truth", scene, "--on", "floor", "--grid", "2x2", "--source",
+                                                       "light,sky", "--gradient", "-o", "-"});
+  EXPECT_EQ(run.exit_code, 2);
+}
+
+}  // namespace
+}  // namespace exactff
