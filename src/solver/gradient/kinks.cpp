@@ -24,15 +24,15 @@ void KinkSearch::note(KinkReason reason, const Scene& scene, std::span<const std
   kink_.emplace(Kink{reason, {}});
   for (const std::uint32_t piece : pieces) kink_->faces.push_back(scene.pieces()[piece].face);
   std::ranges::sort(kink_->faces);
-  const auto rest = std::ranges::unique(kink_->faces);
-  kink_->faces.erase(rest.begin(), rest.end());
+  kink_->faces.erase(std::unique(kink_->faces.begin(), kink_->faces.end()), kink_->faces.end());
 }
 
 void KinkSearch::find(const PlaneQuery& query, bool is_visible, Extent extent) {
   kink_.reset();
   planes_.clear();
   judged_.clear();
-  const auto& [view, plane, request] = query;
+  const visibility::View& view = query.view;
+  const visibility::SourcePlane& plane = query.plane;
   const auto pieces = view.scene.pieces();
   const bool is_own = std::ranges::all_of(plane.pieces, [&](std::uint32_t p) { return view.is_own(pieces[p].face); });
   if (is_own) return;
@@ -59,7 +59,8 @@ std::pair<std::uint32_t, std::uint32_t> apart(const visibility::View& view, cons
 }  // namespace
 
 void KinkSearch::find_edge_on(const PlaneQuery& query) {
-  const auto& [view, plane, request] = query;
+  const visibility::View& view = query.view;
+  const visibility::SourcePlane& plane = query.plane;
   const auto holds = [&](std::uint32_t own) {
     return !view.is_own(view.scene.pieces()[own].face) && holds_x(view, view.scene.pieces()[own]);
   };
@@ -177,13 +178,14 @@ bool KinkSearch::are_at_one_depth(std::span<const EdgeId> group) {
     const Outlines::Edge& edge = outlines.edge(id);
     return std::pair(outlines.vertex(edge.a), outlines.vertex(edge.b));
   };
-  const auto [p, q] = ends_of(group.front());
-  if (!p || !q) return false;
-  const ExactVec3 along = kernel::exact_difference(outlines.position(*q), outlines.position(*p)).v;
+  const auto ends = ends_of(group.front());
+  if (!ends.first || !ends.second) return false;
+  const Vec3& origin = outlines.position(*ends.first);
+  const ExactVec3 along = kernel::exact_difference(outlines.position(*ends.second), origin).v;
   return std::ranges::all_of(group, [&](EdgeId id) {
     const auto [a, b] = ends_of(id);
     const auto is_on_line = [&](std::uint32_t v) {
-      return is_zero(cross(along, kernel::exact_difference(outlines.position(v), outlines.position(*p)).v));
+      return is_zero(cross(along, kernel::exact_difference(outlines.position(v), origin).v));
     };
     return a && b && is_on_line(*a) && is_on_line(*b);
   });

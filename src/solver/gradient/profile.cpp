@@ -111,7 +111,8 @@ Outlines::Edge Profile::edge_in_plane(const kernel::ExactVec3& normal) {
 
 void Profile::gather_around_plane(const PlaneQuery& query) {
   start();
-  const auto& [view, plane, request] = query;
+  const visibility::View& view = query.view;
+  const visibility::SourcePlane& plane = query.plane;
   outlines_.start(view.scene, view.x, kernel::max_norm(kernel::approx_difference(plane.second, plane.point)));
   outlines_.set_source_plane(plane.normal.exact, plane.fine_normal, plane.point);
   const Vec3 front = kernel::to_vec3(plane.normal.approx), back{-front.x, -front.y, -front.z};
@@ -120,7 +121,7 @@ void Profile::gather_around_plane(const PlaneQuery& query) {
   std::vector<CornerId> corners;
   for_each_candidate(view, HalfSpaceGroups(slab), ShaftCulling::kTree, [&](std::uint32_t index, bool /*inside*/) {
     const Piece& piece = view.scene.pieces()[index];
-    if (!may_occlude(view, plane, request, index)) return true;
+    if (!may_occlude(view, plane, query.request, index)) return true;
     if (facing_of(view, piece) == 0) {
       if (!touching_ && holds_x(view, piece)) touching_ = index;
       return true;

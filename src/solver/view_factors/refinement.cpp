@@ -96,10 +96,10 @@ bool Refinement::start_next_stage() {
   for (const std::unique_ptr<Pair>& pair : pairs_) {
     if (pair != nullptr) pair->set_limits(limits());
   }
-  const auto last =
-      std::ranges::partition(settled_, [](const Waiting& w) { return w.share.next == Share::Next::kNothing; });
-  std::ranges::move(last, std::back_inserter(waiting_));
-  settled_.erase(last.begin(), last.end());
+  const auto waits = std::partition(settled_.begin(), settled_.end(),
+                                    [](const Waiting& w) { return w.share.next == Share::Next::kNothing; });
+  std::move(waits, settled_.end(), std::back_inserter(waiting_));
+  settled_.erase(waits, settled_.end());
   std::ranges::make_heap(waiting_, is_less_urgent);
   return true;
 }
