@@ -68,16 +68,19 @@ class CellJudge {
  private:
   void judge_pair(const Part& receiver, const Part& source, const Selection& whole) {
     if (!source.is_piece || pairs_++ >= kMostPairs) return;
-    const view_factors::SeenPieces pieces = seen_.seen_from(receiver);
+    const view_factors::SeenParts::OfPatch of_receiver;
     std::optional<view_factors::Sight> sight;
-    if (sees(scene_, pieces, source)) sight = sight_of(exact_, pieces.occluders, receiver, source, receiver.face);
+    if (of_receiver.sees(seen_, {&receiver, 1}, 0, source)) {
+      sight =
+          sight_of(exact_, of_receiver.lists(seen_, {&receiver, 1}).front().occluders, receiver, source, receiver.face);
+    }
     std::vector<Share> shares;
     view_factors::PairMemory memory;
     std::optional<view_factors::Pair> pair;
     if (sight) {
-      pair.emplace(scene_, std::move(*sight), receiver.face, nullptr, view_factors::Pair::Limits{.rounding = 1e-9},
-                   memory, 0);
-      shares = pair->cells(kCells);
+      pair.emplace(scene_, std::move(*sight), faces_of(scene_, receiver), nullptr, memory, 0);
+      pair->set_limits({.rounding = 1e-9});
+      shares = pair->cells(0.0, kCells);
     }
     const NearPlanes near(exact_, receiver);
     const ExactSource exact_source(scene_, whole);
