@@ -1,8 +1,7 @@
 // Steps:
 //   1. Sort the edges of all pieces by the places of their ends. Where just two pieces share one, are of planar faces
-//   of
-//      one patch, and lie side by side in one oriented plane, connect them. The
-//      edges that then have one piece are cut where corners of others lie on them (T-junctions), and looked at again.
+//      of one patch, and lie side by side in one oriented plane, connect them. The edges that then have one piece are
+//      cut where corners of others lie on them (T-junctions), and looked at again.
 //   2. Of each connected set of several faces, keep the edges that do not cancel: its boundary. Chain them into rings;
 //      drop corners in the middle of a straight side.
 //   3. Cut what the rings enclose as a face with holes is cut (triangulation.h).

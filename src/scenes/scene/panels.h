@@ -3,8 +3,7 @@
 //
 // A *sheet* is a set of pieces of one patch in one oriented plane, of several planar faces, that are connected by edges
 // and do not overlap. Edges are matched by the positions of their ends, or, if a patch does not have very many, also in
-// part. Its union is cut into convex panels, fewer than
-// its pieces. A piece of no sheet is a panel by itself.
+// part. Its union is cut into convex panels, fewer than its pieces. A piece of no sheet is a panel by itself.
 //
 // The panels of a sheet cover exactly what its pieces cover, but a panel need not consist of whole pieces. Whoever
 // leaves out some of the pieces uses the pieces instead.
