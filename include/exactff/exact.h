@@ -59,10 +59,11 @@ struct PlaneRecord {
   std::vector<FaceId> faces;
   Engine engine = Engine::kEdges;  // the engine that did the work
   Outcome outcome = Outcome::kBehind;
-  bool horizon_clipped = false;       // the horizon cut the faces
-  bool source_joined = false;         // the faces consist of several convex pieces that had to be joined
-  std::uint64_t tree_candidates = 0;  // pieces that the bounding-volume tree did not rule out, for all shafts
-  std::uint64_t candidates = 0;       // pieces that remain after the exact predicates
+  bool horizon_clipped = false;  // the horizon cut the faces
+  bool source_joined = false;    // the faces consist of several convex pieces that had to be joined
+  // Pieces, or panels that join several in one plane.
+  std::uint64_t tree_candidates = 0;  // those that the bounding-volume tree did not rule out, for all shafts
+  std::uint64_t candidates = 0;       // those that remain after the exact predicates
   // If silhouettes were searched for: edges that the tree of edges did not rule out, and of these the silhouettes,
   // across which the number of occluders changes, with a part before the source. The pieces beside the former are
   // candidates.
