@@ -224,28 +224,27 @@ void Pair::add_dark(Cell cell, Candidates candidates, PairMemory::Way way, std::
                     .is_dark = true});
 }
 
-Pair::Integral Pair::integral_by(const Rule& rule, const Rule& lower, const Formula& formula, const Cell& cell) const {
+// By a rule of Gauss' and the one with a point less in each direction, from which the error is estimated; or it is the
+// whole cell.
+template <unsigned kCount>
+Pair::Integral Pair::integrate_by(const Formula& formula, const Cell& cell, double radii) const {
+  const std::vector<Vec3> ring = positions_of(cell.corners);
+  const Rule rule = gauss_integral<kCount>(formula, cell, ring),
+             lower = gauss_integral<kCount - 1>(formula, cell, ring);
   const double difference = 4.0 * std::abs(rule.integral - lower.integral);
-  const double least = resolution(cell, formula) >= kLeastRadii ? 0.0 : area(cell);
+  const double least = radii >= kLeastRadii ? 0.0 : area(ring);
   return {.integral = rule.integral, .error = std::max(difference, least) + rule.rounding, .rounding = rule.rounding};
 }
 
-Pair::Integral Pair::integrate_by_six(const Formula& formula, const Cell& cell) const {
-  const std::vector<Vec3> ring = positions_of(cell.corners);
-  return integral_by(gauss_integral<6>(formula, cell, ring), gauss_integral<5>(formula, cell, ring), formula, cell);
-}
-
-// By a rule of Gauss' and the one with a point less in each direction, from which the error is estimated; or it is the
-// whole cell. Four points where they suffice for a cell of this size, else six.
+// Four points where they suffice for a cell of this size, else six.
 Pair::Integral Pair::integrate(const Formula& formula, const Cell& cell) const {
-  if (resolution(cell, formula) >= kRadiiForFour) {
-    const std::vector<Vec3> ring = positions_of(cell.corners);
-    Integral four =
-        integral_by(gauss_integral<4>(formula, cell, ring), gauss_integral<3>(formula, cell, ring), formula, cell);
+  const double radii = resolution(cell, formula);
+  if (radii >= kRadiiForFour) {
+    Integral four = integrate_by<4>(formula, cell, radii);
     four.more_points = true;
-    if (four.error <= limits_.quadrature * area(ring)) return four;
+    if (four.error <= limits_.quadrature * area(cell)) return four;
   }
-  return integrate_by_six(formula, cell);
+  return integrate_by<6>(formula, cell, radii);
 }
 
 Share::Next Pair::next_of(const Integral& found) const {
@@ -369,7 +368,7 @@ bool Pair::improve_whole(Share& share) {
   if (!is_due) return false;
   ++extra_cost_;
   const Integral found = certifies()   ? enclose(*share.formula, share.cell, HUGE_VAL)
-                         : more_points ? integrate_by_six(*share.formula, share.cell)
+                         : more_points ? integrate_by<6>(*share.formula, share.cell, kRadiiForFour)
                                        : integrate(*share.formula, share.cell);
   if (!(found.error < share.error)) return false;
   share.integral = found.integral;

@@ -102,7 +102,9 @@ class Pair {
   };
   [[nodiscard]] Share::Next next_of(const Integral& found) const;
   [[nodiscard]] Integral integrate(const Formula& formula, const Cell& cell) const;
-  [[nodiscard]] Integral integrate_by_six(const Formula& formula, const Cell& cell) const;
+  // `radii`: the distance of the nearest edge (resolution).
+  template <unsigned kCount>
+  [[nodiscard]] Integral integrate_by(const Formula& formula, const Cell& cell, double radii) const;
   [[nodiscard]] Integral integrate_event(const Formula& formula, const Cell& cell, const Point& centre,
                                          const Candidates& candidates,
                                          const std::vector<CrossingTriple>& triples) const;
@@ -116,8 +118,6 @@ class Pair {
     double integral = 0.0;
     double rounding = 0.0;  // of the values and of the cell's area
   };
-  [[nodiscard]] Integral integral_by(const Rule& rule, const Rule& lower, const Formula& formula,
-                                     const Cell& cell) const;
   template <unsigned kCount>
   [[nodiscard]] Rule gauss_integral(const Formula& formula, const Cell& cell, const std::vector<Vec3>& ring) const;
   [[nodiscard]] Evaluated value_at(const Formula& formula, const Point& x) const;
