@@ -126,20 +126,28 @@ TEST_P(RandomFamilies, CertifiedViewFactorsAgreeWithTheOtherDirection) {
 INSTANTIATE_TEST_SUITE_P(All, RandomFamilies, testing::Range(std::size_t{0}, random_families().size()),
                          [](const auto& param) { return std::string(random_families()[param.param].name); });
 
-void expect_means_of_point_factors(const ViewFactorOptions& options) {
-  std::size_t judged = 0;
-  for (std::uint64_t s = 0; s < scaled_count(60); ++s) {
+// Calls judge(number, scene, from, to) for a random patch and the source of random scenes, if both have an area.
+template <class Judge>
+void for_each_random_pair(std::uint64_t count, const Judge& judge) {
+  for (std::uint64_t s = 0; s < scaled_count(count); ++s) {
     Random random(seed_of(s));
     const Scene scene = generate::build(s % 2 == 0 ? degenerate_scene(random) : generic_scene(random));
     const Selection to = scene.select("source");
     const Selection from = patch_of(scene, random.below(scene.patches().size()));
-    if (!has_area(scene, from) || !has_area(scene, to) || !has_one_face(scene, from)) continue;
+    if (has_area(scene, from) && has_area(scene, to)) judge(s, scene, from, to);
+  }
+}
+
+void expect_means_of_point_factors(const ViewFactorOptions& options) {
+  std::size_t judged = 0;
+  for_each_random_pair(60, [&](std::uint64_t s, const Scene& scene, const Selection& from, const Selection& to) {
+    if (!has_one_face(scene, from)) return;
     const ViewFactor f = view_factor(scene, from, to, options);
     const Mean mean = mean_of_points(scene, from, to, 512, s);
     EXPECT_LE(f.lower - 5.0 * mean.standard_error - 1e-9, mean.value) << s << ' ' << scene.name_of(from);
     EXPECT_GE(f.upper + 5.0 * mean.standard_error + 1e-9, mean.value) << s << ' ' << scene.name_of(from);
     judged += f.value > 0.0 ? 1 : 0;
-  }
+  });
   EXPECT_GE(judged, 5U);
 }
 
@@ -153,12 +161,7 @@ TEST(ViewFactors, CertifiedAgreeWithMeansOfPointFactors) {
 // The estimated interval at a far smaller accuracy lies inside the certified one, or meets it where it is wide.
 TEST(ViewFactors, CertifiedHoldBetterEstimates) {
   std::size_t judged = 0;
-  for (std::uint64_t s = 0; s < scaled_count(30); ++s) {
-    Random random(seed_of(s));
-    const Scene scene = generate::build(s % 2 == 0 ? degenerate_scene(random) : generic_scene(random));
-    const Selection to = scene.select("source");
-    const Selection from = patch_of(scene, random.below(scene.patches().size()));
-    if (!has_area(scene, from) || !has_area(scene, to)) continue;
+  for_each_random_pair(30, [&](std::uint64_t s, const Scene& scene, const Selection& from, const Selection& to) {
     const ViewFactor close = view_factor(scene, from, to, {.accuracy = 1e-7, .budget = 3000, .sample_crowds = false});
     for (const double accuracy : {1e-2, 1e-4, 1e-6}) {
       const ViewFactor f = view_factor(scene, from, to, {.accuracy = accuracy, .budget = 1000, .certify = true});
@@ -167,19 +170,14 @@ TEST(ViewFactors, CertifiedHoldBetterEstimates) {
       EXPECT_EQ(f.claim == Claim::kZero, close.claim == Claim::kZero);
       judged += f.accurate && f.value > 0.0 ? 1 : 0;
     }
-  }
+  });
   EXPECT_GE(judged, 5U);
 }
 
 // At the same limit of cells, whether or not they suffice.
 TEST(ViewFactors, ASmallerAccuracyNeverWidensThem) {
   std::size_t limited = 0;
-  for (std::uint64_t s = 0; s < scaled_count(30); ++s) {
-    Random random(seed_of(s));
-    const Scene scene = generate::build(s % 2 == 0 ? degenerate_scene(random) : generic_scene(random));
-    const Selection to = scene.select("source");
-    const Selection from = patch_of(scene, random.below(scene.patches().size()));
-    if (!has_area(scene, from) || !has_area(scene, to)) continue;
+  for_each_random_pair(30, [&](std::uint64_t s, const Scene& scene, const Selection& from, const Selection& to) {
     for (const bool certify : {false, true}) {
       double width = 1.0;
       for (const double accuracy : {0.3, 2e-2, 1.5e-2, 1e-3, 7e-5, 6e-5, 1e-8}) {
@@ -190,7 +188,7 @@ TEST(ViewFactors, ASmallerAccuracyNeverWidensThem) {
         limited += f.accurate ? 0 : 1;
       }
     }
-  }
+  });
   EXPECT_GE(limited, 5U);
 }
 
@@ -236,19 +234,14 @@ TEST(ViewFactors, DependOnTheirPairAlone) {
 // With a single cell every pair is a crowd. Its interval is judged by the cells of a larger budget.
 TEST(ViewFactors, OfCrowdsHoldTheFactor) {
   std::size_t judged = 0;
-  for (std::uint64_t s = 0; s < scaled_count(60); ++s) {
-    Random random(seed_of(s));
-    const Scene scene = generate::build(s % 2 == 0 ? degenerate_scene(random) : generic_scene(random));
-    const Selection to = scene.select("source");
-    const Selection from = patch_of(scene, random.below(scene.patches().size()));
-    if (!has_area(scene, from) || !has_area(scene, to)) continue;
+  for_each_random_pair(60, [&](std::uint64_t s, const Scene& scene, const Selection& from, const Selection& to) {
     const ViewFactor truth = view_factor(scene, from, to, {.accuracy = 1e-4, .budget = 1000, .sample_crowds = false});
     const ViewFactor f = view_factor(scene, from, to, {.accuracy = 1e-9, .budget = 1});
-    if (f.way != Way::kPoints) continue;
+    if (f.way != Way::kPoints) return;
     EXPECT_LE(f.lower, truth.upper) << s << ' ' << scene.name_of(from);
     EXPECT_GE(f.upper, truth.lower) << s << ' ' << scene.name_of(from);
     ++judged;
-  }
+  });
   EXPECT_GE(judged, 5U);
 }
 
