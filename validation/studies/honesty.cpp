@@ -48,67 +48,87 @@ Bounds turned_round(const Bounds& truth, const kernel::Disc& ratio) {
           truth.are_contradictory};
 }
 
-struct PreparedPair {
+struct Pair {
   Scene scene;
   Selection from, to;
-  Bounds forth, back;  // of F_ij and of F_ji
 };
 
-// Ever narrower, until the cells do not suffice: asked for too much, they would be spent where they bring little.
-Bounds enclosure(const PreparedPair& pair, const Selection& from, const Selection& to, const HonestySize& size) {
-  Bounds bounds;
-  for (const double accuracy : size.truth_accuracies) {
-    const ViewFactor f =
-        view_factor(pair.scene, from, to,
-                    {.accuracy = accuracy, .budget = size.truth_budget, .both_directions = true, .certify = true});
-    bounds = common_part(bounds, {f.lower, f.upper});
-    if (!f.accurate) break;
-  }
-  return bounds;
-}
-
-PreparedPair prepared_pair(const HonestyScene& named, const HonestySize& size) {
-  PreparedPair pair{scene_of(named), {}, {}, {}, {}};
+Pair pair_of(const HonestyScene& named) {
+  Pair pair{scene_of(named), {}, {}};
   pair.from = pair.scene.select(named.from);
   pair.to = pair.scene.select(named.to);
-  const Bounds forth = enclosure(pair, pair.from, pair.to, size), back = enclosure(pair, pair.to, pair.from, size);
-  const view_factors::ExactScene exact(pair.scene);
-  pair.forth = common_part(forth, turned_round(back, ratio_of_areas(exact, pair.from, pair.to)));
-  pair.back = common_part(turned_round(forth, ratio_of_areas(exact, pair.to, pair.from)), back);
-  pair.forth.are_contradictory = pair.back.are_contradictory =
-      pair.forth.are_contradictory || pair.back.are_contradictory;
   return pair;
 }
 
-void add_entry(const PreparedPair& pair, Asked asked, double accuracy, bool is_turned, const HonestySize& size,
-               HonestyScene& scene) {
-  ViewFactorOptions options{.accuracy = accuracy, .budget = size.budget, .sample_crowds = false};
-  options.certify = asked == Asked::kCertified;
-  if (asked == Asked::kPoints) {
-    options.budget = 1;
-    options.sample_crowds = true;
-  }
-  const Selection &i = is_turned ? pair.to : pair.from, &j = is_turned ? pair.from : pair.to;
-  const ViewFactor factor = view_factor(pair.scene, i, j, options);
-  // With one cell, what needs none is proved, and not of interest here.
-  if (asked == Asked::kPoints && factor.way != Way::kPoints) return;
-  scene.entries.push_back({asked, accuracy, is_turned, factor, is_turned ? pair.back : pair.forth});
+// Beside an estimated error the truth is narrow, so that the ratio of the two says something.
+constexpr double kNarrow = 0.5;
+
+bool is_judged(const HonestyEntry& entry) {
+  const Verdict found = verdict(entry.factor, entry.truth);
+  const bool is_narrow = entry.factor.claim != Claim::kEstimated ||
+                         entry.truth.upper - entry.truth.lower <= kNarrow * magnitude_of_error(entry.factor);
+  return found == Verdict::kBroken || (found == Verdict::kHolds && is_narrow);
 }
 
-void fill(HonestyScene& scene, const HonestySize& size) {
-  const PreparedPair pair = prepared_pair(scene, size);
-  for (const Asked asked : {Asked::kCertified, Asked::kCells}) {
-    for (const double accuracy : size.accuracies) add_entry(pair, asked, accuracy, scene.is_turned, size, scene);
+// The accuracy of a truth that judges the entries.
+double accuracy_of_truth(std::span<const HonestyEntry> entries) {
+  double accuracy = 1.0;
+  for (const HonestyEntry& entry : entries) accuracy = std::min(accuracy, kNarrow * magnitude_of_error(entry.factor));
+  return std::clamp(accuracy, 1e-13, 1e-2);
+}
+
+// Gives the entries their truth: from both directions with few cells, then from one with many, then from the other.
+void judge(const Pair& pair, const HonestySize& size, HonestyScene& scene) {
+  const view_factors::ExactScene exact(pair.scene);
+  const std::array<const Selection*, 2> ends{&pair.from, &pair.to};
+  const kernel::Disc ratio = ratio_of_areas(exact, *ends[scene.is_turned], *ends[!scene.is_turned]);
+  const double accuracy = accuracy_of_truth(scene.entries);
+  Bounds truth;
+  const auto narrow = [&](bool turned, std::size_t budget) {
+    const ViewFactor f =
+        view_factor(pair.scene, *ends[turned], *ends[!turned],
+                    {.accuracy = accuracy, .budget = budget, .both_directions = true, .certify = true});
+    const Bounds found{f.lower, f.upper};
+    truth = common_part(truth, turned == scene.is_turned ? found : turned_round(found, ratio));
+    for (HonestyEntry& entry : scene.entries) entry.truth = truth;
+  };
+  for (const bool turned : {false, true}) narrow(turned, size.truth_budgets.front());
+  for (const std::size_t budget : size.truth_budgets) {
+    for (const bool turned : {false, true}) {
+      if (std::ranges::all_of(scene.entries, is_judged)) return;
+      if (budget > size.truth_budgets.front()) narrow(turned, budget);
+    }
   }
-  for (const bool is_turned : {false, true}) {
-    add_entry(pair, Asked::kPoints, size.accuracies.back(), is_turned, size, scene);
+}
+
+void add_entry(const Pair& pair, Asked asked, double accuracy, std::size_t budget, HonestyScene& scene) {
+  const bool by_points = asked == Asked::kPoints;
+  if (by_points) budget = 1;
+  const Selection &i = scene.is_turned ? pair.to : pair.from, &j = scene.is_turned ? pair.from : pair.to;
+  const ViewFactor factor = view_factor(
+      pair.scene, i, j,
+      {.accuracy = accuracy, .budget = budget, .sample_crowds = by_points, .certify = asked == Asked::kCertified});
+  // With one cell, what needs none is proved, and not of interest here.
+  if (by_points && factor.way != Way::kPoints) return;
+  scene.entries.push_back({asked, accuracy, budget, scene.is_turned, factor, {}});
+}
+
+void fill(HonestyScene& scene, std::uint64_t number, const HonestySize& size) {
+  const Pair pair = pair_of(scene);
+  models::Random random(~number);  // of a stream that draws no scene
+  const double accuracy = size.accuracies[random.below(size.accuracies.size())];
+  const std::size_t budget = size.budgets[random.below(size.budgets.size())];
+  for (const Asked asked : {Asked::kCertified, Asked::kCells, Asked::kPoints}) {
+    add_entry(pair, asked, accuracy, budget, scene);
   }
+  judge(pair, size, scene);
 }
 
 // An internal error is a result here, among thousands of others.
-HonestyScene fill_or_note_failure(HonestyScene scene, const HonestySize& size) {
+HonestyScene scene_with_entries(std::uint64_t number, const HonestySize& size) {
+  HonestyScene scene = honesty_scene(number);
   try {
-    fill(scene, size);
+    fill(scene, number, size);
   } catch (const std::logic_error& error) {
     scene.failure = error.what();
   }
@@ -151,11 +171,7 @@ ErrorRatio error_ratio(const ViewFactor& entry, const Bounds& truth) {
 
 HonestySize honesty_size(bool abridged) {
   HonestySize size;
-  if (abridged) {
-    size.scenes = 8;
-    size.budget = 300;
-    size.truth_budget = 1000;
-  }
+  if (abridged) size.scenes = 24;
   return size;
 }
 
@@ -230,9 +246,8 @@ std::vector<HonestyRow> honesty_rows(std::span<const HonestyScene> scenes) {
 HonestyStudy honesty_study(const HonestySize& size, int threads, const Hooks& hooks) {
   HonestyStudy study;
   study.scenes.resize(size.scenes);
-  files::parallel_for(size.scenes, threads, kHonestyStage, hooks, [&](std::size_t i) {
-    study.scenes[i] = fill_or_note_failure(honesty_scene(size.first + i), size);
-  });
+  files::parallel_for(size.scenes, threads, kHonestyStage, hooks,
+                      [&](std::size_t i) { study.scenes[i] = scene_with_entries(size.first + i, size); });
   study.rows = honesty_rows(study.scenes);
   for (const HonestyScene& scene : study.scenes) {
     study.contradictions += !scene.entries.empty() && scene.entries.front().truth.are_contradictory ? 1U : 0U;

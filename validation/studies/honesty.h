@@ -2,10 +2,11 @@
 // reported with it, for each claim and accuracy.
 //
 // Every second scene has a floor, a source above it and one to four faces between, of the models karkanis, soup and
-// lattice; the others are made to break what is claimed (honest_families.h). Two patches of it are compared. The truth
-// is what two certified enclosures have in common, one of F_ij and one of F_ji, computed apart at a small accuracy. So
-// an error counts only if it is proved: the entry's interval and the truth have no number in common. Where they overlap
-// without the truth being inside, the entry is left open.
+// lattice; the others are made to break what is claimed (honest_families.h). The factor between two patches of it is
+// asked for as certified, as estimated by cells, and by points; the scene's number draws accuracy and budget. The
+// truth is what two certified enclosures have in common, one of F_ij and one of F_ji, computed apart. They are narrowed
+// until they judge the entries, or their cells are used up. An error counts only if it is proved: the entry's interval
+// and the truth have no number in common. Where they overlap without the truth being inside, the entry is left open.
 #pragma once
 
 #include <cstdint>
@@ -21,11 +22,10 @@ namespace exactff::experiments {
 
 struct HonestySize {
   std::uint64_t first = 1;  // the numbers of the scenes: first, first + 1, ...
-  std::uint64_t scenes = 24;
+  std::uint64_t scenes = 100;
   std::vector<double> accuracies = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
-  std::size_t budget = 500;  // cells of an entry
-  std::vector<double> truth_accuracies = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
-  std::size_t truth_budget = 3000;  // cells of each enclosure
+  std::vector<std::size_t> budgets = {30, 100, 300};          // cells of an entry
+  std::vector<std::size_t> truth_budgets = {100, 600, 3000};  // cells of each enclosure: at first, and at last
 };
 [[nodiscard]] HonestySize honesty_size(bool abridged);
 
@@ -49,12 +49,12 @@ struct ErrorRatio {
 // Requires an interval with a width.
 [[nodiscard]] ErrorRatio error_ratio(const ViewFactor& entry, const Bounds& truth);
 
-// How an entry was asked for. `kPoints`: with a budget of one cell, at the smallest accuracy. What comes back may be a
-// better one.
+// How an entry was asked for. `kPoints`: with a budget of one cell. What comes back may be a better one.
 enum class Asked { kCertified, kCells, kPoints };
 struct HonestyEntry {
   Asked asked = Asked::kCertified;
   double accuracy = 0.0;
+  std::size_t budget = 0;
   bool turned = false;  // F_ji instead of F_ij
   ViewFactor factor;
   Bounds truth;  // of the same direction
@@ -65,7 +65,7 @@ struct HonestyScene {
   std::size_t family = 0;  // of honest_families.h, from 1 on; 0: a model of the library
   std::uint64_t seed = 0;  // of such a family
   std::string from, to;
-  bool is_turned = false;  // entries are of F_ji, but those by points of both
+  bool is_turned = false;  // entries are of F_ji
   std::vector<HonestyEntry> entries;
   std::string failure;  // a cell failed its own check: there are no further entries
 };

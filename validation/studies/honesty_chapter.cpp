@@ -75,20 +75,22 @@ std::string broken_sentence(const HonestyStudy& study) {
 }
 
 std::string method_sentence(const HonestyStudy& study, const HonestySize& size) {
+  std::vector<std::string> budgets;
+  for (const std::size_t budget : size.budgets) budgets.push_back(std::to_string(budget));
   const std::string contradictions = study.contradictions == 0
                                          ? "The two enclosures are disjoint in no scene."
                                          : "In " + counted(study.contradictions, "scene") +
                                                " the two enclosures are disjoint, so one of them is wrong.";
   return "Half of the scenes have a floor, a source above it and one to four faces between them; the others were made "
-         "to "
-         "break what is claimed, with thin gaps, cut corners, slits, holes, sheets of two faces, extreme sizes and "
-         "offsets. A view factor from one patch to another is asked for at " +
-         counted(size.accuracies.size(), "accuracy", "accuracies") + ", as certified and as estimated, with " +
-         std::to_string(size.budget) +
-         " cells at most; and with a single cell, which leaves points. The truth is what two certified enclosures "
-         "have in common, one from each patch to the other, of up to " +
-         std::to_string(size.truth_budget) +
-         " cells each. An error exceeds the reported one if the entry’s interval and the truth have no number in "
+         "to break what is claimed, with thin gaps, cut corners, slits, holes, sheets of two faces, extreme sizes and "
+         "offsets. A view factor from one patch to another is asked for at one of " +
+         counted(size.accuracies.size(), "accuracy", "accuracies") +
+         ", as certified and as estimated, with budgets of " + text::enumerate(budgets) +
+         " cells, and with a single cell, which leaves points. The truth is what two certified enclosures have in "
+         "common, one from each patch to the other. They are narrowed until they judge the entries, with up to " +
+         std::to_string(size.truth_budgets.back()) +
+         " cells each. An error exceeds the reported one if the entry’s interval and the truth have no "
+         "number in "
          "common. An entry is open if they overlap and the truth is not inside. " +
          contradictions;
 }
@@ -151,21 +153,19 @@ page::Figure error_figure(const HonestyStudy& study) {
 
 // ------------------------------------------------------------------------------------------------------------- tables
 
-CsvFile entry_table(const HonestyStudy& study, const HonestySize& size) {
+CsvFile entry_table(const HonestyStudy& study) {
   TableWriter table(
-      "view factors in random scenes, each model as for exactff matrix @MODEL --from FROM --to TO, with "
-      "--budget " +
-          std::to_string(size.budget) +
-          ", or 1 for those by points; models without @ are families and seeds of studies/honest_families.h\n"
-          "truth_lower and truth_upper: what certified enclosures of both directions have in common",
-      {"model", "from", "to", "accuracy", "claim", "way", "factor", "lower", "upper", "truth_lower", "truth_upper",
-       "verdict"});
+      "view factors in random scenes, each model as for exactff matrix @MODEL --from FROM --to TO; other models are "
+      "families and seeds of studies/honest_families.h\n"
+      "truth_lower and truth_upper: what certified enclosures of both directions have in common",
+      {"model", "from", "to", "accuracy", "budget", "claim", "way", "factor", "lower", "upper", "truth_lower",
+       "truth_upper", "verdict"});
   for (const HonestyScene& scene : study.scenes) {
     for (const HonestyEntry& entry : scene.entries) {
       const ViewFactor& f = entry.factor;
       table.row() << scene.model << (entry.turned ? scene.to : scene.from) << (entry.turned ? scene.from : scene.to)
-                  << entry.accuracy << to_string(f.claim) << to_string(f.way) << f.value << f.lower << f.upper
-                  << entry.truth.lower << entry.truth.upper << word_of(verdict(f, entry.truth));
+                  << entry.accuracy << std::uint64_t{entry.budget} << to_string(f.claim) << to_string(f.way) << f.value
+                  << f.lower << f.upper << entry.truth.lower << entry.truth.upper << word_of(verdict(f, entry.truth));
     }
   }
   return table.finish("honesty.csv", "view factors in random scenes, with their true values");
@@ -211,7 +211,7 @@ Result honesty_chapter(const HonestyStudy& study, const HonestySize& size) {
   std::erase(result.paragraphs, "");
   result.tables = {honesty_table(study.rows)};
   result.figures = {error_figure(study)};
-  result.values = {entry_table(study, size), row_table(study)};
+  result.values = {entry_table(study), row_table(study)};
   return result;
 }
 

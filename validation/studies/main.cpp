@@ -42,7 +42,7 @@ void declare(CLI::App& app, Arguments& args) {
       ->check(CLI::IsMember(args.names));
   app.add_flag("--abridged", args.effort.abridged, "Take a second for each study, not up to half a minute");
   app.add_option("--threads", args.effort.threads, "Number of threads (default: all)")->check(CLI::Range(1, 4096));
-  app.add_option("--scenes", args.scenes, "honesty: number of random scenes (default: 24, abridged 8)");
+  app.add_option("--scenes", args.scenes, "honesty: number of random scenes (default: 100, abridged 24)");
   app.add_option("--first", args.first, "honesty: number of the first scene")->capture_default_str();
   app.add_option("-o", args.folder, "Folder for the report and the tables")->required();
 }

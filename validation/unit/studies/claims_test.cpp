@@ -15,12 +15,7 @@ namespace {
 
 const Hooks kUndisturbed;
 
-HonestySize small_honesty() {
-  HonestySize size{.scenes = 6, .accuracies = {1e-1, 1e-4, 1e-8}};
-  size.budget = 100;
-  size.truth_budget = 400;
-  return size;
-}
+HonestySize small_honesty() { return {.scenes = 12, .accuracies = {1e-1, 1e-4, 1e-8}, .budgets = {20, 100}}; }
 
 struct SmallStudy {
   const char* name;
@@ -112,7 +107,7 @@ TEST(Honesty, CountsAnErrorOnlyIfItIsProved) {
 }
 
 TEST(Honesty, NoErrorExceedsTheReportedOneInAFewScenes) {
-  HonestyStudy study = honesty_study({.first = 31, .scenes = 6, .budget = 100, .truth_budget = 500}, 1, kUndisturbed);
+  HonestyStudy study = honesty_study({.first = 31, .scenes = 40, .budgets = {30, 100}}, 1, kUndisturbed);
   EXPECT_EQ(study.contradictions, 0U);
   EXPECT_EQ(study.failures, 0U);
   std::size_t entries = 0, holds = 0;
