@@ -123,6 +123,8 @@ void EntryJobs::compute(std::size_t job, const std::function<void(std::size_t, c
   const std::size_t further = job - pairs_.count(), row = further % from_.size();
   if (to_backs_ && further < from_.size()) {
     take(entries.front(), factor_to_backs(row));
+  } else if (to_sky_->is_enclosed(row)) {
+    take(entries.front(), {.area_from = pairs_.area_from(row)});
   } else {
     to_sky_->compute(row, [&](std::size_t, const ViewFactor& f) { take(entries.front(), f); });
   }

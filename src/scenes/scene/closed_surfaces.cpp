@@ -1,13 +1,16 @@
 // Steps, each in time proportional to the scene's size except for the sorting of a vertex's edges:
 //   1. leave out pieces with a corner that no other piece has, since they have an open edge, and transparent pieces;
 //   2. sort the edges of the others by their ends;
-//   3. join the pieces at each edge, and mark where an edge does not cancel;
+//   3. join the pieces at each edge; cut the edges that do not cancel where ends of others lie on them (T-junctions),
+//   join
+//      the pieces at these, and mark where an edge does not cancel still;
 //   4. each connected set of pieces without a mark is a closed surface.
 #include "scene/closed_surfaces.h"
 
 #include <algorithm>
 #include <numeric>
 
+#include "scene/junctions.h"
 #include "scene/places.h"
 #include "scene/scene_data.h"
 
@@ -29,11 +32,13 @@ class Finder {
     std::iota(parent_.begin(), parent_.end(), 0U);
   }
 
-  bool find() {
+  bool find(ClosedSurfaces::Edges edges) {
     leave_out_pieces();
     if (std::all_of(open_.begin(), open_.end(), [](std::uint8_t open) { return open != 0; })) return false;
     sort_edges();
     join_at_edges();
+    if (edges == ClosedSurfaces::Edges::kCutAtJunctions) cut_at_junctions(uncancelled_, scene_.vertices());
+    join_uncancelled();
     for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
       if (open_[piece] != 0) open_[root(piece)] = 1;
     }
@@ -60,14 +65,16 @@ class Finder {
   void leave_out_pieces();
   void sort_edges();
   void join_at_edges();
-  void join(std::span<const DirectedEdge> edge);
+  void join(std::uint32_t low, std::span<const DirectedEdge> edge);
+  void join_uncancelled();
 
   const Scene& scene_;
   const std::span<const std::uint32_t> places_;
   std::vector<std::uint32_t> parent_;  // by piece
   std::vector<std::uint8_t> open_;     // by piece
   std::vector<DirectedEdge> edges_;
-  std::vector<std::uint32_t> begin_;  // into edges_, by lower place, one more at the end
+  std::vector<std::uint32_t> begin_;      // into edges_, by lower place, one more at the end
+  std::vector<EdgeOfPiece> uncancelled_;  // edges
 };
 
 void Finder::leave_out_pieces() {
@@ -103,19 +110,27 @@ void Finder::join_at_edges() {
     std::sort(first, last, [](const DirectedEdge& a, const DirectedEdge& b) { return a.high < b.high; });
     for (auto at = first; at != last;) {
       const auto end = std::find_if(at, last, [&](const DirectedEdge& e) { return e.high != at->high; });
-      join({at, end});
+      join(static_cast<std::uint32_t>(place), {at, end});
       at = end;
     }
   }
 }
 
-void Finder::join(std::span<const DirectedEdge> edge) {
+void Finder::join(std::uint32_t low, std::span<const DirectedEdge> edge) {
   int balance = 0;
   for (const DirectedEdge& e : edge) {
     balance += e.upwards ? 1 : -1;
     parent_[root(e.piece)] = root(edge.front().piece);
   }
-  if (balance != 0) open_[edge.front().piece] = 1;
+  if (balance == 0) return;
+  for (const DirectedEdge& e : edge) uncancelled_.push_back({low, e.high, e.piece, e.upwards});
+}
+
+void Finder::join_uncancelled() {
+  exactff::for_each_edge(uncancelled_, [&](auto first, auto last) {
+    for (auto use = first; use != last; ++use) parent_[root(use->piece)] = root(first->piece);
+    if (balance_of(first, last) != 0) open_[first->piece] = 1;
+  });
 }
 
 // Six times the volume between the piece and a point.
@@ -136,9 +151,9 @@ double volume(const Scene& scene, const Piece& piece, const Vec3& apex) {
 
 }  // namespace
 
-ClosedSurfaces::ClosedSurfaces(const Scene& scene) {
+ClosedSurfaces::ClosedSurfaces(const Scene& scene, Edges edges) {
   Finder finder(scene);
-  if (!finder.find()) return;
+  if (!finder.find(edges)) return;
   of_piece_.assign(scene.pieces().size(), kNone);
   std::vector<double> volumes;
   std::vector<Vec3> apexes;  // any point near the surface

@@ -2,7 +2,8 @@
 //
 // A surface is a set of pieces connected by edges; an edge is identified by the positions of its ends. A surface is
 // closed if along each of its edges as many pieces run one way as the other. There is no other requirement: it may pass
-// through itself, more than two pieces may share an edge, and its front may be the inner side.
+// through itself, more than two pieces may share an edge, and its front may be the inner side. On request, an edge
+// where that is not so is cut where ends of other such edges lie on it (T-junctions).
 //
 // Winding numbers. Almost every segment meets a surface in the interiors of its pieces alone. Let w(y), off a closed
 // surface, be the number of its pieces that a ray from y crosses from back to front, less those that it crosses from
@@ -27,8 +28,10 @@ class ClosedSurfaces {
  public:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 
+  enum class Edges { kWhole, kCutAtJunctions };
+
   ClosedSurfaces() = default;
-  explicit ClosedSurfaces(const Scene& scene);
+  explicit ClosedSurfaces(const Scene& scene, Edges edges = Edges::kWhole);
 
   [[nodiscard]] bool empty() const { return surfaces_.empty(); }
   [[nodiscard]] std::span<const ClosedSurface> surfaces() const { return surfaces_; }
@@ -41,7 +44,7 @@ class ClosedSurfaces {
   std::vector<std::uint32_t> of_piece_;
 };
 
-// The closed surfaces of the scene, found at the first call; safe to call from several threads.
+// The closed surfaces of the scene, by whole edges, found at the first call; safe to call from several threads.
 const ClosedSurfaces& closed_surfaces(const Scene& scene);
 
 }  // namespace exactff

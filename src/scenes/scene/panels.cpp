@@ -24,6 +24,7 @@
 #include "kernel/poll.h"
 #include "scene/closed_surfaces.h"
 #include "scene/face_points.h"
+#include "scene/junctions.h"
 #include "scene/places.h"
 #include "scene/scene_data.h"
 #include "scene/triangulation.h"
@@ -32,37 +33,12 @@ namespace exactff {
 
 namespace {
 
-// A directed edge of a piece.
-struct EdgeOfPiece {
-  std::uint32_t low = 0, high = 0;  // places
-  std::uint32_t piece = 0;
-  bool upwards = false;  // from `low` to `high`
-
-  [[nodiscard]] bool joins_what(const EdgeOfPiece& other) const { return low == other.low && high == other.high; }
-};
-
-bool comes_before(const EdgeOfPiece& a, const EdgeOfPiece& b) {
-  return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.piece < b.piece;
-}
-
-// Calls take(first, last) for every run of uses of one edge.
-template <class Take>
-void for_each_edge(std::vector<EdgeOfPiece>& uses, const Take& take) {
-  std::sort(uses.begin(), uses.end(), comes_before);
-  for (auto first = uses.begin(); first != uses.end();) {
-    const auto last = std::find_if(first, uses.end(), [&](const EdgeOfPiece& use) { return !use.joins_what(*first); });
-    take(first, last);
-    first = last;
-  }
-}
-
 // Leaves the edges that do not cancel. False if one remains more than once.
 bool cancel(std::vector<EdgeOfPiece>& edges) {
   bool overlap = false;
   auto kept = edges.begin();
   for_each_edge(edges, [&](auto first, auto last) {
-    std::ptrdiff_t balance = 0;
-    for (auto use = first; use != last; ++use) balance += use->upwards ? 1 : -1;
+    const std::ptrdiff_t balance = balance_of(first, last);
     overlap = overlap || balance > 1 || balance < -1;
     if (balance == 0) return;
     EdgeOfPiece edge = *first;
@@ -87,8 +63,6 @@ class Joiner {
   void add_edges(std::uint32_t piece, std::vector<EdgeOfPiece>& edges) const;
   void connect(std::vector<EdgeOfPiece>& edges);
   void connect_at_junctions(std::vector<EdgeOfPiece>& single);
-  void cut_at_corners(std::vector<EdgeOfPiece>& edges) const;
-  [[nodiscard]] bool is_inside(std::uint32_t place, const EdgeOfPiece& edge) const;
   [[nodiscard]] PatchId patch_of(const EdgeOfPiece& edge) const { return scene_.face(pieces_[edge.piece].face).patch; }
   [[nodiscard]] bool lie_side_by_side(const EdgeOfPiece& a, const EdgeOfPiece& b) const;
   [[nodiscard]] bool is_in_plane(const Piece& piece, std::uint32_t vertex) const;
@@ -165,41 +139,9 @@ void Joiner::connect_at_junctions(std::vector<EdgeOfPiece>& single) {
     of_patch.assign(first, last);
     first = last;
     const std::size_t count = of_patch.size();
-    cut_at_corners(of_patch);
+    cut_at_junctions(of_patch, vertices_);
     if (of_patch.size() > count) connect(of_patch);
   }
-}
-
-// Cuts edges where ends of others lie inside them. Of very many edges none is cut: the time is quadratic.
-void Joiner::cut_at_corners(std::vector<EdgeOfPiece>& edges) const {
-  constexpr std::size_t kMost = 512;
-  if (edges.size() > kMost) return;
-  std::vector<std::uint32_t> ends;
-  for (const EdgeOfPiece& edge : edges) ends.insert(ends.end(), {edge.low, edge.high});
-  std::ranges::sort(ends);
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const auto inside = std::ranges::find_if(ends, [&](std::uint32_t end) { return is_inside(end, edges[e]); });
-    if (inside == ends.end()) continue;
-    // Two edges with the direction of the whole. Both are looked at later.
-    const auto [low, high, piece, upwards] = edges[e];
-    edges.push_back({std::min(low, *inside), std::max(low, *inside), piece, upwards == (low < *inside)});
-    edges.push_back({std::min(high, *inside), std::max(high, *inside), piece, upwards == (*inside < high)});
-    edges[e] = edges.back();
-    edges.pop_back();
-    --e;
-  }
-}
-
-// Between the ends of the edge, on its line.
-bool Joiner::is_inside(std::uint32_t place, const EdgeOfPiece& edge) const {
-  if (place == edge.low || place == edge.high) return false;
-  const Vec3 &x = vertices_[place], &a = vertices_[edge.low], &b = vertices_[edge.high];
-  const auto within = [](double u, double from, double to) {
-    return std::min(from, to) <= u && u <= std::max(from, to);
-  };
-  return within(x.x, a.x, b.x) && within(x.y, a.y, b.y) && within(x.z, a.z, b.z) &&
-         are_straight(edge.low, place, edge.high);
 }
 
 // The pieces lie on different sides of the edge, in one plane, with their fronts on one side of it.
@@ -253,7 +195,7 @@ std::optional<std::vector<Ring>> Joiner::boundary_of(std::span<const std::uint32
   std::vector<EdgeOfPiece> edges;
   for (const std::uint32_t piece : set) add_edges(piece, edges);
   if (!cancel(edges)) return std::nullopt;
-  cut_at_corners(edges);
+  cut_at_junctions(edges, vertices_);
   if (!cancel(edges)) return std::nullopt;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> left;  // from, to
   for (const EdgeOfPiece& edge : edges) {
@@ -295,9 +237,7 @@ Ring Joiner::without_straight_corners(Ring ring) const {
 }
 
 bool Joiner::are_straight(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
-  const Vec3& middle = vertices_[b];
-  return is_zero(
-      cross(kernel::exact_difference(vertices_[a], middle).v, kernel::exact_difference(vertices_[c], middle).v));
+  return exactff::are_straight(vertices_[a], vertices_[b], vertices_[c]);
 }
 
 bool Joiner::have_one_area(const std::vector<Ring>& rings, const std::vector<ConvexPart>& parts) const {

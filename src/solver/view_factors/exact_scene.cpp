@@ -58,7 +58,13 @@ ExactScene::ExactScene(const Scene& scene_in)
     }
     (panels.is_joined(id) ? joined : pieces).push_back(std::move(made));
   }
-  add_surfaces();
+  const ClosedSurfaces& closed = closed_surfaces(scene);
+  surfaces = exact_surfaces(closed, pieces);
+  if (closed.empty()) return;
+  for (std::uint32_t i = 0; i < pieces.size(); ++i) {
+    const std::uint32_t surface = closed.of_piece(i);
+    if (surface != ClosedSurfaces::kNone) pieces[i].surface = surface;
+  }
 }
 
 ExactPiece ExactScene::exact_piece(const Piece& piece, std::span<const std::uint32_t> corners) {
@@ -75,18 +81,18 @@ ExactPiece ExactScene::exact_piece(const Piece& piece, std::span<const std::uint
   return made;
 }
 
-void ExactScene::add_surfaces() {
-  const ClosedSurfaces& closed = closed_surfaces(scene);
+std::vector<ExactSurface> exact_surfaces(const ClosedSurfaces& closed, std::span<const ExactPiece> pieces) {
+  std::vector<ExactSurface> surfaces;
+  if (closed.empty()) return surfaces;
   for (const ClosedSurface& surface : closed.surfaces()) surfaces.push_back({{}, surface.turned_inside_out, {}});
-  if (closed.empty()) return;
   for (std::uint32_t i = 0; i < pieces.size(); ++i) {
     const std::uint32_t surface = closed.of_piece(i);
     if (surface == ClosedSurfaces::kNone) continue;
-    pieces[i].surface = surface;
     surfaces[surface].pieces.push_back(i);
     surfaces[surface].box.include(pieces[i].box.low);
     surfaces[surface].box.include(pieces[i].box.high);
   }
+  return surfaces;
 }
 
 }  // namespace exactff::view_factors

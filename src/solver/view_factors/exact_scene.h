@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exactff/scene.h"
+#include "scene/closed_surfaces.h"
 #include "scene/panels.h"
 #include "view_factors/exact_space.h"
 
@@ -60,7 +61,10 @@ struct ExactScene {
 
  private:
   [[nodiscard]] ExactPiece exact_piece(const Piece& piece, std::span<const std::uint32_t> corners);
-  void add_surfaces();
 };
+
+// By their indices.
+[[nodiscard]] std::vector<ExactSurface> exact_surfaces(const ClosedSurfaces& closed,
+                                                       std::span<const ExactPiece> pieces);
 
 }  // namespace exactff::view_factors

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "scene/scene_copy.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
+#include "view_factors/enclosures.h"
 #include "view_factors/exact_scene.h"
 #include "view_factors/pair_memory.h"
 #include "view_factors/prepared_patch.h"
@@ -65,6 +67,8 @@ struct Pairs::Patches {
   std::map<Key, std::unique_ptr<const PreparedPatch>> prepared;
   std::vector<const PreparedPatch*> rows, columns;
   mutable PairMemories memories;
+  mutable std::once_flag enclosures_found;
+  mutable std::optional<Enclosures> enclosures;
 };
 
 Pairs::Pairs(const Scene& scene, std::span<const Selection> from, std::span<const Selection> to,
@@ -84,6 +88,12 @@ Pairs::Pairs(const Scene& scene, std::span<const Selection> from, std::span<cons
 Pairs::~Pairs() = default;
 
 double Pairs::area_from(std::size_t row) const { return patches_->rows[row]->area; }
+
+bool Pairs::is_enclosed(std::size_t row) const {
+  std::call_once(patches_->enclosures_found, [&] { patches_->enclosures.emplace(patches_->scene); });
+  return std::ranges::all_of(patches_->rows[row]->parts,
+                             [&](const Part& part) { return patches_->enclosures->stand_around(part); });
+}
 
 // Of two patches that may be exchanged, the one that comes first in the scene is seen from, whichever is asked for.
 Pairs::Ends Pairs::ends_of(std::size_t entry) const {

@@ -28,6 +28,8 @@ class Pairs {
   // The entries that a pair gives, numbered row by row, in ascending order: equal ones, and transposes.
   [[nodiscard]] const std::vector<std::size_t>& entries_of(std::size_t pair) const { return entries_[pair]; }
   [[nodiscard]] double area_from(std::size_t row) const;
+  // Whether closed surfaces stand around all that the row's patch sees (enclosures.h), if that can be proved.
+  [[nodiscard]] bool is_enclosed(std::size_t row) const;
   // In the order of entries_of. From any thread.
   void compute(std::size_t pair, const std::function<void(std::size_t entry, const ViewFactor& factor)>& take) const;
 

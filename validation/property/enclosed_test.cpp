@@ -1,0 +1,185 @@
+// Closed surfaces around what a patch sees: rooms, and scenes of every family, judged by whole views of points.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "exactff/matrix.h"
+#include "exactff/receiver.h"
+#include "exactff/scene_files.h"
+#include "exactff/view.h"
+#include "generate/plain_scene.h"
+#include "property/closed_rooms.h"
+#include "support/random_scenes.h"
+#include "view_factors/pairs.h"
+
+namespace exactff::validation::enclosed_patches {
+namespace {
+
+using generate::PlainScene;
+using generate::Random;
+
+std::vector<Selection> all_of(const Scene& scene) {
+  std::vector<Selection> all;
+  for (const Patch& patch : scene.patches()) all.push_back(scene.select(patch.name));
+  return all;
+}
+
+// The patches that are enclosed, by name.
+std::vector<std::string> enclosed(const Scene& scene) {
+  const std::vector<Selection> all = all_of(scene);
+  const view_factors::Pairs pairs(scene, all, all, {});
+  std::vector<std::string> names;
+  for (std::size_t row = 0; row < all.size(); ++row) {
+    if (pairs.is_enclosed(row)) names.push_back(scene.name_of(all[row]));
+  }
+  return names;
+}
+std::vector<std::string> enclosed(const PlainScene& plain) { return enclosed(generate::build(plain)); }
+
+const std::vector<std::string> kWalls{"wall0", "wall1", "wall2", "wall3", "wall4", "wall5"};
+
+PlainScene room() {
+  PlainScene scene;
+  add_room(scene, box({0, 0, 0}, {4, 3, 2}));
+  return scene;
+}
+
+void turn_round(PlainScene& scene) {
+  for (generate::PlainPatch& patch : scene.patches) {
+    for (generate::PlainFace& face : patch.faces) {
+      for (auto& ring : face.rings) std::ranges::reverse(ring);
+    }
+  }
+}
+
+TEST(Enclosed, AreTheWallsOfARoom) {
+  EXPECT_EQ(enclosed(room()), kWalls);
+  PlainScene turned = room();
+  turn_round(turned);
+  EXPECT_EQ(enclosed(turned), std::vector<std::string>{});
+}
+
+TEST(Enclosed, IsNobodyWhereAWallIsMissingOrTransparent) {
+  PlainScene plain = room();
+  const Scene scene = generate::build(plain);
+  EXPECT_EQ(enclosed(scene.with_transparent(std::vector{scene.select("wall2")})), std::vector<std::string>{});
+  plain.patches.pop_back();
+  EXPECT_EQ(enclosed(plain), std::vector<std::string>{});
+}
+
+TEST(Enclosed, IsAThingInARoomAndNotOneOutside) {
+  PlainScene plain = room();
+  add_thing(plain, box({1, 1, 0.5}, {2, 2, 1.5}));
+  std::vector<std::string> all = kWalls;
+  all.emplace_back("things");
+  EXPECT_EQ(enclosed(plain), all);
+  PlainScene apart = room();
+  add_thing(apart, box({10, 1, 0.5}, {12, 2, 1.5}));
+  EXPECT_EQ(enclosed(apart), kWalls);
+}
+
+// Part of the thing looks into the room, part of it out.
+TEST(Enclosed, IsNoThingThatPiercesAWall) {
+  PlainScene plain = room();
+  add_thing(plain, box({3, 1, 0.5}, {6, 2, 1.5}));
+  EXPECT_EQ(enclosed(plain), kWalls);
+}
+
+// The upper half of one wall is two faces, the lower half is one: corners of others lie in the middle of its edges.
+TEST(Enclosed, AreTheWallsOfARoomWithTJunctions) {
+  PlainScene plain;
+  plain.add_ring(plain.patch("floor"), {{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}});
+  plain.add_ring(plain.patch("ceiling"), {{0, 0, 2}, {0, 3, 2}, {4, 3, 2}, {4, 0, 2}});
+  plain.add_ring(plain.patch("left"), {{0, 0, 0}, {0, 3, 0}, {0, 3, 2}, {0, 0, 2}});
+  plain.add_ring(plain.patch("right"), {{4, 0, 0}, {4, 0, 2}, {4, 3, 2}, {4, 3, 0}});
+  plain.add_ring(plain.patch("front"), {{0, 0, 0}, {0, 0, 2}, {4, 0, 2}, {4, 0, 0}});
+  plain.add_ring(plain.patch("low"), {{0, 3, 0}, {4, 3, 0}, {4, 3, 1}, {0, 3, 1}});
+  plain.add_ring(plain.patch("west"), {{0, 3, 1}, {1, 3, 1}, {1, 3, 2}, {0, 3, 2}});
+  plain.add_ring(plain.patch("east"), {{1, 3, 1}, {4, 3, 1}, {4, 3, 2}, {1, 3, 2}});
+  EXPECT_EQ(enclosed(plain).size(), 8U);
+  PlainScene moved = plain;
+  for (Vec3& vertex : moved.vertices) {
+    if (vertex == Vec3{1, 3, 2}) vertex.z = 1.9375;
+  }
+  EXPECT_EQ(enclosed(moved), std::vector<std::string>{});
+}
+
+// A corner in the middle of the ceiling's edge touches the neighbour's part at one point.
+TEST(Enclosed, IsEveryPatchOfView3DsClosedRooms) {
+  for (const char* name : {"facet", "test4", "box345", "gunter1"}) {
+    const Scene scene = read_scene(std::string(EXACTFF_DATA_DIR) + "/scenes/formats/" + name + ".vs3");
+    EXPECT_EQ(enclosed(scene).size(), scene.patches().size()) << name;
+  }
+}
+
+TEST(Enclosed, SeesNoSkyAndSaysThatThisIsProved) {
+  const Scene scene = read_scene(EXACTFF_DATA_DIR "/scenes/formats/test4.vs3");
+  const std::vector<Selection> all = all_of(scene);
+  const Matrix matrix = matrix::compute(scene, all, all, {.factors = {.accuracy = 1e-3}, .open = true});
+  for (std::size_t row = 0; row < all.size(); ++row) {
+    EXPECT_EQ(matrix.open[row].claim, Claim::kZero);
+    EXPECT_EQ(matrix.open[row].upper, 0.0);
+    EXPECT_EQ(matrix.open[row].area_from, matrix.factors.at(row, 0).area_from);
+    EXPECT_TRUE(matrix.open[row].accurate);
+    EXPECT_EQ(matrix.open[row].cells, 0U);
+  }
+}
+
+struct Counts {
+  std::size_t enclosed = 0, open = 0;
+};
+
+// False where the area is no double.
+bool is_enclosed_and_has_area(const Scene& scene, const Selection& patch) {
+  try {
+    return view_factors::Pairs(scene, {&patch, 1}, {&patch, 1}, {}).is_enclosed(0);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+// Points are rounded, and may see past an edge by as little.
+void judge(const Scene& scene, const std::string& where, Counts& counts) {
+  constexpr double kRounding = 1e-9;
+  for (std::size_t p = 0; p < scene.patches().size(); ++p) {
+    const Selection patch{static_cast<PatchId>(p), {}, scene.id()};
+    if (scene.faces_of(patch).empty()) continue;
+    const bool is_enclosed = is_enclosed_and_has_area(scene, patch);
+    counts.enclosed += is_enclosed ? 1 : 0;
+    bool is_open = false;
+    for (const Receiver& receiver : sample_receivers(scene, scene.faces_of(patch), 6, p + 1)) {
+      const double open = view(scene, receiver).open.value;
+      is_open = is_open || open > kRounding;
+      EXPECT_TRUE(!is_enclosed || open <= kRounding) << where << ' ' << scene.name_of(patch) << ' ' << open;
+    }
+    counts.open += is_open ? 1 : 0;
+  }
+}
+
+TEST(Enclosed, SeesNothingOpenInRooms) {
+  Counts counts;
+  for (std::uint64_t s = 0; s < scaled_count(20); ++s) {
+    Random random(seed_of(s));
+    generate::PlainScene plain = s % 2 == 0 ? random_building(random).scene : random_hull_room(random);
+    if (s % 4 >= 2) plain.patches.erase(plain.patches.begin() + random.integer(0, 5));
+    judge(generate::build(plain), std::to_string(s), counts);
+  }
+  EXPECT_GE(counts.enclosed, 20U);
+  EXPECT_GE(counts.open, 20U);
+}
+
+TEST(Enclosed, SeesNothingOpenInEveryFamily) {
+  Counts counts;
+  for (const RandomFamily& family : random_families()) {
+    for (std::uint64_t s = 0; s < scaled_count(3); ++s) {
+      Random random(seed_of(s));
+      judge(generate::build(family.make(random)), std::string(family.name) + ' ' + std::to_string(s), counts);
+    }
+  }
+  EXPECT_GE(counts.open, 20U);
+}
+
+}  // namespace
+}  // namespace exactff::validation::enclosed_patches
