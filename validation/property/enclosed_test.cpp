@@ -87,6 +87,13 @@ TEST(Enclosed, IsNoThingThatPiercesAWall) {
   EXPECT_EQ(enclosed(plain), kWalls);
 }
 
+// Its centre is inside, its tip outside.
+TEST(Enclosed, IsNoPatchThatPiercesAWall) {
+  PlainScene plain = room();
+  plain.add_ring(plain.patch("blade"), {{1, 1, 1}, {5, 1.5, 1}, {1, 2, 1}});
+  EXPECT_EQ(enclosed(plain), kWalls);
+}
+
 // The upper half of one wall is two faces, the lower half is one: corners of others lie in the middle of its edges.
 TEST(Enclosed, AreTheWallsOfARoomWithTJunctions) {
   PlainScene plain;
