@@ -131,7 +131,7 @@ Receiver receiver_by(const Scene& scene, Random& random) {
 
 TEST(Panels, OfSpoiltWallsHideWhatTheirPiecesHide) {
   std::uint64_t joined = 0, beside = 0, partly = 0;
-  for (std::uint64_t i = 0; i < scaled_count(150); ++i) {
+  for (std::uint64_t i = 0; i < scaled_count(60); ++i) {
     SCOPED_TRACE("seed " + std::to_string(seed_of(i)));
     Random random(seed_of(i));
     const WallScene walls(random);
