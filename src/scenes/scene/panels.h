@@ -49,6 +49,7 @@ class Panels {
   // Whether the panel is of a sheet. Then its face is one of several, and its corners are not among Scene::corners().
   [[nodiscard]] bool is_joined(PanelId id) const { return id >= pieces_.size(); }
   [[nodiscard]] std::uint32_t sheet_of_joined(PanelId id) const { return sheet_of_joined_[id - pieces_.size()]; }
+  [[nodiscard]] const Sheet& sheet_of(PanelId joined) const { return sheets_[sheet_of_joined(joined)]; }
   [[nodiscard]] const Piece& piece(PanelId id) const {
     return is_joined(id) ? joined_[id - pieces_.size()] : pieces_[id];
   }

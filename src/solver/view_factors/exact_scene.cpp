@@ -53,7 +53,7 @@ ExactScene::ExactScene(const Scene& scene_in)
     kernel::poll();
     ExactPiece made = exact_piece(panels.piece(id), panels.corners(id));
     if (panels.is_joined(id)) {
-      const std::uint32_t surface = panels.sheets()[panels.sheet_of_joined(id)].surface;
+      const std::uint32_t surface = panels.sheet_of(id).surface;
       made.surface = surface == ClosedSurfaces::kNone ? kNoSurface : surface;
     }
     (panels.is_joined(id) ? joined : pieces).push_back(std::move(made));

@@ -13,7 +13,7 @@ std::shared_ptr<const ExactSource> source_of(const Scene& scene, const Selection
   const Panels& all = panels(scene);
   Selection source = patch;
   if (all.is_joined(part.panel)) {
-    const Sheet& sheet = all.sheets()[all.sheet_of_joined(part.panel)];
+    const Sheet& sheet = all.sheet_of(part.panel);
     if (sheet.panel_count > 1 || faces_of(scene, part) != scene.faces_of(patch)) return nullptr;
   } else {
     if (scene.pieces_of(part.face).size() > 1) return nullptr;

@@ -13,7 +13,7 @@ constexpr std::size_t kFewQuestions = 4;  // of a part: more cost as much as its
 // Of the part's face, or sheet, ascending.
 std::vector<std::uint32_t> pieces_of(const Scene& scene, const Part& part) {
   if (const Panels& all = panels(scene); all.is_joined(part.panel)) {
-    return all.sheets()[all.sheet_of_joined(part.panel)].pieces;
+    return all.sheet_of(part.panel).pieces;
   }
   const Face& face = scene.face(part.face);
   std::vector<std::uint32_t> pieces(face.piece_count);

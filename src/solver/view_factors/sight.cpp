@@ -193,7 +193,7 @@ std::vector<FaceId> faces_of(const Scene& scene, const Part& part) {
   const Panels& all = panels(scene);
   if (!all.is_joined(part.panel)) return {part.face};
   std::vector<FaceId> faces;
-  for (const std::uint32_t piece : all.sheets()[all.sheet_of_joined(part.panel)].pieces) {
+  for (const std::uint32_t piece : all.sheet_of(part.panel).pieces) {
     const FaceId face = scene.pieces()[piece].face;
     if (faces.empty() || faces.back() != face) faces.push_back(face);
   }

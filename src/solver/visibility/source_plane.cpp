@@ -130,7 +130,7 @@ bool certainly_do_not_overlap(const SourcePlane& plane) {
   if (plane.faces.size() == 1) return true;
   const Panels& all = *plane.scene_panels;
   const PanelId first = plane.panels.front();
-  return all.is_joined(first) && all.sheets()[all.sheet_of_joined(first)].panel_count == plane.panels.size();
+  return all.is_joined(first) && all.sheet_of(first).panel_count == plane.panels.size();
 }
 
 }  // namespace

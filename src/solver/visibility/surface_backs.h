@@ -35,8 +35,7 @@ class SurfaceBacks {
 
  private:
   [[nodiscard]] std::uint32_t surface_of(PanelId panel) const {
-    return panels_.is_joined(panel) ? panels_.sheets()[panels_.sheet_of_joined(panel)].surface
-                                    : surfaces_.of_piece(panel);
+    return panels_.is_joined(panel) ? panels_.sheet_of(panel).surface : surfaces_.of_piece(panel);
   }
   [[nodiscard]] bool backs_left_out(std::uint32_t surface);
   [[nodiscard]] bool may_leave_out_backs(std::uint32_t surface) const;
