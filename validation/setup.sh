@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # setup.sh [PACKAGE...] [--if-offered PACKAGE...]: installs the packages that exactff is built from, and those named, with
-# apt, as root or with sudo. Of packages after --if-offered, those that the system does not offer are left out. Does
-# nothing if all are installed. On a system that it does not know, says what is needed, and fails.
+# apt, as root or with sudo. Of the packages after --if-offered, only those that the system offers. Does nothing if all
+# are installed. On a system that it does not know, it prints what is needed, and fails.
 #
-# With EXACTFF_SETUP=no in the environment, does nothing: everything is there, perhaps in folders of CMAKE_PREFIX_PATH.
+# With EXACTFF_SETUP=no in the environment it does nothing, for systems where everything is there, perhaps in folders of
+# CMAKE_PREFIX_PATH.
 set -euo pipefail
 
 [ "${EXACTFF_SETUP:-}" != no ] || exit 0
@@ -32,33 +33,32 @@ for argument in "$@"; do
 done
 
 # In a shell of its own, because the file may set any variable.
-system=$(bash -c '. "$1" && echo "$ID ${VERSION_ID:-}"' bash "${EXACTFF_OS_RELEASE:-/etc/os-release}" 2> /dev/null || true)
+system=$(bash -c '. "$1" && echo "$ID${VERSION_ID:+ $VERSION_ID}"' bash "${EXACTFF_OS_RELEASE:-/etc/os-release}" 2> /dev/null || true)
 case "$system" in
   "debian 12" | "debian 13" | "ubuntu 24.04") ;;
   *)
     cat >&2 << 'END'
-exactff is built from these; other versions were not tried:
+exactff is built from these, in these versions or newer ones:
 
-  compiler            GCC 12 to 14 or Clang 14 to 16, with C++20
-  CMake 3.25, Ninja
-  CGAL                5.5 to 6.1
-  Boost               1.74, its headers
-  GMP, MPFR           6.2 with gmpxx (C++), 4.2
-  FLINT               3, which contains Arb; or 2.9 with Arb 2.23
-  Embree              4, or 3.13
-  OpenEXR, libpng     3.1, 1.6
-  Eigen               3.4
-  CLI11               2.3
-  nlohmann-json       3.11
-  jemalloc            5.3; not needed with -DEXACTFF_JEMALLOC=OFF
-  gnuplot             5.4, a program that draws the figures of reports
-  Python, NumPy       3.9, 1.24, and pybind11 2.10, for the package for Python; -DEXACTFF_PYTHON=OFF leaves it out
-  GoogleTest          1.12, with the programs patch and pkgconf, for the tests; -DEXACTFF_TESTS=OFF leaves them out
+  compiler           GCC 12 or Clang 14
+  CMake, Ninja       3.25, 1.11
+  CGAL               5.5 to 6
+  Boost              1.74, the headers
+  GMP, MPFR          6.2 with its C++ interface gmpxx, 4.2
+  FLINT              3, which contains Arb, or 2.9 with Arb 2.23
+  Embree             4, or 3.13
+  OpenEXR, libpng    3.1, 1.6
+  Eigen, CLI11       3.4, 2.3
+  nlohmann-json      3.11
+  jemalloc           5.3; not needed with -DEXACTFF_JEMALLOC=OFF
+  gnuplot            5.4, a program that draws the figures of reports
+  Python, NumPy      3.9, 1.24, with pybind11 2.10; not needed with -DEXACTFF_PYTHON=OFF
+  GoogleTest         1.12, with the programs patch and pkgconf; not needed with -DEXACTFF_TESTS=OFF
 
-CMake looks for libraries in the folders of CMAKE_PREFIX_PATH, too.
+CMake also looks for libraries in the folders of CMAKE_PREFIX_PATH.
 END
-    echo "setup.sh: installs packages on Debian 12, Debian 13 and Ubuntu 24.04 only, and this system is${system:+ }${system:-unknown}." \
-      "Install what is listed above. Then set EXACTFF_SETUP=no, and the scripts build and test." >&2
+    echo "setup.sh installs packages on Debian 12, Debian 13 and Ubuntu 24.04, not on this system (${system:-of unknown name})." \
+      "Install what is listed above, then set EXACTFF_SETUP=no: all scripts work without it." >&2
     exit 1
     ;;
 esac
