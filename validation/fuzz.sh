@@ -20,7 +20,9 @@ build=${EXACTFF_BUILD:-build/clang}
 work=$build/fuzzing
 findings=$build/findings
 
-validation/setup.sh clang libclang-rt-14-dev llvm
+validation/setup.sh clang llvm
+version=$(clang -dumpversion)
+validation/setup.sh "libclang-rt-${version%%.*}-dev"  # the sanitizers
 validation/build.sh "$build" -DCMAKE_CXX_COMPILER=clang++ -DEXACTFF_FUZZ=ON -DEXACTFF_WERROR=ON -DEXACTFF_QUICK_BUILD=ON \
   -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
 

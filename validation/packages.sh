@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # packages.sh [FOLDER]: makes the Debian packages and the wheel for Python in FOLDER (default: build/packages), from a
-# build of its own, and tries them on a machine without compiler and libraries: a fresh Debian with Python and NumPy
-# alone, in a folder. As root, with Debian's archive in reach.
+# build of its own, and tries them on a machine without compiler and libraries: a fresh copy of this system, Debian or
+# Ubuntu, with Python and NumPy alone, in a folder. As root, with its archive in reach.
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -17,7 +17,7 @@ EXACTFF_BUILT=$build validation/wheel.sh "$folder"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 root=$work/root
-mmdebstrap --quiet --variant=minbase --include=python3-venv,python3-numpy bookworm "$root"
+mmdebstrap --quiet --variant=minbase --include=python3-venv,python3-numpy "$(. /etc/os-release && echo "$VERSION_CODENAME")" "$root"
 mkdir "$root/trial"
 cp "$folder"/*.whl "$folder"/{exactff,python3-exactff}_*.deb validation/python/try_wheel.py data/scenes/cornell_box.* "$root/trial"
 cp /etc/resolv.conf "$root/etc/"

@@ -15,9 +15,9 @@ target_compile_options(exactff_flags INTERFACE -Wno-psabi)
 if(EXACTFF_TESTS)
   target_compile_definitions(exactff_flags INTERFACE EXACTFF_CHECKS_REQUIREMENTS)  # kernel/expect.h
 endif()
-# Only for the compilers of Debian 12: others have other warnings.
+# Only for the compilers that were tried: others have other warnings.
 set(exactff_compiler "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}")
-if(EXACTFF_WERROR AND exactff_compiler MATCHES "^(GNU 12|Clang 14)\\.")
+if(EXACTFF_WERROR AND exactff_compiler MATCHES "^(GNU (12|14)|Clang (14|16))\\.")
   target_compile_options(exactff_flags INTERFACE -Werror)
 endif()
 if(EXACTFF_SANITIZE)

@@ -1,9 +1,15 @@
-# Every dependency is a Debian 12 package; validation/setup.sh installs them.
+# validation/setup.sh installs the packages of these libraries; CMAKE_PREFIX_PATH names other folders to look in.
 set(CMAKE_THREAD_PREFER_PTHREAD ON)
 set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # a project that adds this one as a folder links what the library links
+set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON)  # what is installed finds the libraries outside the system's folders, too
 find_package(Threads REQUIRED)
 find_package(CGAL 5.5 REQUIRED)
-find_package(embree 3.13 REQUIRED)
+# Without a version: Embree's configuration refuses to be a newer major version than what is asked for.
+find_package(embree REQUIRED)
+if(EMBREE_VERSION VERSION_LESS 3.13 OR EMBREE_VERSION VERSION_GREATER_EQUAL 5)
+  message(FATAL_ERROR "Embree ${EMBREE_VERSION} was found in ${embree_DIR}, and exactff needs Embree 3.13 or 4. Let "
+                      "CMAKE_PREFIX_PATH name the folder of such a version first.")
+endif()
 # Debian's package of Imath, which OpenEXR uses, tells at length that its library for Python is not installed.
 set(exactff_log_level ${CMAKE_MESSAGE_LOG_LEVEL})
 set(CMAKE_MESSAGE_LOG_LEVEL NOTICE)
@@ -24,5 +30,18 @@ endif()
 
 if(exactff_missing)
   list(JOIN exactff_missing ", " exactff_missing)
-  message(FATAL_ERROR "Not found: ${exactff_missing}. validation/setup.sh installs the Debian packages.")
+  message(FATAL_ERROR "Not found: ${exactff_missing}. validation/setup.sh installs the packages, or says what is needed.")
 endif()
+
+file(STRINGS ${EXACTFF_FLINT_INCLUDE_DIR}/flint/flint.h flint_version REGEX "define FLINT_VERSION \"")
+string(REGEX REPLACE ".*\"([0-9.]+).*" "\\1" flint_version "${flint_version}")
+set(arb "in it")
+if(NOT exactff_arb_is_in_flint)
+  set(arb "beside it")
+endif()
+message(STATUS "Libraries: CGAL ${CGAL_VERSION}, FLINT ${flint_version} with Arb ${arb}, Embree ${EMBREE_VERSION}")
+
+# For src/rivals/adaptive/embree.h
+add_library(exactff_embree INTERFACE)
+target_compile_definitions(exactff_embree INTERFACE EXACTFF_EMBREE_MAJOR=${EMBREE_VERSION_MAJOR})
+target_link_libraries(exactff_embree INTERFACE embree)

@@ -30,10 +30,25 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/validation/consumer/app/ DESTINATION ${e
 
 # --- pkg-config ---
 # If there is only a static library, plain `pkg-config --libs` has to name its dependencies. FLINT, Arb and Embree have
-# no .pc file in Debian 12.
+# no .pc file everywhere, so they are named as they were found.
 if(library_type STREQUAL "STATIC_LIBRARY")
   set(pc_requires "OpenEXR libpng mpfr gmpxx gmp")
-  set(pc_libraries " -lflint-arb -lflint -lembree3 -pthread")
+  set(pc_libraries "")
+  set(linked ${EXACTFF_FLINT_LIBRARY} ${EMBREE_LIBRARY})
+  if(NOT exactff_arb_is_in_flint)
+    list(PREPEND linked ${EXACTFF_ARB_LIBRARY})
+  endif()
+  foreach(file IN LISTS linked)
+    cmake_path(ABSOLUTE_PATH file NORMALIZE)
+    cmake_path(GET file PARENT_PATH folder)
+    cmake_path(GET file STEM name)
+    if(NOT folder IN_LIST CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES)
+      string(APPEND pc_libraries " -L${folder}")
+    endif()
+    string(REGEX REPLACE "^lib" " -l" name ${name})
+    string(APPEND pc_libraries ${name})
+  endforeach()
+  string(APPEND pc_libraries " -pthread")
 endif()
 set(pc_prefix ${CMAKE_INSTALL_PREFIX})
 foreach(kind LIB INCLUDE)

@@ -8,7 +8,7 @@ if(EXACTFF_MPI)
   set(MPI_CXX_SKIP_MPICXX ON)  # not the bindings that MPI-3 removed
   find_package(MPI COMPONENTS CXX QUIET)
   set(Boost_USE_STATIC_LIBS OFF)  # the static one cannot be linked into a module
-  find_package(Boost QUIET OPTIONAL_COMPONENTS mpi)
+  find_package(Boost QUIET CONFIG OPTIONAL_COMPONENTS mpi)
   if(MPI_CXX_FOUND AND TARGET Boost::mpi)
     set(EXACTFF_HAS_MPI ON)
   elseif(NOT EXACTFF_MPI STREQUAL "AUTO")

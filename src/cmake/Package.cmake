@@ -70,7 +70,14 @@ if(library_type STREQUAL "SHARED_LIBRARY")
     string(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS ", libexactff${soversion} (= ${PROJECT_VERSION})")
   endif()
 else()
+  # Dependencies of a static library, in the major versions that it was built with.
+  math(EXPR next_embree "${EMBREE_VERSION_MAJOR} + 1")
+  set(flint "libflint-dev (>= 3)")
+  if(NOT exactff_arb_is_in_flint)
+    set(flint "libflint-dev (<< 3), libflint-arb-dev")
+  endif()
   set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-      "libgmp-dev, libmpfr-dev, libflint-dev, libflint-arb-dev, libembree-dev, libopenexr-dev, libpng-dev")  # dependencies of a static library
+      "libgmp-dev, libmpfr-dev, ${flint}, libembree-dev (>= ${EMBREE_VERSION_MAJOR}), libembree-dev (<< ${next_embree}), \
+libopenexr-dev, libpng-dev")
 endif()
 include(CPack)

@@ -4,7 +4,6 @@
 // source. Embree is told that they are coherent, or not, because sometimes the one is faster and sometimes the other.
 // In addition, the same rays as cast by a program that draws its points at random.
 #include <benchmark/benchmark.h>
-#include <embree3/rtcore.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +13,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "adaptive/embree.h"
 #include "adaptive/vec.h"
 #include "bench/scenes.h"
 #include "bench/subjects.h"
@@ -24,6 +24,7 @@ namespace exactff::bench {
 using adaptive::operator+;
 using adaptive::operator-;
 using adaptive::operator*;
+namespace embree = adaptive::embree;
 
 namespace {
 
@@ -133,30 +134,28 @@ std::vector<RTCRay16> make_rays(const BenchScene& s, Order order) {
 }
 
 // The number of rays that reach the source.
-int cast_rays(RTCScene structure, const std::vector<RTCRay16>& packets, RTCIntersectContextFlags flags) {
+int cast_rays(RTCScene structure, const std::vector<RTCRay16>& packets, embree::Order order) {
   alignas(64) static const std::array<int, kPacket> kAll = [] {
     std::array<int, kPacket> all{};
     all.fill(-1);
     return all;
   }();
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = flags;
   int arrived = 0;
   for (const RTCRay16& packet : packets) {
     RTCRay16 rays = packet;
-    rtcOccluded16(kAll.data(), structure, &context, &rays);
+    embree::QueryContext context;
+    embree::find_occluded(kAll.data(), structure, rays, order, context, nullptr);
     for (const float far : rays.tfar) arrived += far >= 0.0F;
   }
   return arrived;
 }
 
-void cast(benchmark::State& state, const BenchScene& s, Order order, RTCIntersectContextFlags flags) {
+void cast(benchmark::State& state, const BenchScene& s, Order order, embree::Order told) {
   const Occluders occluders = occluders_of(s);
   const RayStructure structure = build_structure(occluders);
   const std::vector<RTCRay16> packets = make_rays(s, order);
   double visible = 0.0;
-  for (auto _ : state) visible = static_cast<double>(cast_rays(structure.get(), packets, flags)) / (kCells * kCells);
+  for (auto _ : state) visible = static_cast<double>(cast_rays(structure.get(), packets, told)) / (kCells * kCells);
   state.counters["visible"] = visible;
   if (s.scene.pieces().size() > 2000) return;
   // The error of jittered rays is below 1/200 (one standard deviation); a larger one would mean a different scene.
@@ -172,12 +171,12 @@ void build(benchmark::State& state, const BenchScene& s) {
 }  // namespace
 
 void add_rays() {
-  const auto in = [](Order order, RTCIntersectContextFlags flags) {
-    return [order, flags](benchmark::State& state, const BenchScene& s) { cast(state, s, order, flags); };
+  const auto in = [](Order order, embree::Order told) {
+    return [order, told](benchmark::State& state, const BenchScene& s) { cast(state, s, order, told); };
   };
-  add_for_every_scene("rays/coherent", in(Order::kTiles, RTC_INTERSECT_CONTEXT_FLAG_COHERENT));
-  add_for_every_scene("rays/incoherent", in(Order::kTiles, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT));
-  add_for_every_scene("rays/scattered", in(Order::kRandom, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT));
+  add_for_every_scene("rays/coherent", in(Order::kTiles, embree::Order::kCoherent));
+  add_for_every_scene("rays/incoherent", in(Order::kTiles, embree::Order::kIncoherent));
+  add_for_every_scene("rays/scattered", in(Order::kRandom, embree::Order::kIncoherent));
   add_for_every_scene("rays/build", build);
 }
 

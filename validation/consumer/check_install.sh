@@ -58,7 +58,9 @@ if [ -n "$python" ]; then
   grep -q "certified" "$work/log" || fail "the installed Python package computes nothing"
 fi
 
-export CMAKE_PREFIX_PATH=$prefix
+# Libraries that the build has found outside the system's folders
+read -r others <<< "$(sed -n 's/^CMAKE_PREFIX_PATH:[A-Z]*=//p' "$build/CMakeCache.txt" | tr ';' ':')"
+export CMAKE_PREFIX_PATH=$prefix${others:+:$others}${CMAKE_PREFIX_PATH:+:$CMAKE_PREFIX_PATH}
 quietly "find_package: configuring the installed example" cmake -S "$prefix/$examples/project" -B "$work/app"
 quietly "find_package: building" cmake --build "$work/app"
 quietly "find_package: running" "$work/app/consumer" "$prefix/$examples/project/room.obj"
@@ -71,10 +73,19 @@ grep -q "exactff-config.cmake, version: $version" "$work/log" || fail "find_pack
 
 export PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name exactff.pc)")
 read -ra flags <<< "$(pkg-config --cflags --libs exactff)"
-quietly "pkg-config: building" "$CXX" -std=c++20 "$here/app/main.cpp" -o "$work/by_pkg_config" "${flags[@]}" \
-  "-Wl,-rpath,$(dirname "$PKG_CONFIG_PATH")"
+for flag in "${flags[@]}"; do
+  [[ $flag != -L* ]] || flags+=("-Wl,-rpath,${flag#-L}")
+done
+quietly "pkg-config: building" "$CXX" -std=c++20 "$here/app/main.cpp" -o "$work/by_pkg_config" "${flags[@]}"
 quietly "pkg-config: running" "$work/by_pkg_config" "$here/app/room.obj"
 [ "$(pkg-config --modversion exactff)" = "$version" ] || fail "pkg-config names another version than $version"
+
+# Who uses the library is linked with what the build found: Embree 3 or 4, FLINT 2 with Arb or FLINT 3.
+linked() { objdump -p "$1" | sed -nE 's/^ *NEEDED +(lib(flint|arb|embree).*)/\1/p' | sort; }
+for user in "$work/app/consumer" "$work/by_pkg_config"; do
+  others=$(comm -23 <(linked "$user") <(linked "$prefix/bin/exactff"))
+  [ -z "$others" ] || fail "$user is linked with other libraries than the program: $others"
+done
 
 quietly "add_subdirectory: configuring" cmake -S "$here/app" -B "$work/subdirectory" -DEXACTFF_SOURCE="$top"
 ! grep -q '^EXACTFF_TESTS:BOOL=ON' "$work/subdirectory/CMakeCache.txt" || fail "a larger project would get the tests"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # check_packages.sh BUILD-FOLDER PYTHON: makes the Debian package for Python of the build, and checks that Debian's Python
-# finds what it holds, and that it depends on every library that it needs.
+# finds what it holds, and that it depends on every library that it needs; checks the dependencies of the library's package.
 set -euo pipefail
 
 build=$1
@@ -35,3 +35,20 @@ for owner in $(dpkg-query --search "${files[@]}" | sed 's/:.*//' | sort -u); do
 done
 [[ $depends == *python3-numpy* ]] || fail "no dependency on python3-numpy: $depends"
 echo "the package for Python: $depends"
+
+# Compiling with the library needs the packages of what it was built with, in these versions.
+depends=$(sed -n 's/^set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "\(.*\)")$/\1/p' "$build/CPackConfig.cmake")
+printf 'Source: exactff\n\nPackage: exactff\nArchitecture: any\n' > "$work/control"
+dpkg-checkbuilddeps -d "$depends" -c "" "$work/control" || fail "the package of the library depends on what is not installed: $depends"
+# cached NAME: a path that CMake has found
+cached() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
+files=("$(cached embree_DIR)/embree-config.cmake")
+for name in GMP MPFR FLINT ARB; do
+  file=$(cached "EXACTFF_${name}_LIBRARY")
+  [ -z "$file" ] || files+=("$file")
+done
+[ "${#files[@]}" -ge 4 ] || fail "these are not the libraries of the build: ${files[*]}"
+for owner in $(dpkg-query --search "${files[@]/#\//*/}" | sed 's/:.*//' | sort -u); do
+  [[ ", $depends," == *", $owner"[\ ,]* ]] || fail "no dependency on $owner: $depends"
+done
+echo "the package of the library: $depends"

@@ -1,6 +1,8 @@
-#include "kernel/ball.h"
+// clang-format off
+#include <mpfr.h>  // first: only then does FLINT 3 declare what converts to MPFR's numbers
+// clang-format on
 
-#include <mpfr.h>
+#include "kernel/ball.h"
 
 #include <algorithm>
 #include <cmath>

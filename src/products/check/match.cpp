@@ -4,6 +4,7 @@
 //   2. Match every row of the candidate by receiver and source, or by position and source.
 //   3. No row of the truth may be matched twice. Unless the options allow it, none may be left unmatched.
 #include <algorithm>
+#include <boost/geometry/algorithms/comparable_distance.hpp>
 #include <boost/geometry/algorithms/disjoint.hpp>
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point.hpp>

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "adaptive/embree.h"
 #include "adaptive/receiver_view.h"
 #include "scene/scene_data.h"
 
@@ -144,9 +145,9 @@ Element* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, 
   return static_cast<Element*>(buffer);
 }
 
-// The data that the filter needs in one call of rtcOccluded16. The context must come first.
+// The data that the filter needs in one query. The context must come first.
 struct FilterContext {
-  RTCIntersectContext context;
+  embree::QueryContext context;
   const Blockers* blockers;
   const std::uint32_t* piece_of_triangle;
 };
@@ -230,12 +231,15 @@ void Blockers::assign_all_but(std::size_t piece_count, std::span<const std::uint
   all_but_ = true;
 }
 
+void RayScene::DeviceRelease::operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
+void RayScene::SceneRelease::operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
+
 RayScene::RayScene(const Scene& scene, const std::vector<Vec3>& points, const UnitBox& box)
     : box_(box), device_(rtcNewDevice("threads=1,set_affinity=0")) {
   if (!device_) fail(rtcGetDeviceError(nullptr), "Embree gives no device");
   scene_.reset(rtcNewScene(device_.get()));
   add_mesh(scene, points);
-  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+  rtcSetSceneFlags(scene_.get(), embree::kFilterOfQuery);
   // Not RTC_BUILD_QUALITY_HIGH, which splits triangles in space: about once in 10^5 scenes with coordinates of very
   // different magnitudes it leaves one side of a split empty, and asserts. In scenes of 400 to 20,000 triangles its
   // rays were not faster (and saw the same), and it took four times as long to build.
@@ -269,9 +273,6 @@ void RayScene::add_mesh(const Scene& scene, const std::vector<Vec3>& points) {
 unsigned RayScene::hidden_lanes(const Vec3& origin, const RayEnds& ends, int first, const Blockers& blockers,
                                 unsigned hidden) const {
   FilterContext filter{{}, &blockers, piece_of_triangle_.data()};
-  rtcInitIntersectContext(&filter.context);
-  filter.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  filter.context.filter = pass_through_others;
   const Vec3 start = (origin - box_.centre) * box_.scale;
   const int lanes = std::min(kPacket, ends.count - first);
   RTCRay16 rays;
@@ -282,7 +283,7 @@ unsigned RayScene::hidden_lanes(const Vec3& origin, const RayEnds& ends, int fir
     valid[lane] = lane < lanes && (hidden >> lane & 1U) == 0 ? -1 : 0;
     set_ray(rays, lane, brought_into_box(start + from_x * box_.scale), from_x, box_.scale);
   }
-  rtcOccluded16(valid, scene_.get(), &filter.context, &rays);
+  embree::find_occluded(valid, scene_.get(), rays, embree::Order::kCoherent, filter.context, pass_through_others);
   for (int lane = 0; lane < lanes; ++lane) hidden |= (rays.tfar[lane] < 0.0F ? 1U : 0U) << lane;
   return hidden;
 }

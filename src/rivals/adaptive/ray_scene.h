@@ -1,8 +1,6 @@
 // The scene in the form that Embree takes: single precision, in the unit box.
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -11,6 +9,10 @@
 
 #include "adaptive/sample_points.h"
 #include "exactff/scene.h"
+
+// Embree's types (adaptive/embree.h)
+struct RTCDeviceTy;
+struct RTCSceneTy;
 
 namespace exactff::adaptive {
 
@@ -73,10 +75,10 @@ class RayScene {
 
  private:
   struct DeviceRelease {
-    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+    void operator()(RTCDeviceTy* device) const;
   };
   struct SceneRelease {
-    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+    void operator()(RTCSceneTy* scene) const;
   };
 
   void add_mesh(const Scene& scene, const std::vector<Vec3>& points);

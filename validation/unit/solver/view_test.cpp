@@ -56,9 +56,9 @@ WholeView judged(const Scene& scene, const Receiver& receiver) {
   return view(scene, receiver);
 }
 
-const SeenPatch& patch_of(const WholeView& seen, const Scene& scene, const std::string& name) {
+const SeenPatch& patch_of(const WholeView& seen, const Scene& scene, const char* name) {
   const SeenPatch* patch = validation::find_patch(seen, index_of(scene.select(name).patch));
-  if (patch == nullptr) throw std::runtime_error(name + " is not seen");
+  if (patch == nullptr) throw std::runtime_error(std::string(name) + " is not seen");
   return *patch;
 }
 
