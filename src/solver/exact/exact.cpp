@@ -169,7 +169,7 @@ class Solver {
         planes_(ExactSourceInside::planes(source).planes),
         options_(options),
         wants_fraction_(options.visible_fraction || options.exact_fraction),
-        wants_gradient_(options.gradient || options.list_arcs || options.along.has_value()),
+        wants_gradient_(options.gradient || options.vertices || options.list_arcs || options.along.has_value()),
         view_(scene, receiver),
         request_{.engine = options.engine,
                  .fraction = wants_fraction_,
@@ -194,6 +194,7 @@ class Solver {
     if (something_visible_ && !sum_is_certain()) integrate_in_balls();
     exact::set_bounds(result_);
     if (wants_gradient_) find_gradient();
+    if (options_.vertices) find_vertices();
     if (wants_fraction_) set_fraction(shares_, result_);
   }
 
@@ -230,6 +231,27 @@ class Solver {
       gradient.add_exactly({view_, plane, request_}, seen.boundary);
     }
     gradient.certify(options_.precision_cap, *result_.gradient);
+  }
+
+  // The boundary is found once more, from pieces, since panels may lack vertices that move it.
+  void find_vertices() {
+    Gradient& result = *result_.gradient;
+    if (result.kink) return;
+    if (memory_.vertices == nullptr) memory_.vertices = std::make_unique<gradient::VertexGradient>();
+    gradient::VertexGradient& vertices = *memory_.vertices;
+    const visibility::BoundaryRequest request{
+        .engine = options_.engine, .only_occluders = options_.only_occluders, .by_pieces = true};
+    const auto for_each_plane = [&](const auto& add) {
+      for (const SourcePlane& plane : planes_) {
+        const PlaneVisibility seen = find_visible_boundary(view_, plane, request, memory_.edges);
+        add(visibility::PlaneQuery{view_, plane, request}, seen.boundary);
+      }
+    };
+    vertices.start(view_);
+    for_each_plane([&](const auto& query, const auto& boundary) { vertices.add(query, boundary); });
+    if (vertices.finish(options_.precision_cap, result)) return;
+    for_each_plane([&](const auto& query, const auto& boundary) { vertices.add_exactly(query, boundary); });
+    vertices.certify(options_.precision_cap, result);
   }
 
   // Step 7 in double-double: takes the value from the sum over all planes. False if that does not determine it.
@@ -292,7 +314,12 @@ bool same(const Derivative& a, const Derivative& b) {
 bool same_gradient(const std::optional<Gradient>& a, const std::optional<Gradient>& b) {
   if (!a || !b) return a.has_value() == b.has_value();
   const auto all = [](const auto& p, const auto& q) { return std::equal(p.begin(), p.end(), q.begin(), same); };
-  return a->kink.has_value() == b->kink.has_value() && all(a->position, b->position) && all(a->normal, b->normal) &&
+  const auto same_vertex = [&](const VertexDerivative& p, const VertexDerivative& q) {
+    return p.vertex == q.vertex && p.is_kink == q.is_kink && all(p.position, q.position);
+  };
+  return a->vertices.size() == b->vertices.size() &&
+         std::equal(a->vertices.begin(), a->vertices.end(), b->vertices.begin(), same_vertex) &&
+         a->kink.has_value() == b->kink.has_value() && all(a->position, b->position) && all(a->normal, b->normal) &&
          (!a->along || same(*a->along, b->along.value()));
 }
 
