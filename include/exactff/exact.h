@@ -171,9 +171,9 @@ struct Gradient {
   // kOnFace, where F may jump.
   std::optional<Derivative> along;
   std::vector<GradientArc> arcs;  // on request, the largest part first; not at kinks
-  // On request: the vertices whose movement moves the visible boundary, and those at kinks, ascending; not at kinks of
-  // dF/dx. The receiver does not move. A face that meets the source's plane moves there with its own plane. Each plane
-  // follows three vertices: those of a source `frames` lists, in the order of FormFactor::planes.
+  // On request: the vertices by which the derivative is not proved to be zero, and those at kinks, ascending; not at
+  // kinks of dF/dx. The receiver stays. Where a face meets the source's plane, the border moves with both planes. Each
+  // plane follows three vertices (include/README.md); those of the source are `frames`, by FormFactor::planes.
   std::vector<VertexDerivative> vertices;
   std::vector<std::array<std::uint32_t, 3>> frames;
 };

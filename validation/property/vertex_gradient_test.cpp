@@ -10,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -266,6 +265,130 @@ TEST(VertexGradient, AxisPermutationsAndSignFlipsChangeNoBit) {
             << v << ' ' << k << '\n'
             << generate::to_obj(plain);
       }
+    }
+  }
+}
+
+// --- Cases ---
+
+constexpr const char* kSource = "source";
+
+// A square light at height 2 that looks down, seen from below.
+PlainScene under_a_light() {
+  PlainScene plain;
+  plain.add_ring(plain.patch(kSource), {{-1, 1, 2}, {1, 1, 2}, {1, -1, 2}, {-1, -1, 2}});
+  plain.point = {.125, .0625, 0};
+  return plain;
+}
+
+const VertexDerivative* vertex_at(const PlainScene& plain, const Gradient& gradient, const Vec3& place) {
+  const auto found = std::ranges::find_if(gradient.vertices,
+                                          [&](const VertexDerivative& v) { return plain.vertices[v.vertex] == place; });
+  return found == gradient.vertices.end() ? nullptr : &*found;
+}
+
+// Faces that are joined to panels lose the corners in the middle of straight sides; these move the border all the same.
+TEST(VertexGradient, ACornerBetweenTwoFacesOfAWallMovesItsSides) {
+  PlainScene plain = under_a_light();
+  generate::PlainPatch& wall = plain.patch("wall");
+  plain.add_ring(wall, {{-.5, -.25, 1}, {0, -.25, 1}, {0, .25, 1}, {-.5, .25, 1}});
+  plain.add_ring(wall, {{0, -.25, 1}, {.25, -.25, 1}, {.25, .25, 1}, {0, .25, 1}});
+  const Gradient gradient = *solve_vertices(plain, Engine::kBoth).gradient;
+  EXPECT_EQ(gradient.vertices.size(), 10U);
+  const VertexDerivative* middle = vertex_at(plain, gradient, {0, .25, 1});
+  ASSERT_NE(middle, nullptr);
+  EXPECT_LT(middle->position[1].value, -0.01);
+}
+
+TEST(VertexGradient, ADiagonalMovesNothing) {
+  PlainScene plain = under_a_light();
+  generate::PlainPatch& wall = plain.patch("wall");
+  plain.add_ring(wall, {{-.25, -.25, 1}, {.25, -.25, 1}, {.25, .25, 1}, {-.25, .25, 1}, {-.125, 0, 1}});
+  const Gradient gradient = *solve_vertices(plain, Engine::kBoth).gradient;
+  EXPECT_EQ(gradient.vertices.size(), 9U);
+  for (const VertexDerivative& v : gradient.vertices) EXPECT_FALSE(v.is_kink);
+}
+
+// Three faces that abut without sharing all corners: the gap that opens is a kink, the outer corners move as ever.
+TEST(VertexGradient, ATJunctionIsAKinkForItsCorners) {
+  PlainScene plain = under_a_light();
+  plain.add_ring(plain.patch("left"), {{-.25, -.25, 1}, {0, -.25, 1}, {0, .25, 1}, {-.25, .25, 1}});
+  plain.add_ring(plain.patch("below"), {{0, -.25, 1}, {.25, -.25, 1}, {.25, .0625, 1}, {0, .0625, 1}});
+  plain.add_ring(plain.patch("above"), {{0, .0625, 1}, {.25, .0625, 1}, {.25, .25, 1}, {0, .25, 1}});
+  const Gradient gradient = *solve_vertices(plain, Engine::kBoth).gradient;
+  ASSERT_FALSE(gradient.kink);
+  for (const Vec3& place : {Vec3{0, -.25, 1}, Vec3{0, .0625, 1}, Vec3{0, .25, 1}}) {
+    ASSERT_NE(vertex_at(plain, gradient, place), nullptr);
+    EXPECT_TRUE(vertex_at(plain, gradient, place)->is_kink);
+    EXPECT_TRUE(std::isnan(vertex_at(plain, gradient, place)->position[0].value));
+  }
+  EXPECT_FALSE(vertex_at(plain, gradient, {-.25, -.25, 1})->is_kink);
+  EXPECT_FALSE(vertex_at(plain, gradient, {.25, .0625, 1})->is_kink);
+}
+
+// What stands on the source hides what is beside its foot only while it stands.
+TEST(VertexGradient, WhatTouchesTheSourceIsAKinkThere) {
+  PlainScene plain = under_a_light();
+  plain.add_ring(plain.patch("wall"), {{-.5, .25, 2}, {.5, .25, 2}, {.5, .5, 1}, {-.5, .5, 1}});
+  const Gradient gradient = *solve_vertices(plain, Engine::kBoth).gradient;
+  ASSERT_FALSE(gradient.kink);
+  EXPECT_TRUE(vertex_at(plain, gradient, {-.5, .25, 2})->is_kink);
+  EXPECT_TRUE(vertex_at(plain, gradient, {.5, .25, 2})->is_kink);
+  EXPECT_FALSE(vertex_at(plain, gradient, {.5, .5, 1})->is_kink);
+}
+
+// The walls of a room share the edges of its ceiling: they only hide what is outside.
+TEST(VertexGradient, WallsAlongTheSourcesEdgesAreNoKinks) {
+  PlainScene plain = under_a_light();
+  plain.add_ring(plain.patch("wall"), {{-1, 1, 2}, {1, 1, 2}, {1, 1, 0}, {-1, 1, 0}});
+  plain.add_ring(plain.patch("ceiling"), {{1, 1, 2}, {3, 1, 2}, {3, -1, 2}, {1, -1, 2}});
+  const Gradient gradient = *solve_vertices(plain, Engine::kBoth).gradient;
+  ASSERT_EQ(gradient.vertices.size(), 4U);
+  for (const VertexDerivative& v : gradient.vertices) EXPECT_FALSE(v.is_kink);
+}
+
+TEST(VertexGradient, AFaceOverTheSourceIsAKinkAlthoughItHidesNothing) {
+  PlainScene plain = under_a_light();
+  plain.add_ring(plain.patch("over"), {{-.5, -.5, 2}, {.5, -.5, 2}, {.5, .5, 2}, {-.5, .5, 2}});
+  const Gradient gradient = *solve_vertices(plain, Engine::kBoth).gradient;
+  EXPECT_TRUE(vertex_at(plain, gradient, {.5, .5, 2})->is_kink);
+}
+
+// The border is where the plate pierces the source, and moves with both planes.
+TEST(VertexGradient, AFaceThatPiercesTheSourceMovesTheBorderWithBothPlanes) {
+  PlainScene plain = under_a_light();
+  plain.add_ring(plain.patch("plate"), {{-.5, .25, 3}, {.5, .25, 3}, {0, .5, 1}});
+  const Gradient gradient = *solve_vertices(plain, Engine::kBoth).gradient;
+  ASSERT_EQ(gradient.frames.size(), 1U);
+  EXPECT_EQ(gradient.vertices.size(), 7U);
+  for (const VertexDerivative& v : gradient.vertices) EXPECT_FALSE(v.is_kink);
+  EXPECT_NE(vertex_at(plain, gradient, {-.5, .25, 3})->position[1].value, 0.0);
+}
+
+TEST(VertexGradient, AddsOverSources) {
+  PlainScene plain;
+  plain.add_ring(plain.patch("left"), {{-1, 1, 2}, {0, 1, 2}, {0, -1, 2}, {-1, -1, 2}});
+  plain.add_ring(plain.patch("right"), {{0, 1, 2}, {1, 1, 2}, {1, -1, 2}, {0, -1, 2}});
+  plain.add_ring(plain.patch("post"), {{-.3, -.3, 1}, {.4, -.2, 1}, {.1, .5, 1.2}});
+  plain.point = {.1, .2, 0};
+  const auto of_post = [](const PlainScene& scene) {
+    const Gradient gradient = *solve_vertices(scene).gradient;
+    std::array<Three, 3> found;
+    constexpr std::array kCorners = {Vec3{-.3, -.3, 1}, Vec3{.4, -.2, 1}, Vec3{.1, .5, 1.2}};
+    for (std::size_t i = 0; i < 3; ++i) found[i] = balls(vertex_at(scene, gradient, kCorners[i])->position);
+    return found;
+  };
+  PlainScene whole = under_a_light();
+  plain.source = "left";
+  const std::array<Three, 3> left = of_post(plain);
+  plain.source = "right";
+  const std::array<Three, 3> right = of_post(plain);
+  whole.add_ring(whole.patch("post"), {{-.3, -.3, 1}, {.4, -.2, 1}, {.1, .5, 1.2}});
+  whole.point = plain.point;
+  const std::array<Three, 3> both = of_post(whole);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_TRUE(holds_zero(left[i][axis] + right[i][axis] - both[i][axis])) << i << ' ' << axis;
     }
   }
 }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "contour/contour.h"
@@ -311,16 +312,26 @@ bool same(const Derivative& a, const Derivative& b) {
   return (open || (a.value == b.value && a.status == b.status)) && a.enclosure.overlaps(b.enclosure);
 }
 
+// A vertex that is not listed has derivatives of zero.
+bool same_vertices(std::span<const VertexDerivative> a, std::span<const VertexDerivative> b) {
+  const auto all = [](const auto& p, const auto& q) { return std::equal(p.begin(), p.end(), q.begin(), same); };
+  while (!a.empty() || !b.empty()) {
+    const bool only_a = b.empty() || (!a.empty() && a.front().vertex < b.front().vertex);
+    const bool only_b = a.empty() || (!b.empty() && b.front().vertex < a.front().vertex);
+    const VertexDerivative none;
+    const VertexDerivative &p = only_b ? none : a.front(), &q = only_a ? none : b.front();
+    if (p.is_kink != q.is_kink || !all(p.position, q.position)) return false;
+    if (!only_b) a = a.subspan(1);
+    if (!only_a) b = b.subspan(1);
+  }
+  return true;
+}
+
 bool same_gradient(const std::optional<Gradient>& a, const std::optional<Gradient>& b) {
   if (!a || !b) return a.has_value() == b.has_value();
   const auto all = [](const auto& p, const auto& q) { return std::equal(p.begin(), p.end(), q.begin(), same); };
-  const auto same_vertex = [&](const VertexDerivative& p, const VertexDerivative& q) {
-    return p.vertex == q.vertex && p.is_kink == q.is_kink && all(p.position, q.position);
-  };
-  return a->vertices.size() == b->vertices.size() &&
-         std::equal(a->vertices.begin(), a->vertices.end(), b->vertices.begin(), same_vertex) &&
-         a->kink.has_value() == b->kink.has_value() && all(a->position, b->position) && all(a->normal, b->normal) &&
-         (!a->along || same(*a->along, b->along.value()));
+  return same_vertices(a->vertices, b->vertices) && a->kink.has_value() == b->kink.has_value() &&
+         all(a->position, b->position) && all(a->normal, b->normal) && (!a->along || same(*a->along, b->along.value()));
 }
 
 void require_agreement(const FormFactor& a, const FormFactor& b) {

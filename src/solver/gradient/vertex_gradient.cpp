@@ -323,6 +323,9 @@ void VertexGradient::certify(int cap, Gradient& result) {
       gradient::certify(sum, factor, cap, vertex.position[axis]);
     }
   }
+  std::erase_if(result.vertices, [](const VertexDerivative& vertex) {
+    return std::ranges::all_of(vertex.position, [](const auto& d) { return d.status == DerivativeStatus::kZero; });
+  });
 }
 
 }  // namespace exactff::gradient
