@@ -154,6 +154,14 @@ struct GradientArc {
   Vec3 part;
 };
 
+// The derivatives of F by the three coordinates of a vertex, per unit of length. Vertices at equal coordinates move
+// together.
+struct VertexDerivative {
+  std::uint32_t vertex = 0;  // the lowest index of those at its coordinates
+  bool is_kink = false;      // F has no derivative by this vertex
+  std::array<Derivative, 3> position;
+};
+
 // The derivatives of F at a receiver. F = n . V / |n|, where V does not depend on the normal n.
 struct Gradient {
   std::optional<Kink> kink;            // set if dF/dx does not exist: the first one found
@@ -163,6 +171,11 @@ struct Gradient {
   // kOnFace, where F may jump.
   std::optional<Derivative> along;
   std::vector<GradientArc> arcs;  // on request, the largest part first; not at kinks
+  // On request: the vertices by which the derivative is not proved to be zero, and those at kinks, ascending; not at
+  // kinks of dF/dx. The receiver stays. Where a face meets the source's plane, the border moves with both planes. Each
+  // plane follows three vertices (include/README.md); those of the source are `frames`, by FormFactor::planes.
+  std::vector<VertexDerivative> vertices;
+  std::vector<std::array<std::uint32_t, 3>> frames;
 };
 
 struct FormFactor {
@@ -188,6 +201,7 @@ struct ExactOptions {
   bool list_cutters = false;
   bool gradient = false;
   bool list_arcs = false;          // of the gradient, which is then computed
+  bool vertices = false;           // of the gradient, which is then computed
   std::optional<Vec3> along = {};  // implies gradient; a direction of any length other than zero (else InputError)
   int digits = 0;                  // raises the precision until this many significant digits are certified, if possible
   int precision_cap = 65536;       // bits, at least 1 (else InputError)

@@ -63,3 +63,24 @@ def test_truth_files_have_it(tmp_path):
     f = ROOM.form_factors(receivers.points, receivers.normals, ["light"], receivers.on, gradient=True)
     for axis, name in enumerate(["dF_dx", "dF_dy", "dF_dz"]):
         assert same_bits(column(rows, name, 1)[:, 0], f.gradient[:, 0, axis])
+
+
+def test_vertices_add_up_to_the_gradient_and_move_the_value():
+    scene = exactff.Scene(LIGHT + [[-0.3, -0.3, 1], [0.4, -0.2, 1], [0.1, 0.5, 1.2]], [[0, 1, 2, 3], [4, 5, 6]],
+                          patch=[0, 1], names=["light", "plate"])
+    g = scene.form_factor([0.1, 0.2, 0], [0, 0, 1], "light", gradient=True, vertices=True).gradient
+    v = g.vertices
+    assert v.vertex.tolist() == [0, 1, 2, 3, 4, 5, 6] and (v.status == S.CERTIFIED).all()
+    assert np.array_equal(v.place, scene.vertices[v.vertex]) and v.frames.tolist() == [[0, 1, 2]]
+    assert v.derivative.sum(axis=0) == pytest.approx(-g.position, abs=1e-15)
+    assert v.enclosures[4][0].nearest == v.derivative[4, 0]
+    assert scene.form_factor([0.1, 0.2, 0], [0, 0, 1], "light", gradient=True).gradient.vertices is None
+
+
+def test_vertices_that_touch_the_source_are_kinks():
+    wall = [[-0.5, 0, 2], [0.5, 0, 2], [0.5, 0.1, 1], [-0.5, 0.1, 1]]  # hangs from the light
+    scene = exactff.Scene(LIGHT + wall, [[0, 1, 2, 3], [4, 5, 6, 7]], patch=[0, 1], names=["light", "wall"])
+    g = scene.form_factor([0.2, 0.7, 0], [0, 0, 1], "light", gradient=True, vertices=True).gradient
+    kinks = np.isnan(g.vertices.derivative).all(axis=1)
+    assert g.kink is None and {4, 5} <= set(g.vertices.vertex[kinks].tolist())
+    assert not {6, 7} & set(g.vertices.vertex[kinks].tolist())

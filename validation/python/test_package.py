@@ -115,6 +115,11 @@ def test_without_numpy_it_says_what_to_install():
     assert "ModuleNotFoundError" not in failed.stderr
 
 
+def test_an_occluder_is_found_from_its_shadow():
+    """The script asserts that it converges."""
+    assert run(sys.executable, "-B", EXAMPLES / "find_occluder.py")
+
+
 def test_examples_are_short():
     assert all(len(file.read_text().splitlines()) <= 30 for file in EXAMPLES.glob("*.py"))
 

@@ -230,12 +230,19 @@ void add_to_plane(std::vector<std::vector<Polygon>>& planes, const Polygon& poly
   (found != planes.end() ? *found : planes.emplace_back()).push_back(polygon);
 }
 
-Setting make_setting(const Scene& scene, const Receiver& receiver, const Selection& source) {
+Setting make_setting(const Scene& scene, const Receiver& receiver, const Selection& source,
+                     const OracleMovement& movement, const Rational& step) {
   Setting setting{{}, {}, receiver.on, exact(receiver.normal)};
+  Vector origin = exact(receiver.point), by = exact(movement.along);
+  for (Rational& c : by) c *= step;
+  if (!movement.place) origin = minus(origin, negative(by));
+  const auto polygons = [&](FaceId id) {
+    return movement.place ? polygons_of(scene, id, origin, {*movement.place, by}) : polygons_of(scene, id, origin);
+  };
   const std::vector<FaceId> chosen = scene.faces_of(source);
   for (std::size_t i = 0; i < scene.faces().size(); ++i) {
     const FaceId id{static_cast<std::uint32_t>(i)};
-    for (const Polygon& polygon : polygons_of(scene, id, exact(receiver.point))) {
+    for (const Polygon& polygon : polygons(id)) {
       if (!scene.face(id).transparent) setting.occluders.push_back(polygon);
       if (std::ranges::find(chosen, id) != chosen.end()) add_to_plane(setting.planes, polygon);
     }
@@ -246,7 +253,7 @@ Setting make_setting(const Scene& scene, const Receiver& receiver, const Selecti
 }  // namespace
 
 OracleResult oracle(const Scene& scene, const Receiver& receiver, const Selection& source) {
-  const Setting setting = make_setting(scene, receiver, source);
+  const Setting setting = make_setting(scene, receiver, source, {}, 0);
   OracleResult result;
   std::vector<Share> shares;
   std::vector<Corners> polygons;
@@ -268,6 +275,24 @@ OracleResult oracle(const Scene& scene, const Receiver& receiver, const Selectio
   result.low = sum.low;
   result.high = sum.high;
   return result;
+}
+
+double oracle_slope(const Scene& scene, const Receiver& receiver, const Selection& source,
+                    const OracleMovement& movement) {
+  constexpr long kBits = 1200;
+  constexpr unsigned kStep = 400;
+  const Rational step(mpz_class(1), mpz_class(1) << kStep);
+  const auto value = [&](const Rational& size) {
+    const Setting setting = make_setting(scene, receiver, source, movement, size);
+    std::vector<Corners> polygons;
+    for (const std::vector<Polygon>& faces : setting.planes) {
+      for (Fragment& fragment : visible_part(setting, faces)) polygons.push_back(std::move(fragment.corners));
+    }
+    if (polygons.empty()) return Rational();
+    const SumBounds bounds = bounds_of_lambert_sum(polygons, setting.normal, kBits);
+    return Rational((bounds.low + bounds.high) / 2);
+  };
+  return Rational((value(step) - value(0)) / step).get_d();
 }
 
 }  // namespace exactff::validation

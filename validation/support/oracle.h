@@ -4,6 +4,7 @@
 
 #include <gmpxx.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,5 +31,16 @@ struct OracleResult {
 
 // Exact. The time grows with the number of fragments: intended for up to some dozens of occluders.
 [[nodiscard]] OracleResult oracle(const Scene& scene, const Receiver& receiver, const Selection& source);
+
+// What moves: the receiver, or the vertices at one place.
+struct OracleMovement {
+  std::optional<Vec3> place;
+  Vec3 along;
+};
+
+// The slope of F on the side of the movement, with more than 30 digits, rounded: the difference between F here and
+// after a step of 2^-400 along it. Coordinates should be of moderate size.
+[[nodiscard]] double oracle_slope(const Scene& scene, const Receiver& receiver, const Selection& source,
+                                  const OracleMovement& movement);
 
 }  // namespace exactff::validation

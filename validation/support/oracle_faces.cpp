@@ -130,25 +130,31 @@ class Ears {
   std::vector<Corner> left_;
 };
 
-std::vector<Corners> as_the_scene_cut_it(const Scene& scene, FaceId face, const Vector& origin) {
+// Where the vertex is, relative to the origin.
+Vector corner_at(const Scene& scene, std::uint32_t vertex, const Vector& origin, const MovedPlace* moved) {
+  const Vec3& v = scene.vertices()[vertex];
+  const Vector corner = minus(exact(v), origin);
+  return moved != nullptr && v == moved->place ? minus(corner, negative(moved->by)) : corner;
+}
+
+std::vector<Corners> as_the_scene_cut_it(const Scene& scene, FaceId face, const Vector& origin,
+                                         const MovedPlace* moved) {
   std::vector<Corners> out;
   for (const Piece& piece : scene.pieces_of(face)) {
     Corners& corners = out.emplace_back();
-    for (const std::uint32_t v : scene.corners(piece)) corners.push_back(minus(exact(scene.vertices()[v]), origin));
+    for (const std::uint32_t v : scene.corners(piece)) corners.push_back(corner_at(scene, v, origin, moved));
   }
   return out;
 }
 
-}  // namespace
-
-std::vector<Polygon> polygons_of(const Scene& scene, FaceId id, const Vector& origin) {
+std::vector<Polygon> polygons_of(const Scene& scene, FaceId id, const Vector& origin, const MovedPlace* moved) {
   const Face& face = scene.face(id);
   if (face.shape == FaceShape::kSkipped) return {};
   if (face.shape == FaceShape::kZeroArea && face.rings.size() > 1) return {};  // the holes cover everything
   std::vector<Corners> rings;
   for (const auto& ring : face.rings) {
     Corners& corners = rings.emplace_back();
-    for (const std::uint32_t v : ring) corners.push_back(minus(exact(scene.vertices()[v]), origin));
+    for (const std::uint32_t v : ring) corners.push_back(corner_at(scene, v, origin, moved));
   }
   if (on_one_line(rings.front())) return {};
   const Polygon whole = polygon(id, rings);
@@ -156,10 +162,19 @@ std::vector<Polygon> polygons_of(const Scene& scene, FaceId id, const Vector& or
   if (std::ranges::all_of(rings, [&](const Corners& ring) { return in_plane(ring, whole); })) return {whole};
   Ears ears(rings.front(), face.rings.front());
   std::vector<Polygon> out;
-  for (Corners& part : ears.touches_itself() ? as_the_scene_cut_it(scene, id, origin) : ears.triangles()) {
+  for (Corners& part : ears.touches_itself() ? as_the_scene_cut_it(scene, id, origin, moved) : ears.triangles()) {
     out.push_back(polygon(id, {std::move(part)}));
   }
   return out;
+}
+
+}  // namespace
+
+std::vector<Polygon> polygons_of(const Scene& scene, FaceId id, const Vector& origin) {
+  return polygons_of(scene, id, origin, nullptr);
+}
+std::vector<Polygon> polygons_of(const Scene& scene, FaceId id, const Vector& origin, const MovedPlace& moved) {
+  return polygons_of(scene, id, origin, &moved);
 }
 
 Polygon shifted(const Polygon& original, const Vector& by) {

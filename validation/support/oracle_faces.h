@@ -21,6 +21,14 @@ struct Polygon {
 // nothing if the face has no area.
 [[nodiscard]] std::vector<Polygon> polygons_of(const Scene& scene, FaceId face, const Vector& origin);
 
+// The same after a movement of the vertices at one place.
+struct MovedPlace {
+  Vec3 place;
+  Vector by;
+};
+[[nodiscard]] std::vector<Polygon> polygons_of(const Scene& scene, FaceId face, const Vector& origin,
+                                               const MovedPlace& moved);
+
 // The same polygon relative to another origin.
 [[nodiscard]] Polygon shifted(const Polygon& polygon, const Vector& by);
 

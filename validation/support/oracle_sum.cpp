@@ -115,16 +115,18 @@ Rational rational(arf_srcptr number) {
   return shift < 0 ? Rational(top, power) : Rational(top * power);
 }
 
-void set_ends(RoundedSum& result, arb_ptr ball) {
+SumBounds ends_of(arb_ptr ball, slong bits) {
+  SumBounds result;
   arf_t low;
   arf_t high;
   arf_init(low);
   arf_init(high);
-  arb_get_interval_arf(low, high, ball, 256);
+  arb_get_interval_arf(low, high, ball, bits);
   result.low = rational(low);
   result.high = rational(high);
   arf_clear(low);
   arf_clear(high);
+  return result;
 }
 
 // False if the ball does not determine the double and 30 digits.
@@ -134,11 +136,20 @@ bool settle(RoundedSum& result, arb_ptr ball) {
   char* text = arb_get_str(ball, 30, ARB_STR_NO_RADIUS);
   result.decimals = text;
   flint_free(text);
-  set_ends(result, ball);
+  constexpr slong kBitsOfEnds = 256;
+  const SumBounds ends = ends_of(ball, kBitsOfEnds);
+  result.low = ends.low;
+  result.high = ends.high;
   return rounds_to(ball, result.value);
 }
 
 }  // namespace
+
+SumBounds bounds_of_lambert_sum(const std::vector<Corners>& polygons, const Vector& n, long bits) {
+  Real ball;
+  evaluate(ball, polygons, n, bits);
+  return ends_of(ball, bits);
+}
 
 RoundedSum lambert_sum(const std::vector<Corners>& polygons, const Vector& n) {
   RoundedSum result;

@@ -32,6 +32,12 @@ struct RoundedSum {
 // above the horizon of n and in a plane that does not contain the origin. Its orientation does not matter.
 [[nodiscard]] RoundedSum lambert_sum(const std::vector<Corners>& polygons, const Vector& n);
 
+// low <= that sum <= high, computed with so many bits.
+struct SumBounds {
+  Rational low, high;
+};
+[[nodiscard]] SumBounds bounds_of_lambert_sum(const std::vector<Corners>& polygons, const Vector& n, long bits);
+
 // For one plane: areas seen along an axis, and the square of the factor that converts them to true areas.
 struct Share {
   Rational visible;

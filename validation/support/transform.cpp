@@ -280,4 +280,30 @@ PlainScene nudged(const PlainScene& scene, Random& random) {
   return out;
 }
 
+PlainScene in_triangles(const PlainScene& plain) {
+  const Scene scene = generate::build(plain);
+  PlainScene result = plain;
+  result.vertices.assign(scene.vertices().begin(), scene.vertices().end());
+  for (generate::PlainPatch& patch : result.patches) patch.faces.clear();
+  for (const Piece& piece : scene.pieces()) {
+    const std::string& name = scene.patch(scene.face(piece.face).patch).name;
+    const auto patch = std::ranges::find(result.patches, name, &generate::PlainPatch::name);
+    const auto corners = scene.corners(piece);
+    for (std::size_t c = 2; c < corners.size(); ++c) {
+      if (name == plain.source && !patch->faces.empty()) break;
+      generate::PlainFace face;
+      face.rings = {{corners[0], corners[c - 1], corners[c]}};
+      patch->faces.push_back(face);
+    }
+  }
+  std::erase_if(result.patches, [](const generate::PlainPatch& patch) { return patch.faces.empty(); });
+  return result;
+}
+
+bool has_only_area(const PlainScene& plain) {
+  if (std::ranges::find(plain.patches, plain.source, &generate::PlainPatch::name) == plain.patches.end()) return false;
+  const Scene scene = generate::build(plain);
+  return std::ranges::none_of(scene.faces(), [](const Face& face) { return face.shape == FaceShape::kZeroArea; });
+}
+
 }  // namespace exactff::validation

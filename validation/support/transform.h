@@ -41,6 +41,13 @@ struct Symmetry {
 [[nodiscard]] generate::PlainScene slid_along_rays(const generate::PlainScene& scene, int range,
                                                    generate::Random& random);
 
+// Every face cut into triangles, so that it stays planar when a vertex moves. Of the source one triangle is left, or
+// none.
+[[nodiscard]] generate::PlainScene in_triangles(const generate::PlainScene& scene);
+
+// Whether there is a source, and no face without area.
+[[nodiscard]] bool has_only_area(const generate::PlainScene& scene);
+
 // Shears the scene by a random matrix near the identity and rounds every coordinate: what met exactly now almost meets,
 // and mantissas are full. The receiver's normal is sheared like a point.
 [[nodiscard]] generate::PlainScene sheared(const generate::PlainScene& scene, generate::Random& random);

@@ -70,7 +70,12 @@ void refuse_settings_without_adaptive(const CLI::App& command, const PointArgume
 }
 
 void refuse_along_without_gradient(const PointArguments& args) {
-  if (args.gradient || !flags::is_given(args.along)) return;
+  if (args.gradient) return;
+  if (args.vertices) {
+    text::refuse("--vertices is given without --gradient", "it adds the derivatives by the vertices of the scene",
+                 "add --gradient, or remove it");
+  }
+  if (!flags::is_given(args.along)) return;
   text::refuse("--along is given without --gradient", "it names the direction of a one-sided derivative",
                "add --gradient, or remove it");
 }
@@ -84,7 +89,8 @@ void warn_of_idle_options(const CLI::App& command, const PointArguments& args) {
   };
   if (args.plain) {
     const bool leaves_are_drawn = args.adaptive && !args.svg.empty();
-    std::vector<std::string> idle = given(command, {"--fraction", "--exact-fraction", "--explain", "--along"});
+    std::vector<std::string> idle =
+        given(command, {"--fraction", "--exact-fraction", "--explain", "--along", "--vertices"});
     for (const std::string& flag : given(command, {"--reflectance", "--adaptive"})) {
       if (!leaves_are_drawn) idle.push_back(flag);
     }
@@ -99,8 +105,10 @@ void warn_of_idle_options(const CLI::App& command, const PointArguments& args) {
 // A derivative whose ball contains 0 is a result.
 bool is_certified(const FormFactor& f) {
   const auto is_open = [](const Derivative& d) { return d.status == DerivativeStatus::kEnclosed && d.value != 0.0; };
+  const auto is_open_vertex = [&](const VertexDerivative& v) { return std::ranges::any_of(v.position, is_open); };
   if (f.gradient &&
-      (std::ranges::any_of(f.gradient->position, is_open) || std::ranges::any_of(f.gradient->normal, is_open) ||
+      (std::ranges::any_of(f.gradient->vertices, is_open_vertex) ||
+       std::ranges::any_of(f.gradient->position, is_open) || std::ranges::any_of(f.gradient->normal, is_open) ||
        (f.gradient->along && is_open(*f.gradient->along)))) {
     return false;
   }
@@ -177,6 +185,9 @@ void add_output_flags(CLI::App& app, PointArguments& args) {
                "Also print dF/dx, dF/dy, dF/dz, per unit of length, and the vector V with F = n . V / |n|; where the "
                "derivative does not exist (a kink), the reason. With --plain: one line of value and derivatives, or "
                "of value and the word kink, separated by tabs");
+  app.add_flag("--vertices", args.vertices,
+               "With --gradient: also the derivatives by the coordinates of every vertex that moves the visible "
+               "boundary, per unit of length. Vertices at equal coordinates move together");
   flags::add_vector_option(app, "--along", args.along,
                            "With --gradient: also the one-sided derivative if the point moves in this direction, per "
                            "unit of length. It exists at most kinks",

@@ -31,6 +31,7 @@ struct PointArguments {
   bool fraction = false;
   bool exact_fraction = false;
   bool gradient = false;
+  bool vertices = false;
   flags::ThreeNumbers along;
   bool plain = false;
   bool json = false;

@@ -142,6 +142,26 @@ void print_arcs(const Gradient& gradient) {
   }
 }
 
+// Each vertex that moves the visible boundary.
+void print_vertices(const Scene& scene, const Gradient& gradient) {
+  if (gradient.kink) return;
+  std::cout << "\n  vertices that move the visible boundary: " << gradient.vertices.size() << '\n';
+  for (const VertexDerivative& vertex : gradient.vertices) {
+    std::cout << "    " << vec_text(scene.vertices()[vertex.vertex]);
+    if (vertex.is_kink) {
+      std::cout << "  none: a kink\n";
+      continue;
+    }
+    for (const Derivative& d : vertex.position) std::cout << "  " << plain_derivative(d);
+    std::cout << '\n';
+  }
+  for (std::size_t plane = 0; plane < gradient.frames.size() && gradient.frames.size() == 1; ++plane) {
+    std::cout << "  the source's plane follows";
+    for (const std::uint32_t corner : gradient.frames[plane]) std::cout << ' ' << vec_text(scene.vertices()[corner]);
+    std::cout << '\n';
+  }
+}
+
 void print_adaptive(const PointTerm& one) {
   const AdaptiveResult& a = *one.adaptive;
   std::cout << "  ray-sampled adaptive: " << shortest(a.form_factor) << " (error "
@@ -158,6 +178,7 @@ void print_source(const PointArguments& args, const Scene& scene, const PointTer
   }
   if (args.exact_fraction) print_exact_fractions(scene, one);
   if (one.exact.gradient) print_gradient(scene, *one.exact.gradient);
+  if (args.vertices) print_vertices(scene, *one.exact.gradient);
   if (!one.emits) std::cout << "  emits        nothing (Ke 0), so it counts with a radiosity of 1\n";
   if (one.adaptive) print_adaptive(one);
   if (!args.explain) return;
@@ -263,6 +284,19 @@ nlohmann::ordered_json derivative_json(const Derivative& d) {
   return {{"value", d.value}, {"status", to_string(d.status)}, {"ball", ball_json(d.enclosure)}};
 }
 
+nlohmann::ordered_json vertices_json(const Scene& scene, const Gradient& gradient) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const VertexDerivative& vertex : gradient.vertices) {
+    nlohmann::ordered_json position = nlohmann::ordered_json::array();
+    for (const Derivative& d : vertex.position) position.push_back(derivative_json(d));
+    json.push_back({{"vertex", vertex.vertex},
+                    {"at", numbers_json(scene.vertices()[vertex.vertex])},
+                    {"kink", vertex.is_kink},
+                    {"position", position}});
+  }
+  return json;
+}
+
 nlohmann::ordered_json gradient_json(const PointArguments& args, const Scene& scene, const Gradient& gradient) {
   nlohmann::ordered_json json;
   if (gradient.kink) {
@@ -277,6 +311,10 @@ nlohmann::ordered_json gradient_json(const PointArguments& args, const Scene& sc
   json["normal"] = nlohmann::ordered_json::array();
   for (const Derivative& d : gradient.normal) json["normal"].push_back(derivative_json(d));
   if (gradient.along) json["along"] = derivative_json(*gradient.along);
+  if (args.vertices) {
+    json["vertices"] = vertices_json(scene, gradient);
+    json["frames"] = gradient.frames;
+  }
   if (args.explain) {
     json["arcs"] = nlohmann::ordered_json::array();
     for (const GradientArc& arc : gradient.arcs) {

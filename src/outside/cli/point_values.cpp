@@ -104,6 +104,7 @@ FormFactor exact_value(const PointArguments& args, const Scene& scene, const Poi
                              .list_cutters = args.explain || !args.svg.empty(),
                              .gradient = args.gradient,
                              .list_arcs = args.gradient && args.explain,
+                             .vertices = args.vertices,
                              .along = direction_of(args),
                              .digits = args.digits,
                              .precision_cap = args.precision_cap};

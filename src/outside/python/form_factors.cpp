@@ -153,8 +153,9 @@ class Pair {
 
 std::shared_ptr<Pair> pair_of(const std::shared_ptr<SharedScene>& scene, const std::array<double, 3>& point,
                               const std::array<double, 3>& normal, const std::vector<std::uint32_t>& on,
-                              const std::string& source, bool fraction, bool list_cutters, bool gradient, int digits,
-                              int precision_cap, const std::optional<std::vector<std::uint32_t>>& only_occluders) {
+                              const std::string& source, bool fraction, bool list_cutters, bool gradient, bool vertices,
+                              int digits, int precision_cap,
+                              const std::optional<std::vector<std::uint32_t>>& only_occluders) {
   Receiver receiver{{point[0], point[1], point[2]}, {normal[0], normal[1], normal[2]}, {}, {}};
   for (const std::uint32_t face : on) receiver.on.push_back(static_cast<FaceId>(face));
   std::vector<FaceId> only;
@@ -165,6 +166,7 @@ std::shared_ptr<Pair> pair_of(const std::shared_ptr<SharedScene>& scene, const s
                              .exact_fraction = fraction,
                              .list_cutters = list_cutters,
                              .gradient = gradient,
+                             .vertices = vertices,
                              .digits = digits,
                              .precision_cap = precision_cap,
                              .only_occluders = only_occluders ? &only : nullptr};
@@ -182,7 +184,8 @@ py::list planes_of(const Pair& pair) {
   return planes;
 }
 
-// The reason of the kink and its faces (or none), then (value, status, enclosure) for dF/dx and for V.
+// The reason of the kink and its faces (or none), then (value, status, enclosure) for dF/dx and for V; (vertex, place,
+// such a list) for vertices, and the frames.
 py::object gradient_of(const Pair& pair) {
   if (!pair.result().gradient) return py::none();
   const Gradient& gradient = *pair.result().gradient;
@@ -199,7 +202,12 @@ py::object gradient_of(const Pair& pair) {
     for (const FaceId face : gradient.kink->faces) faces.append(pair.scene().name_of(face));
     kink = py::make_tuple(std::string(to_string(gradient.kink->reason)), faces);
   }
-  return py::make_tuple(kink, list(gradient.position), list(gradient.normal));
+  py::list vertices;
+  for (const VertexDerivative& v : gradient.vertices) {
+    const Vec3& at = pair.scene().vertices()[v.vertex];
+    vertices.append(py::make_tuple(v.vertex, py::make_tuple(at.x, at.y, at.z), list(v.position)));
+  }
+  return py::make_tuple(kink, list(gradient.position), list(gradient.normal), vertices, gradient.frames);
 }
 
 std::vector<std::size_t> cutters_of(const Pair& pair) {
@@ -240,8 +248,8 @@ void bind_form_factors(py::module_& module) {
              py::arg("sources"), py::arg("full"), py::arg("fraction"), py::arg("gradient"), py::arg("precision_cap"),
              py::arg("threads"), py::arg("progress"));
   module.def("form_factor", &pair_of, py::arg("scene"), py::arg("point"), py::arg("normal"), py::arg("on"),
-             py::arg("source"), py::arg("fraction"), py::arg("list_cutters"), py::arg("gradient"), py::arg("digits"),
-             py::arg("precision_cap"), py::arg("only_occluders"));
+             py::arg("source"), py::arg("fraction"), py::arg("list_cutters"), py::arg("gradient"), py::arg("vertices"),
+             py::arg("digits"), py::arg("precision_cap"), py::arg("only_occluders"));
   module.def(
       "status_name", [](int status) { return std::string(to_string(static_cast<Status>(status))); }, py::arg("status"));
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "experiments/closure.h"
+#include "experiments/gradient_differences.h"
 #include "experiments/hemicube_resolution.h"
 #include "experiments/hemicube_scatter.h"
 #include "experiments/karkanis_times.h"
@@ -24,7 +25,8 @@ constexpr Experiment kExperiments[] = {
      &karkanis_times},
     {"nettle-rule", "Nettle's rule: error against the patch's size over its distance", &nettle_rule},
     {"small-emitters", "Karkanis' conclusion: many small bright emitters, in radiosity", &small_emitters},
-    {"closure", "a closed room: the form factors from a point to all patches sum to 1", &closure}};
+    {"closure", "a closed room: the form factors from a point to all patches sum to 1", &closure},
+    {"gradient", "finite differences of every method against exact derivatives, by step", &gradient_differences}};
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 // The experiments of the report that do not concern one scene with its grid of receivers: they repeat what Karkanis and
-// Nettle measured or claimed, with exact values.
+// Nettle measured or claimed, with exact values, or measure what only exact values can.
 //
 // An experiment is one pair of files and one line of the list in experiment.cpp. It generates its scenes from fixed
 // seeds and returns sentences, figures and tables. Tables of values are the same bytes on every run and for any number

@@ -8,7 +8,7 @@
 
 namespace exactff {
 
-// For every vertex the index of one vertex at its position, the same for all vertices there. Computed at the first
+// For every vertex the lowest index of a vertex at its position. Computed at the first
 // call; safe to call from several threads.
 [[nodiscard]] std::span<const std::uint32_t> places(const Scene& scene);
 

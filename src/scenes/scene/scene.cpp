@@ -204,12 +204,13 @@ std::string Scene::hash() const {
 
 namespace {
 
-// For each vertex the first vertex, in some order, at its position.
+// For each vertex the first vertex at its position.
 std::vector<std::uint32_t> position_ids(std::span<const Vec3> vertices) {
   const auto key = [&](std::uint32_t v) { return std::tuple(vertices[v].x, vertices[v].y, vertices[v].z); };
   std::vector<std::uint32_t> order(vertices.size());
   std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return std::tuple(key(a), a) < std::tuple(key(b), b); });
   std::vector<std::uint32_t> id(vertices.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
     const bool same = i > 0 && vertices[order[i]] == vertices[order[i - 1]];

@@ -69,6 +69,11 @@ void ArcSum::add_normal(const MovingArc& arc, int axis) {
   add(arc, Rational(-cross(arc.begin, arc.end)[axis]), Rational());
 }
 
+void ArcSum::add_weighted(const MovingArc& arc, const ExactVec3& n, const Rational& weight) {
+  const Integral twice = integral_of(arc, n);
+  add(arc, twice.factor * weight, twice.rest * weight / Rational(twice.squared_cross));
+}
+
 void ArcSum::add_along(const MovingArc& arc, const ExactVec3& n, const ExactVec3& d) {
   const Integral twice = integral_of(arc, n);
   const Integer along = -dot(d, twice.cross);

@@ -43,6 +43,8 @@ class ArcSum {
 
   void add_position(const MovingArc& arc, const kernel::ExactVec3& n, int axis);
   void add_normal(const MovingArc& arc, int axis);
+  // weight / |C| 2 I, where the arc's nearness may be any vector.
+  void add_weighted(const MovingArc& arc, const kernel::ExactVec3& n, const kernel::Rational& weight);
   // For a movement along d: -(d . C) / |C| 2 I.
   void add_along(const MovingArc& arc, const kernel::ExactVec3& n, const kernel::ExactVec3& d);
   // The same for a gain: |d . C| / |C| 2 I.

@@ -145,16 +145,40 @@ void add_arcs(const std::array<double, 3>& normal, std::span<const QuickPiece> p
   }
 }
 
+EXACTFF_CLONES
+void shares_of(const std::array<double, 3>& normal, std::span<const QuickPiece> pieces, std::span<const Line> lines,
+               const AngleConstants& known, std::span<QuickGradient::Shares> result) {
+  const FourVector n = vector_of<Four>(normal);
+  for (std::size_t i = 0; i < pieces.size(); i += kLanes) {
+    const std::size_t count = std::min(kLanes, pieces.size() - i);
+    const FourOf<QuickPiece> piece = four_of(pieces.subspan(i, count));
+    const FourOf<Line> line = {&lines[piece[0]->edge], &lines[piece[1]->edge], &lines[piece[2]->edge],
+                               &lines[piece[3]->edge]};
+    const FourEnds p = ends_of(line, n, piece, &QuickPiece::begin, lines);
+    const FourEnds q = ends_of(line, n, piece, &QuickPiece::end, lines);
+    const FourVector a = gather(line, &Line::a), b = gather(line, &Line::b), c = gather(line, &Line::cross);
+    const FourBounded w = sum_of_products(p.point.s, q.point.m, -p.point.m, q.point.s);
+    const FourBounded theta = atan2(w * gather(line, &Line::size), dot(p.point.direction, q.point.direction), known);
+    const FourBounded inverse = gather(line, &Line::inverse), squared = inverse * inverse;
+    const FourBounded angle = theta * inverse * squared;
+    const auto share = [&](const FourVector& other) __attribute__((always_inline)) {
+      return angle * dot(cross(n, other), c) +
+             (psi_of(q.point.direction, n, other) - psi_of(p.point.direction, n, other)) * squared;
+    };
+    const FourBounded of_a = share(b), of_b = share(a);
+    for (std::size_t k = 0; k < count; ++k) result[i + k] = {lane(of_a, k), -lane(of_b, k)};
+  }
+}
+
 Bounded sum_of_lanes(const FourBounded& x) { return (lane(x, 0) + lane(x, 1)) + (lane(x, 2) + lane(x, 3)); }
 
-// x 2^exponent; declined where that is not certain to be exact.
+}  // namespace
+
 Bounded times_power(const Bounded& x, int exponent) {
   if (exponent < -900 || exponent > 900) return kDeclined;
   const double scale = std::ldexp(1.0, exponent);
   return {x.hi * scale, x.lo * scale, x.error * scale + kUnderflow};
 }
-
-}  // namespace
 
 void QuickGradient::make_lines(std::span<const QuickCorner> corners, std::span<const QuickEdge> edges,
                                std::span<Line> lines) const {
@@ -168,6 +192,11 @@ void QuickGradient::add(std::span<const QuickPiece> pieces, std::span<const Line
     position_[axis] = position_[axis] + times_power(sum_of_lanes(position[axis]), exponent);
     v_[axis] = v_[axis] + sum_of_lanes(v[axis]);
   }
+}
+
+void QuickGradient::find_shares(std::span<const QuickPiece> pieces, std::span<const Line> lines,
+                                std::span<Shares> shares) const {
+  shares_of(normal_, pieces, lines, angle_constants(), shares);
 }
 
 void QuickGradient::decline() {
@@ -184,10 +213,12 @@ QuickGradient::Value value_of(const Bounded& x) {
 
 }  // namespace
 
-QuickGradient::Value QuickGradient::position(int axis) const {
+QuickGradient::Value QuickGradient::over_turn_and_length(const Bounded& sum) const {
   const Vector n = vector_of<double>(normal_);
-  return value_of(position_[axis] / (square_root(dot(n, n)) * (2.0 * constant(angle_constants().pi))));
+  return value_of(sum / (square_root(dot(n, n)) * (2.0 * constant(angle_constants().pi))));
 }
+
+QuickGradient::Value QuickGradient::position(int axis) const { return over_turn_and_length(position_[axis]); }
 
 QuickGradient::Value QuickGradient::normal(int axis) const {
   return value_of(v_[axis] / (2.0 * constant(angle_constants().pi)));

@@ -26,6 +26,9 @@ namespace exactff::contour {
 QuickCorner lifted(const QuickCorner& direction, const std::array<kernel::double_double::Bounded, 3>& normal,
                    const kernel::double_double::Bounded& offset);
 
+// x 2^exponent; declined where that is not certain to be exact.
+[[nodiscard]] kernel::double_double::Bounded times_power(const kernel::double_double::Bounded& x, int exponent);
+
 class QuickGradient {
  public:
   struct Line {
@@ -47,10 +50,22 @@ class QuickGradient {
   // From now on, all errors are infinite.
   void decline();
 
+  // What a piece adds to the derivatives by the points a and b of its line is cross times these, over 2 pi |n| and
+  // times 2^exponent. They are the sums of arc_sum.h for the shares g_a = b x C / |C|^2 and g_b = C x a / |C|^2 of the
+  // points (gradient/vertex_motion.h), which add up to g:
+  //   a: theta (n x b) . C / |C|^3 + (psi(q) - psi(p)) / |C|^2 with psi(w) = (w . n) (w . b) / w . w,
+  //   b: the same with a for b, negated.
+  struct Shares {
+    kernel::double_double::Bounded a, b;
+  };
+  void find_shares(std::span<const QuickPiece> pieces, std::span<const Line> lines, std::span<Shares> shares) const;
+
   // As QuickContour::value, for each component.
   using Value = QuickContour::Value;
   [[nodiscard]] Value position(int axis) const;
   [[nodiscard]] Value normal(int axis) const;
+  // A sum of such parts, over 2 pi |n|.
+  [[nodiscard]] Value over_turn_and_length(const kernel::double_double::Bounded& sum) const;
 
  private:
   std::array<double, 3> normal_{};  // largest component in [1/2, 1)

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "contour/contour.h"
@@ -169,7 +170,7 @@ class Solver {
         planes_(ExactSourceInside::planes(source).planes),
         options_(options),
         wants_fraction_(options.visible_fraction || options.exact_fraction),
-        wants_gradient_(options.gradient || options.list_arcs || options.along.has_value()),
+        wants_gradient_(options.gradient || options.vertices || options.list_arcs || options.along.has_value()),
         view_(scene, receiver),
         request_{.engine = options.engine,
                  .fraction = wants_fraction_,
@@ -194,6 +195,7 @@ class Solver {
     if (something_visible_ && !sum_is_certain()) integrate_in_balls();
     exact::set_bounds(result_);
     if (wants_gradient_) find_gradient();
+    if (options_.vertices) find_vertices();
     if (wants_fraction_) set_fraction(shares_, result_);
   }
 
@@ -230,6 +232,27 @@ class Solver {
       gradient.add_exactly({view_, plane, request_}, seen.boundary);
     }
     gradient.certify(options_.precision_cap, *result_.gradient);
+  }
+
+  // The boundary is found once more, from pieces, since panels may lack vertices that move it.
+  void find_vertices() {
+    Gradient& result = *result_.gradient;
+    if (result.kink) return;
+    if (memory_.vertices == nullptr) memory_.vertices = std::make_unique<gradient::VertexGradient>();
+    gradient::VertexGradient& vertices = *memory_.vertices;
+    const visibility::BoundaryRequest request{
+        .engine = options_.engine, .only_occluders = options_.only_occluders, .by_pieces = true};
+    const auto for_each_plane = [&](const auto& add) {
+      for (const SourcePlane& plane : planes_) {
+        const PlaneVisibility seen = find_visible_boundary(view_, plane, request, memory_.edges);
+        add(visibility::PlaneQuery{view_, plane, request}, seen.boundary);
+      }
+    };
+    vertices.start(view_);
+    for_each_plane([&](const auto& query, const auto& boundary) { vertices.add(query, boundary); });
+    if (vertices.finish(options_.precision_cap, result)) return;
+    for_each_plane([&](const auto& query, const auto& boundary) { vertices.add_exactly(query, boundary); });
+    vertices.certify(options_.precision_cap, result);
   }
 
   // Step 7 in double-double: takes the value from the sum over all planes. False if that does not determine it.
@@ -289,11 +312,26 @@ bool same(const Derivative& a, const Derivative& b) {
   return (open || (a.value == b.value && a.status == b.status)) && a.enclosure.overlaps(b.enclosure);
 }
 
+// A vertex that is not listed has derivatives of zero.
+bool same_vertices(std::span<const VertexDerivative> a, std::span<const VertexDerivative> b) {
+  const auto all = [](const auto& p, const auto& q) { return std::equal(p.begin(), p.end(), q.begin(), same); };
+  while (!a.empty() || !b.empty()) {
+    const bool only_a = b.empty() || (!a.empty() && a.front().vertex < b.front().vertex);
+    const bool only_b = a.empty() || (!b.empty() && b.front().vertex < a.front().vertex);
+    const VertexDerivative none;
+    const VertexDerivative &p = only_b ? none : a.front(), &q = only_a ? none : b.front();
+    if (p.is_kink != q.is_kink || !all(p.position, q.position)) return false;
+    if (!only_b) a = a.subspan(1);
+    if (!only_a) b = b.subspan(1);
+  }
+  return true;
+}
+
 bool same_gradient(const std::optional<Gradient>& a, const std::optional<Gradient>& b) {
   if (!a || !b) return a.has_value() == b.has_value();
   const auto all = [](const auto& p, const auto& q) { return std::equal(p.begin(), p.end(), q.begin(), same); };
-  return a->kink.has_value() == b->kink.has_value() && all(a->position, b->position) && all(a->normal, b->normal) &&
-         (!a->along || same(*a->along, b->along.value()));
+  return same_vertices(a->vertices, b->vertices) && a->kink.has_value() == b->kink.has_value() &&
+         all(a->position, b->position) && all(a->normal, b->normal) && (!a->along || same(*a->along, b->along.value()));
 }
 
 void require_agreement(const FormFactor& a, const FormFactor& b) {

@@ -1,10 +1,9 @@
 #include "gradient/gradient.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
+#include "gradient/derivative.h"
 #include "gradient/moving_arcs.h"
 #include "kernel/ball.h"
 #include "kernel/vec.h"
@@ -17,58 +16,6 @@ using kernel::ExactVec3;
 using kernel::RationalVec3;
 using visibility::PlaneQuery;
 using visibility::VisibleBoundary;
-
-namespace {
-
-constexpr int kQuickBits = 106;
-constexpr long kBitsForZero = 256;  // a ball that still contains 0 at this precision is the result
-
-// Takes the double from a ball, unless it contains 0. False if the ball does not determine it.
-bool is_determined(const Ball& ball, Derivative& result) {
-  EnclosureInside::set(result.enclosure, ball);
-  if (result.enclosure.contains(0.0)) return false;
-  const std::optional<double> nearest = result.enclosure.nearest();
-  if (!nearest || !std::isfinite(*nearest)) return false;
-  result.value = *nearest;
-  result.status = result.value == 0.0 ? DerivativeStatus::kUnderflow : DerivativeStatus::kCertified;
-  return true;
-}
-
-void set_zero(Derivative& result) {
-  result = {};
-  EnclosureInside::set(result.enclosure, Ball());
-}
-
-void set_none(Derivative& result) {
-  result.value = std::numeric_limits<double>::quiet_NaN();
-  result.status = DerivativeStatus::kNone;
-  EnclosureInside::set(result.enclosure, Ball());
-}
-
-// The sum of the terms times `factor`, which has as many bits as it is asked for.
-template <class Factor>
-void certify(const ArcSum& sum, const Factor& factor, int cap, Derivative& result) {
-  if (sum.cancels()) {
-    set_zero(result);
-    return;
-  }
-  constexpr int kFirstBits = 128;
-  for (int bits = std::min(kFirstBits, cap);; bits = std::min(2 * bits, cap)) {
-    const Ball ball = sum.evaluate(bits) * factor(bits);
-    if (is_determined(ball, result)) return;
-    const bool holds_zero = result.enclosure.contains(0.0);
-    if (bits < cap && !(holds_zero && bits >= kBitsForZero)) {
-      const std::optional<double> nearest = result.enclosure.nearest();
-      if (!nearest || std::isfinite(*nearest)) continue;  // a larger precision does not help beyond the doubles
-    }
-    result.status = DerivativeStatus::kEnclosed;
-    constexpr double kLargest = std::numeric_limits<double>::max();
-    result.value = holds_zero ? 0.0 : std::clamp(kernel::nearest_to_midpoint(ball), -kLargest, kLargest);
-    return;
-  }
-}
-
-}  // namespace
 
 void PointGradient::start(const visibility::View& view, const Request& request) {
   x_ = view.x;
@@ -100,6 +47,8 @@ bool PointGradient::finish(int cap, Gradient& result) {
   result.kink = kink_;
   result.along.reset();
   result.arcs.clear();
+  result.vertices.clear();
+  result.frames.clear();
   bool done = !(list_arcs_ && something_visible_ && !kink_);
   if (along_) {
     result.along.emplace();

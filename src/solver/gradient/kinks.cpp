@@ -1,8 +1,6 @@
 #include "gradient/kinks.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "kernel/expect.h"
@@ -102,18 +100,7 @@ void KinkSearch::find_around_source(const PlaneQuery& query, bool is_visible, Ex
   note(KinkReason::kOnFace, query.view.scene, std::span(&*touching, 1));
 }
 
-namespace {
-
-// A direction in general position.
-constexpr Vec3 kAnywhere{0.5398041762934, 0.2874930211667, 0.7911734960021};
-
-}  // namespace
-
 // 2. Edges without a piece on both sides, in the order of their numbers.
-//
-// The number of the plane with the normal N is |N . c| / |N| for a fixed vector c of about unit length. The components
-// of N are known to within e = 2^-49 |a||b| (outlines.h). So its error is below 2 sqrt(3) e / |N| + 8u, for which
-// edge.error / |N| + 2^-48 is more than enough.
 void KinkSearch::find_open_edges() {
   const Outlines& outlines = profile_.outlines();
   const auto edges = outlines.edges();
@@ -122,52 +109,23 @@ void KinkSearch::find_open_edges() {
   const EdgeId first_occluder = profile_.source_count() < outlines.outlines().size()
                                     ? outlines.outline(static_cast<OutlineId>(profile_.source_count())).first
                                     : static_cast<EdgeId>(edges.size());
-  entries_.clear();
-  const auto add = [&](EdgeId id) {
-    const Outlines::Edge& edge = edges[id];
-    const double length = std::sqrt(kernel::dot(edge.normal, edge.normal));
-    const double number = std::abs(kernel::dot(edge.normal, kAnywhere)) / length;
-    const double error = edge.error / length + 0x1p-48;
-    constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-    if (error < 0x1p-10 && number <= 2.0) {
-      entries_.push_back({number - error, number + error, id});
-    } else {
-      entries_.push_back({-kUnbounded, kUnbounded, id});
-    }
-  };
-  for (EdgeId id = 0; id < first_occluder; ++id) add(id);
+  groups_.clear();
+  for (EdgeId id = 0; id < first_occluder; ++id) groups_.add(outlines, id);
   for (EdgeId id = first_occluder; id < edges.size(); ++id) {
     const EdgeId first = table_.add(id, edges);
     sides_[first] = static_cast<std::uint8_t>(sides_[first] | (edges[first].a == edges[id].a ? 1U : 2U));
   }
   for (EdgeId id = first_occluder; id < edges.size(); ++id) {
-    if (sides_[id] == 1) add(id);
+    if (sides_[id] == 1) groups_.add(outlines, id);
   }
-  std::ranges::sort(entries_,
-                    [](const Entry& p, const Entry& q) { return p.low != q.low ? p.low < q.low : p.edge < q.edge; });
 }
 
 // 3. and 4. False: stopped.
 bool KinkSearch::judge_groups(const PlaneQuery& query, Extent extent) {
-  Outlines& outlines = profile_.outlines();
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (entries_[i].done) continue;
-    const Outlines::Edge edge = outlines.edge(entries_[i].edge);
-    group_.assign(1, entries_[i].edge);
-    for (std::size_t j = i + 1; j < entries_.size() && entries_[j].low <= entries_[i].high; ++j) {
-      Entry& other = entries_[j];
-      if (other.done) continue;
-      const Outlines::Edge& line = outlines.edge(other.edge);
-      if (outlines.side(edge, line.a) != 0 || outlines.side(edge, line.b) != 0) continue;
-      other.done = true;
-      group_.push_back(other.edge);
-    }
-    if (group_.size() < 2) continue;
-    kernel::poll();
-    if (!are_at_one_depth(group_)) judge(query, edge);
-    if (kink_ && extent == Extent::kFirst) return false;
-  }
-  return true;
+  return groups_.for_each(profile_.outlines(), [&](std::span<const EdgeId> group) {
+    if (!are_at_one_depth(group)) judge(query, profile_.outlines().edge(group.front()));
+    return !(kink_ && extent == Extent::kFirst);
+  });
 }
 
 // Whether all edges, which lie in one plane through x, lie on one line in space. Those of pieces cut by the source's

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "gradient/profile.h"
+#include "gradient/sight_groups.h"
 #include "gradient/sight_plane.h"
 #include "visibility/visible_edges.h"
 
@@ -41,12 +42,6 @@ class KinkSearch {
   [[nodiscard]] const std::vector<SightResult>& planes() const { return planes_; }
 
  private:
-  struct Entry {
-    double low = 0.0, high = 0.0;  // bounds of the number of the edge's plane
-    visibility::EdgeId edge = 0;
-    bool done = false;
-  };
-
   void find_around_source(const visibility::PlaneQuery& query, bool is_visible, Extent extent);
   void find_edge_on(const visibility::PlaneQuery& query);
   void find_open_edges();
@@ -60,8 +55,7 @@ class KinkSearch {
   Profile profile_;
   visibility::EdgeTable table_;
   std::vector<std::uint8_t> sides_;  // by edge: 1 if a piece lies on its left, 2 if on its right
-  std::vector<Entry> entries_;
-  std::vector<visibility::EdgeId> group_;
+  SightGroups groups_;
   std::vector<kernel::ExactVec3> judged_;  // normals
   std::optional<Kink> kink_;
   std::vector<SightResult> planes_;

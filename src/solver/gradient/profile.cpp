@@ -25,13 +25,15 @@ constexpr std::uint32_t kPiecesPerPoll = 1'024;
 void Profile::start() {
   pieces_.clear();
   sheets_.clear();
+  meeting_.clear();
   touching_.reset();
   source_count_ = 0;
   stays_hidden_ = false;
 }
 
-void Profile::gather(const PlaneQuery& query) {
+void Profile::gather(const PlaneQuery& query, Extent extent) {
   start();
+  with_meeting_ = extent == Extent::kMeeting;
   PieceClip clip(query, outlines_, clip_);
   source_count_ = clip.add_source().count;
   for (const std::uint32_t piece : query.plane.pieces) {
@@ -60,7 +62,10 @@ void Profile::visit(const PlaneQuery& query, PieceClip& clip, std::uint32_t inde
   const std::span<const int> depths = clip.find_depths();
   const bool some_before = std::ranges::any_of(depths, [](int depth) { return depth > 0; });
   const bool some_behind = std::ranges::any_of(depths, [](int depth) { return depth < 0; });
-  if (!some_before) return;
+  if (!some_before) {
+    if (with_meeting_ && std::ranges::count(depths, 0) > 1) meeting_.push_back(index);
+    return;
+  }
   const int facing = facing_of(query.view, piece);
   if (facing == 0) {
     sheets_.push_back(index);

@@ -17,8 +17,12 @@ namespace exactff::gradient {
 // A workspace.
 class Profile {
  public:
+  enum class Extent {
+    kBefore,   // of the source's plane
+    kMeeting,  // also pieces in or behind it that have two corners in it
+  };
   // Finds everything below. Keeps references to what the query refers to.
-  void gather(const visibility::PlaneQuery& query);
+  void gather(const visibility::PlaneQuery& query, Extent extent = Extent::kBefore);
   // For a plane that holds x: the pieces that meet the plane, whole, as outlines. No source.
   void gather_around_plane(const visibility::PlaneQuery& query);
 
@@ -29,7 +33,9 @@ class Profile {
   [[nodiscard]] std::span<const std::uint32_t> pieces() const { return pieces_; }
   // Pieces that x sees edge-on, with a part before the source's plane.
   [[nodiscard]] std::span<const std::uint32_t> sheets() const { return sheets_; }
-  // One of them that holds x.
+  // Pieces in the source's plane or behind it, with at least two corners in it.
+  [[nodiscard]] std::span<const std::uint32_t> meeting() const { return meeting_; }
+  // One of the sheets that holds x.
   [[nodiscard]] const std::optional<std::uint32_t>& touching() const { return touching_; }
   // An edge in the plane through x with this normal. Requires that there is one.
   [[nodiscard]] visibility::Outlines::Edge edge_in_plane(const kernel::ExactVec3& normal);
@@ -47,9 +53,10 @@ class Profile {
   visibility::ClipMemory clip_;
   visibility::ShaftMemory shaft_;
   visibility::RunMarks seen_;
-  std::vector<std::uint32_t> pieces_, sheets_;
+  std::vector<std::uint32_t> pieces_, sheets_, meeting_;
   std::optional<std::uint32_t> touching_;
   std::size_t source_count_ = 0;
+  bool with_meeting_ = false;
   bool stays_hidden_ = false;
 };
 

@@ -17,14 +17,20 @@ constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 }  // namespace
 
 void QuickArcs::add(const visibility::PlaneQuery& query, const visibility::VisibleBoundary& boundary) {
-  using kernel::double_double::Bounded;
-  static_assert(Parameter::kAtBegin == QuickPiece::kAtA && Parameter::kAtEnd == QuickPiece::kAtB);
   if (boundary.empty()) return;
   if (boundary.edges() == nullptr) {
     sum_.decline();
     return;
   }
-  EdgeCovers& found = *boundary.edges();
+  translate(query, *boundary.edges());
+  const std::span lines = std::span(lines_).first(edges_.size());
+  sum_.add(pieces_, lines, boundary.edges()->outlines().scale_exponent());
+}
+
+// Sets pieces_ and lines_.
+void QuickArcs::translate(const visibility::PlaneQuery& query, EdgeCovers& found) {
+  using kernel::double_double::Bounded;
+  static_assert(Parameter::kAtBegin == QuickPiece::kAtA && Parameter::kAtEnd == QuickPiece::kAtB);
   Outlines& outlines = found.outlines();
   plane_ = &query.plane;
   const QuickCorner s = contour::quick_corner(plane_->point, outlines.x(), outlines.scale_exponent());
@@ -40,9 +46,7 @@ void QuickArcs::add(const visibility::PlaneQuery& query, const visibility::Visib
     pieces_.push_back({number_of_line(outlines, part.edge), end(part.begin.line), end(part.end.line)});
   }
   if (lines_.size() < edges_.size()) lines_.resize(edges_.size());
-  const std::span lines = std::span(lines_).first(edges_.size());
-  sum_.make_lines(corners_, edges_, lines);
-  sum_.add(pieces_, lines, outlines.scale_exponent());
+  sum_.make_lines(corners_, edges_, std::span(lines_).first(edges_.size()));
 }
 
 std::uint32_t QuickArcs::number_of_line(Outlines& outlines, EdgeId id) {

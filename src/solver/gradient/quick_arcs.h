@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "contour/quick_gradient.h"
@@ -18,8 +20,25 @@ class QuickArcs {
   // Adds the boundary of one plane's visible region. Declines what the Booleans found.
   void add(const visibility::PlaneQuery& query, const visibility::VisibleBoundary& boundary);
   [[nodiscard]] const contour::QuickGradient& sum() const { return sum_; }
+  // Calls visit(part, line, shares, ends) for each part of a boundary that the edge engine found, without adding it.
+  // `ends`: the corners that are the points a and b of the line.
+  template <class Visit>
+  void for_each_share(const visibility::PlaneQuery& query, visibility::EdgeCovers& found, const Visit& visit) {
+    translate(query, found);
+    shares_.resize(pieces_.size());
+    const std::span lines = std::span(lines_).first(edges_.size());
+    sum_.find_shares(pieces_, lines, shares_);
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      const visibility::EdgeCovers::Part& part = found.parts()[i];
+      const visibility::Outlines::Edge& edge = found.outlines().edge(part.edge);
+      const contour::QuickGradient::Line& line = lines_[pieces_[i].edge];
+      const std::pair ends = line.reversed ? std::pair(edge.b, edge.a) : std::pair(edge.a, edge.b);
+      visit(part, line, shares_[i], ends);
+    }
+  }
 
  private:
+  void translate(const visibility::PlaneQuery& query, visibility::EdgeCovers& found);
   [[nodiscard]] std::uint32_t number_of_line(visibility::Outlines& outlines, visibility::EdgeId id);
   [[nodiscard]] std::uint32_t number_of_corner(visibility::Outlines& outlines, visibility::CornerId id);
   [[nodiscard]] contour::QuickCorner point_at(visibility::Outlines& outlines, visibility::CornerId corner) const;
@@ -32,6 +51,7 @@ class QuickArcs {
   std::vector<contour::QuickEdge> edges_;
   std::vector<contour::QuickGradient::Line> lines_;
   std::vector<contour::QuickPiece> pieces_;
+  std::vector<contour::QuickGradient::Shares> shares_;
 };
 
 }  // namespace exactff::gradient

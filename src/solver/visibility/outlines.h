@@ -21,6 +21,7 @@
 #include <deque>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "exactff/scene.h"
@@ -106,6 +107,11 @@ class Outlines {
   // 2^scale_exponent.
   [[nodiscard]] std::optional<std::uint32_t> vertex(CornerId id) const {
     return origins_[id].is_vertex() ? std::optional(origins_[id].p) : std::nullopt;
+  }
+  // The vertices between which a plane crosses a segment at this corner; the same one twice if it is a vertex.
+  [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> segment(CornerId id) const {
+    const Origin& origin = origins_[id];
+    return {origin.p, origin.is_vertex() ? origin.p : origin.q};
   }
   // Not null if the corner was constructed in double-double arithmetic: its doubles are those of `hi`.
   [[nodiscard]] const FineDirection* fine(CornerId id) const {

@@ -14,7 +14,7 @@ ClippedSource PieceClip::add_source() {
   const Panels& all = *plane_.scene_panels;
   const bool has_own = std::ranges::any_of(plane_.faces, [&](FaceId face) { return view_.is_own(face); });
   ClippedSource source;
-  for (const PanelId panel : has_own ? plane_.pieces : plane_.panels) {
+  for (const PanelId panel : has_own || by_pieces_ ? plane_.pieces : plane_.panels) {
     if (has_own && view_.is_own(all.piece(panel).face)) {
       source.lacks_pieces = true;
     } else if (add_above_horizon(all.corners(panel), source)) {

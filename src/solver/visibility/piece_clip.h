@@ -19,7 +19,11 @@ struct ClippedSource {
 class PieceClip {
  public:
   PieceClip(const PlaneQuery& query, Outlines& outlines, ClipMemory& memory)
-      : view_(query.view), plane_(query.plane), outlines_(outlines), memory_(memory) {}
+      : view_(query.view),
+        plane_(query.plane),
+        by_pieces_(query.request.by_pieces),
+        outlines_(outlines),
+        memory_(memory) {}
 
   // Discards all outlines and starts with those of the source.
   [[nodiscard]] ClippedSource add_source();
@@ -46,6 +50,7 @@ class PieceClip {
 
   const View& view_;
   const SourcePlane& plane_;
+  bool by_pieces_;
   Outlines& outlines_;
   ClipMemory& memory_;
   std::span<const std::uint32_t> vertices_;

@@ -47,11 +47,12 @@ struct BoundaryRequest {
   ShaftCulling culling = ShaftCulling::kTree;
   bool remembers_covers = false;  // see CoverMemory; the counts in the record then depend on earlier calls
   Silhouetting silhouettes = Silhouetting::kWherePromising;
+  bool by_pieces = false;            // looks at pieces even where panels join several, and gives the same region
   std::size_t fewest_to_cover = 64;  // candidates: with fewer, a search for a small cover saves nothing
 
   [[nodiscard]] bool culls() const { return culling == ShaftCulling::kTree; }
   // Whether the edge engine looks at panels instead of pieces.
-  [[nodiscard]] bool joins_pieces() const { return culls() && only_occluders == nullptr; }
+  [[nodiscard]] bool joins_pieces() const { return culls() && only_occluders == nullptr && !by_pieces; }
   // Whether a proof that all is hidden may end the search before every candidate has been looked at.
   [[nodiscard]] bool may_stop_early() const { return culls() && !list_cutters; }
 };

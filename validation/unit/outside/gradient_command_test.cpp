@@ -95,9 +95,31 @@ TEST_F(GradientCommand, ExplainListsTheArcs) {
   EXPECT_NE(run.output.find("    the line through ("), std::string::npos) << run.output;
 }
 
-TEST_F(GradientCommand, AlongNeedsGradient) {
-  const ProgramRun run = point("0", "0", {"--along", "1", "0", "0"});
-  EXPECT_EQ(run.exit_code, 2);
+TEST_F(GradientCommand, AlongAndVerticesNeedGradient) {
+  EXPECT_EQ(point("0", "0", {"--along", "1", "0", "0"}).exit_code, 2);
+  EXPECT_EQ(point("0", "0", {"--vertices"}).exit_code, 2);
+}
+
+// With the receiver, all vertices that move the view move the other way.
+TEST_F(GradientCommand, VerticesAddUpToTheGradient) {
+  const auto json =
+      nlohmann::json::parse(point("0.375", "0.25", {"--gradient", "--vertices", "--json"}).output).at("sources").at(0);
+  const auto& gradient = json.at("gradient");
+  EXPECT_EQ(gradient.at("vertices").size(), 8U);
+  EXPECT_EQ(gradient.at("frames"), nlohmann::json({{0, 1, 2}}));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double sum = gradient.at("position").at(axis).at("value").get<double>();
+    for (const auto& vertex : gradient.at("vertices")) {
+      EXPECT_FALSE(vertex.at("kink").get<bool>());
+      sum += vertex.at("position").at(axis).at("value").get<double>();
+    }
+    EXPECT_NEAR(sum, 0.0, 1e-14);
+  }
+  const ProgramRun text = point("0.375", "0.25", {"--gradient", "--vertices"});
+  EXPECT_NE(text.output.find("  vertices that move the visible boundary: 8\n    (-1, 1, 1)  "), std::string::npos)
+      << text.output;
+  EXPECT_NE(text.output.find("  the source's plane follows (-1, 1, 1) (1, 1, 1) (1, -1, 1)\n"), std::string::npos)
+      << text.output;
 }
 
 TEST_F(GradientCommand, TruthHasColumnsThatAreEmptyAtKinks) {

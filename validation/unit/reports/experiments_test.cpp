@@ -9,6 +9,7 @@
 #include "exactff/models.h"
 #include "experiments/closure.h"
 #include "experiments/experiment.h"
+#include "experiments/gradient_differences.h"
 #include "experiments/hemicube_resolution.h"
 #include "experiments/hemicube_scatter.h"
 #include "experiments/karkanis_times.h"
@@ -24,7 +25,7 @@ const Hooks kNoHooks;
 // --- what they share -----------------------------------------------------------------------------------
 
 TEST(Experiments, AreFoundByNameAndNearlyByAnother) {
-  ASSERT_EQ(all_experiments().size(), 6U);
+  ASSERT_EQ(all_experiments().size(), 7U);
   for (const Experiment& e : all_experiments()) EXPECT_EQ(&experiment_named(e.name), &e);
   try {
     (void)experiment_named("nettle");
@@ -87,7 +88,12 @@ std::vector<SmallRun> small_runs() {
   const auto room = [](int threads, const Hooks& hooks) {
     return closure(ClosureSize{.receivers = 4, .choices = {"hemicube", "nettle:rays=4"}}, threads, hooks);
   };
-  return {{"scatter", scatter}, {"resolution", resolution}, {"nettle", nettle}, {"emitters", emitters}, {"room", room}};
+  const auto differences = [](int threads, const Hooks& hooks) {
+    return gradient_differences(
+        DifferencesSize{.receivers = 3, .steps = {0.01, 1e-4}, .choices = {"exact"}, .timed = 1}, threads, hooks);
+  };
+  return {{"differences", differences}, {"scatter", scatter},   {"resolution", resolution},
+          {"nettle", nettle},           {"emitters", emitters}, {"room", room}};
 }
 
 TEST(Experiments, GiveTheSameBytesOfValuesForAnyNumberOfThreads) {
@@ -245,6 +251,30 @@ TEST(NettleRule, TheLiteralTextIsPerAreaAndKnowsNoDirection) {
   EXPECT_EQ(turned.pairs, 200U);
   EXPECT_NEAR(static_cast<double>(turned.zero), 150.0, 25.0);
   EXPECT_EQ(turned.literal_positive, turned.zero);
+}
+
+// --- finite differences ---
+
+// Those of exact values come near the derivative, since nothing but rounding disturbs a small step; those of samples
+// are far from it at every step, and the worse the smaller it is.
+TEST(GradientDifferences, OfExactValuesComeNearAndThoseOfSamplesDoNot) {
+  const DifferencesSize size{.receivers = 12,
+                             .steps = {0.1, 1e-3, 1e-5},
+                             .choices = {"exact", "area-sampling:samples=64,pattern=random"},
+                             .timed = 1};
+  const DifferencesStudy study = differences_study(size, 1, kNoHooks);
+  ASSERT_EQ(study.errors.size(), 4U);
+  EXPECT_GT(study.receivers, 12U);
+  for (const DifferenceErrors& errors : study.errors) {
+    const double least = errors.rms[errors.best()];
+    if (errors.choice == "exact") {
+      EXPECT_EQ(errors.best(), 2U) << errors.scene;
+      EXPECT_LT(least, 1e-6) << errors.scene;
+    } else {
+      EXPECT_GT(least, 1e-2) << errors.scene;
+      EXPECT_GT(errors.rms[2], 10.0 * errors.rms[1]) << errors.scene;
+    }
+  }
 }
 
 // --- emitters, closure ---------------------------------------------------------------------------------

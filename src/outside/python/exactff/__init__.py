@@ -35,7 +35,7 @@ except ImportError as error:
 from . import methods
 from ._check import CheckReport, Distribution, Improvement, RowError, Verdict, check
 from ._errors import InputError, ModellingWarning, Problem
-from ._pair import DerivativeStatus, Drawing, Enclosure, FormFactor, FormFactors, Gradient, Status
+from ._pair import DerivativeStatus, Drawing, Enclosure, FormFactor, FormFactors, Gradient, Status, VertexGradient
 from ._radiosity import Balance, Radiosity, radiosity
 from ._receivers import Receivers
 from ._report import Finding, Material, Patch, Report
@@ -50,6 +50,6 @@ __all__ = [
     "Balance", "CheckReport", "DerivativeStatus", "Distribution", "Drawing", "Enclosure", "Finding", "FormFactor", "FormFactors",
     "Gradient", "Improvement", "InputError", "Material", "ModellingWarning", "PairOfPatches", "Patch", "Problem", "Radiosity", "Receivers",
     "Reciprocity", "Report", "RowError",
-    "Scene", "SeenPatch", "Share", "Status", "TruthSummary", "Verdict", "View", "ViewFactor", "ViewFactorMatrix",
+    "Scene", "SeenPatch", "Share", "Status", "TruthSummary", "Verdict", "VertexGradient", "View", "ViewFactor", "ViewFactorMatrix",
     "__version__", "check", "methods", "radiosity", "truth", "view", "view_factor", "view_factor_matrix",
 ]

@@ -112,6 +112,21 @@ class Drawing:
 
 
 @dataclass(frozen=True)
+class VertexGradient:
+    """The derivatives of one form factor by the vertices that move the visible boundary, per unit of length.
+
+    Vertices at equal coordinates move together; the receiver does not move. A vertex by which there is no derivative has
+    NaN and the status of a kink."""
+
+    vertex: NDArray[np.int64]  #: (m,) indices into the scene's vertices, the lowest at each place
+    place: Floats  #: (m, 3) coordinates
+    derivative: Floats  #: exact: (m, 3), correctly rounded where certified
+    status: NDArray[np.int8]  #: (m, 3), see :class:`DerivativeStatus`
+    enclosures: tuple[tuple[Enclosure, ...], ...]  #: encloses: a ball for each; without meaning at kinks
+    frames: NDArray[np.int64]  #: (planes, 3) the vertices that each plane of the source follows
+
+
+@dataclass(frozen=True)
 class Gradient:
     """The derivatives of one form factor F by the receiver's point, per unit of length, and V with F = n . V / abs(n).
 
@@ -125,6 +140,7 @@ class Gradient:
     normal_enclosures: tuple[Enclosure, ...]  #: encloses: a ball for each
     kink: Optional[str]  #: why dF/dx does not exist; None if it does
     kink_faces: tuple[str, ...]  #: names of the faces that meet there
+    vertices: Optional[VertexGradient] = None  #: None unless ``vertices=True``, and at a kink
 
 
 class FormFactor:
@@ -190,9 +206,9 @@ class FormFactor:
         found = self._pair.gradient()
         if found is None:
             return None
-        kink, position, normal = found
+        kink, position, normal, vertices, frames = found
         return Gradient(*_derivatives(position), *_derivatives(normal), None if kink is None else kink[0],
-                        () if kink is None else tuple(kink[1]))
+                        () if kink is None else tuple(kink[1]), _vertices(vertices, frames) if frames else None)
 
     def explain(self) -> str:
         """What was computed and why, in words: the stages for each plane of the source, and the occluders that hide a
@@ -218,6 +234,19 @@ def _derivatives(
             tuple(Enclosure(ball) for _, _, ball in found))
 
 
+def _vertices(
+    found: list[tuple[int, tuple[float, float, float], list[tuple[float, int, _exactff.Enclosure]]]],
+    frames: list[list[int]]
+) -> VertexGradient:
+    return VertexGradient(
+        np.array([vertex for vertex, _, _ in found], dtype=np.int64),
+        np.array([place for _, place, _ in found], dtype=np.float64).reshape(-1, 3),
+        np.array([[value for value, _, _ in three] for _, _, three in found], dtype=np.float64).reshape(-1, 3),
+        np.array([[status for _, status, _ in three] for _, _, three in found], dtype=np.int8).reshape(-1, 3),
+        tuple(tuple(Enclosure(ball) for _, _, ball in three) for _, _, three in found),
+        np.array(frames, dtype=np.int64).reshape(-1, 3))
+
+
 class _Again:
     """Computes the same pair with other options."""
 
@@ -227,9 +256,10 @@ class _Again:
         self._fixed = (point, normal, on, source)
 
     def __call__(self, fraction: bool = False, list_cutters: bool = False, digits: int = 0, precision_cap: int = 65536,
-                 only_occluders: Optional[list[int]] = None, gradient: bool = False) -> _exactff.Pair:
-        return _exactff.form_factor(self.scene, *self._fixed, fraction, list_cutters, gradient, digits, precision_cap,
-                                    only_occluders)
+                 only_occluders: Optional[list[int]] = None, gradient: bool = False,
+                 vertices: bool = False) -> _exactff.Pair:
+        return _exactff.form_factor(self.scene, *self._fixed, fraction, list_cutters, gradient, vertices, digits,
+                                    precision_cap, only_occluders)
 
 
 def _explanation(f: FormFactor, pair: _exactff.Pair, ask: _Again) -> str:

@@ -300,12 +300,12 @@ class Scene:
 
     def form_factor(self, point: ArrayLike, normal: ArrayLike, source: Optional[str] = None, on: On = None, *,
                     transparent: Names = None, fraction: bool = False, digits: int = 0,
-                    precision_cap: int = 65536, gradient: bool = False) -> FormFactor:
+                    precision_cap: int = 65536, gradient: bool = False, vertices: bool = False) -> FormFactor:
         """The exact form factor of one pair, with its proof, an explanation and a drawing.
 
         Parameters are those of :meth:`form_factors`. `source` may be left out if one patch emits. `digits` raises the
         precision until so many significant digits are proved: ``f.enclosure.decimals(digits)``. ``gradient=True`` sets
-        :attr:`FormFactor.gradient`.
+        :attr:`FormFactor.gradient`, ``vertices=True`` also its derivatives by the vertices of the scene.
         """
         scene = self if transparent is None else self.with_transparent(*_arrays_names(transparent))
         shape, p, n = _arrays.receivers(point, normal)
@@ -316,7 +316,7 @@ class Scene:
         ask = _Again(scene._scene, tuple(p[0].tolist()), tuple(n[0].tolist()), [int(f) for f in own[0] if f >= 0],
                      self._source(source))
         return FormFactor(ask(fraction=fraction, digits=digits, precision_cap=_bits(precision_cap),
-                              gradient=gradient), ask)
+                              gradient=gradient, vertices=vertices), ask)
 
     # --- names and own faces ---
 

@@ -1,0 +1,331 @@
+#include "gradient/vertex_gradient.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "gradient/derivative.h"
+#include "kernel/expect.h"
+#include "kernel/poll.h"
+#include "kernel/vec.h"
+
+namespace exactff::gradient {
+
+using contour::ArcSum;
+using contour::MovingArc;
+using kernel::ExactVec3;
+using kernel::Rational;
+using kernel::RationalVec3;
+using visibility::BoundaryPiece;
+using visibility::CornerId;
+using visibility::EdgeCovers;
+using visibility::EdgeId;
+using visibility::OutlineId;
+using visibility::Outlines;
+using visibility::PlaneQuery;
+using visibility::VisibleBoundary;
+
+void VertexGradient::start(const visibility::View& view) {
+  normal_ = view.n;
+  quick_.start(view.n);
+  sums_.clear();
+  kinks_.clear();
+  arcs_.clear();
+  frames_.clear();
+}
+
+// 1. False: no vertex moves anything.
+bool VertexGradient::gather(const PlaneQuery& query) {
+  const auto pieces = query.view.scene.pieces();
+  if (std::ranges::all_of(query.plane.pieces, [&](auto p) { return query.view.is_own(pieces[p].face); })) return false;
+  if (side_of(query.plane, query.view.x) <= 0) return false;
+  profile_.gather(query, Profile::Extent::kMeeting);
+  return profile_.source_count() > 0 && !profile_.stays_hidden();
+}
+
+void VertexGradient::add(const PlaneQuery& query, const VisibleBoundary& boundary) {
+  frames_.push_back(frame_of(query.view.scene, query.plane.pieces.front()));
+  if (!gather(query)) return;
+  const VertexMotions motions(query);
+  find_kinks(query, motions, !boundary.empty());
+  if (boundary.empty()) return;
+  if (boundary.edges() != nullptr) {
+    add_quickly(query, motions, *boundary.edges());
+  } else {
+    add_by_planes(query, motions, boundary);  // in balls alone
+    for (const auto& [place, arcs] : arcs_) sums_[place].fill(kernel::double_double::kDeclined);
+  }
+}
+
+// --- 2. Where there is no derivative ---
+
+// Edges without a piece on both sides, and those in the source's plane.
+void VertexGradient::add_lines() {
+  Outlines& outlines = profile_.outlines();
+  const std::size_t count = outlines.edges().size();
+  sides_.assign(count, 0);
+  table_.clear(std::max<std::size_t>(count, 1));
+  groups_.clear();
+  const auto is_source = [&](EdgeId id) { return outlines.edge(id).outline < profile_.source_count(); };
+  for (EdgeId id = 0; id < count; ++id) {
+    if (is_source(id)) continue;
+    const auto edges = outlines.edges();
+    const EdgeId first = table_.add(id, edges);
+    sides_[first] = static_cast<std::uint8_t>(sides_[first] | (edges[first].a == edges[id].a ? 1U : 2U));
+  }
+  for (EdgeId id = 0; id < count; ++id) {
+    if (is_source(id) || sides_[id] == 1 || (sides_[id] == 3 && in_source_plane_.contains(id))) {
+      groups_.add(outlines, id);
+    }
+  }
+}
+
+// Whether the lines move in different ways, or lie in the source's plane.
+bool VertexGradient::differ(const VertexMotions& motions, std::span<const EdgeId> group) {
+  const Outlines& outlines = profile_.outlines();
+  const auto line_of = [&](EdgeId id) {
+    const Outlines::Edge& edge = outlines.edge(id);
+    return is_of_source(edge) ? motions.line_of_source(outlines, edge) : motions.line_of_occluder(outlines, edge);
+  };
+  const auto first = line_of(group.front());
+  return std::ranges::any_of(group, [&](EdgeId id) {
+    const auto line = line_of(id);
+    if (in_source_plane_.contains(id)) return true;
+    return id != group.front() && (!line || line != first);
+  });
+}
+
+void VertexGradient::find_kinks(const PlaneQuery& query, const VertexMotions& motions, bool is_visible) {
+  Outlines& outlines = profile_.outlines();
+  const Scene& scene = query.view.scene;
+  in_source_plane_.clear();
+  for (EdgeId id = 0; id < outlines.edges().size(); ++id) {
+    if (is_of_source(outlines.edge(id))) continue;
+    const auto line = motions.line_of_occluder(outlines, outlines.edge(id));
+    if (line && motions.is_in_source_plane(line->first) && motions.is_in_source_plane(line->second)) {
+      in_source_plane_.insert(id);
+    }
+  }
+  std::vector<EdgeId> meeting;
+  for (const std::uint32_t piece : profile_.meeting()) {
+    const auto corners = scene.corners(scene.pieces()[piece]);
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const std::uint32_t p = corners[c], q = corners[(c + 1) % corners.size()];
+      if (!motions.is_in_source_plane(p) || !motions.is_in_source_plane(q)) continue;
+      meeting.push_back(outlines.add_edge(outlines.corner_at(p), outlines.corner_at(q)));
+    }
+    if (!is_visible || !overlaps_source(motions, corners)) continue;
+    // It hides nothing until it moves.
+    for (const std::uint32_t corner : corners) kinks_.insert(motions.pair_of(corner, corner).first);
+    kinks_.insert(motions.source_frame().begin(), motions.source_frame().end());
+  }
+  in_source_plane_.insert(meeting.begin(), meeting.end());
+  add_lines();
+  const ExactVec3 horizon = query.view.normal().exact;
+  const auto visit = [&](std::span<const EdgeId> group) {
+    if (!differ(motions, group)) return true;
+    VertexSight sight(query, profile_, motions, outlines.edge(group.front()));
+    if (is_zero(cross(sight.normal(), horizon))) return true;
+    sight.judge();
+    kinks_.insert(sight.kinks().begin(), sight.kinks().end());
+    return true;
+  };
+  groups_.for_each(outlines, visit, 1);
+}
+
+// A piece in the source's plane that lies over a part of the source: no side of either separates them.
+bool VertexGradient::overlaps_source(const VertexMotions& motions, std::span<const std::uint32_t> vertices) {
+  Outlines& outlines = profile_.outlines();
+  if (!std::ranges::all_of(vertices, [&](std::uint32_t v) { return motions.is_in_source_plane(v); })) return false;
+  std::vector<CornerId> corners;
+  for (const std::uint32_t vertex : vertices) corners.push_back(outlines.corner_at(vertex));
+  const auto separates = [&](const Outlines::Edge& edge, const auto& inner, const auto& outer) {
+    const auto side = [&](CornerId corner) { return outlines.side(edge, corner); };
+    const bool inside = std::ranges::any_of(inner, [&](CornerId corner) { return side(corner) > 0; });
+    return std::ranges::none_of(outer, [&](CornerId corner) { return inside ? side(corner) > 0 : side(corner) < 0; });
+  };
+  for (OutlineId o = 0; o < profile_.source_count(); ++o) {
+    const Outlines::Outline outline = outlines.outline(o);
+    std::vector<CornerId> source;
+    for (EdgeId id = outline.first; id < outline.first + outline.count; ++id) source.push_back(outlines.edge(id).a);
+    bool apart = false;
+    for (std::size_t c = 0; c < source.size() && !apart; ++c) {
+      apart = separates(outlines.line_through(source[c], source[(c + 1) % source.size()]), source, corners);
+    }
+    for (std::size_t c = 0; c < corners.size() && !apart; ++c) {
+      apart = separates(outlines.line_through(corners[c], corners[(c + 1) % corners.size()]), corners, source);
+    }
+    if (!apart) return true;
+  }
+  return false;
+}
+
+// --- 3. The arcs ---
+
+bool VertexGradient::is_of_source(const Outlines::Edge& edge) const {
+  return edge.outline != Outlines::kNone && edge.outline < profile_.source_count();
+}
+
+// The lines that a plane cuts are left to the balls.
+void VertexGradient::add_quickly(const PlaneQuery& query, const VertexMotions& motions, EdgeCovers& found) {
+  const Outlines& outlines = found.outlines();
+  const int exponent = outlines.scale_exponent();
+  quick_.for_each_share(query, found, [&](const auto& part, const auto& line, const auto& shares, const auto& ends) {
+    const Outlines::Edge& edge = outlines.edge(part.edge);
+    const auto a = outlines.vertex(ends.first), b = outlines.vertex(ends.second);
+    const auto vertices =
+        is_of_source(edge) ? motions.line_of_source(outlines, edge) : motions.line_of_occluder(outlines, edge);
+    if (vertices && a && b) {
+      const auto add = [&](std::uint32_t vertex, const auto& share) {
+        Sums& sums = sums_[motions.pair_of(vertex, vertex).first];
+        for (int axis = 0; axis < 3; ++axis) {
+          const kernel::double_double::Bounded c{line.cross.c[axis].hi, line.cross.c[axis].lo, line.cross.error};
+          sums[axis] = sums[axis] + contour::times_power(c * share, exponent);
+        }
+      };
+      add(*a, shares.a);
+      add(*b, shares.b);
+    } else if (vertices) {
+      sums_[vertices->first].fill(kernel::double_double::kDeclined);
+      sums_[vertices->second].fill(kernel::double_double::kDeclined);
+    } else if (!is_of_source(edge)) {
+      for (const std::uint32_t place : frame_of(query.view.scene, piece_of_cut(motions, outlines, edge))) {
+        sums_[place].fill(kernel::double_double::kDeclined);
+      }
+      for (const std::uint32_t place : motions.source_frame()) sums_[place].fill(kernel::double_double::kDeclined);
+    }
+  });
+}
+
+// The piece of the profile that the source's plane cuts between the same vertices.
+std::uint32_t VertexGradient::piece_of_cut(const VertexMotions& motions, const Outlines& outlines,
+                                           const Outlines::Edge& edge) {
+  const Outlines& own = profile_.outlines();
+  const auto segment = [&](const Outlines& of, CornerId corner) {
+    const auto [p, q] = of.segment(corner);
+    return motions.pair_of(p, q);
+  };
+  const std::pair wanted = std::minmax({segment(outlines, edge.a), segment(outlines, edge.b)});
+  for (auto id = static_cast<OutlineId>(profile_.source_count()); id < own.outlines().size(); ++id) {
+    const Outlines::Outline& outline = own.outline(id);
+    for (EdgeId e = outline.first; !outline.whole && e < outline.first + outline.count; ++e) {
+      const auto p = segment(own, own.edge(e).a), q = segment(own, own.edge(e).b);
+      if (std::minmax({p, q}) == wanted) return profile_.pieces()[id];
+    }
+  }
+  EXACTFF_EXPECT(false);
+  return 0;
+}
+
+void VertexGradient::add_by_edges(const VertexMotions& motions, EdgeCovers& found) {
+  for (const EdgeCovers::Part& part : found.parts()) {
+    kernel::poll();
+    const Outlines& outlines = found.outlines();
+    const Outlines::Edge edge = outlines.edge(part.edge);
+    const bool of_source = is_of_source(edge);
+    const auto line = of_source ? motions.line_of_source(outlines, edge) : motions.line_of_occluder(outlines, edge);
+    if (of_source && !line) continue;  // on the horizon
+    const BoundaryPiece piece = found.exact(part);
+    ExactVec3 begin = piece.a * piece.begin.l + piece.b * piece.begin.m,
+              end = piece.a * piece.end.l + piece.b * piece.end.m;
+    const ExactVec3 pole = cross(begin, end);
+    if (is_zero(pole)) continue;
+    const std::vector<VertexMotion> motion =
+        line ? motions.of_line(pole, *line) : motions.of_cut(pole, piece_of_cut(motions, outlines, edge));
+    for (const VertexMotion& one : motion) arcs_[one.place].push_back({one.place, {begin, end, one.share}, one.turn});
+  }
+}
+
+void VertexGradient::add_by_planes(const PlaneQuery& query, const VertexMotions& motions,
+                                   const VisibleBoundary& boundary) {
+  std::vector<ExactVec3> done;
+  const ExactVec3 horizon = query.view.normal().exact;
+  boundary.for_each_piece([&](const BoundaryPiece& piece) {
+    ExactVec3 pole = cross(piece.a, piece.b);
+    make_primitive(pole);
+    const auto is_parallel = [&](const ExactVec3& other) { return is_zero(cross(pole, other)); };
+    if (is_parallel(horizon) || std::ranges::any_of(done, is_parallel)) return;
+    done.push_back(pole);
+    VertexSight sight(query, profile_, motions, profile_.edge_in_plane(pole));
+    sight.judge();
+    for (VertexArc& arc : sight.arcs()) arcs_[arc.place].push_back(std::move(arc));
+  });
+}
+
+void VertexGradient::add_exactly(const PlaneQuery& query, const VisibleBoundary& boundary) {
+  if (boundary.empty() || boundary.edges() == nullptr || !gather(query)) return;
+  add_by_edges(VertexMotions(query), *boundary.edges());
+}
+
+// --- Results ---
+
+bool VertexGradient::finish(int cap, Gradient& result) {
+  result.vertices.clear();
+  result.frames = frames_;
+  for (const std::uint32_t place : kinks_) sums_[place];
+  bool done = true;
+  for (const auto& [place, sums] : sums_) {
+    VertexDerivative& vertex = result.vertices.emplace_back();
+    vertex.vertex = place;
+    vertex.is_kink = kinks_.contains(place);
+    for (int axis = 0; axis < 3; ++axis) {
+      Derivative& derivative = vertex.position[axis];
+      if (vertex.is_kink) {
+        set_none(derivative);
+        continue;
+      }
+      const contour::QuickGradient::Value value = quick_.sum().over_turn_and_length(sums[axis]);
+      if (cap >= kQuickBits && is_determined(kernel::ball_around(value.hi, value.lo, value.error), derivative))
+        continue;
+      derivative.status = DerivativeStatus::kEnclosed;  // so far
+      done = false;
+    }
+  }
+  return done;
+}
+
+namespace {
+
+// Joins arcs of one line, with their turns.
+std::vector<VertexArc> joined_arcs(const std::vector<VertexArc>& arcs) {
+  std::map<std::string, std::vector<const VertexArc*>> by_turn;
+  for (const VertexArc& one : arcs) {
+    by_turn[one.turn.x.get_str(32) + ' ' + one.turn.y.get_str(32) + ' ' + one.turn.z.get_str(32)].push_back(&one);
+  }
+  std::vector<VertexArc> result;
+  for (const auto& [text, group] : by_turn) {
+    std::vector<MovingArc> of_turn;
+    for (const VertexArc* one : group) of_turn.push_back(one->arc);
+    for (MovingArc& arc : contour::joined(std::move(of_turn))) {
+      result.push_back({group.front()->place, std::move(arc), group.front()->turn});
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+void VertexGradient::certify(int cap, Gradient& result) {
+  const ExactVec3 n = kernel::make_direction(kernel::exact_vector(normal_).v).exact;
+  const auto factor = [&](long bits) { return over_turn_and_length(n, bits); };
+  for (VertexDerivative& vertex : result.vertices) {
+    const auto is_open = [](const Derivative& d) { return d.status == DerivativeStatus::kEnclosed; };
+    if (std::ranges::none_of(vertex.position, is_open)) continue;
+    const std::vector<VertexArc> arcs = joined_arcs(arcs_[vertex.vertex]);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!is_open(vertex.position[axis])) continue;
+      ArcSum sum;
+      for (const VertexArc& one : arcs) {
+        const ExactVec3 c = cross(one.arc.begin, one.arc.end);
+        const Rational& along = axis == 0 ? one.turn.x : axis == 1 ? one.turn.y : one.turn.z;
+        sum.add_weighted(one.arc, n, along * Rational(c[longest_axis(c)]));
+      }
+      gradient::certify(sum, factor, cap, vertex.position[axis]);
+    }
+  }
+  std::erase_if(result.vertices, [](const VertexDerivative& vertex) {
+    return std::ranges::all_of(vertex.position, [](const auto& d) { return d.status == DerivativeStatus::kZero; });
+  });
+}
+
+}  // namespace exactff::gradient

@@ -1,0 +1,74 @@
+// The derivatives of one form factor by the vertices of the scene, plane by plane of the source. Requires that F has a
+// derivative by x.
+//
+// For one plane of the source:
+//   1. gather what touches the closed shaft (profile.h), also in the source's plane; stop if one piece hides more than
+//   the
+//      source: its vertices may move a little, too;
+//   2. look for vertices by which there is no derivative: in each plane through x with different lines, or with an edge
+//      that lies in the source's plane (vertex_sight.h);
+//   3. add up the arcs of the visible boundary, for each vertex that moves them: those of the edge engine in
+//   double-double
+//      (contour/quick_gradient.h), unless a plane cuts their lines, and where that does not suffice in balls. Of the
+//      Booleans' boundary only the planes through x are used: the lines in each are those that step 2 finds.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "exactff/exact.h"
+#include "gradient/profile.h"
+#include "gradient/quick_arcs.h"
+#include "gradient/sight_groups.h"
+#include "gradient/vertex_motion.h"
+#include "gradient/vertex_sight.h"
+#include "visibility/visible_edges.h"
+
+namespace exactff::gradient {
+
+// A workspace. Its queries look at pieces (BoundaryRequest::by_pieces).
+class VertexGradient {
+ public:
+  // Starts a new one.
+  void start(const visibility::View& view);
+  // Takes one plane with its visible boundary.
+  void add(const visibility::PlaneQuery& query, const visibility::VisibleBoundary& boundary);
+
+  // As those of PointGradient.
+  [[nodiscard]] bool finish(int cap, Gradient& result);
+  void add_exactly(const visibility::PlaneQuery& query, const visibility::VisibleBoundary& boundary);
+  void certify(int cap, Gradient& result);
+
+ private:
+  [[nodiscard]] bool gather(const visibility::PlaneQuery& query);
+  void find_kinks(const visibility::PlaneQuery& query, const VertexMotions& motions, bool is_visible);
+  void add_lines();
+  [[nodiscard]] bool differ(const VertexMotions& motions, std::span<const visibility::EdgeId> group);
+  [[nodiscard]] bool overlaps_source(const VertexMotions& motions, std::span<const std::uint32_t> vertices);
+  void add_quickly(const visibility::PlaneQuery& query, const VertexMotions& motions, visibility::EdgeCovers& found);
+  void add_by_edges(const VertexMotions& motions, visibility::EdgeCovers& found);
+  void add_by_planes(const visibility::PlaneQuery& query, const VertexMotions& motions,
+                     const visibility::VisibleBoundary& boundary);
+  [[nodiscard]] bool is_of_source(const visibility::Outlines::Edge& edge) const;
+  [[nodiscard]] std::uint32_t piece_of_cut(const VertexMotions& motions, const visibility::Outlines& outlines,
+                                           const visibility::Outlines::Edge& edge);
+
+  using Sums = std::array<kernel::double_double::Bounded, 3>;
+
+  Vec3 normal_;
+  Profile profile_;
+  visibility::EdgeTable table_;
+  SightGroups groups_;
+  std::vector<std::uint8_t> sides_;  // by edge, as in kinks.h
+  std::set<visibility::EdgeId> in_source_plane_;
+  QuickArcs quick_;
+  std::map<std::uint32_t, Sums> sums_;  // by place
+  std::set<std::uint32_t> kinks_;
+  std::map<std::uint32_t, std::vector<VertexArc>> arcs_;  // by place
+  std::vector<std::array<std::uint32_t, 3>> frames_;
+};
+
+}  // namespace exactff::gradient
