@@ -97,13 +97,22 @@ void give_the_only_thread_its_cache() {
 }
 #endif
 
-// glibc calls abort() if it cannot register the destructor of a thread_local variable.
-void end_where_a_library_aborts(int /*signal*/) { end_at_once(); }
+// glibc calls abort() if it cannot register the destructor of a thread_local variable. If there is no memory while it
+// is loaded, oneTBB 2022, which Embree uses, reads through a null pointer.
+void end_where_a_library_fails(int /*signal*/) { end_at_once(); }
+
+// From main() on, such a read is a fault of ours. A sanitizer's handler is left alone.
+void let_faults_be_faults() {
+  struct sigaction now {};
+  if (::sigaction(SIGSEGV, nullptr, &now) == 0 && now.sa_handler == end_where_a_library_fails)
+    std::signal(SIGSEGV, SIG_DFL);
+}
 
 void prepare_before_the_first_allocation(int /*count*/, char** /*arguments*/, char** /*environment*/) {
   std::set_terminate(end_at_once);  // the constructors of the libraries allocate, too
   if (!memory_may_end()) return;
-  std::signal(SIGABRT, end_where_a_library_aborts);
+  std::signal(SIGABRT, end_where_a_library_fails);
+  std::signal(SIGSEGV, end_where_a_library_fails);
 #ifdef EXACTFF_HAS_JEMALLOC
   do_without_caches();
 #endif
@@ -116,6 +125,7 @@ __attribute__((section(".preinit_array"), used)) void (*const kBeforeAll)(int, c
 }  // namespace
 
 void throw_when_out_of_memory() {
+  let_faults_be_faults();
 #ifdef EXACTFF_HAS_JEMALLOC
   give_the_only_thread_its_cache();
 #endif

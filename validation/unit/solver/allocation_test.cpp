@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -59,6 +60,14 @@ void* realloc(void* memory, std::size_t size) noexcept {
 void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
   count_one();
   return __libc_memalign(alignment, size);
+}
+// What operator new of GCC 14 calls
+int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept {
+  count_one();
+  void* made = __libc_memalign(alignment, size);
+  if (made == nullptr) return ENOMEM;
+  *memory = made;
+  return 0;
 }
 }
 

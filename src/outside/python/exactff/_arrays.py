@@ -75,7 +75,7 @@ def vectors(value: ArrayLike, name: str) -> Floats:
 def receivers(points: ArrayLike, normals: ArrayLike) -> tuple[tuple[int, ...], Floats, Floats]:
     """The shape that both have together without the last axis, and both as (n, 3)."""
     p, n = vectors(points, "points"), vectors(normals, "normals")
-    zero = ~n.any(axis=-1)
+    zero = np.asarray(~n.any(axis=-1))
     if zero.any():
         refuse(f"{_first('normals', zero)} is zero", "a receiver looks along its normal", "give it a direction")
     try:

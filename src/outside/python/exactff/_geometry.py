@@ -45,8 +45,8 @@ def _faces(faces: Any) -> tuple[Ints, Ints]:
         return _padded_faces(whole_numbers(faces, "faces"))
     if isinstance(faces, np.ndarray) and faces.ndim == 2:
         table = whole_numbers(faces, "faces")
-        lengths = np.full(len(table), table.shape[1])
-        corners = table.ravel()
+        lengths: Ints = np.full(len(table), table.shape[1])
+        corners: Ints = table.ravel()
     else:
         lengths = np.array([np.size(face) for face in faces], dtype=np.int64)
         corners = whole_numbers([corner for face in faces for corner in _row(face)], "corners of faces")
@@ -65,8 +65,9 @@ def _row(face: Any) -> Any:
 
 def _padded_faces(row: Ints) -> tuple[Ints, Ints]:
     """Faces as PyVista and VTK keep them: the number of corners, the corners, the next number, ..."""
-    corners, starts, at = [], [0], 0
-    values = row.tolist()
+    corners: list[int] = []
+    starts, at = [0], 0
+    values: Any = row.tolist()
     while at < len(values):
         count = values[at]
         if count < 3 or at + count >= len(values):
@@ -89,9 +90,10 @@ def _patches(patch: Any, names: Any, faces: int) -> tuple[Ints, list[str]]:
         return np.zeros(faces, np.int64), list(names or ["default"])
     column = np.asarray(patch)
     if column.dtype.kind == "U":
-        order = list(dict.fromkeys(column.tolist()))
-        index = {name: i for i, name in enumerate(order)}
-        result, listed = np.array([index[name] for name in column.tolist()], np.int64), order
+        words: Any = column.tolist()
+        listed: list[str] = list(dict.fromkeys(words))
+        index = {name: i for i, name in enumerate(listed)}
+        result = np.array([index[name] for name in words], np.int64)
     else:
         result, listed = _numbered(whole_numbers(patch, "patch"), names)
     if result.shape != (faces,):

@@ -404,7 +404,8 @@ class Scene:
                     by_name[one] = self._scene.own_faces(one)
                 rows.append(by_name[one])
             else:
-                rows.append(np.atleast_1d(_arrays.whole_numbers(one, f"on[{i}]")).tolist())
+                row: Any = np.atleast_1d(_arrays.whole_numbers(one, f"on[{i}]")).tolist()
+                rows.append(row)
         width = max(map(len, rows), default=0)
         table = np.array([row + [-1] * (width - len(row)) for row in rows], np.int64).reshape(len(rows), width)
         return _arrays.face_rows(table, shape, self._scene.face_count())
