@@ -16,6 +16,7 @@ render() {  # NAME SCENE [FLAG...]
 
 box=(data/scenes/cornell_box.obj --eye 278 273 -800 --look 278 273 0 --fov 39.30764811610662)
 render cornell_box_strip "${box[@]}" --size 396x396 --against area-sampling:samples=16 --strip
+render cornell_box_slope "${box[@]}" --size 480x480 --quantity gradient --exposure 4000
 render cornell_box "${box[@]}" --size 1200x1200 --exposure 16
 render blinds_room @room:n=12 --eye 3.9 2 3.8 --look 0.5 0.6 0.9 --fov 62 --size 1200x900 --exposure 10
 render slats data/scenes/slats.obj --eye -0.6 2.9 -1.8 --look 0.3 0 1.4 --fov 46 --size 1200x900 --exposure 40

@@ -139,6 +139,10 @@ struct Hit {
 enum class Sides { kFront, kBoth };  // kBoth: the back of a face is lit as its front, but emits nothing
 enum class Layers { kNone, kAll };
 enum class Bounds { kNone, kAll };
+// kSlope: in every channel the length of the gradient of the sum of form factors along the surface, per unit of length;
+// its components are layers. 0 at kinks, where there is none (exact.h). Computed from correctly rounded derivatives,
+// and accurate to a few units in the last place of the largest. Not for methods, the sky, layers and bounds.
+enum class Shown { kLight, kSlope };
 
 // What to compute. Keeps a reference to the scene.
 struct Request {
@@ -155,6 +159,7 @@ struct Request {
   int spp = 1;  // a pixel is the mean of the values at the centres of spp x spp parts of it
   Bounds bounds = Bounds::kNone;
   Layers layers = Layers::kNone;  // requires spp 1 and no method
+  Shown shown = Shown::kLight;
   Engine engine = Engine::kEdges;
   int threads = 0;  // 0: as many as this process may use; no byte depends on it
 };

@@ -159,6 +159,7 @@ render::Request request_of(const RenderArguments& args, const Scene& scene, std:
   request.sky = sources.sky;
   request.method = std::move(method);
   request.quantity = quantity_named(args.quantity).value_or(Quantity::kRadiance);
+  if (args.quantity == "gradient") request.shown = render::Shown::kSlope;
   request.ke = args.ke == "radiance" ? KeMeans::kRadiance : KeMeans::kRadiosity;
   request.sides = args.two_sided ? render::Sides::kBoth : render::Sides::kFront;
   request.spp = args.spp;
@@ -277,9 +278,11 @@ void add_camera_flags(CLI::App& app, RenderArguments& args) {
 
 void add_value_flags(CLI::App& app, RenderArguments& args) {
   app.add_flag("--two-sided", args.two_sided, "Light the backs of faces, too, instead of showing them black");
-  app.add_option("--quantity", args.quantity,
-                 "What a pixel holds: the radiance B / pi, the radiosity B, the irradiance, or the sum of form factors")
-      ->check(CLI::IsMember({"radiance", "radiosity", "irradiance", "form-factor"}))
+  app.add_option(
+         "--quantity", args.quantity,
+         "What a pixel holds: the radiance B / pi, the radiosity B, the irradiance, the sum of form factors, or "
+         "the length of its gradient along the surface")
+      ->check(CLI::IsMember({"radiance", "radiosity", "irradiance", "form-factor", "gradient"}))
       ->capture_default_str();
   app.add_option("--ke", args.ke, "What Ke means in the scene")
       ->check(CLI::IsMember({"radiosity", "radiance"}))

@@ -8,8 +8,9 @@ std::string identity_of(const Request& request, const std::optional<methods::Cho
   for (const Selection& source : request.sources) all += request.scene->name_of(source) + '\n';
   if (request.sky) all += "and the sky\n";
   all += (request.method ? request.method->text() : "exact") + '\n' + (against ? against->text() : "") + '\n';
-  for (const int number : {static_cast<int>(request.ke), static_cast<int>(request.sides), request.spp,
-                           static_cast<int>(request.bounds), static_cast<int>(request.layers)}) {
+  for (const int number :
+       {static_cast<int>(request.ke), static_cast<int>(request.sides), request.spp, static_cast<int>(request.bounds),
+        static_cast<int>(request.layers), static_cast<int>(request.shown)}) {
     all += std::to_string(number) + ' ';
   }
   return all;

@@ -58,6 +58,12 @@ void Job::require_possible() const {
     text::refuse("bounds are requested of a picture by an approximate method", "such a method proves nothing",
                  "leave out --bounds or --method");
   }
+  if (request_.shown == Shown::kSlope &&
+      (request_.method || request_.sky || request_.layers == Layers::kAll || request_.bounds == Bounds::kAll)) {
+    text::refuse("the gradient is requested together with a method, the sky, layers or bounds",
+                 "it is computed exactly, for patches, and its components are layers of their own",
+                 "leave out --method, --against METHOD, sky, --layers and --bounds");
+  }
   const Size& size = request_.view.size();
   const double bytes = 8.0 * size.width * size.height * static_cast<double>(numbers_per_pixel());
   if (bytes <= kMostBytes) return;
@@ -84,6 +90,9 @@ std::vector<std::string> Job::source_names() const {
 
 std::vector<Layer> Job::layers() const {
   std::vector<Layer> layers;
+  if (request_.shown == Shown::kSlope) {
+    for (const char* name : {"gradient.X", "gradient.Y", "gradient.Z", "kink"}) layers.push_back({name, false, {}});
+  }
   if (request_.layers == Layers::kNone) return layers;
   for (const std::string& name : source_names()) {
     layers.push_back({"F." + name, false, {}});
@@ -131,17 +140,21 @@ std::string Job::names_of_sources() const {
 
 Metadata Job::metadata() const {
   const Scene& scene = *request_.scene;
-  Metadata metadata = {
-      {"software", text::program_version()},
-      {"scene", text::printable(request_.scene_name)},
-      {"scene hash", scene.hash()},
-      {"camera", flags_of(request_.view)},
-      {"quantity", std::string(to_string(request_.quantity)) + ", in " + unit_of(request_.quantity, request_.ke)},
-      {"Ke", request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity"},
-      {"sides", request_.sides == Sides::kBoth ? "both" : "front"},
-      {"sources", names_of_sources()},
-      {"method", request_.method ? request_.method->text() : "exact, correctly rounded"},
-      {"points per pixel", std::to_string(request_.spp * request_.spp)}};
+  const bool slope = request_.shown == Shown::kSlope;
+  Metadata metadata = {{"software", text::program_version()},
+                       {"scene", text::printable(request_.scene_name)},
+                       {"scene hash", scene.hash()},
+                       {"camera", flags_of(request_.view)},
+                       {"quantity", slope ? "slope of the form factors along the surface, per unit of length"
+                                          : std::string(to_string(request_.quantity)) + ", in " +
+                                                unit_of(request_.quantity, request_.ke)},
+                       {"Ke", request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity"},
+                       {"sides", request_.sides == Sides::kBoth ? "both" : "front"},
+                       {"sources", names_of_sources()},
+                       {"method", request_.method ? request_.method->text()
+                                  : slope         ? "exact derivatives"
+                                                  : "exact, correctly rounded"},
+                       {"points per pixel", std::to_string(request_.spp * request_.spp)}};
   if (const auto flipped = scene.flipped(); !flipped.empty())
     metadata.emplace_back("flipped", names_of(scene, flipped));
   if (const auto clear = scene.transparent(); !clear.empty()) {

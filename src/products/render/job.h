@@ -32,6 +32,7 @@ class Job {
   // What leaves a face on the side that is seen, in the quantity of the request.
   [[nodiscard]] whole_view::LightFormula formula(FaceId face, bool back) const;
   [[nodiscard]] std::size_t source_count() const { return factors_->count(); }
+  [[nodiscard]] const whole_view::SourceFactors& factors() const { return *factors_; }
   [[nodiscard]] const std::vector<Rgb>& weights() const { return weights_; }  // B_s, or 1
   [[nodiscard]] const whole_view::Light& light() const { return *light_; }
   [[nodiscard]] const methods::PreparedScene* prepared() const { return prepared_.get(); }
@@ -68,11 +69,13 @@ class Painter {
  private:
   [[nodiscard]] whole_view::Channels light_at(const Receiver& receiver, const whole_view::LightFormula& formula);
   [[nodiscard]] whole_view::Channels light_by_method(const Receiver& receiver, const whole_view::LightFormula& formula);
+  void add_slope(const Hit* hit, bool dark, Sample& sample);
   void add_layers(const Ray& ray, const Hit* hit, bool dark, Sample& sample) const;
 
   const Job& job_;
   ExactOptions options_;
   whole_view::Light::Results results_;
+  FormFactor factor_;
   std::unique_ptr<methods::Evaluator> evaluator_;
   std::vector<methods::Estimate> estimates_;
 };

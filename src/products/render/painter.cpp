@@ -31,6 +31,7 @@ double of_visible(const FormFactor& factor) {
 Painter::Painter(const Job& job) : job_(job) {
   options_.engine = job.request().engine;
   options_.visible_fraction = job.request().layers == Layers::kAll;
+  options_.gradient = job.request().shown == Shown::kSlope;
   if (job.prepared() == nullptr) return;
   evaluator_ = job.prepared()->configure(job.request().method->settings);
   estimates_.resize(job.source_count());
@@ -41,6 +42,10 @@ void Painter::look_along(const Ray& ray, Sample& sample) {
   const std::optional<Hit> hit = first_hit(*request.scene, ray);
   const bool black = !hit || (hit->back && request.sides == Sides::kFront);
   Shows shows = !hit ? Shows::kNothing : black ? Shows::kBack : Shows::kFace;
+  if (request.shown == Shown::kSlope) {
+    sample.numbers.assign(1, static_cast<double>(shows));
+    return add_slope(hit ? &*hit : nullptr, black, sample);
+  }
   whole_view::Channels channels = dark(hit ? 0.0 : kNothingMet);
   if (!black) {
     const whole_view::LightFormula formula = job_.formula(hit->face, hit->back);
@@ -80,6 +85,31 @@ whole_view::Channels Painter::light_by_method(const Receiver& receiver, const wh
   return {channel(formula.emitted.r, formula.reflectance.r, received.r),
           channel(formula.emitted.g, formula.reflectance.g, received.g),
           channel(formula.emitted.b, formula.reflectance.b, received.b)};
+}
+
+// The length of the gradient along the surface, in three channels, its components, and whether there is none.
+void Painter::add_slope(const Hit* hit, bool dark, Sample& sample) {
+  sample.certified = true;
+  if (hit == nullptr || dark) {
+    const double value = hit == nullptr ? kNothingMet : 0.0;
+    sample.numbers.insert(sample.numbers.end(), {value, value, value, 0.0, 0.0, 0.0, 0.0});
+    return;
+  }
+  const Receiver receiver = receiver_at(*job_.request().scene, *hit);
+  Vec3 gradient;
+  bool kink = false;
+  for (std::size_t s = 0; s < job_.source_count(); ++s) {
+    job_.factors().find_one(receiver, s, options_, factor_, results_.at);
+    const auto& [x, y, z] = factor_.gradient->position;
+    kink = kink || factor_.gradient->kink.has_value();
+    gradient = {gradient.x + x.value, gradient.y + y.value, gradient.z + z.value};
+  }
+  if (kink) gradient = {};
+  const Vec3 normal = unit_length(receiver.normal);
+  const double across = kernel::dot(gradient, normal);
+  const Vec3 along{gradient.x - across * normal.x, gradient.y - across * normal.y, gradient.z - across * normal.z};
+  const double slope = std::hypot(along.x, along.y, along.z);
+  sample.numbers.insert(sample.numbers.end(), {slope, slope, slope, along.x, along.y, along.z, kink ? 1.0 : 0.0});
 }
 
 void Painter::add_layers(const Ray& ray, const Hit* hit, bool dark, Sample& sample) const {

@@ -27,6 +27,7 @@ class Profile {
   void gather_around_plane(const visibility::PlaneQuery& query);
 
   [[nodiscard]] visibility::Outlines& outlines() { return outlines_; }
+  [[nodiscard]] const visibility::Outlines& outlines() const { return outlines_; }
   // Outlines: first those of the source above the horizon, then those of the occluders before the source's plane.
   [[nodiscard]] std::size_t source_count() const { return source_count_; }
   // A piece of the scene for each outline.

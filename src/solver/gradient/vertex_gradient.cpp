@@ -53,11 +53,29 @@ void VertexGradient::add(const PlaneQuery& query, const VisibleBoundary& boundar
     add_quickly(query, motions, *boundary.edges());
   } else {
     add_by_planes(query, motions, boundary);  // in balls alone
-    for (const auto& [place, arcs] : arcs_) sums_[place].fill(kernel::double_double::kDeclined);
+    for (const auto& [place, arcs] : arcs_) sums_[place].decline();
   }
 }
 
 // --- 2. Where there is no derivative ---
+
+// For certain: beyond a side of each of the source's outlines.
+bool VertexGradient::is_beside_source(CornerId a, CornerId b) const {
+  const Outlines& outlines = profile_.outlines();
+  for (OutlineId o = 0; o < profile_.source_count(); ++o) {
+    const Outlines::Outline& outline = outlines.outline(o);
+    bool beside = false;
+    for (EdgeId id = outline.first; id < outline.first + outline.count && !beside; ++id) {
+      const auto is_outside = [&](CornerId corner) {
+        const visibility::Height height = outlines.height(outlines.edge(id), corner);
+        return height.value < -height.error;
+      };
+      beside = is_outside(a) && is_outside(b);
+    }
+    if (!beside) return false;
+  }
+  return true;
+}
 
 // Edges without a piece on both sides, and those in the source's plane.
 void VertexGradient::add_lines() {
@@ -112,7 +130,8 @@ void VertexGradient::find_kinks(const PlaneQuery& query, const VertexMotions& mo
     for (std::size_t c = 0; c < corners.size(); ++c) {
       const std::uint32_t p = corners[c], q = corners[(c + 1) % corners.size()];
       if (!motions.is_in_source_plane(p) || !motions.is_in_source_plane(q)) continue;
-      meeting.push_back(outlines.add_edge(outlines.corner_at(p), outlines.corner_at(q)));
+      const CornerId a = outlines.corner_at(p), b = outlines.corner_at(q);
+      if (!is_beside_source(a, b)) meeting.push_back(outlines.add_edge(a, b));
     }
     if (!is_visible || !overlaps_source(motions, corners)) continue;
     // It hides nothing until it moves.
@@ -126,7 +145,7 @@ void VertexGradient::find_kinks(const PlaneQuery& query, const VertexMotions& mo
     if (!differ(motions, group)) return true;
     VertexSight sight(query, profile_, motions, outlines.edge(group.front()));
     if (is_zero(cross(sight.normal(), horizon))) return true;
-    sight.judge();
+    sight.judge(VertexSight::Extent::kKinks);
     kinks_.insert(sight.kinks().begin(), sight.kinks().end());
     return true;
   };
@@ -166,6 +185,19 @@ bool VertexGradient::is_of_source(const Outlines::Edge& edge) const {
   return edge.outline != Outlines::kNone && edge.outline < profile_.source_count();
 }
 
+namespace {
+
+// Whether the component of (a - x) x (b - x) is 0 for certain, as where the line runs along the axis.
+bool is_certainly_zero(const Vec3& a, const Vec3& b, const Vec3& x, int axis) {
+  const auto at = [axis](const Vec3& v) {
+    return axis == 0 ? std::pair(v.y, v.z) : axis == 1 ? std::pair(v.z, v.x) : std::pair(v.x, v.y);
+  };
+  const auto p = at(a), q = at(b), o = at(x);
+  return p == q || (p.first == o.first && q.first == o.first) || (p.second == o.second && q.second == o.second);
+}
+
+}  // namespace
+
 // The lines that a plane cuts are left to the balls.
 void VertexGradient::add_quickly(const PlaneQuery& query, const VertexMotions& motions, EdgeCovers& found) {
   const Outlines& outlines = found.outlines();
@@ -176,23 +208,26 @@ void VertexGradient::add_quickly(const PlaneQuery& query, const VertexMotions& m
     const auto vertices =
         is_of_source(edge) ? motions.line_of_source(outlines, edge) : motions.line_of_occluder(outlines, edge);
     if (vertices && a && b) {
+      const Vec3 &p = outlines.position(*a), &q = outlines.position(*b);
       const auto add = [&](std::uint32_t vertex, const auto& share) {
         Sums& sums = sums_[motions.pair_of(vertex, vertex).first];
         for (int axis = 0; axis < 3; ++axis) {
+          if (is_certainly_zero(p, q, outlines.x(), axis)) continue;
           const kernel::double_double::Bounded c{line.cross.c[axis].hi, line.cross.c[axis].lo, line.cross.error};
-          sums[axis] = sums[axis] + contour::times_power(c * share, exponent);
+          sums.value[axis] = sums.value[axis] + contour::times_power(c * share, exponent);
+          sums.has_terms[axis] = true;
         }
       };
       add(*a, shares.a);
       add(*b, shares.b);
     } else if (vertices) {
-      sums_[vertices->first].fill(kernel::double_double::kDeclined);
-      sums_[vertices->second].fill(kernel::double_double::kDeclined);
+      sums_[vertices->first].decline();
+      sums_[vertices->second].decline();
     } else if (!is_of_source(edge)) {
       for (const std::uint32_t place : frame_of(query.view.scene, piece_of_cut(motions, outlines, edge))) {
-        sums_[place].fill(kernel::double_double::kDeclined);
+        sums_[place].decline();
       }
-      for (const std::uint32_t place : motions.source_frame()) sums_[place].fill(kernel::double_double::kDeclined);
+      for (const std::uint32_t place : motions.source_frame()) sums_[place].decline();
     }
   });
 }
@@ -247,7 +282,7 @@ void VertexGradient::add_by_planes(const PlaneQuery& query, const VertexMotions&
     if (is_parallel(horizon) || std::ranges::any_of(done, is_parallel)) return;
     done.push_back(pole);
     VertexSight sight(query, profile_, motions, profile_.edge_in_plane(pole));
-    sight.judge();
+    sight.judge(VertexSight::Extent::kAll);
     for (VertexArc& arc : sight.arcs()) arcs_[arc.place].push_back(std::move(arc));
   });
 }
@@ -274,7 +309,11 @@ bool VertexGradient::finish(int cap, Gradient& result) {
         set_none(derivative);
         continue;
       }
-      const contour::QuickGradient::Value value = quick_.sum().over_turn_and_length(sums[axis]);
+      if (!sums.has_terms[axis]) {
+        set_zero(derivative);
+        continue;
+      }
+      const contour::QuickGradient::Value value = quick_.sum().over_turn_and_length(sums.value[axis]);
       if (cap >= kQuickBits && is_determined(kernel::ball_around(value.hi, value.lo, value.error), derivative))
         continue;
       derivative.status = DerivativeStatus::kEnclosed;  // so far

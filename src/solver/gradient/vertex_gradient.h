@@ -45,6 +45,7 @@ class VertexGradient {
  private:
   [[nodiscard]] bool gather(const visibility::PlaneQuery& query);
   void find_kinks(const visibility::PlaneQuery& query, const VertexMotions& motions, bool is_visible);
+  [[nodiscard]] bool is_beside_source(visibility::CornerId a, visibility::CornerId b) const;
   void add_lines();
   [[nodiscard]] bool differ(const VertexMotions& motions, std::span<const visibility::EdgeId> group);
   [[nodiscard]] bool overlaps_source(const VertexMotions& motions, std::span<const std::uint32_t> vertices);
@@ -56,7 +57,15 @@ class VertexGradient {
   [[nodiscard]] std::uint32_t piece_of_cut(const VertexMotions& motions, const visibility::Outlines& outlines,
                                            const visibility::Outlines::Edge& edge);
 
-  using Sums = std::array<kernel::double_double::Bounded, 3>;
+  struct Sums {
+    std::array<kernel::double_double::Bounded, 3> value;
+    std::array<bool, 3> has_terms{};  // other than those that are certainly 0
+
+    void decline() {
+      value.fill(kernel::double_double::kDeclined);
+      has_terms.fill(true);
+    }
+  };
 
   Vec3 normal_;
   Profile profile_;

@@ -210,7 +210,29 @@ std::optional<VertexSight::Strip> VertexSight::strip_of(const Sheet& sheet, cons
   return strip;
 }
 
-void VertexSight::judge() {
+// False if no two lines that move in different ways lie at one place, and none lies in the source's plane.
+bool VertexSight::may_have_kinks() const {
+  if (!sheets_.empty()) return true;
+  std::vector<const Element*> lines;
+  for (const Element& element : elements_) {
+    if (element.side == 0 || element.motion.empty()) continue;
+    if (turn(first_, element.to) <= 0 || turn(element.from, last_) <= 0) continue;
+    if (element.touches) return true;
+    lines.push_back(&element);
+  }
+  const auto move_alike = [](const Motion& p, const Motion& q) {
+    return p.size() == 2 && q.size() == 2 && p[0].place == q[0].place && p[1].place == q[1].place;
+  };
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Element &p = *lines[i], &q = *lines[j];
+      if (!move_alike(p.motion, q.motion) && turn(p.from, q.to) > 0 && turn(q.from, p.to) > 0) return true;
+    }
+  }
+  return false;
+}
+
+void VertexSight::judge(Extent extent) {
   Outlines& outlines = profile_.outlines();
   const auto count = static_cast<OutlineId>(outlines.outlines().size());
   for (OutlineId id = 0; id < count; ++id) {
@@ -219,6 +241,7 @@ void VertexSight::judge() {
   }
   for (const std::uint32_t piece : profile_.meeting()) add_meeting(piece);
   for (const std::uint32_t piece : profile_.sheets()) add_sheet(piece);
+  if (extent == Extent::kKinks && !may_have_kinks()) return;
   const std::vector<ExactVec3> all = breaks();
   for (std::size_t i = 0; i + 1 < all.size(); ++i) {
     kernel::poll();

@@ -38,7 +38,8 @@ class VertexSight {
               const visibility::Outlines::Edge& edge);
 
   [[nodiscard]] const kernel::ExactVec3& normal() const { return normal_; }
-  void judge();
+  enum class Extent { kAll, kKinks };
+  void judge(Extent extent);
   // Places of vertices by which there is no derivative, in any order.
   [[nodiscard]] const std::vector<std::uint32_t>& kinks() const { return kinks_; }
   // Of the other vertices.
@@ -84,6 +85,7 @@ class VertexSight {
   void add_meeting(std::uint32_t piece);
   void add_sheet(std::uint32_t piece);
   [[nodiscard]] bool find_range();
+  [[nodiscard]] bool may_have_kinks() const;
   [[nodiscard]] std::vector<kernel::ExactVec3> breaks() const;
   void judge_at(const kernel::ExactVec3& begin, const kernel::ExactVec3& end);
   void judge_vertex(std::uint32_t place, const kernel::ExactVec3& begin, const kernel::ExactVec3& end);

@@ -59,6 +59,15 @@ TEST_F(RenderCommand, WritesEveryFile) {
   EXPECT_EQ(files(), 5U);  // with the file of errors: nothing else is left
 }
 
+TEST_F(RenderCommand, TheGradientHasItsComponentsInChannels) {
+  EXPECT_EQ(render({"-o", path("a.exr"), "--quantity", "gradient", "--spp", "2"}).code, 0);
+  for (const char* channel : {"gradient.X", "gradient.Y", "gradient.Z", "kink"}) {
+    EXPECT_NE(text_of(path("a.exr")).find(channel), std::string::npos) << channel;
+  }
+  EXPECT_EQ(render({"-o", path("b.exr"), "--quantity", "gradient", "--bounds", path("b.npy")}).code, 2);
+  EXPECT_EQ(render({"-o", path("b.exr"), "--quantity", "gradient", "--method", "nettle"}).code, 2);
+}
+
 TEST_F(RenderCommand, AnImageIsReplacedAndIsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(render({"-o", path("a.exr"), "--threads", "1"}).code, 0);
   const std::string first = text_of(path("a.exr"));

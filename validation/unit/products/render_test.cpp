@@ -147,6 +147,35 @@ TEST(Picture, QuantitiesAgree) {
   }
 }
 
+TEST(Picture, TheSlopeIsTheGradientAlongTheSurface) {
+  Request one = request(24, 24);
+  one.shown = Shown::kSlope;
+  const Picture picture = render(one);
+  ASSERT_EQ(picture.layers.size(), 4U);
+  EXPECT_EQ(picture.layers[0].name, "gradient.X");
+  const ExactSource light(cornell_box(), cornell_box().select("light"));
+  int compared = 0;
+  for (int row = 0; row < 24; ++row) {
+    for (int column = 0; column < 24; ++column) {
+      const auto hit = first_hit(cornell_box(), one.view.ray(column + 0.5, row + 0.5));
+      if (!hit || cornell_box().name_of(hit->face) != "floor") continue;  // its normal is y
+      const Receiver receiver = receiver_at(cornell_box(), *hit);
+      const Gradient gradient = *exact_form_factor(cornell_box(), receiver, light, {.gradient = true}).gradient;
+      const auto pixel = static_cast<std::size_t>(row * 24 + column);
+      EXPECT_EQ(picture.layers[3].values[pixel], gradient.kink ? 1.0 : 0.0);
+      if (gradient.kink) continue;
+      const double x = gradient.position[0].value, z = gradient.position[2].value;
+      EXPECT_EQ(picture.layers[0].values[pixel], x);
+      EXPECT_EQ(picture.layers[1].values[pixel], 0.0);
+      EXPECT_NEAR(value(picture, column, row), std::hypot(x, z), 1e-15 * std::hypot(x, z));
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 20);
+  one.bounds = Bounds::kAll;
+  EXPECT_THROW((void)render(one), InputError);
+}
+
 TEST(Picture, DoesNotDependOnThreadsAndResumes) {
   const TemporaryDirectory directory;
   Request asked = request(40, 33);
