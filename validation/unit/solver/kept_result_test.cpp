@@ -45,7 +45,7 @@ std::string text_of(const Derivative& derivative) {
 }
 
 std::string text_of(const Gradient& gradient) {
-  const auto& [kink, position, normal, along, arcs] = gradient;
+  const auto& [kink, position, normal, along, arcs, vertices, frames] = gradient;
   std::string text = kink ? std::string(to_string(kink->reason)) : "no kink";
   for (std::size_t i = 0; kink && i < kink->faces.size(); ++i) text += ' ' + std::to_string(index_of(kink->faces[i]));
   text += '\n';
@@ -56,6 +56,13 @@ std::string text_of(const Gradient& gradient) {
     for (const Vec3& v : {arc.begin, arc.end, arc.part}) {
       text += generate::to_text(v.x) + ' ' + generate::to_text(v.y) + ' ' + generate::to_text(v.z) + ' ';
     }
+  }
+  for (const VertexDerivative& v : vertices) {
+    text += std::to_string(v.vertex) + (v.is_kink ? " kink " : " ");
+    for (const Derivative& d : v.position) text += text_of(d);
+  }
+  for (const auto& frame : frames) {
+    for (const std::uint32_t vertex : frame) text += std::to_string(vertex) + ' ';
   }
   return text;
 }
@@ -111,6 +118,7 @@ const std::vector<ExactOptions> kOptions = {
     {.only_occluders = &kNobody},
     {.gradient = true},
     {.list_arcs = true, .along = Vec3{1.0, 2.0, 0.0}},
+    {.vertices = true},
     {.engine = Engine::kBoth, .gradient = true},
     {.gradient = true, .precision_cap = 20},
 };
