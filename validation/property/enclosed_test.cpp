@@ -124,13 +124,13 @@ TEST(Enclosed, IsEveryPatchOfView3DsClosedRooms) {
 TEST(Enclosed, SeesNoSkyAndSaysThatThisIsProved) {
   const Scene scene = read_scene(EXACTFF_DATA_DIR "/scenes/formats/test4.vs3");
   const std::vector<Selection> all = all_of(scene);
-  const Matrix matrix = matrix::compute(scene, all, all, {.factors = {.accuracy = 1e-3}, .open = true});
+  const matrix::Matrix computed = matrix::compute(scene, all, all, {.factors = {.accuracy = 1e-3}, .open = true});
   for (std::size_t row = 0; row < all.size(); ++row) {
-    EXPECT_EQ(matrix.open[row].claim, Claim::kZero);
-    EXPECT_EQ(matrix.open[row].upper, 0.0);
-    EXPECT_EQ(matrix.open[row].area_from, matrix.factors.at(row, 0).area_from);
-    EXPECT_TRUE(matrix.open[row].accurate);
-    EXPECT_EQ(matrix.open[row].cells, 0U);
+    EXPECT_EQ(computed.open[row].claim, Claim::kZero);
+    EXPECT_EQ(computed.open[row].upper, 0.0);
+    EXPECT_EQ(computed.open[row].area_from, computed.factors.at(row, 0).area_from);
+    EXPECT_TRUE(computed.open[row].accurate);
+    EXPECT_EQ(computed.open[row].cells, 0U);
   }
 }
 
