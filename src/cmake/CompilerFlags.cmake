@@ -17,7 +17,7 @@ if(EXACTFF_TESTS)
 endif()
 # Only for the compilers that were tried: others have other warnings.
 set(exactff_compiler "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}")
-if(EXACTFF_WERROR AND exactff_compiler MATCHES "^(GNU (12|14)|Clang (14|16))\\.")
+if(EXACTFF_WERROR AND exactff_compiler MATCHES "^(GNU (12|14)|Clang 14)\\.")
   target_compile_options(exactff_flags INTERFACE -Werror)
 endif()
 if(EXACTFF_SANITIZE)

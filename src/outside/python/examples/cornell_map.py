@@ -22,4 +22,4 @@ image = axes.imshow(shades, origin="lower", cmap="inferno", interpolation="neare
 picture.colorbar(image, label="form factor to the light (exact)")
 axes.set(title=f"Cornell box, floor: {hidden} of {shades.size} cells see no light", xlabel="column", ylabel="row")
 picture.savefig(sys.argv[2], dpi=150)
-print(f"{shades.size} cells, brightest {shades.max()!r}")
+print(f"{shades.size} cells, brightest {shades.max().item()!r}")

@@ -23,4 +23,4 @@ for corners, kind in ((3, "triangle"), (4, "quad")):
         values.append(exact.value[chosen, 0])
         states.append(exact.status[chosen, 0])
 meshio.Mesh(scene.vertices, cells, cell_data={"form_factor": values, "status": states}).write(output)
-print(f"{sum(map(len, values))} of {len(faces)} faces, brightest {exact.value.max()!r}")
+print(f"{sum(map(len, values))} of {len(faces)} faces, brightest {exact.value.max().item()!r}")
