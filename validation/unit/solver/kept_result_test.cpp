@@ -45,7 +45,7 @@ std::string text_of(const Derivative& derivative) {
 }
 
 std::string text_of(const Gradient& gradient) {
-  const auto& [kink, position, normal, along, arcs] = gradient;
+  const auto& [kink, position, normal, along, arcs, vertices, frames] = gradient;
   std::string text = kink ? std::string(to_string(kink->reason)) : "no kink";
   for (std::size_t i = 0; kink && i < kink->faces.size(); ++i) text += ' ' + std::to_string(index_of(kink->faces[i]));
   text += '\n';
@@ -56,6 +56,13 @@ std::string text_of(const Gradient& gradient) {
     for (const Vec3& v : {arc.begin, arc.end, arc.part}) {
       text += generate::to_text(v.x) + ' ' + generate::to_text(v.y) + ' ' + generate::to_text(v.z) + ' ';
     }
+  }
+  for (const VertexDerivative& v : vertices) {
+    text += std::to_string(v.vertex) + (v.is_kink ? " kink\n" : "\n");
+    for (const Derivative& d : v.position) text += text_of(d);
+  }
+  for (const auto& frame : frames) {
+    for (const std::uint32_t vertex : frame) text += std::to_string(vertex) + ' ';
   }
   return text;
 }
@@ -103,6 +110,7 @@ const std::vector<ExactOptions> kOptions = {
     {},
     {.visible_fraction = true, .exact_fraction = true, .list_cutters = true},
     {.digits = 60},
+    {.vertices = true},
     {.engine = Engine::kBoolean},
     {.precision_cap = 20},
     {.engine = Engine::kBoth, .visible_fraction = true},
