@@ -58,7 +58,7 @@ std::string text_of(const Gradient& gradient) {
     }
   }
   for (const VertexDerivative& v : vertices) {
-    text += std::to_string(v.vertex) + (v.is_kink ? " kink " : " ");
+    text += std::to_string(v.vertex) + (v.is_kink ? " kink\n" : "\n");
     for (const Derivative& d : v.position) text += text_of(d);
   }
   for (const auto& frame : frames) {
@@ -110,6 +110,7 @@ const std::vector<ExactOptions> kOptions = {
     {},
     {.visible_fraction = true, .exact_fraction = true, .list_cutters = true},
     {.digits = 60},
+    {.vertices = true},
     {.engine = Engine::kBoolean},
     {.precision_cap = 20},
     {.engine = Engine::kBoth, .visible_fraction = true},
@@ -118,7 +119,6 @@ const std::vector<ExactOptions> kOptions = {
     {.only_occluders = &kNobody},
     {.gradient = true},
     {.list_arcs = true, .along = Vec3{1.0, 2.0, 0.0}},
-    {.vertices = true},
     {.engine = Engine::kBoth, .gradient = true},
     {.gradient = true, .precision_cap = 20},
 };
