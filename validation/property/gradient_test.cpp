@@ -1,9 +1,6 @@
 // The gradient of the form factor against references that share nothing with it: differences of values that are
-// certified to many digits, and identities.
-//
-// Beside a receiver, on the line of a movement, F is analytic on each side. One-sided differences at steps h, h/2, h/4
-// therefore have an expansion in all powers of h, and two steps of Richardson's extrapolation leave an error of the
-// order of h^3. The receivers are at the origin, so that steps of 2^-200 of the smallest coordinate are exact.
+// certified to many digits (slopes.h), and identities. The receivers are at the origin, so that steps of 2^-200 of the
+// smallest coordinate are exact.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,6 +15,7 @@
 #include "exactff/scene_files.h"
 #include "generate/families.h"
 #include "kernel/ball.h"
+#include "property/slopes.h"
 #include "support/random_scenes.h"
 #include "support/solve.h"
 #include "support/transform.h"
@@ -28,13 +26,7 @@ namespace {
 using generate::PlainScene;
 using generate::Random;
 
-constexpr long kBits = 800;
 constexpr std::array kAxes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
-
-Ball number(double value) { return kernel::to_ball(value, kBits); }
-Ball ball_of(const Enclosure& enclosure) { return kernel::with_bits(EnclosureInside::ball(enclosure), kBits); }
-double middle(const Ball& ball) { return kernel::nearest_to_midpoint(ball); }
-Vec3 times(const Vec3& v, double s) { return {v.x * s, v.y * s, v.z * s}; }
 
 // A scene, its receiver at the origin and its source.
 struct Trial {
@@ -57,18 +49,7 @@ struct Trial {
   }
   // The slope of F on the side of d.
   [[nodiscard]] double slope(const Vec3& d, double step) const {
-    std::array<Ball, 3> table;
-    const Ball here = value_at({});
-    for (double h = step; Ball & entry : table) {
-      entry = (value_at(times(d, h)) - here) / number(h);
-      h *= 0.5;
-    }
-    for (const double order : {2.0, 4.0}) {
-      for (std::size_t i = table.size() - 1; i > 0; --i) {
-        table[i] = (number(order) * table[i] - table[i - 1]) / number(order - 1.0);
-      }
-    }
-    return middle(table.back());
+    return slope_of([&](double h) { return value_at(times(d, h)); }, step);
   }
 
   Scene scene;
@@ -81,20 +62,6 @@ PlainScene around_the_receiver(PlainScene plain) {
   for (Vec3& v : plain.vertices) v = {v.x - plain.point.x, v.y - plain.point.y, v.z - plain.point.z};
   plain.point = {};
   return plain;
-}
-
-// 2^-200 of the smallest coordinate. Nothing if the coordinates differ by more than a factor of 2^30: F may then bend
-// within any step that doubles allow.
-std::optional<double> step_for(const PlainScene& plain) {
-  double least = std::numeric_limits<double>::infinity(), largest = 0.0;
-  for (const Vec3& v : plain.vertices) {
-    for (const double c : {v.x, v.y, v.z}) {
-      if (c != 0.0) least = std::min(least, std::abs(c));
-      largest = std::max(largest, std::abs(c));
-    }
-  }
-  if (!(least > 0x1p-300 && largest < 0x1p30 * least)) return std::nullopt;
-  return std::ldexp(1.0, std::ilogb(least) - 200);
 }
 
 void expect_near(double found, double reference, const std::string& what) {
@@ -177,12 +144,6 @@ TEST(Gradient, NormalTimesVIsTheValue) {
     }
     EXPECT_TRUE(EnclosureInside::of(sum / sqrt(squared)).overlaps(f.enclosure)) << generate::to_obj(plain);
   }
-}
-
-bool same(const Derivative& a, const Derivative& b, double sign) {
-  if (a.status == DerivativeStatus::kNone || b.status == DerivativeStatus::kNone) return a.status == b.status;
-  if (a.status == DerivativeStatus::kEnclosed || b.status == DerivativeStatus::kEnclosed) return true;
-  return a.status == b.status && a.value == sign * b.value;
 }
 
 TEST(Gradient, AxisPermutationsAndSignFlipsChangeNoBit) {

@@ -2,7 +2,7 @@
 // values that are certified to many digits, and identities.
 //
 // The scene is first moved, with roundings, so that one vertex lies at the origin. Steps of 2^-200 of the smallest
-// coordinate are then exact. Differences are one-sided, and extrapolated as in gradient_test.cpp.
+// coordinate are then exact (slopes.h).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,24 +17,19 @@
 #include "exactff/scene_files.h"
 #include "generate/families.h"
 #include "kernel/ball.h"
+#include "property/slopes.h"
 #include "support/random_scenes.h"
 #include "support/solve.h"
 #include "support/transform.h"
 
-namespace exactff::validation {
+namespace exactff::validation::by_vertices {
 namespace {
 
 using generate::PlainScene;
 using generate::Random;
 
-constexpr long kBits = 800;
-
-Ball number(double value) { return kernel::to_ball(value, kBits); }
-Ball ball_of(const Enclosure& enclosure) { return kernel::with_bits(EnclosureInside::ball(enclosure), kBits); }
-double middle(const Ball& ball) { return kernel::nearest_to_midpoint(ball); }
 bool holds_zero(const Ball& ball) { return EnclosureInside::of(ball).contains(0.0); }
 double component(const Vec3& v, std::size_t axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
-Vec3 times(const Vec3& v, double s) { return {v.x * s, v.y * s, v.z * s}; }
 
 FormFactor solve_vertices(const PlainScene& plain, Engine engine = Engine::kEdges) {
   const Scene scene = generate::build(plain);
@@ -57,40 +52,16 @@ PlainScene around(PlainScene plain, const Vec3& centre) {
   return plain;
 }
 
-// As in gradient_test.cpp.
-std::optional<double> step_for(const PlainScene& plain) {
-  double least = std::numeric_limits<double>::infinity(), largest = 0.0;
-  const auto take = [&](const Vec3& v) {
-    for (const double c : {v.x, v.y, v.z}) {
-      if (c != 0.0) least = std::min(least, std::abs(c));
-      largest = std::max(largest, std::abs(c));
-    }
-  };
-  for (const Vec3& v : plain.vertices) take(v);
-  take(plain.point);
-  if (!(least > 0x1p-300 && largest < 0x1p30 * least)) return std::nullopt;
-  return std::ldexp(1.0, std::ilogb(least) - 200);
-}
-
 // The slope if what lies at the origin moves by d.
 double slope(const PlainScene& plain, const Vec3& d, double step) {
-  std::array<Ball, 3> table;
-  const Ball here = value_of(plain);
-  double h = step;
-  for (Ball& entry : table) {
+  const auto value_at = [&](double h) {
     PlainScene moved = plain;
     for (Vec3& v : moved.vertices) {
       if (v == Vec3{}) v = times(d, h);
     }
-    entry = (value_of(moved) - here) / number(h);
-    h *= 0.5;
-  }
-  for (const double order : {2.0, 4.0}) {
-    for (std::size_t i = table.size() - 1; i > 0; --i) {
-      table[i] = (number(order) * table[i] - table[i - 1]) / number(order - 1.0);
-    }
-  }
-  return middle(table.back());
+    return value_of(moved);
+  };
+  return slope_of(value_at, step);
 }
 
 struct Met {
@@ -249,12 +220,6 @@ TEST(VertexGradient, ARotationOfAllChangesNothing) {
   });
 }
 
-bool same(const Derivative& a, const Derivative& b, double sign) {
-  if (a.status == DerivativeStatus::kNone || b.status == DerivativeStatus::kNone) return a.status == b.status;
-  if (a.status == DerivativeStatus::kEnclosed || b.status == DerivativeStatus::kEnclosed) return true;
-  return a.status == b.status && a.value == sign * b.value;
-}
-
 TEST(VertexGradient, AxisPermutationsAndSignFlipsChangeNoBit) {
   const std::vector<Symmetry> symmetries = all_symmetries();
   for (std::uint64_t i = 0; i < scaled_count(60); ++i) {
@@ -401,4 +366,4 @@ TEST(VertexGradient, AddsOverSources) {
 }
 
 }  // namespace
-}  // namespace exactff::validation
+}  // namespace exactff::validation::by_vertices
