@@ -4,9 +4,8 @@
 // the coordinate s along m. If x moves by d, a point at the distance r in direction w moves to
 //   s = -(d . m) / r = -(d . m) u,   u = 1 / r.
 // To first order, near w,
-//   - a face with an edge in the plane, on the side of N, covers all s above the u of the edge, times -(d . m); a face
-//   on
-//     the other side covers all s below it;
+//   - a face with an edge in the plane, on the side of N, covers all s above the u of the edge, times -(d . m);
+//     a face on the other side covers all s below it;
 //   - a face that x sees edge-on covers what is between the u of its near and its far side;
 //   - a face that the plane cuts covers all s;
 //   - where the source lies on one side of the plane alone, its edge ends the view as a face on the other side would.

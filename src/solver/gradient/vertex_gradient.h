@@ -2,15 +2,14 @@
 // derivative by x.
 //
 // For one plane of the source:
-//   1. gather what touches the closed shaft (profile.h), also in the source's plane; stop if one piece hides more than
-//   the
-//      source: its vertices may move a little, too;
-//   2. look for vertices by which there is no derivative: in each plane through x with different lines, or with an edge
-//      that lies in the source's plane (vertex_sight.h);
-//   3. add up the arcs of the visible boundary, for each vertex that moves them: those of the edge engine in
-//   double-double
-//      (contour/quick_gradient.h), unless a plane cuts their lines, and where that does not suffice in balls. Of the
-//      Booleans' boundary only the planes through x are used: the lines in each are those that step 2 finds.
+// 1. Gather what touches the closed shaft (profile.h), also in the source's plane. Stop if one piece hides more than
+//    the source: its vertices may move a little, too.
+// 2. Look for vertices by which there is no derivative: in each plane through x with different lines, or with an edge
+//    that lies in the source's plane (vertex_sight.h).
+// 3. Add up the arcs of the visible boundary, for each vertex that moves them: those of the edge engine in
+//    double-double (contour/quick_gradient.h), unless a plane cuts their lines, and where that does not suffice in
+//    balls. Of the Booleans' boundary only the planes through x are used: the lines in each are those that step 2
+//    finds.
 #pragma once
 
 #include <array>

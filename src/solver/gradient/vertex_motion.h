@@ -5,16 +5,15 @@
 // the line moves at w by
 //   s = (turn . d) (share . w) / |N|,
 // with two vectors that depend on the line and the vertex:
-//   - The line is that through the vertices a and b. A point y = r w of it follows a by the share that a has in it:
-//   with
-//     y = l a + m b, this is l, and l / r is linear in w: share . a = 1, share . b = 0. turn = N. The shares of a and b
-//     add up to the nearness of the line, since l + m = 1. So a movement of both is one of x the other way.
-//   - The line is where the plane of a face meets the source's plane. Let h and g be the nearnesses of the planes (h .
-//   y =
-//     1 for their points y). They meet where (h - g) . w = 0, so that N = k (h - g). The plane of a face follows three
-//     of its vertices. If a, one of them, moves by d, h changes by -(h . d) a*, where a* . a = 1, and a* . b = a* . c =
-//     0 for the others; a* + b* + c* = h. Then w . (h - g) = 0 gives turn = k h, share = a*. For a vertex of the
-//     source's frame, turn = -k g, and the share is by that frame.
+//   - The line is that through the vertices a and b. A point y = r w of it follows a by the share that a has in
+//     it: with y = l a + m b, this is l, and l / r is linear in w: share . a = 1, share . b = 0. turn = N. The
+//     shares of a and b add up to the nearness of the line, since l + m = 1. So a movement of both is one of x
+//     the other way.
+//   - The line is where the plane of a face meets the source's plane. Let h and g be the nearnesses of the planes:
+//     h . y = 1 for their points y. They meet where (h - g) . w = 0, so that N = k (h - g). The plane of a face
+//     follows three of its vertices. If a, one of them, moves by d, h changes by -(h . d) a*, where a* . a = 1, and
+//     a* . b = a* . c = 0 for the others; a* + b* + c* = h. Then w . (h - g) = 0 gives turn = k h, share = a*. For
+//     a vertex of the source's frame, turn = -k g, and the share is by that frame.
 #pragma once
 
 #include <array>

@@ -7,9 +7,8 @@
 // same sum of some f . d as long as the order of all f . d is. F has a derivative by the vertex if M is the same vector
 // for every order.
 //   - If all f are multiples of N, there are two orders.
-//   - Else all orders of the different f are tried, even if no movement leads to some: a kink may be reported where
-//   there
-//     is none, but no derivative where there is none.
+//   - Else all orders of the different f are tried, even if no movement leads to some: a kink may be reported
+//     where there is none, but no derivative where there is none.
 // An edge of an occluder that lies in the source's plane hides what is beside it, or not, as it rises or sinks. Where
 // it moves, or the source's plane does, M must be the same with all such edges and without any.
 #pragma once
