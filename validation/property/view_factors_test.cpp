@@ -317,7 +317,7 @@ void cut_in_two(generate::PlainScene& plain, const std::string& name) {
 // Of a receiver that is cut in two, the factors add up by area; of a source, as they are.
 TEST(ViewFactors, OfTwoHalvesAddUp) {
   std::size_t judged = 0;
-  for (std::uint64_t s = 0; s < scaled_count(150); ++s) {
+  for (std::uint64_t s = 0; s < scaled_count(300); ++s) {
     Random random(seed_of(s));
     generate::PlainScene plain = s % 2 == 0 ? degenerate_scene(random) : generic_scene(random);
     const Scene whole = generate::build(plain);
