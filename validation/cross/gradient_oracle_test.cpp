@@ -117,7 +117,7 @@ TEST(GradientOracle, SlopesByVerticesAgree) {
       if (HasFailure()) return;
     }
   }
-  EXPECT_GT(moving, 30U);
+  EXPECT_GT(moving, 20U);
   EXPECT_GT(resting, 20U);
   EXPECT_GT(kinks, 5U);
   EXPECT_GT(3 * sharp, kinks);

@@ -143,13 +143,13 @@ def test_no_leak_in_100000_calls():
 
     def some(calls):
         for _ in range(calls):
-            compiled.form_factor(ROOM._scene, POINT, UP, floor, "light", False, False, False, 0, 65536, None).enclosure
+            compiled.form_factor(ROOM._scene, POINT, UP, floor, "light", False, False, False, False, 0, 65536, None).enclosure
         for _ in range(calls // 20):
             ROOM.form_factors(point, up, "light", 0, full=True)
             ROOM.form_factor(POINT, UP, "light", 0, gradient=True)
         for _ in range(calls // 200):
             with pytest.raises(exactff.InputError):
-                compiled.form_factor(ROOM._scene, POINT, UP, floor, "lamp", False, False, False, 0, 65536, None)
+                compiled.form_factor(ROOM._scene, POINT, UP, floor, "lamp", False, False, False, False, 0, 65536, None)
             lamp_above((0.5, 0.2)).form_factors(np.zeros((40, 3)), [0, 0, 1], threads=2)
         gc.collect()
 
@@ -162,7 +162,7 @@ def test_no_leak_in_100000_calls():
 def test_mistakes_of_a_program_raise():
     compiled = sys.modules["exactff._exactff"]
     with pytest.raises(ValueError):  # std::invalid_argument
-        compiled.form_factor(ROOM._scene, POINT, UP, [10**6], "light", False, False, False, 0, 65536, None)
+        compiled.form_factor(ROOM._scene, POINT, UP, [10**6], "light", False, False, False, False, 0, 65536, None)
     with pytest.raises(TypeError):
         compiled.form_factors(ROOM._scene)
     with pytest.raises(ValueError):
