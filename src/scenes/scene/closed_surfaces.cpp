@@ -1,9 +1,8 @@
 // Steps, each in time proportional to the scene's size except for the sorting of a vertex's edges:
 //   1. leave out pieces with a corner that no other piece has, since they have an open edge, and transparent pieces;
 //   2. sort the edges of the others by their ends;
-//   3. join the pieces at each edge; cut the edges that do not cancel where ends of others lie on them (T-junctions),
-//   join
-//      the pieces at these, and mark where an edge does not cancel still;
+//   3. join the pieces at each edge, and mark where an edge does not cancel; on request only after such edges have been
+//      cut where ends of others lie on them;
 //   4. each connected set of pieces without a mark is a closed surface.
 #include "scene/closed_surfaces.h"
 
@@ -27,18 +26,21 @@ struct DirectedEdge {
 
 class Finder {
  public:
-  explicit Finder(const Scene& scene)
-      : scene_(scene), places_(places(scene)), parent_(scene.pieces().size()), open_(scene.pieces().size(), 0) {
+  Finder(const Scene& scene, ClosedSurfaces::Edges edges)
+      : scene_(scene),
+        places_(places(scene)),
+        edges_are_cut_(edges == ClosedSurfaces::Edges::kCutAtJunctions),
+        parent_(scene.pieces().size()),
+        open_(scene.pieces().size(), 0) {
     std::iota(parent_.begin(), parent_.end(), 0U);
   }
 
-  bool find(ClosedSurfaces::Edges edges) {
+  bool find() {
     leave_out_pieces();
     if (std::all_of(open_.begin(), open_.end(), [](std::uint8_t open) { return open != 0; })) return false;
     sort_edges();
     join_at_edges();
-    if (edges == ClosedSurfaces::Edges::kCutAtJunctions) cut_at_junctions(uncancelled_, scene_.vertices());
-    join_uncancelled();
+    if (edges_are_cut_) join_at_junctions();
     for (std::uint32_t piece = 0; piece < open_.size(); ++piece) {
       if (open_[piece] != 0) open_[root(piece)] = 1;
     }
@@ -66,15 +68,16 @@ class Finder {
   void sort_edges();
   void join_at_edges();
   void join(std::uint32_t low, std::span<const DirectedEdge> edge);
-  void join_uncancelled();
+  void join_at_junctions();
 
   const Scene& scene_;
   const std::span<const std::uint32_t> places_;
+  const bool edges_are_cut_;
   std::vector<std::uint32_t> parent_;  // by piece
   std::vector<std::uint8_t> open_;     // by piece
   std::vector<DirectedEdge> edges_;
   std::vector<std::uint32_t> begin_;      // into edges_, by lower place, one more at the end
-  std::vector<EdgeOfPiece> uncancelled_;  // edges
+  std::vector<EdgeOfPiece> uncancelled_;  // edges that are to be cut
 };
 
 void Finder::leave_out_pieces() {
@@ -123,10 +126,15 @@ void Finder::join(std::uint32_t low, std::span<const DirectedEdge> edge) {
     parent_[root(e.piece)] = root(edge.front().piece);
   }
   if (balance == 0) return;
+  if (!edges_are_cut_) {
+    open_[edge.front().piece] = 1;
+    return;
+  }
   for (const DirectedEdge& e : edge) uncancelled_.push_back({low, e.high, e.piece, e.upwards});
 }
 
-void Finder::join_uncancelled() {
+void Finder::join_at_junctions() {
+  cut_at_junctions(uncancelled_, scene_.vertices());
   exactff::for_each_edge(uncancelled_, [&](auto first, auto last) {
     for (auto use = first; use != last; ++use) parent_[root(use->piece)] = root(first->piece);
     if (balance_of(first, last) != 0) open_[first->piece] = 1;
@@ -152,8 +160,8 @@ double volume(const Scene& scene, const Piece& piece, const Vec3& apex) {
 }  // namespace
 
 ClosedSurfaces::ClosedSurfaces(const Scene& scene, Edges edges) {
-  Finder finder(scene);
-  if (!finder.find(edges)) return;
+  Finder finder(scene, edges);
+  if (!finder.find()) return;
   of_piece_.assign(scene.pieces().size(), kNone);
   std::vector<double> volumes;
   std::vector<Vec3> apexes;  // any point near the surface
