@@ -121,17 +121,19 @@ std::pair<bool, bool> sides_of(const Plane& plane, const Points& points, PointOf
 class Interior {
  public:
   Interior(const ExactScene& scene, const Part& part)
-      : scene_(scene), part_(part), plane_(plane_of(part, scene.units)), box_(box_of(part.corners)) {
+      : scene_(scene),
+        part_(part),
+        plane_(plane_of(part, scene.units)),
+        box_(box_of(part.corners)),
+        centre_(inner_point(part, scene.units)) {
     for (std::size_t i = 0; i < part.corners.size(); ++i) {
       const Point &p = part.corners[i], &q = part.corners[i + 1 == part.corners.size() ? 0 : i + 1];
       Point normal;
       for (std::size_t k = 0; k < 3; ++k) normal.exact[k] = plane_.exact[k];  // at infinity
       edges_.push_back(make_plane(join(p, q, normal), scene.units));
     }
-    // Its centre lies inside.
-    const Point centre = inner_point(part, scene.units);
     for (Plane& edge : edges_) {
-      if (side_of(edge, centre) < 0) edge = make_plane(opposite(edge.exact), scene.units);
+      if (side_of(edge, centre_) < 0) edge = make_plane(opposite(edge.exact), scene.units);
     }
   }
 
@@ -140,12 +142,11 @@ class Interior {
     const bool is_off =
         std::ranges::all_of(surface.pieces, [&](std::uint32_t piece) { return keeps_off(scene_.pieces[piece]); });
     if (!is_off) return false;
-    const Point x = inner_point(part_, scene_.units);
     for (std::array<int, 3> direction : kDirections) {
       const int upwards = sign_of_dot(plane_, direction);
       if (upwards == 0) continue;
       for (int& component : direction) component *= upwards;
-      if (const std::optional<int> w = winding_number(scene_, surface, x, direction)) return *w != 0;
+      if (const std::optional<int> w = winding_number(scene_, surface, centre_, direction)) return *w != 0;
     }
     return false;
   }
@@ -169,6 +170,7 @@ class Interior {
   const Part& part_;
   Plane plane_;
   Box box_;
+  Point centre_;              // inside
   std::vector<Plane> edges_;  // through the edges, along the normal; positive inside
 };
 
