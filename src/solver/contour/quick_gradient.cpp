@@ -116,6 +116,26 @@ EXACTFF_INLINE FourEnds ends_of(const FourOf<Line>& line, const FourVector& n, c
           where(at_corner, corner.psi, psi_of(found.direction, n, gather(line, &Line::along)))};
 }
 
+struct FourArcs {
+  std::size_t count;  // the lanes after them repeat one
+  FourOf<Line> line;
+  FourEnds p, q;
+  FourBounded theta;
+};
+
+// Of the first pieces.
+EXACTFF_INLINE FourArcs arcs_at(const FourVector& n, std::span<const QuickPiece> pieces, std::span<const Line> lines,
+                                const AngleConstants& known) {
+  const std::size_t count = std::min(kLanes, pieces.size());
+  const FourOf<QuickPiece> piece = four_of(pieces.first(count));
+  const FourOf<Line> line = {&lines[piece[0]->edge], &lines[piece[1]->edge], &lines[piece[2]->edge],
+                             &lines[piece[3]->edge]};
+  const FourEnds p = ends_of(line, n, piece, &QuickPiece::begin, lines);
+  const FourEnds q = ends_of(line, n, piece, &QuickPiece::end, lines);
+  const FourBounded w = sum_of_products(p.point.s, q.point.m, -p.point.m, q.point.s);
+  return {count, line, p, q, atan2(w * gather(line, &Line::size), dot(p.point.direction, q.point.direction), known)};
+}
+
 using FourSums = std::array<FourBounded, 3>;
 
 EXACTFF_CLONES
@@ -123,19 +143,14 @@ void add_arcs(const std::array<double, 3>& normal, std::span<const QuickPiece> p
               const AngleConstants& known, FourSums& position, FourSums& v) {
   const FourVector n = vector_of<Four>(normal);
   for (std::size_t i = 0; i < pieces.size(); i += kLanes) {
-    const std::size_t count = std::min(kLanes, pieces.size() - i);
-    const FourOf<QuickPiece> piece = four_of(pieces.subspan(i, count));
-    const FourOf<Line> line = {&lines[piece[0]->edge], &lines[piece[1]->edge], &lines[piece[2]->edge],
-                               &lines[piece[3]->edge]};
-    const FourEnds p = ends_of(line, n, piece, &QuickPiece::begin, lines);
-    const FourEnds q = ends_of(line, n, piece, &QuickPiece::end, lines);
-    const FourBounded w = sum_of_products(p.point.s, q.point.m, -p.point.m, q.point.s);
-    const FourBounded theta = atan2(w * gather(line, &Line::size), dot(p.point.direction, q.point.direction), known);
+    const FourArcs arcs = arcs_at(n, pieces.subspan(i), lines, known);
+    const FourOf<Line>& line = arcs.line;
+    const FourEnds &p = arcs.p, &q = arcs.q;
     const FourBounded inverse = gather(line, &Line::inverse);
-    const FourMask present = FourMask{0, 1, 2, 3} < static_cast<std::int64_t>(count);
-    const FourBounded over_size = where(present, theta * inverse, FourBounded{});
+    const FourMask present = FourMask{0, 1, 2, 3} < static_cast<std::int64_t>(arcs.count);
+    const FourBounded over_size = where(present, arcs.theta * inverse, FourBounded{});
     const FourBounded moved =
-        where(present, theta * gather(line, &Line::growth) + (q.psi - p.psi) * (inverse * inverse), FourBounded{});
+        where(present, arcs.theta * gather(line, &Line::growth) + (q.psi - p.psi) * (inverse * inverse), FourBounded{});
     FourVector c = gather(line, &Line::cross);
     c.error = where(present, c.error, Four{});
     for (int axis = 0; axis < 3; ++axis) {
@@ -150,23 +165,18 @@ void shares_of(const std::array<double, 3>& normal, std::span<const QuickPiece> 
                const AngleConstants& known, std::span<QuickGradient::Shares> result) {
   const FourVector n = vector_of<Four>(normal);
   for (std::size_t i = 0; i < pieces.size(); i += kLanes) {
-    const std::size_t count = std::min(kLanes, pieces.size() - i);
-    const FourOf<QuickPiece> piece = four_of(pieces.subspan(i, count));
-    const FourOf<Line> line = {&lines[piece[0]->edge], &lines[piece[1]->edge], &lines[piece[2]->edge],
-                               &lines[piece[3]->edge]};
-    const FourEnds p = ends_of(line, n, piece, &QuickPiece::begin, lines);
-    const FourEnds q = ends_of(line, n, piece, &QuickPiece::end, lines);
+    const FourArcs arcs = arcs_at(n, pieces.subspan(i), lines, known);
+    const FourOf<Line>& line = arcs.line;
+    const FourEnds &p = arcs.p, &q = arcs.q;
     const FourVector a = gather(line, &Line::a), b = gather(line, &Line::b), c = gather(line, &Line::cross);
-    const FourBounded w = sum_of_products(p.point.s, q.point.m, -p.point.m, q.point.s);
-    const FourBounded theta = atan2(w * gather(line, &Line::size), dot(p.point.direction, q.point.direction), known);
     const FourBounded inverse = gather(line, &Line::inverse), squared = inverse * inverse;
-    const FourBounded angle = theta * inverse * squared;
+    const FourBounded angle = arcs.theta * inverse * squared;
     const auto share = [&](const FourVector& other) __attribute__((always_inline)) {
       return angle * dot(cross(n, other), c) +
              (psi_of(q.point.direction, n, other) - psi_of(p.point.direction, n, other)) * squared;
     };
     const FourBounded of_a = share(b), of_b = share(a);
-    for (std::size_t k = 0; k < count; ++k) result[i + k] = {lane(of_a, k), -lane(of_b, k)};
+    for (std::size_t k = 0; k < arcs.count; ++k) result[i + k] = {lane(of_a, k), -lane(of_b, k)};
   }
 }
 
