@@ -91,15 +91,8 @@ void add_moving_arcs(const PlaneQuery& query, const visibility::VisibleBoundary&
   const PlaneQuery closed{query.view, query.plane, request};
   Profile profile;
   profile.gather(closed);
-  std::vector<ExactVec3> done;
-  const ExactVec3 horizon = query.view.normal().exact;
-  boundary.for_each_piece([&](const BoundaryPiece& piece) {
-    ExactVec3 pole = cross(piece.a, piece.b);
-    make_primitive(pole);
-    const auto is_parallel = [&](const ExactVec3& other) { return is_zero(cross(pole, other)); };
-    if (is_parallel(horizon) || is_in_one_of(except, pole) || std::ranges::any_of(done, is_parallel)) return;
-    done.push_back(pole);
-    add_arcs_of_plane(closed, profile, profile.edge_in_plane(pole), arcs);
+  for_each_plane(boundary, query.view.normal().exact, [&](const ExactVec3& pole) {
+    if (!is_in_one_of(except, pole)) add_arcs_of_plane(closed, profile, profile.edge_in_plane(pole), arcs);
   });
 }
 

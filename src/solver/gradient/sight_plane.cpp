@@ -21,21 +21,7 @@ using visibility::Outlines;
 using visibility::PlaneQuery;
 
 SightPlane::SightPlane(const PlaneQuery& query, Profile& profile, const Outlines::Edge& edge)
-    : query_(query),
-      profile_(profile),
-      edge_(edge),
-      normal_(cross(profile.outlines().exact(edge.b), profile.outlines().exact(edge.a))) {
-  make_primitive(normal_);
-}
-
-// --- Directions in the plane ---
-
-int SightPlane::turn(const ExactVec3& p, const ExactVec3& q) const { return sign(dot(normal_, cross(p, q))); }
-
-// Requires that `from` and `to` are less than a half turn apart.
-bool SightPlane::is_between(const ExactVec3& from, const ExactVec3& to, const ExactVec3& t) const {
-  return turn(from, t) >= 0 && turn(t, to) >= 0;
-}
+    : SightDirections(profile.outlines(), edge), query_(query), profile_(profile) {}
 
 // Cuts an interval of directions by the range that matters. False if nothing is left.
 bool SightPlane::clamp(ExactVec3& from, ExactVec3& to) const {
@@ -61,28 +47,13 @@ RationalVec3 SightPlane::nearness_of(const Vec3& a, const Vec3& b, const Vec3& c
 // Nullopt unless the piece meets the plane along an arc.
 std::optional<SightPlane::Stripe> SightPlane::stripe_of(OutlineId id) {
   Outlines& outlines = profile_.outlines();
-  const Outlines::Outline outline = outlines.outline(id);
-  std::vector<int> sides;
-  for (EdgeId e = outline.first; e < outline.first + outline.count; ++e) {
-    sides.push_back(outlines.side(edge_, outlines.edge(e).a));
-  }
-  const bool some_above = std::ranges::any_of(sides, [](int side) { return side > 0; });
-  const bool some_below = std::ranges::any_of(sides, [](int side) { return side < 0; });
-  std::vector<ExactVec3> ends;
-  for (std::size_t c = 0; c < sides.size(); ++c) {
-    const Outlines::Edge& edge = outlines.edge(outline.first + static_cast<EdgeId>(c));
-    const CornerId a = edge.a, b = edge.b;
-    if (sides[c] == 0) ends.push_back(outlines.exact(a));
-    if (sides[c] * sides[(c + 1) % sides.size()] >= 0) continue;
-    const ExactVec3 p = outlines.exact(a), q = outlines.exact(b);
-    ends.push_back(p * abs(dot(normal_, q)) + q * abs(dot(normal_, p)));
-  }
-  if (ends.size() < 2) return std::nullopt;
+  const std::vector<int> sides = sides_of(outlines, id);
+  auto arc = arc_of(outlines, id, sides);
+  if (!arc) return std::nullopt;
   Stripe stripe;
-  stripe.from = *std::ranges::min_element(ends, [&](const auto& p, const auto& q) { return turn(p, q) > 0; });
-  stripe.to = *std::ranges::max_element(ends, [&](const auto& p, const auto& q) { return turn(p, q) > 0; });
-  if (turn(stripe.from, stripe.to) <= 0) return std::nullopt;
-  stripe.side = some_above && some_below ? 0 : some_above ? 1 : -1;
+  stripe.from = std::move(arc->first);
+  stripe.to = std::move(arc->second);
+  stripe.side = side_of(sides);
   stripe.is_source = id < profile_.source_count();
   stripe.piece = profile_.pieces()[id];
   if (stripe.is_source) {

@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "gradient/profile.h"
+#include "gradient/sight_directions.h"
 #include "kernel/rational_vec.h"
 
 namespace exactff::gradient {
@@ -40,12 +41,11 @@ struct SightArc {
   std::vector<std::uint32_t> pieces;  // of a kink: what meets there, without the source
 };
 
-class SightPlane {
+class SightPlane : public SightDirections {
  public:
-  // The plane through x and the edge; N is its inward normal. The profile is that of the query.
+  // The plane through x and the edge. The profile is that of the query.
   SightPlane(const visibility::PlaneQuery& query, Profile& profile, const visibility::Outlines::Edge& edge);
 
-  [[nodiscard]] const kernel::ExactVec3& normal() const { return normal_; }
   // All arcs in order.
   [[nodiscard]] std::vector<SightArc> arcs();
   // The same if the plane is that of the source, and N its front.
@@ -76,9 +76,6 @@ class SightPlane {
     std::uint32_t piece = 0;
   };
 
-  [[nodiscard]] int turn(const kernel::ExactVec3& p, const kernel::ExactVec3& q) const;
-  [[nodiscard]] bool is_between(const kernel::ExactVec3& from, const kernel::ExactVec3& to,
-                                const kernel::ExactVec3& t) const;
   [[nodiscard]] std::optional<Stripe> stripe_of(visibility::OutlineId outline);
   [[nodiscard]] Sheet sheet_of(std::uint32_t piece) const;
   [[nodiscard]] bool lies_in_plane(std::uint32_t piece);
@@ -94,8 +91,6 @@ class SightPlane {
 
   const visibility::PlaneQuery& query_;
   Profile& profile_;
-  visibility::Outlines::Edge edge_;
-  kernel::ExactVec3 normal_;
   std::vector<Stripe> stripes_;
   std::vector<Sheet> sheets_, source_sheets_;
   kernel::RationalVec3 source_nearness_;

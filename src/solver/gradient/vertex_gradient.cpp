@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "gradient/derivative.h"
+#include "gradient/moving_arcs.h"
 #include "kernel/expect.h"
 #include "kernel/poll.h"
 #include "kernel/vec.h"
@@ -273,14 +274,7 @@ void VertexGradient::add_by_edges(const VertexMotions& motions, EdgeCovers& foun
 
 void VertexGradient::add_by_planes(const PlaneQuery& query, const VertexMotions& motions,
                                    const VisibleBoundary& boundary) {
-  std::vector<ExactVec3> done;
-  const ExactVec3 horizon = query.view.normal().exact;
-  boundary.for_each_piece([&](const BoundaryPiece& piece) {
-    ExactVec3 pole = cross(piece.a, piece.b);
-    make_primitive(pole);
-    const auto is_parallel = [&](const ExactVec3& other) { return is_zero(cross(pole, other)); };
-    if (is_parallel(horizon) || std::ranges::any_of(done, is_parallel)) return;
-    done.push_back(pole);
+  for_each_plane(boundary, query.view.normal().exact, [&](const ExactVec3& pole) {
     VertexSight sight(query, profile_, motions, profile_.edge_in_plane(pole));
     sight.judge(VertexSight::Extent::kAll);
     for (VertexArc& arc : sight.arcs()) arcs_[arc.place].push_back(std::move(arc));

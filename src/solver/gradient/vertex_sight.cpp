@@ -22,19 +22,8 @@ using visibility::PlaneQuery;
 
 VertexSight::VertexSight(const PlaneQuery& query, Profile& profile, const VertexMotions& motions,
                          const Outlines::Edge& edge)
-    : query_(query),
-      profile_(profile),
-      motions_(motions),
-      edge_(edge),
-      normal_(cross(profile.outlines().exact(edge.b), profile.outlines().exact(edge.a))) {
-  make_primitive(normal_);
+    : SightDirections(profile.outlines(), edge), query_(query), profile_(profile), motions_(motions) {
   for (int corner = 0; corner < 3; ++corner) source_nearness_ = source_nearness_ + motions.source_share(corner);
-}
-
-int VertexSight::turn(const ExactVec3& p, const ExactVec3& q) const { return sign(dot(normal_, cross(p, q))); }
-
-bool VertexSight::is_between(const ExactVec3& from, const ExactVec3& to, const ExactVec3& t) const {
-  return turn(from, t) >= 0 && turn(t, to) >= 0;
 }
 
 // --- What meets the plane ---
@@ -42,44 +31,34 @@ bool VertexSight::is_between(const ExactVec3& from, const ExactVec3& to, const E
 // If the outline lies on one side, every edge in the plane is an element of its own.
 void VertexSight::add_outline(OutlineId id) {
   Outlines& outlines = profile_.outlines();
-  const Outlines::Outline outline = outlines.outline(id);
-  std::vector<int> sides;
-  for (EdgeId e = outline.first; e < outline.first + outline.count; ++e) {
-    sides.push_back(outlines.side(edge_, outlines.edge(e).a));
-  }
-  const bool some_above = std::ranges::any_of(sides, [](int side) { return side > 0; });
-  const bool some_below = std::ranges::any_of(sides, [](int side) { return side < 0; });
+  const std::vector<int> sides = sides_of(outlines, id);
   const bool of_source = id < profile_.source_count();
   Element element;
   element.kind = of_source ? Element::Kind::kSource : Element::Kind::kOccluder;
-  element.side = some_above && some_below ? 0 : some_above ? 1 : -1;
-  std::vector<ExactVec3> ends;
-  for (std::size_t c = 0; c < sides.size(); ++c) {
-    const Outlines::Edge edge = outlines.edge(outline.first + static_cast<EdgeId>(c));
-    const std::size_t next = (c + 1) % sides.size();
-    if (element.side != 0) {
-      if (sides[c] != 0 || sides[next] != 0) continue;
-      element.from = outlines.exact(edge.a);
-      element.to = outlines.exact(edge.b);
-      if (turn(element.from, element.to) < 0) std::swap(element.from, element.to);
-      const auto line = of_source ? motions_.line_of_source(outlines, edge) : motions_.line_of_occluder(outlines, edge);
-      element.touches =
-          !of_source && line && motions_.is_in_source_plane(line->first) && motions_.is_in_source_plane(line->second);
-      element.motion = line        ? motions_.of_line(normal_, *line)
-                       : of_source ? Motion{}
-                                   : motions_.of_cut(normal_, profile_.pieces()[id]);
-      elements_.push_back(element);
-      continue;
-    }
-    if (sides[c] == 0) ends.push_back(outlines.exact(edge.a));
-    if (sides[c] * sides[next] >= 0) continue;
-    const ExactVec3 p = outlines.exact(edge.a), q = outlines.exact(edge.b);
-    ends.push_back(p * abs(dot(normal_, q)) + q * abs(dot(normal_, p)));
+  element.side = side_of(sides);
+  if (element.side == 0) {
+    auto arc = arc_of(outlines, id, sides);
+    if (!arc) return;
+    element.from = std::move(arc->first);
+    element.to = std::move(arc->second);
+    elements_.push_back(std::move(element));
+    return;
   }
-  if (ends.size() < 2) return;
-  element.from = *std::ranges::min_element(ends, [&](const auto& p, const auto& q) { return turn(p, q) > 0; });
-  element.to = *std::ranges::max_element(ends, [&](const auto& p, const auto& q) { return turn(p, q) > 0; });
-  if (turn(element.from, element.to) > 0) elements_.push_back(std::move(element));
+  const EdgeId first = outlines.outline(id).first;
+  for (std::size_t c = 0; c < sides.size(); ++c) {
+    if (sides[c] != 0 || sides[(c + 1) % sides.size()] != 0) continue;
+    const Outlines::Edge edge = outlines.edge(first + static_cast<EdgeId>(c));
+    element.from = outlines.exact(edge.a);
+    element.to = outlines.exact(edge.b);
+    if (turn(element.from, element.to) < 0) std::swap(element.from, element.to);
+    const auto line = of_source ? motions_.line_of_source(outlines, edge) : motions_.line_of_occluder(outlines, edge);
+    element.touches =
+        !of_source && line && motions_.is_in_source_plane(line->first) && motions_.is_in_source_plane(line->second);
+    element.motion = line        ? motions_.of_line(normal_, *line)
+                     : of_source ? Motion{}
+                                 : motions_.of_cut(normal_, profile_.pieces()[id]);
+    elements_.push_back(element);
+  }
 }
 
 // Edges of a piece in the source's plane that hide nothing now.

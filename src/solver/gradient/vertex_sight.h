@@ -19,6 +19,7 @@
 
 #include "contour/arc_sum.h"
 #include "gradient/profile.h"
+#include "gradient/sight_directions.h"
 #include "gradient/vertex_motion.h"
 
 namespace exactff::gradient {
@@ -30,13 +31,12 @@ struct VertexArc {
   kernel::RationalVec3 turn;  // divided by the component of C of largest magnitude
 };
 
-class VertexSight {
+class VertexSight : public SightDirections {
  public:
   // The plane through x and the edge. The profile is that of the query, gathered with what meets the source's plane.
   VertexSight(const visibility::PlaneQuery& query, Profile& profile, const VertexMotions& motions,
               const visibility::Outlines::Edge& edge);
 
-  [[nodiscard]] const kernel::ExactVec3& normal() const { return normal_; }
   enum class Extent { kAll, kKinks };
   void judge(Extent extent);
   // Places of vertices by which there is no derivative, in any order.
@@ -77,9 +77,6 @@ class VertexSight {
     friend bool operator==(const Change&, const Change&) = default;
   };
 
-  [[nodiscard]] int turn(const kernel::ExactVec3& p, const kernel::ExactVec3& q) const;
-  [[nodiscard]] bool is_between(const kernel::ExactVec3& from, const kernel::ExactVec3& to,
-                                const kernel::ExactVec3& t) const;
   void add_outline(visibility::OutlineId id);
   void add_meeting(std::uint32_t piece);
   void add_sheet(std::uint32_t piece);
@@ -95,8 +92,6 @@ class VertexSight {
   const visibility::PlaneQuery& query_;
   Profile& profile_;
   const VertexMotions& motions_;
-  visibility::Outlines::Edge edge_;
-  kernel::ExactVec3 normal_;
   kernel::RationalVec3 source_nearness_;
   std::vector<Element> elements_;
   std::vector<Sheet> sheets_;
