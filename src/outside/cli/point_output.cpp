@@ -155,11 +155,10 @@ void print_vertices(const Scene& scene, const Gradient& gradient) {
     for (const Derivative& d : vertex.position) std::cout << "  " << plain_derivative(d);
     std::cout << '\n';
   }
-  for (std::size_t plane = 0; plane < gradient.frames.size() && gradient.frames.size() == 1; ++plane) {
-    std::cout << "  the source's plane follows";
-    for (const std::uint32_t corner : gradient.frames[plane]) std::cout << ' ' << vec_text(scene.vertices()[corner]);
-    std::cout << '\n';
-  }
+  if (gradient.frames.size() != 1) return;
+  std::cout << "  the source's plane follows";
+  for (const std::uint32_t corner : gradient.frames.front()) std::cout << ' ' << vec_text(scene.vertices()[corner]);
+  std::cout << '\n';
 }
 
 void print_adaptive(const PointTerm& one) {
