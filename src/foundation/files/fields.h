@@ -6,6 +6,7 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -30,6 +31,11 @@ class WordWriter {
   void list(std::vector<Item>& items, const Write& write) {
     put(std::uint64_t{items.size()});
     for (Item& item : items) write(item);
+  }
+  // A list that always has `count` items.
+  template <class Item>
+  void list_of(std::size_t /*count*/, std::vector<Item>& items) {
+    put(items);
   }
   [[nodiscard]] const std::string& bytes() const { return bytes_; }
 
@@ -73,6 +79,12 @@ class WordReader {
     const std::uint64_t count = word();
     torn_ = torn_ || count > bytes_.size() / sizeof count;
     while (!torn_ && items.size() < count) read(items.emplace_back());
+  }
+  // A list of another length counts as torn.
+  template <class Item>
+  void list_of(std::size_t count, std::vector<Item>& items) {
+    take(items);
+    torn_ = torn_ || items.size() != count;
   }
   [[nodiscard]] bool torn() const { return torn_; }
   [[nodiscard]] bool complete() const { return !torn_ && bytes_.empty(); }

@@ -226,9 +226,10 @@ Picture render(const Request& request, const Hooks& hooks, jobs::Journal* journa
     const Tile tile = tiles[index];
     kept.get(
         "tile-" + std::to_string(index), [&] { brushes.paint(tile, result); },
-        [&](auto& words) { words(result.numbers, result.not_certified, result.seconds); });
-    const std::size_t expected = static_cast<std::size_t>(tile.width * tile.height) * job.numbers_per_pixel();
-    if (result.numbers.size() != expected) brushes.paint(tile, result);  // a journal that was tampered with
+        [&](auto& words) {
+          words.list_of(static_cast<std::size_t>(tile.width * tile.height) * job.numbers_per_pixel(), result.numbers);
+          words(result.not_certified, result.seconds);
+        });
     place(tile, result, picture);
     const std::scoped_lock lock(mutex);
     picture.not_certified += result.not_certified;

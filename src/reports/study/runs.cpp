@@ -216,7 +216,10 @@ class Runs {
         "method/" + jobs::short_hash(rung_of(cell).text()), [&] { compute(cell); },
         [&](auto& words) {
           words(cell.work);
-          for (std::size_t s = 0; s < cell.seeds.size(); ++s) words(cell.values[s], cell.radiosity_errors[s]);
+          for (std::size_t s = 0; s < cell.seeds.size(); ++s) {
+            words.list_of(receivers, cell.values[s]);
+            words.list_of(receivers, cell.radiosity_errors[s]);
+          }
         });
     summarise(cell, study_);
   }

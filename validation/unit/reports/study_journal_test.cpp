@@ -311,6 +311,17 @@ TEST(Words, ThatPromiseMoreThanThereIsAreTorn) {
   }
 }
 
+TEST(Words, OfAListOfAnotherLengthAreTorn) {
+  for (const std::size_t length : {1U, 2U, 3U}) {
+    std::vector<double> list(length, 0.5);
+    files::WordWriter writer;
+    writer.list_of(length, list);
+    files::WordReader reader(writer.bytes());
+    reader.list_of(2, list);
+    EXPECT_EQ(reader.complete(), length == 2);
+  }
+}
+
 TEST(Words, ThatAreNoEnumeratorAreTorn) {
   std::uint64_t three = 3;
   files::WordWriter writer;
