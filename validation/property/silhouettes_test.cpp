@@ -10,7 +10,6 @@
 #include "exact/source_planes.h"
 #include "exactff/exact.h"
 #include "kernel/ball.h"
-#include "support/oracle_check.h"
 #include "support/random_meshes.h"
 #include "support/random_scenes.h"
 #include "support/solve.h"
@@ -46,19 +45,6 @@ void expect_same(const visibility::View& view, const PlaneVisibility& found, con
   EnclosureInside::set(a, integral(view, found));
   EnclosureInside::set(b, integral(view, expected));
   EXPECT_TRUE(a.overlaps(b)) << "by silhouettes " << a.midpoint() << ", else " << b.midpoint();
-}
-
-std::vector<Receiver> receivers_about(const Scene& scene, const PlainScene& plain, Random& random) {
-  std::vector<Receiver> receivers{validation::receiver_in(scene, plain)};
-  Receiver moved = receivers.front();
-  moved.on.clear();
-  moved.point.x += random.integer(-2, 2) / 4.0;
-  moved.point.y += random.integer(-2, 2) / 4.0;
-  receivers.push_back(moved);
-  // That says it is on a face elsewhere: a hole in a mesh, where the tree of edges takes all for smooth.
-  moved.on = {FaceId{static_cast<std::uint32_t>(random.below(scene.faces().size()))}};
-  receivers.push_back(moved);
-  return receivers;
 }
 
 void check_scene(const PlainScene& plain, Random& random, EdgeWorkspace& workspace, EdgeWorkspace& other,

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "generate/vectors.h"
+#include "support/oracle_check.h"
 
 namespace exactff::validation {
 
@@ -250,6 +251,19 @@ PlainScene band_scene(Random& random) {
 }
 
 }  // namespace
+
+std::vector<Receiver> receivers_about(const Scene& scene, const PlainScene& plain, Random& random) {
+  std::vector<Receiver> receivers{receiver_in(scene, plain)};
+  Receiver moved = receivers.front();
+  moved.on.clear();
+  moved.point.x += random.integer(-2, 2) / 4.0;
+  moved.point.y += random.integer(-2, 2) / 4.0;
+  receivers.push_back(moved);
+  // That says it is on a face elsewhere: a hole in a mesh, where the tree of edges takes all for smooth.
+  moved.on = {FaceId{static_cast<std::uint32_t>(random.below(scene.faces().size()))}};
+  receivers.push_back(moved);
+  return receivers;
+}
 
 std::span<const RandomFamily> mesh_families() {
   static constexpr std::array<RandomFamily, 4> kFamilies{

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "support/random_scenes.h"
 
@@ -13,5 +14,9 @@ namespace exactff::validation {
 // plane and through the horizon; the source may be a part of the mesh, and the receiver may lie on it, on a face of the
 // patch `on` if there is one.
 [[nodiscard]] std::span<const RandomFamily> mesh_families();
+
+// The receiver of the scene, the same moved a little, and the same on some face of the scene.
+[[nodiscard]] std::vector<Receiver> receivers_about(const Scene& scene, const generate::PlainScene& plain,
+                                                    generate::Random& random);
 
 }  // namespace exactff::validation

@@ -228,6 +228,12 @@ QuickGradient::Value QuickGradient::over_turn_and_length(const Bounded& sum) con
   return value_of(sum / (square_root(dot(n, n)) * (2.0 * constant(angle_constants().pi))));
 }
 
+QuickGradient::Value QuickGradient::form_factor() const {
+  Bounded sum;
+  for (int axis = 0; axis < 3; ++axis) sum = sum + Bounded{normal_[axis], 0.0, 0.0} * v_[axis];
+  return over_turn_and_length(sum);
+}
+
 QuickGradient::Value QuickGradient::position(int axis) const { return over_turn_and_length(position_[axis]); }
 
 QuickGradient::Value QuickGradient::normal(int axis) const {

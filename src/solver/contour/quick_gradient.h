@@ -64,6 +64,8 @@ class QuickGradient {
   using Value = QuickContour::Value;
   [[nodiscard]] Value position(int axis) const;
   [[nodiscard]] Value normal(int axis) const;
+  // F = n . V / |n|.
+  [[nodiscard]] Value form_factor() const;
   // A sum of such parts, over 2 pi |n|.
   [[nodiscard]] Value over_turn_and_length(const kernel::double_double::Bounded& sum) const;
 

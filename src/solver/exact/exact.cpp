@@ -187,8 +187,11 @@ class Solver {
     if (wants_gradient_) start_gradient();
     for (std::size_t p = 0; p < planes_.size(); ++p) {
       PlaneVisibility seen = find(planes_[p]);
-      memory_.quick.add(seen.boundary);
-      if (wants_gradient_) memory_.gradient->add({view_, planes_[p], request_}, seen.boundary);
+      if (wants_gradient_) {
+        memory_.gradient->add({view_, planes_[p], request_}, seen.boundary);
+      } else {
+        memory_.quick.add(seen.boundary);
+      }
       note(planes_[p], std::move(seen), result_.planes[p]);
     }
     sort_unique(result_.cutters);
@@ -255,10 +258,13 @@ class Solver {
     vertices.certify(options_.precision_cap, result);
   }
 
-  // Step 7 in double-double: takes the value from the sum over all planes. False if that does not determine it.
+  // Step 7 in double-double: takes the value from the sum over all planes, or from that of the gradient, which has the
+  // same arcs. False if that does not determine it.
   [[nodiscard]] bool sum_is_certain() {
-    return options_.precision_cap >= exact::QuickTier::kBits &&
-           exact::is_determined(memory_.quick.ball(), exact::QuickTier::kBits, options_.digits, result_);
+    constexpr int kBits = exact::QuickTier::kBits;
+    if (options_.precision_cap < kBits) return false;
+    const Ball ball = wants_gradient_ ? memory_.gradient->form_factor() : memory_.quick.ball();
+    return exact::is_determined(ball, kBits, options_.digits, result_);
   }
 
   // Step 7 in balls of rising precision.

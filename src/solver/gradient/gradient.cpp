@@ -43,6 +43,11 @@ void PointGradient::add(const PlaneQuery& query, const VisibleBoundary& boundary
 
 bool PointGradient::exists_along() const { return !kink_ || kink_->reason != KinkReason::kOnFace; }
 
+Ball PointGradient::form_factor() const {
+  const contour::QuickGradient::Value value = quick_.sum().form_factor();
+  return kernel::ball_around(value.hi, value.lo, value.error);
+}
+
 bool PointGradient::finish(int cap, Gradient& result) {
   result.kink = kink_;
   result.along.reset();

@@ -24,6 +24,8 @@ class PointGradient {
   // Takes one plane with its visible boundary.
   void add(const visibility::PlaneQuery& query, const visibility::VisibleBoundary& boundary);
 
+  // Encloses F, by the sums for V. Requires that something is visible.
+  [[nodiscard]] Ball form_factor() const;
   // Takes the values that double-double determines. False if others are left: then call add_exactly for all planes in
   // the same order, and certify.
   [[nodiscard]] bool finish(int cap, Gradient& result);

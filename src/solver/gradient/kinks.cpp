@@ -88,6 +88,7 @@ void KinkSearch::find_around_source(const PlaneQuery& query, bool is_visible, Ex
   visibility::BoundaryRequest request = query.request;
   request.culling = ShaftCulling::kTree;
   const PlaneQuery closed{query.view, query.plane, request};
+  if (proof_.excludes_kinks(closed)) return;
   profile_.gather(closed);
   if (profile_.source_count() == 0 || profile_.stays_hidden()) return;
   const std::optional<std::uint32_t>& touching = profile_.touching();
@@ -123,29 +124,8 @@ void KinkSearch::find_open_edges() {
 // 3. and 4. False: stopped.
 bool KinkSearch::judge_groups(const PlaneQuery& query, Extent extent) {
   return groups_.for_each(profile_.outlines(), [&](std::span<const EdgeId> group) {
-    if (!are_at_one_depth(group)) judge(query, profile_.outlines().edge(group.front()));
+    if (!are_on_one_line(profile_.outlines(), group)) judge(query, profile_.outlines().edge(group.front()), extent);
     return !(kink_ && extent == Extent::kFirst);
-  });
-}
-
-// Whether all edges, which lie in one plane through x, lie on one line in space. Those of pieces cut by the source's
-// plane are not compared.
-bool KinkSearch::are_at_one_depth(std::span<const EdgeId> group) {
-  const Outlines& outlines = profile_.outlines();
-  const auto ends_of = [&](EdgeId id) {
-    const Outlines::Edge& edge = outlines.edge(id);
-    return std::pair(outlines.vertex(edge.a), outlines.vertex(edge.b));
-  };
-  const auto ends = ends_of(group.front());
-  if (!ends.first || !ends.second) return false;
-  const Vec3& origin = outlines.position(*ends.first);
-  const ExactVec3 along = kernel::exact_difference(outlines.position(*ends.second), origin).v;
-  return std::ranges::all_of(group, [&](EdgeId id) {
-    const auto [a, b] = ends_of(id);
-    const auto is_on_line = [&](std::uint32_t v) {
-      return is_zero(cross(along, kernel::exact_difference(outlines.position(v), origin).v));
-    };
-    return a && b && is_on_line(*a) && is_on_line(*b);
   });
 }
 
@@ -154,7 +134,7 @@ bool KinkSearch::judge_sheets(const PlaneQuery& query, Extent extent) {
   for (const std::uint32_t sheet : profile_.sheets()) {
     kernel::poll();
     const auto [p, q] = apart(query.view, query.view.scene.pieces()[sheet]);
-    judge(query, outlines.line_through(outlines.corner_at(p), outlines.corner_at(q)));
+    judge(query, outlines.line_through(outlines.corner_at(p), outlines.corner_at(q)), extent);
     if (kink_ && extent == Extent::kFirst) return false;
   }
   return true;
@@ -164,11 +144,12 @@ bool KinkSearch::is_judged(const ExactVec3& normal) const {
   return std::ranges::any_of(judged_, [&](const ExactVec3& other) { return is_zero(cross(normal, other)); });
 }
 
-void KinkSearch::judge(const PlaneQuery& query, const Outlines::Edge& edge) {
+void KinkSearch::judge(const PlaneQuery& query, const Outlines::Edge& edge, Extent extent) {
   SightPlane sight(query, profile_, edge);
   if (is_judged(sight.normal()) || is_zero(cross(sight.normal(), query.view.normal().exact))) return;
   judged_.push_back(sight.normal());
-  std::vector<SightArc> arcs = sight.arcs();
+  std::vector<SightArc> arcs =
+      sight.arcs(extent == Extent::kFirst ? SightPlane::Extent::kUpToKink : SightPlane::Extent::kAll);
   const auto kink = std::ranges::find_if(arcs, &SightArc::is_kink);
   if (kink == arcs.end()) return;
   note(kink->edge_on ? KinkReason::kEdgeOn : KinkReason::kCoincident, query.view.scene, kink->pieces);

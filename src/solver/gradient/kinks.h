@@ -3,6 +3,7 @@
 // A kink needs an arc of positive length, above the horizon and on the source, along which nothing covers both sides,
 // and on which x sees a face edge-on or lines at different depths as one (sight_plane.h). So for one plane of the
 // source:
+//   0. of a mesh, try to prove from its silhouettes that there is none (silhouette_proof.h);
 //   1. gather what touches the closed shaft (profile.h); stop if one piece hides more than the source;
 //   2. drop edges with a piece on both sides: they are covered;
 //   3. group the edges that are left by the planes through x in which they lie. Planes are compared by a number that
@@ -19,6 +20,7 @@
 #include "gradient/profile.h"
 #include "gradient/sight_groups.h"
 #include "gradient/sight_plane.h"
+#include "gradient/silhouette_proof.h"
 #include "visibility/visible_edges.h"
 
 namespace exactff::gradient {
@@ -47,11 +49,11 @@ class KinkSearch {
   void find_open_edges();
   [[nodiscard]] bool judge_groups(const visibility::PlaneQuery& query, Extent extent);
   [[nodiscard]] bool judge_sheets(const visibility::PlaneQuery& query, Extent extent);
-  [[nodiscard]] bool are_at_one_depth(std::span<const visibility::EdgeId> group);
-  void judge(const visibility::PlaneQuery& query, const visibility::Outlines::Edge& edge);
+  void judge(const visibility::PlaneQuery& query, const visibility::Outlines::Edge& edge, Extent extent);
   [[nodiscard]] bool is_judged(const kernel::ExactVec3& normal) const;
   void note(KinkReason reason, const Scene& scene, std::span<const std::uint32_t> pieces);
 
+  SilhouetteProof proof_;
   Profile profile_;
   visibility::EdgeTable table_;
   std::vector<std::uint8_t> sides_;  // by edge: 1 if a piece lies on its left, 2 if on its right

@@ -11,6 +11,10 @@
 
 namespace exactff::gradient {
 
+// Whether all edges, which lie in one plane through x, lie on one line in space. Those of pieces cut by the source's
+// plane are not compared.
+[[nodiscard]] bool are_on_one_line(const visibility::Outlines& outlines, std::span<const visibility::EdgeId> group);
+
 // A workspace.
 class SightGroups {
  public:

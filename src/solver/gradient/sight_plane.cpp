@@ -56,6 +56,10 @@ std::optional<SightPlane::Stripe> SightPlane::stripe_of(OutlineId id) {
   stripe.side = side_of(sides);
   stripe.is_source = id < profile_.source_count();
   stripe.piece = profile_.pieces()[id];
+  return stripe;
+}
+
+void SightPlane::find_nearness(Stripe& stripe) const {
   if (stripe.is_source) {
     stripe.nearness = source_nearness_;
   } else {
@@ -63,7 +67,6 @@ std::optional<SightPlane::Stripe> SightPlane::stripe_of(OutlineId id) {
     const auto vertices = query_.view.scene.vertices();
     stripe.nearness = nearness_of(vertices[piece.frame[0]], vertices[piece.frame[1]], vertices[piece.frame[2]]);
   }
-  return stripe;
 }
 
 bool SightPlane::lies_in_plane(std::uint32_t piece) {
@@ -249,7 +252,7 @@ std::optional<SightArc> SightPlane::judge(const ExactVec3& t) const {
 }
 
 template <class Judge>
-std::vector<SightArc> SightPlane::judge_all(std::vector<ExactVec3> breaks, const Judge& judge) const {
+std::vector<SightArc> SightPlane::judge_all(std::vector<ExactVec3> breaks, const Judge& judge, Extent extent) const {
   std::ranges::sort(breaks, [&](const ExactVec3& p, const ExactVec3& q) { return turn(p, q) > 0; });
   std::vector<SightArc> result;
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
@@ -259,12 +262,13 @@ std::vector<SightArc> SightPlane::judge_all(std::vector<ExactVec3> breaks, const
       arc->begin = breaks[i];
       arc->end = breaks[i + 1];
       result.push_back(std::move(*arc));
+      if (extent == Extent::kUpToKink && result.back().is_kink) break;
     }
   }
   return result;
 }
 
-std::vector<SightArc> SightPlane::arcs() {
+std::vector<SightArc> SightPlane::arcs(Extent extent) {
   const auto& [view, plane, request] = query_;
   source_nearness_ = nearness_of(plane.point, plane.second, plane.third);
   stripes_.clear();
@@ -273,6 +277,10 @@ std::vector<SightArc> SightPlane::arcs() {
     if (o + 1 == profile_.source_count() && !find_range()) return {};
   }
   std::erase_if(stripes_, [&](Stripe& stripe) { return !clamp(stripe.from, stripe.to); });
+  // Those on both sides come first: where one of them is, nothing else counts.
+  const auto others = std::stable_partition(stripes_.begin(), stripes_.end(),
+                                            [](const Stripe& s) { return !s.is_source && s.side == 0; });
+  std::for_each(others, stripes_.end(), [&](Stripe& stripe) { find_nearness(stripe); });
   sheets_.clear();
   for (const std::uint32_t piece : profile_.sheets()) {
     if (lies_in_plane(piece) && !holds_x(view, view.scene.pieces()[piece])) sheets_.push_back(sheet_of(piece));
@@ -291,7 +299,8 @@ std::vector<SightArc> SightPlane::arcs() {
     for (const Sheet::Side& side : sheet.sides) lines.push_back(&side.nearness);
   }
   add_meetings(std::move(lines), breaks);
-  return judge_all(std::move(breaks), [&](const ExactVec3& t) { return judge(t); });
+  return judge_all(
+      std::move(breaks), [&](const ExactVec3& t) { return judge(t); }, extent);
 }
 
 // --- The source edge-on ---
@@ -351,6 +360,7 @@ std::vector<SightArc> SightPlane::arcs_of_source_edge_on() {
   for (OutlineId o = 0; o < profile_.outlines().outlines().size(); ++o) {
     if (std::optional<Stripe> stripe = stripe_of(o)) stripes_.push_back(std::move(*stripe));
   }
+  for (Stripe& stripe : stripes_) find_nearness(stripe);
   for (const std::uint32_t piece : plane.pieces) {
     if (!view.is_own(view.scene.pieces()[piece].face)) source_sheets_.push_back(sheet_of(piece));
   }

@@ -46,8 +46,9 @@ class SightPlane : public SightDirections {
   // The plane through x and the edge. The profile is that of the query.
   SightPlane(const visibility::PlaneQuery& query, Profile& profile, const visibility::Outlines::Edge& edge);
 
-  // All arcs in order.
-  [[nodiscard]] std::vector<SightArc> arcs();
+  enum class Extent { kAll, kUpToKink };
+  // All arcs in order, or those up to the first kink.
+  [[nodiscard]] std::vector<SightArc> arcs(Extent extent = Extent::kAll);
   // The same if the plane is that of the source, and N its front.
   [[nodiscard]] std::vector<SightArc> arcs_of_source_edge_on();
 
@@ -57,7 +58,7 @@ class SightPlane : public SightDirections {
     kernel::ExactVec3 from, to;  // N . (from x to) > 0
     int side = 0;                // on which the piece lies; 0: on both
     bool is_source = false;
-    kernel::RationalVec3 nearness;
+    kernel::RationalVec3 nearness;  // set where it counts
     std::uint32_t piece = 0;
   };
   // A piece that lies in the plane.
@@ -77,6 +78,7 @@ class SightPlane : public SightDirections {
   };
 
   [[nodiscard]] std::optional<Stripe> stripe_of(visibility::OutlineId outline);
+  void find_nearness(Stripe& stripe) const;
   [[nodiscard]] Sheet sheet_of(std::uint32_t piece) const;
   [[nodiscard]] bool lies_in_plane(std::uint32_t piece);
   [[nodiscard]] kernel::RationalVec3 nearness_of(const Vec3& a, const Vec3& b, const Vec3& c) const;
@@ -87,7 +89,8 @@ class SightPlane : public SightDirections {
   [[nodiscard]] std::optional<SightArc> judge(const kernel::ExactVec3& t) const;
   [[nodiscard]] std::optional<SightArc> judge_source(const kernel::ExactVec3& t) const;
   template <class Judge>
-  [[nodiscard]] std::vector<SightArc> judge_all(std::vector<kernel::ExactVec3> breaks, const Judge& judge) const;
+  [[nodiscard]] std::vector<SightArc> judge_all(std::vector<kernel::ExactVec3> breaks, const Judge& judge,
+                                                Extent extent = Extent::kAll) const;
 
   const visibility::PlaneQuery& query_;
   Profile& profile_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "kernel/poll.h"
-#include "scene/connectedness.h"
 #include "visibility/candidates.h"
 #include "visibility/cover_proof.h"
 #include "visibility/piece_clip.h"
@@ -83,16 +82,11 @@ std::optional<Outcome> EdgeWalk::find_outcome() {
   return Outcome::kHiddenByUnion;
 }
 
-// With more, silhouettes are searched for: where few of the edges are silhouettes from a typical point.
+// With more, silhouettes are searched for.
 std::uint64_t EdgeWalk::most_candidates() const {
   constexpr std::uint64_t kFew = 32;
-  constexpr double kLeastSaving = 4.0;
-  const BoundaryRequest& request = query_.request;
-  if (request.silhouettes == Silhouetting::kNever || !request.culls() || request.only_occluders != nullptr) {
-    return Candidates::kAny;
-  }
-  if (request.silhouettes == Silhouetting::kAlways) return 0;
-  return edges_per_silhouette(query_.view.scene) >= kLeastSaving ? kFew : Candidates::kAny;
+  if (!searches_silhouettes(query_)) return Candidates::kAny;
+  return query_.request.silhouettes == Silhouetting::kAlways ? 0 : kFew;
 }
 
 // A joined panel is several faces together.

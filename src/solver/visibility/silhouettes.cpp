@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "kernel/poll.h"
+#include "scene/connectedness.h"
 #include "scene/places.h"
 
 namespace exactff::visibility {
@@ -11,7 +12,19 @@ namespace {
 
 constexpr std::uint64_t kEdgesPerPoll = 4'096;
 
+bool some_positive(const std::vector<int>& depths) {
+  return std::ranges::any_of(depths, [](int depth) { return depth > 0; });
+}
+
 }  // namespace
+
+bool searches_silhouettes(const PlaneQuery& query) {
+  constexpr double kLeastSaving = 4.0;
+  const BoundaryRequest& request = query.request;
+  if (request.silhouettes == Silhouetting::kNever || !request.culls() || request.only_occluders != nullptr)
+    return false;
+  return request.silhouettes == Silhouetting::kAlways || edges_per_silhouette(query.view.scene) >= kLeastSaving;
+}
 
 Silhouettes::Silhouettes(const PlaneQuery& query, Outlines& outlines, SilhouetteMemory& memory)
     : query_(query),
@@ -25,6 +38,7 @@ void Silhouettes::gather(std::size_t source_count, PlaneRecord& record) {
   const Scene& scene = query_.view.scene;
   record_ = &record;
   first_ = static_cast<EdgeId>(outlines_.edges().size());
+  some_edge_on_ = false;
   memory_.jumps.clear();
   memory_.cut_rings.clear();
   memory_.crossings.clear();
@@ -99,19 +113,28 @@ int Silhouettes::facing_of_piece(std::uint32_t index, bool in_front) {
   if (!may_occlude(query_.view, query_.plane, query_.request, index)) return 0;
   const Piece& piece = query_.view.scene.pieces()[index];
   const int facing = facing_of(query_.view, piece);
-  if (facing == 0) return 0;
+  if (facing == 0) {
+    if (!in_front) find_depths(piece);
+    some_edge_on_ = some_edge_on_ || in_front || some_positive(memory_.clip.depths);
+    return 0;
+  }
   if (!in_front && !is_before_source(piece, index, facing)) return 0;
   ++record_->candidates;
   known = static_cast<std::int8_t>(facing);
   return facing;
 }
 
-// Whether a part of the piece is. If that is not all of it, cuts it.
-bool Silhouettes::is_before_source(const Piece& piece, std::uint32_t index, int facing) {
+void Silhouettes::find_depths(const Piece& piece) {
   std::vector<int>& depths = memory_.clip.depths;
   depths.clear();
   for (const std::uint32_t corner : query_.view.scene.corners(piece)) depths.push_back(clip_.depth_sign(corner));
-  if (std::ranges::none_of(depths, [](int depth) { return depth > 0; })) return false;
+}
+
+// Whether a part of the piece is. If that is not all of it, cuts it.
+bool Silhouettes::is_before_source(const Piece& piece, std::uint32_t index, int facing) {
+  find_depths(piece);
+  const std::vector<int>& depths = memory_.clip.depths;
+  if (!some_positive(depths)) return false;
   if (std::ranges::any_of(depths, [](int depth) { return depth < 0; })) add_cut(piece, index, facing);
   return true;
 }

@@ -23,6 +23,10 @@
 
 namespace exactff::visibility {
 
+// Whether to search for silhouettes: they must be those of all occluders and, unless the request says so, few of the
+// scene's edges from a typical point.
+[[nodiscard]] bool searches_silhouettes(const PlaneQuery& query);
+
 struct SilhouetteMemory {
   ClipMemory clip;
   ShaftMemory shaft;
@@ -52,6 +56,9 @@ class Silhouettes {
   // x's side of the source's plane, and the side of the parallel plane through x that is towards it.
   [[nodiscard]] const HalfSpace& front() const { return memory_.order.front(); }
   [[nodiscard]] const HalfSpace& toward() const { return memory_.order.back(); }
+  // Whether x sees a piece edge-on that may occlude, with a part before the source's plane; it may lie beside the
+  // shaft.
+  [[nodiscard]] bool some_edge_on() const { return some_edge_on_; }
   // J of an edge that gather added.
   [[nodiscard]] int jump(EdgeId edge) const { return memory_.jumps[edge - first_]; }
 
@@ -59,6 +66,7 @@ class Silhouettes {
   void visit(std::uint32_t scene_edge, bool in_front);
   void visit_edges_of(const Piece& piece);
   [[nodiscard]] int facing_of_piece(std::uint32_t piece, bool in_front);
+  void find_depths(const Piece& piece);
   [[nodiscard]] bool is_before_source(const Piece& piece, std::uint32_t index, int facing);
   void add_cut(const Piece& piece, std::uint32_t index, int facing);
   void add(CornerId a, CornerId b, int jump);
@@ -71,6 +79,7 @@ class Silhouettes {
   SourceShaft shaft_;
   const SceneEdges& edges_;
   EdgeId first_ = 0;
+  bool some_edge_on_ = false;
   PlaneRecord* record_ = nullptr;
 };
 
