@@ -209,6 +209,7 @@ bool Enclosure::contains(const Enclosure& other) const { return arb_contains(bal
 bool Enclosure::overlaps(const Enclosure& other) const { return arb_overlaps(ball().get(), other.ball().get()) != 0; }
 
 bool Enclosure::contains(double value) const {
+  if (value == 0.0) return arb_contains_zero(ball().get()) != 0;
   const kernel::StandardArithmetic arithmetic;
   End number;
   arf_set_d(number.get(), value);
