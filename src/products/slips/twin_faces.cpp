@@ -106,8 +106,13 @@ Finding finding_of(const Scene& scene, Kind kind, const std::vector<Twins>& twin
   finding.words.why =
       same ? "as sources of two patches both count, and a receiver a hair behind one of them sees nothing"
            : "a receiver on one of them may lie a hair behind the other, which then hides everything";
-  finding.words.suggestion = "remove one of them, or let light pass through it with " +
-                             (finding.flag.empty() ? std::string("--transparent NAME,NAME,...") : finding.flag);
+  const std::string flag = finding.flag.empty() ? "--transparent NAME,NAME,..." : finding.flag;
+  finding.words.suggestion =
+      same
+          ? "remove one of them, or let light pass through it with " + flag
+          : "if they are the two sides of a lamp or a sheet, keep both, and for receivers on it let light pass through "
+            "one with " +
+                flag + "; otherwise remove one";
   return finding;
 }
 

@@ -201,6 +201,11 @@ TEST(Diagnosis, FindsTwinFaces) {
   const Scene sheet = read(kRoom + "g lamp\nf 12 11 10 9\n");
   EXPECT_EQ(kinds_of(sheet), Names{"opposite-faces"});
   EXPECT_EQ(flag(sheet, Kind::kOppositeFaces), "--transparent lamp:2");
+  EXPECT_NE(
+      sentence(sheet, Kind::kOppositeFaces)
+          .find("if they are the two sides of a lamp or a sheet, keep both, and for receivers on it let light pass "
+                "through one with --transparent lamp:2; otherwise remove one"),
+      std::string::npos);
   EXPECT_EQ(kinds_of(read(kRoom + "v 1 1 3.5\ng more\nf 9 10 11 13\n")).size(), 0U) << "one corner is another";
 }
 
