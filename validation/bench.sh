@@ -11,11 +11,12 @@ cd "$top"
 folder=build
 scenes=(sparse blinds mesh dense deep tiles lattice near)
 sizes=(100 1000 10000 100000)
+segments='4|8|16|32|64'
 repetitions=7
 seconds=0.1  # a repetition, at least
 quick=false
 case "${1:-}" in
-  --quick) quick=true sizes=(100 1000 10000) repetitions=3 seconds=0.05 ;;
+  --quick) quick=true sizes=(100 1000 10000) segments='4|8|16' repetitions=3 seconds=0.05 ;;
   '') ;;
   *) echo "usage: bench.sh [--quick]" >&2; exit 2 ;;
 esac
@@ -43,6 +44,7 @@ measure ratios '^(visible|certified|tree|limit|contour|rays)/.*/1000$'
 measure cornell '^cornell/'
 measure view "^view/.*/($(IFS='|'; echo "${sizes[*]:1}")|[1-9]00|1600)\$" --benchmark_repetitions=3
 measure covers '^covers/' --benchmark_repetitions=3
+measure refinement "^refinement/.*/($segments|polygons|triangles)\$"
 for scene in "${scenes[@]}"; do
   measure "growth_$scene" "^certified/edges/$scene/($(IFS='|'; echo "${sizes[*]}"))\$" --benchmark_repetitions=3
   measure "memory_$scene" "^memory/$scene/$(largest "$scene")/" --benchmark_repetitions=1

@@ -16,6 +16,7 @@ int main(int argc, char** argv) try {
   exactff::bench::add_cornell();
   exactff::bench::add_view();
   exactff::bench::add_covers();
+  exactff::bench::add_refinement();
   return benchmark::RunSpecifiedBenchmarks() > 0 ? 0 : 2;  // 0: the filter matches nothing
 } catch (const std::exception& error) {
   std::fprintf(stderr, "exactff_bench: %s\n", error.what());

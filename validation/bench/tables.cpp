@@ -233,6 +233,33 @@ void print_covers(const Results& results) {
   }
 }
 
+void print_refinement(const Results& results) {
+  print_head(
+      "One certified value, the mean over a grid of receivers, as the mesh gets finer. Looked at: edges that the tree "
+      "of "
+      "edges did not rule out, where silhouettes were searched for. Exponent: of the time, from the row above.",
+      {"teapot, triangles", "us", "looked at", "silhouettes", "edges of the visible boundary", "exponent"});
+  Maybe time_before, size_before;
+  for (const char* segments : {"4", "8", "16", "32", "64"}) {
+    const std::string name = std::string("refinement/teapot/") + segments;
+    const Maybe time = results.microseconds(name), size = results.figure(name, "triangles");
+    if (!time || !size) continue;
+    const auto figure = [&](const char* key) { return text(results.figure(name, key)); };
+    std::string exponent = "-";
+    if (time_before) exponent = text(std::log(*time / *time_before) / std::log(*size / *size_before));
+    print_row({figure("triangles"), text(time), figure("looked_at"), figure("silhouettes"), figure("edges"), exponent});
+    time_before = time;
+    size_before = size;
+  }
+  print_head("The same scene of polygons, and with every polygon cut into triangles.",
+             {"scene", "polygons, us", "triangles, us", "triangles / polygons"});
+  for (const std::string scene : {"cornell", "blinds", "closed"}) {
+    const Maybe polygons = results.microseconds("refinement/" + scene + "/polygons");
+    const Maybe triangles = results.microseconds("refinement/" + scene + "/triangles");
+    print_row({scene, text(polygons), text(triangles), text(triangles / polygons)});
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -244,6 +271,7 @@ int main(int argc, char** argv) try {
   print_cornell(results);
   print_covers(results);
   print_view(results);
+  print_refinement(results);
   return results.sound() ? 0 : 1;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "exactff_bench_tables: %s\n", error.what());
