@@ -27,4 +27,6 @@ render forest @forest:n=400,trees=1,cover=0.12,light=sun --two-sided --eye 16 -1
   --size 1200x900
 "$program" view data/scenes/cornell_box.obj --at 240 0 300 --normal 0 1 0 --on floor --up 0 0 1 --plain \
   --svg "$out/cornell_box_view.svg" > /dev/null
+"$program" point @teapot:segments=8 --at -3 0.4 0 --normal 0 0 1 --on floor --source light --plain \
+  --svg "$out/teapot_outline.svg" > /dev/null
 ls -l "$out"

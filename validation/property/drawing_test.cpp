@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "exactff/exact.h"
 #include "report/visibility_svg.h"
@@ -171,6 +172,33 @@ TEST(HiddenByOne, IsDrawnAsTheWholeSource) {
     if (HasFailure()) return;
   }
   EXPECT_GT(lids, 20);
+}
+
+// A sheet of 4 x 4 squares in triangles: its border is drawn as silhouettes, its inner edges are not.
+TEST(DrawingOfAMesh, ShowsItsSilhouettes) {
+  constexpr int kSide = 4;
+  PlainScene plain;
+  plain.normal = {0, 0, 1};
+  plain.source = "light";
+  plain.add_ring(plain.patch("light"), {{-4, 4, 2}, {4, 4, 2}, {4, -4, 2}, {-4, -4, 2}});
+  for (int i = 0; i < kSide; ++i) {
+    for (int j = 0; j < kSide; ++j) {
+      const Vec3 a{i - 2.0, j - 2.0, 1}, b{i - 1.0, j - 2.0, 1}, c{i - 1.0, j - 1.0, 1}, d{i - 2.0, j - 1.0, 1};
+      plain.add_ring(plain.patch("sheet"), {a, b, c});
+      plain.add_ring(plain.patch("sheet"), {a, c, d});
+    }
+  }
+  const Scene scene = generate::build(plain);
+  const Receiver receiver = generate::receiver_of(plain);
+  const ExactSource source(scene, scene.select("light"));
+  const std::string svg = report::visibility_svg(scene, receiver, source, exact_form_factor(scene, receiver, source));
+  const std::size_t path = svg.find("stroke-linecap=\"round\"");  // the first is that of the panel
+  ASSERT_NE(path, std::string::npos);
+  const std::size_t begin = svg.rfind("<path", path);
+  EXPECT_EQ(std::count(svg.begin() + static_cast<std::ptrdiff_t>(begin),
+                       svg.begin() + static_cast<std::ptrdiff_t>(path), 'M'),
+            4 * kSide);
+  EXPECT_NE(svg.find("silhouette, where faces do not continue one another"), std::string::npos);
 }
 
 }  // namespace

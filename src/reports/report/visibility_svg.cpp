@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,8 @@ constexpr std::size_t kMostPanels = 12;
 constexpr const char* kBelowHorizon = "fill=\"#e9e9e9\" stroke=\"none\"";
 constexpr const char* kHidden = "fill=\"#a9b4c2\" stroke=\"none\"";
 constexpr const char* kShadow = "fill=\"none\" stroke=\"#0072b2\" stroke-width=\"0.8\" stroke-opacity=\"0.7\"";
+constexpr const char* kSmoothShadow = "fill=\"none\" stroke=\"#0072b2\" stroke-width=\"0.4\" stroke-opacity=\"0.35\"";
+constexpr const char* kSilhouette = "fill=\"none\" stroke=\"#0072b2\" stroke-width=\"1.6\" stroke-linecap=\"round\"";
 constexpr const char* kVisible =
     "fill=\"#f6d64a\" fill-rule=\"evenodd\" stroke=\"#d55e00\" stroke-width=\"1.8\" stroke-linejoin=\"round\"";
 constexpr const char* kVisibleOutline =
@@ -162,13 +165,50 @@ std::string leaf_elements(const PanelMap& map, const std::vector<PlaneDrawing>& 
   return result;
 }
 
-std::string shadow_elements(const Scene& scene, const PanelMap& map, const PlaneDrawing& drawing) {
+// The sides of shadows, each with the number of shadows on its left minus those on its right. It is 0 where two
+// neighbouring faces of a mesh continue one another.
+class Sides {
+ public:
+  explicit Sides(const PlaneDrawing& drawing) {
+    for (const PlaneDrawing::Shadow& shadow : drawing.shadows) {
+      const std::vector<Vec3>& corners = shadow.outline.corners;
+      for (std::size_t c = 0; c < corners.size(); ++c) add(corners[c], corners[c + 1 == corners.size() ? 0 : c + 1]);
+    }
+  }
+
+  // Whether most sides bound nothing: then the drawing is that of a mesh.
+  [[nodiscard]] bool are_mostly_smooth() const {
+    const auto smooth = std::ranges::count_if(count_, [](const auto& side) { return side.second == 0; });
+    return 2 * static_cast<std::size_t>(smooth) > count_.size();
+  }
+  [[nodiscard]] std::string path_of_silhouettes(const PanelMap& map) const {
+    std::string path;
+    for (const auto& [ends, count] : count_) {
+      if (count == 0) continue;
+      const Pixel a = map({ends[0], ends[1], ends[2]}), b = map({ends[3], ends[4], ends[5]});
+      path += "M" + number(a.x) + ' ' + number(a.y) + "L" + number(b.x) + ' ' + number(b.y);
+    }
+    return path;
+  }
+
+ private:
+  void add(const Vec3& a, const Vec3& b) {
+    const std::array<double, 6> ahead{a.x, a.y, a.z, b.x, b.y, b.z}, back{b.x, b.y, b.z, a.x, a.y, a.z};
+    if (ahead == back) return;
+    count_[std::min(ahead, back)] += ahead < back ? 1 : -1;
+  }
+
+  std::map<std::array<double, 6>, int> count_;
+};
+
+std::string shadow_elements(const Scene& scene, const PanelMap& map, const PlaneDrawing& drawing, const Sides& sides) {
+  const bool smooth = sides.are_mostly_smooth();
   std::string result;
   for (const PlaneDrawing::Shadow& shadow : drawing.shadows) {
-    result += "<path d=\"" + path_of(map, shadow.outline.corners) + "\" " + kShadow + "><title>" +
-              text::html(scene.name_of(shadow.face)) + "</title></path>\n";
+    result += "<path d=\"" + path_of(map, shadow.outline.corners) + "\" " + (smooth ? kSmoothShadow : kShadow) +
+              "><title>" + text::html(scene.name_of(shadow.face)) + "</title></path>\n";
   }
-  return result;
+  return result + (smooth ? element(sides.path_of_silhouettes(map), kSilhouette) : "");
 }
 
 std::string line_of_text(double x, double y, const std::string& text, const char* attributes = "") {
@@ -219,6 +259,7 @@ std::string scale_element(const PanelMap& map, double y) {
 struct Panel {
   std::string body;
   double height = 0.0;
+  bool with_silhouettes = false;
 };
 
 Panel draw_panel(const Scene& scene, const std::vector<PlaneDrawing>& drawings, std::size_t panel,
@@ -232,11 +273,12 @@ Panel draw_panel(const Scene& scene, const std::vector<PlaneDrawing>& drawings, 
   } else {
     body += element(paths_of(map, drawing.clipped_source), kHidden);
   }
-  body += shadow_elements(scene, map, drawing);
+  const Sides sides(drawing);
+  body += shadow_elements(scene, map, drawing, sides);
   body += element(paths_of(map, drawing.visible), with_leaves ? kVisibleOutline : kVisible);
   body += element(paths_of(map, drawing.source), "fill=\"none\" stroke=\"#222222\" stroke-width=\"0.8\"");
   body += scale_element(map, map.height() - kMargin + kScaleHeight);
-  return {body, map.height() + kScaleHeight};
+  return {body, map.height() + kScaleHeight, sides.are_mostly_smooth()};
 }
 
 // Entries from left to right.
@@ -266,7 +308,7 @@ class Legend {
   std::string body_;
 };
 
-std::string legend(double y, bool with_leaves) {
+std::string legend(double y, bool with_leaves, bool with_silhouettes) {
   Legend first(y);
   first.add(with_leaves ? kVisibleOutline : kVisible, "visible region (exact)", 170);
   if (with_leaves) {
@@ -277,7 +319,8 @@ std::string legend(double y, bool with_leaves) {
     first.add(kShadow, "outline of an occluder's shadow", 225);
   }
   Legend second(y + 20);
-  second.add(kBelowHorizon, "below the receiver's horizon", 0);
+  second.add(kBelowHorizon, "below the receiver's horizon", 250);
+  if (with_silhouettes) second.add(kSilhouette, "silhouette, where faces do not continue one another", 0);
   return first.body() + second.body();
 }
 
@@ -307,6 +350,7 @@ std::string visibility_svg(const Scene& scene, const Receiver& receiver, const E
   double y = kTitleHeight;
   std::size_t panels = 0;
   std::size_t left_out = 0;
+  bool with_silhouettes = false;
   for (std::size_t i = 0; i < drawings.size(); ++i) {
     if (drawings[i].source.empty() || panels == kMostPanels) {
       ++left_out;
@@ -318,6 +362,7 @@ std::string visibility_svg(const Scene& scene, const Receiver& receiver, const E
     y += kCaptionHeight - 12;
     body += "<g transform=\"translate(0 " + number(y) + ")\">\n" + panel.body + "</g>\n";
     y += panel.height;
+    with_silhouettes = with_silhouettes || panel.with_silhouettes;
   }
   if (left_out > 0) {
     body += line_of_text(kMargin, y + 16,
@@ -329,7 +374,7 @@ std::string visibility_svg(const Scene& scene, const Receiver& receiver, const E
                          text::counted(sampled->leaves - leaves.size(), "leaf", "leaves") + " not drawn (too small)");
     y += 24;
   }
-  body += legend(y + 8, !leaves.empty());
+  body += legend(y + 8, !leaves.empty(), with_silhouettes);
   return head(y + kLegendHeight) + body + "</svg>\n";
 }
 
