@@ -177,7 +177,8 @@ class Solver {
                  .list_cutters = options.list_cutters,
                  .only_occluders = options.only_occluders,
                  .culling = options.culling,
-                 .remembers_covers = !options.from_scratch},
+                 .remembers_covers = !options.from_scratch,
+                 .notes_touching = wants_gradient_},
         result_(result),
         memory_(memory) {}
 
@@ -188,7 +189,7 @@ class Solver {
     for (std::size_t p = 0; p < planes_.size(); ++p) {
       PlaneVisibility seen = find(planes_[p]);
       if (wants_gradient_) {
-        memory_.gradient->add({view_, planes_[p], request_}, seen.boundary);
+        memory_.gradient->add({view_, planes_[p], request_}, seen);
       } else {
         memory_.quick.add(seen.boundary);
       }
