@@ -53,7 +53,7 @@ constexpr const char* kRadiosityFooter =
     "Examples:\n"
     "  exactff radiosity data/scenes/cornell_box.obj --accuracy 1e-4\n"
     "  exactff radiosity data/scenes/cornell_box.obj --accuracy 1e-4 -o build/box.csv --vtk build/box.vtp\n"
-    "  exactff radiosity data/scenes/cornell_box.obj --divide 100 --accuracy 1e-4 -o build/cells.csv";
+    "  exactff radiosity data/scenes/cornell_box.obj --divide 140 --accuracy 1e-3 --budget 1000 -o build/cells.csv";
 
 constexpr std::size_t kMostPatchesShown = 40;
 
