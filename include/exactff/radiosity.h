@@ -14,6 +14,8 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,6 +47,7 @@ struct Balance {
 struct Channel {
   std::vector<BoundedValue> radiosity;   // B, for each patch
   std::vector<BoundedValue> irradiance;  // sum_j F_ij B_j, for each patch
+  std::vector<double> variation;         // for each patch, by set_variation(); NaN where there is no value
   Balance balance;
   bool is_balanced = true;  // as is_balanced() below, of this channel
   // Why there is no upper bound: "Kd is 1 on floor and lamp, ...". Empty: there is one. Without it, upper bounds are
@@ -94,11 +97,54 @@ struct Options {
 // not, although `reasons_against_balance` is empty, some bound does not hold.
 [[nodiscard]] bool is_balanced(const Solution& solution);
 
-// A row for each patch and channel: patch,channel,radiosity,lower,upper,irradiance,irradiance_lower,irradiance_upper,
-// claim,area. What is infinite or not known is empty, and the claim is then "no bound".
-[[nodiscard]] std::string csv_text(const Scene& scene, const Solution& solution, const ViewFactorOptions& options);
+// How much the true radiosity varies over each patch, where the solution has one number: sets Channel::variation to the
+// largest distance of B(x) = Ke + Kd sum_j F(x, j) B_j from B_i, at the centre of each convex part of the patch and
+// near its corners, an eighth of the way to the centre. F is exact, B the values of the solution. Where it is large
+// beside B_i, the patch should be divided. An estimate: nothing is known of points in between.
+void set_variation(const Scene& scene, Solution& solution, int threads = 0, const Hooks& hooks = {});
 
 // The claim of a channel: that of the solution, or "no bound".
 [[nodiscard]] std::string_view claim_text(const Solution& solution, const Channel& channel);
+
+// --- Files ---
+
+// How the scene was made from its file, where flags do not say so again.
+struct Origin {
+  std::optional<double> divided = {};       // by this length (scene.h)
+  std::vector<std::string> two_sided = {};  // of matrix::with_two_sided: names, each as a flag had it
+};
+
+// A row for each patch and channel: patch,channel,radiosity,lower,upper,irradiance,irradiance_lower,irradiance_upper,
+// claim,area, and variation if it is set. What is infinite or not known is empty, and the claim is then "no bound". The
+// head states the scene's hash and the origin.
+[[nodiscard]] std::string csv_text(const Scene& scene, const Solution& solution, const ViewFactorOptions& options,
+                                   const Origin& origin = {});
+
+// What csv_text wrote.
+struct SolutionFile {
+  struct Row {
+    std::string patch;
+    std::size_t channel = 0;  // of kChannelNames
+    BoundedValue radiosity;   // upper infinite: no bound
+  };
+  std::string file;
+  std::string scene_hash;
+  Origin origin;
+  std::vector<Row> rows;
+};
+// Throws one InputError with file:line for every problem.
+[[nodiscard]] SolutionFile read_csv(const std::filesystem::path& file);
+
+// --- Gathering ---
+
+// What leaves all patches of a scene, for the light at its points: render.h, truth.h. Finite, not negative.
+struct Radiosities {
+  std::string name = {};  // of the solution, in metadata
+  std::vector<Selection> patches = {};
+  std::vector<Rgb> value = {}, lower = {}, upper = {};  // for each patch
+};
+// Throw InputError if a channel has no bound; that of a file, if it is of another scene, by its hash and names.
+[[nodiscard]] Radiosities radiosities_of(const Solution& solution);
+[[nodiscard]] Radiosities radiosities_of(const Scene& scene, const SolutionFile& file);
 
 }  // namespace exactff::radiosity

@@ -1,4 +1,5 @@
-// Images of a scene under direct light, in which every pixel is exact: the light's soft shadows without noise.
+// Images of a scene under direct light, in which every pixel is exact: the light's soft shadows without noise. Or under
+// the light of all bounces, if the radiosities of all patches are given.
 //
 // A pixel has one ray. The first face that the ray meets is decided exactly, the point where it meets the face is
 // rounded once to doubles, and the light that this point receives from all sources is the correctly rounded value of
@@ -33,6 +34,7 @@
 #include "exactff/jobs.h"
 #include "exactff/methods.h"
 #include "exactff/progress.h"
+#include "exactff/radiosity.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
 #include "exactff/view.h"
@@ -152,6 +154,10 @@ struct Request {
   std::vector<Selection> sources = {};  // empty: every patch that emits, unless there is `sky`
   bool sky =
       false;  // one more source, with a radiosity of 1: all directions that meet nothing; not for methods, layers
+  // If given, the sources are all patches with these radiosities: B_c = Ke_c + rho_c * sum over patches j of B_j,c F_j.
+  // Picture::lower and upper then bound this sum, with B_j anywhere within its bounds. They do not bound the light of
+  // the integral equation, in which radiosity varies over a patch. Not together with `sources`, `sky`, form factors.
+  std::optional<radiosity::Radiosities> radiosities = {};
   std::optional<methods::Choice> method = {};  // empty: the exact values
   Quantity quantity = Quantity::kRadiance;
   KeMeans ke = KeMeans::kRadiosity;

@@ -130,6 +130,9 @@ class Scene {
   // Selects "NAME" or "NAME:k". A patch whose name is exactly the text has priority. Throws InputError that lists the
   // closest patch names if nothing matches.
   [[nodiscard]] Selection select(std::string_view name) const;
+  // The same, and if no patch is called NAME, all patches NAME:1, NAME:2, ... and NAME:k:1, ...: the cells of a divided
+  // patch, or the faces of PatchMode::kFaces.
+  [[nodiscard]] std::vector<Selection> select_all(std::string_view name) const;
   [[nodiscard]] std::string name_of(const Selection& selection) const;
   [[nodiscard]] std::string name_of(FaceId face) const;  // "NAME:k", or "NAME" for a patch of one face
   // Faces of one patch: "NAME:1+2", in their order; "" for none.
@@ -220,6 +223,24 @@ class SceneBuilder {
   [[nodiscard]] State& state() const;
   std::unique_ptr<State> state_;
 };
+
+// A scene whose faces are cut into cells, each a patch.
+struct DividedScene {
+  Scene scene;
+  std::size_t faces_cut = 0;
+  std::size_t cells = 0;  // with the faces that are not cut
+  // A bound to within rounding of how far corners of cells lie from where they belong: from the plane of their face,
+  // and along edges from the point that was rounded. In the scene's unit of length.
+  double largest_deviation = 0.0;
+};
+
+// Cuts every face into cells, no side of which is longer than `length` (but for one part in 10^9). Cells of the patch
+// NAME are patches NAME:1, NAME:2, ..., which Scene::select_all("NAME") finds; a lone cell keeps its name. Corners are
+// rounded to doubles once, and all faces along an edge share its points, T-junctions included, so closed surfaces stay
+// closed. A cell is exactly planar: one that rounding bends is cut into triangles, with a side that may be longer.
+// Faces without area are left out; what is flipped or transparent stays so. Throws InputError for a length that is not
+// positive or that would make more than 4 million cells, and if a patch has the name of a cell.
+[[nodiscard]] DividedScene divided(const Scene& scene, double length);
 
 // What a scene contains, patch by patch: the rows of `exactff info`. For people who look at a scene; estimates.
 struct PatchSummary {

@@ -21,6 +21,7 @@
 #include "exactff/exr.h"
 #include "exactff/jobs.h"
 #include "exactff/progress.h"
+#include "exactff/radiosity.h"
 #include "exactff/receiver.h"
 #include "exactff/scene.h"
 #include "exactff/view.h"
@@ -54,6 +55,10 @@ struct Request {
   // Adds columns total_r,total_g,total_b: this quantity from all sources together, taken from their balls and rounded
   // once, as an image shows it (render.h). The value is repeated in the rows of all sources of a receiver.
   std::optional<Quantity> total = {};
+  // If given, totals are of all patches with these radiosities instead of the sources: the light of all bounces. Adds
+  // columns total_lower_r, ..., total_upper_b, which bound the sum over patches, as those of an image do (render.h).
+  // Requires `total`, and not that of form factors.
+  std::optional<radiosity::Radiosities> radiosities = {};
   KeMeans ke = KeMeans::kRadiosity;  // of the totals
   Engine engine = Engine::kEdges;    // no byte depends on it
   jobs::Shard shard;                 // if not 1/1, the file holds the rows of this shard, for merge()

@@ -35,6 +35,18 @@ def test_a_scene_from_arrays_is_that_of_the_file():
     assert same_bits(*(scene.form_factors(at.points, at.normals, "all", at.on) for scene in (made, read)))
 
 
+def test_a_divided_scene_has_cells_as_patches():
+    room = exactff.Scene.read(CORNELL)
+    cells = room.divided(140)
+    floor = cells.cells_of("floor")
+    assert len(floor) == 16 and floor[2] == "floor:3" and set(floor) <= set(cells.names)
+    assert cells.cells_of("light") == ("light",) and cells.cells_of("floor:3") == ("floor:3",)
+    assert np.isclose(cells.areas.sum(), room.areas.sum(), rtol=1e-12)
+    assert 0 < cells.largest_deviation < 1e-12 and room.largest_deviation == 0
+    with pytest.raises(exactff.InputError):
+        room.divided(-1)
+
+
 def test_faces_in_every_form():
     quads = np.array([[0, 1, 2, 3], [4, 5, 6, 7]])
     same = build(quads).hash

@@ -22,10 +22,16 @@ constexpr const char* kConvertFooter =
     "warnings before anything is written. Where faces are cut into smaller ones, at their own vertices, form factors "
     "do\n"
     "not change. A file appears complete or not at all.\n"
+    "--divide LENGTH cuts faces into cells, each a patch NAME:k of its own. All faces along an edge share its points, "
+    "so\n"
+    "closed surfaces stay closed. Corners are rounded to doubles; how far they are off at most is printed. Cells that "
+    "are\n"
+    "not exactly planar then are cut into triangles.\n"
     "\n"
     "Example:\n"
     "  exactff convert room.obj room.ply\n"
-    "  exactff convert @teapot:segments=4 teapot.stl";
+    "  exactff convert @teapot:segments=4 teapot.stl\n"
+    "  exactff convert data/scenes/cornell_box.obj cells.obj --divide 50";
 
 struct ConvertArguments {
   flags::SceneArguments scene;
@@ -58,6 +64,7 @@ Command add_convert(CLI::App& app) {
   auto args = std::make_shared<ConvertArguments>();
   CLI::App* command = app.add_subcommand("convert", "Write a scene in another format");
   args->scene.add_to(*command);
+  args->scene.add_divide_to(*command);
   command->add_option("OUT", args->out, "File to write: .obj, .ply, .stl, .off or .vs3")->required();
   command->add_option("--encoding", args->encoding, "Form of PLY (otherwise binary) and STL (otherwise text)")
       ->check(CLI::IsMember({"text", "binary"}));

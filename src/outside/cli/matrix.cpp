@@ -440,6 +440,7 @@ Command add_matrix(CLI::App& app) {
   CLI::App* command = app.add_subcommand("matrix", "Compute view factors from patch to patch");
   command->footer(kMatrixFooter);
   args->scene.add_to(*command);
+  args->scene.add_divide_to(*command);
   command->add_option("--from", args->from, "Rows: patches or faces, a name, a comma list of names, or all")
       ->type_name("NAME")
       ->capture_default_str();

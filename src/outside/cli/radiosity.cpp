@@ -43,12 +43,17 @@ constexpr const char* kRadiosityFooter =
     "no\n"
     "upper bound; the output says so and why, and the exit code is 3. 'radiosity' is then an estimate.\n"
     "What is emitted must be what is absorbed, meets backs of faces and leaves; if it is not, the exit code is 1.\n"
+    "'variation' says where patches are too large: the largest distance of the light that leaves single points of a "
+    "patch\n"
+    "(its centre, and near its corners), by exact form factors, from its one radiosity. --divide LENGTH makes smaller\n"
+    "ones. `exactff render --radiosity FILE` shows the light of the file that -o writes.\n"
     "The balance is printed as bounds, [lower, upper], within what is possible; a number alone is rounded to six "
     "digits.\n"
     "\n"
     "Examples:\n"
     "  exactff radiosity data/scenes/cornell_box.obj --accuracy 1e-4\n"
-    "  exactff radiosity data/scenes/cornell_box.obj --accuracy 1e-4 -o build/box.csv --vtk build/box.vtp";
+    "  exactff radiosity data/scenes/cornell_box.obj --accuracy 1e-4 -o build/box.csv --vtk build/box.vtp\n"
+    "  exactff radiosity data/scenes/cornell_box.obj --divide 140 --accuracy 1e-3 --budget 1000 -o build/cells.csv";
 
 constexpr std::size_t kMostPatchesShown = 40;
 
@@ -62,6 +67,7 @@ struct RadiosityArguments {
   bool force = false;
 
   [[nodiscard]] bool for_people() const { return !plain && !json && !csv; }
+  [[nodiscard]] radiosity::Origin origin() const { return {scene.divide, two_sided}; }
 };
 
 // --- For people ---
@@ -74,21 +80,23 @@ bool is_grey(const Scene& scene) {
   });
 }
 
-std::string estimate_text(double value) { return std::isnan(value) ? "unknown" : text::rounded(value, 6); }
+std::string estimate_text(double value, int digits = 6) {
+  return std::isnan(value) ? "unknown" : text::rounded(value, digits);
+}
 
 void print_radiosities(const Scene& scene, const Solution& solution, std::size_t channels) {
   TextTable table;
   table.add_column("patch");
   if (channels > 1) table.add_column("channel");
-  for (const char* title : {"radiosity", "lower", "upper", "irradiance"}) table.add_column(title);
+  for (const char* title : {"radiosity", "lower", "upper", "irradiance", "variation"}) table.add_column(title);
   const std::size_t count = std::min(solution.patches.size(), kMostPatchesShown);
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t c = 0; c < channels; ++c) {
       const BoundedValue &b = solution.channels[c].radiosity[i], &h = solution.channels[c].irradiance[i];
       std::vector<std::string> cells{c == 0 ? shown_name(scene, solution.patches[i]) : ""};
       if (channels > 1) cells.emplace_back(kChannelNames[c]);
-      for (const std::string& cell :
-           {estimate_text(b.value), text::shortest(b.lower), text::shortest(b.upper), estimate_text(h.value)}) {
+      for (const std::string& cell : {estimate_text(b.value), text::shortest(b.lower), text::shortest(b.upper),
+                                      estimate_text(h.value), estimate_text(solution.channels[c].variation[i], 3)}) {
         cells.push_back(cell);
       }
       table.add_row(std::move(cells));
@@ -139,9 +147,28 @@ void print_claims(const Solution& solution, bool balanced) {
   }
 }
 
+// The patch over which radiosity varies most beside its own.
+void print_variation(const Scene& scene, const Solution& solution, std::size_t channels) {
+  double most = 0.0;
+  std::string words;
+  for (std::size_t c = 0; c < channels; ++c) {
+    const Channel& channel = solution.channels[c];
+    for (std::size_t i = 0; i < solution.patches.size(); ++i) {
+      if (!(channel.variation[i] > most)) continue;
+      most = channel.variation[i];
+      words = shown_name(scene, solution.patches[i]) +
+              (channels > 1 ? ", " + std::string(kChannelNames[c]) : std::string());
+    }
+  }
+  if (most == 0.0) return;
+  std::cout << "\nWithin a patch, radiosity varies by up to " << text::rounded(most) << " (" << words
+            << "): smaller patches, by --divide, come closer to the true light.\n";
+}
+
 void print_for_people(const Scene& scene, const Solution& solution, bool balanced) {
   const std::size_t channels = is_grey(scene) ? 1 : kChannelNames.size();
   print_radiosities(scene, solution, channels);
+  print_variation(scene, solution, channels);
   print_balance(solution, channels);
   print_claims(solution, balanced);
 }
@@ -205,8 +232,9 @@ void print_json(const RadiosityArguments& args, const Scene& scene, const Soluti
     nlohmann::ordered_json patch = {{"patch", scene.name_of(solution.patches[i])}, {"area", solution.areas[i]}};
     for (std::size_t c = 0; c < kChannelNames.size(); ++c) {
       const Channel& channel = solution.channels[c];
-      patch[std::string(kChannelNames[c])] = {{"radiosity", to_json(channel.radiosity[i])},
-                                              {"irradiance", to_json(channel.irradiance[i])}};
+      nlohmann::ordered_json& entry = patch[std::string(kChannelNames[c])];
+      entry = {{"radiosity", to_json(channel.radiosity[i])}, {"irradiance", to_json(channel.irradiance[i])}};
+      if (std::isfinite(channel.variation[i])) entry["variation"] = channel.variation[i];
     }
     json["patches"].push_back(std::move(patch));
   }
@@ -260,7 +288,7 @@ void print(const RadiosityArguments& args, const Scene& scene, const Solution& s
   } else if (args.json) {
     print_json(args, scene, solution);
   } else if (args.csv) {
-    std::cout << csv_text(scene, solution, args.factors);
+    std::cout << csv_text(scene, solution, args.factors, args.origin());
   } else {
     print_for_people(scene, solution, balanced);
     if (!args.output.empty()) std::cout << "Radiosities: " << text::printable(args.output) << '\n';
@@ -280,10 +308,11 @@ int run(const RadiosityArguments& args) {
   const Hooks hooks{[&](const Progress& progress) { bar.show(progress); }, is_interrupted};
   const matrix::Matrix matrix =
       matrix::compute(scene, patches, patches, radiosity::matrix_options({args.factors, args.threads}), hooks);
+  Solution solution = radiosity::solve(scene, matrix);
+  radiosity::set_variation(scene, solution, args.threads, hooks);
   bar.clear();
-  const Solution solution = radiosity::solve(scene, matrix);
   warn_of_width(matrix::Matrix{matrix.factors, {}, {}}, args.factors);
-  if (!args.output.empty()) write_whole_file(args.output, csv_text(scene, solution, args.factors));
+  if (!args.output.empty()) write_whole_file(args.output, csv_text(scene, solution, args.factors, args.origin()));
   if (!args.vtk.empty()) write_vtk(scene, solution, args.vtk);
   const bool balanced = test_balance(solution);
   warn_of_no_bound(solution);
@@ -314,6 +343,7 @@ Command add_radiosity(CLI::App& app) {
       app.add_subcommand("radiosity", "Compute the light that leaves each patch after all bounces, with bounds");
   command->footer(kRadiosityFooter);
   args->scene.add_to(*command);
+  args->scene.add_divide_to(*command);
   command->add_option("--two-sided", args->two_sided, kTwoSidedHelp)->type_name("NAME");
   command->add_option("--accuracy", args->factors.accuracy, "Largest width of a view factor, for F_ij and for F_ji")
       ->capture_default_str();

@@ -1,4 +1,4 @@
-// exactff render: exact images of the direct light in a scene.
+// exactff render: exact images of the direct light in a scene, or of the light of given radiosities.
 #include "exactff/render.h"
 
 #include <filesystem>
@@ -17,6 +17,7 @@
 #include "flags/engine.h"
 #include "flags/lists.h"
 #include "flags/scene.h"
+#include "flags/solution.h"
 #include "flags/sources.h"
 #include "render/identity.h"
 #include "text/escape.h"
@@ -32,6 +33,11 @@ constexpr const char* kRenderFooter =
     "Each pixel shows the first face that its ray meets, decided exactly, and the light that this point receives\n"
     "directly from all sources, correctly rounded: soft shadows without noise. IMAGE is OpenEXR (.exr, 32-bit linear\n"
     "values) or PNG (.png, in sRGB, for looking). Backs of faces are black.\n"
+    "With --radiosity FILE, the light is that of all bounces: Ke + Kd times the sum over all patches of form factor,\n"
+    "exact at the point, and radiosity, from FILE. The channels lower.R ... upper.B of an EXR file, and --bounds, "
+    "bound\n"
+    "this sum for all radiosities within their bounds. They do not bound the true light, which varies over a patch;\n"
+    "--divide makes patches smaller.\n"
     "Without --eye and --look, the camera shows the whole scene from its most open side, or stands in a corner of a\n"
     "closed room. It is printed, so that it can be changed.\n"
     "With --against METHOD, IMAGE shows the errors of this method: white is none, red too bright, blue too dark;\n"
@@ -47,11 +53,13 @@ constexpr const char* kRenderFooter =
     "Examples:\n"
     "  exactff render data/scenes/cornell_box.obj --eye 278 273 -800 --look 278 273 0 --fov 39.3 -o cornell.png\n"
     "  exactff render data/scenes/blinds_room.obj --against hemicube --strip -o blinds.png\n"
-    "  exactff render data/scenes/blinds_room.obj --size 256x256 --against mine.npy -o errors.png";
+    "  exactff render data/scenes/blinds_room.obj --size 256x256 --against mine.npy -o errors.png\n"
+    "  exactff render data/scenes/cornell_box.obj --radiosity build/cells.csv --size 256x256 -o all_light.exr";
 
 struct RenderArguments {
   flags::SceneArguments scene;
   flags::SourceArguments sources;
+  flags::SolutionArgument solution;
   flags::CameraArguments camera;
   std::optional<double> ortho;
   std::string size = "512x512";
@@ -148,8 +156,17 @@ Opponent opponent_named(const std::string& text, const render::Size& size) {
   return {.picture = std::move(picture)};
 }
 
-render::Request request_of(const RenderArguments& args, const Scene& scene, std::optional<methods::Choice> method) {
+// Of given radiosities, an EXR file has the bounds in channels of its own.
+bool wants_bounds(const RenderArguments& args) {
+  const bool exr = render::image_kind(args.image) == render::ImageKind::kExr;
+  return !args.bounds.empty() || (args.solution.is_given() && exr && args.method.empty());
+}
+
+render::Request request_of(const RenderArguments& args, const flags::LitScene& lit,
+                           std::optional<methods::Choice> method) {
+  const Scene& scene = lit.scene;
   render::Request request{.scene = &scene};
+  request.radiosities = lit.radiosities;
   request.scene_name = args.scene.from_standard_input() ? std::string(flags::kStandardInput)
                                                         : std::filesystem::path(args.scene.path).filename().string();
   const render::Size size = size_of(args.size);
@@ -163,7 +180,7 @@ render::Request request_of(const RenderArguments& args, const Scene& scene, std:
   request.ke = args.ke == "radiance" ? KeMeans::kRadiance : KeMeans::kRadiosity;
   request.sides = args.two_sided ? render::Sides::kBoth : render::Sides::kFront;
   request.spp = args.spp;
-  request.bounds = args.bounds.empty() ? render::Bounds::kNone : render::Bounds::kAll;
+  request.bounds = wants_bounds(args) ? render::Bounds::kAll : render::Bounds::kNone;
   request.layers = args.layers ? render::Layers::kAll : render::Layers::kNone;
   request.engine = args.engine.engine();
   request.threads = args.threads;
@@ -235,9 +252,10 @@ int run(const RenderArguments& args) {
   check_arguments(args);
   const auto method = method_named(args.method);
   const Opponent against = opponent_named(args.against, size_of(args.size));
-  const Scene scene = with_progress([&] { return args.scene.load(); });
+  const flags::LitScene lit = with_progress([&] { return flags::load(args.scene, args.solution); });
+  const Scene& scene = lit.scene;
   print_warnings(scene.warnings());
-  const render::Request request = with_progress([&] { return request_of(args, scene, method); });
+  const render::Request request = with_progress([&] { return request_of(args, lit, method); });
   const std::string note = flags::note_on_sources_without_emission(scene, request.sources);
   if (!note.empty()) std::cerr << "note: " << text::printable(note) << '\n';
   Kept kept(args, render::identity_of(request, against.method));
@@ -313,8 +331,11 @@ void add_output_flags(CLI::App& app, RenderArguments& args) {
 
 Command add_render(CLI::App& app) {
   auto args = std::make_shared<RenderArguments>();
-  CLI::App* command = app.add_subcommand("render", "Render an exact image of the direct light, with soft shadows");
+  CLI::App* command =
+      app.add_subcommand("render", "Render an exact image of the direct light, with soft shadows, or of all light");
   args->scene.add_to(*command);
+  args->scene.add_divide_to(*command);
+  args->solution.add_to(*command);
   add_camera_flags(*command, *args);
   flags::add_source_options_under_sky(*command, args->sources);
   add_value_flags(*command, *args);

@@ -20,6 +20,7 @@
 #include "flags/engine.h"
 #include "flags/receivers.h"
 #include "flags/scene.h"
+#include "flags/solution.h"
 #include "flags/sources.h"
 #include "text/escape.h"
 #include "text/nearest_names.h"
@@ -40,6 +41,12 @@ constexpr const char* kTruthFooter =
     "--resume continues from there. Scripts can always give --resume; a complete FILE stays as it is.\n"
     "On several machines: run `mpirun -n 4 exactff truth ...` (every process reads the scene and computes; rank 0\n"
     "writes), or start separate jobs with --shard 1/4, 2/4, ... and join their files with `exactff merge`.\n"
+    "With --radiosity FILE, totals (--total, otherwise irradiance) are of the light of all bounces: sums over all "
+    "patches\n"
+    "of form factor and radiosity, from FILE. total_lower_r ... total_upper_b bound this sum for all radiosities "
+    "within\n"
+    "their bounds; they do not bound the true light, which varies over a patch. Sources are those of the other "
+    "columns.\n"
     "--npy, --npz, --vtk and --exr make their files from the finished FILE; --resume makes them again, also from a\n"
     "merged FILE.\n"
     "The visible points of another renderer's pixels: --receivers GBUFFER.exr --on auto, with layers for position (in\n"
@@ -55,6 +62,7 @@ struct TruthArguments {
   flags::SceneArguments scene;
   flags::ReceiverArguments receivers;
   flags::SourceArguments sources;
+  flags::SolutionArgument solution;
   bool unoccluded = false;
   bool fraction = false;
   bool gradient = false;
@@ -72,7 +80,9 @@ struct TruthArguments {
 
   [[nodiscard]] bool to_standard_output() const { return file == "-"; }
   [[nodiscard]] std::optional<Quantity> quantity() const {
-    return quantity_named(total.empty() && !further.exr.empty() ? "radiance" : total);
+    if (!total.empty()) return quantity_named(total);
+    if (!further.exr.empty()) return Quantity::kRadiance;
+    return solution.is_given() ? std::optional(Quantity::kIrradiance) : std::nullopt;
   }
   [[nodiscard]] jobs::Existing existing() const {
     return resume ? jobs::Existing::kResume : force ? jobs::Existing::kReplace : jobs::Existing::kRefuse;
@@ -90,7 +100,9 @@ std::unique_ptr<Job> job_of(const TruthArguments& args, const jobs::Team* team) 
   const jobs::Shard shard = shard_of(args.shard);
   flags::check_receiver_options(args.receivers);
   flags::check_standard_input(args.scene, args.receivers);
-  auto job = std::make_unique<Job>(Job{args.scene.load(), {}});
+  flags::LitScene lit = flags::load(args.scene, args.solution);
+  auto job = std::make_unique<Job>(Job{std::move(lit.scene), {}});
+  job->request.radiosities = std::move(lit.radiosities);
   print_warnings(job->scene.warnings());
   truth::Request& request = job->request;
   flags::ChosenReceivers receivers = flags::receivers_of(args.receivers, job->scene);
@@ -270,6 +282,8 @@ Command add_truth(CLI::App& app) {
   auto args = std::make_shared<TruthArguments>();
   CLI::App* command = app.add_subcommand("truth", "Write a file of certified values, to check other programs");
   args->scene.add_to(*command);
+  args->scene.add_divide_to(*command);
+  args->solution.add_to(*command);
   flags::add_receiver_options(*command, args->receivers);
   flags::add_source_options_under_sky(*command, args->sources);
   command->add_flag("--unoccluded", args->unoccluded, "Add a column: the form factor without occluders");
@@ -286,7 +300,7 @@ Command add_truth(CLI::App& app) {
       ->add_option(
           "--total", args->total,
           "Add columns total_r,total_g,total_b: this quantity from all sources together, correctly rounded, as "
-          "exactff render shows it (with --exr: radiance)")
+          "exactff render shows it (with --exr: radiance; with --radiosity: irradiance)")
       ->check(CLI::IsMember({"radiance", "radiosity", "irradiance", "form-factor"}));
   command->add_option("--ke", args->ke, "What Ke means in the scene, for totals (default: radiosity)")
       ->check(CLI::IsMember({"radiosity", "radiance"}));

@@ -1,6 +1,6 @@
 #include "flags/camera.h"
 
-#include "text/number_text.h"
+#include "flags/lists.h"
 #include "text/phrases.h"
 #include "text/refuse.h"
 
@@ -34,12 +34,6 @@ render::Camera CameraArguments::camera() const {
   render::Camera camera{.eye = vector_of(eye, "--eye"), .look = vector_of(look, "--look"), .up = wishes().up};
   if (fov) camera.fov = *fov;
   return camera;
-}
-
-std::string is_positive(const std::string& text) {
-  const text::ParsedNumber number = text::parse_number(text);
-  return number.fault == text::NumberFault::kNone && number.value > 0.0 ? ""
-                                                                        : "'" + text + "' is not a positive number";
 }
 
 std::string command_words(const CameraArguments& args) {

@@ -22,9 +22,6 @@ struct CameraArguments {
   [[nodiscard]] render::CameraWishes wishes() const;
 };
 
-// A check of a flag's value.
-[[nodiscard]] std::string is_positive(const std::string& text);
-
 // The flags again, each preceded by a blank.
 [[nodiscard]] std::string command_words(const CameraArguments& args);
 

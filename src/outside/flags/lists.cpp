@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "text/number_text.h"
+
 namespace exactff::flags {
 namespace {
 
@@ -27,7 +29,8 @@ bool means_all(const Scene& scene, const std::string& name) {
 
 void add(const Scene& scene, const std::string& name, std::vector<Selection>& selections) {
   if (means_all(scene, name)) return add_all(scene, selections);
-  selections.push_back(scene.select(name));
+  const std::vector<Selection> parts = scene.select_all(name);
+  selections.insert(selections.end(), parts.begin(), parts.end());
 }
 
 }  // namespace
@@ -40,6 +43,12 @@ std::vector<std::string> split_list(const std::string& text) {
     at = comma + 1;
   }
   return parts;
+}
+
+std::string is_positive(const std::string& text) {
+  const text::ParsedNumber number = text::parse_number(text);
+  return number.fault == text::NumberFault::kNone && number.value > 0.0 ? ""
+                                                                        : "'" + text + "' is not a positive number";
 }
 
 std::vector<Selection> selections_named(const Scene& scene, const std::vector<std::string>& texts) {

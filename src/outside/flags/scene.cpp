@@ -6,6 +6,7 @@
 #include "exactff/scene_files.h"
 #include "flags/lists.h"
 #include "text/escape.h"
+#include "text/phrases.h"
 #include "text/refuse.h"
 
 namespace exactff::flags {
@@ -29,6 +30,17 @@ std::vector<Selection> changed(const Scene& scene, const std::string& flag, cons
   return selections;
 }
 
+Scene cells_of(const Scene& scene, double length) {
+  DividedScene divided = exactff::divided(scene, length);
+  std::cerr << "note: divided into " << text::counted(divided.cells, "cell") << "; "
+            << text::counted(divided.faces_cut, "face") << (divided.faces_cut == 1 ? " was" : " were") << " cut, "
+            << (divided.largest_deviation == 0.0
+                    ? "exactly"
+                    : "and corners are off by at most " + text::short_number(divided.largest_deviation))
+            << '\n';
+  return std::move(divided.scene);
+}
+
 }  // namespace
 
 void SceneArguments::add_to(CLI::App& app) {
@@ -46,6 +58,14 @@ void SceneArguments::add_to(CLI::App& app) {
             "This patch or face hides nothing; it can still be a source and carry receivers");
 }
 
+void SceneArguments::add_divide_to(CLI::App& app) {
+  app.add_option(
+         "--divide", divide,
+         "Cut the faces into cells with sides of at most this length, each a patch NAME:k; NAME means all of them")
+      ->type_name("LENGTH")
+      ->check(is_positive);
+}
+
 SceneOptions SceneArguments::options() const {
   return {skip_bad_faces ? BadFaces::kSkip : BadFaces::kReject,
           patches == "faces" ? PatchMode::kFaces : PatchMode::kGroups};
@@ -57,7 +77,7 @@ Scene SceneArguments::load() const {
                                         : read_scene(path, options());
   if (!flip.empty()) scene = scene.with_flipped(changed(scene, "--flip", flip));
   if (!transparent.empty()) scene = scene.with_transparent(changed(scene, "--transparent", transparent));
-  return scene;
+  return divide ? cells_of(scene, *divide) : std::move(scene);
 }
 
 std::string command_words(const SceneArguments& args) {
@@ -66,6 +86,7 @@ std::string command_words(const SceneArguments& args) {
   if (args.skip_bad_faces) line += " --skip-bad-faces";
   for (const std::string& names : args.flip) line += " --flip " + text::shell_word(names);
   for (const std::string& names : args.transparent) line += " --transparent " + text::shell_word(names);
+  if (args.divide) line += " --divide " + text::shortest(*args.divide);
   return line;
 }
 

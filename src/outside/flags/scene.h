@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,12 +20,15 @@ struct SceneArguments {
   std::string patches = "groups";
   bool skip_bad_faces = false;
   std::vector<std::string> flip, transparent;  // each a name, a comma list of names, or "all"
+  std::optional<double> divide;                // of commands with add_divide_to()
 
   void add_to(CLI::App& app);
+  void add_divide_to(CLI::App& app);  // --divide LENGTH
   [[nodiscard]] bool from_standard_input() const { return path == "-"; }
 
   [[nodiscard]] SceneOptions options() const;
-  // Reads or generates the scene and changes it as --flip and --transparent say. Throws InputError.
+  // Reads or generates the scene, changes it as --flip and --transparent say, and divides it, with a note on standard
+  // error. Throws InputError.
   [[nodiscard]] Scene load() const;
 };
 

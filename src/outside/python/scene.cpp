@@ -189,6 +189,15 @@ Shared with_transparent(const SharedScene& self, const std::vector<std::string>&
   return shared(self.scene().with_transparent(self.selections(names)));
 }
 
+// The cells, and how far their corners are off.
+py::tuple divided_of(const SharedScene& self, double length) {
+  DividedScene made = [&] {
+    const py::gil_scoped_release released;
+    return divided(self.scene(), length);
+  }();
+  return py::make_tuple(shared(std::move(made.scene)), made.largest_deviation);
+}
+
 }  // namespace
 
 void bind_scene(py::module_& module) {
@@ -239,6 +248,11 @@ void bind_scene(py::module_& module) {
       .def("emitters", [](const SharedScene& s) { return names_of(s.scene(), s.scene().emitters()); })
       .def("with_flipped", &with_flipped, py::arg("names"))
       .def("with_transparent", &with_transparent, py::arg("names"))
+      .def("divided", &divided_of, py::arg("length"))
+      .def(
+          "cells_of",
+          [](const SharedScene& s, const std::string& name) { return names_of(s.scene(), s.scene().select_all(name)); },
+          py::arg("name"))
       .def("flipped", [](const SharedScene& s) { return names_of(s.scene(), s.scene().flipped()); })
       .def("transparent", [](const SharedScene& s) { return names_of(s.scene(), s.scene().transparent()); })
       .def("warnings", &warnings_of)

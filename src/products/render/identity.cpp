@@ -7,6 +7,7 @@ std::string identity_of(const Request& request, const std::optional<methods::Cho
       request.scene->hash() + '\n' + flags_of(request.view) + '\n' + std::string(to_string(request.quantity)) + '\n';
   for (const Selection& source : request.sources) all += request.scene->name_of(source) + '\n';
   if (request.sky) all += "and the sky\n";
+  if (request.radiosities) all += "radiosities of " + request.radiosities->name + '\n';
   all += (request.method ? request.method->text() : "exact") + '\n' + (against ? against->text() : "") + '\n';
   for (const int number :
        {static_cast<int>(request.ke), static_cast<int>(request.sides), request.spp, static_cast<int>(request.bounds),

@@ -16,6 +16,28 @@ namespace exactff::render {
 
 Job::Job(const Request& request) : request_(request) {
   require_scene(request_.scene);
+  if (request_.radiosities) {
+    take_radiosities();
+  } else {
+    take_sources();
+  }
+  require_possible();
+  if (!request_.method) return;
+  prepared_ = request_.method->method->prepare(*request_.scene);
+  for (const Selection& source : sources_) {
+    prepared_sources_.push_back(prepared_->prepare_source(source));
+    source_pointers_.push_back(prepared_sources_.back().get());
+  }
+}
+
+void Job::take_radiosities() {
+  require_light_of_patches();
+  sources_ = request_.radiosities->patches;
+  weights_ = request_.radiosities->value;
+  gather_ = std::make_unique<radiosity::Gather>(*request_.scene, *request_.radiosities, request_.scene_name);
+}
+
+void Job::take_sources() {
   sources_ = request_.sources.empty() && !request_.sky ? request_.scene->emitters() : request_.sources;
   if (sources_.empty() && !request_.sky) {
     text::refuse(request_.scene_name, "no patch emits", "the picture would be black", "name a source with --source");
@@ -23,16 +45,25 @@ Job::Job(const Request& request) : request_(request) {
   factors_ = std::make_unique<whole_view::SourceFactors>(
       *request_.scene, sources_, request_.sky ? whole_view::Sky::kLastSource : whole_view::Sky::kLeftOut);
   weights_ = whole_view::light_weights(*request_.scene, *factors_, request_.quantity, request_.scene_name);
-  require_possible();
-  if (!request_.method) {
-    light_ = std::make_unique<whole_view::Light>(*factors_, weights_);
+  light_ = std::make_unique<whole_view::Light>(*factors_, weights_);
+}
+
+whole_view::Channels Job::light_at(const Receiver& receiver, const whole_view::LightFormula& formula,
+                                   const ExactOptions& options, whole_view::Light::Results& results) const {
+  if (!gather_) return light_->at(receiver, formula, options, results);
+  const bool bounds = request_.bounds == Bounds::kAll;
+  return gather_->at(receiver, formula, options,
+                     bounds ? radiosity::GatherBounds::kAll : radiosity::GatherBounds::kNone, results);
+}
+
+void Job::require_light_of_patches() const {
+  if (request_.sources.empty() && !request_.sky && request_.quantity != Quantity::kFormFactor &&
+      request_.shown == Shown::kLight) {
     return;
   }
-  prepared_ = request_.method->method->prepare(*request_.scene);
-  for (const Selection& source : sources_) {
-    prepared_sources_.push_back(prepared_->prepare_source(source));
-    source_pointers_.push_back(prepared_sources_.back().get());
-  }
+  text::refuse(request_.sources.empty() && !request_.sky ? "form factors are requested of given radiosities"
+                                                         : "sources are named, and radiosities are given",
+               "the light of all bounces comes from all patches", "leave out the radiosities, or the other");
 }
 
 void Job::require_possible() const {
@@ -79,8 +110,8 @@ std::vector<std::string> Job::source_names() const {
   constexpr std::size_t kLongest = 200;  // of an OpenEXR file: 255 bytes for a channel
   std::vector<std::string> names;
   std::map<std::string, int> used;
-  for (std::size_t s = 0; s < factors_->count(); ++s) {
-    std::string name = text::printable(factors_->name_of(s));
+  for (std::size_t s = 0; s < factors().count(); ++s) {
+    std::string name = text::printable(factors().name_of(s));
     if (name.empty() || name.size() > kLongest) name = "source" + std::to_string(s + 1);
     if (const int times = used[name]++; times > 0) name += '#' + std::to_string(times + 1);
     names.push_back(std::move(name));
@@ -133,28 +164,38 @@ std::string names_of(const Scene& scene, const std::vector<Selection>& selection
 
 std::string Job::names_of_sources() const {
   std::string names;
-  for (std::size_t s = 0; s < factors_->count(); ++s)
-    names += (s > 0 ? " + " : "") + text::printable(factors_->name_of(s));
+  for (std::size_t s = 0; s < factors().count(); ++s)
+    names += (s > 0 ? " + " : "") + text::printable(factors().name_of(s));
   return names;
 }
 
 Metadata Job::metadata() const {
   const Scene& scene = *request_.scene;
   const bool slope = request_.shown == Shown::kSlope;
-  Metadata metadata = {{"software", text::program_version()},
-                       {"scene", text::printable(request_.scene_name)},
-                       {"scene hash", scene.hash()},
-                       {"camera", flags_of(request_.view)},
-                       {"quantity", slope ? "slope of the form factors along the surface, per unit of length"
-                                          : std::string(to_string(request_.quantity)) + ", in " +
-                                                unit_of(request_.quantity, request_.ke)},
-                       {"Ke", request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity"},
-                       {"sides", request_.sides == Sides::kBoth ? "both" : "front"},
-                       {"sources", names_of_sources()},
-                       {"method", request_.method ? request_.method->text()
-                                  : slope         ? "exact derivatives"
-                                                  : "exact, correctly rounded"},
-                       {"points per pixel", std::to_string(request_.spp * request_.spp)}};
+  Metadata metadata = {
+      {"software", text::program_version()},
+      {"scene", text::printable(request_.scene_name)},
+      {"scene hash", scene.hash()},
+      {"camera", flags_of(request_.view)},
+      {"quantity", slope
+                       ? "slope of the form factors along the surface, per unit of length"
+                       : std::string(to_string(request_.quantity)) + ", in " + unit_of(request_.quantity, request_.ke)},
+      {"Ke", request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity"},
+      {"sides", request_.sides == Sides::kBoth ? "both" : "front"},
+      {"sources", request_.radiosities ? "all patches, with their radiosities after all bounces" : names_of_sources()},
+      {"method", request_.method ? request_.method->text()
+                 : slope         ? "exact derivatives"
+                                 : "exact, correctly rounded"},
+      {"points per pixel", std::to_string(request_.spp * request_.spp)}};
+  if (request_.radiosities) {
+    metadata.emplace_back("radiosities", text::printable(request_.radiosities->name) + ", hash " +
+                                             radiosity::hash_of(*request_.radiosities));
+    if (request_.bounds == Bounds::kAll) {
+      metadata.emplace_back("bounds",
+                            "lower and upper bound the sum over patches of form factor and radiosity, one "
+                            "number for each patch; not the light that varies over patches");
+    }
+  }
   if (const auto flipped = scene.flipped(); !flipped.empty())
     metadata.emplace_back("flipped", names_of(scene, flipped));
   if (const auto clear = scene.transparent(); !clear.empty()) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exactff/render.h"
+#include "radiosity/gather.h"
 #include "whole_view/light.h"
 #include "whole_view/source_factors.h"
 
@@ -31,15 +32,20 @@ class Job {
 
   // What leaves a face on the side that is seen, in the quantity of the request.
   [[nodiscard]] whole_view::LightFormula formula(FaceId face, bool back) const;
-  [[nodiscard]] std::size_t source_count() const { return factors_->count(); }
-  [[nodiscard]] const whole_view::SourceFactors& factors() const { return *factors_; }
+  [[nodiscard]] std::size_t source_count() const { return factors().count(); }
+  [[nodiscard]] const whole_view::SourceFactors& factors() const { return gather_ ? gather_->factors() : *factors_; }
   [[nodiscard]] const std::vector<Rgb>& weights() const { return weights_; }  // B_s, or 1
-  [[nodiscard]] const whole_view::Light& light() const { return *light_; }
+  // What the receiver shows, exactly.
+  [[nodiscard]] whole_view::Channels light_at(const Receiver& receiver, const whole_view::LightFormula& formula,
+                                              const ExactOptions& options, whole_view::Light::Results& results) const;
   [[nodiscard]] const methods::PreparedScene* prepared() const { return prepared_.get(); }
   [[nodiscard]] const std::vector<const methods::PreparedSource*>& prepared_sources() const { return source_pointers_; }
 
  private:
+  void take_sources();
+  void take_radiosities();
   void require_possible() const;
+  void require_light_of_patches() const;
   [[nodiscard]] std::vector<std::string> source_names() const;  // of channels
   [[nodiscard]] std::string names_of_sources() const;
 
@@ -48,6 +54,7 @@ class Job {
   std::vector<Rgb> weights_;
   std::unique_ptr<const whole_view::SourceFactors> factors_;
   std::unique_ptr<whole_view::Light> light_;
+  std::unique_ptr<radiosity::Gather> gather_;  // instead of factors_ and light_, if radiosities are given
   std::unique_ptr<methods::PreparedScene> prepared_;
   std::vector<std::unique_ptr<methods::PreparedSource>> prepared_sources_;
   std::vector<const methods::PreparedSource*> source_pointers_;

@@ -65,7 +65,7 @@ void Painter::look_along(const Ray& ray, Sample& sample) {
 
 whole_view::Channels Painter::light_at(const Receiver& receiver, const whole_view::LightFormula& formula) {
   if (evaluator_ != nullptr) return light_by_method(receiver, formula);
-  return job_.light().at(receiver, formula, options_, results_);
+  return job_.light_at(receiver, formula, options_, results_);
 }
 
 whole_view::Channels Painter::light_by_method(const Receiver& receiver, const whole_view::LightFormula& formula) {

@@ -209,6 +209,18 @@ void place(const Tile& tile, const TileResult& result, Picture& picture) {
   }
 }
 
+// Under given radiosities, the bounds are those of an image and belong into its file.
+void add_bounds_as_layers(Picture& picture) {
+  const auto add = [&](const std::string& name, const std::vector<double>& bounds) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      Layer& layer = picture.layers.emplace_back(Layer{name + '.' + "RGB"[c], false, {}});
+      for (std::size_t i = c; i < bounds.size(); i += 3) layer.values.push_back(bounds[i]);
+    }
+  };
+  add("lower", picture.lower);
+  add("upper", picture.upper);
+}
+
 }  // namespace
 
 Picture render(const Request& request, const Hooks& hooks, jobs::Journal* journal) {
@@ -235,6 +247,7 @@ Picture render(const Request& request, const Hooks& hooks, jobs::Journal* journa
     picture.not_certified += result.not_certified;
     picture.seconds += result.seconds;
   });
+  if (request.radiosities && request.bounds == Bounds::kAll) add_bounds_as_layers(picture);
   return picture;
 }
 

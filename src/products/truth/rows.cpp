@@ -57,6 +57,10 @@ void complete(Request& request) {
     text::refuse("the gradient of the sky is requested", "gradients are computed for patches",
                  "leave out --gradient, or sky");
   }
+  if (request.radiosities && (!request.total || request.total == Quantity::kFormFactor)) {
+    text::refuse("radiosities are given, but no quantity of light is requested", "they are for the totals of a row",
+                 "add --total irradiance, radiance or radiosity");
+  }
   jobs::require_shard(request.shard);
   if (request.threads <= 0) request.threads = files::usable_threads();
 }
@@ -72,7 +76,9 @@ Rows::Rows(Request request) : request_(std::move(request)) {
     source_names_.push_back(sources_->name_of(s));
     radiosities_.push_back(sources_->radiosity(s));
   }
-  if (request_.total) {
+  if (request_.radiosities) {
+    gather_ = std::make_unique<radiosity::Gather>(*request_.scene, *request_.radiosities, request_.scene_name);
+  } else if (request_.total) {
     light_.emplace(*sources_,
                    whole_view::light_weights(*request_.scene, *sources_, *request_.total, request_.scene_name));
   }
@@ -121,14 +127,21 @@ std::string Rows::head() const {
   }
   if (request_.total) {
     out << "# total: " << to_string(*request_.total) << ", in " << unit_of(*request_.total, request_.ke)
-        << ", of all sources together, correctly rounded; Ke is a "
-        << (request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity") << '\n';
+        << (gather_ ? ", of all patches together, with their radiosities" : ", of all sources together")
+        << ", correctly rounded; Ke is a " << (request_.ke == KeMeans::kRadiance ? "radiance" : "radiosity") << '\n';
+  }
+  if (gather_) {
+    out << "# radiosities: " << text::csv_comment(request_.radiosities->name) << ", hash "
+        << radiosity::hash_of(*request_.radiosities)
+        << "; total_lower and total_upper bound the sum over patches of form factor and radiosity, one number for each "
+           "patch; not the light that varies over patches\n";
   }
   out << "receiver,on,x,y,z,nx,ny,nz" << (request_.unit_normals ? ",ux,uy,uz" : "") << (request_.uv ? ",u,v" : "")
       << ",source,exact,lower,upper" << (request_.unoccluded ? ",unoccluded" : "")
       << (request_.visible_fraction ? ",visible_fraction" : "")
       << (request_.gradient ? ",dF_dx,dF_dy,dF_dz,gradient_status" : "")
       << ",radiosity_r,radiosity_g,radiosity_b,largest_rho_b" << (request_.total ? ",total_r,total_g,total_b" : "")
+      << (gather_ ? ",total_lower_r,total_lower_g,total_lower_b,total_upper_r,total_upper_g,total_upper_b" : "")
       << ",status\n";
   return std::move(out).str();
 }
@@ -216,11 +229,15 @@ void Rows::append(std::uint64_t row, std::string& lines, Results& results) const
   const Rgb rho = request_.scene->receiver_reflectance(receiver.on), b = radiosities_[source];
   line << rho.r * b.r * f.value << rho.g * b.g * f.value << rho.b * b.b * f.value
        << std::max({rho.r * b.r, rho.g * b.g, rho.b * b.b});
-  if (light_) {
+  if (has_totals()) {
     for (const whole_view::CertifiedNumber& total : results.totals) {
       line << total.value;
       keep_worst(total.certified);
     }
+  }
+  if (gather_) {
+    for (const whole_view::CertifiedNumber& total : results.totals) line << total.lower;
+    for (const whole_view::CertifiedNumber& total : results.totals) line << total.upper;
   }
   line << to_string(status);
 }
@@ -246,7 +263,7 @@ std::unique_ptr<Rows::Computer> Rows::computer() const { return std::make_unique
 const FormFactor& Rows::factor(std::size_t receiver, std::size_t source, Results& results) const {
   const ExactOptions options{
       .engine = request_.engine, .visible_fraction = request_.visible_fraction, .gradient = request_.gradient};
-  if (!light_ && !sources_->sweeps(options)) {
+  if (!has_totals() && !sources_->sweeps(options)) {
     sources_->find_one(request_.receivers[receiver], source, options, results.exact, results.all.at);
     return results.exact;
   }
@@ -254,17 +271,21 @@ const FormFactor& Rows::factor(std::size_t receiver, std::size_t source, Results
   return results.all.at.factors[source];
 }
 
+// Those of the sources come with their form factors.
+void Rows::find_totals(const Receiver& at, const ExactOptions& options, Results& results) const {
+  const whole_view::LightFormula formula =
+      whole_view::light_formula(*request_.scene, at.on, side_of(*request_.scene, at), *request_.total, request_.ke);
+  results.totals =
+      gather_ ? gather_->at(at, formula, {.engine = request_.engine}, radiosity::GatherBounds::kAll, results.gathered)
+              : light_->at(at, formula, options, results.all);
+}
+
 // Sets the totals, too, if they are requested.
 void Rows::find_all(std::size_t receiver, const ExactOptions& options, Results& results) const {
   const Receiver& at = request_.receivers[receiver];
   results.known.reset();
-  if (light_) {
-    const whole_view::LightFormula formula =
-        whole_view::light_formula(*request_.scene, at.on, side_of(*request_.scene, at), *request_.total, request_.ke);
-    results.totals = light_->at(at, formula, options, results.all);
-  } else {
-    sources_->find_all(at, options, results.all.at);
-  }
+  if (!light_) sources_->find_all(at, options, results.all.at);
+  if (has_totals()) find_totals(at, options, results);
   results.known = receiver;
 }
 

@@ -11,6 +11,7 @@
 
 #include "exactff/truth.h"
 #include "jobs/rows.h"
+#include "radiosity/gather.h"
 #include "truth/unit_normal.h"
 #include "whole_view/light.h"
 #include "whole_view/source_factors.h"
@@ -35,7 +36,8 @@ class Rows : public jobs::Rows {
   struct Results {
     FormFactor exact, unoccluded;
     UnitNormal unit_normal;
-    whole_view::Light::Results all;  // of all sources at one receiver
+    whole_view::Light::Results all;       // of all sources at one receiver
+    whole_view::Light::Results gathered;  // of all patches, for given radiosities
     whole_view::Channels totals;
     std::optional<std::size_t> known;  // this receiver
   };
@@ -45,6 +47,8 @@ class Rows : public jobs::Rows {
  private:
   [[nodiscard]] std::string id(std::size_t receiver) const;
   [[nodiscard]] const FormFactor& factor(std::size_t receiver, std::size_t source, Results& results) const;
+  [[nodiscard]] bool has_totals() const { return light_ || gather_; }
+  void find_totals(const Receiver& receiver, const ExactOptions& options, Results& results) const;
   void find_all(std::size_t receiver, const ExactOptions& options, Results& results) const;
   [[nodiscard]] const FormFactor& without_occluders(const Receiver& receiver, std::size_t source,
                                                     const FormFactor& with, Results& results) const;
@@ -52,8 +56,9 @@ class Rows : public jobs::Rows {
   Request request_;
   std::unique_ptr<const whole_view::SourceFactors> sources_;
   std::vector<std::string> source_names_;
-  std::vector<Rgb> radiosities_;            // indexed by source
-  std::optional<whole_view::Light> light_;  // for the totals
+  std::vector<Rgb> radiosities_;                     // indexed by source
+  std::optional<whole_view::Light> light_;           // for the totals
+  std::unique_ptr<const radiosity::Gather> gather_;  // for those of given radiosities
   std::string receivers_hash_;
   std::vector<std::string> near_misses_;  // in sentences
 };

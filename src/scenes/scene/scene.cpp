@@ -104,6 +104,29 @@ Selection Scene::select(std::string_view name) const {
   return {owner->second, face_id, this->id()};
 }
 
+namespace {
+
+// Whether the name is `whole`, followed by numbers after colons.
+bool is_part_of(const std::string& name, std::string_view whole) {
+  for (auto parts = text::numbered_name(name); parts; parts = text::numbered_name(parts->patch)) {
+    if (parts->patch == whole) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<Selection> Scene::select_all(std::string_view name) const {
+  std::vector<Selection> parts;
+  if (!data().patch_by_name.contains(std::string(name))) {
+    for (std::size_t p = 0; p < patches().size(); ++p) {
+      if (is_part_of(patches()[p].name, name)) parts.push_back({static_cast<PatchId>(p), {}, id()});
+    }
+  }
+  if (parts.empty()) parts.push_back(select(name));
+  return parts;
+}
+
 std::string Scene::name_of(const Selection& selection) const {
   require_of_scene(*this, selection);
   return selection.face ? patch(selection.patch).name + ":" + std::to_string(face(*selection.face).number)

@@ -6,7 +6,6 @@
 
 #include "kernel/ball.h"
 #include "kernel/float_environment.h"
-#include "text/refuse.h"
 #include "text/text_lines.h"
 
 namespace exactff::whole_view {
@@ -45,7 +44,6 @@ LightFormula light_formula(const Scene& scene, std::span<const FaceId> on, FaceS
 
 std::vector<Rgb> light_weights(const Scene& scene, const SourceFactors& sources, Quantity quantity,
                                const std::string& scene_name) {
-  constexpr double kMost = 1e290;
   std::vector<Rgb> weights;
   Rgb sum;
   for (std::size_t s = 0; s < sources.count(); ++s) {
@@ -53,15 +51,24 @@ std::vector<Rgb> light_weights(const Scene& scene, const SourceFactors& sources,
     sum = {sum.r + radiosity.r, sum.g + radiosity.g, sum.b + radiosity.b};
     weights.push_back(quantity == Quantity::kFormFactor ? Rgb{1.0, 1.0, 1.0} : radiosity);
   }
+  if (std::optional<Problem> problem = problem_of_strength(scene, sum, scene_name)) {
+    throw InputError(std::move(*problem));
+  }
+  return weights;
+}
+
+std::optional<Problem> problem_of_strength(const Scene& scene, const Rgb& sum, const std::string& scene_name) {
+  constexpr double kMost = 1e290;
   for (const Material& material : scene.materials()) {
     const Rgb &kd = material.reflectance, &ke = material.radiosity;
     const double least = std::min({kd.r, kd.g, kd.b, ke.r, ke.g, ke.b});
     if (least >= 0.0 && kd.largest() * sum.largest() + ke.largest() <= kMost && sum.largest() <= kMost) continue;
-    text::refuse(scene_name, "the light is negative or too strong: material " + text::in_quotes(material.name),
-                 "radiosities are added, and Kd, Ke and their sums must be between 0 and 1e290",
-                 "give Kd and Ke in other units");
+    return Problem{.file = scene_name,
+                   .what = "the light is negative or too strong: material " + text::in_quotes(material.name),
+                   .why = "radiosities are added, and Kd, Ke and their sums must be between 0 and 1e290",
+                   .suggestion = "give Kd and Ke in other units"};
   }
-  return weights;
+  return std::nullopt;
 }
 
 Light::Light(const SourceFactors& sources, std::vector<Rgb> radiosities)
@@ -70,8 +77,14 @@ Light::Light(const SourceFactors& sources, std::vector<Rgb> radiosities)
 Channels Light::at(const Receiver& receiver, const LightFormula& formula, const ExactOptions& options,
                    Results& results) const {
   const kernel::StandardArithmetic arithmetic;
-  results.finer.clear();
   sources_.find_all(receiver, options, results.at);
+  return again(receiver, formula, options, results);
+}
+
+Channels Light::again(const Receiver& receiver, const LightFormula& formula, const ExactOptions& options,
+                      Results& results) const {
+  const kernel::StandardArithmetic arithmetic;
+  results.finer.clear();
   Channels channels;
   for (int c = 0; c < 3; ++c) {
     int same = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +31,11 @@ enum class FaceSide { kFront, kBack };
 [[nodiscard]] std::vector<Rgb> light_weights(const Scene& scene, const SourceFactors& sources, Quantity quantity,
                                              const std::string& scene_name);
 
+// Whether the light of the scene, called `scene_name`, is negative or so strong that sums could overflow. `sum`: of the
+// sources' radiosities.
+[[nodiscard]] std::optional<Problem> problem_of_strength(const Scene& scene, const Rgb& sum,
+                                                         const std::string& scene_name);
+
 struct CertifiedNumber {
   double value = 0.0;  // correctly rounded if certified
   double lower = 0.0;  // if certified, the neighbours of value; both 0 if the number is proved to be 0
@@ -56,6 +62,10 @@ class Light {
   // a form factor would need more than 65,536 bits for that: if the channel were exactly halfway between two doubles.
   [[nodiscard]] Channels at(const Receiver& receiver, const LightFormula& formula, const ExactOptions& options,
                             Results& results) const;
+  // The same from form factors that are there already: those of `results`, of the last at() of any Light with the same
+  // sources, at the same receiver with the same options.
+  [[nodiscard]] Channels again(const Receiver& receiver, const LightFormula& formula, const ExactOptions& options,
+                               Results& results) const;
 
  private:
   [[nodiscard]] Ball ball(const std::vector<FormFactor>& factors, const LightFormula& formula, int channel,

@@ -19,12 +19,13 @@ std::size_t faces_with_area(const Scene& scene) {
 
 // A sweep costs what the whole scene costs, however few the sources are. Of all faces as sources, one by one and a
 // sweep cost about the same in closed rooms and clouds of 200 to 400 faces; a sweep takes half the time for 500 lamps
-// or 1,000 triangles of a teapot. Of half the faces, one by one is never much slower.
+// or 1,000 triangles of a teapot. Of half the faces, one by one is never much slower. Of patches with a face each, in
+// which a divided Cornell box is cut, it costs the same for 110 and half for 188 and 380.
 bool are_most_of(const Scene& scene, std::span<const Selection> sources) {
-  constexpr std::size_t kFewest = 400;
+  constexpr std::size_t kFewest = 400, kFewestSources = 128;
   std::size_t faces = 0;
   for (const Selection& source : sources) faces += scene.faces_of(source).size();
-  return faces >= kFewest && 4 * faces >= 3 * faces_with_area(scene);
+  return (faces >= kFewest || sources.size() >= kFewestSources) && 4 * faces >= 3 * faces_with_area(scene);
 }
 
 }  // namespace

@@ -52,6 +52,19 @@ TEST_F(ConvertCommand, TellsWhatIsLost) {
   EXPECT_EQ(convert({room_, path("s.obj")}).error, "");
 }
 
+TEST_F(ConvertCommand, DividesFacesIntoCellsThatAreNamed) {
+  const Ended done = convert({"@closed-room", path("s.obj"), "--divide", "0.5"});
+  EXPECT_EQ(done.code, 0);
+  EXPECT_NE(done.error.find("cells; "), std::string::npos) << done.error;
+  EXPECT_NE(done.error.find("corners are off by at most"), std::string::npos) << done.error;
+  const Scene cells = read_scene(path("s.obj"));
+  EXPECT_EQ(cells.open_edge_count(), 0U);
+  EXPECT_EQ(cells.select_all("floor").size(), 12U * 8U);
+  EXPECT_EQ(cells.patch(cells.select("floor:96").patch).faces.size(), 1U);
+  EXPECT_EQ(convert({"@closed-room", path("t.obj"), "--divide", "0"}).code, 2);
+  EXPECT_EQ(convert({"@closed-room", path("t.obj"), "--divide", "1e-9"}).code, 2);
+}
+
 TEST_F(ConvertCommand, ExistingFilesAreReplacedOnlyOnRequest) {
   (void)directory_.write("s.mtl", "mine");
   const Ended refused = convert({room_, path("s.obj")});

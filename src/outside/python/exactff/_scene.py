@@ -45,6 +45,8 @@ class Scene:
     """
 
     _scene: _exactff.Scene
+    #: How far corners of cells lie from where they belong, at most, in a scene made by `divided`.
+    largest_deviation: float = 0.0
 
     def __init__(self, vertices: ArrayLike, faces: Any, patch: Any = None, names: Any = None,
                  materials: Optional[Mapping[str, Union[Material, Mapping[str, Any]]]] = None, *,
@@ -161,6 +163,20 @@ class Scene:
         twin that is turned round. Factors between other patches stay the same; what met the backs meets the twins.
         Raises InputError for a face that is not planar."""
         return self._changed(lambda listed: _exactff.with_two_sided(self._scene, listed), names)
+
+    def divided(self, length: float) -> Scene:
+        """The same scene with every face cut into cells, no side of which is longer than `length` (but for one part in
+        10^9). Cells of ``NAME`` are patches ``NAME:1``, ``NAME:2``, ...: see `cells_of`. All faces along an edge share
+        its points, so closed surfaces stay closed. Corners are rounded to doubles; cells that are not exactly planar
+        then are triangles."""
+        changed = Scene.__new__(Scene)
+        changed._scene, changed.largest_deviation = self._scene.divided(float(length))
+        changed.name = self.name
+        return changed
+
+    def cells_of(self, name: str) -> tuple[str, ...]:
+        """The names of the cells of a divided patch, or the name itself if it is a patch or ``NAME:k``."""
+        return tuple(self._scene.cells_of(name))
 
     def _changed(self, change: Any, names: Sequence[str]) -> Scene:
         if not names:

@@ -1,0 +1,216 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "exactff/exact.h"
+#include "exactff/models.h"
+#include "exactff/scene_files.h"
+#include "kernel/vec.h"
+#include "support/complaint.h"
+
+namespace exactff {
+namespace {
+
+using Ring = std::vector<std::uint32_t>;
+
+// Faces of one patch.
+Scene scene_of(const std::vector<Vec3>& vertices, const std::vector<std::vector<Ring>>& faces) {
+  SceneBuilder builder;
+  for (const Vec3& v : vertices) builder.add_vertex(v);
+  const MaterialId material = builder.add_material({.name = "grey", .reflectance = {0.5, 0.5, 0.5}});
+  const PatchId patch = builder.patch("wall");
+  for (const auto& rings : faces) builder.add_face(patch, material, rings);
+  return builder.build();
+}
+
+double area_of(const Scene& scene) { return total_area(summarise(scene)); }
+
+// A cell that is cut into triangles has a diagonal that may be longer.
+void expect_short_sides(const Scene& cells, double length) {
+  for (const Face& face : cells.faces()) {
+    for (const Ring& ring : face.rings) {
+      const double most = (ring.size() == 3 ? 2.0 : 1.0) * length * (1.0 + 1e-8);
+      for (std::size_t k = 0; k < ring.size(); ++k) {
+        const Vec3 &a = cells.vertices()[ring[k]], &b = cells.vertices()[ring[(k + 1) % ring.size()]];
+        EXPECT_LE(kernel::distance(a, b), most);
+      }
+    }
+  }
+}
+
+void expect_planar_cells(const Scene& cells) {
+  for (const Face& face : cells.faces()) {
+    EXPECT_EQ(face.shape, FaceShape::kPlanar) << cells.patch(face.patch).name;
+    EXPECT_EQ(cells.patch(face.patch).faces.size(), 1U);
+  }
+}
+
+// What holds for any scene.
+DividedScene expect_cells(const Scene& scene, double length) {
+  DividedScene divided = exactff::divided(scene, length);
+  EXPECT_EQ(divided.cells, divided.scene.faces().size());
+  EXPECT_NEAR(area_of(divided.scene), area_of(scene), 1e-12 * area_of(scene));
+  expect_short_sides(divided.scene, length);
+  expect_planar_cells(divided.scene);
+  return divided;
+}
+
+// A cube turned by no special angle, with its fronts outside.
+Scene turned_cube(const std::vector<std::vector<Ring>>& faces) {
+  std::vector<Vec3> corners;
+  for (int k = 0; k < 8; ++k) {
+    const double x = k & 1, y = k >> 1 & 1, z = k >> 2 & 1;
+    corners.push_back({0.36 * x - 0.48 * y + 0.8 * z, 0.8 * x + 0.6 * y, -0.48 * x + 0.64 * y + 0.6 * z});
+  }
+  return scene_of(corners, faces);
+}
+const std::vector<std::vector<Ring>> kCube = {{{0, 2, 3, 1}}, {{4, 5, 7, 6}}, {{0, 1, 5, 4}},
+                                              {{2, 6, 7, 3}}, {{0, 4, 6, 2}}, {{1, 3, 7, 5}}};
+
+TEST(Division, RectangleBecomesAGrid) {
+  const Scene scene = scene_of({{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {0, 2, 0}}, {{{0, 1, 2, 3}}});
+  const DividedScene divided = expect_cells(scene, 0.5);
+  EXPECT_EQ(divided.cells, 24U);
+  EXPECT_EQ(divided.faces_cut, 1U);
+  EXPECT_EQ(divided.largest_deviation, 0.0);
+  for (const Face& face : divided.scene.faces()) {
+    EXPECT_EQ(face.area, 0.25);
+    EXPECT_EQ(face.rings.front().size(), 4U);
+    EXPECT_GT(face.newell.z, 0.0);
+  }
+}
+
+// 7 steps of 1/7 of a length that is not quite 7 steps long.
+TEST(Division, RoundingsOfALengthAddNoCell) {
+  const double side = 7 * 0.1;  // 0.70000000000000007
+  const Scene scene = scene_of({{0, 0, 0}, {side, 0, 0}, {side, side, 0}, {0, side, 0}}, {{{0, 1, 2, 3}}});
+  EXPECT_EQ(expect_cells(scene, 0.1).cells, 49U);
+}
+
+TEST(Division, ClosedSurfacesStayClosed) {
+  for (const char* model : {"closed-room", "closed-room:lamp=hanging"}) {
+    const Scene scene = models::make_scene(model);
+    ASSERT_EQ(scene.open_edge_count(), 0U) << model;
+    EXPECT_EQ(expect_cells(scene, 0.3).scene.open_edge_count(), 0U) << model;
+  }
+  const Scene cube = turned_cube(kCube);
+  ASSERT_EQ(cube.open_edge_count(), 0U);
+  const DividedScene divided = expect_cells(cube, 0.3);
+  EXPECT_EQ(divided.scene.open_edge_count(), 0U);
+  EXPECT_GT(divided.cells, 6U * 16U);  // roundings bend some
+  EXPECT_GT(divided.largest_deviation, 0.0);
+  EXPECT_LT(divided.largest_deviation, 1e-15);
+}
+
+// Two faces of the cube end at the middle of an edge of a third one, in whose ring this point is not.
+TEST(Division, PointsAreSharedAtJunctions) {
+  std::vector<Vec3> corners;
+  for (int k = 0; k < 8; ++k) corners.push_back({0.1 * (k & 1), 0.3 * (k >> 1 & 1), 0.7 * (k >> 2 & 1)});
+  corners.push_back({0.1, 0.3, 0.2});
+  corners.push_back({0.1, 0.0, 0.2});
+  std::vector<std::vector<Ring>> faces = kCube;
+  faces[5] = {{1, 3, 8, 9}};
+  faces.push_back({{9, 8, 7, 5}});
+  const Scene scene = scene_of(corners, faces);
+  ASSERT_GT(scene.open_edge_count(), 0U);
+  for (const double length : {0.11, 0.07, 0.03}) {
+    EXPECT_EQ(expect_cells(scene, length).scene.open_edge_count(), 0U) << length;
+  }
+}
+
+TEST(Division, FacesOfAnyShapeAreCovered) {
+  const Scene trapezoid = scene_of({{0, 0, 0}, {5.3, 0, 0}, {4.1, 2.2, 0}, {1.2, 2.2, 0}}, {{{0, 1, 2, 3}}});
+  EXPECT_GT(expect_cells(trapezoid, 0.5).cells, 4U * 9U);
+  const Scene frame = scene_of({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1, 1, 0}, {1, 3, 0}, {3, 2, 0}},
+                               {{{0, 1, 2, 3}, {4, 5, 6}}});
+  EXPECT_GT(expect_cells(frame, 0.4).cells, 16U * 6U);
+  const Scene needle = scene_of({{0, 0, 0}, {100, 1e-3, 3}, {100, 0, 3}}, {{{0, 1, 2}}});
+  EXPECT_GE(expect_cells(needle, 1.0).cells, 100U);
+  std::vector<Vec3> round;
+  Ring ring;
+  for (int k = 0; k < 60; ++k) {
+    round.push_back({std::cos(k * 0.1047), std::sin(k * 0.1047), 0.25});
+    ring.push_back(static_cast<std::uint32_t>(k));
+  }
+  EXPECT_GT(expect_cells(scene_of(round, {{ring}}), 0.2).cells, 60U);
+  EXPECT_EQ(expect_cells(scene_of(round, {{ring}}), 2.1).cells, 1U);
+}
+
+// Its neighbours share every point, so an edge belongs to two cells or lies on the rim.
+TEST(Division, CellsHaveNoJunctions) {
+  const Scene scene = scene_of({{0, 0, 0}, {5.3, 0, 0}, {4.1, 2.2, 0}, {1.2, 2.2, 0}}, {{{0, 1, 2, 3}}});
+  const Scene cells = divided(scene, 0.5).scene;
+  EXPECT_EQ(cells.open_edge_count(), 11U + 2U * 6U + 6U);
+}
+
+TEST(Division, ABentFaceBecomesTriangles) {
+  const Scene bent = scene_of({{0, 0, 0}, {2, 0, 0}, {2, 2, 0.1}, {0, 2, 0}}, {{{0, 1, 2, 3}}});
+  ASSERT_EQ(bent.faces().front().shape, FaceShape::kTriangulated);
+  const DividedScene divided = expect_cells(bent, 4.0);
+  EXPECT_EQ(divided.cells, 2U);
+}
+
+TEST(Division, CellsAreNamedByTheirPatch) {
+  const Scene scene = read_scene(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
+  const DividedScene divided = expect_cells(scene, 140.0);
+  const Scene& cells = divided.scene;
+  EXPECT_EQ(cells.select_all("light").size(), 1U);  // 130 x 105: a single cell keeps its name
+  EXPECT_EQ(cells.select("light").face, std::nullopt);
+  const std::vector<Selection> floor = cells.select_all("floor");
+  EXPECT_EQ(floor.size(), 16U);
+  EXPECT_EQ(cells.name_of(floor[2]), "floor:3");
+  EXPECT_EQ(cells.select_all("floor:3"), std::vector{floor[2]});
+  double area = 0.0;
+  for (const Selection& cell : floor) area += summarise(cells, cell.patch).area;
+  EXPECT_NEAR(area, summarise(scene, scene.select("floor").patch).area, 1e-6);
+  const Scene smaller = exactff::divided(cells, 70.0).scene;
+  EXPECT_GE(smaller.select_all("floor").size(), 64U);
+  EXPECT_GE(smaller.select_all("floor:3").size(), 4U);
+  EXPECT_THROW((void)cells.select_all("flor"), InputError);
+}
+
+TEST(Division, ChangesNoFormFactor) {
+  const Scene scene = read_scene(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
+  const Scene cells = divided(scene, 100.0).scene;
+  const Receiver receiver{{200.25, 0.0, 400.5}, {0, 1, 0}, {}, {}};
+  const FormFactor whole = exact_form_factor(scene, receiver, ExactSource(scene, scene.select("light")));
+  double sum = 0.0;
+  for (const Selection& cell : cells.select_all("light")) {
+    sum += exact_form_factor(cells, receiver, ExactSource(cells, cell)).value;
+  }
+  EXPECT_EQ(cells.select_all("light").size(), 4U);
+  EXPECT_NEAR(sum, whole.value, 1e-15);
+  EXPECT_GT(sum, 0.0);
+}
+
+TEST(Division, WhatIsFlippedOrTransparentStaysSo) {
+  const Scene room = read_scene(EXACTFF_DATA_DIR "/scenes/cornell_box.obj");
+  const Scene flipped = room.with_flipped(room.select("floor"));
+  const Scene cells = divided(flipped.with_transparent(std::vector{flipped.select("left")}), 200.0).scene;
+  EXPECT_EQ(cells.flipped(), cells.select_all("floor"));
+  EXPECT_EQ(cells.transparent(), cells.select_all("left"));
+  for (const Selection& cell : cells.select_all("floor")) {
+    EXPECT_LT(cells.face(cells.faces_of(cell).front()).newell.y, 0.0);
+  }
+}
+
+TEST(Division, SaysWhyItRefuses) {
+  const Scene scene = models::make_scene("closed-room");
+  for (const double length : {0.0, -1.0, HUGE_VAL, std::nan("")}) {
+    EXPECT_THROW((void)divided(scene, length), InputError) << length;
+  }
+  EXPECT_NE(validation::complaint([&] { (void)divided(scene, 1e-6); }).find("cells"), std::string::npos);
+  SceneBuilder builder;
+  for (const Vec3& v : {Vec3{0, 0, 0}, Vec3{2, 0, 0}, Vec3{2, 1, 0}, Vec3{0, 1, 0}, Vec3{1, 0, 0}})
+    builder.add_vertex(v);
+  const MaterialId material = builder.add_material({});
+  builder.add_face(builder.patch("a"), material, {{0, 1, 2, 3}});
+  builder.add_face(builder.patch("a:2"), material, {{0, 3, 4}});
+  const Scene clash = builder.build();
+  EXPECT_NE(validation::complaint([&] { (void)divided(clash, 1.5); }), "");
+}
+
+}  // namespace
+}  // namespace exactff
