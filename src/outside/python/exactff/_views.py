@@ -161,7 +161,8 @@ def view_factor(scene: Scene, a: str, b: str, accuracy: float = 1e-6, *, budget:
     ----------
     a, b : names of patches or faces, ``NAME`` or ``NAME:k``
     accuracy : the largest width ``upper - lower``, for the factor and for the one from `b` to `a`
-    budget : the largest number of cells, and of points; where it is used up, a ModellingWarning says so and the result keeps its width
+    budget : the largest number of cells, and of points; where it is used up, a ModellingWarning says so and the result
+        keeps its width
     certify : prove the quadrature, too: the claim is "certified" or "zero"
 
     Raises InputError for unknown names and for patches without area. The GIL is released, and Ctrl-C answered.
