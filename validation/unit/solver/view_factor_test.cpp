@@ -355,6 +355,9 @@ TEST(ViewFactor, OfACrowdIsByPointsAsSoonAsTheyAreCheaper) {
   const ViewFactor by_cells = view_factor(scene, from, to, {.accuracy = 4e-3, .budget = 3000, .sample_crowds = false});
   EXPECT_LE(f.lower, by_cells.upper);
   EXPECT_GE(f.upper, by_cells.lower);
+  const ViewFactor both = view_factor(scene, from, to, {.accuracy = 1e-6, .budget = 2000});  // cells that have paused
+  EXPECT_LE(both.lower, f.upper);
+  EXPECT_GE(both.upper, f.lower);
 }
 
 // Cells reach 1e-9 here, points could not: nothing is spent on them.
